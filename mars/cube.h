@@ -1,0 +1,76 @@
+// Six cube faces around the sphere, tangent-warped at 32 knots.
+//
+// A face has body axes (right, up, out) with right x up = out. A direction d on it has chart coordinates
+// (u, v) = (d.right, d.up) / d.out, in [-1, 1]: gnomonic, so that great circles and flat triangles seen from
+// the planet's centre are straight. A grid of 2^n intervals a side has its lines at face_line(index, n):
+// the tangent warp u = tan((2 s - 1) pi / 4) holds at the 33 knots s = k / 32, lines are even between them.
+// Hence cells are nearly equal, posts nest from grid to grid, and
+// from 32 intervals on every 32nd part of a face is an even gnomonic grid.
+//
+// Every line coordinate is a dyadic rational that a double holds exactly up to n = kMaxGridLevel, and the
+// warp is odd about the face's middle. So a point on a cube edge or corner has bit-identical coordinates
+// (up to exact sign changes) from each face that shares it: cube_point() returns equal bits.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <cmath>
+#include <cstdint>
+
+namespace mars {
+
+enum class Face : std::uint8_t { kPlusX, kPlusY, kMinusX, kMinusY, kPlusZ, kMinusZ };
+inline constexpr int kFaces = 6;
+inline constexpr int kWarpKnots = 32;
+inline constexpr int kMaxGridLevel = 35;
+
+struct FaceAxes {
+  glm::dvec3 right;
+  glm::dvec3 up;
+  glm::dvec3 out;
+};
+
+// Equatorial faces: right = east, up = north at the face's centre. Both polar faces: right = +Y.
+const FaceAxes& face_axes(Face face);
+
+// Chart coordinate of grid line `index` of 2^grid_level intervals, 0 <= index <= 2^grid_level,
+// grid_level <= kMaxGridLevel. Exact: a multiple of 2^-52.
+double face_line(std::int64_t index, int grid_level);
+
+// Inverse of the warp: s in [0, 1] for u in [-1, 1] (clamped), |face_line(s) - u| <= 4e-16.
+double face_parameter(double u);
+
+// Chart point of a face, on the cube |x|, |y| or |z| = 1. Exact for grid lines.
+inline glm::dvec3 cube_point(Face face, double u, double v) {
+  const FaceAxes& a = face_axes(face);
+  // Each body component is one of u, v, +-1 up to sign: products with 0 and +-1 and sums with 0 are exact.
+  return a.right * u + a.up * v + a.out;
+}
+
+// Length of a cube point, summed in body order so that all faces agree to the bit.
+inline double cube_length(const glm::dvec3& p) { return std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z); }
+
+// Unit vector of a chart point; bit-identical from every face that shares the point.
+inline glm::dvec3 chart_direction(Face face, double u, double v) {
+  const glm::dvec3 p = cube_point(face, u, v);
+  const double length = cube_length(p);
+  return {p.x / length, p.y / length, p.z / length};
+}
+
+struct ChartPoint {
+  Face face = Face::kPlusX;
+  double u = 0;
+  double v = 0;
+};
+
+// Chart point of any non-zero vector; on shared edges the face that comes first in Face is taken.
+ChartPoint chart_point(const glm::dvec3& d);
+
+// (u, v) of a vector on a given face, also outside [-1, 1]; requires a positive component along face.out.
+inline ChartPoint chart_on(Face face, const glm::dvec3& d) {
+  const FaceAxes& a = face_axes(face);
+  const double out = glm::dot(a.out, d);
+  return {face, glm::dot(a.right, d) / out, glm::dot(a.up, d) / out};
+}
+
+}  // namespace mars

@@ -1,0 +1,31 @@
+// What a frame states about its own geometric error.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace vpe::core {
+
+// Bounds over the drawn tiles of one frame, against the surface S of the planet file (docs/architecture.md).
+struct Certificate {
+  double tile_error_m = 0;      // largest tile error bound among the drawn tiles
+  double tile_error_px = 0;     // largest projected bound: error * focal length / distance
+  double quantisation_m = 0;    // largest displacement of a vertex by float storage
+  double quantisation_px = 0;   // projected likewise
+  double shift_bound_px = 0;    // every pixel's shift is at most this: tile error + quantisation, projected
+  double tolerance_px = 0;      // what was asked for
+  int tiles_drawn = 0;
+  int tiles_missing = 0;
+  int tiles_substituted = 0;
+  double share_at_data_limit = 0;  // share of surface pixels drawn from finest tiles at error 0 (estimate by tile)
+  double resampling_max_m = 0;     // S against the sources' own posts
+  double resampling_rms_m = 0;
+  std::optional<double> source_accuracy_m;
+  bool illustration = false;
+  double exaggeration = 1;
+};
+
+std::string to_json(const Certificate& certificate);
+
+}  // namespace vpe::core
