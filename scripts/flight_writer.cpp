@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <initializer_list>
+#include <utility>
+
+#include "scripts/flight.h"
+#include "vpe/core/number.h"
+
+namespace scripts {
+
+using vpe::core::format_number;
+
+namespace {
+
+using Fields = std::initializer_list<std::pair<const char*, double>>;
+
+std::string at_line(double time_s, const char* command, Fields fields) {
+  std::string line = "at " + format_number(time_s) + " " + command;
+  for (const auto& [key, value] : fields) line.append(" ").append(key).append("=").append(format_number(value));
+  return line + "\n";
+}
+
+}  // namespace
+
+std::string version_line() { return "flight 1\n"; }
+
+std::string to_line(const FlightView& view) {
+  return "view fov=" + format_number(view.fov_deg) + " size=" + std::to_string(view.width) + "x" +
+         std::to_string(view.height) + " fps=" + to_text(view.fps) + "\n";
+}
+
+std::string to_line(const Waypoint& w) {
+  return at_line(w.time_s, "pose",
+                 {{"lon", w.lon_deg},
+                  {"lat", w.lat_deg},
+                  {w.above_terrain ? "height" : "alt", w.up_m},
+                  {"yaw", w.yaw_deg},
+                  {"pitch", w.pitch_deg},
+                  {"roll", w.roll_deg}});
+}
+
+std::string to_line(const Look& look) {
+  return at_line(look.time_s, "look",
+                 {{"yaw", look.yaw_deg}, {"pitch", look.pitch_deg}, {"roll", look.roll_deg}});
+}
+
+std::string to_line(const SetCommand& set) {
+  return "at " + format_number(set.time_s) + " set " + set.key + "=" + set.text + "\n";
+}
+
+std::string to_line(const Interest& interest) {
+  return at_line(interest.time_s, "interest",
+                 {{"lon", interest.lon_deg},
+                  {"lat", interest.lat_deg},
+                  {"radius", interest.radius_m},
+                  {"levels", interest.levels}});
+}
+
+std::string end_line(double time_s) { return at_line(time_s, "end", {}); }
+
+std::string to_text(const Flight& flight) {
+  std::vector<std::pair<double, std::string>> lines;
+  const auto add = [&](const auto& commands) {
+    for (const auto& command : commands) lines.emplace_back(command.time_s, to_line(command));
+  };
+  add(flight.waypoints);
+  add(flight.looks);
+  add(flight.sets);
+  add(flight.interests);
+  std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+
+  std::string text = version_line() + to_line(flight.view);
+  for (const auto& [time_s, line] : lines) text += line;
+  if (flight.end_s) text += end_line(*flight.end_s);
+  return text;
+}
+
+}  // namespace scripts

@@ -1,0 +1,75 @@
+#include "scripts/log.h"
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace scripts {
+
+LineFile::LineFile(std::filesystem::path path)
+    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wb"), &std::fclose) {
+  if (file_ == nullptr) fail("open for writing");
+}
+
+void LineFile::write(std::string_view lines) {
+  if (std::fwrite(lines.data(), 1, lines.size(), file_.get()) != lines.size() ||
+      std::fflush(file_.get()) != 0) {
+    fail("write");
+  }
+}
+
+void LineFile::close() {
+  if (file_ != nullptr && std::fclose(file_.release()) != 0) fail("close");
+}
+
+void LineFile::fail(const char* operation) const {
+  throw std::runtime_error(path_.string() + ": cannot " + operation + ": " + std::strerror(errno) +
+                           "; check the folder, its permissions and the space left");
+}
+
+FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view) : file_(path) {
+  file_.write(version_line() + to_line(view));
+}
+
+void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadLook& look,
+                      const vpe::core::Settings& settings) {
+  const Look turned{time_s, look.yaw_deg, look.pitch_deg, look.roll_deg};
+  const bool moved =
+      look.yaw_deg != look_.yaw_deg || look.pitch_deg != look_.pitch_deg || look.roll_deg != look_.roll_deg;
+  std::string lines;
+  if (moved && last_frame_s_ && look_.time_s != *last_frame_s_) {
+    // Playback interpolates between look lines: hold the head still up to the frame before it moved.
+    look_.time_s = *last_frame_s_;
+    lines += to_line(look_);
+  }
+  lines += to_line(Waypoint{.time_s = time_s,
+                            .lon_deg = pose.lon_deg,
+                            .lat_deg = pose.lat_deg,
+                            .up_m = pose.alt_m,
+                            .yaw_deg = pose.yaw_deg,
+                            .pitch_deg = pose.pitch_deg,
+                            .roll_deg = pose.roll_deg});
+  if (moved) {
+    look_ = turned;
+    lines += to_line(look_);
+  }
+  if (settings != settings_) {
+    for (const vpe::core::SettingInfo& info : vpe::core::Settings::list()) {
+      const std::string text = *settings.get(info.key);
+      if (text != settings_.get(info.key)) lines += to_line(SetCommand{time_s, std::string(info.key), text});
+    }
+    settings_ = settings;
+  }
+  file_.write(lines);
+  last_frame_s_ = time_s;
+}
+
+void FlightLog::interest(const Interest& interest) { file_.write(to_line(interest)); }
+
+void FlightLog::end(double time_s) {
+  file_.write(end_line(time_s));
+  file_.close();
+}
+
+}  // namespace scripts

@@ -1,0 +1,95 @@
+// A smooth curve through unit vectors at given times: places on the sphere (dvec3), attitudes as quaternions
+// (dvec4).
+//
+// Between two knots the curve is a cubic Bezier whose linear steps are great-circle steps (de Casteljau by
+// slerp, Shoemake 1985). Its velocity at a knot is the non-uniform Catmull-Rom one, no faster than twice the
+// slower of the two segments beside it, so it never swings out, and it is zero beside a segment that does not
+// move: a hold holds, and motion into and out of it is smooth. At both ends it is the segment's own velocity.
+// Hence:
+//   - the curve and its velocity are continuous;
+//   - two knots give the great circle at constant speed;
+//   - knots on one great circle give a curve that stays on it;
+//   - rotating all knots rotates the curve.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
+
+namespace scripts {
+
+// Tangent at unit p that leads to unit q along the shorter great circle; its length is the angle between them.
+// Zero for equal and for opposite points.
+template <class Vec>
+Vec tangent_towards(const Vec& p, const Vec& q) {
+  const Vec chord = q - p;
+  const Vec across = chord - p * glm::dot(p, chord);
+  const double size = glm::length(across);
+  if (size == 0.0) return Vec(0.0);
+  // Half-angle form: accurate for close and for nearly opposite points alike.
+  const double angle_rad = 2.0 * std::atan2(glm::length(chord), glm::length(p + q));
+  return across * (angle_rad / size);
+}
+
+// The unit vector reached from unit p along a tangent at p whose length is the angle.
+template <class Vec>
+Vec follow(const Vec& p, const Vec& tangent) {
+  const double angle_rad = glm::length(tangent);
+  if (angle_rad == 0.0) return p;
+  return glm::normalize(p * std::cos(angle_rad) + tangent * (std::sin(angle_rad) / angle_rad));
+}
+
+template <class Vec>
+class SphericalSpline {
+ public:
+  // Same number of times (strictly ascending) and unit points, at least one. Neighbours are not opposite.
+  SphericalSpline(std::vector<double> times_s, std::vector<Vec> points)
+      : times_s_(std::move(times_s)), points_(std::move(points)), velocities_(points_.size(), Vec(0.0)) {
+    const std::size_t last = points_.size() - 1;
+    if (last == 0) return;
+    velocities_[0] = tangent_towards(points_[0], points_[1]) / (times_s_[1] - times_s_[0]);
+    velocities_[last] =
+        -tangent_towards(points_[last], points_[last - 1]) / (times_s_[last] - times_s_[last - 1]);
+    for (std::size_t i = 1; i < last; ++i) velocities_[i] = inner_velocity(i);
+  }
+
+  // Unit vector at a time; the first and last point outside the times. Exact at the knots.
+  Vec at(double time_s) const {
+    if (!(time_s > times_s_.front())) return points_.front();
+    if (time_s >= times_s_.back()) return points_.back();
+    const auto after = std::upper_bound(times_s_.begin(), times_s_.end(), time_s);
+    const auto i = static_cast<std::size_t>(after - times_s_.begin()) - 1;
+    const double span_s = times_s_[i + 1] - times_s_[i];
+    const double u = (time_s - times_s_[i]) / span_s;
+    if (u == 0.0 || points_[i] == points_[i + 1]) return points_[i];
+    const Vec b0 = points_[i];
+    const Vec b1 = follow(b0, velocities_[i] * (span_s / 3.0));
+    const Vec b3 = points_[i + 1];
+    const Vec b2 = follow(b3, -velocities_[i + 1] * (span_s / 3.0));
+    const Vec middle = step(b1, b2, u);
+    return step(step(step(b0, b1, u), middle, u), step(middle, step(b2, b3, u), u), u);
+  }
+
+ private:
+  static Vec step(const Vec& p, const Vec& q, double u) { return follow(p, tangent_towards(p, q) * u); }
+
+  Vec inner_velocity(std::size_t i) const {
+    const double before_s = times_s_[i] - times_s_[i - 1];
+    const double after_s = times_s_[i + 1] - times_s_[i];
+    const Vec before = -tangent_towards(points_[i], points_[i - 1]) / before_s;
+    const Vec after = tangent_towards(points_[i], points_[i + 1]) / after_s;
+    const Vec velocity = (before * after_s + after * before_s) / (before_s + after_s);
+    const double limit = 2.0 * std::min(glm::length(before), glm::length(after));
+    const double speed = glm::length(velocity);
+    return speed > limit ? velocity * (limit / speed) : velocity;
+  }
+
+  std::vector<double> times_s_;
+  std::vector<Vec> points_;
+  std::vector<Vec> velocities_;  // radians a second, tangent at the points
+};
+
+}  // namespace scripts

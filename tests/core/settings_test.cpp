@@ -1,0 +1,193 @@
+#include "vpe/core/settings.h"
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <set>
+
+#include "tests/support/support.h"
+#include "vpe/core/number.h"
+
+namespace vpe::core {
+namespace {
+
+using test_support::Random;
+
+bool holds(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+TEST(Number, ReadsWhatItWritesToTheBit) {
+  Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const double sign = random.integer(0, 1) == 0 ? -1.0 : 1.0;
+    const double value = sign * random.log_uniform(1e-300, 1e300);
+    const std::optional<double> read = parse_number(format_number(value));
+    ASSERT_TRUE(read.has_value()) << format_number(value);
+    ASSERT_EQ(*read, value);
+  }
+  for (const double value : {0.0, -0.0, 1e-6, 1e16, 123456789.0, std::numeric_limits<double>::denorm_min(),
+                             std::numeric_limits<double>::max()}) {
+    EXPECT_EQ(parse_number(format_number(value)), value);
+  }
+}
+
+TEST(Number, IsPlainWherePeopleRead) {
+  EXPECT_EQ(format_number(1000000), "1000000");
+  EXPECT_EQ(format_number(-74.25), "-74.25");
+  EXPECT_EQ(format_number(0.1), "0.1");
+  EXPECT_EQ(format_number(0), "0");
+  EXPECT_EQ(format_number(1e20), "1e+20");
+}
+
+TEST(Number, TakesOnlyWholeFiniteDecimals) {
+  EXPECT_EQ(parse_number("+1.5"), 1.5);
+  EXPECT_EQ(parse_number("-.5e1"), -5.0);
+  for (const char* text : {"", "+", "-", "+-1", "-+1", "++1", "1 ", " 1", "1,5", "1.5m", "nan", "inf", "-inf",
+                           "infinity", "0x10", "1e999", "1e", "--1", "1_000"}) {
+    EXPECT_FALSE(parse_number(text).has_value()) << text;
+  }
+  EXPECT_EQ(parse_integer("+3"), 3);
+  for (const char* text : {"", "3.0", "1e3", "99999999999999999999", "0x1"}) {
+    EXPECT_FALSE(parse_integer(text).has_value()) << text;
+  }
+}
+
+TEST(Settings, EveryKeyIsListedOnceWithADefaultThatIsAllowed) {
+  std::set<std::string_view> names;
+  for (const SettingInfo& info : Settings::list()) {
+    EXPECT_TRUE(names.insert(info.key).second) << info.key;
+    EXPECT_FALSE(info.meaning.empty()) << info.key;
+    Settings settings;
+    EXPECT_EQ(settings.get(info.key), info.default_text);
+    EXPECT_EQ(settings.set(info.key, info.default_text), "");
+    EXPECT_EQ(settings, Settings());
+  }
+  for (const char* key : {"mode", "colour", "exaggeration", "sun.azimuth", "sun.elevation"}) {
+    EXPECT_TRUE(names.contains(key)) << key;
+  }
+}
+
+TEST(Settings, EachKeyChangesItsOwnValueAlone) {
+  for (const SettingInfo& info : Settings::list()) {
+    std::string other;
+    if (info.type == SettingType::kChoice) {
+      for (const std::string_view choice : info.choices) {
+        if (choice != info.default_text) other = choice;
+      }
+    } else {
+      other = format_number(info.max);
+    }
+    Settings settings;
+    ASSERT_EQ(settings.set(info.key, other), "") << info.key;
+    EXPECT_NE(settings, Settings()) << info.key;
+    for (const SettingInfo& each : Settings::list()) {
+      EXPECT_EQ(settings.get(each.key), each.key == info.key ? other : each.default_text) << info.key;
+    }
+  }
+}
+
+TEST(Settings, MapsKeysToTheirMembers) {
+  Settings settings;
+  EXPECT_EQ(settings.assign("mode=wireframe"), "");
+  EXPECT_EQ(settings.assign("colour=none"), "");
+  EXPECT_EQ(settings.assign("exaggeration=2.5"), "");
+  EXPECT_EQ(settings.assign("sun.azimuth=90"), "");
+  EXPECT_EQ(settings.assign("sun.elevation=10"), "");
+  EXPECT_EQ(settings.assign("sun.ambient=0.5"), "");
+  EXPECT_EQ(settings.assign("lod.tolerance=0"), "");
+  EXPECT_EQ(settings.assign("lod.triangles=100000"), "");
+  EXPECT_EQ(settings.assign("samples=2"), "");
+  EXPECT_EQ(settings.assign("background=sky"), "");
+  const SettingsValues wanted{.mode = Mode::kWireframe,
+                              .colour = Colour::kNone,
+                              .exaggeration = 2.5,
+                              .sun_azimuth_deg = 90,
+                              .sun_elevation_deg = 10,
+                              .sun_ambient = 0.5,
+                              .lod_tolerance_px = 0,
+                              .lod_triangles = 100000,
+                              .samples = 2,
+                              .background = Background::kSky};
+  EXPECT_EQ(settings.values(), wanted);
+}
+
+TEST(Settings, RangesIncludeTheirEndsAndNothingBeyond) {
+  for (const SettingInfo& info : Settings::list()) {
+    if (info.type == SettingType::kChoice) continue;
+    Settings settings;
+    EXPECT_EQ(settings.set(info.key, format_number(info.min)), "");
+    EXPECT_EQ(settings.set(info.key, format_number(info.max)), "");
+    const Settings before = settings;
+    const bool whole = info.type == SettingType::kInteger;
+    const double below = whole ? info.min - 1 : std::nextafter(info.min, -1e300);
+    const double above = whole ? info.max + 1 : std::nextafter(info.max, 1e300);
+    for (const std::string& text : {format_number(below), format_number(above), std::string("nan"),
+                                    std::string(""), std::string("1x"), std::string("inf")}) {
+      const std::string problem = settings.set(info.key, text);
+      EXPECT_TRUE(holds(problem, info.key)) << problem;
+      EXPECT_TRUE(holds(problem, format_number(info.max))) << problem;
+    }
+    EXPECT_EQ(settings, before) << info.key;
+  }
+  Settings settings;
+  EXPECT_TRUE(holds(settings.set("lod.triangles", "1.5"), "whole number"));
+}
+
+TEST(Settings, WrongWordsNameTheRightOnes) {
+  Settings settings;
+  const std::string problem = settings.set("mode", "shiny");
+  EXPECT_TRUE(holds(problem, "mode=shiny")) << problem;
+  EXPECT_TRUE(holds(problem, "wireframe, unlit, lit, coloured, textured")) << problem;
+  EXPECT_TRUE(holds(settings.set("samples", "3"), "1, 2, 4"));
+  EXPECT_TRUE(holds(settings.set("mode", "Lit"), "not allowed"));
+}
+
+TEST(Settings, UnknownKeysNameNearOnes) {
+  Settings settings;
+  EXPECT_TRUE(holds(settings.set("sun.azimut", "1"), "did you mean sun.azimuth?"));
+  EXPECT_TRUE(holds(settings.set("color", "none"), "did you mean colour?"));
+  EXPECT_TRUE(holds(settings.set("exageration", "1"), "did you mean exaggeration?"));
+  EXPECT_TRUE(holds(settings.set("azimuth", "1"), "did you mean sun.azimuth?"));
+  EXPECT_TRUE(holds(settings.set("sun.", "1"), "sun.azimuth, sun.elevation, sun.ambient"));
+  const std::string far = settings.set("flux-capacitor", "1");
+  EXPECT_TRUE(holds(far, "the settings are mode, colour")) << far;
+  EXPECT_FALSE(settings.set("", "").empty());
+  EXPECT_LT(settings.set(std::string(1000000, 'x'), "1").size(), 1000u);
+  EXPECT_EQ(settings, Settings());
+  EXPECT_FALSE(settings.get("sun").has_value());
+}
+
+TEST(Settings, AssignNeedsAnEqualsSign) {
+  Settings settings;
+  EXPECT_TRUE(holds(settings.assign("mode"), "KEY=VALUE"));
+  EXPECT_FALSE(settings.assign("=1").empty());
+  EXPECT_FALSE(settings.assign("exaggeration=").empty());
+  EXPECT_FALSE(settings.assign("exaggeration=1=2").empty());
+  EXPECT_EQ(settings, Settings());
+}
+
+class CommaPoint : public std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(Settings, NumbersDoNotDependOnTheLocale) {
+  // Streams follow the C++ locale, the C library its own, where a German one is installed.
+  const std::locale old = std::locale::global(std::locale(std::locale::classic(), new CommaPoint));
+  std::setlocale(LC_ALL, "de_DE.UTF-8");
+  Settings settings;
+  const std::string problem = settings.set("exaggeration", "2.5");
+  const std::string cap_problem = settings.set("lod.triangles", "1234567");
+  const std::optional<std::string> text = settings.get("exaggeration");
+  const std::optional<std::string> cap_text = settings.get("lod.triangles");
+  std::locale::global(old);
+  std::setlocale(LC_ALL, "C");
+  EXPECT_EQ(problem, "");
+  EXPECT_EQ(cap_problem, "");
+  EXPECT_EQ(text, "2.5");
+  EXPECT_EQ(cap_text, "1234567");
+}
+
+}  // namespace
+}  // namespace vpe::core

@@ -1,0 +1,224 @@
+#include "vpe/core/settings.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <variant>
+
+#include "vpe/core/number.h"
+
+namespace vpe::core {
+
+namespace {
+
+struct Number {
+  double SettingsValues::*member;
+  double min;
+  double max;
+};
+
+struct Integer {
+  int SettingsValues::*member;
+  int min;
+  int max;
+};
+
+struct Word {
+  std::string_view text;
+  int value;
+};
+
+struct Choice {
+  std::vector<Word> words;
+  int (*read)(const SettingsValues&);
+  void (*write)(SettingsValues&, int);
+};
+
+template <auto member>
+Choice choice(std::vector<Word> words) {
+  return {std::move(words), [](const SettingsValues& values) { return static_cast<int>(values.*member); },
+          [](SettingsValues& values, int value) {
+            using Member = std::remove_reference_t<decltype(values.*member)>;
+            values.*member = static_cast<Member>(value);
+          }};
+}
+
+template <class Enum>
+Word word(std::string_view text, Enum value) {
+  return {text, static_cast<int>(value)};
+}
+
+struct Key {
+  std::string_view name;
+  std::variant<Number, Integer, Choice> type;
+  std::string_view unit;
+  std::string_view meaning;
+};
+
+const std::vector<Key>& keys() {
+  using V = SettingsValues;
+  static const std::vector<Key> all{
+      {"mode",
+       choice<&V::mode>({word("wireframe", Mode::kWireframe), word("unlit", Mode::kUnlit),
+                         word("lit", Mode::kLit), word("coloured", Mode::kColoured),
+                         word("textured", Mode::kTextured)}),
+       "", "how the surface is painted; textured falls back to coloured where there is no imagery"},
+      {"colour", choice<&V::colour>({word("none", Colour::kNone), word("elevation", Colour::kElevation)}), "",
+       "what the vertex colour of coloured surfaces shows"},
+      {"exaggeration", Number{&V::exaggeration, 0.1, 100}, "",
+       "factor on every elevation, about the planet's sphere"},
+      {"sun.azimuth", Number{&V::sun_azimuth_deg, 0, 360}, "deg",
+       "where the light comes from, clockwise from north at the ground point of the view"},
+      {"sun.elevation", Number{&V::sun_elevation_deg, 0, 90}, "deg",
+       "height of the light above the horizon at the ground point of the view"},
+      {"sun.ambient", Number{&V::sun_ambient, 0, 1}, "", "share of the light that reaches shaded slopes"},
+      {"lod.tolerance", Number{&V::lod_tolerance_px, 0, 1000}, "px",
+       "largest geometric error that may be drawn; 0 draws the exact surface"},
+      {"lod.triangles", Integer{&V::lod_triangles, 0, 1'000'000'000}, "",
+       "hard cap on the triangles of a frame, above the tolerance; 0 = none"},
+      {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
+       "colour samples a pixel (anti-aliasing)"},
+      {"background",
+       choice<&V::background>({word("black", Background::kBlack), word("white", Background::kWhite),
+                               word("sky", Background::kSky)}),
+       "", "colour behind the planet; sky is the dusty air of Mars, black seen from space"},
+  };
+  return all;
+}
+
+const Key* find_key(std::string_view name) {
+  const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
+  return key == keys().end() ? nullptr : &*key;
+}
+
+std::string to_text(const SettingsValues& values, const Key& key) {
+  if (const auto* number = std::get_if<Number>(&key.type)) return format_number(values.*number->member);
+  if (const auto* integer = std::get_if<Integer>(&key.type)) return std::to_string(values.*integer->member);
+  const auto& words = std::get<Choice>(key.type);
+  const auto found = std::find_if(words.words.begin(), words.words.end(),
+                                  [&](const Word& w) { return w.value == words.read(values); });
+  return std::string(found->text);
+}
+
+// Sets the value when it is allowed.
+bool apply(SettingsValues& values, const Key& key, std::string_view text) {
+  if (const auto* number = std::get_if<Number>(&key.type)) {
+    const std::optional<double> value = parse_number(text);
+    if (!value || *value < number->min || *value > number->max) return false;
+    values.*number->member = *value;
+    return true;
+  }
+  if (const auto* integer = std::get_if<Integer>(&key.type)) {
+    const std::optional<std::int64_t> value = parse_integer(text);
+    if (!value || *value < integer->min || *value > integer->max) return false;
+    values.*integer->member = static_cast<int>(*value);
+    return true;
+  }
+  const auto& words = std::get<Choice>(key.type);
+  const auto found =
+      std::find_if(words.words.begin(), words.words.end(), [&](const Word& w) { return w.text == text; });
+  if (found == words.words.end()) return false;
+  words.write(values, found->value);
+  return true;
+}
+
+SettingInfo info_of(const Key& key) {
+  SettingInfo info;
+  info.key = key.name;
+  info.default_text = to_text({}, key);
+  info.unit = key.unit;
+  info.meaning = key.meaning;
+  if (const auto* number = std::get_if<Number>(&key.type)) {
+    info.min = number->min;
+    info.max = number->max;
+  } else if (const auto* integer = std::get_if<Integer>(&key.type)) {
+    info.type = SettingType::kInteger;
+    info.min = integer->min;
+    info.max = integer->max;
+  } else {
+    info.type = SettingType::kChoice;
+    for (const Word& w : std::get<Choice>(key.type).words) info.choices.push_back(w.text);
+  }
+  return info;
+}
+
+std::string join(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const std::string_view w : words) text.append(text.empty() ? "" : ", ").append(w);
+  return text;
+}
+
+std::string what_is_allowed(const Key& key) {
+  const SettingInfo info = info_of(key);
+  if (info.type == SettingType::kChoice) return "one of " + join(info.choices);
+  std::string text = info.type == SettingType::kInteger ? "a whole number from " : "a number from ";
+  text.append(format_number(info.min)).append(" to ").append(format_number(info.max));
+  if (!info.unit.empty()) text.append(" ").append(info.unit);
+  return text;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string unknown_key(std::string_view name) {
+  constexpr std::size_t kLongestName = 64;
+  const std::string_view shown = name.substr(0, kLongestName);
+  std::vector<std::string_view> all;
+  std::vector<std::string_view> near;
+  for (const Key& key : keys()) {
+    all.push_back(key.name);
+    const bool part = shown.size() >= 3 && key.name.find(shown) != std::string_view::npos;
+    const std::size_t typos = std::max<std::size_t>(1, key.name.size() / 4);
+    if (part || edit_distance(shown, key.name) <= typos) near.push_back(key.name);
+  }
+  std::string text = "unknown setting \"";
+  text.append(shown).append("\"; ");
+  return near.empty() ? text.append("the settings are ").append(join(all))
+                      : text.append("did you mean ").append(join(near)).append("?");
+}
+
+}  // namespace
+
+std::span<const SettingInfo> Settings::list() {
+  static const std::vector<SettingInfo> infos = [] {
+    std::vector<SettingInfo> all;
+    for (const Key& key : keys()) all.push_back(info_of(key));
+    return all;
+  }();
+  return infos;
+}
+
+std::string Settings::set(std::string_view name, std::string_view text) {
+  const Key* key = find_key(name);
+  if (key == nullptr) return unknown_key(name);
+  if (apply(values_, *key, text)) return {};
+  constexpr std::size_t kLongestText = 64;
+  return std::string(name) + "=" + std::string(text.substr(0, kLongestText)) + " is not allowed: expected " +
+         what_is_allowed(*key);
+}
+
+std::string Settings::assign(std::string_view assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos) {
+    return "expected KEY=VALUE, found \"" + std::string(assignment.substr(0, 64)) + "\"";
+  }
+  return set(assignment.substr(0, equals), assignment.substr(equals + 1));
+}
+
+std::optional<std::string> Settings::get(std::string_view name) const {
+  const Key* key = find_key(name);
+  return key == nullptr ? std::nullopt : std::optional(to_text(values_, *key));
+}
+
+}  // namespace vpe::core

@@ -1,0 +1,80 @@
+// The settings registry: everything about how a picture is drawn that `--set KEY=VALUE`, a flight's `set` and
+// `vpe settings` can name. Each key is declared once (settings.cpp) with its type, range, default, unit and
+// meaning; the drawing code reads the plain struct SettingsValues.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vpe::core {
+
+// How the surface is painted. Lit modes shade by the sun.
+enum class Mode {
+  kWireframe,  // edges of the triangles
+  kUnlit,      // one colour, no normals
+  kLit,        // one colour, shaded
+  kColoured,   // vertex colour by `colour`, shaded
+  kTextured,   // imagery, shaded; as kColoured where the planet file has none
+};
+
+enum class Colour { kNone, kElevation };
+
+enum class Background { kBlack, kWhite, kSky };
+
+struct SettingsValues {
+  Mode mode = Mode::kTextured;
+  Colour colour = Colour::kElevation;
+  double exaggeration = 1;
+  double sun_azimuth_deg = 315;
+  double sun_elevation_deg = 35;
+  double sun_ambient = 0.15;
+  double lod_tolerance_px = 1;
+  int lod_triangles = 0;
+  int samples = 4;
+  Background background = Background::kBlack;
+
+  bool operator==(const SettingsValues&) const = default;
+};
+
+enum class SettingType { kNumber, kInteger, kChoice };
+
+// What `vpe settings` shows of a key.
+struct SettingInfo {
+  std::string_view key;
+  SettingType type = SettingType::kNumber;
+  double min = 0;  // numbers and integers, both ends allowed
+  double max = 0;
+  std::vector<std::string_view> choices;  // words allowed, for kChoice
+  std::string default_text;
+  std::string_view unit;  // empty for pure numbers and words
+  std::string_view meaning;
+};
+
+// A value of every key. Regular type; functions of one object follow the usual const rule for threads.
+class Settings {
+ public:
+  // All keys in the order in which people should read them.
+  static std::span<const SettingInfo> list();
+
+  // Sets one key from text. Returns what is wrong, empty when all is well; on an error nothing changes.
+  // An unknown key's error names the keys that are spelled nearly so, a bad value's error what is allowed.
+  [[nodiscard]] std::string set(std::string_view key, std::string_view text);
+
+  // The same from "KEY=VALUE".
+  [[nodiscard]] std::string assign(std::string_view assignment);
+
+  // The value as text that set() reads back to the same bits; nothing for an unknown key.
+  std::optional<std::string> get(std::string_view key) const;
+
+  const SettingsValues& values() const { return values_; }
+
+  bool operator==(const Settings&) const = default;
+
+ private:
+  SettingsValues values_;
+};
+
+}  // namespace vpe::core

@@ -1,0 +1,73 @@
+// Owners of OpenGL objects. All must be made and destroyed while their context is current.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "vpe/gl/opengl.h"
+
+namespace vpe::gl {
+
+// Move-only owner of a name; Traits has create() and destroy(name).
+template <typename Traits>
+class Object {
+ public:
+  Object() = default;
+  static Object make() {
+    Object object;
+    object.name_ = Traits::create();
+    return object;
+  }
+  Object(Object&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  Object& operator=(Object&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  ~Object() {
+    if (name_ != 0) Traits::destroy(name_);
+  }
+  GLuint name() const { return name_; }
+  explicit operator bool() const { return name_ != 0; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+struct BufferTraits {
+  static GLuint create();
+  static void destroy(GLuint name);
+};
+struct VertexArrayTraits {
+  static GLuint create();
+  static void destroy(GLuint name);
+};
+struct Texture2DTraits {
+  static GLuint create();
+  static void destroy(GLuint name);
+};
+struct FramebufferTraits {
+  static GLuint create();
+  static void destroy(GLuint name);
+};
+struct RenderbufferTraits {
+  static GLuint create();
+  static void destroy(GLuint name);
+};
+struct ProgramTraits {
+  static GLuint create();
+  static void destroy(GLuint name);
+};
+using Buffer = Object<BufferTraits>;
+using VertexArray = Object<VertexArrayTraits>;
+using Texture2D = Object<Texture2DTraits>;
+using Framebuffer = Object<FramebufferTraits>;
+using Renderbuffer = Object<RenderbufferTraits>;
+using Program = Object<ProgramTraits>;
+
+// Compiles and links; throws std::runtime_error with the driver's log. `label` names it in the message.
+Program make_program(const std::string& label, const char* vertex, const char* fragment);
+
+// Throws std::runtime_error naming the operation when OpenGL has recorded an error.
+void check_gl(const char* operation);
+
+}  // namespace vpe::gl

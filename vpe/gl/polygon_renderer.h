@@ -1,0 +1,28 @@
+// The polygon backend: selected tiles as textured triangle meshes.
+#pragma once
+
+#include <memory>
+
+#include "paging/planet_file.h"
+#include "vpe/core/frame.h"
+#include "vpe/gl/context.h"
+
+namespace vpe::gl {
+
+struct RendererOptions {
+  std::size_t memory_bytes = std::size_t{1} << 30;  // CPU and GPU payloads together
+  int threads = 0;                                  // for making tiles ready; 0 = all cores
+};
+
+// Draws with complete data: tiles that are not resident are loaded before the frame is drawn. Pictures do not
+// depend on what was drawn before. Positions are relative to each tile's centre, the eye is subtracted in
+// double, depth is reversed 32-bit float. Range of a pixel is the distance to the drawn triangle at the pixel's
+// centre; its relative error is at most kRangeError * (1 + range / nearest range in the picture), from the
+// interpolation of depth over large triangles. Sky pixels are +infinity. Range takes passes of its own, with
+// one sample a pixel.
+inline constexpr double kRangeError = 5e-7;
+std::unique_ptr<core::Renderer> make_polygon_renderer(std::shared_ptr<Context> context,
+                                                      std::shared_ptr<const paging::PlanetFile> planet,
+                                                      const RendererOptions& options = {});
+
+}  // namespace vpe::gl

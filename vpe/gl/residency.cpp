@@ -1,0 +1,48 @@
+#include "vpe/gl/residency.h"
+
+namespace vpe::gl {
+
+GpuMesh upload(const TileGeometry& geometry) {
+  GpuMesh mesh;
+  mesh.vertices = Buffer::make();
+  mesh.indices = Buffer::make();
+  mesh.short_indices = geometry.vertices.size() <= 65536;
+  const std::size_t vertex_bytes = geometry.vertices.size() * sizeof(TileVertex);
+  glNamedBufferStorage(mesh.vertices.name(), static_cast<GLsizeiptr>(vertex_bytes), geometry.vertices.data(), 0);
+  std::size_t index_bytes = geometry.indices.size() * sizeof(std::uint32_t);
+  if (mesh.short_indices) {
+    const std::vector<std::uint16_t> narrow(geometry.indices.begin(), geometry.indices.end());
+    index_bytes = narrow.size() * sizeof(std::uint16_t);
+    glNamedBufferStorage(mesh.indices.name(), static_cast<GLsizeiptr>(index_bytes), narrow.data(), 0);
+  } else {
+    glNamedBufferStorage(mesh.indices.name(), static_cast<GLsizeiptr>(index_bytes), geometry.indices.data(), 0);
+  }
+  check_gl("upload a mesh");
+  mesh.centre_m = geometry.centre_m;
+  mesh.first_foot = geometry.surface_vertices;
+  mesh.surface_indices = geometry.surface_indices;
+  mesh.index_count = static_cast<std::uint32_t>(geometry.indices.size());
+  mesh.quantisation_m = geometry.quantisation_m;
+  mesh.bytes = vertex_bytes + index_bytes;
+  return mesh;
+}
+
+GpuTexture upload(const ShadedTile& tile) {
+  GpuTexture out;
+  out.texture = Texture2D::make();
+  out.intervals = tile.intervals;
+  const GLsizei side = tile.intervals + 1;
+  const GLuint name = out.texture.name();
+  glTextureStorage2D(name, 1, GL_RGBA8, side, side);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTextureSubImage2D(name, 0, 0, 0, side, side, GL_RGBA, GL_UNSIGNED_BYTE, tile.rgba.data());
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  check_gl("upload a texture");
+  out.bytes = tile.rgba.size();
+  return out;
+}
+
+}  // namespace vpe::gl

@@ -1,0 +1,34 @@
+// GLSL sources of the polygon backend.
+#pragma once
+
+namespace vpe::gl {
+
+extern const char* const kTileVertexShader;
+extern const char* const kTileFragmentShader;
+extern const char* const kSkyVertexShader;
+extern const char* const kSkyFragmentShader;
+
+// Uniform locations of the tile program.
+enum TileUniform : int {
+  kToEye = 0,          // vec3: tile centre - eye, rounded from double
+  kCentre = 1,         // vec3: tile centre (body-fixed), for the local vertical
+  kRotation = 2,       // mat3: body-fixed -> right, up, backward
+  kLens = 3,           // vec4: clip x scale, y scale, x shift, y shift
+  kNear = 4,           // float
+  kSkirt = 5,          // float: depth of skirts, m
+  kFirstFoot = 6,      // int: first vertex that is the foot of a skirt
+  kFaceOut = 7,        // vec3: the face's axis
+  kTexel = 8,          // vec2: scale and shift from tile coordinates to texture coordinates
+  kFlatColour = 9,     // vec4: alpha > 0: this colour instead of the texture
+};
+
+// Uniform locations of the sky program.
+enum SkyUniform : int {
+  kSkyRotation = 0,    // mat3: right, up, backward -> body-fixed
+  kSkyLens = 1,        // vec4
+  kSkyUp = 2,          // vec3: local vertical at the eye
+  kSkyAltitude = 3,    // vec2: eye above the sphere, radius; m
+  kSkySun = 4,         // vec3: towards the sun
+};
+
+}  // namespace vpe::gl

@@ -1,0 +1,88 @@
+#include "vpe/gl/target.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace vpe::gl {
+
+namespace {
+
+void check_complete(const Framebuffer& framebuffer) {
+  const GLenum status = glCheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE) {
+    throw std::runtime_error("OpenGL: framebuffer is not complete (" + std::to_string(status) + ")");
+  }
+}
+
+template <typename T>
+void flip_rows(std::vector<T>& pixels, int width, int height) {
+  const auto row = static_cast<std::ptrdiff_t>(width);
+  for (int y = 0; y < height / 2; ++y) {
+    const auto top = pixels.begin() + row * y;
+    std::swap_ranges(top, top + row, pixels.begin() + row * (height - 1 - y));
+  }
+}
+
+}  // namespace
+
+Target::Target(int width, int height, int samples) : width_(width), height_(height), samples_(samples) {
+  GLint max_size = 0;
+  GLint max_samples = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max_size);
+  glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
+  if (width < 1 || height < 1 || width > max_size || height > max_size) {
+    throw std::runtime_error("OpenGL: a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                             " is too large here (at most " + std::to_string(max_size) + " a side)");
+  }
+  if (samples > max_samples) {
+    throw std::runtime_error("OpenGL: " + std::to_string(samples) + " samples a pixel are not available here (at most " +
+                             std::to_string(max_samples) + "); lower 'samples'");
+  }
+  const GLsizei many = samples > 1 ? samples : 0;
+  draw_ = Framebuffer::make();
+  colour_ = Renderbuffer::make();
+  depth_ = Renderbuffer::make();
+  glNamedRenderbufferStorageMultisample(colour_.name(), many, GL_RGBA8, width, height);
+  glNamedRenderbufferStorageMultisample(depth_.name(), many, GL_DEPTH_COMPONENT32F, width, height);
+  glNamedFramebufferRenderbuffer(draw_.name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_.name());
+  glNamedFramebufferRenderbuffer(draw_.name(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.name());
+  check_gl("make a framebuffer");
+  check_complete(draw_);
+  if (many == 0) return;
+  resolve_ = Framebuffer::make();
+  resolved_colour_ = Renderbuffer::make();
+  glNamedRenderbufferStorage(resolved_colour_.name(), GL_RGBA8, width, height);
+  glNamedFramebufferRenderbuffer(resolve_.name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolved_colour_.name());
+  check_complete(resolve_);
+}
+
+void Target::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, draw_.name());
+  glViewport(0, 0, width_, height_);
+}
+
+void Target::read_colour(std::vector<mars::Rgb>& out) const {
+  if (resolve_) {
+    glBlitNamedFramebuffer(draw_.name(), resolve_.name(), 0, 0, width_, height_, 0, 0, width_, height_,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  }
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, resolve_ ? resolve_.name() : draw_.name());
+  out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  static_assert(sizeof(mars::Rgb) == 3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, out.data());
+  check_gl("read the picture");
+  flip_rows(out, width_, height_);
+}
+
+void Target::read_depth(std::vector<float>& out) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, draw_.name());
+  out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, out.data());
+  check_gl("read the depth");
+  flip_rows(out, width_, height_);
+}
+
+}  // namespace vpe::gl

@@ -1,0 +1,38 @@
+// Vertices and indices of a drawn tile, relative to the tile's centre. Pure; no OpenGL.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "lod/mesh.h"
+
+namespace vpe::gl {
+
+// 16 bytes. position_m is relative to TileGeometry::centre_m, body-fixed axes; s, t run from 0 to 65535 over
+// the tile's chart rectangle, even in u and v.
+struct TileVertex {
+  glm::vec3 position_m;
+  std::uint16_t s = 0;
+  std::uint16_t t = 0;
+};
+static_assert(sizeof(TileVertex) == 16);
+
+struct TileGeometry {
+  glm::dvec3 centre_m{0, 0, 0};
+  std::vector<TileVertex> vertices;     // the mesh's, then the feet of the skirts
+  std::uint32_t surface_vertices = 0;   // how many are the mesh's
+  std::vector<std::uint32_t> indices;   // triangles of the mesh, then of the skirts
+  std::uint32_t surface_indices = 0;
+  double quantisation_m = 0;            // no vertex is farther than this from its exact place
+  std::size_t bytes() const { return vertices.capacity() * sizeof(TileVertex) + indices.capacity() * 4; }
+};
+
+// height_m: one per vertex, above the sphere. The feet of the skirts stand at the border vertices themselves; the
+// vertex shader lowers them by the depth that the frame needs.
+TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
+                           double exaggeration, double radius_m);
+
+}  // namespace vpe::gl
