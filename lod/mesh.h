@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,53 +19,128 @@ struct MeshVertex {
 };
 
 // Triangles of a tile over a grid of `intervals` (2^k for a finest tile, 2^(k+1) for a parent, which is
-// meshed over its children's posts). Counter-clockwise seen from outside. Vertices are sorted by (j, i), so
-// that equal meshes are equal bytes. Every post of the four borders that the mesh uses is a vertex of it and
-// was chosen from the edge alone (choose_border), so equal-level neighbours share them.
+// meshed over its children's posts). Counter-clockwise seen from outside. Vertices are sorted by (j, i),
+// triangles start at their lowest vertex and ascend, so that equal meshes are equal bytes. Every post of the
+// four borders that the mesh uses is a vertex of it and was chosen from the edge alone (choose_border), so
+// equal-level neighbours share them.
 struct TileMesh {
   int intervals = 0;
-  std::vector<MeshVertex> vertices;
-  std::vector<std::uint16_t> triangles;  // three indices each; a tile never has more than 65536 vertices
+  std::vector<MeshVertex> vertices;      // at most 65536
+  std::vector<std::uint16_t> triangles;  // three indices each
 
   std::size_t triangle_count() const { return triangles.size() / 3; }
 };
 
-// Largest radial distances between a mesh's flat triangles and S, metres. At every direction
+// Upper bounds of radial distances between a mesh's flat triangles and S, metres. In every direction
 // (mesh - S) = relief part + sag part, where sag is what is left with all heights 0 (the chords under the
-// sphere). With vertical exaggeration x the distance is at most error_bound().
+// sphere).
 struct ErrorTerms {
   double relief_m = 0;
   double sag_m = 0;
   double total_m = 0;  // of the sum, at exaggeration 1; <= relief + sag
 
-  void include(const ErrorTerms& other);
+  void include(const ErrorTerms& other);  // the larger of each
 };
 
-// Bound at exaggeration x for a tile whose heights span `height_range_m`: total at x = 1, else
-// |x| relief + sag + the second-order term x^2 range^2 / (4 (R + min)).
-double error_bound(const ErrorTerms& terms, double exaggeration, double height_range_m, double radius_m);
+// Radial distance between mesh and S with heights exaggerated x times, for a tile whose heights lie in
+// [min, max]: total at x = 1, sag at x = 0, else |x| relief + sag + second order. A facet's radius in one
+// direction is a weighted harmonic mean of R + x h; its second derivative in x is at most
+// R^2 (max - min)^2 / (2 a^3), a = lowest R + t h for t between 0, 1 and x. Hence the second order
+// |x (x - 1)| R^2 (max - min)^2 / (4 a^3). Infinite when a <= 0: the ground would pass the planet's centre.
+double error_bound(const ErrorTerms& terms, double exaggeration, double min_height_m, double max_height_m,
+                   double radius_m);
 
-// Border posts of one edge: indices of the posts kept, ascending, ends included. `height_m` runs along the
-// edge, `line` are the chart coordinates along it and `across` the fixed one. A function of the edge's
-// geometry alone, the same from both sides (also when the order is reversed: the result is mirrored).
+// Border posts of one edge: indices of the posts kept, ascending, ends included: the worst post of an interval
+// is kept until none is off by more than the tolerance (radially). `height_m` runs along the edge, `line`
+// are the chart coordinates along it and `across` the fixed one. A function of the edge's geometry alone, the
+// same to the bit from both sides (when the order is reversed, and `line` negated, the result is mirrored):
+// of equally bad posts the one nearest to the interval's middle is kept, both of a pair that lies evenly
+// about it.
 std::vector<int> choose_border(std::span<const double> height_m, std::span<const double> line, double across,
                                double tolerance_m, double radius_m);
 
 // The posts that a mesh keeps on its four borders, by Edge; each ascending with both ends.
 using BorderPosts = std::array<std::vector<int>, 4>;
+BorderPosts choose_borders(const Posts& posts, double tolerance_m, double radius_m);
 
 // Greedy insertion of the worst post with Delaunay flips (Garland & Heckbert 1995) on OpenMesh half-edges.
 // Starts from the border posts given and adds interior posts until every post of the grid that is not on
-// a border lies within tolerance_m (radially) of the flat triangle over it. Deterministic: candidates are totally
-// ordered by (error, j, i), co-circular quads have a unique diagonal, predicates are exact.
+// a border lies within tolerance_m (radially, up to 1e-8 m of rounding) of the flat triangle over it, or
+// until the mesh has 65536 vertices. Deterministic: candidates are totally ordered by (error, j, i),
+// co-circular quads have a unique diagonal, predicates are exact; triangles are Delaunay in the chart (from
+// level 5 on in the grid, which is the chart scaled along its axes). Up to 1024 intervals at levels >= 5,
+// 2^14 lines a face below. Heights must be finite and above -radius_m. Throws std::invalid_argument for
+// borders that are not ascending with both ends.
+// Thread rule: one Mesher a thread; it keeps its scratch memory from tile to tile.
+class Mesher {
+ public:
+  Mesher();
+  ~Mesher();
+  Mesher(Mesher&&) noexcept;
+  Mesher& operator=(Mesher&&) noexcept;
+
+  TileMesh mesh(const Posts& posts, const BorderPosts& borders, double tolerance_m, double radius_m);
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+// One mesh with a Mesher of its own.
 TileMesh mesh_greedy(const Posts& posts, const BorderPosts& borders, double tolerance_m, double radius_m);
 
-// The whole grid with S's diagonals: error 0 for a finest tile.
+// The whole grid with S's diagonals: error 0 for a finest tile. At most 128 intervals (65536 vertices);
+// std::invalid_argument beyond.
 TileMesh mesh_full(int intervals);
 
-// Distance of a mesh of tile `key` to S over one finest tile below it (or itself): all overlay vertices of
-// both triangulations are visited, so the measure is the maximum up to a relative 4 * (cell angle) that is
-// added. `fine` are the posts of the finest tile with its borders constrained.
+// Heights of a mesh's vertices, in their order.
+std::vector<double> vertex_heights(const TileMesh& mesh, const Posts& posts);
+
+// S over one finest tile, prepared once to be measured against the meshes of all its ancestors. The borders
+// of `posts` are constrained. Immutable: any number of threads may share it.
+class FinePosts {
+ public:
+  FinePosts(const Posts& posts, double radius_m);
+  ~FinePosts();
+  FinePosts(FinePosts&&) noexcept;
+  FinePosts& operator=(FinePosts&&) noexcept;
+
+ private:
+  friend class ErrorMeter;
+  struct Prepared;
+  std::unique_ptr<const Prepared> prepared_;
+};
+
+// Distance of one mesh to S, measured over the finest tiles below it one at a time.
+//
+// Over a piece of the overlay of both triangulations (mesh triangle and S facet) both inverse depths are
+// affine, so their difference is largest at a vertex of the piece: all are visited (posts; mesh edges where
+// they cross grid lines and diagonals; mesh vertices are posts). The radial distance differs from that by a
+// factor which varies over one cell by at most kappa, where kappa - 1 is about (cell angle) (1 + slopes); the
+// terms are raised by it, which makes them upper bounds: total = kappa max|total|, sag likewise,
+// relief = max|relief| + (kappa - 1) (max|total| + max|sag|), all at the vertices. Rounding adds 3e-15 times
+// the largest radius.
+// Thread rule: immutable after construction, any number of threads may measure.
+class ErrorMeter {
+ public:
+  // Throws std::invalid_argument when the number of heights is not that of vertices.
+  ErrorMeter(const TileKey& key, const TileMesh& mesh, std::span<const double> vertex_height_m,
+             double radius_m);
+  ~ErrorMeter();
+  ErrorMeter(ErrorMeter&&) noexcept;
+  ErrorMeter& operator=(ErrorMeter&&) noexcept;
+
+  // `fine` is the mesh's own tile or one below it, its grid at least as fine as the mesh's and of the same
+  // planet radius; else std::invalid_argument.
+  ErrorTerms measure(const FinePosts& fine) const;
+  ErrorTerms measure(const Posts& fine) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<const Prepared> prepared_;
+};
+
+// ErrorMeter for one finest tile.
 ErrorTerms measure_error(const TileKey& key, const TileMesh& mesh, std::span<const double> vertex_height_m,
                          const Posts& fine, double radius_m);
 

@@ -33,7 +33,10 @@ struct Posts {
   std::vector<double> height_m;
 
   int side() const { return intervals + 1; }
-  double at(int i, int j) const { return height_m[static_cast<std::size_t>(j) * static_cast<std::size_t>(side()) + static_cast<std::size_t>(i)]; }
+  double at(int i, int j) const {
+    return height_m[static_cast<std::size_t>(j) * static_cast<std::size_t>(side()) +
+                    static_cast<std::size_t>(i)];
+  }
 };
 
 // Chart coordinates of a grid's lines: u of columns, v of rows. Exact (mars::face_line).
@@ -52,12 +55,17 @@ inline double inverse_depth(double u, double v, double height_m, double radius_m
 }
 
 // Height of S at a chart point of the tile (clamped to it), metres above the sphere; the normal of the facet
-// when wanted (outward, unit, body-fixed). Error of the height: <= 4e-9 m * (R / 3.4e6 m) by rounding.
+// when wanted (outward, unit, body-fixed). Differences are formed before they are rounded, so with d the chart
+// side of the cell and h its largest |height| the height is right within kHeightError * (R d + h) and the
+// normal within kNormalError * (1 + h / (R d)) rad.
+inline constexpr double kHeightError = 1e-15;
+inline constexpr double kNormalError = 2e-15;
 double surface_height(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
                       glm::dvec3* normal = nullptr);
 
 // Makes the posts of one edge lie on the flat edges of the grid that keeps every `step`-th of them (step a
-// power of two, at most the number of intervals): how a tile meets a coarser neighbour without a crack.
+// power of two, at most the number of intervals): how a tile meets a coarser neighbour without a crack. The
+// moved posts are within kHeightError * (R step d + h) of the coarse edge.
 void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m);
 
 }  // namespace lod

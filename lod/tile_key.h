@@ -31,18 +31,25 @@ inline constexpr std::array<Edge, 4> kEdges{Edge::kWest, Edge::kEast, Edge::kSou
 
 bool is_valid(const TileKey& key);
 
+// Position of the tile's first corner along the Z curve through all faces: face (3 bits) | Morton code of
+// (i, j), j above i, shifted to the top of 54 bits. The tiles of a subtree are the positions
+// [z_position(key), z_position(key) + z_extent(key.level)); of disjoint tiles the order is total.
+std::int64_t z_position(const TileKey& key);
+std::int64_t z_extent(int level);
+
 // face (3 bits) | level (5 bits) | Morton code of (i, j), shifted to the top of 54 bits so that ascending
-// keys of one level run in Morton order. Positive 63-bit number; unpack() is the exact inverse and returns
-// nothing for a number that no tile has.
+// keys of one face and level run in Morton order. Positive 63-bit number; unpack() is the exact inverse and
+// returns nothing for a number that no tile has.
 std::int64_t pack(const TileKey& key);
 std::optional<TileKey> unpack(std::int64_t packed);
 
-TileKey parent(const TileKey& key);                // key.level > 0
-TileKey child(const TileKey& key, int index);      // index = column + 2 row, 0..3
-TileKey ancestor(const TileKey& key, int level);   // 0 <= level <= key.level
+TileKey parent(const TileKey& key);                         // key.level > 0
+TileKey child(const TileKey& key, int index);               // index = column + 2 row, 0..3
+TileKey ancestor(const TileKey& key, int level);            // 0 <= level <= key.level
 bool contains(const TileKey& outer, const TileKey& inner);  // outer is inner or an ancestor of it
 
-// The tile of the same level across an edge, also over cube edges, and the edge of it that is shared.
+// The tile of the same level across an edge, also over cube edges, and the edge of it that is shared. In
+// integers; applied twice it leads back, with the same `reversed`.
 // `reversed`: positions along the edge (west/east edges run along j, south/north along i) run the other way.
 struct Neighbour {
   TileKey key;
@@ -51,18 +58,16 @@ struct Neighbour {
 };
 Neighbour neighbour(const TileKey& key, Edge edge);
 
-// Tile of a level that holds a direction or chart point (right and upper border posts belong to the next
-// tile, at the face's far border to the last).
+// Tile of a level that holds a chart point (right and upper borders belong to the next tile, at the face's
+// far border to the last; points outside [-1, 1] are clamped). Exact: agrees with chart_rect().
 TileKey tile_at(const mars::ChartPoint& point, int level);
 
-// Chart rectangle of a tile.
-struct ChartRect {
-  mars::Face face = mars::Face::kPlusX;
-  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
-};
-ChartRect chart_rect(const TileKey& key);
+// Chart rectangle of a tile, exact.
+mars::ChartRect chart_rect(const TileKey& key);
 
-// Cap around a tile: unit centre direction and the angle to its farthest corner.
+// Cap around a tile: unit centre direction and the angle to its farthest corner, rounded up by 1e-15 rad. On a
+// sphere of any radius the angle's arc is at most kCapPerSide nominal sides.
+inline constexpr double kCapPerSide = 0.83;
 mars::Cap bounding_cap(const TileKey& key);
 
 // Length of a quarter great circle / 2^level: the tile's nominal side.

@@ -61,7 +61,6 @@ ChartPoint chart_point(const glm::dvec3& d) {
   const double y = std::abs(d.y);
   const double z = std::abs(d.z);
   Face face = Face::kPlusX;
-  // +X, +Y win ties against -X, -Y only through their own sign; the first face in order is taken.
   const double largest = std::max({x, y, z});
   if (d.x == largest) {
     face = Face::kPlusX;

@@ -4,18 +4,18 @@
 // (u, v) = (d.right, d.up) / d.out, in [-1, 1]: gnomonic, so that great circles and flat triangles seen from
 // the planet's centre are straight. A grid of 2^n intervals a side has its lines at face_line(index, n):
 // the tangent warp u = tan((2 s - 1) pi / 4) holds at the 33 knots s = k / 32, lines are even between them.
-// Hence cells are nearly equal, posts nest from grid to grid, and
-// from 32 intervals on every 32nd part of a face is an even gnomonic grid.
+// Hence cells are nearly equal, posts nest from grid to grid, and from 32 intervals on every 32nd part of a
+// face is an even gnomonic grid.
 //
 // Every line coordinate is a dyadic rational that a double holds exactly up to n = kMaxGridLevel, and the
 // warp is odd about the face's middle. So a point on a cube edge or corner has bit-identical coordinates
 // (up to exact sign changes) from each face that shares it: cube_point() returns equal bits.
 #pragma once
 
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
 namespace mars {
 
@@ -23,6 +23,14 @@ enum class Face : std::uint8_t { kPlusX, kPlusY, kMinusX, kMinusY, kPlusZ, kMinu
 inline constexpr int kFaces = 6;
 inline constexpr int kWarpKnots = 32;
 inline constexpr int kMaxGridLevel = 35;
+
+// Spread of the cells of a fine grid over a face: sides relative to a quarter circle / 2^n, areas to a sixth
+// of the sphere / 4^n, and the longer side by the shorter. (Even gnomonic lines: areas spread 1 : 5.2.)
+inline constexpr double kCellSideMin = 0.707;
+inline constexpr double kCellSideMax = 1.047;
+inline constexpr double kCellAreaMin = 0.793;
+inline constexpr double kCellAreaMax = 1.183;
+inline constexpr double kCellAspectMax = 1.414;
 
 struct FaceAxes {
   glm::dvec3 right;
@@ -34,10 +42,12 @@ struct FaceAxes {
 const FaceAxes& face_axes(Face face);
 
 // Chart coordinate of grid line `index` of 2^grid_level intervals, 0 <= index <= 2^grid_level,
-// grid_level <= kMaxGridLevel. Exact: a multiple of 2^-52.
+// grid_level <= kMaxGridLevel. Exact: a multiple of 2^-50.
 double face_line(std::int64_t index, int grid_level);
 
-// Inverse of the warp: s in [0, 1] for u in [-1, 1] (clamped), |face_line(s) - u| <= 4e-16.
+// Inverse of the warp: s in [0, 1] for u in [-1, 1] (clamped), exact at the knots, never decreasing. The warp
+// of the result is within kFaceParameterError of u.
+inline constexpr double kFaceParameterError = 4e-16;
 double face_parameter(double u);
 
 // Chart point of a face, on the cube |x|, |y| or |z| = 1. Exact for grid lines.
@@ -50,7 +60,9 @@ inline glm::dvec3 cube_point(Face face, double u, double v) {
 // Length of a cube point, summed in body order so that all faces agree to the bit.
 inline double cube_length(const glm::dvec3& p) { return std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z); }
 
-// Unit vector of a chart point; bit-identical from every face that shares the point.
+// Unit vector of a chart point; bit-identical from every face that shares the point. Error of the angle and
+// of the length <= kChartDirectionError_rad.
+inline constexpr double kChartDirectionError_rad = 3e-16;
 inline glm::dvec3 chart_direction(Face face, double u, double v) {
   const glm::dvec3 p = cube_point(face, u, v);
   const double length = cube_length(p);
@@ -63,7 +75,15 @@ struct ChartPoint {
   double v = 0;
 };
 
-// Chart point of any non-zero vector; on shared edges the face that comes first in Face is taken.
+// Rectangle of a face's chart, u0 < u1, v0 < v1.
+struct ChartRect {
+  Face face = Face::kPlusX;
+  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+};
+
+// Chart point of any finite non-zero vector, |u| and |v| <= 1; on shared edges the face that comes first in
+// Face is taken. Error of the angle <= kChartPointError_rad; exact for cube points.
+inline constexpr double kChartPointError_rad = 1e-16;
 ChartPoint chart_point(const glm::dvec3& d);
 
 // (u, v) of a vector on a given face, also outside [-1, 1]; requires a positive component along face.out.

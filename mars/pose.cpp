@@ -53,8 +53,9 @@ Pose to_pose(const EyePose& eye, double radius_m) {
   pose.lat_deg = place.lat_deg;
   pose.alt_m = glm::length(eye.eye_m) - radius_m;
   pose.pitch_deg = std::atan2(up, level) / kRadiansPerDegree;
-  // Close to the zenith or nadir the heading of `forward` is noise; take it from the camera's up axis.
-  if (level > 1e-14) {
+  // At the zenith or nadir the heading of `forward` is noise; take it from the camera's up axis.
+  constexpr double kNoise = 2e-15;
+  if (level > kNoise) {
     pose.yaw_deg = std::atan2(east, north) / kRadiansPerDegree;
   } else {
     const double sign = up > 0.0 ? -1.0 : 1.0;
@@ -66,6 +67,7 @@ Pose to_pose(const EyePose& eye, double radius_m) {
   pose.roll_deg = std::atan2(glm::dot(eye.axes.up, unrolled.right), glm::dot(eye.axes.up, unrolled.up)) /
                   kRadiansPerDegree;
   pose.yaw_deg = normalize_lon_deg(pose.yaw_deg);
+  pose.roll_deg = normalize_lon_deg(pose.roll_deg);
   return pose;
 }
 

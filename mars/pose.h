@@ -39,18 +39,24 @@ struct EyePose {
   Axes axes;
 };
 
-// Axes of yaw, pitch, roll relative to a local frame. Orthonormal within 2e-15.
+// Axes of yaw, pitch, roll relative to a local frame. Their directions, lengths and products are right within
+// kAxesError; the same for to_eye().
+inline constexpr double kAxesError = 2e-15;
 Axes oriented_axes(const LocalFrame& frame, double yaw_deg, double pitch_deg, double roll_deg);
 
-// Position error <= 1e-15 (radius_m + alt_m) + 1e-16 |alt_m|; axes orthonormal within 2e-15.
+// Error of the position <= kEyePositionError * |radius_m + alt_m|.
+inline constexpr double kEyePositionError = 1e-15;
 EyePose to_eye(const Pose& pose, double radius_m);
 
 // The same with the head turned on its platform.
 EyePose to_eye(const Pose& pose, const HeadLook& look, double radius_m);
 
 // Inverse of to_eye: angles in (-180, 180], pitch in [-90, 90]. Looking straight up or down, where yaw and
-// roll turn about the same axis, roll = 0 is chosen. to_eye(to_pose(e)) agrees with e within 1e-14 rad in
-// every axis and 2e-15 (radius + alt) in position. Undefined for an eye at the planet's centre.
+// roll turn about the same axis, roll = 0 is chosen. to_eye(to_pose(e)) agrees with e within
+// kToPoseAxesError_rad in every axis and kToPosePositionError * (radius + alt) in position. Undefined for an
+// eye at the planet's centre.
+inline constexpr double kToPoseAxesError_rad = 1e-14;
+inline constexpr double kToPosePositionError = 2e-15;
 Pose to_pose(const EyePose& eye, double radius_m);
 
 }  // namespace mars

@@ -13,12 +13,10 @@ SinCos sin_cos_deg(double angle_deg) {
   const double rest_rad = (turn - quarter * 90.0) * kRadiansPerDegree;
   const double s = std::sin(rest_rad);
   const double c = std::cos(rest_rad);
-  switch (static_cast<int>(quarter)) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case -1: return {-c, s};
-    default: return {-s, -c};
-  }
+  if (quarter == 0.0) return {s, c};
+  if (quarter == 1.0) return {c, -s};
+  if (quarter == -1.0) return {-c, s};
+  return {-s, -c};
 }
 
 double normalize_lon_deg(double lon_deg) {

@@ -19,7 +19,8 @@ struct LonLat {
   double lat_deg = 0;
 };
 
-// Sine and cosine of an angle in degrees; exact (0, +-1) at multiples of 90, else within 2 ulp.
+// Sine and cosine of an angle in degrees; exact (0, +-1) at multiples of 90, else within 2 ulp for any finite
+// angle. NaN for NaN and infinities.
 struct SinCos {
   double sin;
   double cos;
@@ -42,7 +43,8 @@ inline constexpr double kLonLatError_rad = 1.5e-15;
 LonLat lon_lat(const glm::dvec3& v);
 
 // East, north, up at a place. At the poles north is the limit along the given meridian, so that the frame
-// depends on p.lon_deg there. Orthonormal within 1e-15.
+// depends on p.lon_deg there. Lengths and products are those of an orthonormal frame within kFrameError.
+inline constexpr double kFrameError = 5e-16;
 struct LocalFrame {
   glm::dvec3 east;
   glm::dvec3 north;
@@ -50,26 +52,35 @@ struct LocalFrame {
 };
 LocalFrame local_frame(LonLat p);
 
-// Angle between two non-zero vectors, 0..pi; relative error <= 1e-15 plus 4e-16 absolute, also for nearly
-// equal and nearly opposite vectors.
+// Angle between two vectors, 0..pi, also for nearly equal and nearly opposite ones. Lengths must lie in
+// 1e-60..1e60. Error <= angle_error_rad(angle).
+constexpr double angle_error_rad(double angle_rad) { return 2e-16 + 4e-16 * angle_rad; }
 double angle_between_rad(const glm::dvec3& a, const glm::dvec3& b);
 
 // Great circles. Distances are central angles in radians; multiply by the radius for metres.
 double distance_rad(LonLat a, LonLat b);
 // Heading at a towards b, degrees clockwise from north in [0, 360); 0 where it is undefined (a = b, antipodes).
+// Error <= kBearingError_rad (1 + 1 / sin(distance)).
+inline constexpr double kBearingError_rad = 1e-15;
 double initial_bearing_deg(LonLat a, LonLat b);
-// The place reached from a after `distance_rad` along the great circle that leaves with `bearing_deg`.
+// The place reached from a after `distance_rad` (negative: backwards) along the great circle that leaves with
+// `bearing_deg`. Error <= kDestinationError_rad for distances within a turn.
+inline constexpr double kDestinationError_rad = 2e-15;
 LonLat destination(LonLat a, double bearing_deg, double distance_rad);
-// Point at fraction t (any real) of the way from unit a to unit b along the shorter great circle; unit
-// length. For antipodes some great circle is taken, the same one for every t.
+// Point at fraction t (any real) of the way from unit a to unit b along the shorter great circle; length
+// 1 within 4e-16. For antipodes some great circle is taken, the same one for every t. For t in [0, 1] the error
+// of the place is <= kSlerpError_rad * max(1, sin(t angle) / sin(angle)).
+inline constexpr double kSlerpError_rad = 1e-15;
 glm::dvec3 slerp(const glm::dvec3& a, const glm::dvec3& b, double t);
 
-// Some unit vector perpendicular to unit v, a continuous choice away from the body's Z axis.
+// Some unit vector perpendicular to unit v, both within 4e-16; a function of v that is continuous except at
+// |v.z| = 0.9.
 glm::dvec3 any_perpendicular(const glm::dvec3& v);
 
 // Angle below the local horizontal of the horizon of a sphere, seen from `alt_m` above it; 0 at or below it.
 double horizon_dip_rad(double alt_m, double radius_m);
-// Straight distance from the eye to that horizon: sqrt(2 R h + h^2).
+// Straight distance from the eye to that horizon: sqrt(2 R h + h^2). Relative error of both <= kHorizonError.
+inline constexpr double kHorizonError = 6e-16;
 double horizon_distance_m(double alt_m, double radius_m);
 
 }  // namespace mars

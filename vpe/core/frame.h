@@ -7,6 +7,7 @@
 
 #include "mars/source.h"
 #include "vpe/core/certificate.h"
+#include "vpe/core/settings.h"
 #include "vpe/core/view.h"
 
 namespace vpe::core {
@@ -40,6 +41,8 @@ struct FrameStats {
 
 struct DrawRequest {
   View view;
+  SettingsValues settings;
+  glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun (mars::sun_direction)
   bool want_range = false;
 };
 

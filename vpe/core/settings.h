@@ -30,11 +30,11 @@ struct SettingsValues {
   double exaggeration = 1;
   double sun_azimuth_deg = 315;
   double sun_elevation_deg = 35;
-  double sun_ambient = 0.15;
+  double sun_ambient = 0.05;
   double lod_tolerance_px = 1;
   int lod_triangles = 0;
   int samples = 4;
-  Background background = Background::kBlack;
+  Background background = Background::kSky;
 
   bool operator==(const SettingsValues&) const = default;
 };

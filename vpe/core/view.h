@@ -1,7 +1,17 @@
 // A view: where the eye is, how it projects, and which pixels are asked for.
+//
+// Picture positions are in pixels of the full picture: x right, y down, (0, 0) its upper left corner, pixel
+// centres at +0.5. The principal point c is the middle plus principal_offset_px; f is focal_px(). In the
+// eye's axes (right, up, forward) a position (x, y) looks along
+//   kPerspective      (x - cx, cy - y, f)
+//   kCylinder         (sin a, (cy - y) / f, cos a),        a = (x - cx) 360 deg / width
+//   kEquirectangular  (cos e sin a, sin e, cos e cos a),   e = (cy - y) fov / height
+// so the cylinder's rows are even in tan(elevation), and both round pictures span 360 degrees of azimuth.
+// All functions are pure, may be called from any thread, and expect a view that check() accepts.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
@@ -10,12 +20,14 @@
 
 namespace vpe::core {
 
-enum class Projection { kPerspective, kCylinder, kEquirectangular };
+enum class Projection : std::uint8_t { kPerspective, kCylinder, kEquirectangular };
 
 struct ViewLimits {
   static constexpr double kMinFov_deg = 0.001;
-  static constexpr double kMaxFov_deg = 179.0;
+  static constexpr double kMaxFov_deg = 179.0;  // kEquirectangular: 180
   static constexpr int kMaxSide_px = 32768;
+  static constexpr double kMaxOffset_px = 1e6;
+  static constexpr double kMaxEyeDistance_m = 1e15;  // from the planet's centre
 };
 
 // Part of the full picture that is drawn, pixels, row 0 at the top. width 0 = the whole picture.
@@ -26,11 +38,10 @@ struct SubRectangle {
   int height = 0;
 };
 
-// Row 0 is the top, pixel centres lie at +0.5. Focal length in pixels is (height / 2) / tan(fov / 2).
 struct View {
   mars::EyePose eye;  // body-fixed, metres from the planet's centre
   Projection projection = Projection::kPerspective;
-  double fov_deg = 60.0;  // vertical, of the full picture
+  double fov_deg = 60.0;  // vertical, of the full picture without its offset
   int width = 1280;
   int height = 720;
   glm::dvec2 principal_offset_px{0, 0};  // of the principal point from the middle; +x right, +y down
@@ -40,15 +51,20 @@ struct View {
 // Empty when the view can be drawn, else what is wrong with it and what is allowed.
 std::string check(const View& view);
 
-// Focal length in pixels (perspective).
+// Pixels per unit of tangent down the picture: (height / 2) / tan(fov / 2) for perspective and cylinder;
+// pixels per radian, height / fov, for equirectangular. What is e metres tall at distance d about the
+// principal point covers e f / d pixels.
 double focal_px(const View& view);
 
-// Direction, unit, body-fixed, through picture position (x, y) in pixels of the full picture
-// (pixel centre of column i: x = i + 0.5).
+// Direction, unit, body-fixed, through picture position (x, y) (also outside the picture). Error of the
+// angle <= kPixelRayError_rad; length 1 within 4e-16.
+inline constexpr double kPixelRayError_rad = 2e-15;
 glm::dvec3 pixel_ray(const View& view, double x, double y);
 
-// Picture position of a body-fixed point, pixels of the full picture; behind = true where the point does not
-// project (behind a perspective eye).
+// Picture position of a body-fixed point, x in [0, width) for the round projections. behind = true where the
+// point does not project: not in front of a perspective eye, on the axis of a cylinder, or at the eye itself.
+// project(eye + d * pixel_ray(x, y)) is (x, y) within 8e-16 (|eye| / d + 4) (1 + t^2) s pixels, t = tangent
+// of the angle off the principal ray (0 for equirectangular), s = larger of f and the picture's sides.
 struct Projected {
   glm::dvec2 xy{0, 0};
   double depth_m = 0;  // along forward
@@ -56,7 +72,8 @@ struct Projected {
 };
 Projected project(const View& view, const glm::dvec3& point_m);
 
-// Size of what is drawn: part if set, else the full picture.
+// The part that is drawn: part if set, else the full picture; and its size.
+SubRectangle drawn_part(const View& view);
 glm::ivec2 drawn_size(const View& view);
 
 // Half-space {x : dot(normal, x) >= offset_m}, normal unit, body-fixed.
@@ -65,7 +82,9 @@ struct Plane {
   double offset_m = 0;
 };
 
-// The four side planes (left, right, bottom, top) of a perspective view's drawn part, through the eye.
+// The four side planes (left, right, bottom, top) of a perspective view's drawn part, through the eye: a
+// point in front of the eye projects into the part exactly when it is in all four, up to rounding. Throws
+// std::invalid_argument for other projections, which have no flat sides.
 std::array<Plane, 4> side_planes(const View& view);
 
 }  // namespace vpe::core

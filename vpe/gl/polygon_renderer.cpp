@@ -107,7 +107,7 @@ class PolygonRenderer : public core::Renderer {
   void draw_pass(const core::DrawRequest& request, const Lens& lens, const Target& to, bool picture);
   void read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
-  core::Certificate certify(const core::DrawRequest& request, double focal) const;
+  core::Certificate certify(const core::DrawRequest& request, const Lens& lens) const;
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -328,7 +328,8 @@ Target& PolygonRenderer::target(std::optional<Target>& slot, const glm::ivec2& s
   return *slot;
 }
 
-core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, double focal) const {
+core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens) const {
+  const double focal = core::focal_px(request.view);
   core::Certificate c;
   c.tolerance_px = request.settings.lod_tolerance_px;
   c.exaggeration = request.settings.exaggeration;
@@ -339,7 +340,9 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, dou
     const lod::TileInfo* info = planet_->tree().find(tile.key);
     const GpuMesh& mesh = *const_cast<Resident<MeshKey, GpuMesh>&>(meshes_).find({tile.key, tile.variant}, frame_);
     // Float storage, and the vertex stage's arithmetic over the whole distance.
-    const double quantisation_px = mesh.quantisation_m * focal / tile.min_distance_m + kTransformError * focal;
+    // Nothing is drawn before the near plane.
+    const double distance = std::max(tile.min_distance_m, double{lens.near_m});
+    const double quantisation_px = mesh.quantisation_m * focal / distance + kTransformError * focal;
     c.tile_error_m = std::max(c.tile_error_m, tile.error_m);
     c.tile_error_px = std::max(c.tile_error_px, tile.error_px);
     c.quantisation_m = std::max(c.quantisation_m, mesh.quantisation_m);
@@ -448,7 +451,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
     ++stats.tiles_by_level[level];
   }
   stats.bytes_resident = static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + shader_.bytes_resident());
-  result.certificate = certify(request, core::focal_px(request.view));
+  result.certificate = certify(request, lens);
   return result;
 }
 

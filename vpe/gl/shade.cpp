@@ -9,6 +9,9 @@ namespace vpe::gl {
 
 namespace {
 
+// Ground that faces a sun 50 degrees up keeps its colour.
+constexpr float kSunGain = 1.3F;
+
 constexpr std::size_t kImageSide = paging::kImageIntervals + 1;
 
 struct Stop {
@@ -318,7 +321,8 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
             direct ? ground->normal[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)]
                    : bilinear<glm::vec3>(gxp, gyp, ground_side, [&](std::size_t at) { return ground->normal[at]; });
         const float light = std::max(0.0F, glm::dot(normal, sun));
-        colour *= ambient + (1.0F - ambient) * 1.35F * light;
+        // The square root stands for the display's gamma.
+        colour *= std::sqrt(ambient + (1.0F - ambient) * kSunGain * light);
       }
       texel[0] = to_byte(colour.x);
       texel[1] = to_byte(colour.y);

@@ -67,7 +67,7 @@ layout(location = 3) uniform vec2 altitude;
 layout(location = 4) uniform vec3 sun;
 layout(location = 0) out vec4 colour;
 const float kScaleHeight = 11.0e3;
-const float kZenithDepth = 0.45;
+const float kZenithDepth = 0.25;
 void main() {
   vec3 d = normalize(ray);
   float slope = dot(d, up);

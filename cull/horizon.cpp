@@ -1,0 +1,36 @@
+#include "cull/horizon.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cull {
+
+namespace {
+
+// tan(a / 2) of the angle a = acos(occluder / radius), without the cancellation of acos near 1. The radii
+// come rounded: the difference is widened by that.
+double half_tangent(double occluder_m, double radius_m) {
+  const double sum = radius_m + occluder_m;
+  return std::sqrt((radius_m - occluder_m) / sum + 1e-15);
+}
+
+}  // namespace
+
+Horizon make_horizon(const Eye& eye, double occluder_radius_m) {
+  if (!(occluder_radius_m > 0.0) || !(eye.radius_m > occluder_radius_m)) return {};
+  return {occluder_radius_m, half_tangent(occluder_radius_m, eye.radius_m), true};
+}
+
+bool hidden(const Horizon& horizon, double chord2, double max_radius_m) {
+  if (!horizon.hides) return false;
+  const double a = horizon.half_tangent;
+  const double b = half_tangent(horizon.occluder_m, std::max(max_radius_m, horizon.occluder_m));
+  // Both angles are below 90 degrees, so their halves add to less than that: sin((A + B) / 2) from tangents.
+  const double numerator = a + b;
+  const double rest = 1.0 - a * b;
+  const double limit = 2.0 * numerator / std::sqrt(numerator * numerator + rest * rest);
+  const double safe = limit * (1.0 + 1e-14) + 4.0 * kChordError;
+  return chord2 > safe * safe;
+}
+
+}  // namespace cull

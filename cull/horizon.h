@@ -1,0 +1,21 @@
+// What lies behind the planet.
+#pragma once
+
+#include "cull/shell.h"
+
+namespace cull {
+
+// A sphere below all terrain hides what lies behind it. The occluder must be the *lowest* radius of the
+// surface (Mars goes 8 km below its datum), sag of its flat triangles included.
+struct Horizon {
+  double occluder_m = 0;
+  double half_tangent = 0;  // tan of half the angle from the eye's direction to its horizon
+  bool hides = false;       // false for an eye at or below the occluder: nothing is ever hidden
+};
+Horizon make_horizon(const Eye& eye, double occluder_radius_m);
+
+// True when the sphere hides every point of radius <= max_radius_m whose squared chord from the eye's
+// direction is chord2 or more. Conservative: true only beyond the limit by more than its rounding.
+bool hidden(const Horizon& horizon, double chord2, double max_radius_m);
+
+}  // namespace cull

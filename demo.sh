@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# From nothing to a film over Mars: installs what is missing, builds, draws the embedded Mars into out/.
+set -euo pipefail
+cd "$(dirname "$0")"
+.ci/install.sh
+cmake --preset release -DVPE_TESTS=OFF >/dev/null
+cmake --build build/release --target vpe -- -j"${JOBS:-$(nproc)}"
+vpe=build/release/vpe
+mkdir -p out
+
+$vpe info
+still() { $vpe render --quiet "$@"; }
+still -o out/globe.png      --pose=-75,5,9000000,0,-90,0 --size 1280x1280 --fov 50
+still -o out/olympus.png    --pose=-133.8,9.5,260000,0,-28,0
+still -o out/hellas.png     --pose=70,-64,900000,0,-35,0
+still -o out/valles.png     --pose=-62,-17.5,60000,20,-14,0
+$vpe fly scripts/flights/valles-marineris.flight -o out/valles-marineris.mp4 --stats out/valles-marineris.csv
+
+cat <<'TEXT'
+
+Made in out/:
+  valles-marineris.mp4   a flight from orbit down into Valles Marineris and along it
+  globe.png olympus.png hellas.png valles.png
+  valles-marineris.csv   what every frame cost and how wrong it can be
+
+The embedded Mars is an illustration of published landforms, not data. With real data:
+  build/release/vpe build DEM --image IMAGE -o mars.vpe
+  build/release/vpe fly scripts/flights/valles-marineris.flight mars.vpe -o real.mp4
+  build/release/vpe query mars.vpe -59.2,-13.7
+  build/release/vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 -o view.png
+See README.md for more, 'build/release/vpe --help' for all.
+TEXT

@@ -1,0 +1,83 @@
+// The worst post of every triangle, worst first (internal to lod).
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lod {
+
+// A post and how far it lies from the triangle over it; error 0 = none.
+struct WorstPost {
+  double error_m = 0;
+  std::uint32_t post = 0;
+};
+
+struct QueuedPost {
+  double error_m = 0;
+  std::uint32_t post = 0;
+  int face = 0;
+};
+
+// Binary heap with at most one entry a face, ordered by (error, then lowest post).
+class PostQueue {
+ public:
+  void clear() {
+    heap_.clear();
+    place_.clear();
+  }
+  bool empty() const { return heap_.empty(); }
+  const QueuedPost& top() const { return heap_.front(); }
+
+  // Replaces the face's entry; an error within the tolerance is no entry.
+  void set(int face, const WorstPost& worst, double tolerance_m) {
+    const auto f = static_cast<std::size_t>(face);
+    if (f >= place_.size()) place_.resize(f + 1, kNone);
+    std::size_t at = place_[f];
+    if (worst.error_m > tolerance_m) {
+      const QueuedPost entry{worst.error_m, worst.post, face};
+      if (at == kNone) {
+        at = heap_.size();
+        heap_.push_back(entry);
+      }
+      settle(at, entry);
+    } else if (at != kNone) {
+      place_[f] = kNone;
+      const QueuedPost last = heap_.back();
+      heap_.pop_back();
+      if (at < heap_.size()) settle(at, last);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kNone = ~std::size_t{0};
+
+  static bool before(const QueuedPost& a, const QueuedPost& b) {
+    return a.error_m > b.error_m || (a.error_m == b.error_m && a.post < b.post);
+  }
+
+  void put(std::size_t at, const QueuedPost& entry) {
+    heap_[at] = entry;
+    place_[static_cast<std::size_t>(entry.face)] = at;
+  }
+
+  // Writes the entry into the free place `at` and restores the heap.
+  void settle(std::size_t at, const QueuedPost& entry) {
+    while (at > 0 && before(entry, heap_[(at - 1) / 2])) {
+      put(at, heap_[(at - 1) / 2]);
+      at = (at - 1) / 2;
+    }
+    for (std::size_t below = 2 * at + 1; below < heap_.size(); below = 2 * at + 1) {
+      if (below + 1 < heap_.size() && before(heap_[below + 1], heap_[below])) ++below;
+      if (!before(heap_[below], entry)) break;
+      put(at, heap_[below]);
+      at = below;
+    }
+    put(at, entry);
+  }
+
+  std::vector<QueuedPost> heap_;
+  std::vector<std::size_t> place_;
+};
+
+}  // namespace lod

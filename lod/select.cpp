@@ -1,0 +1,217 @@
+#include "lod/select.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "cull/horizon.h"
+
+namespace lod {
+
+namespace {
+
+void check(const SelectOptions& options, const SelectView& view) {
+  if (!std::isfinite(view.eye_m.x) || !std::isfinite(view.eye_m.y) || !std::isfinite(view.eye_m.z)) {
+    throw std::invalid_argument("select: the eye's position is not finite");
+  }
+  if (!std::isfinite(view.focal_px) || view.focal_px <= 0.0) {
+    throw std::invalid_argument("select: the focal length is not a positive number of pixels");
+  }
+  if (std::isnan(options.tolerance_px) || options.tolerance_px < 0.0) {
+    throw std::invalid_argument("select: the tolerance is not a number of pixels >= 0");
+  }
+  if (!std::isfinite(options.exaggeration) || options.exaggeration <= 0.0) {
+    throw std::invalid_argument("select: the exaggeration is not a positive number");
+  }
+  if (options.max_triangles < 0) throw std::invalid_argument("select: the number of triangles is negative");
+}
+
+double projected(double error_m, double focal_px, double distance_m) {
+  if (error_m == 0.0) return 0.0;
+  return distance_m > 0.0 ? error_m * focal_px / distance_m : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+SelectView select_view(const vpe::core::View& view) {
+  const bool perspective = view.projection == vpe::core::Projection::kPerspective;
+  return {view.eye.eye_m, perspective ? vpe::core::focal_px(view) : view.width / (2.0 * std::numbers::pi),
+          cull::make_frustum(view)};
+}
+
+class Selector {
+ public:
+  Selector(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,
+           Selection& out)
+      : options_(options),
+        tree_(tree),
+        view_(view),
+        eye_(cull::make_eye(view.eye_m)),
+        horizon_(cull::make_horizon(eye_, tree.lowest_radius_m(options.exaggeration))),
+        heap_(scratch.heap_),
+        out_(out) {}
+
+  void run() {
+    heap_.clear();
+    reset();
+    Family family;
+    for (TileTree::Index root = 0; root < mars::kFaces; ++root)
+      visit(root, cull::all_planes(view_.frustum), family);
+    commit(family);
+    while (!heap_.empty() && refine_worst()) {
+    }
+    for (const Candidate& rest : heap_) draw(rest);
+    finish();
+  }
+
+ private:
+  using Candidate = SelectScratch::Candidate;
+
+  // What takes a tile's place, and what was found out on the way.
+  struct Family {
+    std::array<Candidate, mars::kFaces> members;
+    std::size_t size = 0;
+    std::int64_t triangles = 0;
+    int visited = 0;
+    int culled_frustum = 0;
+    int culled_horizon = 0;
+  };
+
+  static bool less_urgent(const Candidate& a, const Candidate& b) {
+    return a.urgency != b.urgency ? a.urgency < b.urgency : a.index > b.index;
+  }
+
+  void reset() {
+    out_.tiles.clear();
+    out_.tiles_by_level.clear();
+    out_.exaggeration = options_.exaggeration;
+    out_.visited = out_.culled_frustum = out_.culled_horizon = out_.refined = 0;
+    out_.triangles = 0;
+    out_.max_error_m = out_.max_error_px = 0.0;
+    out_.capped = false;
+  }
+
+  std::uint32_t triangles(const Candidate& c) const {
+    return tree_[c.index].variants[static_cast<std::size_t>(c.variant)].triangles;
+  }
+
+  double error_m(const TileInfo& tile, int variant) const {
+    if (is_full_grid(tile, variant)) return 0.0;
+    return error_bound(tile.variants[static_cast<std::size_t>(variant)].terms, options_.exaggeration,
+                       tile.min_height_m, tile.max_height_m, tree_.radius_m());
+  }
+
+  void measure(Candidate& c, const cull::Shell& shell) const {
+    c.min_distance_m = cull::min_distance_m(eye_, c.chord2, shell.min_radius_m, shell.max_radius_m);
+    c.error_px = projected(c.error_m, view_.focal_px, c.min_distance_m);
+    c.urgency = c.error_px * c.factor;
+  }
+
+  void visit(TileTree::Index index, cull::PlaneMask mask, Family& family) const {
+    const TileInfo& tile = tree_[index];
+    Candidate c{};
+    c.index = index;
+    c.error_m = error_m(tile, 0);
+    const cull::Shell shell = tree_.shell(index, options_.exaggeration, c.error_m);
+    ++family.visited;
+    c.chord2 = cull::nearest_chord2(shell.rect, eye_.direction);
+    if (cull::hidden(horizon_, c.chord2, shell.max_radius_m)) {
+      ++family.culled_horizon;
+      return;
+    }
+    if (mask != 0) {
+      const auto crossed = cull::planes_crossed(view_.frustum, cull::make_volume(shell), mask);
+      if (!crossed) {
+        ++family.culled_frustum;
+        return;
+      }
+      mask = *crossed;
+    }
+    c.mask = mask;
+    c.factor = 1.0;
+    measure(c, shell);
+    if (options_.level_shift.levels != nullptr) {
+      c.factor = std::exp2(options_.level_shift.levels(options_.level_shift.context, tile, c.min_distance_m));
+      c.urgency = c.error_px * c.factor;
+    }
+    family.triangles += triangles(c);
+    family.members[family.size++] = c;
+  }
+
+  void commit(const Family& family) {
+    out_.visited += family.visited;
+    out_.culled_frustum += family.culled_frustum;
+    out_.culled_horizon += family.culled_horizon;
+    out_.triangles += family.triangles;
+    for (std::size_t n = 0; n < family.size; ++n) {
+      const Candidate& c = family.members[n];
+      if (is_full_grid(tree_[c.index], c.variant) || !(c.urgency > options_.tolerance_px)) {
+        draw(c);
+      } else {
+        heap_.push_back(c);
+        std::push_heap(heap_.begin(), heap_.end(), less_urgent);
+      }
+    }
+  }
+
+  bool refine_worst() {
+    const Candidate worst = heap_.front();
+    const TileInfo& tile = tree_[worst.index];
+    Family family;
+    if (tile.has_children) {
+      const TileTree::Index first = tree_.first_child(worst.index);
+      for (TileTree::Index c = first; c < first + 4; ++c) visit(c, worst.mask, family);
+    } else {
+      Candidate& next = family.members[family.size++];
+      next = worst;
+      ++next.variant;
+      next.error_m = error_m(tile, next.variant);
+      measure(next, tree_.shell(worst.index, options_.exaggeration, next.error_m));
+      family.triangles = triangles(next);
+    }
+    family.triangles -= triangles(worst);
+    if (options_.max_triangles > 0 && out_.triangles + family.triangles > options_.max_triangles) {
+      out_.capped = true;
+      return false;
+    }
+    std::pop_heap(heap_.begin(), heap_.end(), less_urgent);
+    heap_.pop_back();
+    out_.refined += tile.has_children ? 1 : 0;
+    commit(family);
+    return true;
+  }
+
+  void draw(const Candidate& c) {
+    out_.tiles.push_back({tree_[c.index].key, c.index, c.variant, c.error_m, c.error_px, c.min_distance_m});
+  }
+
+  void finish() {
+    std::sort(out_.tiles.begin(), out_.tiles.end(),
+              [](const auto& a, const auto& b) { return z_position(a.key) < z_position(b.key); });
+    for (const SelectedTile& tile : out_.tiles) {
+      out_.max_error_m = std::max(out_.max_error_m, tile.error_m);
+      out_.max_error_px = std::max(out_.max_error_px, tile.error_px);
+      const auto level = static_cast<std::size_t>(tile.key.level);
+      if (out_.tiles_by_level.size() <= level) out_.tiles_by_level.resize(level + 1);
+      ++out_.tiles_by_level[level];
+    }
+  }
+
+  const SelectOptions& options_;
+  const TileTree& tree_;
+  const SelectView& view_;
+  cull::Eye eye_;
+  cull::Horizon horizon_;
+  std::vector<Candidate>& heap_;
+  Selection& out_;
+};
+
+void select(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,
+            Selection& selection) {
+  check(options, view);
+  Selector(options, tree, view, scratch, selection).run();
+}
+
+}  // namespace lod

@@ -1,0 +1,105 @@
+// Which tiles to draw for a view, and with which mesh: one pure function of (options, tree, view).
+//
+// Starting from the six roots, whatever cannot be seen is dropped (horizon, frustum) and the tile with the
+// worst projected error is refined, until the worst is within the tolerance or the triangles are spent. A tile
+// with children is replaced by them, a finest tile by its next mesh. The projected error of a tile is
+//   error bound (m) * focal length (px) / least distance from the eye to where the tile's surface can be (m),
+// an upper bound of the shift of every pixel that the tile covers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "cull/frustum.h"
+#include "lod/tree.h"
+
+namespace lod {
+
+// Levels that composite control adds to a tile (negative: takes away): its projected error counts 2^levels
+// times when the worst tile is sought and compared with the tolerance. What is reported stays the true error.
+// Called once for every tile that may be seen; pure, finite.
+struct LevelShift {
+  double (*levels)(const void* context, const TileInfo& tile, double min_distance_m) = nullptr;
+  const void* context = nullptr;
+};
+
+struct SelectOptions {
+  double tolerance_px = 1.0;  // >= 0; 0: only meshes without any error
+  double exaggeration = 1.0;  // > 0; heights are drawn times this
+  // Hard cap on the triangles of the meshes, 0 = none. Refining stops before it would be passed; only roots in
+  // view, which nothing can be coarser than, may pass it by themselves.
+  std::int64_t max_triangles = 0;
+  LevelShift level_shift;
+};
+
+struct SelectView {
+  glm::dvec3 eye_m{0, 0, 0};
+  double focal_px = 1.0;  // pixels of picture for a tangent of 1
+  cull::Frustum frustum;
+};
+
+// Panoramas: no frustum, pixels for a radian on the horizon.
+SelectView select_view(const vpe::core::View& view);
+
+struct SelectedTile {
+  TileKey key;
+  TileTree::Index index = 0;
+  int variant = 0;
+  double error_m = 0;         // bound at the exaggeration selected for
+  double error_px = 0;        // projected; infinite where the eye is within the error of the ground
+  double min_distance_m = 0;  // lower bound
+};
+
+struct Selection {
+  std::vector<SelectedTile> tiles;  // disjoint; along the Z curve
+  double exaggeration = 1;
+  // Every visited tile was culled, drawn, or replaced by its children.
+  int visited = 0;
+  int culled_frustum = 0;  // seen over the horizon, but outside the picture
+  int culled_horizon = 0;
+  int refined = 0;
+  std::int64_t triangles = 0;
+  double max_error_m = 0;
+  double max_error_px = 0;
+  bool capped = false;              // the triangles were spent before the tolerance was met
+  std::vector<int> tiles_by_level;  // drawn; index 0 = level 0, as long as the deepest level drawn
+};
+
+// Memory that select() uses again. What it held before never matters.
+class SelectScratch {
+ private:
+  friend class Selector;
+  struct Candidate {
+    double urgency;
+    double error_m;
+    double error_px;
+    double min_distance_m;
+    double chord2;
+    double factor;
+    TileTree::Index index;
+    int variant;
+    cull::PlaneMask mask;
+  };
+  std::vector<Candidate> heap_;
+};
+
+// The result depends on the first three arguments alone; ties are broken by the order of the tree. A tile is
+// drawn only if it is in none of the others, and every place of S that is in the picture and above the horizon
+// of the lowest sphere is in one. Throws std::invalid_argument for an eye, focal length or option out of range.
+// Thread rule: one scratch a thread.
+void select(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,
+            Selection& selection);
+
+// For every tile of a selection and each of its edges (by Edge) how far a skirt must reach down, radially from
+// the vertices of the border, to leave no gap to what is drawn across: 0 where both meet exactly or nothing is
+// drawn there. Both meet exactly when they are of one level and both have children, or are both full grids, or
+// are both finest tiles with the same variant: meshes choose their border posts from the edge, the level and
+// the variant alone. Else the two borders are at most both errors apart, and the skirt is that deep times
+// highest over lowest radius, since it is straight between vertices. Rounding of vertices to float is not in
+// it.
+void skirt_depths(const Selection& selection, const TileTree& tree,
+                  std::vector<std::array<float, 4>>& depths_m);
+
+}  // namespace lod

@@ -1,0 +1,86 @@
+// The tiles of a planet with what selection has to know of them, without any of their data.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cull/shell.h"
+#include "lod/mesh.h"
+#include "lod/posts.h"
+#include "lod/tile_key.h"
+
+namespace lod {
+
+// One mesh that a tile can be drawn with.
+struct MeshVariant {
+  ErrorTerms terms;  // against S
+  std::uint32_t triangles = 0;
+};
+
+struct TileInfo {
+  TileKey key;
+  double min_height_m = 0;  // the finest posts in the tile, borders included, lie in [min, max]
+  double max_height_m = 0;
+  bool has_children = false;
+  // Coarser to finer. One for a tile with children; the last of a finest tile is its full grid, error 0.
+  std::vector<MeshVariant> variants;
+};
+
+// Whether a variant is the finest tile's full grid: S itself, at any exaggeration.
+inline bool is_full_grid(const TileInfo& tile, int variant) {
+  return !tile.has_children && variant + 1 == static_cast<int>(tile.variants.size());
+}
+
+// Immutable index of a whole planet. Any number of threads may read it.
+class TileTree {
+ public:
+  using Index = std::uint32_t;
+
+  // Takes tiles in any order. Throws std::runtime_error that names the tile and what is wrong: six roots,
+  // children all four or none and each below a tile that says so, no tile twice; heights finite, above the
+  // planet's centre and within the parent's; variants as told above, errors never growing from a variant to the
+  // next nor from a tile to its children. lowest_radius_m: a lower bound of S's radius that is better known
+  // than from the tiles; 0 = none.
+  TileTree(std::vector<TileInfo> tiles, const TileShape& shape, double radius_m, double lowest_radius_m = 0);
+
+  double radius_m() const { return radius_m_; }
+  const TileShape& shape() const { return shape_; }
+
+  // By level, then along the Z curve: the six roots come first, the children of a tile are neighbours.
+  std::size_t size() const { return tiles_.size(); }
+  const TileInfo& operator[](Index tile) const { return tiles_[tile]; }
+  std::span<const TileInfo> tiles() const { return tiles_; }
+
+  // Child c of a tile that has children is first_child() + c.
+  Index first_child(Index tile) const { return first_child_[tile]; }
+
+  // The tile, or nullptr where the planet does not have it.
+  const TileInfo* find(const TileKey& key) const;
+  // The finest tile that is the key's or contains it.
+  const TileInfo& deepest(const TileKey& key) const;
+
+  // Where S lies over a tile at an exaggeration > 0, and everything that is within error_m of it and nowhere
+  // above its highest post: all meshes of the tile and of those below it when error_m bounds the tile's own.
+  cull::Shell shell(Index tile, double exaggeration, double error_m) const;
+
+  // No point of S is nearer to the planet's centre: the occluder for the horizon. Sag of the facets included.
+  double lowest_radius_m(double exaggeration) const;
+
+  // Memory held, all of it.
+  std::size_t bytes() const;
+
+ private:
+  Index descend(const TileKey& key) const;
+
+  std::vector<TileInfo> tiles_;
+  std::vector<Index> first_child_;
+  TileShape shape_;
+  double radius_m_;
+  double known_lowest_m_;
+  double lowest_height_m_ = 0;
+  int coarsest_facets_ = kMaxLevel;  // level of the coarsest finest tile
+};
+
+}  // namespace lod

@@ -1,0 +1,42 @@
+// The embedded Mars: an analytic illustration of the published landforms, for use without any data.
+//
+// embedded_elevation() and embedded_image() (mars/source.h) are functions of the direction and of the wanted
+// spacing alone, defined everywhere and at every spacing down to a metre. The spacing is rounded down to a
+// power of two and decides which wavelengths and crater sizes take part: about twice the spacing and more.
+// Values are equal to the bit on every machine and compiler: they are made with integers and IEEE + - * / sqrt
+// only.
+//
+// It is no data: SourceInfo::illustration is true. Positions and heights of the named landforms follow the IAU
+// gazetteer and MOLA (summits and floors within 10 %, places within 0.2 degrees); the broad relief is a fit to
+// MOLA with a resolution of about 500 km; everything smaller is made up.
+//
+// Cost: 0.3 .. 0.6 us a post on one 2020s core for compact batches of some thousand directions, such as tiles;
+// directions scattered over the planet cost 20 .. 35 us each.
+#pragma once
+
+#include <span>
+
+#include "mars/source.h"
+#include "mars/sphere.h"
+
+namespace mars {
+
+// Waypoints of the demonstration flight along the floor of Coprates Chasma into Melas Chasma, westwards,
+// about 660 km. Within kDemoHalfWidth_m of it the embedded Mars asks for its finest posts.
+std::span<const LonLat> demo_path();
+inline constexpr double kDemoHalfWidth_m = 12000.0;
+
+// Post (texel) spacings that spacing_in() names: anywhere, over Valles Marineris and Olympus Mons, and along
+// the demonstration flight.
+struct EmbeddedSpacings {
+  double plain_m;
+  double landmark_m;
+  double demo_m;
+};
+inline constexpr EmbeddedSpacings kEmbeddedPosts{3700.0, 250.0, 60.0};
+inline constexpr EmbeddedSpacings kEmbeddedTexels{2600.0, 300.0, 80.0};
+
+// The finest of the spacings wanted anywhere in the cap; conservative.
+double embedded_spacing_in(const Cap& cap, const EmbeddedSpacings& spacings);
+
+}  // namespace mars

@@ -1,0 +1,90 @@
+// The steps of a build, one tile each. Used by the builder alone; any number of threads may run them for
+// different tiles at once.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <span>
+#include <unordered_map>
+
+#include "paging/builder.h"
+#include "paging/plan.h"
+#include "paging/planet_writer.h"
+
+namespace paging {
+
+// What a build keeps in memory of a tile.
+struct Node {
+  double min_m = 0;     // of the finest posts
+  double max_m = 0;
+  double lowest_m = 0;  // of S: facets sag below their posts
+  bool inner = false;
+  int steps = 0;            // NodeRow::steps
+  std::set<int> sources;
+  std::vector<lod::MeshVariant> variants;
+};
+
+// Meshers keep scratch memory; each is used by one thread at a time.
+class MesherPool {
+ public:
+  class Lease {
+   public:
+    Lease(MesherPool& pool, std::unique_ptr<lod::Mesher> mesher) : pool_(&pool), mesher_(std::move(mesher)) {}
+    ~Lease() { pool_->give_back(std::move(mesher_)); }
+    Lease(const Lease&) = delete;
+    Lease& operator=(const Lease&) = delete;
+    lod::Mesher* operator->() const { return mesher_.get(); }
+
+   private:
+    MesherPool* pool_;
+    std::unique_ptr<lod::Mesher> mesher_;
+  };
+  Lease borrow() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return {*this, std::make_unique<lod::Mesher>()};
+    std::unique_ptr<lod::Mesher> mesher = std::move(idle_.back());
+    idle_.pop_back();
+    return {*this, std::move(mesher)};
+  }
+
+ private:
+  void give_back(std::unique_ptr<lod::Mesher> mesher) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(mesher));
+  }
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<lod::Mesher>> idle_;
+};
+
+struct BuildContext {
+  const BuildOptions& options;
+  const PlanetMeta& meta;
+  const Plan& plan;
+  const mars::ElevationSource& elevation;
+  PlanetWriter& writer;
+  MesherPool& meshers;
+  std::map<lod::TileKey, Node> nodes;  // ordered, so that nothing depends on hashing; read-only during a step
+};
+
+// Samples, stores and meshes a finest tile.
+Node build_leaf(const BuildContext& context, const lod::TileKey& key);
+
+// Takes an inner tile's posts from its children (which must be in context.nodes), stores and meshes it.
+Node build_inner(const BuildContext& context, const lod::TileKey& key);
+
+// Largest errors of every ancestor's mesh over some finest tiles.
+std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& context, std::span<const lod::TileKey> leaves);
+
+// Makes errors and height ranges nest: no tile states less than anything below it.
+void nest_errors(BuildContext& context);
+
+void build_image(const BuildContext& context, const mars::ImageSource& image, const lod::TileKey& key);
+
+NodeRow to_row(const lod::TileKey& key, const Node& node);
+
+// Radial distance that a mesh of this level keeps to its posts.
+double mesh_tolerance_m(const BuildOptions& options, int level);
+
+}  // namespace paging

@@ -1,0 +1,63 @@
+// Sources -> planet file.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mars/source.h"
+#include "paging/planet_meta.h"
+
+namespace paging {
+
+// Longitude-latitude box, east-positive degrees; west > east crosses the antimeridian.
+struct Region {
+  double west_deg = -180;
+  double south_deg = -90;
+  double east_deg = 180;
+  double north_deg = 90;
+};
+
+// True when a cap touches the region (conservative: may say yes for a near miss).
+bool touches(const Region& region, const mars::Cap& cap);
+
+struct BuildOptions {
+  std::string output;                  // the planet file to make
+  std::string body = "Mars";
+  double radius_m = mars::kMarsRadius_m;
+  double base_spacing_m = 3700;        // at least this fine everywhere, so that the surface is round
+  double finest_spacing_m = 0;         // not finer than this; 0 = as fine as the sources
+  std::vector<Region> regions;         // where to go beyond the base spacing; empty = wherever sources do
+  int tile_k = 7;                      // 2^k intervals a tile; docs/simplifiers.md has the measurement
+  double quantum_m = 0;                // height step stored; 0 = chosen from the sources (docs/planet-file.md)
+  double mesh_ratio = 256;             // a tile's mesh is within side / mesh_ratio of its posts
+  double finest_image_m = 0;           // texels not finer than this; 0 = as fine as the image
+  int image_quality = 90;              // JPEG
+  int threads = 0;                     // 0 = all cores
+  std::size_t resampling_posts = 4'000'000;  // how many source posts to compare with S at most
+};
+
+struct BuildProgress {
+  const char* stage = "";
+  std::int64_t done = 0;   // tiles of this stage
+  std::int64_t total = 0;
+  double fraction = 0;     // of the whole build, by measured cost shares
+};
+using ProgressFunction = std::function<void(const BuildProgress&)>;  // called from worker threads, one at a time
+
+struct BuildSummary {
+  PlanetMeta meta;
+  std::int64_t bytes = 0;
+  std::int64_t posts = 0;
+  std::int64_t mesh_triangles = 0;  // of all stored meshes
+};
+
+// Builds the planet file: OUTPUT.part first, renamed when complete. Memory is a few tiles a thread plus about
+// 200 bytes a tile. Content is a function of the options and sources, whatever the number of threads. image may be null.
+// Throws PlanetError, DatabaseError, mars::SourceError, std::runtime_error (plan too large).
+BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
+                          const mars::ImageSource* image, const ProgressFunction& progress = {});
+
+}  // namespace paging

@@ -1,0 +1,62 @@
+// The planet file *.vpe: one SQLite database, read-only once built. Layout in docs/planet-file.md.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lod/tree.h"
+#include "paging/codec.h"
+#include "paging/planet_meta.h"
+
+namespace paging {
+
+// Everything of a finest or inner tile but its meshes.
+struct TileHeights {
+  lod::Posts posts;            // borders constrained to coarser neighbours
+  std::vector<bool> missing;   // empty when no post is missing
+  std::vector<int> source;     // indices into PlanetMeta::sources that the tile draws on
+};
+
+struct ImageTile {
+  std::vector<mars::Rgb> texels;  // 257 * 257, row 0 at the south border (v0), column 0 at the west border
+};
+
+// Every const member may be called from any thread; each call borrows one of a pool of read connections.
+class PlanetFile {
+ public:
+  // Opens and reads meta and the tile index. Throws PlanetError for a missing file, another kind of file, a
+  // newer major format, an incomplete or damaged one.
+  static std::shared_ptr<const PlanetFile> open(const std::string& path);
+  ~PlanetFile();
+
+  const std::string& path() const { return path_; }
+  const PlanetMeta& meta() const { return meta_; }
+  const lod::TileTree& tree() const { return *tree_; }
+  double radius_m() const { return meta_.radius_m; }
+
+  // Throw PlanetError with the tile's key when it is missing or damaged (checksum, codec).
+  TileHeights heights(const lod::TileKey& key) const;
+  PackedMesh mesh(const lod::TileKey& key, int variant) const;
+
+  // The deepest stored image tile at or above `key`; nothing when the planet has no image.
+  std::optional<lod::TileKey> image_key(const lod::TileKey& key) const;
+  ImageTile image(const lod::TileKey& key) const;  // key must be one that image_key() returned
+
+ private:
+  struct Connection;
+  class Borrowed;
+  explicit PlanetFile(const std::string& path);
+  void read_index(Connection& connection);
+
+  std::string path_;
+  PlanetMeta meta_;
+  std::unique_ptr<lod::TileTree> tree_;
+  std::vector<std::int64_t> image_keys_;  // sorted
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Connection>> idle_;
+};
+
+}  // namespace paging

@@ -1,0 +1,189 @@
+#include "paging/planet_meta.h"
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "paging/codec.h"
+
+namespace paging {
+
+using nlohmann::json;
+
+const char* const kSchema = R"sql(
+CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE node(key INTEGER PRIMARY KEY, face INTEGER, level INTEGER, i INTEGER, j INTEGER,
+  min_m REAL, max_m REAL, inner INTEGER, steps INTEGER, sources TEXT, checksum INTEGER);
+CREATE TABLE variant(key INTEGER, variant INTEGER, relief_m REAL, sag_m REAL, total_m REAL, triangles INTEGER,
+  PRIMARY KEY(key, variant)) WITHOUT ROWID;
+CREATE TABLE heights(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
+CREATE TABLE missing(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
+CREATE TABLE mesh(id INTEGER PRIMARY KEY, key INTEGER, variant INTEGER, checksum INTEGER, data BLOB);
+CREATE UNIQUE INDEX mesh_key ON mesh(key, variant);
+CREATE TABLE image(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
+)sql";
+
+namespace {
+
+json to_json(const mars::SourceInfo& s) {
+  json j{{"name", s.name},           {"size_bytes", s.size_bytes}, {"mtime_s", s.mtime_s},
+         {"resolution_m", s.resolution_m}, {"quantum_m", s.quantum_m},   {"datum", s.datum},
+         {"illustration", s.illustration}};
+  j["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
+  return j;
+}
+
+mars::SourceInfo source_from(const json& j) {
+  mars::SourceInfo s;
+  s.name = j.at("name").get<std::string>();
+  s.size_bytes = j.at("size_bytes").get<std::int64_t>();
+  s.mtime_s = j.at("mtime_s").get<std::int64_t>();
+  s.resolution_m = j.at("resolution_m").get<double>();
+  s.quantum_m = j.at("quantum_m").get<double>();
+  s.datum = j.at("datum").get<std::string>();
+  s.illustration = j.at("illustration").get<bool>();
+  if (!j.at("accuracy_m").is_null()) s.accuracy_m = j.at("accuracy_m").get<double>();
+  return s;
+}
+
+json to_json(const std::vector<mars::SourceInfo>& sources) {
+  json list = json::array();
+  for (const auto& s : sources) list.push_back(to_json(s));
+  return list;
+}
+
+std::vector<mars::SourceInfo> sources_from(const json& list) {
+  std::vector<mars::SourceInfo> sources;
+  for (const auto& s : list) sources.push_back(source_from(s));
+  return sources;
+}
+
+auto tie(const mars::SourceInfo& s) {
+  return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.datum, s.accuracy_m, s.illustration);
+}
+
+bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::SourceInfo>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& x, const auto& y) { return tie(x) == tie(y); });
+}
+
+void check_ranges(const PlanetMeta& m, const std::string& path) {
+  const bool sane = std::isfinite(m.radius_m) && m.radius_m > 1.0 && m.radius_m < 1e12 && m.tile.k >= 3 &&
+                    m.tile.k <= 8 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 && std::isfinite(m.fill_m) &&
+                    std::isfinite(m.lowest_radius_m) && std::isfinite(m.highest_radius_m) && m.shape == "sphere";
+  if (!sane) throw PlanetError(path + ": damaged: a value of the table meta is out of range; build the file again");
+}
+
+}  // namespace
+
+bool PlanetMeta::operator==(const PlanetMeta& o) const {
+  return body == o.body && radius_m == o.radius_m && datum == o.datum && shape == o.shape && tile.k == o.tile.k &&
+         quantum_m == o.quantum_m && fill_m == o.fill_m && equal(sources, o.sources) &&
+         equal(image_sources, o.image_sources) && resampling.max_m == o.resampling.max_m &&
+         resampling.rms_m == o.resampling.rms_m && resampling.posts == o.resampling.posts &&
+         lowest_radius_m == o.lowest_radius_m && highest_radius_m == o.highest_radius_m &&
+         leaf_tiles == o.leaf_tiles && tiles == o.tiles && image_tiles == o.image_tiles &&
+         finest_level == o.finest_level && finest_image_level == o.finest_image_level && program == o.program &&
+         identity == o.identity && illustration == o.illustration;
+}
+
+std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
+  // json writes doubles with the fewest digits that read back to the same bits, whatever the locale.
+  return {{"format", std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor)},
+          {"body", m.body},
+          {"radius_m", json(m.radius_m).dump()},
+          {"datum", m.datum},
+          {"shape", m.shape},
+          {"tile_k", std::to_string(m.tile.k)},
+          {"quantum_m", json(m.quantum_m).dump()},
+          {"fill_m", json(m.fill_m).dump()},
+          {"sources", to_json(m.sources).dump()},
+          {"image_sources", to_json(m.image_sources).dump()},
+          {"resampling_max_m", json(m.resampling.max_m).dump()},
+          {"resampling_rms_m", json(m.resampling.rms_m).dump()},
+          {"resampling_posts", std::to_string(m.resampling.posts)},
+          {"lowest_radius_m", json(m.lowest_radius_m).dump()},
+          {"highest_radius_m", json(m.highest_radius_m).dump()},
+          {"leaf_tiles", std::to_string(m.leaf_tiles)},
+          {"tiles", std::to_string(m.tiles)},
+          {"image_tiles", std::to_string(m.image_tiles)},
+          {"finest_level", std::to_string(m.finest_level)},
+          {"finest_image_level", std::to_string(m.finest_image_level)},
+          {"program", m.program},
+          {"identity", m.identity},
+          {"illustration", m.illustration ? "true" : "false"}};
+}
+
+PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::string& path) {
+  const auto text = [&](const char* key) -> const std::string& {
+    const auto at = rows.find(key);
+    if (at == rows.end()) {
+      throw PlanetError(path + ": incomplete planet file: meta has no '" + key + "'; build it again");
+    }
+    return at->second;
+  };
+  const std::string& format = text("format");
+  const int major = std::atoi(format.c_str());
+  if (major < 1) throw PlanetError(path + ": damaged: meta.format is '" + format + "'; build the file again");
+  if (major > kFormatMajor) {
+    throw PlanetError(path + ": planet file format " + format + " is newer than this program reads (" +
+                      std::to_string(kFormatMajor) + ".x); update vpe");
+  }
+  PlanetMeta m;
+  const char* current = "";
+  try {
+    const auto value = [&](const char* key) {
+      current = key;
+      return json::parse(text(key));
+    };
+    m.body = text("body");
+    m.radius_m = value("radius_m").get<double>();
+    m.datum = text("datum");
+    m.shape = text("shape");
+    m.tile.k = value("tile_k").get<int>();
+    m.quantum_m = value("quantum_m").get<double>();
+    m.fill_m = value("fill_m").get<double>();
+    m.sources = sources_from(value("sources"));
+    m.image_sources = sources_from(value("image_sources"));
+    m.resampling.max_m = value("resampling_max_m").get<double>();
+    m.resampling.rms_m = value("resampling_rms_m").get<double>();
+    m.resampling.posts = value("resampling_posts").get<std::int64_t>();
+    m.lowest_radius_m = value("lowest_radius_m").get<double>();
+    m.highest_radius_m = value("highest_radius_m").get<double>();
+    m.leaf_tiles = value("leaf_tiles").get<std::int64_t>();
+    m.tiles = value("tiles").get<std::int64_t>();
+    m.image_tiles = value("image_tiles").get<std::int64_t>();
+    m.finest_level = value("finest_level").get<int>();
+    m.finest_image_level = value("finest_image_level").get<int>();
+    m.program = text("program");
+    m.identity = text("identity");
+    m.illustration = value("illustration").get<bool>();
+  } catch (const json::exception& e) {
+    throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
+  }
+  check_ranges(m, path);
+  return m;
+}
+
+std::int64_t checksum(const NodeRow& row) {
+  Bytes bytes;
+  const auto put = [&bytes](double value) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<std::uint8_t>(bits >> shift));
+  };
+  put(row.min_m);
+  put(row.max_m);
+  put(row.inner ? 1.0 : 0.0);
+  put(row.steps);
+  for (const char c : row.sources) bytes.push_back(static_cast<std::uint8_t>(c));
+  for (const lod::MeshVariant& v : row.variants) {
+    put(v.terms.relief_m);
+    put(v.terms.sag_m);
+    put(v.terms.total_m);
+    put(v.triangles);
+  }
+  return checksum(row.key, bytes);
+}
+
+}  // namespace paging

@@ -1,0 +1,78 @@
+// What a planet file says of itself, and the constants of its format.
+#pragma once
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lod/posts.h"
+#include "lod/tree.h"
+#include "mars/source.h"
+#include "mars/sphere.h"
+
+namespace paging {
+
+inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
+inline constexpr int kFormatMajor = 1;
+inline constexpr int kFormatMinor = 0;
+inline constexpr int kImageIntervals = 256;  // an image tile has 257 x 257 texels on its grid lines
+
+// A planet file that cannot be used. what() names the file, the trouble and what to do.
+class PlanetError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct ResamplingError {
+  double max_m = 0;
+  double rms_m = 0;
+  std::int64_t posts = 0;  // how many of the sources' own posts were compared
+};
+
+struct PlanetMeta {
+  std::string body = "Mars";
+  double radius_m = mars::kMarsRadius_m;
+  std::string datum = "unknown";
+  std::string shape = "sphere";
+  lod::TileShape tile;
+  double quantum_m = 1.0 / 16.0;
+  double fill_m = 0;  // drawn where no source has data; query answers null there
+  std::vector<mars::SourceInfo> sources;        // elevation, as tiles name them by index
+  std::vector<mars::SourceInfo> image_sources;
+  ResamplingError resampling;
+  double lowest_radius_m = 0;   // no point of S lies below
+  double highest_radius_m = 0;  // none above
+  std::int64_t leaf_tiles = 0;
+  std::int64_t tiles = 0;
+  std::int64_t image_tiles = 0;
+  int finest_level = 0;
+  int finest_image_level = -1;
+  std::string program;          // version that built it
+  std::string identity;         // hexadecimal hash over all checksums: equal content, equal identity
+  bool illustration = false;    // some source is made up
+
+  bool operator==(const PlanetMeta&) const;
+};
+
+// meta <-> rows of the table `meta`. from_rows throws PlanetError naming the file and the key that is missing,
+// malformed or of a newer major format. from_rows(to_rows(m)) == m.
+std::map<std::string, std::string> to_rows(const PlanetMeta& meta);
+PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::string& path);
+
+// The tables, as SQL to create them.
+extern const char* const kSchema;
+
+// Canonical bytes of one row of the tile index, for its checksum.
+struct NodeRow {
+  std::int64_t key = 0;
+  double min_m = 0;
+  double max_m = 0;
+  bool inner = false;
+  int steps = 0;          // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
+  std::string sources;    // indices into meta.sources, comma-separated
+  std::vector<lod::MeshVariant> variants;
+};
+std::int64_t checksum(const NodeRow& row);
+
+}  // namespace paging

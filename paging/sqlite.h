@@ -1,0 +1,69 @@
+// Thin owner types over SQLite: a connection and a prepared statement. Not thread-safe: one owner at a time.
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace paging {
+
+// what() names the file, the operation and SQLite's own words.
+class DatabaseError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Database {
+ public:
+  enum class Mode { kReadOnly, kCreate };
+
+  // Throws DatabaseError.
+  Database(const std::string& path, Mode mode);
+
+  void execute(const std::string& sql);
+  std::int64_t integer(const std::string& sql);  // first column of the first row
+
+  sqlite3* handle() const { return db_.get(); }
+  const std::string& path() const { return path_; }
+  [[noreturn]] void fail(const std::string& operation) const;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* db) const { sqlite3_close(db); }
+  };
+  std::string path_;
+  std::unique_ptr<sqlite3, Close> db_;
+};
+
+class Statement {
+ public:
+  Statement(const Database& db, const std::string& sql);
+
+  Statement& bind(int index, std::int64_t value);
+  Statement& bind(int index, double value);
+  Statement& bind(int index, std::string_view value);                  // copied by SQLite
+  Statement& bind(int index, std::span<const std::uint8_t> value);     // must live until step() returns
+
+  // True while there is a row. A statement that is done resets itself and can be bound again.
+  bool step();
+  void reset();
+
+  std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+  double real(int column) const { return sqlite3_column_double(statement_.get(), column); }
+  std::string text(int column) const;
+  std::span<const std::uint8_t> blob(int column) const;  // valid until the next step() or reset()
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  const Database* db_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+}  // namespace paging

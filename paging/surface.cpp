@@ -1,0 +1,111 @@
+#include "paging/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace paging {
+
+std::size_t SurfaceTile::bytes() const {
+  std::size_t total = sizeof(SurfaceTile) + data.posts.height_m.capacity() * sizeof(double) +
+                      data.missing.capacity() / 8 + (lines.u.capacity() + lines.v.capacity()) * sizeof(double);
+  for (const auto& block : block_max) total += block.capacity() * sizeof(float);
+  return total;
+}
+
+SurfaceTile prepare_tile(TileHeights heights) {
+  SurfaceTile tile;
+  tile.data = std::move(heights);
+  const lod::Posts& posts = tile.data.posts;
+  tile.lines = lod::grid_lines(posts.key, posts.intervals);
+  const auto [low, high] = std::minmax_element(posts.height_m.begin(), posts.height_m.end());
+  tile.min_height_m = *low;
+  tile.max_height_m = *high;
+  // Rounded up to float so that a block's maximum is never below its posts.
+  const auto up = [](double h) { return std::nextafter(static_cast<float>(h), std::numeric_limits<float>::infinity()); };
+  int side = posts.intervals / 2;
+  std::vector<float> level(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      double largest = -std::numeric_limits<double>::infinity();
+      for (int y = 2 * j; y <= 2 * j + 2; ++y) {
+        for (int x = 2 * i; x <= 2 * i + 2; ++x) largest = std::max(largest, posts.at(x, y));
+      }
+      level[static_cast<std::size_t>(j * side + i)] = up(largest);
+    }
+  }
+  tile.block_max.push_back(std::move(level));
+  while (side > 1) {
+    const std::vector<float>& fine = tile.block_max.back();
+    const int half = side / 2;
+    std::vector<float> coarse(static_cast<std::size_t>(half) * static_cast<std::size_t>(half));
+    for (int j = 0; j < half; ++j) {
+      for (int i = 0; i < half; ++i) {
+        const auto at = [&](int x, int y) { return fine[static_cast<std::size_t>(y * side + x)]; };
+        coarse[static_cast<std::size_t>(j * half + i)] = std::max({at(2 * i, 2 * j), at(2 * i + 1, 2 * j),
+                                                                   at(2 * i, 2 * j + 1), at(2 * i + 1, 2 * j + 1)});
+      }
+    }
+    tile.block_max.push_back(std::move(coarse));
+    side = half;
+  }
+  return tile;
+}
+
+Surface::Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
+    : planet_(std::move(planet)), cache_(budget_bytes) {}
+
+std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key) const {
+  return cache_.get(key, [&] {
+    auto made = std::make_shared<const SurfaceTile>(prepare_tile(planet_->heights(key)));
+    const std::size_t bytes = made->bytes();
+    return std::pair(std::move(made), bytes);
+  });
+}
+
+namespace {
+
+lod::TileKey finest_tile(const lod::TileTree& tree, const mars::ChartPoint& point) {
+  lod::TileKey key = lod::tile_at(point, 0);
+  for (const lod::TileInfo* info = tree.find(key); info != nullptr && info->has_children; info = tree.find(key)) {
+    key = lod::tile_at(point, key.level + 1);
+  }
+  return key;
+}
+
+}  // namespace
+
+SurfacePoint Surface::at(const glm::dvec3& direction) const {
+  const mars::ChartPoint point = mars::chart_point(direction);
+  SurfacePoint out;
+  out.tile = finest_tile(planet_->tree(), point);
+  const auto tile = this->tile(out.tile);
+  out.height_m = lod::surface_height(tile->data.posts, tile->lines, point.u, point.v, planet_radius_m(), &out.normal);
+  out.radius_m = planet_radius_m() + out.height_m;
+  if (!tile->data.missing.empty()) {
+    const auto nearest = [](const std::vector<double>& lines, double x) {
+      const auto above = std::lower_bound(lines.begin(), lines.end(), x);
+      if (above == lines.begin()) return std::size_t{0};
+      if (above == lines.end()) return lines.size() - 1;
+      const auto at = static_cast<std::size_t>(above - lines.begin());
+      return lines[at] - x < x - lines[at - 1] ? at : at - 1;
+    };
+    const std::size_t i = nearest(tile->lines.u, point.u);
+    const std::size_t j = nearest(tile->lines.v, point.v);
+    out.missing = tile->data.missing[j * static_cast<std::size_t>(tile->data.posts.side()) + i];
+  }
+  return out;
+}
+
+void Surface::radius(std::span<const glm::dvec3> directions, std::span<double> radius_m) const {
+  std::shared_ptr<const SurfaceTile> held;
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    const mars::ChartPoint point = mars::chart_point(directions[n]);
+    const bool same = held && held->data.posts.key.face == point.face &&
+                      lod::tile_at(point, held->data.posts.key.level) == held->data.posts.key;
+    if (!same) held = tile(finest_tile(planet_->tree(), point));
+    radius_m[n] = planet_radius_m() +
+                  lod::surface_height(held->data.posts, held->lines, point.u, point.v, planet_radius_m());
+  }
+}
+
+}  // namespace paging

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs the tests.
+#   ./test.sh         the default tests
+#   ./test.sh --all   also the long ones, clang, and both sanitizer builds
+set -euo pipefail
+cd "$(dirname "$0")"
+all=no
+case "${1:-}" in
+  '') ;;
+  --all) all=yes ;;
+  *) echo "usage: ./test.sh [--all]" >&2; exit 2 ;;
+esac
+.ci/install.sh
+jobs=${JOBS:-$(nproc)}
+
+build() { cmake --preset "$1" >/dev/null && cmake --build "build/$1" -- -j"$jobs"; }
+
+# Runs ctest in a build folder and says how many tests ran and which were skipped, and why.
+run() {
+  local log="build/$1/ctest.log" status=0
+  shift_args=("${@:2}")
+  ctest --test-dir "build/$1" -j"$jobs" --output-on-failure "${shift_args[@]}" 2>&1 | tee "$log" || status=$?
+  local skipped
+  skipped=$(grep -cE '\*\*\*Skipped' "$log" || true)
+  if [ "$skipped" -gt 0 ]; then
+    echo "skipped ($skipped):"
+    grep -E '\*\*\*Skipped' "$log" | sed -E 's/^.*Test +#[0-9]+: ([^ ]+).*/  \1/'
+    [ -e ../shared/data ] || [ -n "${VPE_SHARED_DATA:-}" ] || echo "  (no planetary data beside the checkout)"
+  fi
+  return "$status"
+}
+
+build release
+if [ "$all" = no ]; then
+  run release -L default
+  exit
+fi
+run release
+# Sanitizers: everything but pictures (drivers are not instrumented), then threads.
+export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+build clang
+run clang -L default
+build asan
+run asan -L default -LE gl
+build tsan
+run tsan -L default -R '(Parallel|ThreadPool|Cache|Surface|Builder|Threads)' -LE gl

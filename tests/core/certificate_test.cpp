@@ -1,0 +1,73 @@
+#include "vpe/core/certificate.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace vpe::core {
+namespace {
+
+TEST(Certificate, EveryFieldUnderItsOwnName) {
+  Certificate c;
+  c.tile_error_m = 1.25;
+  c.tile_error_px = 0.5;
+  c.quantisation_m = 0.001;
+  c.quantisation_px = 0.0001;
+  c.shift_bound_px = 0.5001;
+  c.tolerance_px = 1;
+  c.tiles_drawn = 12;
+  c.tiles_missing = 3;
+  c.tiles_substituted = 4;
+  c.share_at_data_limit = 0.25;
+  c.resampling_max_m = 7.5;
+  c.resampling_rms_m = 0.75;
+  c.source_accuracy_m = 3;
+  c.illustration = true;
+  c.exaggeration = 2;
+  nlohmann::json json = nlohmann::json::parse(to_json(c));
+  const std::string meaning = json.at("what_this_means");
+  EXPECT_NE(meaning.find("not data"), std::string::npos);
+  EXPECT_NE(meaning.find("not covered"), std::string::npos);
+  json.erase("what_this_means");
+  EXPECT_EQ(json, nlohmann::json({{"tile_error_m", 1.25},
+                                  {"tile_error_px", 0.5},
+                                  {"quantisation_m", 0.001},
+                                  {"quantisation_px", 0.0001},
+                                  {"shift_bound_px", 0.5001},
+                                  {"tolerance_px", 1.0},
+                                  {"tiles_drawn", 12},
+                                  {"tiles_missing", 3},
+                                  {"tiles_substituted", 4},
+                                  {"share_at_data_limit", 0.25},
+                                  {"resampling_max_m", 7.5},
+                                  {"resampling_rms_m", 0.75},
+                                  {"source_accuracy_m", 3.0},
+                                  {"illustration", true},
+                                  {"exaggeration", 2.0}}));
+}
+
+TEST(Certificate, AbsentAndNotFiniteAreNull) {
+  Certificate c;
+  c.tile_error_m = std::numeric_limits<double>::infinity();
+  c.tile_error_px = std::numeric_limits<double>::quiet_NaN();
+  const nlohmann::json json = nlohmann::json::parse(to_json(c));
+  EXPECT_TRUE(json.at("source_accuracy_m").is_null());
+  EXPECT_TRUE(json.at("tile_error_m").is_null());
+  EXPECT_TRUE(json.at("tile_error_px").is_null());
+  const std::string meaning = json.at("what_this_means");
+  EXPECT_EQ(meaning.find("not data"), std::string::npos);
+  EXPECT_EQ(meaning.find("not covered"), std::string::npos);
+}
+
+TEST(Certificate, NumbersSurviveToTheBit) {
+  Certificate c;
+  c.tile_error_m = 0.1 + 0.2;
+  c.shift_bound_px = 5e-324;
+  const nlohmann::json json = nlohmann::json::parse(to_json(c));
+  EXPECT_EQ(json.at("tile_error_m").get<double>(), c.tile_error_m);
+  EXPECT_EQ(json.at("shift_bound_px").get<double>(), c.shift_bound_px);
+}
+
+}  // namespace
+}  // namespace vpe::core

@@ -1,0 +1,184 @@
+#include "paging/builder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/paging/planet_fixture.h"
+
+namespace {
+
+using test_support::build_fake;
+using test_support::bumpy_height;
+using test_support::fine_around;
+using test_support::FakeElevation;
+using test_support::Random;
+using test_support::TempDir;
+
+const glm::dvec3 kCorner = glm::normalize(glm::dvec3(1, 1, 1));
+
+// Posts of the finest tiles equal the source up to half a quantum, also on all borders.
+TEST(Builder, PostsAreTheSource) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 20000));
+  const auto planet = build_fake(dir / "p.vpe", source, 200000);
+  const double quantum = planet->meta().quantum_m;
+  int constrained = 0;
+  for (const lod::TileInfo& info : planet->tree().tiles()) {
+    const paging::TileHeights heights = planet->heights(info.key);
+    const lod::GridLines lines = lod::grid_lines(info.key, heights.posts.intervals);
+    for (int j = 0; j < heights.posts.side(); ++j) {
+      for (int i = 0; i < heights.posts.side(); ++i) {
+        const double h = heights.posts.at(i, j);
+        const glm::dvec3 d = mars::chart_direction(info.key.face, lines.u[static_cast<std::size_t>(i)], lines.v[static_cast<std::size_t>(j)]);
+        if (std::abs(h - bumpy_height(d)) <= 0.5 * quantum + 1e-9) continue;
+        // Only odd border posts of a finest tile beside a coarser one may differ: they lie on its edges.
+        ASSERT_FALSE(info.has_children);
+        const int last = heights.posts.intervals;
+        ASSERT_TRUE(((i == 0 || i == last) && j % 2 == 1) || ((j == 0 || j == last) && i % 2 == 1));
+        ++constrained;
+      }
+    }
+  }
+  EXPECT_GT(constrained, 0);
+}
+
+// S from both sides of every tile border, at posts and between them.
+TEST(Builder, SurfaceIsWatertightAcrossAllBorders) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 20000));
+  const auto planet = build_fake(dir / "p.vpe", source, 200000);
+  const paging::Surface surface(planet, 1 << 26);
+  Random random(31);
+  double worst = 0;
+  for (const lod::TileInfo& info : planet->tree().tiles()) {
+    if (info.has_children) continue;
+    const auto tile = surface.tile(info.key);
+    const mars::ChartRect rect = lod::chart_rect(info.key);
+    for (int n = 0; n < 40; ++n) {
+      const double t = random.uniform(0, 1);
+      const bool vertical = n % 2 == 0;
+      const bool far = n % 4 < 2;
+      const double u = vertical ? (far ? rect.u1 : rect.u0) : rect.u0 + t * (rect.u1 - rect.u0);
+      const double v = vertical ? rect.v0 + t * (rect.v1 - rect.v0) : (far ? rect.v1 : rect.v0);
+      const double own = lod::surface_height(tile->data.posts, tile->lines, u, v, planet->radius_m());
+      // Just outside, on whatever tile and face that is.
+      const double step = 1e-12;
+      const glm::dvec3 outside = mars::cube_point(rect.face, u + (vertical ? (far ? step : -step) : 0.0),
+                                                  v + (vertical ? 0.0 : (far ? step : -step)));
+      worst = std::max(worst, std::abs(surface.at(outside).height_m - own));
+    }
+  }
+  EXPECT_LT(worst, 1e-5);  // 1e-12 of a radius beside the border, on slopes of up to one
+}
+
+TEST(Builder, ErrorsBoundTheDistanceAndNest) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 20000));
+  const auto planet = build_fake(dir / "p.vpe", source, 200000);
+  const paging::Surface surface(planet, 1 << 26);
+  Random random(32);
+  for (const lod::TileInfo& info : planet->tree().tiles()) {
+    for (std::size_t v = 0; v + 1 < info.variants.size() + (info.has_children ? 1U : 0U); ++v) {
+      const paging::PackedMesh packed = planet->mesh(info.key, static_cast<int>(v));
+      const lod::GridLines lines = lod::grid_lines(info.key, packed.mesh.intervals);
+      double worst = 0;
+      for (int n = 0; n < 60; ++n) {
+        // A random place in a random triangle of the mesh.
+        const auto t = static_cast<std::size_t>(random.integer(0, static_cast<int>(packed.mesh.triangle_count()) - 1));
+        glm::dvec3 p(0);
+        double a = random.uniform(0, 1);
+        double b = random.uniform(0, 1);
+        if (a + b > 1) a = 1 - a, b = 1 - b;
+        const std::array<double, 3> weight{a, b, 1 - a - b};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t at = packed.mesh.triangles[3 * t + k];
+          const lod::MeshVertex vertex = packed.mesh.vertices[at];
+          p += weight[k] * mars::chart_direction(info.key.face, lines.u[vertex.i], lines.v[vertex.j]) *
+               (planet->radius_m() + packed.height_q[at] * planet->meta().quantum_m);
+        }
+        worst = std::max(worst, std::abs(glm::length(p) - surface.at(p).radius_m));
+      }
+      EXPECT_LE(worst, info.variants[v].terms.total_m + 1e-6) << lod::to_string(info.key) << " variant " << v;
+    }
+    if (!info.has_children) {
+      EXPECT_EQ(info.variants.back().terms.total_m, 0);
+    }
+  }
+}
+
+TEST(Builder, ContentDoesNotDependOnThreads) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height, fine_around({0, 0, 1}, 0.05, 40000));
+  const auto one = build_fake(dir / "one.vpe", source, 300000, 1);
+  const auto four = build_fake(dir / "four.vpe", source, 300000, 4);
+  EXPECT_EQ(one->meta().identity, four->meta().identity);
+  EXPECT_TRUE(one->meta() == four->meta());
+}
+
+TEST(Builder, ResamplingErrorIsMeasured) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height);
+  const auto coarse = build_fake(dir / "coarse.vpe", source, 400000);
+  const auto fine = build_fake(dir / "fine.vpe", source, 100000);
+  EXPECT_EQ(fine->meta().resampling.posts, 5000);
+  EXPECT_GT(coarse->meta().resampling.rms_m, 2 * fine->meta().resampling.rms_m);
+  // The same by hand.
+  const paging::Surface surface(fine, 1 << 26);
+  double worst = 0;
+  source.visit_posts(5000, [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+      worst = std::max(worst, std::abs(surface.at(directions[n]).height_m - heights[n]));
+    }
+  });
+  EXPECT_NEAR(worst, fine->meta().resampling.max_m, 1e-6);
+}
+
+TEST(Builder, MissingPlacesAreKnown) {
+  TempDir dir;
+  const FakeElevation source([](const glm::dvec3& d) { return d.z > 0.5 ? std::nan("") : 1000.0; });
+  const auto planet = build_fake(dir / "p.vpe", source, 200000);
+  const paging::Surface surface(planet, 1 << 26);
+  EXPECT_TRUE(surface.at({0, 0, 1}).missing);
+  EXPECT_FALSE(surface.at({0, 0, -1}).missing);
+  EXPECT_NEAR(surface.at({0, 0, 1}).height_m, 1000.0, 0.1);  // filled, so that pictures have no pit
+}
+
+TEST(Builder, AFailedBuildLeavesNothing) {
+  TempDir dir;
+  const FakeElevation source([](const glm::dvec3& d) -> double {
+    if (d.x > 0.99) throw mars::SourceError("no.tif: cannot read block 7");
+    return 0.0;
+  });
+  EXPECT_THROW(build_fake(dir / "p.vpe", source, 200000), mars::SourceError);
+  EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
+}
+
+TEST(Builder, RegionsKnowCapsAcrossTheAntimeridianAndPoles) {
+  const auto cap = [](double lon, double lat, double radius_deg) {
+    return mars::Cap{mars::direction({lon, lat}), radius_deg * mars::kRadiansPerDegree};
+  };
+  const paging::Region pacific{170, -10, -170, 10};
+  EXPECT_TRUE(paging::touches(pacific, cap(180, 0, 1)));
+  EXPECT_TRUE(paging::touches(pacific, cap(-175, 5, 1)));
+  EXPECT_TRUE(paging::touches(pacific, cap(165, 0, 6)));
+  EXPECT_FALSE(paging::touches(pacific, cap(165, 0, 4)));
+  EXPECT_FALSE(paging::touches(pacific, cap(0, 0, 30)));
+  EXPECT_FALSE(paging::touches(pacific, cap(180, 20, 5)));
+  const paging::Region north{0, 80, 10, 90};
+  EXPECT_TRUE(paging::touches(north, cap(180, 89, 2)));
+  // Never a false no: random caps and random places of the region.
+  Random random(33);
+  for (int n = 0; n < 20000; ++n) {
+    const paging::Region r{random.uniform(-180, 180), random.uniform(-90, 0), random.uniform(-180, 180), random.uniform(0, 90)};
+    double width = r.east_deg - r.west_deg;
+    if (width < 0) width += 360;
+    const mars::LonLat inside{r.west_deg + random.uniform(0, width), random.uniform(r.south_deg, r.north_deg)};
+    const mars::Cap c{random.direction(), random.uniform(0, 1.5)};
+    if (mars::angle_between_rad(c.centre, mars::direction(inside)) < c.radius_rad) {
+      ASSERT_TRUE(paging::touches(r, c));
+    }
+  }
+}
+
+}  // namespace

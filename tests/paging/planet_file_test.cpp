@@ -1,0 +1,144 @@
+#include "paging/planet_file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "paging/sqlite.h"
+#include "tests/paging/planet_fixture.h"
+
+namespace {
+
+using paging::PlanetError;
+using paging::PlanetFile;
+using test_support::build_fake;
+using test_support::bumpy_height;
+using test_support::FakeElevation;
+using test_support::Random;
+using test_support::TempDir;
+
+std::string message(const std::filesystem::path& path) {
+  try {
+    PlanetFile::open(path.string());
+  } catch (const PlanetError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+void change(const std::filesystem::path& path, const std::string& sql) {
+  paging::Database db(path.string(), paging::Database::Mode::kCreate);
+  db.execute(sql);
+}
+
+// Reads everything; throws PlanetError at the first damage.
+void read_all(const PlanetFile& planet) {
+  for (const lod::TileInfo& info : planet.tree().tiles()) {
+    planet.heights(info.key);
+    const int meshes = static_cast<int>(info.variants.size()) - (info.has_children ? 0 : 1);
+    for (int v = 0; v < meshes; ++v) planet.mesh(info.key, v);
+  }
+}
+
+TEST(PlanetFile, MetaSurvives) {
+  TempDir dir;
+  const auto planet = build_fake(dir / "p.vpe", FakeElevation(bumpy_height), 400000);
+  const paging::PlanetMeta& meta = planet->meta();
+  EXPECT_TRUE(paging::from_rows(paging::to_rows(meta), "x") == meta);
+  EXPECT_EQ(meta.sources.front().name, "fake");
+  EXPECT_EQ(meta.tiles, static_cast<std::int64_t>(planet->tree().size()));
+}
+
+TEST(PlanetFile, SqliteToolsSeeAPlanetFile) {
+  TempDir dir;
+  build_fake(dir / "p.vpe", FakeElevation(bumpy_height), 400000);
+  paging::Database db((dir / "p.vpe").string(), paging::Database::Mode::kReadOnly);
+  EXPECT_EQ(db.integer("PRAGMA application_id"), paging::kApplicationId);
+  EXPECT_EQ(db.integer("SELECT count(*) FROM meta WHERE key = 'format'"), 1);
+}
+
+TEST(PlanetFile, RefusesWhatIsNotAPlanet) {
+  TempDir dir;
+  EXPECT_NE(message(dir / "absent.vpe").find("no such planet file"), std::string::npos);
+  std::ofstream(dir / "text.vpe") << "not a database, but long enough to have a header of its own, surely; "
+                                     "and then some more of it so that it passes a hundred bytes";
+  EXPECT_NE(message(dir / "text.vpe").find("not a planet file"), std::string::npos);
+  std::ofstream(dir / "empty.vpe").close();
+  EXPECT_NE(message(dir / "empty.vpe").find("not a planet file"), std::string::npos);
+  change(dir / "other.vpe", "CREATE TABLE t(x)");
+  EXPECT_NE(message(dir / "other.vpe").find("not a planet file"), std::string::npos);
+  std::filesystem::create_directory(dir / "folder.vpe");
+  EXPECT_NE(message(dir / "folder.vpe"), "no error");
+}
+
+TEST(PlanetFile, RefusesNewerAndIncompleteFiles) {
+  TempDir dir;
+  const auto path = dir / "p.vpe";
+  build_fake(path, FakeElevation(bumpy_height), 400000);
+  const auto variant = [&](const std::string& name, const std::string& sql) {
+    std::filesystem::copy_file(path, dir / name);
+    change(dir / name, sql);
+    return message(dir / name);
+  };
+  EXPECT_NE(variant("newer.vpe", "UPDATE meta SET value = '2.0' WHERE key = 'format'").find("newer"), std::string::npos);
+  EXPECT_NE(variant("nometa.vpe", "DELETE FROM meta WHERE key = 'radius_m'").find("radius_m"), std::string::npos);
+  EXPECT_NE(variant("radius.vpe", "UPDATE meta SET value = '-5' WHERE key = 'radius_m'").find("out of range"), std::string::npos);
+  EXPECT_NE(variant("json.vpe", "UPDATE meta SET value = '{' WHERE key = 'sources'").find("sources"), std::string::npos);
+  EXPECT_NE(variant("node.vpe", "UPDATE node SET min_m = min_m + 1 WHERE rowid = (SELECT max(key) FROM node)").find("tile index"), std::string::npos);
+  EXPECT_NE(variant("gone.vpe", "DELETE FROM node WHERE key = (SELECT max(key) FROM node)").find("tiles are in the index"), std::string::npos);
+}
+
+TEST(PlanetFile, DamagedTilesAreNamed) {
+  TempDir dir;
+  const auto path = dir / "p.vpe";
+  build_fake(path, FakeElevation(bumpy_height), 400000);
+  change(path, "UPDATE heights SET data = zeroblob(length(data)) WHERE key = (SELECT max(key) FROM heights)");
+  change(path, "DELETE FROM mesh WHERE key = (SELECT max(key) FROM mesh)");
+  const auto planet = PlanetFile::open(path.string());
+  const lod::TileKey worst = std::max_element(planet->tree().tiles().begin(), planet->tree().tiles().end(),
+                                              [](const auto& a, const auto& b) { return lod::pack(a.key) < lod::pack(b.key); })->key;
+  try {
+    planet->heights(worst);
+    FAIL();
+  } catch (const PlanetError& e) {
+    EXPECT_NE(std::string(e.what()).find(lod::to_string(worst)), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("checksum"), std::string::npos) << e.what();
+  }
+  EXPECT_THROW(planet->mesh(worst, 0), PlanetError);
+}
+
+// Flipped bits and truncations: an error or the true content, never anything else.
+TEST(PlanetFile, FlippedBitsAreNeverBelieved) {
+  TempDir dir;
+  const auto path = dir / "p.vpe";
+  const auto good = build_fake(path, FakeElevation(bumpy_height), 400000);
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  Random random(51);
+  int refused = 0;
+  for (int round = 0; round < 60; ++round) {
+    std::string damaged = bytes;
+    if (round % 5 == 4) {
+      damaged.resize(static_cast<std::size_t>(random.integer(0, static_cast<int>(bytes.size()))));
+    } else {
+      for (int flips = 0; flips < 8; ++flips) {
+        auto& byte = damaged[static_cast<std::size_t>(random.integer(0, static_cast<int>(bytes.size()) - 1))];
+        byte = static_cast<char>(byte ^ (1 << random.integer(0, 7)));
+      }
+    }
+    const auto bad = dir / "bad.vpe";
+    std::ofstream(bad, std::ios::binary | std::ios::trunc) << damaged;
+    try {
+      const auto planet = PlanetFile::open(bad.string());
+      for (const lod::TileInfo& info : planet->tree().tiles()) {
+        ASSERT_EQ(planet->heights(info.key).posts.height_m, good->heights(info.key).posts.height_m);
+      }
+      read_all(*planet);
+    } catch (const PlanetError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 30);
+}
+
+}  // namespace

@@ -1,0 +1,88 @@
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "paging/builder.h"
+#include "vpe/app/interrupt.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/app/program.h"
+#include "vpe/app/progress.h"
+#include "vpe/app/report.h"
+
+namespace vpe::app {
+
+namespace {
+
+struct BuildArguments {
+  std::vector<std::string> dems;
+  std::vector<std::string> images;
+  std::vector<std::string> regions;
+  paging::BuildOptions options;
+};
+
+paging::Region parse_region(const std::string& text) {
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 4) {
+    throw UsageError("--region '" + text + "': expected WEST,SOUTH,EAST,NORTH in degrees");
+  }
+  const paging::Region region{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
+  if (region.south_deg >= region.north_deg || region.south_deg < -90 || region.north_deg > 90) {
+    throw UsageError("--region '" + text + "': south must lie below north, both within -90..90");
+  }
+  return region;
+}
+
+void build(BuildArguments& arguments, const Common& common) {
+  paging::BuildOptions& options = arguments.options;
+  for (const std::string& text : arguments.regions) options.regions.push_back(parse_region(text));
+  options.threads = common.threads;
+  std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
+  for (const std::string& path : arguments.dems) dems.push_back(mars::open_elevation(path));
+  const auto elevation = dems.size() == 1 ? dems.front() : mars::stack_elevation(dems);
+  std::vector<std::shared_ptr<const mars::ImageSource>> images;
+  for (const std::string& path : arguments.images) images.push_back(mars::open_image(path));
+  std::shared_ptr<const mars::ImageSource> image;
+  if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
+
+  const InterruptGuard guard;
+  paging::BuildSummary summary;
+  {
+    ProgressLine line(common.quiet);
+    summary = paging::build_planet(options, *elevation, image.get(), [&](const paging::BuildProgress& p) {
+      InterruptGuard::check();
+      line.show(std::string("building (") + p.stage + ")", p.fraction);
+    });
+  }
+  if (common.json) {
+    nlohmann::json json = planet_json(summary.meta);
+    json["bytes"] = summary.bytes;
+    std::printf("%s\n", json.dump(2).c_str());
+  } else if (!common.quiet) {
+    std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %.1f MB\n", options.output.c_str(),
+                static_cast<long long>(summary.meta.tiles), static_cast<long long>(summary.meta.leaf_tiles),
+                1e-6 * static_cast<double>(summary.posts), 1e-6 * static_cast<double>(summary.bytes));
+    std::printf("resampling error against %lld source posts: RMS %.3g m, maximum %.3g m\n",
+                static_cast<long long>(summary.meta.resampling.posts), summary.meta.resampling.rms_m,
+                summary.meta.resampling.max_m);
+  }
+}
+
+}  // namespace
+
+void add_build(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<BuildArguments>();
+  CLI::App* command = add_command(program, "build", "Make a planet file from elevation and image rasters", common, true);
+  paging::BuildOptions& o = arguments->options;
+  command->add_option("DEM", arguments->dems, "Elevation rasters (anything GDAL reads); the finest decides at each place")->required();
+  command->add_option("--image", arguments->images, "Image rasters")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("-o,--output", o.output, "Planet file to write")->required();
+  command->add_option("--region", arguments->regions, "WEST,SOUTH,EAST,NORTH: full resolution only there (repeatable)")
+      ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--spacing", o.finest_spacing_m, "Finest post spacing, metres (default: as the sources)")->check(CLI::Range(0.01, 1e6));
+  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")->check(CLI::Range(100.0, 1e6))->capture_default_str();
+  command->add_option("--radius", o.radius_m, "Radius of the sphere, metres")->check(CLI::Range(100.0, 1e9))->capture_default_str();
+  command->add_option("--body", o.body, "Name of the body")->capture_default_str();
+  command->callback([arguments, &common] { build(*arguments, common); });
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,32 @@
+#include "vpe/app/interrupt.h"
+
+#include <atomic>
+#include <csignal>
+
+namespace vpe::app {
+
+namespace {
+
+std::atomic<int> g_signal{0};  // signal handlers can reach nothing but a global
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void note(int signal) { g_signal.store(signal); }
+
+}  // namespace
+
+InterruptGuard::InterruptGuard() {
+  g_signal.store(0);
+  std::signal(SIGINT, note);
+  std::signal(SIGTERM, note);
+}
+
+InterruptGuard::~InterruptGuard() {
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+}
+
+void InterruptGuard::check() {
+  if (const int signal = g_signal.load(); signal != 0) throw Interrupted(signal);
+}
+
+}  // namespace vpe::app

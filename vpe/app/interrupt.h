@@ -1,0 +1,28 @@
+// SIGINT and SIGTERM as something that long work can ask about.
+#pragma once
+
+#include <stdexcept>
+
+namespace vpe::app {
+
+class Interrupted : public std::runtime_error {
+ public:
+  explicit Interrupted(int signal) : std::runtime_error("stopped by a signal"), signal_(signal) {}
+  int signal() const { return signal_; }
+
+ private:
+  int signal_;
+};
+
+// While one lives, SIGINT and SIGTERM are only noted; check() then throws Interrupted. Any thread may check.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  static void check();
+};
+
+}  // namespace vpe::app

@@ -1,0 +1,58 @@
+#include "vpe/app/picture_options.h"
+
+#include "mars/sun.h"
+#include "vpe/core/number.h"
+#include "vpe/gl/polygon_renderer.h"
+
+namespace vpe::app {
+
+void add_picture_options(CLI::App& command, PictureOptions& options) {
+  command.add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
+      ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--backend", options.backend, "How to draw")->check(CLI::IsMember({"polygon"}))->capture_default_str();
+  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")->check(CLI::Range(0.0, 1000.0));
+}
+
+core::Settings make_settings(const PictureOptions& options) {
+  core::Settings settings;
+  if (options.tolerance_px >= 0) {
+    const std::string trouble = settings.set("lod.tolerance", core::format_number(options.tolerance_px));
+    if (!trouble.empty()) throw UsageError("--tolerance: " + trouble);
+  }
+  for (const std::string& assignment : options.set) {
+    const std::string trouble = settings.assign(assignment);
+    if (!trouble.empty()) throw UsageError("--set " + assignment + ": " + trouble);
+  }
+  return settings;
+}
+
+std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
+                                              std::shared_ptr<const paging::PlanetFile> planet) {
+  (void)options;
+  gl::RendererOptions renderer;
+  renderer.memory_bytes = static_cast<std::size_t>(common.memory_mb) << 20;
+  renderer.threads = common.threads;
+  return gl::make_polygon_renderer(gl::Context::create(), std::move(planet), renderer);
+}
+
+glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose) {
+  return mars::sun_direction({pose.lon_deg, pose.lat_deg}, settings.sun_azimuth_deg, settings.sun_elevation_deg);
+}
+
+Size parse_size(const std::string& text) {
+  const std::size_t x = text.find('x');
+  std::optional<std::int64_t> width;
+  std::optional<std::int64_t> height;
+  if (x != std::string::npos) {
+    width = core::parse_integer(std::string_view(text).substr(0, x));
+    height = core::parse_integer(std::string_view(text).substr(x + 1));
+  }
+  const auto fits = [](const std::optional<std::int64_t>& n) { return n && *n >= 1 && *n <= core::ViewLimits::kMaxSide_px; };
+  if (!fits(width) || !fits(height)) {
+    throw UsageError("--size '" + text + "': expected WIDTHxHEIGHT, each within 1.." +
+                     std::to_string(core::ViewLimits::kMaxSide_px));
+  }
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+}  // namespace vpe::app

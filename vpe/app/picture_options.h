@@ -1,0 +1,39 @@
+// Options and steps that every command that draws has in common.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "paging/planet_file.h"
+#include "vpe/app/program.h"
+#include "vpe/core/frame.h"
+
+namespace vpe::app {
+
+struct PictureOptions {
+  std::vector<std::string> set;   // KEY=VALUE
+  std::string backend = "polygon";
+  double tolerance_px = -1;       // < 0: as set
+};
+
+void add_picture_options(CLI::App& command, PictureOptions& options);
+
+// Default settings (sky, and image or elevation colours), then --tolerance, then every --set in order. Throws
+// UsageError naming the key.
+core::Settings make_settings(const PictureOptions& options);
+
+std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
+                                              std::shared_ptr<const paging::PlanetFile> planet);
+
+// Where the sun stands when its azimuth and elevation are given at a place on the ground.
+glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose);
+
+struct Size {
+  int width = 0;
+  int height = 0;
+};
+// "1280x720"; throws UsageError for anything else or a size outside ViewLimits.
+Size parse_size(const std::string& text);
+
+}  // namespace vpe::app

@@ -1,0 +1,145 @@
+#include "vpe/app/planet_argument.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "mars/embedded.h"
+#include "paging/builder.h"
+#include "vpe/app/interrupt.h"
+#include "vpe/app/progress.h"
+#include "vpe/core/number.h"
+
+namespace vpe::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Raised whenever the builder or the embedded planet changes what a cached file would hold.
+constexpr int kCacheGeneration = 1;
+
+class FileLock {
+ public:
+  explicit FileLock(const fs::path& path) : fd_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+    if (fd_ < 0) throw std::runtime_error(path.string() + ": cannot open: " + std::strerror(errno));
+    while (::flock(fd_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+  }
+  ~FileLock() { ::close(fd_); }
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+ private:
+  int fd_;
+};
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+bool is_sqlite(const std::string& path) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  char head[16] = {};
+  return file && std::fread(head, 1, sizeof head, file.get()) == sizeof head &&
+         std::memcmp(head, "SQLite format 3", 16) == 0;
+}
+
+std::string hex(std::uint64_t x) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(x));
+  return text;
+}
+
+void build_into(const fs::path& target, const std::string& what, const mars::ElevationSource& elevation,
+                const mars::ImageSource* image, const Common& common) {
+  const InterruptGuard guard;
+  if (!common.quiet) std::fprintf(stderr, "Building %s once, into %s\n", what.c_str(), target.c_str());
+  ProgressLine line(common.quiet);
+  paging::BuildOptions options;
+  options.output = target.string();
+  options.threads = common.threads;
+  paging::build_planet(options, elevation, image, [&](const paging::BuildProgress& p) {
+    InterruptGuard::check();
+    line.show(std::string("building (") + p.stage + ")", p.fraction);
+  });
+}
+
+std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what, const Common& common,
+                                                 const std::function<void(const fs::path&)>& build) {
+  const fs::path folder = cache_folder();
+  const fs::path target = folder / (name + ".vpe");
+  const FileLock lock(folder / (name + ".lock"));
+  if (fs::exists(target)) {
+    try {
+      return paging::PlanetFile::open(target.string());
+    } catch (const paging::PlanetError& e) {
+      std::fprintf(stderr, "vpe: %s; building %s again\n", e.what(), what.c_str());
+    }
+  }
+  build(target);
+  (void)common;
+  return paging::PlanetFile::open(target.string());
+}
+
+}  // namespace
+
+fs::path cache_folder() {
+  const char* xdg = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  fs::path folder;
+  if (xdg != nullptr && fs::path(xdg).is_absolute()) {
+    folder = fs::path(xdg) / "vpe";
+  } else if (home != nullptr && fs::path(home).is_absolute()) {
+    folder = fs::path(home) / ".cache" / "vpe";
+  } else {
+    throw std::runtime_error("no cache folder: set HOME or XDG_CACHE_HOME to an absolute path");
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw std::runtime_error(folder.string() + ": cannot make the cache folder: " + error.message());
+  return folder;
+}
+
+std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {
+  if (argument.empty()) {
+    const std::string name = "embedded-mars-" + std::to_string(kCacheGeneration);
+    return cached(name, "the embedded Mars (an illustration)", common, [&](const fs::path& target) {
+      build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(), mars::embedded_image().get(), common);
+    });
+  }
+  if (ends_with(argument, ".vpe") || is_sqlite(argument)) return paging::PlanetFile::open(argument);
+  const auto source = mars::open_elevation(argument);
+  const mars::SourceInfo info = source->infos().front();
+  const std::string path = fs::weakly_canonical(argument).string();
+  const std::string identity = path + '\n' + std::to_string(info.size_bytes) + '\n' + std::to_string(info.mtime_s) + '\n' +
+                               std::to_string(kCacheGeneration);
+  const std::int64_t sum = paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
+  const std::string name = fs::path(argument).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
+  return cached(name, argument, common,
+                [&](const fs::path& target) { build_into(target, argument, *source, nullptr, common); });
+}
+
+std::optional<std::vector<double>> parse_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto number = core::parse_number(std::string_view(text).substr(begin, end - begin));
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  return numbers;
+}
+
+std::optional<mars::LonLat> parse_place(const std::string& text) {
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 2) return std::nullopt;
+  return mars::LonLat{(*numbers)[0], (*numbers)[1]};
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,42 @@
+// The command line program: vpe COMMAND [options].
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vpe::app {
+
+enum ExitCode : int { kSuccess = 0, kFailure = 1, kUsage = 2, kSignalBase = 128 };
+
+// Options of every command.
+struct Common {
+  int memory_mb = 1024;
+  int threads = 0;  // 0 = all cores
+  bool quiet = false;
+  bool json = false;
+};
+
+// Runs one command line; returns the exit code. Messages go to stderr, results to stdout.
+int run(int argc, char** argv);
+
+// Wrong usage found after parsing: exit code 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A command adds itself to the program; its callback does the work and throws on failure.
+void add_build(CLI::App& program, Common& common);
+void add_info(CLI::App& program, Common& common);
+void add_query(CLI::App& program, Common& common);
+void add_render(CLI::App& program, Common& common);
+void add_fly(CLI::App& program, Common& common);
+void add_settings(CLI::App& program, Common& common);
+
+// --memory, --threads, --config, --quiet, and --json where a command reports figures.
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& about, Common& common,
+                      bool with_json);
+
+}  // namespace vpe::app

@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <iostream>
+#include <numeric>
+
+#include "paging/surface.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/app/program.h"
+#include "vpe/app/report.h"
+#include "vpe/core/number.h"
+
+namespace vpe::app {
+
+namespace {
+
+struct Answer {
+  mars::LonLat place;
+  bool missing = false;
+  double elevation_m = 0;
+  double slope_deg = 0;
+  double aspect_deg = 0;  // direction of steepest descent, clockwise from north
+  int level = 0;          // 1 = coarsest
+  double spacing_m = 0;
+  std::string source;
+  double error_m = 0;  // of the finest tile as drawn: 0, S is evaluated itself
+};
+
+Answer ask(const paging::Surface& surface, mars::LonLat place) {
+  Answer a;
+  a.place = {mars::normalize_lon_deg(place.lon_deg), place.lat_deg};
+  const paging::SurfacePoint point = surface.at(mars::direction(place));
+  const paging::PlanetMeta& meta = surface.planet().meta();
+  a.missing = point.missing;
+  a.elevation_m = point.height_m;
+  const mars::LocalFrame frame = mars::local_frame(place);
+  const double up = glm::dot(point.normal, frame.up);
+  const double east = glm::dot(point.normal, frame.east);
+  const double north = glm::dot(point.normal, frame.north);
+  a.slope_deg = std::atan2(std::hypot(east, north), up) / mars::kRadiansPerDegree;
+  a.aspect_deg = std::atan2(east, north) / mars::kRadiansPerDegree;
+  if (a.aspect_deg < 0) a.aspect_deg += 360;
+  a.level = point.tile.level + 1;
+  a.spacing_m = lod::post_spacing_m(point.tile.level, meta.tile.intervals(), meta.radius_m);
+  const auto tile = surface.tile(point.tile);
+  for (const int s : tile->data.source) {
+    if (s >= 0 && s < static_cast<int>(meta.sources.size())) {
+      a.source += (a.source.empty() ? "" : ";") + meta.sources[static_cast<std::size_t>(s)].name;
+    }
+  }
+  a.error_m = surface.planet().tree().find(point.tile)->variants.back().terms.total_m;
+  return a;
+}
+
+nlohmann::json to_json(const Answer& a, const paging::PlanetMeta& meta) {
+  using nlohmann::json;
+  const auto value = [&](double x) { return a.missing ? json() : json(x); };
+  return {{"lon_deg", a.place.lon_deg},       {"lat_deg", a.place.lat_deg},
+          {"elevation_m", value(a.elevation_m)}, {"datum", meta.datum},
+          {"slope_deg", value(a.slope_deg)},  {"aspect_deg", value(a.aspect_deg)},
+          {"level", a.level},                 {"post_spacing_m", a.spacing_m},
+          {"source", a.source},               {"tile_error_m", a.error_m},
+          {"resampling_max_m", meta.resampling.max_m}, {"illustration", meta.illustration}};
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+void print_csv(const Answer& a) {
+  const auto number = [&](double x, int digits) {
+    if (a.missing) return std::string();
+    char text[48];
+    std::snprintf(text, sizeof text, "%.*f", digits, x);
+    return std::string(text);
+  };
+  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f\n", core::format_number(a.place.lon_deg).c_str(),
+              core::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
+              number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
+              csv_field(a.source).c_str(), a.error_m);
+}
+
+mars::LonLat checked_place(const std::string& text, const std::string& where) {
+  const auto place = parse_place(text);
+  if (!place) throw UsageError(where + "'" + text + "': expected LON,LAT in degrees");
+  if (!mars::is_valid(*place)) throw UsageError(where + "'" + text + "': latitude must be within -90..90");
+  return *place;
+}
+
+std::vector<mars::LonLat> read_places(std::istream& in) {
+  std::vector<mars::LonLat> places;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\r' || c == '\t'; }), line.end());
+    if (line.empty() || line.front() == '#') continue;
+    const bool header = number == 1 && line.find_first_of("0123456789") == std::string::npos;
+    if (!header) places.push_back(checked_place(line, "standard input, line " + std::to_string(number) + ": "));
+  }
+  return places;
+}
+
+void query(const std::vector<std::string>& arguments, const Common& common) {
+  std::vector<mars::LonLat> places;
+  std::string planet_name;
+  for (std::size_t n = 0; n < arguments.size(); ++n) {
+    if (n == 0 && !parse_place(arguments[0])) {
+      planet_name = arguments[0];
+    } else {
+      places.push_back(checked_place(arguments[n], ""));
+    }
+  }
+  if (places.empty()) places = read_places(std::cin);
+  const auto planet = open_planet(planet_name, common);
+  const paging::PlanetMeta& meta = planet->meta();
+  note_illustration(meta, common.quiet);
+  const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
+
+  // Answer in the order of the ground, tile by tile; print in the order asked.
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const int level = meta.finest_level;
+  std::vector<std::int64_t> position(places.size());
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    position[n] = lod::pack(lod::tile_at(mars::chart_point(mars::direction(places[n])), level));
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return position[a] < position[b]; });
+  std::vector<Answer> answers(places.size());
+  for (const std::size_t n : order) answers[n] = ask(surface, places[n]);
+
+  if (common.json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Answer& a : answers) list.push_back(to_json(a, meta));
+    std::printf("%s\n", list.dump(2).c_str());
+    return;
+  }
+  std::printf("lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m\n");
+  for (const Answer& a : answers) print_csv(a);
+}
+
+}  // namespace
+
+void add_query(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<std::vector<std::string>>();
+  CLI::App* command = add_command(program, "query", "Elevation, slope, level, source and error at places", common, true);
+  command->add_option("PLANET_AND_PLACES", *arguments, "[PLANET] LON,LAT... (degrees east, north); places from stdin when none is given");
+  command->callback([arguments, &common] { query(*arguments, common); });
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,105 @@
+#include <cstdio>
+
+#include "paging/surface.h"
+#include "vpe/app/picture_options.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/app/program.h"
+#include "vpe/app/report.h"
+#include "vpe/core/image.h"
+#include "vpe/core/number.h"
+
+namespace vpe::app {
+
+namespace {
+
+struct RenderArguments {
+  std::string planet;
+  std::string pose;
+  double height_m = 0;
+  bool has_height = false;
+  std::string output;
+  std::string range;
+  std::string certificate;
+  std::string size = "1280x720";
+  double fov_deg = 60;
+  PictureOptions picture;
+};
+
+mars::Pose parse_pose(const RenderArguments& arguments, const std::function<double(mars::LonLat)>& terrain) {
+  const auto n = parse_numbers(arguments.pose);
+  const std::size_t angles = arguments.has_height ? 2 : 3;  // numbers before yaw
+  const bool has_alt_too = arguments.has_height && n && n->size() == 6;
+  const std::size_t skip = has_alt_too ? 3 : angles;
+  if (!n || n->size() < angles || n->size() > skip + 3) {
+    throw UsageError("--pose '" + arguments.pose + "': expected LON,LAT," + (arguments.has_height ? "" : "ALT,") +
+                     "YAW,PITCH,ROLL (degrees, metres above the sphere; --height M replaces ALT)");
+  }
+  const auto angle = [&](std::size_t k) { return skip + k < n->size() ? (*n)[skip + k] : 0.0; };
+  mars::Pose pose{(*n)[0], (*n)[1], 0, angle(0), angle(1), angle(2)};
+  if (!mars::is_valid({pose.lon_deg, pose.lat_deg})) {
+    throw UsageError("--pose '" + arguments.pose + "': latitude must be within -90..90");
+  }
+  pose.alt_m = arguments.has_height ? terrain({pose.lon_deg, pose.lat_deg}) + arguments.height_m : (*n)[2];
+  return pose;
+}
+
+void render(RenderArguments& arguments, const Common& common) {
+  const core::Settings settings = make_settings(arguments.picture);
+  const Size size = parse_size(arguments.size);
+  parse_pose(arguments, [](mars::LonLat) { return 0.0; });  // wrong usage before any work
+  const auto planet = open_planet(arguments.planet, common);
+  note_illustration(planet->meta(), common.quiet);
+  const mars::Pose pose = parse_pose(arguments, [&](mars::LonLat place) {
+    const double x = settings.values().exaggeration;
+    return x * paging::Surface(planet, std::size_t{8} << 20).at(mars::direction(place)).height_m;
+  });
+  core::DrawRequest request;
+  request.view.eye = mars::to_eye(pose, planet->radius_m());
+  request.view.width = size.width;
+  request.view.height = size.height;
+  request.view.fov_deg = arguments.fov_deg;
+  request.settings = settings.values();
+  request.sun = sun_for(request.settings, pose);
+  request.want_range = !arguments.range.empty();
+  if (const std::string trouble = core::check(request.view); !trouble.empty()) throw UsageError(trouble);
+
+  const auto renderer = make_renderer(arguments.picture, common, planet);
+  const core::DrawResult result = renderer->draw(request);
+  core::write_image(arguments.output, result.frame.colour, result.frame.width, result.frame.height);
+  if (request.want_range) {
+    core::write_tiff(arguments.range, result.frame.range_m, result.frame.width, result.frame.height);
+  }
+  if (!arguments.certificate.empty()) core::write_file(arguments.certificate, core::to_json(result.certificate) + "\n");
+  if (common.json) {
+    nlohmann::json json{{"output", arguments.output},
+                        {"certificate", nlohmann::json::parse(core::to_json(result.certificate))},
+                        {"stats", stats_json(result.stats)}};
+    std::printf("%s\n", json.dump(2).c_str());
+  } else if (!common.quiet) {
+    std::printf("%s: %lld triangles in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(),
+                static_cast<long long>(result.stats.triangles), result.stats.tiles_drawn,
+                result.certificate.shift_bound_px, result.certificate.tile_error_m);
+  }
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App* command = add_command(program, "render", "Draw one picture", common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  command->add_option("--pose", arguments->pose, "LON,LAT,ALT,YAW,PITCH,ROLL: degrees, metres above the sphere")->required();
+  CLI::Option* height = command->add_option("--height", arguments->height_m, "Metres above the terrain, instead of ALT");
+  command->add_option("-o,--output", arguments->output, "Picture to write (.png, .jpg)")->required();
+  command->add_option("--range", arguments->range, "Also write the range of every pixel, metres (.tif)");
+  command->add_option("--certificate", arguments->certificate, "Also write what the picture's error is (.json)");
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
+  command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")->capture_default_str();
+  add_picture_options(*command, arguments->picture);
+  command->callback([arguments, height, &common] {
+    arguments->has_height = height->count() > 0;
+    render(*arguments, common);
+  });
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,70 @@
+#include "vpe/app/report.h"
+
+#include <cstdio>
+
+namespace vpe::app {
+
+using nlohmann::json;
+
+namespace {
+
+json sources_json(const std::vector<mars::SourceInfo>& sources) {
+  json list = json::array();
+  for (const mars::SourceInfo& s : sources) {
+    json entry{{"name", s.name},           {"size_bytes", s.size_bytes}, {"resolution_m", s.resolution_m},
+               {"quantum_m", s.quantum_m}, {"datum", s.datum},           {"illustration", s.illustration}};
+    entry["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+}  // namespace
+
+json planet_json(const paging::PlanetMeta& m) {
+  return {{"body", m.body},
+          {"radius_m", m.radius_m},
+          {"datum", m.datum},
+          {"shape", m.shape},
+          {"illustration", m.illustration},
+          {"tile_intervals", m.tile.intervals()},
+          {"height_quantum_m", m.quantum_m},
+          {"tiles", m.tiles},
+          {"finest_tiles", m.leaf_tiles},
+          {"levels", m.finest_level + 1},
+          {"finest_post_spacing_m", lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m)},
+          {"lowest_m", m.lowest_radius_m - m.radius_m},
+          {"highest_m", m.highest_radius_m - m.radius_m},
+          {"image_tiles", m.image_tiles},
+          {"resampling_max_m", m.resampling.max_m},
+          {"resampling_rms_m", m.resampling.rms_m},
+          {"resampling_posts", m.resampling.posts},
+          {"sources", sources_json(m.sources)},
+          {"image_sources", sources_json(m.image_sources)},
+          {"program", m.program},
+          {"identity", m.identity}};
+}
+
+json stats_json(const core::FrameStats& s) {
+  return {{"tiles_visited", s.tiles_visited},
+          {"tiles_culled_frustum", s.tiles_culled_frustum},
+          {"tiles_culled_horizon", s.tiles_culled_horizon},
+          {"tiles_drawn", s.tiles_drawn},
+          {"tiles_missing", s.tiles_missing},
+          {"triangles", s.triangles},
+          {"skirt_triangles", s.skirt_triangles},
+          {"bytes_resident", s.bytes_resident},
+          {"tiles_by_level", s.tiles_by_level},
+          {"select_ms", s.select_ms},
+          {"load_ms", s.load_ms},
+          {"draw_ms", s.draw_ms},
+          {"read_ms", s.read_ms}};
+}
+
+void note_illustration(const paging::PlanetMeta& meta, bool quiet) {
+  if (meta.illustration && !quiet) {
+    std::fprintf(stderr, "Note: this planet is an illustration; its numbers are not data about Mars.\n");
+  }
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,17 @@
+// Figures as JSON, shared by the commands.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "paging/planet_meta.h"
+#include "vpe/core/frame.h"
+
+namespace vpe::app {
+
+nlohmann::json planet_json(const paging::PlanetMeta& meta);
+nlohmann::json stats_json(const core::FrameStats& stats);
+
+// Warns on stderr that numbers come from a made-up planet.
+void note_illustration(const paging::PlanetMeta& meta, bool quiet);
+
+}  // namespace vpe::app

@@ -1,0 +1,47 @@
+#include "vpe/core/certificate.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vpe::core {
+
+namespace {
+
+std::string meaning(const Certificate& c) {
+  std::string text =
+      "shift_bound_px: no surface pixel of this picture is off by more than this against the exact surface of "
+      "the "
+      "planet file. resampling_*: that surface against the posts of its own sources. source_accuracy_m: the "
+      "sources "
+      "against the planet, one sigma, null where unknown.";
+  if (c.illustration) text += " The elevations are an illustration, not data.";
+  if (c.tiles_missing > 0 || c.tiles_substituted > 0) {
+    text += " Missing or substituted tiles are not covered by the bounds.";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_json(const Certificate& c) {
+  nlohmann::ordered_json json;
+  json["what_this_means"] = meaning(c);
+  json["tile_error_m"] = c.tile_error_m;
+  json["tile_error_px"] = c.tile_error_px;
+  json["quantisation_m"] = c.quantisation_m;
+  json["quantisation_px"] = c.quantisation_px;
+  json["shift_bound_px"] = c.shift_bound_px;
+  json["tolerance_px"] = c.tolerance_px;
+  json["tiles_drawn"] = c.tiles_drawn;
+  json["tiles_missing"] = c.tiles_missing;
+  json["tiles_substituted"] = c.tiles_substituted;
+  json["share_at_data_limit"] = c.share_at_data_limit;
+  json["resampling_max_m"] = c.resampling_max_m;
+  json["resampling_rms_m"] = c.resampling_rms_m;
+  json["source_accuracy_m"] = nullptr;
+  if (c.source_accuracy_m) json["source_accuracy_m"] = *c.source_accuracy_m;
+  json["illustration"] = c.illustration;
+  json["exaggeration"] = c.exaggeration;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace vpe::core

@@ -1,0 +1,148 @@
+#include "vpe/core/view.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+
+#include "vpe/core/number.h"
+
+namespace vpe::core {
+
+namespace {
+
+constexpr double kAxesTolerance = 1e-9;
+
+bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool is_orthonormal(const mars::Axes& axes) {
+  const auto is_unit = [](const glm::dvec3& v) { return std::abs(glm::dot(v, v) - 1.0) <= kAxesTolerance; };
+  if (!is_unit(axes.right) || !is_unit(axes.up) || !is_unit(axes.forward)) return false;
+  return glm::length(glm::cross(axes.right, axes.up) + axes.forward) <= kAxesTolerance;
+}
+
+glm::dvec2 principal_point(const View& view) {
+  return glm::dvec2(view.width, view.height) * 0.5 + view.principal_offset_px;
+}
+
+std::string check_part(const View& view) {
+  const SubRectangle& p = view.part;
+  if (p.width == 0 && p.height == 0 && p.x == 0 && p.y == 0) return {};
+  const bool inside = p.x >= 0 && p.y >= 0 && p.width >= 1 && p.height >= 1 && p.x <= view.width - p.width &&
+                      p.y <= view.height - p.height;
+  if (inside) return {};
+  return "the part (x " + std::to_string(p.x) + ", y " + std::to_string(p.y) + ", " + std::to_string(p.width) +
+         "x" + std::to_string(p.height) + ") does not lie inside the picture of " + std::to_string(view.width) +
+         "x" + std::to_string(view.height) + " pixels";
+}
+
+}  // namespace
+
+std::string check(const View& view) {
+  constexpr int kMaxSide = ViewLimits::kMaxSide_px;
+  if (!is_finite(view.eye.eye_m) || glm::length(view.eye.eye_m) > ViewLimits::kMaxEyeDistance_m) {
+    return "the eye's position is not finite or farther than " + format_number(ViewLimits::kMaxEyeDistance_m) +
+           " m from the planet's centre";
+  }
+  if (!is_orthonormal(view.eye.axes)) return "the eye's axes are not orthonormal; make them with mars::to_eye";
+  if (view.width < 1 || view.height < 1 || view.width > kMaxSide || view.height > kMaxSide) {
+    return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+           ": each side must be 1 to " + std::to_string(kMaxSide) + " pixels";
+  }
+  const bool is_equirectangular = view.projection == Projection::kEquirectangular;
+  const double max_fov_deg = is_equirectangular ? 180.0 : ViewLimits::kMaxFov_deg;
+  if (!(view.fov_deg >= ViewLimits::kMinFov_deg && view.fov_deg <= max_fov_deg)) {
+    return "field of view " + format_number(view.fov_deg) + " degrees: must be " +
+           format_number(ViewLimits::kMinFov_deg) + " to " + format_number(max_fov_deg);
+  }
+  const glm::dvec2& offset = view.principal_offset_px;
+  if (!(std::abs(offset.x) <= ViewLimits::kMaxOffset_px && std::abs(offset.y) <= ViewLimits::kMaxOffset_px)) {
+    return "principal-point offset (" + format_number(offset.x) + ", " + format_number(offset.y) +
+           "): each must be at most " + format_number(ViewLimits::kMaxOffset_px) + " pixels";
+  }
+  const double farthest_deg = (0.5 * view.height + std::abs(offset.y)) * view.fov_deg / view.height;
+  if (is_equirectangular && farthest_deg > 90.0 + 1e-9) {
+    return "an equirectangular picture of " + format_number(view.fov_deg) + " degrees with an offset of " +
+           format_number(offset.y) + " rows goes past the zenith or nadir";
+  }
+  return check_part(view);
+}
+
+double focal_px(const View& view) {
+  const double fov_rad = view.fov_deg * mars::kRadiansPerDegree;
+  if (view.projection == Projection::kEquirectangular) return view.height / fov_rad;
+  return 0.5 * view.height / std::tan(0.5 * fov_rad);
+}
+
+glm::dvec3 pixel_ray(const View& view, double x, double y) {
+  const mars::Axes& axes = view.eye.axes;
+  const glm::dvec2 from_principal = glm::dvec2(x, y) - principal_point(view);
+  const auto in_axes = [&axes](double right, double up, double forward) {
+    const glm::dvec3 d = axes.right * right + axes.up * up + axes.forward * forward;
+    return d / glm::length(d);
+  };
+  if (view.projection == Projection::kPerspective) {
+    return in_axes(from_principal.x, -from_principal.y, focal_px(view));
+  }
+  // Whole turns come off exactly before anything is rounded.
+  const mars::SinCos azimuth =
+      mars::sin_cos_deg(std::remainder(from_principal.x, view.width) * 360.0 / view.width);
+  if (view.projection == Projection::kCylinder) {
+    return in_axes(azimuth.sin, -from_principal.y / focal_px(view), azimuth.cos);
+  }
+  const mars::SinCos elevation = mars::sin_cos_deg(-from_principal.y * view.fov_deg / view.height);
+  return in_axes(elevation.cos * azimuth.sin, elevation.sin, elevation.cos * azimuth.cos);
+}
+
+Projected project(const View& view, const glm::dvec3& point_m) {
+  const glm::dvec3 to = point_m - view.eye.eye_m;
+  const double right = glm::dot(to, view.eye.axes.right);
+  const double up = glm::dot(to, view.eye.axes.up);
+  const double forward = glm::dot(to, view.eye.axes.forward);
+  const glm::dvec2 principal = principal_point(view);
+  Projected result;
+  result.depth_m = forward;
+  if (view.projection == Projection::kPerspective) {
+    result.behind = !(forward > 0.0);
+    if (!result.behind) result.xy = principal + glm::dvec2(right, -up) * (focal_px(view) / forward);
+    return result;
+  }
+  const double level = std::hypot(right, forward);
+  const bool is_cylinder = view.projection == Projection::kCylinder;
+  result.behind = is_cylinder ? !(level > 0.0) : !(level > 0.0 || up != 0.0);
+  if (result.behind) return result;
+  const double turns = std::atan2(right, forward) / (2.0 * mars::kPi);
+  double x = std::fmod(principal.x + turns * view.width, view.width);
+  if (x < 0.0) x += view.width;
+  if (x >= view.width) x = 0.0;
+  const double rise = is_cylinder ? up / level : std::atan2(up, level);
+  result.xy = {x, principal.y - focal_px(view) * rise};
+  return result;
+}
+
+SubRectangle drawn_part(const View& view) {
+  return view.part.width > 0 ? view.part : SubRectangle{0, 0, view.width, view.height};
+}
+
+glm::ivec2 drawn_size(const View& view) {
+  const SubRectangle part = drawn_part(view);
+  return {part.width, part.height};
+}
+
+std::array<Plane, 4> side_planes(const View& view) {
+  if (view.projection != Projection::kPerspective) {
+    throw std::invalid_argument("side planes exist for perspective views only");
+  }
+  const mars::Axes& axes = view.eye.axes;
+  const SubRectangle part = drawn_part(view);
+  const double f = focal_px(view);
+  const glm::dvec2 low = glm::dvec2(part.x, part.y) - principal_point(view);
+  const glm::dvec2 high = low + glm::dvec2(part.width, part.height);
+  const auto plane = [&view](const glm::dvec3& inward) {
+    const glm::dvec3 normal = inward / glm::length(inward);
+    return Plane{normal, glm::dot(normal, view.eye.eye_m)};
+  };
+  return {plane(axes.right * f - axes.forward * low.x), plane(axes.forward * high.x - axes.right * f),
+          plane(axes.up * f + axes.forward * high.y), plane(-axes.up * f - axes.forward * low.y)};
+}
+
+}  // namespace vpe::core
