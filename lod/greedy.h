@@ -30,20 +30,45 @@ class GreedyMesher {
   TileMesh mesh(const Posts& posts, const BorderPosts& borders, double tolerance_m, double radius_m) {
     check_borders(borders, posts.intervals);
     field_.load(posts, radius_m);
-    // |n / w - (R + h)| <= t  <=>  -t / (1 - t / r) <= (R + h) (1 - w / w0) <= t / (1 + t / r), r = R + h.
-    tolerance_m_ = tolerance_m / (1.0 + tolerance_m / field_.lowest_radius_m());
-    if (posts.key.level >= kEvenLevel) {
-      return run(EvenLines(posts.intervals), posts.intervals, borders);
-    }
-    return run(WarpedLines(posts.key, posts.intervals), posts.intervals, borders);
+    key_ = posts.key;
+    intervals_ = posts.intervals;
+    set_tolerance(tolerance_m);
+    return with_lines([&](const auto& lines) { return run(lines, borders); });
+  }
+
+  // Goes on from the last mesh.
+  TileMesh refine(const BorderPosts& borders, double tolerance_m) {
+    check_borders(borders, intervals_);
+    set_tolerance(tolerance_m);
+    return with_lines([&](const auto& lines) {
+      keep_borders(lines, borders);
+      return grow(lines);
+    });
   }
 
  private:
+  void set_tolerance(double tolerance_m) {
+    // |n / w - (R + h)| <= t  <=>  -t / (1 - t / r) <= (R + h) (1 - w / w0) <= t / (1 + t / r), r = R + h.
+    tolerance_m_ = tolerance_m / (1.0 + tolerance_m / field_.lowest_radius_m());
+  }
+
+  template <class Use>
+  TileMesh with_lines(Use&& use) {
+    if (key_.level >= kEvenLevel) return use(EvenLines(intervals_));
+    return use(WarpedLines(key_, intervals_));
+  }
+
   template <class Lines>
-  TileMesh run(const Lines& lines, int intervals, const BorderPosts& borders) {
+  TileMesh run(const Lines& lines, const BorderPosts& borders) {
     field_.set_lines(lines.x(), lines.y());
-    side_ = static_cast<std::uint32_t>(intervals) + 1;
-    start(lines, borders);
+    side_ = static_cast<std::uint32_t>(intervals_) + 1;
+    start(lines);
+    keep_borders(lines, borders);
+    return grow(lines);
+  }
+
+  template <class Lines>
+  TileMesh grow(const Lines& lines) {
     queue_.clear();
     for (int f = 0; f < topology_.face_count(); ++f) rescan(lines, f);
     while (!queue_.empty() && vertices_.size() < kMaxVertices) {
@@ -51,11 +76,11 @@ class GreedyMesher {
       insert(lines, worst.face, worst.post);
       for (const int f : star_) rescan(lines, f);
     }
-    return result(intervals);
+    return result(intervals_);
   }
 
   template <class Lines>
-  void start(const Lines& lines, const BorderPosts& borders) {
+  void start(const Lines& lines) {
     topology_.start();
     vertices_.clear();
     const std::uint32_t last = side_ - 1;
@@ -63,17 +88,33 @@ class GreedyMesher {
       vertices_.push_back(corner(lines, post));
     }
     field_.ignore_borders();
+    for (int side = 0; side < 4; ++side) {
+      border_[static_cast<std::size_t>(side)] = {{0, side}, {intervals_, (side + 1) % 4}};
+    }
+  }
+
+  // Inserts the border posts that are not vertices yet.
+  template <class Lines>
+  void keep_borders(const Lines& lines, const BorderPosts& borders) {
+    const std::uint32_t last = side_ - 1;
     // Counter-clockwise: south and east ascend, north and west descend.
-    const auto chain = [&](Edge edge, int side, std::uint32_t origin, std::uint32_t stride, bool ascending) {
+    const auto chain = [&](Edge edge, std::size_t side, std::uint32_t origin, std::uint32_t stride, bool ascending) {
       const std::vector<int>& kept = borders[static_cast<std::size_t>(edge)];
-      int previous = side;
-      for (std::size_t k = 1; k + 1 < kept.size(); ++k) {
+      std::vector<BorderVertex>& have = border_[side];
+      std::vector<BorderVertex> merged{have.front()};
+      std::size_t next = 1;
+      for (std::size_t k = 1; k < kept.size(); ++k) {
         const int at = ascending ? kept[k] : kept[kept.size() - 1 - k];
+        const int along = ascending ? at : intervals_ - at;
+        while (have[next].along < along) merged.push_back(have[next++]);
+        if (have[next].along == along) continue;
         const int v = add(lines, origin + stride * static_cast<std::uint32_t>(at));
         star_.clear();
-        legalise(lines, v, topology_.split_edge(topology_.border_halfedge(previous, (side + 1) % 4), v));
-        previous = v;
+        legalise(lines, v, topology_.split_edge(topology_.border_halfedge(merged.back().vertex, have[next].vertex), v));
+        merged.push_back({along, v});
       }
+      merged.insert(merged.end(), have.begin() + static_cast<std::ptrdiff_t>(next), have.end());
+      have = std::move(merged);
     };
     chain(Edge::kSouth, 0, 0, 1, true);
     chain(Edge::kEast, 1, last, side_, true);
@@ -171,6 +212,14 @@ class GreedyMesher {
   std::vector<Corner> vertices_;
   std::vector<int> star_;
   std::vector<int> stack_;
+  // Border vertices of the sides south, east, north, west, counter-clockwise, by their distance along the side.
+  struct BorderVertex {
+    int along;
+    int vertex;
+  };
+  std::array<std::vector<BorderVertex>, 4> border_;
+  TileKey key_;
+  int intervals_ = 0;
   std::uint32_t side_ = 0;
   double tolerance_m_ = 0;
 };

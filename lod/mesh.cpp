@@ -59,6 +59,10 @@ TileMesh Mesher::mesh(const Posts& posts, const BorderPosts& borders, double tol
   return scratch_->greedy.mesh(posts, borders, tolerance_m, radius_m);
 }
 
+TileMesh Mesher::refine(const BorderPosts& borders, double tolerance_m) {
+  return scratch_->greedy.refine(borders, tolerance_m);
+}
+
 TileMesh mesh_greedy(const Posts& posts, const BorderPosts& borders, double tolerance_m, double radius_m) {
   return Mesher().mesh(posts, borders, tolerance_m, radius_m);
 }

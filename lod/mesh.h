@@ -81,6 +81,10 @@ class Mesher {
 
   TileMesh mesh(const Posts& posts, const BorderPosts& borders, double tolerance_m, double radius_m);
 
+  // A finer mesh of the same posts that has all vertices of the last one, for little more than the vertices it
+  // adds. Borders are those to keep in all: posts that the last mesh had besides stay too.
+  TileMesh refine(const BorderPosts& borders, double tolerance_m);
+
  private:
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;

@@ -6,6 +6,9 @@
 // Values are equal to the bit on every machine and compiler: they are made with integers and IEEE + - * / sqrt
 // only.
 //
+// Continuous, but for the steps of single precision in its noises: at most kEmbeddedStep_m, reached on the
+// walls of Valles Marineris; a millimetre elsewhere.
+//
 // It is no data: SourceInfo::illustration is true. Positions and heights of the named landforms follow the IAU
 // gazetteer and MOLA (summits and floors within 10 %, places within 0.2 degrees); the broad relief is a fit to
 // MOLA with a resolution of about 500 km; everything smaller is made up.
@@ -20,6 +23,8 @@
 #include "mars/sphere.h"
 
 namespace mars {
+
+inline constexpr double kEmbeddedStep_m = 0.05;
 
 // Waypoints of the demonstration flight along the floor of Coprates Chasma into Melas Chasma, westwards,
 // about 660 km. Within kDemoHalfWidth_m of it the embedded Mars asks for its finest posts.

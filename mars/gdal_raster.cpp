@@ -57,7 +57,7 @@ std::string readable_path(const std::string& path) {
   const GdalScope scope;
   if (!CPLString(CPLGetExtension(path.c_str())).tolower().compare("img") && exists(path) && !try_open(path)) {
     for (const char* extension : {"lbl", "LBL"}) {
-      const std::string label = CPLResetExtension(path.c_str(), extension);
+      std::string label = CPLResetExtension(path.c_str(), extension);
       if (exists(label) && try_open(label)) return label;
     }
   }

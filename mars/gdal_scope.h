@@ -39,7 +39,7 @@ class LeasePool {
   class Lease {
    public:
     Lease(LeasePool& pool, Pointer object) : pool_(&pool), object_(std::move(object)) {}
-    Lease(Lease&&) = default;
+    Lease(Lease&&) noexcept = default;
     ~Lease() {
       if (!object_) return;
       const std::lock_guard lock(pool_->mutex_);

@@ -9,9 +9,9 @@ namespace paging {
 
 namespace {
 
-// Finest tiles carry ever finer meshes, each a quarter of the error, until a mesh would need more than this
-// share of the full grid's triangles; the full grid comes last.
-constexpr double kLargestMeshShare = 0.4;
+// Finest tiles carry ever finer meshes, each a quarter of the error and so about four times the triangles, until
+// the next one would come close to the full grid, which is the last.
+constexpr double kLastMeshShare = 0.1;
 constexpr double kVariantStep = 0.25;
 constexpr int kMaxMeshVariants = 6;
 
@@ -185,18 +185,19 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
 
   const MesherPool::Lease mesher = context.meshers.borrow();
   const auto full = static_cast<std::uint32_t>(2 * n * n);
+  const lod::FinePosts fine(posts, meta.radius_m);
   double tolerance = mesh_tolerance_m(context.options, key.level);
   for (int variant = 0; variant < kMaxMeshVariants; ++variant, tolerance *= kVariantStep) {
     const lod::BorderPosts borders = borders_of(posts, lines, border_step, tolerance, meta.radius_m);
-    const PackedMesh mesh =
-        pack_mesh(mesher->mesh(posts, borders, tolerance, meta.radius_m), posts, meta.quantum_m);
+    const PackedMesh mesh = pack_mesh(variant == 0 ? mesher->mesh(posts, borders, tolerance, meta.radius_m)
+                                                   : mesher->refine(borders, tolerance),
+                                      posts, meta.quantum_m);
     const auto triangles = static_cast<std::uint32_t>(mesh.mesh.triangle_count());
-    if (variant > 0 && triangles > kLargestMeshShare * full) break;
     const lod::ErrorTerms terms =
-        lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, meta.quantum_m), meta.radius_m).measure(posts);
+        lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, meta.quantum_m), meta.radius_m).measure(fine);
     context.writer.put_mesh(key, variant, encode_mesh(mesh));
     node.variants.push_back({terms, triangles});
-    if (triangles > kLargestMeshShare * full) break;
+    if (triangles > kLastMeshShare * full) break;
   }
   node.variants.push_back({{}, full});
   // Coarser variants never state less than finer ones.
@@ -258,7 +259,7 @@ std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& contex
   std::vector<std::unique_ptr<lod::ErrorMeter>> meters;
   lod::TileKey last = leaves.front();
   for (const lod::TileKey& leaf : leaves) {
-    const lod::Posts posts = read_posts(context, leaf);
+    const lod::FinePosts posts(read_posts(context, leaf), context.meta.radius_m);
     meters.resize(std::max(meters.size(), static_cast<std::size_t>(leaf.level)));
     for (int level = 0; level < leaf.level; ++level) {
       const lod::TileKey key = lod::ancestor(leaf, level);

@@ -106,9 +106,9 @@ class FullDisk {
 
 TEST(Image, PngIsLosslessAsGdalReadsIt) {
   const test_support::TempDir folder;
-  for (const bool fast : {false, true}) {
+  for (const int compression : {1, 3, 9}) {
     const std::vector<mars::Rgb> pixels = noise_picture(61, 37);
-    write_image(folder / "a.PNG", pixels, 61, 37, {.fast_png = fast});
+    write_image(folder / "a.PNG", pixels, 61, 37, {.png_compression = compression});
     for (int band = 1; band <= 3; ++band) {
       const auto values = gdal_band<std::uint8_t>(folder / "a.PNG", band, GDT_Byte, pixels.size(), 3);
       ASSERT_EQ(values.size(), pixels.size());
@@ -298,6 +298,8 @@ TEST(Image, ErrorsNameFileOperationWordsAndAdvice) {
                {"a.jpg", "alpha", ".png"});
   expect_words(thrown([&] { write_image(folder / "a.jpg", pixels, 2, 2, {.jpeg_quality = 0}); }),
                {"a.jpg", "quality 0", "1 to 100"});
+  expect_words(thrown([&] { write_image(folder / "a.png", pixels, 2, 2, {.png_compression = 10}); }),
+               {"a.png", "compression 10", "1 to 9"});
   expect_words(thrown([&] { read_image(folder / "absent.png"); }),
                {"cannot read", "absent.png", "No such file"});
   expect_words(thrown([&] { read_image(folder.path()); }), {"cannot read"});

@@ -224,12 +224,13 @@ TEST(EmbeddedCraters, HighlandsHaveManyAndPlainsFew) {
 
 TEST(EmbeddedCraters, EveryCandidateIsFoundFromEveryPlaceItTouches) {
   Random random(81);
-  for (int level : {3, 8, 12, 15, 17}) {
+  int checked = 0;
+  for (int k = 0; k < 100; ++k) {
+    const int level = random.integer(1, 17);
     std::vector<embedded::Candidate> around;
     const glm::dvec3 centre = random.direction();
     const double cell = embedded::crater_cell_m(level) / kMarsRadius_m;
     embedded::find_candidates(centre, 3.0 * cell, level, around);
-    ASSERT_GT(around.size(), 3U);
     for (const embedded::Candidate& c : around) {
       const double reach = c.crater.radius_m * embedded::kEjectaReach / kMarsRadius_m;
       const glm::dvec3 rim = glm::normalize(c.crater.centre + random.direction() * reach * 0.999);
@@ -238,9 +239,11 @@ TEST(EmbeddedCraters, EveryCandidateIsFoundFromEveryPlaceItTouches) {
       embedded::find_candidates(rim, 0.0, level, here);
       EXPECT_TRUE(std::any_of(here.begin(), here.end(), [&c](const embedded::Candidate& other) {
         return other.crater.centre == c.crater.centre && other.crater.radius_m == c.crater.radius_m;
-      }));
+      })) << level;
+      ++checked;
     }
   }
+  EXPECT_GT(checked, 200);
 }
 
 TEST(EmbeddedRegions, CapsNameTheFinestSpacingOfAllTheirPlaces) {

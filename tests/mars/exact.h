@@ -60,8 +60,9 @@ class Bound {
   ~Bound() {
     EXPECT_LE(worst_, 1.0L) << name_ << " is broken";
     EXPECT_GE(worst_, 1.0L / 20) << name_ << " is lazy";
-    ::testing::Test::RecordProperty("share of bound",
-                                    name_ + (" " + std::to_string(static_cast<double>(worst_))));
+    std::string text = name_;
+    text.append(" ").append(std::to_string(static_cast<double>(worst_)));
+    ::testing::Test::RecordProperty("share of bound", text);
     if (std::getenv("VPE_SHOW_BOUNDS") != nullptr)
       std::printf("%s: worst %.3f of the bound\n", name_, static_cast<double>(worst_));
   }

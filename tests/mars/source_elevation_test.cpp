@@ -381,7 +381,7 @@ TEST(GdalElevation, SpacingNeverMissesData) {
     const double own_m = source->infos().at(0).resolution_m;
     for (const glm::dvec3& post : posts) EXPECT_EQ(source->spacing_in({post, 0}), own_m);
     int away = 0;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
       const mars::Cap cap{random.direction(), random.log_uniform(1e-6, 3)};
       double nearest = 4;
       for (const glm::dvec3& post : posts)
@@ -397,12 +397,12 @@ TEST(GdalElevation, SpacingNeverMissesData) {
       }
     }
     if (std::string(c.crs).find("sinu") == std::string::npos) {
-      EXPECT_GT(away, 1000) << c.crs;
+      EXPECT_GT(away, 300) << c.crs;
     }
   }
 }
 
-TEST(GdalElevation, ThreadsGetTheSameBitsAndMayOutliveNothing) {
+TEST(GdalElevation, ThreadsGetTheSameBitsAndMayDieFirst) {
   const test_support::TempDir folder;
   Raster raster;
   raster.width = 1500;

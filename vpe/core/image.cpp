@@ -67,7 +67,7 @@ void write_image(const std::filesystem::path& path, std::span<const mars::Rgb> p
     throw file_error("write", path, "no known image extension", "let the name end in .png, .jpg or .jpeg");
   }
   write_file(path, with_path("write", path, [&] {
-               return is_png(path) ? encode_png(pixels, width, height, options.fast_png)
+               return is_png(path) ? encode_png(pixels, width, height, options.png_compression)
                                    : encode_jpeg(pixels, width, height, options.jpeg_quality);
              }));
 }
@@ -77,8 +77,8 @@ void write_image(const std::filesystem::path& path, std::span<const Rgba> pixels
   if (!is_png(path)) {
     throw file_error("write", path, "a picture with alpha fits PNG only", "let the name end in .png");
   }
-  write_file(path,
-             with_path("write", path, [&] { return encode_png(pixels, width, height, options.fast_png); }));
+  write_file(path, with_path("write", path,
+                             [&] { return encode_png(pixels, width, height, options.png_compression); }));
 }
 
 RgbImage read_image(const std::filesystem::path& path, std::int64_t max_pixels) {

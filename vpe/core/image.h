@@ -47,8 +47,9 @@ enum class TiffCompression : std::uint8_t { kNone, kLzw, kDeflate };
 
 struct ImageOptions {
   int jpeg_quality = 90;  // 1 to 100; chroma is halved below 90
-  // Half the time for files a third larger or so: for the frames of a film.
-  bool fast_png = false;
+  // 1 to 9. On rendered pictures 3 takes 1.8 times as long as 1 for files a tenth smaller, 6 takes 5.5 times as
+  // long for a sixth smaller.
+  int png_compression = 1;
   TiffCompression tiff = TiffCompression::kDeflate;
 };
 
@@ -77,8 +78,8 @@ FloatImage read_tiff(const std::filesystem::path& path, std::int64_t max_pixels 
 // The same in memory.
 std::vector<std::uint8_t> encode_jpeg(std::span<const mars::Rgb> pixels, int width, int height, int quality);
 std::vector<std::uint8_t> encode_png(std::span<const mars::Rgb> pixels, int width, int height,
-                                     bool fast = false);
-std::vector<std::uint8_t> encode_png(std::span<const Rgba> pixels, int width, int height, bool fast = false);
+                                     int compression = 1);
+std::vector<std::uint8_t> encode_png(std::span<const Rgba> pixels, int width, int height, int compression = 1);
 RgbImage decode_jpeg(std::span<const std::uint8_t> bytes, std::int64_t max_pixels = kMaxReadPixels);
 RgbImage decode_png(std::span<const std::uint8_t> bytes, std::int64_t max_pixels = kMaxReadPixels);
 

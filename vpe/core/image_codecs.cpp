@@ -2,6 +2,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <new>
+#include <utility>
 
 // libjpeg's header needs <cstdio> before it.
 #include <jpeglib.h>
@@ -25,23 +27,69 @@ struct PngImage : png_image {
   PngImage& operator=(const PngImage&) = delete;
 };
 
-std::vector<std::uint8_t> encode_png(const void* pixels, png_uint_32 format, int width, int height, bool fast) {
-  PngImage image;
-  image.width = static_cast<png_uint_32>(width);
-  image.height = static_cast<png_uint_32>(height);
-  image.format = format;
-  if (fast) image.flags |= PNG_IMAGE_FLAG_FAST;
-  std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(image));
-  png_alloc_size_t size = bytes.size();
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels, 0, nullptr) == 0) {
-    throw ImageError(std::string("cannot encode a PNG: ") + image.message + "; make the picture smaller");
+// libpng and libjpeg report errors by a call that must not return. The functions that are left by longjmp hold
+// nothing that needs destroying; their callers own everything.
+struct PngEncoder {
+  std::vector<std::uint8_t> bytes;
+  std::jmp_buf escape{};
+  char words[128] = "unknown error";
+  png_structp codec = nullptr;
+  png_infop info = nullptr;
+
+  ~PngEncoder() { png_destroy_write_struct(&codec, &info); }
+
+  static PngEncoder& self(png_structp codec) { return *static_cast<PngEncoder*>(png_get_error_ptr(codec)); }
+
+  [[noreturn]] static void leave(png_structp codec, png_const_charp message) {
+    std::snprintf(self(codec).words, sizeof words, "%s", message);
+    std::longjmp(self(codec).escape, 1);
   }
-  bytes.resize(size);
-  return bytes;
+
+  static void ignore(png_structp /*codec*/, png_const_charp /*message*/) {}
+  static void flush(png_structp /*codec*/) {}
+
+  static void append(png_structp codec, png_bytep data, std::size_t size) {
+    // No exception may pass through the library.
+    try {
+      self(codec).bytes.insert(self(codec).bytes.end(), data, data + size);
+      return;
+    } catch (const std::bad_alloc&) {
+    }
+    png_error(codec, "out of memory");
+  }
+
+  bool run(const std::uint8_t* pixels, int color_type, int width, int height, int compression) {
+    if (setjmp(escape) != 0) return false;
+    codec = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, leave, ignore);
+    if (codec == nullptr) return false;
+    info = png_create_info_struct(codec);
+    if (info == nullptr) return false;
+    png_set_write_fn(codec, nullptr, append, flush);
+    png_set_IHDR(codec, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8, color_type,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(codec, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_filter(codec, PNG_FILTER_TYPE_BASE, PNG_FAST_FILTERS);
+    png_set_compression_level(codec, compression);
+    png_write_info(codec, info);
+    const std::size_t row_bytes = png_get_rowbytes(codec, info);
+    for (int y = 0; y < height; ++y) png_write_row(codec, pixels + static_cast<std::size_t>(y) * row_bytes);
+    png_write_end(codec, nullptr);
+    return true;
+  }
+};
+
+std::vector<std::uint8_t> encode_png(const void* pixels, int color_type, int width, int height,
+                                     int compression) {
+  if (compression < 1 || compression > 9) {
+    throw ImageError("PNG compression " + std::to_string(compression) + ": must be 1 to 9");
+  }
+  const auto encoder = std::make_unique<PngEncoder>();
+  if (!encoder->run(static_cast<const std::uint8_t*>(pixels), color_type, width, height, compression)) {
+    throw ImageError(std::string("cannot encode a PNG: ") + encoder->words + "; make the picture smaller");
+  }
+  return std::move(encoder->bytes);
 }
 
-// libjpeg reports errors by a call that must not return. The functions that are left by longjmp hold nothing
-// that needs destroying; their callers own everything.
 struct JpegErrors {
   jpeg_error_mgr manager{};
   std::jmp_buf escape{};
@@ -136,14 +184,15 @@ struct JpegDecoder {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_png(std::span<const mars::Rgb> pixels, int width, int height, bool fast) {
+std::vector<std::uint8_t> encode_png(std::span<const mars::Rgb> pixels, int width, int height,
+                                     int compression) {
   check_image_size(pixels.size(), width, height);
-  return encode_png(pixels.data(), PNG_FORMAT_RGB, width, height, fast);
+  return encode_png(pixels.data(), PNG_COLOR_TYPE_RGB, width, height, compression);
 }
 
-std::vector<std::uint8_t> encode_png(std::span<const Rgba> pixels, int width, int height, bool fast) {
+std::vector<std::uint8_t> encode_png(std::span<const Rgba> pixels, int width, int height, int compression) {
   check_image_size(pixels.size(), width, height);
-  return encode_png(pixels.data(), PNG_FORMAT_RGBA, width, height, fast);
+  return encode_png(pixels.data(), PNG_COLOR_TYPE_RGBA, width, height, compression);
 }
 
 RgbImage decode_png(std::span<const std::uint8_t> bytes, std::int64_t max_pixels) {

@@ -14,10 +14,11 @@
 //            spans the gap. The shift is the distance from Q to the nearest edge within search_px columns
 //            and rows. So it is 0 where the drawn range agrees; e f / t where the drawn surface lies e
 //            metres off; the picture distance, where the range of Q is found beside it; and large where
-//            it is not found at all, as for a missing ridge. Edges leave gaps of half a cell: up to 8 % too
-//            large on a slope that falls between the eight ways.
-//            Where the reference is sky, the shift is the distance to the nearest drawn sky pixel, a
-//            whole number of pixels along rows and columns.
+//            it is not found at all, as for a missing ridge. (On a height field steeper rays hit nearer ground,
+//            so what is displaced by a pixel is found between the pixels above and below.) Edges leave gaps of
+//            half a cell: up to 8 % too large on a slope that falls between the eight ways. Where the reference
+//            is sky, the shift is the distance to the nearest drawn sky pixel, a whole number of pixels along
+//            rows and columns.
 //
 // Float32 ranges have a relative rounding error of 6e-8: it adds at most 6e-8 f (1 + slope of S) px to
 // a forward shift (f = 600: 4e-5 px) and 1.2e-7 f px to a backward one; rounding of P adds 2e-9 m f / range.
