@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 .ci/install.sh
-cmake --preset release -DVPE_TESTS=OFF >/dev/null
+cmake --preset release >/dev/null
 cmake --build build/release --target vpe -- -j"${JOBS:-$(nproc)}"
 vpe=build/release/vpe
 mkdir -p out

@@ -70,13 +70,69 @@ class GreedyMesher {
   template <class Lines>
   TileMesh grow(const Lines& lines) {
     queue_.clear();
-    for (int f = 0; f < topology_.face_count(); ++f) rescan(lines, f);
-    while (!queue_.empty() && vertices_.size() < kMaxVertices) {
-      const QueuedPost worst = queue_.top();
-      insert(lines, worst.face, worst.post);
-      for (const int f : star_) rescan(lines, f);
-    }
+    unchecked_.clear();
+    for (int f = 0; f < topology_.face_count(); ++f) touch(lines, f);
+    do {
+      while (!queue_.empty() && vertices_.size() < kMaxVertices) {
+        const QueuedPost worst = queue_.top();
+        insert(lines, worst.face, worst.post);
+        for (const int f : star_) touch(lines, f);
+      }
+    } while (mend_edges(lines));
     return result(intervals_);
+  }
+
+  template <class Lines>
+  void touch(const Lines& lines, int face) {
+    rescan(lines, face);
+    unchecked_.push_back(face);
+  }
+
+  // Posts within tolerance do not make edges so: a long edge may cut a crest between two posts. Inserts a post
+  // against every such edge of the triangles made since the last call; false when there was none.
+  template <class Lines>
+  bool mend_edges(const Lines& lines) {
+    std::sort(unchecked_.begin(), unchecked_.end());
+    unchecked_.erase(std::unique(unchecked_.begin(), unchecked_.end()), unchecked_.end());
+    wanted_.clear();
+    for (const int f : unchecked_) {
+      int h = topology_.first_halfedge(f);
+      for (int side = 0; side < 3; ++side, h = topology_.next(h)) {
+        const WorstPost worst = field_.worst_crossing(vertex(topology_.from(h)), vertex(topology_.to(h)));
+        if (worst.error_m > tolerance_m_) wanted_.push_back({worst.post, f});
+      }
+    }
+    unchecked_.clear();
+    std::sort(wanted_.begin(), wanted_.end());
+    bool any = false;
+    std::uint32_t last = ~0U;
+    for (const auto& [post, face] : wanted_) {
+      if (post == last || vertices_.size() >= kMaxVertices) continue;
+      last = post;
+      insert(lines, locate(lines, face, post), post);
+      for (const int f : star_) touch(lines, f);
+      any = true;
+    }
+    return any;
+  }
+
+  // The triangle that holds a post, by walking towards it.
+  template <class Lines>
+  int locate(const Lines& lines, int face, std::uint32_t post) const {
+    const Corner p = corner(lines, post);
+    int h = topology_.first_halfedge(face);
+    for (int inside = 0; inside < 3;) {
+      const Corner& a = vertex(topology_.from(h));
+      const Corner& b = vertex(topology_.to(h));
+      if ((b.x - a.x) * (p.y - a.y) < (b.y - a.y) * (p.x - a.x)) {
+        h = topology_.next(topology_.across(h));
+        inside = 1;
+      } else {
+        h = topology_.next(h);
+        ++inside;
+      }
+    }
+    return topology_.face(h);
   }
 
   template <class Lines>
@@ -212,6 +268,8 @@ class GreedyMesher {
   std::vector<Corner> vertices_;
   std::vector<int> star_;
   std::vector<int> stack_;
+  std::vector<int> unchecked_;  // triangles whose edges mend_edges() has not seen
+  std::vector<std::pair<std::uint32_t, int>> wanted_;
   // Border vertices of the sides south, east, north, west, counter-clockwise, by their distance along the side.
   struct BorderVertex {
     int along;

@@ -35,6 +35,10 @@ class PostField {
   template <class Lines>
   WorstPost worst(const Lines& lines, const Corner& a, const Corner& b, const Corner& c) const;
 
+  // Largest error where an edge of the mesh crosses the lines of S, and the post to insert against it; no
+  // error where that post is a vertex or on the border. The same for both directions of the edge.
+  WorstPost worst_crossing(const Corner& from, const Corner& to) const;
+
  private:
   struct Plane {
     double w, dx, dy;  // w at corner `at`, slopes

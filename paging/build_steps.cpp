@@ -9,11 +9,11 @@ namespace paging {
 
 namespace {
 
-// Finest tiles carry ever finer meshes, each a quarter of the error and so about four times the triangles, until
-// the next one would come close to the full grid, which is the last.
+// Finest tiles carry ever finer meshes, each a quarter of the error and so about four times the triangles, until the
+// next one would come close to the full grid, which is the last.
 constexpr double kLastMeshShare = 0.1;
 constexpr double kVariantStep = 0.25;
-constexpr int kMaxMeshVariants = 6;
+constexpr int kMaxMeshVariants = 12;
 
 std::size_t edge_post(lod::Edge edge, int along, int side) {
   const auto n = static_cast<std::size_t>(side);

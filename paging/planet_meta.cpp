@@ -69,7 +69,7 @@ bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::Sourc
 
 void check_ranges(const PlanetMeta& m, const std::string& path) {
   const bool sane = std::isfinite(m.radius_m) && m.radius_m > 1.0 && m.radius_m < 1e12 && m.tile.k >= 3 &&
-                    m.tile.k <= 8 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 && std::isfinite(m.fill_m) &&
+                    m.tile.k <= 7 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 && std::isfinite(m.fill_m) &&
                     std::isfinite(m.lowest_radius_m) && std::isfinite(m.highest_radius_m) && m.shape == "sphere";
   if (!sane) throw PlanetError(path + ": damaged: a value of the table meta is out of range; build the file again");
 }

@@ -11,8 +11,7 @@
 
 namespace paging {
 
-// Members may be called from any thread; they take turns. Throws DatabaseError (disk full, ...) and leaves
-// the .part file; the name of the finished file only ever holds a complete one.
+// Members may be called from any thread; they take turns. Throws DatabaseError (disk full, ...); the name of the finished file only ever holds a complete one.
 class PlanetWriter {
  public:
   explicit PlanetWriter(const std::string& path);

@@ -4,6 +4,7 @@
 
 #include "paging/builder.h"
 #include "vpe/app/interrupt.h"
+#include "vpe/app/output.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
 #include "vpe/app/progress.h"
@@ -32,10 +33,28 @@ paging::Region parse_region(const std::string& text) {
   return region;
 }
 
+// What the build would destroy or could not write is known before hours of work.
+void check_planet_output(const BuildArguments& arguments) {
+  const std::string& output = arguments.options.output;
+  check_output(output);
+  std::error_code none;
+  for (const auto* inputs : {&arguments.dems, &arguments.images}) {
+    for (const std::string& input : *inputs) {
+      if (std::filesystem::equivalent(input, output, none)) {
+        throw UsageError("-o " + output + ": is also an input; give the planet file another name");
+      }
+    }
+  }
+  if (std::filesystem::file_size(output, none) > 0 && !none && !is_sqlite(output)) {
+    throw std::runtime_error(output + ": is there and not a planet file; give another name, or remove it first");
+  }
+}
+
 void build(BuildArguments& arguments, const Common& common) {
   paging::BuildOptions& options = arguments.options;
   for (const std::string& text : arguments.regions) options.regions.push_back(parse_region(text));
   options.threads = common.threads;
+  check_planet_output(arguments);
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
   for (const std::string& path : arguments.dems) dems.push_back(mars::open_elevation(path));
   const auto elevation = dems.size() == 1 ? dems.front() : mars::stack_elevation(dems);
@@ -56,7 +75,7 @@ void build(BuildArguments& arguments, const Common& common) {
   if (common.json) {
     nlohmann::json json = planet_json(summary.meta);
     json["bytes"] = summary.bytes;
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(json);
   } else if (!common.quiet) {
     std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %.1f MB\n", options.output.c_str(),
                 static_cast<long long>(summary.meta.tiles), static_cast<long long>(summary.meta.leaf_tiles),
@@ -78,9 +97,9 @@ void add_build(CLI::App& program, Common& common) {
   command->add_option("-o,--output", o.output, "Planet file to write")->required();
   command->add_option("--region", arguments->regions, "WEST,SOUTH,EAST,NORTH: full resolution only there (repeatable)")
       ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--spacing", o.finest_spacing_m, "Finest post spacing, metres (default: as the sources)")->check(CLI::Range(0.01, 1e6));
-  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")->check(CLI::Range(100.0, 1e6))->capture_default_str();
-  command->add_option("--radius", o.radius_m, "Radius of the sphere, metres")->check(CLI::Range(100.0, 1e9))->capture_default_str();
+  command->add_option("--spacing", o.finest_spacing_m, "Finest post spacing, metres (default: as the sources)")->check(number_within(0.01, 1e6));
+  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")->check(number_within(100.0, 1e6))->capture_default_str();
+  command->add_option("--radius", o.radius_m, "Radius of the sphere, metres")->check(number_within(100.0, 1e9))->capture_default_str();
   command->add_option("--body", o.body, "Name of the body")->capture_default_str();
   command->callback([arguments, &common] { build(*arguments, common); });
 }

@@ -10,6 +10,7 @@
 #include "scripts/stats.h"
 #include "vpe/app/frame_sink.h"
 #include "vpe/app/interrupt.h"
+#include "vpe/app/output.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
@@ -38,7 +39,7 @@ struct FlyArguments {
 
 scripts::Flight read_flight(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path + ": cannot open the flight: " + std::strerror(errno));
+  if (!in) throw std::runtime_error(path + ": cannot open the flight: " + std::strerror(errno) + "; check the name");
   std::ostringstream text;
   text << in.rdbuf();
   scripts::ParsedFlight parsed = scripts::parse_flight(text.str(), path);
@@ -75,11 +76,6 @@ FrameRange parse_frames(const std::string& text, std::int64_t count) {
   return {*first, *last, *step};
 }
 
-bool is_video(const std::string& path) {
-  const std::string extension = fs::path(path).extension().string();
-  return extension == ".mp4" || extension == ".MP4";
-}
-
 void fly(FlyArguments& arguments, const Common& common) {
   scripts::Flight flight = read_flight(arguments.flight);
   if (!arguments.size.empty()) {
@@ -91,7 +87,14 @@ void fly(FlyArguments& arguments, const Common& common) {
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   if (count == 0) throw std::runtime_error(arguments.flight + ": the flight is shorter than one frame");
   const FrameRange range = parse_frames(arguments.frames, count);
+  const bool film = check_film_output(arguments.output);
+  if (!arguments.log.empty()) check_output(arguments.log);
+  if (!arguments.stats.empty()) check_stats_output(arguments.stats);
 
+  // ffmpeg is started first: a planet may be minutes of work.
+  const InterruptGuard guard;
+  std::optional<VideoWriter> video;
+  if (film) video.emplace(arguments.output, flight.view.width, flight.view.height, flight.view.fps);
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
   const auto terrain = [x = base.values().exaggeration, surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
@@ -103,18 +106,12 @@ void fly(FlyArguments& arguments, const Common& common) {
                  -lowest->height_m, lowest->time_s);
   }
 
-  const InterruptGuard guard;
   const auto renderer = make_renderer(arguments.picture, common, planet);
-  std::optional<VideoWriter> video;
-  if (is_video(arguments.output)) {
-    video.emplace(arguments.output, flight.view.width, flight.view.height, flight.view.fps);
-  } else {
-    fs::create_directories(arguments.output);
-  }
-  std::optional<scripts::FlightLog> log;
-  if (!arguments.log.empty()) log.emplace(arguments.log, flight.view);
   std::optional<scripts::StatsWriter> stats;
   if (!arguments.stats.empty()) stats.emplace(arguments.stats);
+  std::optional<scripts::FlightLog> log;
+  if (!arguments.log.empty()) log.emplace(arguments.log, flight.view);
+  if (!film) make_folder(arguments.output);
 
   const auto write = [&](std::int64_t index, const core::Frame& frame) {
     if (video) {
@@ -166,7 +163,7 @@ void fly(FlyArguments& arguments, const Common& common) {
                         {"seconds", seconds},              {"shift_bound_px", worst_px},
                         {"mean_triangles", triangles / std::max<std::int64_t>(done, 1)},
                         {"illustration", planet->meta().illustration}};
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(json);
   } else if (!common.quiet) {
     std::printf("%s: %lld frames, %.1f frames/s, geometry within %.2f px\n", arguments.output.c_str(),
                 static_cast<long long>(done), static_cast<double>(done) / seconds, worst_px);

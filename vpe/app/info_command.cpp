@@ -14,7 +14,7 @@ void info(const std::string& argument, const Common& common) {
   if (common.json) {
     nlohmann::json json = planet_json(m);
     json["path"] = planet->path();
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(json);
     return;
   }
   const auto line = [](const char* what, const std::string& value) { std::printf("%-18s %s\n", what, value.c_str()); };

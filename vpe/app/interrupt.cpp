@@ -14,15 +14,11 @@ void note(int signal) { g_signal.store(signal); }
 
 }  // namespace
 
-InterruptGuard::InterruptGuard() {
-  g_signal.store(0);
-  std::signal(SIGINT, note);
-  std::signal(SIGTERM, note);
-}
+InterruptGuard::InterruptGuard() : interrupt_(std::signal(SIGINT, note)), terminate_(std::signal(SIGTERM, note)) {}
 
 InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGINT, interrupt_);
+  std::signal(SIGTERM, terminate_);
 }
 
 void InterruptGuard::check() {

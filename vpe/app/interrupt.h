@@ -15,6 +15,7 @@ class Interrupted : public std::runtime_error {
 };
 
 // While one lives, SIGINT and SIGTERM are only noted; check() then throws Interrupted. Any thread may check.
+// Guards may nest; the main thread makes them.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -23,6 +24,11 @@ class InterruptGuard {
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
   static void check();
+
+ private:
+  using Handler = void (*)(int);
+  Handler interrupt_;  // what was there before
+  Handler terminate_;
 };
 
 }  // namespace vpe::app

@@ -10,7 +10,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   command.add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
       ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--backend", options.backend, "How to draw")->check(CLI::IsMember({"polygon"}))->capture_default_str();
-  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")->check(CLI::Range(0.0, 1000.0));
+  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")->check(number_within(0.0, 1000.0));
 }
 
 core::Settings make_settings(const PictureOptions& options) {

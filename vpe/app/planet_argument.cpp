@@ -42,13 +42,6 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-bool is_sqlite(const std::string& path) {
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  char head[16] = {};
-  return file && std::fread(head, 1, sizeof head, file.get()) == sizeof head &&
-         std::memcmp(head, "SQLite format 3", 16) == 0;
-}
-
 std::string hex(std::uint64_t x) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(x));
@@ -63,13 +56,15 @@ void build_into(const fs::path& target, const std::string& what, const mars::Ele
   paging::BuildOptions options;
   options.output = target.string();
   options.threads = common.threads;
+  // An analytic source is sampled one place at a time here: enough for a figure that is stable to a few per cent.
+  if (elevation.infos().front().illustration) options.resampling_posts = 100'000;
   paging::build_planet(options, elevation, image, [&](const paging::BuildProgress& p) {
     InterruptGuard::check();
     line.show(std::string("building (") + p.stage + ")", p.fraction);
   });
 }
 
-std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what, const Common& common,
+std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what,
                                                  const std::function<void(const fs::path&)>& build) {
   const fs::path folder = cache_folder();
   const fs::path target = folder / (name + ".vpe");
@@ -82,11 +77,17 @@ std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const 
     }
   }
   build(target);
-  (void)common;
   return paging::PlanetFile::open(target.string());
 }
 
 }  // namespace
+
+bool is_sqlite(const std::string& path) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  char head[16] = {};
+  return file && std::fread(head, 1, sizeof head, file.get()) == sizeof head &&
+         std::memcmp(head, "SQLite format 3", 16) == 0;
+}
 
 fs::path cache_folder() {
   const char* xdg = std::getenv("XDG_CACHE_HOME");
@@ -108,7 +109,7 @@ fs::path cache_folder() {
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {
   if (argument.empty()) {
     const std::string name = "embedded-mars-" + std::to_string(kCacheGeneration);
-    return cached(name, "the embedded Mars (an illustration)", common, [&](const fs::path& target) {
+    return cached(name, "the embedded Mars (an illustration)", [&](const fs::path& target) {
       build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(), mars::embedded_image().get(), common);
     });
   }
@@ -120,7 +121,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
                                std::to_string(kCacheGeneration);
   const std::int64_t sum = paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
   const std::string name = fs::path(argument).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
-  return cached(name, argument, common,
+  return cached(name, argument,
                 [&](const fs::path& target) { build_into(target, argument, *source, nullptr, common); });
 }
 

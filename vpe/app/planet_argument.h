@@ -19,6 +19,9 @@ std::filesystem::path cache_folder();
 // calls wait for the one that builds.
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common);
 
+// Whether a file begins as SQLite files do, and so may be a planet file.
+bool is_sqlite(const std::string& path);
+
 // "LON,LAT" with degrees east and north; nothing when the text is not of that form. Range errors are told by
 // mars::is_valid.
 std::optional<mars::LonLat> parse_place(const std::string& text);

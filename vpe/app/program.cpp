@@ -1,11 +1,17 @@
 #include "vpe/app/program.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <clocale>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 
+#include "vpe/app/config_file.h"
 #include "vpe/app/interrupt.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/core/number.h"
 
 #ifndef VPE_VERSION
 #define VPE_VERSION "0"
@@ -13,13 +19,55 @@
 
 namespace vpe::app {
 
+namespace {
+
+// The arguments but the program's own name, last first, as CLI11 wants them.
+std::vector<std::string> reversed_arguments(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  for (std::string& word : arguments) {
+    // CLI11 lets numbers like -5 be values, but takes -.5 for an option.
+    if (word.starts_with("-.") && parse_numbers(word)) word.insert(1, "0");
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  return arguments;
+}
+
+void check_command_name(const CLI::App& program, const std::vector<std::string>& reversed) {
+  if (reversed.empty() || reversed.back().starts_with('-')) return;
+  std::string names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == reversed.back()) return;
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  throw UsageError("unknown command '" + reversed.back() + "'; there are " + names);
+}
+
+// A full disk shows only when the results leave the buffer.
+int flush_results() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return kSuccess;
+  // Whoever closed the pipe, like head(1), knows.
+  if (errno != EPIPE) std::fprintf(stderr, "vpe: cannot write to standard output: %s\n", std::strerror(errno));
+  return kFailure;
+}
+
+}  // namespace
+
+CLI::Validator number_within(double low, double high) {
+  const std::string range = core::format_number(low) + " .. " + core::format_number(high);
+  return {[low, high, range](const std::string& text) {
+            const auto number = core::parse_number(text);
+            return number && *number >= low && *number <= high ? "" : "'" + text + "' is not a number within " + range;
+          },
+          range};
+}
+
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& about, Common& common,
                       bool with_json) {
   CLI::App* command = program.add_subcommand(name, about);
   command->add_option("--memory", common.memory_mb, "Memory for data, MB")->check(CLI::Range(64, 1 << 20))->capture_default_str();
   command->add_option("--threads", common.threads, "Worker threads, 0 = all cores")->check(CLI::Range(0, 1024))->capture_default_str();
   command->add_flag("--quiet,-q", common.quiet, "No progress, only errors");
-  command->set_config("--config", "", "Read options from a TOML file");
+  add_config_option(program, *command);
   if (with_json) command->add_flag("--json", common.json, "Print figures as JSON on stdout");
   return command;
 }
@@ -40,8 +88,10 @@ int run(int argc, char** argv) {
   add_fly(program, common);
   add_settings(program, common);
   try {
-    program.parse(argc, argv);
-    return kSuccess;
+    std::vector<std::string> arguments = reversed_arguments(argc, argv);
+    check_command_name(program, arguments);
+    program.parse(std::move(arguments));
+    return flush_results();
   } catch (const CLI::ParseError& e) {
     const int code = program.exit(e);
     return code == 0 ? kSuccess : kUsage;

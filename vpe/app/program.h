@@ -35,6 +35,9 @@ void add_render(CLI::App& program, Common& common);
 void add_fly(CLI::App& program, Common& common);
 void add_settings(CLI::App& program, Common& common);
 
+// For CLI::Option::check(): a finite decimal number within both ends.
+CLI::Validator number_within(double low, double high);
+
 // --memory, --threads, --config, --quiet, and --json where a command reports figures.
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& about, Common& common,
                       bool with_json);

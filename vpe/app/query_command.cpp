@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <iostream>
 #include <numeric>
+#include <utility>
 
 #include "paging/surface.h"
 #include "vpe/app/planet_argument.h"
@@ -94,10 +96,12 @@ mars::LonLat checked_place(const std::string& text, const std::string& where) {
 std::vector<mars::LonLat> read_places(std::istream& in) {
   std::vector<mars::LonLat> places;
   std::string line;
+  bool first = true;
   for (int number = 1; std::getline(in, line); ++number) {
     line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\r' || c == '\t'; }), line.end());
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     if (line.empty() || line.front() == '#') continue;
-    const bool header = number == 1 && line.find_first_of("0123456789") == std::string::npos;
+    const bool header = std::exchange(first, false) && line.find_first_of("0123456789") == std::string::npos;
     if (!header) places.push_back(checked_place(line, "standard input, line " + std::to_string(number) + ": "));
   }
   return places;
@@ -109,6 +113,10 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
   for (std::size_t n = 0; n < arguments.size(); ++n) {
     if (n == 0 && !parse_place(arguments[0])) {
       planet_name = arguments[0];
+      std::error_code none;
+      if (planet_name.find(',') != std::string::npos && !std::filesystem::exists(planet_name, none)) {
+        throw UsageError("'" + planet_name + "': neither a file nor LON,LAT in degrees");
+      }
     } else {
       places.push_back(checked_place(arguments[n], ""));
     }
@@ -134,7 +142,7 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
   if (common.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const Answer& a : answers) list.push_back(to_json(a, meta));
-    std::printf("%s\n", list.dump(2).c_str());
+    print_json(list);
     return;
   }
   std::printf("lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m\n");

@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "paging/surface.h"
+#include "vpe/app/output.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
@@ -43,26 +44,35 @@ mars::Pose parse_pose(const RenderArguments& arguments, const std::function<doub
   return pose;
 }
 
+void require_valid(const core::View& view) {
+  if (const std::string trouble = core::check(view); !trouble.empty()) throw UsageError(trouble);
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   const core::Settings settings = make_settings(arguments.picture);
   const Size size = parse_size(arguments.size);
-  parse_pose(arguments, [](mars::LonLat) { return 0.0; });  // wrong usage before any work
+  // Wrong usage and what cannot be written are told before any work.
+  core::DrawRequest request;
+  request.view.width = size.width;
+  request.view.height = size.height;
+  request.view.fov_deg = arguments.fov_deg;
+  request.view.eye = mars::to_eye(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
+  require_valid(request.view);
+  check_picture_output(arguments.output);
+  if (!arguments.range.empty()) check_range_output(arguments.range);
+  if (!arguments.certificate.empty()) check_output(arguments.certificate);
+
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
   const mars::Pose pose = parse_pose(arguments, [&](mars::LonLat place) {
     const double x = settings.values().exaggeration;
     return x * paging::Surface(planet, std::size_t{8} << 20).at(mars::direction(place)).height_m;
   });
-  core::DrawRequest request;
   request.view.eye = mars::to_eye(pose, planet->radius_m());
-  request.view.width = size.width;
-  request.view.height = size.height;
-  request.view.fov_deg = arguments.fov_deg;
   request.settings = settings.values();
   request.sun = sun_for(request.settings, pose);
   request.want_range = !arguments.range.empty();
-  if (const std::string trouble = core::check(request.view); !trouble.empty()) throw UsageError(trouble);
-
+  require_valid(request.view);
   const auto renderer = make_renderer(arguments.picture, common, planet);
   const core::DrawResult result = renderer->draw(request);
   core::write_image(arguments.output, result.frame.colour, result.frame.width, result.frame.height);
@@ -74,7 +84,7 @@ void render(RenderArguments& arguments, const Common& common) {
     nlohmann::json json{{"output", arguments.output},
                         {"certificate", nlohmann::json::parse(core::to_json(result.certificate))},
                         {"stats", stats_json(result.stats)}};
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(json);
   } else if (!common.quiet) {
     std::printf("%s: %lld triangles in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(),
                 static_cast<long long>(result.stats.triangles), result.stats.tiles_drawn,
@@ -89,12 +99,12 @@ void add_render(CLI::App& program, Common& common) {
   CLI::App* command = add_command(program, "render", "Draw one picture", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
   command->add_option("--pose", arguments->pose, "LON,LAT,ALT,YAW,PITCH,ROLL: degrees, metres above the sphere")->required();
-  CLI::Option* height = command->add_option("--height", arguments->height_m, "Metres above the terrain, instead of ALT");
+  CLI::Option* height = command->add_option("--height", arguments->height_m, "Metres above the terrain, instead of ALT")->check(number_within(-1e7, 1e10));
   command->add_option("-o,--output", arguments->output, "Picture to write (.png, .jpg)")->required();
   command->add_option("--range", arguments->range, "Also write the range of every pixel, metres (.tif)");
   command->add_option("--certificate", arguments->certificate, "Also write what the picture's error is (.json)");
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
-  command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")->capture_default_str();
+  command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))->capture_default_str();
   add_picture_options(*command, arguments->picture);
   command->callback([arguments, height, &common] {
     arguments->has_height = height->count() > 0;

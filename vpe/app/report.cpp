@@ -61,6 +61,10 @@ json stats_json(const core::FrameStats& s) {
           {"read_ms", s.read_ms}};
 }
 
+void print_json(const json& value) {
+  std::printf("%s\n", value.dump(2, ' ', false, json::error_handler_t::replace).c_str());
+}
+
 void note_illustration(const paging::PlanetMeta& meta, bool quiet) {
   if (meta.illustration && !quiet) {
     std::fprintf(stderr, "Note: this planet is an illustration; its numbers are not data about Mars.\n");

@@ -11,6 +11,9 @@ namespace vpe::app {
 nlohmann::json planet_json(const paging::PlanetMeta& meta);
 nlohmann::json stats_json(const core::FrameStats& stats);
 
+// To stdout. Paths that are not UTF-8 get replacement characters.
+void print_json(const nlohmann::json& json);
+
 // Warns on stderr that numbers come from a made-up planet.
 void note_illustration(const paging::PlanetMeta& meta, bool quiet);
 

@@ -25,7 +25,7 @@ void settings(const Common& common) {
       list.push_back({{"key", info.key}, {"default", info.default_text}, {"range", range_text(info)},
                       {"unit", info.unit}, {"meaning", info.meaning}});
     }
-    std::printf("%s\n", list.dump(2).c_str());
+    print_json(list);
     return;
   }
   for (const core::SettingInfo& info : core::Settings::list()) {

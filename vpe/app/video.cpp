@@ -55,6 +55,8 @@ VideoWriter::VideoWriter(fs::path path, int width, int height, const scripts::Fr
     pid_ = -1;
     ::close(pipe_);
     pipe_ = -1;
+    std::error_code ignored;
+    fs::remove(log_, ignored);  // made before the program was looked for
     throw std::runtime_error(path_.string() + ": cannot start ffmpeg: " + std::strerror(error) +
                              "; install ffmpeg, or give a folder to get PNG frames");
   }

@@ -33,7 +33,8 @@ struct SettingsValues {
   double sun_ambient = 0.05;
   double lod_tolerance_px = 1;
   int lod_triangles = 0;
-  int samples = 4;
+  int samples = 1;
+  bool smooth_edges = true;
   Background background = Background::kSky;
 
   bool operator==(const SettingsValues&) const = default;

@@ -69,6 +69,7 @@ class PolygonRenderer : public core::Renderer {
         pool_(options.threads),
         shader_(planet_, share(kShaderShare)),
         tile_program_(make_program("tile", kTileVertexShader, kTileFragmentShader)),
+        edge_program_(make_program("edge", kFullScreenVertexShader, kEdgeFragmentShader)),
         sky_program_(make_program("sky", kSkyVertexShader, kSkyFragmentShader)),
         tile_array_(VertexArray::make()),
         empty_array_(VertexArray::make()) {
@@ -104,7 +105,7 @@ class PolygonRenderer : public core::Renderer {
   double near_plane_m(const core::View& view, double exaggeration) const;
   void draw_tiles(const core::View& view, const Lens& lens, bool textured, bool with_skirts);
   void draw_sky(const core::DrawRequest& request, const Lens& lens);
-  void draw_pass(const core::DrawRequest& request, const Lens& lens, const Target& to, bool picture);
+  void draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture);
   void read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
   core::Certificate certify(const core::DrawRequest& request, const Lens& lens) const;
@@ -115,6 +116,7 @@ class PolygonRenderer : public core::Renderer {
   core::ThreadPool pool_;
   Shader shader_;
   Program tile_program_;
+  Program edge_program_;
   Program sky_program_;
   VertexArray tile_array_;
   VertexArray empty_array_;
@@ -137,7 +139,6 @@ ShadeParams PolygonRenderer::shade_params(const core::DrawRequest& request) cons
   params.sun = request.sun;
   params.ambient = s.sun_ambient;
   params.exaggeration = s.exaggeration;
-  params.lit = s.mode != core::Mode::kUnlit && s.mode != core::Mode::kWireframe;
   const bool has_image = planet_->meta().finest_image_level >= 0;
   if (s.mode == core::Mode::kTextured && has_image) {
     params.surfacing = Surfacing::kImage;
@@ -247,12 +248,17 @@ void PolygonRenderer::make_resident(const ShadeParams& shading, bool textured) {
 }
 
 // Depth interpolation loses precision on triangles that reach from the near plane to far away, so the near
-// plane is as far out as the ground allows: a fiftieth of the eye's height is only passed by slopes over 88 degrees.
+// plane is as far out as the ground allows: some fiftieth of the eye's height is only passed by slopes over 88 degrees.
 double PolygonRenderer::near_plane_m(const core::View& view, double exaggeration) const {
   const glm::dvec3& eye = view.eye.eye_m;
   double nearest = std::numeric_limits<double>::infinity();
   for (const Drawn& d : drawn_) nearest = std::min(nearest, d.min_distance_m);
-  if (std::isfinite(nearest) && nearest > 1000.0) return 0.25 * nearest;
+  // In the picture's corners depth is less than distance.
+  const double f = core::focal_px(view);
+  const double x = 0.5 * view.width + std::abs(view.principal_offset_px.x);
+  const double y = 0.5 * view.height + std::abs(view.principal_offset_px.y);
+  const double cosine = f / std::sqrt(f * f + x * x + y * y);
+  if (std::isfinite(nearest) && nearest > 1000.0) return 0.5 * cosine * nearest;
   lod::TileKey key = lod::tile_at(mars::chart_point(eye), 0);
   for (const lod::TileInfo* info = planet_->tree().find(key); info->has_children; info = planet_->tree().find(key)) {
     key = lod::tile_at(mars::chart_point(eye), key.level + 1);
@@ -262,7 +268,7 @@ double PolygonRenderer::near_plane_m(const core::View& view, double exaggeration
   const double ground = lod::surface_height(heights.posts, lod::grid_lines(key, heights.posts.intervals), at.u, at.v,
                                             planet_->radius_m());
   const double above = glm::length(eye) - planet_->radius_m() - exaggeration * ground;
-  return std::clamp(0.02 * std::abs(above) / std::max(1.0, exaggeration), 0.005, 1000.0);
+  return std::clamp(0.03 * cosine * std::abs(above) / std::max(1.0, exaggeration), 0.003, 1000.0);
 }
 
 void PolygonRenderer::draw_tiles(const core::View& view, const Lens& lens, bool textured, bool with_skirts) {
@@ -365,8 +371,9 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
   return c;
 }
 
-void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& lens, const Target& to, bool picture) {
+void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture) {
   const bool wireframe = request.settings.mode == core::Mode::kWireframe;
+  const bool textured = !wireframe && request.settings.mode != core::Mode::kUnlit;
   const float paper = request.settings.background == core::Background::kWhite ? 1.0F : 0.0F;
   to.bind();
   glClearColor(paper, paper, paper, 1.0F);
@@ -374,7 +381,7 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDepthFunc(GL_GREATER);
   if (wireframe && picture) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-  draw_tiles(request.view, lens, picture && !wireframe, !(picture && wireframe));
+  draw_tiles(request.view, lens, picture && textured, !(picture && wireframe));
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   if (picture && request.settings.background == core::Background::kSky) draw_sky(request, lens);
 }
@@ -383,7 +390,7 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
 // nearest surface and a second one puts the near plane just before it.
 void PolygonRenderer::read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame) {
   const glm::ivec2 size = core::drawn_size(request.view);
-  const Target& to = target(range_target_, size, 1);
+  Target& to = target(range_target_, size, 1);
   for (int pass = 0; pass < 2; ++pass) {
     draw_pass(request, lens, to, false);
     to.read_depth(frame.range_m);
@@ -412,13 +419,12 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   ++frame_;
   core::DrawResult result;
   const core::SettingsValues& settings = request.settings;
-  const bool wireframe = settings.mode == core::Mode::kWireframe;
   const ShadeParams shading = shade_params(request);
   auto start = Clock::now();
   select(request, shading);
   result.stats.select_ms = ms_since(start);
   start = Clock::now();
-  make_resident(shading, !wireframe);
+  make_resident(shading, settings.mode != core::Mode::kWireframe && settings.mode != core::Mode::kUnlit);
   result.stats.load_ms = ms_since(start);
 
   start = Clock::now();
@@ -426,6 +432,9 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   const Lens lens = make_lens(request.view, near_plane_m(request.view, settings.exaggeration));
   Target& picture = target(colour_target_, size, settings.samples);
   draw_pass(request, lens, picture, true);
+  if (settings.samples == 1 && settings.smooth_edges && settings.mode != core::Mode::kWireframe) {
+    picture.filter(edge_program_, empty_array_);
+  }
   glFinish();
   check_gl("draw");
   result.stats.draw_ms = ms_since(start);

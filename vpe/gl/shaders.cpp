@@ -96,4 +96,57 @@ void main() {
 }
 )glsl";
 
+const char* const kFullScreenVertexShader = R"glsl(
+#version 450 core
+void main() {
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)glsl";
+
+// Smooths stair steps where one surface ends before another. Reversed depth near / z is a linear function of the
+// picture position on every plane, at any slant: its second difference is an edge of the geometry, never of a
+// texture, which stays as sharp as it is. There the colour is averaged along the edge.
+const char* const kEdgeFragmentShader = R"glsl(
+#version 450 core
+layout(binding = 0) uniform sampler2D picture;
+layout(binding = 1) uniform sampler2D depth;
+layout(location = 0) out vec4 colour;
+float luma(vec3 c) { return dot(c, vec3(0.30, 0.59, 0.11)); }
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  ivec2 last = textureSize(depth, 0) - 1;
+  float c = texelFetch(depth, at, 0).r;
+  float w = texelFetch(depth, max(at - ivec2(1, 0), ivec2(0)), 0).r;
+  float e = texelFetch(depth, min(at + ivec2(1, 0), last), 0).r;
+  float s = texelFetch(depth, max(at - ivec2(0, 1), ivec2(0)), 0).r;
+  float n = texelFetch(depth, min(at + ivec2(0, 1), last), 0).r;
+  float bend = abs(w + e - 2.0 * c) + abs(s + n - 2.0 * c);
+  vec3 own = texelFetch(picture, at, 0).rgb;
+  if (bend <= 0.02 * max(max(w, e), max(s, n))) {
+    colour = vec4(own, 1.0);
+    return;
+  }
+  vec2 texel = 1.0 / vec2(last + 1);
+  vec2 here = (vec2(at) + 0.5) * texel;
+  float nw = luma(texture(picture, here + vec2(-0.5, 0.5) * texel).rgb);
+  float ne = luma(texture(picture, here + vec2(0.5, 0.5) * texel).rgb);
+  float sw = luma(texture(picture, here + vec2(-0.5, -0.5) * texel).rgb);
+  float se = luma(texture(picture, here + vec2(0.5, -0.5) * texel).rgb);
+  // Along the edge: at right angles to the gradient of brightness.
+  vec2 along = vec2(nw + ne - sw - se, nw + sw - ne - se);
+  float size = length(along);
+  if (size < 1e-3) {
+    colour = vec4(own, 1.0);
+    return;
+  }
+  // The flatter the edge, the longer its steps.
+  along /= max(abs(along.x), abs(along.y));
+  float reach = 1.0 / max(min(abs(along.x), abs(along.y)), 0.2);
+  vec2 step_ = along * reach * texel;
+  vec3 sum = 0.25 * (texture(picture, here - 0.25 * step_).rgb + texture(picture, here + 0.25 * step_).rgb +
+                     texture(picture, here - 0.75 * step_).rgb + texture(picture, here + 0.75 * step_).rgb);
+  colour = vec4(mix(own, sum, 0.75), 1.0);
+}
+)glsl";
+
 }  // namespace vpe::gl

@@ -7,6 +7,8 @@ extern const char* const kTileVertexShader;
 extern const char* const kTileFragmentShader;
 extern const char* const kSkyVertexShader;
 extern const char* const kSkyFragmentShader;
+extern const char* const kFullScreenVertexShader;
+extern const char* const kEdgeFragmentShader;
 
 // Uniform locations of the tile program.
 enum TileUniform : int {

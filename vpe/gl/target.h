@@ -17,7 +17,11 @@ class Target {
   int height() const { return height_; }
   int samples() const { return samples_; }
 
-  void bind() const;  // makes it the draw framebuffer and sets the viewport
+  void bind();  // makes it the draw framebuffer and sets the viewport
+
+  // With one sample: draws `program` over all pixels; it reads this picture's colour (texture unit 0) and depth (unit
+  // 1), and what it writes is what read_colour() gives until the target is drawn into again.
+  void filter(const Program& program, const VertexArray& empty);
 
   // Reads back, top row first. Depth only from a target with one sample.
   void read_colour(std::vector<mars::Rgb>& out) const;
@@ -27,10 +31,13 @@ class Target {
   int width_;
   int height_;
   int samples_;
+  bool filtered_ = false;
   Framebuffer draw_;
-  Renderbuffer colour_;
-  Renderbuffer depth_;
-  Framebuffer resolve_;  // only with multisampling
+  Renderbuffer many_colour_;  // with multisampling
+  Renderbuffer many_depth_;
+  Texture2D colour_;  // with one sample
+  Texture2D depth_;
+  Framebuffer resolve_;  // resolved samples, or what filter() wrote
   Renderbuffer resolved_colour_;
 };
 

@@ -1,0 +1,201 @@
+// Questions and answers, and figures as JSON.
+#include <clocale>
+#include <sstream>
+
+#include "tests/app/support/app_fixture.h"
+
+namespace app_test {
+namespace {
+
+using nlohmann::json;
+
+class Query : public AppTest {
+ protected:
+  json ask(const Words& more, const std::string& input = "") const {
+    Words words{"query", planet().string(), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = vpe(words, input);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    return parse_json(result.out);
+  }
+};
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(Query, NegativeCoordinatesNeedNoEscape) {
+  const json answers = ask({"-74,-13.5", "-.5,-13", "-1e1,+5", "-180,-90"});
+  ASSERT_EQ(answers.size(), 4U);
+  EXPECT_EQ(answers[0]["lon_deg"], -74);
+  EXPECT_EQ(answers[0]["lat_deg"], -13.5);
+  EXPECT_EQ(answers[1]["lon_deg"], -0.5);
+  EXPECT_EQ(answers[2]["lon_deg"], -10);
+  EXPECT_EQ(answers[3]["lat_deg"], -90);
+}
+
+TEST_F(Query, AnswersFollowTheRaster) {
+  // The hills at centres of cells. S lies below them by its sag: posts are 42 km apart, diagonals 59 km.
+  constexpr double kSag_m = 59e3 * 59e3 / (8 * 3396190.0);
+  for (const auto& a : ask({"1,1", "31,1", "91,1", "-149,-1", "31,59"})) {
+    const double lon = a["lon_deg"].get<double>();
+    const double lat = a["lat_deg"].get<double>();
+    const double column = std::floor((lon + 180) / 2);
+    const double expected = 3000 * std::sin(3 * 2 * M_PI * column / 180) * std::cos(lat * M_PI / 180);
+    EXPECT_LE(a["elevation_m"].get<double>(), expected + 10) << a.dump();
+    EXPECT_GE(a["elevation_m"].get<double>(), expected - kSag_m - 10) << a.dump();
+    EXPECT_EQ(a["source"].get<std::string>().substr(a["source"].get<std::string>().size() - 9), "hills.tif");
+    EXPECT_EQ(a["illustration"], false);
+    EXPECT_EQ(a["level"], 1);
+    EXPECT_EQ(a["tile_error_m"], 0);
+  }
+}
+
+TEST_F(Query, BothLongitudeConventions) {
+  const json answers = ask({"286,-13.5", "-74,-13.5", "180,10", "-180,10", "540,10"});
+  EXPECT_EQ(answers[0], answers[1]);
+  EXPECT_EQ(answers[2], answers[3]);
+  EXPECT_EQ(answers[2], answers[4]);
+  EXPECT_EQ(answers[2]["lon_deg"], 180);
+}
+
+TEST_F(Query, StandardInput) {
+  const json expected = ask({"-74,-13.5", "10,20"});
+  EXPECT_EQ(ask({}, "-74,-13.5\n10,20\n"), expected);
+  EXPECT_EQ(ask({}, "lon,lat\r\n# where\r\n-74,-13.5\r\n\r\n 10 ,\t20"), expected);
+  EXPECT_EQ(ask({}, "\xEF\xBB\xBF# places\nlon_deg,lat_deg\n286,-13.5\n10,20\n"), expected);
+  EXPECT_EQ(ask({}, ""), json::array());
+  for (const char* text : {"1,2\nfoo\n", "1,2\nlon,lat\n", "1,2\n3;4\n", "lon,lat\n1\n", "1,2\n0,95\n"}) {
+    const Result result = vpe({"query", planet().string()}, text);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(says(result.err, {"standard input, line 2"}));
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST_F(Query, CsvAndJsonSayTheSame) {
+  const json answers = ask({"-74,-13.5", "10,20"});
+  const Result csv = vpe({"query", planet().string(), "-74,-13.5", "10,20"});
+  const std::vector<std::string> lines = lines_of(csv.out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0],
+            "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m");
+  for (std::size_t n = 0; n < 2; ++n) {
+    std::istringstream row(lines[n + 1]);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 9U);
+    EXPECT_EQ(std::stod(cells[0]), answers[n]["lon_deg"]);
+    EXPECT_EQ(std::stod(cells[1]), answers[n]["lat_deg"]);
+    EXPECT_NEAR(std::stod(cells[2]), answers[n]["elevation_m"].get<double>(), 0.0006);
+    EXPECT_NEAR(std::stod(cells[3]), answers[n]["slope_deg"].get<double>(), 0.0006);
+    EXPECT_NEAR(std::stod(cells[4]), answers[n]["aspect_deg"].get<double>(), 0.006);
+  }
+}
+
+TEST_F(Query, NoAnswerWhereNoSourceHasData) {
+  Dem dem;
+  dem.no_data = -9999;
+  dem.height_m = [](int column, int) { return column < 90 ? -9999.0 : 700.0; };  // the west has none
+  write_dem(dir_ / "half.tif", dem);
+  ASSERT_EQ(vpe({"build", "half.tif", "-o", "half.vpe", "--base-spacing", "100000"}).exit_code, 0);
+  const json answers = parse_json(vpe({"query", "half.vpe", "--json", "-100,10", "100,10"}).out);
+  for (const char* key : {"elevation_m", "slope_deg", "aspect_deg"}) {
+    EXPECT_TRUE(answers[0][key].is_null()) << key;
+    EXPECT_TRUE(answers[1][key].is_number()) << key;
+  }
+  // S sags by up to 128 m between its few posts.
+  EXPECT_NEAR(answers[1]["elevation_m"].get<double>(), 636, 64.1);
+  const std::vector<std::string> lines = lines_of(vpe({"query", "half.vpe", "-100,10", "100,10"}).out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[1].find("-100,10,,,,1,"), 0U) << lines[1];
+  EXPECT_NEAR(std::stod(lines[2].substr(7)), answers[1]["elevation_m"].get<double>(), 0.0006) << lines[2];
+}
+
+TEST_F(Query, ResultsThatCannotBeWritten) {
+  for (const Words& arguments : {Words{"query", planet().string(), "1,2"}, Words{"settings", "--json"},
+                                 Words{"info", planet().string()}}) {
+    Command command = command_for(arguments);
+    command.output_to = "/dev/full";
+    const Result result = app_test::run(command);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(says(result.err, {"standard output", "No space left"}));
+  }
+}
+
+TEST_F(Query, InfoAndBuildAndSettingsAsJson) {
+  write_dem(dir_ / "x.tif");
+  const Result built = vpe({"build", "x.tif", "-o", "x.vpe", "--base-spacing", "100000", "--json"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  json build = parse_json(built.out);
+  EXPECT_EQ(build["bytes"], std::filesystem::file_size(dir_ / "x.vpe"));
+  EXPECT_EQ(build["tiles"], 6);
+  EXPECT_EQ(build["sources"][0]["name"], "x.tif");
+  EXPECT_EQ(build["resampling_posts"], 180 * 90);
+
+  json info = parse_json(vpe({"info", "x.vpe", "--json"}).out);
+  EXPECT_EQ(info["path"], "x.vpe");
+  info.erase("path");
+  build.erase("bytes");
+  EXPECT_EQ(info, build);
+
+  const json settings = parse_json(vpe({"settings", "--json"}).out);
+  ASSERT_TRUE(settings.is_array());
+  Words keys;
+  for (const json& entry : settings) {
+    keys.push_back(entry.at("key"));
+    EXPECT_FALSE(entry.at("meaning").get<std::string>().empty());
+    EXPECT_TRUE(entry.contains("default") && entry.contains("range") && entry.contains("unit"));
+  }
+  const Result plain = vpe({"settings"});
+  EXPECT_TRUE(says(plain.out, keys));
+  EXPECT_TRUE(says(plain.out, {"mode", "exaggeration", "sun.azimuth", "sun.elevation"}));
+}
+
+TEST_F(Query, QuietSaysNothing) {
+  write_dem(dir_ / "x.tif");
+  const Result result = vpe({"build", "x.tif", "-o", "x.vpe", "--base-spacing", "100000", "-q"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(Query, NumbersAreLocaleProof) {
+  constexpr const char* kLocale = "de_DE.UTF-8";
+  const locale_t german = ::newlocale(LC_ALL_MASK, kLocale, nullptr);
+  if (german == nullptr) GTEST_SKIP() << "skipped: no locale " << kLocale;
+  ::freelocale(german);
+  const Words words{"query", planet().string(), "-74.25,-13.5"};
+  Command command = command_for(words);
+  command.environment["LC_ALL"] = kLocale;
+  EXPECT_EQ(app_test::run(command).out, vpe(words).out);
+}
+
+TEST_F(Query, NamesWithBlanksAndOtherLetters) {
+  for (const char* name : {"Täler und Höhen", "火星", "a'b\"c $HOME"}) {
+    const std::filesystem::path folder = dir_ / name;
+    std::filesystem::create_directory(folder);
+    write_dem(folder / "mein dem.tif");
+    const std::string file = (folder / "mein planet.vpe").string();
+    const Result built =
+        vpe({"build", (folder / "mein dem.tif").string(), "-o", file, "--base-spacing", "100000", "--json"});
+    EXPECT_EQ(built.exit_code, 0) << built.err;
+    EXPECT_EQ(parse_json(built.out)["tiles"], 6);
+    EXPECT_EQ(parse_json(vpe({"query", file, "10,20", "--json"}).out).size(), 1U);
+    EXPECT_EQ(parse_json(vpe({"info", file, "--json"}).out)["tiles"], 6);
+  }
+}
+
+TEST_F(Query, JsonStaysJsonForNamesThatAreNotUtf8) {
+  const std::string file = path("caf\xE9.vpe");
+  std::filesystem::copy_file(planet(), file);
+  const Result result = vpe({"info", file, "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(says(parse_json(result.out)["path"], {"/caf\xEF\xBF\xBD.vpe"}));
+}
+
+}  // namespace
+}  // namespace app_test

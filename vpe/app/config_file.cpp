@@ -1,0 +1,116 @@
+#include "vpe/app/config_file.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <set>
+
+#include "vpe/core/number.h"
+
+namespace vpe::app {
+
+namespace {
+
+class ConfigFile {
+ public:
+  ConfigFile(CLI::App& program, CLI::App& command, std::string path)
+      : program_(program), command_(command), path_(std::move(path)) {}
+
+  void apply() {
+    const toml::table config = parse();
+    for (const auto& [key, node] : config) {
+      if (const toml::table* table = node.as_table()) apply_table(key, *table);
+    }
+    for (const auto& [key, node] : config) {
+      if (node.is_table()) continue;
+      const auto all = program_.get_subcommands({});
+      if (std::none_of(all.begin(), all.end(), [&](CLI::App* c) { return option(*c, key.str()) != nullptr; })) {
+        fail(node, "no command has an option --" + std::string(key.str()));
+      }
+      if (CLI::Option* found = option(command_, key.str())) set(*found, key.str(), node);
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
+    throw UsageError(path_ + ":" + std::to_string(node.source().begin.line) + ": " + what);
+  }
+
+  static CLI::Option* option(CLI::App& command, std::string_view key) {
+    if (key == "help" || key == "config") return nullptr;
+    return command.get_option_no_throw("--" + std::string(key));
+  }
+
+  toml::table parse() const {
+    std::ifstream in(path_, std::ios::binary);
+    // A folder opens, but cannot be read.
+    if (!in || (in.peek(), in.bad())) {
+      throw UsageError("--config " + path_ + ": cannot read the file: " + std::strerror(errno) + "; check the name");
+    }
+    try {
+      return toml::parse(in, path_);
+    } catch (const toml::parse_error& e) {
+      throw UsageError(path_ + ":" + std::to_string(e.source().begin.line) + ": not TOML: " +
+                       std::string(e.description()));
+    }
+  }
+
+  void apply_table(const toml::key& name, const toml::table& table) {
+    const auto all = program_.get_subcommands({});
+    const auto at = std::find_if(all.begin(), all.end(), [&](CLI::App* c) { return c->get_name() == name.str(); });
+    if (at == all.end()) fail(table, "[" + std::string(name.str()) + "] is not a command");
+    for (const auto& [key, node] : table) {
+      CLI::Option* found = option(**at, key.str());
+      if (found == nullptr) {
+        fail(node, "'" + std::string(name.str()) + "' has no option --" + std::string(key.str()));
+      }
+      if (*at == &command_) set(*found, key.str(), node);
+    }
+  }
+
+  std::string text(const toml::node& node, std::string_view key) const {
+    if (const auto* value = node.as_string()) return value->get();
+    if (const auto* value = node.as_integer()) return std::to_string(value->get());
+    if (const auto* value = node.as_floating_point()) return core::format_number(value->get());
+    if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
+    fail(node, std::string(key) + ": expected a text, a number, true, false or a list of these");
+  }
+
+  void set(CLI::Option& option, std::string_view key, const toml::node& node) {
+    if (option.count() > 0 || !done_.insert(std::string(key)).second) return;
+    if (option.get_expected_max() == 0) {
+      if (!node.is_boolean()) fail(node, std::string(key) + ": expected true or false");
+      if (!node.as_boolean()->get()) return;
+    }
+    if (const toml::array* list = node.as_array()) {
+      for (const toml::node& entry : *list) option.add_result(text(entry, key));
+    } else {
+      option.add_result(text(node, key));
+    }
+    try {
+      option.run_callback();
+    } catch (const CLI::ParseError& e) {
+      fail(node, e.what());
+    }
+  }
+
+  CLI::App& program_;
+  CLI::App& command_;
+  std::string path_;
+  std::set<std::string> done_;  // false leaves no trace in a flag
+};
+
+}  // namespace
+
+void add_config_option(CLI::App& program, CLI::App& command) {
+  // CLI11 calls this when the whole command line is read and before it misses required options; its own
+  // set_config() is silent on subcommands.
+  command.add_option_function<std::string>(
+      "--config", [&program, &command](const std::string& path) { ConfigFile(program, command, path).apply(); },
+      "Read options from a TOML file");
+}
+
+}  // namespace vpe::app
