@@ -33,6 +33,9 @@ constexpr double kTextureShare = 0.40;
 // What float arithmetic in the vertex stage adds, as a part of the distance: a few roundings of 2^-24.
 constexpr double kTransformError = 4e-7;
 
+// Rasterisers snap vertices to 1/256 pixel, and depth is taken at pixel centres up to that far outside a triangle.
+constexpr double kRasterSnap_px = 4.0 / 256;
+
 // Depth of skirts, as a part of distance and tile side, that covers what rounding to float opens between equal borders.
 constexpr double kSeamError = 1e-6;
 
@@ -83,6 +86,7 @@ class PolygonRenderer : public core::Renderer {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
+    glPolygonOffset(-1.0F / 32, 0.0F);  // farther, with reversed depth; rasterisers snap to 1/256 pixel
     check_gl("set up");
   }
 
@@ -301,9 +305,16 @@ void PolygonRenderer::draw_tiles(const core::View& view, const Lens& lens, bool 
     }
     glVertexArrayVertexBuffer(tile_array_.name(), 0, mesh.vertices.name(), 0, sizeof(TileVertex));
     glVertexArrayElementBuffer(tile_array_.name(), mesh.indices.name());
-    const std::uint32_t count = with_skirts ? mesh.index_count : mesh.surface_indices;
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count),
-                   mesh.short_indices ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT, nullptr);
+    const GLenum type = mesh.short_indices ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    const std::size_t index_size = mesh.short_indices ? 2 : 4;
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.surface_indices), type, nullptr);
+    if (!with_skirts) continue;
+    // A skirt seen edge-on covers stray pixels where its depth, extrapolated by a fraction of a pixel, can lie
+    // anywhere. Pushed back by its own slope it never stands before the ground it hangs from.
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.index_count - mesh.surface_indices), type,
+                   reinterpret_cast<const void*>(index_size * mesh.surface_indices));
+    glDisable(GL_POLYGON_OFFSET_FILL);
   }
 }
 
@@ -348,7 +359,7 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
     // Float storage, and the vertex stage's arithmetic over the whole distance.
     // Nothing is drawn before the near plane.
     const double distance = std::max(tile.min_distance_m, double{lens.near_m});
-    const double quantisation_px = mesh.quantisation_m * focal / distance + kTransformError * focal;
+    const double quantisation_px = mesh.quantisation_m * focal / distance + kTransformError * focal + kRasterSnap_px;
     c.tile_error_m = std::max(c.tile_error_m, tile.error_m);
     c.tile_error_px = std::max(c.tile_error_px, tile.error_px);
     c.quantisation_m = std::max(c.quantisation_m, mesh.quantisation_m);

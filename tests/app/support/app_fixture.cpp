@@ -101,8 +101,8 @@ const fs::path& AppTest::planet() {
       write_dem(dir / "hills.tif");
       Command command;
       command.program = VPE_PROGRAM;
-      command.arguments = {"build", (dir / "hills.tif").string(), "-o", path.string(), "--base-spacing", "100000",
-                       "-q"};
+      command.arguments = {
+          "build", (dir / "hills.tif").string(), "-o", path.string(), "--base-spacing", "100000", "-q"};
       const Result result = app_test::run(command);
       if (result.exit_code != 0) throw std::runtime_error("cannot build the test planet: " + result.err);
     }

@@ -1,0 +1,120 @@
+// One picture, its ranges and its certificate.
+#include <cmath>
+
+#include "tests/app/support/app_fixture.h"
+#include "vpe/core/frame.h"
+#include "vpe/core/image.h"
+
+namespace app_test {
+namespace {
+
+using nlohmann::json;
+
+class Render : public AppTest {
+ protected:
+  Result render(const Words& more, const std::string& pose, const std::string& output = "x.png",
+                const std::string& size = "96x54") const {
+    Words words{"render", planet().string(), "--pose", pose, "-o", output, "--size", size};
+    words.insert(words.end(), more.begin(), more.end());
+    return vpe(words);
+  }
+};
+
+TEST_F(Render, PictureRangeAndCertificate) {
+  const Result result = render({"--range", "r.tif", "--certificate", "c.json", "--json", "--fov", "60"},
+                               "-74,-13.5,300000,0,-30,0");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json report = parse_json(result.out);
+  EXPECT_EQ(report["output"], "x.png");
+  EXPECT_EQ(report["certificate"], parse_json(read_text(dir_ / "c.json")));
+  const json& c = report["certificate"];
+  EXPECT_GT(c["shift_bound_px"], 0);
+  EXPECT_LE(c["shift_bound_px"], 1.01);  // the default tolerance and the quantisation
+  EXPECT_EQ(c["tolerance_px"], 1);
+  EXPECT_EQ(c["tiles_missing"], 0);
+  EXPECT_EQ(c["illustration"], false);
+  EXPECT_TRUE(c["source_accuracy_m"].is_null());
+  EXPECT_GT(report["stats"]["triangles"], 0);
+  EXPECT_EQ(report["stats"]["tiles_drawn"], c["tiles_drawn"]);
+
+  const auto picture = vpe::core::read_image(dir_ / "x.png");
+  EXPECT_EQ(picture.width, 96);
+  EXPECT_EQ(picture.height, 54);
+  const auto range = vpe::core::read_tiff(dir_ / "r.tif");
+  ASSERT_EQ(range.width, 96);
+  ASSERT_EQ(range.height, 54);
+  // The upper rim looks at the horizontal, 23 degrees above the horizon; the lower one 60 degrees down.
+  int sky = 0;
+  for (int x = 0; x < 96; ++x) {
+    EXPECT_EQ(range.pixels[static_cast<std::size_t>(x)], vpe::core::kSkyRange);
+    const float near = range.pixels[static_cast<std::size_t>(53 * 96 + x)];
+    EXPECT_GT(near, 290e3F);
+    EXPECT_LT(near, 600e3F);
+  }
+  for (const float r : range.pixels) {
+    sky += std::isinf(r) ? 1 : 0;
+    if (!std::isinf(r)) {
+      EXPECT_GT(r, 290e3F);
+      EXPECT_LT(r, 1.6e6F);  // the horizon's distance and some
+    }
+  }
+  EXPECT_GT(sky, 96 * 54 / 8);
+  EXPECT_LT(sky, 96 * 54 / 2);
+}
+
+TEST_F(Render, StraightDownTheRangeIsTheAltitudeOverTheTerrain) {
+  const json answer = parse_json(vpe({"query", planet().string(), "31,1", "--json"}).out)[0];
+  const double ground = answer["elevation_m"].get<double>();
+  // An odd size has a middle pixel.
+  const auto middle_m = [&](Words more, const std::string& pose) {
+    more.insert(more.end(), {"--range", "r.tif", "--tolerance", "0"});
+    EXPECT_EQ(render(more, pose, "x.png", "33x33").exit_code, 0);
+    return vpe::core::read_tiff(dir_ / "r.tif").pixels.at(16 * 33 + 16);
+  };
+  EXPECT_NEAR(middle_m({}, "31,1,100000,0,-90,0"), 100000 - ground, 1);
+  EXPECT_NEAR(middle_m({"--height", "100000"}, "31,1,0,-90,0"), 100000, 1);
+  // The sag is not exaggerated, and small beside ten times the relief.
+  EXPECT_NEAR(middle_m({"--set", "exaggeration=10"}, "31,1,100000,0,-90,0"), 100000 - 10 * ground, 1300);
+}
+
+TEST_F(Render, SamePictureAgainAndInOtherFormats) {
+  ASSERT_EQ(render({}, "286,-13.5,300000,20,-40,5", "a.png").exit_code, 0);
+  ASSERT_EQ(render({"--threads", "1"}, "-74,-13.5,300000,20,-40,5", "b.png").exit_code, 0);
+  EXPECT_EQ(read_text(dir_ / "a.png"), read_text(dir_ / "b.png"));
+  ASSERT_EQ(render({}, "-74,-13.5,300000,20,-40,5", "c.JPG").exit_code, 0);
+  EXPECT_EQ(read_text(dir_ / "c.JPG").substr(0, 3), "\xFF\xD8\xFF");
+  ASSERT_EQ(render({"--set", "mode=wireframe"}, "-74,-13.5,300000,20,-40,5", "Bild mit Ü.png").exit_code, 0);
+  EXPECT_NE(read_text(dir_ / "Bild mit Ü.png"), read_text(dir_ / "a.png"));
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+TEST_F(Render, ADamagedTileIsNamed) {
+  // A picture of every place meets every tile.
+  std::string bytes = read_text(planet());
+  test_support::Random random(3);
+  int named = 0;
+  for (int n = 0; n < 3; ++n) {
+    std::string damaged = bytes;
+    // The last third holds nothing but payloads.
+    const auto at = static_cast<std::size_t>(random.uniform(0.67, 0.95) * static_cast<double>(bytes.size()));
+    for (std::size_t k = 0; k < 6000; ++k) damaged[at + k] ^= 0x55;
+    write_text(dir_ / "damaged.vpe", damaged);
+    for (const char* pose : {"0,0,9e6,0,-90,0", "180,0,9e6,0,-90,0", "0,90,9e6,0,-90,0", "0,-90,9e6,0,-90,0"}) {
+      const Result result =
+          vpe({"render", "damaged.vpe", "--pose", pose, "-o", "x.png", "--size", "64x64", "--tolerance", "0"});
+      if (result.exit_code == 0) {
+        std::filesystem::remove(dir_ / "x.png");
+        continue;
+      }
+      EXPECT_EQ(result.exit_code, 1) << "signal " << result.signal;
+      EXPECT_TRUE(says(result.err, {"damaged.vpe", "damaged", "build"}));
+      EXPECT_FALSE(exists("x.png"));
+      ++named;
+    }
+  }
+  EXPECT_GT(named, 0);
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+}  // namespace
+}  // namespace app_test
