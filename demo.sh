@@ -9,10 +9,10 @@ vpe=build/release/vpe
 mkdir -p out
 
 $vpe info
-still() { $vpe render --quiet "$@"; }
-still -o out/globe.png      --pose=-75,5,9000000,0,-90,0 --size 1280x1280 --fov 50
+still() { $vpe render --quiet --set samples=4 "$@"; }
+still -o out/globe.png      --pose=-75,0,5500000,0,-90,0 --size 1280x1280 --fov 50
 still -o out/olympus.png    --pose=-133.8,9.5,260000,0,-28,0
-still -o out/hellas.png     --pose=70,-64,900000,0,-35,0
+still -o out/hellas.png     --pose=70,-40,4500000,0,-90,0 --size 1280x960 --fov 50 --set mode=coloured
 still -o out/valles.png     --pose=-62,-17.5,60000,20,-14,0
 $vpe fly scripts/flights/valles-marineris.flight -o out/valles-marineris.mp4 --stats out/valles-marineris.csv
 
