@@ -26,9 +26,9 @@ double ms_since(Clock::time_point start) {
 }
 
 // Share of the memory budget for each holder; the rest is for the tile index and work in progress.
-constexpr double kShaderShare = 0.20;
-constexpr double kMeshShare = 0.20;
-constexpr double kTextureShare = 0.40;
+constexpr double kShaderShare = 0.12;
+constexpr double kMeshShare = 0.14;
+constexpr double kTextureShare = 0.28;
 
 // What float arithmetic in the vertex stage adds, as a part of the distance: a few roundings of 2^-24.
 constexpr double kTransformError = 4e-7;
