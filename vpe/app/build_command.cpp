@@ -46,7 +46,8 @@ void check_planet_output(const BuildArguments& arguments) {
     }
   }
   if (std::filesystem::file_size(output, none) > 0 && !none && !is_sqlite(output)) {
-    throw std::runtime_error(output + ": is there and not a planet file; give another name, or remove it first");
+    throw std::runtime_error(output +
+                             ": is there and not a planet file; give another name, or remove it first");
   }
 }
 
@@ -90,16 +91,30 @@ void build(BuildArguments& arguments, const Common& common) {
 
 void add_build(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<BuildArguments>();
-  CLI::App* command = add_command(program, "build", "Make a planet file from elevation and image rasters", common, true);
+  CLI::App* command =
+      add_command(program, "build", "Make a planet file from elevation and image rasters", common, true);
   paging::BuildOptions& o = arguments->options;
-  command->add_option("DEM", arguments->dems, "Elevation rasters (anything GDAL reads); the finest decides at each place")->required();
-  command->add_option("--image", arguments->images, "Image rasters")->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      ->add_option("DEM", arguments->dems,
+                   "Elevation rasters (anything GDAL reads); the finest decides at each place")
+      ->required();
+  command->add_option("--image", arguments->images, "Image rasters")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("-o,--output", o.output, "Planet file to write")->required();
-  command->add_option("--region", arguments->regions, "WEST,SOUTH,EAST,NORTH: full resolution only there (repeatable)")
-      ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--spacing", o.finest_spacing_m, "Finest post spacing, metres (default: as the sources)")->check(number_within(0.01, 1e6));
-  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")->check(number_within(100.0, 1e6))->capture_default_str();
-  command->add_option("--radius", o.radius_m, "Radius of the sphere, metres")->check(number_within(100.0, 1e9))->capture_default_str();
+  command
+      ->add_option("--region", arguments->regions,
+                   "WEST,SOUTH,EAST,NORTH: full resolution only there (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--spacing", o.finest_spacing_m, "Finest post spacing, metres (default: as the sources)")
+      ->check(number_within(0.01, 1e6));
+  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")
+      ->check(number_within(100.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--radius", o.radius_m, "Radius of the sphere, metres")
+      ->check(number_within(100.0, 1e9))
+      ->capture_default_str();
   command->add_option("--body", o.body, "Name of the body")->capture_default_str();
   command->callback([arguments, &common] { build(*arguments, common); });
 }

@@ -27,7 +27,8 @@ class ConfigFile {
     for (const auto& [key, node] : config) {
       if (node.is_table()) continue;
       const auto all = program_.get_subcommands({});
-      if (std::none_of(all.begin(), all.end(), [&](CLI::App* c) { return option(*c, key.str()) != nullptr; })) {
+      if (std::none_of(all.begin(), all.end(),
+                       [name = key.str()](CLI::App* c) { return option(*c, name) != nullptr; })) {
         fail(node, "no command has an option --" + std::string(key.str()));
       }
       if (CLI::Option* found = option(command_, key.str())) set(*found, key.str(), node);
@@ -48,19 +49,21 @@ class ConfigFile {
     std::ifstream in(path_, std::ios::binary);
     // A folder opens, but cannot be read.
     if (!in || (in.peek(), in.bad())) {
-      throw UsageError("--config " + path_ + ": cannot read the file: " + std::strerror(errno) + "; check the name");
+      throw UsageError("--config " + path_ + ": cannot read the file: " + std::strerror(errno) +
+                       "; check the name");
     }
     try {
       return toml::parse(in, path_);
     } catch (const toml::parse_error& e) {
-      throw UsageError(path_ + ":" + std::to_string(e.source().begin.line) + ": not TOML: " +
-                       std::string(e.description()));
+      throw UsageError(path_ + ":" + std::to_string(e.source().begin.line) +
+                       ": not TOML: " + std::string(e.description()));
     }
   }
 
   void apply_table(const toml::key& name, const toml::table& table) {
     const auto all = program_.get_subcommands({});
-    const auto at = std::find_if(all.begin(), all.end(), [&](CLI::App* c) { return c->get_name() == name.str(); });
+    const auto at =
+        std::find_if(all.begin(), all.end(), [&](CLI::App* c) { return c->get_name() == name.str(); });
     if (at == all.end()) fail(table, "[" + std::string(name.str()) + "] is not a command");
     for (const auto& [key, node] : table) {
       CLI::Option* found = option(**at, key.str());

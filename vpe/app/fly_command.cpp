@@ -39,13 +39,15 @@ struct FlyArguments {
 
 scripts::Flight read_flight(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path + ": cannot open the flight: " + std::strerror(errno) + "; check the name");
+  if (!in)
+    throw std::runtime_error(path + ": cannot open the flight: " + std::strerror(errno) + "; check the name");
   std::ostringstream text;
   text << in.rdbuf();
   scripts::ParsedFlight parsed = scripts::parse_flight(text.str(), path);
   if (parsed.flight) return *parsed.flight;
   std::string all;
-  for (const scripts::FlightError& e : parsed.errors) all += (all.empty() ? "" : "\n     ") + scripts::to_string(e);
+  for (const scripts::FlightError& e : parsed.errors)
+    all += (all.empty() ? "" : "\n     ") + scripts::to_string(e);
   throw std::runtime_error(all);
 }
 
@@ -97,13 +99,14 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (film) video.emplace(arguments.output, flight.view.width, flight.view.height, flight.view.fps);
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
-  const auto terrain = [x = base.values().exaggeration, surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
+  const auto terrain = [x = base.values().exaggeration,
+                        surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
                            mars::LonLat place) { return x * surface->at(mars::direction(place)).height_m; };
   const scripts::Path path(flight, planet->radius_m(), terrain);
   if (const auto lowest = scripts::lowest_clearance(path, flight.view.fps, terrain);
       lowest && lowest->height_m < 0 && !common.quiet) {
-    std::fprintf(stderr, "vpe: warning: %s passes %.0f m under the terrain at %.2f s\n", arguments.flight.c_str(),
-                 -lowest->height_m, lowest->time_s);
+    std::fprintf(stderr, "vpe: warning: %s passes %.0f m under the terrain at %.2f s\n",
+                 arguments.flight.c_str(), -lowest->height_m, lowest->time_s);
   }
 
   const auto renderer = make_renderer(arguments.picture, common, planet);
@@ -159,8 +162,10 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (stats) stats->close();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (common.json) {
-    nlohmann::json json{{"output", arguments.output},      {"frames", done},
-                        {"seconds", seconds},              {"shift_bound_px", worst_px},
+    nlohmann::json json{{"output", arguments.output},
+                        {"frames", done},
+                        {"seconds", seconds},
+                        {"shift_bound_px", worst_px},
                         {"mean_triangles", triangles / std::max<std::int64_t>(done, 1)},
                         {"illustration", planet->meta().illustration}};
     print_json(json);
@@ -174,7 +179,8 @@ void fly(FlyArguments& arguments, const Common& common) {
 
 void add_fly(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<FlyArguments>();
-  CLI::App* command = add_command(program, "fly", "Draw a scripted flight as a video or as frames", common, true);
+  CLI::App* command =
+      add_command(program, "fly", "Draw a scripted flight as a video or as frames", common, true);
   command->add_option("FLIGHT", arguments->flight, "Flight file")->required();
   command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
   command->add_option("-o,--output", arguments->output, "Video (.mp4) or folder for PNG frames")->required();

@@ -17,7 +17,9 @@ void info(const std::string& argument, const Common& common) {
     print_json(json);
     return;
   }
-  const auto line = [](const char* what, const std::string& value) { std::printf("%-18s %s\n", what, value.c_str()); };
+  const auto line = [](const char* what, const std::string& value) {
+    std::printf("%-18s %s\n", what, value.c_str());
+  };
   const auto number = [](double x, const char* unit) {
     char text[64];
     std::snprintf(text, sizeof text, "%.6g %s", x, unit);
@@ -27,19 +29,26 @@ void info(const std::string& argument, const Common& common) {
   if (m.illustration) line("NOTE", "an illustration: numbers are not data");
   line("body", m.body + ", sphere of radius " + number(m.radius_m, "m"));
   line("vertical datum", m.datum);
-  line("heights", number(m.lowest_radius_m - m.radius_m, "m") + " .. " + number(m.highest_radius_m - m.radius_m, "m") +
-                      ", stored in steps of " + number(m.quantum_m, "m"));
+  line("heights", number(m.lowest_radius_m - m.radius_m, "m") + " .. " +
+                      number(m.highest_radius_m - m.radius_m, "m") + ", stored in steps of " +
+                      number(m.quantum_m, "m"));
   line("tiles", std::to_string(m.tiles) + " (" + std::to_string(m.leaf_tiles) + " finest) of " +
-                    std::to_string(m.tile.intervals()) + " intervals, levels 1 .. " + std::to_string(m.finest_level + 1));
+                    std::to_string(m.tile.intervals()) + " intervals, levels 1 .. " +
+                    std::to_string(m.finest_level + 1));
   line("finest posts", number(lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m), "m"));
-  line("image", m.image_tiles == 0 ? "none" : std::to_string(m.image_tiles) + " tiles, finest texels " +
-                    number(lod::post_spacing_m(m.finest_image_level, paging::kImageIntervals, m.radius_m), "m"));
-  line("resampling error", "RMS " + number(m.resampling.rms_m, "m") + ", maximum " + number(m.resampling.max_m, "m") +
-                               " over " + std::to_string(m.resampling.posts) + " source posts");
+  line("image",
+       m.image_tiles == 0
+           ? "none"
+           : std::to_string(m.image_tiles) + " tiles, finest texels " +
+                 number(lod::post_spacing_m(m.finest_image_level, paging::kImageIntervals, m.radius_m), "m"));
+  line("resampling error", "RMS " + number(m.resampling.rms_m, "m") + ", maximum " +
+                               number(m.resampling.max_m, "m") + " over " + std::to_string(m.resampling.posts) +
+                               " source posts");
   for (const mars::SourceInfo& s : m.sources) {
     line("elevation from", s.name + " (" + number(s.resolution_m, "m") + " posts, datum " + s.datum + ")");
   }
-  for (const mars::SourceInfo& s : m.image_sources) line("image from", s.name + " (" + number(s.resolution_m, "m") + " pixels)");
+  for (const mars::SourceInfo& s : m.image_sources)
+    line("image from", s.name + " (" + number(s.resolution_m, "m") + " pixels)");
   line("built by", "vpe " + m.program + ", identity " + m.identity);
 }
 

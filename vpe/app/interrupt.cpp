@@ -14,7 +14,8 @@ void note(int signal) { g_signal.store(signal); }
 
 }  // namespace
 
-InterruptGuard::InterruptGuard() : interrupt_(std::signal(SIGINT, note)), terminate_(std::signal(SIGTERM, note)) {}
+InterruptGuard::InterruptGuard()
+    : interrupt_(std::signal(SIGINT, note)), terminate_(std::signal(SIGTERM, note)) {}
 
 InterruptGuard::~InterruptGuard() {
   std::signal(SIGINT, interrupt_);

@@ -33,16 +33,20 @@ std::string extension(const fs::path& path) {
 
 void check_output(const fs::path& path) {
   std::error_code error;
-  if (!path.has_filename() || fs::is_directory(path, error)) fail(path, "it is a folder; give the name of a file");
+  if (!path.has_filename() || fs::is_directory(path, error))
+    fail(path, "it is a folder; give the name of a file");
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, error)) fail(path, "there is no folder '" + folder.string() + "'; make it first");
+  if (!fs::is_directory(folder, error))
+    fail(path, "there is no folder '" + folder.string() + "'; make it first");
   if (::access(folder.c_str(), W_OK) != 0) {
-    fail(path, "folder '" + folder.string() + "': " + std::strerror(errno) + "; choose another or change its permissions");
+    fail(path, "folder '" + folder.string() + "': " + std::strerror(errno) +
+                   "; choose another or change its permissions");
   }
 }
 
 void check_picture_output(const fs::path& path) {
-  if (!core::is_image_path(path)) fail(path, "no known picture format; let the name end in .png, .jpg or .jpeg");
+  if (!core::is_image_path(path))
+    fail(path, "no known picture format; let the name end in .png, .jpg or .jpeg");
   check_output(path);
 }
 
@@ -54,7 +58,8 @@ void check_range_output(const fs::path& path) {
 
 void check_stats_output(const fs::path& path) {
   const std::string end = extension(path);
-  if (end != ".csv" && end != ".jsonl") fail(path, "no known format of statistics; let the name end in .csv or .jsonl");
+  if (end != ".csv" && end != ".jsonl")
+    fail(path, "no known format of statistics; let the name end in .csv or .jsonl");
   check_output(path);
 }
 
@@ -78,7 +83,9 @@ bool check_film_output(const fs::path& path) {
 void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error) throw std::runtime_error(path.string() + ": cannot make the folder: " + error.message() + "; choose another");
+  if (error)
+    throw std::runtime_error(path.string() + ": cannot make the folder: " + error.message() +
+                             "; choose another");
 }
 
 }  // namespace vpe::app

@@ -7,10 +7,15 @@
 namespace vpe::app {
 
 void add_picture_options(CLI::App& command, PictureOptions& options) {
-  command.add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
-      ->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--backend", options.backend, "How to draw")->check(CLI::IsMember({"polygon"}))->capture_default_str();
-  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")->check(number_within(0.0, 1000.0));
+  command
+      .add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--backend", options.backend, "How to draw")
+      ->check(CLI::IsMember({"polygon"}))
+      ->capture_default_str();
+  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")
+      ->check(number_within(0.0, 1000.0));
 }
 
 core::Settings make_settings(const PictureOptions& options) {
@@ -36,7 +41,8 @@ std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, con
 }
 
 glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose) {
-  return mars::sun_direction({pose.lon_deg, pose.lat_deg}, settings.sun_azimuth_deg, settings.sun_elevation_deg);
+  return mars::sun_direction({pose.lon_deg, pose.lat_deg}, settings.sun_azimuth_deg,
+                             settings.sun_elevation_deg);
 }
 
 Size parse_size(const std::string& text) {
@@ -47,7 +53,9 @@ Size parse_size(const std::string& text) {
     width = core::parse_integer(std::string_view(text).substr(0, x));
     height = core::parse_integer(std::string_view(text).substr(x + 1));
   }
-  const auto fits = [](const std::optional<std::int64_t>& n) { return n && *n >= 1 && *n <= core::ViewLimits::kMaxSide_px; };
+  const auto fits = [](const std::optional<std::int64_t>& n) {
+    return n && *n >= 1 && *n <= core::ViewLimits::kMaxSide_px;
+  };
   if (!fits(width) || !fits(height)) {
     throw UsageError("--size '" + text + "': expected WIDTHxHEIGHT, each within 1.." +
                      std::to_string(core::ViewLimits::kMaxSide_px));

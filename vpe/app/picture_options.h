@@ -12,9 +12,9 @@
 namespace vpe::app {
 
 struct PictureOptions {
-  std::vector<std::string> set;   // KEY=VALUE
+  std::vector<std::string> set;  // KEY=VALUE
   std::string backend = "polygon";
-  double tolerance_px = -1;       // < 0: as set
+  double tolerance_px = -1;  // < 0: as set
 };
 
 void add_picture_options(CLI::App& command, PictureOptions& options);

@@ -56,7 +56,8 @@ void build_into(const fs::path& target, const std::string& what, const mars::Ele
   paging::BuildOptions options;
   options.output = target.string();
   options.threads = common.threads;
-  // An analytic source is sampled one place at a time here: enough for a figure that is stable to a few per cent.
+  // An analytic source is sampled one place at a time here: enough for a figure that is stable to a few per
+  // cent.
   if (elevation.infos().front().illustration) options.resampling_posts = 100'000;
   paging::build_planet(options, elevation, image, [&](const paging::BuildProgress& p) {
     InterruptGuard::check();
@@ -110,16 +111,18 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
   if (argument.empty()) {
     const std::string name = "embedded-mars-" + std::to_string(kCacheGeneration);
     return cached(name, "the embedded Mars (an illustration)", [&](const fs::path& target) {
-      build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(), mars::embedded_image().get(), common);
+      build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(),
+                 mars::embedded_image().get(), common);
     });
   }
   if (ends_with(argument, ".vpe") || is_sqlite(argument)) return paging::PlanetFile::open(argument);
   const auto source = mars::open_elevation(argument);
   const mars::SourceInfo info = source->infos().front();
   const std::string path = fs::weakly_canonical(argument).string();
-  const std::string identity = path + '\n' + std::to_string(info.size_bytes) + '\n' + std::to_string(info.mtime_s) + '\n' +
-                               std::to_string(kCacheGeneration);
-  const std::int64_t sum = paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
+  const std::string identity = path + '\n' + std::to_string(info.size_bytes) + '\n' +
+                               std::to_string(info.mtime_s) + '\n' + std::to_string(kCacheGeneration);
+  const std::int64_t sum =
+      paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
   const std::string name = fs::path(argument).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
   return cached(name, argument,
                 [&](const fs::path& target) { build_into(target, argument, *source, nullptr, common); });

@@ -56,7 +56,9 @@ CLI::Validator number_within(double low, double high) {
   const std::string range = core::format_number(low) + " .. " + core::format_number(high);
   return {[low, high, range](const std::string& text) {
             const auto number = core::parse_number(text);
-            return number && *number >= low && *number <= high ? "" : "'" + text + "' is not a number within " + range;
+            return number && *number >= low && *number <= high
+                       ? ""
+                       : "'" + text + "' is not a number within " + range;
           },
           range};
 }
@@ -64,8 +66,12 @@ CLI::Validator number_within(double low, double high) {
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& about, Common& common,
                       bool with_json) {
   CLI::App* command = program.add_subcommand(name, about);
-  command->add_option("--memory", common.memory_mb, "Memory for data, MB")->check(CLI::Range(64, 1 << 20))->capture_default_str();
-  command->add_option("--threads", common.threads, "Worker threads, 0 = all cores")->check(CLI::Range(0, 1024))->capture_default_str();
+  command->add_option("--memory", common.memory_mb, "Memory for data, MB")
+      ->check(CLI::Range(64, 1 << 20))
+      ->capture_default_str();
+  command->add_option("--threads", common.threads, "Worker threads, 0 = all cores")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
   command->add_flag("--quiet,-q", common.quiet, "No progress, only errors");
   add_config_option(program, *command);
   if (with_json) command->add_flag("--json", common.json, "Print figures as JSON on stdout");
@@ -79,7 +85,8 @@ int run(int argc, char** argv) {
   CLI::App program("vpe explores planets: build planet files, ask them, draw them, fly over them.", "vpe");
   program.set_version_flag("--version", std::string("vpe ") + VPE_VERSION);
   program.require_subcommand(1);
-  program.footer("'vpe COMMAND --help' explains a command. Without a PLANET the embedded Mars (an illustration) is used.");
+  program.footer(
+      "'vpe COMMAND --help' explains a command. Without a PLANET the embedded Mars (an illustration) is used.");
   Common common;
   add_build(program, common);
   add_info(program, common);

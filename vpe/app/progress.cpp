@@ -24,10 +24,11 @@ void ProgressLine::show(const std::string& what, double fraction) {
   std::string left = "...";
   if (fraction > 0.01) {
     const auto seconds = static_cast<long>(elapsed * (1.0 - fraction) / fraction + 0.5);
-    left = std::to_string(seconds / 60) + ":" + (seconds % 60 < 10 ? "0" : "") + std::to_string(seconds % 60) + " left";
+    left = std::to_string(seconds / 60) + ":" + (seconds % 60 < 10 ? "0" : "") + std::to_string(seconds % 60) +
+           " left";
   }
-  std::fprintf(stderr, "%s%s: %.0f %%, %s%s", terminal_ ? "\r" : "", what.c_str(), 100.0 * fraction, left.c_str(),
-               terminal_ ? "\033[K" : "\n");
+  std::fprintf(stderr, "%s%s: %.0f %%, %s%s", terminal_ ? "\r" : "", what.c_str(), 100.0 * fraction,
+               left.c_str(), terminal_ ? "\033[K" : "\n");
   std::fflush(stderr);
 }
 

@@ -58,12 +58,18 @@ Answer ask(const paging::Surface& surface, mars::LonLat place) {
 nlohmann::json to_json(const Answer& a, const paging::PlanetMeta& meta) {
   using nlohmann::json;
   const auto value = [&](double x) { return a.missing ? json() : json(x); };
-  return {{"lon_deg", a.place.lon_deg},       {"lat_deg", a.place.lat_deg},
-          {"elevation_m", value(a.elevation_m)}, {"datum", meta.datum},
-          {"slope_deg", value(a.slope_deg)},  {"aspect_deg", value(a.aspect_deg)},
-          {"level", a.level},                 {"post_spacing_m", a.spacing_m},
-          {"source", a.source},               {"tile_error_m", a.error_m},
-          {"resampling_max_m", meta.resampling.max_m}, {"illustration", meta.illustration}};
+  return {{"lon_deg", a.place.lon_deg},
+          {"lat_deg", a.place.lat_deg},
+          {"elevation_m", value(a.elevation_m)},
+          {"datum", meta.datum},
+          {"slope_deg", value(a.slope_deg)},
+          {"aspect_deg", value(a.aspect_deg)},
+          {"level", a.level},
+          {"post_spacing_m", a.spacing_m},
+          {"source", a.source},
+          {"tile_error_m", a.error_m},
+          {"resampling_max_m", meta.resampling.max_m},
+          {"illustration", meta.illustration}};
 }
 
 std::string csv_field(const std::string& text) {
@@ -98,7 +104,9 @@ std::vector<mars::LonLat> read_places(std::istream& in) {
   std::string line;
   bool first = true;
   for (int number = 1; std::getline(in, line); ++number) {
-    line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\r' || c == '\t'; }), line.end());
+    line.erase(
+        std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\r' || c == '\t'; }),
+        line.end());
     if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     if (line.empty() || line.front() == '#') continue;
     const bool header = std::exchange(first, false) && line.find_first_of("0123456789") == std::string::npos;
@@ -135,7 +143,8 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
   for (std::size_t n = 0; n < places.size(); ++n) {
     position[n] = lod::pack(lod::tile_at(mars::chart_point(mars::direction(places[n])), level));
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return position[a] < position[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return position[a] < position[b]; });
   std::vector<Answer> answers(places.size());
   for (const std::size_t n : order) answers[n] = ask(surface, places[n]);
 
@@ -153,8 +162,10 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
 
 void add_query(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = add_command(program, "query", "Elevation, slope, level, source and error at places", common, true);
-  command->add_option("PLANET_AND_PLACES", *arguments, "[PLANET] LON,LAT... (degrees east, north); places from stdin when none is given");
+  CLI::App* command =
+      add_command(program, "query", "Elevation, slope, level, source and error at places", common, true);
+  command->add_option("PLANET_AND_PLACES", *arguments,
+                      "[PLANET] LON,LAT... (degrees east, north); places from stdin when none is given");
   command->callback([arguments, &common] { query(*arguments, common); });
 }
 

@@ -32,7 +32,8 @@ mars::Pose parse_pose(const RenderArguments& arguments, const std::function<doub
   const bool has_alt_too = arguments.has_height && n && n->size() == 6;
   const std::size_t skip = has_alt_too ? 3 : angles;
   if (!n || n->size() < angles || n->size() > skip + 3) {
-    throw UsageError("--pose '" + arguments.pose + "': expected LON,LAT," + (arguments.has_height ? "" : "ALT,") +
+    throw UsageError("--pose '" + arguments.pose + "': expected LON,LAT," +
+                     (arguments.has_height ? "" : "ALT,") +
                      "YAW,PITCH,ROLL (degrees, metres above the sphere; --height M replaces ALT)");
   }
   const auto angle = [&](std::size_t k) { return skip + k < n->size() ? (*n)[skip + k] : 0.0; };
@@ -79,7 +80,8 @@ void render(RenderArguments& arguments, const Common& common) {
   if (request.want_range) {
     core::write_tiff(arguments.range, result.frame.range_m, result.frame.width, result.frame.height);
   }
-  if (!arguments.certificate.empty()) core::write_file(arguments.certificate, core::to_json(result.certificate) + "\n");
+  if (!arguments.certificate.empty())
+    core::write_file(arguments.certificate, core::to_json(result.certificate) + "\n");
   if (common.json) {
     nlohmann::json json{{"output", arguments.output},
                         {"certificate", nlohmann::json::parse(core::to_json(result.certificate))},
@@ -98,13 +100,19 @@ void add_render(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = add_command(program, "render", "Draw one picture", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
-  command->add_option("--pose", arguments->pose, "LON,LAT,ALT,YAW,PITCH,ROLL: degrees, metres above the sphere")->required();
-  CLI::Option* height = command->add_option("--height", arguments->height_m, "Metres above the terrain, instead of ALT")->check(number_within(-1e7, 1e10));
+  command->add_option("--pose", arguments->pose, "LON,LAT,ALT,YAW,PITCH,ROLL: degrees, metres above the sphere")
+      ->required();
+  CLI::Option* height =
+      command->add_option("--height", arguments->height_m, "Metres above the terrain, instead of ALT")
+          ->check(number_within(-1e7, 1e10));
   command->add_option("-o,--output", arguments->output, "Picture to write (.png, .jpg)")->required();
   command->add_option("--range", arguments->range, "Also write the range of every pixel, metres (.tif)");
-  command->add_option("--certificate", arguments->certificate, "Also write what the picture's error is (.json)");
+  command->add_option("--certificate", arguments->certificate,
+                      "Also write what the picture's error is (.json)");
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
-  command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))->capture_default_str();
+  command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
+      ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
+      ->capture_default_str();
   add_picture_options(*command, arguments->picture);
   command->callback([arguments, height, &common] {
     arguments->has_height = height->count() > 0;

@@ -2,8 +2,8 @@
 
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
-#include "vpe/core/settings.h"
 #include "vpe/core/number.h"
+#include "vpe/core/settings.h"
 
 namespace vpe::app {
 
@@ -22,23 +22,27 @@ void settings(const Common& common) {
   if (common.json) {
     nlohmann::json list = nlohmann::json::array();
     for (const core::SettingInfo& info : core::Settings::list()) {
-      list.push_back({{"key", info.key}, {"default", info.default_text}, {"range", range_text(info)},
-                      {"unit", info.unit}, {"meaning", info.meaning}});
+      list.push_back({{"key", info.key},
+                      {"default", info.default_text},
+                      {"range", range_text(info)},
+                      {"unit", info.unit},
+                      {"meaning", info.meaning}});
     }
     print_json(list);
     return;
   }
   for (const core::SettingInfo& info : core::Settings::list()) {
-    std::printf("%-16s %s\n%-16s   default %s; %s%s%s\n", std::string(info.key).c_str(), std::string(info.meaning).c_str(),
-                "", info.default_text.c_str(), range_text(info).c_str(), info.unit.empty() ? "" : " ",
-                std::string(info.unit).c_str());
+    std::printf("%-16s %s\n%-16s   default %s; %s%s%s\n", std::string(info.key).c_str(),
+                std::string(info.meaning).c_str(), "", info.default_text.c_str(), range_text(info).c_str(),
+                info.unit.empty() ? "" : " ", std::string(info.unit).c_str());
   }
 }
 
 }  // namespace
 
 void add_settings(CLI::App& program, Common& common) {
-  CLI::App* command = add_command(program, "settings", "List what --set and a flight's set can change", common, true);
+  CLI::App* command =
+      add_command(program, "settings", "List what --set and a flight's set can change", common, true);
   command->callback([&common] { settings(common); });
 }
 

@@ -18,24 +18,50 @@ namespace vpe::app {
 
 namespace fs = std::filesystem;
 
-VideoWriter::VideoWriter(fs::path path, int width, int height, const scripts::FrameRate& rate) : path_(std::move(path)) {
+VideoWriter::VideoWriter(fs::path path, int width, int height, const scripts::FrameRate& rate)
+    : path_(std::move(path)) {
   if (width % 2 != 0 || height % 2 != 0) {
-    throw std::runtime_error(path_.string() + ": a video needs an even width and height, not " + std::to_string(width) +
-                             "x" + std::to_string(height));
+    throw std::runtime_error(path_.string() + ": a video needs an even width and height, not " +
+                             std::to_string(width) + "x" + std::to_string(height));
   }
   part_ = path_.string() + ".part";
   log_ = path_.string() + ".log.part";
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  std::vector<std::string> words{"ffmpeg", "-y", "-nostdin", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24",
-                                 "-s", size, "-framerate", scripts::to_text(rate), "-i", "-", "-c:v", "libx264",
-                                 "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
-                                 "-f", "mp4", part_.string()};
+  std::vector<std::string> words{"ffmpeg",
+                                 "-y",
+                                 "-nostdin",
+                                 "-loglevel",
+                                 "error",
+                                 "-f",
+                                 "rawvideo",
+                                 "-pix_fmt",
+                                 "rgb24",
+                                 "-s",
+                                 size,
+                                 "-framerate",
+                                 scripts::to_text(rate),
+                                 "-i",
+                                 "-",
+                                 "-c:v",
+                                 "libx264",
+                                 "-preset",
+                                 "veryfast",
+                                 "-crf",
+                                 "18",
+                                 "-pix_fmt",
+                                 "yuv420p",
+                                 "-movflags",
+                                 "+faststart",
+                                 "-f",
+                                 "mp4",
+                                 part_.string()};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
@@ -107,7 +133,8 @@ void VideoWriter::close() {
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail("ffmpeg failed");
   std::error_code error;
   fs::rename(part_, path_, error);
-  if (error) throw std::runtime_error(path_.string() + ": cannot rename the finished video: " + error.message());
+  if (error)
+    throw std::runtime_error(path_.string() + ": cannot rename the finished video: " + error.message());
 }
 
 }  // namespace vpe::app
