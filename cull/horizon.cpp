@@ -33,4 +33,17 @@ bool hidden(const Horizon& horizon, double chord2, double max_radius_m) {
   return chord2 > safe * safe;
 }
 
+// The angle from the nadir to a point grows with its radius, and with its chord up to where the ray touches the
+// sphere of its radius. So the highest and farthest point decides.
+bool against_sky(const Eye& eye, const Horizon& horizon, double chord2, double max_radius_m) {
+  if (!horizon.hides) return true;
+  const double cosine = 1.0 - 0.5 * chord2;
+  if (!(eye.radius_m > max_radius_m) || cosine * eye.radius_m <= max_radius_m) return true;
+  const double sine2 = chord2 * (1.0 - 0.25 * chord2);
+  const double below = eye.radius_m - max_radius_m;
+  const double range2 = below * below + eye.radius_m * max_radius_m * chord2;
+  const double passes2 = eye.radius_m * eye.radius_m * max_radius_m * max_radius_m * sine2 / range2;
+  return passes2 >= horizon.occluder_m * horizon.occluder_m * (1.0 - 1e-12);
+}
+
 }  // namespace cull

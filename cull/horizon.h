@@ -18,4 +18,9 @@ Horizon make_horizon(const Eye& eye, double occluder_radius_m);
 // direction is chord2 or more. Conservative: true only beyond the limit by more than its rounding.
 bool hidden(const Horizon& horizon, double chord2, double max_radius_m);
 
+// True unless every ray from the eye to a point of radius <= max_radius_m at squared chord chord2 or less from the
+// eye's direction meets the occluder when it is drawn out to both sides: then whatever stands there has ground
+// behind it, and never the sky. Conservative: false only by more than its rounding.
+bool against_sky(const Eye& eye, const Horizon& horizon, double chord2, double max_radius_m);
+
 }  // namespace cull

@@ -28,9 +28,9 @@ void check(const SelectOptions& options, const SelectView& view) {
   if (options.max_triangles < 0) throw std::invalid_argument("select: the number of triangles is negative");
 }
 
-double projected(double error_m, double focal_px, double distance_m) {
+double projected(double error_m, double focal_px, double distance_m, double stretch) {
   if (error_m == 0.0) return 0.0;
-  return distance_m > 0.0 ? error_m * focal_px / distance_m : std::numeric_limits<double>::infinity();
+  return distance_m > 0.0 ? stretch * (error_m * focal_px / distance_m) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ double projected(double error_m, double focal_px, double distance_m) {
 SelectView select_view(const vpe::core::View& view) {
   const bool perspective = view.projection == vpe::core::Projection::kPerspective;
   return {view.eye.eye_m, perspective ? vpe::core::focal_px(view) : view.width / (2.0 * std::numbers::pi),
-          cull::make_frustum(view)};
+          cull::make_frustum(view), picture_plane(view)};
 }
 
 class Selector {
@@ -58,7 +58,7 @@ class Selector {
     reset();
     Family family;
     for (TileTree::Index root = 0; root < mars::kFaces; ++root)
-      visit(root, cull::all_planes(view_.frustum), family);
+      visit(root, cull::all_planes(view_.frustum), std::numeric_limits<double>::infinity(), family);
     commit(family);
     while (!heap_.empty() && refine_worst()) {
     }
@@ -105,11 +105,12 @@ class Selector {
 
   void measure(Candidate& c, const cull::Shell& shell) const {
     c.min_distance_m = cull::min_distance_m(eye_, c.chord2, shell.min_radius_m, shell.max_radius_m);
-    c.error_px = projected(c.error_m, view_.focal_px, c.min_distance_m);
+    c.error_px = projected(c.error_m, view_.focal_px, c.min_distance_m, c.stretch);
     c.urgency = c.error_px * c.factor;
   }
 
-  void visit(TileTree::Index index, cull::PlaneMask mask, Family& family) const {
+  // mask and stretch: what the parent is known to keep to, and so its children.
+  void visit(TileTree::Index index, cull::PlaneMask mask, double most_stretch, Family& family) const {
     const TileInfo& tile = tree_[index];
     Candidate c{};
     c.index = index;
@@ -121,8 +122,9 @@ class Selector {
       ++family.culled_horizon;
       return;
     }
+    const cull::TileVolume volume = cull::make_volume(shell);
     if (mask != 0) {
-      const auto crossed = cull::planes_crossed(view_.frustum, cull::make_volume(shell), mask);
+      const auto crossed = cull::planes_crossed(view_.frustum, volume, mask);
       if (!crossed) {
         ++family.culled_frustum;
         return;
@@ -130,6 +132,11 @@ class Selector {
       mask = *crossed;
     }
     c.mask = mask;
+    c.stretch = 1.0;
+    if (view_.plane.flat && cull::against_sky(eye_, horizon_, cull::farthest_chord2(shell.rect, eye_.direction),
+                                              shell.max_radius_m)) {
+      c.stretch = std::min(most_stretch, stretch(view_.plane, volume));
+    }
     c.factor = 1.0;
     measure(c, shell);
     if (options_.level_shift.levels != nullptr) {
@@ -162,7 +169,7 @@ class Selector {
     Family family;
     if (tile.has_children) {
       const TileTree::Index first = tree_.first_child(worst.index);
-      for (TileTree::Index c = first; c < first + 4; ++c) visit(c, worst.mask, family);
+      for (TileTree::Index c = first; c < first + 4; ++c) visit(c, worst.mask, worst.stretch, family);
     } else {
       Candidate& next = family.members[family.size++];
       next = worst;
@@ -184,7 +191,8 @@ class Selector {
   }
 
   void draw(const Candidate& c) {
-    out_.tiles.push_back({tree_[c.index].key, c.index, c.variant, c.error_m, c.error_px, c.min_distance_m});
+    out_.tiles.push_back({tree_[c.index].key, c.index, c.variant, c.error_m, c.error_px, c.min_distance_m,
+                          c.stretch});
   }
 
   void finish() {

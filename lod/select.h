@@ -3,8 +3,10 @@
 // Starting from the six roots, whatever cannot be seen is dropped (horizon, frustum) and the tile with the
 // worst projected error is refined, until the worst is within the tolerance or the triangles are spent. A tile
 // with children is replaced by them, a finest tile by its next mesh. The projected error of a tile is
-//   error bound (m) * focal length (px) / least distance from the eye to where the tile's surface can be (m),
-// an upper bound of the shift of every pixel that the tile covers.
+//   error bound (m) * focal length (px) / least distance from the eye to where the tile's surface can be (m)
+//   * stretch of the tile's place in the picture (lod/stretch.h), where the tile may stand against the sky,
+// an upper bound of the shift of every pixel that the tile covers, and of how far off in the picture its outline lies
+// against the sky.
 #pragma once
 
 #include <array>
@@ -13,6 +15,7 @@
 #include <vector>
 
 #include "cull/frustum.h"
+#include "lod/stretch.h"
 #include "lod/tree.h"
 
 namespace lod {
@@ -38,9 +41,10 @@ struct SelectView {
   glm::dvec3 eye_m{0, 0, 0};
   double focal_px = 1.0;  // pixels of picture for a tangent of 1
   cull::Frustum frustum;
+  PicturePlane plane;
 };
 
-// Panoramas: no frustum, pixels for a radian on the horizon.
+// Panoramas: no frustum, no plane, pixels for a radian on the horizon.
 SelectView select_view(const vpe::core::View& view);
 
 struct SelectedTile {
@@ -50,6 +54,7 @@ struct SelectedTile {
   double error_m = 0;         // bound at the exaggeration selected for
   double error_px = 0;        // projected; infinite where the eye is within the error of the ground
   double min_distance_m = 0;  // lower bound
+  double stretch = 1;         // upper bound, >= 1; 1 for what cannot stand against the sky
 };
 
 struct Selection {
@@ -76,6 +81,7 @@ class SelectScratch {
     double error_m;
     double error_px;
     double min_distance_m;
+    double stretch;
     double chord2;
     double factor;
     TileTree::Index index;

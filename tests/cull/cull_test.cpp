@@ -349,6 +349,38 @@ TEST(Horizon, NeverHidesATileWithAVisiblePoint) {
   EXPECT_GT(seen, 5000);
 }
 
+TEST(Horizon, WhatHasGroundBehindItIsNeverSeenAgainstTheSky) {
+  Random random(17);
+  int ground = 0;
+  int loose = 0;
+  for (int trial = 0; trial < 100000; ++trial) {
+    const cull::Eye eye = cull::make_eye(random.direction() * (kLowest_m + random.log_uniform(1, 1e8)));
+    const cull::Horizon horizon = cull::make_horizon(eye, kLowest_m);
+    const double top = kLowest_m + random.log_uniform(1, 30000);
+    const double angle = random.log_uniform(1e-6, 3.0);
+    const double chord = 2.0 * std::sin(0.5 * angle);
+    const bool sky = cull::against_sky(eye, horizon, chord * chord, top);
+    const glm::dvec3 aside = glm::normalize(glm::cross(eye.direction, random.direction()));
+    double passes = 0;  // how close to the planet's centre the rays come, at most
+    for (int n = 0; n < 20; ++n) {
+      const double a = n == 0 ? angle : random.uniform(0, angle);
+      const double radius = n == 0 ? top : random.uniform(kLowest_m, top);
+      const glm::dvec3 from = eye.direction * eye.radius_m;
+      const glm::dvec3 to = radius * (std::cos(a) * eye.direction + std::sin(a) * aside);
+      const glm::dvec3 ray = glm::normalize(to - from);
+      passes = std::max(passes, glm::dot(ray, from) < 0 ? glm::length(glm::cross(from, ray)) : top);
+    }
+    if (sky) {
+      loose += passes < kLowest_m * (1 - 1e-9) && eye.radius_m > top ? 1 : 0;
+    } else {
+      ++ground;
+      ASSERT_LT(passes, kLowest_m) << "trial " << trial;
+    }
+  }
+  EXPECT_GT(ground, 20000);
+  EXPECT_LT(loose, 20000);
+}
+
 TEST(Horizon, BelowTheOccluderNothingIsHidden) {
   const cull::Eye eye = cull::make_eye({0, 0, kLowest_m});
   const cull::Horizon horizon = cull::make_horizon(eye, kLowest_m);

@@ -1,54 +1,25 @@
 // The picture against exact ray casts of S: what the certificate promises.
 #include <gtest/gtest.h>
 
-#include "tests/gl/gl_fixture.h"
+#include "tests/gl/certified.h"
 
 namespace {
 
 using test_support::build_fake;
 using test_support::bumpy_height;
-using test_support::fine_around;
 using test_support::FakeElevation;
+using test_support::fine_around;
 using test_support::Random;
 using vpe::core::DrawRequest;
 using vpe::core::DrawResult;
 
-class PolygonError : public test_support::GlTest {
- protected:
-  // Draws and measures; every demand of a certificate is checked.
-  void check(vpe::core::Renderer& renderer, const paging::Surface& surface, const DrawRequest& request,
-             const std::string& name) {
-    const DrawResult result = renderer.draw(request);
-    const std::vector<float> reference = test_support::reference_ranges(surface, request.view);
-    const vpe::core::PictureErrors errors = vpe::core::compare_to_reference(
-        request.view, result.frame.range_m, reference, test_support::radius_of(surface));
-    SCOPED_TRACE(name + " " + vpe::core::to_json(errors) + " " + vpe::core::to_json(result.certificate));
-    EXPECT_EQ(errors.holes, 0);
-    EXPECT_EQ(errors.false_surface, 0);
-    EXPECT_EQ(errors.invalid, 0);
-    // The range image has an error of its own, which moves points along their rays.
-    float nearest = vpe::core::kSkyRange;
-    float farthest = 0;
-    for (const float range : result.frame.range_m) {
-      nearest = std::min(nearest, range);
-      if (std::isfinite(range)) farthest = std::max(farthest, range);
-    }
-    const double range_px = vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(request.view);
-    EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px + range_px);
-    EXPECT_LE(errors.forward.p999_px, 1.0);
-    EXPECT_LE(errors.backward.p999_px, 1.5);
-    const paging::PlanetMeta& meta = surface.planet().meta();
-    const auto horizon = vpe::core::check_horizon(request.view, result.frame.range_m,
-                                                  meta.lowest_radius_m - result.certificate.tile_error_m, meta.highest_radius_m);
-    EXPECT_EQ(horizon.sky_below, 0);
-    EXPECT_EQ(horizon.surface_above, 0);
-    EXPECT_EQ(result.certificate.tiles_missing, 0);
-  }
-};
+using PolygonError = test_support::GlTest;
+using test_support::expect_certified;
 
 TEST_F(PolygonError, ShiftsStayWithinTheCertificate) {
   const glm::dvec3 corner = glm::normalize(glm::dvec3(1, 1, 1));
-  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(corner, 0.05, 5000)), 50000);
+  const auto planet =
+      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(corner, 0.05, 5000)), 50000);
   const paging::Surface surface(planet, std::size_t{1} << 28);
   const auto draw = renderer(planet);
   Random random(61);
@@ -57,34 +28,67 @@ TEST_F(PolygonError, ShiftsStayWithinTheCertificate) {
     const char* name;
     mars::LonLat place;
   };
-  const std::vector<Named> places{{"north pole", {0, 90}},     {"south pole", {77, -90}},   {"antimeridian", {180, 10}},
-                                  {"cube corner", fine},       {"cube edge", {45, 0}},      {"face centre", {0, 0}},
+  const std::vector<Named> places{{"north pole", {0, 90}},
+                                  {"south pole", {77, -90}},
+                                  {"antimeridian", {180, 10}},
+                                  {"cube corner", fine},
+                                  {"cube edge", {45, 0}},
+                                  {"face centre", {0, 0}},
                                   {"inset rim", {fine.lon_deg + 3, fine.lat_deg}}};
   for (const Named& named : places) {
     for (const double height : {30.0, 1500.0, 60000.0, 3e6, 3.4e7}) {
       const double ground = surface.at(mars::direction(named.place)).height_m;
-      const double pitch = height > 1e6 ? -90 : -mars::horizon_dip_rad(height, planet->radius_m()) / mars::kRadiansPerDegree - 8;
+      const double pitch =
+          height > 1e6 ? -90 : -mars::horizon_dip_rad(height, planet->radius_m()) / mars::kRadiansPerDegree - 8;
       const double fov = height > 1e7 ? 15 : 60;
-      const mars::Pose pose{named.place.lon_deg, named.place.lat_deg, ground + height, random.uniform(0, 360), pitch, random.uniform(-30, 30)};
-      check(*draw, surface, test_support::request_for(pose, planet->radius_m(), 160, 96, fov),
-            std::string(named.name) + " at " + std::to_string(height) + " m");
+      const mars::Pose pose{
+          named.place.lon_deg,    named.place.lat_deg, ground + height, random.uniform(0, 360), pitch,
+          random.uniform(-30, 30)};
+      expect_certified(*draw, surface, test_support::request_for(pose, planet->radius_m(), 160, 96, fov),
+                       std::string(named.name) + " at " + std::to_string(height) + " m");
     }
   }
 }
 
 TEST_F(PolygonError, RandomViews) {
   const glm::dvec3 spot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
-  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(spot, 0.05, 10000)), 60000);
+  const auto planet =
+      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(spot, 0.05, 10000)), 60000);
   const paging::Surface surface(planet, std::size_t{1} << 28);
   const auto draw = renderer(planet);
   Random random(62);
   for (int n = 0; n < 20; ++n) {
-    const mars::LonLat place = mars::lon_lat(n % 2 == 0 ? random.direction() : glm::normalize(spot + 0.05 * random.direction()));
+    const mars::LonLat place =
+        mars::lon_lat(n % 2 == 0 ? random.direction() : glm::normalize(spot + 0.05 * random.direction()));
     const double ground = surface.at(mars::direction(place)).height_m;
-    const mars::Pose pose{place.lon_deg, place.lat_deg, ground + random.log_uniform(2, 2e6), random.uniform(0, 360),
-                          random.uniform(-60, 5), random.uniform(-180, 180)};
-    check(*draw, surface, test_support::request_for(pose, planet->radius_m(), 160, 96, random.uniform(20, 90)),
-          "random view " + std::to_string(n));
+    const mars::Pose pose{place.lon_deg,          place.lat_deg,          ground + random.log_uniform(2, 2e6),
+                          random.uniform(0, 360), random.uniform(-60, 5), random.uniform(-180, 180)};
+    expect_certified(*draw, surface,
+                     test_support::request_for(pose, planet->radius_m(), 160, 96, random.uniform(20, 90)),
+                     "random view " + std::to_string(n));
+  }
+}
+
+// Where rounding relative to a tile's centre would be metres of picture.
+TEST_F(PolygonError, AHandAboveTheGround) {
+  const glm::dvec3 spot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
+  const auto planet =
+      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(spot, 0.02, 2000)), 60000);
+  const paging::Surface surface(planet, std::size_t{1} << 28);
+  const auto draw = renderer(planet);
+  Random random(63);
+  for (const double height : {0.1, 0.5, 2.0, 10.0}) {
+    for (int n = 0; n < 4; ++n) {
+      const mars::LonLat place = mars::lon_lat(glm::normalize(spot + 0.01 * random.direction()));
+      const double ground = surface.at(mars::direction(place)).height_m;
+      const mars::Pose pose{place.lon_deg, place.lat_deg, ground + height, random.uniform(0, 360), -30, 5};
+      const DrawRequest request =
+          test_support::request_for(pose, planet->radius_m(), 160, 96, n % 2 == 0 ? 60 : 25);
+      expect_certified(*draw, surface, request, std::to_string(height) + " m");
+      if (height >= 10.0) {
+        EXPECT_LT(draw->draw(request).certificate.shift_bound_px, 1.5);
+      }
+    }
   }
 }
 
@@ -117,7 +121,8 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation([](const glm::dvec3&) { return 0.0; }), 20000);
   const auto draw = renderer(planet);
   const double radius = planet->radius_m();
-  const double spacing = lod::post_spacing_m(planet->meta().finest_level, planet->meta().tile.intervals(), radius);
+  const double spacing =
+      lod::post_spacing_m(planet->meta().finest_level, planet->meta().tile.intervals(), radius);
   for (const double alt : {100.0, 10000.0, 400000.0, 5e6}) {
     const double dip = mars::horizon_dip_rad(alt, radius) / mars::kRadiansPerDegree;
     const DrawRequest request = test_support::request_for({33, -21, alt, 120, -dip, 17}, radius, 200, 150, 40);
@@ -125,6 +130,8 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
     // Cells near a knot of the warp are up to 5 % wider than the mean.
     const double sag = result.certificate.tile_error_m + 2.0 * 1.11 * spacing * spacing / (8 * radius);
     const float nearest = *std::min_element(result.frame.range_m.begin(), result.frame.range_m.end());
+    // Storage and rasterising move what is drawn by so much across the ray, for a metre of distance.
+    const double moved = result.certificate.quantisation_px / vpe::core::focal_px(request.view);
     int surface_pixels = 0;
     double worst_range = 0;
     for (int y = 0; y < 150; ++y) {
@@ -134,14 +141,15 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
         const double lowest = std::sqrt(glm::dot(request.view.eye.eye_m, request.view.eye.eye_m) - half * half);
         const float range = result.frame.range_m[static_cast<std::size_t>(y * 200 + x)];
         // How far the ray passes below the sphere decides; facets may be lower than it by sag.
-        if (half > 0 || lowest > radius) {
+        const double outer = radius + moved * std::abs(half);
+        if (half > 0 || lowest > outer) {
           ASSERT_TRUE(std::isinf(range)) << alt << " " << x << " " << y;
-        } else if (lowest < radius - sag - 1e-6 * alt) {
+        } else if (const double inner = radius - sag - moved * std::abs(half); lowest < inner - 1e-6 * alt) {
           ASSERT_TRUE(std::isfinite(range)) << alt << " " << x << " " << y;
           ++surface_pixels;
-          // The hit lies between the sphere lowered by sag and the sphere.
-          const double near = -half - std::sqrt(radius * radius - lowest * lowest);
-          const double far = -half - std::sqrt((radius - sag) * (radius - sag) - lowest * lowest);
+          // The hit lies between the two spheres.
+          const double near = -half - std::sqrt(outer * outer - lowest * lowest);
+          const double far = -half - std::sqrt(inner * inner - lowest * lowest);
           const double slack = vpe::gl::kRangeError * (1 + far / nearest) * far;
           ASSERT_GE(range, near - slack) << alt << " " << x << " " << y;
           ASSERT_LE(range, far + slack) << alt << " " << x << " " << y;

@@ -46,8 +46,8 @@ inline std::vector<float> reference_ranges(const paging::Surface& surface, const
   out.reserve(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
-      out.push_back(static_cast<float>(
-          surface.cast(view.eye.eye_m, vpe::core::pixel_ray(view, view.part.x + x + 0.5, view.part.y + y + 0.5))));
+      out.push_back(static_cast<float>(surface.cast(
+          view.eye.eye_m, vpe::core::pixel_ray(view, view.part.x + x + 0.5, view.part.y + y + 0.5))));
     }
   }
   return out;

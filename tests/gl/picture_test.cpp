@@ -24,10 +24,14 @@ TEST_F(Picture, ContextNeedsNoDisplay) {
 // A mountain to the east of an eye that looks north stands on the right; up is up.
 TEST_F(Picture, EastIsRightAndUpIsUp) {
   const glm::dvec3 peak = mars::direction({1, 1.5});
-  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation([&](const glm::dvec3& d) {
-                                   const double r = glm::length(d - peak);
-                                   return r < 0.01 ? 20000.0 * (1 - r / 0.01) : 0.0;
-                                 }, test_support::fine_around(peak, 0.02, 5000)), 100000);
+  const auto planet = build_fake(dir_ / "p.vpe",
+                                 FakeElevation(
+                                     [&](const glm::dvec3& d) {
+                                       const double r = glm::length(d - peak);
+                                       return r < 0.01 ? 20000.0 * (1 - r / 0.01) : 0.0;
+                                     },
+                                     test_support::fine_around(peak, 0.02, 5000)),
+                                 100000);
   DrawRequest request = test_support::request_for({0, 0, 8000, 0, 0, 0}, planet->radius_m(), 200, 100);
   const DrawResult result = renderer(planet)->draw(request);
   double x_sum = 0;
@@ -66,7 +70,8 @@ TEST_F(Picture, RollOfTheRightWingDownShowsMoreGroundOnTheRight) {
 TEST_F(Picture, DoesNotDependOnHistory) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 60000);
   const DrawRequest a = test_support::request_for({5, 40, 100000, 30, -25, 0}, planet->radius_m(), 160, 100);
-  const DrawRequest b = test_support::request_for({-100, -70, 20000, 130, -15, 20}, planet->radius_m(), 160, 100);
+  const DrawRequest b =
+      test_support::request_for({-100, -70, 20000, 130, -15, 20}, planet->radius_m(), 160, 100);
   const auto fresh = renderer(planet);
   const DrawResult first = fresh->draw(a);
   // A renderer with next to no memory that has been elsewhere.
@@ -105,7 +110,8 @@ TEST_F(Picture, ModesDrawWhatTheySay) {
   DrawRequest request = test_support::request_for({5, 40, 400000, 30, -60, 0}, planet->radius_m(), 64, 48);
   const auto draw = renderer(planet);
   std::vector<std::vector<mars::Rgb>> pictures;
-  for (const auto mode : {vpe::core::Mode::kWireframe, vpe::core::Mode::kUnlit, vpe::core::Mode::kLit, vpe::core::Mode::kColoured}) {
+  for (const auto mode : {vpe::core::Mode::kWireframe, vpe::core::Mode::kUnlit, vpe::core::Mode::kLit,
+                          vpe::core::Mode::kColoured}) {
     request.settings.mode = mode;
     pictures.push_back(draw->draw(request).frame.colour);
     for (std::size_t n = 0; n + 1 < pictures.size(); ++n) EXPECT_NE(pictures[n], pictures.back());
@@ -143,7 +149,8 @@ TEST_F(Picture, ShadingMeetsAtBorders) {
   };
   const int tiles = 1 << level;
   for (int f = 0; f < mars::kFaces; ++f) {
-    for (const auto& [i, j] : {std::pair{0, 0}, {tiles - 1, tiles - 1}, {0, tiles - 1}, {tiles / 2, tiles / 3}}) {
+    for (const auto& [i, j] :
+         {std::pair{0, 0}, {tiles - 1, tiles - 1}, {0, tiles - 1}, {tiles / 2, tiles / 3}}) {
       const lod::TileKey key{static_cast<mars::Face>(f), level, i, j};
       const vpe::gl::ShadedTile own = shader.shade(key, n, params);
       for (const lod::Edge edge : lod::kEdges) {

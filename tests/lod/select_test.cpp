@@ -79,9 +79,9 @@ core::View hostile_view(Random& random, double exaggeration) {
   return view;
 }
 
-double projected(double error_m, double focal_px, double distance_m) {
+double projected(double error_m, double focal_px, double distance_m, double stretch) {
   if (error_m == 0.0) return 0.0;
-  return distance_m == 0.0 ? std::numeric_limits<double>::infinity() : error_m * focal_px / distance_m;
+  return distance_m == 0.0 ? std::numeric_limits<double>::infinity() : stretch * (error_m * focal_px / distance_m);
 }
 
 void expect_sound(const Selection& s, const TileTree& tree, const SelectOptions& options,
@@ -102,7 +102,7 @@ void expect_sound(const Selection& s, const TileTree& tree, const SelectOptions&
     if (options.exaggeration == 1.0) {
       ASSERT_EQ(t.error_m, mesh.terms.total_m);
     }
-    ASSERT_EQ(t.error_px, projected(t.error_m, focal, t.min_distance_m));
+    ASSERT_EQ(t.error_px, projected(t.error_m, focal, t.min_distance_m, t.stretch));
     worst_m = std::max(worst_m, t.error_m);
     worst_px = std::max(worst_px, t.error_px);
     ++levels[static_cast<std::size_t>(t.key.level)];
@@ -325,7 +325,17 @@ TEST(Select, TheCapIsHardAndSpentOnTheWorstFirst) {
         const cull::Shell shell = rough_tree().shell(parent, 1.0, error_m);
         const double distance_m = cull::min_distance_m(eye, cull::nearest_chord2(shell.rect, eye.direction),
                                                        shell.min_radius_m, shell.max_radius_m);
-        ASSERT_GE(projected(error_m, lod::select_view(view).focal_px, distance_m), s.max_error_px);
+        double stretch = std::numeric_limits<double>::infinity();
+        for (int level = 0; level < tile.key.level; ++level) {
+          const auto outer = static_cast<TileTree::Index>(
+              rough_tree().find(lod::ancestor(tile.key, level)) - &rough_tree()[0]);
+          const cull::Shell around =
+              rough_tree().shell(outer, 1.0, rough_tree()[outer].variants[0].terms.total_m);
+          const bool sky = cull::against_sky(eye, cull::make_horizon(eye, rough_tree().lowest_radius_m(1.0)),
+                                             cull::farthest_chord2(around.rect, eye.direction), around.max_radius_m);
+          stretch = sky ? std::min(stretch, lod::stretch(lod::picture_plane(view), cull::make_volume(around))) : 1.0;
+        }
+        ASSERT_GE(projected(error_m, lod::select_view(view).focal_px, distance_m, stretch), s.max_error_px);
       }
       capped += s.capped ? 1 : 0;
       if (!s.capped) {

@@ -12,7 +12,7 @@ struct Certificate {
   double tile_error_m = 0;     // largest tile error bound among the drawn tiles
   double tile_error_px = 0;    // largest projected bound: error * focal length / distance
   double quantisation_m = 0;   // largest displacement of a vertex by float storage
-  double quantisation_px = 0;  // projected likewise, with what float arithmetic adds over the distance
+  double quantisation_px = 0;  // projected likewise, with float arithmetic and the rasteriser's grid
   double shift_bound_px = 0;   // every pixel's shift is at most this: tile error + quantisation, projected
   double tolerance_px = 0;     // what was asked for
   int tiles_drawn = 0;

@@ -126,9 +126,10 @@ bool is_inner(const Picture& picture, int x, int y) {
 
 template <class Predicate>
 bool all_nine(const Picture& picture, int x, int y, const Predicate& predicate) {
+  if (x < 1 || y < 1 || x + 1 >= picture.width || y + 1 >= picture.height) return false;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
-      if (picture.contains(x + dx, y + dy) && !predicate(picture.at(x + dx, y + dy))) return false;
+      if (!predicate(picture.at(x + dx, y + dy))) return false;
     }
   }
   return true;

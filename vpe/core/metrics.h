@@ -74,6 +74,7 @@ struct PictureErrors {
   ShiftSummary backward;
   std::int64_t holes = 0;          // drawn sky where the reference is surface in the pixel and its 8 neighbours
   std::int64_t false_surface = 0;  // drawn surface where the reference is sky in all nine
+  // Neither is counted in the outermost pixels: an outline may pass within a pixel of them outside the picture.
   std::int64_t invalid = 0;        // drawn ranges that are NaN or <= 0: no renderer should make them
 };
 

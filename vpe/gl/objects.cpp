@@ -1,6 +1,7 @@
 #include "vpe/gl/objects.h"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -72,12 +73,17 @@ class Shader {
 
 }  // namespace
 
-Program make_program(const std::string& label, const char* vertex, const char* fragment) {
+Program make_program(const std::string& label, const char* vertex, const char* fragment, const char* geometry) {
   const Shader vertex_shader(label + " vertex", GL_VERTEX_SHADER, vertex);
   const Shader fragment_shader(label + " fragment", GL_FRAGMENT_SHADER, fragment);
+  std::optional<Shader> geometry_shader;
   Program program = Program::make();
   glAttachShader(program.name(), vertex_shader.name());
   glAttachShader(program.name(), fragment_shader.name());
+  if (geometry != nullptr) {
+    geometry_shader.emplace(label + " geometry", GL_GEOMETRY_SHADER, geometry);
+    glAttachShader(program.name(), geometry_shader->name());
+  }
   glLinkProgram(program.name());
   GLint ok = GL_FALSE;
   glGetProgramiv(program.name(), GL_LINK_STATUS, &ok);
@@ -88,6 +94,7 @@ Program make_program(const std::string& label, const char* vertex, const char* f
   }
   glDetachShader(program.name(), vertex_shader.name());
   glDetachShader(program.name(), fragment_shader.name());
+  if (geometry_shader) glDetachShader(program.name(), geometry_shader->name());
   return program;
 }
 

@@ -64,8 +64,10 @@ using Framebuffer = Object<FramebufferTraits>;
 using Renderbuffer = Object<RenderbufferTraits>;
 using Program = Object<ProgramTraits>;
 
-// Compiles and links; throws std::runtime_error with the driver's log. `label` names it in the message.
-Program make_program(const std::string& label, const char* vertex, const char* fragment);
+// Compiles and links; throws std::runtime_error with the driver's log. `label` names it in the message. geometry:
+// null = no geometry stage.
+Program make_program(const std::string& label, const char* vertex, const char* fragment,
+                     const char* geometry = nullptr);
 
 // Throws std::runtime_error naming the operation when OpenGL has recorded an error.
 void check_gl(const char* operation);

@@ -5,15 +5,16 @@
 #include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 #include <optional>
 #include <stdexcept>
 
 #include "lod/select.h"
 #include "vpe/core/parallel.h"
+#include "vpe/gl/certify.h"
 #include "vpe/gl/residency.h"
 #include "vpe/gl/shaders.h"
 #include "vpe/gl/target.h"
+#include "vpe/gl/tile_drawer.h"
 
 namespace vpe::gl {
 
@@ -30,37 +31,11 @@ constexpr double kShaderShare = 0.12;
 constexpr double kMeshShare = 0.14;
 constexpr double kTextureShare = 0.28;
 
-// What float arithmetic in the vertex stage adds, as a part of the distance: a few roundings of 2^-24.
-constexpr double kTransformError = 4e-7;
-
-// Rasterisers snap vertices to 1/256 pixel, and depth is taken at pixel centres up to that far outside a triangle.
-constexpr double kRasterSnap_px = 4.0 / 256;
-
-// Depth of skirts, as a part of distance and tile side, that covers what rounding to float opens between equal borders.
-constexpr double kSeamError = 1e-6;
+// Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
+constexpr double kFootError = 1e-6;
 
 constexpr int kSmallestTexture = 128;
 constexpr int kLargestTexture = 1024;
-
-struct Lens {
-  float near_m;
-  glm::vec4 scale_shift;
-};
-
-Lens make_lens(const core::View& view, double near_m) {
-  const double f = core::focal_px(view);
-  const glm::ivec2 size = core::drawn_size(view);
-  const double x = 0.5 * view.width + view.principal_offset_px.x - view.part.x;
-  const double y = 0.5 * view.height + view.principal_offset_px.y - view.part.y;
-  return {static_cast<float>(near_m),
-          glm::vec4(2.0 * f / size.x, 2.0 * f / size.y, 1.0 - 2.0 * x / size.x, 2.0 * y / size.y - 1.0)};
-}
-
-glm::mat3 body_to_eye(const mars::Axes& axes) {
-  const glm::dvec3 back = -axes.forward;
-  return glm::mat3(glm::vec3(axes.right.x, axes.up.x, back.x), glm::vec3(axes.right.y, axes.up.y, back.y),
-                   glm::vec3(axes.right.z, axes.up.z, back.z));
-}
 
 class PolygonRenderer : public core::Renderer {
  public:
@@ -71,22 +46,12 @@ class PolygonRenderer : public core::Renderer {
         memory_(options.memory_bytes),
         pool_(options.threads),
         shader_(planet_, share(kShaderShare)),
-        tile_program_(make_program("tile", kTileVertexShader, kTileFragmentShader)),
         edge_program_(make_program("edge", kFullScreenVertexShader, kEdgeFragmentShader)),
         sky_program_(make_program("sky", kSkyVertexShader, kSkyFragmentShader)),
-        tile_array_(VertexArray::make()),
         empty_array_(VertexArray::make()) {
-    const GLuint array = tile_array_.name();
-    glEnableVertexArrayAttrib(array, 0);
-    glEnableVertexArrayAttrib(array, 1);
-    glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, offsetof(TileVertex, position_m));
-    glVertexArrayAttribFormat(array, 1, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(TileVertex, s));
-    glVertexArrayAttribBinding(array, 0, 0);
-    glVertexArrayAttribBinding(array, 1, 0);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
-    glPolygonOffset(-1.0F / 32, 0.0F);  // farther, with reversed depth; rasterisers snap to 1/256 pixel
     check_gl("set up");
   }
 
@@ -97,32 +62,31 @@ class PolygonRenderer : public core::Renderer {
     MeshKey mesh;
     TextureKey texture;
     double min_distance_m = 0;
-    float skirt_m = 0;
+    std::array<float, 4> skirt_m{};
   };
 
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
   ShadeParams shade_params(const core::DrawRequest& request) const;
   void select(const core::DrawRequest& request, const ShadeParams& shading);
+  int origin(const lod::SelectedTile& tile, const core::View& view) const;
   void fit_textures(double focal, Surfacing surfacing);
   void make_resident(const ShadeParams& shading, bool textured);
   TileGeometry geometry(const MeshKey& key, double exaggeration) const;
   double near_plane_m(const core::View& view, double exaggeration) const;
-  void draw_tiles(const core::View& view, const Lens& lens, bool textured, bool with_skirts);
   void draw_sky(const core::DrawRequest& request, const Lens& lens);
   void draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture);
   void read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
-  core::Certificate certify(const core::DrawRequest& request, const Lens& lens) const;
+  core::Certificate certify(const core::DrawRequest& request, const Lens& lens);
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::size_t memory_;
   core::ThreadPool pool_;
   Shader shader_;
-  Program tile_program_;
+  TileDrawer tiles_;
   Program edge_program_;
   Program sky_program_;
-  VertexArray tile_array_;
   VertexArray empty_array_;
   std::optional<Target> colour_target_;
   std::optional<Target> range_target_;
@@ -135,6 +99,8 @@ class PolygonRenderer : public core::Renderer {
   lod::Selection selection_;
   std::vector<std::array<float, 4>> skirts_;
   std::vector<Drawn> drawn_;
+  std::vector<TileDraw> draws_;
+  std::vector<CertifiedTile> certified_;
 };
 
 ShadeParams PolygonRenderer::shade_params(const core::DrawRequest& request) const {
@@ -162,16 +128,30 @@ void PolygonRenderer::select(const core::DrawRequest& request, const ShadeParams
   drawn_.clear();
   for (std::size_t n = 0; n < selection_.tiles.size(); ++n) {
     const lod::SelectedTile& tile = selection_.tiles[n];
-    const std::array<float, 4>& depths = skirts_[n];
     const double side = lod::nominal_side_m(tile.key.level, planet_->radius_m());
-    drawn_.push_back({{tile.key, tile.variant},
-                      {tile.key, 0},
-                      tile.min_distance_m,
-                      // Exact borders are still rounded to float on either side of them.
-                      *std::max_element(depths.begin(), depths.end()) +
-                          static_cast<float>(kSeamError * (tile.min_distance_m + 2.0 * side))});
+    drawn_.push_back(
+        {{tile.key, tile.variant, origin(tile, request.view)}, {tile.key, 0}, tile.min_distance_m, skirts_[n]});
+    for (float& depth : drawn_.back().skirt_m) {
+      if (depth > 0.0F) depth += static_cast<float>(kFootError * (tile.min_distance_m + 2.0 * side));
+    }
   }
   fit_textures(core::focal_px(request.view), shading.surfacing);
+}
+
+// The tile's centre, unless rounding relative to that would show: then the post nearest to the eye.
+int PolygonRenderer::origin(const lod::SelectedTile& tile, const core::View& view) const {
+  constexpr double kShows_px = 0.01;
+  const double side_m = lod::nominal_side_m(tile.key.level, planet_->radius_m());
+  if (side_m * core::focal_px(view) < kShows_px * (1 << 24) * tile.min_distance_m) return kTileCentre;
+  if (glm::dot(mars::face_axes(tile.key.face).out, view.eye.eye_m) <= 0.0) return kTileCentre;
+  const int intervals = planet_->meta().tile.intervals();
+  const lod::GridLines lines = lod::grid_lines(tile.key, intervals);
+  const mars::ChartPoint eye = mars::chart_on(tile.key.face, view.eye.eye_m);
+  const auto nearest = [](const std::vector<double>& line, double x) {
+    const auto at = std::lower_bound(line.begin(), line.end(), x) - line.begin();
+    return static_cast<int>(std::min(at, static_cast<std::ptrdiff_t>(line.size()) - 1));
+  };
+  return nearest(lines.v, eye.v) * (intervals + 1) + nearest(lines.u, eye.u);
 }
 
 // One texel a pixel at the tile's nearest point, unless the data or the memory has less.
@@ -200,14 +180,14 @@ TileGeometry PolygonRenderer::geometry(const MeshKey& key, double exaggeration) 
   const bool full = !info->has_children && key.variant + 1 == static_cast<int>(info->variants.size());
   if (full) {
     const paging::TileHeights heights = planet_->heights(key.tile);
-    return make_geometry(key.tile, lod::mesh_full(heights.posts.intervals), heights.posts.height_m, exaggeration,
-                         planet_->radius_m());
+    return make_geometry(key.tile, lod::mesh_full(heights.posts.intervals), heights.posts.height_m,
+                         exaggeration, planet_->radius_m(), key.origin);
   }
   const paging::PackedMesh packed = planet_->mesh(key.tile, key.variant);
   std::vector<double> heights(packed.height_q.size());
   std::transform(packed.height_q.begin(), packed.height_q.end(), heights.begin(),
                  [q = planet_->meta().quantum_m](std::int32_t n) { return n * q; });
-  return make_geometry(key.tile, packed.mesh, heights, exaggeration, planet_->radius_m());
+  return make_geometry(key.tile, packed.mesh, heights, exaggeration, planet_->radius_m(), key.origin);
 }
 
 void PolygonRenderer::make_resident(const ShadeParams& shading, bool textured) {
@@ -252,7 +232,8 @@ void PolygonRenderer::make_resident(const ShadeParams& shading, bool textured) {
 }
 
 // Depth interpolation loses precision on triangles that reach from the near plane to far away, so the near
-// plane is as far out as the ground allows: some fiftieth of the eye's height is only passed by slopes over 88 degrees.
+// plane is as far out as the ground allows: some fiftieth of the eye's height is only passed by slopes over 88
+// degrees.
 double PolygonRenderer::near_plane_m(const core::View& view, double exaggeration) const {
   const glm::dvec3& eye = view.eye.eye_m;
   double nearest = std::numeric_limits<double>::infinity();
@@ -264,58 +245,16 @@ double PolygonRenderer::near_plane_m(const core::View& view, double exaggeration
   const double cosine = f / std::sqrt(f * f + x * x + y * y);
   if (std::isfinite(nearest) && nearest > 1000.0) return 0.5 * cosine * nearest;
   lod::TileKey key = lod::tile_at(mars::chart_point(eye), 0);
-  for (const lod::TileInfo* info = planet_->tree().find(key); info->has_children; info = planet_->tree().find(key)) {
+  for (const lod::TileInfo* info = planet_->tree().find(key); info->has_children;
+       info = planet_->tree().find(key)) {
     key = lod::tile_at(mars::chart_point(eye), key.level + 1);
   }
   const paging::TileHeights heights = planet_->heights(key);
   const mars::ChartPoint at = mars::chart_point(eye);
-  const double ground = lod::surface_height(heights.posts, lod::grid_lines(key, heights.posts.intervals), at.u, at.v,
-                                            planet_->radius_m());
+  const double ground = lod::surface_height(heights.posts, lod::grid_lines(key, heights.posts.intervals), at.u,
+                                            at.v, planet_->radius_m());
   const double above = glm::length(eye) - planet_->radius_m() - exaggeration * ground;
   return std::clamp(0.03 * cosine * std::abs(above) / std::max(1.0, exaggeration), 0.003, 1000.0);
-}
-
-void PolygonRenderer::draw_tiles(const core::View& view, const Lens& lens, bool textured, bool with_skirts) {
-  const glm::mat3 rotation = body_to_eye(view.eye.axes);
-  glUseProgram(tile_program_.name());
-  glBindVertexArray(tile_array_.name());
-  glUniformMatrix3fv(kRotation, 1, GL_FALSE, &rotation[0][0]);
-  glUniform4fv(kLens, 1, &lens.scale_shift[0]);
-  glUniform1f(kNear, lens.near_m);
-  if (textured) {
-    glUniform4f(kFlatColour, 0, 0, 0, 0);
-  } else {
-    glUniform4f(kFlatColour, 0.95F, 0.75F, 0.55F, 1);
-  }
-  for (const Drawn& d : drawn_) {
-    const GpuMesh& mesh = *meshes_.find(d.mesh, frame_);
-    const glm::vec3 to_eye(mesh.centre_m - view.eye.eye_m);
-    const glm::vec3 centre(mesh.centre_m);
-    const glm::vec3 out(mars::face_axes(d.mesh.tile.face).out);
-    glUniform3fv(kToEye, 1, &to_eye[0]);
-    glUniform3fv(kCentre, 1, &centre[0]);
-    glUniform3fv(kFaceOut, 1, &out[0]);
-    glUniform1f(kSkirt, d.skirt_m);
-    glUniform1i(kFirstFoot, static_cast<GLint>(mesh.first_foot));
-    if (textured) {
-      const GpuTexture& texture = *textures_.find(d.texture, frame_);
-      const auto texels = static_cast<float>(texture.intervals + 1);
-      glUniform2f(kTexel, static_cast<float>(texture.intervals) / texels, 0.5F / texels);
-      glBindTextureUnit(0, texture.texture.name());
-    }
-    glVertexArrayVertexBuffer(tile_array_.name(), 0, mesh.vertices.name(), 0, sizeof(TileVertex));
-    glVertexArrayElementBuffer(tile_array_.name(), mesh.indices.name());
-    const GLenum type = mesh.short_indices ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-    const std::size_t index_size = mesh.short_indices ? 2 : 4;
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.surface_indices), type, nullptr);
-    if (!with_skirts) continue;
-    // A skirt seen edge-on covers stray pixels where its depth, extrapolated by a fraction of a pixel, can lie
-    // anywhere. Pushed back by its own slope it never stands before the ground it hangs from.
-    glEnable(GL_POLYGON_OFFSET_FILL);
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.index_count - mesh.surface_indices), type,
-                   reinterpret_cast<const void*>(index_size * mesh.surface_indices));
-    glDisable(GL_POLYGON_OFFSET_FILL);
-  }
 }
 
 void PolygonRenderer::draw_sky(const core::DrawRequest& request, const Lens& lens) {
@@ -329,7 +268,8 @@ void PolygonRenderer::draw_sky(const core::DrawRequest& request, const Lens& len
   glUniformMatrix3fv(kSkyRotation, 1, GL_FALSE, &to_body[0][0]);
   glUniform4fv(kSkyLens, 1, &lens.scale_shift[0]);
   glUniform3fv(kSkyUp, 1, &up[0]);
-  glUniform2f(kSkyAltitude, static_cast<float>(r - planet_->radius_m()), static_cast<float>(planet_->radius_m()));
+  glUniform2f(kSkyAltitude, static_cast<float>(r - planet_->radius_m()),
+              static_cast<float>(planet_->radius_m()));
   glUniform3fv(kSkySun, 1, &sun[0]);
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
@@ -345,33 +285,18 @@ Target& PolygonRenderer::target(std::optional<Target>& slot, const glm::ivec2& s
   return *slot;
 }
 
-core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens) const {
-  const double focal = core::focal_px(request.view);
-  core::Certificate c;
+core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens) {
+  certified_.clear();
+  for (std::size_t n = 0; n < drawn_.size(); ++n) {
+    const lod::SelectedTile& tile = selection_.tiles[n];
+    const GpuMesh& mesh = *meshes_.find(drawn_[n].mesh, frame_);
+    certified_.push_back({&tile, mesh.quantisation_m, mesh.longest_edge_m,
+                          glm::length(mesh.centre_m - request.view.eye.eye_m), mesh.steepness});
+  }
+  core::Certificate c = gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(),
+                                    {core::focal_px(request.view), lens.near_m, tiles_.snap_px()});
   c.tolerance_px = request.settings.lod_tolerance_px;
   c.exaggeration = request.settings.exaggeration;
-  c.tiles_drawn = static_cast<int>(drawn_.size());
-  double area = 0;
-  double limited = 0;
-  for (const lod::SelectedTile& tile : selection_.tiles) {
-    const lod::TileInfo* info = planet_->tree().find(tile.key);
-    const GpuMesh& mesh = *const_cast<Resident<MeshKey, GpuMesh>&>(meshes_).find({tile.key, tile.variant}, frame_);
-    // Float storage, and the vertex stage's arithmetic over the whole distance.
-    // Nothing is drawn before the near plane.
-    const double distance = std::max(tile.min_distance_m, double{lens.near_m});
-    const double quantisation_px = mesh.quantisation_m * focal / distance + kTransformError * focal + kRasterSnap_px;
-    c.tile_error_m = std::max(c.tile_error_m, tile.error_m);
-    c.tile_error_px = std::max(c.tile_error_px, tile.error_px);
-    c.quantisation_m = std::max(c.quantisation_m, mesh.quantisation_m);
-    c.quantisation_px = std::max(c.quantisation_px, quantisation_px);
-    c.shift_bound_px = std::max(c.shift_bound_px, tile.error_px + quantisation_px);
-    const double side = lod::nominal_side_m(tile.key.level, planet_->radius_m());
-    const double pixels = std::min(side * focal / std::max(tile.min_distance_m, 0.5 * side), 4096.0);
-    area += pixels * pixels;
-    const double spacing = side / planet_->meta().tile.intervals();
-    if (!info->has_children && spacing * focal > tile.min_distance_m) limited += pixels * pixels;
-  }
-  c.share_at_data_limit = area > 0 ? limited / area : 0.0;
   const paging::PlanetMeta& meta = planet_->meta();
   c.resampling_max_m = meta.resampling.max_m;
   c.resampling_rms_m = meta.resampling.rms_m;
@@ -392,7 +317,14 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDepthFunc(GL_GREATER);
   if (wireframe && picture) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-  draw_tiles(request.view, lens, picture && textured, !(picture && wireframe));
+  draws_.clear();
+  for (const Drawn& d : drawn_) {
+    draws_.push_back({meshes_.find(d.mesh, frame_),
+                      picture && textured ? textures_.find(d.texture, frame_) : nullptr, d.mesh.tile.face,
+                      d.skirt_m});
+  }
+  tiles_.draw(request.view, lens, draws_,
+              picture && wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   if (picture && request.settings.background == core::Background::kSky) draw_sky(request, lens);
 }
@@ -417,13 +349,15 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, Lens lens, co
     const double b = (y + 0.5 - cy) / f;
     for (int x = 0; x < size.x; ++x) {
       const double a = (x + 0.5 - cx) / f;
-      row[x] = row[x] > 0.0F ? static_cast<float>(lens.near_m / row[x] * std::sqrt(1.0 + a * a + b * b)) : core::kSkyRange;
+      row[x] = row[x] > 0.0F ? static_cast<float>(lens.near_m / row[x] * std::sqrt(1.0 + a * a + b * b))
+                             : core::kSkyRange;
     }
   }
 }
 
 core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
-  if (const std::string trouble = core::check(request.view); !trouble.empty()) throw std::runtime_error(trouble);
+  if (const std::string trouble = core::check(request.view); !trouble.empty())
+    throw std::runtime_error(trouble);
   if (request.view.projection != core::Projection::kPerspective) {
     throw std::runtime_error("the polygon backend draws perspective views only");
   }
@@ -464,13 +398,16 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   stats.tiles_drawn = static_cast<int>(drawn_.size());
   for (const Drawn& d : drawn_) {
     const GpuMesh& mesh = *meshes_.find(d.mesh, frame_);
-    stats.triangles += mesh.surface_indices / 3;
-    stats.skirt_triangles += (mesh.index_count - mesh.surface_indices) / 3;
+    stats.triangles += mesh.ranges.surface / 3;
+    for (std::size_t e = 0; e < 4; ++e) {
+      if (d.skirt_m[e] > 0.0F) stats.skirt_triangles += (mesh.ranges.skirts[e + 1] - mesh.ranges.skirts[e]) / 2;
+    }
     const auto level = static_cast<std::size_t>(d.mesh.tile.level);
     if (stats.tiles_by_level.size() <= level) stats.tiles_by_level.resize(level + 1);
     ++stats.tiles_by_level[level];
   }
-  stats.bytes_resident = static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + shader_.bytes_resident());
+  stats.bytes_resident =
+      static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + shader_.bytes_resident());
   result.certificate = certify(request, lens);
   return result;
 }

@@ -20,9 +20,10 @@ GpuMesh upload(const TileGeometry& geometry) {
   check_gl("upload a mesh");
   mesh.centre_m = geometry.centre_m;
   mesh.first_foot = geometry.surface_vertices;
-  mesh.surface_indices = geometry.surface_indices;
-  mesh.index_count = static_cast<std::uint32_t>(geometry.indices.size());
+  mesh.ranges = geometry.ranges;
   mesh.quantisation_m = geometry.quantisation_m;
+  mesh.longest_edge_m = geometry.longest_edge_m;
+  mesh.steepness = geometry.steepness;
   mesh.bytes = vertex_bytes + index_bytes;
   return mesh;
 }

@@ -18,9 +18,10 @@ struct GpuMesh {
   bool short_indices = false;
   glm::dvec3 centre_m{0, 0, 0};
   std::uint32_t first_foot = 0;
-  std::uint32_t surface_indices = 0;
-  std::uint32_t index_count = 0;
+  IndexRanges ranges;
   double quantisation_m = 0;
+  double longest_edge_m = 0;
+  double steepness = 1;
   std::size_t bytes = 0;
 };
 GpuMesh upload(const TileGeometry& geometry);
@@ -35,6 +36,7 @@ GpuTexture upload(const ShadedTile& tile);
 struct MeshKey {
   lod::TileKey tile;
   int variant = 0;
+  int origin = kTileCentre;  // what positions are relative to (make_geometry)
   bool operator==(const MeshKey&) const = default;
 };
 struct TextureKey {
@@ -85,7 +87,10 @@ class Resident {
     std::uint64_t frame = 0;
   };
   struct Hash {
-    std::size_t operator()(const MeshKey& k) const { return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.variant); }
+    std::size_t operator()(const MeshKey& k) const {
+      return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.variant) +
+             1009 * static_cast<std::size_t>(k.origin + 1);
+    }
     std::size_t operator()(const TextureKey& k) const {
       return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.intervals);
     }

@@ -44,6 +44,105 @@ void main() {
 }
 )glsl";
 
+// From two neighbouring vertices of a border and the feet below them. What is thinner in the picture than the
+// ribbon along its border is left to the ribbon: slivers near the size of the grid that rasterisers snap to have no
+// trustworthy depth.
+const char* const kSkirtGeometryShader = R"glsl(
+#version 450 core
+layout(lines_adjacency) in;
+layout(triangle_strip, max_vertices = 4) out;
+layout(location = 0) in vec3 corner_texture_position[];
+layout(location = 10) uniform vec3 ribbon;
+layout(location = 0) out vec3 texture_position;
+layout(location = 1) out float drop;
+layout(location = 2) flat out vec2 depths;
+void main() {
+  float nearest_w = min(min(gl_in[0].gl_Position.w, gl_in[1].gl_Position.w),
+                        min(gl_in[2].gl_Position.w, gl_in[3].gl_Position.w));
+  depths = vec2(0.0, 1.0);
+  if (nearest_w > 0.0) {
+    vec2 at[4];
+    depths = vec2(1.0, 0.0);
+    for (int k = 0; k < 4; ++k) {
+      vec4 p = gl_in[k].gl_Position;
+      at[k] = p.xy * ribbon.xy / p.w;
+      depths = vec2(min(depths.x, p.z / p.w), max(depths.y, p.z / p.w));
+    }
+    vec2 along = at[1] - at[0];
+    float size = length(along);
+    vec2 across = size > 0.0 ? vec2(-along.y, along.x) / size : vec2(0.0);
+    float thin = ribbon.z * 0.66;
+    if (max(abs(dot(at[2] - at[0], across)), abs(dot(at[3] - at[1], across))) < thin) return;
+    if (max(size, length(at[3] - at[2])) < thin) return;
+  }
+  for (int k = 0; k < 4; ++k) {
+    gl_Position = gl_in[k].gl_Position;
+    texture_position = corner_texture_position[k];
+    drop = k < 2 ? 0.0 : 1.0;
+    EmitVertex();
+  }
+  EndPrimitive();
+}
+)glsl";
+
+// Pixels are covered up to a grid step outside of a skirt, where its depth, extrapolated, can stand before the ground
+// it hangs from. It is taken back to the nearest part of the skirt.
+const char* const kSkirtFragmentShader = R"glsl(
+#version 450 core
+layout(location = 0) in vec3 texture_position;
+layout(location = 1) in float drop;
+layout(location = 2) flat in vec2 depths;
+layout(location = 9) uniform vec4 flat_colour;
+layout(binding = 0) uniform sampler2D surface;
+layout(location = 0) out vec4 colour;
+void main() {
+  vec2 steps = vec2(dFdx(drop), dFdy(drop));
+  vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
+  float back = clamp(drop, 0.0, 1.0) - drop;
+  float depth = gl_FragCoord.z + (back == 0.0 ? 0.0 : back * dot(slope, steps) / dot(steps, steps));
+  gl_FragDepth = clamp(depth, depths.x, depths.y);
+  if (flat_colour.a > 0.0) {
+    colour = vec4(flat_colour.rgb, 1.0);
+  } else {
+    colour = vec4(texture(surface, texture_position.xy / texture_position.z).rgb, 1.0);
+  }
+}
+)glsl";
+
+// Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. The line through both ends
+// in the picture comes from their homogeneous coordinates, so it is right with an end behind the eye too.
+const char* const kRibbonGeometryShader = R"glsl(
+#version 450 core
+layout(lines) in;
+layout(triangle_strip, max_vertices = 4) out;
+layout(location = 0) in vec3 line_texture_position[];
+layout(location = 10) uniform vec3 ribbon;
+layout(location = 0) out vec3 texture_position;
+void main() {
+  vec4 a = gl_in[0].gl_Position;
+  vec4 b = gl_in[1].gl_Position;
+  vec2 across = cross(vec3(a.xy * ribbon.xy, a.w), vec3(b.xy * ribbon.xy, b.w)).xy;
+  float size = length(across);
+  across = size > 0.0 ? across / size : vec2(1.0, 0.0);
+  // Ends reach over by half the width, so that ribbons that meet at an angle leave no notch.
+  vec2 along = vec2(0.0);
+  if (a.w > 0.0 && b.w > 0.0) {
+    along = vec2(-across.y, across.x);
+    if (dot((b.xy / b.w - a.xy / a.w) * ribbon.xy, along) < 0.0) along = -along;
+  }
+  vec2 wide = ribbon.z / ribbon.xy;
+  for (int k = 0; k < 4; ++k) {
+    vec4 end = k < 2 ? a : b;
+    float side = (k & 1) == 0 ? 1.0 : -1.0;
+    float reach = k < 2 ? -1.0 : 1.0;
+    gl_Position = vec4(end.xy + (side * across + reach * along) * wide * end.w, end.zw);
+    texture_position = line_texture_position[k < 2 ? 0 : 1];
+    EmitVertex();
+  }
+  EndPrimitive();
+}
+)glsl";
+
 const char* const kSkyVertexShader = R"glsl(
 #version 450 core
 layout(location = 0) uniform mat3 to_body;

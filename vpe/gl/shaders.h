@@ -5,12 +5,15 @@ namespace vpe::gl {
 
 extern const char* const kTileVertexShader;
 extern const char* const kTileFragmentShader;
+extern const char* const kSkirtGeometryShader;
+extern const char* const kSkirtFragmentShader;
+extern const char* const kRibbonGeometryShader;
 extern const char* const kSkyVertexShader;
 extern const char* const kSkyFragmentShader;
 extern const char* const kFullScreenVertexShader;
 extern const char* const kEdgeFragmentShader;
 
-// Uniform locations of the tile program.
+// Uniform locations of the programs that draw tiles.
 enum TileUniform : int {
   kToEye = 0,          // vec3: tile centre - eye, rounded from double
   kCentre = 1,         // vec3: tile centre (body-fixed), for the local vertical
@@ -22,6 +25,7 @@ enum TileUniform : int {
   kFaceOut = 7,        // vec3: the face's axis
   kTexel = 8,          // vec2: scale and shift from tile coordinates to texture coordinates
   kFlatColour = 9,     // vec4: alpha > 0: this colour instead of the texture
+  kRibbon = 10,        // vec3: half the picture's sides, half a ribbon's width; pixels
 };
 
 // Uniform locations of the sky program.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace vpe::gl {
 
@@ -22,25 +23,55 @@ std::vector<std::uint32_t> border(const lod::TileMesh& mesh, lod::Edge edge) {
   return out;
 }
 
+std::size_t nearest_vertex(const lod::TileMesh& mesh, int origin) {
+  const int side = mesh.intervals + 1;
+  std::size_t best = 0;
+  int least = std::numeric_limits<int>::max();
+  for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
+    const int di = mesh.vertices[n].i - origin % side;
+    const int dj = mesh.vertices[n].j - origin / side;
+    if (di * di + dj * dj >= least) continue;
+    least = di * di + dj * dj;
+    best = n;
+  }
+  return best;
+}
+
+// 1 / cos of the slope at the triangle's corners; the vertical turns over a large triangle.
+double steepness(const std::array<glm::dvec3, 3>& corners) {
+  const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double size = glm::length(normal);
+  double least = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& p : corners) least = std::min(least, std::abs(glm::dot(normal, p)) / glm::length(p));
+  return size / std::max(least, 1e-9 * size);
+}
+
 }  // namespace
 
 TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
-                           double exaggeration, double radius_m) {
+                           double exaggeration, double radius_m, int origin) {
   const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
   const mars::ChartRect rect = lod::chart_rect(key);
   TileGeometry out;
-  const double middle = height_m.empty() ? 0.0 : height_m[height_m.size() / 2];
-  out.centre_m = mars::chart_direction(key.face, 0.5 * (rect.u0 + rect.u1), 0.5 * (rect.v0 + rect.v1)) *
-                 (radius_m + exaggeration * middle);
   const auto texel = [](double x, double low, double high) {
     return static_cast<std::uint16_t>(std::lround(65535.0 * (x - low) / (high - low)));
   };
+  std::vector<glm::dvec3> places;
+  places.reserve(mesh.vertices.size());
+  for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
+    places.push_back(mars::chart_direction(key.face, lines.u[mesh.vertices[n].i], lines.v[mesh.vertices[n].j]) *
+                     (radius_m + exaggeration * height_m[n]));
+  }
+  const double middle_m = height_m.empty() ? 0.0 : height_m[height_m.size() / 2];
+  out.centre_m = origin == kTileCentre
+                     ? mars::chart_direction(key.face, 0.5 * (rect.u0 + rect.u1), 0.5 * (rect.v0 + rect.v1)) *
+                           (radius_m + exaggeration * middle_m)
+                     : places[nearest_vertex(mesh, origin)];
   double worst2 = 0;
   for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
     const double u = lines.u[mesh.vertices[n].i];
     const double v = lines.v[mesh.vertices[n].j];
-    const glm::dvec3 exact =
-        mars::chart_direction(key.face, u, v) * (radius_m + exaggeration * height_m[n]) - out.centre_m;
+    const glm::dvec3 exact = places[n] - out.centre_m;
     const glm::vec3 stored(exact);
     const glm::dvec3 error = glm::dvec3(stored) - exact;
     worst2 = std::max(worst2, glm::dot(error, error));
@@ -49,17 +80,32 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
   out.quantisation_m = std::sqrt(worst2);
   out.surface_vertices = static_cast<std::uint32_t>(out.vertices.size());
   out.indices.assign(mesh.triangles.begin(), mesh.triangles.end());
-  out.surface_indices = static_cast<std::uint32_t>(out.indices.size());
-  for (const lod::Edge edge : lod::kEdges) {
-    const std::vector<std::uint32_t> top = border(mesh, edge);
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    const std::array<glm::dvec3, 3> corners{places[mesh.triangles[t]], places[mesh.triangles[t + 1]],
+                                            places[mesh.triangles[t + 2]]};
+    out.steepness = std::max(out.steepness, steepness(corners));
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.longest_edge_m = std::max(out.longest_edge_m, glm::length(corners[k] - corners[(k + 1) % 3]));
+    }
+  }
+  const auto end = [&out] { return static_cast<std::uint32_t>(out.indices.size()); };
+  out.ranges.surface = end();
+  std::vector<std::uint32_t> lines_of_border;
+  for (std::size_t e = 0; e < lod::kEdges.size(); ++e) {
+    const std::vector<std::uint32_t> top = border(mesh, lod::kEdges[e]);
+    out.ranges.skirts[e] = end();
     const auto foot = static_cast<std::uint32_t>(out.vertices.size());
     for (const std::uint32_t v : top) out.vertices.push_back(out.vertices[v]);
     for (std::uint32_t n = 0; n + 1 < top.size(); ++n) {
-      for (const std::uint32_t index : {top[n], foot + n, foot + n + 1, top[n], foot + n + 1, top[n + 1]}) {
+      for (const std::uint32_t index : {top[n], top[n + 1], foot + n, foot + n + 1}) {
         out.indices.push_back(index);
       }
+      lines_of_border.insert(lines_of_border.end(), {top[n], top[n + 1]});
     }
   }
+  out.ranges.skirts[4] = end();
+  out.indices.insert(out.indices.end(), lines_of_border.begin(), lines_of_border.end());
+  out.ranges.border_end = end();
   return out;
 }
 

@@ -20,19 +20,33 @@ struct TileVertex {
 };
 static_assert(sizeof(TileVertex) == 16);
 
+// Where the parts lie in the indices.
+struct IndexRanges {
+  std::uint32_t surface = 0;                // triangles of the mesh: [0, surface)
+  // Of the skirt of edge e: [skirts[e], skirts[e + 1]), four a piece: two vertices of the border, their two feet.
+  std::array<std::uint32_t, 5> skirts{};
+  std::uint32_t border_end = 0;             // lines of the border: [skirts[4], border_end)
+};
+
 struct TileGeometry {
   glm::dvec3 centre_m{0, 0, 0};
   std::vector<TileVertex> vertices;     // the mesh's, then the feet of the skirts
   std::uint32_t surface_vertices = 0;   // how many are the mesh's
-  std::vector<std::uint32_t> indices;   // triangles of the mesh, then of the skirts
-  std::uint32_t surface_indices = 0;
-  double quantisation_m = 0;            // no vertex is farther than this from its exact place
+  std::vector<std::uint32_t> indices;
+  IndexRanges ranges;
+  double quantisation_m = 0;            // no vertex is farther than this from its exact place, nor 2^-24 of its position
+  double longest_edge_m = 0;            // of a triangle of the mesh
+  double steepness = 1;                 // 1 / cos of the steepest triangle's slope
   std::size_t bytes() const { return vertices.capacity() * sizeof(TileVertex) + indices.capacity() * 4; }
 };
+
+// Positions are relative to the tile's centre, or to the vertex nearest to post i, j of the finest grid, where the eye
+// is so near that rounding relative to the centre would show: origin = j * (intervals + 1) + i.
+inline constexpr int kTileCentre = -1;
 
 // height_m: one per vertex, above the sphere. The feet of the skirts stand at the border vertices themselves; the
 // vertex shader lowers them by the depth that the frame needs.
 TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
-                           double exaggeration, double radius_m);
+                           double exaggeration, double radius_m, int origin = kTileCentre);
 
 }  // namespace vpe::gl

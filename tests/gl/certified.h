@@ -1,0 +1,42 @@
+// What every certificate promises, checked on one picture against exact casts of S.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/gl/gl_fixture.h"
+
+namespace test_support {
+
+inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surface& surface,
+                             const vpe::core::DrawRequest& request, const std::string& name) {
+  const vpe::core::DrawResult result = renderer.draw(request);
+  const std::vector<float> reference = reference_ranges(surface, request.view);
+  const vpe::core::PictureErrors errors = vpe::core::compare_to_reference(
+      request.view, result.frame.range_m, reference, radius_of(surface), {4, 2});
+  SCOPED_TRACE(name + " " + vpe::core::to_json(errors) + " " + vpe::core::to_json(result.certificate));
+  EXPECT_EQ(errors.holes, 0);
+  EXPECT_EQ(errors.false_surface, 0);
+  EXPECT_EQ(errors.invalid, 0);
+  // The range image has an error of its own, which moves points along their rays.
+  float nearest = vpe::core::kSkyRange;
+  float farthest = 0;
+  for (const float range : result.frame.range_m) {
+    nearest = std::min(nearest, range);
+    if (std::isfinite(range)) farthest = std::max(farthest, range);
+  }
+  const double range_px = vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(request.view);
+  EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px + range_px);
+  EXPECT_LE(errors.forward.p999_px, 1.0);
+  EXPECT_LE(errors.backward.p999_px, 1.5);
+  const paging::PlanetMeta& meta = surface.planet().meta();
+  const auto horizon =
+      vpe::core::check_horizon(request.view, result.frame.range_m,
+                               meta.lowest_radius_m - result.certificate.tile_error_m, meta.highest_radius_m);
+  EXPECT_EQ(horizon.sky_below, 0);
+  EXPECT_EQ(horizon.surface_above, 0);
+  EXPECT_EQ(result.certificate.tiles_missing, 0);
+}
+
+}  // namespace test_support

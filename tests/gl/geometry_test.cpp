@@ -1,0 +1,170 @@
+// What is made ready for OpenGL, and what is said of it: no context needed.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "lod/mesh.h"
+#include "lod/posts.h"
+#include "tests/lod/fake_tree.h"
+#include "tests/support/support.h"
+#include "vpe/gl/certify.h"
+#include "vpe/gl/tile_geometry.h"
+
+namespace {
+
+using test_support::Random;
+using vpe::gl::make_geometry;
+using vpe::gl::TileGeometry;
+
+constexpr double kRadius_m = 3396190.0;
+constexpr int kIntervals = 16;
+const lod::TileKey kKey{mars::Face::kPlusY, 9, 137, 300};
+
+std::vector<double> heights_of(double (*height)(int, int)) {
+  std::vector<double> out;
+  for (int j = 0; j <= kIntervals; ++j) {
+    for (int i = 0; i <= kIntervals; ++i) out.push_back(height(i, j));
+  }
+  return out;
+}
+
+glm::dvec3 place(int i, int j, double height_m) {
+  const lod::GridLines lines = lod::grid_lines(kKey, kIntervals);
+  return mars::chart_direction(kKey.face, lines.u[static_cast<std::size_t>(i)],
+                               lines.v[static_cast<std::size_t>(j)]) *
+         (kRadius_m + height_m);
+}
+
+TEST(TileGeometryTest, VerticesAreWithinTheStatedRoundingOfTheirPlaces) {
+  Random random(31);
+  std::vector<double> heights = heights_of([](int, int) { return 0.0; });
+  for (double& h : heights) h = random.uniform(-3000, 5000);
+  const lod::TileMesh mesh = lod::mesh_full(kIntervals);
+  for (const int origin : {vpe::gl::kTileCentre, 0, 5 * (kIntervals + 1) + 11}) {
+    const TileGeometry g = make_geometry(kKey, mesh, heights, 1.5, kRadius_m, origin);
+    ASSERT_EQ(g.surface_vertices, mesh.vertices.size());
+    double worst = 0;
+    for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
+      const glm::dvec3 exact = place(mesh.vertices[n].i, mesh.vertices[n].j, 1.5 * heights[n]);
+      const glm::dvec3 stored = g.centre_m + glm::dvec3(g.vertices[n].position_m);
+      const double error = glm::length(stored - exact);
+      worst = std::max(worst, error);
+      ASSERT_LE(error, g.quantisation_m + 1e-9);
+      // The bound that certify() takes near the eye.
+      ASSERT_LE(error, std::ldexp(glm::length(exact - g.centre_m), -24) + 1e-9);
+    }
+    EXPECT_GE(worst, 0.99 * g.quantisation_m - 1e-9);
+  }
+}
+
+TEST(TileGeometryTest, AnOriginNearTheEyeIsExactThere) {
+  const std::vector<double> heights = heights_of([](int i, int j) { return 13.7 * i - 4.1 * j; });
+  const lod::TileMesh mesh = lod::mesh_full(kIntervals);
+  const int origin = 7 * (kIntervals + 1) + 3;
+  const TileGeometry g = make_geometry(kKey, mesh, heights, 1.0, kRadius_m, origin);
+  EXPECT_LT(glm::length(g.centre_m - place(3, 7, 13.7 * 3 - 4.1 * 7)), 1e-6);
+  const auto at = static_cast<std::size_t>(origin);
+  EXPECT_EQ(g.vertices[at].position_m, glm::vec3(0, 0, 0));
+}
+
+TEST(TileGeometryTest, SteepnessIsThatOfTheSteepestTriangle) {
+  const lod::TileMesh mesh = lod::mesh_full(kIntervals);
+  const TileGeometry flat =
+      make_geometry(kKey, mesh, heights_of([](int, int) { return -700.0; }), 1.0, kRadius_m);
+  EXPECT_NEAR(flat.steepness, 1.0, 1e-6);
+  const double east_m = glm::length(place(9, 8, 0) - place(8, 8, 0));
+  EXPECT_NEAR(flat.longest_edge_m, std::hypot(east_m, glm::length(place(8, 9, 0) - place(8, 8, 0))),
+              0.05 * east_m);
+  // One step of a spacing's height across one column of cells: 45 degrees, and 3 times that exaggerated.
+  static double step_m = 0;
+  step_m = east_m;
+  const std::vector<double> heights = heights_of([](int i, int) { return i > 8 ? step_m : 0.0; });
+  EXPECT_NEAR(make_geometry(kKey, mesh, heights, 1.0, kRadius_m).steepness, std::sqrt(2.0), 0.01);
+  EXPECT_NEAR(make_geometry(kKey, mesh, heights, 3.0, kRadius_m).steepness, std::sqrt(10.0), 0.02);
+}
+
+TEST(TileGeometryTest, BordersHaveALineAndASkirtForEachPiece) {
+  const lod::TileMesh mesh = lod::mesh_full(kIntervals);
+  const TileGeometry g =
+      make_geometry(kKey, mesh, heights_of([](int i, int j) { return 10.0 * (i ^ j); }), 1.0, kRadius_m);
+  EXPECT_EQ(g.ranges.surface, mesh.triangles.size());
+  EXPECT_EQ(g.ranges.border_end, g.indices.size());
+  EXPECT_EQ(g.ranges.border_end - g.ranges.skirts[4], 2U * 4 * kIntervals);
+  for (std::size_t e = 0; e < 4; ++e) {
+    ASSERT_EQ(g.ranges.skirts[e + 1] - g.ranges.skirts[e], 4U * kIntervals);
+    for (std::uint32_t n = g.ranges.skirts[e]; n < g.ranges.skirts[e + 1]; n += 4) {
+      for (std::uint32_t k = 0; k < 2; ++k) {
+        const std::uint32_t top = g.indices[n + k];
+        const std::uint32_t foot = g.indices[n + 2 + k];
+        ASSERT_LT(top, g.surface_vertices);
+        ASSERT_GE(foot, g.surface_vertices);
+        ASSERT_EQ(g.vertices[top].position_m, g.vertices[foot].position_m);
+      }
+    }
+  }
+}
+
+// A point of a triangle, its corners rounded as storage and the subtraction of the eye round them, stays within
+// what is certified; and the figure is no more than some tens of times that.
+TEST(Certify, BoundsWhatStorageMoves) {
+  Random random(32);
+  const lod::TileTree tree = fake::tree(fake::rough(3, 5));
+  double tightest = 1e9;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const glm::dvec3 eye = random.direction() * (kRadius_m + random.log_uniform(1, 1e5));
+    const double distance_m = random.log_uniform(0.1, 1e6);
+    const glm::dvec3 point = eye + distance_m * random.direction();
+    const double edge_m = random.log_uniform(1, 1e5);
+    const glm::dvec3 centre = point + random.log_uniform(0.01, 1e5) * random.direction();
+    std::array<glm::dvec3, 3> corners;
+    for (glm::dvec3& c : corners) c = point + 0.5 * edge_m * random.direction();
+    std::array<double, 3> weights{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
+    const double sum = weights[0] + weights[1] + weights[2];
+    glm::dvec3 exact(0);
+    glm::dvec3 drawn(0);
+    double quantisation_m = 0;
+    const glm::vec3 to_eye(centre - eye);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::vec3 stored(corners[k] - centre);
+      quantisation_m = std::max(quantisation_m, glm::length(glm::dvec3(stored) - (corners[k] - centre)));
+      exact += weights[k] / sum * (corners[k] - eye);
+      drawn += weights[k] / sum * glm::dvec3(stored + to_eye);
+    }
+    lod::SelectedTile tile;
+    tile.key = tree[0].key;
+    tile.min_distance_m = glm::length(exact);
+    const vpe::gl::CertifiedTile certified{&tile, quantisation_m, edge_m, glm::length(centre - eye), 1.0};
+    constexpr double kFocal_px = 600;
+    const auto c = vpe::gl::certify({&certified, 1}, tree, 32, {kFocal_px, 0.001, 0});
+    const double moved_px = glm::length(drawn - exact) * kFocal_px / glm::length(exact);
+    ASSERT_LE(moved_px, c.shift_bound_px) << "trial " << trial;
+    ASSERT_EQ(c.quantisation_px, c.shift_bound_px);
+    if (moved_px > 0) tightest = std::min(tightest, c.shift_bound_px / moved_px);
+  }
+  EXPECT_LT(tightest, 5);
+}
+
+TEST(Certify, AddsTheTermsOfTheWorstTile) {
+  const lod::TileTree tree = fake::tree(fake::rough(3, 5));
+  lod::SelectedTile near;
+  near.key = tree[0].key;
+  near.error_m = 3;
+  near.error_px = 0.9;
+  near.min_distance_m = 2000;
+  lod::SelectedTile far = near;
+  far.error_m = 50;
+  far.error_px = 0.2;
+  far.min_distance_m = 2e5;
+  const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&near, 1e-9, 100, 0, 1.5}, {&far, 1e-9, 100, 0, 4}}};
+  const auto c = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02});
+  EXPECT_EQ(c.tiles_drawn, 2);
+  EXPECT_EQ(c.tile_error_m, 50);
+  EXPECT_EQ(c.tile_error_px, 0.9);
+  // 4 times the grid step's share for the steepest triangle of the picture, over the nearer tile's error.
+  EXPECT_NEAR(c.shift_bound_px, 0.9 + 0.08, 1e-3);
+  EXPECT_GT(c.shift_bound_px, 0.98);
+}
+
+}  // namespace

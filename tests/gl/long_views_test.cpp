@@ -1,0 +1,99 @@
+// Fifty named and two hundred random views of whole planets, real and embedded, against exact casts.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "mars/embedded.h"
+#include "paging/builder.h"
+#include "tests/gl/certified.h"
+
+namespace {
+
+using test_support::expect_certified;
+using test_support::Random;
+using test_support::request_for;
+
+constexpr int kWidth = 240;
+constexpr int kHeight = 144;
+
+class LongViews : public test_support::GlTest {
+ protected:
+  void check(const std::shared_ptr<const paging::PlanetFile>& planet) {
+    const paging::Surface surface(planet, std::size_t{1} << 29);
+    const auto draw = renderer(planet, std::size_t{1} << 29);
+    named_views(*draw, surface);
+    random_views(*draw, surface);
+  }
+
+ private:
+  void named_views(vpe::core::Renderer& draw, const paging::Surface& surface) {
+    const struct {
+      const char* name;
+      mars::LonLat place;
+    } places[] = {{"Olympus Mons", {-133.125, 17.375}},
+                  {"Olympus scarp", {-133.9, 21.0}},
+                  {"Coprates Chasma", {-64.2, -12.84}},
+                  {"Hellas", {70, -42.5}},
+                  {"Argyre", {-43, -50}},
+                  {"north pole", {0, 90}},
+                  {"south pole", {0, -90}},
+                  {"antimeridian", {180, -10}},
+                  {"cube edge", {45, 12}},
+                  {"cube corner", {-135, 35.264389682754654}}};
+    Random random(81);
+    const double radius = surface.planet_radius_m();
+    for (const auto& p : places) {
+      const double ground = surface.at(mars::direction(p.place)).height_m;
+      for (const double height : {2.0, 150.0, 6000.0, 4e5, 1.2e7}) {
+        const double dip =
+            mars::horizon_dip_rad(std::max(ground + height, 1.0), radius) / mars::kRadiansPerDegree;
+        const double pitch = height > 1e6 ? -90 : height > 1e5 ? -dip - 15 : -dip - 4;
+        const mars::Pose pose{p.place.lon_deg,        p.place.lat_deg, ground + height,
+                              random.uniform(0, 360), pitch,           random.uniform(-40, 40)};
+        expect_certified(draw, surface, request_for(pose, radius, kWidth, kHeight, 60),
+                         std::string(p.name) + " from " + std::to_string(height) + " m");
+      }
+    }
+  }
+
+  void random_views(vpe::core::Renderer& draw, const paging::Surface& surface) {
+    Random random(82);
+    const double radius = surface.planet_radius_m();
+    for (int n = 0; n < 200; ++n) {
+      const glm::dvec3 at = n % 2 == 0
+                                ? random.direction()
+                                : glm::normalize(mars::direction({-64, -12.8}) + 0.03 * random.direction());
+      const mars::LonLat place = mars::lon_lat(at);
+      const double ground = surface.at(at).height_m;
+      const mars::Pose pose{
+          place.lon_deg,          place.lat_deg,           ground + random.log_uniform(1.5, 3e7),
+          random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)};
+      expect_certified(draw, surface, request_for(pose, radius, kWidth, kHeight, random.log_uniform(2, 110)),
+                       "random view " + std::to_string(n));
+    }
+  }
+};
+
+TEST_F(LongViews, MolaKeepsItsCertificates) {
+  VPE_NEED_SHARED(dem, "mola8/mola8_topo.lbl");
+  paging::BuildOptions options;
+  options.output = (dir_ / "mola8.vpe").string();
+  options.resampling_posts = 10000;
+  paging::build_planet(options, *mars::open_elevation(dem.string()), nullptr);
+  check(paging::PlanetFile::open(options.output));
+}
+
+// $VPE_EMBEDDED_PLANET names a planet file of the embedded Mars that is there already.
+TEST_F(LongViews, EmbeddedMarsKeepsItsCertificates) {
+  const char* ready = std::getenv("VPE_EMBEDDED_PLANET");
+  std::string path = ready != nullptr ? ready : "";
+  if (path.empty()) {
+    paging::BuildOptions options;
+    options.output = path = (dir_ / "embedded.vpe").string();
+    options.resampling_posts = 10000;
+    paging::build_planet(options, *mars::embedded_elevation(), nullptr);
+  }
+  check(paging::PlanetFile::open(path));
+}
+
+}  // namespace

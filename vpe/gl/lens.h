@@ -1,0 +1,22 @@
+// How eye coordinates become clip coordinates.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
+#include "vpe/core/view.h"
+
+namespace vpe::gl {
+
+// clip = (scale.x e.x + shift.x e.z, scale.y e.y + shift.y e.z, near, -e.z) for a point e right, up and
+// backward of the eye: depth is near / distance along the view axis, 1 at the near plane and 0 at infinity.
+struct Lens {
+  float near_m = 1;
+  glm::vec4 scale_shift{1, 1, 0, 0};
+};
+Lens make_lens(const core::View& view, double near_m);
+
+// Body-fixed to right, up, backward.
+glm::mat3 body_to_eye(const mars::Axes& axes);
+
+}  // namespace vpe::gl
