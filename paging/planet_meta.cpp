@@ -67,6 +67,21 @@ bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::Sourc
                     [](const auto& x, const auto& y) { return tie(x) == tie(y); });
 }
 
+constexpr const char* kChecksumKey = "checksum";
+
+// Over all other rows, those of later minor formats too.
+std::string checksum(const std::map<std::string, std::string>& rows) {
+  Bytes bytes;
+  for (const auto& [key, value] : rows) {
+    if (key == kChecksumKey) continue;
+    for (const std::string* part : {&key, &value}) {
+      bytes.insert(bytes.end(), part->begin(), part->end());
+      bytes.push_back(0);
+    }
+  }
+  return std::to_string(paging::checksum(0, bytes));
+}
+
 void check_ranges(const PlanetMeta& m, const std::string& path) {
   const bool sane = std::isfinite(m.radius_m) && m.radius_m > 1.0 && m.radius_m < 1e12 && m.tile.k >= 3 &&
                     m.tile.k <= 7 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 && std::isfinite(m.fill_m) &&
@@ -89,7 +104,7 @@ bool PlanetMeta::operator==(const PlanetMeta& o) const {
 
 std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
   // json writes doubles with the fewest digits that read back to the same bits, whatever the locale.
-  return {{"format", std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor)},
+  std::map<std::string, std::string> rows{{"format", std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor)},
           {"body", m.body},
           {"radius_m", json(m.radius_m).dump()},
           {"datum", m.datum},
@@ -112,6 +127,8 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
           {"program", m.program},
           {"identity", m.identity},
           {"illustration", m.illustration ? "true" : "false"}};
+  rows[kChecksumKey] = checksum(rows);
+  return rows;
 }
 
 PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::string& path) {
@@ -128,6 +145,9 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
   if (major > kFormatMajor) {
     throw PlanetError(path + ": planet file format " + format + " is newer than this program reads (" +
                       std::to_string(kFormatMajor) + ".x); update vpe");
+  }
+  if (text(kChecksumKey) != checksum(rows)) {
+    throw PlanetError(path + ": damaged: the table meta has a wrong checksum; build the file again");
   }
   PlanetMeta m;
   const char* current = "";

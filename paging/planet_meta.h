@@ -56,7 +56,7 @@ struct PlanetMeta {
 };
 
 // meta <-> rows of the table `meta`. from_rows throws PlanetError naming the file and the key that is missing,
-// malformed or of a newer major format. from_rows(to_rows(m)) == m.
+// malformed or of a newer major format, or that the rows do not fit their checksum. from_rows(to_rows(m)) == m.
 std::map<std::string, std::string> to_rows(const PlanetMeta& meta);
 PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::string& path);
 

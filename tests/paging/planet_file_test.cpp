@@ -81,9 +81,9 @@ TEST(PlanetFile, RefusesNewerAndIncompleteFiles) {
     return message(dir / name);
   };
   EXPECT_NE(variant("newer.vpe", "UPDATE meta SET value = '2.0' WHERE key = 'format'").find("newer"), std::string::npos);
-  EXPECT_NE(variant("nometa.vpe", "DELETE FROM meta WHERE key = 'radius_m'").find("radius_m"), std::string::npos);
-  EXPECT_NE(variant("radius.vpe", "UPDATE meta SET value = '-5' WHERE key = 'radius_m'").find("out of range"), std::string::npos);
-  EXPECT_NE(variant("json.vpe", "UPDATE meta SET value = '{' WHERE key = 'sources'").find("sources"), std::string::npos);
+  EXPECT_NE(variant("nometa.vpe", "DELETE FROM meta WHERE key = 'radius_m'").find("checksum"), std::string::npos);
+  EXPECT_NE(variant("radius.vpe", "UPDATE meta SET value = '-5' WHERE key = 'radius_m'").find("checksum"), std::string::npos);
+  EXPECT_NE(variant("json.vpe", "UPDATE meta SET value = '{' WHERE key = 'sources'").find("checksum"), std::string::npos);
   EXPECT_NE(variant("node.vpe", "UPDATE node SET min_m = min_m + 1 WHERE rowid = (SELECT max(key) FROM node)").find("tile index"), std::string::npos);
   EXPECT_NE(variant("gone.vpe", "DELETE FROM node WHERE key = (SELECT max(key) FROM node)").find("tiles are in the index"), std::string::npos);
 }
@@ -108,6 +108,28 @@ TEST(PlanetFile, DamagedTilesAreNamed) {
 }
 
 // Flipped bits and truncations: an error or the true content, never anything else.
+TEST(PlanetFile, AnyChangeOfMetaIsSeen) {
+  paging::PlanetMeta meta;
+  meta.body = "Mars";
+  meta.radius_m = 3396190;
+  meta.shape = "sphere";
+  meta.quantum_m = 0.25;
+  const auto rows = paging::to_rows(meta);
+  for (const auto& [key, value] : rows) {
+    auto changed = rows;
+    changed[key] = value + "1";
+    EXPECT_THROW(paging::from_rows(changed, "x"), PlanetError) << key;
+    changed = rows;
+    changed.erase(key);
+    EXPECT_THROW(paging::from_rows(changed, "x"), PlanetError) << key;
+  }
+  meta.radius_m = -5;
+  EXPECT_THROW(paging::from_rows(paging::to_rows(meta), "x"), PlanetError);
+  auto more = rows;
+  more["remark"] = "slipped in";
+  EXPECT_THROW(paging::from_rows(more, "x"), PlanetError);
+}
+
 TEST(PlanetFile, FlippedBitsAreNeverBelieved) {
   TempDir dir;
   const auto path = dir / "p.vpe";
