@@ -169,7 +169,8 @@ class Plain {
 };
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
   return values[values.size() / 2];
 }
 
@@ -198,7 +199,8 @@ void run(const char* planet_file, const char* flight_file, std::int64_t count, s
   const vpe::gl::Texture2D texture = noise_texture();
   vpe::gl::Target target(frames[0].view.width, frames[0].view.height, 1);
   std::printf(
-      "| frame | triangles | plain bilinear (ms) | flat / bilinear | edges=hard / bilinear | edges=smooth / bilinear |\n"
+      "| frame | triangles | plain bilinear (ms) | flat / bilinear | edges=hard / bilinear | edges=smooth / "
+      "bilinear |\n"
       "|---|---|---|---|---|---|\n");
   std::vector<double> hard_ratios;
   std::vector<double> smooth_ratios;
@@ -223,8 +225,8 @@ void run(const char* planet_file, const char* flight_file, std::int64_t count, s
     const double peer_ms = median(bilinear_ms);
     hard_ratios.push_back(median(hard_ms) / peer_ms);
     smooth_ratios.push_back(median(smooth_ms) / peer_ms);
-    std::printf("| %zu | %lld | %.1f | %.2f | %.2f | %.2f |\n", n, static_cast<long long>(plain.triangles()), peer_ms,
-                median(flat_ms) / peer_ms, hard_ratios.back(), smooth_ratios.back());
+    std::printf("| %zu | %lld | %.1f | %.2f | %.2f | %.2f |\n", n, static_cast<long long>(plain.triangles()),
+                peer_ms, median(flat_ms) / peer_ms, hard_ratios.back(), smooth_ratios.back());
     std::fflush(stdout);
   }
   std::printf("\nmedian of the frames: edges=hard %.2f, edges=smooth %.2f of plain bilinear drawing\n",

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "lod/select.h"
+#include "vpe/core/edge_filter.h"
 #include "vpe/core/parallel.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/residency.h"
@@ -46,7 +47,6 @@ class PolygonRenderer : public core::Renderer {
         memory_(options.memory_bytes),
         pool_(options.threads),
         shader_(planet_, share(kShaderShare)),
-        edge_program_(make_program("edge", kFullScreenVertexShader, kEdgeFragmentShader)),
         sky_program_(make_program("sky", kSkyVertexShader, kSkyFragmentShader)),
         empty_array_(VertexArray::make()) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -85,7 +85,6 @@ class PolygonRenderer : public core::Renderer {
   core::ThreadPool pool_;
   Shader shader_;
   TileDrawer tiles_;
-  Program edge_program_;
   Program sky_program_;
   VertexArray empty_array_;
   std::optional<Target> colour_target_;
@@ -101,6 +100,7 @@ class PolygonRenderer : public core::Renderer {
   std::vector<Drawn> drawn_;
   std::vector<TileDraw> draws_;
   std::vector<CertifiedTile> certified_;
+  std::vector<float> depth_;
 };
 
 ShadeParams PolygonRenderer::shade_params(const core::DrawRequest& request) const {
@@ -377,9 +377,6 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   const Lens lens = make_lens(request.view, near_plane_m(request.view, settings.exaggeration));
   Target& picture = target(colour_target_, size, settings.samples);
   draw_pass(request, lens, picture, true);
-  if (settings.samples == 1 && settings.smooth_edges && settings.mode != core::Mode::kWireframe) {
-    picture.filter(edge_program_, empty_array_);
-  }
   glFinish();
   check_gl("draw");
   result.stats.draw_ms = ms_since(start);
@@ -388,8 +385,15 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   result.frame.width = size.x;
   result.frame.height = size.y;
   picture.read_colour(result.frame.colour);
-  if (request.want_range) read_range(request, lens, result.frame);
+  const bool smooth = settings.samples == 1 && settings.smooth_edges && settings.mode != core::Mode::kWireframe;
+  if (smooth) picture.read_depth(depth_);
   result.stats.read_ms = ms_since(start);
+  start = Clock::now();
+  if (smooth) core::smooth_edges(result.frame.colour, depth_, size.x, size.y, pool_);
+  result.stats.draw_ms += ms_since(start);
+  start = Clock::now();
+  if (request.want_range) read_range(request, lens, result.frame);
+  result.stats.read_ms += ms_since(start);
 
   core::FrameStats& stats = result.stats;
   stats.tiles_visited = selection_.visited;

@@ -10,8 +10,6 @@ extern const char* const kSkirtFragmentShader;
 extern const char* const kRibbonGeometryShader;
 extern const char* const kSkyVertexShader;
 extern const char* const kSkyFragmentShader;
-extern const char* const kFullScreenVertexShader;
-extern const char* const kEdgeFragmentShader;
 
 // Uniform locations of the programs that draw tiles.
 enum TileUniform : int {

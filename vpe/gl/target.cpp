@@ -36,55 +36,32 @@ Target::Target(int width, int height, int samples) : width_(width), height_(heig
                              " is too large here (at most " + std::to_string(max_size) + " a side)");
   }
   if (samples > max_samples) {
-    throw std::runtime_error("OpenGL: " + std::to_string(samples) + " samples a pixel are not available here (at most " +
-                             std::to_string(max_samples) + "); lower 'samples'");
+    throw std::runtime_error("OpenGL: " + std::to_string(samples) +
+                             " samples a pixel are not available here (at most " + std::to_string(max_samples) +
+                             "); lower 'samples'");
   }
   draw_ = Framebuffer::make();
-  if (samples > 1) {
-    many_colour_ = Renderbuffer::make();
-    many_depth_ = Renderbuffer::make();
-    glNamedRenderbufferStorageMultisample(many_colour_.name(), samples, GL_RGBA8, width, height);
-    glNamedRenderbufferStorageMultisample(many_depth_.name(), samples, GL_DEPTH_COMPONENT32F, width, height);
-    glNamedFramebufferRenderbuffer(draw_.name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, many_colour_.name());
-    glNamedFramebufferRenderbuffer(draw_.name(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, many_depth_.name());
-  } else {
-    colour_ = Texture2D::make();
-    depth_ = Texture2D::make();
-    glTextureStorage2D(colour_.name(), 1, GL_RGBA8, width, height);
-    glTextureStorage2D(depth_.name(), 1, GL_DEPTH_COMPONENT32F, width, height);
-    glTextureParameteri(colour_.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTextureParameteri(colour_.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(colour_.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    glTextureParameteri(depth_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(depth_.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glNamedFramebufferTexture(draw_.name(), GL_COLOR_ATTACHMENT0, colour_.name(), 0);
-    glNamedFramebufferTexture(draw_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
-  }
+  colour_ = Renderbuffer::make();
+  depth_ = Renderbuffer::make();
+  const GLsizei many = samples > 1 ? samples : 0;
+  glNamedRenderbufferStorageMultisample(colour_.name(), many, GL_RGBA8, width, height);
+  glNamedRenderbufferStorageMultisample(depth_.name(), many, GL_DEPTH_COMPONENT32F, width, height);
+  glNamedFramebufferRenderbuffer(draw_.name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_.name());
+  glNamedFramebufferRenderbuffer(draw_.name(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.name());
   check_gl("make a framebuffer");
   check_complete(draw_);
+  if (samples <= 1) return;
   resolve_ = Framebuffer::make();
   resolved_colour_ = Renderbuffer::make();
   glNamedRenderbufferStorage(resolved_colour_.name(), GL_RGBA8, width, height);
-  glNamedFramebufferRenderbuffer(resolve_.name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, resolved_colour_.name());
+  glNamedFramebufferRenderbuffer(resolve_.name(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
+                                 resolved_colour_.name());
   check_complete(resolve_);
 }
 
 void Target::bind() {
-  filtered_ = false;
   glBindFramebuffer(GL_FRAMEBUFFER, draw_.name());
   glViewport(0, 0, width_, height_);
-}
-
-void Target::filter(const Program& program, const VertexArray& empty) {
-  glBindFramebuffer(GL_FRAMEBUFFER, resolve_.name());
-  glUseProgram(program.name());
-  glBindVertexArray(empty.name());
-  glBindTextureUnit(0, colour_.name());
-  glBindTextureUnit(1, depth_.name());
-  glDisable(GL_DEPTH_TEST);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glEnable(GL_DEPTH_TEST);
-  filtered_ = true;
 }
 
 void Target::read_colour(std::vector<mars::Rgb>& out) const {
@@ -92,7 +69,7 @@ void Target::read_colour(std::vector<mars::Rgb>& out) const {
     glBlitNamedFramebuffer(draw_.name(), resolve_.name(), 0, 0, width_, height_, 0, 0, width_, height_,
                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
   }
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_ > 1 || filtered_ ? resolve_.name() : draw_.name());
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_ > 1 ? resolve_.name() : draw_.name());
   out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   static_assert(sizeof(mars::Rgb) == 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -19,10 +19,6 @@ class Target {
 
   void bind();  // makes it the draw framebuffer and sets the viewport
 
-  // With one sample: draws `program` over all pixels; it reads this picture's colour (texture unit 0) and depth (unit
-  // 1), and what it writes is what read_colour() gives until the target is drawn into again.
-  void filter(const Program& program, const VertexArray& empty);
-
   // Reads back, top row first. Depth only from a target with one sample.
   void read_colour(std::vector<mars::Rgb>& out) const;
   void read_depth(std::vector<float>& out) const;
@@ -31,13 +27,10 @@ class Target {
   int width_;
   int height_;
   int samples_;
-  bool filtered_ = false;
   Framebuffer draw_;
-  Renderbuffer many_colour_;  // with multisampling
-  Renderbuffer many_depth_;
-  Texture2D colour_;  // with one sample
-  Texture2D depth_;
-  Framebuffer resolve_;  // resolved samples, or what filter() wrote
+  Renderbuffer colour_;
+  Renderbuffer depth_;
+  Framebuffer resolve_;  // with multisampling
   Renderbuffer resolved_colour_;
 };
 
