@@ -70,7 +70,7 @@ class GreedyMesher {
   template <class Lines>
   TileMesh grow(const Lines& lines) {
     queue_.clear();
-    unchecked_.clear();
+    forget_unchecked();
     for (int f = 0; f < topology_.face_count(); ++f) touch(lines, f);
     do {
       while (!queue_.empty() && vertices_.size() < kMaxVertices) {
@@ -85,6 +85,10 @@ class GreedyMesher {
   template <class Lines>
   void touch(const Lines& lines, int face) {
     rescan(lines, face);
+    const auto f = static_cast<std::size_t>(face);
+    if (f >= is_unchecked_.size()) is_unchecked_.resize(f + 1, 0);
+    if (is_unchecked_[f] != 0) return;
+    is_unchecked_[f] = 1;
     unchecked_.push_back(face);
   }
 
@@ -92,17 +96,19 @@ class GreedyMesher {
   // against every such edge of the triangles made since the last call; false when there was none.
   template <class Lines>
   bool mend_edges(const Lines& lines) {
-    std::sort(unchecked_.begin(), unchecked_.end());
-    unchecked_.erase(std::unique(unchecked_.begin(), unchecked_.end()), unchecked_.end());
     wanted_.clear();
     for (const int f : unchecked_) {
       int h = topology_.first_halfedge(f);
       for (int side = 0; side < 3; ++side, h = topology_.next(h)) {
+        // An edge between two such triangles is looked at from the first of them.
+        const int other = topology_.across(h);
+        const int beyond = other < 0 ? -1 : topology_.face(other);
+        if (beyond >= 0 && beyond < f && is_unchecked_[static_cast<std::size_t>(beyond)] != 0) continue;
         const WorstPost worst = field_.worst_crossing(vertex(topology_.from(h)), vertex(topology_.to(h)));
         if (worst.error_m > tolerance_m_) wanted_.push_back({worst.post, f});
       }
     }
-    unchecked_.clear();
+    forget_unchecked();
     std::sort(wanted_.begin(), wanted_.end());
     bool any = false;
     std::uint32_t last = ~0U;
@@ -114,6 +120,11 @@ class GreedyMesher {
       any = true;
     }
     return any;
+  }
+
+  void forget_unchecked() {
+    for (const int f : unchecked_) is_unchecked_[static_cast<std::size_t>(f)] = 0;
+    unchecked_.clear();
   }
 
   // The triangle that holds a post, by walking towards it.
@@ -154,7 +165,8 @@ class GreedyMesher {
   void keep_borders(const Lines& lines, const BorderPosts& borders) {
     const std::uint32_t last = side_ - 1;
     // Counter-clockwise: south and east ascend, north and west descend.
-    const auto chain = [&](Edge edge, std::size_t side, std::uint32_t origin, std::uint32_t stride, bool ascending) {
+    const auto chain = [&](Edge edge, std::size_t side, std::uint32_t origin, std::uint32_t stride,
+                           bool ascending) {
       const std::vector<int>& kept = borders[static_cast<std::size_t>(edge)];
       std::vector<BorderVertex>& have = border_[side];
       std::vector<BorderVertex> merged{have.front()};
@@ -166,7 +178,8 @@ class GreedyMesher {
         if (have[next].along == along) continue;
         const int v = add(lines, origin + stride * static_cast<std::uint32_t>(at));
         star_.clear();
-        legalise(lines, v, topology_.split_edge(topology_.border_halfedge(merged.back().vertex, have[next].vertex), v));
+        legalise(lines, v,
+                 topology_.split_edge(topology_.border_halfedge(merged.back().vertex, have[next].vertex), v));
         merged.push_back({along, v});
       }
       merged.insert(merged.end(), have.begin() + static_cast<std::ptrdiff_t>(next), have.end());
@@ -228,10 +241,10 @@ class GreedyMesher {
   template <class Lines>
   void rescan(const Lines& lines, int face) {
     const int h = topology_.first_halfedge(face);
-    const int g = topology_.next(h);
-    queue_.set(face,
-               field_.worst(lines, vertex(topology_.from(h)), vertex(topology_.to(h)), vertex(topology_.to(g))),
-               tolerance_m_);
+    const Corner& a = vertex(topology_.from(h));
+    const Corner& b = vertex(topology_.to(h));
+    const Corner& c = vertex(topology_.to(topology_.next(h)));
+    queue_.set(face, Lines::has_no_post(a, b, c) ? WorstPost{} : field_.worst(lines, a, b, c), tolerance_m_);
   }
 
   template <class Lines>
@@ -269,6 +282,7 @@ class GreedyMesher {
   std::vector<int> star_;
   std::vector<int> stack_;
   std::vector<int> unchecked_;  // triangles whose edges mend_edges() has not seen
+  std::vector<std::uint8_t> is_unchecked_;
   std::vector<std::pair<std::uint32_t, int>> wanted_;
   // Border vertices of the sides south, east, north, west, counter-clockwise, by their distance along the side.
   struct BorderVertex {

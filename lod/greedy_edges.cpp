@@ -22,6 +22,7 @@ WorstPost PostField::worst_crossing(const Corner& from, const Corner& to) const 
   const Corner& b = from.post < to.post ? to : from;
   WorstPost worst;
   if (a.i == b.i || a.j == b.j) return worst;  // along a line of the grid: its posts have been looked at
+  if (b.i == a.i + 1 && b.j == a.j + 1) return worst;  // S's own diagonal
   const auto ax = static_cast<double>(a.x);
   const auto ay = static_cast<double>(a.y);
   const double dx = static_cast<double>(b.x) - ax;

@@ -14,6 +14,12 @@ struct RowEdge {
   std::int64_t x0, y0, x1, y1;
 };
 
+// A vertex of a triangulation: its post, and where that is in grid and integer coordinates.
+struct Corner {
+  std::uint32_t post, i, j;
+  std::int64_t x, y;
+};
+
 // From level 5 on a tile's lines are even along either axis, and the chart is the grid itself up to a
 // scale: the coordinate of a line is its index.
 class EvenLines {
@@ -35,6 +41,11 @@ class EvenLines {
     double slope_;
     double base_;
   };
+
+  // True when a counter-clockwise triangle holds no post but its corners (Pick's theorem).
+  static bool has_no_post(const Corner& a, const Corner& b, const Corner& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) == 1;
+  }
 
   // Sign of the in-circle determinant of a counter-clockwise triangle a b c and d: > 0 inside.
   static int in_circle(std::int64_t adx, std::int64_t ady, std::int64_t bdx, std::int64_t bdy, std::int64_t cdx,
@@ -80,6 +91,12 @@ class WarpedLines {
     RowEdge e_;
     double slope_;
   };
+
+  // Half of a cell has none; thin triangles are not told.
+  static bool has_no_post(const Corner& a, const Corner& b, const Corner& c) {
+    return std::max({a.i, b.i, c.i}) - std::min({a.i, b.i, c.i}) == 1 &&
+           std::max({a.j, b.j, c.j}) - std::min({a.j, b.j, c.j}) == 1;
+  }
 
   static int in_circle(std::int64_t adx, std::int64_t ady, std::int64_t bdx, std::int64_t bdy, std::int64_t cdx,
                        std::int64_t cdy) {

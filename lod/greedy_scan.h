@@ -13,12 +13,6 @@
 
 namespace lod {
 
-// A vertex of a triangulation: its post, and where that is in grid and integer coordinates.
-struct Corner {
-  std::uint32_t post, i, j;
-  std::int64_t x, y;
-};
-
 // The posts of a tile as inverse depths w = n / r with r = R + h; a flat triangle is a plane in them. A post
 // is off by r (1 - w / w_post), the radial distance to first order: it differs from the distance n / w - r
 // by the relative amount distance / r only.

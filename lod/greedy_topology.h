@@ -37,11 +37,20 @@ class OpenMeshTopology {
   int across(int h) const { return mesh_.is_boundary(halfedge(h ^ 1)) ? -1 : h ^ 1; }
   int add_vertex() { return mesh_.new_vertex().idx(); }
 
+  // The operations below are OpenMesh's own (split, split, flip), written out on its kernel: in the library
+  // they check every handle at run time, which is a fifth of the meshing.
+
   // Splits face f at vertex v.
   StarLinks split_face(int f, int v) {
     StarLinks links;
     for (int h = first_halfedge(f); links.count < 3; h = next(h)) links.add(h);
-    mesh_.split(OpenMesh::FaceHandle(f), vertex(v));
+    std::array<OpenMesh::HalfedgeHandle, 3> spoke;  // from a corner to v
+    for (std::size_t k = 0; k < 3; ++k) spoke[k] = mesh_.new_edge(vertex(to(links.halfedge[k])), vertex(v));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const OpenMesh::FaceHandle own = k == 0 ? OpenMesh::FaceHandle(f) : mesh_.new_face();
+      make_face(own, halfedge(links.halfedge[k]), spoke[k], opposite(spoke[(k + 2) % 3]));
+    }
+    mesh_.set_halfedge_handle(vertex(v), opposite(spoke[0]));
     return links;
   }
 
@@ -50,25 +59,73 @@ class OpenMeshTopology {
     StarLinks links;
     links.add(next(h));
     links.add(next(next(h)));
-    if (const int other = across(h); other >= 0) {
+    const int other = across(h);
+    if (other >= 0) {
       links.add(next(other));
       links.add(next(next(other)));
     }
-    mesh_.split(OpenMesh::EdgeHandle(h / 2), vertex(v));
+    const OpenMesh::HalfedgeHandle here = halfedge(h);
+    const OpenMesh::HalfedgeHandle there = halfedge(h ^ 1);
+    const OpenMesh::VertexHandle end = mesh_.to_vertex_handle(here);
+    const OpenMesh::HalfedgeHandle behind = mesh_.prev_halfedge_handle(there);  // used only at the border
+    const OpenMesh::HalfedgeHandle onward = mesh_.new_edge(vertex(v), end);     // the far half of the edge
+    if (mesh_.halfedge_handle(end) == there) mesh_.set_halfedge_handle(end, opposite(onward));
+    mesh_.set_vertex_handle(here, vertex(v));
+    mesh_.set_halfedge_handle(vertex(v), onward);
+    split_side(mesh_.face_handle(here), here, onward, links.halfedge[0], links.halfedge[1], v);
+    if (other >= 0) {
+      split_side(mesh_.face_handle(there), opposite(onward), there, links.halfedge[2], links.halfedge[3], v);
+    } else {
+      mesh_.set_next_halfedge_handle(behind, opposite(onward));
+      mesh_.set_next_halfedge_handle(opposite(onward), there);
+      mesh_.set_halfedge_handle(vertex(v), there);
+    }
     return links;
   }
 
   // Turns the edge of link h; returns the two links that replace it.
   std::array<int, 2> flip(int h) {
-    const int other = h ^ 1;
-    const std::array<int, 2> links{next(other), next(next(other))};
-    mesh_.flip(OpenMesh::EdgeHandle(h / 2));
-    return links;
+    const OpenMesh::HalfedgeHandle a = halfedge(h);
+    const OpenMesh::HalfedgeHandle b = opposite(a);
+    const OpenMesh::HalfedgeHandle a1 = mesh_.next_halfedge_handle(a);
+    const OpenMesh::HalfedgeHandle a2 = mesh_.next_halfedge_handle(a1);
+    const OpenMesh::HalfedgeHandle b1 = mesh_.next_halfedge_handle(b);
+    const OpenMesh::HalfedgeHandle b2 = mesh_.next_halfedge_handle(b1);
+    const OpenMesh::VertexHandle a_end = mesh_.to_vertex_handle(a);
+    const OpenMesh::VertexHandle b_end = mesh_.to_vertex_handle(b);
+    if (mesh_.halfedge_handle(a_end) == b) mesh_.set_halfedge_handle(a_end, a1);
+    if (mesh_.halfedge_handle(b_end) == a) mesh_.set_halfedge_handle(b_end, b1);
+    mesh_.set_vertex_handle(a, mesh_.to_vertex_handle(a1));
+    mesh_.set_vertex_handle(b, mesh_.to_vertex_handle(b1));
+    make_face(mesh_.face_handle(a), a, a2, b1);
+    make_face(mesh_.face_handle(b), b, b2, a1);
+    return {b1.idx(), b2.idx()};
   }
 
  private:
   static OpenMesh::VertexHandle vertex(int v) { return OpenMesh::VertexHandle(v); }
   static OpenMesh::HalfedgeHandle halfedge(int h) { return OpenMesh::HalfedgeHandle(h); }
+
+  static OpenMesh::HalfedgeHandle opposite(OpenMesh::HalfedgeHandle h) { return halfedge(h.idx() ^ 1); }
+
+  void make_face(OpenMesh::FaceHandle face, OpenMesh::HalfedgeHandle a, OpenMesh::HalfedgeHandle b,
+                 OpenMesh::HalfedgeHandle c) {
+    mesh_.set_next_halfedge_handle(a, b);
+    mesh_.set_next_halfedge_handle(b, c);
+    mesh_.set_next_halfedge_handle(c, a);
+    mesh_.set_face_handle(a, face);
+    mesh_.set_face_handle(b, face);
+    mesh_.set_face_handle(c, face);
+    mesh_.set_halfedge_handle(face, a);
+  }
+
+  // One side of a split edge: `in` ends at v, `out` starts there, `first` and `second` follow the old edge.
+  void split_side(OpenMesh::FaceHandle face, OpenMesh::HalfedgeHandle in, OpenMesh::HalfedgeHandle out,
+                  int first, int second, int v) {
+    const OpenMesh::HalfedgeHandle spoke = mesh_.new_edge(vertex(to(first)), vertex(v));
+    make_face(face, opposite(spoke), halfedge(second), in);
+    make_face(mesh_.new_face(), out, halfedge(first), spoke);
+  }
 
   OpenMesh::TriConnectivity mesh_;
 };

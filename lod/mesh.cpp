@@ -1,6 +1,7 @@
 #include "lod/mesh.h"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -21,24 +22,36 @@ void check_borders(const BorderPosts& borders, int intervals) {
 TileMesh canonical_mesh(int intervals, std::vector<std::uint32_t> posts,
                         const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   const auto side = static_cast<std::uint32_t>(intervals) + 1;
-  std::sort(posts.begin(), posts.end());
   TileMesh mesh;
   mesh.intervals = intervals;
   mesh.vertices.reserve(posts.size());
   std::vector<std::uint16_t> index(static_cast<std::size_t>(side) * side);
-  for (const std::uint32_t post : posts) {
+  for (const std::uint32_t post : posts) index[post] = 1;
+  for (std::uint32_t post = 0; post < side * side; ++post) {
+    if (index[post] == 0) continue;
     index[post] = static_cast<std::uint16_t>(mesh.vertices.size());
     mesh.vertices.push_back({static_cast<std::uint16_t>(post % side), static_cast<std::uint16_t>(post / side)});
   }
-  std::vector<std::uint64_t> packed;
-  packed.reserve(triangles.size());
+  // Sorted by the first vertex with a count of each, then the few of each vertex.
+  std::vector<std::uint64_t> rotated;
+  rotated.reserve(triangles.size());
+  std::vector<std::uint32_t> end(mesh.vertices.size() + 1);
   for (const std::array<std::uint32_t, 3>& t : triangles) {
     const std::uint64_t a = index[t[0]];
     const std::uint64_t b = index[t[1]];
     const std::uint64_t c = index[t[2]];
-    packed.push_back(std::min({a << 32 | b << 16 | c, b << 32 | c << 16 | a, c << 32 | a << 16 | b}));
+    rotated.push_back(std::min({a << 32 | b << 16 | c, b << 32 | c << 16 | a, c << 32 | a << 16 | b}));
+    ++end[(rotated.back() >> 32) + 1];
   }
-  std::sort(packed.begin(), packed.end());
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::uint64_t> packed(rotated.size());
+  for (const std::uint64_t t : rotated) packed[end[t >> 32]++] = t;
+  for (std::size_t begin = 0; begin < packed.size();) {
+    const std::size_t stop = end[packed[begin] >> 32];
+    std::sort(packed.begin() + static_cast<std::ptrdiff_t>(begin),
+              packed.begin() + static_cast<std::ptrdiff_t>(stop));
+    begin = stop;
+  }
   mesh.triangles.reserve(3 * packed.size());
   for (const std::uint64_t t : packed) {
     for (const int shift : {32, 16, 0}) mesh.triangles.push_back(static_cast<std::uint16_t>(t >> shift));

@@ -55,7 +55,8 @@ class Overlay {
     rows(turn, end, middle, high);
   }
 
-  // Where a mesh edge crosses lines and diagonals, cell by cell.
+  // Where a mesh edge crosses lines and diagonals, cell by cell. Ends of slanting edges are posts of S, which
+  // the triangles round them or the north and east borders have looked at.
   void add_crossings(const CoarseMesh::Segment& s) {
     const LineTable& u = fine_.u;
     const LineTable& v = fine_.v;
@@ -85,7 +86,8 @@ class Overlay {
     if (dv > 0.0 && j + 2 < side_ && here.v >= v[j + 1]) ++j;
     double x = u.fraction(i, here.u);
     double y = v.fraction(j, here.v);
-    add_point(s, here, i, j, x, y);
+    const bool slanting = du != 0.0 && dv != 0.0;
+    if (!slanting || t > 0.0) add_point(s, here, i, j, x, y);
     constexpr double kNever = std::numeric_limits<double>::infinity();
     while (true) {
       const double next_u = du == 0.0 ? kNever : (u[du > 0.0 ? i + 1 : i] - s.from.u) * per_u;
@@ -98,7 +100,7 @@ class Overlay {
       here.v = s.from.v + here.t * dv;
       x = u.fraction(i, here.u);
       y = v.fraction(j, here.v);
-      add_point(s, here, i, j, x, y);
+      if (!slanting || here.t < 1.0) add_point(s, here, i, j, x, y);
       if (const double from = before_x - before_y, to = x - y; from * to < 0.0) {
         const double f = from / (from - to);
         const double d = before_x + f * (x - before_x);
@@ -255,8 +257,15 @@ ErrorTerms measure_overlay(const CoarseMesh& mesh, const FineGrid& fine) {
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
     if (touches(mesh.triangle_boxes[k])) overlay.add_posts(mesh.triangles[k]);
   }
+  const bool same_grid = depth + bits(fine.intervals) == bits(mesh.intervals);
   for (std::size_t k = 0; k < mesh.segments.size(); ++k) {
-    if (touches(mesh.segment_boxes[k])) overlay.add_crossings(mesh.segments[k]);
+    const CoarseMesh::Box& box = mesh.segment_boxes[k];
+    if (!touches(box)) continue;
+    const CoarseMesh::Segment& s = mesh.segments[k];
+    const bool ascending = (s.to.u - s.from.u) * (s.to.v - s.from.v) > 0.0;
+    // A diagonal of S itself.
+    if (same_grid && ascending && box.i1 - box.i0 == 1 && box.j1 - box.j0 == 1) continue;
+    overlay.add_crossings(s);
   }
   return overlay.terms();
 }

@@ -95,12 +95,14 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
                                 std::to_string(mesh.vertices.size()) + " vertices of tile " + to_string(key));
   }
   const GridLines lines = grid_lines(key, intervals);
-  const auto vertex = [&](std::size_t k) -> Vertex {
+  std::vector<Vertex> all(mesh.vertices.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
     const double u = lines.u[mesh.vertices[k].i];
     const double v = lines.v[mesh.vertices[k].j];
     const double n = length_at(u, v);
-    return {u, v, n * radius_m / (radius_m + vertex_height_m[k]), n};
-  };
+    all[k] = {u, v, n * radius_m / (radius_m + vertex_height_m[k]), n};
+  }
+  const auto vertex = [&all](std::size_t k) -> const Vertex& { return all[k]; };
   const auto box = [&](std::initializer_list<std::uint16_t> corners) {
     Box b{0xffff, 0, 0xffff, 0};
     for (const std::uint16_t k : corners) {

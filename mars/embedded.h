@@ -13,7 +13,7 @@
 // gazetteer and MOLA (summits and floors within 10 %, places within 0.2 degrees); the broad relief is a fit to
 // MOLA with a resolution of about 500 km; everything smaller is made up.
 //
-// Cost: 0.3 .. 0.6 us a post on one 2020s core for compact batches of some thousand directions, such as tiles;
+// Cost: 0.15 .. 0.4 us a post on one 2020s core for compact batches of some thousand directions, such as tiles;
 // directions scattered over the planet cost 20 .. 35 us each.
 #pragma once
 

@@ -5,11 +5,22 @@
 
 namespace mars::embedded {
 
-Simd best_simd() {
+bool has_simd(Simd simd) {
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx2")) return Simd::kAvx2;
+  switch (simd) {
+    case Simd::kAvx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    case Simd::kAvx2: return __builtin_cpu_supports("avx2");
+    case Simd::kPlain: return true;
+  }
 #endif
-  return Simd::kPlain;
+  return simd == Simd::kPlain;
+}
+
+Simd best_simd() {
+  if (has_simd(Simd::kAvx512)) return Simd::kAvx512;
+  return has_simd(Simd::kAvx2) ? Simd::kAvx2 : Simd::kPlain;
 }
 
 void Block::finish() {

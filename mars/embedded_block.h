@@ -10,16 +10,17 @@
 
 namespace mars::embedded {
 
-inline constexpr std::size_t kBlock = 160;
+inline constexpr std::size_t kBlock = 272;
 inline constexpr std::size_t kLanes = 16;
 static_assert(kBlock % kLanes == 0);
 
 template <typename T>
 using Lane = std::array<T, kBlock>;
 
-enum class Simd { kPlain, kAvx2 };
-// The best that this processor has. Both give equal bits.
+enum class Simd { kPlain, kAvx2, kAvx512 };
+// The best that this processor has. All give equal bits.
 Simd best_simd();
+bool has_simd(Simd simd);
 
 struct Block {
   std::size_t count = 0;       // directions asked for

@@ -1,10 +1,12 @@
 #include "mars/embedded_colour.h"
 
 #include <algorithm>
+#include <array>
 
 #include "mars/embedded_landforms.h"
 #include "mars/embedded_math.h"
 #include "mars/embedded_noise.h"
+#include "mars/embedded_simd.h"
 
 namespace mars::embedded {
 
@@ -63,19 +65,28 @@ std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::max(0.0F, std
 void colour(const Block& block, const Surface& s, Rgb* out) {
   const Wander w(s.octaves);
   Lane<float> albedo{};
-  for (const Patch& p : kPatches) {
-    const PlaceFrame f = place_frame(p.lon_deg, p.lat_deg);
+  static const auto frames = [] {
+    std::array<PlaceFrame, std::size(kPatches)> all;
+    std::transform(std::begin(kPatches), std::end(kPatches), all.begin(),
+                   [](const Patch& p) { return place_frame(p.lon_deg, p.lat_deg); });
+    return all;
+  }();
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const Patch& p = kPatches[k];
+    const PlaceFrame& f = frames[k];
     const double reach = km_chord(p.reach_km);
     if (!block.near(f.up, reach * std::max(1.0, p.stretch))) continue;
     const double squeeze = 1.0 - 1.0 / (p.stretch * p.stretch);
     const double inverse = 1.0 / (reach * reach);
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      const glm::dvec3 v = block.at(i) - f.up;
-      const double e = v.x * f.east.x + v.y * f.east.y;
-      const double q = (v.x * v.x + v.y * v.y + v.z * v.z - squeeze * e * e) * inverse;
-      const auto t = static_cast<float>(std::max(0.0, 1.0 - q));
-      albedo[i] += p.albedo * t * t * (3.0F - 2.0F * t);
-    }
+    with_simd(block.simd, [&] {
+      for (std::size_t i = 0; i < block.padded; ++i) {
+        const double x = block.x[i] - f.up.x, y = block.y[i] - f.up.y, z = block.z[i] - f.up.z;
+        const double e = x * f.east.x + y * f.east.y;
+        const double q = (x * x + y * y + z * z - squeeze * e * e) * inverse;
+        const auto t = static_cast<float>(std::max(0.0, 1.0 - q));
+        albedo[i] += p.albedo * t * t * (3.0F - 2.0F * t);
+      }
+    });
   }
   for (std::size_t i = 0; i < block.padded; ++i) {
     const Terrain& g = s.ground;

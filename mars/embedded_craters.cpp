@@ -4,6 +4,7 @@
 
 #include "mars/embedded_landforms.h"
 #include "mars/embedded_math.h"
+#include "mars/embedded_simd.h"
 
 namespace mars::embedded {
 
@@ -181,18 +182,6 @@ Crater shape(const glm::dvec3& centre, double diameter_m, int level, std::uint64
   }
 }
 
-void add_plain(const Block& b, const Crater& c, const float* r, std::int32_t* h, float* m, float* f) {
-  add_body(b, c, r, h, m, f);
-}
-#if defined(__x86_64__) && defined(__GNUC__)
-[[gnu::target("avx2")]] void add_avx2(const Block& b, const Crater& c, const float* r, std::int32_t* h,
-                                      float* m, float* f) {
-  add_body(b, c, r, h, m, f);
-}
-#else
-constexpr auto add_avx2 = add_plain;
-#endif
-
 }  // namespace
 
 int smallest_crater_level(double spacing_m) {
@@ -309,10 +298,11 @@ void CraterSum::clear() {
 }
 
 void add_crater(const Block& block, const Crater& crater, const Lane<float>& ragged, CraterSum& sum) {
-  const auto add = block.simd == Simd::kAvx2 ? add_avx2 : add_plain;
   const bool large = crater.level >= kLargeCraterLevel;
   auto& smoothed = crater.level >= kBasinLevel ? sum.filled : (large ? sum.buried : sum.ignored);
-  add(block, crater, ragged.data(), (large ? sum.large : sum.relief).data(), smoothed.data(), sum.fresh.data());
+  auto& relief = large ? sum.large : sum.relief;
+  with_simd(block.simd,
+            [&] { add_body(block, crater, ragged.data(), relief.data(), smoothed.data(), sum.fresh.data()); });
 }
 
 }  // namespace mars::embedded

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "mars/embedded_landforms.h"
 #include "mars/embedded_math.h"
@@ -28,12 +29,35 @@ constexpr Mound kMounds[] = {
 }  // namespace
 
 void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
-  for (const Mound& m : kMounds) {
-    const PlaceFrame f = place_frame(m.lon_deg, m.lat_deg);
+  struct Placed {
+    PlaceFrame frame;
+    SinCos turn;
+  };
+  static const auto places = [] {
+    std::array<Placed, std::size(kMounds)> all;
+    std::transform(std::begin(kMounds), std::end(kMounds), all.begin(), [](const Mound& m) {
+      return Placed{place_frame(m.lon_deg, m.lat_deg), exact_sin_cos_deg(m.azimuth_deg)};
+    });
+    return all;
+  }();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Mound& m = kMounds[k];
+    const auto& [f, turn] = places[k];
     constexpr double kFrayed = 0.3;
     const double outer = km_chord(m.long_km / (1.0 - kFrayed));
     if (!block.near(f.up, outer)) continue;
-    const SinCos turn = exact_sin_cos_deg(m.azimuth_deg);
+    Lane<double> round;
+    bool any = false;
+    for (std::size_t i = 0; i < block.padded; ++i) {
+      const glm::dvec3 v = block.at(i) - f.up;
+      const double e = (v.x * f.east.x + v.y * f.east.y) * (kRadius_m / 1000.0);
+      const double n = (v.x * f.north.x + v.y * f.north.y + v.z * f.north.z) * (kRadius_m / 1000.0);
+      const double a = (e * turn.sin + n * turn.cos) / m.long_km;
+      const double b = (e * turn.cos - n * turn.sin) / m.short_km;
+      round[i] = std::sqrt(a * a + b * b);
+      any = any || round[i] * (0.999 - kFrayed) < 1.0;
+    }
+    if (!any) continue;
     Lane<float> flutes, fine;
     flutes.fill(kMeanNoise);
     fine.fill(kMeanNoise);
@@ -41,15 +65,10 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
     if (spacing_m <= 512.0) noise(block, 1.3e3, 0x3c0, fine);
     for (std::size_t i = 0; i < block.padded; ++i) {
       if (chord2(block.at(i), f.up) > outer * outer) continue;
-      const glm::dvec3 v = block.at(i) - f.up;
-      const double e = (v.x * f.east.x + v.y * f.east.y) * (kRadius_m / 1000.0);
-      const double n = (v.x * f.north.x + v.y * f.north.y + v.z * f.north.z) * (kRadius_m / 1000.0);
-      const double a = (e * turn.sin + n * turn.cos) / m.long_km;
-      const double b = (e * turn.cos - n * turn.sin) / m.short_km;
-      const double r = std::sqrt(a * a + b * b) * (1.0 + held(0.10 * static_cast<double>(w.km40[i]) +
-                                                                  0.10 * static_cast<double>(w.km16[i]) +
-                                                                  0.045 * static_cast<double>(flutes[i]),
-                                                              kFrayed));
+      const double r =
+          round[i] * (1.0 + held(0.10 * static_cast<double>(w.km40[i]) + 0.10 * static_cast<double>(w.km16[i]) +
+                                     0.045 * static_cast<double>(flutes[i]),
+                                 kFrayed));
       if (r >= 1.0) continue;
       const double s = 1.0 - r;
       double h = 0.8 * m.height_m * s * (1.4 - 0.4 * s);

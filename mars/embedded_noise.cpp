@@ -1,6 +1,7 @@
 #include "mars/embedded_noise.h"
 
 #include "mars/embedded_math.h"
+#include "mars/embedded_simd.h"
 
 namespace mars::embedded {
 
@@ -39,20 +40,60 @@ template <typename Real>
 }
 
 template <typename Real>
-[[gnu::always_inline]] inline Real corner(std::uint32_t h, Real x, Real y, Real z) {
+struct Gradient {
+  Real x, y, z;
+};
+
+template <typename Real>
+[[gnu::always_inline]] inline Gradient<Real> gradient(std::uint32_t h) {
   h ^= h >> 15;
   h *= 0x2c1b3c6dU;
   h ^= h >> 14;
-  const auto gx = static_cast<Real>(static_cast<std::int32_t>(h >> 22)) - Real(511.5);
-  const auto gy = static_cast<Real>(static_cast<std::int32_t>((h >> 12) & 1023U)) - Real(511.5);
-  const auto gz = static_cast<Real>(static_cast<std::int32_t>((h >> 2) & 1023U)) - Real(511.5);
-  return gx * x + gy * y + gz * z;
+  return {static_cast<Real>(static_cast<std::int32_t>(h >> 22)) - Real(511.5),
+          static_cast<Real>(static_cast<std::int32_t>((h >> 12) & 1023U)) - Real(511.5),
+          static_cast<Real>(static_cast<std::int32_t>((h >> 2) & 1023U)) - Real(511.5)};
+}
+
+// Hashes of a cell's corners, by their bits: 1 upper x, 2 upper y, 4 upper z.
+struct Corners {
+  std::uint32_t h[8];
+};
+[[gnu::always_inline]] inline Corners corners(std::int32_t ix, std::int32_t iy, std::int32_t iz,
+                                              std::uint32_t salt) {
+  constexpr std::uint32_t kX = 0x8da6b343U;
+  constexpr std::uint32_t kY = 0xd8163841U;
+  constexpr std::uint32_t kZ = 0xcb1ab31fU;
+  const std::uint32_t x0 = static_cast<std::uint32_t>(ix) * kX ^ salt;
+  const std::uint32_t x1 = (static_cast<std::uint32_t>(ix) * kX + kX) ^ salt;
+  const std::uint32_t y0 = static_cast<std::uint32_t>(iy) * kY;
+  const std::uint32_t y1 = y0 + kY;
+  const std::uint32_t z0 = static_cast<std::uint32_t>(iz) * kZ;
+  const std::uint32_t z1 = z0 + kZ;
+  return {{x0 ^ y0 ^ z0, x1 ^ y0 ^ z0, x0 ^ y1 ^ z0, x1 ^ y1 ^ z0, x0 ^ y0 ^ z1, x1 ^ y0 ^ z1, x0 ^ y1 ^ z1,
+           x1 ^ y1 ^ z1}};
+}
+
+// The noise at a place of a cell, of the gradients at its corners.
+template <typename Real, typename GradientAt>
+[[gnu::always_inline]] inline Real blend(Real fx, Real fy, Real fz, const GradientAt& gradient_at) {
+  const auto slope = [&](int k, Real x, Real y, Real z) {
+    const Gradient<Real> g = gradient_at(k);
+    return g.x * x + g.y * y + g.z * z;
+  };
+  const Real gx = fx - Real(1), gy = fy - Real(1), gz = fz - Real(1);
+  const Real a = fade(fx), b = fade(fy), c = fade(fz);
+  const Real low = mix(mix(slope(0, fx, fy, fz), slope(1, gx, fy, fz), a),
+                       mix(slope(2, fx, gy, fz), slope(3, gx, gy, fz), a), b);
+  const Real high = mix(mix(slope(4, fx, fy, gz), slope(5, gx, fy, gz), a),
+                        mix(slope(6, fx, gy, gz), slope(7, gx, gy, gz), a), b);
+  return mix(low, high, c) * static_cast<Real>(kUnit);
 }
 
 template <typename Real>
 [[gnu::always_inline]] inline void noise_body(const double* __restrict x, const double* __restrict y,
                                               const double* __restrict z, std::size_t padded, double scale,
                                               std::uint32_t seed, Real* __restrict out) {
+  if (padded == 0) return;
   const Turn& t = kTurns[seed & 7U];
   const double shift = static_cast<double>(seed & 0xffffU) * 0.618;
   Lattice<Real> cell;
@@ -67,56 +108,30 @@ template <typename Real>
     cell.fy[i] = static_cast<Real>(v - static_cast<double>(cell.iy[i]));
     cell.fz[i] = static_cast<Real>(w - static_cast<double>(cell.iz[i]));
   }
-  constexpr std::uint32_t kX = 0x8da6b343U;
-  constexpr std::uint32_t kY = 0xd8163841U;
-  constexpr std::uint32_t kZ = 0xcb1ab31fU;
   const std::uint32_t salt = seed * 0x9e3779b9U;
+  std::int32_t apart = 0;
   for (std::size_t i = 0; i < padded; ++i) {
-    const std::uint32_t x0 = static_cast<std::uint32_t>(cell.ix[i]) * kX ^ salt;
-    const std::uint32_t x1 = (static_cast<std::uint32_t>(cell.ix[i]) * kX + kX) ^ salt;
-    const std::uint32_t y0 = static_cast<std::uint32_t>(cell.iy[i]) * kY;
-    const std::uint32_t y1 = y0 + kY;
-    const std::uint32_t z0 = static_cast<std::uint32_t>(cell.iz[i]) * kZ;
-    const std::uint32_t z1 = z0 + kZ;
-    const Real fx = cell.fx[i], fy = cell.fy[i], fz = cell.fz[i];
-    const Real gx = fx - Real(1), gy = fy - Real(1), gz = fz - Real(1);
-    const Real a = fade(fx), b = fade(fy), c = fade(fz);
-    const Real v000 = corner(x0 ^ y0 ^ z0, fx, fy, fz);
-    const Real v100 = corner(x1 ^ y0 ^ z0, gx, fy, fz);
-    const Real v010 = corner(x0 ^ y1 ^ z0, fx, gy, fz);
-    const Real v110 = corner(x1 ^ y1 ^ z0, gx, gy, fz);
-    const Real v001 = corner(x0 ^ y0 ^ z1, fx, fy, gz);
-    const Real v101 = corner(x1 ^ y0 ^ z1, gx, fy, gz);
-    const Real v011 = corner(x0 ^ y1 ^ z1, fx, gy, gz);
-    const Real v111 = corner(x1 ^ y1 ^ z1, gx, gy, gz);
-    const Real low = mix(mix(v000, v100, a), mix(v010, v110, a), b);
-    const Real high = mix(mix(v001, v101, a), mix(v011, v111, a), b);
-    out[i] = mix(low, high, c) * static_cast<Real>(kUnit);
+    apart |= (cell.ix[i] ^ cell.ix[0]) | (cell.iy[i] ^ cell.iy[0]) | (cell.iz[i] ^ cell.iz[0]);
+  }
+  if (apart == 0) {
+    // A block within one cell, the rule for long waves: its gradients are found once.
+    const Corners all = corners(cell.ix[0], cell.iy[0], cell.iz[0], salt);
+    Gradient<Real> gradients[8];
+    for (int k = 0; k < 8; ++k) gradients[k] = gradient<Real>(all.h[k]);
+    for (std::size_t i = 0; i < padded; ++i)
+      out[i] = blend(cell.fx[i], cell.fy[i], cell.fz[i], [&](int k) { return gradients[k]; });
+    return;
+  }
+  for (std::size_t i = 0; i < padded; ++i) {
+    const Corners own = corners(cell.ix[i], cell.iy[i], cell.iz[i], salt);
+    out[i] = blend(cell.fx[i], cell.fy[i], cell.fz[i], [&](int k) { return gradient<Real>(own.h[k]); });
   }
 }
 
 template <typename Real>
-void noise_plain(const double* x, const double* y, const double* z, std::size_t padded, double scale,
-                 std::uint32_t seed, Real* out) {
-  noise_body(x, y, z, padded, scale, seed, out);
-}
-
-#if defined(__x86_64__) && defined(__GNUC__)
-template <typename Real>
-[[gnu::target("avx2")]] void noise_avx2(const double* x, const double* y, const double* z, std::size_t padded,
-                                        double scale, std::uint32_t seed, Real* out) {
-  noise_body(x, y, z, padded, scale, seed, out);
-}
-#else
-template <typename Real>
-constexpr auto noise_avx2 = noise_plain<Real>;
-#endif
-
-template <typename Real>
 void noise_at(const double* x, const double* y, const double* z, std::size_t padded, Simd simd, double scale,
               std::uint32_t seed, Real* out) {
-  const auto run = simd == Simd::kAvx2 ? noise_avx2<Real> : noise_plain<Real>;
-  run(x, y, z, padded, scale, seed, out);
+  with_simd(simd, [&] { noise_body(x, y, z, padded, scale, seed, out); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "mars/embedded_math.h"
 #include "mars/embedded_relief_table.h"
+#include "mars/embedded_simd.h"
 
 namespace mars::embedded {
 
@@ -15,30 +16,18 @@ std::array<glm::dvec3, kReliefKernels> make_centres() {
   return centres;
 }
 
-[[gnu::always_inline]] inline void add_bump_body(const Block& block, const glm::dvec3& c, double height,
-                                                 Lane<double>& out) {
+void add_bump(const Block& block, const glm::dvec3& c, double height, Lane<double>& out) {
   // 1 - chord^2 / reach^2, with chord^2 = 2 - 2 cosine.
   constexpr double kSlope = 2.0 / (kReliefReach * kReliefReach);
   const double cx = c.x * kSlope, cy = c.y * kSlope, cz = c.z * kSlope;
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    const double t = block.x[i] * cx + block.y[i] * cy + block.z[i] * cz + (1.0 - kSlope);
-    const double positive = t > 0.0 ? t : 0.0;
-    out[i] += positive * positive * positive * height;
-  }
+  with_simd(block.simd, [&] {
+    for (std::size_t i = 0; i < block.padded; ++i) {
+      const double t = block.x[i] * cx + block.y[i] * cy + block.z[i] * cz + (1.0 - kSlope);
+      const double positive = t > 0.0 ? t : 0.0;
+      out[i] += positive * positive * positive * height;
+    }
+  });
 }
-
-void add_bump(const Block& block, const glm::dvec3& c, double height, Lane<double>& out) {
-  add_bump_body(block, c, height, out);
-}
-
-#if defined(__x86_64__) && defined(__GNUC__)
-[[gnu::target("avx2")]] void add_bump_avx2(const Block& block, const glm::dvec3& c, double height,
-                                           Lane<double>& out) {
-  add_bump_body(block, c, height, out);
-}
-#else
-constexpr auto add_bump_avx2 = add_bump;
-#endif
 
 }  // namespace
 
@@ -54,7 +43,6 @@ glm::dvec3 relief_centre(int k) {
 void relief(const Block& block, Lane<double>& out) {
   static const auto centres = make_centres();
   for (std::size_t i = 0; i < block.padded; ++i) out[i] = 0.0;
-  const auto add = block.simd == Simd::kAvx2 ? add_bump_avx2 : add_bump;
   // The centres come in order of falling z.
   const auto before = [](const glm::dvec3& c, double z) { return c.z > z; };
   const double margin = block.reach + kReliefReach;
@@ -63,7 +51,7 @@ void relief(const Block& block, Lane<double>& out) {
   for (auto k = static_cast<std::size_t>(first - centres.begin()),
             end = static_cast<std::size_t>(last - centres.begin());
        k < end; ++k) {
-    if (block.near(centres[k], kReliefReach)) add(block, centres[k], kReliefStep_m * kReliefTable[k], out);
+    if (block.near(centres[k], kReliefReach)) add_bump(block, centres[k], kReliefStep_m * kReliefTable[k], out);
   }
 }
 

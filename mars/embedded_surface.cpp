@@ -7,6 +7,7 @@
 #include "mars/embedded_landforms.h"
 #include "mars/embedded_math.h"
 #include "mars/embedded_noise.h"
+#include "mars/embedded_simd.h"
 
 namespace mars::embedded {
 
@@ -71,68 +72,73 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
   Lane<float> buried;
   const auto& broad = octaves.n[15];
   const auto& middle = octaves.n[static_cast<std::size_t>(std::max(12, octaves.first))];
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    const float p = 0.85F + 0.30F * broad[i] + (octaves.first <= 12 ? 0.22F * middle[i] : 0.0F);
-    patch[i] = std::max(0.25F, std::min(1.7F, p));
-    buried[i] = std::max(out.craters.buried[i], out.craters.filled[i]);
-  }
-  for (int k = kLastOctave; k >= octaves.first; --k) {
-    const float a = amplitude_m(k);
-    const Lane<float>& n = octaves.n[static_cast<std::size_t>(k)];
-    if (k >= kFirstRugged) {
-      for (std::size_t i = 0; i < block.padded; ++i) {
-        const float r = out.ground.rugged[i];
-        // Beyond 1 the ground is mountains: crests instead of swells, and more of the shorter ones.
-        const float crag = std::max(0.0F, r - 1.2F);
-        const float crest = (0.75F - magnitude(n[i])) * crag * (k <= 16 ? 3.2F : 0.5F);
-        const float keep = 1.0F - out.craters.filled[i] * (k <= kBasinLevel ? 0.8F : 0.0F);
-        sum[i] += a * (r * n[i] + crest) * keep;
-      }
-    } else {
-      for (std::size_t i = 0; i < block.padded; ++i) {
-        const float r = out.ground.rough[i] * patch[i];
-        const float keep = 1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F);
-        const float crest = (0.72F - magnitude(n[i])) * 0.5F;
-        sum[i] += a * r * keep * (0.8F * n[i] + crest);
-        fine[i] = fine[i] * 0.75F + n[i];
-      }
-    }
-  }
-  // Lava flows: terraces with steep lobate fronts.
-  if (detail_m <= 2048.0) {
+  with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
-      const float x = 1.7F * octaves.n[16][i] + 0.7F * octaves.n[14][i] + 0.35F * octaves.n[12][i] + 64.0F;
-      const auto whole = static_cast<float>(static_cast<std::int32_t>(x));
-      const float front = std::min(1.0F, (x - whole) * 6.0F);
-      sum[i] += 24.0F * out.ground.volcanic[i] * (whole - 64.0F + front * front * (3.0F - 2.0F * front)) *
-                (1.0F - out.ground.wall[i]);
+      const float p = 0.85F + 0.30F * broad[i] + (octaves.first <= 12 ? 0.22F * middle[i] : 0.0F);
+      patch[i] = std::max(0.25F, std::min(1.7F, p));
+      buried[i] = std::max(out.craters.buried[i], out.craters.filled[i]);
     }
-  }
-  // Valley networks in the highlands and wrinkle ridges on the plains, along zero lines of the longer octaves.
-  if (detail_m <= 2048.0) {
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      const float bend = 0.26F * octaves.n[15][i] + 0.10F * octaves.n[13][i];
-      const float bed = std::max(0.0F, 1.0F - magnitude(octaves.n[17][i] + bend) * (1.0F / 0.11F));
-      const float ridge =
-          std::max(0.0F, 1.0F - magnitude(octaves.n[16][i] + 0.5F * bend + 0.35F) * (1.0F / 0.085F));
-      const float old = std::max(0.0F, out.ground.cratered[i] - 0.5F) * 2.0F * (1.0F - buried[i]);
-      const float plain = std::max(out.ground.lowland[i], out.ground.volcanic[i] * 0.8F) *
-                          (1.0F - out.ground.ice[i]) * (1.0F - out.ground.trough[i]) *
-                          (1.0F - out.ground.wall[i]);
-      sum[i] += 60.0F * plain * ridge * ridge * (3.0F - 2.0F * ridge) - 110.0F * old * bed * bed;
+    for (int k = kLastOctave; k >= octaves.first; --k) {
+      const float a = amplitude_m(k);
+      const Lane<float>& n = octaves.n[static_cast<std::size_t>(k)];
+      if (k >= kFirstRugged) {
+        for (std::size_t i = 0; i < block.padded; ++i) {
+          const float r = out.ground.rugged[i];
+          // Beyond 1 the ground is mountains: crests instead of swells, and more of the shorter ones.
+          const float crag = std::max(0.0F, r - 1.2F);
+          const float crest = (0.75F - magnitude(n[i])) * crag * (k <= 16 ? 3.2F : 0.5F);
+          const float keep = 1.0F - out.craters.filled[i] * (k <= kBasinLevel ? 0.8F : 0.0F);
+          sum[i] += a * (r * n[i] + crest) * keep;
+        }
+      } else {
+        for (std::size_t i = 0; i < block.padded; ++i) {
+          const float r = out.ground.rough[i] * patch[i];
+          const float keep = 1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F);
+          const float crest = (0.72F - magnitude(n[i])) * 0.5F;
+          sum[i] += a * r * keep * (0.8F * n[i] + crest);
+          fine[i] = fine[i] * 0.75F + n[i];
+        }
+      }
     }
-  }
+    // Lava flows: terraces with steep lobate fronts.
+    if (detail_m <= 2048.0) {
+      for (std::size_t i = 0; i < block.padded; ++i) {
+        const float x = 1.7F * octaves.n[16][i] + 0.7F * octaves.n[14][i] + 0.35F * octaves.n[12][i] + 64.0F;
+        const auto whole = static_cast<float>(static_cast<std::int32_t>(x));
+        const float front = std::min(1.0F, (x - whole) * 6.0F);
+        sum[i] += 24.0F * out.ground.volcanic[i] * (whole - 64.0F + front * front * (3.0F - 2.0F * front)) *
+                  (1.0F - out.ground.wall[i]);
+      }
+    }
+    // Valley networks in the highlands and wrinkle ridges on the plains, along zero lines of the longer
+    // octaves.
+    if (detail_m <= 2048.0) {
+      for (std::size_t i = 0; i < block.padded; ++i) {
+        const float bend = 0.26F * octaves.n[15][i] + 0.10F * octaves.n[13][i];
+        const float bed = std::max(0.0F, 1.0F - magnitude(octaves.n[17][i] + bend) * (1.0F / 0.11F));
+        const float ridge =
+            std::max(0.0F, 1.0F - magnitude(octaves.n[16][i] + 0.5F * bend + 0.35F) * (1.0F / 0.085F));
+        const float old = std::max(0.0F, out.ground.cratered[i] - 0.5F) * 2.0F * (1.0F - buried[i]);
+        const float plain = std::max(out.ground.lowland[i], out.ground.volcanic[i] * 0.8F) *
+                            (1.0F - out.ground.ice[i]) * (1.0F - out.ground.trough[i]) *
+                            (1.0F - out.ground.wall[i]);
+        sum[i] += 60.0F * plain * ridge * ridge * (3.0F - 2.0F * ridge) - 110.0F * old * bed * bed;
+      }
+    }
+  });
   lay_sand(block, detail_m, octaves, out, sum);
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    // Large craters stop where a younger trough or the ice begins, and are filled in on the deepest floors.
-    const double young = std::max({out.ground.trough[i], out.ground.wall[i], out.ground.ice[i]});
-    const double open = (1.0 - young) * (0.35 + 0.65 * ramp(-7600.0, -5200.0, out.ground.height_m[i]));
-    const double craters =
-        static_cast<double>(out.craters.relief[i]) + open * static_cast<double>(out.craters.large[i]);
-    out.height_m[i] = out.ground.height_m[i] + static_cast<double>(sum[i]) +
-                      craters * (1.0 / static_cast<double>(kCraterUnits));
-    out.grain[i] = fine[i];
-  }
+  with_simd(block.simd, [&] {
+    for (std::size_t i = 0; i < block.padded; ++i) {
+      // Large craters stop where a younger trough or the ice begins, and are filled in on the deepest floors.
+      const double young = std::max({out.ground.trough[i], out.ground.wall[i], out.ground.ice[i]});
+      const double open = (1.0 - young) * (0.35 + 0.65 * ramp(-7600.0, -5200.0, out.ground.height_m[i]));
+      const double craters =
+          static_cast<double>(out.craters.relief[i]) + open * static_cast<double>(out.craters.large[i]);
+      out.height_m[i] = out.ground.height_m[i] + static_cast<double>(sum[i]) +
+                        craters * (1.0 / static_cast<double>(kCraterUnits));
+      out.grain[i] = fine[i];
+    }
+  });
 }
 
 // Directions being sorted into blocks, in place.
@@ -143,7 +149,7 @@ class Splitter {
     posts_.resize(directions.size());
     for (std::size_t i = 0; i < directions.size(); ++i)
       posts_[i] = {directions[i], static_cast<std::uint32_t>(i)};
-    surface_ = std::make_unique<Surface>();
+    surface_ = std::make_unique_for_overwrite<Surface>();
   }
 
   void run() {
@@ -229,7 +235,13 @@ class Splitter {
     sink_(block, std::span(index).first(posts.size()), *surface_);
   }
 
-  std::vector<Post> posts_;
+  static std::vector<Post>& scratch() {
+    static thread_local std::vector<Post> posts;
+    return posts;
+  }
+
+  // Kept from call to call: fresh pages for each tile would cost more than sorting it.
+  std::vector<Post>& posts_ = scratch();
   std::vector<Crater> craters_;
   std::vector<std::uint32_t> touching_;
   std::vector<Candidate> candidates_;

@@ -5,6 +5,8 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "mars/embedded_block.h"
+
 namespace mars::embedded {
 
 inline constexpr std::size_t kMostPieces = 64;  // of one system
@@ -20,5 +22,15 @@ struct TroughPiece {
 std::span<const TroughPiece> valles_pieces();
 // Kasei, Maja, Simud, Tiu, Ares, Mangala, Ma'adim, Dao, Harmakhis.
 std::span<const TroughPiece> channel_pieces();
+
+// Smooth union of the pieces near a block.
+struct Inside {
+  Lane<double> depth_m;  // horizontally inwards from the rim, negative outside
+  Lane<double> floor_m;
+  Lane<double> to_axis_m;   // from here to the centre line
+  Lane<double> gx, gy, gz;  // unit inwards
+};
+// False where no post comes near a piece; `out` is set else.
+bool find_inside(const Block& block, std::span<const TroughPiece> pieces, Inside& out);
 
 }  // namespace mars::embedded

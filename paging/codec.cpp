@@ -12,16 +12,14 @@ namespace paging {
 namespace {
 
 constexpr int kHeightsLevel = 2;
-constexpr int kMeshLevel = 6;
+constexpr int kMeshLevel = 3;
 constexpr std::size_t kMaxPayload = std::size_t{1} << 26;
 
 std::uint32_t zigzag(std::int32_t x) {
   return (static_cast<std::uint32_t>(x) << 1) ^ static_cast<std::uint32_t>(x >> 31);
 }
 
-std::int32_t unzigzag(std::uint32_t x) {
-  return static_cast<std::int32_t>((x >> 1) ^ (0U - (x & 1U)));
-}
+std::int32_t unzigzag(std::uint32_t x) { return static_cast<std::int32_t>((x >> 1) ^ (0U - (x & 1U))); }
 
 // Differences wrap modulo 2^32, so every int32 survives prediction.
 std::int32_t wrap_sub(std::int32_t a, std::int32_t b) {
@@ -81,7 +79,7 @@ std::vector<Triangle> normalised(const std::vector<std::uint16_t>& indices) {
     std::copy_n(indices.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, tri.begin());
     std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
   }
-  std::sort(triangles.begin(), triangles.end());
+  if (!std::is_sorted(triangles.begin(), triangles.end())) std::sort(triangles.begin(), triangles.end());
   return triangles;
 }
 
@@ -232,7 +230,8 @@ PackedMesh decode_mesh(std::span<const std::uint8_t> packed) {
 }
 
 std::int64_t checksum(std::int64_t key, std::span<const std::uint8_t> payload) {
-  const XXH64_hash_t hash = XXH3_64bits_withSeed(payload.data(), payload.size(), static_cast<XXH64_hash_t>(key));
+  const XXH64_hash_t hash =
+      XXH3_64bits_withSeed(payload.data(), payload.size(), static_cast<XXH64_hash_t>(key));
   return static_cast<std::int64_t>(hash & 0x7fffffffffffffffULL);
 }
 

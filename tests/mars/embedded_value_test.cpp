@@ -101,12 +101,30 @@ TEST(EmbeddedValue, EqualBitsInBatchesOfTheWholePlanet) {
 }
 
 TEST(EmbeddedValue, VectorAndScalarPathsGiveEqualBits) {
-  if (embedded::best_simd() == embedded::Simd::kPlain) GTEST_SKIP() << "skipped: no AVX2 here";
-  for (const double spacing_m : {2600.0, 40.0, 1.0}) {
+  using embedded::Simd;
+  if (embedded::best_simd() == Simd::kPlain) GTEST_SKIP() << "skipped: no AVX2 here";
+  for (const double spacing_m : {2600.0, 650.0, 160.0, 40.0, 1.0}) {
     for (const LonLat& p : kPlaces) {
       const auto directions = patch(p, 20, spacing_m);
-      EXPECT_EQ(heights(directions, spacing_m, embedded::Simd::kPlain),
-                heights(directions, spacing_m, embedded::Simd::kAvx2));
+      const auto expected = heights(directions, spacing_m, Simd::kPlain);
+      for (const Simd simd : {Simd::kAvx2, Simd::kAvx512}) {
+        if (!embedded::has_simd(simd)) continue;
+        EXPECT_EQ(heights(directions, spacing_m, simd), expected);
+      }
+    }
+  }
+}
+
+// What skips work for whole blocks must not show: posts of walls, floors and rims, together and alone.
+TEST(EmbeddedValue, EqualBitsAloneAndTogetherWhereLandformsEnd) {
+  for (const LonLat& p : {LonLat{-72.5, -9.0}, LonLat{-66.0, -11.9}, LonLat{-44.0, -9.5}, LonLat{-133.8, 13.6},
+                          LonLat{-138.5, 18.6}, LonLat{-74.4, -6.4}, LonLat{-100.0, -6.0}}) {
+    for (const double spacing_m : {650.0, 163.0}) {
+      const auto directions = patch(p, 48, 1200.0);
+      const auto together = heights(directions, spacing_m);
+      for (std::size_t i = 0; i < directions.size(); i += 23) {
+        EXPECT_EQ(heights({directions[i]}, spacing_m)[0], together[i]) << p.lon_deg << " " << i;
+      }
     }
   }
 }
