@@ -63,6 +63,9 @@ inline constexpr double kNormalError = 2e-15;
 double surface_height(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
                       glm::dvec3* normal = nullptr);
 
+// Upper bound of the tangent of slope of the flat facets over the posts, against the vertical at any of their points.
+double steepest_slope(const Posts& posts, const GridLines& lines, double radius_m);
+
 // Makes the posts of one edge lie on the flat edges of the grid that keeps every `step`-th of them (step a
 // power of two, at most the number of intervals): how a tile meets a coarser neighbour without a crack. The
 // moved posts are within kHeightError * (R step d + h) of the coarse edge.

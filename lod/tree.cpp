@@ -21,6 +21,7 @@ void check(const TileInfo& tile, double radius_m) {
     refuse(tile.key, "heights not finite");
   if (tile.min_height_m > tile.max_height_m) refuse(tile.key, "lowest height above the highest");
   if (tile.min_height_m <= -radius_m) refuse(tile.key, "lowest height below the planet's centre");
+  if (!std::isfinite(tile.steepest_slope) || tile.steepest_slope < 0.0) refuse(tile.key, "slope not finite or negative");
   if (tile.variants.empty()) refuse(tile.key, "no mesh");
   if (tile.has_children && tile.variants.size() != 1) refuse(tile.key, "more than one mesh above children");
   for (const MeshVariant& variant : tile.variants) {
@@ -41,6 +42,7 @@ void check(const TileInfo& tile, const TileInfo& child) {
   if (child.min_height_m < tile.min_height_m || child.max_height_m > tile.max_height_m) {
     refuse(child.key, "heights beyond its parent's");
   }
+  if (child.steepest_slope > tile.steepest_slope) refuse(child.key, "slope steeper than its parent's");
   if (grows(tile.variants.back().terms, child.variants.front().terms)) {
     refuse(child.key, "error larger than its parent's");
   }

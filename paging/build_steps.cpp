@@ -182,6 +182,7 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
   node.min_m = *low;
   node.lowest_m = *low - facet_sag_m(spacing, meta.radius_m);
   node.max_m = *high;
+  node.slope = lod::steepest_slope(posts, lines, meta.radius_m);
 
   const MesherPool::Lease mesher = context.meshers.borrow();
   const auto full = static_cast<std::uint32_t>(2 * n * n);
@@ -229,6 +230,7 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
     node.min_m = c == 0 ? below.min_m : std::min(node.min_m, below.min_m);
     node.lowest_m = c == 0 ? below.lowest_m : std::min(node.lowest_m, below.lowest_m);
     node.max_m = c == 0 ? below.max_m : std::max(node.max_m, below.max_m);
+    node.slope = std::max(node.slope, below.slope);
   }
   std::vector<double> own;
   own.reserve(static_cast<std::size_t>(meta.tile.post_count()));
@@ -306,6 +308,7 @@ NodeRow to_row(const lod::TileKey& key, const Node& node) {
   row.key = lod::pack(key);
   row.min_m = node.min_m;
   row.max_m = node.max_m;
+  row.slope = node.slope;
   row.inner = node.inner;
   row.steps = node.steps;
   for (const int s : node.sources) {

@@ -20,6 +20,7 @@ struct Node {
   double min_m = 0;     // of the finest posts
   double max_m = 0;
   double lowest_m = 0;  // of S: facets sag below their posts
+  double slope = 0;     // lod::steepest_slope
   bool inner = false;
   int steps = 0;            // NodeRow::steps
   std::set<int> sources;

@@ -123,7 +123,7 @@ PlanetFile::PlanetFile(const std::string& path) : path_(path) {
 void PlanetFile::read_index(Connection& connection) {
   std::vector<lod::TileInfo> tiles;
   tiles.reserve(static_cast<std::size_t>(std::max<std::int64_t>(meta_.tiles, 0)));
-  Statement nodes(connection.db, "SELECT key, min_m, max_m, inner, steps, sources, checksum FROM node ORDER BY key");
+  Statement nodes(connection.db, "SELECT key, min_m, max_m, inner, steps, sources, checksum, slope FROM node ORDER BY key");
   Statement variants(connection.db,
                      "SELECT key, relief_m, sag_m, total_m, triangles FROM variant ORDER BY key, variant");
   bool more = variants.step();
@@ -135,6 +135,7 @@ void PlanetFile::read_index(Connection& connection) {
     row.inner = nodes.integer(3) != 0;
     row.steps = static_cast<int>(nodes.integer(4));
     row.sources = nodes.text(5);
+    row.slope = nodes.real(7);
     while (more && variants.integer(0) < row.key) more = variants.step();
     while (more && variants.integer(0) == row.key) {
       row.variants.push_back(lod::MeshVariant{{variants.real(1), variants.real(2), variants.real(3)},
@@ -146,7 +147,7 @@ void PlanetFile::read_index(Connection& connection) {
       throw PlanetError(path_ + ": damaged: the tile index is wrong at row " + std::to_string(row.key) +
                         "; build the planet file again");
     }
-    tiles.push_back({*key, row.min_m, row.max_m, row.inner, row.variants});
+    tiles.push_back({*key, row.min_m, row.max_m, row.inner, row.variants, row.slope});
   }
   if (static_cast<std::int64_t>(tiles.size()) != meta_.tiles) {
     throw PlanetError(path_ + ": damaged: " + std::to_string(tiles.size()) + " of " + std::to_string(meta_.tiles) +

@@ -13,7 +13,7 @@ using nlohmann::json;
 const char* const kSchema = R"sql(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE node(key INTEGER PRIMARY KEY, face INTEGER, level INTEGER, i INTEGER, j INTEGER,
-  min_m REAL, max_m REAL, inner INTEGER, steps INTEGER, sources TEXT, checksum INTEGER);
+  min_m REAL, max_m REAL, slope REAL, inner INTEGER, steps INTEGER, sources TEXT, checksum INTEGER);
 CREATE TABLE variant(key INTEGER, variant INTEGER, relief_m REAL, sag_m REAL, total_m REAL, triangles INTEGER,
   PRIMARY KEY(key, variant)) WITHOUT ROWID;
 CREATE TABLE heights(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
@@ -194,6 +194,7 @@ std::int64_t checksum(const NodeRow& row) {
   };
   put(row.min_m);
   put(row.max_m);
+  put(row.slope);
   put(row.inner ? 1.0 : 0.0);
   put(row.steps);
   for (const char c : row.sources) bytes.push_back(static_cast<std::uint8_t>(c));

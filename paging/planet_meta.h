@@ -70,6 +70,7 @@ struct NodeRow {
   double max_m = 0;
   bool inner = false;
   int steps = 0;          // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
+  double slope = 0;       // TileInfo::steepest_slope
   std::string sources;    // indices into meta.sources, comma-separated
   std::vector<lod::MeshVariant> variants;
 };

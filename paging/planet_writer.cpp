@@ -48,7 +48,7 @@ struct PlanetWriter::Statements {
         missing(db, "INSERT INTO missing VALUES(?, ?, ?)"),
         image(db, "INSERT INTO image VALUES(?, ?, ?)"),
         mesh(db, "INSERT INTO mesh VALUES(NULL, ?, ?, ?, ?)"),
-        node(db, "INSERT INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        node(db, "INSERT INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         variant(db, "INSERT INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
         read_heights(db, "SELECT data FROM heights WHERE key = ?"),
         read_mesh(db, "SELECT data FROM mesh WHERE key = ? AND variant = ?") {}
@@ -133,10 +133,11 @@ void PlanetWriter::put_node(const NodeRow& row) {
       .bind(5, std::int64_t{key->j})
       .bind(6, row.min_m)
       .bind(7, row.max_m)
-      .bind(8, std::int64_t{row.inner})
-      .bind(9, std::int64_t{row.steps})
-      .bind(10, std::string_view(row.sources))
-      .bind(11, checksum(row));
+      .bind(8, row.slope)
+      .bind(9, std::int64_t{row.inner})
+      .bind(10, std::int64_t{row.steps})
+      .bind(11, std::string_view(row.sources))
+      .bind(12, checksum(row));
   sql_->node.step();
   std::int64_t number = 0;
   for (const lod::MeshVariant& v : row.variants) {

@@ -69,20 +69,12 @@ TEST(TileGeometryTest, AnOriginNearTheEyeIsExactThere) {
   EXPECT_EQ(g.vertices[at].position_m, glm::vec3(0, 0, 0));
 }
 
-TEST(TileGeometryTest, SteepnessIsThatOfTheSteepestTriangle) {
+TEST(TileGeometryTest, TheLongestEdgeIsTheDiagonalOfACell) {
   const lod::TileMesh mesh = lod::mesh_full(kIntervals);
-  const TileGeometry flat =
-      make_geometry(kKey, mesh, heights_of([](int, int) { return -700.0; }), 1.0, kRadius_m);
-  EXPECT_NEAR(flat.steepness, 1.0, 1e-6);
+  const TileGeometry flat = make_geometry(kKey, mesh, heights_of([](int, int) { return 0.0; }), 1.0, kRadius_m);
   const double east_m = glm::length(place(9, 8, 0) - place(8, 8, 0));
   EXPECT_NEAR(flat.longest_edge_m, std::hypot(east_m, glm::length(place(8, 9, 0) - place(8, 8, 0))),
               0.05 * east_m);
-  // One step of a spacing's height across one column of cells: 45 degrees, and 3 times that exaggerated.
-  static double step_m = 0;
-  step_m = east_m;
-  const std::vector<double> heights = heights_of([](int i, int) { return i > 8 ? step_m : 0.0; });
-  EXPECT_NEAR(make_geometry(kKey, mesh, heights, 1.0, kRadius_m).steepness, std::sqrt(2.0), 0.01);
-  EXPECT_NEAR(make_geometry(kKey, mesh, heights, 3.0, kRadius_m).steepness, std::sqrt(10.0), 0.02);
 }
 
 TEST(TileGeometryTest, BordersHaveALineAndASkirtForEachPiece) {
@@ -135,9 +127,9 @@ TEST(Certify, BoundsWhatStorageMoves) {
     lod::SelectedTile tile;
     tile.key = tree[0].key;
     tile.min_distance_m = glm::length(exact);
-    const vpe::gl::CertifiedTile certified{&tile, quantisation_m, edge_m, glm::length(centre - eye), 1.0};
+    const vpe::gl::CertifiedTile certified{&tile, quantisation_m, edge_m, glm::length(centre - eye)};
     constexpr double kFocal_px = 600;
-    const auto c = vpe::gl::certify({&certified, 1}, tree, 32, {kFocal_px, 0.001, 0});
+    const auto c = vpe::gl::certify({&certified, 1}, tree, 32, {kFocal_px, 0.001, 0, 1});
     const double moved_px = glm::length(drawn - exact) * kFocal_px / glm::length(exact);
     ASSERT_LE(moved_px, c.shift_bound_px) << "trial " << trial;
     ASSERT_EQ(c.quantisation_px, c.shift_bound_px);
@@ -147,24 +139,34 @@ TEST(Certify, BoundsWhatStorageMoves) {
 }
 
 TEST(Certify, AddsTheTermsOfTheWorstTile) {
-  const lod::TileTree tree = fake::tree(fake::rough(3, 5));
+  std::vector<lod::TileInfo> infos;
+  for (int f = 0; f < 6; ++f) {
+    const double slope = f == 1 ? std::sqrt(15.0) : 0.5;
+    infos.push_back({{static_cast<mars::Face>(f), 0, 0, 0}, 0, 0, false, {{{}, 32}}, slope});
+  }
+  const lod::TileTree tree(infos, {2}, kRadius_m);
   lod::SelectedTile near;
   near.key = tree[0].key;
   near.error_m = 3;
   near.error_px = 0.9;
   near.min_distance_m = 2000;
   lod::SelectedTile far = near;
+  far.index = 1;
+  far.key = tree[1].key;
   far.error_m = 50;
   far.error_px = 0.2;
   far.min_distance_m = 2e5;
-  const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&near, 1e-9, 100, 0, 1.5}, {&far, 1e-9, 100, 0, 4}}};
-  const auto c = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02});
+  const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&near, 1e-9, 100, 0}, {&far, 1e-9, 100, 0}}};
+  const auto c = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02, 1});
   EXPECT_EQ(c.tiles_drawn, 2);
   EXPECT_EQ(c.tile_error_m, 50);
   EXPECT_EQ(c.tile_error_px, 0.9);
-  // 4 times the grid step's share for the steepest triangle of the picture, over the nearer tile's error.
-  EXPECT_NEAR(c.shift_bound_px, 0.9 + 0.08, 1e-3);
+  // The grid step's share for the steepest ground of the picture, over the nearer tile's error.
+  EXPECT_NEAR(c.shift_bound_px, 0.9 + 0.02 * 4, 1e-3);
   EXPECT_GT(c.shift_bound_px, 0.98);
+  const auto twice = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02, 2});
+  EXPECT_NEAR(twice.shift_bound_px, 0.9 + 0.02 * std::sqrt(61.0), 1e-3);
+  EXPECT_EQ(twice.exaggeration, 2);
 }
 
 }  // namespace

@@ -282,4 +282,29 @@ TEST(Posts, SurfaceIsWatertightAcrossAChangeOfDepth) {
   }
 }
 
+// Against the facets' normals as surface_height() gives them, at places all over the tile.
+TEST(SteepestSlope, BoundsTheSlopesOfTheFacets) {
+  test_support::Random random(23);
+  for (const int level : {0, 3, 9, 16}) {
+    const TileKey key{mars::Face::kMinusY, level, 0, 0};
+    Posts posts{key, 16, {}};
+    const double rough_m = 0.3 * lod::nominal_side_m(level, mars::kMarsRadius_m) / 16;
+    for (int n = 0; n < 17 * 17; ++n) posts.height_m.push_back(random.uniform(0, rough_m));
+    const lod::GridLines lines = lod::grid_lines(key, 16);
+    const double bound = lod::steepest_slope(posts, lines, mars::kMarsRadius_m);
+    double steepest = 0;
+    for (int n = 0; n < 20000; ++n) {
+      const double u = random.uniform(lines.u.front(), lines.u.back());
+      const double v = random.uniform(lines.v.front(), lines.v.back());
+      glm::dvec3 normal;
+      lod::surface_height(posts, lines, u, v, mars::kMarsRadius_m, &normal);
+      const double cosine = glm::dot(normal, mars::chart_direction(key.face, u, v));
+      const double tangent = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) / cosine;
+      ASSERT_LE(tangent, bound * (1 + 1e-9)) << level;
+      steepest = std::max(steepest, tangent);
+    }
+    EXPECT_GE(steepest, level == 0 ? 0.5 * bound : 0.9 * bound) << level;
+  }
+}
+
 }  // namespace

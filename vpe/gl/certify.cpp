@@ -1,6 +1,7 @@
 #include "vpe/gl/certify.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vpe::gl {
 
@@ -11,6 +12,12 @@ constexpr double kRounding = 1.0 / (1 << 24);
 // Roundings of the vertex stage, as a part of the distance: a few of 2^-24.
 constexpr double kTransformError = 4e-7;
 
+// dr / d(angle) / r with heights times x.
+double exaggerated(const lod::TileInfo& tile, double x, double radius_m) {
+  return x * tile.steepest_slope * (radius_m + tile.max_height_m) /
+         std::max(1.0, radius_m + x * tile.min_height_m);
+}
+
 }  // namespace
 
 core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileTree& tree, int intervals,
@@ -19,7 +26,7 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
   c.tiles_drawn = static_cast<int>(tiles.size());
   double area = 0;
   double limited = 0;
-  double steepness = 1;
+  double slope = 0;
   double surface_px = 0;
   for (const CertifiedTile& t : tiles) {
     const lod::SelectedTile& tile = *t.tile;
@@ -29,7 +36,8 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
     const double moved_m =
         stored_m + kRounding * t.eye_to_centre_m + kTransformError * (distance_m + t.longest_edge_m);
     const double storage_px = moved_m * optics.focal_px / distance_m;
-    steepness = std::max(steepness, t.steepness);
+    const lod::TileInfo& info = tree[tile.index];
+    slope = std::max(slope, exaggerated(info, optics.exaggeration, tree.radius_m()));
     surface_px = std::max(surface_px, tile.error_px + storage_px);
     c.tile_error_m = std::max(c.tile_error_m, tile.error_m);
     c.tile_error_px = std::max(c.tile_error_px, tile.error_px);
@@ -40,12 +48,12 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
         std::min(side_m * optics.focal_px / std::max(tile.min_distance_m, 0.5 * side_m), 4096.0);
     area += pixels * pixels;
     const double spacing_m = side_m / intervals;
-    if (!tree[tile.index].has_children && spacing_m * optics.focal_px > tile.min_distance_m)
-      limited += pixels * pixels;
+    if (!info.has_children && spacing_m * optics.focal_px > tile.min_distance_m) limited += pixels * pixels;
   }
-  const double snap_px = optics.snap_px * steepness;
+  const double snap_px = optics.snap_px * std::sqrt(1.0 + slope * slope);
   c.quantisation_px += snap_px;
   c.shift_bound_px = surface_px + snap_px;
+  c.exaggeration = optics.exaggeration;
   c.share_at_data_limit = area > 0 ? limited / area : 0.0;
   return c;
 }

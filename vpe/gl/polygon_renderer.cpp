@@ -291,12 +291,11 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
     const lod::SelectedTile& tile = selection_.tiles[n];
     const GpuMesh& mesh = *meshes_.find(drawn_[n].mesh, frame_);
     certified_.push_back({&tile, mesh.quantisation_m, mesh.longest_edge_m,
-                          glm::length(mesh.centre_m - request.view.eye.eye_m), mesh.steepness});
+                          glm::length(mesh.centre_m - request.view.eye.eye_m)});
   }
   core::Certificate c = gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(),
-                                    {core::focal_px(request.view), lens.near_m, tiles_.snap_px()});
+                                    {core::focal_px(request.view), lens.near_m, tiles_.snap_px(), request.settings.exaggeration});
   c.tolerance_px = request.settings.lod_tolerance_px;
-  c.exaggeration = request.settings.exaggeration;
   const paging::PlanetMeta& meta = planet_->meta();
   c.resampling_max_m = meta.resampling.max_m;
   c.resampling_rms_m = meta.resampling.rms_m;

@@ -23,7 +23,6 @@ GpuMesh upload(const TileGeometry& geometry) {
   mesh.ranges = geometry.ranges;
   mesh.quantisation_m = geometry.quantisation_m;
   mesh.longest_edge_m = geometry.longest_edge_m;
-  mesh.steepness = geometry.steepness;
   mesh.bytes = vertex_bytes + index_bytes;
   return mesh;
 }

@@ -21,7 +21,6 @@ struct GpuMesh {
   IndexRanges ranges;
   double quantisation_m = 0;
   double longest_edge_m = 0;
-  double steepness = 1;
   std::size_t bytes = 0;
 };
 GpuMesh upload(const TileGeometry& geometry);

@@ -37,15 +37,6 @@ std::size_t nearest_vertex(const lod::TileMesh& mesh, int origin) {
   return best;
 }
 
-// 1 / cos of the slope at the triangle's corners; the vertical turns over a large triangle.
-double steepness(const std::array<glm::dvec3, 3>& corners) {
-  const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double size = glm::length(normal);
-  double least = std::numeric_limits<double>::infinity();
-  for (const glm::dvec3& p : corners) least = std::min(least, std::abs(glm::dot(normal, p)) / glm::length(p));
-  return size / std::max(least, 1e-9 * size);
-}
-
 }  // namespace
 
 TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
@@ -83,7 +74,6 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     const std::array<glm::dvec3, 3> corners{places[mesh.triangles[t]], places[mesh.triangles[t + 1]],
                                             places[mesh.triangles[t + 2]]};
-    out.steepness = std::max(out.steepness, steepness(corners));
     for (std::size_t k = 0; k < 3; ++k) {
       out.longest_edge_m = std::max(out.longest_edge_m, glm::length(corners[k] - corners[(k + 1) % 3]));
     }

@@ -36,7 +36,6 @@ struct TileGeometry {
   IndexRanges ranges;
   double quantisation_m = 0;            // no vertex is farther than this from its exact place, nor 2^-24 of its position
   double longest_edge_m = 0;            // of a triangle of the mesh
-  double steepness = 1;                 // 1 / cos of the steepest triangle's slope
   std::size_t bytes() const { return vertices.capacity() * sizeof(TileVertex) + indices.capacity() * 4; }
 };
 
