@@ -18,7 +18,7 @@ using vpe::core::format_number;
 
 std::string pose_at(double time_s) { return "the flight's pose at " + format_number(time_s) + " s"; }
 
-mars::Pose resolve(const Waypoint& w, double radius_m, const TerrainHeight& terrain_height_m) {
+mars::Pose resolve(const Waypoint& w, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration) {
   mars::Pose pose{w.lon_deg, w.lat_deg, w.up_m, w.yaw_deg, w.pitch_deg, w.roll_deg};
   if (w.above_terrain) {
     const double terrain_m = terrain_height_m ? terrain_height_m({w.lon_deg, w.lat_deg}) : std::nan("");
@@ -27,7 +27,7 @@ mars::Pose resolve(const Waypoint& w, double radius_m, const TerrainHeight& terr
                                format_number(w.lon_deg) + " lat " + format_number(w.lat_deg) +
                                " is not known: use alt= there");
     }
-    pose.alt_m += terrain_m;
+    pose.alt_m += exaggeration * terrain_m;
   }
   if (!(radius_m + pose.alt_m > 0.0)) {
     throw std::runtime_error(pose_at(w.time_s) + " lies at or below the planet's centre: alt must be above " +
@@ -115,13 +115,12 @@ std::span<const Command> up_to(const std::vector<Command>& commands, double time
 
 }  // namespace
 
-std::vector<Path::Knot> Path::knots_of(const Flight& flight, double radius_m,
-                                       const TerrainHeight& terrain_height_m) {
+std::vector<Path::Knot> Path::knots_of(const Flight& flight, const TerrainHeight& terrain_height_m) const {
   constexpr double kOpposite_rad = 1e-6;
   if (flight.waypoints.empty()) throw std::runtime_error("the flight has no pose");
   std::vector<Knot> knots;
   for (const Waypoint& w : flight.waypoints) {
-    const Knot knot{w.time_s, resolve(w, radius_m, terrain_height_m)};
+    const Knot knot{w.time_s, resolve(w, radius_m_, terrain_height_m, exaggeration(w.time_s))};
     if (!knots.empty() &&
         mars::angle_between_rad(place_of(knots.back().pose), place_of(knot.pose)) > mars::kPi - kOpposite_rad) {
       throw std::runtime_error(pose_at(w.time_s) +
@@ -133,12 +132,13 @@ std::vector<Path::Knot> Path::knots_of(const Flight& flight, double radius_m,
   return held_at_ends(std::move(knots), scripts::duration_s(flight));
 }
 
-Path::Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m)
+Path::Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration)
     : radius_m_(radius_m),
       duration_s_(scripts::duration_s(flight)),
-      knots_(knots_of(flight, radius_m, terrain_height_m)),
-      looks_(held_at_ends(flight.looks.empty() ? std::vector<Look>{Look{}} : flight.looks, duration_s_)),
+      exaggeration_(exaggeration),
       sets_(flight.sets),
+      knots_(knots_of(flight, terrain_height_m)),
+      looks_(held_at_ends(flight.looks.empty() ? std::vector<Look>{Look{}} : flight.looks, duration_s_)),
       interests_(flight.interests),
       place_(times_of(knots_), map(knots_, [](const Knot& knot) { return place_of(knot.pose); })),
       attitude_(times_of(knots_),
@@ -180,6 +180,14 @@ void Path::apply_settings(double time_s, vpe::core::Settings& settings) const {
   }
 }
 
+double Path::exaggeration(double time_s) const {
+  double value = exaggeration_;
+  for (const SetCommand& command : up_to(sets_, time_s)) {
+    if (command.key == "exaggeration") value = vpe::core::parse_number(command.text).value_or(value);
+  }
+  return value;
+}
+
 std::span<const Interest> Path::interests(double time_s) const { return up_to(interests_, time_s); }
 
 std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rate,
@@ -190,7 +198,7 @@ std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rat
     const double time_s = frame_time(rate, k);
     const mars::Pose pose = path.at(time_s).pose;
     const mars::LonLat place{pose.lon_deg, pose.lat_deg};
-    const double height_m = pose.alt_m - terrain_height_m(place);
+    const double height_m = pose.alt_m - path.exaggeration(time_s) * terrain_height_m(place);
     if (std::isfinite(height_m) && (!lowest || height_m < lowest->height_m))
       lowest = {k, time_s, height_m, place};
   }

@@ -24,7 +24,7 @@
 
 namespace scripts {
 
-// Height of the terrain above the sphere at a place, metres; NaN where it is not known.
+// Height of the terrain above the sphere at a place, not exaggerated, metres; NaN where it is not known.
 using TerrainHeight = std::function<double(mars::LonLat)>;
 
 struct FlightState {
@@ -36,12 +36,16 @@ struct FlightState {
 // Immutable; every const member may be called from any number of threads at once.
 class Path {
  public:
-  // Calls terrain_height_m once for every pose given by its height; it may be empty when there is none.
+  // Calls terrain_height_m once for every pose given by its height; it may be empty when there is none. The terrain
+  // counts with the exaggeration at the pose's time: the flight's, before its first `set` the given one.
   // Throws std::runtime_error, naming the time, when a terrain height is not known, when an eye is not above
   // the planet's centre, and when two successive poses are opposite, so that no great circle is defined.
-  Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m);
+  Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration = 1);
 
   double duration_s() const { return duration_s_; }
+
+  // Of heights, at a time.
+  double exaggeration(double time_s) const;
 
   // State at a time; at the start for times before it, at the end for times after it.
   FlightState at(double time_s) const;
@@ -57,14 +61,14 @@ class Path {
     double time_s = 0;
     mars::Pose pose;
   };
-  static std::vector<Knot> knots_of(const Flight& flight, double radius_m,
-                                    const TerrainHeight& terrain_height_m);
+  std::vector<Knot> knots_of(const Flight& flight, const TerrainHeight& terrain_height_m) const;
 
   double radius_m_;
   double duration_s_;
+  double exaggeration_;  // before the first `set` of it
+  std::vector<SetCommand> sets_;
   std::vector<Knot> knots_;  // the poses with their heights resolved, and what is held at both ends
   std::vector<Look> looks_;  // likewise
-  std::vector<SetCommand> sets_;
   std::vector<Interest> interests_;
   SphericalSpline<glm::dvec3> place_;
   SphericalSpline<glm::dvec4> attitude_;
@@ -74,7 +78,7 @@ class Path {
   MonotoneSpline look_roll_deg_;
 };
 
-// The frame of a film that comes closest to the ground, straight down.
+// The frame of a film that comes closest to the ground as drawn, straight down.
 struct Clearance {
   std::int64_t frame = 0;
   double time_s = 0;

@@ -366,4 +366,25 @@ TEST(Clearance, FindsTheLowestFrame) {
 }
 
 }  // namespace
+TEST(Path, HeightsAreAboveTheTerrainAsItIsDrawnThen) {
+  const auto parsed = scripts::parse_flight(
+      "flight 1\nview fov=60 size=64x64 fps=10\nat 0 pose lon=0 lat=0 height=100\n"
+      "at 2 set exaggeration=3\nat 2 pose lon=1 lat=0 height=100\nat 4 pose lon=2 lat=0 alt=100\n"
+      "at 5 set exaggeration=0.5\nat 6 pose lon=3 lat=0 height=100\n",
+      "test");
+  ASSERT_TRUE(parsed.flight);
+  const auto terrain = [](mars::LonLat) { return 1000.0; };
+  const scripts::Path path(*parsed.flight, 3396190.0, terrain, 2.0);
+  EXPECT_EQ(path.exaggeration(1.9), 2.0);
+  EXPECT_EQ(path.exaggeration(2.0), 3.0);
+  EXPECT_EQ(path.at(0).pose.alt_m, 2100.0);
+  EXPECT_EQ(path.at(2).pose.alt_m, 3100.0);
+  EXPECT_EQ(path.at(4).pose.alt_m, 100.0);
+  EXPECT_EQ(path.at(6).pose.alt_m, 600.0);
+  // 100 m high where 3 km of ground are drawn.
+  const auto lowest = scripts::lowest_clearance(path, parsed.flight->view.fps, terrain);
+  ASSERT_TRUE(lowest);
+  EXPECT_NEAR(lowest->height_m, -2900.0, 60.0);
+}
+
 }  // namespace scripts

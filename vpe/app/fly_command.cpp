@@ -99,10 +99,9 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (film) video.emplace(arguments.output, flight.view.width, flight.view.height, flight.view.fps);
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
-  const auto terrain = [x = base.values().exaggeration,
-                        surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
-                           mars::LonLat place) { return x * surface->at(mars::direction(place)).height_m; };
-  const scripts::Path path(flight, planet->radius_m(), terrain);
+  const auto terrain = [surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
+                           mars::LonLat place) { return surface->at(mars::direction(place)).height_m; };
+  const scripts::Path path(flight, planet->radius_m(), terrain, base.values().exaggeration);
   if (const auto lowest = scripts::lowest_clearance(path, flight.view.fps, terrain);
       lowest && lowest->height_m < 0 && !common.quiet) {
     std::fprintf(stderr, "vpe: warning: %s passes %.0f m under the terrain at %.2f s\n",
