@@ -224,8 +224,8 @@ BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSour
     const Surface surface(PlanetFile::open(writer.part_path()), std::size_t{64} << 20);
     meta.resampling = measure_resampling(elevation, surface, options.resampling_posts);
   }
+  stages.advance();  // the last chance to be interrupted
   writer.publish(meta);
-  stages.advance();
 
   summary.posts = meta.leaf_tiles * meta.tile.post_count();
   summary.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.output));

@@ -69,6 +69,30 @@ TEST_F(PolygonError, RandomViews) {
   }
 }
 
+// Skirts are planes through the planet's centre: from exactly over a border they are seen edge-on, along it
+// end-on.
+TEST_F(PolygonError, BordersSeenEdgeOn) {
+  const glm::dvec3 spot = mars::direction({45, 0});
+  const auto planet =
+      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(spot, 0.02, 8000)), 60000);
+  const paging::Surface surface(planet, std::size_t{1} << 28);
+  const auto draw = renderer(planet);
+  for (const mars::LonLat place :
+       {mars::LonLat{45, 0}, mars::LonLat{45, 35.264389682754654}, mars::LonLat{0, 0}}) {
+    const double ground = surface.at(mars::direction(place)).height_m;
+    for (const double height : {30.0, 4000.0, 60000.0}) {
+      for (const double yaw : {0.0, 90.0, 180.0}) {
+        for (const double pitch : {-6.0, -40.0, -90.0}) {
+          const mars::Pose pose{place.lon_deg, place.lat_deg, ground + height, yaw, pitch, 0};
+          expect_certified(*draw, surface, test_support::request_for(pose, planet->radius_m(), 161, 97, 60),
+                           std::to_string(place.lat_deg) + " at " + std::to_string(height) + " m, yaw " +
+                               std::to_string(yaw) + ", pitch " + std::to_string(pitch));
+        }
+      }
+    }
+  }
+}
+
 // Where rounding relative to a tile's centre would be metres of picture.
 TEST_F(PolygonError, AHandAboveTheGround) {
   const glm::dvec3 spot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
