@@ -96,4 +96,27 @@ TEST_F(LongViews, EmbeddedMarsKeepsItsCertificates) {
   check(paging::PlanetFile::open(path));
 }
 
+using LongHairlines = test_support::GlTest;
+
+// Equal borders are stored relative to two centres. Many large pictures of nothing but ground: no pixel between
+// tiles may show what lies behind, the far side of the planet from within or the sky. Without ribbons 1 to 6 of
+// these do.
+TEST_F(LongHairlines, AreClosedByRibbons) {
+  const auto planet =
+      test_support::build_fake(dir_ / "p.vpe", test_support::FakeElevation(test_support::bumpy_height), 30000);
+  const auto draw = renderer(planet);
+  Random random(64);
+  std::int64_t behind = 0;
+  for (int n = 0; n < 60; ++n) {
+    const mars::LonLat place = mars::lon_lat(random.direction());
+    const double alt = random.log_uniform(1e5, 6e5);
+    vpe::core::DrawRequest request =
+        test_support::request_for({place.lon_deg, place.lat_deg, alt, random.uniform(0, 360), -90, 0},
+                                  planet->radius_m(), 1200, 1200, 50);
+    request.settings.lod_tolerance_px = 0.3;
+    for (const float range : draw->draw(request).frame.range_m) behind += range < 4 * alt ? 0 : 1;
+  }
+  EXPECT_EQ(behind, 0);
+}
+
 }  // namespace
