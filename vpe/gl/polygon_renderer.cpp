@@ -28,9 +28,12 @@ double ms_since(Clock::time_point start) {
 }
 
 // Share of the memory budget for each holder; the rest is for the tile index and work in progress.
-constexpr double kShaderShare = 0.12;
-constexpr double kMeshShare = 0.14;
-constexpr double kTextureShare = 0.28;
+constexpr double kShaderShare = 0.14;
+constexpr double kMeshShare = 0.17;
+constexpr double kTextureShare = 0.34;
+
+// What OpenGL without a GPU keeps of a frame of some 400 000 triangles, and the pictures on their way out.
+constexpr std::size_t kDriverBytes = std::size_t{160} << 20;
 
 // Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
 constexpr double kFootError = 1e-6;
@@ -44,7 +47,7 @@ class PolygonRenderer : public core::Renderer {
                   const RendererOptions& options)
       : context_(std::move(context)),
         planet_(std::move(planet)),
-        memory_(options.memory_bytes),
+        memory_(std::max(options.memory_bytes / 8, options.memory_bytes - std::min(options.memory_bytes, kDriverBytes))),
         pool_(options.threads),
         shader_(planet_, share(kShaderShare)),
         sky_program_(make_program("sky", kSkyVertexShader, kSkyFragmentShader)),
@@ -211,9 +214,10 @@ void PolygonRenderer::make_resident(const ShadeParams& shading, bool textured) {
   }
   meshes_.trim(share(kMeshShare), frame_);
   textures_.trim(share(kTextureShare), frame_);
-  constexpr std::size_t kBatch = 16;  // bounds what is made ready but not yet uploaded
-  for (std::size_t begin = 0; begin < missing.size(); begin += kBatch) {
-    const std::size_t count = std::min(kBatch, missing.size() - begin);
+  // Bounds what is made ready but not yet uploaded: up to 4 MB a tile.
+  const std::size_t batch = std::clamp<std::size_t>(memory_ >> 26, 2, 16);
+  for (std::size_t begin = 0; begin < missing.size(); begin += batch) {
+    const std::size_t count = std::min(batch, missing.size() - begin);
     pool_.run(count, [&](std::size_t n) {
       Missing& m = missing[begin + n];
       if (m.mesh) m.geometry = geometry(m.tile->mesh, shading.exaggeration);
