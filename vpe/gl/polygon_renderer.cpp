@@ -34,6 +34,8 @@ constexpr double kTextureShare = 0.34;
 
 // What OpenGL without a GPU keeps of a frame of some 400 000 triangles, and the pictures on their way out.
 constexpr std::size_t kDriverBytes = std::size_t{160} << 20;
+// So a frame has at most as many triangles as --memory has this many bytes.
+constexpr std::size_t kBytesPerTriangle = 600;
 
 // Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
 constexpr double kFootError = 1e-6;
@@ -47,7 +49,9 @@ class PolygonRenderer : public core::Renderer {
                   const RendererOptions& options)
       : context_(std::move(context)),
         planet_(std::move(planet)),
-        memory_(std::max(options.memory_bytes / 8, options.memory_bytes - std::min(options.memory_bytes, kDriverBytes))),
+        most_triangles_(static_cast<std::int64_t>(options.memory_bytes / kBytesPerTriangle)),
+        memory_(std::max(options.memory_bytes / 8,
+                         options.memory_bytes - std::min(options.memory_bytes, kDriverBytes))),
         pool_(options.threads),
         shader_(planet_, share(kShaderShare)),
         sky_program_(make_program("sky", kSkyVertexShader, kSkyFragmentShader)),
@@ -84,6 +88,7 @@ class PolygonRenderer : public core::Renderer {
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
+  std::int64_t most_triangles_;
   std::size_t memory_;
   core::ThreadPool pool_;
   Shader shader_;
@@ -125,7 +130,9 @@ void PolygonRenderer::select(const core::DrawRequest& request, const ShadeParams
   lod::SelectOptions options;
   options.tolerance_px = request.settings.lod_tolerance_px;
   options.exaggeration = request.settings.exaggeration;
-  options.max_triangles = request.settings.lod_triangles;
+  options.max_triangles = request.settings.lod_triangles > 0
+                              ? std::min<std::int64_t>(request.settings.lod_triangles, most_triangles_)
+                              : most_triangles_;
   lod::select(options, planet_->tree(), lod::select_view(request.view), scratch_, selection_);
   lod::skirt_depths(selection_, planet_->tree(), skirts_);
   drawn_.clear();
@@ -294,11 +301,12 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
   for (std::size_t n = 0; n < drawn_.size(); ++n) {
     const lod::SelectedTile& tile = selection_.tiles[n];
     const GpuMesh& mesh = *meshes_.find(drawn_[n].mesh, frame_);
-    certified_.push_back({&tile, mesh.quantisation_m, mesh.longest_edge_m,
-                          glm::length(mesh.centre_m - request.view.eye.eye_m)});
+    certified_.push_back(
+        {&tile, mesh.quantisation_m, mesh.longest_edge_m, glm::length(mesh.centre_m - request.view.eye.eye_m)});
   }
-  core::Certificate c = gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(),
-                                    {core::focal_px(request.view), lens.near_m, tiles_.snap_px(), request.settings.exaggeration});
+  core::Certificate c =
+      gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(),
+                  {core::focal_px(request.view), lens.near_m, tiles_.snap_px(), request.settings.exaggeration});
   c.tolerance_px = request.settings.lod_tolerance_px;
   const paging::PlanetMeta& meta = planet_->meta();
   c.resampling_max_m = meta.resampling.max_m;
