@@ -8,6 +8,7 @@
 
 #include "vpe/gl/opengl.h"
 
+namespace vpe::gl {
 namespace {
 
 template <typename Function>
@@ -18,12 +19,13 @@ Function look_up(const char* name) {
 }
 
 }  // namespace
+}  // namespace vpe::gl
 
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): a definition for each, of OpenGL's own declaration
-#define VPE_FORWARD(result, name, parameters, arguments)                   \
-  result APIENTRY name parameters {                                        \
-    static const auto call = look_up<result(APIENTRY*) parameters>(#name); \
-    return call arguments;                                                 \
+#define VPE_FORWARD(result, name, parameters, arguments)                            \
+  result APIENTRY name parameters {                                                 \
+    static const auto call = vpe::gl::look_up<result(APIENTRY*) parameters>(#name); \
+    return call arguments;                                                          \
   }
 
 extern "C" {
