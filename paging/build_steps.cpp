@@ -1,6 +1,7 @@
 #include "paging/build_steps.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "vpe/core/image.h"
@@ -9,8 +10,8 @@ namespace paging {
 
 namespace {
 
-// Finest tiles carry ever finer meshes, each a quarter of the error and so about four times the triangles, until the
-// next one would come close to the full grid, which is the last.
+// Finest tiles carry ever finer meshes, each a quarter of the error and so about four times the triangles,
+// until the next one would come close to the full grid, which is the last.
 constexpr double kLastMeshShare = 0.1;
 constexpr double kVariantStep = 0.25;
 constexpr int kMaxMeshVariants = 12;
@@ -74,12 +75,8 @@ std::set<int> sources_of(const BuildContext& context, const std::vector<glm::dve
   return found;
 }
 
-// Bound of how far a facet of the tile's finest cells sags below the sphere through its posts: a point of a
-// flat triangle is within longest edge / sqrt(3) of a post.
-double facet_sag_m(double spacing_m, double radius_m) { return 2.5 * spacing_m * spacing_m / (6.0 * radius_m); }
-
-lod::BorderPosts borders_of(const lod::Posts& posts, const lod::GridLines& lines, const std::array<int, 4>& step,
-                            double tolerance_m, double radius_m) {
+lod::BorderPosts borders_of(const lod::Posts& posts, const lod::GridLines& lines,
+                            const std::array<int, 4>& step, double tolerance_m, double radius_m) {
   lod::BorderPosts out;
   for (const lod::Edge edge : lod::kEdges) {
     const auto e = static_cast<std::size_t>(edge);
@@ -110,18 +107,20 @@ PackedMesh pack_mesh(lod::TileMesh mesh, const lod::Posts& posts, double quantum
   return packed;
 }
 
-std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m) {
-  std::vector<double> heights(mesh.height_q.size());
-  std::transform(mesh.height_q.begin(), mesh.height_q.end(), heights.begin(),
-                 [quantum_m](std::int32_t q) { return q * quantum_m; });
-  return heights;
-}
-
 std::vector<std::int32_t> to_quanta(const std::vector<double>& heights, double quantum_m) {
   std::vector<std::int32_t> quanta(heights.size());
   std::transform(heights.begin(), heights.end(), quanta.begin(),
                  [quantum_m](double h) { return static_cast<std::int32_t>(std::llround(h / quantum_m)); });
   return quanta;
+}
+
+}  // namespace
+
+std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m) {
+  std::vector<double> heights(mesh.height_q.size());
+  std::transform(mesh.height_q.begin(), mesh.height_q.end(), heights.begin(),
+                 [quantum_m](std::int32_t q) { return q * quantum_m; });
+  return heights;
 }
 
 lod::Posts read_posts(const BuildContext& context, const lod::TileKey& key) {
@@ -133,13 +132,12 @@ lod::Posts read_posts(const BuildContext& context, const lod::TileKey& key) {
   if (steps != 0) {
     const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
     for (const lod::Edge edge : lod::kEdges) {
-      if ((steps >> static_cast<int>(edge) & 1) != 0) lod::constrain_edge(posts, lines, edge, 2, context.meta.radius_m);
+      if ((steps >> static_cast<int>(edge) & 1) != 0)
+        lod::constrain_edge(posts, lines, edge, 2, context.meta.radius_m);
     }
   }
   return posts;
 }
-
-}  // namespace
 
 double mesh_tolerance_m(const BuildOptions& options, int level) {
   return lod::nominal_side_m(level, options.radius_m) / options.mesh_ratio;
@@ -168,8 +166,9 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
   }
   node.sources = sources_of(context, directions);
   const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m);
-  context.writer.put_heights(key, encode_heights(quanta, n + 1));
-  if (any_missing) context.writer.put_missing(key, encode_mask(missing));
+  TilePayload payload;
+  payload.heights = encode_heights(quanta, n + 1);
+  if (any_missing) payload.missing = encode_mask(missing);
 
   for (std::size_t p = 0; p < quanta.size(); ++p) posts.height_m[p] = quanta[p] * meta.quantum_m;
   std::array<int, 4> border_step{1, 1, 1, 1};
@@ -196,7 +195,7 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
     const auto triangles = static_cast<std::uint32_t>(mesh.mesh.triangle_count());
     const lod::ErrorTerms terms =
         lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, meta.quantum_m), meta.radius_m).measure(fine);
-    context.writer.put_mesh(key, variant, encode_mesh(mesh));
+    payload.meshes.push_back(encode_mesh(mesh));
     node.variants.push_back({terms, triangles});
     if (triangles > kLastMeshShare * full) break;
   }
@@ -205,6 +204,7 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
   for (std::size_t v = node.variants.size() - 1; v > 0; --v) {
     node.variants[v - 1].terms.include(node.variants[v].terms);
   }
+  context.writer.put_tile(to_row(key, node), payload);
   return node;
 }
 
@@ -237,7 +237,8 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   for (std::size_t j = 0; j < wide; j += 2) {
     for (std::size_t i = 0; i < wide; i += 2) own.push_back(posts.height_m[j * wide + i]);
   }
-  context.writer.put_heights(key, encode_heights(to_quanta(own, meta.quantum_m), n + 1));
+  TilePayload payload;
+  payload.heights = encode_heights(to_quanta(own, meta.quantum_m), n + 1);
 
   // A finest tile beside this one has only every second of these border posts.
   std::array<int, 4> border_step{1, 1, 1, 1};
@@ -250,44 +251,10 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   const lod::BorderPosts borders = borders_of(posts, lines, border_step, tolerance, meta.radius_m);
   const PackedMesh mesh =
       pack_mesh(mesher->mesh(posts, borders, tolerance, meta.radius_m), posts, meta.quantum_m);
-  context.writer.put_mesh(key, 0, encode_mesh(mesh));
+  payload.meshes.push_back(encode_mesh(mesh));
   node.variants.push_back({{}, static_cast<std::uint32_t>(mesh.mesh.triangle_count())});
+  context.writer.put_tile(to_row(key, node), payload);
   return node;
-}
-
-std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& context, std::span<const lod::TileKey> leaves) {
-  std::map<lod::TileKey, lod::ErrorTerms> found;
-  // Neighbours on the curve share most ancestors: keep the meters of the last leaf's ancestors, by level.
-  std::vector<std::unique_ptr<lod::ErrorMeter>> meters;
-  lod::TileKey last = leaves.front();
-  for (const lod::TileKey& leaf : leaves) {
-    const lod::FinePosts posts(read_posts(context, leaf), context.meta.radius_m);
-    meters.resize(std::max(meters.size(), static_cast<std::size_t>(leaf.level)));
-    for (int level = 0; level < leaf.level; ++level) {
-      const lod::TileKey key = lod::ancestor(leaf, level);
-      auto& meter = meters[static_cast<std::size_t>(level)];
-      const bool same = meter && level <= last.level && lod::ancestor(last, level) == key;
-      if (!same) {
-        const PackedMesh mesh = decode_mesh(context.writer.mesh(key, 0));
-        meter = std::make_unique<lod::ErrorMeter>(key, mesh.mesh, vertex_heights(mesh, context.meta.quantum_m),
-                                                  context.meta.radius_m);
-      }
-      found[key].include(meter->measure(posts));
-    }
-    // Meters below this leaf's level belong to other branches.
-    meters.resize(static_cast<std::size_t>(leaf.level));
-    last = leaf;
-  }
-  return found;
-}
-
-void nest_errors(BuildContext& context) {
-  for (const lod::TileKey& key : context.plan.inner()) {
-    Node& node = context.nodes.at(key);
-    for (int c = 0; c < 4; ++c) {
-      node.variants.front().terms.include(context.nodes.at(lod::child(key, c)).variants.front().terms);
-    }
-  }
 }
 
 void build_image(const BuildContext& context, const mars::ImageSource& image, const lod::TileKey& key) {
@@ -295,28 +262,13 @@ void build_image(const BuildContext& context, const mars::ImageSource& image, co
   const std::vector<glm::dvec3> directions = post_directions(key, lines);
   std::vector<mars::Rgb> colours(directions.size());
   std::vector<std::uint8_t> alpha(directions.size());
-  image.sample(directions, lod::post_spacing_m(key.level, kImageIntervals, context.meta.radius_m), colours, alpha);
+  image.sample(directions, lod::post_spacing_m(key.level, kImageIntervals, context.meta.radius_m), colours,
+               alpha);
   for (std::size_t n = 0; n < colours.size(); ++n) {
     if (alpha[n] == 0) colours[n] = {128, 128, 128};
   }
   constexpr int kSide = kImageIntervals + 1;
   context.writer.put_image(key, vpe::core::encode_jpeg(colours, kSide, kSide, context.options.image_quality));
-}
-
-NodeRow to_row(const lod::TileKey& key, const Node& node) {
-  NodeRow row;
-  row.key = lod::pack(key);
-  row.min_m = node.min_m;
-  row.max_m = node.max_m;
-  row.slope = node.slope;
-  row.inner = node.inner;
-  row.steps = node.steps;
-  for (const int s : node.sources) {
-    if (!row.sources.empty()) row.sources.push_back(',');
-    row.sources.append(std::to_string(s));
-  }
-  row.variants = node.variants;
-  return row;
 }
 
 }  // namespace paging

@@ -17,12 +17,12 @@ namespace paging {
 
 // What a build keeps in memory of a tile.
 struct Node {
-  double min_m = 0;     // of the finest posts
+  double min_m = 0;  // of the finest posts
   double max_m = 0;
   double lowest_m = 0;  // of S: facets sag below their posts
   double slope = 0;     // lod::steepest_slope
   bool inner = false;
-  int steps = 0;            // NodeRow::steps
+  int steps = 0;  // NodeRow::steps
   std::set<int> sources;
   std::vector<lod::MeshVariant> variants;
 };
@@ -69,14 +69,25 @@ struct BuildContext {
   std::map<lod::TileKey, Node> nodes;  // ordered, so that nothing depends on hashing; read-only during a step
 };
 
-// Samples, stores and meshes a finest tile.
+// Samples, meshes and stores a finest tile.
 Node build_leaf(const BuildContext& context, const lod::TileKey& key);
 
-// Takes an inner tile's posts from its children (which must be in context.nodes), stores and meshes it.
+// Takes an inner tile's posts from its children (which must be in context.nodes), meshes and stores it. Its
+// error terms are 0 until they have been measured.
 Node build_inner(const BuildContext& context, const lod::TileKey& key);
 
+// The tile's Node from what is stored of it, instead of building it: equal to what building it returns. An
+// inner tile's children must be in context.nodes.
+Node recall_leaf(const BuildContext& context, const NodeRow& row);
+Node recall_inner(const BuildContext& context, const NodeRow& row);
+
 // Largest errors of every ancestor's mesh over some finest tiles.
-std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& context, std::span<const lod::TileKey> leaves);
+std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& context,
+                                                      std::span<const lod::TileKey> leaves);
+
+// measure_chunk's result as bytes and back; unpack throws CodecError.
+Bytes pack_terms(const std::map<lod::TileKey, lod::ErrorTerms>& terms);
+std::map<lod::TileKey, lod::ErrorTerms> unpack_terms(std::span<const std::uint8_t> packed);
 
 // Makes errors and height ranges nest: no tile states less than anything below it.
 void nest_errors(BuildContext& context);
@@ -84,6 +95,16 @@ void nest_errors(BuildContext& context);
 void build_image(const BuildContext& context, const mars::ImageSource& image, const lod::TileKey& key);
 
 NodeRow to_row(const lod::TileKey& key, const Node& node);
+
+// Bound of how far a facet of the tile's finest cells sags below the sphere through its posts: a point of a
+// flat triangle is within longest edge / sqrt(3) of a post.
+inline double facet_sag_m(double spacing_m, double radius_m) {
+  return 2.5 * spacing_m * spacing_m / (6.0 * radius_m);
+}
+
+// A stored tile's finest or own posts, borders constrained; and a stored mesh's heights in metres.
+lod::Posts read_posts(const BuildContext& context, const lod::TileKey& key);
+std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m);
 
 // Radial distance that a mesh of this level keeps to its posts.
 double mesh_tolerance_m(const BuildOptions& options, int level);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <set>
 
+#include "paging/build_inputs.h"
 #include "paging/build_steps.h"
 #include "paging/planet_writer.h"
 #include "paging/surface.h"
@@ -20,12 +22,17 @@ class Stages {
  public:
   explicit Stages(const ProgressFunction& report) : report_(report) {}
 
-  void begin(const char* name, std::int64_t total, double share) {
+  bool replaced = false;
+  std::int64_t kept() const { return kept_; }
+  void add_kept(std::int64_t count) { kept_ += count; }
+
+  // `done` of them are there already.
+  void begin(const char* name, std::int64_t total, double share, std::int64_t done = 0) {
     done_share_ += share_;
     share_ = share;
     name_ = name;
     total_ = total;
-    done_ = 0;
+    done_ = done;
     tell();
   }
 
@@ -39,11 +46,12 @@ class Stages {
   void tell() {
     if (!report_) return;
     const double part = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1.0;
-    report_({name_, done_, total_, done_share_ + share_ * part});
+    report_({name_, done_, total_, done_share_ + share_ * part, kept_, replaced});
   }
 
   const ProgressFunction& report_;
   std::mutex mutex_;
+  std::int64_t kept_ = 0;
   const char* name_ = "";
   std::int64_t done_ = 0;
   std::int64_t total_ = 0;
@@ -51,39 +59,8 @@ class Stages {
   double done_share_ = 0;
 };
 
-// A power of two well below what the sources resolve: heights between their posts are interpolated, and a
-// coarse step would show as terraces in slopes and shading.
-double choose_quantum(const std::vector<mars::SourceInfo>& sources, double finest_spacing_m) {
-  double step = 1.0;
-  for (const mars::SourceInfo& s : sources) {
-    step = std::min(step, s.quantum_m > 0 ? s.quantum_m / 16 : std::max(s.resolution_m, finest_spacing_m) / 512);
-  }
-  return std::clamp(std::exp2(std::floor(std::log2(step))), 1.0 / 4096.0, 1.0);
-}
-
-WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source) {
-  return [&options, &source](const lod::TileKey&, const mars::Cap& cap) {
-    const bool fine = options.regions.empty() || std::any_of(options.regions.begin(), options.regions.end(),
-                                                             [&](const Region& r) { return touches(r, cap); });
-    if (!fine) return options.base_spacing_m;
-    return std::min(options.base_spacing_m, std::max(source.spacing_in(cap), options.finest_spacing_m));
-  };
-}
-
-double mean_height(const mars::ElevationSource& source) {
-  double sum = 0;
-  std::int64_t count = 0;
-  source.visit_posts(20000, [&](std::span<const glm::dvec3>, std::span<const double> heights) {
-    for (const double h : heights) {
-      if (!std::isfinite(h)) continue;
-      sum += h;
-      ++count;
-    }
-  });
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-ResamplingError measure_resampling(const mars::ElevationSource& source, const Surface& surface, std::size_t posts) {
+ResamplingError measure_resampling(const mars::ElevationSource& source, const Surface& surface,
+                                   std::size_t posts) {
   ResamplingError out;
   double squares = 0;
   std::vector<double> radius;
@@ -102,135 +79,187 @@ ResamplingError measure_resampling(const mars::ElevationSource& source, const Su
   return out;
 }
 
-std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::ImageSource& image) {
-  std::vector<lod::TileKey> tiles;
-  for (int f = 0; f < mars::kFaces; ++f) tiles.push_back({static_cast<mars::Face>(f), 0, 0, 0});
-  for (std::size_t at = 0; at < tiles.size(); ++at) {
-    const lod::TileKey key = tiles[at];
-    const double spacing = lod::post_spacing_m(key.level, kImageIntervals, options.radius_m);
-    const double wanted = std::max(image.spacing_in(lod::bounding_cap(key)), options.finest_image_m);
-    // A texel up to a fifth coarser than asked for is not worth four times the tiles.
-    if (!(spacing > 1.2 * wanted) || key.level >= 20) continue;
-    for (int c = 0; c < 4; ++c) tiles.push_back(lod::child(key, c));
+// One build: the stages in their order, each leaving out what an earlier build has finished.
+class Build {
+ public:
+  Build(const BuildOptions& options, const mars::ElevationSource& elevation, const mars::ImageSource* image,
+        const PlanetMeta& meta, const ProgressFunction& progress)
+      : options_(options),
+        elevation_(elevation),
+        image_(image),
+        meta_(meta),
+        plan_(meta.tile, meta.radius_m, wanted_elevation(options, elevation)),
+        writer_(options.output, recipe_of(options, meta), options.commit_s),
+        stages_(progress),
+        threads_(options.threads > 0 ? options.threads : vpe::core::default_threads()) {
+    stages_.replaced = writer_.start() == PartStart::kReplaced;
   }
-  return tiles;
-}
 
-}  // namespace
+  BuildSummary run() {
+    std::map<lod::TileKey, NodeRow> stored;
+    for (NodeRow& row : writer_.nodes()) stored.emplace(*lod::unpack(row.key), std::move(row));
+    build_leaves(stored);
+    build_inner_tiles(stored);
+    measure();
+    build_images();
+    return finish();
+  }
 
-bool touches(const Region& region, const mars::Cap& cap) {
-  const mars::LonLat centre = mars::lon_lat(cap.centre);
-  const double reach_deg = cap.radius_rad / mars::kRadiansPerDegree;
-  if (centre.lat_deg + reach_deg < region.south_deg || centre.lat_deg - reach_deg > region.north_deg) return false;
-  // Width of a cap in longitude grows with latitude; a cap that holds a pole has all longitudes.
-  const double lat = std::abs(centre.lat_deg) * mars::kRadiansPerDegree;
-  if (lat + cap.radius_rad >= mars::kPi / 2) return true;
-  const double half_width_deg = std::asin(std::sin(cap.radius_rad) / std::cos(lat)) / mars::kRadiansPerDegree;
-  double width = region.east_deg - region.west_deg;
-  if (width < 0) width += 360.0;
-  if (width + 2 * half_width_deg >= 360.0) return true;
-  double from_west = std::fmod(centre.lon_deg + half_width_deg - region.west_deg, 360.0);
-  if (from_west < 0) from_west += 360.0;
-  return from_west <= width + 2 * half_width_deg;
-}
-
-BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
-                          const mars::ImageSource* image, const ProgressFunction& progress) {
-  PlanetMeta meta;
-  meta.body = options.body;
-  meta.radius_m = options.radius_m;
-  meta.tile.k = options.tile_k;
-  meta.sources = elevation.infos();
-  if (meta.sources.empty()) throw PlanetError("no elevation source: give at least one DEM");
-  meta.datum = meta.sources.front().datum;
-  meta.quantum_m = options.quantum_m > 0 ? options.quantum_m : choose_quantum(meta.sources, options.finest_spacing_m);
-  meta.fill_m = std::round(mean_height(elevation) / meta.quantum_m) * meta.quantum_m;
-  for (const mars::SourceInfo& s : meta.sources) meta.illustration = meta.illustration || s.illustration;
-  if (image != nullptr) meta.image_sources = image->infos();
-
-  const Plan plan(meta.tile, meta.radius_m, wanted_elevation(options, elevation));
-  const std::vector<lod::TileKey> images = image != nullptr ? plan_images(options, *image) : std::vector<lod::TileKey>();
-  PlanetWriter writer(options.output);
-  Stages stages(progress);
-  const int threads = options.threads > 0 ? options.threads : vpe::core::default_threads();
-  MesherPool meshers;
-  BuildContext context{options, meta, plan, elevation, writer, meshers, {}};
-
+ private:
   // 1. Finest tiles: heights and meshes.
-  const std::vector<lod::TileKey>& leaves = plan.leaves();
-  std::vector<Node> leaf_nodes(leaves.size());
-  stages.begin("sampling", static_cast<std::int64_t>(leaves.size()), 0.62);
-  vpe::core::parallel_for(leaves.size(), threads, [&](std::size_t n) {
-    leaf_nodes[n] = build_leaf(context, leaves[n]);
-    stages.advance();
-  });
-  for (std::size_t n = 0; n < leaves.size(); ++n) context.nodes.emplace(leaves[n], std::move(leaf_nodes[n]));
+  void build_leaves(const std::map<lod::TileKey, NodeRow>& stored) {
+    const std::vector<lod::TileKey>& leaves = plan_.leaves();
+    std::vector<lod::TileKey> open;
+    for (const lod::TileKey& key : leaves) {
+      const auto row = stored.find(key);
+      if (row == stored.end()) {
+        open.push_back(key);
+      } else {
+        context_.nodes.emplace(key, recall_leaf(context_, row->second));
+      }
+    }
+    begin("sampling", leaves.size(), open.size(), 0.62);
+    build_each(open, build_leaf);
+  }
 
   // 2. Inner tiles, deepest first: posts and meshes over their children's posts.
-  const std::vector<lod::TileKey>& inner = plan.inner();
-  stages.begin("meshing", static_cast<std::int64_t>(inner.size()), 0.15);
-  for (std::size_t begin = 0; begin < inner.size();) {
-    std::size_t end = begin;
-    while (end < inner.size() && inner[end].level == inner[begin].level) ++end;
-    std::vector<Node> made(end - begin);
-    vpe::core::parallel_for(end - begin, threads, [&](std::size_t n) {
-      made[n] = build_inner(context, inner[begin + n]);
-      stages.advance();
-    });
-    for (std::size_t n = begin; n < end; ++n) context.nodes.emplace(inner[n], std::move(made[n - begin]));
-    begin = end;
+  void build_inner_tiles(const std::map<lod::TileKey, NodeRow>& stored) {
+    const std::vector<lod::TileKey>& inner = plan_.inner();
+    const auto missing = std::count_if(inner.begin(), inner.end(),
+                                       [&](const lod::TileKey& key) { return !stored.contains(key); });
+    begin("meshing", inner.size(), static_cast<std::size_t>(missing), 0.15);
+    for (std::size_t at = 0; at < inner.size();) {
+      std::vector<lod::TileKey> open;
+      for (const int level = inner[at].level; at < inner.size() && inner[at].level == level; ++at) {
+        const auto row = stored.find(inner[at]);
+        if (row == stored.end()) {
+          open.push_back(inner[at]);
+        } else {
+          context_.nodes.emplace(inner[at], recall_inner(context_, row->second));
+        }
+      }
+      build_each(open, build_inner);
+    }
   }
 
   // 3. Every inner mesh against the finest posts and facets below it.
-  constexpr std::size_t kChunk = 32;
-  const std::size_t chunks = (leaves.size() + kChunk - 1) / kChunk;
-  std::mutex merge;
-  stages.begin("measuring", static_cast<std::int64_t>(chunks), 0.15);
-  vpe::core::parallel_for(chunks, threads, [&](std::size_t c) {
-    const auto found = measure_chunk(context, std::span(leaves).subspan(c * kChunk, std::min(kChunk, leaves.size() - c * kChunk)));
-    {
-      const std::lock_guard lock(merge);
-      for (const auto& [key, terms] : found) context.nodes.at(key).variants.front().terms.include(terms);
+  void measure() {
+    constexpr std::size_t kChunk = 32;
+    const std::vector<lod::TileKey>& leaves = plan_.leaves();
+    const std::size_t chunks = (leaves.size() + kChunk - 1) / kChunk;
+    const auto include = [this](const std::map<lod::TileKey, lod::ErrorTerms>& found) {
+      for (const auto& [key, terms] : found) context_.nodes.at(key).variants.front().terms.include(terms);
+    };
+    const std::map<std::int64_t, Bytes> notes = writer_.notes();
+    std::vector<std::size_t> open;
+    for (std::size_t c = 0; c < chunks; ++c) {
+      const auto note = notes.find(static_cast<std::int64_t>(c));
+      if (note == notes.end()) {
+        open.push_back(c);
+      } else {
+        include(unpack_terms(note->second));
+      }
     }
-    stages.advance();
-  });
-  nest_errors(context);
+    stages_.begin("measuring", static_cast<std::int64_t>(chunks), 0.15,
+                  static_cast<std::int64_t>(chunks - open.size()));
+    std::mutex merge;
+    vpe::core::parallel_for(open.size(), threads_, [&](std::size_t n) {
+      const std::size_t first = open[n] * kChunk;
+      const auto found =
+          measure_chunk(context_, std::span(leaves).subspan(first, std::min(kChunk, leaves.size() - first)));
+      writer_.put_note(static_cast<std::int64_t>(open[n]), pack_terms(found));
+      {
+        const std::lock_guard lock(merge);
+        include(found);
+      }
+      stages_.advance();
+    });
+    nest_errors(context_);
+  }
 
   // 4. The image's own pyramid.
-  stages.begin("image", static_cast<std::int64_t>(images.size()), 0.06);
-  vpe::core::parallel_for(images.size(), threads, [&](std::size_t n) {
-    build_image(context, *image, images[n]);
-    stages.advance();
-  });
-  for (const lod::TileKey& key : images) meta.finest_image_level = std::max(meta.finest_image_level, key.level);
-  meta.image_tiles = static_cast<std::int64_t>(images.size());
-
-  BuildSummary summary;
-  meta.tiles = static_cast<std::int64_t>(context.nodes.size());
-  meta.leaf_tiles = static_cast<std::int64_t>(leaves.size());
-  meta.lowest_radius_m = meta.highest_radius_m = meta.radius_m + context.nodes.begin()->second.lowest_m;
-  for (const auto& [key, node] : context.nodes) {
-    meta.lowest_radius_m = std::min(meta.lowest_radius_m, meta.radius_m + node.lowest_m);
-    meta.highest_radius_m = std::max(meta.highest_radius_m, meta.radius_m + node.max_m);
-    meta.finest_level = std::max(meta.finest_level, key.level);
-    for (const lod::MeshVariant& v : node.variants) summary.mesh_triangles += v.triangles;
-    writer.put_node(to_row(key, node));
+  void build_images() {
+    const std::vector<lod::TileKey> images =
+        image_ != nullptr ? plan_images(options_, *image_) : std::vector<lod::TileKey>();
+    const std::set<std::int64_t> stored = writer_.image_keys();
+    std::vector<lod::TileKey> open;
+    std::copy_if(images.begin(), images.end(), std::back_inserter(open),
+                 [&](const lod::TileKey& key) { return !stored.contains(lod::pack(key)); });
+    begin("image", images.size(), open.size(), 0.06);
+    vpe::core::parallel_for(open.size(), threads_, [&](std::size_t n) {
+      build_image(context_, *image_, open[n]);
+      stages_.advance();
+    });
+    for (const lod::TileKey& key : images)
+      meta_.finest_image_level = std::max(meta_.finest_image_level, key.level);
+    meta_.image_tiles = static_cast<std::int64_t>(images.size());
   }
-  writer.seal(meta);
 
-  // 5. S against the sources' own posts, through the same reader that everybody uses.
-  stages.begin("checking", 1, 0.02);
-  {
-    const Surface surface(PlanetFile::open(writer.part_path()), std::size_t{64} << 20);
-    meta.resampling = measure_resampling(elevation, surface, options.resampling_posts);
+  BuildSummary finish() {
+    BuildSummary summary;
+    std::vector<NodeRow> measured;
+    meta_.tiles = static_cast<std::int64_t>(context_.nodes.size());
+    meta_.leaf_tiles = static_cast<std::int64_t>(plan_.leaves().size());
+    meta_.lowest_radius_m = meta_.highest_radius_m = meta_.radius_m + context_.nodes.begin()->second.lowest_m;
+    for (const auto& [key, node] : context_.nodes) {
+      meta_.lowest_radius_m = std::min(meta_.lowest_radius_m, meta_.radius_m + node.lowest_m);
+      meta_.highest_radius_m = std::max(meta_.highest_radius_m, meta_.radius_m + node.max_m);
+      meta_.finest_level = std::max(meta_.finest_level, key.level);
+      for (const lod::MeshVariant& v : node.variants) summary.mesh_triangles += v.triangles;
+      if (node.inner) measured.push_back(to_row(key, node));
+    }
+    writer_.replace_nodes(measured);
+    writer_.seal(meta_);
+
+    // 5. S against the sources' own posts, through the same reader that everybody uses.
+    stages_.begin("checking", 1, 0.02);
+    {
+      const Surface surface(PlanetFile::open(writer_.part_path()), std::size_t{64} << 20);
+      meta_.resampling = measure_resampling(elevation_, surface, options_.resampling_posts);
+    }
+    stages_.advance();  // the last chance to be interrupted
+    writer_.publish(meta_);
+
+    summary.posts = meta_.leaf_tiles * meta_.tile.post_count();
+    summary.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options_.output));
+    summary.kept = stages_.kept();
+    summary.meta = meta_;
+    return summary;
   }
-  stages.advance();  // the last chance to be interrupted
-  writer.publish(meta);
 
-  summary.posts = meta.leaf_tiles * meta.tile.post_count();
-  summary.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.output));
-  summary.meta = meta;
-  return summary;
+  void begin(const char* name, std::size_t total, std::size_t open, double share) {
+    stages_.add_kept(static_cast<std::int64_t>(total - open));
+    stages_.begin(name, static_cast<std::int64_t>(total), share, static_cast<std::int64_t>(total - open));
+  }
+
+  // Builds tiles that do not need each other.
+  void build_each(const std::vector<lod::TileKey>& keys,
+                  Node (*build)(const BuildContext&, const lod::TileKey&)) {
+    std::vector<Node> made(keys.size());
+    vpe::core::parallel_for(keys.size(), threads_, [&](std::size_t n) {
+      made[n] = build(context_, keys[n]);
+      stages_.advance();
+    });
+    for (std::size_t n = 0; n < keys.size(); ++n) context_.nodes.emplace(keys[n], std::move(made[n]));
+  }
+
+  const BuildOptions& options_;
+  const mars::ElevationSource& elevation_;
+  const mars::ImageSource* image_;
+  PlanetMeta meta_;
+  Plan plan_;
+  PlanetWriter writer_;
+  Stages stages_;
+  int threads_;
+  MesherPool meshers_;
+  BuildContext context_{options_, meta_, plan_, elevation_, writer_, meshers_, {}};
+};
+
+}  // namespace
+
+BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
+                          const mars::ImageSource* image, const ProgressFunction& progress) {
+  return Build(options, elevation, image, describe_planet(options, elevation, image), progress).run();
 }
 
 }  // namespace paging

@@ -121,33 +121,16 @@ PlanetFile::PlanetFile(const std::string& path) : path_(path) {
 }
 
 void PlanetFile::read_index(Connection& connection) {
+  std::vector<NodeRow> rows;
+  const auto bad = read_nodes(connection.db, rows);
+  if (bad) {
+    throw PlanetError(path_ + ": damaged: the tile index is wrong at row " + std::to_string(*bad) +
+                      "; build the planet file again");
+  }
   std::vector<lod::TileInfo> tiles;
-  tiles.reserve(static_cast<std::size_t>(std::max<std::int64_t>(meta_.tiles, 0)));
-  Statement nodes(connection.db, "SELECT key, min_m, max_m, inner, steps, sources, checksum, slope FROM node ORDER BY key");
-  Statement variants(connection.db,
-                     "SELECT key, relief_m, sag_m, total_m, triangles FROM variant ORDER BY key, variant");
-  bool more = variants.step();
-  while (nodes.step()) {
-    NodeRow row;
-    row.key = nodes.integer(0);
-    row.min_m = nodes.real(1);
-    row.max_m = nodes.real(2);
-    row.inner = nodes.integer(3) != 0;
-    row.steps = static_cast<int>(nodes.integer(4));
-    row.sources = nodes.text(5);
-    row.slope = nodes.real(7);
-    while (more && variants.integer(0) < row.key) more = variants.step();
-    while (more && variants.integer(0) == row.key) {
-      row.variants.push_back(lod::MeshVariant{{variants.real(1), variants.real(2), variants.real(3)},
-                              static_cast<std::uint32_t>(variants.integer(4))});
-      more = variants.step();
-    }
-    const std::optional<lod::TileKey> key = lod::unpack(row.key);
-    if (!key || checksum(row) != nodes.integer(6)) {
-      throw PlanetError(path_ + ": damaged: the tile index is wrong at row " + std::to_string(row.key) +
-                        "; build the planet file again");
-    }
-    tiles.push_back({*key, row.min_m, row.max_m, row.inner, row.variants, row.slope});
+  tiles.reserve(rows.size());
+  for (NodeRow& row : rows) {
+    tiles.push_back({*lod::unpack(row.key), row.min_m, row.max_m, row.inner, std::move(row.variants), row.slope});
   }
   if (static_cast<std::int64_t>(tiles.size()) != meta_.tiles) {
     throw PlanetError(path_ + ": damaged: " + std::to_string(tiles.size()) + " of " + std::to_string(meta_.tiles) +
@@ -227,6 +210,14 @@ std::optional<lod::TileKey> PlanetFile::image_key(const lod::TileKey& key) const
     if (std::binary_search(image_keys_.begin(), image_keys_.end(), lod::pack(candidate))) return candidate;
   }
   return std::nullopt;
+}
+
+std::vector<lod::TileKey> PlanetFile::image_keys() const {
+  std::vector<lod::TileKey> keys;
+  for (const std::int64_t row : image_keys_) {
+    if (const auto key = lod::unpack(row)) keys.push_back(*key);
+  }
+  return keys;
 }
 
 ImageTile PlanetFile::image(const lod::TileKey& key) const {

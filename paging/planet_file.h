@@ -43,6 +43,7 @@ class PlanetFile {
 
   // The deepest stored image tile at or above `key`; nothing when the planet has no image.
   std::optional<lod::TileKey> image_key(const lod::TileKey& key) const;
+  std::vector<lod::TileKey> image_keys() const;  // all of them
   ImageTile image(const lod::TileKey& key) const;  // key must be one that image_key() returned
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "mars/sphere.h"
 
 namespace paging {
+
+class Database;
 
 inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
 inline constexpr int kFormatMajor = 1;
@@ -75,5 +78,12 @@ struct NodeRow {
   std::vector<lod::MeshVariant> variants;
 };
 std::int64_t checksum(const NodeRow& row);
+
+// All rows of the tile index, in key order, each with its variants. Returns the key of the first row that does
+// not fit its checksum, if any (rows then ends before it). Throws DatabaseError.
+std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows);
+
+// PlanetMeta::identity of what the tables hold. Throws DatabaseError.
+std::string content_identity(const Database& db);
 
 }  // namespace paging

@@ -16,15 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kCommitBytes = std::size_t{64} << 20;
-
-std::string fresh_part(const std::string& path) {
-  const std::string part = path + ".part";
-  std::error_code ignored;
-  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(part + suffix, ignored);
-  return part;
-}
-
 void sync_to_disk(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return;
@@ -47,14 +38,16 @@ struct PlanetWriter::Statements {
       : heights(db, "INSERT INTO heights VALUES(?, ?, ?)"),
         missing(db, "INSERT INTO missing VALUES(?, ?, ?)"),
         image(db, "INSERT INTO image VALUES(?, ?, ?)"),
+        note(db, "INSERT INTO note VALUES(?, ?, ?)"),
         mesh(db, "INSERT INTO mesh VALUES(NULL, ?, ?, ?, ?)"),
-        node(db, "INSERT INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
-        variant(db, "INSERT INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
-        read_heights(db, "SELECT data FROM heights WHERE key = ?"),
-        read_mesh(db, "SELECT data FROM mesh WHERE key = ? AND variant = ?") {}
+        node(db, "INSERT OR REPLACE INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        variant(db, "INSERT OR REPLACE INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
+        read_heights(db, "SELECT checksum, data FROM heights WHERE key = ?"),
+        read_mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?") {}
   Statement heights;
   Statement missing;
   Statement image;
+  Statement note;
   Statement mesh;
   Statement node;
   Statement variant;
@@ -62,70 +55,66 @@ struct PlanetWriter::Statements {
   Statement read_mesh;
 };
 
-PlanetWriter::PlanetWriter(const std::string& path)
-    : path_(path), part_(fresh_part(path)), db_(std::make_unique<Database>(part_, Database::Mode::kCreate)) {
-  db_->execute("PRAGMA page_size = 8192");
-  db_->execute("PRAGMA journal_mode = OFF");
-  db_->execute("PRAGMA synchronous = OFF");
-  db_->execute("PRAGMA locking_mode = EXCLUSIVE");
-  db_->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
-  db_->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
-  db_->execute(kSchema);
-  sql_ = std::make_unique<Statements>(*db_);
-  db_->execute("BEGIN");
+PlanetWriter::PlanetWriter(const std::string& path, const std::string& recipe, double commit_s)
+    : path_(path), part_path_(path + ".part"), commit_every_(commit_s), part_(open_part(part_path_, recipe)) {
+  sql_ = std::make_unique<Statements>(*part_.db);
 }
 
 PlanetWriter::~PlanetWriter() {
   if (finished_) return;
   sql_.reset();
-  db_.reset();
-  std::error_code ignored;
-  fs::remove(part_, ignored);
+  if (part_.db && part_.holds_tiles) {
+    try {
+      part_.db->execute("COMMIT");
+    } catch (const DatabaseError&) {
+      // As on a full disk: SQLite has gone back to the last commit, or will when the file is opened again.
+    }
+  }
+  part_.db.reset();
+  if (!part_.holds_tiles) remove_part(part_path_);
 }
 
-void PlanetWriter::commit_now_and_then() {
-  if (bytes_since_commit_ < kCommitBytes) return;
-  bytes_since_commit_ = 0;
-  db_->execute("COMMIT");
-  db_->execute("BEGIN");
+void PlanetWriter::commit_when_due() {
+  part_.holds_tiles = true;
+  if (std::chrono::steady_clock::now() - last_commit_ < commit_every_) return;
+  part_.db->execute("COMMIT");
+  part_.db->execute("BEGIN EXCLUSIVE");
+  last_commit_ = std::chrono::steady_clock::now();
 }
 
-void PlanetWriter::put(Statement& statement, const lod::TileKey& key, std::span<const std::uint8_t> packed) {
-  const std::int64_t row = lod::pack(key);
-  const std::lock_guard lock(mutex_);
+void PlanetWriter::put(Statement& statement, std::int64_t row, std::span<const std::uint8_t> packed) {
   statement.bind(1, row).bind(2, checksum(row, packed)).bind(3, packed);
   statement.step();
-  bytes_since_commit_ += packed.size();
-  commit_now_and_then();
 }
 
-void PlanetWriter::put_heights(const lod::TileKey& key, std::span<const std::uint8_t> packed) {
-  put(sql_->heights, key, packed);
-}
-
-void PlanetWriter::put_missing(const lod::TileKey& key, std::span<const std::uint8_t> packed) {
-  put(sql_->missing, key, packed);
+void PlanetWriter::put_tile(const NodeRow& row, const TilePayload& payload) {
+  const std::lock_guard lock(mutex_);
+  put(sql_->heights, row.key, payload.heights);
+  if (!payload.missing.empty()) put(sql_->missing, row.key, payload.missing);
+  std::int64_t variant = 0;
+  for (const Bytes& packed : payload.meshes) {
+    sql_->mesh.bind(1, row.key).bind(2, variant).bind(3, checksum(row.key + variant, packed)).bind(4, packed);
+    sql_->mesh.step();
+    ++variant;
+  }
+  put_node(row);
+  commit_when_due();
 }
 
 void PlanetWriter::put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed) {
-  put(sql_->image, key, packed);
+  const std::lock_guard lock(mutex_);
+  put(sql_->image, lod::pack(key), packed);
+  commit_when_due();
 }
 
-void PlanetWriter::put_mesh(const lod::TileKey& key, int variant, std::span<const std::uint8_t> packed) {
-  const std::int64_t row = lod::pack(key);
+void PlanetWriter::put_note(std::int64_t number, std::span<const std::uint8_t> packed) {
   const std::lock_guard lock(mutex_);
-  sql_->mesh.bind(1, row)
-      .bind(2, static_cast<std::int64_t>(variant))
-      .bind(3, checksum(row + variant, packed))
-      .bind(4, packed);
-  sql_->mesh.step();
-  bytes_since_commit_ += packed.size();
-  commit_now_and_then();
+  put(sql_->note, number, packed);
+  commit_when_due();
 }
 
 void PlanetWriter::put_node(const NodeRow& row) {
   const auto key = lod::unpack(row.key);
-  const std::lock_guard lock(mutex_);
   sql_->node.bind(1, row.key)
       .bind(2, static_cast<std::int64_t>(key->face))
       .bind(3, std::int64_t{key->level})
@@ -151,69 +140,91 @@ void PlanetWriter::put_node(const NodeRow& row) {
   }
 }
 
-Bytes PlanetWriter::read(Statement& statement, const lod::TileKey& key) {
-  if (!statement.step()) db_->fail("read back tile " + lod::to_string(key));
-  const auto data = statement.blob(0);
+void PlanetWriter::replace_nodes(std::span<const NodeRow> rows) {
+  const std::lock_guard lock(mutex_);
+  for (const NodeRow& row : rows) put_node(row);
+  commit_when_due();
+}
+
+std::vector<NodeRow> PlanetWriter::nodes() {
+  const std::lock_guard lock(mutex_);
+  std::vector<NodeRow> rows;
+  const auto bad = read_nodes(*part_.db, rows);
+  if (bad) {
+    throw DatabaseError(part_path_ + ": the tile index is damaged at row " + std::to_string(*bad) +
+                        "; remove this file, then build again");
+  }
+  return rows;
+}
+
+std::set<std::int64_t> PlanetWriter::image_keys() {
+  const std::lock_guard lock(mutex_);
+  std::set<std::int64_t> keys;
+  Statement rows(*part_.db, "SELECT key FROM image");
+  while (rows.step()) keys.insert(rows.integer(0));
+  return keys;
+}
+
+std::map<std::int64_t, Bytes> PlanetWriter::notes() {
+  const std::lock_guard lock(mutex_);
+  std::map<std::int64_t, Bytes> out;
+  Statement rows(*part_.db, "SELECT number, data FROM note");
+  while (rows.step()) {
+    const auto data = rows.blob(1);
+    out.emplace(rows.integer(0), Bytes(data.begin(), data.end()));
+  }
+  return out;
+}
+
+Bytes PlanetWriter::read(Statement& statement, const lod::TileKey& key, std::int64_t seed) {
+  if (!statement.step()) part_.db->fail("read back tile " + lod::to_string(key));
+  const auto data = statement.blob(1);
   Bytes out(data.begin(), data.end());
+  const bool intact = checksum(seed, out) == statement.integer(0);
   statement.reset();
+  if (!intact) {
+    throw DatabaseError(part_path_ + ": tile " + lod::to_string(key) +
+                        " is damaged (wrong checksum); remove this file, then build again");
+  }
   return out;
 }
 
 Bytes PlanetWriter::heights(const lod::TileKey& key) {
   const std::lock_guard lock(mutex_);
   sql_->read_heights.bind(1, lod::pack(key));
-  return read(sql_->read_heights, key);
+  return read(sql_->read_heights, key, lod::pack(key));
 }
 
 Bytes PlanetWriter::mesh(const lod::TileKey& key, int variant) {
   const std::lock_guard lock(mutex_);
   sql_->read_mesh.bind(1, lod::pack(key)).bind(2, std::int64_t{variant});
-  return read(sql_->read_mesh, key);
-}
-
-std::string PlanetWriter::identity() {
-  // In key order, so that the order in which threads finished does not show.
-  Bytes all;
-  for (const char* table : {"node", "heights", "missing", "image"}) {
-    Statement rows(*db_, std::string("SELECT checksum FROM ") + table + " ORDER BY key");
-    while (rows.step()) {
-      const auto sum = static_cast<std::uint64_t>(rows.integer(0));
-      for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
-    }
-  }
-  Statement rows(*db_, "SELECT checksum FROM mesh ORDER BY key, variant");
-  while (rows.step()) {
-    const auto sum = static_cast<std::uint64_t>(rows.integer(0));
-    for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
-  }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(checksum(kApplicationId, all)));
-  return text;
+  return read(sql_->read_mesh, key, lod::pack(key) + variant);
 }
 
 void PlanetWriter::seal(PlanetMeta& meta) {
   const std::lock_guard lock(mutex_);
-  meta.identity = identity();
+  meta.identity = content_identity(*part_.db);
   meta.program = VPE_VERSION;
-  write_meta(*db_, meta);
-  db_->execute("COMMIT");
+  write_meta(*part_.db, meta);
+  part_.db->execute("COMMIT");
   sql_.reset();
-  db_.reset();
+  part_.db.reset();
 }
 
 void PlanetWriter::publish(const PlanetMeta& meta) {
   {
-    Database db(part_, Database::Mode::kCreate);
+    Database db(part_path_, Database::Mode::kCreate);
     db.execute("BEGIN");
+    db.execute(kDropPartTables);
     db.execute("DELETE FROM meta");
     write_meta(db, meta);
     db.execute("COMMIT");
   }
-  sync_to_disk(part_);
+  sync_to_disk(part_path_);
   std::error_code error;
-  fs::rename(part_, path_, error);
+  fs::rename(part_path_, path_, error);
   if (error) {
-    throw DatabaseError(path_ + ": cannot rename the finished " + part_ + ": " + error.message());
+    throw DatabaseError(path_ + ": cannot rename the finished " + part_path_ + ": " + error.message());
   }
   finished_ = true;
 }

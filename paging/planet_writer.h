@@ -1,54 +1,83 @@
 // Writes a planet file: PATH.part while it grows, PATH once it is complete.
+//
+// A build that was stopped or killed leaves PATH.part with whole tiles; the next writer with the same recipe
+// continues it. Every transaction ends between two tiles, so what is there is complete whenever the process
+// died; when the machine died, all but the last second or so is.
 #pragma once
 
+#include <chrono>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <span>
 
 #include "paging/codec.h"
 #include "paging/planet_meta.h"
-#include "paging/sqlite.h"
+#include "paging/planet_part.h"
 
 namespace paging {
 
-// Members may be called from any thread; they take turns. Throws DatabaseError (disk full, ...); the name of the finished file only ever holds a complete one.
+// All that the file holds of a tile.
+struct TilePayload {
+  Bytes heights;
+  Bytes missing;              // empty: no post is missing
+  std::vector<Bytes> meshes;  // by variant
+};
+
+// Members may be called from any thread; they take turns. Throws DatabaseError (disk full, another build at
+// work on the same file, ...); the name of the finished file only ever holds a complete one.
 class PlanetWriter {
  public:
-  explicit PlanetWriter(const std::string& path);
-  ~PlanetWriter();  // removes the .part file unless publish() was reached
+  // recipe: everything that the content is a function of, as text; two builds with equal recipes make equal
+  // tiles. commit_s: how often finished tiles are made safe.
+  PlanetWriter(const std::string& path, const std::string& recipe, double commit_s = 1.0);
+  ~PlanetWriter();  // unless publish() was reached, keeps the .part file; removes it when it has no tile
+  PlanetWriter(const PlanetWriter&) = delete;
+  PlanetWriter& operator=(const PlanetWriter&) = delete;
 
-  void put_heights(const lod::TileKey& key, std::span<const std::uint8_t> packed);
-  void put_missing(const lod::TileKey& key, std::span<const std::uint8_t> packed);
-  void put_mesh(const lod::TileKey& key, int variant, std::span<const std::uint8_t> packed);
+  PartStart start() const { return part_.start; }
+
+  // What earlier builds left, at the time of asking.
+  std::vector<NodeRow> nodes();
+  std::set<std::int64_t> image_keys();
+  std::map<std::int64_t, Bytes> notes();
+
+  // Each is stored whole or not at all.
+  void put_tile(const NodeRow& row, const TilePayload& payload);
   void put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed);
-  void put_node(const NodeRow& row);
+  // A result on the way to the finished file, by number; dropped by publish().
+  void put_note(std::int64_t number, std::span<const std::uint8_t> packed);
+  // Replaces rows of the tile index, all or none.
+  void replace_nodes(std::span<const NodeRow> rows);
 
-  // What put_heights stored.
+  // What put_tile stored. Throws DatabaseError also when it is damaged.
   Bytes heights(const lod::TileKey& key);
-
   Bytes mesh(const lod::TileKey& key, int variant);
 
   // Writes meta (identity and program are filled in) and closes the .part file: it can be opened for reading,
   // nothing more can be put.
   void seal(PlanetMeta& meta);
-  const std::string& part_path() const { return part_; }
+  const std::string& part_path() const { return part_path_; }
 
   // After seal: writes meta again, syncs the file to disk and renames it to its final name.
   void publish(const PlanetMeta& meta);
 
  private:
-  void put(Statement& statement, const lod::TileKey& key, std::span<const std::uint8_t> packed);
-  void commit_now_and_then();
-  Bytes read(Statement& statement, const lod::TileKey& key);
-  std::string identity();
+  struct Statements;
+
+  void put(Statement& statement, std::int64_t row, std::span<const std::uint8_t> packed);
+  void put_node(const NodeRow& row);
+  void commit_when_due();
+  Bytes read(Statement& statement, const lod::TileKey& key, std::int64_t seed);
 
   std::mutex mutex_;
   std::string path_;
-  std::string part_;
-  std::unique_ptr<Database> db_;
+  std::string part_path_;
+  std::chrono::duration<double> commit_every_;
+  std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
+  Part part_;
   bool finished_ = false;
-  std::size_t bytes_since_commit_ = 0;
-  struct Statements;
   std::unique_ptr<Statements> sql_;
 };
 

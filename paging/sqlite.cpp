@@ -14,7 +14,9 @@ Database::Database(const std::string& path, Mode mode) : path_(path) {
 
 void Database::fail(const std::string& operation) const {
   const char* words = db_ ? sqlite3_errmsg(db_.get()) : "out of memory";
-  throw DatabaseError(path_ + ": cannot " + operation + ": " + words);
+  const int code = db_ ? sqlite3_extended_errcode(db_.get()) & 0xff : SQLITE_NOMEM;
+  throw DatabaseError(path_ + ": cannot " + operation + ": " + words + (code == SQLITE_FULL ? "; free some space" : ""),
+                      code);
 }
 
 void Database::execute(const std::string& sql) {
@@ -54,7 +56,9 @@ Statement& Statement::bind(int index, std::string_view value) {
 }
 
 Statement& Statement::bind(int index, std::span<const std::uint8_t> value) {
-  if (sqlite3_bind_blob64(statement_.get(), index, value.data(), value.size(), SQLITE_STATIC) != SQLITE_OK) {
+  // An empty span may have a null pointer, which SQLite would take for NULL.
+  const void* data = value.empty() ? "" : static_cast<const void*>(value.data());
+  if (sqlite3_bind_blob64(statement_.get(), index, data, value.size(), SQLITE_STATIC) != SQLITE_OK) {
     db_->fail("bind a blob");
   }
   return *this;

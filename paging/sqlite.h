@@ -15,7 +15,13 @@ namespace paging {
 // what() names the file, the operation and SQLite's own words.
 class DatabaseError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit DatabaseError(const std::string& what, int code = SQLITE_ERROR)
+      : std::runtime_error(what), code_(code) {}
+  int code() const { return code_; }  // SQLite's primary result code
+  bool busy() const { return code_ == SQLITE_BUSY; }
+
+ private:
+  int code_;
 };
 
 class Database {

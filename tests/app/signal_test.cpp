@@ -1,4 +1,5 @@
-// SIGINT and SIGTERM while a planet is built.
+// SIGINT, SIGTERM and SIGKILL while a planet is built.
+#include <chrono>
 #include <csignal>
 
 #include "tests/app/support/app_fixture.h"
@@ -15,6 +16,10 @@ class Signals : public AppTest {
     }
     return false;
   }
+  // What a stopped build leaves is its part, for the next one, and nothing else.
+  void expect_only_parts() const {
+    for (const std::string& name : leftovers()) EXPECT_TRUE(name.ends_with(".part") || name.ends_with(".part-journal")) << name;
+  }
 };
 
 TEST_F(Signals, StopABuild) {
@@ -29,7 +34,9 @@ TEST_F(Signals, StopABuild) {
     EXPECT_TRUE(says(result.err, {"stopped"}));
     EXPECT_EQ(result.out, "");
     EXPECT_FALSE(exists("x.vpe"));
-    EXPECT_EQ(leftovers(), Words{});
+    expect_only_parts();
+    std::filesystem::remove(dir_ / "x.vpe.part");
+    std::filesystem::remove(dir_ / "x.vpe.part-journal");
   }
 }
 
@@ -41,7 +48,7 @@ TEST_F(Signals, KeepTheFileThatWasThere) {
   command.when = [&] { return holds_part(dir_.path()); };
   EXPECT_EQ(run(command).exit_code, 130);
   EXPECT_EQ(read_text(dir_ / "x.vpe"), read_text(planet()));
-  EXPECT_EQ(leftovers(), Words{});
+  expect_only_parts();
 }
 
 TEST_F(Signals, StopABuildIntoTheCache) {
@@ -55,11 +62,76 @@ TEST_F(Signals, StopABuildIntoTheCache) {
     EXPECT_EQ(result.exit_code, 143) << "signal " << result.signal;
     EXPECT_TRUE(says(result.err, {"Building", "once, into", path("cache") + "/vpe/"}));
     EXPECT_EQ(result.out, "");
-    EXPECT_EQ(leftovers(), Words{});
+    expect_only_parts();
     for (const auto& entry : std::filesystem::recursive_directory_iterator(dir_ / "cache")) {
       EXPECT_NE(entry.path().extension(), ".vpe");
     }
+    std::filesystem::remove_all(dir_ / "cache");
   }
+}
+
+// A build of about a second, stopped over and over.
+class Continue : public Signals {
+ protected:
+  Words build_words(const std::string& name) const {
+    return {"build", "x.tif", "-o", name, "--base-spacing", "25000", "--json"};
+  }
+
+  static std::string identity_of(const Result& result) {
+    return parse_json(result.out).at("identity").get<std::string>();
+  }
+
+  // Sends `signal` after a random time, until a build ends by itself; returns how often it was sent.
+  int stop_until_done(int signal, double longest_s, test_support::Random& random, Result& last) const {
+    for (int stops = 0;; ++stops) {
+      Command command = command_for(build_words("x.vpe"));
+      const auto end =
+          std::chrono::steady_clock::now() + std::chrono::duration<double>(random.uniform(0.05, longest_s));
+      command.signal = signal;
+      command.when = [end] { return std::chrono::steady_clock::now() > end; };
+      last = run(command);
+      if (last.exit_code == 0) return stops;
+      EXPECT_TRUE(last.signalled) << last.err;
+    }
+  }
+};
+
+TEST_F(Continue, AStoppedBuildSaysHowAndGoesOn) {
+  write_dem(dir_ / "x.tif");
+  const Result whole = vpe(build_words("whole.vpe"));
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  Command command = command_for(build_words("x.vpe"));
+  command.signal = SIGTERM;
+  command.when = [&] { return holds_part(dir_.path()); };
+  const Result stopped = run(command);
+  if (stopped.exit_code != 0 && exists("x.vpe.part")) {
+    EXPECT_EQ(stopped.exit_code, 143);
+    EXPECT_TRUE(says(stopped.err, {"x.vpe.part", "the same command continues it", "stopped"}));
+  }
+  test_support::Random random(5);
+  Result last;
+  stop_until_done(SIGTERM, 3.0, random, last);
+  EXPECT_EQ(identity_of(last), identity_of(whole));
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+class LongContinue : public Continue {};
+
+TEST_F(LongContinue, KilledOneHundredTimes) {
+  write_dem(dir_ / "x.tif");
+  const Result whole = vpe(build_words("whole.vpe"));
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  test_support::Random random(6);
+  int kills = 0;
+  while (kills < 100) {
+    Result last;
+    kills += stop_until_done(SIGKILL, 2.0, random, last);
+    EXPECT_EQ(identity_of(last), identity_of(whole));
+    EXPECT_EQ(vpe({"verify", "x.vpe", "-q"}).exit_code, 0);
+    std::filesystem::remove(dir_ / "x.vpe");
+    if (HasFailure()) return;
+  }
+  RecordProperty("kills", kills);
 }
 
 class LongCache : public AppTest {};

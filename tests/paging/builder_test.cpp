@@ -144,16 +144,6 @@ TEST(Builder, MissingPlacesAreKnown) {
   EXPECT_NEAR(surface.at({0, 0, 1}).height_m, 1000.0, 0.1);  // filled, so that pictures have no pit
 }
 
-TEST(Builder, AFailedBuildLeavesNothing) {
-  TempDir dir;
-  const FakeElevation source([](const glm::dvec3& d) -> double {
-    if (d.x > 0.99) throw mars::SourceError("no.tif: cannot read block 7");
-    return 0.0;
-  });
-  EXPECT_THROW(build_fake(dir / "p.vpe", source, 200000), mars::SourceError);
-  EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
-}
-
 TEST(Builder, RegionsKnowCapsAcrossTheAntimeridianAndPoles) {
   const auto cap = [](double lon, double lat, double radius_deg) {
     return mars::Cap{mars::direction({lon, lat}), radius_deg * mars::kRadiansPerDegree};

@@ -2,12 +2,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "paging/builder.h"
-#include "vpe/app/interrupt.h"
 #include "vpe/app/output.h"
 #include "vpe/app/planet_argument.h"
+#include "vpe/app/planet_build.h"
 #include "vpe/app/program.h"
-#include "vpe/app/progress.h"
 #include "vpe/app/report.h"
 
 namespace vpe::app {
@@ -64,18 +62,11 @@ void build(BuildArguments& arguments, const Common& common) {
   std::shared_ptr<const mars::ImageSource> image;
   if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
 
-  const InterruptGuard guard;
-  paging::BuildSummary summary;
-  {
-    ProgressLine line(common.quiet);
-    summary = paging::build_planet(options, *elevation, image.get(), [&](const paging::BuildProgress& p) {
-      InterruptGuard::check();
-      line.show(std::string("building (") + p.stage + ")", p.fraction);
-    });
-  }
+  const paging::BuildSummary summary = run_build(options, *elevation, image.get(), common);
   if (common.json) {
     nlohmann::json json = planet_json(summary.meta);
     json["bytes"] = summary.bytes;
+    json["tiles_kept"] = summary.kept;
     print_json(json);
   } else if (!common.quiet) {
     std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %.1f MB\n", options.output.c_str(),

@@ -9,9 +9,7 @@
 #include <cstring>
 
 #include "mars/embedded.h"
-#include "paging/builder.h"
-#include "vpe/app/interrupt.h"
-#include "vpe/app/progress.h"
+#include "vpe/app/planet_build.h"
 #include "vpe/core/number.h"
 
 namespace vpe::app {
@@ -50,19 +48,14 @@ std::string hex(std::uint64_t x) {
 
 void build_into(const fs::path& target, const std::string& what, const mars::ElevationSource& elevation,
                 const mars::ImageSource* image, const Common& common) {
-  const InterruptGuard guard;
   if (!common.quiet) std::fprintf(stderr, "Building %s once, into %s\n", what.c_str(), target.c_str());
-  ProgressLine line(common.quiet);
   paging::BuildOptions options;
   options.output = target.string();
   options.threads = common.threads;
   // An analytic source is sampled one place at a time here: enough for a figure that is stable to a few per
   // cent.
   if (elevation.infos().front().illustration) options.resampling_posts = 100'000;
-  paging::build_planet(options, elevation, image, [&](const paging::BuildProgress& p) {
-    InterruptGuard::check();
-    line.show(std::string("building (") + p.stage + ")", p.fraction);
-  });
+  run_build(options, elevation, image, common);
 }
 
 std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what,

@@ -90,6 +90,7 @@ int run(int argc, char** argv) {
   Common common;
   add_build(program, common);
   add_info(program, common);
+  add_verify(program, common);
   add_query(program, common);
   add_render(program, common);
   add_fly(program, common);

@@ -14,6 +14,7 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::show(const std::string& what, double fraction) {
   if (quiet_) return;
+  if (first_fraction_ < 0) first_fraction_ = fraction;
   const auto now = Clock::now();
   const auto pause = terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(15000);
   // Short work stays silent where nobody watches.
@@ -22,8 +23,8 @@ void ProgressLine::show(const std::string& what, double fraction) {
   shown_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   std::string left = "...";
-  if (fraction > 0.01) {
-    const auto seconds = static_cast<long>(elapsed * (1.0 - fraction) / fraction + 0.5);
+  if (const double made = fraction - first_fraction_; made > 0.01) {
+    const auto seconds = static_cast<long>(elapsed * (1.0 - fraction) / made + 0.5);
     left = std::to_string(seconds / 60) + ":" + (seconds % 60 < 10 ? "0" : "") + std::to_string(seconds % 60) +
            " left";
   }

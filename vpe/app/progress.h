@@ -22,6 +22,7 @@ class ProgressLine {
   bool quiet_;
   bool terminal_;
   bool shown_ = false;
+  double first_fraction_ = -1;  // work that was done before is not counted into the speed
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_{};
 };

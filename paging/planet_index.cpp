@@ -1,0 +1,62 @@
+#include <cstdio>
+
+#include "paging/codec.h"
+#include "paging/planet_meta.h"
+#include "paging/sqlite.h"
+
+namespace paging {
+
+std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows) {
+  Statement nodes(db,
+                  "SELECT key, min_m, max_m, inner, steps, sources, checksum, slope, face, level, i, j "
+                  "FROM node ORDER BY key");
+  Statement variants(db, "SELECT key, relief_m, sag_m, total_m, triangles FROM variant ORDER BY key, variant");
+  bool more = variants.step();
+  while (nodes.step()) {
+    NodeRow row;
+    row.key = nodes.integer(0);
+    row.min_m = nodes.real(1);
+    row.max_m = nodes.real(2);
+    row.inner = nodes.integer(3) != 0;
+    row.steps = static_cast<int>(nodes.integer(4));
+    row.sources = nodes.text(5);
+    row.slope = nodes.real(7);
+    while (more && variants.integer(0) < row.key) more = variants.step();
+    while (more && variants.integer(0) == row.key) {
+      row.variants.push_back(lod::MeshVariant{{variants.real(1), variants.real(2), variants.real(3)},
+                                              static_cast<std::uint32_t>(variants.integer(4))});
+      more = variants.step();
+    }
+    const std::optional<lod::TileKey> key = lod::unpack(row.key);
+    if (!key || checksum(row) != nodes.integer(6)) return row.key;
+    // The columns for people with SQL say the same as the key.
+    if (nodes.integer(8) != static_cast<std::int64_t>(key->face) || nodes.integer(9) != key->level ||
+        nodes.integer(10) != std::int64_t{key->i} || nodes.integer(11) != std::int64_t{key->j}) {
+      return row.key;
+    }
+    rows.push_back(std::move(row));
+  }
+  return std::nullopt;
+}
+
+std::string content_identity(const Database& db) {
+  // In key order, so that the order in which threads finished does not show.
+  Bytes all;
+  for (const char* table : {"node", "heights", "missing", "image"}) {
+    Statement rows(db, std::string("SELECT checksum FROM ") + table + " ORDER BY key");
+    while (rows.step()) {
+      const auto sum = static_cast<std::uint64_t>(rows.integer(0));
+      for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
+    }
+  }
+  Statement rows(db, "SELECT checksum FROM mesh ORDER BY key, variant");
+  while (rows.step()) {
+    const auto sum = static_cast<std::uint64_t>(rows.integer(0));
+    for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(checksum(kApplicationId, all)));
+  return text;
+}
+
+}  // namespace paging
