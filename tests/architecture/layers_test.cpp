@@ -54,7 +54,7 @@ const Layer* layer_of(std::string_view path) {
 }
 
 bool is_drawing_header(const std::string& name) {
-  static const std::regex kPattern(R"((GL|GLES\d?|EGL|KHR|GLFW|OpenGL|GLUT)/.*|glad.*|glew.*|osmesa.*)",
+  static const std::regex kPattern(R"((GL|GLES\d?|EGL|KHR|GLFW|OpenGL|GLUT)/.*|epoxy/.*|glad.*|glew.*|osmesa.*)",
                                    std::regex::icase);
   return std::regex_match(name, kPattern);
 }
@@ -187,7 +187,7 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   EXPECT_NE(verdict("lod/a.cpp", "#include \"posts.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"../mars/cube.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include <paging/../GL/gl.h>\n#include <GL/gl.h>\n" + lod), "");
-  for (const char* header : {"GL/gl.h", "EGL/egl.h", "GLFW/glfw3.h", "GL/osmesa.h", "GL/glcorearb.h"}) {
+  for (const char* header : {"GL/gl.h", "EGL/egl.h", "GLFW/glfw3.h", "GL/osmesa.h", "GL/glcorearb.h", "epoxy/gl.h"}) {
     const std::string line = std::string("#include <") + header + ">\n";
     EXPECT_NE(verdict("vpe/core/a.cpp", line + "namespace vpe::core {}"), "") << header;
     EXPECT_EQ(verdict("vpe/gl/a.cpp", line + "namespace vpe::gl {}"), "") << header;

@@ -1,7 +1,6 @@
 #ifndef VPE_OSMESA
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
+#include <epoxy/egl.h>
 
 #include <array>
 #include <cstdlib>
