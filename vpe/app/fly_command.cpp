@@ -125,9 +125,13 @@ void fly(FlyArguments& arguments, const Common& common) {
   FilmReports reports;
   if (!arguments.stats.empty()) reports.stats.emplace(arguments.stats);
   if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view);
-  const auto start = std::chrono::steady_clock::now();
-  session.make(
-      plan, reports, [&] { return make_renderer(arguments.picture, common, planet); }, common.quiet);
+  auto start = std::chrono::steady_clock::now();
+  const auto renderer = [&] {
+    auto made = make_renderer(arguments.picture, common, planet);
+    start = std::chrono::steady_clock::now();  // the rate is that of drawing and encoding
+    return made;
+  };
+  session.make(plan, reports, renderer, common.quiet);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
   session.finish({version(), meta.identity, meta.illustration, fs::path(arguments.flight).filename().string(),
