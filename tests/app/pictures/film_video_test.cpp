@@ -37,11 +37,14 @@ class FilmVideo : public FilmTest {
                 static_cast<double>(frames) * static_cast<double>(den) / static_cast<double>(num), 2e-6);
     std::vector<std::int64_t> times;
     int keys = 0;
-    for (const json& packet : probe(film, {"-show_packets"})["packets"]) {
+    const json packets = probe(film, {"-show_packets"});
+    for (const json& packet : packets["packets"]) {
       times.push_back(packet["pts"]);
       const bool is_key = packet["flags"].get<std::string>().find('K') != std::string::npos;
       keys += is_key ? 1 : 0;
-      if (static_cast<int>(times.size()) % segment == 1) EXPECT_TRUE(is_key) << times.size();
+      if (static_cast<int>(times.size()) % segment == 1) {
+        EXPECT_TRUE(is_key) << times.size();
+      }
     }
     EXPECT_GE(keys, (frames + segment - 1) / segment);
     std::sort(times.begin(), times.end());
@@ -59,7 +62,7 @@ TEST_F(FilmVideo, IsEvenAtEveryRate) {
   };
   // The last segment with one frame, with two, and with a rate whose segments are no whole microseconds.
   for (const Rate& r :
-       {Rate{"2", 2, 1, 17, 8}, Rate{"10", 10, 1, 42, 40}, Rate{"2997/100", 2997, 100, 300, 120}}) {
+       {Rate{"2", 2, 1, 17, 8}, Rate{"10", 10, 1, 42, 40}, Rate{"2997/100", 2997, 100, 130, 120}}) {
     write_text(dir_ / "f.flight", "flight 1\nview size=32x18 fps=" + std::string(r.text) +
                                       "\nat 0 set mode=lit\nat 0 pose lon=0 lat=0 alt=500000 pitch=-40\n"
                                       "at 100 pose lon=90 lat=0 alt=500000 pitch=-40\n");
@@ -111,21 +114,17 @@ TEST_F(FilmVideo, ACompleteFilmIsKeptAndAnEditRemakesItsSegments) {
   EXPECT_EQ(a["triangles"], b["triangles"]);
   EXPECT_EQ(a["shift_bound_px"], b["shift_bound_px"]);
   EXPECT_TRUE(b["draw_ms"].is_null());
-  expect_counts("x.mp4", 0, kFrames, {"--part", "2/3"});
+  expect_counts("x.mp4", 0, kSegment, {"--part", "2/3"});
   EXPECT_EQ(leftovers(), Words{});
   // A damaged film is made again; so is one of another flight.
   std::string damaged = film;
   damaged[damaged.size() / 2] ^= 1;
   write_text(dir_ / "x.mp4", damaged);
   expect_counts("x.mp4", kFrames, 0);
-  EXPECT_EQ(decoded("x.mp4"), [&] {
-    write_text(dir_ / "y.mp4", film);
-    return decoded("y.mp4");
-  }());
+  EXPECT_EQ(read_text(dir_ / "x.mp4"), film);
   write_text(dir_ / "f.flight", film_flight("lon=-41 lat=-7 alt=300000"));
   expect_counts("x.mp4", kFrames, 0);
-  EXPECT_NE(decoded("x.mp4"), decoded("y.mp4"));
-  expect_counts("x.mp4", kFrames, 0, {"--force"});
+  EXPECT_NE(read_text(dir_ / "x.mp4"), film);
 }
 
 TEST_F(FilmVideo, PartsMakeSegmentsThatARunWithoutPartJoins) {
@@ -186,39 +185,24 @@ TEST_F(FilmVideo, NeedsFfmpeg) {
 }
 
 TEST_F(FilmVideo, IsNotJoinedWhenFramesFail) {
-  write_text(dir_ / "f.flight",
-             "flight 1\nview size=64x48 fov=40 fps=1\nat 0 set mode=lit\n"
-             "at 0 pose lon=0 lat=0 alt=300000 pitch=-90\nat 8 pose lon=120 lat=0 alt=300000 pitch=-90\n"
-             "at 16 pose lon=240 lat=0 alt=300000 pitch=-90\nat 24 pose lon=360 lat=0 alt=300000 pitch=-90\n");
-  const std::string good = read_text(planet());
-  test_support::Random random(5);
-  for (int tries = 0; tries < 20; ++tries) {
-    std::string damaged = good;
-    const auto at = static_cast<std::size_t>(random.uniform(0.67, 0.95) * static_cast<double>(good.size()));
-    for (std::size_t k = 0; k < 6000; ++k) damaged[at + k] ^= 0x55;
-    write_text(dir_ / "p.vpe", damaged);
-    fs::remove_all(dir_ / "x.mp4.parts");
-    const Words words{"fly", "f.flight", "p.vpe", "-o", "x.mp4", "--json"};
-    const Result result = vpe(words);
-    fs::remove(dir_ / "x.mp4");
-    fs::remove(dir_ / "x.mp4.json");
-    if (result.exit_code == 0) continue;
-    const json report = parse_json(result.out);
-    const int made = report["made"];
-    if (made == 0) continue;
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_TRUE(says(result.err, {"frames failed", "p.vpe", "the film is not joined"}));
-    EXPECT_EQ(made % kSegment, 0);
-    EXPECT_EQ(report["manifest"], "x.mp4.parts/manifest.json");
-    write_text(dir_ / "p.vpe", good);
-    const json again = parse_json(vpe(words).out);
-    EXPECT_EQ(again["kept"], made);
-    EXPECT_EQ(again["made"], kFrames - made);
-    EXPECT_TRUE(exists("x.mp4"));
-    EXPECT_EQ(leftovers(), Words{});
-    return;
-  }
-  FAIL() << "no damage left a whole segment and spoilt another";
+  write_text(dir_ / "f.flight", round_flight());
+  fs::copy_file(planet(), dir_ / "p.vpe");
+  damage_a_face(dir_ / "p.vpe");
+  // The face is in the pictures of the first and the last segment.
+  const Words words{"fly", "f.flight", "p.vpe", "-o", "x.mp4", "--json"};
+  const Result result = vpe(words);
+  ASSERT_EQ(result.exit_code, 1) << "signal " << result.signal;
+  EXPECT_TRUE(says(result.err, {"frames failed", "frame 0: ", "p.vpe", "the film is not joined"}));
+  const json report = parse_json(result.out);
+  EXPECT_EQ(report["made"], kSegment);
+  EXPECT_EQ(report["manifest"], "x.mp4.parts/manifest.json");
+  EXPECT_FALSE(exists("x.mp4"));
+  fs::copy_file(planet(), dir_ / "p.vpe", fs::copy_options::overwrite_existing);
+  const json again = parse_json(vpe(words).out);
+  EXPECT_EQ(again["kept"], kSegment);
+  EXPECT_EQ(again["made"], kFrames - kSegment);
+  EXPECT_TRUE(exists("x.mp4"));
+  EXPECT_EQ(leftovers(), Words{});
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "tests/app/support/film_fixture.h"
 
+#include <sqlite3.h>
+
 #include <cstdio>
 
 namespace app_test {
@@ -13,6 +15,25 @@ std::string FilmTest::film_flight(const std::string& last, const std::string& mo
          "at 4 pose lon=-60 lat=-10 alt=400000 yaw=60 pitch=-30\n"
          "at 8 pose lon=-50 lat=-10 alt=400000 yaw=60 pitch=-30\n" +
          more + "at 12 pose " + last + " yaw=60 pitch=-30\n";
+}
+
+std::string FilmTest::round_flight() {
+  return "flight 1\nview size=64x48 fov=40 fps=1\nat 0 set mode=lit\n"
+         "at 0 pose lon=0 lat=0 alt=300000 pitch=-90\nat 8 pose lon=120 lat=0 alt=300000 pitch=-90\n"
+         "at 16 pose lon=240 lat=0 alt=300000 pitch=-90\nat 24 pose lon=360 lat=0 alt=300000 pitch=-90\n";
+}
+
+void FilmTest::damage_a_face(const fs::path& planet) {
+  sqlite3* file = nullptr;
+  ASSERT_EQ(sqlite3_open(planet.c_str(), &file), SQLITE_OK);
+  const int code =
+      sqlite3_exec(file,
+                   "UPDATE heights SET data = x'00' WHERE key IN (SELECT key FROM node WHERE face = 0);"
+                   "UPDATE mesh SET data = x'00' WHERE key IN (SELECT key FROM node WHERE face = 0);",
+                   nullptr, nullptr, nullptr);
+  EXPECT_EQ(code, SQLITE_OK) << sqlite3_errmsg(file);
+  EXPECT_GT(sqlite3_total_changes(file), 0);
+  sqlite3_close(file);
 }
 
 Words FilmTest::fly_words(const std::string& output, const Words& more) const {

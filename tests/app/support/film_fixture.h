@@ -18,6 +18,11 @@ class FilmTest : public AppTest {
   static std::string film_flight(const std::string& last = "lon=-40 lat=-5 alt=400000",
                                  const std::string& more = "");
 
+  // 24 frames straight down, once around the equator.
+  static std::string round_flight();
+  // Spoils the tiles of the face about longitude 0 in a copy of planet(), so that they cannot be read.
+  static void damage_a_face(const std::filesystem::path& planet);
+
   Words fly_words(const std::string& output, const Words& more = {}) const;
   Command fly_command(const std::string& output, const Words& more = {}) const;
   Result fly(const std::string& output, const Words& more = {}) const;
