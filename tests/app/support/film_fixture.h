@@ -20,7 +20,8 @@ class FilmTest : public AppTest {
 
   // 24 frames straight down, once around the equator.
   static std::string round_flight();
-  // Spoils the tiles of the face about longitude 0 in a copy of planet(), so that they cannot be read.
+  // Spoils the meshes of the face about longitude 0 in a copy of planet(). Of round_flight(), the frames that
+  // look down on it need them, the eight in the middle do not.
   static void damage_a_face(const std::filesystem::path& planet);
 
   Words fly_words(const std::string& output, const Words& more = {}) const;
