@@ -2,35 +2,47 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 extern char** environ;
 
 namespace vpe::app {
 
-namespace fs = std::filesystem;
+namespace {
 
-Child::Child(std::vector<std::string> words, fs::path log, const fs::path& output) : log_(std::move(log)) {
+[[noreturn]] void fail(const std::string& what, int error) {
+  throw std::runtime_error(what + ": " + std::strerror(error));
+}
+
+int memory_file() {
+  const int file = ::memfd_create("vpe child", MFD_CLOEXEC);
+  if (file < 0) fail("cannot make a file in memory", errno);
+  return file;
+}
+
+}  // namespace
+
+Child::Child(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("cannot make a pipe", errno);
+  output_ = memory_file();
+  errors_ = memory_file();
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log_.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
+  posix_spawn_file_actions_adddup2(&actions, output_, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, errors_, STDERR_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -41,16 +53,14 @@ Child::Child(std::vector<std::string> words, fs::path log, const fs::path& outpu
   ::close(ends[0]);
   pipe_ = ends[1];
   if (error == 0) return;
-  ::close(pipe_);
-  std::error_code ignored;
-  fs::remove(log_, ignored);  // made before the program was looked for
-  throw std::runtime_error("cannot start " + words[0] + ": " + std::strerror(error));
+  for (const int file : {pipe_, output_, errors_}) ::close(file);
+  fail("cannot start " + words[0], error);
 }
 
 Child::~Child() {
   static_cast<void>(finish());
-  std::error_code ignored;
-  fs::remove(log_, ignored);
+  ::close(output_);
+  ::close(errors_);
 }
 
 bool Child::write(std::span<const std::uint8_t> bytes) {
@@ -75,11 +85,15 @@ bool Child::finish() {
   return ended_well_;
 }
 
-std::string Child::said() const {
-  std::ifstream log(log_);
-  std::string words((std::istreambuf_iterator<char>(log)), std::istreambuf_iterator<char>());
-  while (!words.empty() && words.back() == '\n') words.pop_back();
-  return words;
+std::string Child::text_of(int file) {
+  std::string text;
+  std::array<char, 4096> buffer{};
+  for (ssize_t count = 0;
+       (count = ::pread(file, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;) {
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
 }
 
 }  // namespace vpe::app

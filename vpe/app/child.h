@@ -4,22 +4,20 @@
 #include <sys/types.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace vpe::app {
 
-// What it writes to stderr goes to a file that is removed with the object. It has a process group of its own:
-// Ctrl-C, which reaches a whole group, passes it by. One thread at a time. The destructor ends its input and
-// waits for it.
+// What it says is kept in memory, so that a full disk does not take its words away. It has a process group of
+// its own: Ctrl-C, which reaches a whole group, passes it by. One thread at a time. The destructor ends its
+// input and waits for it.
 class Child {
  public:
-  // words[0] is looked for on PATH. Its standard input is fed by write(); its standard output goes nowhere, or
-  // to the file. Throws std::runtime_error with the system's words.
-  Child(std::vector<std::string> words, std::filesystem::path log,
-        const std::filesystem::path& output = "/dev/null");
+  // words[0] is looked for on PATH. Its standard input is fed by write(). Throws std::runtime_error with the
+  // system's words.
+  explicit Child(std::vector<std::string> words);
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -30,11 +28,15 @@ class Child {
   // Ends its input and waits; true when it ended well.
   [[nodiscard]] bool finish();
 
-  // What it has said on stderr so far, without the newlines at the end.
-  std::string said() const;
+  // What it has written to standard output and to standard error so far, without the newlines at the end.
+  std::string output() const { return text_of(output_); }
+  std::string said() const { return text_of(errors_); }
 
  private:
-  std::filesystem::path log_;
+  static std::string text_of(int file);
+
+  int output_ = -1;
+  int errors_ = -1;
   int pipe_ = -1;
   pid_t pid_ = -1;
   bool ended_well_ = false;

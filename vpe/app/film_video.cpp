@@ -35,7 +35,7 @@ bool is_ours(const std::string& name) {
   const std::size_t end = name.find_first_not_of("0123456789", kBegin.size());
   if (end == std::string::npos || end < kBegin.size() + 6) return false;
   const std::string rest = name.substr(end);
-  return rest == ".mp4" || rest == ".json" || rest == ".mp4.log";
+  return rest == ".mp4" || rest == ".json";
 }
 
 bool same(const json& object, const char* key, const std::string& text) {
@@ -148,11 +148,8 @@ void FilmVideo::prepare() {
 void FilmVideo::remove_stale() const {
   remove_stale_temporaries(folder_, is_ours);
   const fs::path beside = film_.has_parent_path() ? film_.parent_path() : fs::path(".");
-  remove_stale_temporaries(beside, [film = film_.filename().string(),
-                                    manifest = manifest_.filename().string()](const std::string& name) {
-    return name == film || name == manifest || name == film + ".log" || name == film + ".version" ||
-           name == film + ".version.log";
-  });
+  remove_stale_temporaries(beside, [film = film_.filename().string(), manifest = manifest_.filename().string()](
+                                       const std::string& name) { return name == film || name == manifest; });
 }
 
 void FilmVideo::add(std::int64_t group, FilmFrame& /*frame*/, const core::Frame& picture) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <stdexcept>
 
 #include "vpe/app/temporary.h"
@@ -62,8 +61,8 @@ Words segment_words(const VideoFormat& format, const fs::path& to) {
   return append(words, {"-f", "mp4", file_word(to)});
 }
 
-Child start_ffmpeg(const Words& words, const fs::path& film, const fs::path& output = "/dev/null") try {
-  return Child(words, temporary_name(film.string() + ".log"), output);
+Child start_ffmpeg(const Words& words, const fs::path& film) try {
+  return Child(words);
 } catch (const std::runtime_error& e) {
   throw std::runtime_error(film.string() + ": " + e.what() +
                            "; install ffmpeg, or give a folder to get PNG frames");
@@ -128,16 +127,13 @@ std::string encoder_settings(const VideoFormat& format) {
 }
 
 std::string encoder_version(const fs::path& film) {
-  const Removed output{temporary_name(film.string() + ".version")};
-  Child child = start_ffmpeg({"ffmpeg", "-version"}, film, output.path);
+  Child child = start_ffmpeg({"ffmpeg", "-version"}, film);
   if (!child.finish()) {
     throw std::runtime_error(with_words(film.string() + ": ffmpeg does not run", child.said()) +
                              "; mend it, or give a folder to get PNG frames");
   }
-  std::ifstream in(output.path);
-  std::string line;
-  std::getline(in, line);
-  return line;
+  const std::string said = child.output();
+  return said.substr(0, said.find('\n'));
 }
 
 VideoWriter::VideoWriter(fs::path path, const VideoFormat& format)
@@ -181,7 +177,9 @@ void join_video(const fs::path& folder, std::span<const VideoSegment> segments, 
   append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(joined.path)});
   Child child = start_ffmpeg(words, film);
   if (!child.finish()) {
-    throw std::runtime_error(with_words(film.string() + ": cannot join the video", child.said()));
+    throw std::runtime_error(
+        with_words(film.string() + ": cannot join the video", child.said()) +
+        "; check the free space there; its segments are kept, and the same command joins them");
   }
   std::error_code error;
   fs::rename(joined.path, film, error);

@@ -26,7 +26,7 @@ void check_video_format(const std::filesystem::path& film, const VideoFormat& fo
 std::string encoder_settings(const VideoFormat& format);
 
 // First line of `ffmpeg -version`. Throws std::runtime_error, naming the film, when there is no ffmpeg that
-// runs; uses a temporary file beside the film.
+// runs.
 std::string encoder_version(const std::filesystem::path& film);
 
 // A video of its own that begins with a key frame and refers to nothing outside. Frames are piped into ffmpeg,
