@@ -48,7 +48,7 @@ class FilmKill : public FilmTest {
     for (int n = 0; n < kills;) {
       fs::remove(dir_ / "x.mp4");
       fs::remove(dir_ / "x.mp4.json");
-      while (n < kills && kill_once("x.mp4", random, 1.1 * whole_s)) {
+      while (n < kills && kill_once("x.mp4", random, 0.7 * whole_s)) {
         ++n;
         // What has the film's name is the film.
         if (exists("x.mp4")) {

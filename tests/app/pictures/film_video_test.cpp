@@ -24,6 +24,19 @@ class FilmVideo : public FilmTest {
     command.arguments.push_back("file:" + path(film));
     return parse_json(run(command).out);
   }
+  struct Rate {
+    const char* text;
+    std::int64_t num, den;
+    int frames, segment;
+  };
+  void make_even(const std::string& film, const Rate& r) const {
+    write_text(dir_ / "f.flight", "flight 1\nview size=32x18 fps=" + std::string(r.text) +
+                                      "\nat 0 set mode=lit\nat 0 pose lon=0 lat=0 alt=500000 pitch=-40\n"
+                                      "at 100 pose lon=90 lat=0 alt=500000 pitch=-40\n");
+    expect_counts(film, r.frames, 0, {"--frames", "0-" + std::to_string(r.frames - 1)});
+    expect_even(film, r.frames, r.den == 1 ? std::string(r.text) + "/1" : r.text, r.num, r.den, r.segment);
+    EXPECT_EQ(leftovers(), Words{});
+  }
   // Every frame at its time, at one rate, with key frames at the segments' beginnings.
   void expect_even(const std::string& film, int frames, const std::string& rate, std::int64_t num,
                    std::int64_t den, int segment) const {
@@ -54,23 +67,17 @@ class FilmVideo : public FilmTest {
   }
 };
 
-TEST_F(FilmVideo, IsEvenAtEveryRate) {
-  struct Rate {
-    const char* text;
-    std::int64_t num, den;
-    int frames, segment;
-  };
-  // The last segment with one frame, with two, and with a rate whose segments are no whole microseconds.
-  for (const Rate& r :
-       {Rate{"2", 2, 1, 17, 8}, Rate{"10", 10, 1, 42, 40}, Rate{"2997/100", 2997, 100, 130, 120}}) {
-    write_text(dir_ / "f.flight", "flight 1\nview size=32x18 fps=" + std::string(r.text) +
-                                      "\nat 0 set mode=lit\nat 0 pose lon=0 lat=0 alt=500000 pitch=-40\n"
-                                      "at 100 pose lon=90 lat=0 alt=500000 pitch=-40\n");
-    expect_counts("a:b ü.mp4", r.frames, 0, {"--frames", "0-" + std::to_string(r.frames - 1)});
-    expect_even("a:b ü.mp4", r.frames, r.den == 1 ? std::string(r.text) + "/1" : r.text, r.num, r.den,
-                r.segment);
-    EXPECT_EQ(leftovers(), Words{});
-  }
+// The last segment has one frame.
+TEST_F(FilmVideo, IsEven) { make_even("a:b ü.mp4", {"2", 2, 1, 17, 8}); }
+
+class LongFilmVideo : public FilmVideo {};
+
+// The last segment has two frames, or segments are no whole microseconds long.
+TEST_F(LongFilmVideo, IsEvenAtOtherRates) {
+  make_even("a.mp4", {"10", 10, 1, 42, 40});
+  make_even("b.mp4", {"2997/100", 2997, 100, 600, 120});
+  make_even("c.mp4", {"30000/1001", 30000, 1001, 500, 120});
+  make_even("d.mp4", {"240", 240, 1, 1000, 240});
 }
 
 TEST_F(FilmVideo, CanBeEnteredAnywhere) {
@@ -81,8 +88,8 @@ TEST_F(FilmVideo, CanBeEnteredAnywhere) {
   const std::string pictures = run(all).out;
   constexpr std::size_t kSize = 64 * 48;
   ASSERT_EQ(pictures.size(), kFrames * kSize);
-  // Frames about the joins at 8 and 16.
-  for (const int k : {1, 7, 8, 9, 15, 16, 17, 23}) {
+  // About the joins at 8 and 16.
+  for (const int k : {7, 8, 9, 16}) {
     Command one = all;
     one.arguments.insert(one.arguments.begin() + 2, {"-ss", std::to_string(k / 2.0)});
     one.arguments.insert(one.arguments.end() - 1, {"-frames:v", "1"});
@@ -90,7 +97,7 @@ TEST_F(FilmVideo, CanBeEnteredAnywhere) {
   }
 }
 
-TEST_F(FilmVideo, ACompleteFilmIsKeptAndAnEditRemakesItsSegments) {
+TEST_F(FilmVideo, ACompleteFilmIsKeptAndADamagedOneMadeAgain) {
   expect_counts("x.mp4", kFrames, 0, {"--stats", "a.jsonl"});
   const std::string film = read_text(dir_ / "x.mp4");
   const json manifest = parse_json(read_text(dir_ / "x.mp4.json"));
@@ -116,15 +123,12 @@ TEST_F(FilmVideo, ACompleteFilmIsKeptAndAnEditRemakesItsSegments) {
   EXPECT_TRUE(b["draw_ms"].is_null());
   expect_counts("x.mp4", 0, kSegment, {"--part", "2/3"});
   EXPECT_EQ(leftovers(), Words{});
-  // A damaged film is made again; so is one of another flight.
+  // A damaged film is made again.
   std::string damaged = film;
   damaged[damaged.size() / 2] ^= 1;
   write_text(dir_ / "x.mp4", damaged);
   expect_counts("x.mp4", kFrames, 0);
   EXPECT_EQ(read_text(dir_ / "x.mp4"), film);
-  write_text(dir_ / "f.flight", film_flight("lon=-41 lat=-7 alt=300000"));
-  expect_counts("x.mp4", kFrames, 0);
-  EXPECT_NE(read_text(dir_ / "x.mp4"), film);
 }
 
 TEST_F(FilmVideo, PartsMakeSegmentsThatARunWithoutPartJoins) {
@@ -152,7 +156,7 @@ TEST_F(FilmVideo, PartsMakeSegmentsThatARunWithoutPartJoins) {
   EXPECT_EQ(files("x.mp4.parts"), (std::map<std::string, std::string>{{"notes.txt", "mine"}}));
 }
 
-TEST_F(FilmVideo, AnFfmpegThatDiesLeavesWholeSegments) {
+TEST_F(LongFilmVideo, AnFfmpegThatDiesLeavesWholeSegments) {
   expect_counts("whole.mp4", kFrames, 0);
   fs::create_directory(dir_ / "bin");
   // Works once as an encoder, then dies.
