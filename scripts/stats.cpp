@@ -1,6 +1,7 @@
 #include "scripts/stats.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -28,7 +29,11 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
   field("tiles_missing", stats.tiles_missing);
   field("triangles", stats.triangles);
   field("skirt_triangles", stats.skirt_triangles);
-  field("bytes_resident", stats.bytes_resident);
+  if (stats.bytes_resident < 0) {
+    field("bytes_resident", std::numeric_limits<double>::quiet_NaN());
+  } else {
+    field("bytes_resident", stats.bytes_resident);
+  }
   field("tiles_by_level", stats.tiles_by_level);
   field("select_ms", stats.select_ms);
   field("load_ms", stats.load_ms);

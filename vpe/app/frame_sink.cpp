@@ -2,8 +2,7 @@
 
 namespace vpe::app {
 
-FrameSink::FrameSink(Write write, std::size_t depth)
-    : write_(std::move(write)), depth_(depth), thread_([this] { run(); }) {}
+FrameSink::FrameSink(std::size_t depth) : depth_(depth), thread_([this] { run(); }) {}
 
 FrameSink::~FrameSink() {
   {
@@ -15,11 +14,11 @@ FrameSink::~FrameSink() {
   if (thread_.joinable()) thread_.join();
 }
 
-void FrameSink::push(std::int64_t index, core::Frame frame) {
+void FrameSink::push(Job job) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return waiting_.size() < depth_ || error_; });
   throw_if_failed();
-  waiting_.emplace_back(index, std::move(frame));
+  waiting_.push_back(std::move(job));
   changed_.notify_all();
 }
 
@@ -39,17 +38,17 @@ void FrameSink::throw_if_failed() {
 
 void FrameSink::run() {
   for (;;) {
-    std::pair<std::int64_t, core::Frame> item;
+    Job job;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return !waiting_.empty() || closed_; });
       if (waiting_.empty()) return;
-      item = std::move(waiting_.front());
+      job = std::move(waiting_.front());
       waiting_.pop_front();
     }
     changed_.notify_all();
     try {
-      write_(item.first, item.second);
+      job();
     } catch (...) {
       const std::lock_guard lock(mutex_);
       error_ = std::current_exception();

@@ -1,4 +1,4 @@
-// Where the frames of a film go: a video, or a folder of pictures. Encoding runs beside drawing.
+// Where the frames of a film go on their way out: encoding runs beside drawing.
 #pragma once
 
 #include <condition_variable>
@@ -8,32 +8,29 @@
 #include <mutex>
 #include <thread>
 
-#include "vpe/core/frame.h"
-
 namespace vpe::app {
 
-// Hands frames, in order, to a function on a thread of its own; at most `depth` wait. An exception there is
-// thrown by the next push() or by finish().
+// Does jobs, in order, on a thread of its own; at most `depth` wait. An exception there is thrown by the next
+// push() or by finish().
 class FrameSink {
  public:
-  using Write = std::function<void(std::int64_t index, const core::Frame&)>;
-  FrameSink(Write write, std::size_t depth);
+  using Job = std::function<void()>;
+  explicit FrameSink(std::size_t depth);
   ~FrameSink();  // drops what waits
   FrameSink(const FrameSink&) = delete;
   FrameSink& operator=(const FrameSink&) = delete;
 
-  void push(std::int64_t index, core::Frame frame);
-  void finish();  // waits until all are written
+  void push(Job job);
+  void finish();  // waits until all are done
 
  private:
   void run();
   void throw_if_failed();
 
-  Write write_;
   std::size_t depth_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::pair<std::int64_t, core::Frame>> waiting_;
+  std::deque<Job> waiting_;
   bool closed_ = false;
   std::exception_ptr error_;
   std::thread thread_;

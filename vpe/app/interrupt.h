@@ -2,12 +2,14 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace vpe::app {
 
 class Interrupted : public std::runtime_error {
  public:
-  explicit Interrupted(int signal) : std::runtime_error("stopped by a signal"), signal_(signal) {}
+  explicit Interrupted(int signal, const std::string& what = "stopped")
+      : std::runtime_error(what), signal_(signal) {}
   int signal() const { return signal_; }
 
  private:

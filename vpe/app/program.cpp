@@ -78,12 +78,14 @@ CLI::App* add_command(CLI::App& program, const std::string& name, const std::str
   return command;
 }
 
+const char* version() { return VPE_VERSION; }
+
 int run(int argc, char** argv) {
   // The C locale throughout: a number means the same on every machine.
   std::setlocale(LC_ALL, "C");
   std::signal(SIGPIPE, SIG_IGN);
   CLI::App program("vpe explores planets: build planet files, ask them, draw them, fly over them.", "vpe");
-  program.set_version_flag("--version", std::string("vpe ") + VPE_VERSION);
+  program.set_version_flag("--version", std::string("vpe ") + version());
   program.require_subcommand(1);
   program.footer(
       "'vpe COMMAND --help' explains a command. Without a PLANET the embedded Mars (an illustration) is used.");
@@ -107,7 +109,7 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "vpe: %s\n", e.what());
     return kUsage;
   } catch (const Interrupted& e) {
-    std::fprintf(stderr, "vpe: stopped\n");
+    std::fprintf(stderr, "vpe: %s\n", e.what());
     return kSignalBase + e.signal();
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "vpe: out of memory; lower --memory, --size or --threads\n");

@@ -21,6 +21,9 @@ struct Common {
 // Runs one command line; returns the exit code. Messages go to stderr, results to stdout.
 int run(int argc, char** argv);
 
+// Of this program, as in "0.1.0".
+const char* version();
+
 // Wrong usage found after parsing: exit code 2.
 class UsageError : public std::runtime_error {
  public:

@@ -22,8 +22,10 @@ FileError file_error(std::string_view operation, const std::filesystem::path& pa
   return FileError(message.append("; ").append(advice));
 }
 
-OutputFile::OutputFile(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(path_.string() + ".tmp") {
+OutputFile::OutputFile(std::filesystem::path path) : OutputFile(path, path.string() + ".tmp") {}
+
+OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path_, ignored)) {
     throw file_error("write", path_, system_words(EISDIR), "give the name of a file");

@@ -23,12 +23,13 @@ class FileError : public std::runtime_error {
 FileError file_error(std::string_view operation, const std::filesystem::path& path, std::string_view words,
                      std::string_view advice);
 
-// Writes to PATH.tmp; commit() renames it to PATH, replacing what was there. Without commit() the destructor
-// removes it and leaves PATH as it was. One writer a path at a time.
+// Writes to PATH.tmp, or to the name given for that; commit() renames it to PATH, replacing what was there.
+// Without commit() the destructor removes it and leaves PATH as it was. One writer a temporary name at a time.
 class OutputFile {
  public:
   // Throws FileError when the file cannot be made.
   explicit OutputFile(std::filesystem::path path);
+  OutputFile(std::filesystem::path path, std::filesystem::path temporary);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

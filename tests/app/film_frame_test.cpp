@@ -1,0 +1,105 @@
+// Fingerprints, digests and figures of frames.
+#include "vpe/app/film_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "vpe/app/film_digest.h"
+
+namespace {
+
+using vpe::app::Digest;
+using vpe::app::FilmBasis;
+using vpe::app::fingerprint_of;
+using vpe::core::DrawRequest;
+using vpe::core::Settings;
+
+struct Inputs {
+  FilmBasis basis{"1.2.3", "abcdef", "polygon", 1024};
+  DrawRequest request;
+  Settings settings;
+  std::string fingerprint() const { return fingerprint_of(basis, request, settings); }
+};
+
+TEST(FilmFrame, EverythingThatAPictureDependsOnIsInItsFingerprint) {
+  const std::string base = Inputs{}.fingerprint();
+  EXPECT_EQ(base.size(), 32U);
+  EXPECT_EQ(base, Inputs{}.fingerprint());
+  std::set<std::string> seen{base};
+  const auto change = [&](const char* what, const auto& edit) {
+    Inputs inputs;
+    edit(inputs);
+    EXPECT_TRUE(seen.insert(inputs.fingerprint()).second) << what;
+  };
+  change("program version", [](Inputs& i) { i.basis.program = "1.2.4"; });
+  change("planet", [](Inputs& i) { i.basis.planet = "abcdee"; });
+  change("backend", [](Inputs& i) { i.basis.backend = "voxel"; });
+  change("memory", [](Inputs& i) { i.basis.memory_mb = 512; });
+  change("boundary between texts", [](Inputs& i) {
+    i.basis.program = "1.2.3a";
+    i.basis.planet = "bcdef";
+  });
+  auto& next = std::nextafter<double, double>;
+  for (int n = 0; n < 3; ++n) {
+    change("eye", [&](Inputs& i) { i.request.view.eye.eye_m[n] = next(i.request.view.eye.eye_m[n], 9); });
+    change("right", [&](Inputs& i) { i.request.view.eye.axes.right[n] += 0.5; });
+    change("up", [&](Inputs& i) { i.request.view.eye.axes.up[n] += 0.5; });
+    change("forward", [&](Inputs& i) { i.request.view.eye.axes.forward[n] += 0.5; });
+    change("sun", [&](Inputs& i) { i.request.sun[n] = next(i.request.sun[n], 9); });
+  }
+  change("width", [](Inputs& i) { ++i.request.view.width; });
+  change("height", [](Inputs& i) { ++i.request.view.height; });
+  change("fov", [&](Inputs& i) { i.request.view.fov_deg = next(i.request.view.fov_deg, 180); });
+  change("projection", [](Inputs& i) { i.request.view.projection = vpe::core::Projection::kCylinder; });
+  change("offset", [](Inputs& i) { i.request.view.principal_offset_px.y = 1; });
+  change("part", [](Inputs& i) { i.request.view.part.width = 8; });
+}
+
+TEST(FilmFrame, EverySettingIsInItsFingerprint) {
+  std::set<std::string> seen{Inputs{}.fingerprint()};
+  for (const vpe::core::SettingInfo& info : Settings::list()) {
+    Inputs inputs;
+    std::string other = info.choices.empty() ? "1" : std::string(info.choices.front());
+    if (other == info.default_text) other = info.choices.empty() ? "2" : std::string(info.choices.back());
+    ASSERT_EQ(inputs.settings.set(info.key, other), "") << info.key;
+    EXPECT_TRUE(seen.insert(inputs.fingerprint()).second) << info.key;
+  }
+}
+
+TEST(FilmDigest, TellsSequencesApart) {
+  std::set<std::string> seen;
+  EXPECT_TRUE(seen.insert(Digest().hex()).second);
+  EXPECT_TRUE(seen.insert(Digest().add("").hex()).second);
+  EXPECT_TRUE(seen.insert(Digest().add("ab").add("c").hex()).second);
+  EXPECT_TRUE(seen.insert(Digest().add("a").add("bc").hex()).second);
+  EXPECT_TRUE(seen.insert(Digest().add(std::int64_t{0}).hex()).second);
+  EXPECT_TRUE(seen.insert(Digest().add(0.0).hex()).second);
+  EXPECT_TRUE(seen.insert(Digest().add(-0.0).hex()).second);
+  // The reference implementation's value for no bytes.
+  EXPECT_EQ(vpe::app::checksum_of(std::span<const std::uint8_t>{}), "99aa06d3014798d86001c324468d497f");
+}
+
+TEST(FilmFigures, ComeBackFromJson) {
+  vpe::app::FrameFigures figures;
+  figures.stats.tiles_drawn = 12;
+  figures.stats.triangles = std::int64_t{1} << 40;
+  figures.stats.tiles_by_level = {0, 5, 7};
+  figures.certificate.shift_bound_px = 0.1 + 0.2;
+  figures.certificate.tile_error_px = INFINITY;
+  const auto back = vpe::app::figures_from(nlohmann::json::parse(to_json(figures).dump()));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->stats.tiles_drawn, 12);
+  EXPECT_EQ(back->stats.triangles, std::int64_t{1} << 40);
+  EXPECT_EQ(back->stats.tiles_by_level, figures.stats.tiles_by_level);
+  EXPECT_EQ(back->certificate.shift_bound_px, 0.1 + 0.2);
+  EXPECT_FALSE(std::isfinite(back->certificate.tile_error_px));
+  EXPECT_TRUE(std::isnan(back->stats.draw_ms));
+  EXPECT_LT(back->stats.bytes_resident, 0);
+  for (const char* bad : {"null", "[]", "{}", "{\"tiles_visited\": \"x\"}"}) {
+    EXPECT_FALSE(vpe::app::figures_from(nlohmann::json::parse(bad))) << bad;
+  }
+}
+
+}  // namespace
