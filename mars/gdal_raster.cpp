@@ -194,4 +194,6 @@ template void GdalRaster::read(int, int, const PixelWindow&, int, float*) const;
 template void GdalRaster::read(int, int, const PixelWindow&, int, double*) const;
 template void GdalRaster::read(int, int, const PixelWindow&, int, unsigned char*) const;
 
+std::string raster_library() { return GDALVersionInfo("--version"); }
+
 }  // namespace mars

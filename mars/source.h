@@ -98,6 +98,9 @@ class ImageSource {
 std::shared_ptr<const ElevationSource> open_elevation(const std::string& path);
 std::shared_ptr<const ImageSource> open_image(const std::string& path);
 
+// Name and version of the library that reads rasters, for reports.
+std::string raster_library();
+
 struct StackOptions {
   // Width, in posts of the finer source, over which an inset fades into what lies below it at its rim.
   double feather_posts = 16;

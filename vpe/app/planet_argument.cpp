@@ -100,10 +100,13 @@ fs::path cache_folder() {
   return folder;
 }
 
+fs::path embedded_planet_path() {
+  return cache_folder() / ("embedded-mars-" + std::to_string(kCacheGeneration) + ".vpe");
+}
+
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {
   if (argument.empty()) {
-    const std::string name = "embedded-mars-" + std::to_string(kCacheGeneration);
-    return cached(name, "the embedded Mars (an illustration)", [&](const fs::path& target) {
+    return cached(embedded_planet_path().stem().string(), "the embedded Mars (an illustration)", [&](const fs::path& target) {
       build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(),
                  mars::embedded_image().get(), common);
     });

@@ -97,6 +97,8 @@ int run(int argc, char** argv) {
   add_render(program, common);
   add_fly(program, common);
   add_settings(program, common);
+  add_doctor(program, common);
+  add_manual(program, common);
   try {
     std::vector<std::string> arguments = reversed_arguments(argc, argv);
     check_command_name(program, arguments);

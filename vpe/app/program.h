@@ -38,6 +38,8 @@ void add_query(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
 void add_fly(CLI::App& program, Common& common);
 void add_settings(CLI::App& program, Common& common);
+void add_doctor(CLI::App& program, Common& common);
+void add_manual(CLI::App& program, Common& common);  // completion, man
 
 // For CLI::Option::check(): a finite decimal number within both ends.
 CLI::Validator number_within(double low, double high);

@@ -1,0 +1,167 @@
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "mars/source.h"
+#include "vpe/app/child.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/app/program.h"
+#include "vpe/app/report.h"
+#include "vpe/core/parallel.h"
+#include "vpe/gl/context.h"
+
+#ifndef VPE_VERSION
+#define VPE_VERSION "0"
+#endif
+
+namespace vpe::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// One line of the report: what was looked at, what will be used and why.
+struct Finding {
+  enum class State { kGood, kNote, kBad };
+  std::string what;
+  State state = State::kGood;
+  std::string text;
+};
+using State = Finding::State;
+
+std::string gigabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
+  return text;
+}
+
+Finding find_display() {
+  for (const char* name : {"WAYLAND_DISPLAY", "DISPLAY"}) {
+    if (const char* value = std::getenv(name); value != nullptr && *value != '\0') {
+      return {"display", State::kGood,
+              std::string(name) + "=" + value + "; not used: pictures and films need none"};
+    }
+  }
+  return {"display", State::kGood, "none; none is needed for pictures and films"};
+}
+
+Finding find_opengl() {
+  try {
+    const gl::ContextInfo info = gl::Context::create()->info();
+    const std::string text = info.platform + ": OpenGL " + info.version + " on " + info.renderer;
+    if (!info.software) return {"OpenGL", State::kGood, text};
+    return {
+        "OpenGL", State::kNote,
+        text + "; in software: no GPU with a driver for OpenGL 4.5 was found, drawing is slow but the same"};
+  } catch (const std::runtime_error& e) {
+    return {"OpenGL", State::kBad, e.what()};
+  }
+}
+
+Finding find_threads(const Common& common) {
+  const int machine = core::default_threads();
+  if (common.threads == 0) return {"threads", State::kGood, std::to_string(machine) + ", all of this machine"};
+  return {"threads", common.threads > machine ? State::kNote : State::kGood,
+          std::to_string(common.threads) + " of --threads; this machine runs " + std::to_string(machine)};
+}
+
+Finding find_memory(const Common& common) {
+  const double pages = static_cast<double>(::sysconf(_SC_PHYS_PAGES));
+  const double free_pages = static_cast<double>(::sysconf(_SC_AVPHYS_PAGES));
+  const double page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+  const std::string text = std::to_string(common.memory_mb) + " MB for data (--memory); this machine has " +
+                           gigabytes(pages * page) + ", " + gigabytes(free_pages * page) + " unused";
+  const bool little = common.memory_mb * 1e6 > 0.8 * pages * page;
+  return {"memory", little ? State::kBad : State::kGood, little ? text + "; lower --memory" : text};
+}
+
+Finding find_cache() {
+  fs::path folder;
+  try {
+    folder = cache_folder();
+  } catch (const std::runtime_error& e) {
+    return {"cache", State::kBad, e.what()};
+  }
+  if (::access(folder.c_str(), W_OK) != 0) {
+    return {"cache", State::kBad,
+            folder.string() + " cannot be written; set XDG_CACHE_HOME to a folder that can"};
+  }
+  std::error_code none;
+  double bytes = 0;
+  int planets = 0;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    if (entry.path().extension() != ".vpe") continue;
+    ++planets;
+    bytes += static_cast<double>(entry.file_size(none));
+  }
+  struct statvfs disk {};
+  double left = 0;
+  if (::statvfs(folder.c_str(), &disk) == 0) {
+    left = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
+  }
+  std::string text = folder.string() + ": " + std::to_string(planets) + " planets, " + gigabytes(bytes) + "; " +
+                     gigabytes(left) + " free";
+  if (!fs::exists(embedded_planet_path(), none))
+    text += "; the embedded Mars is built at its first use, in minutes";
+  return {"cache", left < 2e9 ? State::kNote : State::kGood, text};
+}
+
+Finding find_ffmpeg() {
+  try {
+    Child child({"ffmpeg", "-version"});
+    if (child.finish()) return {"ffmpeg", State::kGood, child.output().substr(0, child.output().find('\n'))};
+    return {"ffmpeg", State::kNote, "does not run: " + child.said() + "; films as .mp4 need it"};
+  } catch (const std::runtime_error& e) {
+    return {
+        "ffmpeg", State::kNote,
+        std::string(e.what()) + "; films as .mp4 need it (apt install ffmpeg), folders of PNG frames do not"};
+  }
+}
+
+const char* word(State state) {
+  switch (state) {
+    case State::kGood: return "good";
+    case State::kNote: return "note";
+    case State::kBad: return "bad";
+  }
+  return "";
+}
+
+void doctor(const Common& common) {
+  const std::vector<Finding> findings{{"vpe", State::kGood, VPE_VERSION},
+                                      {"GDAL", State::kGood, mars::raster_library()},
+                                      find_display(),
+                                      find_opengl(),
+                                      find_threads(common),
+                                      find_memory(common),
+                                      find_cache(),
+                                      find_ffmpeg()};
+  if (common.json) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const Finding& f : findings) json[f.what] = {{"state", word(f.state)}, {"text", f.text}};
+    print_json(json);
+  } else {
+    for (const Finding& f : findings)
+      std::printf("%-8s %-4s  %s\n", f.what.c_str(), word(f.state), f.text.c_str());
+  }
+  std::string bad;
+  for (const Finding& f : findings) {
+    if (f.state == State::kBad) bad += (bad.empty() ? "" : ", ") + f.what;
+  }
+  if (!bad.empty()) throw std::runtime_error("something is in the way of drawing: " + bad + " (see above)");
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& program, Common& common) {
+  CLI::App* command = add_command(
+      program, "doctor", "Say what of this machine will be used, and what is in the way", common, true);
+  command->callback([&common] { doctor(common); });
+}
+
+}  // namespace vpe::app
