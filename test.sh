@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs the tests.
-#   ./test.sh         the default tests
-#   ./test.sh --all   also the long ones, clang, and both sanitizer builds
+#   ./test.sh                    the default tests
+#   ./test.sh --all              also the long ones, clang, and both sanitizer builds
+#   ./test.sh --fuzz [SECONDS]   the fuzzers alone, each for so long (600)
 set -euo pipefail
 cd "$(dirname "$0")"
-all=no
-case "${1:-}" in
-  '') ;;
-  --all) all=yes ;;
-  *) echo "usage: ./test.sh [--all]" >&2; exit 2 ;;
+usage() { echo "usage: ./test.sh [--all | --fuzz [SECONDS]]" >&2; exit 2; }
+what=${1:-default}
+case "$what" in
+  default) ;;
+  --all | --fuzz) ;;
+  *) usage ;;
 esac
-.ci/install.sh
+if [ "$what" = default ]; then .ci/install.sh; else .ci/install.sh --all; fi
 jobs=${JOBS:-$(nproc)}
 
 build() { cmake --preset "$1" -DVPE_TESTS=ON >/dev/null && cmake --build "build/$1" -- -j"$jobs"; }
@@ -30,8 +32,21 @@ run() {
   return "$status"
 }
 
+if [ "$what" = --fuzz ]; then
+  seconds=${2:-600}
+  build fuzz
+  for target in flight payload planet; do
+    corpus=build/fuzz/corpus/$target
+    build/fuzz/tests/fuzz/vpe_fuzz_seeds "$target" "$corpus"
+    # Findings stay in build/fuzz; libFuzzer ends with an error at the first one.
+    UBSAN_OPTIONS=print_stacktrace=1 "build/fuzz/tests/fuzz/vpe_fuzz_$target" -max_total_time="$seconds" \
+      -artifact_prefix=build/fuzz/ -print_final_stats=1 -verbosity=0 -timeout=20 -rss_limit_mb=2048 "$corpus"
+    echo "$target: $seconds s without a finding"
+  done
+  exit
+fi
 build release
-if [ "$all" = no ]; then
+if [ "$what" = default ]; then
   run release -L default
   exit
 fi

@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# Installs what .ci/packages.txt names and this machine lacks. Sourced or run by demo.sh and test.sh.
+# Installs what .ci/packages.txt names and this machine lacks; its last section only with --all. Run by demo.sh
+# and test.sh.
 set -eu
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 missing=()
 while read -r package; do
-  case "$package" in ''|'#'*) continue ;; esac
+  case "$package" in
+    '# -- only for'*) if [ "${1:-}" = --all ]; then continue; else break; fi ;;
+    '' | '#'*) continue ;;
+  esac
   state=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
   [ "$state" = installed ] || missing+=("$package")
 done < "$root/.ci/packages.txt"

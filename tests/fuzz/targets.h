@@ -1,0 +1,33 @@
+// What the fuzzers feed: functions of any bytes that must never crash, loop, or answer wrongly. A broken
+// promise ends the process, as fuzzers want it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fuzz {
+
+using Bytes = std::vector<std::uint8_t>;
+
+struct Target {
+  const char* name;
+  void (*run)(std::span<const std::uint8_t> bytes);
+  std::vector<Bytes> (*seeds)();  // well-formed inputs to start from
+};
+
+// Flights: parse_flight(), and that what it takes survives to_text().
+extern const Target kFlight;
+
+// The payloads of a planet file; the first byte chooses the decoder. What is decoded survives encoding.
+extern const Target kPayload;
+
+// Whole planet files: opening, every payload, verify().
+extern const Target kPlanet;
+
+// Ends the process with the words when `promise` does not hold.
+void require(bool promise, const char* words);
+
+}  // namespace fuzz
