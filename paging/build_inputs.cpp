@@ -13,7 +13,7 @@ namespace paging {
 namespace {
 
 // Raised whenever equal sources and options give other tiles than before within a version of the program.
-constexpr int kBuilderRevision = 1;
+constexpr int kBuilderRevision = 2;
 
 // A power of two well below what the sources resolve: heights between their posts are interpolated, and a
 // coarse step would show as terraces in slopes and shading.
@@ -39,6 +39,11 @@ double mean_height(const mars::ElevationSource& source) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
+bool is_wanted_fine(const BuildOptions& options, const mars::Cap& cap) {
+  return options.regions.empty() || std::any_of(options.regions.begin(), options.regions.end(),
+                                                [&](const Region& r) { return touches(r, cap); });
+}
+
 }  // namespace
 
 bool touches(const Region& region, const mars::Cap& cap) {
@@ -60,9 +65,7 @@ bool touches(const Region& region, const mars::Cap& cap) {
 
 WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source) {
   return [&options, &source](const lod::TileKey&, const mars::Cap& cap) {
-    const bool fine = options.regions.empty() || std::any_of(options.regions.begin(), options.regions.end(),
-                                                             [&](const Region& r) { return touches(r, cap); });
-    if (!fine) return options.base_spacing_m;
+    if (!is_wanted_fine(options, cap)) return options.base_spacing_m;
     return std::min(options.base_spacing_m, std::max(source.spacing_in(cap), options.finest_spacing_m));
   };
 }
@@ -73,7 +76,11 @@ std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::I
   for (std::size_t at = 0; at < tiles.size(); ++at) {
     const lod::TileKey key = tiles[at];
     const double spacing = lod::post_spacing_m(key.level, kImageIntervals, options.radius_m);
-    const double wanted = std::max(image.spacing_in(lod::bounding_cap(key)), options.finest_image_m);
+    const mars::Cap cap = lod::bounding_cap(key);
+    const double wanted =
+        std::max(image.spacing_in(cap), is_wanted_fine(options, cap)
+                                            ? options.finest_image_m
+                                            : std::max(options.finest_image_m, options.base_spacing_m));
     // A texel up to a fifth coarser than asked for is not worth four times the tiles.
     if (!(spacing > 1.2 * wanted) || key.level >= 20) continue;
     for (int c = 0; c < 4; ++c) tiles.push_back(lod::child(key, c));

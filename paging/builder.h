@@ -29,7 +29,7 @@ struct BuildOptions {
   double radius_m = mars::kMarsRadius_m;
   double base_spacing_m = 3700;        // at least this fine everywhere, so that the surface is round
   double finest_spacing_m = 0;         // not finer than this; 0 = as fine as the sources
-  std::vector<Region> regions;         // where to go beyond the base spacing; empty = wherever sources do
+  std::vector<Region> regions;         // where to go beyond the base spacing, texels too; empty = wherever sources do
   int tile_k = 7;                      // 2^k intervals a tile; docs/simplifiers.md has the measurement
   double quantum_m = 0;                // height step stored; 0 = chosen from the sources (docs/planet-file.md)
   double mesh_ratio = 256;             // a tile's mesh is within side / mesh_ratio of its posts

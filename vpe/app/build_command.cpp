@@ -31,6 +31,18 @@ paging::Region parse_region(const std::string& text) {
   return region;
 }
 
+// `embedded` stands for the embedded Mars, unless a file is called so.
+bool is_embedded(const std::string& path) {
+  std::error_code none;
+  return path == "embedded" && !std::filesystem::exists(path, none);
+}
+
+// It is defined at every spacing: within regions it can be had as fine as asked for, else as it is built for
+// the cache.
+double embedded_finest_m(const paging::BuildOptions& options) {
+  return options.regions.empty() ? 0.0 : options.finest_spacing_m;
+}
+
 // What the build would destroy or could not write is known before hours of work.
 void check_planet_output(const BuildArguments& arguments) {
   const std::string& output = arguments.options.output;
@@ -55,10 +67,16 @@ void build(BuildArguments& arguments, const Common& common) {
   options.threads = common.threads;
   check_planet_output(arguments);
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
-  for (const std::string& path : arguments.dems) dems.push_back(mars::open_elevation(path));
+  for (const std::string& path : arguments.dems) {
+    dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))
+                                     : mars::open_elevation(path));
+  }
   const auto elevation = dems.size() == 1 ? dems.front() : mars::stack_elevation(dems);
   std::vector<std::shared_ptr<const mars::ImageSource>> images;
-  for (const std::string& path : arguments.images) images.push_back(mars::open_image(path));
+  for (const std::string& path : arguments.images) {
+    images.push_back(is_embedded(path) ? mars::embedded_image(embedded_finest_m(options))
+                                       : mars::open_image(path));
+  }
   std::shared_ptr<const mars::ImageSource> image;
   if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
 
@@ -87,9 +105,9 @@ void add_build(CLI::App& program, Common& common) {
   paging::BuildOptions& o = arguments->options;
   command
       ->add_option("DEM", arguments->dems,
-                   "Elevation rasters (anything GDAL reads); the finest decides at each place")
+                   "Elevation rasters (anything GDAL reads), or 'embedded'; the finest decides at each place")
       ->required();
-  command->add_option("--image", arguments->images, "Image rasters")
+  command->add_option("--image", arguments->images, "Image rasters, or 'embedded'")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("-o,--output", o.output, "Planet file to write")->required();

@@ -52,9 +52,6 @@ void build_into(const fs::path& target, const std::string& what, const mars::Ele
   paging::BuildOptions options;
   options.output = target.string();
   options.threads = common.threads;
-  // An analytic source is sampled one place at a time here: enough for a figure that is stable to a few per
-  // cent.
-  if (elevation.infos().front().illustration) options.resampling_posts = 100'000;
   run_build(options, elevation, image, common);
 }
 
