@@ -18,6 +18,9 @@ constexpr Colour kMean{164, 111, 77};
 constexpr Colour kDark{80, 63, 55};
 constexpr Colour kRock{112, 80, 63};
 constexpr Colour kLayers{196, 152, 118};
+constexpr Colour kSand{104, 80, 66};
+constexpr Colour kStone{112, 88, 75};
+constexpr Colour kBlack{62, 53, 50};
 constexpr Colour kIce{238, 236, 236};
 constexpr Colour kDirtyIce{192, 146, 118};
 
@@ -58,8 +61,14 @@ void colour(const Block& block, const Surface& s, Rgb* out) {
         c, kDark,
         0.45F * g.trough[i] * ramp(-1.0F, 1.8F, 0.8F * w.km40[i] + 0.5F * w.km16[i] + 0.3F * w.km100[i]));
     c = mix_colour(c, kLayers, 0.65F * g.mound[i]);
+    c = mix_colour(c, kSand, s.sand[i] * (0.75F - 0.35F * s.crest[i]));
+    if (s.rock[i] > 0.0F) {
+      const Colour stone = mix_colour(kStone, s.rock_tone[i] > 0.0F ? kLayers : kBlack,
+                                      0.7F * std::min(1.0F, magnitude(s.rock_tone[i])));
+      c = mix_colour(c, stone, 0.88F * s.rock[i]);
+    }
     const float hue = 0.03F * w.km250[i];
-    const float shade = 1.0F + 0.035F * std::max(-3.0F, std::min(3.0F, s.grain[i]));
+    const float shade = 1.0F + 0.035F * std::max(-4.0F, std::min(4.0F, s.grain[i]));
     c = {c.r * shade * (1.0F - 0.4F * hue), c.g * shade, c.b * shade * (1.0F + hue)};
     if (g.ice[i] > 0.0F || block.z[i] > 0.98) {
       // Layered ground wears dust; only its middle is white all the year.

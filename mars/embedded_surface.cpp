@@ -4,9 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "mars/embedded_close.h"
 #include "mars/embedded_landforms.h"
 #include "mars/embedded_math.h"
-#include "mars/embedded_noise.h"
+#include "mars/embedded_sand.h"
 #include "mars/embedded_simd.h"
 
 namespace mars::embedded {
@@ -22,7 +23,7 @@ constexpr float amplitude_m(int octave) {
   constexpr float kLong[] = {26, 42, 60, 70, 65, 45, 30};
   if (octave >= kFirstRugged) return kLong[octave - kFirstRugged];
   float a = 21.0F;
-  for (int k = 12; k > octave; --k) a *= k > 7 ? 0.56F : 0.60F;
+  for (int k = 12; k > octave; --k) a *= k > 7 ? 0.56F : 0.55F;
   return a;
 }
 
@@ -31,45 +32,13 @@ int ragged_octave(int level, int first) {
   return std::max(std::max(first, kFirstOctave), std::min(level, kLastOctave));
 }
 
-float magnitude(float x) { return x < 0.0F ? -x : x; }
-
-// Dunes and, closer, ripples where sand lies: crests across the wind.
-void lay_sand(const Block& block, double detail_m, const Octaves& octaves, const Surface& out,
-              Lane<float>& sum) {
-  if (detail_m > 128.0) return;
-  Lane<float> sand;
-  bool any = false;
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    const float where = 0.8F * octaves.n[13][i] + 0.5F * octaves.n[11][i] - 0.25F;
-    const float open =
-        std::max(out.ground.trough[i], 0.7F * std::max(out.craters.buried[i], out.craters.filled[i]));
-    sand[i] = std::max(0.0F, std::min(1.0F, where * 2.0F)) * open * (1.0F - out.ground.wall[i]);
-    any = any || sand[i] > 0.0F;
-  }
-  if (!any) return;
-  const auto add = [&](double wavelength_m, double stretch, std::uint32_t seed, float height_m) {
-    Points drawn;
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      drawn.x[i] = block.x[i] * (kRadius_m * stretch);
-      drawn.y[i] = block.y[i] * kRadius_m;
-      drawn.z[i] = block.z[i] * (kRadius_m * stretch);
-    }
-    Lane<float> n;
-    noise(drawn, block.padded, block.simd, wavelength_m, seed, n);
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      const float crest = std::max(0.0F, 1.0F - magnitude(n[i]) * 0.8F);
-      sum[i] += height_m * sand[i] * crest * crest;
-    }
-  };
-  add(620.0, 0.35, 0x608, 13.0F);
-  if (detail_m <= 2.0) add(9.0, 0.3, 0x610, 0.30F);
-}
-
 void roughen(const Block& block, double detail_m, const Octaves& octaves, Surface& out) {
   Lane<float> sum{};
   Lane<float> fine{};
   Lane<float> patch;
   Lane<float> buried;
+  Sand sand;
+  const bool sandy = lay_sand(block, detail_m, octaves, out.ground, out.craters, sand);
   const auto& broad = octaves.n[15];
   const auto& middle = octaves.n[static_cast<std::size_t>(std::max(12, octaves.first))];
   with_simd(block.simd, [&] {
@@ -93,7 +62,7 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
       } else {
         for (std::size_t i = 0; i < block.padded; ++i) {
           const float r = out.ground.rough[i] * patch[i];
-          const float keep = 1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F);
+          const float keep = (1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F)) * (1.0F - sand.cover[i] * 0.8F);
           const float crest = (0.72F - magnitude(n[i])) * 0.5F;
           sum[i] += a * r * keep * (0.8F * n[i] + crest);
           fine[i] = fine[i] * 0.75F + n[i];
@@ -126,7 +95,22 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
       }
     }
   });
-  lay_sand(block, detail_m, octaves, out, sum);
+  if (sandy) {
+    with_simd(block.simd, [&] {
+      for (std::size_t i = 0; i < block.padded; ++i) sum[i] += sand.height_m[i];
+    });
+  } else {
+    sand.crest.fill(0.0F);
+  }
+  if (detail_m <= kCoarsestClose_m) {
+    for (std::size_t i = 0; i < block.padded; ++i) patch[i] *= out.ground.rough[i];
+    look_closely(block, detail_m, sand, patch, out, sum, fine);
+  } else {
+    out.rock.fill(0.0F);
+    out.rock_tone.fill(0.0F);
+  }
+  out.sand = sand.cover;
+  out.crest = sand.crest;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       // Large craters stop where a younger trough or the ice begins, and are filled in on the deepest floors.
@@ -255,7 +239,7 @@ class Splitter {
 }  // namespace
 
 double detail_spacing_m(double spacing_m) {
-  double detail = 1.0;
+  double detail = kFinestDetail_m;
   while (detail < 1048576.0 && 2.0 * detail <= spacing_m) detail *= 2.0;
   return detail;
 }
