@@ -59,11 +59,11 @@ void look_closely(const Block& block, double detail_m, const Sand& sand, const L
 
   // Gravel and grit.
   Lane<float> gravel{}, speckle{};
-  constexpr double kGravel_m[] = {1.05, 0.53, 0.26, 0.13};
-  for (std::uint32_t k = 0; k < 4 && 2.0 * detail_m <= kGravel_m[k]; ++k) {
+  constexpr double kGrit_m[] = {1.05, 0.53, 0.26, 0.13};
+  for (std::uint32_t k = 0; k < 4 && 2.0 * detail_m <= kGrit_m[k]; ++k) {
     Lane<float> fine;
-    noise(block, kGravel_m[k], 0x753U + 0x11U * k, fine);
-    const float height_m = 0.036F * static_cast<float>(kGravel_m[k]);
+    noise(block, kGrit_m[k], 0x753U + 0x11U * k, fine);
+    const float height_m = 0.036F * static_cast<float>(kGrit_m[k]);
     with_simd(block.simd, [&] {
       for (std::size_t i = 0; i < block.padded; ++i) {
         gravel[i] += height_m * (fine[i] + 0.7F * (0.75F - magnitude(fine[i])));
