@@ -30,7 +30,7 @@ void terrain(const Block& block, const Octaves& octaves, double spacing_m, Terra
 // The parts of terrain(), in the order in which they are applied.
 void lay_provinces(const Block& block, const Wander& w, Terrain& t);
 void raise_shields(const Block& block, const Wander& w, double spacing_m, Terrain& t);  // embedded_shields.cpp
-void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t);   // embedded_mounds.cpp
+void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t);   // embedded_noctis.cpp
 void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_troughs.cpp
 void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_mounds.cpp
 void lay_caps(const Block& block, const Wander& w, Terrain& t);                         // embedded_caps.cpp

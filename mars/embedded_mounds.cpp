@@ -85,39 +85,4 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
   }
 }
 
-// Noctis Labyrinthus: two families of crossing troughs, deepest in the middle of the region.
-void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
-  static constexpr glm::dvec3 kMiddle = place(259.4, -6.9);
-  constexpr double kReach_km = 520.0;
-  constexpr double kFrayed = 0.2;
-  if (!block.near(kMiddle, km_chord(kReach_km / (1.0 - kFrayed)))) return;
-  Lane<double> a, b, c;
-  Lane<float> ragged{};
-  noise(block, 210e3, 0x3d1, a);
-  noise(block, 150e3, 0x3d2, b);
-  noise(block, 110e3, 0x3d5, c);
-  if (spacing_m <= 2048.0) noise(block, 6e3, 0x3d3, ragged);
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    const glm::dvec3 v = block.at(i) - kMiddle;
-    const double d = std::sqrt(v.x * v.x + v.y * v.y + 2.2 * v.z * v.z) * (kRadius_m / 1000.0);
-    const double region = ramp(kReach_km * 0.95, kReach_km * 0.35,
-                               d * (1.0 + held(0.07 * static_cast<double>(w.km250[i]), kFrayed)));
-    if (region <= 0.0) continue;
-    const double wiggle = 0.05 * static_cast<double>(w.km40[i]) + 0.035 * static_cast<double>(w.km16[i]) +
-                          0.012 * static_cast<double>(ragged[i]);
-    const auto gap = [](double n, double bend) {
-      const double x = n + bend;
-      return (x < 0.0 ? -x : x);
-    };
-    const double near =
-        std::min({gap(a[i], 0.25 * static_cast<double>(w.km100[i])), gap(b[i], 0.2), gap(c[i], -0.5) * 1.3}) +
-        wiggle;
-    const double deep = ramp(0.44, 0.17, near) * region;
-    t.height_m[i] -= 3300.0 * deep;
-    const auto dug = static_cast<float>(ramp(0.15, 0.9, deep));
-    t.wall[i] = std::max(t.wall[i], 4.0F * dug * (1.0F - dug));
-    t.trough[i] = std::max(t.trough[i], dug * dug * dug);
-  }
-}
-
 }  // namespace mars::embedded

@@ -20,7 +20,7 @@ constexpr int kFirstRugged = 13;  // 8 km and longer go with Terrain::rugged, sh
 
 // Standard deviation of each octave in the highlands, metres.
 constexpr float amplitude_m(int octave) {
-  constexpr float kLong[] = {26, 42, 60, 70, 65, 45, 30};
+  constexpr float kLong[] = {18, 28, 42, 56, 60, 45, 30};
   if (octave >= kFirstRugged) return kLong[octave - kFirstRugged];
   float a = 21.0F;
   for (int k = 12; k > octave; --k) a *= k > 7 ? 0.56F : 0.55F;
