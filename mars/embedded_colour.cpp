@@ -31,11 +31,15 @@ constexpr Colour kDirtyIce{192, 146, 118};
 std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::max(0.0F, std::min(255.0F, x)) + 0.5F); }
 
 // Frost of the caps' edges, ragged, with outliers in the lee of what stands up; 0..1.
-float frost(const Wander& w, const Surface& s, std::size_t i, double z) {
-  const float ragged = 0.5F * w.km100[i] + 0.7F * w.km40[i] + 0.6F * w.km16[i];
-  const double out = z > 0.0 ? ramp(0.9845, 0.9885, z + 0.0011 * static_cast<double>(ragged))
-                             : ramp(0.9966, 0.9976, -z + 0.0005 * static_cast<double>(ragged));
-  const float bare = z > 0.0 ? 1.15F * s.ground.wall[i] : 0.7F * s.ground.wall[i];
+float frost(const Wander& w, const Surface& s, std::size_t i, const glm::dvec3& here) {
+  const float ragged = 1.7F * w.km250[i] + 0.8F * w.km100[i] + 0.7F * w.km40[i] + 0.6F * w.km16[i];
+  double out = ramp(0.9850, 0.9875, here.z + 0.0011 * static_cast<double>(ragged));
+  if (here.z < 0.0) {
+    static constexpr glm::dvec3 kMiddle = place(318.0, -87.2);
+    const double off = std::sqrt(chord2(here, kMiddle)) + 0.007 * static_cast<double>(ragged);
+    out = ramp(0.062, 0.053, off);
+  }
+  const float bare = here.z > 0.0 ? 1.05F * s.ground.wall[i] : 0.7F * s.ground.wall[i];
   return static_cast<float>(out) * clamp01(1.05F - bare);
 }
 
@@ -73,7 +77,7 @@ void colour(const Block& block, const Surface& s, Rgb* out) {
     if (g.ice[i] > 0.0F || block.z[i] > 0.98) {
       // Layered ground wears dust; only its middle is white all the year.
       c = mix_colour(c, kDirtyIce, 0.55F * clamp01(g.ice[i] * 1.3F - 0.1F));
-      c = mix_colour(c, kIce, 0.93F * frost(w, s, i, block.z[i]));
+      c = mix_colour(c, kIce, 0.93F * frost(w, s, i, block.at(i)));
     }
     out[i] = {byte(c.r), byte(c.g), byte(c.b)};
   }

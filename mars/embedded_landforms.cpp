@@ -34,7 +34,7 @@ constexpr Province kProvinces[] = {
     {Kind::kRidgedPlain, place(283.0, 1.0), 420, 0},    // between Tharsis and Echus
     {Kind::kLava, place(273.0, 22.0), 820, 0},          // west of Kasei
     {Kind::kLava, place(278.0, -8.0), 330, 0},          // about Ius and Tithonium
-    {Kind::kRidgedPlain, place(300.0, -10.0), 420, 0},  // Ophir Planum
+    {Kind::kRidgedPlain, place(297.0, -9.5), 520, 0},   // Ophir Planum
     {Kind::kRidgedPlain, place(67.1, 9.2), 620, 0},     // Syrtis Major
     {Kind::kRidgedPlain, place(110.0, -21.0), 560, 0},  // Hesperia
     {Kind::kRidgedPlain, place(67.0, -60.0), 480, 0},   // Malea
@@ -57,6 +57,12 @@ constexpr Swell kSwells[] = {
     {place(56.5, -46.0), place(64.0, -52.0), 190, -300},   // and to the south-west
     {place(66.5, -40.0), place(74.0, -39.0), 260, 120},    // Alpheus Colles
     {place(92.0, -43.5), place(86.0, -45.0), 230, 250},    // eastern apron below Reull
+    {place(238.6, -10.0), place(233.5, -16.0), 190, 900},  // aprons of lava from the rifts of Arsia,
+    {place(241.4, -6.0), place(244.5, -2.5), 150, 700},
+    {place(245.8, 0.0), place(244.6, -2.0), 130, 400},  // Pavonis,
+    {place(248.6, 3.4), place(252.0, 6.6), 150, 700},
+    {place(254.4, 10.0), place(252.2, 7.6), 140, 600},  // and Ascraeus
+    {place(257.6, 14.0), place(262.0, 18.5), 170, 800},
     {place(285.0, -31.0), place(270.0, -37.0), 160, 500},  // the rise of southern Thaumasia
 };
 
@@ -189,7 +195,7 @@ void terrain(const Block& block, const Octaves& octaves, double spacing_m, Terra
   crack_noctis(block, w, spacing_m, out);
   cut_troughs(block, w, spacing_m, out);
   pile_mounds(block, w, spacing_m, out);
-  lay_caps(block, w, out);
+  lay_caps(block, w, spacing_m, out);
 }
 
 }  // namespace mars::embedded

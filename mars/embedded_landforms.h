@@ -33,6 +33,6 @@ void raise_shields(const Block& block, const Wander& w, double spacing_m, Terrai
 void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t);   // embedded_noctis.cpp
 void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_troughs.cpp
 void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_mounds.cpp
-void lay_caps(const Block& block, const Wander& w, Terrain& t);                         // embedded_caps.cpp
+void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t);       // embedded_caps.cpp
 
 }  // namespace mars::embedded

@@ -13,17 +13,22 @@ namespace {
 // Layered mounds inside the chasmata, and the one in Gale.
 struct Mound {
   double lon_deg, lat_deg, long_km, short_km, azimuth_deg, height_m;
+  bool layered;  // else of the rock of the walls
 };
 constexpr Mound kMounds[] = {
-    {285.6, -6.4, 62, 30, 82, 4300},                                     // Ceti Mensa, western Candor
-    {289.8, -6.9, 60, 26, 100, 3900},                                    // Candor Mensa and the east
-    {292.4, -7.8, 42, 24, 110, 3000},  {287.6, -3.9, 44, 24, 78, 3200},  // Ophir
-    {287.8, -12.1, 58, 26, 105, 2300}, {286.6, -9.7, 34, 20, 60, 1500},  // Melas
-    {283.9, -1.05, 62, 20, 92, 4800},                                    // Hebes Mensa
-    {311.2, -7.3, 54, 20, 96, 2900},                                     // Ganges Mensa
-    {313.4, -12.9, 60, 40, 60, 2300},                                    // Capri Mensa
-    {298.5, -4.3, 26, 17, 20, 1800},                                     // Juventae
-    {137.85, -5.08, 46, 25, 62, 5900},                                   // Aeolis Mons in Gale
+    {285.6, -6.4, 62, 30, 82, 4300, true},   // Ceti Mensa, western Candor
+    {289.8, -6.9, 60, 26, 100, 3900, true},  // Candor Mensa and the east
+    {292.4, -7.8, 42, 24, 110, 3000, true},   {287.6, -3.9, 44, 24, 78, 3200, true},   // Ophir
+    {287.8, -12.1, 58, 26, 105, 2300, true},  {286.6, -9.7, 34, 20, 60, 1500, true},   // Melas
+    {283.9, -1.05, 62, 20, 92, 4800, true},                                            // Hebes Mensa
+    {311.2, -7.3, 54, 20, 96, 2900, true},                                             // Ganges Mensa
+    {313.4, -12.9, 60, 40, 60, 2300, true},                                            // Capri Mensa
+    {298.5, -4.3, 26, 17, 20, 1800, true},                                             // Juventae
+    {301.2, -13.62, 125, 9, 97, 3000, false},                                          // the ridge in Coprates
+    {296.0, -12.35, 60, 6, 101, 1500, false}, {288.6, -11.4, 40, 22, 120, 900, true},  // Melas, east
+    {284.6, -5.2, 30, 14, 95, 1600, true},                                             // Candor, north-west
+    {320.5, -12.6, 46, 24, 70, 1500, true},                                            // Eos
+    {137.85, -5.08, 46, 25, 62, 5900, true},                                           // Aeolis Mons in Gale
 };
 
 }  // namespace
@@ -66,7 +71,7 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
     for (std::size_t i = 0; i < block.padded; ++i) {
       if (chord2(block.at(i), f.up) > outer * outer) continue;
       const double r =
-          round[i] * (1.0 + held(0.10 * static_cast<double>(w.km40[i]) + 0.10 * static_cast<double>(w.km16[i]) +
+          round[i] * (1.0 + held(0.10 * static_cast<double>(w.km40[i]) + 0.06 * static_cast<double>(w.km16[i]) +
                                      0.045 * static_cast<double>(flutes[i]),
                                  kFrayed));
       if (r >= 1.0) continue;
@@ -80,7 +85,8 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
         h += 190.0 * 0.55 * (phase * phase * (3.0 - 2.0 * phase) - phase) * clamp01(s * 8.0);
       }
       t.height_m[i] += clamp01(s * 12.0) * std::max(0.0, h);
-      t.mound[i] = std::max(t.mound[i], static_cast<float>(clamp01(s * 4.0)));
+      auto& kind = m.layered ? t.mound[i] : t.wall[i];
+      kind = std::max(kind, static_cast<float>(clamp01(s * 4.0)));
     }
   }
 }

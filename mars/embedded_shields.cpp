@@ -36,10 +36,10 @@ constexpr Shield kShields[] = {
      18.65,
      297,
      21230,
-     5600,
+     4400,
      46,
      21,
-     0.35,
+     0.28,
      {{10, -14, 27, 18900},
       {-14, -10, 16, 18300},
       {24, 6, 13, 18600},
@@ -50,13 +50,13 @@ constexpr Shield kShields[] = {
      11.92,
      222,
      18200,
-     5600,
+     3300,
      30,
      70,
      0.25,
      {{0, 0, 13, 14900}, {-14, 5, 11, 16600}, {5, -14, 10, 16900}, {12, 9, 9, 16500}, {-6, -10, 8, 16800}, {}}},
-    {247.04, 1.48, 188, 14100, 5200, 45, 70, 0.30, {{4, -4, 21, 9600}, {-10, 14, 40, 13300}, {}, {}, {}, {}}},
-    {239.91, -8.26, 228, 17760, 8300, 62, 130, 0.35, {{0, 0, 55, 16500}, {}, {}, {}, {}, {}}},
+    {247.04, 1.48, 188, 14100, 4300, 45, 70, 0.30, {{4, -4, 21, 9600}, {-10, 14, 40, 13300}, {}, {}, {}, {}}},
+    {239.91, -8.26, 228, 17760, 6300, 62, 130, 0.35, {{0, 0, 55, 16500}, {}, {}, {}, {}, {}}},
     {147.21, 25.02, 205, 14100, -900, 9, 190, -0.9, {{0, 0, 6, 13500}, {}, {}, {}, {}, {}}},
     {250.40, 40.47, 290, 6800, 4200, 70, 240, 0.7, {{0, 0, 32, 5900}, {14, -18, 22, 5700}, {}, {}, {}, {}}},
     {150.24, 32.12, 88, 4800, -1800, 7, 30, 0.3, {{0, 0, 5, 4300}, {}, {}, {}, {}, {}}},     // Hecates Tholus
@@ -161,12 +161,23 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
     h += bench * (60.0 * static_cast<double>(flows[i]) + 34.0 * static_cast<double>(fine[i]) +
                   14.0 * static_cast<double>(finest[i]) + 90.0 * static_cast<double>(w.km40[i]) +
                   40.0 * static_cast<double>(w.km16[i]));
+    // Slumps have stacked the upper flanks of the great ones into terraces.
+    if (s.radius_km > 150.0 && s.convexity > 0.0) {
+      const double step =
+          r * (1.0 / 31.0) + 0.35 * static_cast<double>(w.km100[i]) + 0.5 * static_cast<double>(w.km250[i]);
+      const double phase = step - floor_int(step);
+      h += 0.008 * (s.summit_m - s.foot_m) * clamp01(0.6 + 0.6 * static_cast<double>(w.km100[i])) *
+           (phase < 0.7 ? phase / 0.7 : (1.0 - phase) / 0.3) * bench * ramp(1.0, 0.5, u);
+    }
     if (scarp) {
       const double steep = clamp01(1.5 - 1.5 * cover) * clamp01(cover * 8.0) * (1.0 - draped[i]);
       t.wall[i] = std::max(t.wall[i], static_cast<float>(steep));
       t.height_m[i] += rills[i];
     }
-    t.height_m[i] = mix(t.height_m[i], h, cover);
+    // A scarp stands clear of the plain; gentler flanks lie upon it and run out.
+    const double above = std::max(0.0, h - t.height_m[i]);
+    t.height_m[i] =
+        scarp ? mix(t.height_m[i], h, cover) : t.height_m[i] + cover * above * above / (above + 120.0);
     const auto keep = static_cast<float>(1.0 - cover);
     t.cratered[i] = t.cratered[i] * keep;
     t.rugged[i] = t.rugged[i] * keep;

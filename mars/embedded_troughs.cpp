@@ -56,7 +56,7 @@ void lay_landslides(const Block& block, double spacing_m, const Inside& in, cons
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       run[i] = (on.depth_m[i] - 0.6 * on.width_m[i]) /
-               (16e3 + 9e3 * clamp01(0.5 + 0.5 * static_cast<double>(lobes[i])));
+               (17e3 + 24e3 * clamp01(0.1 + 0.55 * static_cast<double>(lobes[i])));
       lobe[i] = ramp(0.15, 0.75, static_cast<double>(lobes[i])) * ramp(-0.35, 0.1, run[i]) *
                 ramp(1.0, 0.93, run[i]) * ramp(6e3, 16e3, in.to_axis_m[i]) * clamp01(on.depth_m[i] * 1e-3);
       any |= static_cast<std::int32_t>(lobe[i] > 0.0);
@@ -66,8 +66,10 @@ void lay_landslides(const Block& block, double spacing_m, const Inside& in, cons
   if (spacing_m <= 1024.0) noise(far, block.padded, block.simd, 2.4e3, 0x3e2, grooves);
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
-      texture[i] += lobe[i] * (420.0 - 250.0 * clamp01(run[i]) + 55.0 * static_cast<double>(grooves[i]) +
-                               22.0 * static_cast<double>(on.nicks[i]));
+      const double apron = clamp01(run[i]);
+      const double toe = ramp(0.66, 0.92, apron);
+      texture[i] += lobe[i] * (520.0 - 420.0 * apron + 170.0 * toe + 75.0 * static_cast<double>(grooves[i]) +
+                               26.0 * static_cast<double>(on.nicks[i]));
     }
   });
 }
