@@ -194,6 +194,7 @@ void terrain(const Block& block, const Octaves& octaves, double spacing_m, Terra
   raise_shields(block, w, spacing_m, out);
   crack_noctis(block, w, spacing_m, out);
   cut_troughs(block, w, spacing_m, out);
+  carve_valleys(block, spacing_m, out);
   pile_mounds(block, w, spacing_m, out);
   lay_caps(block, w, spacing_m, out);
 }

@@ -32,6 +32,7 @@ void lay_provinces(const Block& block, const Wander& w, Terrain& t);
 void raise_shields(const Block& block, const Wander& w, double spacing_m, Terrain& t);  // embedded_shields.cpp
 void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t);   // embedded_noctis.cpp
 void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_troughs.cpp
+void carve_valleys(const Block& block, double spacing_m, Terrain& t);                   // embedded_valleys.cpp
 void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_mounds.cpp
 void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t);       // embedded_caps.cpp
 

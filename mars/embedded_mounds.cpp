@@ -66,18 +66,31 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
     Lane<float> flutes, fine;
     flutes.fill(kMeanNoise);
     fine.fill(kMeanNoise);
-    if (spacing_m <= 2048.0) noise(block, 5.2e3, 0x3b7, flutes);
+    if (spacing_m <= 2048.0) {
+      // Wind and slope have fluted them downhill.
+      Points drawn;
+      for (std::size_t i = 0; i < block.padded; ++i) {
+        const glm::dvec3 v = block.at(i) - f.up;
+        const double e = (v.x * f.east.x + v.y * f.east.y) * (kRadius_m / 1000.0);
+        const double n = (v.x * f.north.x + v.y * f.north.y + v.z * f.north.z) * (kRadius_m / 1000.0);
+        const double back = 0.55 * m.long_km / (round[i] * m.short_km + 4.0);
+        drawn.x[i] = e * back;
+        drawn.y[i] = n * back;
+        drawn.z[i] = 0.22 * round[i] * m.short_km;
+      }
+      noise(drawn, block.padded, block.simd, 4.6, 0x3b7, flutes);
+    }
     if (spacing_m <= 512.0) noise(block, 1.3e3, 0x3c0, fine);
     for (std::size_t i = 0; i < block.padded; ++i) {
       if (chord2(block.at(i), f.up) > outer * outer) continue;
       const double r =
           round[i] * (1.0 + held(0.10 * static_cast<double>(w.km40[i]) + 0.06 * static_cast<double>(w.km16[i]) +
-                                     0.045 * static_cast<double>(flutes[i]),
+                                     0.020 * static_cast<double>(flutes[i]),
                                  kFrayed));
       if (r >= 1.0) continue;
       const double s = 1.0 - r;
       double h = 0.8 * m.height_m * s * (1.4 - 0.4 * s);
-      h += 120.0 * (crest(flutes[i]) - 0.4) * 4.0 * s * r + 26.0 * (crest(fine[i]) - 0.4);
+      h += 0.05 * m.height_m * (crest(flutes[i]) - 0.4) * 4.0 * s * r + 26.0 * (crest(fine[i]) - 0.4);
       if (spacing_m <= 512.0) {
         // Terraces of the layers.
         const double bed = h * (1.0 / 190.0);

@@ -65,7 +65,7 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
           const float keep = (1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F)) * (1.0F - sand.cover[i] * 0.8F);
           const float crest = (0.72F - magnitude(n[i])) * 0.5F;
           sum[i] += a * r * keep * (0.8F * n[i] + crest);
-          fine[i] = fine[i] * 0.75F + n[i];
+          fine[i] = fine[i] * 0.82F + 0.55F * n[i];
         }
       }
     }
