@@ -56,7 +56,6 @@ constexpr Swell kSwells[] = {
     {place(57.0, -35.5), place(66.0, -32.5), 190, -700},   // and round to the north-west
     {place(56.5, -46.0), place(64.0, -52.0), 190, -300},   // and to the south-west
     {place(66.5, -40.0), place(74.0, -39.0), 260, 120},    // Alpheus Colles
-    {place(92.0, -43.5), place(86.0, -45.0), 230, 250},    // eastern apron below Reull
     {place(238.6, -10.0), place(233.5, -16.0), 190, 900},  // aprons of lava from the rifts of Arsia,
     {place(241.4, -6.0), place(244.5, -2.5), 150, 700},
     {place(245.8, 0.0), place(244.6, -2.0), 130, 400},  // Pavonis,
