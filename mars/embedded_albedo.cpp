@@ -30,13 +30,18 @@ void albedo(const Block& block, const Octaves& octaves, Lane<float>& out) {
   noise(blown, block.padded, block.simd, 260e3, 0x701, streaks);
   noise(blown, block.padded, block.simd, 47e3, 0x712, wisps);
 
-  const std::size_t fine = static_cast<std::size_t>(std::max(11, octaves.first));
+  Lane<float> frayed{};
+  float share = 0.055F;
+  for (int k = 13; k >= std::max(6, octaves.first); --k) {
+    const Lane<float>& n = octaves.n[static_cast<std::size_t>(k)];
+    for (std::size_t i = 0; i < block.padded; ++i) frayed[i] += share * n[i];
+    share *= 0.68F;
+  }
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       const auto b = static_cast<float>(broad[i]);
       const float ragged = 0.10F * octaves.n[18][i] + 0.09F * octaves.n[17][i] + 0.08F * octaves.n[16][i] +
-                           0.08F * octaves.n[15][i] + 0.06F * octaves.n[14][i] +
-                           (fine < 14 ? 0.05F * octaves.n[fine][i] : 0.0F);
+                           0.08F * octaves.n[15][i] + 0.06F * octaves.n[14][i] + frayed[i];
       const float t = b + ragged + 0.15F * streaks[i] + 0.10F * wisps[i];
       // Sand gives way to thin dust along sharp fronts, thin dust to thick along softer ones.
       const float front = 0.75F * ramp(-0.34F, -0.08F, t) + 0.65F * ramp(0.10F, 0.62F, t) +

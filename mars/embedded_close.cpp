@@ -77,7 +77,7 @@ void look_closely(const Block& block, double detail_m, const Sand& sand, const L
       const float open = 1.0F - 0.85F * sand.cover[i];
       const float amplitude = (0.25F + 0.75F * rough[i]) * open * (1.0F - 0.6F * g.ice[i]);
       sum[i] += amplitude * gravel[i];
-      grain[i] = 0.6F * grain[i] + 1.6F * open * speckle[i];
+      grain[i] = 0.7F * grain[i] + 2.4F * open * speckle[i];
       // Rocks lie about where the ground is rough, around fresh craters and below walls, in drifts.
       const float many = 0.24F + 0.28F * rough[i] + 0.45F * g.wall[i] + 0.5F * out.craters.fresh[i] +
                          0.30F * g.lowland[i] + 0.16F * g.trough[i] - 0.25F * g.volcanic[i] - 0.9F * g.ice[i] +
@@ -94,7 +94,7 @@ void look_closely(const Block& block, double detail_m, const Sand& sand, const L
     for (std::size_t i = 0; i < block.padded; ++i) {
       sum[i] += rocks.height_m[i];
       out.rock[i] = std::max(std::min(1.0F, rocks.height_m[i] * 25.0F), 0.55F * ledge[i]);
-      out.rock_tone[i] = rocks.height_m[i] > 0.0F ? rocks.tone[i] - 0.35F : 0.6F;
+      out.rock_tone[i] = rocks.height_m[i] > 0.0F ? rocks.tone[i] - 0.55F : 0.6F;
     }
   });
 }

@@ -19,7 +19,7 @@ constexpr Colour kDark{80, 63, 55};
 constexpr Colour kRock{112, 80, 63};
 constexpr Colour kLayers{196, 152, 118};
 constexpr Colour kSand{104, 80, 66};
-constexpr Colour kStone{112, 88, 75};
+constexpr Colour kStone{106, 84, 73};
 constexpr Colour kBlack{62, 53, 50};
 constexpr Colour kIce{238, 236, 236};
 constexpr Colour kDirtyIce{192, 146, 118};
@@ -34,6 +34,8 @@ std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::max(0.0F, std
 float frost(const Wander& w, const Surface& s, std::size_t i, const glm::dvec3& here) {
   const float ragged = 1.7F * w.km250[i] + 0.8F * w.km100[i] + 0.7F * w.km40[i] + 0.6F * w.km16[i];
   double out = ramp(0.9850, 0.9875, here.z + 0.0011 * static_cast<double>(ragged));
+  // Dunes bound the northern ice on the far side: Olympia Undae.
+  out *= 1.0 - ramp(0.05, 0.10, -here.x) * ramp(0.9935, 0.9905, here.z + 0.0006 * static_cast<double>(ragged));
   if (here.z < 0.0) {
     static constexpr glm::dvec3 kMiddle = place(318.0, -87.2);
     const double off = std::sqrt(chord2(here, kMiddle)) + 0.007 * static_cast<double>(ragged);
@@ -77,7 +79,7 @@ void colour(const Block& block, const Surface& s, Rgb* out) {
     if (g.ice[i] > 0.0F || block.z[i] > 0.98) {
       // Layered ground wears dust; only its middle is white all the year.
       c = mix_colour(c, kDirtyIce, 0.55F * clamp01(g.ice[i] * 1.3F - 0.1F));
-      c = mix_colour(c, kIce, 0.93F * frost(w, s, i, block.at(i)));
+      c = mix_colour(c, kIce, 0.93F * (1.0F - s.sand[i]) * frost(w, s, i, block.at(i)));
     }
     out[i] = {byte(c.r), byte(c.g), byte(c.b)};
   }

@@ -15,6 +15,7 @@ namespace {
 constexpr double kBlock_km = 52.0;   // mean size of the blocks between the grabens
 constexpr double kWidest_km = 22.0;  // from the middle of a graben to its rim, fringe included
 constexpr double kReach_km = 640.0;
+constexpr double kCoarsest_m = 6000.0;  // beyond, the grabens are too narrow to be told apart
 constexpr PlaceFrame kFrame = place_frame(259.5, -7.5);
 
 // Where the ground is broken: capsules in kilometres east and north of the frame's place.
@@ -105,6 +106,10 @@ void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain
     const double n = (x * kFrame.north.x + y * kFrame.north.y + z * kFrame.north.z) * (kRadius_m / 1000.0);
     const double region = broken(e, n, 14.0 * held(static_cast<double>(w.km100[i]), 2.0));
     if (region <= 0.0) continue;
+    if (spacing_m > kCoarsest_m) {
+      t.height_m[i] -= 800.0 * region;
+      continue;
+    }
     if (!drawn) {
       if (spacing_m <= 2048.0) noise(block, 6.1e3, 0x3d3, ragged);
       if (spacing_m <= 512.0) noise(block, 1.7e3, 0x3d4, nicks);

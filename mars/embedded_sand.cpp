@@ -10,7 +10,8 @@ namespace mars::embedded {
 namespace {
 
 // A set of ridges. Their lines of equal phase run across the wind and are bent by three octaves of the common
-// noise, so that they fork, sway and end.
+// noise, so that they fork, sway and end. They die out towards the two places where that direction is upright,
+// in western Acidalia and in Promethei Terra.
 struct Ridges {
   double wavelength_m;
   float height_m;
@@ -21,7 +22,7 @@ struct Ridges {
   int patch;      // octave that lets them die out
 };
 constexpr Ridges kRidges[] = {
-    {640.0, 26.0F, 0.14F, 128.0, {12, 11, 10}, {0.9F, 0.45F, 0.16F}, 11},
+    {640.0, 26.0F, 0.14F, 128.0, {12, 11, 10}, {0.5F, 0.28F, 0.12F}, 11},
     {41.0, 1.9F, 0.42F, 8.0, {9, 7, 6}, {0.8F, 0.40F, 0.16F}, 8},
     {9.5, 0.45F, 0.36F, 2.0, {7, 5, 4}, {0.7F, 0.34F, 0.15F}, 6},
     {2.3, 0.19F, 0.30F, 0.5, {5, 3, 2}, {0.6F, 0.30F, 0.13F}, 4},
@@ -66,9 +67,9 @@ bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const
     const float fall = 1.0F / r.lee;
     with_simd(block.simd, [&] {
       for (std::size_t i = 0; i < block.padded; ++i) {
-        // Winds turn over some ten kilometres; near the poles they blow the other way across.
-        const double across = (block.z[i] + 1.3 * block.z[i] * block.z[i] * block.x[i]) * kRadius_m +
-                              9000.0 * static_cast<double>(n[15][i]);
+        // Winds sway over some ten kilometres.
+        const double across = (0.30 * block.x[i] - 0.52 * block.y[i] + 0.80 * block.z[i]) * kRadius_m +
+                              4500.0 * static_cast<double>(n[15][i]);
         const double phase =
             across * inverse + static_cast<double>(r.bent[0] * b0[i] + r.bent[1] * b1[i] + r.bent[2] * b2[i]);
         const auto f = static_cast<float>(phase - floor_int(phase));

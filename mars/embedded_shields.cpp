@@ -72,11 +72,14 @@ constexpr Shield kShields[] = {
 
 constexpr std::size_t kShieldCount = sizeof(kShields) / sizeof(kShields[0]);
 
+void spread_aprons(const Block& block, double spacing_m, const Shield& s, const PlaceFrame& frame,
+                   const Lane<double>& bent_km, Terrain& t);
+
 void raise(const Block& block, const Wander& w, double spacing_m, const Shield& s, const PlaceFrame& frame,
            Terrain& t) {
   const bool scarp = s.edge_km < kScarp_km;
   // Beyond it nothing is covered: the radius is frayed by kFrayed at most, and the edge has its largest width.
-  const double outer = km_chord((s.radius_km + (scarp ? 2.9 : 0.9) * s.edge_km + 6.0) / (1.0 - kFrayed));
+  const double outer = km_chord((s.radius_km + (scarp ? 3.0 : 0.9) * s.edge_km + 6.0) / (1.0 - kFrayed));
   if (!block.near(frame.up, outer)) return;
 
   Lane<double> east_km, north_km, radius_km, wobble, bent_km, edge_km;
@@ -101,6 +104,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
   });
   if (any == 0) return;
 
+  if (scarp) spread_aprons(block, spacing_m, s, frame, bent_km, t);
   // A cliff that eases off into talus; in places lava has poured over it and made a ramp.
   Lane<double> draped{}, down{};
   bool on_cliff = false;
@@ -208,6 +212,38 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
         t.rough[i] = mix(t.rough[i], 0.25F, inside);
       }
     }
+  }
+}
+
+// Landslides at the foot of the scarp: lobes that run out radially over the plain, grooved along their way.
+void spread_aprons(const Block& block, double spacing_m, const Shield& s, const PlaceFrame& frame,
+                   const Lane<double>& bent_km, Terrain& t) {
+  constexpr double kLongest_km = 62.0;
+  bool any = false;
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    any = any || (bent_km[i] > s.radius_km - 12.0 && bent_km[i] < s.radius_km + kLongest_km);
+  }
+  if (!any) return;
+  Points round;  // on a circle, so that what hangs on them runs out radially
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    const double x = block.x[i] - frame.up.x, y = block.y[i] - frame.up.y, z = block.z[i] - frame.up.z;
+    const double r = std::sqrt(x * x + y * y + z * z) + 1e-9;
+    round.x[i] = x / r * s.radius_km;
+    round.y[i] = y / r * s.radius_km;
+    round.z[i] = z / r * s.radius_km + 0.06 * bent_km[i];
+  }
+  Lane<float> lobes, grooves{};
+  noise(round, block.padded, block.simd, 70.0, 0x251, lobes);
+  if (spacing_m <= 2048.0) noise(round, block.padded, block.simd, 4.2, 0x262, grooves);
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    const double lobe = ramp(-0.1, 0.5, static_cast<double>(lobes[i]));
+    const double length_km = 18.0 + (kLongest_km - 18.0) * ramp(-0.2, 1.6, static_cast<double>(lobes[i]));
+    const double run = (bent_km[i] - s.radius_km + 6.0) / length_km;
+    if (lobe <= 0.0 || run <= 0.0 || run >= 1.0) continue;
+    const double there = lobe * ramp(0.0, 0.15, run) * ramp(1.0, 0.94, run);
+    t.height_m[i] +=
+        there * (560.0 - 430.0 * run + 150.0 * ramp(0.70, 0.92, run) + 60.0 * static_cast<double>(grooves[i]));
+    t.rough[i] = std::max(t.rough[i], static_cast<float>(0.9 * there));
   }
 }
 

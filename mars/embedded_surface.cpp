@@ -61,7 +61,8 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
         }
       } else {
         for (std::size_t i = 0; i < block.padded; ++i) {
-          const float r = out.ground.rough[i] * patch[i];
+          // Stones and dust even out the shortest.
+          const float r = std::min(k <= 5 ? 1.0F : 2.0F, out.ground.rough[i] * patch[i]);
           const float keep = (1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F)) * (1.0F - sand.cover[i] * 0.8F);
           const float crest = (0.72F - magnitude(n[i])) * 0.5F;
           sum[i] += a * r * keep * (0.8F * n[i] + crest);
