@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <iterator>
 
 #include "mars/embedded_landforms.h"
 #include "mars/embedded_math.h"
@@ -46,18 +48,33 @@ constexpr Reach kChasmata[] = {
     {place(141.0, -82.3), place(134.0, -80.3), 20, 36},
 };
 
-// Kilometres inside the nearest canyon's rim.
-double in_chasma_km(const glm::dvec3& here) {
-  double inside = -1e9;
-  for (const Reach& r : kChasmata) {
-    const glm::dvec3 ab = r.b - r.a;
-    const glm::dvec3 v = here - r.a;
-    const double t = clamp01((v.x * ab.x + v.y * ab.y + v.z * ab.z) / chord2(r.a, r.b));
-    const double d = std::sqrt(chord2(v, ab * t)) * (kRadius_m / 1000.0);
-    inside = std::max(inside, mix(r.half_a_km, r.half_b_km, t) - d);
+// The canyons near a block.
+struct Near {
+  std::array<const Reach*, std::size(kChasmata)> reaches;
+  std::size_t count = 0;
+
+  explicit Near(const Block& block) {
+    constexpr double kFringe_km = 40.0;
+    for (const Reach& r : kChasmata) {
+      const double wide = km_chord(std::max(r.half_a_km, r.half_b_km) + kFringe_km);
+      if (block.near((r.a + r.b) * 0.5, wide + 0.5 * std::sqrt(chord2(r.a, r.b)))) reaches[count++] = &r;
+    }
   }
-  return inside;
-}
+
+  // Kilometres inside the nearest rim; -30 and less is far enough.
+  double inside_km(const glm::dvec3& here) const {
+    double inside = -30.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Reach& r = *reaches[k];
+      const glm::dvec3 ab = r.b - r.a;
+      const glm::dvec3 v = here - r.a;
+      const double t = clamp01((v.x * ab.x + v.y * ab.y + v.z * ab.z) / chord2(r.a, r.b));
+      const double d = std::sqrt(chord2(v, ab * t)) * (kRadius_m / 1000.0);
+      inside = std::max(inside, mix(r.half_a_km, r.half_b_km, t) - d);
+    }
+    return inside;
+  }
+};
 
 }  // namespace
 
@@ -66,6 +83,7 @@ void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t)
     if (!block.near(c.middle, km_chord(c.radius_km * 1.3))) continue;
     Lane<float> bend;
     noise(block, 150e3, 0x417, bend);
+    const Near canyons(block);
     for (std::size_t i = 0; i < block.padded; ++i) {
       const glm::dvec3 v = block.at(i) - c.middle;
       const double flat = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * (kRadius_m / 1000.0);
@@ -89,8 +107,9 @@ void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t)
       const double where = ramp(40.0, 130.0, polar_km) * ramp(1.0, 0.86, r) *
                            clamp01(c.grooved + 0.7 * static_cast<double>(w.km250[i]));
       double h = thick - c.groove_m * groove * where;
-      const double canyon = in_chasma_km(block.at(i)) + 5.0 * static_cast<double>(w.km40[i]) +
-                            2.2 * static_cast<double>(w.km16[i]);
+      const double canyon =
+          canyons.inside_km(block.at(i)) +
+          held(5.0 * static_cast<double>(w.km40[i]) + 2.2 * static_cast<double>(w.km16[i]), 25.0);
       const double cut = ramp(0.0, 9.0, canyon);
       h = mix(h, std::min(h, 160.0 + 0.12 * h), cut);
       const double steep = std::max(groove * (1.0 - groove) * 4.0 * where, 4.0 * cut * (1.0 - cut));

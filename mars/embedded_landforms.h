@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mars/embedded_block.h"
+#include "mars/embedded_math.h"
 
 namespace mars::embedded {
 
@@ -35,5 +36,17 @@ void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain&
 void carve_valleys(const Block& block, double spacing_m, Terrain& t);                   // embedded_valleys.cpp
 void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_mounds.cpp
 void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t);       // embedded_caps.cpp
+
+// Parts of raise_shields(), in embedded_slides.cpp.
+// Landslides at the foot of a scarp: lobes that run out radially over the plain, grooved along their way.
+// `bent_km` are distances from the middle, bent as the scarp is.
+struct Foot {
+  const PlaceFrame& frame;
+  double radius_km;
+};
+void spread_aprons(const Block& block, double spacing_m, const Foot& foot, const Lane<double>& bent_km,
+                   Terrain& t);
+// The aureole: lobes of ridged ground about Olympus, farthest to the north-west.
+void lay_aureole(const Block& block, const Wander& w, double spacing_m, Terrain& t);
 
 }  // namespace mars::embedded

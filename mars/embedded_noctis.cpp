@@ -49,28 +49,38 @@ double broken(double e, double n, double bend_km) {
   return clamp01((inside + bend_km + 30.0) * (1.0 / 95.0));
 }
 
-// Kilometres inside the nearest graben's rim, negative outside; `share` 0..1 scales the widths.
-double inside_km(double e, double n, double share) {
-  const std::int64_t i0 = floor_int(e / kBlock_km);
-  const std::int64_t j0 = floor_int(n / (kBlock_km * 0.8));
+// The blocks about one cell of their lattice: neighbouring posts ask for the same.
+struct Blocks {
+  std::int64_t i = 1 << 20, j = 0;
   std::array<Seed, 25> seeds;
-  std::array<double, 25> d;
-  std::size_t count = 0;
-  double nearest = 1e9;
-  for (std::int64_t j = j0 - 2; j <= j0 + 2; ++j) {
-    for (std::int64_t i = i0 - 2; i <= i0 + 2; ++i) {
-      seeds[count] = seed_at(i, j);
-      const double x = seeds[count].e - e, y = seeds[count].n - n;
-      d[count] = std::sqrt(x * x + y * y);
-      nearest = std::min(nearest, d[count]);
-      ++count;
-    }
+
+  void about(std::int64_t i0, std::int64_t j0) {
+    if (i0 == i && j0 == j) return;
+    i = i0;
+    j = j0;
+    for (std::int64_t k = 0; k < 25; ++k)
+      seeds[static_cast<std::size_t>(k)] = seed_at(i - 2 + k % 5, j - 2 + k / 5);
   }
+};
+
+// Kilometres inside the nearest graben's rim, negative outside; `share` scales the widths.
+double inside_km(double e, double n, double share, Blocks& blocks) {
+  blocks.about(floor_int(e / kBlock_km), floor_int(n / (kBlock_km * 0.8)));
+  std::array<Seed, 25> seeds;
+  std::array<double, 25> d, square;
+  double nearest2 = 1e18;
+  for (std::size_t k = 0; k < 25; ++k) {
+    const double x = blocks.seeds[k].e - e, y = blocks.seeds[k].n - n;
+    square[k] = x * x + y * y;
+    nearest2 = std::min(nearest2, square[k]);
+  }
+  const double nearest = std::sqrt(nearest2);
+  const double farthest2 = (nearest + 2.0 * kWidest_km) * (nearest + 2.0 * kWidest_km);
   std::size_t close = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (d[k] - nearest > 2.0 * kWidest_km) continue;
-    seeds[close] = seeds[k];
-    d[close++] = d[k];
+  for (std::size_t k = 0; k < 25; ++k) {
+    if (square[k] > farthest2) continue;
+    seeds[close] = blocks.seeds[k];
+    d[close++] = std::sqrt(square[k]);
   }
   // Every pair of blocks has a graben between them, along the line midway, where no third one is nearer.
   double best = -kWidest_km;
@@ -80,6 +90,7 @@ double inside_km(double e, double n, double share) {
       const double apart = std::sqrt(x * x + y * y) + 1e-6;
       const double off = std::abs(d[a] * d[a] - d[b] * d[b]) / (2.0 * apart);
       const double beyond = std::max(d[a], d[b]) - nearest - off;
+      if (off + std::max(0.0, beyond) * 1.2 > kWidest_km) continue;
       const std::uint64_t pair = mix_bits(seeds[a].bits + seeds[b].bits);
       const double open = fraction16(pair, 0);
       // Those along the parallels are the wider ones, as the crust was pulled apart northwards.
@@ -99,6 +110,7 @@ void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain
   ragged.fill(kMeanNoise);
   nicks.fill(kMeanNoise);
   bool drawn = false;
+  Blocks blocks;
   for (std::size_t i = 0; i < block.padded; ++i) {
     const double x = block.x[i] - kFrame.up.x, y = block.y[i] - kFrame.up.y, z = block.z[i] - kFrame.up.z;
     if (x * x + y * y + z * z > km_chord(kReach_km) * km_chord(kReach_km)) continue;
@@ -121,7 +133,7 @@ void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain
                           2.0 * static_cast<double>(w.km40[i]);
     const double fringe = 1.1 * (crest(ragged[i]) - 0.4) + 0.35 * (crest(nicks[i]) - 0.4);
     const double share = (0.42 + 1.08 * ramp(-300.0, 150.0, e)) * region;
-    const double in_km = inside_km(bent_e, bent_n, share) - fringe;
+    const double in_km = inside_km(bent_e, bent_n, share, blocks) - fringe;
     if (in_km <= -0.5) continue;
     // Walls of some 30 degrees, a foot of talus, a flat floor.
     const double deep_m = (1300.0 + 2900.0 * ramp(-250.0, 350.0, e)) * (0.35 + 0.65 * region);

@@ -36,7 +36,7 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
   Lane<float> sum{};
   Lane<float> fine{};
   Lane<float> patch;
-  Lane<float> buried;
+  Lane<float> buried, bare, even, uncovered;
   Sand sand;
   const bool sandy = lay_sand(block, detail_m, octaves, out.ground, out.craters, sand);
   const auto& broad = octaves.n[15];
@@ -46,6 +46,10 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
       const float p = 0.85F + 0.30F * broad[i] + (octaves.first <= 12 ? 0.22F * middle[i] : 0.0F);
       patch[i] = std::max(0.25F, std::min(1.7F, p));
       buried[i] = std::max(out.craters.buried[i], out.craters.filled[i]);
+      const float open = 1.0F - 0.8F * sand.cover[i];
+      bare[i] = out.ground.rough[i] * patch[i] * open;
+      even[i] = std::min(1.0F, out.ground.rough[i] * patch[i]) * open;
+      uncovered[i] = bare[i] * (1.0F - 0.7F * buried[i]);
     }
     for (int k = kLastOctave; k >= octaves.first; --k) {
       const float a = amplitude_m(k);
@@ -60,12 +64,11 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
           sum[i] += a * (r * n[i] + crest) * keep;
         }
       } else {
+        // Craters and sand smooth it; stones and dust even out the shortest.
+        const Lane<float>& amount = k >= 8 ? uncovered : (k > 5 ? bare : even);
         for (std::size_t i = 0; i < block.padded; ++i) {
-          // Stones and dust even out the shortest.
-          const float r = std::min(k <= 5 ? 1.0F : 2.0F, out.ground.rough[i] * patch[i]);
-          const float keep = (1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F)) * (1.0F - sand.cover[i] * 0.8F);
           const float crest = (0.72F - magnitude(n[i])) * 0.5F;
-          sum[i] += a * r * keep * (0.8F * n[i] + crest);
+          sum[i] += a * amount[i] * (0.8F * n[i] + crest);
           fine[i] = fine[i] * 0.82F + 0.55F * n[i];
         }
       }
@@ -183,7 +186,9 @@ class Splitter {
     const std::size_t end = touching_.size();
 
     const double longest = std::max({size.x, size.y, size.z});
-    if ((posts.size() <= kBlock && level < smallest_) || longest == 0.0) {
+    // Rocks are sought over the whole of a block: near the ground it must not be much wider than its posts.
+    const bool compact = detail_m_ > kCoarsestClose_m || reach * kRadius_m <= 32.0 * detail_m_;
+    if ((posts.size() <= kBlock && level < smallest_ && compact) || longest == 0.0) {
       for (std::size_t first = 0; first < posts.size(); first += kBlock) {
         leaf(posts.subspan(first, std::min(kBlock, posts.size() - first)), begin, end);
       }

@@ -43,13 +43,23 @@ struct Fan {
 constexpr Fan kFans[] = {{place_frame(77.29, 18.565), exact_sin_cos_deg(122.0), 9.5, 105.0},
                          {place_frame(77.42, 18.79), exact_sin_cos_deg(160.0), 5.0, 60.0}};
 
-void carve(const Block& block, const Valley& v, Terrain& t) {
+// Noises that the pieces near a block share, made when the first one asks.
+struct Sway {
+  bool made = false;
+  Lane<float> sway, fray;
+  void make(const Block& block) {
+    if (!made) noise(block, 5.5e3, 0x771, sway);
+    if (!made) noise(block, 1.9e3, 0x782, fray);
+    made = true;
+  }
+};
+
+void carve(const Block& block, const Valley& v, Sway& s, Terrain& t) {
   const double length2 = chord2(v.a, v.b);
   const double widest = km_chord(std::max(v.half_a_km, v.half_b_km) + 1.5);
   if (!block.near((v.a + v.b) * 0.5, widest + 0.5 * std::sqrt(length2))) return;
-  Lane<float> sway, fray;
-  noise(block, 5.5e3, 0x771, sway);
-  noise(block, 1.9e3, 0x782, fray);
+  s.make(block);
+  const auto &sway = s.sway, &fray = s.fray;
   const glm::dvec3 ab = v.b - v.a;
   const glm::dvec3 normal{v.a.y * v.b.z - v.a.z * v.b.y, v.a.z * v.b.x - v.a.x * v.b.z,
                           v.a.x * v.b.y - v.a.y * v.b.x};
@@ -107,7 +117,8 @@ void build_fan(const Block& block, const Fan& f, Terrain& t) {
 
 void carve_valleys(const Block& block, double spacing_m, Terrain& t) {
   if (spacing_m > 1024.0) return;
-  for (const Valley& v : kValleys) carve(block, v, t);
+  Sway sway;
+  for (const Valley& v : kValleys) carve(block, v, sway, t);
   for (const Fan& f : kFans) build_fan(block, f, t);
 }
 

@@ -37,8 +37,8 @@ std::vector<double> heights(const std::vector<glm::dvec3>& directions, double sp
 double rock_cover(double detail_m) {
   Random random(91);
   double covered = 0.0, posts = 0.0;
-  for (int k = 0; k < 120; ++k) {
-    const auto directions = patch(lon_lat(random.direction()), 16, 1.3);
+  for (int k = 0; k < 150; ++k) {
+    const auto directions = patch(lon_lat(random.direction()), 16, 0.45);
     embedded::Block block;
     block.count = directions.size();
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -73,7 +73,7 @@ TEST(EmbeddedClose, ContinuousAmongRocksAndRipples) {
   std::vector<glm::dvec3> a, b;
   for (const LonLat& p : {LonLat{-33.25, 19.1}, LonLat{-66.2333, -12.56}, LonLat{134.3, 47.7}, LonLat{178, 81},
                           LonLat{77.4, 18.5}, LonLat{-97, -7}, LonLat{-36, 14}}) {
-    for (int i = 0; i < 1500; ++i) {
+    for (int i = 0; i < 400; ++i) {
       a.push_back(glm::normalize(direction(p) + random.direction() * random.log_uniform(1e-7, 1e-3)));
       b.push_back(glm::normalize(a.back() + random.direction() * (1e-3 / kMarsRadius_m)));
     }

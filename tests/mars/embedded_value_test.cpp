@@ -165,7 +165,7 @@ TEST(EmbeddedValue, GoldenHash) {
     }
   }
   RecordProperty("hash", std::to_string(hash));
-  EXPECT_EQ(hash, 0xdf9567250405337aULL) << std::hex << hash;
+  EXPECT_EQ(hash, 0xb24bcec37728337aULL) << std::hex << hash;
 }
 
 TEST(EmbeddedValue, GoldenHashOfColours) {
