@@ -78,7 +78,7 @@ void carve(const Block& block, const Valley& v, Sway& s, Terrain& t) {
       const double u = std::max(0.0, 1.0 - (dx * dx + dy * dy + dz * dz) / (half * half));
       const double down = std::min(1.0, 1.6 * u);
       t.height_m[i] -= mix(v.depth_a_m, v.depth_b_m, along) * down;
-      t.wall[i] = std::max(t.wall[i], static_cast<float>(2.4 * down * (1.0 - down)));
+      // Not a wall to the masks: those cut the large crater away that the valley runs into.
       t.cratered[i] *= 1.0F - 0.8F * static_cast<float>(down);
     }
   });

@@ -85,6 +85,32 @@ TEST(EmbeddedClose, ContinuousAmongRocksAndRipples) {
   }
 }
 
+TEST(EmbeddedClose, ValleysIntoCratersAreCutAndNotBuilt) {
+  // Neretva, Pliva and Farah Vallis run through the rims of Jezero and Gale: across each, the middle lies below
+  // both banks.
+  struct Section {
+    LonLat a, b;  // the line of the valley
+  };
+  for (const Section& s :
+       {Section{{76.90, 18.633}, {77.10, 18.60}}, Section{{77.14, 18.593}, {77.24, 18.576}},
+        Section{{77.97, 18.428}, {78.12, 18.488}}, Section{{136.98, -6.64}, {137.08, -6.27}}}) {
+    int cut = 0;
+    for (int k = 0; k < 20; ++k) {
+      const glm::dvec3 here = slerp(direction(s.a), direction(s.b), (k + 0.5) / 20.0);
+      const glm::dvec3 side = glm::normalize(glm::cross(here, direction(s.b) - direction(s.a)));
+      std::vector<glm::dvec3> line;
+      for (int m = -30; m <= 30; ++m) line.push_back(glm::normalize(here + side * (m * 100.0 / kMarsRadius_m)));
+      const auto h = heights(line, 50.0);
+      const double low = *std::min_element(h.begin() + 12, h.begin() + 49);
+      const double high = *std::max_element(h.begin() + 12, h.begin() + 49);
+      const double banks = 0.5 * (h.front() + h.back());
+      cut += low < std::min(h.front(), h.back()) - 30.0;
+      EXPECT_LT(high, banks + 450.0) << s.a.lon_deg << " " << k;
+    }
+    EXPECT_GE(cut, 17) << s.a.lon_deg;
+  }
+}
+
 TEST(EmbeddedClose, GroundsDifferFromEyeLevel) {
   // Mean bend between neighbouring posts a quarter of a metre apart, and how lopsided it is: rocks stick out,
   // ripples have sharp crests, ice has neither.
