@@ -28,7 +28,7 @@ constexpr Mound kMounds[] = {
     {296.0, -12.35, 60, 6, 101, 1500, false}, {288.6, -11.4, 40, 22, 120, 900, true},  // Melas, east
     {284.6, -5.2, 30, 14, 95, 1600, true},                                             // Candor, north-west
     {320.5, -12.6, 46, 24, 70, 1500, true},                                            // Eos
-    {137.85, -5.08, 46, 25, 62, 5900, true},                                           // Aeolis Mons in Gale
+    {137.85, -5.08, 46, 25, 62, 7250, true},                                           // Aeolis Mons in Gale
 };
 
 }  // namespace
