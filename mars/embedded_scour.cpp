@@ -9,6 +9,45 @@
 
 namespace mars::embedded {
 
+namespace {
+
+// The broken ground of one patch: a jittered square lattice of blocks in a chart about its middle.
+struct Broken {
+  PlaceFrame frame;
+  double radius_km;
+};
+
+struct Shard {
+  double gap;     // 0 on the line between two blocks, growing inwards, in lattice steps
+  double height;  // 0..1 of this block
+};
+
+// Points are kept in the middle 0.6 of their cells, so that the two nearest are among the nine about a place.
+Shard shard_at(double u, double v, std::uint64_t salt) {
+  const std::int64_t i0 = floor_int(u), j0 = floor_int(v);
+  double nearest = 1e9, second = 1e9;
+  std::uint64_t own = 0;
+  for (std::int64_t j = j0 - 1; j <= j0 + 1; ++j) {
+    for (std::int64_t i = i0 - 1; i <= i0 + 1; ++i) {
+      const std::uint64_t bits = mix_bits(static_cast<std::uint64_t>(i + 4096) * 0x9e3779b97f4a7c15ULL +
+                                          static_cast<std::uint64_t>(j + 4096) * 0xc2b2ae3d27d4eb4fULL + salt);
+      const double x = static_cast<double>(i) + 0.2 + 0.6 * fraction16(bits, 0) - u;
+      const double y = static_cast<double>(j) + 0.2 + 0.6 * fraction16(bits, 16) - v;
+      const double d = x * x + y * y;
+      if (d < nearest) {
+        second = nearest;
+        nearest = d;
+        own = bits;
+      } else {
+        second = std::min(second, d);
+      }
+    }
+  }
+  return {std::sqrt(second) - std::sqrt(nearest), fraction16(own, 32)};
+}
+
+}  // namespace
+
 void scour(const Block& block, double spacing_m, const Inside& in, const Lane<float>& inside,
            const Lane<double>& broken, Lane<double>& kept, Lane<double>& texture) {
   // Fine across the flow, drawn out along it.
@@ -41,35 +80,39 @@ void scour(const Block& block, double spacing_m, const Inside& in, const Lane<fl
 }
 
 void lay_chaos(const Block& block, const Chaos& on, Lane<double>& broken, Lane<double>& texture) {
-  struct Patch {
-    glm::dvec3 middle;
-    double radius_km;
-  };
-  static constexpr std::array<Patch, 8> kPatches{{{place(317.5, -10.5), 560},  // Capri, Eos, Aurorae
-                                                  {place(325.0, 0.6), 230},    // Hydraotes
-                                                  {place(332.6, 3.4), 150},    // Hydaspis
-                                                  {place(332.5, -4.2), 220},   // Aureum
-                                                  {place(338.5, -9.0), 200},   // Margaritifer
-                                                  {place(342.2, -1.8), 210},   // Iani
-                                                  {place(338.9, 2.65), 150},   // Aram
-                                                  {place(299.0, 2.6), 120}}};  // Juventae
-  for (const Patch& p : kPatches) {
+  static constexpr std::array<Broken, 8> kPatches{{{place_frame(317.5, -10.5), 560},  // Capri, Eos, Aurorae
+                                                   {place_frame(325.0, 0.6), 230},    // Hydraotes
+                                                   {place_frame(332.6, 3.4), 150},    // Hydaspis
+                                                   {place_frame(332.5, -4.2), 220},   // Aureum
+                                                   {place_frame(338.5, -9.0), 200},   // Margaritifer
+                                                   {place_frame(342.2, -1.8), 210},   // Iani
+                                                   {place_frame(338.9, 2.65), 150},   // Aram
+                                                   {place_frame(299.0, 2.6), 120}}};  // Juventae
+  std::uint64_t salt = 0;
+  for (const Broken& p : kPatches) {
+    ++salt;
     const double reach = km_chord(p.radius_km);
-    if (!block.near(p.middle, reach)) continue;
-    with_simd(block.simd, [&] {
-      for (std::size_t i = 0; i < block.padded; ++i) {
-        const double x = block.x[i] - p.middle.x, y = block.y[i] - p.middle.y, z = block.z[i] - p.middle.z;
-        const double chaos =
-            static_cast<double>(on.inside[i]) * ramp(reach * reach, 0.3 * reach * reach, x * x + y * y + z * z);
-        // Mesas between crossing gaps, the larger ones whole, the smaller ones worn to knobs.
-        const float gap = std::min(magnitude(on.coves[i]) * 1.3F, magnitude(on.km16[i]));
-        const float small = magnitude(on.nicks[i]);
-        const double mesa = ramp(0.18, 0.42, static_cast<double>(gap) + 0.10 * static_cast<double>(small)) *
-                            ramp(0.04, 0.30, static_cast<double>(small));
-        broken[i] = std::max(broken[i], chaos);
-        texture[i] += mesa * chaos * std::max(180.0, 620.0 + 420.0 * static_cast<double>(on.coves[i]));
-      }
-    });
+    if (!block.near(p.frame.up, reach)) continue;
+    for (std::size_t i = 0; i < block.padded; ++i) {
+      if (on.inside[i] <= 0.0F) continue;
+      const double x = block.x[i] - p.frame.up.x, y = block.y[i] - p.frame.up.y, z = block.z[i] - p.frame.up.z;
+      const double chaos =
+          static_cast<double>(on.inside[i]) * ramp(reach * reach, 0.3 * reach * reach, x * x + y * y + z * z);
+      if (chaos <= 0.0) continue;
+      const double e = (x * p.frame.east.x + y * p.frame.east.y) * (kRadius_m / 1000.0);
+      const double n = (x * p.frame.north.x + y * p.frame.north.y + z * p.frame.north.z) * (kRadius_m / 1000.0);
+      // Mesas of some ten kilometres and knobs of three; not every block still stands.
+      const double bend = 1.3 * static_cast<double>(on.coves[i]) + 0.5 * static_cast<double>(on.nicks[i]);
+      const Shard mesa = shard_at((e + bend) * (1.0 / 11.0), (n - bend) * (1.0 / 9.5), salt);
+      const Shard knob =
+          shard_at((0.8 * e + 0.6 * n + bend) * (1.0 / 4.1), (0.8 * n - 0.6 * e) * (1.0 / 4.1), salt);
+      const double tall =
+          ramp(0.16, 0.36, mesa.gap) *
+          std::min(0.85, std::max(0.0, mesa.height - 0.25 + 0.2 * static_cast<double>(on.km16[i])));
+      const double low = ramp(0.20, 0.48, knob.gap) * std::max(0.0, knob.height - 0.3);
+      broken[i] = std::max(broken[i], chaos);
+      texture[i] += chaos * std::max(1250.0 * tall, 520.0 * low);
+    }
   }
 }
 
