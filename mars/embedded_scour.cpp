@@ -23,28 +23,48 @@ struct Shard {
 };
 
 // Points are kept in the middle 0.6 of their cells, so that the two nearest are among the nine about a place.
-Shard shard_at(double u, double v, std::uint64_t salt) {
-  const std::int64_t i0 = floor_int(u), j0 = floor_int(v);
-  double nearest = 1e9, second = 1e9;
-  std::uint64_t own = 0;
-  for (std::int64_t j = j0 - 1; j <= j0 + 1; ++j) {
-    for (std::int64_t i = i0 - 1; i <= i0 + 1; ++i) {
-      const std::uint64_t bits = mix_bits(static_cast<std::uint64_t>(i + 4096) * 0x9e3779b97f4a7c15ULL +
-                                          static_cast<std::uint64_t>(j + 4096) * 0xc2b2ae3d27d4eb4fULL + salt);
-      const double x = static_cast<double>(i) + 0.2 + 0.6 * fraction16(bits, 0) - u;
-      const double y = static_cast<double>(j) + 0.2 + 0.6 * fraction16(bits, 16) - v;
+// Neighbouring posts ask for the same nine.
+class Shards {
+ public:
+  explicit Shards(std::uint64_t salt) : salt_(salt) {}
+
+  Shard at(double u, double v) {
+    about(floor_int(u), floor_int(v));
+    double nearest = 1e9, second = 1e9;
+    std::size_t own = 0;
+    for (std::size_t k = 0; k < 9; ++k) {
+      const double x = points_[k].u - u, y = points_[k].v - v;
       const double d = x * x + y * y;
-      if (d < nearest) {
-        second = nearest;
-        nearest = d;
-        own = bits;
-      } else {
-        second = std::min(second, d);
-      }
+      second = std::min(second, std::max(nearest, d));
+      own = d < nearest ? k : own;
+      nearest = std::min(nearest, d);
+    }
+    return {std::sqrt(second) - std::sqrt(nearest), points_[own].height};
+  }
+
+ private:
+  struct Point {
+    double u, v, height;
+  };
+
+  void about(std::int64_t i0, std::int64_t j0) {
+    if (i0 == i_ && j0 == j_) return;
+    i_ = i0;
+    j_ = j0;
+    for (std::int64_t k = 0; k < 9; ++k) {
+      const std::int64_t i = i0 - 1 + k % 3, j = j0 - 1 + k / 3;
+      const std::uint64_t bits = mix_bits(static_cast<std::uint64_t>(i + 4096) * 0x9e3779b97f4a7c15ULL +
+                                          static_cast<std::uint64_t>(j + 4096) * 0xc2b2ae3d27d4eb4fULL + salt_);
+      points_[static_cast<std::size_t>(k)] = {static_cast<double>(i) + 0.2 + 0.6 * fraction16(bits, 0),
+                                              static_cast<double>(j) + 0.2 + 0.6 * fraction16(bits, 16),
+                                              fraction16(bits, 32)};
     }
   }
-  return {std::sqrt(second) - std::sqrt(nearest), fraction16(own, 32)};
-}
+
+  std::uint64_t salt_;
+  std::int64_t i_ = 1 << 20, j_ = 0;
+  std::array<Point, 9> points_;
+};
 
 }  // namespace
 
@@ -93,6 +113,7 @@ void lay_chaos(const Block& block, const Chaos& on, Lane<double>& broken, Lane<d
     ++salt;
     const double reach = km_chord(p.radius_km);
     if (!block.near(p.frame.up, reach)) continue;
+    Shards mesas(salt), knobs(salt);
     for (std::size_t i = 0; i < block.padded; ++i) {
       if (on.inside[i] <= 0.0F) continue;
       const double x = block.x[i] - p.frame.up.x, y = block.y[i] - p.frame.up.y, z = block.z[i] - p.frame.up.z;
@@ -103,9 +124,8 @@ void lay_chaos(const Block& block, const Chaos& on, Lane<double>& broken, Lane<d
       const double n = (x * p.frame.north.x + y * p.frame.north.y + z * p.frame.north.z) * (kRadius_m / 1000.0);
       // Mesas of some ten kilometres and knobs of three; not every block still stands.
       const double bend = 1.3 * static_cast<double>(on.coves[i]) + 0.5 * static_cast<double>(on.nicks[i]);
-      const Shard mesa = shard_at((e + bend) * (1.0 / 11.0), (n - bend) * (1.0 / 9.5), salt);
-      const Shard knob =
-          shard_at((0.8 * e + 0.6 * n + bend) * (1.0 / 4.1), (0.8 * n - 0.6 * e) * (1.0 / 4.1), salt);
+      const Shard mesa = mesas.at((e + bend) * (1.0 / 11.0), (n - bend) * (1.0 / 9.5));
+      const Shard knob = knobs.at((0.8 * e + 0.6 * n + bend) * (1.0 / 4.1), (0.8 * n - 0.6 * e) * (1.0 / 4.1));
       const double tall =
           ramp(0.16, 0.36, mesa.gap) *
           std::min(0.85, std::max(0.0, mesa.height - 0.25 + 0.2 * static_cast<double>(on.km16[i])));
