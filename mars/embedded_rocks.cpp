@@ -10,7 +10,8 @@ namespace mars::embedded {
 namespace {
 
 constexpr double kCellsPerDiameter = 2.5;
-constexpr double kLongest = 1.35;  // radii from the middle that a rock reaches
+constexpr double kLongest = 1.5;  // radii from the middle that a rock of mean length reaches
+constexpr double kSpread = 1.25;  // the faces cut away so much of the outline
 
 // One size class: diameters from smallest_m to twice that.
 struct Class {
@@ -46,14 +47,14 @@ Rock shape(const glm::dvec3& centre, double diameter_m, std::uint64_t bits, floa
   const glm::dvec3 b{centre.y * a.z - centre.z * a.y, centre.z * a.x - centre.x * a.z,
                      centre.x * a.y - centre.y * a.x};
   const double longer = 1.0 + 0.3 * fraction16(more, 48);
-  r.e1 = a * (kRadius_m * 2.0 / diameter_m / longer);
-  r.e2 = b * (kRadius_m * 2.0 / diameter_m * longer);
-  r.height_m = static_cast<float>(diameter_m * (0.34 + 0.40 * fraction16(most, 0)));
+  r.e1 = a * (kRadius_m * 2.0 / (kSpread * diameter_m) / longer);
+  r.e2 = b * (kRadius_m * 2.0 / (kSpread * diameter_m) * longer);
+  r.height_m = static_cast<float>(diameter_m * (0.38 + 0.42 * fraction16(most, 0)));
   r.tone = static_cast<float>(2.0 * fraction16(most, 16) - 1.0);
   std::uint64_t facets = mix_bits(most + 1);
   for (int k = 0; k < 5; ++k) {
-    r.offset[k] = 0.62F + 0.55F * static_cast<float>(facets & 0x3f) * (1.0F / 64.0F);
-    r.steep[k] = 0.75F + 1.05F * static_cast<float>(facets >> 6 & 0x3f) * (1.0F / 64.0F);
+    r.offset[k] = 0.85F + 0.65F * static_cast<float>(facets & 0x3f) * (1.0F / 64.0F);
+    r.steep[k] = 1.25F + 1.25F * static_cast<float>(facets >> 6 & 0x3f) * (1.0F / 64.0F);
     facets >>= 12;
   }
   return r;
@@ -68,7 +69,7 @@ Rock shape(const glm::dvec3& centre, double diameter_m, std::uint64_t bits, floa
     const auto p = static_cast<float>(dx * r.e1.x + dy * r.e1.y + dz * r.e1.z);
     const auto q = static_cast<float>(dx * r.e2.x + dy * r.e2.y + dz * r.e2.z);
     // The least of five sloping faces, a slanting top and a skirt that ends it.
-    float h = std::min(0.66F + 0.18F * p, 1.9F * (1.0F - 0.75F * (p * p + q * q)));
+    float h = std::min(0.62F + 0.26F * p - 0.12F * q, 1.9F * (1.0F - 0.75F * (p * p + q * q)));
     for (int k = 0; k < 5; ++k) h = std::min(h, r.offset[k] - r.steep[k] * (kCos[k] * p + kSin[k] * q));
     const float out = std::min(1.0F, (bare[i] - r.keep) * 5.0F);
     const float up = r.height_m * (h - 0.12F - (1.0F - out));
