@@ -62,6 +62,7 @@ constexpr Swell kSwells[] = {
     {place(248.6, 3.4), place(252.0, 6.6), 150, 700},
     {place(254.4, 10.0), place(252.2, 7.6), 140, 600},  // and Ascraeus
     {place(257.6, 14.0), place(262.0, 18.5), 170, 800},
+    {place(254.0, 44.5), place(258.5, 45.5), 260, -700},   // north-eastern flank of Alba
     {place(285.0, -31.0), place(270.0, -37.0), 160, 500},  // the rise of southern Thaumasia
 };
 
