@@ -1,17 +1,18 @@
 // The embedded Mars: an analytic illustration of the published landforms, for use without any data.
 //
 // embedded_elevation() and embedded_image() (mars/source.h) are functions of the direction and of the wanted
-// spacing alone, defined everywhere and at every spacing down to a metre. The spacing is rounded down to a
-// power of two and decides which wavelengths and crater sizes take part: about twice the spacing and more.
-// Values are equal to the bit on every machine and compiler: they are made with integers and IEEE + - * / sqrt
-// only.
+// spacing alone, defined everywhere and at every spacing down to 1/16 m. The spacing is rounded down to a power
+// of two and decides which wavelengths and sizes of craters and rocks take part: about twice the spacing and
+// more. Values are equal to the bit on every machine and compiler: they are made with integers and IEEE + - * /
+// sqrt only.
 //
 // Continuous, but for the steps of single precision in its noises: at most kEmbeddedStep_m, reached on the
 // walls of Valles Marineris; a millimetre elsewhere.
 //
 // It is no data: SourceInfo::illustration is true. Positions and heights of the named landforms follow the IAU
-// gazetteer and MOLA (summits and floors within 10 %, places within 0.2 degrees); the broad relief is a fit to
-// MOLA with a resolution of about 500 km; everything smaller is made up.
+// gazetteer and MOLA (heights and widths within 10 %, places within 0.2 degrees); the broad relief is a fit to
+// MOLA with a resolution of about 500 km, the broad albedo one to the Viking mosaic with 250 km; everything
+// smaller is made up.
 //
 // Cost: 0.15 .. 0.4 us a post on one 2020s core for compact batches of some thousand directions, such as tiles;
 // directions scattered over the planet cost 20 .. 35 us each.

@@ -11,7 +11,6 @@ namespace mars::embedded {
 namespace {
 
 constexpr double kCellsPerDiameter = 2.5;
-constexpr int kLargestBoulderLevel = 2;
 
 // Share of the highlands that craters of one level cover, and how much of it survives on the youngest ground.
 struct Share {
@@ -27,7 +26,8 @@ constexpr Share share_of(int level) {
   if (level >= 11) return {0.036, 0.01};  // 2 km
   if (level >= 9) return {0.042, 0.05};
   if (level >= 6) return {0.050, 0.16};
-  return {0.030, 0.35};
+  if (level >= 3) return {0.030, 0.35};
+  return {0.010, 0.30};  // 2 to 8 m: the air stops what would make them
 }
 
 // Mean of D^2 over a level is 1.848 of its smallest; a cell's candidate is in the shell with chance 1 per c^2.
@@ -41,7 +41,7 @@ struct Named {
 };
 constexpr Named kNamed[] = {
     {place(137.81, -5.37), 154, 3900, 500, 0.50, 0, 0, 0.75},      // Gale
-    {place(77.58, 18.38), 47, 900, 150, 0.60, 0, 0, 0.6},          // Jezero
+    {place(77.58, 18.38), 47, 380, 260, 0.60, 0, 0, 0.6},          // Jezero
     {place(175.50, -14.50), 158, 1500, 250, 0.72, 0, 0, 0.5},      // Gusev
     {place(55.58, -13.88), 467, 2400, 500, 0.55, 700, 0.26, 0.7},  // Huygens
     {place(16.77, -2.71), 459, 1500, 350, 0.70, 0, 0, 0.6},        // Schiaparelli
@@ -87,12 +87,7 @@ Crater shape(const glm::dvec3& centre, double diameter_m, int level, std::uint64
   const auto d = static_cast<float>(diameter_m);
   const auto age = static_cast<float>(fraction16(bits, 0));
   const auto other = static_cast<float>(fraction16(bits, 16));
-  if (level <= kLargestBoulderLevel && other > 0.25F) {
-    c.depth_m = -(0.12F + 0.25F * age) * d * 0.6F;
-    c.radius_m *= 0.5;
-    c.floor = 0.0F;
-    c.sharp = 1.0F;
-  } else if (diameter_m < 7000.0) {
+  if (diameter_m < 7000.0) {
     c.sharp = diameter_m < 500.0 ? 0.15F + 0.85F * age * age : 0.10F + 0.90F * age * age * age;
     c.depth_m = 0.19F * d * (0.22F + 0.78F * c.sharp);
     c.rim_m = 0.036F * d * c.sharp;
@@ -186,7 +181,6 @@ Crater shape(const glm::dvec3& centre, double diameter_m, int level, std::uint64
 
 int smallest_crater_level(double spacing_m) {
   int level = kSmallestCraterLevel;
-  if (spacing_m < 2.0) return level;
   while (level <= kLargestCraterLevel && static_cast<double>(1 << level) < 4.0 * spacing_m) ++level;
   return level;
 }

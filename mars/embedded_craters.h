@@ -16,8 +16,7 @@ namespace mars::embedded {
 inline constexpr int kSmallestCraterLevel = 1;
 inline constexpr int kLargestCraterLevel = 17;
 
-// The smallest level kept at a (power of two) spacing: diameters of four spacings and more, and boulders from
-// two.
+// The smallest level kept at a (power of two) spacing: diameters of four spacings and more.
 int smallest_crater_level(double spacing_m);
 
 struct Crater {

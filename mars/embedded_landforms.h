@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mars/embedded_block.h"
+#include "mars/embedded_math.h"
 
 namespace mars::embedded {
 
@@ -30,9 +31,22 @@ void terrain(const Block& block, const Octaves& octaves, double spacing_m, Terra
 // The parts of terrain(), in the order in which they are applied.
 void lay_provinces(const Block& block, const Wander& w, Terrain& t);
 void raise_shields(const Block& block, const Wander& w, double spacing_m, Terrain& t);  // embedded_shields.cpp
-void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t);   // embedded_mounds.cpp
+void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t);   // embedded_noctis.cpp
 void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_troughs.cpp
+void carve_valleys(const Block& block, double spacing_m, Terrain& t);                   // embedded_valleys.cpp
 void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_mounds.cpp
-void lay_caps(const Block& block, const Wander& w, Terrain& t);                         // embedded_caps.cpp
+void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t);       // embedded_caps.cpp
+
+// Parts of raise_shields(), in embedded_slides.cpp.
+// Landslides at the foot of a scarp: lobes that run out radially over the plain, grooved along their way.
+// `bent_km` are distances from the middle, bent as the scarp is.
+struct Foot {
+  const PlaceFrame& frame;
+  double radius_km;
+};
+void spread_aprons(const Block& block, double spacing_m, const Foot& foot, const Lane<double>& bent_km,
+                   Terrain& t);
+// The aureole: lobes of ridged ground about Olympus, farthest to the north-west.
+void lay_aureole(const Block& block, const Wander& w, double spacing_m, Terrain& t);
 
 }  // namespace mars::embedded

@@ -71,6 +71,8 @@ constexpr T mix(T a, T b, T t) {
   return a + (b - a) * t;
 }
 
+constexpr float magnitude(float x) { return x < 0.0F ? -x : x; }
+
 // Largest integer <= x, |x| < 2^31.
 inline std::int32_t floor_int(double x) {
   const auto truncated = static_cast<std::int32_t>(x);

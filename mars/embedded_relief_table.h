@@ -1,4 +1,4 @@
-// Heights of the bumps of embedded_relief.h, in steps of kReliefStep_m, in the order of relief_centre().
+// Heights of the bumps of embedded_relief.h, in steps of kReliefStep_m, in the order of bump_centre().
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Shield volcanoes, and the ground that slid off Olympus.
+// Shield volcanoes.
 #include <algorithm>
 #include <array>
 
@@ -36,10 +36,10 @@ constexpr Shield kShields[] = {
      18.65,
      297,
      21230,
-     5600,
+     4400,
      46,
      21,
-     0.35,
+     0.28,
      {{10, -14, 27, 18900},
       {-14, -10, 16, 18300},
       {24, 6, 13, 18600},
@@ -48,17 +48,17 @@ constexpr Shield kShields[] = {
       {4, -34, 11, 18750}}},
     {255.92,
      11.92,
-     222,
+     236,
      18200,
-     5600,
+     3300,
      30,
      70,
      0.25,
      {{0, 0, 13, 14900}, {-14, 5, 11, 16600}, {5, -14, 10, 16900}, {12, 9, 9, 16500}, {-6, -10, 8, 16800}, {}}},
-    {247.04, 1.48, 188, 14100, 5200, 45, 70, 0.30, {{4, -4, 21, 9600}, {-10, 14, 40, 13300}, {}, {}, {}, {}}},
-    {239.91, -8.26, 228, 17760, 8300, 62, 130, 0.35, {{0, 0, 55, 16500}, {}, {}, {}, {}, {}}},
-    {147.21, 25.02, 205, 14100, -900, 9, 190, -0.9, {{0, 0, 6, 13500}, {}, {}, {}, {}, {}}},
-    {250.40, 40.47, 290, 6800, 4200, 70, 240, 0.7, {{0, 0, 32, 5900}, {14, -18, 22, 5700}, {}, {}, {}, {}}},
+    {247.04, 1.48, 188, 14100, 4300, 45, 70, 0.30, {{4, -4, 21, 9600}, {-10, 14, 40, 13300}, {}, {}, {}, {}}},
+    {239.91, -8.26, 228, 17760, 6300, 62, 130, 0.35, {{0, 0, 55, 16500}, {}, {}, {}, {}, {}}},
+    {147.21, 25.02, 215, 14100, 300, 9, 190, -0.85, {{0, 0, 6, 13500}, {}, {}, {}, {}, {}}},
+    {250.40, 40.47, 225, 6800, 3000, 60, 170, 0.40, {{0, 0, 32, 5900}, {14, -18, 22, 5700}, {}, {}, {}, {}}},
     {150.24, 32.12, 88, 4800, -1800, 7, 30, 0.3, {{0, 0, 5, 4300}, {}, {}, {}, {}, {}}},     // Hecates Tholus
     {150.46, 18.87, 78, 4100, -300, 14, 25, 0.4, {{0, 0, 15, 1500}, {}, {}, {}, {}, {}}},    // Albor Tholus
     {262.75, 24.00, 62, 8500, 3200, 11, 26, 0.5, {{0, 0, 12, 6600}, {}, {}, {}, {}, {}}},    // Ceraunius Tholus
@@ -76,7 +76,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
            Terrain& t) {
   const bool scarp = s.edge_km < kScarp_km;
   // Beyond it nothing is covered: the radius is frayed by kFrayed at most, and the edge has its largest width.
-  const double outer = km_chord((s.radius_km + (scarp ? 2.9 : 0.9) * s.edge_km + 6.0) / (1.0 - kFrayed));
+  const double outer = km_chord((s.radius_km + (scarp ? 3.0 : 0.9) * s.edge_km + 6.0) / (1.0 - kFrayed));
   if (!block.near(frame.up, outer)) return;
 
   Lane<double> east_km, north_km, radius_km, wobble, bent_km, edge_km;
@@ -101,6 +101,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
   });
   if (any == 0) return;
 
+  if (scarp) spread_aprons(block, spacing_m, {frame, s.radius_km}, bent_km, t);
   // A cliff that eases off into talus; in places lava has poured over it and made a ramp.
   Lane<double> draped{}, down{};
   bool on_cliff = false;
@@ -161,12 +162,23 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
     h += bench * (60.0 * static_cast<double>(flows[i]) + 34.0 * static_cast<double>(fine[i]) +
                   14.0 * static_cast<double>(finest[i]) + 90.0 * static_cast<double>(w.km40[i]) +
                   40.0 * static_cast<double>(w.km16[i]));
+    // Slumps have stacked the upper flanks of the great ones into terraces.
+    if (s.radius_km > 150.0 && s.convexity > 0.0) {
+      const double step =
+          r * (1.0 / 31.0) + 0.35 * static_cast<double>(w.km100[i]) + 0.5 * static_cast<double>(w.km250[i]);
+      const double phase = step - floor_int(step);
+      h += 0.008 * (s.summit_m - s.foot_m) * clamp01(0.6 + 0.6 * static_cast<double>(w.km100[i])) *
+           (phase < 0.7 ? phase / 0.7 : (1.0 - phase) / 0.3) * bench * ramp(1.0, 0.5, u);
+    }
     if (scarp) {
       const double steep = clamp01(1.5 - 1.5 * cover) * clamp01(cover * 8.0) * (1.0 - draped[i]);
       t.wall[i] = std::max(t.wall[i], static_cast<float>(steep));
       t.height_m[i] += rills[i];
     }
-    t.height_m[i] = mix(t.height_m[i], h, cover);
+    // A scarp stands clear of the plain; gentler flanks lie upon it and run out.
+    const double above = std::max(0.0, h - t.height_m[i]);
+    t.height_m[i] =
+        scarp ? mix(t.height_m[i], h, cover) : t.height_m[i] + cover * above * above / (above + 120.0);
     const auto keep = static_cast<float>(1.0 - cover);
     t.cratered[i] = t.cratered[i] * keep;
     t.rugged[i] = t.rugged[i] * keep;
@@ -196,49 +208,6 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
         t.wall[i] = std::max(t.wall[i], inside * static_cast<float>(clamp01(out)));
         t.rough[i] = mix(t.rough[i], 0.25F, inside);
       }
-    }
-  }
-}
-
-// Lobes of ridged ground that slid off Olympus, farthest to the north-west.
-void lay_aureole(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
-  struct Lobe {
-    glm::dvec3 centre;
-    double radius_km, height_m;
-  };
-  static constexpr Lobe kLobes[] = {{place(218.0, 24.5), 430, 1100},
-                                    {place(223.0, 29.0), 380, 800},
-                                    {place(216.0, 17.0), 330, 800},
-                                    {place(229.0, 11.0), 300, 600},
-                                    {place(233.5, 23.5), 260, 500}};
-  for (const Lobe& lobe : kLobes) {
-    if (!block.near(lobe.centre, km_chord(lobe.radius_km * 1.4))) continue;
-    Lane<double> bent_km;
-    bool any = false;
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      const double d = std::sqrt(chord2(block.at(i), lobe.centre)) * (kRadius_m / 1000.0);
-      bent_km[i] =
-          d *
-          (1.0 + held(0.06 * static_cast<double>(w.km100[i]) + 0.05 * static_cast<double>(w.km250[i]), 0.25));
-      any = any || bent_km[i] < lobe.radius_km;
-    }
-    if (!any) continue;
-    Lane<float> ridges{};
-    Lane<float> blocks{};
-    noise(block, 27000.0, 0x213, ridges);
-    if (spacing_m <= 4096.0) noise(block, 10500.0, 0x226, blocks);
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      const double r = bent_km[i];
-      const double cover = ramp(lobe.radius_km, lobe.radius_km - 25.0, r);
-      if (cover <= 0.0) continue;
-      // Rounded blocks between sharp creases.
-      const double n = static_cast<double>(ridges[i]);
-      const double m = static_cast<double>(blocks[i]);
-      const double crest = 0.6 * std::min(1.6, n < 0.0 ? -n : n) + 0.3 * std::min(1.6, m < 0.0 ? -m : m);
-      const double swell = 0.45 + 0.55 * ramp(0.3, 1.0, r / lobe.radius_km);
-      t.height_m[i] += cover * lobe.height_m * (swell * 0.7 + 0.45 * crest);
-      t.rough[i] = std::max(t.rough[i], static_cast<float>(cover));
-      t.rugged[i] = std::max(t.rugged[i], static_cast<float>(0.45 * cover));
     }
   }
 }

@@ -4,9 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "mars/embedded_close.h"
 #include "mars/embedded_landforms.h"
 #include "mars/embedded_math.h"
-#include "mars/embedded_noise.h"
+#include "mars/embedded_sand.h"
 #include "mars/embedded_simd.h"
 
 namespace mars::embedded {
@@ -19,10 +20,10 @@ constexpr int kFirstRugged = 13;  // 8 km and longer go with Terrain::rugged, sh
 
 // Standard deviation of each octave in the highlands, metres.
 constexpr float amplitude_m(int octave) {
-  constexpr float kLong[] = {26, 42, 60, 70, 65, 45, 30};
+  constexpr float kLong[] = {18, 28, 42, 56, 60, 45, 30};
   if (octave >= kFirstRugged) return kLong[octave - kFirstRugged];
   float a = 21.0F;
-  for (int k = 12; k > octave; --k) a *= k > 7 ? 0.56F : 0.60F;
+  for (int k = 12; k > octave; --k) a *= k > 7 ? 0.56F : 0.55F;
   return a;
 }
 
@@ -31,45 +32,13 @@ int ragged_octave(int level, int first) {
   return std::max(std::max(first, kFirstOctave), std::min(level, kLastOctave));
 }
 
-float magnitude(float x) { return x < 0.0F ? -x : x; }
-
-// Dunes and, closer, ripples where sand lies: crests across the wind.
-void lay_sand(const Block& block, double detail_m, const Octaves& octaves, const Surface& out,
-              Lane<float>& sum) {
-  if (detail_m > 128.0) return;
-  Lane<float> sand;
-  bool any = false;
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    const float where = 0.8F * octaves.n[13][i] + 0.5F * octaves.n[11][i] - 0.25F;
-    const float open =
-        std::max(out.ground.trough[i], 0.7F * std::max(out.craters.buried[i], out.craters.filled[i]));
-    sand[i] = std::max(0.0F, std::min(1.0F, where * 2.0F)) * open * (1.0F - out.ground.wall[i]);
-    any = any || sand[i] > 0.0F;
-  }
-  if (!any) return;
-  const auto add = [&](double wavelength_m, double stretch, std::uint32_t seed, float height_m) {
-    Points drawn;
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      drawn.x[i] = block.x[i] * (kRadius_m * stretch);
-      drawn.y[i] = block.y[i] * kRadius_m;
-      drawn.z[i] = block.z[i] * (kRadius_m * stretch);
-    }
-    Lane<float> n;
-    noise(drawn, block.padded, block.simd, wavelength_m, seed, n);
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      const float crest = std::max(0.0F, 1.0F - magnitude(n[i]) * 0.8F);
-      sum[i] += height_m * sand[i] * crest * crest;
-    }
-  };
-  add(620.0, 0.35, 0x608, 13.0F);
-  if (detail_m <= 2.0) add(9.0, 0.3, 0x610, 0.30F);
-}
-
 void roughen(const Block& block, double detail_m, const Octaves& octaves, Surface& out) {
   Lane<float> sum{};
   Lane<float> fine{};
   Lane<float> patch;
-  Lane<float> buried;
+  Lane<float> buried, bare, even, uncovered;
+  Sand sand;
+  const bool sandy = lay_sand(block, detail_m, octaves, out.ground, out.craters, sand);
   const auto& broad = octaves.n[15];
   const auto& middle = octaves.n[static_cast<std::size_t>(std::max(12, octaves.first))];
   with_simd(block.simd, [&] {
@@ -77,6 +46,10 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
       const float p = 0.85F + 0.30F * broad[i] + (octaves.first <= 12 ? 0.22F * middle[i] : 0.0F);
       patch[i] = std::max(0.25F, std::min(1.7F, p));
       buried[i] = std::max(out.craters.buried[i], out.craters.filled[i]);
+      const float open = 1.0F - 0.8F * sand.cover[i];
+      bare[i] = out.ground.rough[i] * patch[i] * open;
+      even[i] = std::min(1.0F, out.ground.rough[i] * patch[i]) * open;
+      uncovered[i] = bare[i] * (1.0F - 0.7F * buried[i]);
     }
     for (int k = kLastOctave; k >= octaves.first; --k) {
       const float a = amplitude_m(k);
@@ -91,12 +64,12 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
           sum[i] += a * (r * n[i] + crest) * keep;
         }
       } else {
+        // Craters and sand smooth it; stones and dust even out the shortest.
+        const Lane<float>& amount = k >= 8 ? uncovered : (k > 5 ? bare : even);
         for (std::size_t i = 0; i < block.padded; ++i) {
-          const float r = out.ground.rough[i] * patch[i];
-          const float keep = 1.0F - buried[i] * (k >= 8 ? 0.7F : 0.0F);
           const float crest = (0.72F - magnitude(n[i])) * 0.5F;
-          sum[i] += a * r * keep * (0.8F * n[i] + crest);
-          fine[i] = fine[i] * 0.75F + n[i];
+          sum[i] += a * amount[i] * (0.8F * n[i] + crest);
+          fine[i] = fine[i] * 0.82F + 0.55F * n[i];
         }
       }
     }
@@ -126,7 +99,22 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
       }
     }
   });
-  lay_sand(block, detail_m, octaves, out, sum);
+  if (sandy) {
+    with_simd(block.simd, [&] {
+      for (std::size_t i = 0; i < block.padded; ++i) sum[i] += sand.height_m[i];
+    });
+  } else {
+    sand.crest.fill(0.0F);
+  }
+  if (detail_m <= kCoarsestClose_m) {
+    for (std::size_t i = 0; i < block.padded; ++i) patch[i] *= out.ground.rough[i];
+    look_closely(block, detail_m, sand, patch, out, sum, fine);
+  } else {
+    out.rock.fill(0.0F);
+    out.rock_tone.fill(0.0F);
+  }
+  out.sand = sand.cover;
+  out.crest = sand.crest;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       // Large craters stop where a younger trough or the ice begins, and are filled in on the deepest floors.
@@ -198,7 +186,9 @@ class Splitter {
     const std::size_t end = touching_.size();
 
     const double longest = std::max({size.x, size.y, size.z});
-    if ((posts.size() <= kBlock && level < smallest_) || longest == 0.0) {
+    // Rocks are sought over the whole of a block: near the ground it must not be much wider than its posts.
+    const bool compact = detail_m_ > kCoarsestClose_m || reach * kRadius_m <= 32.0 * detail_m_;
+    if ((posts.size() <= kBlock && level < smallest_ && compact) || longest == 0.0) {
       for (std::size_t first = 0; first < posts.size(); first += kBlock) {
         leaf(posts.subspan(first, std::min(kBlock, posts.size() - first)), begin, end);
       }
@@ -255,7 +245,7 @@ class Splitter {
 }  // namespace
 
 double detail_spacing_m(double spacing_m) {
-  double detail = 1.0;
+  double detail = kFinestDetail_m;
   while (detail < 1048576.0 && 2.0 * detail <= spacing_m) detail *= 2.0;
   return detail;
 }

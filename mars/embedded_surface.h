@@ -10,7 +10,9 @@
 
 namespace mars::embedded {
 
-// Spacing rounded down to a power of two, at least 1 m, at most 2^20 m: what decides which detail is there.
+// Spacing rounded down to a power of two, at least kFinestDetail_m, at most 2^20 m: what decides which
+// detail is there.
+inline constexpr double kFinestDetail_m = 0.0625;
 double detail_spacing_m(double spacing_m);
 
 struct Surface {
@@ -19,6 +21,10 @@ struct Surface {
   CraterSum craters;
   alignas(64) Lane<double> height_m;
   alignas(64) Lane<float> grain;  // fine relief relative to its own size, about -2..2: brightens and darkens
+  alignas(64) Lane<float> sand;   // 0..1: share under sand
+  alignas(64) Lane<float> crest;  // 0 between ridges of sand .. 1 on their crests
+  alignas(64) Lane<float> rock;   // 0..1: share of rock that is seen from nearby
+  alignas(64) Lane<float> rock_tone;  // -1 dark .. 1 bright
 };
 
 // Evaluates a block, given the craters that may touch it (numbers in `touching`).

@@ -16,13 +16,16 @@ constexpr double kMargin_m = 45e3;
 // One piece as seen from the posts.
 struct Seen {
   const TroughPiece* piece = nullptr;
-  Lane<double> depth_m, half_km, floor_m, gx, gy, gz;
+  Lane<double> depth_m, half_km, floor_m, gx, gy, gz, across_m;
 };
 
 void look_at(const Block& block, Seen& out) {
   const TroughPiece& p = *out.piece;
   const glm::dvec3 ab = p.b - p.a;
   const double length2 = ab.x * ab.x + ab.y * ab.y + ab.z * ab.z;
+  const glm::dvec3 normal{p.a.y * p.b.z - p.a.z * p.b.y, p.a.z * p.b.x - p.a.x * p.b.z,
+                          p.a.x * p.b.y - p.a.y * p.b.x};
+  const glm::dvec3 side = normal * (-kRadius_m / std::sqrt(chord2(normal, {0, 0, 0})));
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       const double hx = block.x[i], hy = block.y[i], hz = block.z[i];
@@ -39,6 +42,7 @@ void look_at(const Block& block, Seen& out) {
       out.gx[i] = lx / distance;
       out.gy[i] = ly / distance;
       out.gz[i] = lz / distance;
+      out.across_m[i] = hx * side.x + hy * side.y + hz * side.z;
     }
   });
 }
@@ -108,6 +112,7 @@ bool find_inside(const Block& block, std::span<const TroughPiece> pieces, Inside
         out.gx[i] += ww * s.gx[i];
         out.gy[i] += ww * s.gy[i];
         out.gz[i] += ww * s.gz[i];
+        out.across_m[i] += ww * s.across_m[i];
       }
     }
     for (std::size_t i = 0; i < block.padded; ++i) {
@@ -117,6 +122,7 @@ bool find_inside(const Block& block, std::span<const TroughPiece> pieces, Inside
       out.gx[i] /= sum[i];
       out.gy[i] /= sum[i];
       out.gz[i] /= sum[i];
+      out.across_m[i] /= sum[i];
     }
   });
   return std::any_of(out.depth_m.begin(), out.depth_m.begin() + static_cast<std::ptrdiff_t>(block.padded),

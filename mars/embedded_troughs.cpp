@@ -14,8 +14,10 @@ namespace {
 
 struct System {
   std::span<const TroughPiece> pieces;
-  double scallop_m;  // how far the rim wanders
+  double scallop_m;  // how far the rim wanders, and no more than
+  double scallop;    // this share of the half-width
   double slope;      // depth over width of the wall
+  double shallow_m;  // less deep than this nothing is cut away but height
   bool spurs;        // walls with spurs and gullies, floors with landslides
 };
 
@@ -54,7 +56,7 @@ void lay_landslides(const Block& block, double spacing_m, const Inside& in, cons
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       run[i] = (on.depth_m[i] - 0.6 * on.width_m[i]) /
-               (16e3 + 9e3 * clamp01(0.5 + 0.5 * static_cast<double>(lobes[i])));
+               (17e3 + 24e3 * clamp01(0.1 + 0.55 * static_cast<double>(lobes[i])));
       lobe[i] = ramp(0.15, 0.75, static_cast<double>(lobes[i])) * ramp(-0.35, 0.1, run[i]) *
                 ramp(1.0, 0.93, run[i]) * ramp(6e3, 16e3, in.to_axis_m[i]) * clamp01(on.depth_m[i] * 1e-3);
       any |= static_cast<std::int32_t>(lobe[i] > 0.0);
@@ -64,26 +66,10 @@ void lay_landslides(const Block& block, double spacing_m, const Inside& in, cons
   if (spacing_m <= 1024.0) noise(far, block.padded, block.simd, 2.4e3, 0x3e2, grooves);
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
-      texture[i] += lobe[i] * (420.0 - 250.0 * clamp01(run[i]) + 55.0 * static_cast<double>(grooves[i]) +
-                               22.0 * static_cast<double>(on.nicks[i]));
-    }
-  });
-}
-
-// Chaos: blocks of the plateau left standing in the eastern chasmata.
-void lay_chaos(const Block& block, const Wander& w, const Litter& on, Lane<double>& texture) {
-  static constexpr glm::dvec3 kMiddle = place(317.5, -10.5);
-  if (!block.near(kMiddle, km_chord(560.0))) return;
-  with_simd(block.simd, [&] {
-    for (std::size_t i = 0; i < block.padded; ++i) {
-      const double x = block.x[i] - kMiddle.x, y = block.y[i] - kMiddle.y, z = block.z[i] - kMiddle.z;
-      const double chaos =
-          ramp(km_chord(560.0) * km_chord(560.0), km_chord(300.0) * km_chord(300.0), x * x + y * y + z * z);
-      const double knob = ramp(0.25, 0.95,
-                               0.55 * static_cast<double>(on.coves[i]) + 0.4 * static_cast<double>(w.km16[i]) +
-                                   0.45 * static_cast<double>(on.nicks[i]));
-      texture[i] += knob * chaos * static_cast<double>(on.floor[i]) *
-                    std::max(250.0, 850.0 + 350.0 * static_cast<double>(w.km40[i]));
+      const double apron = clamp01(run[i]);
+      const double toe = ramp(0.66, 0.92, apron);
+      texture[i] += lobe[i] * (520.0 - 420.0 * apron + 170.0 * toe + 75.0 * static_cast<double>(grooves[i]) +
+                               26.0 * static_cast<double>(on.nicks[i]));
     }
   });
 }
@@ -93,9 +79,11 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
   if (!find_inside(block, system.pieces, in)) return;
 
   // Nothing to do where even crests of all sizes leave the rim too far away.
-  Lane<double> depth, plain;
-  for (std::size_t i = 0; i < block.padded; ++i)
-    plain[i] = in.depth_m[i] + system.scallop_m * (0.40 + 0.25 * static_cast<double>(w.km100[i]));
+  Lane<double> depth, plain, scallop_m;
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    scallop_m[i] = std::min(system.scallop_m, system.scallop * (in.to_axis_m[i] + in.depth_m[i]));
+    plain[i] = in.depth_m[i] + scallop_m[i] * (0.40 + 0.25 * static_cast<double>(w.km100[i]));
+  }
   if (!any_cut(block, in, plain, t)) return;
 
   // The rim: rounded alcoves between cusps, at several sizes.
@@ -105,8 +93,8 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       plain[i] = in.depth_m[i] +
-                 system.scallop_m * (-0.62 * (crest(bays[i]) - 0.45) + 0.25 * static_cast<double>(w.km100[i]) -
-                                     0.22 * (crest(coves[i]) - 0.45));
+                 scallop_m[i] * (-0.62 * (crest(bays[i]) - 0.45) + 0.25 * static_cast<double>(w.km100[i]) -
+                                 0.22 * (crest(coves[i]) - 0.45));
     }
   });
   if (!any_cut(block, in, plain, t)) return;
@@ -122,13 +110,14 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       depth[i] =
-          plain[i] - system.scallop_m * (0.065 * (crest(nicks[i]) - 0.4) + 0.018 * (crest(notches[i]) - 0.4));
+          plain[i] - scallop_m[i] * (0.065 * (crest(nicks[i]) - 0.4) + 0.018 * (crest(notches[i]) - 0.4));
       const double drop = t.height_m[i] - in.floor_m[i];
       width[i] = std::max(2500.0, drop / system.slope);
       // Masks follow the smooth rim, so that they are the same at every spacing.
       const bool changed = drop > 0.0 && plain[i] > kMasked_m;
-      const float inside =
-          changed ? static_cast<float>(ramp(-1500.0, 1500.0, plain[i]) * ramp(200.0, 1600.0, drop)) : 0.0F;
+      const float inside = changed ? static_cast<float>(ramp(-1500.0, 1500.0, plain[i]) *
+                                                        ramp(system.shallow_m, 8.0 * system.shallow_m, drop))
+                                   : 0.0F;
       const float on_floor = inside * static_cast<float>(ramp(0.75 * width[i], 1.15 * width[i], plain[i]));
       const float walled = std::max(t.wall[i] * (1.0F - on_floor), inside * (1.0F - on_floor));
       floor[i] = on_floor;
@@ -146,7 +135,7 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
   if (below == 0) return;
 
   Lane<double> along = depth;
-  Lane<double> texture{};
+  Lane<double> texture{}, kept{}, broken{};
   if (system.spurs && on_wall != 0) {
     Points drawn;  // each post pulled back to its rim: noise there makes spurs and gullies that run downhill
     with_simd(block.simd, [&] {
@@ -170,8 +159,9 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
   if (system.spurs) {
     const Litter litter{depth, width, floor, coves, nicks};
     lay_landslides(block, spacing_m, in, litter, texture);
-    lay_chaos(block, w, litter, texture);
   }
+  lay_chaos(block, {coves, w.km16, nicks, floor}, broken, texture);
+  if (!system.spurs) scour(block, spacing_m, in, floor, broken, kept, texture);
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       const double drop = t.height_m[i] - in.floor_m[i];
@@ -180,7 +170,8 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
       const double wall = s * (2.0 - s);
       const double basin = ramp(0.0, 4.0 * width[i], depth[i]);
       const double shallow = ramp(0.0, 500.0, drop);
-      double h = t.height_m[i] - shallow * drop * (0.94 * wall + 0.06 * basin) + shallow * texture[i];
+      double h = t.height_m[i] - shallow * drop * (1.0 - kept[i]) * (0.94 * wall + 0.06 * basin) +
+                 shallow * texture[i];
       if (system.spurs && spacing_m <= 256.0) {
         // Beds crop out in the upper wall.
         const double bed = h * (1.0 / 260.0);
@@ -195,8 +186,8 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
 }  // namespace
 
 void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
-  cut(block, w, spacing_m, {channel_pieces(), 9e3, 0.10, false}, t);
-  cut(block, w, spacing_m, {valles_pieces(), 17e3, 0.37, true}, t);
+  cut(block, w, spacing_m, {channel_pieces(), 26e3, 0.75, 0.25, 30.0, false}, t);
+  cut(block, w, spacing_m, {valles_pieces(), 17e3, 10.0, 0.37, 200.0, true}, t);
 }
 
 }  // namespace mars::embedded

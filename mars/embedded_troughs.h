@@ -20,7 +20,7 @@ struct TroughPiece {
 
 // Valles Marineris, Noctis excluded.
 std::span<const TroughPiece> valles_pieces();
-// Kasei, Maja, Simud, Tiu, Ares, Mangala, Ma'adim, Dao, Harmakhis.
+// Kasei, Maja, Simud, Tiu, Ares and the chaos at their heads; Mangala, Ma'adim, Dao, Niger, Harmakhis, Reull.
 std::span<const TroughPiece> channel_pieces();
 
 // Smooth union of the pieces near a block.
@@ -29,8 +29,22 @@ struct Inside {
   Lane<double> floor_m;
   Lane<double> to_axis_m;   // from here to the centre line
   Lane<double> gx, gy, gz;  // unit inwards
+  Lane<double> across_m;    // from the centre line, positive to the right of the line's direction
 };
 // False where no post comes near a piece; `out` is set else.
 bool find_inside(const Block& block, std::span<const TroughPiece> pieces, Inside& out);
+
+// Chaos: the ground broken into mesas at the heads of the channels. Adds metres to `texture`; `inside` 0..1: on
+// the floor. Sets `broken` to the share of it.
+struct Chaos {
+  const Lane<float>&coves, &km16, &nicks, &inside;
+};
+void lay_chaos(const Block& block, const Chaos& on, Lane<double>& broken,
+               Lane<double>& texture);  // embedded_scour.cpp
+
+// What floods left in a channel where it is not broken: grooves and braids along the flow, islands between
+// them. Sets `kept` to the share of the depth that islands keep, and adds metres of relief to `texture`.
+void scour(const Block& block, double spacing_m, const Inside& in, const Lane<float>& inside,
+           const Lane<double>& broken, Lane<double>& kept, Lane<double>& texture);  // embedded_scour.cpp
 
 }  // namespace mars::embedded

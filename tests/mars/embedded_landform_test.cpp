@@ -106,6 +106,9 @@ TEST(EmbeddedLandforms, BasinsAndPlainsAreAsDeep) {
   EXPECT_NEAR(middle({88.38, 13.94}, 300, 10), -3900, 390) << "Isidis";
   EXPECT_NEAR(middle({117.52, 46.74}, 300, 10), -4500, 450) << "Utopia";
   EXPECT_NEAR(middle({137.44163, -4.58946}, 3, 0.5), -4501, 450) << "Gale, Bradbury Landing";
+  const double floor = middle({137.44163, -4.58946}, 3, 0.5);
+  EXPECT_NEAR(highest({137.85, -5.08}, 12, 0.5) - floor, 5500, 550) << "Aeolis Mons";
+  EXPECT_NEAR(middle({77.6, 18.38}, 5, 0.5), -2650, 265) << "Jezero";
 }
 
 TEST(EmbeddedLandforms, VallesMarinerisIsSevenKilometresDeep) {

@@ -1,0 +1,144 @@
+// The embedded Mars from nearby: rocks, sand and what differs from ground to ground.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "mars/embedded.h"
+#include "mars/embedded_rocks.h"
+#include "mars/embedded_surface.h"
+#include "tests/support/support.h"
+
+namespace mars {
+namespace {
+
+using test_support::Random;
+
+std::vector<glm::dvec3> patch(LonLat p, int side, double spacing_m) {
+  const LocalFrame f = local_frame(p);
+  std::vector<glm::dvec3> directions;
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      const double e = (i - 0.5 * side) * spacing_m / kMarsRadius_m;
+      const double n = (j - 0.5 * side) * spacing_m / kMarsRadius_m;
+      directions.push_back(glm::normalize(f.up + e * f.east + n * f.north));
+    }
+  }
+  return directions;
+}
+
+std::vector<double> heights(const std::vector<glm::dvec3>& directions, double spacing_m) {
+  std::vector<double> out(directions.size());
+  embedded_elevation()->sample(directions, spacing_m, out);
+  return out;
+}
+
+// Share of the ground under rocks of `detail_m` and more, where all stand out.
+double rock_cover(double detail_m) {
+  Random random(91);
+  double covered = 0.0, posts = 0.0;
+  for (int k = 0; k < 150; ++k) {
+    const auto directions = patch(lon_lat(random.direction()), 16, 0.45);
+    embedded::Block block;
+    block.count = directions.size();
+    for (std::size_t i = 0; i < block.count; ++i) {
+      block.x[i] = directions[i].x;
+      block.y[i] = directions[i].y;
+      block.z[i] = directions[i].z;
+    }
+    block.finish();
+    embedded::Lane<float> bare;
+    bare.fill(1.2F);
+    embedded::Rocks rocks;
+    embedded::strew_rocks(block, detail_m, bare, bare, rocks);
+    for (std::size_t i = 0; i < block.count; ++i) covered += rocks.height_m[i] > 0.0F;
+    posts += static_cast<double>(block.count);
+  }
+  return covered / posts;
+}
+
+TEST(EmbeddedClose, RocksFollowThePublishedSizes) {
+  // F(D) = k exp(-q D) at k = 0.35; what counts is the shape: facets and burial take a fixed share.
+  const auto published = [](double d) { return 0.35 * std::exp(-2.22 * d); };
+  const double all = rock_cover(0.25) / published(0.25);
+  EXPECT_GT(all, 0.4);
+  EXPECT_LT(all, 1.1);
+  for (const double d : {0.0625, 0.5, 1.0}) {
+    EXPECT_NEAR(rock_cover(d) / published(d), all, 0.3 * all) << d;
+  }
+}
+
+TEST(EmbeddedClose, ContinuousAmongRocksAndRipples) {
+  Random random(92);
+  std::vector<glm::dvec3> a, b;
+  for (const LonLat& p : {LonLat{-33.25, 19.1}, LonLat{-66.2333, -12.56}, LonLat{134.3, 47.7}, LonLat{178, 81},
+                          LonLat{77.4, 18.5}, LonLat{-97, -7}, LonLat{-36, 14}}) {
+    for (int i = 0; i < 400; ++i) {
+      a.push_back(glm::normalize(direction(p) + random.direction() * random.log_uniform(1e-7, 1e-3)));
+      b.push_back(glm::normalize(a.back() + random.direction() * (1e-3 / kMarsRadius_m)));
+    }
+  }
+  const auto ha = heights(a, 0.0625), hb = heights(b, 0.0625);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const LonLat p = lon_lat(a[i]);
+    EXPECT_NEAR(ha[i], hb[i], kEmbeddedStep_m) << p.lon_deg << "," << p.lat_deg;
+  }
+}
+
+TEST(EmbeddedClose, ValleysIntoCratersAreCutAndNotBuilt) {
+  // Neretva, Pliva and Farah Vallis run through the rims of Jezero and Gale: across each, the middle lies below
+  // both banks.
+  struct Section {
+    LonLat a, b;  // the line of the valley
+  };
+  for (const Section& s :
+       {Section{{76.90, 18.633}, {77.10, 18.60}}, Section{{77.14, 18.593}, {77.24, 18.576}},
+        Section{{77.97, 18.428}, {78.12, 18.488}}, Section{{136.98, -6.64}, {137.08, -6.27}}}) {
+    int cut = 0;
+    for (int k = 0; k < 20; ++k) {
+      const glm::dvec3 here = slerp(direction(s.a), direction(s.b), (k + 0.5) / 20.0);
+      const glm::dvec3 side = glm::normalize(glm::cross(here, direction(s.b) - direction(s.a)));
+      std::vector<glm::dvec3> line;
+      for (int m = -30; m <= 30; ++m) line.push_back(glm::normalize(here + side * (m * 100.0 / kMarsRadius_m)));
+      const auto h = heights(line, 50.0);
+      const double low = *std::min_element(h.begin() + 12, h.begin() + 49);
+      const double high = *std::max_element(h.begin() + 12, h.begin() + 49);
+      const double banks = 0.5 * (h.front() + h.back());
+      cut += low < std::min(h.front(), h.back()) - 30.0;
+      EXPECT_LT(high, banks + 450.0) << s.a.lon_deg << " " << k;
+    }
+    EXPECT_GE(cut, 17) << s.a.lon_deg;
+  }
+}
+
+TEST(EmbeddedClose, GroundsDifferFromEyeLevel) {
+  // Mean bend between neighbouring posts a quarter of a metre apart, and how lopsided it is: rocks stick out,
+  // ripples have sharp crests, ice has neither.
+  struct Look {
+    double bend_m, skew;
+  };
+  const auto look = [](LonLat p) {
+    const auto h = heights(patch(p, 160, 0.25), 0.25);
+    double bend = 0.0, square = 0.0, cube = 0.0, n = 0.0;
+    for (std::size_t i = 1; i + 1 < h.size(); ++i) {
+      if (i % 160 == 0 || i % 160 == 159) continue;
+      const double c = 2.0 * h[i] - h[i - 1] - h[i + 1];
+      bend += std::abs(c);
+      square += c * c;
+      cube += c * c * c;
+      n += 1.0;
+    }
+    return Look{bend / n, cube / n / std::pow(square / n, 1.5)};
+  };
+  const Look rocky = look({-33.25, 19.1});
+  const Look sandy = look({-66.2333, -12.56});
+  const Look ice = look({20, 88});
+  EXPECT_GT(rocky.bend_m, 0.005);
+  EXPECT_GT(rocky.bend_m, 3.0 * ice.bend_m);
+  EXPECT_GT(sandy.bend_m, 1.5 * ice.bend_m);
+  EXPECT_GT(rocky.skew, 1.0);
+  EXPECT_GT(sandy.skew, 0.3);
+}
+
+}  // namespace
+}  // namespace mars
