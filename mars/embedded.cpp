@@ -22,9 +22,23 @@ SourceInfo info_of(double resolution_m) {
   return info;
 }
 
+// What a planet for everything is built with, or, where a finest spacing is given, that everywhere.
+class Spacings {
+ public:
+  Spacings(const EmbeddedSpacings& built, double finest_m) : built_(built), finest_m_(finest_m) {}
+  double finest() const { return finest_m_ > 0 ? finest_m_ : built_.demo_m; }
+  double in(const Cap& cap) const { return finest_m_ > 0 ? finest_m_ : embedded_spacing_in(cap, built_); }
+
+ private:
+  EmbeddedSpacings built_;
+  double finest_m_;
+};
+
 class EmbeddedElevation final : public ElevationSource {
  public:
-  std::vector<SourceInfo> infos() const override { return {info_of(kEmbeddedPosts.demo_m)}; }
+  explicit EmbeddedElevation(double finest_m) : spacings_(kEmbeddedPosts, finest_m) {}
+
+  std::vector<SourceInfo> infos() const override { return {info_of(spacings_.finest())}; }
 
   void sample(std::span<const glm::dvec3> directions, double spacing_m,
               std::span<double> heights_m) const override {
@@ -38,7 +52,7 @@ class EmbeddedElevation final : public ElevationSource {
     std::fill_n(source_index.begin(), directions.size(), 0);
   }
 
-  double spacing_in(const Cap& cap) const override { return embedded_spacing_in(cap, kEmbeddedPosts); }
+  double spacing_in(const Cap& cap) const override { return spacings_.in(cap); }
 
   // A Fibonacci lattice over the planet, each post at the spacing wanted there.
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
@@ -60,7 +74,7 @@ class EmbeddedElevation final : public ElevationSource {
       const SinCos lon = embedded::exact_sin_cos_deg(part * 360.0);
       const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
       const glm::dvec3 direction{r * lon.cos, r * lon.sin, z};
-      const double wanted = spacing_in({direction, 0.0});
+      const double wanted = embedded_spacing_in({direction, 0.0}, kEmbeddedPosts);
       const std::size_t kind = wanted == spacings[0] ? 0 : (wanted == spacings[1] ? 1 : 2);
       batch[kind].push_back(direction);
       if (batch[kind].size() == kBatch) flush(kind);
@@ -69,11 +83,16 @@ class EmbeddedElevation final : public ElevationSource {
       if (!batch[kind].empty()) flush(kind);
     }
   }
+
+ private:
+  Spacings spacings_;
 };
 
 class EmbeddedImage final : public ImageSource {
  public:
-  std::vector<SourceInfo> infos() const override { return {info_of(kEmbeddedTexels.demo_m)}; }
+  explicit EmbeddedImage(double finest_m) : spacings_(kEmbeddedTexels, finest_m) {}
+
+  std::vector<SourceInfo> infos() const override { return {info_of(spacings_.finest())}; }
 
   void sample(std::span<const glm::dvec3> directions, double texel_m, std::span<Rgb> colours,
               std::span<std::uint8_t> alpha) const override {
@@ -87,12 +106,19 @@ class EmbeddedImage final : public ImageSource {
         });
   }
 
-  double spacing_in(const Cap& cap) const override { return embedded_spacing_in(cap, kEmbeddedTexels); }
+  double spacing_in(const Cap& cap) const override { return spacings_.in(cap); }
+
+ private:
+  Spacings spacings_;
 };
 
 }  // namespace
 
-std::shared_ptr<const ElevationSource> embedded_elevation() { return std::make_shared<EmbeddedElevation>(); }
-std::shared_ptr<const ImageSource> embedded_image() { return std::make_shared<EmbeddedImage>(); }
+std::shared_ptr<const ElevationSource> embedded_elevation(double finest_m) {
+  return std::make_shared<EmbeddedElevation>(finest_m);
+}
+std::shared_ptr<const ImageSource> embedded_image(double finest_m) {
+  return std::make_shared<EmbeddedImage>(finest_m);
+}
 
 }  // namespace mars

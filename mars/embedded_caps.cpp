@@ -20,7 +20,7 @@ struct Cap {
   double between_km, groove_m;  // of its troughs
   double grooved;               // 0..1: share of the cap that has them
 };
-constexpr Cap kCaps[] = {{place(20.0, 87.8), 535, 2800, 0.45, 1.0, 47, 620, 0.9},
+constexpr Cap kCaps[] = {{place(20.0, 87.8), 535, 3150, 0.45, 1.0, 47, 620, 0.9},
                          {place(160.0, -85.3), 680, 2900, 1.0, -1.0, 58, 420, 0.55}};
 
 // Angle of (x, y) in turns, -0.5..0.5, within 2e-3; own polynomial for equal bits.

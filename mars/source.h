@@ -113,8 +113,9 @@ std::shared_ptr<const ElevationSource> stack_elevation(std::vector<std::shared_p
 std::shared_ptr<const ImageSource> stack_images(std::vector<std::shared_ptr<const ImageSource>> sources,
                                                 const StackOptions& options = {});
 
-// The embedded Mars: an analytic illustration of the published landforms (see mars/embedded.h).
-std::shared_ptr<const ElevationSource> embedded_elevation();
-std::shared_ptr<const ImageSource> embedded_image();
+// The embedded Mars: an analytic illustration of the published landforms (see mars/embedded.h). finest_m > 0: as
+// if it had posts and texels of that spacing everywhere, for planets that go deep in some region.
+std::shared_ptr<const ElevationSource> embedded_elevation(double finest_m = 0);
+std::shared_ptr<const ImageSource> embedded_image(double finest_m = 0);
 
 }  // namespace mars

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Raised whenever the builder or the embedded planet changes what a cached file would hold.
-constexpr int kCacheGeneration = 1;
+constexpr int kCacheGeneration = 2;
 
 class FileLock {
  public:
