@@ -32,8 +32,8 @@ inline constexpr double kEmbeddedStep_m = 0.05;
 std::span<const LonLat> demo_path();
 inline constexpr double kDemoHalfWidth_m = 12000.0;
 
-// Post (texel) spacings that spacing_in() names: anywhere, over Valles Marineris and Olympus Mons, and along
-// the demonstration flight.
+// Post (texel) spacings that spacing_in() names: anywhere; over Valles Marineris, Olympus Mons, Gale and Jezero;
+// and along the demonstration flight.
 struct EmbeddedSpacings {
   double plain_m;
   double landmark_m;

@@ -78,7 +78,9 @@ void colour(const Block& block, const Surface& s, Rgb* out) {
     c = {c.r * shade * (1.0F - 0.4F * hue), c.g * shade, c.b * shade * (1.0F + hue)};
     if (g.ice[i] > 0.0F || block.z[i] > 0.98) {
       // Layered ground wears dust; only its middle is white all the year.
-      c = mix_colour(c, kDirtyIce, 0.55F * clamp01(g.ice[i] * 1.3F - 0.1F));
+      // Its rim is ragged: the cap's own outline is too smooth to be seen.
+      const float ragged = 0.30F * w.km100[i] + 0.30F * w.km40[i] + 0.22F * w.km16[i];
+      c = mix_colour(c, kDirtyIce, 0.55F * clamp01(1.5F * g.ice[i] - 0.6F + ragged) * clamp01(4.0F * g.ice[i]));
       c = mix_colour(c, kIce, 0.93F * (1.0F - s.sand[i]) * frost(w, s, i, block.at(i)));
     }
     out[i] = {byte(c.r), byte(c.g), byte(c.b)};

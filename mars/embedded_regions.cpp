@@ -46,7 +46,10 @@ void add_line(const glm::dvec3& a, const glm::dvec3& b, double radius_a_m, doubl
 
 std::vector<Disc> make_landmarks() {
   constexpr double kMargin_m = 3e3;
-  std::vector<Disc> discs{{place(226.20, 18.65), 310e3 / kRadius_m}};
+  // Olympus Mons; Gale; Jezero with its valleys.
+  std::vector<Disc> discs{{place(226.20, 18.65), 310e3 / kRadius_m},
+                          {place(137.81, -5.37), 95e3 / kRadius_m},
+                          {place(77.4, 18.4), 55e3 / kRadius_m}};
   for (const embedded::TroughPiece& p : embedded::valles_pieces()) {
     add_line(p.a, p.b, p.half_width_a_km * 1000.0 + kMargin_m, p.half_width_b_km * 1000.0 + kMargin_m, 15e3,
              discs);
