@@ -10,17 +10,21 @@ mkdir -p out
 
 $vpe info
 still() { $vpe render --quiet --set samples=4 "$@"; }
-still -o out/globe.png      --pose=-75,0,5500000,0,-90,0 --size 1280x1280 --fov 50
-still -o out/olympus.png    --pose=-133.8,9.5,260000,0,-28,0
-still -o out/hellas.png     --pose=70,-40,4500000,0,-90,0 --size 1280x960 --fov 50 --set mode=coloured
-still -o out/valles.png     --pose=-62,-17.5,60000,20,-14,0
+still -o out/globe.png   --pose=-75,0,5500000,0,-90,0 --size 1280x1280 --fov 50 --set sun.azimuth=60 --set sun.elevation=50
+still -o out/olympus.png --pose=-133.8,10.5,200000,0,-30,0 --set sun.azimuth=280 --set sun.elevation=22
+still -o out/valles.png  --pose=-56.5,-14.2,70000,283,-17,0 --set sun.elevation=25
+still -o out/noctis.png  --pose=-97,-10.5,90000,10,-28,0 --set sun.elevation=30
+still -o out/hellas.png  --pose=70,-40,4500000,0,-90,0 --size 1280x960 --fov 50 --set mode=coloured
+still -o out/gale.png    --pose=137.4,-7.9,60000,8,-26,0 --set sun.azimuth=290 --set sun.elevation=25
+still -o out/jezero.png  --pose=76.9,18.2,22000,62,-32,0 --set sun.elevation=25
+still -o out/boreum.png  --pose=0,88.5,1300000,0,-90,0 --size 1280x960 --fov 50
 $vpe fly scripts/flights/valles-marineris.flight -o out/valles-marineris.mp4 --stats out/valles-marineris.csv
 
 cat <<'TEXT'
 
 Made in out/:
   valles-marineris.mp4   a flight from orbit down into Valles Marineris and along it
-  globe.png olympus.png hellas.png valles.png
+  globe.png olympus.png valles.png noctis.png hellas.png gale.png jezero.png boreum.png
   valles-marineris.csv   what every frame cost and how wrong it can be
 
 The embedded Mars is an illustration of published landforms, not data. With real data:
@@ -28,5 +32,5 @@ The embedded Mars is an illustration of published landforms, not data. With real
   build/release/vpe fly scripts/flights/valles-marineris.flight mars.vpe -o real.mp4
   build/release/vpe query mars.vpe -59.2,-13.7
   build/release/vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 -o view.png
-See README.md for more, 'build/release/vpe --help' for all.
+'build/release/vpe doctor' says what of this machine was used. See README.md for more, 'vpe --help' for all.
 TEXT

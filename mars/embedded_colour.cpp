@@ -63,9 +63,10 @@ void colour(const Block& block, const Surface& s, Rgb* out) {
                            : mix_colour(kMean, kDark, std::min(1.0F, -soft));
     // Dust stays on gentle ground; rock shows on walls.
     c = mix_colour(c, kRock, 0.62F * g.wall[i] * clamp01(1.0F + 0.3F * s.grain[i]));
+    // Sand gathers on the canyons' floors: from orbit they are darker than the plains above.
     c = mix_colour(c, kDark,
-                   0.42F * g.trough[i] * clamp01(0.9F - a) *
-                       ramp(-1.0F, 1.8F, 0.8F * w.km40[i] + 0.5F * w.km16[i] + 0.3F * w.km100[i]));
+                   0.58F * g.trough[i] * clamp01(1.15F - a) *
+                       ramp(-2.2F, 1.4F, 0.8F * w.km40[i] + 0.5F * w.km16[i] + 0.3F * w.km100[i]));
     c = mix_colour(c, kLayers, 0.65F * g.mound[i]);
     c = mix_colour(c, kSand, s.sand[i] * (0.75F - 0.35F * s.crest[i]));
     if (s.rock[i] > 0.0F) {
