@@ -34,8 +34,10 @@ run() {
 
 if [ "$what" = --fuzz ]; then
   seconds=${2:-600}
-  build fuzz
-  for target in flight payload planet; do
+  targets=(flight payload planet)
+  cmake --preset fuzz >/dev/null
+  cmake --build build/fuzz --target vpe_fuzz_seeds "${targets[@]/#/vpe_fuzz_}" -- -j"$jobs"
+  for target in "${targets[@]}"; do
     corpus=build/fuzz/corpus/$target
     build/fuzz/tests/fuzz/vpe_fuzz_seeds "$target" "$corpus"
     # Findings stay in build/fuzz; libFuzzer ends with an error at the first one.

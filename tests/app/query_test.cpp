@@ -141,6 +141,8 @@ TEST_F(Query, InfoAndBuildAndSettingsAsJson) {
   EXPECT_EQ(info["path"], "x.vpe");
   info.erase("path");
   build.erase("bytes");
+  EXPECT_EQ(build["tiles_kept"], 0);
+  build.erase("tiles_kept");
   EXPECT_EQ(info, build);
 
   const json settings = parse_json(vpe({"settings", "--json"}).out);
