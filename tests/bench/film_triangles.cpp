@@ -18,6 +18,7 @@
 #include "lod/select.h"
 #include "paging/surface.h"
 #include "scripts/path.h"
+#include "tests/bench/flight.h"
 #include "vpe/core/number.h"
 #include "vpe/core/parallel.h"
 
@@ -167,14 +168,8 @@ struct Film {
 };
 
 Film film_of(const char* file, std::int64_t stride, const paging::Surface& surface) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(std::string(file) + ": cannot open the flight");
-  const scripts::ParsedFlight parsed =
-      scripts::parse_flight(std::string(std::istreambuf_iterator<char>(in), {}), file);
-  if (!parsed.flight) throw std::runtime_error(scripts::to_string(parsed.errors.front()));
-  const scripts::Flight& flight = *parsed.flight;
-  const scripts::Path path(flight, surface.planet_radius_m(),
-                           [&](mars::LonLat place) { return surface.at(mars::direction(place)).height_m; });
+  const scripts::Flight flight = bench::read_flight(file);
+  const scripts::Path path = bench::path_over(flight, surface);
   Film film;
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   for (std::int64_t k = 0; k < count; k += stride) {

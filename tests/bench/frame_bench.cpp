@@ -17,6 +17,7 @@
 #include "mars/sun.h"
 #include "paging/surface.h"
 #include "scripts/path.h"
+#include "tests/bench/flight.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/lens.h"
 #include "vpe/gl/polygon_renderer.h"
@@ -56,14 +57,8 @@ void main() { colour = texture(surface, place); }
 )glsl";
 
 std::vector<DrawRequest> film(const char* file, std::int64_t count, const paging::Surface& surface) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(std::string(file) + ": cannot open the flight");
-  const scripts::ParsedFlight parsed =
-      scripts::parse_flight(std::string(std::istreambuf_iterator<char>(in), {}), file);
-  if (!parsed.flight) throw std::runtime_error(scripts::to_string(parsed.errors.front()));
-  const scripts::Flight& flight = *parsed.flight;
-  const scripts::Path path(flight, surface.planet_radius_m(),
-                           [&](mars::LonLat place) { return surface.at(mars::direction(place)).height_m; });
+  const scripts::Flight flight = bench::read_flight(file);
+  const scripts::Path path = bench::path_over(flight, surface);
   std::vector<DrawRequest> frames;
   for (std::int64_t n = 0; n < count; ++n) {
     const double t = scripts::duration_s(flight) * (static_cast<double>(n) + 0.5) / static_cast<double>(count);

@@ -7,25 +7,13 @@
 #include "mars/embedded.h"
 #include "mars/embedded_rocks.h"
 #include "mars/embedded_surface.h"
+#include "tests/mars/patch.h"
 #include "tests/support/support.h"
 
 namespace mars {
 namespace {
 
 using test_support::Random;
-
-std::vector<glm::dvec3> patch(LonLat p, int side, double spacing_m) {
-  const LocalFrame f = local_frame(p);
-  std::vector<glm::dvec3> directions;
-  for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i) {
-      const double e = (i - 0.5 * side) * spacing_m / kMarsRadius_m;
-      const double n = (j - 0.5 * side) * spacing_m / kMarsRadius_m;
-      directions.push_back(glm::normalize(f.up + e * f.east + n * f.north));
-    }
-  }
-  return directions;
-}
 
 std::vector<double> heights(const std::vector<glm::dvec3>& directions, double spacing_m) {
   std::vector<double> out(directions.size());

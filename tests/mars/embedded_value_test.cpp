@@ -13,6 +13,7 @@
 #include "mars/embedded_math.h"
 #include "mars/embedded_noise.h"
 #include "mars/embedded_surface.h"
+#include "tests/mars/patch.h"
 #include "tests/support/support.h"
 
 namespace mars {
@@ -34,20 +35,6 @@ std::vector<double> heights(const std::vector<glm::dvec3>& directions, double sp
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = s.height_m[i];
       });
   return out;
-}
-
-// A patch of side x side posts, `spacing_m` apart, about a place.
-std::vector<glm::dvec3> patch(LonLat p, int side, double spacing_m) {
-  const LocalFrame f = local_frame(p);
-  std::vector<glm::dvec3> directions;
-  for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i) {
-      const double e = (i - 0.5 * side) * spacing_m / kMarsRadius_m;
-      const double n = (j - 0.5 * side) * spacing_m / kMarsRadius_m;
-      directions.push_back(glm::normalize(f.up + e * f.east + n * f.north));
-    }
-  }
-  return directions;
 }
 
 // One of everything: walls, floors, scarps, calderas, caps, plains, highlands, channels; rocks, ripples, a

@@ -130,32 +130,13 @@ TEST_F(Verify, BoundsThatAreTooSmallAreSeenByMeasuringAgain) {
   // Every stated error a hundredth too small, with checksums that fit.
   {
     paging::Database db(path_, paging::Database::Mode::kCreate);
-    db.execute("UPDATE variant SET relief_m = 0.99 * relief_m, sag_m = 0.99 * sag_m, total_m = 0.99 * total_m");
     std::vector<paging::NodeRow> rows;
-    const auto sums = [&] {
-      std::vector<paging::NodeRow> all;
-      paging::Statement keys(db, "SELECT key, min_m, max_m, inner, steps, sources, slope FROM node");
-      while (keys.step()) {
-        paging::NodeRow row;
-        row.key = keys.integer(0);
-        row.min_m = keys.real(1);
-        row.max_m = keys.real(2);
-        row.inner = keys.integer(3) != 0;
-        row.steps = static_cast<int>(keys.integer(4));
-        row.sources = keys.text(5);
-        row.slope = keys.real(6);
-        paging::Statement variants(
-            db, "SELECT relief_m, sag_m, total_m, triangles FROM variant WHERE key = ? ORDER BY variant");
-        variants.bind(1, row.key);
-        while (variants.step()) {
-          row.variants.push_back({{variants.real(0), variants.real(1), variants.real(2)},
-                                  static_cast<std::uint32_t>(variants.integer(3))});
-        }
-        all.push_back(row);
+    ASSERT_FALSE(paging::read_nodes(db, rows));
+    db.execute("UPDATE variant SET relief_m = 0.99 * relief_m, sag_m = 0.99 * sag_m, total_m = 0.99 * total_m");
+    for (paging::NodeRow& row : rows) {
+      for (lod::MeshVariant& v : row.variants) {
+        v.terms = {0.99 * v.terms.relief_m, 0.99 * v.terms.sag_m, 0.99 * v.terms.total_m};
       }
-      return all;
-    }();
-    for (const paging::NodeRow& row : sums) {
       paging::Statement update(db, "UPDATE node SET checksum = ? WHERE key = ?");
       update.bind(1, paging::checksum(row)).bind(2, row.key).step();
     }
