@@ -15,10 +15,6 @@
 #include "vpe/core/parallel.h"
 #include "vpe/gl/context.h"
 
-#ifndef VPE_VERSION
-#define VPE_VERSION "0"
-#endif
-
 namespace vpe::app {
 
 namespace {
@@ -133,7 +129,7 @@ const char* word(State state) {
 }
 
 void doctor(const Common& common) {
-  const std::vector<Finding> findings{{"vpe", State::kGood, VPE_VERSION},
+  const std::vector<Finding> findings{{"vpe", State::kGood, version()},
                                       {"GDAL", State::kGood, mars::raster_library()},
                                       find_display(),
                                       find_opengl(),

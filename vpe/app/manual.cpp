@@ -6,10 +6,6 @@
 #include "vpe/app/program.h"
 #include "vpe/core/settings.h"
 
-#ifndef VPE_VERSION
-#define VPE_VERSION "0"
-#endif
-
 namespace vpe::app {
 
 namespace {
@@ -99,7 +95,8 @@ std::vector<std::string> long_options(const CLI::App& command) {
 }  // namespace
 
 std::string man_page(const CLI::App& program) {
-  std::string page = ".TH VPE 1 \"\" \"vpe " VPE_VERSION "\" \"User commands\"\n.SH NAME\nvpe \\- " +
+  std::string page = std::string(".TH VPE 1 \"\" \"vpe ") + version() +
+                     "\" \"User commands\"\n.SH NAME\nvpe \\- " +
                      roff("explores planets: builds planet files, asks them, draws them, flies over them") +
                      "\n.SH SYNOPSIS\n.B vpe\n\\fICOMMAND\\fR [options]\n.SH DESCRIPTION\n" +
                      roff(program.get_description()) + "\n" + roff(program.get_footer()) + "\n.SH COMMANDS\n";
@@ -146,7 +143,7 @@ std::string bash_completion(const CLI::App& program) {
   }
   std::vector<std::string> first = names;
   first.insert(first.end(), {"--help", "--version"});
-  return "# bash completion of vpe " VPE_VERSION
+  return std::string("# bash completion of vpe ") + version() +
          ", made by 'vpe completion'\n"
          "_vpe() {\n"
          "  local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=\n"
