@@ -31,7 +31,7 @@ Bytes read(const fs::path& path) {
 // A file of this process alone, in memory where the system has such a folder.
 const std::string& scratch() {
   static const std::string path = [] {
-    const fs::path folder = fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+    const fs::path folder = ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
     std::string name = (folder / ("vpe-fuzz-" + std::to_string(::getpid()) + ".vpe")).string();
     static const std::string kept = name;
     std::atexit([] {
