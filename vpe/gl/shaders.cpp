@@ -15,6 +15,7 @@ layout(location = 5) uniform float skirt;
 layout(location = 6) uniform int first_foot;
 layout(location = 7) uniform vec3 face_out;
 layout(location = 8) uniform vec2 texel;
+layout(location = 11) uniform vec2 steps;
 layout(location = 0) out vec3 texture_position;
 void main() {
   vec3 p = position;
@@ -23,6 +24,13 @@ void main() {
   vec3 e = rotation * (p + to_eye);
   // Infinite reversed depth: 1 at the near plane, 0 at infinity.
   gl_Position = vec4(lens.x * e.x + lens.z * e.z, lens.y * e.y + lens.w * e.z, near, -e.z);
+  // Onto the rasteriser's own grid, where it would put the vertex anyway: one that interpolates from where the vertex
+  // was (Mesa's llvmpipe) leaves the range of depths of a triangle seen on its edge. Far outside the picture the grid
+  // is finer than a float.
+  float far_out = max(abs(gl_Position.x), abs(gl_Position.y));
+  if (steps.x > 0.0 && gl_Position.w > near && far_out < 4.0 * gl_Position.w) {
+    gl_Position.xy = round(gl_Position.xy / gl_Position.w * steps) / steps * gl_Position.w;
+  }
   // Texture coordinates are gnomonic: a ratio of two functions that are linear on the flat triangle.
   float depth = dot(face_out, from_centre) * 1e-6;
   texture_position = vec3((st * texel.x + texel.y) * depth, depth);

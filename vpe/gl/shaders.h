@@ -24,6 +24,7 @@ enum TileUniform : int {
   kTexel = 8,          // vec2: scale and shift from tile coordinates to texture coordinates
   kFlatColour = 9,     // vec4: alpha > 0: this colour instead of the texture
   kRibbon = 10,        // vec3: half the picture's sides, half a ribbon's width; pixels
+  kSteps = 11,         // vec2: steps of the rasteriser in half the picture's sides; 0 = vertices stay where they are
 };
 
 // Uniform locations of the sky program.

@@ -31,7 +31,10 @@ void TileDrawer::use(const Program& program, const core::View& view, const Lens&
   glUniformMatrix3fv(kRotation, 1, GL_FALSE, &rotation[0][0]);
   glUniform4fv(kLens, 1, &lens.scale_shift[0]);
   glUniform1f(kNear, lens.near_m);
-  if (&program != &surface_program_) {
+  if (&program == &surface_program_) {
+    const auto per_px = static_cast<float>(0.5 / step_px_);
+    glUniform2f(kSteps, per_px * static_cast<float>(size.x), per_px * static_cast<float>(size.y));
+  } else {
     glUniform3f(kRibbon, 0.5F * static_cast<float>(size.x), 0.5F * static_cast<float>(size.y),
                 static_cast<float>(kRibbonSteps * step_px_));
   }
