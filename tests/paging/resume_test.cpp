@@ -46,7 +46,7 @@ class Resume : public testing::Test {
   }
 
   const FakeElevation source_{bumpy_height, fine_around(glm::normalize(glm::dvec3(1, 1, 1)), 0.05, 50000)};
-  const FakeImage image_;
+  const FakeImage image_{};
 
   paging::BuildSummary build(const paging::BuildOptions& o,
                              const paging::ProgressFunction& progress = {}) const {
