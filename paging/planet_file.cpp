@@ -130,14 +130,16 @@ void PlanetFile::read_index(Connection& connection) {
   std::vector<lod::TileInfo> tiles;
   tiles.reserve(rows.size());
   for (NodeRow& row : rows) {
-    tiles.push_back({*lod::unpack(row.key), row.min_m, row.max_m, row.inner, std::move(row.variants), row.slope});
+    tiles.push_back(
+        {*lod::unpack(row.key), row.min_m, row.max_m, row.inner, std::move(row.variants), row.slope});
   }
   if (static_cast<std::int64_t>(tiles.size()) != meta_.tiles) {
-    throw PlanetError(path_ + ": damaged: " + std::to_string(tiles.size()) + " of " + std::to_string(meta_.tiles) +
-                      " tiles are in the index; build the planet file again");
+    throw PlanetError(path_ + ": damaged: " + std::to_string(tiles.size()) + " of " +
+                      std::to_string(meta_.tiles) + " tiles are in the index; build the planet file again");
   }
   try {
-    tree_ = std::make_unique<lod::TileTree>(std::move(tiles), meta_.tile, meta_.radius_m, meta_.lowest_radius_m);
+    tree_ =
+        std::make_unique<lod::TileTree>(std::move(tiles), meta_.tile, meta_.radius_m, meta_.lowest_radius_m);
   } catch (const std::runtime_error& e) {
     throw PlanetError(path_ + ": damaged: " + e.what() + "; build the planet file again");
   }
@@ -183,7 +185,8 @@ TileHeights PlanetFile::heights(const lod::TileKey& key) const {
   if (steps != 0) {
     const lod::GridLines lines = lod::grid_lines(key, out.posts.intervals);
     for (const lod::Edge edge : lod::kEdges) {
-      if ((steps >> static_cast<int>(edge) & 1) != 0) lod::constrain_edge(out.posts, lines, edge, 2, meta_.radius_m);
+      if ((steps >> static_cast<int>(edge) & 1) != 0)
+        lod::constrain_edge(out.posts, lines, edge, 2, meta_.radius_m);
     }
   }
   return out;

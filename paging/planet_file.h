@@ -15,9 +15,9 @@ namespace paging {
 
 // Everything of a finest or inner tile but its meshes.
 struct TileHeights {
-  lod::Posts posts;            // borders constrained to coarser neighbours
-  std::vector<bool> missing;   // empty when no post is missing
-  std::vector<int> source;     // indices into PlanetMeta::sources that the tile draws on
+  lod::Posts posts;           // borders constrained to coarser neighbours
+  std::vector<bool> missing;  // empty when no post is missing
+  std::vector<int> source;    // indices into PlanetMeta::sources that the tile draws on
 };
 
 struct ImageTile {
@@ -43,7 +43,7 @@ class PlanetFile {
 
   // The deepest stored image tile at or above `key`; nothing when the planet has no image.
   std::optional<lod::TileKey> image_key(const lod::TileKey& key) const;
-  std::vector<lod::TileKey> image_keys() const;  // all of them
+  std::vector<lod::TileKey> image_keys() const;    // all of them
   ImageTile image(const lod::TileKey& key) const;  // key must be one that image_key() returned
 
  private:

@@ -26,8 +26,12 @@ CREATE TABLE image(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
 namespace {
 
 json to_json(const mars::SourceInfo& s) {
-  json j{{"name", s.name},           {"size_bytes", s.size_bytes}, {"mtime_s", s.mtime_s},
-         {"resolution_m", s.resolution_m}, {"quantum_m", s.quantum_m},   {"datum", s.datum},
+  json j{{"name", s.name},
+         {"size_bytes", s.size_bytes},
+         {"mtime_s", s.mtime_s},
+         {"resolution_m", s.resolution_m},
+         {"quantum_m", s.quantum_m},
+         {"datum", s.datum},
          {"illustration", s.illustration}};
   j["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
   return j;
@@ -59,7 +63,8 @@ std::vector<mars::SourceInfo> sources_from(const json& list) {
 }
 
 auto tie(const mars::SourceInfo& s) {
-  return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.datum, s.accuracy_m, s.illustration);
+  return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.datum, s.accuracy_m,
+                  s.illustration);
 }
 
 bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::SourceInfo>& b) {
@@ -84,16 +89,18 @@ std::string checksum(const std::map<std::string, std::string>& rows) {
 
 void check_ranges(const PlanetMeta& m, const std::string& path) {
   const bool sane = std::isfinite(m.radius_m) && m.radius_m > 1.0 && m.radius_m < 1e12 && m.tile.k >= 3 &&
-                    m.tile.k <= 7 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 && std::isfinite(m.fill_m) &&
-                    std::isfinite(m.lowest_radius_m) && std::isfinite(m.highest_radius_m) && m.shape == "sphere";
-  if (!sane) throw PlanetError(path + ": damaged: a value of the table meta is out of range; build the file again");
+                    m.tile.k <= 7 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 &&
+                    std::isfinite(m.fill_m) && std::isfinite(m.lowest_radius_m) &&
+                    std::isfinite(m.highest_radius_m) && m.shape == "sphere";
+  if (!sane)
+    throw PlanetError(path + ": damaged: a value of the table meta is out of range; build the file again");
 }
 
 }  // namespace
 
 bool PlanetMeta::operator==(const PlanetMeta& o) const {
-  return body == o.body && radius_m == o.radius_m && datum == o.datum && shape == o.shape && tile.k == o.tile.k &&
-         quantum_m == o.quantum_m && fill_m == o.fill_m && equal(sources, o.sources) &&
+  return body == o.body && radius_m == o.radius_m && datum == o.datum && shape == o.shape &&
+         tile.k == o.tile.k && quantum_m == o.quantum_m && fill_m == o.fill_m && equal(sources, o.sources) &&
          equal(image_sources, o.image_sources) && resampling.max_m == o.resampling.max_m &&
          resampling.rms_m == o.resampling.rms_m && resampling.posts == o.resampling.posts &&
          lowest_radius_m == o.lowest_radius_m && highest_radius_m == o.highest_radius_m &&
@@ -104,29 +111,30 @@ bool PlanetMeta::operator==(const PlanetMeta& o) const {
 
 std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
   // json writes doubles with the fewest digits that read back to the same bits, whatever the locale.
-  std::map<std::string, std::string> rows{{"format", std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor)},
-          {"body", m.body},
-          {"radius_m", json(m.radius_m).dump()},
-          {"datum", m.datum},
-          {"shape", m.shape},
-          {"tile_k", std::to_string(m.tile.k)},
-          {"quantum_m", json(m.quantum_m).dump()},
-          {"fill_m", json(m.fill_m).dump()},
-          {"sources", to_json(m.sources).dump()},
-          {"image_sources", to_json(m.image_sources).dump()},
-          {"resampling_max_m", json(m.resampling.max_m).dump()},
-          {"resampling_rms_m", json(m.resampling.rms_m).dump()},
-          {"resampling_posts", std::to_string(m.resampling.posts)},
-          {"lowest_radius_m", json(m.lowest_radius_m).dump()},
-          {"highest_radius_m", json(m.highest_radius_m).dump()},
-          {"leaf_tiles", std::to_string(m.leaf_tiles)},
-          {"tiles", std::to_string(m.tiles)},
-          {"image_tiles", std::to_string(m.image_tiles)},
-          {"finest_level", std::to_string(m.finest_level)},
-          {"finest_image_level", std::to_string(m.finest_image_level)},
-          {"program", m.program},
-          {"identity", m.identity},
-          {"illustration", m.illustration ? "true" : "false"}};
+  std::map<std::string, std::string> rows{
+      {"format", std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor)},
+      {"body", m.body},
+      {"radius_m", json(m.radius_m).dump()},
+      {"datum", m.datum},
+      {"shape", m.shape},
+      {"tile_k", std::to_string(m.tile.k)},
+      {"quantum_m", json(m.quantum_m).dump()},
+      {"fill_m", json(m.fill_m).dump()},
+      {"sources", to_json(m.sources).dump()},
+      {"image_sources", to_json(m.image_sources).dump()},
+      {"resampling_max_m", json(m.resampling.max_m).dump()},
+      {"resampling_rms_m", json(m.resampling.rms_m).dump()},
+      {"resampling_posts", std::to_string(m.resampling.posts)},
+      {"lowest_radius_m", json(m.lowest_radius_m).dump()},
+      {"highest_radius_m", json(m.highest_radius_m).dump()},
+      {"leaf_tiles", std::to_string(m.leaf_tiles)},
+      {"tiles", std::to_string(m.tiles)},
+      {"image_tiles", std::to_string(m.image_tiles)},
+      {"finest_level", std::to_string(m.finest_level)},
+      {"finest_image_level", std::to_string(m.finest_image_level)},
+      {"program", m.program},
+      {"identity", m.identity},
+      {"illustration", m.illustration ? "true" : "false"}};
   rows[kChecksumKey] = checksum(rows);
   return rows;
 }

@@ -40,8 +40,8 @@ struct PlanetMeta {
   std::string shape = "sphere";
   lod::TileShape tile;
   double quantum_m = 1.0 / 16.0;
-  double fill_m = 0;  // drawn where no source has data; query answers null there
-  std::vector<mars::SourceInfo> sources;        // elevation, as tiles name them by index
+  double fill_m = 0;                      // drawn where no source has data; query answers null there
+  std::vector<mars::SourceInfo> sources;  // elevation, as tiles name them by index
   std::vector<mars::SourceInfo> image_sources;
   ResamplingError resampling;
   double lowest_radius_m = 0;   // no point of S lies below
@@ -51,9 +51,9 @@ struct PlanetMeta {
   std::int64_t image_tiles = 0;
   int finest_level = 0;
   int finest_image_level = -1;
-  std::string program;          // version that built it
-  std::string identity;         // hexadecimal hash over all checksums: equal content, equal identity
-  bool illustration = false;    // some source is made up
+  std::string program;        // version that built it
+  std::string identity;       // hexadecimal hash over all checksums: equal content, equal identity
+  bool illustration = false;  // some source is made up
 
   bool operator==(const PlanetMeta&) const;
 };
@@ -72,9 +72,9 @@ struct NodeRow {
   double min_m = 0;
   double max_m = 0;
   bool inner = false;
-  int steps = 0;          // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
-  double slope = 0;       // TileInfo::steepest_slope
-  std::string sources;    // indices into meta.sources, comma-separated
+  int steps = 0;        // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
+  double slope = 0;     // TileInfo::steepest_slope
+  std::string sources;  // indices into meta.sources, comma-separated
   std::vector<lod::MeshVariant> variants;
 };
 std::int64_t checksum(const NodeRow& row);

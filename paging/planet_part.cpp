@@ -72,18 +72,22 @@ bool sound(Database& db) {
          db.integer("SELECT count(*) FROM variant") == variants;
 }
 
-std::unique_ptr<Database> continue_part(const std::string& path, const std::string& recipe) {
+// The part at `path`, continued; without a database when it is to be made anew.
+Part continue_part(const std::string& path, const std::string& recipe) {
   try {
     auto db = open_exclusively(path);
-    if (!fits(*db, recipe) || !sound(*db)) return nullptr;
+    // A build that ended before its first commit leaves what SQLite goes back to: an empty file.
+    if (db->integer("SELECT count(*) FROM sqlite_schema") == 0) return {};
+    if (!fits(*db, recipe) || !sound(*db)) return {nullptr, PartStart::kReplaced, false};
     db->execute("DELETE FROM meta");
-    return db;
+    const bool holds_tiles = db->integer("SELECT count(*) FROM node") > 0;
+    return {std::move(db), PartStart::kContinued, holds_tiles};
   } catch (const DatabaseError& e) {
     if (e.busy()) {
       throw DatabaseError(path + ": another build is writing it; wait for it, or give another output name",
                           e.code());
     }
-    return nullptr;  // not a database, or too damaged to read
+    return {nullptr, PartStart::kReplaced, false};  // not a database, or too damaged to read
   }
 }
 
@@ -92,12 +96,8 @@ std::unique_ptr<Database> continue_part(const std::string& path, const std::stri
 Part open_part(const std::string& path, const std::string& recipe) {
   Part part;
   if (fs::exists(path)) {
-    part.db = continue_part(path, recipe);
-    part.start = part.db ? PartStart::kContinued : PartStart::kReplaced;
-    if (part.db) {
-      part.holds_tiles = part.db->integer("SELECT count(*) FROM node") > 0;
-      return part;
-    }
+    part = continue_part(path, recipe);
+    if (part.db) return part;
   }
   remove_part(path);
   part.db = open_exclusively(path);

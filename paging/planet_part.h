@@ -10,7 +10,7 @@ namespace paging {
 
 // What became of a part that was there.
 enum class PartStart {
-  kNew,        // there was none
+  kNew,        // there was none, or none of it had been committed
   kContinued,  // it had the same recipe: its tiles are kept
   kReplaced,   // it had another one, or was damaged: removed
 };

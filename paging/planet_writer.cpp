@@ -63,9 +63,10 @@ PlanetWriter::PlanetWriter(const std::string& path, const std::string& recipe, d
 PlanetWriter::~PlanetWriter() {
   if (finished_) return;
   sql_.reset();
-  if (part_.db && part_.holds_tiles) {
+  if (part_.db && uncommitted_ && !broken_) {
     try {
       part_.db->execute("COMMIT");
+      part_.holds_tiles = true;
     } catch (const DatabaseError&) {
       // As on a full disk: SQLite has gone back to the last commit, or will when the file is opened again.
     }
@@ -74,10 +75,27 @@ PlanetWriter::~PlanetWriter() {
   if (!part_.holds_tiles) remove_part(part_path_);
 }
 
+// An error may have undone the whole transaction (SQLite, "Response to errors within a transaction"), so
+// nothing may follow it: a later row would be committed without those before it.
+template <typename Puts>
+void PlanetWriter::write(const Puts& puts) {
+  const std::lock_guard lock(mutex_);
+  if (broken_) throw DatabaseError(*broken_);
+  try {
+    puts();
+    uncommitted_ = true;
+    commit_when_due();
+  } catch (const DatabaseError& e) {
+    broken_ = std::make_unique<DatabaseError>(e);
+    throw;
+  }
+}
+
 void PlanetWriter::commit_when_due() {
-  part_.holds_tiles = true;
   if (std::chrono::steady_clock::now() - last_commit_ < commit_every_) return;
   part_.db->execute("COMMIT");
+  part_.holds_tiles = true;
+  uncommitted_ = false;
   part_.db->execute("BEGIN EXCLUSIVE");
   last_commit_ = std::chrono::steady_clock::now();
 }
@@ -88,29 +106,25 @@ void PlanetWriter::put(Statement& statement, std::int64_t row, std::span<const s
 }
 
 void PlanetWriter::put_tile(const NodeRow& row, const TilePayload& payload) {
-  const std::lock_guard lock(mutex_);
-  put(sql_->heights, row.key, payload.heights);
-  if (!payload.missing.empty()) put(sql_->missing, row.key, payload.missing);
-  std::int64_t variant = 0;
-  for (const Bytes& packed : payload.meshes) {
-    sql_->mesh.bind(1, row.key).bind(2, variant).bind(3, checksum(row.key + variant, packed)).bind(4, packed);
-    sql_->mesh.step();
-    ++variant;
-  }
-  put_node(row);
-  commit_when_due();
+  write([&] {
+    put(sql_->heights, row.key, payload.heights);
+    if (!payload.missing.empty()) put(sql_->missing, row.key, payload.missing);
+    std::int64_t variant = 0;
+    for (const Bytes& packed : payload.meshes) {
+      sql_->mesh.bind(1, row.key).bind(2, variant).bind(3, checksum(row.key + variant, packed)).bind(4, packed);
+      sql_->mesh.step();
+      ++variant;
+    }
+    put_node(row);
+  });
 }
 
 void PlanetWriter::put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed) {
-  const std::lock_guard lock(mutex_);
-  put(sql_->image, lod::pack(key), packed);
-  commit_when_due();
+  write([&] { put(sql_->image, lod::pack(key), packed); });
 }
 
 void PlanetWriter::put_note(std::int64_t number, std::span<const std::uint8_t> packed) {
-  const std::lock_guard lock(mutex_);
-  put(sql_->note, number, packed);
-  commit_when_due();
+  write([&] { put(sql_->note, number, packed); });
 }
 
 void PlanetWriter::put_node(const NodeRow& row) {
@@ -141,9 +155,9 @@ void PlanetWriter::put_node(const NodeRow& row) {
 }
 
 void PlanetWriter::replace_nodes(std::span<const NodeRow> rows) {
-  const std::lock_guard lock(mutex_);
-  for (const NodeRow& row : rows) put_node(row);
-  commit_when_due();
+  write([&] {
+    for (const NodeRow& row : rows) put_node(row);
+  });
 }
 
 std::vector<NodeRow> PlanetWriter::nodes() {
@@ -203,6 +217,7 @@ Bytes PlanetWriter::mesh(const lod::TileKey& key, int variant) {
 
 void PlanetWriter::seal(PlanetMeta& meta) {
   const std::lock_guard lock(mutex_);
+  if (broken_) throw DatabaseError(*broken_);
   meta.identity = content_identity(*part_.db);
   meta.program = VPE_VERSION;
   write_meta(*part_.db, meta);

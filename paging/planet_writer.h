@@ -26,13 +26,14 @@ struct TilePayload {
 };
 
 // Members may be called from any thread; they take turns. Throws DatabaseError (disk full, another build at
-// work on the same file, ...); the name of the finished file only ever holds a complete one.
+// work on the same file, ...); after the first one that a put_ or replace_ throws, all of them throw the same.
+// The name of the finished file only ever holds a complete one.
 class PlanetWriter {
  public:
   // recipe: everything that the content is a function of, as text; two builds with equal recipes make equal
   // tiles. commit_s: how often finished tiles are made safe.
   PlanetWriter(const std::string& path, const std::string& recipe, double commit_s = 1.0);
-  ~PlanetWriter();  // unless publish() was reached, keeps the .part file; removes it when it has no tile
+  ~PlanetWriter();  // unless publish() was reached, keeps the .part file; removes it when it holds no work
   PlanetWriter(const PlanetWriter&) = delete;
   PlanetWriter& operator=(const PlanetWriter&) = delete;
 
@@ -66,6 +67,8 @@ class PlanetWriter {
  private:
   struct Statements;
 
+  template <typename Puts>
+  void write(const Puts& puts);
   void put(Statement& statement, std::int64_t row, std::span<const std::uint8_t> packed);
   void put_node(const NodeRow& row);
   void commit_when_due();
@@ -77,6 +80,8 @@ class PlanetWriter {
   std::chrono::duration<double> commit_every_;
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
   Part part_;
+  bool uncommitted_ = false;               // there is work since the last commit
+  std::unique_ptr<DatabaseError> broken_;  // the first error of writing
   bool finished_ = false;
   std::unique_ptr<Statements> sql_;
 };

@@ -1,4 +1,4 @@
-// --config FILE.
+// --config FILE, the files of the user and the system, and the environment.
 #include "tests/app/support/app_fixture.h"
 
 namespace app_test {
@@ -58,8 +58,79 @@ TEST_F(Config, Errors) {
   expect_error("memory = = 3 [[\n", {"c.toml:1", "not TOML"});
   expect_error("config = 'd.toml'\n", {"c.toml:1", "--config"});
   expect_failure({"query", "x.vpe", "1,2", "--config", "none.toml"}, 2,
-                 {"--config none.toml", "No such file", "check the name"});
-  expect_failure({"query", "x.vpe", "1,2", "--config", "."}, 2, {"--config .", "Is a directory"});
+                 {"none.toml", "configuration", "No such file", "check the name"});
+  expect_failure({"query", "x.vpe", "1,2", "--config", "."}, 2,
+                 {".: cannot read the configuration", "Is a directory"});
+}
+
+// The user's file, the system's files, the environment: whose word counts.
+class ConfigOrder : public AppTest {
+ protected:
+  void write_config(const std::string& folder, const std::string& toml) const {
+    std::filesystem::create_directories(dir_ / folder / "vpe");
+    write_text(dir_ / folder / "vpe" / "config.toml", toml);
+  }
+  Result query(const std::map<std::string, std::string>& environment, const Words& more = {}) const {
+    Words words{"query", planet().string(), "10,20"};
+    words.insert(words.end(), more.begin(), more.end());
+    Command command = command_for(words);
+    for (const auto& [key, value] : environment) command.environment[key] = value;
+    return run(command);
+  }
+  bool is_json(const std::map<std::string, std::string>& environment, const Words& more = {}) const {
+    const Result result = query(environment, more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out.find("lon_deg,lat_deg") != 0U;
+  }
+};
+
+TEST_F(ConfigOrder, UserBeforeSystem) {
+  const std::map<std::string, std::string> both{{"XDG_CONFIG_HOME", path("user")},
+                                                {"XDG_CONFIG_DIRS", path("one") + ":" + path("two")}};
+  EXPECT_FALSE(is_json(both));
+  write_config("two", "json = true\n");
+  EXPECT_TRUE(is_json(both));
+  write_config("one", "json = false\n");
+  EXPECT_FALSE(is_json(both));
+  write_config("user", "[query]\njson = true\n");
+  EXPECT_TRUE(is_json(both));
+  // The file of --config stands for the project, the command line above it.
+  write_text(dir_ / "project.toml", "json = false\n");
+  EXPECT_FALSE(is_json(both, {"--config", "project.toml"}));
+  EXPECT_TRUE(is_json(both, {"--config", "project.toml", "--json"}));
+  // Other commands read it too; --version reads nothing.
+  write_config("user", "jsno = true\n");
+  Result result = query(both);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(says(result.err, {path("user") + "/vpe/config.toml:1", "--jsno"}));
+  Command version = command_for({"--version"});
+  version.environment["XDG_CONFIG_HOME"] = path("user");
+  EXPECT_EQ(run(version).exit_code, 0);
+}
+
+TEST_F(ConfigOrder, HomeWhereTheVariableIsNotSetOrNotAbsolute) {
+  write_config("home/.config", "json = true\n");
+  write_config("relative", "bogus = true\n");
+  EXPECT_TRUE(is_json({}));
+  EXPECT_TRUE(is_json({{"XDG_CONFIG_HOME", ""}}));
+  EXPECT_TRUE(is_json({{"XDG_CONFIG_HOME", "relative"}}));
+  EXPECT_TRUE(is_json({{"XDG_CONFIG_DIRS", "relative"}}));
+  EXPECT_FALSE(is_json({{"XDG_CONFIG_HOME", path("none")}}));
+  EXPECT_FALSE(is_json({{"HOME", ""}}));
+}
+
+TEST_F(ConfigOrder, Environment) {
+  EXPECT_EQ(query({{"VPE_MEMORY", "128"}}).exit_code, 0);
+  const Result result = query({{"VPE_MEMORY", "1"}});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(says(result.err, {"VPE_MEMORY", "64"}));
+  EXPECT_EQ(query({{"VPE_THREADS", "two"}}).exit_code, 2);
+  EXPECT_EQ(query({{"VPE_MEMORY", ""}}).exit_code, 0);
+  // Over the files, under the command line.
+  write_config("home/.config", "memory = 1\n");
+  EXPECT_EQ(query({}).exit_code, 2);
+  EXPECT_EQ(query({{"VPE_MEMORY", "128"}}).exit_code, 0);
+  EXPECT_EQ(query({{"VPE_MEMORY", "1"}}, {"--memory", "128"}).exit_code, 0);
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ class Signals : public AppTest {
   }
   // What a stopped build leaves is its part, for the next one, and nothing else.
   void expect_only_parts() const {
-    for (const std::string& name : leftovers()) EXPECT_TRUE(name.ends_with(".part") || name.ends_with(".part-journal")) << name;
+    for (const std::string& name : leftovers())
+      EXPECT_TRUE(name.ends_with(".part") || name.ends_with(".part-journal")) << name;
   }
 };
 

@@ -3,7 +3,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <set>
@@ -12,12 +14,15 @@
 
 namespace vpe::app {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 class ConfigFile {
  public:
-  ConfigFile(CLI::App& program, CLI::App& command, std::string path)
-      : program_(program), command_(command), path_(std::move(path)) {}
+  // done: the keys that files before this one have given, which goes on to the next.
+  ConfigFile(CLI::App& program, CLI::App& command, std::string path, std::set<std::string>& done)
+      : program_(program), command_(command), path_(std::move(path)), done_(done) {}
 
   void apply() {
     const toml::table config = parse();
@@ -49,8 +54,7 @@ class ConfigFile {
     std::ifstream in(path_, std::ios::binary);
     // A folder opens, but cannot be read.
     if (!in || (in.peek(), in.bad())) {
-      throw UsageError("--config " + path_ + ": cannot read the file: " + std::strerror(errno) +
-                       "; check the name");
+      throw UsageError(path_ + ": cannot read the configuration: " + std::strerror(errno) + "; check the name");
     }
     try {
       return toml::parse(in, path_);
@@ -103,17 +107,76 @@ class ConfigFile {
   CLI::App& program_;
   CLI::App& command_;
   std::string path_;
-  std::set<std::string> done_;  // false leaves no trace in a flag
+  std::set<std::string>& done_;  // false leaves no trace in a flag
 };
 
+void apply_environment(CLI::App& command) {
+  for (std::string name : {"memory", "threads"}) {
+    CLI::Option* option = command.get_option_no_throw("--" + name);
+    if (option == nullptr || option->count() > 0) continue;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    name.insert(0, "VPE_");
+    const char* value = std::getenv(name.c_str());
+    if (value == nullptr || *value == '\0') continue;
+    option->add_result(value);
+    try {
+      option->run_callback();
+    } catch (const CLI::ParseError& e) {
+      throw UsageError("environment variable " + name + ": " + e.what());
+    }
+  }
+}
+
+fs::path absolute_variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr && fs::path(value).is_absolute() ? fs::path(value) : fs::path();
+}
+
 }  // namespace
+
+std::vector<fs::path> config_files() {
+  std::vector<fs::path> folders;
+  const fs::path home = absolute_variable("HOME");
+  const fs::path user = absolute_variable("XDG_CONFIG_HOME");
+  if (!user.empty()) {
+    folders.push_back(user);
+  } else if (!home.empty()) {
+    folders.push_back(home / ".config");
+  }
+  const char* listed = std::getenv("XDG_CONFIG_DIRS");
+  const std::string system = listed != nullptr && *listed != '\0' ? listed : "/etc/xdg";
+  for (std::size_t begin = 0; begin <= system.size();) {
+    const std::size_t end = std::min(system.find(':', begin), system.size());
+    const fs::path folder = system.substr(begin, end - begin);
+    if (folder.is_absolute()) folders.push_back(folder);
+    begin = end + 1;
+  }
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const fs::path& folder : folders) {
+    const fs::path file = folder / "vpe" / "config.toml";
+    if (fs::exists(file, none)) files.push_back(file);
+  }
+  return files;
+}
 
 void add_config_option(CLI::App& program, CLI::App& command) {
   // CLI11 calls this when the whole command line is read and before it misses required options; its own
   // set_config() is silent on subcommands.
-  command.add_option_function<std::string>(
-      "--config", [&program, &command](const std::string& path) { ConfigFile(program, command, path).apply(); },
-      "Read options from a TOML file");
+  command
+      .add_option_function<std::string>(
+          "--config",
+          [&program, &command](const std::string& path) {
+            if (!command.parsed()) return;
+            apply_environment(command);
+            std::set<std::string> done;
+            if (!path.empty()) ConfigFile(program, command, path, done).apply();
+            for (const fs::path& file : config_files())
+              ConfigFile(program, command, file.string(), done).apply();
+          },
+          "Read options from a TOML file")
+      ->force_callback();
 }
 
 }  // namespace vpe::app

@@ -9,6 +9,7 @@
 
 #include "mars/source.h"
 #include "vpe/app/child.h"
+#include "vpe/app/config_file.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
@@ -57,6 +58,12 @@ Finding find_opengl() {
   } catch (const std::runtime_error& e) {
     return {"OpenGL", State::kBad, e.what()};
   }
+}
+
+Finding find_configuration() {
+  std::string text;
+  for (const fs::path& file : config_files()) text += (text.empty() ? "" : ", ") + file.string();
+  return {"config", State::kGood, text.empty() ? "no file of the user or the system" : text};
 }
 
 Finding find_threads(const Common& common) {
@@ -133,6 +140,7 @@ void doctor(const Common& common) {
                                       {"GDAL", State::kGood, mars::raster_library()},
                                       find_display(),
                                       find_opengl(),
+                                      find_configuration(),
                                       find_threads(common),
                                       find_memory(common),
                                       find_cache(),

@@ -120,7 +120,14 @@ std::string man_page(const CLI::App& program) {
           "Planet files built from DEMs and the embedded Mars (~/.cache/vpe when the variable is not set); may "
           "be "
           "removed at any time.") +
-      "\n.SH ENVIRONMENT\n.TP\n.B VPE_EGL\n" +
+      "\n.TP\n.I $XDG_CONFIG_HOME/vpe/config.toml\n" +
+      roff(
+          "Options of the user, as --config reads them (~/.config when the variable is not set); then "
+          "vpe/config.toml in each of $XDG_CONFIG_DIRS (/etc/xdg). The command line goes before the "
+          "environment, "
+          "that before --config, that before these.") +
+      "\n.SH ENVIRONMENT\n.TP\n.B VPE_MEMORY\n" + roff("as --memory, where that is not given.") +
+      "\n.TP\n.B VPE_THREADS\n" + roff("as --threads, where that is not given.") + "\n.TP\n.B VPE_EGL\n" +
       roff("device or surfaceless: where to look for OpenGL; both when not set.") + "\n";
   return page;
 }

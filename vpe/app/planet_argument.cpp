@@ -103,10 +103,11 @@ fs::path embedded_planet_path() {
 
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {
   if (argument.empty()) {
-    return cached(embedded_planet_path().stem().string(), "the embedded Mars (an illustration)", [&](const fs::path& target) {
-      build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(),
-                 mars::embedded_image().get(), common);
-    });
+    return cached(embedded_planet_path().stem().string(), "the embedded Mars (an illustration)",
+                  [&](const fs::path& target) {
+                    build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(),
+                               mars::embedded_image().get(), common);
+                  });
   }
   if (ends_with(argument, ".vpe") || is_sqlite(argument)) return paging::PlanetFile::open(argument);
   const auto source = mars::open_elevation(argument);

@@ -24,8 +24,8 @@ void say_what_is_kept(const paging::BuildOptions& options, const paging::BuildPr
 paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
                                const mars::ImageSource* image, const Common& common) {
   const InterruptGuard guard;
-  // An analytic source is sampled one place at a time for the resampling error: enough for a figure that is stable to a
-  // few per cent.
+  // An analytic source is sampled one place at a time for the resampling error: enough for a figure that is
+  // stable to a few per cent.
   const auto infos = elevation.infos();
   if (!infos.empty() && infos.front().illustration) options.resampling_posts = 100'000;
   try {

@@ -72,7 +72,12 @@ Command AppTest::command_for(const Words& arguments) const {
   command.program = VPE_PROGRAM;
   command.arguments = arguments;
   command.folder = dir_.path();
-  command.environment = {{"XDG_CACHE_HOME", path("cache")}, {"HOME", path("home")}};
+  command.environment = {{"XDG_CACHE_HOME", path("cache")},
+                         {"XDG_CONFIG_HOME", ""},
+                         {"XDG_CONFIG_DIRS", "none"},
+                         {"HOME", path("home")},
+                         {"VPE_MEMORY", ""},
+                         {"VPE_THREADS", ""}};
   return command;
 }
 
