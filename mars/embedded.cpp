@@ -17,7 +17,8 @@ SourceInfo info_of(double resolution_m) {
   SourceInfo info;
   info.name = "embedded Mars (illustration)";
   info.resolution_m = resolution_m;
-  info.datum = "areoid";
+  info.datum = VerticalDatum::areoid();
+  info.body_radius_m = kMarsRadius_m;
   info.illustration = true;
   return info;
 }

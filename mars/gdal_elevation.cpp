@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "mars/adjusted.h"
 #include "mars/gdal_raster.h"
 #include "mars/gdal_rim.h"
 #include "mars/gdal_tiles.h"
+#include "mars/product_datum.h"
 #include "mars/source.h"
 #include "mars/stack.h"
 
@@ -74,19 +76,35 @@ struct HeightTile {
 };
 
 template <class T>
-class GdalElevation final : public ElevationSource, public RimAware {
+class GdalElevation final : public ElevationSource, public RimAware, public Maskable {
  public:
-  GdalElevation(std::unique_ptr<GdalRaster> raster, const BandFormat& format)
+  GdalElevation(std::shared_ptr<const GdalRaster> raster, const BandFormat& format)
       : raster_(std::move(raster)), grid_(raster_->grid()), format_(format), info_(raster_->info()) {
     info_.quantum_m = GDALDataTypeIsFloating(format.type) != 0 ? 0.0 : std::abs(format.scale);
     const double some_height_m = first_height();
-    if (raster_->label()) info_.datum = pds_datum(*raster_->label());
-    if (std::abs(some_height_m) > kLargestHeight_m) info_.datum = "radius";
-    for (const bool first : {true, false}) {
-      if (first ? grid_.has_first_pole() : grid_.has_last_pole()) {
-        pole_[first ? 0 : 1] = row_mean(first ? grid_.first_polar_row() : grid_.last_polar_row());
-      }
+    {
+      const auto dataset = raster_->lend();
+      info_.datum = product_datum(raster_->path(), *dataset, raster_->label());
+      info_.body_radius_m = body_radius_m(*dataset);
     }
+    if (std::abs(some_height_m) > kLargestHeight_m) info_.datum = VerticalDatum::radius();
+    find_poles();
+  }
+
+  GdalElevation(const GdalElevation& whole, PostMask mask, int margin, const std::string& treatment)
+      : raster_(whole.raster_),
+        grid_(whole.grid_),
+        format_(whole.format_),
+        info_(whole.info_),
+        mask_(std::move(mask)),
+        mask_margin_(margin) {
+    info_.treatment = add_treatment(info_.treatment, treatment);
+    find_poles();
+  }
+
+  std::shared_ptr<const ElevationSource> with_mask(PostMask mask, int margin,
+                                                   const std::string& treatment) const override {
+    return std::make_shared<const GdalElevation>(*this, std::move(mask), margin, treatment);
   }
 
   std::vector<SourceInfo> infos() const override { return {info_}; }
@@ -195,7 +213,48 @@ class GdalElevation final : public ElevationSource, public RimAware {
     }
     complete_tile(window, first_column.empty() ? nullptr : first_column.data(), tile->values.data());
     mark_missing(tile->values);
+    if (mask_) drop_masked(id, tile->values);
     return tile;
+  }
+
+  // The mask judges the pixels of the tile and of a margin around it, so that every tile drops the same ones.
+  void drop_masked(const TileId& id, std::span<T> values) const {
+    const int column = std::max(0, id.column * kTileSide - mask_margin_);
+    const int row = std::max(0, id.row * kTileSide - mask_margin_);
+    const PixelWindow window{column, row,
+                             std::min(grid_.width, (id.column + 1) * kTileSide + 1 + mask_margin_) - column,
+                             std::min(grid_.height, (id.row + 1) * kTileSide + 1 + mask_margin_) - row};
+    std::vector<T> stored(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows));
+    raster_->read(1, -1, window, window.columns, stored.data());
+    mark_missing(stored);
+    std::vector<glm::dvec2> pixels;
+    std::vector<double> heights_m;
+    for (int r = 0; r < window.rows; ++r) {
+      for (int c = 0; c < window.columns; ++c) {
+        const double value = stored[static_cast<std::size_t>(r) * static_cast<std::size_t>(window.columns) +
+                                    static_cast<std::size_t>(c)];
+        if (std::isnan(value)) continue;
+        pixels.emplace_back(window.column + c, window.row + r);
+        heights_m.push_back(metres(value));
+      }
+    }
+    std::vector<glm::dvec3> directions(pixels.size());
+    raster_->georeference().to_directions(pixels, directions);
+    mask_(directions, heights_m);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if (!std::isnan(heights_m[i])) continue;
+      drop_around(static_cast<int>(pixels[i].x) - id.column * kTileSide,
+                  static_cast<int>(pixels[i].y) - id.row * kTileSide, values);
+    }
+  }
+
+  void drop_around(int column, int row, std::span<T> values) const {
+    for (int r = std::max(0, row - mask_margin_); r <= std::min(kTileStride - 1, row + mask_margin_); ++r) {
+      for (int c = std::max(0, column - mask_margin_); c <= std::min(kTileStride - 1, column + mask_margin_);
+           ++c) {
+        values[static_cast<std::size_t>(r * kTileStride + c)] = static_cast<T>(kNaN);
+      }
+    }
   }
 
   void mark_missing(std::span<T> values) const {
@@ -242,6 +301,14 @@ class GdalElevation final : public ElevationSource, public RimAware {
     return std::isnan(value) ? (fx < 0.5 ? left : right) : value;
   }
 
+  void find_poles() {
+    for (const bool first : {true, false}) {
+      if (first ? grid_.has_first_pole() : grid_.has_last_pole()) {
+        pole_[first ? 0 : 1] = row_mean(first ? grid_.first_polar_row() : grid_.last_polar_row());
+      }
+    }
+  }
+
   double row_mean(int row) const {
     std::vector<T> values(static_cast<std::size_t>(grid_.width));
     raster_->read(1, -1, {0, row, grid_.width, 1}, grid_.width, values.data());
@@ -275,10 +342,12 @@ class GdalElevation final : public ElevationSource, public RimAware {
                        "check its no-data value with gdalinfo -stats");
   }
 
-  std::unique_ptr<GdalRaster> raster_;
+  std::shared_ptr<const GdalRaster> raster_;
   PixelGrid grid_;
   BandFormat format_;
   SourceInfo info_;
+  PostMask mask_;  // none: all posts are used
+  int mask_margin_ = 0;
   mutable TileCache<Tile> tiles_;
   mutable TileCache<RimTile> rims_;
   std::array<double, 2> pole_{kNaN, kNaN};  // stored values at the first and the last pole

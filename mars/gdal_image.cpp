@@ -25,7 +25,6 @@ class GdalImage final : public ImageSource, public RimAware {
  public:
   GdalImage(std::unique_ptr<GdalRaster> raster, ImageFormat format)
       : raster_(std::move(raster)), format_(std::move(format)), info_(raster_->info()) {
-    info_.datum.clear();
     info_.quantum_m = 0;
     for (PixelGrid grid = raster_->grid();; grid = raster_->grid().reduced(static_cast<int>(grids_.size()))) {
       grids_.push_back(grid);

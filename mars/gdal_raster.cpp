@@ -134,7 +134,6 @@ SourceInfo GdalRaster::info() const {
   SourceInfo info;
   info.name = path_;
   info.resolution_m = georeference_->resolution_m();
-  info.datum = "unknown";
   char** files = lend()->GetFileList();
   for (int i = 0; files != nullptr && files[i] != nullptr; ++i) {
     VSIStatBufL stat{};

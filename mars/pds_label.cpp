@@ -175,12 +175,12 @@ PdsPlacement place_pds(const PdsLabel& label) {
   return placement;
 }
 
-std::string pds_datum(const PdsLabel& label) {
+VerticalDatum pds_datum(const PdsLabel& label) {
   const std::string text = upper(label.text("IMAGE.NAME") + " " + label.text("IMAGE.DESCRIPTION"));
   const auto says = [&](std::string_view word) { return text.find(word) != std::string::npos; };
-  if (says("TOPOGRAPHY") || says("ABOVE AREOID") || says("ABOVE THE AREOID")) return "areoid";
-  if (says("RADIUS") || says("AREOID")) return "radius";
-  return "unknown";
+  if (says("TOPOGRAPHY") || says("ABOVE AREOID") || says("ABOVE THE AREOID")) return VerticalDatum::areoid();
+  if (says("RADIUS") || says("AREOID")) return VerticalDatum::radius();
+  return {};
 }
 
 }  // namespace mars

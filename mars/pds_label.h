@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "mars/datum.h"
+
 namespace mars {
 
 // Keywords of a label, named OBJECT.KEYWORD with the innermost object (upper case), or KEYWORD outside of any.
@@ -43,7 +45,8 @@ struct PdsPlacement {
 // a quarter of a pixel; GDAL's own when neither does.
 PdsPlacement place_pds(const PdsLabel& label);
 
-// "areoid", "radius" or "unknown", from what the label says of its values.
-std::string pds_datum(const PdsLabel& label);
+// From what the label says of its values: MOLA's are counted from the areoid, or are radii (which GDAL makes of the
+// label's OFFSET). A label that says RADIUS and has no OFFSET counts from the sphere of its axes.
+VerticalDatum pds_datum(const PdsLabel& label);
 
 }  // namespace mars

@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "mars/datum.h"
+
 namespace mars {
 
 // A source that cannot be opened or read. what() names the file, the operation, the library's own words and
@@ -38,9 +40,11 @@ struct SourceInfo {
   std::int64_t mtime_s = 0;     // seconds since 1970, 0 for built-in sources
   double resolution_m = 0;      // post spacing at its best place
   double quantum_m = 0;         // step of its values; 0 = floating point
-  std::string datum;            // "areoid", "sphere", "radius", or "unknown"
+  VerticalDatum datum;               // of the values that the source gives
+  double body_radius_m = 0;          // equatorial radius of the body that the product is of; 0 = not said
   std::optional<double> accuracy_m;  // one sigma, vertical, where the product states it
   bool illustration = false;         // true for made-up planets: never to be read as data
+  std::string treatment;             // what was done to the product's own values; empty = nothing
 };
 
 // Called with directions and the source's own values there (metres); blocks may come in any order.
@@ -104,6 +108,7 @@ std::string raster_library();
 struct StackOptions {
   // Width, in posts of the finer source, over which an inset fades into what lies below it at its rim.
   double feather_posts = 16;
+  double feather_m = 0;  // > 0: in metres instead; at most kMaxFeather_posts posts
 };
 
 // Sources stacked by resolution: at each place the finest one that has data decides, feathered at its rim.

@@ -13,7 +13,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 class ElevationStack final : public ElevationSource {
  public:
   ElevationStack(std::vector<std::shared_ptr<const ElevationSource>> sources, const StackOptions& options)
-      : sources_(by_resolution(std::move(sources), options)), feather_posts_(options.feather_posts) {
+      : sources_(by_resolution(std::move(sources), options)), options_(options) {
     const SourceInfo* known = nullptr;
     for (const auto& source : sources_) {
       first_info_.push_back(infos_.size());
@@ -21,12 +21,10 @@ class ElevationStack final : public ElevationSource {
       for (SourceInfo& info : source->infos()) infos_.push_back(std::move(info));
     }
     for (const SourceInfo& info : infos_) {
-      if (info.datum == "unknown" || info.datum.empty()) continue;
-      if (known != nullptr && known->datum != info.datum) {
-        throw SourceError(known->name + " holds heights of datum '" + known->datum + "' but " + info.name +
-                          " of '" + info.datum +
-                          "'; convert one of them (e.g. add or subtract the areoid radius with gdal_calc.py), "
-                          "or build without it");
+      if (!info.datum.is_known()) continue;
+      if (known != nullptr && !(known->datum == info.datum)) {
+        throw SourceError(known->name + " holds heights of datum '" + to_string(known->datum) + "' but " +
+                          info.name + " of '" + to_string(info.datum) + "'; convert one of them first");
       }
       known = &info;
     }
@@ -106,7 +104,7 @@ class ElevationStack final : public ElevationSource {
   void blend(std::span<const glm::dvec3> directions, double spacing_m, std::span<Blend> blends) const {
     std::vector<double> heights_m;
     walk_stack(
-        sources_, feather_posts_, directions,
+        sources_, options_, directions,
         [&](std::size_t s, std::span<const glm::dvec3> places, std::span<char> has) {
           heights_m.resize(places.size());
           sources_[s]->sample(places, spacing_m, heights_m);
@@ -134,7 +132,7 @@ class ElevationStack final : public ElevationSource {
   }
 
   std::vector<std::shared_ptr<const ElevationSource>> sources_;
-  double feather_posts_;
+  StackOptions options_;
   double resolution_m_ = std::numeric_limits<double>::infinity();
   std::vector<SourceInfo> infos_;
   std::vector<std::size_t> first_info_;  // index into infos_ of each source's first

@@ -11,7 +11,7 @@ namespace {
 class ImageStack final : public ImageSource {
  public:
   ImageStack(std::vector<std::shared_ptr<const ImageSource>> sources, const StackOptions& options)
-      : sources_(by_resolution(std::move(sources), options)), feather_posts_(options.feather_posts) {}
+      : sources_(by_resolution(std::move(sources), options)), options_(options) {}
 
   std::vector<SourceInfo> infos() const override {
     std::vector<SourceInfo> all;
@@ -33,7 +33,7 @@ class ImageStack final : public ImageSource {
     std::vector<Rgb> own;
     std::vector<std::uint8_t> own_alpha;
     walk_stack(
-        sources_, feather_posts_, directions,
+        sources_, options_, directions,
         [&](std::size_t s, std::span<const glm::dvec3> places, std::span<char> has) {
           own.resize(places.size());
           own_alpha.resize(places.size());
@@ -69,7 +69,7 @@ class ImageStack final : public ImageSource {
 
  private:
   std::vector<std::shared_ptr<const ImageSource>> sources_;
-  double feather_posts_;
+  StackOptions options_;
 };
 
 }  // namespace

@@ -42,9 +42,19 @@ std::vector<std::shared_ptr<const Source>> by_resolution(std::vector<std::shared
     throw SourceError("stack of sources: feather of " + std::to_string(options.feather_posts) +
                       " posts; give 0 to " + std::to_string(static_cast<int>(kMaxFeather_posts)));
   }
+  if (!(options.feather_m >= 0 && std::isfinite(options.feather_m))) {
+    throw SourceError("stack of sources: a feather of " + std::to_string(options.feather_m) + " m; give 0 or more");
+  }
   std::stable_sort(sources.begin(), sources.end(),
                    [](const auto& a, const auto& b) { return resolution_m(*a) < resolution_m(*b); });
   return sources;
+}
+
+// Width of a source's fade, in its posts.
+template <class Source>
+double feather_posts(const Source& source, const StackOptions& options) {
+  if (options.feather_m <= 0) return options.feather_posts;
+  return std::min(options.feather_m / resolution_m(source), kMaxFeather_posts);
 }
 
 // Places, their numbers in the batch, and what is left of each for the sources further down.
@@ -110,7 +120,7 @@ inline Cap enclosing_cap(std::span<const glm::dvec3> directions) {
 // sample(source index, directions, has) must say in `has` where the source has data; then
 // visit(source index, places = numbers in the batch, has, shares of the value).
 template <class Source, class Sample, class Visit>
-void walk_stack(const std::vector<std::shared_ptr<const Source>>& sources, double feather_posts,
+void walk_stack(const std::vector<std::shared_ptr<const Source>>& sources, const StackOptions& options,
                 std::span<const glm::dvec3> directions, const Sample& sample, const Visit& visit) {
   StackRest rest(directions);
   std::vector<double> shares;
@@ -121,7 +131,7 @@ void walk_stack(const std::vector<std::shared_ptr<const Source>>& sources, doubl
     has.assign(rest.places.size(), 0);
     sample(s, rest.directions, has);
     const bool lowest = s + 1 == sources.size();
-    rim_shares(*sources[s], feather_posts, rest, has, lowest, shares);
+    rim_shares(*sources[s], feather_posts(*sources[s], options), rest, has, lowest, shares);
     for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = has[i] != 0 ? shares[i] * rest.share[i] : 0.0;
     visit(s, rest.places, has, shares);
     for (std::size_t i = 0; i < shares.size(); ++i) rest.share[i] -= shares[i];

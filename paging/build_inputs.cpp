@@ -115,6 +115,7 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
   meta.sources = elevation.infos();
   if (meta.sources.empty()) throw PlanetError("no elevation source: give at least one DEM");
   meta.datum = meta.sources.front().datum;
+  if (options.true_radii) meta.shape = "radius";
   meta.quantum_m =
       options.quantum_m > 0 ? options.quantum_m : choose_quantum(meta.sources, options.finest_spacing_m);
   meta.fill_m = std::round(mean_height(elevation) / meta.quantum_m) * meta.quantum_m;

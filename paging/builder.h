@@ -27,6 +27,7 @@ struct BuildOptions {
   std::string output;                  // the planet file to make
   std::string body = "Mars";
   double radius_m = mars::kMarsRadius_m;
+  bool true_radii = false;             // the sources' heights are counted from the sphere of radius_m
   double base_spacing_m = 3700;        // at least this fine everywhere, so that the surface is round
   double finest_spacing_m = 0;         // not finer than this; 0 = as fine as the sources
   std::vector<Region> regions;         // where to go beyond the base spacing, texels too; empty = wherever sources do

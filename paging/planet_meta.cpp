@@ -31,22 +31,34 @@ json to_json(const mars::SourceInfo& s) {
          {"mtime_s", s.mtime_s},
          {"resolution_m", s.resolution_m},
          {"quantum_m", s.quantum_m},
-         {"datum", s.datum},
+         {"datum", to_string(s.datum)},
          {"illustration", s.illustration}};
   j["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
+  if (s.body_radius_m > 0) j["body_radius_m"] = s.body_radius_m;
+  if (!s.treatment.empty()) j["treatment"] = s.treatment;
   return j;
 }
 
-mars::SourceInfo source_from(const json& j) {
+// The first files of format 1 say nothing for images.
+mars::VerticalDatum datum_from(const std::string& text, double radius_m) {
+  if (text.empty()) return {};
+  const auto datum = mars::parse_datum(text, radius_m);
+  if (!datum) throw std::invalid_argument("datum '" + text + "'");
+  return *datum;
+}
+
+mars::SourceInfo source_from(const json& j, double radius_m) {
   mars::SourceInfo s;
   s.name = j.at("name").get<std::string>();
   s.size_bytes = j.at("size_bytes").get<std::int64_t>();
   s.mtime_s = j.at("mtime_s").get<std::int64_t>();
   s.resolution_m = j.at("resolution_m").get<double>();
   s.quantum_m = j.at("quantum_m").get<double>();
-  s.datum = j.at("datum").get<std::string>();
+  s.datum = datum_from(j.at("datum").get<std::string>(), radius_m);
   s.illustration = j.at("illustration").get<bool>();
   if (!j.at("accuracy_m").is_null()) s.accuracy_m = j.at("accuracy_m").get<double>();
+  s.body_radius_m = j.value("body_radius_m", 0.0);
+  s.treatment = j.value("treatment", std::string());
   return s;
 }
 
@@ -56,20 +68,20 @@ json to_json(const std::vector<mars::SourceInfo>& sources) {
   return list;
 }
 
-std::vector<mars::SourceInfo> sources_from(const json& list) {
+std::vector<mars::SourceInfo> sources_from(const json& list, double radius_m) {
   std::vector<mars::SourceInfo> sources;
-  for (const auto& s : list) sources.push_back(source_from(s));
+  for (const auto& s : list) sources.push_back(source_from(s, radius_m));
   return sources;
 }
 
 auto tie(const mars::SourceInfo& s) {
-  return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.datum, s.accuracy_m,
-                  s.illustration);
+  return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.accuracy_m, s.illustration,
+                  s.body_radius_m, s.treatment);
 }
 
 bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::SourceInfo>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const auto& x, const auto& y) { return tie(x) == tie(y); });
+                    [](const auto& x, const auto& y) { return tie(x) == tie(y) && x.datum == y.datum; });
 }
 
 constexpr const char* kChecksumKey = "checksum";
@@ -91,7 +103,7 @@ void check_ranges(const PlanetMeta& m, const std::string& path) {
   const bool sane = std::isfinite(m.radius_m) && m.radius_m > 1.0 && m.radius_m < 1e12 && m.tile.k >= 3 &&
                     m.tile.k <= 7 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 &&
                     std::isfinite(m.fill_m) && std::isfinite(m.lowest_radius_m) &&
-                    std::isfinite(m.highest_radius_m) && m.shape == "sphere";
+                    std::isfinite(m.highest_radius_m) && (m.shape == "sphere" || m.shape == "radius");
   if (!sane)
     throw PlanetError(path + ": damaged: a value of the table meta is out of range; build the file again");
 }
@@ -115,7 +127,7 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"format", std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor)},
       {"body", m.body},
       {"radius_m", json(m.radius_m).dump()},
-      {"datum", m.datum},
+      {"datum", to_string(m.datum)},
       {"shape", m.shape},
       {"tile_k", std::to_string(m.tile.k)},
       {"quantum_m", json(m.quantum_m).dump()},
@@ -166,13 +178,14 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     };
     m.body = text("body");
     m.radius_m = value("radius_m").get<double>();
-    m.datum = text("datum");
+    current = "datum";
+    m.datum = datum_from(text("datum"), m.radius_m);
     m.shape = text("shape");
     m.tile.k = value("tile_k").get<int>();
     m.quantum_m = value("quantum_m").get<double>();
     m.fill_m = value("fill_m").get<double>();
-    m.sources = sources_from(value("sources"));
-    m.image_sources = sources_from(value("image_sources"));
+    m.sources = sources_from(value("sources"), m.radius_m);
+    m.image_sources = sources_from(value("image_sources"), m.radius_m);
     m.resampling.max_m = value("resampling_max_m").get<double>();
     m.resampling.rms_m = value("resampling_rms_m").get<double>();
     m.resampling.posts = value("resampling_posts").get<std::int64_t>();

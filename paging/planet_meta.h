@@ -36,8 +36,8 @@ struct ResamplingError {
 struct PlanetMeta {
   std::string body = "Mars";
   double radius_m = mars::kMarsRadius_m;
-  std::string datum = "unknown";
-  std::string shape = "sphere";
+  mars::VerticalDatum datum;     // of the heights; S lies at radius_m + height
+  std::string shape = "sphere";  // "radius": these are true radii, datum is the sphere of radius_m
   lod::TileShape tile;
   double quantum_m = 1.0 / 16.0;
   double fill_m = 0;                      // drawn where no source has data; query answers null there

@@ -304,7 +304,7 @@ TEST(EmbeddedSources, SayThatTheyAreAnIllustration) {
     ASSERT_EQ(infos.size(), 1U);
     EXPECT_EQ(infos[0].name, "embedded Mars (illustration)");
     EXPECT_TRUE(infos[0].illustration);
-    EXPECT_EQ(infos[0].datum, "areoid");
+    EXPECT_EQ(infos[0].datum, mars::VerticalDatum::areoid());
     EXPECT_FALSE(infos[0].accuracy_m.has_value());
   }
   std::vector<int> index(2, -1);

@@ -127,12 +127,12 @@ TEST(PdsLabel, SaysTheDatum) {
   const auto datum = [](const std::string& words) {
     return mars::pds_datum(parse_pds_label("OBJECT = IMAGE\n" + words + "\nEND_OBJECT\nEND\n"));
   };
-  EXPECT_EQ(datum("NAME = MEDIAN_TOPOGRAPHY"), "areoid");
-  EXPECT_EQ(datum("NAME = \"TOPOGRAPHY ABOVE AREOID (RADIUS - AREOID)\""), "areoid");
-  EXPECT_EQ(datum("DESCRIPTION = \"Height above areoid\""), "areoid");
-  EXPECT_EQ(datum("NAME = MEDIAN_PLANETARY_RADIUS"), "radius");
-  EXPECT_EQ(datum("NAME = AREOID_RADIUS"), "radius");
-  EXPECT_EQ(datum("NAME = \"SOMETHING\""), "unknown");
+  EXPECT_EQ(datum("NAME = MEDIAN_TOPOGRAPHY"), mars::VerticalDatum::areoid());
+  EXPECT_EQ(datum("NAME = \"TOPOGRAPHY ABOVE AREOID (RADIUS - AREOID)\""), mars::VerticalDatum::areoid());
+  EXPECT_EQ(datum("DESCRIPTION = \"Height above areoid\""), mars::VerticalDatum::areoid());
+  EXPECT_EQ(datum("NAME = MEDIAN_PLANETARY_RADIUS"), mars::VerticalDatum::radius());
+  EXPECT_EQ(datum("NAME = AREOID_RADIUS"), mars::VerticalDatum::radius());
+  EXPECT_EQ(datum("NAME = \"SOMETHING\""), mars::VerticalDatum{});
 }
 
 class PdsConvention : public ::testing::TestWithParam<double> {};
@@ -140,7 +140,7 @@ class PdsConvention : public ::testing::TestWithParam<double> {};
 TEST_P(PdsConvention, EveryPixelAtItsPlaceToTheBit) {
   const test_support::TempDir folder;
   const auto source = mars::open_elevation(write_map(folder, global_label(GetParam())));
-  ASSERT_EQ(source->infos().at(0).datum, "areoid");
+  ASSERT_EQ(source->infos().at(0).datum, mars::VerticalDatum::areoid());
   EXPECT_EQ(source->infos().at(0).quantum_m, 1.0);
   int posts = 0;
   source->visit_posts(

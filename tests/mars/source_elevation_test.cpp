@@ -263,7 +263,7 @@ TEST(GdalElevation, ScaleOffsetUnitAndQuantum) {
   EXPECT_NEAR(height_at(*polar, {0.5, 0.5}), 2000, 1e-9);
   EXPECT_NEAR(height_at(*polar, {1.5, 0.5}), -8000, 1e-9);
   EXPECT_EQ(polar->infos().at(0).quantum_m, 0.25);
-  EXPECT_EQ(polar->infos().at(0).datum, "unknown");
+  EXPECT_EQ(polar->infos().at(0).datum, mars::VerticalDatum{});
 
   raster.type = GDT_Float64;
   raster.scale.reset();
@@ -273,7 +273,7 @@ TEST(GdalElevation, ScaleOffsetUnitAndQuantum) {
   const auto radius = mars::open_elevation(source_files::write(folder / "r.tif", raster));
   EXPECT_NEAR(height_at(*radius, {1, 1}), 3389123.456789, 1e-8);
   EXPECT_EQ(radius->infos().at(0).quantum_m, 0.0);
-  EXPECT_EQ(radius->infos().at(0).datum, "radius");
+  EXPECT_EQ(radius->infos().at(0).datum, mars::VerticalDatum::radius());
 }
 
 TEST(GdalElevation, EveryIntegerTypeKeepsItsDigits) {

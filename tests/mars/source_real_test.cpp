@@ -19,7 +19,7 @@ using source_files::height_at;
 TEST(RealData, Mola4KnownHeights) {
   VPE_NEED_SHARED(path, "mola4/megt90n000cb.lbl");
   const auto source = mars::open_elevation(path.string());
-  EXPECT_EQ(source->infos().at(0).datum, "areoid");
+  EXPECT_EQ(source->infos().at(0).datum, mars::VerticalDatum::areoid());
   EXPECT_EQ(source->infos().at(0).quantum_m, 1);
   EXPECT_NEAR(source->infos().at(0).resolution_m, 14818.67, 0.1);
   // 1/4 degree posts: these are pixel centres.
@@ -96,7 +96,7 @@ TEST(RealData, ArchiveConventionOfMola4IsTheSamePlanet) {
 TEST(RealData, AreoidIsARadius) {
   VPE_NEED_SHARED(path, "mola8/mola8_areoid.lbl");
   const auto source = mars::open_elevation(path.string());
-  EXPECT_EQ(source->infos().at(0).datum, "radius");
+  EXPECT_EQ(source->infos().at(0).datum, mars::VerticalDatum::radius());
   const double pole_m = height_at(*source, {0, 90});
   EXPECT_GT(pole_m, 3376000);
   EXPECT_LT(pole_m, 3380000);

@@ -23,12 +23,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // One height everywhere, or north of the equator only; knows nothing of rims.
 class Flat : public ElevationSource {
  public:
-  Flat(std::string name, double resolution_m, double height_m, std::string datum = "unknown",
+  Flat(std::string name, double resolution_m, double height_m, const std::string& datum = "unknown",
        bool north_only = false)
       : height_m_(height_m), north_only_(north_only) {
     info_.name = std::move(name);
     info_.resolution_m = resolution_m;
-    info_.datum = std::move(datum);
+    info_.datum = mars::parse_datum(datum, mars::kMarsRadius_m).value();
   }
   std::vector<mars::SourceInfo> infos() const override { return {info_}; }
   void sample(std::span<const glm::dvec3> directions, double, std::span<double> heights_m) const override {

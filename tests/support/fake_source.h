@@ -22,7 +22,7 @@ class FakeElevation : public mars::ElevationSource {
     mars::SourceInfo info;
     info.name = "fake";
     info.resolution_m = 1000;
-    info.datum = "sphere";
+    info.datum = mars::VerticalDatum::sphere(mars::kMarsRadius_m);
     return {info};
   }
   void sample(std::span<const glm::dvec3> directions, double, std::span<double> heights_m) const override {

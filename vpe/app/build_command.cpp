@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "vpe/app/build_sources.h"
 #include "vpe/app/output.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/planet_build.h"
@@ -16,6 +17,7 @@ struct BuildArguments {
   std::vector<std::string> dems;
   std::vector<std::string> images;
   std::vector<std::string> regions;
+  SourceArguments sources;
   paging::BuildOptions options;
 };
 
@@ -71,7 +73,8 @@ void build(BuildArguments& arguments, const Common& common) {
     dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))
                                      : mars::open_elevation(path));
   }
-  const auto elevation = dems.size() == 1 ? dems.front() : mars::stack_elevation(dems);
+  const mars::Combined combined = combine_sources(std::move(dems), arguments.sources, options);
+  if (!common.quiet) say_findings(combined);
   std::vector<std::shared_ptr<const mars::ImageSource>> images;
   for (const std::string& path : arguments.images) {
     images.push_back(is_embedded(path) ? mars::embedded_image(embedded_finest_m(options))
@@ -80,11 +83,13 @@ void build(BuildArguments& arguments, const Common& common) {
   std::shared_ptr<const mars::ImageSource> image;
   if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
 
-  const paging::BuildSummary summary = run_build(options, *elevation, image.get(), common);
+  const paging::BuildSummary summary = run_build(options, *combined.source, image.get(), common);
   if (common.json) {
     nlohmann::json json = planet_json(summary.meta);
     json["bytes"] = summary.bytes;
     json["tiles_kept"] = summary.kept;
+    json["findings"] = findings_json(combined);
+    json["notes"] = combined.notes;
     print_json(json);
   } else if (!common.quiet) {
     std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %.1f MB\n", options.output.c_str(),
@@ -121,10 +126,7 @@ void add_build(CLI::App& program, Common& common) {
   command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")
       ->check(number_within(100.0, 1e6))
       ->capture_default_str();
-  command->add_option("--radius", o.radius_m, "Radius of the sphere, metres")
-      ->check(number_within(100.0, 1e9))
-      ->capture_default_str();
-  command->add_option("--body", o.body, "Name of the body")->capture_default_str();
+  add_source_options(*command, arguments->sources);
   command->callback([arguments, &common] { build(*arguments, common); });
 }
 

@@ -28,7 +28,7 @@ void info(const std::string& argument, const Common& common) {
   line("file", planet->path());
   if (m.illustration) line("NOTE", "an illustration: numbers are not data");
   line("body", m.body + ", sphere of radius " + number(m.radius_m, "m"));
-  line("vertical datum", m.datum);
+  line("vertical datum", describe_datum(m));
   line("heights", number(m.lowest_radius_m - m.radius_m, "m") + " .. " +
                       number(m.highest_radius_m - m.radius_m, "m") + ", stored in steps of " +
                       number(m.quantum_m, "m"));
@@ -45,7 +45,8 @@ void info(const std::string& argument, const Common& common) {
                                number(m.resampling.max_m, "m") + " over " + std::to_string(m.resampling.posts) +
                                " source posts");
   for (const mars::SourceInfo& s : m.sources) {
-    line("elevation from", s.name + " (" + number(s.resolution_m, "m") + " posts, datum " + s.datum + ")");
+    line("elevation from", s.name + " (" + number(s.resolution_m, "m") + " posts, datum " + to_string(s.datum) + ")" +
+                               (s.treatment.empty() ? "" : "; " + s.treatment));
   }
   for (const mars::SourceInfo& s : m.image_sources)
     line("image from", s.name + " (" + number(s.resolution_m, "m") + " pixels)");

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "mars/embedded.h"
+#include "vpe/app/build_sources.h"
 #include "vpe/app/planet_build.h"
 #include "vpe/core/number.h"
 
@@ -46,13 +47,18 @@ std::string hex(std::uint64_t x) {
   return text;
 }
 
-void build_into(const fs::path& target, const std::string& what, const mars::ElevationSource& elevation,
-                const mars::ImageSource* image, const Common& common) {
-  if (!common.quiet) std::fprintf(stderr, "Building %s once, into %s\n", what.c_str(), target.c_str());
+void build_into(const fs::path& target, const std::string& what,
+                std::shared_ptr<const mars::ElevationSource> elevation, const mars::ImageSource* image,
+                const Common& common) {
   paging::BuildOptions options;
+  const mars::Combined combined = combine_sources({std::move(elevation)}, {}, options);
+  if (!common.quiet) {
+    std::fprintf(stderr, "Building %s once, into %s\n", what.c_str(), target.c_str());
+    say_findings(combined);
+  }
   options.output = target.string();
   options.threads = common.threads;
-  run_build(options, elevation, image, common);
+  run_build(options, *combined.source, image, common);
 }
 
 std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what,
@@ -105,7 +111,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
   if (argument.empty()) {
     return cached(embedded_planet_path().stem().string(), "the embedded Mars (an illustration)",
                   [&](const fs::path& target) {
-                    build_into(target, "the embedded Mars (an illustration)", *mars::embedded_elevation(),
+                    build_into(target, "the embedded Mars (an illustration)", mars::embedded_elevation(),
                                mars::embedded_image().get(), common);
                   });
   }
@@ -119,7 +125,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
       paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
   const std::string name = fs::path(argument).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
   return cached(name, argument,
-                [&](const fs::path& target) { build_into(target, argument, *source, nullptr, common); });
+                [&](const fs::path& target) { build_into(target, argument, source, nullptr, common); });
 }
 
 std::optional<std::vector<double>> parse_numbers(const std::string& text) {

@@ -61,7 +61,7 @@ nlohmann::json to_json(const Answer& a, const paging::PlanetMeta& meta) {
   return {{"lon_deg", a.place.lon_deg},
           {"lat_deg", a.place.lat_deg},
           {"elevation_m", value(a.elevation_m)},
-          {"datum", meta.datum},
+          {"datum", to_string(meta.datum)},
           {"slope_deg", value(a.slope_deg)},
           {"aspect_deg", value(a.aspect_deg)},
           {"level", a.level},

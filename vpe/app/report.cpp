@@ -12,7 +12,8 @@ json sources_json(const std::vector<mars::SourceInfo>& sources) {
   json list = json::array();
   for (const mars::SourceInfo& s : sources) {
     json entry{{"name", s.name},           {"size_bytes", s.size_bytes}, {"resolution_m", s.resolution_m},
-               {"quantum_m", s.quantum_m}, {"datum", s.datum},           {"illustration", s.illustration}};
+               {"quantum_m", s.quantum_m}, {"datum", to_string(s.datum)},           {"illustration", s.illustration}};
+    entry["treatment"] = s.treatment.empty() ? json() : json(s.treatment);
     entry["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
     list.push_back(std::move(entry));
   }
@@ -24,7 +25,7 @@ json sources_json(const std::vector<mars::SourceInfo>& sources) {
 json planet_json(const paging::PlanetMeta& m) {
   return {{"body", m.body},
           {"radius_m", m.radius_m},
-          {"datum", m.datum},
+          {"datum", to_string(m.datum)},
           {"shape", m.shape},
           {"illustration", m.illustration},
           {"tile_intervals", m.tile.intervals()},
@@ -43,6 +44,11 @@ json planet_json(const paging::PlanetMeta& m) {
           {"image_sources", sources_json(m.image_sources)},
           {"program", m.program},
           {"identity", m.identity}};
+}
+
+std::string describe_datum(const paging::PlanetMeta& m) {
+  if (m.shape == "radius") return to_string(m.datum) + " (true radii)";
+  return to_string(m.datum);
 }
 
 json stats_json(const core::FrameStats& s) {

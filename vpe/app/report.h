@@ -9,6 +9,8 @@
 namespace vpe::app {
 
 nlohmann::json planet_json(const paging::PlanetMeta& meta);
+// "areoid", or "sphere:3396190 (true radii)".
+std::string describe_datum(const paging::PlanetMeta& meta);
 nlohmann::json stats_json(const core::FrameStats& stats);
 
 // To stdout. Paths that are not UTF-8 get replacement characters.

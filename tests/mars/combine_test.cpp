@@ -1,0 +1,284 @@
+// One datum, levelled insets, blunders: what becomes of rasters before a planet is built from them.
+#include "mars/combine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "mars/adjusted.h"
+#include "mars/convert.h"
+#include "tests/mars/source_files.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using mars::Combined;
+using mars::CombineOptions;
+using mars::ElevationSource;
+using mars::LonLat;
+using mars::VerticalDatum;
+using source_files::box;
+using source_files::height_at;
+using source_files::Raster;
+using Source = std::shared_ptr<const ElevationSource>;
+
+// Gentle hills, the same in every raster.
+double hills(LonLat p) {
+  return 800 * std::sin(0.7 * p.lon_deg) * std::cos(0.9 * p.lat_deg) +
+         90 * std::sin(9 * p.lon_deg + 7 * p.lat_deg);
+}
+
+struct Area {
+  double west = 0, north = 0, east = 0, south = 0;
+  int width = 0, height = 0;
+  LonLat at(int column, int row) const {
+    return {west + (column + 0.5) * (east - west) / width, north + (row + 0.5) * (south - north) / height};
+  }
+};
+constexpr Area kBase{-20, 20, 20, -20, 800, 800};   // 3 km
+constexpr Area kInset{-2, 2.4, 1, -0.6, 600, 600};  // 300 m
+
+class Combine : public ::testing::Test {
+ protected:
+  Source raster(const std::string& name, const Area& area, const std::function<double(LonLat)>& height,
+                const VerticalDatum& datum = VerticalDatum::areoid(),
+                const std::string& crs = source_files::kSphere) {
+    Raster r;
+    r.width = area.width;
+    r.height = area.height;
+    r.crs = crs;
+    r.type = GDT_Float64;
+    r.geotransform = box(area.west, area.north, area.east, area.south, area.width, area.height);
+    r.value = [&](int, int column, int row) { return height(area.at(column, row)); };
+    const Source source = mars::open_elevation(source_files::write(dir_ / (name + ".tif"), r));
+    if (!datum.is_known() || source->infos().front().datum == datum) return source;
+    return mars::adjusted(
+        source, [](std::span<const glm::dvec3>, std::span<double>) {}, datum, "");
+  }
+  std::string message(const std::vector<Source>& sources, const CombineOptions& options = {}) {
+    try {
+      mars::combine_elevation(sources, options);
+    } catch (const mars::SourceError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  static void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts) {
+      EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
+    }
+  }
+
+  static CombineOptions converting() {
+    CombineOptions options;
+    options.convert = true;
+    return options;
+  }
+
+  test_support::TempDir dir_;
+};
+
+TEST_F(Combine, OtherDatumsAreRefusedWithWhatIsAtStake) {
+  const Source base = raster("base", kBase, hills);
+  const Source inset = raster(
+      "inset", kInset, [](LonLat p) { return hills(p) - 556; }, VerticalDatum::sphere(3396190));
+  expect_parts(message({base, inset}),
+               {"base.tif", "'areoid'", "inset.tif", "'sphere:3396190'", "556.", "--convert"});
+  expect_parts(message({base, inset}, converting()), {"inset.tif", "areoid", "--areoid"});
+  // The 190 m between two spheres are no matter of taste either.
+  const Source sphere = raster("s", kBase, hills, VerticalDatum::sphere(3396000));
+  expect_parts(message({sphere, inset}), {"'sphere:3396000'", "'sphere:3396190'"});
+  // Somewhere else on the planet: nothing to compare, still refused.
+  const Source far = raster("far", {100, 20, 110, 10, 50, 50}, hills, VerticalDatum::radius());
+  expect_parts(message({base, far}), {"no place in common"});
+}
+
+TEST_F(Combine, UnknownDatumsAreSaid) {
+  const Source base = raster("base", kBase, hills);
+  const Source inset = raster("inset", kInset, hills, {});
+  const Combined combined = mars::combine_elevation({base, inset}, {});
+  ASSERT_EQ(combined.notes.size(), 1U);
+  expect_parts(combined.notes[0], {"inset.tif", "'areoid'", "--datum"});
+  for (const mars::SourceInfo& info : combined.source->infos()) EXPECT_EQ(info.datum, VerticalDatum::areoid());
+  expect_parts(message({base, inset}, converting()), {"inset.tif", "not known", "--datum"});
+  EXPECT_FALSE(mars::combine_elevation({inset}, {}).datum.is_known());
+}
+
+TEST_F(Combine, ConvertsThroughTheAreoid) {
+  const auto areoid_radius = [](LonLat p) { return 3396000 + 40 * p.lon_deg + 25 * p.lat_deg; };
+  const Source areoid = raster("areoid", kBase, areoid_radius, VerticalDatum::radius());
+  const Source base = raster("base", kBase, hills);
+  const Source inset = raster(
+      "inset", kInset, [&](LonLat p) { return areoid_radius(p) + hills(p) - 3396190; },
+      VerticalDatum::sphere(3396190));
+  CombineOptions options;
+  options.convert = true;
+  options.areoid = areoid;
+  Combined combined = mars::combine_elevation({inset, base}, options);
+  EXPECT_EQ(combined.datum, VerticalDatum::areoid());
+  const LonLat middle = kInset.at(300, 300);
+  EXPECT_NEAR(height_at(*combined.source, middle), hills(middle), 1e-6);
+  // The other way, to true radii: both.
+  options.true_radii = true;
+  combined = mars::combine_elevation({inset, base}, options);
+  EXPECT_TRUE(combined.true_radii);
+  EXPECT_EQ(combined.datum, VerticalDatum::sphere(mars::kMarsRadius_m));
+  EXPECT_NEAR(height_at(*combined.source, middle), areoid_radius(middle) + hills(middle) - 3396190, 1e-6);
+  const LonLat outside = kBase.at(700, 150);
+  EXPECT_NEAR(height_at(*combined.source, outside), areoid_radius(outside) + hills(outside) - 3396190, 1e-6);
+  for (const mars::SourceInfo& info : combined.source->infos()) {
+    EXPECT_EQ(info.treatment.empty(), info.name.find("inset") != std::string::npos) << info.treatment;
+  }
+  // Its grid of the areoid says what it is.
+  options.areoid = raster("heights", kBase, hills);
+  expect_parts(message({inset, base}, options), {"heights.tif", "areoid", "radii"});
+}
+
+TEST_F(Combine, RadiiBecomeHeightsAboveTheSphere) {
+  const Source radii = raster(
+      "r", kBase, [](LonLat p) { return 3396000 + hills(p); }, VerticalDatum::radius());
+  const Combined combined = mars::combine_elevation({radii}, {});
+  EXPECT_TRUE(combined.true_radii);
+  EXPECT_EQ(combined.datum, VerticalDatum::sphere(mars::kMarsRadius_m));
+  EXPECT_NEAR(height_at(*combined.source, kBase.at(70, 600)), hills(kBase.at(70, 600)) - 190, 1e-6);
+}
+
+TEST_F(Combine, OtherBodiesAreRefused) {
+  const Source moon =
+      raster("moon", kBase, hills, VerticalDatum::sphere(1737400), "+proj=longlat +R=1737400 +no_defs");
+  EXPECT_EQ(moon->infos().front().body_radius_m, 1737400);
+  expect_parts(message({moon}), {"moon.tif", "1737400", "3396190", "--body", "--radius"});
+  CombineOptions options;
+  options.radius_m = 1737400;
+  EXPECT_EQ(message({moon}, options), "");
+}
+
+// 30 m apart and tilted by 0.1 %: both come out within 1 %, and nothing of them is left in the planet.
+TEST_F(Combine, OffsetAndTiltAreRecovered) {
+  const LonLat centre{-0.5, 0.9};
+  const mars::LocalFrame frame = mars::local_frame(centre);
+  const double azimuth = 35 * mars::kRadiansPerDegree;
+  const auto off = [&](LonLat p) {
+    const glm::dvec3 d = mars::direction(p);
+    const double arc_m = mars::kMarsRadius_m * mars::angle_between_rad(d, frame.up);
+    const double bearing = std::atan2(glm::dot(d, frame.east), glm::dot(d, frame.north));
+    return 30 + 0.001 * arc_m * std::cos(bearing - azimuth);
+  };
+  const Source base = raster("base", kBase, hills);
+  const Source inset = raster("inset", kInset, [&](LonLat p) { return hills(p) + off(p); });
+  CombineOptions options;
+  options.level = true;
+  const Combined combined = mars::combine_elevation({base, inset}, options);
+  ASSERT_EQ(combined.findings.size(), 2U);
+  EXPECT_FALSE(combined.findings[0].level);
+  ASSERT_TRUE(combined.findings[1].level);
+  const mars::Level& level = *combined.findings[1].level;
+  EXPECT_NEAR(level.offset_m, off(level.centre), 0.01 * 30);
+  EXPECT_NEAR(std::hypot(level.tilt_east, level.tilt_north), 0.001, 1e-5);
+  EXPECT_NEAR(std::atan2(level.tilt_east, level.tilt_north), azimuth, 0.01);
+  EXPECT_GT(level.rms_before_m, 30);
+  EXPECT_LT(level.rms_after_m, 3);  // the base's own interpolation of the small hills
+  EXPECT_GT(level.posts, 10000);
+  for (const auto& [column, row] : {std::pair{20, 30}, {580, 20}, {300, 300}, {15, 590}}) {
+    const LonLat p = kInset.at(column, row);
+    EXPECT_NEAR(height_at(*combined.source, p), hills(p), 2) << column << "," << row;
+  }
+  expect_parts(combined.source->infos()[0].treatment, {"levelled by", "tilt"});
+}
+
+TEST_F(Combine, LevelStandsUpToBlunders) {
+  const Source base = raster("base", kBase, hills);
+  const Source inset =
+      raster("inset", kInset, [](LonLat p) { return hills(p) + 12 - (p.lat_deg < -0.3 ? 1000 : 0); });
+  CombineOptions options;
+  options.level = true;
+  const Combined combined = mars::combine_elevation({base, inset}, options);
+  ASSERT_TRUE(combined.findings[1].level);
+  EXPECT_NEAR(combined.findings[1].level->offset_m, 12, 0.5);
+  EXPECT_LT(std::hypot(combined.findings[1].level->tilt_east, combined.findings[1].level->tilt_north), 1e-4);
+  EXPECT_GT(combined.findings[1].level->left_out, 1000);
+}
+
+TEST_F(Combine, RimsWithoutGroundBelowAreNotLevelled) {
+  const Source base = raster("base", {10, 20, 20, 10, 200, 200}, hills);
+  const Source inset = raster("inset", kInset, hills);
+  CombineOptions options;
+  options.level = true;
+  const Combined combined = mars::combine_elevation({base, inset}, options);
+  EXPECT_FALSE(combined.findings[1].level);
+  ASSERT_EQ(combined.notes.size(), 1U);
+  expect_parts(combined.notes[0], {"inset.tif", "not levelled"});
+}
+
+// A terrace a kilometre too low and a spike, as stereo correlation leaves them.
+TEST_F(Combine, BlundersAreFoundAndDropped) {
+  const auto is_terrace = [](LonLat p) {
+    return p.lon_deg > 0.2 && p.lon_deg < 0.5 && p.lat_deg > 0 && p.lat_deg < 0.4;
+  };
+  const LonLat spike = kInset.at(100, 100);
+  const Source base = raster("base", kBase, hills);
+  const Source inset = raster("inset", kInset, [&](LonLat p) {
+    const bool is_spike = std::hypot(p.lon_deg - spike.lon_deg, p.lat_deg - spike.lat_deg) < 1e-6;
+    return hills(p) - (is_terrace(p) ? 1000 : 0) + (is_spike ? 2500 : 0);
+  });
+  CombineOptions options;
+  Combined combined = mars::combine_elevation({base, inset}, options);
+  ASSERT_TRUE(combined.findings[1].blunders);
+  const mars::BlunderReport& report = *combined.findings[1].blunders;
+  const double share = static_cast<double>(report.implausible) / static_cast<double>(report.posts);
+  EXPECT_NEAR(share, 0.3 * 0.4 / 9.0, 2e-3);
+  EXPECT_NEAR(report.worst_m, 2500, 60);
+  EXPECT_NEAR(report.worst_at.lon_deg, spike.lon_deg, 1e-9);
+  EXPECT_FALSE(combined.findings[1].masked);
+  EXPECT_NEAR(height_at(*combined.source, {0.35, 0.2}), hills({0.35, 0.2}) - 1000, 1);
+
+  options.mask_blunders = true;
+  options.level = true;  // the mask judges levelled heights
+  combined = mars::combine_elevation({base, inset}, options);
+  EXPECT_TRUE(combined.findings[1].masked);
+  double worst = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const LonLat p{-1.99 + 2.98 * (i % 63) / 62.0, -0.59 + 2.98 * (i / 63) / 63.0};
+    worst = std::max(worst, std::abs(height_at(*combined.source, p) - hills(p)));
+  }
+  EXPECT_LT(worst, 60);  // the base's interpolation of the small hills
+  expect_parts(combined.source->infos()[0].treatment, {"dropped"});
+  // What is good stays the inset's own.
+  EXPECT_NEAR(height_at(*combined.source, {-1, 1}), hills({-1, 1}), 1);
+}
+
+TEST_F(Combine, SteepGroundIsNoBlunder) {
+  // A cliff that the base only knows as a ramp.
+  const auto cliff = [](LonLat p) { return p.lon_deg < 0.013 ? 0.0 : 2000.0; };
+  const Source base = raster("base", kBase, cliff);
+  const Source inset = raster("inset", kInset, cliff);
+  const Combined combined = mars::combine_elevation({base, inset}, {});
+  ASSERT_TRUE(combined.findings[1].blunders);
+  EXPECT_EQ(combined.findings[1].blunders->implausible, 0);
+}
+
+TEST_F(Combine, FeatherInMetres) {
+  const Source base = raster("base", kBase, [](LonLat) { return 0.0; });
+  const Source inset = raster("inset", kInset, [](LonLat) { return 100.0; });
+  CombineOptions options;
+  options.stack.feather_m = 20000;
+  const Source source = mars::combine_elevation({base, inset}, options).source;
+  const double metre_deg = 1 / (mars::kMarsRadius_m * mars::kRadiansPerDegree);
+  double last = 0;
+  for (double inside_m = 200; inside_m < 40000; inside_m += 100) {
+    const double h = height_at(*source, {-2 + inside_m * metre_deg, 0.9});
+    EXPECT_GE(h, last - 1e-9) << inside_m;
+    EXPECT_LT(h - last, 1.5) << inside_m;
+    last = h;
+    if (inside_m > 21000) {
+      EXPECT_NEAR(h, 100, 1e-6);
+    }
+    if (inside_m < 18000) {
+      EXPECT_LT(h, 99.9);
+    }
+  }
+}
+
+}  // namespace
