@@ -46,7 +46,8 @@ class Judge {
         low = std::min(low, h);
         high = std::max(high, h);
       }
-      const double terrain_m = std::max(options_.floor_m, options_.relief_share * (high - low));
+      const double terrain_m = std::max({options_.floor_m, options_.relief_share * (high - low),
+                                         0.5 * options_.slope * base_spacing_m(directions[open[k]])});
       excess_m[open[k]] = std::abs(heights_m[open[k]] - base_m[open[k]]) - terrain_m;
     }
   }
@@ -54,10 +55,13 @@ class Judge {
  private:
   static constexpr std::size_t kAround = 8;
 
+  double base_spacing_m(const glm::dvec3& d) const {
+    const double spacing_m = base_.spacing_in({d, 0});
+    return std::isfinite(spacing_m) ? spacing_m : 0;
+  }
+
   void add_ring(const glm::dvec3& d, std::vector<glm::dvec3>& out) const {
-    double spacing_m = base_.spacing_in({d, 0});
-    if (!std::isfinite(spacing_m)) spacing_m = 0;
-    const double angle = spacing_m / radius_m_;
+    const double angle = base_spacing_m(d) / radius_m_;
     const glm::dvec3 u = any_perpendicular(d);
     const glm::dvec3 v = glm::cross(d, u);
     for (std::size_t j = 0; j < kAround; ++j) {

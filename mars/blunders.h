@@ -11,13 +11,14 @@
 namespace mars {
 
 struct BlunderOptions {
-  double floor_m = 150;     // differences up to this are always taken as terrain
-  double relief_share = 1;  // and up to this share of the base's relief around the place
+  double floor_m = 150;     // differences up to this are always taken as terrain,
+  double relief_share = 1;  // and up to this share of the base's relief around the place,
+  double slope = 0.6;       // and up to what such a slope makes of half a base post
 };
 
-// A post is implausible when it lies farther from the base than floor_m and than relief_share times the range
-// of the base's heights within one base post of it (eight places around). Where the base has no data nothing
-// is.
+// A post is implausible when it lies farther from the base than floor_m, than relief_share times the range of the
+// base's heights within one base post of it (eight places around), and than a slope of `slope` over half a base
+// post: a base with posts 7 km apart cannot contradict a peak of 2 km. Where the base has no data nothing is.
 struct BlunderReport {
   std::int64_t posts = 0;  // compared
   std::int64_t implausible = 0;

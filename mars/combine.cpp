@@ -88,9 +88,10 @@ Conversion conversion_of(const SourceInfo& info, const VerticalDatum& datum, con
 // "150 m", without needless digits.
 std::string masked_words(const BlunderOptions& options) {
   char text[160];
-  std::snprintf(text, sizeof text,
-                "posts dropped that lie more than %.12g m and %.12g of the relief off what is below",
-                options.floor_m, options.relief_share);
+  std::snprintf(
+      text, sizeof text,
+      "posts dropped that lie more than %.12g m, %.12g of the relief and a slope of %.12g off what is below",
+      options.floor_m, options.relief_share, options.slope);
   return text;
 }
 
@@ -105,7 +106,7 @@ Source as_datum(const Source& source, const Conversion& conversion, const Vertic
 Source inspect(Source inset, const Source& base, const CombineOptions& options, CombineFinding& finding,
                std::vector<std::string>& notes) {
   const VerticalDatum datum = inset->infos().front().datum;
-  if (options.level) {
+  if (options.level == CombineOptions::Level::kFit) {
     finding.level = fit_level(*inset, *base, options.radius_m, options.stack.feather_posts);
     if (finding.level) {
       inset = adjusted(inset, levelling(*finding.level), datum, to_string(*finding.level));
@@ -145,8 +146,19 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
     Source layer =
         as_datum(source, conversion_of(info, combined.datum, options, combined.notes), combined.datum);
     if (!below.empty()) {
-      const Source base = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
+      Source base = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
       layer = inspect(std::move(layer), base, options, finding, combined.notes);
+      if (options.level == CombineOptions::Level::kBend) {
+        finding.bend = fit_bend(*layer, *base, options.radius_m);
+        if (finding.bend) {
+          base = adjusted(std::move(base), bending(*finding.bend), combined.datum,
+                          to_string(*finding.bend, finding.name));
+          below = {base};
+        } else {
+          combined.notes.push_back("nothing is bent to meet " + finding.name +
+                                   ": its rim has no data below it");
+        }
+      }
     }
     combined.findings.push_back(std::move(finding));
     below.insert(below.begin(), std::move(layer));

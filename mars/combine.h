@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mars/bend.h"
 #include "mars/blunders.h"
 #include "mars/level.h"
 #include "mars/source.h"
@@ -19,17 +20,24 @@ struct CombineOptions {
   bool convert = false;             // sources of other datums are converted, else refused
   VerticalDatum datum;              // to convert to; unknown = that of the coarsest source that says its own
   std::shared_ptr<const ElevationSource> areoid;  // see converted()
-  bool level = false;                             // fit_level() each inset to what lies below it
+  // What gives way where an inset and what lies below it disagree at its rim.
+  enum class Level {
+    kNone,  // neither: the fade alone
+    kFit,   // the inset, by an offset and a tilt: fit_level()
+    kBend,  // what lies below, around the inset: fit_bend()
+  };
+  Level level = Level::kNone;
   bool check_blunders = true;
   bool mask_blunders = false;
   BlunderOptions blunders;
-  StackOptions stack;
+  StackOptions stack{.feather_base_posts = 2};
 };
 
 // What was found out of one source.
 struct CombineFinding {
   std::string name;
   std::optional<Level> level;
+  std::optional<Bend> bend;  // of what lies below it
   std::optional<BlunderReport> blunders;
   bool masked = false;
 };

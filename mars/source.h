@@ -108,7 +108,11 @@ std::string raster_library();
 struct StackOptions {
   // Width, in posts of the finer source, over which an inset fades into what lies below it at its rim.
   double feather_posts = 16;
-  double feather_m = 0;  // > 0: in metres instead; at most kMaxFeather_posts posts
+  double feather_m = 0;  // > 0: in metres instead
+  // At least so many posts of the next coarser source (unless feather_m is given): finer than that it knows nothing
+  // of the ground that the inset fades into.
+  double feather_base_posts = 0;
+  // No fade is wider than kMaxFeather_posts of the inset's posts.
 };
 
 // Sources stacked by resolution: at each place the finest one that has data decides, feathered at its rim.

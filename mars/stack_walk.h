@@ -50,11 +50,15 @@ std::vector<std::shared_ptr<const Source>> by_resolution(std::vector<std::shared
   return sources;
 }
 
-// Width of a source's fade, in its posts.
+// Width of the fade of source s, in its posts.
 template <class Source>
-double feather_posts(const Source& source, const StackOptions& options) {
-  if (options.feather_m <= 0) return options.feather_posts;
-  return std::min(options.feather_m / resolution_m(source), kMaxFeather_posts);
+double feather_posts(const std::vector<std::shared_ptr<const Source>>& sources, std::size_t s,
+                     const StackOptions& options) {
+  const double own_m = resolution_m(*sources[s]);
+  if (options.feather_m > 0) return std::min(options.feather_m / own_m, kMaxFeather_posts);
+  if (options.feather_base_posts <= 0 || s + 1 == sources.size()) return options.feather_posts;
+  const double base_m = options.feather_base_posts * resolution_m(*sources[s + 1]);
+  return std::min(std::max(options.feather_posts, base_m / own_m), kMaxFeather_posts);
 }
 
 // Places, their numbers in the batch, and what is left of each for the sources further down.
@@ -131,7 +135,7 @@ void walk_stack(const std::vector<std::shared_ptr<const Source>>& sources, const
     has.assign(rest.places.size(), 0);
     sample(s, rest.directions, has);
     const bool lowest = s + 1 == sources.size();
-    rim_shares(*sources[s], feather_posts(*sources[s], options), rest, has, lowest, shares);
+    rim_shares(*sources[s], feather_posts(sources, s, options), rest, has, lowest, shares);
     for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = has[i] != 0 ? shares[i] * rest.share[i] : 0.0;
     visit(s, rest.places, has, shares);
     for (std::size_t i = 0; i < shares.size(); ++i) rest.share[i] -= shares[i];

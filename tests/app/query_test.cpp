@@ -143,6 +143,10 @@ TEST_F(Query, InfoAndBuildAndSettingsAsJson) {
   build.erase("bytes");
   EXPECT_EQ(build["tiles_kept"], 0);
   build.erase("tiles_kept");
+  EXPECT_EQ(build["findings"].size(), 1U);
+  build.erase("findings");
+  EXPECT_TRUE(says(build["notes"][0], {"x.tif", "--datum"}));
+  build.erase("notes");
   EXPECT_EQ(info, build);
 
   const json settings = parse_json(vpe({"settings", "--json"}).out);

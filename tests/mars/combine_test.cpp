@@ -169,7 +169,7 @@ TEST_F(Combine, OffsetAndTiltAreRecovered) {
   const Source base = raster("base", kBase, hills);
   const Source inset = raster("inset", kInset, [&](LonLat p) { return hills(p) + off(p); });
   CombineOptions options;
-  options.level = true;
+  options.level = CombineOptions::Level::kFit;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   ASSERT_EQ(combined.findings.size(), 2U);
   EXPECT_FALSE(combined.findings[0].level);
@@ -188,12 +188,47 @@ TEST_F(Combine, OffsetAndTiltAreRecovered) {
   expect_parts(combined.source->infos()[0].treatment, {"levelled by", "tilt"});
 }
 
+// The inset keeps its heights, and there is no step at its rim: heights along lines over it are as smooth as
+// the ground itself.
+TEST_F(Combine, BendsWhatLiesBelow) {
+  const auto off = [](LonLat p) { return 25 + 8 * p.lon_deg + 5 * std::sin(3 * p.lat_deg); };
+  const Source base = raster("base", kBase, hills);
+  const Source inset = raster("inset", kInset, [&](LonLat p) { return hills(p) + off(p); });
+  CombineOptions options;
+  const double metre_deg = 1 / (mars::kMarsRadius_m * mars::kRadiansPerDegree);
+  const auto worst_step = [&](const Source& source) {
+    double worst = 0;
+    for (const double lat : {-0.3, 0.4, 1.1, 2.2}) {
+      for (double lon = -3; lon < -1.5; lon += 300 * metre_deg) {
+        const auto above = [&](double x) { return height_at(*source, {x, lat}) - hills({x, lat}); };
+        worst = std::max(worst, std::abs(above(lon + 300 * metre_deg) - above(lon)));
+      }
+    }
+    return worst;
+  };
+  // Over the fade, 6 km, the step of about 10 m is a slope of 2 m a post; bent, what is left is the base's own
+  // interpolation of the small hills.
+  const double before = worst_step(mars::combine_elevation({base, inset}, options).source);
+  options.level = CombineOptions::Level::kBend;
+  const Combined combined = mars::combine_elevation({base, inset}, options);
+  ASSERT_TRUE(combined.findings[1].bend);
+  EXPECT_NEAR(combined.findings[1].bend->rms_m, 22, 5);
+  EXPECT_GT(before, 2 * worst_step(combined.source));
+  for (const auto& [column, row] : {std::pair{100, 100}, {300, 300}, {500, 420}}) {
+    const LonLat p = kInset.at(column, row);
+    EXPECT_NEAR(height_at(*combined.source, p), hills(p) + off(p), 1e-6);
+  }
+  // Far away nothing is bent.
+  const LonLat far = kBase.at(100, 100);
+  EXPECT_EQ(height_at(*combined.source, far), height_at(*base, far));
+}
+
 TEST_F(Combine, LevelStandsUpToBlunders) {
   const Source base = raster("base", kBase, hills);
   const Source inset =
       raster("inset", kInset, [](LonLat p) { return hills(p) + 12 - (p.lat_deg < -0.3 ? 1000 : 0); });
   CombineOptions options;
-  options.level = true;
+  options.level = CombineOptions::Level::kFit;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   ASSERT_TRUE(combined.findings[1].level);
   EXPECT_NEAR(combined.findings[1].level->offset_m, 12, 0.5);
@@ -205,7 +240,7 @@ TEST_F(Combine, RimsWithoutGroundBelowAreNotLevelled) {
   const Source base = raster("base", {10, 20, 20, 10, 200, 200}, hills);
   const Source inset = raster("inset", kInset, hills);
   CombineOptions options;
-  options.level = true;
+  options.level = CombineOptions::Level::kFit;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   EXPECT_FALSE(combined.findings[1].level);
   ASSERT_EQ(combined.notes.size(), 1U);
@@ -235,7 +270,7 @@ TEST_F(Combine, BlundersAreFoundAndDropped) {
   EXPECT_NEAR(height_at(*combined.source, {0.35, 0.2}), hills({0.35, 0.2}) - 1000, 1);
 
   options.mask_blunders = true;
-  options.level = true;  // the mask judges levelled heights
+  options.level = CombineOptions::Level::kFit;  // the mask judges levelled heights
   combined = mars::combine_elevation({base, inset}, options);
   EXPECT_TRUE(combined.findings[1].masked);
   double worst = 0;

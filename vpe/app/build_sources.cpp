@@ -111,12 +111,18 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
                   "sphere: heights stand on the sphere, whatever their datum; radius: true radii")
       ->check(CLI::IsMember({"sphere", "radius"}))
       ->capture_default_str();
-  command.add_option("--level", a.level, "fit: take offset and tilt out of every inset, by its rim")
-      ->check(CLI::IsMember({"none", "fit"}))
+  command
+      .add_option(
+          "--level", a.level,
+          "fit: take offset and tilt out of every inset, by its rim; bend: bend what lies below around every "
+          "inset, so that it meets it and the inset keeps its heights")
+      ->check(CLI::IsMember({"none", "fit", "bend"}))
       ->capture_default_str();
   command
-      .add_option("--feather", a.feather_m,
-                  "Width over which insets fade into what lies below, metres (default: 16 of their posts)")
+      .add_option(
+          "--feather", a.feather_m,
+          "Width over which insets fade into what lies below, metres (default: 16 of their posts, at least 2 "
+          "of what lies below)")
       ->check(number_within(0.001, 1e7));
   command.add_flag("--mask-blunders", a.mask_blunders,
                    "Drop posts that what lies below shows to be impossible");
@@ -146,7 +152,10 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
     if (!areoid[0]->infos().front().datum.is_known()) name_datums(arguments, areoid);
     combine.areoid = areoid[0];
   }
-  combine.level = arguments.level == "fit";
+  using Level = mars::CombineOptions::Level;
+  combine.level = arguments.level == "fit"    ? Level::kFit
+                  : arguments.level == "bend" ? Level::kBend
+                                              : Level::kNone;
   combine.mask_blunders = arguments.mask_blunders;
   combine.blunders.floor_m = arguments.blunder_m;
   combine.stack.feather_m = arguments.feather_m;
@@ -167,6 +176,10 @@ void say_findings(const mars::Combined& combined) {
           static_cast<long long>(f.level->posts), number(f.level->rms_before_m).c_str(),
           number(f.level->rms_after_m).c_str());
     }
+    if (f.bend) {
+      std::fprintf(stderr, "vpe: what lies below %s is bent to meet it, by %s m RMS at its rim, over %s km\n",
+                   f.name.c_str(), number(f.bend->rms_m).c_str(), number(1e-3 * f.bend->reach_m).c_str());
+    }
     if (f.blunders && f.blunders->implausible > 0) {
       std::fprintf(
           stderr, "vpe: %s: %.2g %% of its posts cannot be right, by up to %s m at %s,%s; %s\n", f.name.c_str(),
@@ -182,13 +195,19 @@ nlohmann::json findings_json(const mars::Combined& combined) {
   using nlohmann::json;
   json list = json::array();
   for (const mars::CombineFinding& f : combined.findings) {
-    json entry{{"name", f.name}, {"level", nullptr}, {"implausible", nullptr}};
+    json entry{{"name", f.name}, {"level", nullptr}, {"bend", nullptr}, {"implausible", nullptr}};
     if (f.level) {
       entry["level"] = {{"lon_deg", f.level->centre.lon_deg},     {"lat_deg", f.level->centre.lat_deg},
                         {"offset_m", f.level->offset_m},          {"tilt_east", f.level->tilt_east},
                         {"tilt_north", f.level->tilt_north},      {"rms_before_m", f.level->rms_before_m},
                         {"rms_after_m", f.level->rms_after_m},    {"rim_posts", f.level->posts},
                         {"rim_posts_left_out", f.level->left_out}};
+    }
+    if (f.bend) {
+      entry["bend"] = {{"rms_m", f.bend->rms_m},
+                       {"largest_m", f.bend->largest_m},
+                       {"reach_m", f.bend->reach_m},
+                       {"rim_posts", f.bend->posts}};
     }
     if (f.blunders) {
       entry["implausible"] = {{"posts_compared", f.blunders->posts},
