@@ -88,7 +88,8 @@ std::optional<Bend> fit_bend(const ElevationSource& inset, const ElevationSource
   Bend bend;
   bend.radius_m = radius_m;
   bend.posts = static_cast<std::int64_t>(posts.size());
-  gather(posts, 4 * resolution_m(inset) / radius_m, bend);
+  // What differs within a post of the base is the fade's business: bent, it would be a rim of bumps.
+  gather(posts, std::max(4 * resolution_m(inset), resolution_m(base)) / radius_m, bend);
   double squares = 0;
   std::vector<double> sizes;
   for (const RimPost& post : posts) {

@@ -94,6 +94,7 @@ int run(int argc, char** argv) {
   add_info(program, common);
   add_verify(program, common);
   add_query(program, common);
+  add_profile(program, common);
   add_render(program, common);
   add_fly(program, common);
   add_settings(program, common);

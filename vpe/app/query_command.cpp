@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "paging/surface.h"
+#include "vpe/app/places.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
 #include "vpe/core/number.h"
+#include "vpe/core/parallel.h"
 
 namespace vpe::app {
 
@@ -92,43 +94,8 @@ void print_csv(const Answer& a) {
               csv_field(a.source).c_str(), a.error_m);
 }
 
-mars::LonLat checked_place(const std::string& text, const std::string& where) {
-  const auto place = parse_place(text);
-  if (!place) throw UsageError(where + "'" + text + "': expected LON,LAT in degrees");
-  if (!mars::is_valid(*place)) throw UsageError(where + "'" + text + "': latitude must be within -90..90");
-  return *place;
-}
-
-std::vector<mars::LonLat> read_places(std::istream& in) {
-  std::vector<mars::LonLat> places;
-  std::string line;
-  bool first = true;
-  for (int number = 1; std::getline(in, line); ++number) {
-    line.erase(
-        std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\r' || c == '\t'; }),
-        line.end());
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    if (line.empty() || line.front() == '#') continue;
-    const bool header = std::exchange(first, false) && line.find_first_of("0123456789") == std::string::npos;
-    if (!header) places.push_back(checked_place(line, "standard input, line " + std::to_string(number) + ": "));
-  }
-  return places;
-}
-
 void query(const std::vector<std::string>& arguments, const Common& common) {
-  std::vector<mars::LonLat> places;
-  std::string planet_name;
-  for (std::size_t n = 0; n < arguments.size(); ++n) {
-    if (n == 0 && !parse_place(arguments[0])) {
-      planet_name = arguments[0];
-      std::error_code none;
-      if (planet_name.find(',') != std::string::npos && !std::filesystem::exists(planet_name, none)) {
-        throw UsageError("'" + planet_name + "': neither a file nor LON,LAT in degrees");
-      }
-    } else {
-      places.push_back(checked_place(arguments[n], ""));
-    }
-  }
+  auto [planet_name, places] = split_places(arguments);
   if (places.empty()) places = read_places(std::cin);
   const auto planet = open_planet(planet_name, common);
   const paging::PlanetMeta& meta = planet->meta();
@@ -146,7 +113,12 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return position[a] < position[b]; });
   std::vector<Answer> answers(places.size());
-  for (const std::size_t n : order) answers[n] = ask(surface, places[n]);
+  constexpr std::size_t kChunk = 2048;
+  core::ThreadPool pool(common.threads);
+  pool.run((order.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    const std::size_t end = std::min(order.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) answers[order[i]] = ask(surface, places[order[i]]);
+  });
 
   if (common.json) {
     nlohmann::json list = nlohmann::json::array();
