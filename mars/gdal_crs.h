@@ -17,10 +17,10 @@ namespace mars {
 // Every const member may be called from any number of threads at once.
 class CrsTransformer {
  public:
-  // `to_map` is GDAL's geotransform; the data's pixel p lies where that puts pixel p + shift_px.
-  // `path` is for messages. Throws SourceError.
+  // `to_map` is the geotransform. A place of longitude L is taken for L - lon_turn_deg of the CRS: for files
+  // whose central meridian GDAL reads wrongly. `path` is for messages. Throws SourceError.
   CrsTransformer(const std::string& path, const OGRSpatialReference& crs, const std::array<double, 6>& to_map,
-                 double shift_px);
+                 double lon_turn_deg);
   CrsTransformer(const CrsTransformer&) = delete;
   CrsTransformer& operator=(const CrsTransformer&) = delete;
 
@@ -48,10 +48,9 @@ class CrsTransformer {
   OGRSpatialReference source_;
   std::array<double, 6> to_map_;
   std::array<double, 6> to_pixel_{};
-  double shift_px_ = 0;
   double lon_sign_ = 1;
-  double unit_ = 1;  // angular units of the CRS in a degree
-  double meridian_deg_ = 0;
+  double unit_ = 1;          // angular units of the CRS in a degree
+  double meridian_deg_ = 0;  // degrees east of the CRS's longitude 0
   bool centric_ = false;
   mutable Pool forward_;
   mutable Pool inverse_;

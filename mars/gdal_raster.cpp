@@ -12,6 +12,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "mars/pds_map.h"
+
 namespace mars {
 namespace {
 
@@ -114,13 +116,13 @@ GdalRaster::GdalRaster(const std::string& path)
   const auto dataset = handles_.lend();
   check_bands(path_, *dataset);
   check_raw_size(path_, *dataset);
-  PdsPlacement placement;
+  LabelPlace place;
   const GDALDriver* driver = dataset->GetDriver();
   if (driver != nullptr && std::strcmp(GDALGetDriverShortName(const_cast<GDALDriver*>(driver)), "PDS") == 0) {
     label_ = parse_pds_label(first_bytes(path_, std::size_t{1} << 18));
-    placement = place_pds(*label_);
+    if (auto by_label = pds_map(path_, *label_)) place = *by_label;
   }
-  georeference_.emplace(path_, *dataset, placement);
+  georeference_.emplace(path_, *dataset, place);
   footprint_.emplace(*georeference_);
   if (footprint_->is_empty()) {
     throw source_error(path_, "lies nowhere on the planet",
