@@ -161,8 +161,8 @@ std::optional<double> PdsLabel::number(std::string_view name) const {
 
 PdsLabel parse_pds_label(std::string_view text) { return Reader(text).read(); }
 
-std::string pds_projection(const PdsLabel& label) {
-  std::string type = upper(label.text("IMAGE_MAP_PROJECTION.MAP_PROJECTION_TYPE"));
+std::string pds_projection(const PdsLabel& label, const std::string& object) {
+  std::string type = upper(label.text(object + ".MAP_PROJECTION_TYPE"));
   std::replace(type.begin(), type.end(), '_', ' ');
   return type;
 }

@@ -57,8 +57,8 @@ struct PdsPlacement {
 // pairing).
 PdsPlacement place_pds(const PdsLabel& label);
 
-// MAP_PROJECTION_TYPE in capitals, with spaces for underscores.
-std::string pds_projection(const PdsLabel& label);
+// MAP_PROJECTION_TYPE of an object in capitals, with spaces for underscores.
+std::string pds_projection(const PdsLabel& label, const std::string& object = "IMAGE_MAP_PROJECTION");
 
 // "areoid", "radius" or "unknown", from what the label says of its values.
 std::string pds_datum(const PdsLabel& label);

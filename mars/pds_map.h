@@ -31,6 +31,20 @@ namespace mars {
 // latitudes, west-positive labels of such other projections.
 std::optional<LabelPlace> pds_map(const std::string& path, const PdsLabel& label);
 
+// Maps of 1991 (MDIM and DTM of the Viking volumes VO_2001 to VO_2014): object IMAGE_MAP_PROJECTION_CATALOG,
+// SINUSOIDAL, longitudes west, latitudes planetographic. X is the axis of lines, Y of samples:
+//   version 1: line = INT(X_AXIS_PROJECTION_OFFSET - lat RES + 1),
+//              sample = INT(Y_AXIS_PROJECTION_OFFSET - (lon - CENTER_LONGITUDE) RES cos(lat) + 1)
+//   version 2.0: the same without "+ 1".
+// INT cuts: the first line of version 1 runs from 0 to 1 in X_AXIS_PROJECTION_OFFSET - lat RES, as the bounds
+// in its labels say in both axes (MG30S317: within 0.001 lines). So MAXIMUM_LATITUDE tells which version, or
+// whether integers were pixel centres (edge at 0.5), within a quarter of a pixel; else DATA_SET_ID ("V2.0")
+// does. Positions are those of the time: several kilometres, in places 20, from today's frame. Throws
+// SourceError for other projections, for missing keywords, and where offsets and bounds are more than two lines
+// apart (Magellan's framelets).
+bool has_pds_catalog_map(const PdsLabel& label);
+LabelPlace pds_catalog_map(const std::string& path, const PdsLabel& label);
+
 // Metres in a value with its unit in angle brackets; kilometres where it has none. "3396.19 <KM>", "1 <M/PIX>".
 std::optional<double> pds_metres(const PdsLabel& label, const std::string& name);
 
