@@ -57,7 +57,8 @@ CrsTransformer::CrsTransformer(const std::string& path, const OGRSpatialReferenc
   if (!geographic || target_.IsLocal()) throw source_error(path, cannot, scope.message(), advice);
   source_ = *geographic;
   read_axes();
-  meridian_deg_ += lon_turn_deg;
+  // PROJ refuses longitudes beyond 10 radians.
+  meridian_deg_ += std::remainder(lon_turn_deg, 360.0);
   try {
     forward_.lend();
     inverse_.lend();

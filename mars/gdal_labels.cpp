@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "mars/gdal_scope.h"
+#include "mars/isis_map.h"
 #include "mars/pds_image.h"
 #include "mars/pds_map.h"
 
@@ -45,18 +46,27 @@ double number_of(const CPLJSONObject& object, const char* key) {
   return found.IsValid() ? found.ToDouble(0) : 0;
 }
 
-Counting isis3_counting(GDALDataset& dataset) {
-  Counting counting;
+std::optional<IsisMapping> isis3_mapping(GDALDataset& dataset) {
   CPLJSONDocument document;
-  if (!document.LoadMemory(first_metadata(dataset, "json:ISIS3"))) return counting;
-  const CPLJSONObject mapping = document.GetRoot().GetObj("IsisCube/Mapping");
-  if (!mapping.IsValid()) return counting;
-  counting.west = same(mapping.GetString("LongitudeDirection"), "PositiveWest");
-  counting.graphic = same(mapping.GetString("LatitudeType"), "Planetographic");
-  counting.centre_lon_deg = number_of(mapping, "CenterLongitude");
-  counting.a = counting.b = number_of(mapping, "EquatorialRadius");
-  counting.c = number_of(mapping, "PolarRadius");
-  return counting;
+  if (!document.LoadMemory(first_metadata(dataset, "json:ISIS3"))) return std::nullopt;
+  const CPLJSONObject group = document.GetRoot().GetObj("IsisCube/Mapping");
+  if (!group.IsValid()) return std::nullopt;
+  IsisMapping mapping;
+  mapping.projection = group.GetString("ProjectionName");
+  mapping.west_positive = same(group.GetString("LongitudeDirection"), "PositiveWest");
+  mapping.planetographic = same(group.GetString("LatitudeType"), "Planetographic");
+  mapping.equatorial_radius_m = number_of(group, "EquatorialRadius");
+  mapping.polar_radius_m = number_of(group, "PolarRadius");
+  mapping.centre_lon_deg = number_of(group, "CenterLongitude");
+  mapping.centre_lat_deg = number_of(group, "CenterLatitude");
+  const auto optional = [&](const char* key) -> std::optional<double> {
+    if (!group.GetObj(key).IsValid()) return std::nullopt;
+    return number_of(group, key);
+  };
+  mapping.first_parallel_deg = optional("FirstStandardParallel");
+  mapping.second_parallel_deg = optional("SecondStandardParallel");
+  mapping.scale_factor = optional("ScaleFactor").value_or(1.0);
+  return mapping;
 }
 
 Counting vicar_counting(GDALDataset& dataset) {
@@ -120,7 +130,6 @@ Counting isis2_counting(const std::string& path) {
 
 Counting counting_of(const std::string& path, GDALDataset& dataset) {
   const std::string driver = driver_of(dataset);
-  if (driver == "ISIS3") return isis3_counting(dataset);
   if (driver == "ISIS2") return isis2_counting(path);
   if (driver == "VICAR") return vicar_counting(dataset);
   if (driver == "PDS4") return pds4_counting(dataset);
@@ -158,6 +167,18 @@ Holes holes_of(GDALDataset& dataset, const std::optional<PdsLabel>& label) {
 
 LabelPlace place_of(const std::string& path, GDALDataset& dataset) {
   LabelPlace place;
+  if (driver_of(dataset) == "ISIS3") {
+    const auto mapping = isis3_mapping(dataset);
+    if (!mapping) return place;
+    if (auto by_label = isis_map(*mapping)) return *by_label;
+    if (!mapping->west_positive) return place;
+    if (mapping->projection == "ObliqueCylindrical") {
+      throw source_error(path, "its label counts longitudes to the west in a map that cannot be placed by it",
+                         mapping->projection, "map it to a PositiveEast one first, with ISIS");
+    }
+    place.lon_turn_deg = -2 * mapping->centre_lon_deg;
+    return place;
+  }
   const Counting counting = counting_of(path, dataset);
   if (counting.west) place.lon_turn_deg = -2 * counting.centre_lon_deg;
   if (!counting.graphic || !(counting.a > 0) || !(counting.c > 0)) return place;

@@ -27,10 +27,10 @@ struct Holes {
 Holes holes_of(GDALDataset& dataset, const std::optional<PdsLabel>& label);
 
 // Corrections of the place that GDAL reads from a label:
-//   - ISIS3 with LongitudeDirection = PositiveWest and VICAR with POSITIVE_LONGITUDE_DIRECTION = WEST: GDAL
-//   takes the
-//     central longitude for an east one (its ISIS3 writer does not, so what it writes it reads back turned).
-//   - ISIS2, ISIS3, VICAR and PDS4 with planetographic latitudes on a flattened body, where GDAL uses a sphere.
+//   - ISIS3: see isis_map().
+//   - VICAR and ISIS2 with POSITIVE_LONGITUDE_DIRECTION = WEST: GDAL takes the central longitude for an east
+//   one.
+//   - ISIS2, VICAR and PDS4 with planetographic latitudes on a flattened body, where GDAL uses a sphere.
 // Throws SourceError (with `path`) for planetographic latitudes on bodies with three axes.
 LabelPlace place_of(const std::string& path, GDALDataset& dataset);
 
