@@ -14,7 +14,10 @@ namespace mars {
 
 // Degrees east and north in the geographic part of the raster's own CRS: whatever body and datum it names, no
 // change of datum can come in. Handles axes in any order or pointing west, other units and prime meridians.
-// Every const member may be called from any number of threads at once.
+// GDAL 3.6.2 puts the latitude first, along the columns, where a geographic CRS counts longitudes to the west:
+// so does gdalwarp -t_srs IAU_2015:49901, and so it is read here. In a GeoTIFF GDAL then loses which is which;
+// projected ones (IAU_2015:49911: x grows to the west) lose their direction there. A VRT keeps both. Every
+// const member may be called from any number of threads at once.
 class CrsTransformer {
  public:
   // `to_map` is the geotransform. A place of longitude L is taken for L - lon_turn_deg of the CRS: for files

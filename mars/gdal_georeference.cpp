@@ -81,6 +81,12 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     find_linear();
   }
   find_wrap();
+  if (linear_ && grid_.period == 0) {
+    const Linear& m = *linear_;
+    const glm::dvec2 p = glm::dvec2(grid_.width - 1, grid_.height - 1) / 2.0 - m.origin;
+    const double area = m.per_lon.x * m.per_lat.y - m.per_lat.x * m.per_lon.y;
+    middle_lon_deg_ = (p.x * m.per_lat.y - p.y * m.per_lat.x) / area;
+  }
 }
 
 Georeference::~Georeference() = default;
@@ -154,7 +160,8 @@ void Georeference::to_pixels(std::span<const glm::dvec3> directions, std::span<g
   }
   const Linear m = *linear_;
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const glm::dvec2 p = crs_lon_lat(directions[i], centric_scale_);
+    glm::dvec2 p = crs_lon_lat(directions[i], centric_scale_);
+    if (middle_lon_deg_) p.x = *middle_lon_deg_ + std::remainder(p.x - *middle_lon_deg_, 360.0);
     pixels[i] = m.origin + m.per_lon * p.x + m.per_lat * p.y;
   }
 }

@@ -65,6 +65,7 @@ class Georeference {
   double resolution_m_ = 0;
   double centric_scale_ = 1;  // tan(centric latitude) = centric_scale_ tan(latitude of the CRS)
   std::optional<Linear> linear_;
+  std::optional<double> middle_lon_deg_;  // of turned linear maps, which have no period in columns
 };
 
 }  // namespace mars
