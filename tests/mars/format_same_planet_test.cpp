@@ -132,7 +132,7 @@ class SamePlanet : public ::testing::TestWithParam<Way> {
   }
 
   void compare(const Region& region) {
-    // A raster that covers the region, 200 pixels along its longer side.
+    // A raster that covers the region, 120 pixels along its longer side.
     glm::dvec2 low(1e300);
     glm::dvec2 high(-1e300);
     for (int i = 0; i <= 40; ++i) {
@@ -143,7 +143,7 @@ class SamePlanet : public ::testing::TestWithParam<Way> {
         high = glm::max(high, xy);
       }
     }
-    const double step = std::max(high.x - low.x, high.y - low.y) / 200;
+    const double step = std::max(high.x - low.x, high.y - low.y) / 120;
     low -= 2 * step;
     high += 2 * step;
     source_files::Raster raster;
@@ -161,7 +161,7 @@ class SamePlanet : public ::testing::TestWithParam<Way> {
     const mars::GdalRaster opened(path);
 
     test_support::Random random(99);
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < 150; ++i) {
       const mars::LonLat place{random.uniform(region.west, region.east),
                                random.uniform(region.south, region.north)};
       const glm::dvec2 xy = map(place);
