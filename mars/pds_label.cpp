@@ -190,12 +190,17 @@ PdsPlacement place_pds(const PdsLabel& label) {
     return placement.east(*centre_lon) - (*sample + edge_offset) / *resolution;
   };
 
+  // Bounds of the data instead of the pixels' edges prove nothing.
+  const auto south = number("MINIMUM_LATITUDE");
+  const bool bounds_are_edges =
+      north && resolution && *resolution > 0 &&
+      (!south || !lines || std::abs((*north - *south) * *resolution - *lines) <= kAgree_px);
   const auto lines_agree = [&](double edge_offset) {
     if (is_polar_map(type, centre_lat)) {
       return lines && samples && std::abs(*line + edge_offset - *lines / 2) <= kAgree_px &&
              std::abs(*sample + edge_offset - *samples / 2) <= kAgree_px;
     }
-    return has_even_lines(type) && north && resolution && *resolution > 0 &&
+    return has_even_lines(type) && bounds_are_edges &&
            std::abs(*line + edge_offset - *north * *resolution) <= kAgree_px;
   };
   const auto samples_agree = [&](double edge_offset) {

@@ -52,9 +52,9 @@ struct PdsPlacement {
 };
 
 // The convention whose edge agrees with MAXIMUM_LATITUDE (and WESTERNMOST_LONGITUDE of cylindrical maps), or
-// for polar maps with the image's middle, within a quarter of a pixel; GDAL's own when none does. A label that
-// does not name the kind of its latitudes has planetographic ones if its longitudes count west (the IAU's
-// pairing).
+// for polar maps with the image's middle, within a quarter of a pixel; GDAL's own when none does, or when the
+// label's latitudes are not as far apart as its lines (bounds of the data: HiRISE, HRSC). A label that does not
+// name the kind of its latitudes has planetographic ones if its longitudes count west (the IAU's pairing).
 PdsPlacement place_pds(const PdsLabel& label);
 
 // MAP_PROJECTION_TYPE of an object in capitals, with spaces for underscores.

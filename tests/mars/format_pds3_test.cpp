@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -335,6 +337,49 @@ TEST(PdsWest, MirroredNumbersGiveTheSamePlanet) {
     if (!std::isnan(height_m)) ++inside;
   }
   EXPECT_GT(inside, 700);
+}
+
+TEST(PdsHirise, TerrainModelsOfTheArchive) {
+  // DTEEC and its like: attached label, PC_REAL, equirectangular on the sphere of the local radius, MAP_SCALE
+  // in metres, offsets that count from zero, bounds of the data (here a trap: their north would prove another
+  // convention).
+  const test_support::TempDir folder;
+  Label l = label("EQUIRECTANGULAR", 9, 7);
+  l.file["RECORD_BYTES"] = "36";
+  l.image["SAMPLE_TYPE"] = "PC_REAL";
+  l.image["SAMPLE_BITS"] = "32";
+  l.image["MISSING_CONSTANT"] = "16#FF7FFFFB#";
+  for (const char* axis : {"A_AXIS_RADIUS", "B_AXIS_RADIUS", "C_AXIS_RADIUS"}) l.map[axis] = "3394.8396 <KM>";
+  const double radius_m = 3394839.6;
+  l.map["CENTER_LATITUDE"] = "15.0 <DEG>";
+  l.map["CENTER_LONGITUDE"] = "180.0 <DEG>";
+  l.map["MAP_SCALE"] = "2.0 <METERS/PIXEL>";
+  l.map["MAP_RESOLUTION"] = number(radius_m * kRadian / 2) + " <PIX/DEG>";
+  l.map["LINE_PROJECTION_OFFSET"] = "545861.5 <PIXEL>";
+  l.map["SAMPLE_PROJECTION_OFFSET"] = "1220000.25 <PIXEL>";
+  l.map["MAXIMUM_LATITUDE"] = number(545861.0 * 2 / (radius_m * kRadian));
+  l.map["MINIMUM_LATITUDE"] = number(545855.2 * 2 / (radius_m * kRadian));
+  const std::string path = pds_files::write(
+      folder.path(), "dteec", l,
+      [](int column, int row) -> std::int64_t {
+        const float value = static_cast<float>(-2000.5 + column + 10 * row);
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        return column == 4 && row == 2 ? 0xFF7FFFFB : bits;
+      },
+      false);
+  const auto source = mars::open_elevation(path);
+  const mars::GdalRaster raster(path);
+  const auto place = [&](double column, double row) {
+    const double x_m = (column - 1220000.25) * 2;
+    return mars::LonLat{180 + x_m / (radius_m * std::cos(15 * kRadian)) / kRadian,
+                        (545861.5 - row) * 2 / radius_m / kRadian};
+  };
+  expect_pixel(raster, place(0, 0), 0, 0);
+  expect_pixel(raster, place(8, 6), 8, 6);
+  EXPECT_NEAR(source_files::height_at(*source, place(3, 5)), -2000.5 + 3 + 50, 1e-3);
+  EXPECT_TRUE(std::isnan(source_files::height_at(*source, place(4, 2))));
+  EXPECT_NEAR(source->infos().at(0).resolution_m, 2, 1e-9);
 }
 
 TEST(PdsMapErrors, WhatNobodyCanPlaceIsRefused) {
