@@ -130,11 +130,20 @@ TEST_P(MdimVersion, EveryPixelWhereTheEquationSays) {
   EXPECT_EQ(source->infos().at(0).size_bytes, bytes);
   // As a picture, east to the right.
   const auto image = mars::open_image(path);
-  const glm::dvec3 direction = mars::direction({-317.5, centric(-30)});
-  mars::Rgb colour;
-  std::uint8_t alpha = 0;
-  image->sample({&direction, 1}, 925, {&colour, 1}, {&alpha, 1});
-  EXPECT_EQ(alpha, 255);
+  for (const glm::dvec2 pixel : {glm::dvec2(0, 0), {283, 0}, {141, 160}, {20, 319}}) {
+    glm::dvec3 direction;
+    raster.georeference().to_directions({&pixel, 1}, {&direction, 1});
+    mars::Rgb colour;
+    std::uint8_t alpha = 0;
+    image->sample({&direction, 1}, 925, {&colour, 1}, {&alpha, 1});
+    EXPECT_EQ(alpha, 255);
+    EXPECT_EQ(int{colour.r}, grey(static_cast<int>(pixel.x), static_cast<int>(pixel.y)));
+  }
+  glm::dvec3 left, right;
+  const glm::dvec2 first(0, 0), last(283, 0);
+  raster.georeference().to_directions({&first, 1}, {&left, 1});
+  raster.georeference().to_directions({&last, 1}, {&right, 1});
+  EXPECT_LT(mars::lon_lat(left).lon_deg, mars::lon_lat(right).lon_deg);
 }
 
 INSTANTIATE_TEST_SUITE_P(EdgeAt, MdimVersion,

@@ -264,6 +264,58 @@ TEST(IsisCube, BaseMultiplierAndEverySpecialPixelOfEachType) {
   }
 }
 
+// ---- ISIS2
+
+// Offsets of ISIS2 labels have the other sign, as GDAL reads them: the place of the first pixel from the
+// origin.
+std::string isis2(const std::string& more) {
+  std::string text =
+      "CCSD3ZF0000100000001NJPL3IF0PDS200000001 = SFDU_LABEL\r\nRECORD_TYPE = FIXED_LENGTH\r\n"
+      "RECORD_BYTES = 512\r\nLABEL_RECORDS = 8\r\n^QUBE = 9\r\nOBJECT = QUBE\r\n AXES = 3\r\n"
+      " AXIS_NAME = (SAMPLE,LINE,BAND)\r\n CORE_ITEMS = (20,20,1)\r\n CORE_ITEM_BYTES = 2\r\n"
+      " CORE_ITEM_TYPE = SUN_INTEGER\r\n CORE_BASE = 100.0\r\n CORE_MULTIPLIER = 0.5\r\n"
+      " SUFFIX_ITEMS = (0,0,0)\r\n GROUP = IMAGE_MAP_PROJECTION\r\n"
+      "  MAP_PROJECTION_TYPE = SINUSOIDAL\r\n  A_AXIS_RADIUS = 3396.19\r\n"
+      "  B_AXIS_RADIUS = 3396.19\r\n  C_AXIS_RADIUS = 3376.20\r\n  MAP_SCALE = 20.0\r\n"
+      "  MAP_RESOLUTION = 2.9637\r\n  LINE_PROJECTION_OFFSET = -134.5\r\n"
+      "  SAMPLE_PROJECTION_OFFSET = -9.5\r\n" +
+      more + " END_GROUP\r\nEND_OBJECT\r\nEND\r\n";
+  text.resize(4096, ' ');
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int stored = i == 45 ? -32767 : 7 * i;
+    text += static_cast<char>(stored >> 8);
+    text += static_cast<char>(stored);
+  }
+  return text;
+}
+
+TEST(Isis2, WestPlanetographicLabelBaseMultiplierAndSpecialPixels) {
+  const test_support::TempDir folder;
+  source_files::write_text(folder / "e.cub",
+                           isis2("  CENTER_LONGITUDE = 40.0\r\n  POSITIVE_LONGITUDE_DIRECTION = EAST\r\n"
+                                 "  PROJECTION_LATITUDE_TYPE = PLANETOCENTRIC\r\n"));
+  source_files::write_text(folder / "w.cub",
+                           isis2("  CENTER_LONGITUDE = 320.0\r\n  POSITIVE_LONGITUDE_DIRECTION = WEST\r\n"
+                                 "  PROJECTION_LATITUDE_TYPE = PLANETOGRAPHIC\r\n"));
+  const mars::GdalRaster east((folder / "e.cub").string());
+  const mars::GdalRaster west((folder / "w.cub").string());
+  const glm::dvec2 a = pds_files::pixel_of(east, {41.25, 43.5});
+  const glm::dvec2 b = pds_files::pixel_of(west, {41.25, centric(43.5)});
+  EXPECT_NEAR(a.x, b.x, 1e-6);
+  EXPECT_NEAR(a.y, b.y, 1e-6);
+  EXPECT_NEAR(a.x, 9.5 + kA * 1.25 * kRadian * std::cos(43.5 * kRadian) / 20000, 1e-6);
+  EXPECT_NEAR(a.y, 134.5 - kA * 43.5 * kRadian / 20000, 1e-6);
+  const auto source = mars::open_elevation((folder / "w.cub").string());
+  const auto value = [&](int column, int row) {
+    const glm::dvec2 at(column, row);
+    glm::dvec3 direction;
+    west.georeference().to_directions({&at, 1}, {&direction, 1});
+    return height_at(*source, mars::lon_lat(direction));
+  };
+  EXPECT_NEAR(value(12, 9), 100 + 0.5 * 7 * (9 * 20 + 12), 1e-3);
+  EXPECT_TRUE(std::isnan(value(5, 2)));
+}
+
 // ---- VICAR and PDS4, as GDAL writes them
 
 // GDAL's writers grumble about templates.
