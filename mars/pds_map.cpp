@@ -88,15 +88,28 @@ std::optional<Projection> projection(const PdsLabel& label, const PdsPlacement& 
   return std::nullopt;
 }
 
-// Metres a pixel on a sphere of that radius.
-std::optional<double> pixel_m(const PdsLabel& label, double radius_m) {
+// One unit of the last digit written of MAP_SCALE, metres.
+double last_digit_m(const PdsLabel& label) {
+  const std::string name = kObject + "MAP_SCALE";
+  const std::string text = label.text(name);
+  const std::size_t end = text.find_first_not_of("+-.0123456789");
+  const std::size_t point = text.find('.');
+  const std::size_t last = end == std::string::npos ? text.size() : end;
+  const double digits = point < last ? static_cast<double>(last - point - 1) : 0.0;
+  return std::pow(10.0, -digits) * pds_metres(label, name).value_or(0.0) / label.number(name).value_or(1.0);
+}
+
+// Metres a pixel on a sphere of that radius. Where several radii are in question (`unsure`), MAP_RESOLUTION
+// counts only if MAP_SCALE is its rounding.
+std::optional<double> pixel_m(const PdsLabel& label, double radius_m, bool unsure) {
   const auto scale = pds_metres(label, kObject + "MAP_SCALE");
   const auto resolution = label.number(kObject + "MAP_RESOLUTION");
   if (!resolution || !(*resolution > 0)) return scale && *scale > 0 ? scale : std::nullopt;
   const double by_resolution = radius_m * kRadiansPerDegree / *resolution;
   if (!scale || !(*scale > 0)) return by_resolution;
   const bool whole = std::abs(*resolution - std::round(*resolution)) < 1e-9;
-  return whole && std::abs(*scale / by_resolution - 1) < kTrust ? by_resolution : *scale;
+  const double slack_m = unsure ? last_digit_m(label) : kTrust * by_resolution;
+  return whole && std::abs(*scale - by_resolution) <= slack_m ? by_resolution : *scale;
 }
 
 }  // namespace
@@ -138,7 +151,7 @@ std::optional<LabelPlace> pds_map(const std::string& path, const PdsLabel& label
   LabelPlace place;
   const bool ellipsoid = flattened && placement.planetographic && projected->body != Body::kSphere;
   const double radius_m = projected->body == Body::kPolarSphere && !ellipsoid ? body->c_m : body->a_m;
-  const auto scale_m = pixel_m(label, radius_m);
+  const auto scale_m = pixel_m(label, radius_m, projected->body == Body::kPolarSphere || ellipsoid);
   if (!scale_m) return std::nullopt;
   place.crs =
       "+proj=" + projected->words +

@@ -19,7 +19,9 @@ namespace mars {
 //   - MERCATOR, TRANSVERSE MERCATOR, LAMBERT CONFORMAL, ALBERS, LAMBERT AZIMUTHAL and CYLINDRICAL EQUAL AREA:
 //     the sphere of A_AXIS_RADIUS, or the ellipsoid with planetographic latitudes.
 // Longitudes that count west have the map the same way round, east to the right: only the numbers change sign.
-// Of MAP_SCALE and MAP_RESOLUTION, which labels round, MAP_RESOLUTION counts if it is a whole number.
+// Of MAP_SCALE and MAP_RESOLUTION, which labels round, MAP_RESOLUTION counts if it is a whole number; in polar
+// maps and on ellipsoids, where it may refer to one radius or another, only if MAP_SCALE is that number
+// rounded.
 //
 // GDAL 3.6.2 places these wrongly: labels that count pixels from one or from a half; west-positive longitudes
 // (the planet turned); planetographic latitudes on spheres (20 km at 45 degrees on Mars); "PLANETOCENTRIC" in

@@ -184,6 +184,23 @@ INSTANTIATE_TEST_SUITE_P(Labels, MegdrPolar,
                                            Polar{false, 1, "3396.19 <KM>", "PLANETOCENTRIC"},
                                            Polar{false, 0, "3376.2 <KM>", "\"PLANETOCENTRIC\""}));
 
+TEST(PdsPolar, ExactScaleOfAnotherRadiusIsNotTakenForARounding) {
+  // 128 pixels a degree on the equatorial radius, in a map on the polar one: 0.6 % between the two.
+  const test_support::TempDir folder;
+  Label l = label("POLAR STEREOGRAPHIC", 200, 200);
+  l.map["A_AXIS_RADIUS"] = l.map["B_AXIS_RADIUS"] = "3396.19 <KM>";
+  l.map["C_AXIS_RADIUS"] = "3376.20 <KM>";
+  l.map["CENTER_LATITUDE"] = "90.0";
+  l.map["MAP_RESOLUTION"] = "128.0 <PIXEL/DEGREE>";
+  const double scale_m = 3396190 * kRadian / 128;
+  l.map["MAP_SCALE"] = number(scale_m / 1000) + " <KM/PIXEL>";
+  l.map["LINE_PROJECTION_OFFSET"] = "99.5";
+  l.map["SAMPLE_PROJECTION_OFFSET"] = "99.5";
+  const mars::GdalRaster raster(pds_files::write(folder.path(), "s", l, [](int, int) { return 1; }));
+  const double lat = 90 - 2 * std::atan(80 * scale_m / 2 / 3376200) / kRadian;
+  expect_pixel(raster, {90, lat}, 99.5 + 80, 99.5);
+}
+
 TEST(MegrPolar, FirstPixelWhereTheArchiveSaysIt) {
   // MEGR_S_128 and MEGR_S_512 (IEEE_REAL): their labels describe another projection, 2 sin(c/2), but the place
   // they give for the first pixel's corner, 37.4532 S and 73.1519 S at 315 E, is that of the stereographic one.
