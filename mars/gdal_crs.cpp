@@ -38,10 +38,9 @@ void run(LeasePool<OGRCoordinateTransformation>& pool, std::vector<glm::dvec2>& 
 }  // namespace
 
 CrsTransformer::CrsTransformer(const std::string& path, const OGRSpatialReference& crs,
-                               const std::array<double, 6>& to_map, double shift_px)
+                               const std::array<double, 6>& to_map, double lon_turn_deg)
     : target_(crs),
       to_map_(to_map),
-      shift_px_(shift_px),
       forward_([this] { return make(false); }),
       inverse_([this] { return make(true); }) {
   const GdalScope scope;
@@ -58,6 +57,8 @@ CrsTransformer::CrsTransformer(const std::string& path, const OGRSpatialReferenc
   if (!geographic || target_.IsLocal()) throw source_error(path, cannot, scope.message(), advice);
   source_ = *geographic;
   read_axes();
+  // PROJ refuses longitudes beyond 10 radians.
+  meridian_deg_ += std::remainder(lon_turn_deg, 360.0);
   try {
     forward_.lend();
     inverse_.lend();
@@ -86,15 +87,15 @@ void CrsTransformer::forward(std::vector<glm::dvec2>& points) const {
   for (glm::dvec2& p : points) p = {lon_sign_ * (p.x - meridian_deg_) * unit_, p.y * unit_};
   run(forward_, points);
   for (glm::dvec2& p : points) {
-    p = {to_pixel_[0] + p.x * to_pixel_[1] + p.y * to_pixel_[2] - 0.5 - shift_px_,
-         to_pixel_[3] + p.x * to_pixel_[4] + p.y * to_pixel_[5] - 0.5 - shift_px_};
+    p = {to_pixel_[0] + p.x * to_pixel_[1] + p.y * to_pixel_[2] - 0.5,
+         to_pixel_[3] + p.x * to_pixel_[4] + p.y * to_pixel_[5] - 0.5};
   }
 }
 
 void CrsTransformer::inverse(std::vector<glm::dvec2>& points) const {
   for (glm::dvec2& p : points) {
-    const double column = p.x + 0.5 + shift_px_;
-    const double row = p.y + 0.5 + shift_px_;
+    const double column = p.x + 0.5;
+    const double row = p.y + 0.5;
     p = {to_map_[0] + column * to_map_[1] + row * to_map_[2],
          to_map_[3] + column * to_map_[4] + row * to_map_[5]};
   }

@@ -14,13 +14,16 @@ namespace mars {
 
 // Degrees east and north in the geographic part of the raster's own CRS: whatever body and datum it names, no
 // change of datum can come in. Handles axes in any order or pointing west, other units and prime meridians.
-// Every const member may be called from any number of threads at once.
+// GDAL 3.6.2 puts the latitude first, along the columns, where a geographic CRS counts longitudes to the west:
+// so does gdalwarp -t_srs IAU_2015:49901, and so it is read here. In a GeoTIFF GDAL then loses which is which;
+// projected ones (IAU_2015:49911: x grows to the west) lose their direction there. A VRT keeps both. Every
+// const member may be called from any number of threads at once.
 class CrsTransformer {
  public:
-  // `to_map` is GDAL's geotransform; the data's pixel p lies where that puts pixel p + shift_px.
-  // `path` is for messages. Throws SourceError.
+  // `to_map` is the geotransform. A place of longitude L is taken for L - lon_turn_deg of the CRS: for files
+  // whose central meridian GDAL reads wrongly. `path` is for messages. Throws SourceError.
   CrsTransformer(const std::string& path, const OGRSpatialReference& crs, const std::array<double, 6>& to_map,
-                 double shift_px);
+                 double lon_turn_deg);
   CrsTransformer(const CrsTransformer&) = delete;
   CrsTransformer& operator=(const CrsTransformer&) = delete;
 
@@ -48,10 +51,9 @@ class CrsTransformer {
   OGRSpatialReference source_;
   std::array<double, 6> to_map_;
   std::array<double, 6> to_pixel_{};
-  double shift_px_ = 0;
   double lon_sign_ = 1;
-  double unit_ = 1;  // angular units of the CRS in a degree
-  double meridian_deg_ = 0;
+  double unit_ = 1;          // angular units of the CRS in a degree
+  double meridian_deg_ = 0;  // degrees east of the CRS's longitude 0
   bool centric_ = false;
   mutable Pool forward_;
   mutable Pool inverse_;

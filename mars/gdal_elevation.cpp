@@ -25,6 +25,8 @@ struct BandFormat {
   double scale = 1;   // metres in a unit of the stored values
   double offset = 0;  // metres at stored value 0
   bool fits_float = false;
+  Holes holes;          // stored values that are no data besides that one
+  bool masked = false;  // a mask or alpha band says where there is data
 };
 
 double metres_per_unit(const std::string& unit) {
@@ -59,6 +61,10 @@ BandFormat band_format(const GdalRaster& raster) {
     const double value = band->GetNoDataValue(&has_no_data);
     if (has_no_data != 0) format.no_data = value;
   }
+  format.holes = raster.holes();
+  // The mask of a no-data value says nothing new.
+  const int mask = band->GetMaskFlags();
+  format.masked = (mask & (GMF_ALL_VALID | GMF_NODATA)) == 0;
   const double unit_m = metres_per_unit(band->GetUnitType());
   format.scale = band->GetScale() * unit_m;
   format.offset = band->GetOffset() * unit_m;
@@ -211,6 +217,8 @@ class GdalElevation final : public ElevationSource, public RimAware, public Mask
       first_column.resize(static_cast<std::size_t>(window.rows));
       raster_->read(1, -1, {0, window.row, 1, window.rows}, 1, first_column.data());
     }
+    mask_out(window, kTileStride, tile->values);
+    if (!first_column.empty()) mask_out({0, window.row, 1, window.rows}, 1, first_column);
     complete_tile(window, first_column.empty() ? nullptr : first_column.data(), tile->values.data());
     mark_missing(tile->values);
     if (mask_) drop_masked(id, tile->values);
@@ -226,6 +234,7 @@ class GdalElevation final : public ElevationSource, public RimAware, public Mask
                              std::min(grid_.height, (id.row + 1) * kTileSide + 1 + mask_margin_) - row};
     std::vector<T> stored(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows));
     raster_->read(1, -1, window, window.columns, stored.data());
+    mask_out(window, window.columns, stored);
     mark_missing(stored);
     std::vector<glm::dvec2> pixels;
     std::vector<double> heights_m;
@@ -262,6 +271,27 @@ class GdalElevation final : public ElevationSource, public RimAware, public Mask
     for (T& value : values) {
       // Magnitudes that no height has: infinities, and the special pixels of ISIS beside its no-data value.
       if (value == no_data || !(std::abs(value) < static_cast<T>(1e30))) value = static_cast<T>(kNaN);
+    }
+    if (!format_.holes.any()) return;
+    for (T& value : values) {
+      if (format_.holes.has(static_cast<double>(value))) value = static_cast<T>(kNaN);
+    }
+  }
+
+  // What the mask or alpha band hides, in values of a window whose rows are `stride` apart.
+  void mask_out(const PixelWindow& window, int stride, std::span<T> values) const {
+    if (!format_.masked) return;
+    std::vector<unsigned char> mask(static_cast<std::size_t>(window.columns) *
+                                    static_cast<std::size_t>(window.rows));
+    raster_->read_mask(1, -1, window, window.columns, mask.data());
+    for (int row = 0; row < window.rows; ++row) {
+      for (int column = 0; column < window.columns; ++column) {
+        const auto at = [&](int width) {
+          return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(column);
+        };
+        if (mask[at(window.columns)] == 0) values[at(stride)] = static_cast<T>(kNaN);
+      }
     }
   }
 
@@ -312,6 +342,7 @@ class GdalElevation final : public ElevationSource, public RimAware, public Mask
   double row_mean(int row) const {
     std::vector<T> values(static_cast<std::size_t>(grid_.width));
     raster_->read(1, -1, {0, row, grid_.width, 1}, grid_.width, values.data());
+    mask_out({0, row, grid_.width, 1}, grid_.width, values);
     mark_missing(values);
     double sum = 0;
     int count = 0;

@@ -39,36 +39,41 @@ const char* const kNoGeoreference =
 
 }  // namespace
 
-Georeference::Georeference(const std::string& path, GDALDataset& dataset, const PdsPlacement& placement) {
+Georeference::Georeference(const std::string& path, GDALDataset& dataset, const LabelPlace& place) {
   const GdalScope scope;
   grid_.width = dataset.GetRasterXSize();
   grid_.height = dataset.GetRasterYSize();
   std::array<double, 6> to_map{};
-  const OGRSpatialReference* crs = dataset.GetSpatialRef();
-  if (dataset.GetGeoTransform(to_map.data()) != CE_None) {
+  if (place.to_map) {
+    to_map = *place.to_map;
+  } else if (dataset.GetGeoTransform(to_map.data()) != CE_None) {
     const bool points = dataset.GetGCPCount() > 0;
     throw source_error(path, "has no georeference", points ? "only ground control points" : "",
                        points ? "warp it first with gdalwarp -t_srs" : kNoGeoreference);
   }
-  if (crs == nullptr || crs->IsEmpty()) {
+  OGRSpatialReference crs;
+  if (!place.crs.empty()) {
+    if (crs.SetFromUserInput(place.crs.c_str()) != OGRERR_NONE) {
+      throw source_error(path, "its label has a map that PROJ does not know", scope.message(),
+                         "check the label's IMAGE_MAP_PROJECTION");
+    }
+  } else if (dataset.GetSpatialRef() != nullptr) {
+    crs = *dataset.GetSpatialRef();
+  }
+  if (crs.IsEmpty()) {
     throw source_error(path, "has a geotransform but no coordinate system", "",
                        "name the body's, e.g. gdal_edit.py -a_srs IAU_2015:49900 FILE");
   }
-  if (placement.west_positive) {
-    throw source_error(path, "its label counts longitudes to the west", "GDAL would mirror the planet",
-                       "convert it to POSITIVE_LONGITUDE_DIRECTION = EAST first");
-  }
-  // A label that counts from one puts GDAL's pixel (0, 0) where the data's (-1, -1) would be.
-  transformer_ = std::make_unique<CrsTransformer>(path, *crs, to_map, placement.counts_from_one ? 1.0 : 0.0);
-  centric_scale_ = transformer_->centric_scale();
+  transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, place.lon_turn_deg);
+  centric_scale_ = place.centric_scale.value_or(transformer_->centric_scale());
 
-  const double to_m = crs->IsGeographic() || !crs->IsProjected()
-                          ? crs->GetAngularUnits() * transformer_->semi_major_m()
-                          : crs->GetLinearUnits();
+  const double to_m = crs.IsGeographic() || !crs.IsProjected()
+                          ? crs.GetAngularUnits() * transformer_->semi_major_m()
+                          : crs.GetLinearUnits();
   resolution_m_ = std::min(std::hypot(to_map[1], to_map[4]), std::hypot(to_map[2], to_map[5])) * to_m;
 
-  if (placement.grid) {
-    const DegreeGrid& g = *placement.grid;
+  if (place.grid) {
+    const DegreeGrid& g = *place.grid;
     linear_ = Linear{{-g.west_deg * g.pixels_per_degree - 0.5, g.north_deg * g.pixels_per_degree - 0.5},
                      {g.pixels_per_degree, 0},
                      {0, -g.pixels_per_degree}};
@@ -76,6 +81,12 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     find_linear();
   }
   find_wrap();
+  if (linear_ && grid_.period == 0) {
+    const Linear& m = *linear_;
+    const glm::dvec2 p = glm::dvec2(grid_.width - 1, grid_.height - 1) / 2.0 - m.origin;
+    const double area = m.per_lon.x * m.per_lat.y - m.per_lat.x * m.per_lon.y;
+    middle_lon_deg_ = (p.x * m.per_lat.y - p.y * m.per_lat.x) / area;
+  }
 }
 
 Georeference::~Georeference() = default;
@@ -149,7 +160,8 @@ void Georeference::to_pixels(std::span<const glm::dvec3> directions, std::span<g
   }
   const Linear m = *linear_;
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const glm::dvec2 p = crs_lon_lat(directions[i], centric_scale_);
+    glm::dvec2 p = crs_lon_lat(directions[i], centric_scale_);
+    if (middle_lon_deg_) p.x = *middle_lon_deg_ + std::remainder(p.x - *middle_lon_deg_, 360.0);
     pixels[i] = m.origin + m.per_lon * p.x + m.per_lat * p.y;
   }
 }

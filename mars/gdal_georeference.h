@@ -9,7 +9,7 @@
 #include <string>
 
 #include "mars/gdal_grid.h"
-#include "mars/pds_label.h"
+#include "mars/label_place.h"
 
 class GDALDataset;
 
@@ -23,8 +23,9 @@ class CrsTransformer;
 // at opening, to prove that. Every const member may be called from any number of threads at once.
 class Georeference {
  public:
-  // `path` is for messages. Throws SourceError when there is no georeference or it cannot be transformed.
-  Georeference(const std::string& path, GDALDataset& dataset, const PdsPlacement& placement);
+  // `place` overrides what GDAL says. `path` is for messages. Throws SourceError when there is no georeference
+  // or it cannot be transformed.
+  Georeference(const std::string& path, GDALDataset& dataset, const LabelPlace& place);
   ~Georeference();
   Georeference(Georeference&&) noexcept;
 
@@ -41,7 +42,7 @@ class Georeference {
   static constexpr double kLinearError_px = 1e-5;
   void to_pixels(std::span<const glm::dvec3> directions, std::span<glm::dvec2> pixels) const;
 
-  // The same through PROJ at every point, for checks; not for grids from PDS labels (see PdsPlacement::grid).
+  // The same through PROJ at every point, for checks; not for grids from labels (LabelPlace::grid).
   void to_pixels_by_proj(std::span<const glm::dvec3> directions, std::span<glm::dvec2> pixels) const;
 
   // Unit direction of each pixel; NaN off the planet (beyond the rim of a sinusoidal map).
@@ -64,6 +65,7 @@ class Georeference {
   double resolution_m_ = 0;
   double centric_scale_ = 1;  // tan(centric latitude) = centric_scale_ tan(latitude of the CRS)
   std::optional<Linear> linear_;
+  std::optional<double> middle_lon_deg_;  // of turned linear maps, which have no period in columns
 };
 
 }  // namespace mars

@@ -2,76 +2,18 @@
 
 #include <cpl_string.h>
 #include <cpl_vsi.h>
-#include <gdal_pam.h>
 #include <gdal_priv.h>
 #include <rawdataset.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <type_traits>
+
+#include "mars/gdal_labels.h"
 
 namespace mars {
 namespace {
 
-using Handles = LeasePool<GDALDataset>;
-
 const char* const kWrongFile = "give a raster that gdalinfo can show";
-
-Handles::Pointer try_open(const std::string& path) {
-  Handles::Pointer dataset(
-      static_cast<GDALDataset*>(GDALOpenEx(
-          path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr)),
-      [](GDALDataset* d) {
-        const GdalScope scope;
-        GDALClose(d);
-      });
-  // Side files (.aux.xml) are read, for their georeference, but never written.
-  if (auto* pam = dynamic_cast<GDALPamDataset*>(dataset.get()))
-    pam->SetPamFlags(pam->GetPamFlags() | GPF_NOSAVE);
-  return dataset;
-}
-
-Handles::Pointer open_handle(const std::string& path) {
-  const GdalScope scope;
-  Handles::Pointer dataset = try_open(path);
-  if (!dataset) {
-    VSIStatBufL stat{};
-    errno = 0;
-    if (VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) != 0 && path.find(':') == std::string::npos) {
-      throw source_error(path, "cannot open", std::strerror(errno != 0 ? errno : ENOENT), "check the name");
-    }
-    throw source_error(path, "cannot open as a raster", scope.message(), kWrongFile);
-  }
-  return dataset;
-}
-
-bool exists(const std::string& path) {
-  VSIStatBufL stat{};
-  return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
-}
-
-// The file that GDAL understands: `path`, or the label beside a PDS image that has none inside.
-std::string readable_path(const std::string& path) {
-  const GdalScope scope;
-  if (!CPLString(CPLGetExtension(path.c_str())).tolower().compare("img") && exists(path) && !try_open(path)) {
-    for (const char* extension : {"lbl", "LBL"}) {
-      std::string label = CPLResetExtension(path.c_str(), extension);
-      if (exists(label) && try_open(label)) return label;
-    }
-  }
-  return path;
-}
-
-std::string first_bytes(const std::string& path, std::size_t size) {
-  std::string text(size, '\0');
-  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
-  if (file == nullptr) return {};
-  text.resize(VSIFReadL(text.data(), 1, size, file));
-  VSIFCloseL(file);
-  return text;
-}
 
 void check_bands(const std::string& path, GDALDataset& dataset) {
   if (dataset.GetRasterCount() == 0) {
@@ -109,21 +51,17 @@ void check_raw_size(const std::string& path, GDALDataset& dataset) {
 }  // namespace
 
 GdalRaster::GdalRaster(const std::string& path)
-    : path_(readable_path(path)), handles_([this] { return open_handle(path_); }) {
+    : file_(find_raster(path)), handles_([this] { return open_raster(file_); }) {
   const GdalScope scope;
   const auto dataset = handles_.lend();
-  check_bands(path_, *dataset);
-  check_raw_size(path_, *dataset);
-  PdsPlacement placement;
-  const GDALDriver* driver = dataset->GetDriver();
-  if (driver != nullptr && std::strcmp(GDALGetDriverShortName(const_cast<GDALDriver*>(driver)), "PDS") == 0) {
-    label_ = parse_pds_label(first_bytes(path_, std::size_t{1} << 18));
-    placement = place_pds(*label_);
-  }
-  georeference_.emplace(path_, *dataset, placement);
+  check_bands(file_.path, *dataset);
+  check_raw_size(file_.path, *dataset);
+  holes_ = holes_of(*dataset, file_.label);
+  const LabelPlace place = file_.place ? *file_.place : place_of(file_.path, *dataset);
+  georeference_.emplace(file_.path, *dataset, place);
   footprint_.emplace(*georeference_);
   if (footprint_->is_empty()) {
-    throw source_error(path_, "lies nowhere on the planet",
+    throw source_error(file_.path, "lies nowhere on the planet",
                        "its pixels cannot be transformed to longitude and latitude",
                        "check its coordinate system and geotransform with gdalinfo");
   }
@@ -132,16 +70,19 @@ GdalRaster::GdalRaster(const std::string& path)
 SourceInfo GdalRaster::info() const {
   const GdalScope scope;
   SourceInfo info;
-  info.name = path_;
+  info.name = file_.path;
   info.resolution_m = georeference_->resolution_m();
-  char** files = lend()->GetFileList();
-  for (int i = 0; files != nullptr && files[i] != nullptr; ++i) {
+  std::vector<std::string> files = file_.files;
+  if (files.empty()) {
+    const CPLStringList known(lend()->GetFileList());
+    for (int i = 0; i < known.size(); ++i) files.emplace_back(known[i]);
+  }
+  for (const std::string& each : files) {
     VSIStatBufL stat{};
-    if (VSIStatL(files[i], &stat) != 0) continue;
+    if (VSIStatL(each.c_str(), &stat) != 0) continue;
     info.size_bytes += static_cast<std::int64_t>(stat.st_size);
     info.mtime_s = std::max(info.mtime_s, static_cast<std::int64_t>(stat.st_mtime));
   }
-  CSLDestroy(files);
   return info;
 }
 
@@ -178,7 +119,7 @@ template <class T>
 void GdalRaster::read(int band, int overview, const PixelWindow& window, int stride, T* values) const {
   const GdalScope scope;
   const auto dataset = lend();
-  read_pixels(path_, band_of(*dataset, band, overview), window, stride, values, scope);
+  read_pixels(file_.path, band_of(*dataset, band, overview), window, stride, values, scope);
 }
 
 void GdalRaster::read_mask(int band, int overview, const PixelWindow& window, int stride,
@@ -186,7 +127,7 @@ void GdalRaster::read_mask(int band, int overview, const PixelWindow& window, in
   const GdalScope scope;
   const auto dataset = lend();
   GDALRasterBand* source = band_of(*dataset, band, overview);
-  read_pixels(path_, source == nullptr ? nullptr : source->GetMaskBand(), window, stride, values, scope);
+  read_pixels(file_.path, source == nullptr ? nullptr : source->GetMaskBand(), window, stride, values, scope);
 }
 
 template void GdalRaster::read(int, int, const PixelWindow&, int, float*) const;

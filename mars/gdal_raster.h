@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "mars/gdal_file.h"
 #include "mars/gdal_footprint.h"
 #include "mars/gdal_georeference.h"
+#include "mars/gdal_labels.h"
 #include "mars/gdal_scope.h"
 #include "mars/pds_label.h"
 #include "mars/source.h"
@@ -18,14 +20,15 @@ namespace mars {
 // Every const member may be called from any number of threads at once.
 class GdalRaster {
  public:
-  // Opens anything GDAL reads; for a PDS image with a detached label, the label beside it. Throws SourceError.
+  // Opens anything GDAL reads, and what find_raster() adds to that. Throws SourceError.
   explicit GdalRaster(const std::string& path);
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return file_.path; }
   const Georeference& georeference() const { return *georeference_; }
   const PixelGrid& grid() const { return georeference_->grid(); }
   const Footprint& footprint() const { return *footprint_; }
-  const std::optional<PdsLabel>& label() const { return label_; }
+  const std::optional<PdsLabel>& label() const { return file_.label; }
+  const Holes& holes() const { return holes_; }
 
   // Name, size and time of all its files, resolution.
   SourceInfo info() const;
@@ -40,9 +43,9 @@ class GdalRaster {
   void read_mask(int band, int overview, const PixelWindow& window, int stride, unsigned char* values) const;
 
  private:
-  std::string path_;
+  RasterFile file_;
   mutable LeasePool<GDALDataset> handles_;
-  std::optional<PdsLabel> label_;
+  Holes holes_;
   std::optional<Georeference> georeference_;
   std::optional<Footprint> footprint_;
 };

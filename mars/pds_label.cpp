@@ -121,6 +121,25 @@ bool same_lon(double a_deg, double b_deg, double pixels_per_degree) {
   return std::abs(std::remainder(a_deg - b_deg, 360.0)) * pixels_per_degree <= kAgree_px;
 }
 
+// Lines of the map are even in latitude.
+bool has_even_lines(const std::string& type) {
+  return type == "SIMPLE CYLINDRICAL" || type == "EQUIRECTANGULAR" || type == "EQUIDISTANT" ||
+         type == "SINUSOIDAL";
+}
+
+bool is_polar_map(const std::string& type, double centre_lat_deg) {
+  return type == "POLAR STEREOGRAPHIC" || (type == "STEREOGRAPHIC" && std::abs(centre_lat_deg) == 90);
+}
+
+bool says_planetographic(const PdsLabel& label, bool west_positive) {
+  for (const char* key : {"COORDINATE_SYSTEM_NAME", "PROJECTION_LATITUDE_TYPE", "LATITUDE_TYPE"}) {
+    const std::string kind = upper(label.text(std::string("IMAGE_MAP_PROJECTION.") + key));
+    if (kind == "PLANETOGRAPHIC") return true;
+    if (kind == "PLANETOCENTRIC") return false;
+  }
+  return west_positive;
+}
+
 }  // namespace
 
 std::string PdsLabel::text(std::string_view name) const {
@@ -142,35 +161,59 @@ std::optional<double> PdsLabel::number(std::string_view name) const {
 
 PdsLabel parse_pds_label(std::string_view text) { return Reader(text).read(); }
 
+std::string pds_projection(const PdsLabel& label, const std::string& object) {
+  std::string type = upper(label.text(object + ".MAP_PROJECTION_TYPE"));
+  std::replace(type.begin(), type.end(), '_', ' ');
+  return type;
+}
+
 PdsPlacement place_pds(const PdsLabel& label) {
   const auto number = [&](const char* key) { return label.number(std::string("IMAGE_MAP_PROJECTION.") + key); };
   PdsPlacement placement;
   placement.west_positive = upper(label.text("IMAGE_MAP_PROJECTION.POSITIVE_LONGITUDE_DIRECTION")) == "WEST";
+  placement.planetographic = says_planetographic(label, placement.west_positive);
 
   const auto line = number("LINE_PROJECTION_OFFSET");
   const auto sample = number("SAMPLE_PROJECTION_OFFSET");
   const auto resolution = number("MAP_RESOLUTION");
-  const auto north = number("MAXIMUM_LATITUDE");
-  if (!line || !sample || !resolution || *resolution <= 0 || !north) return placement;
+  const std::string type = pds_projection(label);
+  if (!line || !sample) return placement;
 
-  std::string type = upper(label.text("IMAGE_MAP_PROJECTION.MAP_PROJECTION_TYPE"));
-  std::replace(type.begin(), type.end(), '_', ' ');
   const auto centre_lon = number("CENTER_LONGITUDE");
+  const auto north = number("MAXIMUM_LATITUDE");
   const auto west = number("WESTERNMOST_LONGITUDE");
-  const bool even = type == "SIMPLE CYLINDRICAL" && number("CENTER_LATITUDE").value_or(0.0) == 0.0 &&
-                    centre_lon && !placement.west_positive;
-
-  const auto agrees = [&](double edge_offset) {
-    if (std::abs((*line + edge_offset) - *north * *resolution) > kAgree_px) return false;
-    return !even || !west || same_lon(*centre_lon - (*sample + edge_offset) / *resolution, *west, *resolution);
+  const auto lines = label.number("IMAGE.LINES");
+  const auto samples = label.number("IMAGE.LINE_SAMPLES");
+  const double centre_lat = number("CENTER_LATITUDE").value_or(0.0);
+  const bool even = type == "SIMPLE CYLINDRICAL" && centre_lat == 0 && centre_lon;
+  const auto west_edge = [&](double edge_offset) {
+    return placement.east(*centre_lon) - (*sample + edge_offset) / *resolution;
   };
-  const bool from_one = agrees(-0.5);
-  const bool from_zero = agrees(0.5);
-  placement.counts_from_one = from_one;
-  if (even && (from_one || from_zero)) {
-    const double edge_offset = from_one ? -0.5 : 0.5;
-    placement.grid = DegreeGrid{*centre_lon - (*sample + edge_offset) / *resolution,
-                                (*line + edge_offset) / *resolution, *resolution};
+
+  // Bounds of the data instead of the pixels' edges prove nothing.
+  const auto south = number("MINIMUM_LATITUDE");
+  const bool bounds_are_edges =
+      north && resolution && *resolution > 0 &&
+      (!south || !lines || std::abs((*north - *south) * *resolution - *lines) <= kAgree_px);
+  const auto lines_agree = [&](double edge_offset) {
+    if (is_polar_map(type, centre_lat)) {
+      return lines && samples && std::abs(*line + edge_offset - *lines / 2) <= kAgree_px &&
+             std::abs(*sample + edge_offset - *samples / 2) <= kAgree_px;
+    }
+    return has_even_lines(type) && bounds_are_edges &&
+           std::abs(*line + edge_offset - *north * *resolution) <= kAgree_px;
+  };
+  const auto samples_agree = [&](double edge_offset) {
+    return !even || !west || same_lon(west_edge(edge_offset), placement.east(*west), *resolution);
+  };
+  for (const double edge_offset : {kCountsFromOne, kCountsFromZero, kCountsFromHalf}) {
+    if (!lines_agree(edge_offset) || !samples_agree(edge_offset)) continue;
+    placement.edge_offset_px = edge_offset;
+    placement.edge_is_proved = true;
+    if (even) {
+      placement.grid = DegreeGrid{west_edge(edge_offset), (*line + edge_offset) / *resolution, *resolution};
+    }
+    break;
   }
   return placement;
 }

@@ -64,6 +64,7 @@ void run(const fuzz::Target& target, int times, std::uint64_t seed) {
 
 TEST(Fuzz, Flights) { run(fuzz::kFlight, 100000, 1001); }
 TEST(Fuzz, Payloads) { run(fuzz::kPayload, 60000, 1002); }
+TEST(Fuzz, Labels) { run(fuzz::kLabel, 1500, 1004); }
 TEST(Fuzz, Planets) { run(fuzz::kPlanet, 1500, 1003); }
 
 }  // namespace

@@ -27,6 +27,9 @@ extern const Target kPayload;
 // Whole planet files: opening, every payload, verify().
 extern const Target kPlanet;
 
+// Labels of PDS images, the label being the image's own: parsing, placing, and opening as a user does.
+extern const Target kLabel;
+
 // Ends the process with the words when `promise` does not hold.
 void require(bool promise, const char* words);
 

@@ -97,14 +97,15 @@ TEST(PdsLabel, SurvivesAnyBytes) {
 TEST(PdsLabel, BoundsTellTheConvention) {
   const mars::DegreeGrid expected{0, 90, 0.25};
   const mars::PdsPlacement from_one = place_pds(parse_pds_label(global_label(1)));
-  EXPECT_TRUE(from_one.counts_from_one);
+  EXPECT_EQ(from_one.edge_offset_px, mars::kCountsFromOne);
   EXPECT_EQ(from_one.grid, expected);
   const mars::PdsPlacement from_zero = place_pds(parse_pds_label(global_label(0)));
-  EXPECT_FALSE(from_zero.counts_from_one);
+  EXPECT_EQ(from_zero.edge_offset_px, mars::kCountsFromZero);
   EXPECT_EQ(from_zero.grid, expected);
   // Neither: left to GDAL.
   const mars::PdsPlacement other = place_pds(parse_pds_label(global_label(7)));
-  EXPECT_FALSE(other.counts_from_one);
+  EXPECT_EQ(other.edge_offset_px, mars::kCountsFromZero);
+  EXPECT_FALSE(other.edge_is_proved);
   EXPECT_FALSE(other.grid.has_value());
 }
 
@@ -119,7 +120,7 @@ TEST(PdsLabel, ArchiveTilesOfMegdr128) {
       "EASTERNMOST_LONGITUDE = 180.0 <DEGREE>\nLINE_PROJECTION_OFFSET = 0.5\nSAMPLE_PROJECTION_OFFSET = "
       "11520.5\n"
       "END_OBJECT\nEND\n"));
-  EXPECT_TRUE(p.counts_from_one);
+  EXPECT_EQ(p.edge_offset_px, mars::kCountsFromOne);
   EXPECT_EQ(p.grid, (mars::DegreeGrid{90, 0, 128}));
 }
 
@@ -190,16 +191,6 @@ TEST(PdsSource, OpensAnImageByItsDetachedLabel) {
   EXPECT_EQ(info.size_bytes, static_cast<std::int64_t>(std::filesystem::file_size(folder / "m.img") +
                                                        std::filesystem::file_size(folder / "m.lbl")));
   EXPECT_GT(info.mtime_s, 1'000'000'000);
-}
-
-TEST(PdsSource, RefusesLongitudesThatCountWest) {
-  const test_support::TempDir folder;
-  std::string label = global_label(1);
-  const std::size_t east = label.find("\"EAST\"");
-  label.replace(east, 6, "\"WEST\"");
-  const std::string error = source_files::elevation_error(write_map(folder, label));
-  EXPECT_NE(error.find("m.lbl"), std::string::npos) << error;
-  EXPECT_NE(error.find("longitudes to the west"), std::string::npos) << error;
 }
 
 TEST(PdsSource, ShiftsOtherProjectionsOfTheArchiveConvention) {

@@ -131,7 +131,7 @@ TEST(GdalElevation, LinearPathAgreesWithProj) {
         glm::dvec2 off = fast[i] - proj[i];
         // PROJ returns longitudes to its own range.
         if (period > 0) off.x = std::remainder(off.x, period);
-        if (period == 0 && std::abs(off.x) > 1) continue;
+        if (period == 0 && std::max(std::abs(off.x), std::abs(off.y)) > 1) continue;
         EXPECT_LE(glm::length(off), 1.5 * mars::Georeference::kLinearError_px) << crs << " " << i;
       }
       std::vector<glm::dvec3> back(fast.size());
