@@ -19,6 +19,24 @@ json sources_json(const std::vector<mars::SourceInfo>& sources) {
   return list;
 }
 
+json levels_json(const paging::PlanetMeta& m) {
+  json list = json::array();
+  for (const paging::LevelSummary& l : m.levels) {
+    json entry{{"level", l.level + 1},
+               {"post_spacing_m", lod::post_spacing_m(l.level, m.tile.intervals(), m.radius_m)},
+               {"tiles", l.tiles},
+               {"finest_tiles", l.leaf_tiles},
+               {"image_tiles", l.image_tiles},
+               {"bytes", l.bytes},
+               {"holes", l.holes},
+               {"resampling_posts", l.resampling.posts}};
+    entry["resampling_max_m"] = l.resampling.posts > 0 ? json(l.resampling.max_m) : json();
+    entry["resampling_rms_m"] = l.resampling.posts > 0 ? json(l.resampling.rms_m) : json();
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 }  // namespace
 
 json planet_json(const paging::PlanetMeta& m) {
@@ -39,6 +57,7 @@ json planet_json(const paging::PlanetMeta& m) {
           {"resampling_max_m", m.resampling.max_m},
           {"resampling_rms_m", m.resampling.rms_m},
           {"resampling_posts", m.resampling.posts},
+          {"by_level", levels_json(m)},
           {"sources", sources_json(m.sources)},
           {"image_sources", sources_json(m.image_sources)},
           {"program", m.program},
