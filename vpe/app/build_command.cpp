@@ -14,6 +14,7 @@ struct BuildArguments {
   std::vector<std::string> images;
   std::vector<std::string> regions;
   std::string part;
+  bool estimate = false;
   paging::BuildOptions options;
 };
 
@@ -64,6 +65,12 @@ void build(BuildArguments& arguments, const Common& common) {
   std::shared_ptr<const mars::ImageSource> image;
   if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
 
+  const paging::BuildEstimate estimate = paging::estimate_build(options, *elevation, image.get());
+  if (arguments.estimate) {
+    report_estimate(estimate, common);
+    return;
+  }
+  say_estimate(estimate, common);
   report_build(run_build(options, *elevation, image.get(), common), options.output, common);
 }
 
@@ -100,6 +107,8 @@ void add_build(CLI::App& program, Common& common) {
       "--part", arguments->part,
       "k/n: make the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: from SLURM's or "
       "MPI's variables");
+  command->add_flag("--estimate", arguments->estimate,
+                    "Only say what the build would take: tiles, bytes, time");
   command->callback([arguments, &common] { build(*arguments, common); });
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "mars/raster_memory.h"
 #include "vpe/app/interrupt.h"
 #include "vpe/app/output.h"
 #include "vpe/app/planet_argument.h"
@@ -45,6 +46,28 @@ paging::BuildSummary run(const std::string& output, const char* verb, const Comm
   }
 }
 
+std::string duration(double seconds) {
+  char text[32];
+  if (seconds < 90) {
+    std::snprintf(text, sizeof text, "%.0f s", seconds);
+  } else if (seconds < 5400) {
+    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+  }
+  return text;
+}
+
+std::string in_words(const paging::BuildEstimate& e) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%lld tiles (%lld finest), %lld image tiles, %.1f million posts, about %.4g MB, about %s",
+                static_cast<long long>(e.leaf_tiles + e.inner_tiles), static_cast<long long>(e.leaf_tiles),
+                static_cast<long long>(e.image_tiles), 1e-6 * static_cast<double>(e.posts),
+                1e-6 * static_cast<double>(e.bytes), duration(e.wall_s).c_str());
+  return text;
+}
+
 void print_levels(const paging::PlanetMeta& meta) {
   std::printf("%-6s %9s %9s %9s %10s %12s %11s %11s\n", "level", "posts, m", "tiles", "finest", "MB", "holes",
               "RMS, m", "maximum, m");
@@ -67,11 +90,40 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
                                const mars::ImageSource* image, const Common& common) {
   // An analytic source is sampled one place at a time for the resampling error: enough for a figure that is
   // stable to a few per cent.
+  mars::set_raster_memory(std::size_t{5} * static_cast<std::size_t>(common.memory_mb) << 17);  // five eighths
   const auto infos = elevation.infos();
   if (!infos.empty() && infos.front().illustration) options.resampling_posts = 100'000;
   return run(options.output, "building", common, [&](const paging::ProgressFunction& progress) {
     return paging::build_planet(options, elevation, image, progress);
   });
+}
+
+void say_estimate(const paging::BuildEstimate& estimate, const Common& common) {
+  if (common.quiet) return;
+  std::fprintf(stderr, "To build: %s\n", in_words(estimate).c_str());
+  const double memory = 1048576.0 * common.memory_mb;
+  if (static_cast<double>(estimate.memory_bytes) > memory / 4) {
+    std::fprintf(
+        stderr,
+        "vpe: warning: the index of so many tiles takes %.0f MB beside what --memory gives to rasters; "
+        "divide the build with --part\n",
+        1e-6 * static_cast<double>(estimate.memory_bytes));
+  }
+}
+
+void report_estimate(const paging::BuildEstimate& e, const Common& common) {
+  if (!common.json) {
+    std::printf("%s\n", in_words(e).c_str());
+    return;
+  }
+  print_json({{"tiles", e.leaf_tiles + e.inner_tiles},
+              {"finest_tiles", e.leaf_tiles},
+              {"image_tiles", e.image_tiles},
+              {"posts", e.posts},
+              {"bytes", e.bytes},
+              {"processor_s", e.processor_s},
+              {"wall_s", e.wall_s},
+              {"index_bytes", e.memory_bytes}});
 }
 
 paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common& common) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "paging/builder.h"
+#include "paging/estimate.h"
 #include "paging/merge.h"
 #include "vpe/app/program.h"
 #include "vpe/core/part.h"
@@ -15,6 +16,11 @@ namespace vpe::app {
 // error after the first tile, a line on stderr says that the same command continues.
 paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
                                const mars::ImageSource* image, const Common& common);
+
+// What the build will take: on stderr, for a build that follows, or as the command's result on stdout, text or
+// JSON.
+void say_estimate(const paging::BuildEstimate& estimate, const Common& common);
+void report_estimate(const paging::BuildEstimate& estimate, const Common& common);
 
 // paging::merge_parts, likewise.
 paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common& common);
