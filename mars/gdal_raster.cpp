@@ -12,6 +12,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "mars/gdal_remote.h"
+
 namespace mars {
 namespace {
 
@@ -35,14 +37,15 @@ Handles::Pointer try_open(const std::string& path) {
 
 Handles::Pointer open_handle(const std::string& path) {
   const GdalScope scope;
-  Handles::Pointer dataset = try_open(path);
+  Handles::Pointer dataset;
+  attempt_with_retries(path, [&] { return (dataset = try_open(path)) != nullptr; });
   if (!dataset) {
     VSIStatBufL stat{};
     errno = 0;
     if (VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) != 0 && path.find(':') == std::string::npos) {
       throw source_error(path, "cannot open", std::strerror(errno != 0 ? errno : ENOENT), "check the name");
     }
-    throw source_error(path, "cannot open as a raster", scope.message(), kWrongFile);
+    throw source_error(path, "cannot open as a raster", scope.message(), advice_for(path, kWrongFile));
   }
   return dataset;
 }
@@ -109,7 +112,7 @@ void check_raw_size(const std::string& path, GDALDataset& dataset) {
 }  // namespace
 
 GdalRaster::GdalRaster(const std::string& path)
-    : path_(readable_path(path)), handles_([this] { return open_handle(path_); }) {
+    : path_(readable_path(raster_name(path))), handles_([this] { return open_handle(path_); }) {
   const GdalScope scope;
   const auto dataset = handles_.lend();
   check_bands(path_, *dataset);
@@ -158,14 +161,16 @@ constexpr GDALDataType data_type() {
 template <class T>
 void read_pixels(const std::string& path, GDALRasterBand* source, const PixelWindow& w, int stride, T* values,
                  const GdalScope& scope) {
-  if (source != nullptr &&
-      source->RasterIO(GF_Read, w.column, w.row, w.columns, w.rows, values, w.columns, w.rows, data_type<T>(),
-                       sizeof(T), static_cast<GSpacing>(sizeof(T)) * stride, nullptr) == CE_None) {
+  if (source != nullptr && attempt_with_retries(path, [&] {
+        return source->RasterIO(GF_Read, w.column, w.row, w.columns, w.rows, values, w.columns, w.rows,
+                                data_type<T>(), sizeof(T), static_cast<GSpacing>(sizeof(T)) * stride,
+                                nullptr) == CE_None;
+      })) {
     return;
   }
   throw source_error(path,
                      "cannot read rows " + std::to_string(w.row) + " to " + std::to_string(w.row + w.rows - 1),
-                     scope.message(), "the file may be cut short or damaged: fetch it again");
+                     scope.message(), advice_for(path, "the file may be cut short or damaged: fetch it again"));
 }
 
 GDALRasterBand* band_of(GDALDataset& dataset, int band, int overview) {
