@@ -10,10 +10,10 @@ namespace paging {
 
 namespace {
 
-// Measured 2026-11-21, processor time of one core of a 2-core virtual machine: mola8, mdim21, the embedded
-// Mars.
-constexpr double kLeafPost_s = 1.0e-6;  // sampled from a raster, meshed, measured, packed
-constexpr double kInnerPost_s = 0.85e-6;
+// Measured 2026-11-21, processor time of one core of a 2-core virtual machine: mola8 to 5.3 and 2.6 km, the same with
+// relief added to 326 m, mdim21, the embedded Mars; docs/scale.md.
+constexpr double kLeafPost_s = 1.2e-6;  // sampled from a raster, meshed, measured, packed
+constexpr double kInnerPost_s = 1.0e-6;
 constexpr double kTexel_s = 0.2e-6;
 constexpr double kMadeUpPost_s = 0.5e-6;  // besides, where the source is analytic
 constexpr double kMadeUpTexel_s = 7e-6;

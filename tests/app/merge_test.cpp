@@ -50,6 +50,21 @@ TEST_F(Merge, SaysWhatItMade) {
   EXPECT_TRUE(says(merged.out, {"x.vpe: ", "resampling error", "posts without data: 0", "maximum, m"}));
 }
 
+TEST_F(Merge, AnEstimateBuildsNothing) {
+  Words words = build_words("x.vpe", {"--estimate"});
+  const auto estimate = json_of(words);
+  EXPECT_FALSE(exists("x.vpe"));
+  const Result built = vpe(build_words("x.vpe"));
+  EXPECT_TRUE(says(built.err, {"To build: ", "image tiles", "million posts", "about"}));
+  const auto json = parse_json(built.out);
+  for (const char* equal : {"tiles", "finest_tiles", "image_tiles", "posts"})
+    EXPECT_EQ(estimate[equal], json[equal]) << equal;
+  const double ratio = estimate["bytes"].get<double>() / json["bytes"].get<double>();
+  EXPECT_GT(ratio, 0.2);
+  EXPECT_LT(ratio, 5);
+  EXPECT_EQ(vpe(build_words("y.vpe", {"-q"})).err, "");
+}
+
 TEST_F(Merge, TheSchedulerSaysWhichPart) {
   Command command = command_for(build_words("x.vpe", {"--part", "auto"}));
   command.environment = {

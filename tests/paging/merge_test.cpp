@@ -6,11 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
-#include <numeric>
 
+#include "paging/estimate.h"
 #include "paging/sqlite.h"
-#include "paging/verify.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace {
@@ -188,6 +189,50 @@ TEST_F(Merge, TheSummaryCountsEverything) {
   }
   EXPECT_EQ(holes, missing);
   EXPECT_GT(holes, 0);
+}
+
+TEST_F(Merge, TheEstimateCountsWhatIsBuilt) {
+  const auto all = paging::estimate_build(options("x.vpe"), source_, &image_);
+  EXPECT_EQ(all.leaf_tiles, whole().leaf_tiles);
+  EXPECT_EQ(all.leaf_tiles + all.inner_tiles, whole().tiles);
+  EXPECT_EQ(all.image_tiles, whole().image_tiles);
+  std::int64_t leaves = 0;
+  for (std::int64_t n = 1; n <= 5; ++n) {
+    const auto part = paging::estimate_build(part_options(n, 5), source_, &image_);
+    leaves += part.leaf_tiles;
+    EXPECT_EQ(part.leaf_tiles + part.inner_tiles, build(part_options(n, 5)).meta.tiles);
+    EXPECT_LT(part.bytes, all.bytes);
+    EXPECT_LT(part.processor_s, all.processor_s);
+  }
+  EXPECT_EQ(leaves, all.leaf_tiles);
+}
+
+// Order and division leave no trace in the sums.
+TEST(ResamplingSum, IsExact) {
+  Random random(3);
+  std::vector<double> errors;
+  for (int n = 0; n < 2000; ++n) errors.push_back(std::exp2(random.uniform(-24, 21)));
+  paging::ResamplingSum all;
+  for (const double e : errors) all.add(e);
+  paging::ResamplingSum parts;
+  for (std::size_t part = 0; part < 7; ++part) {
+    paging::ResamplingSum one;
+    for (std::size_t n = errors.size(); n-- > 0;) {
+      if (n % 7 == part) one.add(errors[n]);
+    }
+    parts.include(one);
+  }
+  EXPECT_TRUE(parts == all);
+  long double squares = 0;
+  for (const double e : errors) squares += static_cast<long double>(e) * e;
+  const auto rms = static_cast<double>(std::sqrt(squares / static_cast<long double>(errors.size())));
+  EXPECT_NEAR(all.error().rms_m, rms, 1e-9 * rms);
+  EXPECT_EQ(all.error().max_m, *std::max_element(errors.begin(), errors.end()));
+  EXPECT_EQ(paging::ResamplingSum().error(), paging::ResamplingError());
+  // A sum that passes 64 bits.
+  paging::ResamplingSum large;
+  for (int n = 0; n < 1000; ++n) large.add(1e6);
+  EXPECT_NEAR(large.error().rms_m, 1e6, 1e-3);
 }
 
 TEST_F(Merge, APartIsNoPlanetAndSaysSo) {

@@ -90,7 +90,8 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
                                const mars::ImageSource* image, const Common& common) {
   // An analytic source is sampled one place at a time for the resampling error: enough for a figure that is
   // stable to a few per cent.
-  mars::set_raster_memory(std::size_t{5} * static_cast<std::size_t>(common.memory_mb) << 17);  // five eighths
+  // The allocator keeps about a third more than what rasters hold; the rest is for the tile index and scratch.
+  mars::set_raster_memory(static_cast<std::size_t>(common.memory_mb) << 19);
   const auto infos = elevation.infos();
   if (!infos.empty() && infos.front().illustration) options.resampling_posts = 100'000;
   return run(options.output, "building", common, [&](const paging::ProgressFunction& progress) {
@@ -164,7 +165,6 @@ void report_build(const paging::BuildSummary& summary, const std::string& output
     nlohmann::json json = planet_json(meta);
     json["path"] = output;
     json["bytes"] = summary.bytes;
-    json["posts"] = summary.posts;
     json["tiles_kept"] = summary.kept;
     if (meta.share) json["part"] = {{"number", meta.share->part.number}, {"of", meta.share->part.of}};
     print_json(json);

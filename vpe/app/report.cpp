@@ -49,6 +49,7 @@ json planet_json(const paging::PlanetMeta& m) {
           {"height_quantum_m", m.quantum_m},
           {"tiles", m.tiles},
           {"finest_tiles", m.leaf_tiles},
+          {"posts", m.leaf_tiles * m.tile.post_count()},
           {"levels", m.finest_level + 1},
           {"finest_post_spacing_m", lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m)},
           {"lowest_m", m.lowest_radius_m - m.radius_m},
