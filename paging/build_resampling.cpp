@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vpe/core/parallel.h"
 
@@ -13,11 +14,13 @@ namespace {
 // tile.
 constexpr std::size_t kBatch = std::size_t{1} << 19;
 
+constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
+
 struct SourcePost {
-  std::size_t leaf = 0;
-  double u = 0;
-  double v = 0;
+  glm::dvec3 direction{};
   double height_m = 0;
+  mars::ChartPoint point;
+  std::size_t leaf = kNowhere;  // index of the finest tile, when it is one of those asked for
 };
 
 class Meter {
@@ -29,11 +32,7 @@ class Meter {
   void add(std::span<const glm::dvec3> directions, std::span<const double> heights) {
     for (std::size_t n = 0; n < directions.size(); ++n) {
       if (!std::isfinite(heights[n])) continue;
-      const mars::ChartPoint point = mars::chart_point(directions[n]);
-      const lod::TileKey key = lod::tile_at(point, context_.plan.leaf_level(point));
-      const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, curve_less);
-      if (leaf == leaves_.end() || *leaf != key) continue;
-      posts_.push_back({static_cast<std::size_t>(leaf - leaves_.begin()), point.u, point.v, heights[n]});
+      posts_.push_back({directions[n], heights[n], {}, kNowhere});
       if (posts_.size() >= kBatch) measure();
     }
   }
@@ -44,7 +43,27 @@ class Meter {
   }
 
  private:
+  // Neighbours mostly lie in one tile.
+  void locate(std::span<SourcePost> posts) const {
+    std::size_t last = kNowhere;
+    for (SourcePost& p : posts) {
+      p.point = mars::chart_point(p.direction);
+      if (last == kNowhere || leaves_[last] != lod::tile_at(p.point, leaves_[last].level)) {
+        const lod::TileKey key = lod::tile_at(p.point, context_.plan.leaf_level(p.point));
+        const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, curve_less);
+        last =
+            leaf == leaves_.end() || *leaf != key ? kNowhere : static_cast<std::size_t>(leaf - leaves_.begin());
+      }
+      p.leaf = last;
+    }
+  }
+
   void measure() {
+    constexpr std::size_t kBlock = 4096;
+    vpe::core::parallel_for((posts_.size() + kBlock - 1) / kBlock, threads_, [&](std::size_t n) {
+      locate(std::span(posts_).subspan(n * kBlock, std::min(kBlock, posts_.size() - n * kBlock)));
+    });
+    std::erase_if(posts_, [](const SourcePost& p) { return p.leaf == kNowhere; });
     std::sort(posts_.begin(), posts_.end(),
               [](const SourcePost& a, const SourcePost& b) { return a.leaf < b.leaf; });
     std::vector<std::size_t> runs;  // where each leaf's posts begin
@@ -60,7 +79,8 @@ class Meter {
       ResamplingSum sum;
       for (std::size_t n = runs[r]; n < end; ++n) {
         const SourcePost& p = posts_[n];
-        sum.add(std::abs(lod::surface_height(posts, lines, p.u, p.v, context_.meta.radius_m) - p.height_m));
+        const double height_m = lod::surface_height(posts, lines, p.point.u, p.point.v, context_.meta.radius_m);
+        sum.add(std::abs(height_m - p.height_m));
       }
       const std::lock_guard lock(adding);
       sums_.resize(std::max(sums_.size(), static_cast<std::size_t>(key.level) + 1));
