@@ -12,7 +12,7 @@ namespace {
 
 // So many posts are looked up together: enough that neighbours along a source's rows share the reading of a
 // tile.
-constexpr std::size_t kBatch = std::size_t{1} << 19;
+constexpr std::size_t kBatch = std::size_t{1} << 18;
 
 constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
