@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "mars/gdal_remote.h"
 #include "mars/pds_image.h"
 #include "mars/pds_map.h"
 
@@ -33,17 +34,25 @@ Pointer try_open(const std::string& name) {
   return dataset;
 }
 
+// Within a GdalScope, as first_bytes().
 bool exists(const std::string& path) {
-  VSIStatBufL stat{};
-  return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
+  return attempt_with_retries(path, [&] {
+    VSIStatBufL stat{};
+    return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
+  });
 }
 
 std::string first_bytes(const std::string& path, std::size_t size) {
-  std::string text(size, '\0');
-  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
-  if (file == nullptr) return {};
-  text.resize(VSIFReadL(text.data(), 1, size, file));
-  VSIFCloseL(file);
+  std::string text;
+  // A label that a server failed to send must not be taken for none.
+  attempt_with_retries(path, [&] {
+    VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
+    if (file == nullptr) return false;
+    text.assign(size, '\0');
+    text.resize(VSIFReadL(text.data(), 1, size, file));
+    VSIFCloseL(file);
+    return !text.empty();
+  });
   return text;
 }
 
@@ -114,8 +123,9 @@ RasterFile find_raster(const std::string& path) {
 
 Pointer open_raster(const RasterFile& file) {
   const GdalScope scope;
-  Pointer dataset = try_open(file.gdal_name);
-  if (dataset) return dataset;
+  Pointer dataset;
+  if (attempt_with_retries(file.path, [&] { return (dataset = try_open(file.gdal_name)) != nullptr; }))
+    return dataset;
   VSIStatBufL stat{};
   errno = 0;
   if (VSIStatExL(file.path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) != 0 &&
@@ -123,7 +133,7 @@ Pointer open_raster(const RasterFile& file) {
     throw source_error(file.path, "cannot open", std::strerror(errno != 0 ? errno : ENOENT), "check the name");
   }
   throw source_error(file.path, "cannot open as a raster", scope.message(),
-                     "give a raster that gdalinfo can show");
+                     advice_for(file.path, "give a raster that gdalinfo can show"));
 }
 
 }  // namespace mars

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "mars/gdal_labels.h"
+#include "mars/gdal_remote.h"
 
 namespace mars {
 namespace {
@@ -51,7 +52,7 @@ void check_raw_size(const std::string& path, GDALDataset& dataset) {
 }  // namespace
 
 GdalRaster::GdalRaster(const std::string& path)
-    : file_(find_raster(path)), handles_([this] { return open_raster(file_); }) {
+    : file_(find_raster(raster_name(path))), handles_([this] { return open_raster(file_); }) {
   const GdalScope scope;
   const auto dataset = handles_.lend();
   check_bands(file_.path, *dataset);
@@ -98,14 +99,16 @@ constexpr GDALDataType data_type() {
 template <class T>
 void read_pixels(const std::string& path, GDALRasterBand* source, const PixelWindow& w, int stride, T* values,
                  const GdalScope& scope) {
-  if (source != nullptr &&
-      source->RasterIO(GF_Read, w.column, w.row, w.columns, w.rows, values, w.columns, w.rows, data_type<T>(),
-                       sizeof(T), static_cast<GSpacing>(sizeof(T)) * stride, nullptr) == CE_None) {
+  if (source != nullptr && attempt_with_retries(path, [&] {
+        return source->RasterIO(GF_Read, w.column, w.row, w.columns, w.rows, values, w.columns, w.rows,
+                                data_type<T>(), sizeof(T), static_cast<GSpacing>(sizeof(T)) * stride,
+                                nullptr) == CE_None;
+      })) {
     return;
   }
   throw source_error(path,
                      "cannot read rows " + std::to_string(w.row) + " to " + std::to_string(w.row + w.rows - 1),
-                     scope.message(), "the file may be cut short or damaged: fetch it again");
+                     scope.message(), advice_for(path, "the file may be cut short or damaged: fetch it again"));
 }
 
 GDALRasterBand* band_of(GDALDataset& dataset, int band, int overview) {

@@ -1,8 +1,9 @@
-// Decoded pieces of rasters, kept while they are in use or fit a budget.
+// Decoded pieces of rasters, kept while they are in use or fit a budget that all rasters share.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -28,59 +29,85 @@ struct TileId {
   bool operator==(const TileId&) const = default;
 };
 
-inline constexpr std::size_t kTileCacheBytes = std::size_t{256} << 20;
+// Tiles of all rasters, least recently used ones leave first: a raster that is not asked for any more makes
+// room for others. Tiles that are held live on outside. Any thread may call any member.
+class TileStore {
+ public:
+  using Pointer = std::shared_ptr<const void>;
+  struct Key {
+    std::uint64_t cache = 0;
+    TileId tile;
+    bool operator==(const Key&) const = default;
+  };
 
-// Least-recently-used tiles up to a number of bytes. Tile needs `std::size_t bytes() const`. Tiles that are
-// held live on outside. Two threads that miss the same tile at once both make it; the first one's is kept.
+  explicit TileStore(std::size_t limit_bytes) : limit_(limit_bytes) {}
+  static TileStore& common();  // of the process; see mars/raster_memory.h
+
+  Pointer find(const Key& key);
+  // The tile that the store now holds: an earlier one wins. The newest is kept whatever its size.
+  Pointer insert(const Key& key, Pointer tile, std::size_t bytes);
+  void forget(std::uint64_t cache);
+  void set_limit(std::size_t bytes);
+  std::size_t bytes() const;
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Key& k) const {
+      const auto place = static_cast<std::uint64_t>(static_cast<std::uint32_t>(k.tile.row)) << 32 |
+                         static_cast<std::uint32_t>(k.tile.column);
+      const auto key = (place * 31 + static_cast<std::uint64_t>(k.tile.level)) * 31 + k.cache;
+      return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 7);
+    }
+  };
+  struct Entry {
+    Key key;
+    Pointer tile;
+    std::size_t bytes;
+  };
+  using Order = std::list<Entry>;
+  static constexpr std::size_t kEntryBytes = 160;  // list and map nodes
+
+  void remove(Order::iterator at);
+  void shrink();
+
+  mutable std::mutex mutex_;
+  std::size_t limit_;
+  std::size_t bytes_ = 0;
+  Order order_;
+  std::unordered_map<Key, Order::iterator, Hash> places_;
+};
+
+// One raster's tiles in the common store. Tile needs `std::size_t bytes() const`. Two threads that miss the
+// same tile at once both make it; the first one's is kept.
 template <class Tile>
 class TileCache {
  public:
   using Pointer = std::shared_ptr<const Tile>;
 
-  explicit TileCache(std::size_t limit_bytes = kTileCacheBytes) : limit_bytes_(limit_bytes) {}
+  TileCache() : number_(next_number()) {}
+  ~TileCache() { store_.forget(number_); }
+  TileCache(const TileCache&) = delete;
+  TileCache& operator=(const TileCache&) = delete;
 
   template <class Make>
   Pointer get(const TileId& id, const Make& make) {
-    {
-      const std::lock_guard lock(mutex_);
-      const auto found = places_.find(id);
-      if (found != places_.end()) {
-        order_.splice(order_.begin(), order_, found->second);
-        return found->second->second;
-      }
+    const TileStore::Key key{number_, id};
+    auto tile = store_.find(key);
+    if (!tile) {
+      Pointer made = make(id);
+      const std::size_t bytes = made->bytes();
+      tile = store_.insert(key, std::move(made), bytes);
     }
-    Pointer made = make(id);
-    const std::lock_guard lock(mutex_);
-    const auto found = places_.find(id);
-    if (found != places_.end()) return found->second->second;
-    order_.emplace_front(id, made);
-    places_.emplace(id, order_.begin());
-    bytes_ += made->bytes();
-    while (bytes_ > limit_bytes_ && order_.size() > 1) {
-      bytes_ -= order_.back().second->bytes();
-      places_.erase(order_.back().first);
-      order_.pop_back();
-    }
-    return made;
+    return std::static_pointer_cast<const Tile>(tile);
   }
 
  private:
-  struct Hash {
-    std::size_t operator()(const TileId& id) const {
-      const auto key = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(id.row)) << 32 |
-                        static_cast<std::uint32_t>(id.column)) *
-                           31 +
-                       static_cast<std::uint64_t>(id.level);
-      return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 7);
-    }
-  };
-  using Order = std::list<std::pair<TileId, Pointer>>;
-
-  std::size_t limit_bytes_;
-  std::size_t bytes_ = 0;
-  std::mutex mutex_;
-  Order order_;
-  std::unordered_map<TileId, typename Order::iterator, Hash> places_;
+  static std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+  }
+  TileStore& store_ = TileStore::common();
+  std::uint64_t number_;
 };
 
 // The tiles a batch has just used, so that neighbouring posts cost no lock. For one thread and one level.

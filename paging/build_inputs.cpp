@@ -103,7 +103,12 @@ std::string recipe_of(const BuildOptions& options, const PlanetMeta& meta) {
   for (const Region& r : options.regions) {
     text << "region " << r.west_deg << " " << r.south_deg << " " << r.east_deg << " " << r.north_deg << "\n";
   }
+  if (!options.part.is_all()) text << recipe_part(options.part);
   return text.str();
+}
+
+std::string recipe_part(const vpe::core::Part& part) {
+  return "part " + std::to_string(part.number) + " of " + std::to_string(part.of) + "\n";
 }
 
 PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,

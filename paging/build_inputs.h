@@ -17,6 +17,9 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
 // Everything that a planet file's content is a function of, as text: equal recipes make equal tiles.
 std::string recipe_of(const BuildOptions& options, const PlanetMeta& described);
 
+// Its last line where a build is divided; the rest is that of the undivided build.
+std::string recipe_part(const vpe::core::Part& part);
+
 // Both arguments must outlive the function.
 WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source);
 

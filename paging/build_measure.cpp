@@ -19,7 +19,9 @@ std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& contex
       auto& meter = meters[static_cast<std::size_t>(level)];
       const bool same = meter && level <= last.level && lod::ancestor(last, level) == key;
       if (!same) {
-        const PackedMesh mesh = decode_mesh(context.writer.mesh(key, 0));
+        const auto above = context.above.find(key);
+        const PackedMesh mesh =
+            above != context.above.end() ? above->second : decode_mesh(context.writer.mesh(key, 0));
         meter = std::make_unique<lod::ErrorMeter>(key, mesh.mesh, vertex_heights(mesh, context.meta.quantum_m),
                                                   context.meta.radius_m);
       }
@@ -62,8 +64,8 @@ std::map<lod::TileKey, lod::ErrorTerms> unpack_terms(std::span<const std::uint8_
   return out;
 }
 
-void nest_errors(BuildContext& context) {
-  for (const lod::TileKey& key : context.plan.inner()) {
+void nest_errors(BuildContext& context, std::span<const lod::TileKey> inner) {
+  for (const lod::TileKey& key : inner) {
     Node& node = context.nodes.at(key);
     for (int c = 0; c < 4; ++c) {
       node.variants.front().terms.include(context.nodes.at(lod::child(key, c)).variants.front().terms);

@@ -6,20 +6,26 @@ namespace paging {
 
 namespace {
 
-Node recalled(const NodeRow& row) {
+std::set<int> sources_of_row(const NodeRow& row) {
+  std::set<int> sources;
+  std::istringstream numbers(row.sources);
+  for (std::string number; std::getline(numbers, number, ',');) sources.insert(std::stoi(number));
+  return sources;
+}
+
+}  // namespace
+
+Node node_of(const NodeRow& row) {
   Node node;
   node.min_m = row.min_m;
   node.max_m = row.max_m;
   node.slope = row.slope;
   node.inner = row.inner;
   node.steps = row.steps;
-  std::istringstream numbers(row.sources);
-  for (std::string number; std::getline(numbers, number, ',');) node.sources.insert(std::stoi(number));
+  node.sources = sources_of_row(row);
   node.variants = row.variants;
   return node;
 }
-
-}  // namespace
 
 NodeRow to_row(const lod::TileKey& key, const Node& node) {
   NodeRow row;
@@ -38,7 +44,7 @@ NodeRow to_row(const lod::TileKey& key, const Node& node) {
 }
 
 Node recall_leaf(const BuildContext& context, const NodeRow& row) {
-  Node node = recalled(row);
+  Node node = node_of(row);
   const int level = lod::unpack(row.key)->level;
   const double spacing = lod::post_spacing_m(level, context.meta.tile.intervals(), context.meta.radius_m);
   node.lowest_m = node.min_m - facet_sag_m(spacing, context.meta.radius_m);
@@ -46,7 +52,7 @@ Node recall_leaf(const BuildContext& context, const NodeRow& row) {
 }
 
 Node recall_inner(const BuildContext& context, const NodeRow& row) {
-  Node node = recalled(row);
+  Node node = node_of(row);
   node.variants.front().terms = {};  // measured anew, or taken from notes
   for (int c = 0; c < 4; ++c) {
     const double lowest = context.nodes.at(lod::child(*lod::unpack(row.key), c)).lowest_m;

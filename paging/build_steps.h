@@ -63,9 +63,10 @@ struct BuildContext {
   const BuildOptions& options;
   const PlanetMeta& meta;
   const Plan& plan;
-  const mars::ElevationSource& elevation;
+  const mars::ElevationSource* elevation;  // null where nothing is sampled any more
   PlanetWriter& writer;
   MesherPool& meshers;
+  std::map<lod::TileKey, PackedMesh> above;  // meshes of tiles that this build measures, but others store
   std::map<lod::TileKey, Node> nodes;  // ordered, so that nothing depends on hashing; read-only during a step
 };
 
@@ -76,12 +77,16 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key);
 // error terms are 0 until they have been measured.
 Node build_inner(const BuildContext& context, const lod::TileKey& key);
 
+// The mesh that build_inner would make, from the sources instead of the children: for a tile that lies above
+// more than one part of a divided build.
+PackedMesh sample_mesh(const BuildContext& context, const lod::TileKey& key);
+
 // The tile's Node from what is stored of it, instead of building it: equal to what building it returns. An
 // inner tile's children must be in context.nodes.
 Node recall_leaf(const BuildContext& context, const NodeRow& row);
 Node recall_inner(const BuildContext& context, const NodeRow& row);
 
-// Largest errors of every ancestor's mesh over some finest tiles.
+// Largest errors of every ancestor's mesh over some finest tiles; the mesh from context.above, else as stored.
 std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& context,
                                                       std::span<const lod::TileKey> leaves);
 
@@ -89,12 +94,14 @@ std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& contex
 Bytes pack_terms(const std::map<lod::TileKey, lod::ErrorTerms>& terms);
 std::map<lod::TileKey, lod::ErrorTerms> unpack_terms(std::span<const std::uint8_t> packed);
 
-// Makes errors and height ranges nest: no tile states less than anything below it.
-void nest_errors(BuildContext& context);
+// Makes errors nest: none of these inner tiles, deepest first, states less than anything below it.
+void nest_errors(BuildContext& context, std::span<const lod::TileKey> inner);
 
 void build_image(const BuildContext& context, const mars::ImageSource& image, const lod::TileKey& key);
 
+// What is stored of a Node, and back: all but lowest_m.
 NodeRow to_row(const lod::TileKey& key, const Node& node);
+Node node_of(const NodeRow& row);
 
 // Bound of how far a facet of the tile's finest cells sags below the sphere through its posts: a point of a
 // flat triangle is within longest edge / sqrt(3) of a post.

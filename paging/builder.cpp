@@ -8,76 +8,17 @@
 #include <set>
 
 #include "paging/build_inputs.h"
+#include "paging/build_resampling.h"
+#include "paging/build_share.h"
 #include "paging/build_steps.h"
+#include "paging/planet_file.h"
 #include "paging/planet_writer.h"
-#include "paging/surface.h"
+#include "paging/stages.h"
 #include "vpe/core/parallel.h"
 
 namespace paging {
 
 namespace {
-
-// Reports the stages of a build as one rising fraction.
-class Stages {
- public:
-  explicit Stages(const ProgressFunction& report) : report_(report) {}
-
-  bool replaced = false;
-  std::int64_t kept() const { return kept_; }
-  void add_kept(std::int64_t count) { kept_ += count; }
-
-  // `done` of them are there already.
-  void begin(const char* name, std::int64_t total, double share, std::int64_t done = 0) {
-    done_share_ += share_;
-    share_ = share;
-    name_ = name;
-    total_ = total;
-    done_ = done;
-    tell();
-  }
-
-  void advance() {
-    const std::lock_guard lock(mutex_);
-    ++done_;
-    tell();
-  }
-
- private:
-  void tell() {
-    if (!report_) return;
-    const double part = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1.0;
-    report_({name_, done_, total_, done_share_ + share_ * part, kept_, replaced});
-  }
-
-  const ProgressFunction& report_;
-  std::mutex mutex_;
-  std::int64_t kept_ = 0;
-  const char* name_ = "";
-  std::int64_t done_ = 0;
-  std::int64_t total_ = 0;
-  double share_ = 0;
-  double done_share_ = 0;
-};
-
-ResamplingError measure_resampling(const mars::ElevationSource& source, const Surface& surface,
-                                   std::size_t posts) {
-  ResamplingError out;
-  double squares = 0;
-  std::vector<double> radius;
-  source.visit_posts(posts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
-    radius.resize(directions.size());
-    surface.radius(directions, radius);
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      if (!std::isfinite(heights[n])) continue;
-      const double error = std::abs(radius[n] - surface.planet_radius_m() - heights[n]);
-      out.max_m = std::max(out.max_m, error);
-      squares += error * error;
-      ++out.posts;
-    }
-  });
-  out.rms_m = out.posts > 0 ? std::sqrt(squares / static_cast<double>(out.posts)) : 0.0;
-  return out;
-}
 
 // One build: the stages in their order, each leaving out what an earlier build has finished.
 class Build {
@@ -89,6 +30,7 @@ class Build {
         image_(image),
         meta_(meta),
         plan_(meta.tile, meta.radius_m, wanted_elevation(options, elevation)),
+        share_(share_of(plan_, options.part)),
         writer_(options.output, recipe_of(options, meta), options.commit_s),
         stages_(progress),
         threads_(options.threads > 0 ? options.threads : vpe::core::default_threads()) {
@@ -108,7 +50,7 @@ class Build {
  private:
   // 1. Finest tiles: heights and meshes.
   void build_leaves(const std::map<lod::TileKey, NodeRow>& stored) {
-    const std::vector<lod::TileKey>& leaves = plan_.leaves();
+    const std::span<const lod::TileKey> leaves = share_.leaves;
     std::vector<lod::TileKey> open;
     for (const lod::TileKey& key : leaves) {
       const auto row = stored.find(key);
@@ -124,7 +66,7 @@ class Build {
 
   // 2. Inner tiles, deepest first: posts and meshes over their children's posts.
   void build_inner_tiles(const std::map<lod::TileKey, NodeRow>& stored) {
-    const std::vector<lod::TileKey>& inner = plan_.inner();
+    const std::vector<lod::TileKey>& inner = share_.inner;
     const auto missing = std::count_if(inner.begin(), inner.end(),
                                        [&](const lod::TileKey& key) { return !stored.contains(key); });
     begin("meshing", inner.size(), static_cast<std::size_t>(missing), 0.15);
@@ -145,11 +87,8 @@ class Build {
   // 3. Every inner mesh against the finest posts and facets below it.
   void measure() {
     constexpr std::size_t kChunk = 32;
-    const std::vector<lod::TileKey>& leaves = plan_.leaves();
+    const std::span<const lod::TileKey> leaves = share_.leaves;
     const std::size_t chunks = (leaves.size() + kChunk - 1) / kChunk;
-    const auto include = [this](const std::map<lod::TileKey, lod::ErrorTerms>& found) {
-      for (const auto& [key, terms] : found) context_.nodes.at(key).variants.front().terms.include(terms);
-    };
     const std::map<std::int64_t, Bytes> notes = writer_.notes();
     std::vector<std::size_t> open;
     for (std::size_t c = 0; c < chunks; ++c) {
@@ -162,11 +101,12 @@ class Build {
     }
     stages_.begin("measuring", static_cast<std::int64_t>(chunks), 0.15,
                   static_cast<std::int64_t>(chunks - open.size()));
+    mesh_above();
     std::mutex merge;
     vpe::core::parallel_for(open.size(), threads_, [&](std::size_t n) {
       const std::size_t first = open[n] * kChunk;
       const auto found =
-          measure_chunk(context_, std::span(leaves).subspan(first, std::min(kChunk, leaves.size() - first)));
+          measure_chunk(context_, leaves.subspan(first, std::min(kChunk, leaves.size() - first)));
       writer_.put_note(static_cast<std::int64_t>(open[n]), pack_terms(found));
       {
         const std::lock_guard lock(merge);
@@ -174,13 +114,35 @@ class Build {
       }
       stages_.advance();
     });
-    nest_errors(context_);
+    nest_errors(context_, share_.inner);
+  }
+
+  void include(const std::map<lod::TileKey, lod::ErrorTerms>& found) {
+    for (const auto& [key, terms] : found) {
+      const auto node = context_.nodes.find(key);
+      (node != context_.nodes.end() ? node->second.variants.front().terms : above_[key].terms).include(terms);
+    }
+  }
+
+  // The meshes of tiles that lie above other parts too.
+  void mesh_above() {
+    std::vector<PackedMesh> meshes(share_.above.size());
+    vpe::core::parallel_for(meshes.size(), threads_,
+                            [&](std::size_t n) { meshes[n] = sample_mesh(context_, share_.above[n]); });
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+      const lod::TileKey& key = share_.above[n];
+      above_[key].mesh_checksum = checksum(lod::pack(key), encode_mesh(meshes[n]));
+      context_.above.emplace(key, std::move(meshes[n]));
+    }
   }
 
   // 4. The image's own pyramid.
   void build_images() {
-    const std::vector<lod::TileKey> images =
+    std::vector<lod::TileKey> images =
         image_ != nullptr ? plan_images(options_, *image_) : std::vector<lod::TileKey>();
+    const auto count = static_cast<std::int64_t>(images.size());
+    images.erase(images.begin() + options_.part.end(count), images.end());
+    images.erase(images.begin(), images.begin() + options_.part.begin(count));
     const std::set<std::int64_t> stored = writer_.image_keys();
     std::vector<lod::TileKey> open;
     std::copy_if(images.begin(), images.end(), std::back_inserter(open),
@@ -199,7 +161,7 @@ class Build {
     BuildSummary summary;
     std::vector<NodeRow> measured;
     meta_.tiles = static_cast<std::int64_t>(context_.nodes.size());
-    meta_.leaf_tiles = static_cast<std::int64_t>(plan_.leaves().size());
+    meta_.leaf_tiles = static_cast<std::int64_t>(share_.leaves.size());
     meta_.lowest_radius_m = meta_.highest_radius_m = meta_.radius_m + context_.nodes.begin()->second.lowest_m;
     for (const auto& [key, node] : context_.nodes) {
       meta_.lowest_radius_m = std::min(meta_.lowest_radius_m, meta_.radius_m + node.lowest_m);
@@ -209,15 +171,19 @@ class Build {
       if (node.inner) measured.push_back(to_row(key, node));
     }
     writer_.replace_nodes(measured);
-    writer_.seal(meta_);
 
-    // 5. S against the sources' own posts, through the same reader that everybody uses.
+    // 5. S against the sources' own posts.
     stages_.begin("checking", 1, 0.02);
-    {
-      const Surface surface(PlanetFile::open(writer_.part_path()), std::size_t{64} << 20);
-      meta_.resampling = measure_resampling(elevation_, surface, options_.resampling_posts);
+    auto sums = measure_resampling(context_, share_.leaves, threads_, [this] { stages_.look(); });
+    meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
+    set_resampling(meta_, sums);
+    if (!options_.part.is_all()) {
+      meta_.share = ShareMeta{options_.part, options_.mesh_ratio, std::move(sums)};
+      writer_.put_note(kAboveNote, pack_above(above_));
     }
-    stages_.advance();  // the last chance to be interrupted
+    writer_.seal(meta_);
+    if (!meta_.share) PlanetFile::open(writer_.part_path());  // as everybody will
+    stages_.advance();                                        // the last chance to be interrupted
     writer_.publish(meta_);
 
     summary.posts = meta_.leaf_tiles * meta_.tile.post_count();
@@ -248,11 +214,13 @@ class Build {
   const mars::ImageSource* image_;
   PlanetMeta meta_;
   Plan plan_;
+  Share share_;
   PlanetWriter writer_;
   Stages stages_;
   int threads_;
   MesherPool meshers_;
-  BuildContext context_{options_, meta_, plan_, elevation_, writer_, meshers_, {}};
+  std::map<lod::TileKey, AboveNote> above_;
+  BuildContext context_{options_, meta_, plan_, &elevation_, writer_, meshers_, {}, {}};
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "mars/source.h"
 #include "paging/planet_meta.h"
+#include "vpe/core/part.h"
 
 namespace paging {
 
@@ -38,18 +39,20 @@ struct BuildOptions {
   int image_quality = 90;              // JPEG
   int threads = 0;                     // 0 = all cores
   std::size_t resampling_posts = 4'000'000;  // how many source posts to compare with S at most
+  vpe::core::Part part;                // only this part of the tiles, into a file for merge_parts
   double commit_s = 1.0;               // what a killed build may lose, about
 };
 
 struct BuildProgress {
   const char* stage = "";
-  std::int64_t done = 0;   // tiles of this stage
+  std::int64_t done = 0;  // tiles of this stage
   std::int64_t total = 0;
-  double fraction = 0;     // of the whole build, by measured cost shares
-  std::int64_t kept = 0;   // tiles and image tiles that an earlier, stopped build had finished
-  bool replaced = false;   // an OUTPUT.part of other options or sources was there, and is gone
+  double fraction = 0;    // of the whole build, by measured cost shares
+  std::int64_t kept = 0;  // tiles and image tiles that an earlier, stopped build had finished
+  bool replaced = false;  // an OUTPUT.part of other options or sources was there, and is gone
 };
-using ProgressFunction = std::function<void(const BuildProgress&)>;  // called from worker threads, one at a time
+using ProgressFunction =
+    std::function<void(const BuildProgress&)>;  // called from worker threads, one at a time
 
 struct BuildSummary {
   PlanetMeta meta;
@@ -60,10 +63,11 @@ struct BuildSummary {
 };
 
 // Builds the planet file: OUTPUT.part first, renamed when complete. Memory is a few tiles a thread plus about
-// 200 bytes a tile. Content is a function of the options and sources, whatever the number of threads and however
-// often the build was stopped: one that ends early (killed, disk full, an exception of a source or of progress())
-// leaves OUTPUT.part, which the next build with the same options and sources continues. Other sources (by name,
-// size and time), options or program versions start anew. image may be null.
+// 600 bytes a tile. Content is a function of the options and sources, whatever the number of threads and
+// however often the build was stopped: one that ends early (killed, disk full, an exception of a source or of
+// progress()) leaves OUTPUT.part, which the next build with the same options and sources continues. Other
+// sources (by name, size and time), options or program versions start anew. image may be null. With
+// options.part, the file holds that part of the tiles, is no planet file yet, and PlanetMeta::share is set.
 // Throws PlanetError, DatabaseError, mars::SourceError, std::runtime_error (plan too large).
 BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
                           const mars::ImageSource* image, const ProgressFunction& progress = {});

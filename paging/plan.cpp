@@ -34,7 +34,8 @@ bool curve_less(const lod::TileKey& a, const lod::TileKey& b) {
   return pa != pb ? pa < pb : a.level < b.level;
 }
 
-Plan::Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted, const PlanLimits& limits) {
+Plan::Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
+           const PlanLimits& limits) {
   std::vector<lod::TileKey> open;
   for (int f = 0; f < mars::kFaces; ++f) open.push_back({static_cast<mars::Face>(f), 0, 0, 0});
   while (!open.empty()) {
@@ -44,9 +45,9 @@ Plan::Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wa
     const double wish = wanted(key, lod::bounding_cap(key));
     if (!(spacing > wish)) continue;
     if (key.level >= limits.max_level || 3 * inner_set_.size() > limits.max_leaves) {
-      throw std::runtime_error("a post spacing of " + std::to_string(wish) +
-                               " m needs more tiles than a planet file may have (" +
-                               std::to_string(limits.max_leaves) + "); ask for a coarser --spacing or a smaller --region");
+      throw std::runtime_error(
+          "a post spacing of " + std::to_string(wish) + " m needs more tiles than a planet file may have (" +
+          std::to_string(limits.max_leaves) + "); ask for a coarser --spacing or a smaller --region");
     }
     split(key);
     for (int c = 0; c < 4; ++c) open.push_back(lod::child(key, c));
@@ -63,6 +64,34 @@ Plan::Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wa
     const lod::TileKey root{static_cast<mars::Face>(f), 0, 0, 0};
     if (!is_inner(root)) leaves_.push_back(root);
   }
+  sort();
+}
+
+Plan::Plan(std::vector<lod::TileKey> leaves) : leaves_(std::move(leaves)) {
+  for (const lod::TileKey& leaf : leaves_) {
+    for (lod::TileKey key = leaf; key.level > 0;) {
+      key = lod::parent(key);
+      if (!inner_set_.insert(key).second) break;
+    }
+  }
+  inner_.assign(inner_set_.begin(), inner_set_.end());
+  sort();
+  for (std::size_t n = 0; n <= leaves_.size(); ++n) {
+    // Along the curve, each begins where the one before it ended.
+    const auto begin_of = [&](std::size_t at) {
+      return at < leaves_.size() ? lod::z_position(leaves_[at])
+                                 : lod::z_position({mars::Face::kMinusZ, 0, 0, 0}) + lod::z_extent(0);
+    };
+    const std::int64_t end = n == 0 ? 0 : lod::z_position(leaves_[n - 1]) + lod::z_extent(leaves_[n - 1].level);
+    if (begin_of(n) == end) continue;
+    throw std::runtime_error(
+        "finest tiles are missing or double " +
+        (n == 0 ? std::string("at the start") : "after " + lod::to_string(leaves_[n - 1])));
+  }
+}
+
+void Plan::sort() {
+  for (const lod::TileKey& key : leaves_) finest_level_ = std::max(finest_level_, key.level);
   std::sort(leaves_.begin(), leaves_.end(), curve_less);
   std::sort(inner_.begin(), inner_.end(), [](const lod::TileKey& a, const lod::TileKey& b) {
     return a.level != b.level ? a.level > b.level : curve_less(a, b);
@@ -94,14 +123,20 @@ int Plan::leaf_level(const mars::ChartPoint& point) const {
 
 int Plan::coarsest_level_at_corner(const lod::TileKey& key, bool east, bool north) const {
   const mars::ChartRect rect = lod::chart_rect(key);
-  const double u = east ? rect.u1 : rect.u0;
-  const double v = north ? rect.v1 : rect.v0;
   // A thousandth of a tile to each side lies well inside whatever touches the corner.
-  const double du = (rect.u1 - rect.u0) * 1e-3;
-  const double dv = (rect.v1 - rect.v0) * 1e-3;
+  return coarsest_level_about(rect.face, east ? rect.u1 : rect.u0, north ? rect.v1 : rect.v0,
+                              (rect.u1 - rect.u0) * 1e-3, (rect.v1 - rect.v0) * 1e-3);
+}
+
+int Plan::coarsest_level_at(mars::Face face, double u, double v) const {
+  const double aside = std::ldexp(1e-3, -finest_level_);
+  return coarsest_level_about(face, u, v, aside, aside);
+}
+
+int Plan::coarsest_level_about(mars::Face face, double u, double v, double du, double dv) const {
   int level = lod::kMaxLevel;
   for (const auto& [su, sv] : {std::array{-1.0, -1.0}, {1.0, -1.0}, {-1.0, 1.0}, {1.0, 1.0}}) {
-    const mars::ChartPoint near = mars::chart_point(mars::cube_point(rect.face, u + su * du, v + sv * dv));
+    const mars::ChartPoint near = mars::chart_point(mars::cube_point(face, u + su * du, v + sv * dv));
     level = std::min(level, leaf_level(near));
   }
   return level;

@@ -23,7 +23,12 @@ struct PlanLimits {
 class Plan {
  public:
   // Throws std::runtime_error when the tree would pass the limits; names the spacing that asks for it.
-  Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted, const PlanLimits& limits = {});
+  Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
+       const PlanLimits& limits = {});
+
+  // The tree that has these finest tiles, in any order. Throws std::runtime_error when they do not cover the
+  // planet, each place once.
+  explicit Plan(std::vector<lod::TileKey> leaves);
 
   const std::vector<lod::TileKey>& leaves() const { return leaves_; }  // along the Morton curve, face by face
   const std::vector<lod::TileKey>& inner() const { return inner_; }    // deepest first, else as leaves()
@@ -35,9 +40,10 @@ class Plan {
   // Level of the finest tile at a chart point (see lod::tile_at for points on borders).
   int leaf_level(const mars::ChartPoint& point) const;
 
-  // Coarsest level among the finest tiles that touch a corner of a tile: the spacing at which the corner's
-  // post is sampled, whichever tile asks.
+  // Coarsest level among the finest tiles that touch a corner of a tile, or a chart point of a face that lies
+  // on a post: the spacing at which the post is sampled, whichever tile asks.
   int coarsest_level_at_corner(const lod::TileKey& key, bool east, bool north) const;
+  int coarsest_level_at(mars::Face face, double u, double v) const;
 
   // How many levels the finest tile across an edge of a leaf is coarser than it: 0 or 1 (0 also when finer).
   int edge_step(const lod::TileKey& leaf, lod::Edge edge) const;
@@ -45,11 +51,14 @@ class Plan {
  private:
   void split(const lod::TileKey& key);
   void balance();
+  void sort();
+  int coarsest_level_about(mars::Face face, double u, double v, double du, double dv) const;
 
   std::unordered_set<lod::TileKey, lod::TileKeyHash> inner_set_;
   std::vector<lod::TileKey> pending_;  // inner tiles whose neighbours are still to be checked
   std::vector<lod::TileKey> leaves_;
   std::vector<lod::TileKey> inner_;
+  int finest_level_ = 0;
 };
 
 // Orders tiles along the Morton curve of their face; an inner tile comes before what it contains.

@@ -112,6 +112,11 @@ PlanetFile::PlanetFile(const std::string& path) : path_(path) {
     Statement all(probe, "SELECT key, value FROM meta");
     while (all.step()) rows[all.text(0)] = all.text(1);
     meta_ = from_rows(rows, path);
+    if (meta_.share) {
+      const std::string of = std::to_string(meta_.share->part.of);
+      throw PlanetError(path + ": part " + std::to_string(meta_.share->part.number) + " of " + of +
+                        " of a planet; join all " + of + " with 'vpe merge PART... -o PLANET.vpe'");
+    }
     auto connection = std::make_unique<Connection>(path);
     read_index(*connection);
     idle_.push_back(std::move(connection));

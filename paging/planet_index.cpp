@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "paging/codec.h"
@@ -37,6 +38,35 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
     rows.push_back(std::move(row));
   }
   return std::nullopt;
+}
+
+std::vector<LevelSummary> summarise_levels(const Database& db, std::size_t posts) {
+  std::map<std::int64_t, LevelSummary> levels;
+  Statement tiles(db, "SELECT level, count(*), sum(NOT inner) FROM node GROUP BY level");
+  while (tiles.step()) {
+    LevelSummary& level = levels[tiles.integer(0)];
+    level.tiles = tiles.integer(1);
+    level.leaf_tiles = tiles.integer(2);
+  }
+  for (const std::string table : {"heights", "missing", "mesh", "image"}) {
+    Statement rows(db, "SELECT key >> 54 & 31, count(*), sum(length(data)) FROM " + table + " GROUP BY 1");
+    while (rows.step()) {
+      LevelSummary& level = levels[rows.integer(0)];
+      level.bytes += rows.integer(2);
+      if (table == "image") level.image_tiles = rows.integer(1);
+    }
+  }
+  Statement masks(db, "SELECT key >> 54 & 31, data FROM missing");
+  while (masks.step()) {
+    const std::vector<bool> mask = decode_mask(masks.blob(1), posts);
+    levels[masks.integer(0)].holes += std::count(mask.begin(), mask.end(), true);
+  }
+  std::vector<LevelSummary> out;
+  for (auto& [level, summary] : levels) {
+    summary.level = static_cast<int>(level);
+    out.push_back(summary);
+  }
+  return out;
 }
 
 std::string content_identity(const Database& db) {

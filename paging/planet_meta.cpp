@@ -118,7 +118,7 @@ bool PlanetMeta::operator==(const PlanetMeta& o) const {
          lowest_radius_m == o.lowest_radius_m && highest_radius_m == o.highest_radius_m &&
          leaf_tiles == o.leaf_tiles && tiles == o.tiles && image_tiles == o.image_tiles &&
          finest_level == o.finest_level && finest_image_level == o.finest_image_level && program == o.program &&
-         identity == o.identity && illustration == o.illustration;
+         identity == o.identity && illustration == o.illustration && levels == o.levels && share == o.share;
 }
 
 std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
@@ -147,6 +147,8 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"program", m.program},
       {"identity", m.identity},
       {"illustration", m.illustration ? "true" : "false"}};
+  if (!m.levels.empty()) rows["levels"] = to_text(m.levels);
+  if (m.share) rows["part"] = to_text(*m.share);
   rows[kChecksumKey] = checksum(rows);
   return rows;
 }
@@ -199,6 +201,10 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     m.program = text("program");
     m.identity = text("identity");
     m.illustration = value("illustration").get<bool>();
+    current = "levels";
+    if (rows.contains("levels")) m.levels = levels_from_text(text("levels"));
+    current = "part";
+    if (rows.contains("part")) m.share = share_from_text(text("part"));
   } catch (const json::exception& e) {
     throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
   }

@@ -11,6 +11,7 @@
 #include "lod/tree.h"
 #include "mars/source.h"
 #include "mars/sphere.h"
+#include "paging/planet_summary.h"
 
 namespace paging {
 
@@ -18,19 +19,13 @@ class Database;
 
 inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
 inline constexpr int kFormatMajor = 1;
-inline constexpr int kFormatMinor = 0;
+inline constexpr int kFormatMinor = 1;
 inline constexpr int kImageIntervals = 256;  // an image tile has 257 x 257 texels on its grid lines
 
 // A planet file that cannot be used. what() names the file, the trouble and what to do.
 class PlanetError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-};
-
-struct ResamplingError {
-  double max_m = 0;
-  double rms_m = 0;
-  std::int64_t posts = 0;  // how many of the sources' own posts were compared
 };
 
 struct PlanetMeta {
@@ -51,9 +46,11 @@ struct PlanetMeta {
   std::int64_t image_tiles = 0;
   int finest_level = 0;
   int finest_image_level = -1;
-  std::string program;        // version that built it
-  std::string identity;       // hexadecimal hash over all checksums: equal content, equal identity
-  bool illustration = false;  // some source is made up
+  std::string program;               // version that built it
+  std::string identity;              // hexadecimal hash over all checksums: equal content, equal identity
+  bool illustration = false;         // some source is made up
+  std::vector<LevelSummary> levels;  // by level, coarsest first; empty in files of format 1.0
+  std::optional<ShareMeta> share;    // the file holds this part of the tiles only
 
   bool operator==(const PlanetMeta&) const;
 };
@@ -82,6 +79,10 @@ std::int64_t checksum(const NodeRow& row);
 // All rows of the tile index, in key order, each with its variants. Returns the key of the first row that does
 // not fit its checksum, if any (rows then ends before it). Throws DatabaseError.
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows);
+
+// What the tables hold of each level, but for the resampling error; tiles of `posts` posts. Throws
+// DatabaseError, CodecError.
+std::vector<LevelSummary> summarise_levels(const Database& db, std::size_t posts);
 
 // PlanetMeta::identity of what the tables hold. Throws DatabaseError.
 std::string content_identity(const Database& db);

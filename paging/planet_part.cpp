@@ -11,6 +11,7 @@ namespace paging {
 namespace fs = std::filesystem;
 
 const char* const kDropPartTables = "DROP TABLE IF EXISTS recipe; DROP TABLE IF EXISTS note";
+const char* const kKeepShareTables = "DELETE FROM note WHERE number >= 0";
 
 namespace {
 

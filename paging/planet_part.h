@@ -31,5 +31,7 @@ void remove_part(const std::string& path);
 
 // SQL that leaves only what a finished planet file has.
 extern const char* const kDropPartTables;
+// SQL that leaves what a file with PlanetMeta::share has besides: the recipe, and notes with numbers below 0.
+extern const char* const kKeepShareTables;
 
 }  // namespace paging

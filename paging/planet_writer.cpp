@@ -38,7 +38,7 @@ struct PlanetWriter::Statements {
       : heights(db, "INSERT INTO heights VALUES(?, ?, ?)"),
         missing(db, "INSERT INTO missing VALUES(?, ?, ?)"),
         image(db, "INSERT INTO image VALUES(?, ?, ?)"),
-        note(db, "INSERT INTO note VALUES(?, ?, ?)"),
+        note(db, "INSERT OR REPLACE INTO note VALUES(?, ?, ?)"),
         mesh(db, "INSERT INTO mesh VALUES(NULL, ?, ?, ?, ?)"),
         node(db, "INSERT OR REPLACE INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         variant(db, "INSERT OR REPLACE INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
@@ -179,6 +179,11 @@ std::set<std::int64_t> PlanetWriter::image_keys() {
   return keys;
 }
 
+std::vector<LevelSummary> PlanetWriter::levels(std::size_t posts) {
+  const std::lock_guard lock(mutex_);
+  return summarise_levels(*part_.db, posts);
+}
+
 std::map<std::int64_t, Bytes> PlanetWriter::notes() {
   const std::lock_guard lock(mutex_);
   std::map<std::int64_t, Bytes> out;
@@ -230,7 +235,7 @@ void PlanetWriter::publish(const PlanetMeta& meta) {
   {
     Database db(part_path_, Database::Mode::kCreate);
     db.execute("BEGIN");
-    db.execute(kDropPartTables);
+    db.execute(meta.share ? kKeepShareTables : kDropPartTables);
     db.execute("DELETE FROM meta");
     write_meta(db, meta);
     db.execute("COMMIT");

@@ -43,11 +43,13 @@ class PlanetWriter {
   std::vector<NodeRow> nodes();
   std::set<std::int64_t> image_keys();
   std::map<std::int64_t, Bytes> notes();
+  std::vector<LevelSummary> levels(std::size_t posts);  // summarise_levels
 
   // Each is stored whole or not at all.
   void put_tile(const NodeRow& row, const TilePayload& payload);
   void put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed);
-  // A result on the way to the finished file, by number; dropped by publish().
+  // A result on the way to the finished file, by number; replaces an earlier one. Dropped by publish(), but
+  // that with a number below 0 stays in a file with PlanetMeta::share.
   void put_note(std::int64_t number, std::span<const std::uint8_t> packed);
   // Replaces rows of the tile index, all or none.
   void replace_nodes(std::span<const NodeRow> rows);

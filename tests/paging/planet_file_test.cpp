@@ -88,6 +88,31 @@ TEST(PlanetFile, RefusesNewerAndIncompleteFiles) {
   EXPECT_NE(variant("gone.vpe", "DELETE FROM node WHERE key = (SELECT max(key) FROM node)").find("tiles are in the index"), std::string::npos);
 }
 
+// Format 1.0 had no summary by level: such a file opens, and says nothing of levels.
+TEST(PlanetFile, FilesOfFormat10Open) {
+  TempDir dir;
+  const auto path = dir / "p.vpe";
+  build_fake(path, FakeElevation(bumpy_height), 400000);
+  change(path, "DELETE FROM meta WHERE key = 'levels'");
+  change(path, "UPDATE meta SET value = '1.0' WHERE key = 'format'");
+  paging::Bytes bytes;
+  {
+    // As docs/planet-file.md describes it.
+    paging::Database db(path.string(), paging::Database::Mode::kReadOnly);
+    paging::Statement rows(db, "SELECT key, value FROM meta WHERE key <> 'checksum' ORDER BY key");
+    while (rows.step()) {
+      for (const std::string& part : {rows.text(0), rows.text(1)}) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+        bytes.push_back(0);
+      }
+    }
+  }
+  change(path, "UPDATE meta SET value = '" + std::to_string(paging::checksum(0, bytes)) + "' WHERE key = 'checksum'");
+  const auto planet = PlanetFile::open(path.string());
+  EXPECT_TRUE(planet->meta().levels.empty());
+  read_all(*planet);
+}
+
 TEST(PlanetFile, DamagedTilesAreNamed) {
   TempDir dir;
   const auto path = dir / "p.vpe";

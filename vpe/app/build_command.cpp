@@ -1,13 +1,10 @@
-#include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "vpe/app/build_sources.h"
-#include "vpe/app/output.h"
+#include "vpe/app/part_option.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/planet_build.h"
 #include "vpe/app/program.h"
-#include "vpe/app/report.h"
 
 namespace vpe::app {
 
@@ -18,6 +15,8 @@ struct BuildArguments {
   std::vector<std::string> images;
   std::vector<std::string> regions;
   SourceArguments sources;
+  std::string part;
+  bool estimate = false;
   paging::BuildOptions options;
 };
 
@@ -45,29 +44,15 @@ double embedded_finest_m(const paging::BuildOptions& options) {
   return options.regions.empty() ? 0.0 : options.finest_spacing_m;
 }
 
-// What the build would destroy or could not write is known before hours of work.
-void check_planet_output(const BuildArguments& arguments) {
-  const std::string& output = arguments.options.output;
-  check_output(output);
-  std::error_code none;
-  for (const auto* inputs : {&arguments.dems, &arguments.images}) {
-    for (const std::string& input : *inputs) {
-      if (std::filesystem::equivalent(input, output, none)) {
-        throw UsageError("-o " + output + ": is also an input; give the planet file another name");
-      }
-    }
-  }
-  if (std::filesystem::file_size(output, none) > 0 && !none && !is_sqlite(output)) {
-    throw std::runtime_error(output +
-                             ": is there and not a planet file; give another name, or remove it first");
-  }
-}
-
 void build(BuildArguments& arguments, const Common& common) {
   paging::BuildOptions& options = arguments.options;
   for (const std::string& text : arguments.regions) options.regions.push_back(parse_region(text));
   options.threads = common.threads;
-  check_planet_output(arguments);
+  options.part = parse_part(arguments.part);
+  options.output = part_file_name(options.output, options.part);
+  std::vector<std::string> inputs = arguments.dems;
+  inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
+  check_planet_file(options.output, inputs);
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
   for (const std::string& path : arguments.dems) {
     dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))
@@ -83,22 +68,14 @@ void build(BuildArguments& arguments, const Common& common) {
   std::shared_ptr<const mars::ImageSource> image;
   if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
 
-  const paging::BuildSummary summary = run_build(options, *combined.source, image.get(), common);
-  if (common.json) {
-    nlohmann::json json = planet_json(summary.meta);
-    json["bytes"] = summary.bytes;
-    json["tiles_kept"] = summary.kept;
-    json["findings"] = findings_json(combined);
-    json["notes"] = combined.notes;
-    print_json(json);
-  } else if (!common.quiet) {
-    std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %.1f MB\n", options.output.c_str(),
-                static_cast<long long>(summary.meta.tiles), static_cast<long long>(summary.meta.leaf_tiles),
-                1e-6 * static_cast<double>(summary.posts), 1e-6 * static_cast<double>(summary.bytes));
-    std::printf("resampling error against %lld source posts: RMS %.3g m, maximum %.3g m\n",
-                static_cast<long long>(summary.meta.resampling.posts), summary.meta.resampling.rms_m,
-                summary.meta.resampling.max_m);
+  const paging::BuildEstimate estimate = paging::estimate_build(options, *combined.source, image.get());
+  if (arguments.estimate) {
+    report_estimate(estimate, common);
+    return;
   }
+  say_estimate(estimate, common);
+  const paging::BuildSummary summary = run_build(options, *combined.source, image.get(), common);
+  report_build(summary, options.output, common, &combined);
 }
 
 }  // namespace
@@ -127,6 +104,12 @@ void add_build(CLI::App& program, Common& common) {
       ->check(number_within(100.0, 1e6))
       ->capture_default_str();
   add_source_options(*command, arguments->sources);
+  command->add_option(
+      "--part", arguments->part,
+      "k/n: make the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: from SLURM's or "
+      "MPI's variables");
+  command->add_flag("--estimate", arguments->estimate,
+                    "Only say what the build would take: tiles, bytes, time");
   command->callback([arguments, &common] { build(*arguments, common); });
 }
 

@@ -1,6 +1,5 @@
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -64,7 +63,7 @@ FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& f
   request.format = {flight.view.width, flight.view.height, flight.view.fps};
   request.frames = arguments.frames;
   request.range = parse_frames(arguments.frames, count);
-  request.part = parse_part(arguments.part, [](const char* name) -> const char* { return std::getenv(name); });
+  request.part = parse_part(arguments.part);
   request.remake = arguments.force;
   request.is_video = check_film_output(arguments.output);
   if (!arguments.log.empty()) check_output(arguments.log);

@@ -1,8 +1,15 @@
-// Building a planet file as users see it: progress, what is continued, what to do when it stops.
+// Building a planet file as users see it: progress, what is continued, what to do when it stops, what came out.
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "mars/combine.h"
 #include "paging/builder.h"
+#include "paging/estimate.h"
+#include "paging/merge.h"
 #include "vpe/app/program.h"
+#include "vpe/core/part.h"
 
 namespace vpe::app {
 
@@ -10,5 +17,25 @@ namespace vpe::app {
 // error after the first tile, a line on stderr says that the same command continues.
 paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
                                const mars::ImageSource* image, const Common& common);
+
+// What the build will take: on stderr, for a build that follows, or as the command's result on stdout, text or
+// JSON.
+void say_estimate(const paging::BuildEstimate& estimate, const Common& common);
+void report_estimate(const paging::BuildEstimate& estimate, const Common& common);
+
+// paging::merge_parts, likewise.
+paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common& common);
+
+// What a build would destroy or could not write, said before hours of work. Throws UsageError when `output` is
+// one of the inputs, std::runtime_error when it cannot be written or is there and no planet file.
+void check_planet_file(const std::string& output, const std::vector<std::string>& inputs);
+
+// "mars.vpe" -> "mars.03-of-16.vpe", so that names sort as parts do; unchanged where there is one part.
+std::string part_file_name(const std::string& output, const core::Part& part);
+
+// The summary on stdout: text, or JSON with --json, then with what was found out of the sources; nothing with
+// --quiet. combined may be null.
+void report_build(const paging::BuildSummary& summary, const std::string& output, const Common& common,
+                  const mars::Combined* combined = nullptr);
 
 }  // namespace vpe::app

@@ -91,6 +91,7 @@ int run(int argc, char** argv) {
       "'vpe COMMAND --help' explains a command. Without a PLANET the embedded Mars (an illustration) is used.");
   Common common;
   add_build(program, common);
+  add_merge(program, common);
   add_info(program, common);
   add_verify(program, common);
   add_query(program, common);

@@ -32,6 +32,7 @@ class UsageError : public std::runtime_error {
 
 // A command adds itself to the program; its callback does the work and throws on failure.
 void add_build(CLI::App& program, Common& common);
+void add_merge(CLI::App& program, Common& common);
 void add_info(CLI::App& program, Common& common);
 void add_verify(CLI::App& program, Common& common);
 void add_query(CLI::App& program, Common& common);

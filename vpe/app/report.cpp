@@ -20,6 +20,24 @@ json sources_json(const std::vector<mars::SourceInfo>& sources) {
   return list;
 }
 
+json levels_json(const paging::PlanetMeta& m) {
+  json list = json::array();
+  for (const paging::LevelSummary& l : m.levels) {
+    json entry{{"level", l.level + 1},
+               {"post_spacing_m", lod::post_spacing_m(l.level, m.tile.intervals(), m.radius_m)},
+               {"tiles", l.tiles},
+               {"finest_tiles", l.leaf_tiles},
+               {"image_tiles", l.image_tiles},
+               {"bytes", l.bytes},
+               {"holes", l.holes},
+               {"resampling_posts", l.resampling.posts}};
+    entry["resampling_max_m"] = l.resampling.posts > 0 ? json(l.resampling.max_m) : json();
+    entry["resampling_rms_m"] = l.resampling.posts > 0 ? json(l.resampling.rms_m) : json();
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 }  // namespace
 
 json planet_json(const paging::PlanetMeta& m) {
@@ -32,6 +50,7 @@ json planet_json(const paging::PlanetMeta& m) {
           {"height_quantum_m", m.quantum_m},
           {"tiles", m.tiles},
           {"finest_tiles", m.leaf_tiles},
+          {"posts", m.leaf_tiles * m.tile.post_count()},
           {"levels", m.finest_level + 1},
           {"finest_post_spacing_m", lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m)},
           {"lowest_m", m.lowest_radius_m - m.radius_m},
@@ -40,6 +59,7 @@ json planet_json(const paging::PlanetMeta& m) {
           {"resampling_max_m", m.resampling.max_m},
           {"resampling_rms_m", m.resampling.rms_m},
           {"resampling_posts", m.resampling.posts},
+          {"by_level", levels_json(m)},
           {"sources", sources_json(m.sources)},
           {"image_sources", sources_json(m.image_sources)},
           {"program", m.program},

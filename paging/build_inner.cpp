@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+
+#include "paging/build_grid.h"
+
+namespace paging {
+
+namespace {
+
+// Copies a child's posts to their place in its parent's mesh grid.
+void put_child(lod::Posts& posts, int child, const lod::Posts& fine) {
+  const int n = fine.intervals;
+  const auto side = static_cast<std::size_t>(fine.side());
+  const auto wide = static_cast<std::size_t>(posts.side());
+  const auto x0 = static_cast<std::size_t>((child & 1) * n);
+  const auto y0 = static_cast<std::size_t>((child >> 1) * n);
+  for (std::size_t j = 0; j < side; ++j) {
+    std::copy_n(fine.height_m.begin() + static_cast<std::ptrdiff_t>(j * side), side,
+                posts.height_m.begin() + static_cast<std::ptrdiff_t>((y0 + j) * wide + x0));
+  }
+}
+
+// An inner tile's own posts as the finest tiles below it have them: they are posts of those that no border
+// moves.
+lod::Posts sample_inner(const BuildContext& context, const lod::TileKey& key) {
+  const PlanetMeta& meta = context.meta;
+  const int n = meta.tile.intervals();
+  const lod::GridLines lines = lod::grid_lines(key, n);
+  const std::vector<glm::dvec3> directions = post_directions(key, lines);
+  lod::Posts posts{key, n, std::vector<double>(directions.size())};
+  std::map<int, std::vector<std::size_t>> by_level;
+  for (std::size_t p = 0; p < directions.size(); ++p) {
+    by_level[context.plan.coarsest_level_at(key.face, lines.u[p % lines.u.size()], lines.v[p / lines.u.size()])]
+        .push_back(p);
+  }
+  for (const auto& [level, some] : by_level) {
+    std::vector<glm::dvec3> at;
+    for (const std::size_t p : some) at.push_back(directions[p]);
+    std::vector<double> heights(at.size());
+    context.elevation->sample(at, lod::post_spacing_m(level, n, meta.radius_m), heights);
+    for (std::size_t m = 0; m < some.size(); ++m)
+      posts.height_m[some[m]] = std::isfinite(heights[m]) ? heights[m] : meta.fill_m;
+  }
+  const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m);
+  for (std::size_t p = 0; p < quanta.size(); ++p) posts.height_m[p] = quanta[p] * meta.quantum_m;
+  return posts;
+}
+
+}  // namespace
+
+PackedMesh sample_mesh(const BuildContext& context, const lod::TileKey& key) {
+  const int n = 2 * context.meta.tile.intervals();
+  lod::Posts posts{key, n,
+                   std::vector<double>(static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(n + 1))};
+  for (int c = 0; c < 4; ++c) {
+    const lod::TileKey child = lod::child(key, c);
+    put_child(posts, c,
+              context.plan.is_inner(child) ? sample_inner(context, child) : sample_leaf(context, child).posts);
+  }
+  return mesh_inner(context, posts);
+}
+
+PackedMesh mesh_inner(const BuildContext& context, const lod::Posts& posts) {
+  // A finest tile beside this one has only every second of these border posts.
+  std::array<int, 4> border_step{1, 1, 1, 1};
+  for (const lod::Edge edge : lod::kEdges) {
+    if (!context.plan.is_inner(lod::neighbour(posts.key, edge).key))
+      border_step[static_cast<std::size_t>(edge)] = 2;
+  }
+  const MesherPool::Lease mesher = context.meshers.borrow();
+  const double tolerance = mesh_tolerance_m(context.options, posts.key.level);
+  const lod::GridLines lines = lod::grid_lines(posts.key, posts.intervals);
+  const lod::BorderPosts borders = borders_of(posts, lines, border_step, tolerance, context.meta.radius_m);
+  return pack_mesh(mesher->mesh(posts, borders, tolerance, context.meta.radius_m), posts,
+                   context.meta.quantum_m);
+}
+
+Node build_inner(const BuildContext& context, const lod::TileKey& key) {
+  const PlanetMeta& meta = context.meta;
+  const int n = meta.tile.intervals();
+  const auto wide = static_cast<std::size_t>(2 * n + 1);
+  Node node;
+  node.inner = true;
+  lod::Posts posts{key, 2 * n, std::vector<double>(wide * wide)};
+  for (int c = 0; c < 4; ++c) {
+    const lod::TileKey child = lod::child(key, c);
+    const lod::Posts fine = read_posts(context, child);
+    put_child(posts, c, fine);
+    const Node& below = context.nodes.at(child);
+    node.sources.insert(below.sources.begin(), below.sources.end());
+    node.min_m = c == 0 ? below.min_m : std::min(node.min_m, below.min_m);
+    node.lowest_m = c == 0 ? below.lowest_m : std::min(node.lowest_m, below.lowest_m);
+    node.max_m = c == 0 ? below.max_m : std::max(node.max_m, below.max_m);
+    node.slope = std::max(node.slope, below.slope);
+  }
+  std::vector<double> own;
+  own.reserve(static_cast<std::size_t>(meta.tile.post_count()));
+  for (std::size_t j = 0; j < wide; j += 2) {
+    for (std::size_t i = 0; i < wide; i += 2) own.push_back(posts.height_m[j * wide + i]);
+  }
+  TilePayload payload;
+  payload.heights = encode_heights(to_quanta(own, meta.quantum_m), n + 1);
+
+  const PackedMesh mesh = mesh_inner(context, posts);
+  payload.meshes.push_back(encode_mesh(mesh));
+  node.variants.push_back({{}, static_cast<std::uint32_t>(mesh.mesh.triangle_count())});
+  context.writer.put_tile(to_row(key, node), payload);
+  return node;
+}
+
+}  // namespace paging

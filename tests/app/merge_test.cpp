@@ -1,0 +1,135 @@
+// vpe build --part and vpe merge.
+#include <chrono>
+#include <csignal>
+
+#include "tests/app/support/app_fixture.h"
+#include "vpe/app/planet_build.h"
+
+namespace app_test {
+namespace {
+
+class Merge : public AppTest {
+ protected:
+  void SetUp() override { write_dem(dir_ / "x.tif"); }
+
+  static Words build_words(const std::string& output, const Words& more = {}) {
+    Words words{"build", "x.tif", "--image", "x.tif", "-o", output, "--base-spacing", "60000", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  nlohmann::json json_of(const Words& words) const {
+    const Result result = vpe(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return parse_json(result.out);
+  }
+};
+
+TEST_F(Merge, PartsEqualTheWhole) {
+  nlohmann::json whole = json_of(build_words("whole.vpe"));
+  for (const char* part : {"1/3", "2/3", "3/3"}) {
+    const auto built = json_of(build_words("x.vpe", {"--part", part}));
+    EXPECT_EQ(built["part"]["of"], 3);
+  }
+  EXPECT_FALSE(exists("x.vpe"));
+  nlohmann::json merged =
+      json_of({"merge", "x.2-of-3.vpe", "x.1-of-3.vpe", "x.3-of-3.vpe", "-o", "x.vpe", "--json"});
+  for (nlohmann::json* json : {&whole, &merged}) {
+    for (const char* own : {"path", "bytes", "tiles_kept"}) json->erase(own);
+  }
+  EXPECT_EQ(merged, whole);
+  EXPECT_EQ(vpe({"verify", "x.vpe", "--deep", "-q"}).exit_code, 0);
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+TEST_F(Merge, SaysWhatItMade) {
+  Result part = vpe({"build", "x.tif", "-o", "x.vpe", "--base-spacing", "60000", "--part", "2/2"});
+  EXPECT_EQ(part.exit_code, 0);
+  EXPECT_TRUE(says(part.out, {"x.2-of-2.vpe: ", "Part 2 of 2", "vpe merge"}));
+  vpe({"build", "x.tif", "-o", "x.vpe", "--base-spacing", "60000", "--part", "1/2"});
+  const Result merged = vpe({"merge", "x.1-of-2.vpe", "x.2-of-2.vpe", "-o", "x.vpe"});
+  EXPECT_TRUE(says(merged.out, {"x.vpe: ", "resampling error", "posts without data: 0", "maximum, m"}));
+}
+
+TEST_F(Merge, AnEstimateBuildsNothing) {
+  Words words = build_words("x.vpe", {"--estimate"});
+  const auto estimate = json_of(words);
+  EXPECT_FALSE(exists("x.vpe"));
+  const Result built = vpe(build_words("x.vpe"));
+  EXPECT_TRUE(says(built.err, {"To build: ", "image tiles", "million posts", "about"}));
+  const auto json = parse_json(built.out);
+  for (const char* equal : {"tiles", "finest_tiles", "image_tiles", "posts"})
+    EXPECT_EQ(estimate[equal], json[equal]) << equal;
+  const double ratio = estimate["bytes"].get<double>() / json["bytes"].get<double>();
+  EXPECT_GT(ratio, 0.2);
+  EXPECT_LT(ratio, 5);
+  EXPECT_EQ(vpe(build_words("y.vpe", {"-q"})).err, "");
+}
+
+TEST_F(Merge, TheSchedulerSaysWhichPart) {
+  Command command = command_for(build_words("x.vpe", {"--part", "auto"}));
+  command.environment = {
+      {"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "4"}, {"SLURM_ARRAY_TASK_MIN", "1"}};
+  const Result result = run(command);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(exists("x.3-of-4.vpe"));
+}
+
+TEST(MergeNames, SortAsPartsDo) {
+  EXPECT_EQ(vpe::app::part_file_name("a/mars.vpe", {7, 12}), "a/mars.07-of-12.vpe");
+  EXPECT_EQ(vpe::app::part_file_name("a.b/mars", {2, 2}), "a.b/mars.2-of-2");
+  EXPECT_EQ(vpe::app::part_file_name("mars.vpe", {1, 1}), "mars.vpe");
+}
+
+TEST_F(Merge, MistakesSayWhatToDo) {
+  vpe(build_words("x.vpe", {"--part", "1/2"}));
+  expect_failure({"info", "x.1-of-2.vpe"}, 1, {"x.1-of-2.vpe: part 1 of 2 of a planet", "vpe merge"});
+  expect_failure({"merge", "x.1-of-2.vpe", "-o", "y.vpe"}, 1, {"of 2 parts 1 are missing: 2", "--part"});
+  expect_failure({"merge", "x.1-of-2.vpe", "-o", "x.1-of-2.vpe"}, 2, {"x.1-of-2.vpe", "also an input"});
+  expect_failure({"merge", "absent.vpe", "-o", "y.vpe"}, 1, {"absent.vpe", "no such file"});
+  expect_failure(build_words("x.vpe", {"--part", "3/2"}), 2, {"--part '3/2'", "k/n"});
+  expect_failure(build_words("x.vpe", {"--part", "1/999999"}), 1, {"ask for fewer parts"});
+  expect_failure(build_words("x.vpe", {"--part", "auto"}), 2, {"--part auto", "SLURM_ARRAY_TASK_ID"});
+}
+
+class LongMerge : public Merge {
+ protected:
+  // Sends SIGKILL after a random time until the command ends by itself; returns how often.
+  int kill_until_done(const Words& words, test_support::Random& random, Result& last) const {
+    for (int kills = 0;; ++kills) {
+      Command command = command_for(words);
+      const auto end =
+          std::chrono::steady_clock::now() + std::chrono::duration<double>(random.uniform(0.02, 0.8));
+      command.signal = SIGKILL;
+      command.when = [end] { return std::chrono::steady_clock::now() > end; };
+      last = run(command);
+      if (last.exit_code >= 0) return kills;
+    }
+  }
+};
+
+TEST_F(LongMerge, KilledOneHundredTimes) {
+  const auto identity = json_of(build_words("whole.vpe"))["identity"];
+  test_support::Random random(9);
+  int kills = 0;
+  while (kills < 100 && !HasFailure()) {
+    Words merge{"merge"};
+    Result last;
+    for (int n = 1; n <= 3; ++n) {
+      const std::string number = std::to_string(n);
+      kills += kill_until_done(build_words("x.vpe", {"--part", number + "/3"}), random, last);
+      EXPECT_EQ(last.exit_code, 0) << last.err;
+      merge.push_back("x." + number + "-of-3.vpe");
+    }
+    merge.insert(merge.end(), {"-o", "x.vpe", "--json"});
+    kills += kill_until_done(merge, random, last);
+    ASSERT_EQ(last.exit_code, 0) << last.err;
+    EXPECT_EQ(parse_json(last.out)["identity"], identity);
+    EXPECT_EQ(vpe({"verify", "x.vpe", "-q"}).exit_code, 0);
+    for (const std::string name : {"x.vpe", "x.1-of-3.vpe", "x.2-of-3.vpe", "x.3-of-3.vpe"})
+      std::filesystem::remove(dir_ / name);
+  }
+  RecordProperty("kills", kills);
+}
+
+}  // namespace
+}  // namespace app_test

@@ -1,0 +1,47 @@
+// A small HTTP server on loopback for tests: serves one folder, with ranges, and fails when told to.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+
+namespace test_support {
+
+class HttpServer {
+ public:
+  enum class Fate {
+    kServe,
+    kUnavailable,  // 503
+    kForbidden,    // 403
+    kCut,          // the connection ends in the middle of the body
+    kHangUp,       // it ends before any answer
+  };
+  // What becomes of the n-th request (from 0), called from the server's thread.
+  using Decide = std::function<Fate(int n, const std::string& method)>;
+
+  explicit HttpServer(std::filesystem::path folder, Decide decide = {});
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  std::string url(const std::string& file) const;  // http://127.0.0.1:PORT/file
+  int requests() const { return requests_; }
+  int failed() const { return failed_; }
+
+ private:
+  void serve();
+  void answer(int connection);
+
+  std::filesystem::path folder_;
+  Decide decide_;
+  int socket_ = -1;
+  int port_ = 0;
+  std::atomic<int> requests_{0};
+  std::atomic<int> failed_{0};
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace test_support
