@@ -65,6 +65,7 @@ void gather(const std::vector<RimPost>& posts, double cell, Bend& bend) {
           .push_back(i);
     }
     if (cells.size() > kBendPoints) continue;
+    bend.cell_m = cell * bend.radius_m;
     for (const auto& [key, members] : cells) {
       glm::dvec3 sum(0);
       std::vector<double> off;
@@ -110,6 +111,7 @@ Adjust bending(const Bend& bend) {
   return [bend](std::span<const glm::dvec3> directions, std::span<double> heights_m) {
     const double near = std::cos(std::min(kPi, bend.cap.radius_rad + 1e-9));
     const double reach = bend.reach_m / bend.radius_m;
+    const double cell2 = (bend.cell_m / bend.radius_m) * (bend.cell_m / bend.radius_m);
     for (std::size_t i = 0; i < directions.size(); ++i) {
       if (bend.cap.radius_rad < kPi && glm::dot(directions[i], bend.cap.centre) < near) continue;
       double nearest = 5;
@@ -119,8 +121,7 @@ Adjust bending(const Bend& bend) {
         const glm::dvec3 away = directions[i] - bend.rim[k];
         const double squared = glm::dot(away, away);
         nearest = std::min(nearest, squared);
-        // A millimetre keeps the weight finite at the rim's own places.
-        const double weight = 1 / (squared + 1e-19);
+        const double weight = 1 / ((squared + cell2) * (squared + cell2));
         weights += weight;
         sum += weight * bend.off_m[k];
       }

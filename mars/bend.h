@@ -14,6 +14,7 @@ namespace mars {
 struct Bend {
   std::vector<glm::dvec3> rim;  // unit directions, of at most kBendPoints places along the rim
   std::vector<double> off_m;    // inset less base there
+  double cell_m = 0;            // size of the cells that off_m are medians of
   double reach_m = 0;           // from the rim, where the bend has faded out
   double radius_m = 0;          // of the sphere that distances are measured on
   Cap cap;                      // no place outside of it is bent
@@ -31,8 +32,10 @@ inline constexpr std::size_t kBendPoints = 512;
 std::optional<Bend> fit_bend(const ElevationSource& inset, const ElevationSource& base, double radius_m,
                              std::size_t max_posts = 4'000'000);
 
-// Adds the bend to heights of the base: the mean of off_m by inverse squared distance (Shepard 1968), faded out
-// with the distance from the rim. Continuous; equal to off_m at each of the rim's places.
+// Adds the bend to heights of the base: the mean of off_m with weights 1 / (distance^2 + cell_m^2)^2, faded out
+// with the distance from the rim. Smooth along the rim, where it follows off_m but for what changes within a
+// cell or two; that is left to the fade. (Shepard's weights, without the cell, meet every off_m and leave a rim
+// of beads: tried 2026-11-21.)
 Adjust bending(const Bend& bend);
 std::string to_string(const Bend& bend, const std::string& inset);
 
