@@ -19,8 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Raised whenever the builder or the embedded planet changes what a cached file would hold.
+// Raised whenever the builder or the embedded planet changes what a cached file would hold; the second whenever
+// rasters are understood in another way.
 constexpr int kCacheGeneration = 2;
+constexpr int kRasterGeneration = 2;
 
 class FileLock {
  public:
@@ -120,7 +122,8 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
   const mars::SourceInfo info = source->infos().front();
   const std::string path = fs::weakly_canonical(argument).string();
   const std::string identity = path + '\n' + std::to_string(info.size_bytes) + '\n' +
-                               std::to_string(info.mtime_s) + '\n' + std::to_string(kCacheGeneration);
+                               std::to_string(info.mtime_s) + '\n' + std::to_string(kCacheGeneration) + '\n' +
+                               std::to_string(kRasterGeneration);
   const std::int64_t sum =
       paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
   const std::string name = fs::path(argument).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
