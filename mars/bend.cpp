@@ -7,46 +7,14 @@
 #include <glm/geometric.hpp>
 #include <map>
 
+#include "mars/rim_posts.h"
 #include "mars/sphere.h"
 #include "mars/stack_walk.h"
 
 namespace mars {
 namespace {
 
-struct RimPost {
-  glm::dvec3 direction;
-  double off_m = 0;
-};
-
-std::vector<RimPost> posts_at_rim(const ElevationSource& inset, const ElevationSource& base,
-                                  std::size_t max_posts) {
-  std::vector<RimPost> posts;
-  const auto* rim = dynamic_cast<const RimAware*>(&inset);
-  if (rim == nullptr) return posts;
-  constexpr double kAtRim_posts = 2;
-  const double spacing_m = resolution_m(inset);
-  std::vector<double> distance;
-  std::vector<glm::dvec3> places;
-  std::vector<double> own_m;
-  std::vector<double> base_m;
-  inset.visit_posts(max_posts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
-    distance.resize(directions.size());
-    rim->rim_distance(directions, kAtRim_posts + 1, distance);
-    places.clear();
-    own_m.clear();
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-      if (distance[i] > kAtRim_posts) continue;
-      places.push_back(directions[i]);
-      own_m.push_back(heights_m[i]);
-    }
-    base_m.resize(places.size());
-    base.sample(places, spacing_m, base_m);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (std::isfinite(own_m[i] - base_m[i])) posts.push_back({places[i], own_m[i] - base_m[i]});
-    }
-  });
-  return posts;
-}
+constexpr double kAtRim_posts = 2;
 
 double share_of(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -84,7 +52,7 @@ void gather(const std::vector<RimPost>& posts, double cell, Bend& bend) {
 
 std::optional<Bend> fit_bend(const ElevationSource& inset, const ElevationSource& base, double radius_m,
                              std::size_t max_posts) {
-  const std::vector<RimPost> posts = posts_at_rim(inset, base, max_posts);
+  const std::vector<RimPost> posts = rim_posts(inset, base, kAtRim_posts, max_posts);
   if (posts.empty()) return std::nullopt;
   Bend bend;
   bend.radius_m = radius_m;

@@ -9,46 +9,10 @@
 #include <glm/matrix.hpp>
 #include <vector>
 
-#include "mars/stack.h"
+#include "mars/rim_posts.h"
 
 namespace mars {
 namespace {
-
-struct RimPost {
-  glm::dvec3 direction;
-  double difference_m = 0;
-};
-
-// Posts of the inset near its rim, with what they lie above the base.
-std::vector<RimPost> rim_posts_of(const ElevationSource& inset, const ElevationSource& base, double rim_posts,
-                                  std::size_t max_posts) {
-  const auto* rim = dynamic_cast<const RimAware*>(&inset);
-  std::vector<RimPost> posts;
-  std::vector<glm::dvec3> places;
-  std::vector<double> own_m;
-  std::vector<double> base_m;
-  std::vector<double> distance;
-  const double spacing_m = inset.infos().front().resolution_m;
-  inset.visit_posts(max_posts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
-    distance.assign(directions.size(), 0.0);
-    if (rim != nullptr) rim->rim_distance(directions, rim_posts + 1, distance);
-    places.clear();
-    own_m.clear();
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-      if (distance[i] > rim_posts) continue;
-      places.push_back(directions[i]);
-      own_m.push_back(heights_m[i]);
-    }
-    base_m.resize(places.size());
-    base.sample(places, spacing_m, base_m);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (std::isfinite(base_m[i]) && std::isfinite(own_m[i])) {
-        posts.push_back({places[i], own_m[i] - base_m[i]});
-      }
-    }
-  });
-  return posts;
-}
 
 // East and north on the azimuthal equidistant plane, metres.
 glm::dvec2 plane(const LocalFrame& frame, double radius_m, const glm::dvec3& direction) {
@@ -82,7 +46,7 @@ void fit_plane(const std::vector<RimPost>& posts, const LocalFrame& frame, doubl
     const glm::dvec2 p = plane(frame, level.radius_m, post.direction) / reach_m;
     const glm::dvec3 row(1, p.x, p.y);
     normal += glm::outerProduct(row, row);
-    right += row * post.difference_m;
+    right += row * post.off_m;
   }
   normal /= static_cast<double>(posts.size());
   right /= static_cast<double>(posts.size());
@@ -109,8 +73,8 @@ constexpr std::size_t kFewest = 12;
 }  // namespace
 
 std::optional<Level> fit_level(const ElevationSource& inset, const ElevationSource& base, double radius_m,
-                               double rim_posts, std::size_t max_posts) {
-  std::vector<RimPost> posts = rim_posts_of(inset, base, rim_posts, max_posts);
+                               double within_posts, std::size_t max_posts) {
+  std::vector<RimPost> posts = rim_posts(inset, base, within_posts, max_posts);
   if (posts.size() < kFewest) return std::nullopt;
   glm::dvec3 sum(0);
   for (const RimPost& post : posts) sum += post.direction;
@@ -124,8 +88,8 @@ std::optional<Level> fit_level(const ElevationSource& inset, const ElevationSour
   level.radius_m = radius_m;
   const LocalFrame frame = local_frame(level.centre);
   const double reach_m = std::max(radius_m * widest, 1e-3);
-  const auto before = [](const RimPost& post) { return post.difference_m; };
-  const auto after = [&](const RimPost& post) { return post.difference_m - height_m(level, post.direction); };
+  const auto before = [](const RimPost& post) { return post.off_m; };
+  const auto after = [&](const RimPost& post) { return post.off_m - height_m(level, post.direction); };
   const std::size_t all = posts.size();
   level.offset_m = median(posts, before);
   for (int round = 0; round < 3; ++round) {

@@ -26,13 +26,13 @@ struct Level {
 
 inline constexpr double kLevelOutlier = 6;
 
-// Least squares of inset - base over the inset's posts within `rim_posts` of its rim where the base has data,
-// in three rounds, each without the posts that lie farther from the last one (at first: from the median) than
-// kLevelOutlier times its median absolute deviation times 1.4826. Of at most about max_posts posts of the inset; a function of both
-// sources alone. Nothing when fewer than 12 posts remain, or the rim is more than 60 degrees across or all
-// along one line (then only the offset is fitted). Throws SourceError on read errors.
+// Least squares of inset - base over the inset's posts within `within_posts` of its rim where the base has
+// data, in three rounds, each without the posts that lie farther from the last one (at first: from the median)
+// than kLevelOutlier times its median absolute deviation times 1.4826. Of at most about max_posts posts of the
+// inset; a function of both sources alone. Nothing when fewer than 12 posts remain, or the rim is more than 60
+// degrees across or all along one line (then only the offset is fitted). Throws SourceError on read errors.
 std::optional<Level> fit_level(const ElevationSource& inset, const ElevationSource& base, double radius_m,
-                               double rim_posts = 16, std::size_t max_posts = 1'000'000);
+                               double within_posts = 16, std::size_t max_posts = 1'000'000);
 
 // Its height above the base at a direction.
 double height_m(const Level& level, const glm::dvec3& direction);

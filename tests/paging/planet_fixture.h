@@ -29,4 +29,19 @@ inline FakeElevation::Spacing fine_around(const glm::dvec3& centre, double reach
   };
 }
 
+// Colours by place.
+class FakeImage : public mars::ImageSource {
+ public:
+  std::vector<mars::SourceInfo> infos() const override { return {FakeElevation(bumpy_height).infos().front()}; }
+  void sample(std::span<const glm::dvec3> directions, double, std::span<mars::Rgb> colours,
+              std::span<std::uint8_t> alpha) const override {
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+      const auto byte = [](double x) { return static_cast<std::uint8_t>(127.0 * (x + 1)); };
+      colours[n] = {byte(directions[n].x), byte(directions[n].y), byte(directions[n].z)};
+      alpha[n] = 255;
+    }
+  }
+  double spacing_in(const mars::Cap& cap) const override { return cap.centre.x > 0 ? 20000 : 100000; }
+};
+
 }  // namespace test_support

@@ -12,25 +12,10 @@ namespace {
 
 using test_support::bumpy_height;
 using test_support::FakeElevation;
+using test_support::FakeImage;
 using test_support::fine_around;
 using test_support::Random;
 using test_support::TempDir;
-
-// Grey by height, everywhere.
-class FakeImage : public mars::ImageSource {
- public:
-  std::vector<mars::SourceInfo> infos() const override { return {FakeElevation(bumpy_height).infos().front()}; }
-  void sample(std::span<const glm::dvec3> directions, double, std::span<mars::Rgb> colours,
-              std::span<std::uint8_t> alpha) const override {
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      const auto grey =
-          static_cast<std::uint8_t>(std::clamp(128.0 + bumpy_height(directions[n]) / 100.0, 0.0, 255.0));
-      colours[n] = {grey, grey, grey};
-      alpha[n] = 255;
-    }
-  }
-  double spacing_in(const mars::Cap&) const override { return 100000; }
-};
 
 class Resume : public testing::Test {
  protected:
