@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -42,6 +41,9 @@ class TileStore {
 
   explicit TileStore(std::size_t limit_bytes) : limit_(limit_bytes) {}
   static TileStore& common();  // of the process; see mars/raster_memory.h
+
+  // A number that no cache has yet, of whatever kind its tiles are.
+  static std::uint64_t next_cache();
 
   Pointer find(const Key& key);
   // The tile that the store now holds: an earlier one wins. The newest is kept whatever its size.
@@ -84,7 +86,7 @@ class TileCache {
  public:
   using Pointer = std::shared_ptr<const Tile>;
 
-  TileCache() : number_(next_number()) {}
+  TileCache() : number_(TileStore::next_cache()) {}
   ~TileCache() { store_.forget(number_); }
   TileCache(const TileCache&) = delete;
   TileCache& operator=(const TileCache&) = delete;
@@ -102,10 +104,6 @@ class TileCache {
   }
 
  private:
-  static std::uint64_t next_number() {
-    static std::atomic<std::uint64_t> last{0};
-    return ++last;
-  }
   TileStore& store_ = TileStore::common();
   std::uint64_t number_;
 };

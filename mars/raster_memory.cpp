@@ -3,6 +3,7 @@
 #include <gdal.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "mars/gdal_tiles.h"
 
@@ -18,6 +19,11 @@ void set_raster_memory(std::size_t bytes) {
 TileStore& TileStore::common() {
   static TileStore store(kDefaultRasterMemory - kDefaultRasterMemory / 4);
   return store;
+}
+
+std::uint64_t TileStore::next_cache() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
 }
 
 TileStore::Pointer TileStore::find(const Key& key) {

@@ -55,4 +55,28 @@ TEST(RasterMemory, AClosedRasterLeavesNothing) {
   EXPECT_EQ(TileStore::common().bytes(), before);
 }
 
+// Caches of different kinds of tiles must never give each other's.
+TEST(RasterMemory, EveryCacheHasItsOwnTiles) {
+  struct Heights {
+    int value;
+    std::size_t bytes() const { return 1000; }
+  };
+  struct Colours {
+    int value;
+    std::size_t bytes() const { return 1000; }
+  };
+  mars::TileCache<Heights> heights;
+  mars::TileCache<Colours> colours;
+  mars::TileCache<Heights> others;
+  for (int round = 0; round < 2; ++round) {
+    const auto make = [](int value) {
+      return [value](const TileId&) { return std::make_shared<const Heights>(Heights{value}); };
+    };
+    const auto paint = [](const TileId&) { return std::make_shared<const Colours>(Colours{2}); };
+    EXPECT_EQ(heights.get({0, 0, 0}, make(1))->value, 1);
+    EXPECT_EQ(colours.get({0, 0, 0}, paint)->value, 2);
+    EXPECT_EQ(others.get({0, 0, 0}, make(3))->value, 3);
+  }
+}
+
 }  // namespace
