@@ -215,6 +215,7 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   Node node;
   node.inner = true;
   lod::Posts posts{key, 2 * n, std::vector<double>(wide * wide)};
+  std::vector<bool> missing;
   for (int c = 0; c < 4; ++c) {
     const lod::TileKey child = lod::child(key, c);
     const lod::Posts fine = read_posts(context, child);
@@ -224,6 +225,16 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
     for (std::size_t j = 0; j < side; ++j) {
       std::copy_n(fine.height_m.begin() + static_cast<std::ptrdiff_t>(j * side), side,
                   posts.height_m.begin() + static_cast<std::ptrdiff_t>((y0 + j) * wide + x0));
+    }
+    if (const Bytes mask = context.writer.missing(child); !mask.empty()) {
+      const std::vector<bool> below = decode_mask(mask, side * side);
+      missing.resize(side * side);
+      // Of the child's posts, every second one is a post of this tile.
+      for (std::size_t j = 0; j < side; j += 2) {
+        for (std::size_t i = 0; i < side; i += 2) {
+          if (below[j * side + i]) missing[(y0 + j) / 2 * side + (x0 + i) / 2] = true;
+        }
+      }
     }
     const Node& below = context.nodes.at(child);
     node.sources.insert(below.sources.begin(), below.sources.end());
@@ -239,6 +250,7 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   }
   TilePayload payload;
   payload.heights = encode_heights(to_quanta(own, meta.quantum_m), n + 1);
+  if (std::find(missing.begin(), missing.end(), true) != missing.end()) payload.missing = encode_mask(missing);
 
   // A finest tile beside this one has only every second of these border posts.
   std::array<int, 4> border_step{1, 1, 1, 1};
