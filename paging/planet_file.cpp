@@ -153,6 +153,21 @@ void PlanetFile::read_index(Connection& connection) {
   if (static_cast<std::int64_t>(image_keys_.size()) != meta_.image_tiles) {
     throw PlanetError(path_ + ": damaged: image tiles are missing; build the planet file again");
   }
+  Statement masks(connection.db, "SELECT key FROM missing");
+  while (masks.step()) {
+    const auto key = lod::unpack(masks.integer(0));
+    if (!key)
+      throw PlanetError(path_ +
+                        ": damaged: a mask of missing posts is of no tile; build the planet file again");
+    missing_keys_.push_back(masks.integer(0));
+    for (lod::TileKey at = *key; at.level > 0;) missing_keys_.push_back(lod::pack(at = lod::parent(at)));
+  }
+  std::sort(missing_keys_.begin(), missing_keys_.end());
+  missing_keys_.erase(std::unique(missing_keys_.begin(), missing_keys_.end()), missing_keys_.end());
+}
+
+bool PlanetFile::has_missing(const lod::TileKey& key) const {
+  return std::binary_search(missing_keys_.begin(), missing_keys_.end(), lod::pack(key));
 }
 
 TileHeights PlanetFile::heights(const lod::TileKey& key) const {

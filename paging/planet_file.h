@@ -41,6 +41,9 @@ class PlanetFile {
   TileHeights heights(const lod::TileKey& key) const;
   PackedMesh mesh(const lod::TileKey& key, int variant) const;
 
+  // Whether no source has data at some post of the tile or of one below it. Known without reading the tile.
+  bool has_missing(const lod::TileKey& key) const;
+
   // The deepest stored image tile at or above `key`; nothing when the planet has no image.
   std::optional<lod::TileKey> image_key(const lod::TileKey& key) const;
   std::vector<lod::TileKey> image_keys() const;    // all of them
@@ -55,7 +58,8 @@ class PlanetFile {
   std::string path_;
   PlanetMeta meta_;
   std::unique_ptr<lod::TileTree> tree_;
-  std::vector<std::int64_t> image_keys_;  // sorted
+  std::vector<std::int64_t> image_keys_;    // sorted
+  std::vector<std::int64_t> missing_keys_;  // of tiles with posts without data and of all above them, sorted
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Connection>> idle_;
 };

@@ -56,7 +56,7 @@ std::vector<LevelSummary> summarise_levels(const Database& db, std::size_t posts
       if (table == "image") level.image_tiles = rows.integer(1);
     }
   }
-  Statement masks(db, "SELECT key >> 54 & 31, data FROM missing");
+  Statement masks(db, "SELECT key >> 54 & 31, data FROM missing JOIN node USING (key) WHERE NOT inner");
   while (masks.step()) {
     const std::vector<bool> mask = decode_mask(masks.blob(1), posts);
     levels[masks.integer(0)].holes += std::count(mask.begin(), mask.end(), true);

@@ -43,6 +43,7 @@ struct PlanetWriter::Statements {
         node(db, "INSERT OR REPLACE INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         variant(db, "INSERT OR REPLACE INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
         read_heights(db, "SELECT checksum, data FROM heights WHERE key = ?"),
+        read_missing(db, "SELECT checksum, data FROM missing WHERE key = ?"),
         read_mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?") {}
   Statement heights;
   Statement missing;
@@ -52,6 +53,7 @@ struct PlanetWriter::Statements {
   Statement node;
   Statement variant;
   Statement read_heights;
+  Statement read_missing;
   Statement read_mesh;
 };
 
@@ -195,8 +197,11 @@ std::map<std::int64_t, Bytes> PlanetWriter::notes() {
   return out;
 }
 
-Bytes PlanetWriter::read(Statement& statement, const lod::TileKey& key, std::int64_t seed) {
-  if (!statement.step()) part_.db->fail("read back tile " + lod::to_string(key));
+std::optional<Bytes> PlanetWriter::find(Statement& statement, const lod::TileKey& key, std::int64_t seed) {
+  if (!statement.step()) {
+    statement.reset();
+    return std::nullopt;
+  }
   const auto data = statement.blob(1);
   Bytes out(data.begin(), data.end());
   const bool intact = checksum(seed, out) == statement.integer(0);
@@ -208,10 +213,22 @@ Bytes PlanetWriter::read(Statement& statement, const lod::TileKey& key, std::int
   return out;
 }
 
+Bytes PlanetWriter::read(Statement& statement, const lod::TileKey& key, std::int64_t seed) {
+  auto found = find(statement, key, seed);
+  if (!found) part_.db->fail("read back tile " + lod::to_string(key));
+  return std::move(*found);
+}
+
 Bytes PlanetWriter::heights(const lod::TileKey& key) {
   const std::lock_guard lock(mutex_);
   sql_->read_heights.bind(1, lod::pack(key));
   return read(sql_->read_heights, key, lod::pack(key));
+}
+
+Bytes PlanetWriter::missing(const lod::TileKey& key) {
+  const std::lock_guard lock(mutex_);
+  sql_->read_missing.bind(1, lod::pack(key));
+  return find(sql_->read_missing, key, lod::pack(key)).value_or(Bytes());
 }
 
 Bytes PlanetWriter::mesh(const lod::TileKey& key, int variant) {

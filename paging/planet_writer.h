@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -56,6 +57,7 @@ class PlanetWriter {
 
   // What put_tile stored. Throws DatabaseError also when it is damaged.
   Bytes heights(const lod::TileKey& key);
+  Bytes missing(const lod::TileKey& key);  // empty: no post is missing
   Bytes mesh(const lod::TileKey& key, int variant);
 
   // Writes meta (identity and program are filled in) and closes the .part file: it can be opened for reading,
@@ -74,6 +76,7 @@ class PlanetWriter {
   void put(Statement& statement, std::int64_t row, std::span<const std::uint8_t> packed);
   void put_node(const NodeRow& row);
   void commit_when_due();
+  std::optional<Bytes> find(Statement& statement, const lod::TileKey& key, std::int64_t seed);
   Bytes read(Statement& statement, const lod::TileKey& key, std::int64_t seed);
 
   std::mutex mutex_;

@@ -20,6 +20,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.tiles_missing = 3;
   c.tiles_substituted = 4;
   c.share_at_data_limit = 0.25;
+  c.share_without_data = 0.125;
   c.resampling_max_m = 7.5;
   c.resampling_rms_m = 0.75;
   c.source_accuracy_m = 3;
@@ -29,6 +30,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   const std::string meaning = json.at("what_this_means");
   EXPECT_NE(meaning.find("not data"), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
+  EXPECT_NE(meaning.find("striped"), std::string::npos);
   json.erase("what_this_means");
   EXPECT_EQ(json, nlohmann::json({{"tile_error_m", 1.25},
                                   {"tile_error_px", 0.5},
@@ -40,6 +42,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
                                   {"tiles_missing", 3},
                                   {"tiles_substituted", 4},
                                   {"share_at_data_limit", 0.25},
+                                  {"share_without_data", 0.125},
                                   {"resampling_max_m", 7.5},
                                   {"resampling_rms_m", 0.75},
                                   {"source_accuracy_m", 3.0},
@@ -53,11 +56,13 @@ TEST(Certificate, AbsentAndNotFiniteAreNull) {
   c.tile_error_px = std::numeric_limits<double>::quiet_NaN();
   const nlohmann::json json = nlohmann::json::parse(to_json(c));
   EXPECT_TRUE(json.at("source_accuracy_m").is_null());
+  EXPECT_TRUE(json.at("share_without_data").is_null());
   EXPECT_TRUE(json.at("tile_error_m").is_null());
   EXPECT_TRUE(json.at("tile_error_px").is_null());
   const std::string meaning = json.at("what_this_means");
   EXPECT_EQ(meaning.find("not data"), std::string::npos);
   EXPECT_EQ(meaning.find("not covered"), std::string::npos);
+  EXPECT_EQ(meaning.find("striped"), std::string::npos);
 }
 
 TEST(Certificate, NumbersSurviveToTheBit) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 
 #include "tests/paging/planet_fixture.h"
 
@@ -10,8 +11,8 @@ namespace {
 
 using test_support::build_fake;
 using test_support::bumpy_height;
-using test_support::fine_around;
 using test_support::FakeElevation;
+using test_support::fine_around;
 using test_support::Random;
 using test_support::TempDir;
 
@@ -30,7 +31,8 @@ TEST(Builder, PostsAreTheSource) {
     for (int j = 0; j < heights.posts.side(); ++j) {
       for (int i = 0; i < heights.posts.side(); ++i) {
         const double h = heights.posts.at(i, j);
-        const glm::dvec3 d = mars::chart_direction(info.key.face, lines.u[static_cast<std::size_t>(i)], lines.v[static_cast<std::size_t>(j)]);
+        const glm::dvec3 d = mars::chart_direction(info.key.face, lines.u[static_cast<std::size_t>(i)],
+                                                   lines.v[static_cast<std::size_t>(j)]);
         if (std::abs(h - bumpy_height(d)) <= 0.5 * quantum + 1e-9) continue;
         // Only odd border posts of a finest tile beside a coarser one may differ: they lie on its edges.
         ASSERT_FALSE(info.has_children);
@@ -85,7 +87,8 @@ TEST(Builder, ErrorsBoundTheDistanceAndNest) {
       double worst = 0;
       for (int n = 0; n < 60; ++n) {
         // A random place in a random triangle of the mesh.
-        const auto t = static_cast<std::size_t>(random.integer(0, static_cast<int>(packed.mesh.triangle_count()) - 1));
+        const auto t =
+            static_cast<std::size_t>(random.integer(0, static_cast<int>(packed.mesh.triangle_count()) - 1));
         glm::dvec3 p(0);
         double a = random.uniform(0, 1);
         double b = random.uniform(0, 1);
@@ -142,6 +145,33 @@ TEST(Builder, MissingPlacesAreKnown) {
   EXPECT_TRUE(surface.at({0, 0, 1}).missing);
   EXPECT_FALSE(surface.at({0, 0, -1}).missing);
   EXPECT_NEAR(surface.at({0, 0, 1}).height_m, 1000.0, 0.1);  // filled, so that pictures have no pit
+
+  // Of every level, inner tiles too: as the source has it at each post.
+  std::set<int> levels;
+  const auto check = [&](const auto& self, const lod::TileKey& key) -> bool {
+    const lod::TileInfo* info = planet->tree().find(key);
+    const paging::TileHeights tile = planet->heights(key);
+    const lod::GridLines lines = lod::grid_lines(key, tile.posts.intervals);
+    const auto side = static_cast<std::size_t>(tile.posts.side());
+    bool any = false;
+    for (std::size_t j = 0; j < side; ++j) {
+      for (std::size_t i = 0; i < side; ++i) {
+        const glm::dvec3 p = mars::cube_point(key.face, lines.u[i], lines.v[j]);
+        const bool missing = !tile.missing.empty() && tile.missing[j * side + i];
+        EXPECT_EQ(missing, p.z / glm::length(p) > 0.5) << lod::to_string(key) << " " << i << " " << j;
+        any = any || missing;
+      }
+    }
+    if (any) levels.insert(key.level);
+    EXPECT_EQ(any, !tile.missing.empty());
+    if (info->has_children) {
+      for (int c = 0; c < 4; ++c) any = self(self, lod::child(key, c)) || any;
+    }
+    EXPECT_EQ(planet->has_missing(key), any) << lod::to_string(key);
+    return any;
+  };
+  for (int f = 0; f < mars::kFaces; ++f) check(check, {static_cast<mars::Face>(f), 0, 0, 0});
+  EXPECT_EQ(static_cast<int>(levels.size()), planet->meta().finest_level + 1);
 }
 
 TEST(Builder, RegionsKnowCapsAcrossTheAntimeridianAndPoles) {
@@ -160,7 +190,8 @@ TEST(Builder, RegionsKnowCapsAcrossTheAntimeridianAndPoles) {
   // Never a false no: random caps and random places of the region.
   Random random(33);
   for (int n = 0; n < 20000; ++n) {
-    const paging::Region r{random.uniform(-180, 180), random.uniform(-90, 0), random.uniform(-180, 180), random.uniform(0, 90)};
+    const paging::Region r{random.uniform(-180, 180), random.uniform(-90, 0), random.uniform(-180, 180),
+                           random.uniform(0, 90)};
     double width = r.east_deg - r.west_deg;
     if (width < 0) width += 360;
     const mars::LonLat inside{r.west_deg + random.uniform(0, width), random.uniform(r.south_deg, r.north_deg)};

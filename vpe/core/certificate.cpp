@@ -13,6 +13,7 @@ std::string meaning(const Certificate& c) {
       "planet file. resampling_*: that surface against the posts of its own sources. source_accuracy_m: the "
       "sources "
       "against the planet, one sigma, null where unknown.";
+  if (c.share_without_data.value_or(0) > 0) text += " Where no source has data the picture is striped.";
   if (c.illustration) text += " The elevations are an illustration, not data.";
   if (c.tiles_missing > 0 || c.tiles_substituted > 0) {
     text += " Missing or substituted tiles are not covered by the bounds.";
@@ -35,6 +36,8 @@ std::string to_json(const Certificate& c) {
   json["tiles_missing"] = c.tiles_missing;
   json["tiles_substituted"] = c.tiles_substituted;
   json["share_at_data_limit"] = c.share_at_data_limit;
+  json["share_without_data"] = nullptr;
+  if (c.share_without_data) json["share_without_data"] = *c.share_without_data;
   json["resampling_max_m"] = c.resampling_max_m;
   json["resampling_rms_m"] = c.resampling_rms_m;
   json["source_accuracy_m"] = nullptr;

@@ -19,7 +19,9 @@ struct Certificate {
   int tiles_missing = 0;
   int tiles_substituted = 0;
   double share_at_data_limit =
-      0;                        // share of surface pixels drawn from finest tiles at error 0 (estimate by tile)
+      0;  // share of surface pixels drawn from finest tiles at error 0 (estimate by tile)
+  std::optional<double>
+      share_without_data;       // share of the picture that shows ground without data; absent: not known
   double resampling_max_m = 0;  // S against the sources' own posts
   double resampling_rms_m = 0;
   std::optional<double> source_accuracy_m;

@@ -77,13 +77,15 @@ class PolygonRenderer : public core::Renderer {
   void select(const core::DrawRequest& request, const ShadeParams& shading);
   int origin(const lod::SelectedTile& tile, const core::View& view) const;
   void fit_textures(double focal, Surfacing surfacing);
-  void make_resident(const ShadeParams& shading, bool textured);
+  bool textured(const lod::TileKey& tile, core::Mode mode) const;
+  void make_resident(const ShadeParams& shading, core::Mode mode);
   TileGeometry geometry(const MeshKey& key, double exaggeration) const;
   double near_plane_m(const core::View& view, double exaggeration) const;
   void draw_sky(const core::DrawRequest& request, const Lens& lens);
   void draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture);
   void read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
+  std::optional<double> share_without_data(core::Mode mode, const Target& picture) const;
   core::Certificate certify(const core::DrawRequest& request, const Lens& lens);
 
   std::shared_ptr<Context> context_;
@@ -118,7 +120,10 @@ ShadeParams PolygonRenderer::shade_params(const core::DrawRequest& request) cons
   params.ambient = s.sun_ambient;
   params.exaggeration = s.exaggeration;
   const bool has_image = planet_->meta().finest_image_level >= 0;
-  if (s.mode == core::Mode::kTextured && has_image) {
+  if (s.mode == core::Mode::kUnlit) {
+    params.surfacing = Surfacing::kPlain;
+    params.lit = false;
+  } else if (s.mode == core::Mode::kTextured && has_image) {
     params.surfacing = Surfacing::kImage;
   } else if (s.mode == core::Mode::kLit || s.colour == core::Colour::kNone) {
     params.surfacing = Surfacing::kPlain;
@@ -200,7 +205,13 @@ TileGeometry PolygonRenderer::geometry(const MeshKey& key, double exaggeration) 
   return make_geometry(key.tile, packed.mesh, heights, exaggeration, planet_->radius_m(), key.origin);
 }
 
-void PolygonRenderer::make_resident(const ShadeParams& shading, bool textured) {
+// Unlit ground has one colour; its textures only say where there is no data.
+bool PolygonRenderer::textured(const lod::TileKey& tile, core::Mode mode) const {
+  if (mode == core::Mode::kWireframe) return false;
+  return mode != core::Mode::kUnlit || planet_->has_missing(tile);
+}
+
+void PolygonRenderer::make_resident(const ShadeParams& shading, core::Mode mode) {
   if (!(shading == resident_shading_)) {
     textures_.clear();
     if (shading.exaggeration != resident_shading_.exaggeration) meshes_.clear();
@@ -216,7 +227,7 @@ void PolygonRenderer::make_resident(const ShadeParams& shading, bool textured) {
   std::vector<Missing> missing;
   for (const Drawn& d : drawn_) {
     const bool mesh = meshes_.find(d.mesh, frame_) == nullptr;
-    const bool texture = textured && textures_.find(d.texture, frame_) == nullptr;
+    const bool texture = textured(d.texture.tile, mode) && textures_.find(d.texture, frame_) == nullptr;
     if (mesh || texture) missing.push_back({&d, mesh, texture, {}, {}});
   }
   meshes_.trim(share(kMeshShare), frame_);
@@ -296,6 +307,16 @@ Target& PolygonRenderer::target(std::optional<Target>& slot, const glm::ivec2& s
   return *slot;
 }
 
+// Of the picture that was drawn and read last.
+std::optional<double> PolygonRenderer::share_without_data(core::Mode mode, const Target& picture) const {
+  if (mode == core::Mode::kWireframe) {
+    const auto has_missing = [&](const Drawn& d) { return planet_->has_missing(d.mesh.tile); };
+    if (std::any_of(drawn_.begin(), drawn_.end(), has_missing)) return std::nullopt;
+    return 0.0;
+  }
+  return std::any_of(draws_.begin(), draws_.end(), TileDrawer::has_gaps) ? 1.0 - picture.mean_alpha() : 0.0;
+}
+
 core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens) {
   certified_.clear();
   for (std::size_t n = 0; n < drawn_.size(); ++n) {
@@ -320,7 +341,6 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
 
 void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture) {
   const bool wireframe = request.settings.mode == core::Mode::kWireframe;
-  const bool textured = !wireframe && request.settings.mode != core::Mode::kUnlit;
   const float paper = request.settings.background == core::Background::kWhite ? 1.0F : 0.0F;
   to.bind();
   glClearColor(paper, paper, paper, 1.0F);
@@ -330,9 +350,9 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
   if (wireframe && picture) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   draws_.clear();
   for (const Drawn& d : drawn_) {
-    draws_.push_back({meshes_.find(d.mesh, frame_),
-                      picture && textured ? textures_.find(d.texture, frame_) : nullptr, d.mesh.tile.face,
-                      d.skirt_m});
+    const bool textured = picture && this->textured(d.texture.tile, request.settings.mode);
+    draws_.push_back({meshes_.find(d.mesh, frame_), textured ? textures_.find(d.texture, frame_) : nullptr,
+                      request.settings.mode == core::Mode::kUnlit, d.mesh.tile, d.skirt_m});
   }
   tiles_.draw(request.view, lens, draws_,
               picture && wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
@@ -380,7 +400,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   select(request, shading);
   result.stats.select_ms = ms_since(start);
   start = Clock::now();
-  make_resident(shading, settings.mode != core::Mode::kWireframe && settings.mode != core::Mode::kUnlit);
+  make_resident(shading, settings.mode);
   result.stats.load_ms = ms_since(start);
 
   start = Clock::now();
@@ -396,6 +416,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   result.frame.width = size.x;
   result.frame.height = size.y;
   picture.read_colour(result.frame.colour);
+  const std::optional<double> without_data = share_without_data(settings.mode, picture);
   const bool smooth = settings.samples == 1 && settings.smooth_edges && settings.mode != core::Mode::kWireframe;
   if (smooth) picture.read_depth(depth_);
   result.stats.read_ms = ms_since(start);
@@ -424,6 +445,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   stats.bytes_resident =
       static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + shader_.bytes_resident());
   result.certificate = certify(request, lens);
+  result.certificate.share_without_data = without_data;
   return result;
 }
 

@@ -8,7 +8,8 @@ GpuMesh upload(const TileGeometry& geometry) {
   mesh.indices = Buffer::make();
   mesh.short_indices = geometry.vertices.size() <= 65536;
   const std::size_t vertex_bytes = geometry.vertices.size() * sizeof(TileVertex);
-  glNamedBufferStorage(mesh.vertices.name(), static_cast<GLsizeiptr>(vertex_bytes), geometry.vertices.data(), 0);
+  glNamedBufferStorage(mesh.vertices.name(), static_cast<GLsizeiptr>(vertex_bytes), geometry.vertices.data(),
+                       0);
   std::size_t index_bytes = geometry.indices.size() * sizeof(std::uint32_t);
   if (mesh.short_indices) {
     const std::vector<std::uint16_t> narrow(geometry.indices.begin(), geometry.indices.end());
@@ -31,6 +32,7 @@ GpuTexture upload(const ShadedTile& tile) {
   GpuTexture out;
   out.texture = Texture2D::make();
   out.intervals = tile.intervals;
+  out.gaps = tile.gaps;
   const GLsizei side = tile.intervals + 1;
   const GLuint name = out.texture.name();
   glTextureStorage2D(name, 1, GL_RGBA8, side, side);

@@ -28,6 +28,7 @@ GpuMesh upload(const TileGeometry& geometry);
 struct GpuTexture {
   Texture2D texture;
   int intervals = 0;
+  bool gaps = false;  // ShadedTile::gaps
   std::size_t bytes = 0;
 };
 GpuTexture upload(const ShadedTile& tile);
@@ -65,7 +66,8 @@ class Resident {
     while (bytes_ > limit) {
       auto oldest = items_.end();
       for (auto at = items_.begin(); at != items_.end(); ++at) {
-        if (at->second.frame != current_frame && (oldest == items_.end() || at->second.frame < oldest->second.frame)) {
+        if (at->second.frame != current_frame &&
+            (oldest == items_.end() || at->second.frame < oldest->second.frame)) {
           oldest = at;
         }
       }

@@ -68,6 +68,8 @@ GridPosition grid_position(int offset, int at, int fine_total, int coarse) {
   return {index, static_cast<float>(x - static_cast<double>(index))};
 }
 
+std::size_t nearest(const GridPosition& at) { return at.index + (at.rest >= 0.5F ? 1 : 0); }
+
 template <typename T, typename Get>
 T bilinear(const GridPosition& x, const GridPosition& y, std::size_t side, Get&& get) {
   const std::size_t at = y.index * side + x.index;
@@ -115,9 +117,12 @@ void make_even(const lod::TileKey& key, ShadedTile& tile) {
   for (std::size_t y = 0; y < side; ++y) {
     for (std::size_t x = 0; x < side; ++x) {
       for (std::size_t c = 0; c < 4; ++c) {
-        even[4 * (y * side + x) + c] = to_byte(bilinear<float>(
-            columns[x], rows[y], side, [&](std::size_t at) { return static_cast<float>(tile.rgba[4 * at + c]); }));
+        even[4 * (y * side + x) + c] = to_byte(bilinear<float>(columns[x], rows[y], side, [&](std::size_t at) {
+          return static_cast<float>(tile.rgba[4 * at + c]);
+        }));
       }
+      std::uint8_t& alpha = even[4 * (y * side + x) + 3];
+      alpha = alpha < 128 ? 0 : 255;
     }
   }
   tile.rgba = std::move(even);
@@ -131,7 +136,8 @@ mars::Rgb elevation_colour(double height_m) {
 }
 
 std::size_t NormalTile::bytes() const {
-  return sizeof(NormalTile) + normal.capacity() * sizeof(glm::vec3) + height_m.capacity() * sizeof(float);
+  return sizeof(NormalTile) + normal.capacity() * sizeof(glm::vec3) + height_m.capacity() * sizeof(float) +
+         missing.capacity() / 8;
 }
 
 Shader::Shader(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
@@ -145,7 +151,8 @@ std::size_t Shader::bytes_resident() const { return heights_.bytes() + normals_.
 std::shared_ptr<const paging::TileHeights> Shader::heights(const lod::TileKey& key) const {
   return heights_.get(key, [&] {
     auto made = std::make_shared<const paging::TileHeights>(planet_->heights(key));
-    const std::size_t bytes = sizeof(*made) + made->posts.height_m.capacity() * sizeof(double);
+    const std::size_t bytes =
+        sizeof(*made) + made->posts.height_m.capacity() * sizeof(double) + made->missing.capacity() / 8;
     return std::pair(std::move(made), bytes);
   });
 }
@@ -240,7 +247,8 @@ NormalTile Shader::make_normals(const lod::TileKey& key, double exaggeration) co
   std::vector<glm::vec3> points(wide * wide);
   for (std::size_t j = 0; j < side; ++j) {
     for (std::size_t i = 0; i < side; ++i) {
-      points[(j + 1) * wide + i + 1] = place(mars::cube_point(key.face, lines.u[i], lines.v[j]), posts.height_m[j * side + i]);
+      points[(j + 1) * wide + i + 1] =
+          place(mars::cube_point(key.face, lines.u[i], lines.v[j]), posts.height_m[j * side + i]);
     }
   }
   std::vector<glm::dvec3> across;
@@ -258,7 +266,7 @@ NormalTile Shader::make_normals(const lod::TileKey& key, double exaggeration) co
     }
   }
 
-  NormalTile out{key, static_cast<int>(side), {}, {}};
+  NormalTile out{key, static_cast<int>(side), {}, {}, source->missing};
   out.normal.reserve(side * side);
   out.height_m.assign(posts.height_m.begin(), posts.height_m.end());
   for (std::size_t j = 1; j <= side; ++j) {
@@ -270,8 +278,8 @@ NormalTile Shader::make_normals(const lod::TileKey& key, double exaggeration) co
   return out;
 }
 
-void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
-                         const ShadeParams& params, ShadedTile& out) const {
+void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
+                         ShadedTile& out) const {
   static const RampTable ramp_table;
   const int n = planet_->meta().tile.intervals();
   const lod::TileKey stored = deepest(block);
@@ -303,12 +311,14 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
   for (int y = 0; y <= n; ++y) {
     const GridPosition gyp = grid_position(gy, y, ground_steps, ground->side - 1);
     const GridPosition pyp = grid_position(py, y, picture_steps, paging::kImageIntervals);
-    std::uint8_t* texel = &out.rgba[4 * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x0))];
+    std::uint8_t* texel = &out.rgba[4 * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
+                                         static_cast<std::size_t>(x0))];
     for (int x = 0; x <= n; ++x, texel += 4) {
       const GridPosition gxp = grid_position(gx, x, ground_steps, ground->side - 1);
       glm::vec3 colour(178, 142, 112);
       if (params.surfacing == Surfacing::kElevation) {
-        colour = ramp_table(bilinear<float>(gxp, gyp, ground_side, [&](std::size_t at) { return ground->height_m[at]; }));
+        colour = ramp_table(
+            bilinear<float>(gxp, gyp, ground_side, [&](std::size_t at) { return ground->height_m[at]; }));
       } else if (picture) {
         const GridPosition pxp = grid_position(px, x, picture_steps, paging::kImageIntervals);
         colour = bilinear<glm::vec3>(pxp, pyp, kImageSide, [&](std::size_t at) {
@@ -319,7 +329,8 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
       if (params.lit) {
         const glm::vec3 normal =
             direct ? ground->normal[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)]
-                   : bilinear<glm::vec3>(gxp, gyp, ground_side, [&](std::size_t at) { return ground->normal[at]; });
+                   : bilinear<glm::vec3>(gxp, gyp, ground_side,
+                                         [&](std::size_t at) { return ground->normal[at]; });
         const float light = std::max(0.0F, glm::dot(normal, sun));
         // The square root stands for the display's gamma.
         colour *= std::sqrt(ambient + (1.0F - ambient) * kSunGain * light);
@@ -328,6 +339,10 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
       texel[1] = to_byte(colour.y);
       texel[2] = to_byte(colour.z);
       texel[3] = 255;
+      if (!ground->missing.empty() && ground->missing[nearest(gyp) * ground_side + nearest(gxp)]) {
+        texel[3] = 0;
+        out.gaps = true;
+      }
     }
   }
 }

@@ -32,12 +32,15 @@ struct NormalTile {
   int side = 0;
   std::vector<glm::vec3> normal;  // unit, body-fixed
   std::vector<float> height_m;
+  std::vector<bool> missing;  // empty when every post has data
   std::size_t bytes() const;
 };
 
-// Texels on the (intervals + 1)^2 lines of a tile, row 0 at the south; even in the chart's u and v.
+// Texels on the (intervals + 1)^2 lines of a tile, row 0 at the south; even in the chart's u and v. Alpha is 0
+// where the nearest post has no data, else 255.
 struct ShadedTile {
   int intervals = 0;
+  bool gaps = false;  // some alpha is 0
   std::vector<std::uint8_t> rgba;
   std::size_t bytes() const { return rgba.capacity(); }
 };
@@ -73,9 +76,10 @@ class Shader {
   std::shared_ptr<const paging::ImageTile> image(const lod::TileKey& key) const;
   std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, double exaggeration) const;
   NormalTile make_normals(const lod::TileKey& key, double exaggeration) const;
-  std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge, std::vector<glm::dvec3>& points) const;
-  void shade_block(const lod::TileKey& block, int x0, int y0, int side,
-                   const ShadeParams& params, ShadedTile& out) const;
+  std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge,
+                                     std::vector<glm::dvec3>& points) const;
+  void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
+                   ShadedTile& out) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   mutable paging::LruCache<lod::TileKey, paging::TileHeights, lod::TileKeyHash> heights_;

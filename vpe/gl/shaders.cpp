@@ -1,5 +1,7 @@
 #include "vpe/gl/shaders.h"
 
+#include <string_view>
+
 namespace vpe::gl {
 
 const char* const kTileVertexShader = R"glsl(
@@ -43,18 +45,57 @@ layout(location = 0) in vec3 texture_position;
 layout(location = 9) uniform vec4 flat_colour;
 layout(binding = 0) uniform sampler2D surface;
 layout(location = 0) out vec4 colour;
+#ifdef GAPS
+void show_gaps(inout vec4 colour);
+#endif
 void main() {
   if (flat_colour.a > 0.0) {
     colour = vec4(flat_colour.rgb, 1.0);
   } else {
     colour = vec4(texture(surface, texture_position.xy / texture_position.z).rgb, 1.0);
   }
+#ifdef GAPS
+  show_gaps(colour);
+#endif
+}
+)glsl";
+
+// Stripes across the face's chart, along u + v = constant. Each octave of periods halves the one before: as the
+// eye comes nearer, a dark stripe grows in the middle of each bright one while the old ones get thinner, so
+// that centres stay where they are on the ground and half of it is dark at any distance.
+const char* const kGapPattern = R"glsl(
+layout(location = 8) uniform vec2 texel;
+layout(location = 12) uniform vec3 tile_sides;
+layout(location = 13) uniform uint tile_phase;
+const float kLeastPeriod = 12.0;  // pixels
+const float kBright = 150.0 / 255.0;
+const float kDark = 60.0 / 255.0;
+// Share of a pixel `wide` at distance `away` from the middle of a stripe of half width `reach`.
+float stripe(float away, float reach, float wide) {
+  return clamp((reach - away) / wide + 0.5, 0.0, min(1.0, 2.0 * reach / wide));
+}
+void show_gaps(inout vec4 colour) {
+  vec2 at = texture_position.xy / texture_position.z;
+  float along = dot((at - texel.y) / texel.x, tile_sides.xy);
+  float pixel = length(vec2(dFdx(along), dFdy(along)));
+  ivec2 size = textureSize(surface, 0);
+  if (texelFetch(surface, clamp(ivec2(at * vec2(size)), ivec2(0), size - 1), 0).a > 0.5) return;
+  float detail = clamp(-log2(kLeastPeriod * pixel), 0.0, tile_sides.z);
+  float octave = floor(detail);
+  float grown = detail - octave;
+  float periods = exp2(octave);
+  float wide = max(pixel * periods, 1e-6);
+  float phase = fract(float(tile_phase << uint(octave)) * exp2(-32.0) + along * periods);
+  float away = min(phase, 1.0 - phase);
+  float dark = stripe(away, 0.25 - 0.125 * grown, wide) + stripe(0.5 - away, 0.125 * grown, wide);
+  dark = mix(dark, 0.5, smoothstep(0.25, 0.5, wide));
+  colour = vec4(vec3(mix(kBright, kDark, dark)), 0.0);
 }
 )glsl";
 
 // From two neighbouring vertices of a border and the feet below them. What is thinner in the picture than the
-// ribbon along its border is left to the ribbon: slivers near the size of the grid that rasterisers snap to have no
-// trustworthy depth.
+// ribbon along its border is left to the ribbon: slivers near the size of the grid that rasterisers snap to
+// have no trustworthy depth.
 const char* const kSkirtGeometryShader = R"glsl(
 #version 450 core
 layout(lines_adjacency) in;
@@ -93,8 +134,8 @@ void main() {
 }
 )glsl";
 
-// Pixels are covered up to a grid step outside of a skirt, where its depth, extrapolated, can stand before the ground
-// it hangs from. It is taken back to the nearest part of the skirt.
+// Pixels are covered up to a grid step outside of a skirt, where its depth, extrapolated, can stand before the
+// ground it hangs from. It is taken back to the nearest part of the skirt.
 const char* const kSkirtFragmentShader = R"glsl(
 #version 450 core
 layout(location = 0) in vec3 texture_position;
@@ -103,6 +144,9 @@ layout(location = 2) flat in vec2 depths;
 layout(location = 9) uniform vec4 flat_colour;
 layout(binding = 0) uniform sampler2D surface;
 layout(location = 0) out vec4 colour;
+#ifdef GAPS
+void show_gaps(inout vec4 colour);
+#endif
 void main() {
   vec2 steps = vec2(dFdx(drop), dFdy(drop));
   vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
@@ -114,11 +158,14 @@ void main() {
   } else {
     colour = vec4(texture(surface, texture_position.xy / texture_position.z).rgb, 1.0);
   }
+#ifdef GAPS
+  show_gaps(colour);
+#endif
 }
 )glsl";
 
-// Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. The line through both ends
-// in the picture comes from their homogeneous coordinates, so it is right with an end behind the eye too.
+// Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. The line through both
+// ends in the picture comes from their homogeneous coordinates, so it is right with an end behind the eye too.
 const char* const kRibbonGeometryShader = R"glsl(
 #version 450 core
 layout(lines) in;
@@ -150,6 +197,11 @@ void main() {
   EndPrimitive();
 }
 )glsl";
+
+std::string with_gaps(const char* fragment) {
+  constexpr std::string_view kVersion = "\n#version 450 core\n";
+  return std::string(kVersion) + "#define GAPS\n" + (fragment + kVersion.size()) + kGapPattern;
+}
 
 const char* const kSkyVertexShader = R"glsl(
 #version 450 core

@@ -1,6 +1,8 @@
 // GLSL sources of the polygon backend.
 #pragma once
 
+#include <string>
+
 namespace vpe::gl {
 
 extern const char* const kTileVertexShader;
@@ -8,32 +10,39 @@ extern const char* const kTileFragmentShader;
 extern const char* const kSkirtGeometryShader;
 extern const char* const kSkirtFragmentShader;
 extern const char* const kRibbonGeometryShader;
+// The fragment shader of tiles, of the surface or of skirts, that draws ground without data in stripes and with
+// alpha 0.
+std::string with_gaps(const char* fragment);
+
 extern const char* const kSkyVertexShader;
 extern const char* const kSkyFragmentShader;
 
 // Uniform locations of the programs that draw tiles.
 enum TileUniform : int {
-  kToEye = 0,          // vec3: tile centre - eye, rounded from double
-  kCentre = 1,         // vec3: tile centre (body-fixed), for the local vertical
-  kRotation = 2,       // mat3: body-fixed -> right, up, backward
-  kLens = 3,           // vec4: clip x scale, y scale, x shift, y shift
-  kNear = 4,           // float
-  kSkirt = 5,          // float: depth of skirts, m
-  kFirstFoot = 6,      // int: first vertex that is the foot of a skirt
-  kFaceOut = 7,        // vec3: the face's axis
-  kTexel = 8,          // vec2: scale and shift from tile coordinates to texture coordinates
-  kFlatColour = 9,     // vec4: alpha > 0: this colour instead of the texture
-  kRibbon = 10,        // vec3: half the picture's sides, half a ribbon's width; pixels
-  kSteps = 11,         // vec2: steps of the rasteriser in half the picture's sides; 0 = vertices stay where they are
+  kToEye = 0,       // vec3: tile centre - eye, rounded from double
+  kCentre = 1,      // vec3: tile centre (body-fixed), for the local vertical
+  kRotation = 2,    // mat3: body-fixed -> right, up, backward
+  kLens = 3,        // vec4: clip x scale, y scale, x shift, y shift
+  kNear = 4,        // float
+  kSkirt = 5,       // float: depth of skirts, m
+  kFirstFoot = 6,   // int: first vertex that is the foot of a skirt
+  kFaceOut = 7,     // vec3: the face's axis
+  kTexel = 8,       // vec2: scale and shift from tile coordinates to texture coordinates
+  kFlatColour = 9,  // vec4: alpha > 0: this colour instead of the texture
+  kRibbon = 10,     // vec3: half the picture's sides, half a ribbon's width; pixels
+  kSteps = 11,  // vec2: steps of the rasteriser in half the picture's sides; 0 = vertices stay where they are
+  kTileSides = 12,  // vec3: of the tile in its face's chart, u and v; log2 of how fine its stripes get, in
+                    // periods to a unit of the chart. with_gaps() only, as the next
+  kTilePhase = 13,  // uint: u + v at the tile's southwest corner, its fraction in 2^-32
 };
 
 // Uniform locations of the sky program.
 enum SkyUniform : int {
-  kSkyRotation = 0,    // mat3: right, up, backward -> body-fixed
-  kSkyLens = 1,        // vec4
-  kSkyUp = 2,          // vec3: local vertical at the eye
-  kSkyAltitude = 3,    // vec2: eye above the sphere, radius; m
-  kSkySun = 4,         // vec3: towards the sun
+  kSkyRotation = 0,  // mat3: right, up, backward -> body-fixed
+  kSkyLens = 1,      // vec4
+  kSkyUp = 2,        // vec3: local vertical at the eye
+  kSkyAltitude = 3,  // vec2: eye above the sphere, radius; m
+  kSkySun = 4,       // vec3: towards the sun
 };
 
 }  // namespace vpe::gl

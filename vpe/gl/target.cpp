@@ -1,6 +1,8 @@
 #include "vpe/gl/target.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -76,6 +78,16 @@ void Target::read_colour(std::vector<mars::Rgb>& out) const {
   glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, out.data());
   check_gl("read the picture");
   flip_rows(out, width_, height_);
+}
+
+double Target::mean_alpha() const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_ > 1 ? resolve_.name() : draw_.name());
+  std::vector<std::uint8_t> alpha(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width_, height_, GL_ALPHA, GL_UNSIGNED_BYTE, alpha.data());
+  check_gl("read which pixels have data");
+  const auto sum = std::accumulate(alpha.begin(), alpha.end(), std::int64_t{0});
+  return static_cast<double>(sum) / (255.0 * static_cast<double>(alpha.size()));
 }
 
 void Target::read_depth(std::vector<float>& out) const {

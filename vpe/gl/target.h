@@ -21,6 +21,7 @@ class Target {
 
   // Reads back, top row first. Depth only from a target with one sample.
   void read_colour(std::vector<mars::Rgb>& out) const;
+  double mean_alpha() const;  // of what read_colour() read last, 0 to 1
   void read_depth(std::vector<float>& out) const;
 
  private:

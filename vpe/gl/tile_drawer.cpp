@@ -1,16 +1,22 @@
 #include "vpe/gl/tile_drawer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "vpe/gl/shaders.h"
 
 namespace vpe::gl {
 
+TileDrawer::Programs TileDrawer::make_programs(const char* label, const char* fragment,
+                                               const char* skirt_fragment) {
+  const std::string name(label);
+  return {make_program(name + "tile", kTileVertexShader, fragment),
+          make_program(name + "ribbon", kTileVertexShader, fragment, kRibbonGeometryShader),
+          make_program(name + "skirt", kTileVertexShader, skirt_fragment, kSkirtGeometryShader)};
+}
+
 TileDrawer::TileDrawer()
-    : surface_program_(make_program("tile", kTileVertexShader, kTileFragmentShader)),
-      ribbon_program_(make_program("ribbon", kTileVertexShader, kTileFragmentShader, kRibbonGeometryShader)),
-      skirt_program_(make_program("skirt", kTileVertexShader, kSkirtFragmentShader, kSkirtGeometryShader)),
-      array_(VertexArray::make()) {
+    : programs_(make_programs("", kTileFragmentShader, kSkirtFragmentShader)), array_(VertexArray::make()) {
   const GLuint array = array_.name();
   glEnableVertexArrayAttrib(array, 0);
   glEnableVertexArrayAttrib(array, 1);
@@ -24,14 +30,14 @@ TileDrawer::TileDrawer()
   step_px_ = std::exp2(-bits);
 }
 
-void TileDrawer::use(const Program& program, const core::View& view, const Lens& lens) {
+void TileDrawer::use(const Program& program, Part part, const core::View& view, const Lens& lens) {
   const glm::mat3 rotation = body_to_eye(view.eye.axes);
   const glm::ivec2 size = core::drawn_size(view);
   glUseProgram(program.name());
   glUniformMatrix3fv(kRotation, 1, GL_FALSE, &rotation[0][0]);
   glUniform4fv(kLens, 1, &lens.scale_shift[0]);
   glUniform1f(kNear, lens.near_m);
-  if (&program == &surface_program_) {
+  if (part == Part::kSurface) {
     const auto per_px = static_cast<float>(0.5 / step_px_);
     glUniform2f(kSteps, per_px * static_cast<float>(size.x), per_px * static_cast<float>(size.y));
   } else {
@@ -44,7 +50,7 @@ void TileDrawer::use(const TileDraw& tile, const core::View& view) {
   const GpuMesh& mesh = *tile.mesh;
   const glm::vec3 to_eye(mesh.centre_m - view.eye.eye_m);
   const glm::vec3 centre(mesh.centre_m);
-  const glm::vec3 out(mars::face_axes(tile.face).out);
+  const glm::vec3 out(mars::face_axes(tile.key.face).out);
   glUniform3fv(kToEye, 1, &to_eye[0]);
   glUniform3fv(kCentre, 1, &centre[0]);
   glUniform3fv(kFaceOut, 1, &out[0]);
@@ -53,10 +59,22 @@ void TileDrawer::use(const TileDraw& tile, const core::View& view) {
   if (tile.texture != nullptr) {
     const auto texels = static_cast<float>(tile.texture->intervals + 1);
     glUniform2f(kTexel, static_cast<float>(tile.texture->intervals) / texels, 0.5F / texels);
-    glUniform4f(kFlatColour, 0, 0, 0, 0);
     glBindTextureUnit(0, tile.texture->texture.name());
+  }
+  if (tile.texture != nullptr && !tile.flat) {
+    glUniform4f(kFlatColour, 0, 0, 0, 0);
   } else {
     glUniform4f(kFlatColour, 0.95F, 0.75F, 0.55F, 1);
+  }
+  if (has_gaps(tile)) {
+    const mars::ChartRect rect = lod::chart_rect(tile.key);
+    const double corner = rect.u0 + rect.v0;
+    // Finer, stripes would show the rounding of texture coordinates, which is in proportion to the tile; and of
+    // the phase.
+    const int finest = std::min(tile.key.level + 14, 22);
+    glUniform3f(kTileSides, static_cast<float>(rect.u1 - rect.u0), static_cast<float>(rect.v1 - rect.v0),
+                static_cast<float>(finest));
+    glUniform1ui(kTilePhase, static_cast<GLuint>((corner - std::floor(corner)) * 0x1p32));
   }
   glVertexArrayVertexBuffer(array_.name(), 0, mesh.vertices.name(), 0, sizeof(TileVertex));
   glVertexArrayElementBuffer(array_.name(), mesh.indices.name());
@@ -69,31 +87,50 @@ void TileDrawer::draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t be
                  reinterpret_cast<const void*>(index_size * begin));
 }
 
+void TileDrawer::draw_part(const TileDraw& tile, Part part, const core::View& view) {
+  const GpuMesh& mesh = *tile.mesh;
+  switch (part) {
+    case Part::kSurface:
+      use(tile, view);
+      draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface);
+      return;
+    case Part::kRibbon:
+      use(tile, view);
+      draw_indices(mesh, GL_LINES, mesh.ranges.skirts[4], mesh.ranges.border_end);
+      return;
+    case Part::kSkirt:
+      bool used = false;
+      for (std::size_t e = 0; e < tile.skirt_m.size(); ++e) {
+        if (tile.skirt_m[e] <= 0.0F) continue;
+        if (!used) use(tile, view);
+        used = true;
+        glUniform1f(kSkirt, tile.skirt_m[e]);
+        draw_indices(mesh, GL_LINES_ADJACENCY, mesh.ranges.skirts[e], mesh.ranges.skirts[e + 1]);
+      }
+      return;
+  }
+}
+
 void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, Gaps gaps) {
+  const bool any_gaps = std::any_of(tiles.begin(), tiles.end(), has_gaps);
+  if (any_gaps && !gap_programs_) {
+    gap_programs_ =
+        make_programs("gap ", with_gaps(kTileFragmentShader).c_str(), with_gaps(kSkirtFragmentShader).c_str());
+  }
   glBindVertexArray(array_.name());
-  use(surface_program_, view, lens);
-  for (const TileDraw& tile : tiles) {
-    use(tile, view);
-    draw_indices(*tile.mesh, GL_TRIANGLES, 0, tile.mesh->ranges.surface);
-  }
-  if (gaps == Gaps::kLeave) return;
-  use(ribbon_program_, view, lens);
-  use(ribbon_program_, view, lens);
-  for (const TileDraw& tile : tiles) {
-    use(tile, view);
-    draw_indices(*tile.mesh, GL_LINES, tile.mesh->ranges.skirts[4], tile.mesh->ranges.border_end);
-  }
-  use(skirt_program_, view, lens);
-  for (const TileDraw& tile : tiles) {
-    bool used = false;
-    for (std::size_t e = 0; e < tile.skirt_m.size(); ++e) {
-      if (tile.skirt_m[e] <= 0.0F) continue;
-      if (!used) use(tile, view);
-      used = true;
-      glUniform1f(kSkirt, tile.skirt_m[e]);
-      draw_indices(*tile.mesh, GL_LINES_ADJACENCY, tile.mesh->ranges.skirts[e],
-                   tile.mesh->ranges.skirts[e + 1]);
+  const auto draw_with = [&](const Programs& programs, Part part, bool of_gaps) {
+    use(part == Part::kSurface  ? programs.surface
+        : part == Part::kRibbon ? programs.ribbon
+                                : programs.skirt,
+        part, view, lens);
+    for (const TileDraw& tile : tiles) {
+      if (has_gaps(tile) == of_gaps) draw_part(tile, part, view);
     }
+  };
+  for (const Part part : {Part::kSurface, Part::kRibbon, Part::kSkirt}) {
+    if (part != Part::kSurface && gaps == Gaps::kLeave) return;
+    draw_with(programs_, part, false);
+    if (any_gaps) draw_with(*gap_programs_, part, true);
   }
 }
 

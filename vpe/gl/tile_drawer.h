@@ -4,6 +4,7 @@
 
 #include <array>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "vpe/gl/lens.h"
@@ -13,8 +14,9 @@ namespace vpe::gl {
 
 struct TileDraw {
   const GpuMesh* mesh = nullptr;
-  const GpuTexture* texture = nullptr;  // null: the flat colour
-  mars::Face face{};
+  const GpuTexture* texture = nullptr;
+  bool flat = false;  // the flat colour; of the texture only its gaps are shown. Null texture: flat, no gaps
+  lod::TileKey key;
   std::array<float, 4> skirt_m{};  // by lod::Edge; 0 = none
 };
 
@@ -27,6 +29,9 @@ class TileDrawer {
  public:
   enum class Gaps { kLeave, kClose };
 
+  // Whether the tile is drawn by the programs that show gaps.
+  static bool has_gaps(const TileDraw& tile) { return tile.texture != nullptr && tile.texture->gaps; }
+
   TileDrawer();
   // The target's framebuffer is bound, depth test and polygon mode are set.
   void draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, Gaps gaps);
@@ -38,13 +43,21 @@ class TileDrawer {
  private:
   static constexpr int kRibbonSteps = 3;
 
-  void use(const Program& program, const core::View& view, const Lens& lens);
+  struct Programs {
+    Program surface;
+    Program ribbon;
+    Program skirt;
+  };
+  enum class Part { kSurface, kRibbon, kSkirt };
+
+  static Programs make_programs(const char* label, const char* fragment, const char* skirt_fragment);
+  void use(const Program& program, Part part, const core::View& view, const Lens& lens);
   void use(const TileDraw& tile, const core::View& view);
+  void draw_part(const TileDraw& tile, Part part, const core::View& view);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
 
-  Program surface_program_;
-  Program ribbon_program_;
-  Program skirt_program_;
+  Programs programs_;
+  std::optional<Programs> gap_programs_;  // made for the first tile that has gaps
   VertexArray array_;
   double step_px_ = 1.0 / 256;
 };

@@ -33,6 +33,7 @@ TEST_F(Render, PictureRangeAndCertificate) {
   EXPECT_EQ(c["tolerance_px"], 1);
   EXPECT_EQ(c["tiles_missing"], 0);
   EXPECT_EQ(c["illustration"], false);
+  EXPECT_EQ(c["share_without_data"], 0);
   EXPECT_TRUE(c["source_accuracy_m"].is_null());
   EXPECT_GT(report["stats"]["triangles"], 0);
   EXPECT_EQ(report["stats"]["tiles_drawn"], c["tiles_drawn"]);
