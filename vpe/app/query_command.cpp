@@ -95,9 +95,10 @@ void print_csv(const Answer& a) {
 }
 
 void query(const std::vector<std::string>& arguments, const Common& common) {
-  auto [planet_name, places] = split_places(arguments);
+  PlanetAndPlaces asked = split_places(arguments);
+  std::vector<mars::LonLat>& places = asked.places;
   if (places.empty()) places = read_places(std::cin);
-  const auto planet = open_planet(planet_name, common);
+  const auto planet = open_planet(asked.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
