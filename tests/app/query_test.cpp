@@ -83,17 +83,18 @@ TEST_F(Query, CsvAndJsonSayTheSame) {
   const std::vector<std::string> lines = lines_of(csv.out);
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0],
-            "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m");
+            "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum");
   for (std::size_t n = 0; n < 2; ++n) {
     std::istringstream row(lines[n + 1]);
     std::vector<std::string> cells;
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), 9U);
+    ASSERT_EQ(cells.size(), 10U);
     EXPECT_EQ(std::stod(cells[0]), answers[n]["lon_deg"]);
     EXPECT_EQ(std::stod(cells[1]), answers[n]["lat_deg"]);
     EXPECT_NEAR(std::stod(cells[2]), answers[n]["elevation_m"].get<double>(), 0.0006);
     EXPECT_NEAR(std::stod(cells[3]), answers[n]["slope_deg"].get<double>(), 0.0006);
     EXPECT_NEAR(std::stod(cells[4]), answers[n]["aspect_deg"].get<double>(), 0.006);
+    EXPECT_EQ(cells[9], answers[n]["datum"]);
   }
 }
 

@@ -81,17 +81,17 @@ std::string csv_field(const std::string& text) {
   return out + "\"";
 }
 
-void print_csv(const Answer& a) {
+void print_csv(const Answer& a, const std::string& datum) {
   const auto number = [&](double x, int digits) {
     if (a.missing) return std::string();
     char text[48];
     std::snprintf(text, sizeof text, "%.*f", digits, x);
     return std::string(text);
   };
-  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f\n", core::format_number(a.place.lon_deg).c_str(),
+  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s\n", core::format_number(a.place.lon_deg).c_str(),
               core::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
               number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
-              csv_field(a.source).c_str(), a.error_m);
+              csv_field(a.source).c_str(), a.error_m, datum.c_str());
 }
 
 void query(const std::vector<std::string>& arguments, const Common& common) {
@@ -127,8 +127,9 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
     print_json(list);
     return;
   }
-  std::printf("lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m\n");
-  for (const Answer& a : answers) print_csv(a);
+  std::printf("lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum\n");
+  const std::string datum = csv_field(to_string(meta.datum));
+  for (const Answer& a : answers) print_csv(a, datum);
 }
 
 }  // namespace
