@@ -34,17 +34,20 @@ Pointer try_open(const std::string& name) {
   return dataset;
 }
 
-// Within a GdalScope, as first_bytes().
 bool exists(const std::string& path) {
-  return attempt_with_retries(path, [&] {
-    VSIStatBufL stat{};
-    return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
-  });
+  VSIStatBufL stat{};
+  return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
+}
+
+// A server that fails for a moment must not hide a label. Within a GdalScope, as first_bytes().
+bool is_there(const std::string& path) {
+  if (exists(path)) return true;
+  return is_remote(path) && attempt_with_retries(path, [&] { return try_open(path) != nullptr; });
 }
 
 std::string first_bytes(const std::string& path, std::size_t size) {
   std::string text;
-  // A label that a server failed to send must not be taken for none.
+  // The file is there: a label that a server failed to send must not be taken for none.
   attempt_with_retries(path, [&] {
     VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
     if (file == nullptr) return false;
@@ -107,7 +110,7 @@ std::optional<RasterFile> by_label(const std::string& path) {
 
 RasterFile find_raster(const std::string& path) {
   const GdalScope scope;
-  if (exists(path)) {
+  if (is_there(path)) {
     if (auto file = by_label(path)) return *file;
     if (!CPLString(CPLGetExtension(path.c_str())).tolower().compare("img") && !try_open(path)) {
       for (const char* extension : {"lbl", "LBL"}) {
