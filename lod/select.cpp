@@ -30,7 +30,8 @@ void check(const SelectOptions& options, const SelectView& view) {
 
 double projected(double error_m, double focal_px, double distance_m, double stretch) {
   if (error_m == 0.0) return 0.0;
-  return distance_m > 0.0 ? stretch * (error_m * focal_px / distance_m) : std::numeric_limits<double>::infinity();
+  return distance_m > 0.0 ? stretch * (error_m * focal_px / distance_m)
+                          : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -64,6 +65,19 @@ class Selector {
     }
     for (const Candidate& rest : heap_) draw(rest);
     finish();
+  }
+
+  SelectedTile measured(TileTree::Index index, int variant) const {
+    Candidate c{};
+    c.index = index;
+    c.variant = variant;
+    c.error_m = error_m(tree_[index], variant);
+    const cull::Shell shell = tree_.shell(index, options_.exaggeration, c.error_m);
+    c.chord2 = cull::nearest_chord2(shell.rect, eye_.direction);
+    c.factor = 1.0;
+    c.stretch = sky_stretch(shell, cull::make_volume(shell));
+    measure(c, shell);
+    return tile_of(c);
   }
 
  private:
@@ -109,6 +123,13 @@ class Selector {
     c.urgency = c.error_px * c.factor;
   }
 
+  double sky_stretch(const cull::Shell& shell, const cull::TileVolume& volume) const {
+    const bool stands_out =
+        view_.plane.flat && cull::against_sky(eye_, horizon_, cull::farthest_chord2(shell.rect, eye_.direction),
+                                              shell.max_radius_m);
+    return stands_out ? stretch(view_.plane, volume) : 1.0;
+  }
+
   // mask and stretch: what the parent is known to keep to, and so its children.
   void visit(TileTree::Index index, cull::PlaneMask mask, double most_stretch, Family& family) const {
     const TileInfo& tile = tree_[index];
@@ -132,11 +153,7 @@ class Selector {
       mask = *crossed;
     }
     c.mask = mask;
-    c.stretch = 1.0;
-    if (view_.plane.flat && cull::against_sky(eye_, horizon_, cull::farthest_chord2(shell.rect, eye_.direction),
-                                              shell.max_radius_m)) {
-      c.stretch = std::min(most_stretch, stretch(view_.plane, volume));
-    }
+    c.stretch = std::min(most_stretch, sky_stretch(shell, volume));
     c.factor = 1.0;
     measure(c, shell);
     if (options_.level_shift.levels != nullptr) {
@@ -190,21 +207,15 @@ class Selector {
     return true;
   }
 
-  void draw(const Candidate& c) {
-    out_.tiles.push_back({tree_[c.index].key, c.index, c.variant, c.error_m, c.error_px, c.min_distance_m,
-                          c.stretch});
+  SelectedTile tile_of(const Candidate& c) const {
+    return {tree_[c.index].key, c.index, c.variant, c.error_m, c.error_px, c.min_distance_m, c.stretch};
   }
+  void draw(const Candidate& c) { out_.tiles.push_back(tile_of(c)); }
 
   void finish() {
     std::sort(out_.tiles.begin(), out_.tiles.end(),
               [](const auto& a, const auto& b) { return z_position(a.key) < z_position(b.key); });
-    for (const SelectedTile& tile : out_.tiles) {
-      out_.max_error_m = std::max(out_.max_error_m, tile.error_m);
-      out_.max_error_px = std::max(out_.max_error_px, tile.error_px);
-      const auto level = static_cast<std::size_t>(tile.key.level);
-      if (out_.tiles_by_level.size() <= level) out_.tiles_by_level.resize(level + 1);
-      ++out_.tiles_by_level[level];
-    }
+    tally(tree_, out_);
   }
 
   const SelectOptions& options_;
@@ -220,6 +231,27 @@ void select(const SelectOptions& options, const TileTree& tree, const SelectView
             Selection& selection) {
   check(options, view);
   Selector(options, tree, view, scratch, selection).run();
+}
+
+SelectedTile measure_tile(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                          TileTree::Index index, int variant) {
+  SelectScratch scratch;
+  Selection unused;
+  return Selector(options, tree, view, scratch, unused).measured(index, variant);
+}
+
+void tally(const TileTree& tree, Selection& selection) {
+  selection.triangles = 0;
+  selection.max_error_m = selection.max_error_px = 0.0;
+  selection.tiles_by_level.clear();
+  for (const SelectedTile& tile : selection.tiles) {
+    selection.triangles += tree[tile.index].variants[static_cast<std::size_t>(tile.variant)].triangles;
+    selection.max_error_m = std::max(selection.max_error_m, tile.error_m);
+    selection.max_error_px = std::max(selection.max_error_px, tile.error_px);
+    const auto level = static_cast<std::size_t>(tile.key.level);
+    if (selection.tiles_by_level.size() <= level) selection.tiles_by_level.resize(level + 1);
+    ++selection.tiles_by_level[level];
+  }
 }
 
 }  // namespace lod

@@ -98,6 +98,13 @@ class SelectScratch {
 void select(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,
             Selection& selection);
 
+// A tile drawn with one of its meshes: errors and distance as select() finds them, whether it can be seen or not.
+SelectedTile measure_tile(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                          TileTree::Index index, int variant);
+
+// Sets triangles, max_error_m, max_error_px and tiles_by_level from the tiles.
+void tally(const TileTree& tree, Selection& selection);
+
 // For every tile of a selection and each of its edges (by Edge) how far a skirt must reach down, radially from
 // the vertices of the border, to leave no gap to what is drawn across: 0 where both meet exactly or nothing is
 // drawn there. Both meet exactly when they are of one level and both have children, or are both full grids, or

@@ -35,6 +35,10 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
     field("bytes_resident", stats.bytes_resident);
   }
   field("tiles_by_level", stats.tiles_by_level);
+  field("pages_wanted", stats.pages_wanted);
+  field("pages_loading", stats.pages_loading);
+  field("pages_uploaded", stats.pages_uploaded);
+  field("pages_evicted", stats.pages_evicted);
   field("select_ms", stats.select_ms);
   field("load_ms", stats.load_ms);
   field("draw_ms", stats.draw_ms);

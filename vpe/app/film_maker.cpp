@@ -12,6 +12,7 @@ namespace vpe::app {
 namespace {
 
 constexpr std::size_t kWaitingFrames = 3;
+constexpr const char* kIncomplete = "-incomplete";
 
 bool all_there(std::span<const FilmFrame> frames) {
   return std::all_of(frames.begin(), frames.end(), [](const FilmFrame& f) { return f.is_there(); });
@@ -20,8 +21,13 @@ bool all_there(std::span<const FilmFrame> frames) {
 }  // namespace
 
 FilmMaker::FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
-                     MakeRenderer make_renderer)
-    : plan_(plan), target_(target), frames_(frames), first_(first), make_renderer_(std::move(make_renderer)) {}
+                     const PictureOptions& options, MakeRenderer make_renderer)
+    : plan_(plan),
+      target_(target),
+      frames_(frames),
+      first_(first),
+      options_(options),
+      make_renderer_(std::move(make_renderer)) {}
 
 void FilmMaker::run(FilmReports& reports, ProgressLine& line) {
   FrameSink sink(kWaitingFrames);
@@ -69,8 +75,15 @@ bool FilmMaker::draw(std::size_t n) {
   const PlannedFrame planned = plan_.at(frame.index);
   log(frame, planned);
   core::DrawResult result;
+  core::DrawRequest request = planned.request;
+  request.paging.timeout_s = options_.wait_s;
+  if (n + 1 < frames_.size() && !frames_[n + 1].is_there()) {
+    request.paging.upcoming = {plan_.at(frames_[n + 1].index).request.view};
+  }
   try {
-    result = renderer_->draw(planned.request);
+    result = renderer_->draw(request);
+    reports_->failures.insert(reports_->failures.end(), result.failures.begin(), result.failures.end());
+    require_complete(options_, result);
   } catch (const std::bad_alloc&) {
     throw;  // the next frame would not fit either
   } catch (const std::exception& e) {
@@ -80,6 +93,8 @@ bool FilmMaker::draw(std::size_t n) {
   }
   if (reports_->stats) reports_->stats->row(frame.index, frame.time_s, result.stats, result.certificate);
   frame.figures = {result.stats, result.certificate};
+  // Made again by the next run.
+  if (!result.missing.empty()) frame.fingerprint += kIncomplete;
   const auto picture = std::make_shared<const core::Frame>(std::move(result.frame));
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
   sink_->push([this, group, &frame, picture] { target_.add(group, frame, *picture); });

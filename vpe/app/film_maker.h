@@ -5,11 +5,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "scripts/log.h"
 #include "scripts/stats.h"
 #include "vpe/app/film_plan.h"
 #include "vpe/app/film_target.h"
+#include "vpe/app/picture_options.h"
 #include "vpe/app/progress.h"
 
 namespace vpe::app {
@@ -17,6 +20,7 @@ namespace vpe::app {
 struct FilmReports {
   std::optional<scripts::StatsWriter> stats;  // a row for every frame that is kept or drawn
   std::optional<scripts::FlightLog> log;      // a pose for every frame
+  std::vector<std::string> failures;          // of tiles that cannot be read, each once
 };
 
 class FilmMaker {
@@ -25,9 +29,10 @@ class FilmMaker {
 
   // The renderer is made when the first frame has to be drawn. `first` is the number of frames[0] in the film.
   FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
-            MakeRenderer make_renderer);
+            const PictureOptions& options, MakeRenderer make_renderer);
 
-  // Draws what is missing, in order. A frame that the renderer cannot draw is marked as failed, and its group
+  // Draws what is missing, in order. A frame that the renderer cannot draw or not completely (unless
+  // the options allow it) is marked as failed, and its group
   // is given up; the rest is made. Throws Interrupted, and std::runtime_error when frames cannot be written or
   // nothing can be drawn: then frames that are there are marked so. Once only; main thread.
   void run(FilmReports& reports, ProgressLine& line);
@@ -43,6 +48,7 @@ class FilmMaker {
   FilmTarget& target_;
   std::span<FilmFrame> frames_;
   std::int64_t first_;
+  const PictureOptions& options_;
   MakeRenderer make_renderer_;
   std::unique_ptr<core::Renderer> renderer_;
   FilmReports* reports_ = nullptr;

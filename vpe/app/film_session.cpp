@@ -32,11 +32,11 @@ void FilmSession::look(const FilmPlan& plan, int threads) {
   target_->keep(frames_, {first_, all}, pool);
 }
 
-void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const FilmMaker::MakeRenderer& make_renderer,
-                       bool quiet) {
+void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const PictureOptions& options,
+                       const FilmMaker::MakeRenderer& make_renderer, bool quiet) {
   try {
     ProgressLine line(quiet);
-    FilmMaker(plan, *target_, frames_, first_, make_renderer).run(reports, line);
+    FilmMaker(plan, *target_, frames_, first_, options, make_renderer).run(reports, line);
   } catch (const Interrupted& e) {
     throw Interrupted(e.signal(), std::string(e.what()) + ": " + what_is_there(kind(), frames_));
   } catch (const std::bad_alloc&) {

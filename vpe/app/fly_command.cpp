@@ -130,7 +130,8 @@ void fly(FlyArguments& arguments, const Common& common) {
     start = std::chrono::steady_clock::now();  // the rate is that of drawing and encoding
     return made;
   };
-  session.make(plan, reports, renderer, common.quiet);
+  session.make(plan, reports, arguments.picture, renderer, common.quiet);
+  if (!common.quiet) warn_of(reports.failures);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
   session.finish({version(), meta.identity, meta.illustration, fs::path(arguments.flight).filename().string(),

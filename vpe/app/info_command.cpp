@@ -45,8 +45,8 @@ void info(const std::string& argument, const Common& common) {
                                number(m.resampling.max_m, "m") + " over " + std::to_string(m.resampling.posts) +
                                " source posts");
   for (const mars::SourceInfo& s : m.sources) {
-    line("elevation from", s.name + " (" + number(s.resolution_m, "m") + " posts, datum " + to_string(s.datum) + ")" +
-                               (s.treatment.empty() ? "" : "; " + s.treatment));
+    line("elevation from", s.name + " (" + number(s.resolution_m, "m") + " posts, datum " + to_string(s.datum) +
+                               ")" + (s.treatment.empty() ? "" : "; " + s.treatment));
   }
   for (const mars::SourceInfo& s : m.image_sources)
     line("image from", s.name + " (" + number(s.resolution_m, "m") + " pixels)");

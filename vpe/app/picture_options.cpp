@@ -1,5 +1,8 @@
 #include "vpe/app/picture_options.h"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "mars/sun.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/polygon_renderer.h"
@@ -16,6 +19,11 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")
       ->check(number_within(0.0, 1000.0));
+  command.add_option("--wait", options.wait_s, "Longest time to wait for the tiles of a picture, seconds")
+      ->check(number_within(0.0, 1e6))
+      ->capture_default_str();
+  command.add_flag("--allow-incomplete", options.allow_incomplete,
+                   "Draw coarser ground where tiles cannot be read or do not come in time, instead of failing");
 }
 
 core::Settings make_settings(const PictureOptions& options) {
@@ -38,6 +46,21 @@ std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, con
   renderer.memory_bytes = static_cast<std::size_t>(common.memory_mb) << 20;
   renderer.threads = common.threads;
   return gl::make_polygon_renderer(gl::Context::create(), std::move(planet), renderer);
+}
+
+void require_complete(const PictureOptions& options, const core::DrawResult& result) {
+  constexpr std::size_t kNamed = 3;
+  if (options.allow_incomplete || result.missing.empty()) return;
+  const std::size_t count = result.missing.size();
+  std::string text =
+      std::to_string(count) + (count == 1 ? " tile is" : " tiles are") + " missing in the picture:";
+  for (std::size_t n = 0; n < std::min(count, kNamed); ++n) {
+    text += "\n     " + result.missing[n].tile + ": " + result.missing[n].why;
+  }
+  if (count > kNamed) text += "\n     and " + std::to_string(count - kNamed) + " more";
+  throw std::runtime_error(text + "\n     --wait SECONDS waits longer (now " +
+                           core::format_number(options.wait_s) +
+                           "); --allow-incomplete draws coarser ground there");
 }
 
 glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose) {

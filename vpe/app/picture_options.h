@@ -15,6 +15,8 @@ struct PictureOptions {
   std::vector<std::string> set;  // KEY=VALUE
   std::string backend = "polygon";
   double tolerance_px = -1;  // < 0: as set
+  double wait_s = 300;       // for the tiles of a picture
+  bool allow_incomplete = false;
 };
 
 void add_picture_options(CLI::App& command, PictureOptions& options);
@@ -25,6 +27,9 @@ core::Settings make_settings(const PictureOptions& options);
 
 std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet);
+
+// Throws std::runtime_error that names what is missing in a picture, unless that is allowed.
+void require_complete(const PictureOptions& options, const core::DrawResult& result);
 
 // Where the sun stands when its azimuth and elevation are given at a place on the ground.
 glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose);

@@ -17,7 +17,8 @@ struct PlanetAndPlaces {
 // [PLANET] LON,LAT...: the first argument is a planet unless it is a place. Throws UsageError.
 PlanetAndPlaces split_places(const std::vector<std::string>& arguments);
 
-// A place a line; a header, empty lines and lines that begin with # are skipped. Throws UsageError with the line.
+// A place a line; a header, empty lines and lines that begin with # are skipped. Throws UsageError with the
+// line.
 std::vector<mars::LonLat> read_places(std::istream& in);
 
 }  // namespace vpe::app

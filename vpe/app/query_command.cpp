@@ -127,7 +127,8 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
     print_json(list);
     return;
   }
-  std::printf("lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum\n");
+  std::printf(
+      "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum\n");
   const std::string datum = csv_field(to_string(meta.datum));
   for (const Answer& a : answers) print_csv(a, datum);
 }

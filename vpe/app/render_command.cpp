@@ -75,7 +75,10 @@ void render(RenderArguments& arguments, const Common& common) {
   request.want_range = !arguments.range.empty();
   require_valid(request.view);
   const auto renderer = make_renderer(arguments.picture, common, planet);
+  request.paging.timeout_s = arguments.picture.wait_s;
   const core::DrawResult result = renderer->draw(request);
+  require_complete(arguments.picture, result);
+  if (!common.quiet) warn_of(result.failures);
   core::write_image(arguments.output, result.frame.colour, result.frame.width, result.frame.height);
   if (request.want_range) {
     core::write_tiff(arguments.range, result.frame.range_m, result.frame.width, result.frame.height);

@@ -11,8 +11,8 @@ namespace {
 json sources_json(const std::vector<mars::SourceInfo>& sources) {
   json list = json::array();
   for (const mars::SourceInfo& s : sources) {
-    json entry{{"name", s.name},           {"size_bytes", s.size_bytes}, {"resolution_m", s.resolution_m},
-               {"quantum_m", s.quantum_m}, {"datum", to_string(s.datum)},           {"illustration", s.illustration}};
+    json entry{{"name", s.name},           {"size_bytes", s.size_bytes},  {"resolution_m", s.resolution_m},
+               {"quantum_m", s.quantum_m}, {"datum", to_string(s.datum)}, {"illustration", s.illustration}};
     entry["treatment"] = s.treatment.empty() ? json() : json(s.treatment);
     entry["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
     list.push_back(std::move(entry));
@@ -77,6 +77,9 @@ json stats_json(const core::FrameStats& s) {
           {"tiles_culled_horizon", s.tiles_culled_horizon},
           {"tiles_drawn", s.tiles_drawn},
           {"tiles_missing", s.tiles_missing},
+          {"tiles_substituted", s.tiles_substituted},
+          {"pages_uploaded", s.pages_uploaded},
+          {"pages_evicted", s.pages_evicted},
           {"triangles", s.triangles},
           {"skirt_triangles", s.skirt_triangles},
           {"bytes_resident", s.bytes_resident},
@@ -85,6 +88,10 @@ json stats_json(const core::FrameStats& s) {
           {"load_ms", s.load_ms},
           {"draw_ms", s.draw_ms},
           {"read_ms", s.read_ms}};
+}
+
+void warn_of(std::span<const std::string> failures) {
+  for (const std::string& failure : failures) std::fprintf(stderr, "vpe: warning: %s\n", failure.c_str());
 }
 
 void print_json(const json& value) {

@@ -1,6 +1,7 @@
 // The polygon backend: selected tiles as textured triangle meshes.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "paging/planet_file.h"
@@ -12,10 +13,13 @@ namespace vpe::gl {
 struct RendererOptions {
   std::size_t memory_bytes = std::size_t{1} << 30;  // CPU and GPU payloads together
   int threads = 0;                                  // for making tiles ready; 0 = all cores
+  // Called by a loader before each page that it makes, on its thread; may wait, and may throw what then is the page's
+  // failure. For tests of slow and broken storage.
+  std::function<void(const lod::TileKey& tile)> before_load;
 };
 
-// Draws with complete data: tiles that are not resident are loaded before the frame is drawn. Pictures do not
-// depend on what was drawn before. Positions are relative to each tile's centre, the eye is subtracted in
+// Complete pictures (core::DrawResult::missing is empty) do not depend on what was drawn before, on threads or on the
+// order in which tiles came. Others are in full cover: coarser tiles stand in for missing ones. Positions are relative to each tile's centre, the eye is subtracted in
 // double, depth is reversed 32-bit float. Range of a pixel is the distance to the drawn triangle at the pixel's
 // centre; its relative error is at most kRangeError * (1 + range / nearest range in the picture), from the
 // interpolation of depth over large triangles. Sky pixels are +infinity. Range takes passes of its own, with

@@ -1,7 +1,9 @@
 // GPU objects of tiles: what is resident, what a frame still needs, what may leave.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -33,48 +35,74 @@ struct GpuTexture {
 };
 GpuTexture upload(const ShadedTile& tile);
 
-struct MeshKey {
-  lod::TileKey tile;
+// Which of a tile's meshes and textures.
+struct MeshDetail {
   int variant = 0;
   int origin = kTileCentre;  // what positions are relative to (make_geometry)
-  bool operator==(const MeshKey&) const = default;
+  bool operator==(const MeshDetail&) const = default;
 };
-struct TextureKey {
-  lod::TileKey tile;
+struct TextureDetail {
   int intervals = 0;
-  bool operator==(const TextureKey&) const = default;
+  std::shared_ptr<const ShadeParams> look;
+  bool operator==(const TextureDetail&) const = default;
 };
 
-// Least recently drawn objects leave when the budget is passed; what the current frame uses never does. Used on
-// the context's thread only.
-template <typename Key, typename Value>
+// Least recently used objects leave when the budget is passed; what the current frame uses never does. Pointers
+// stay valid until the next trim() or clear(). Used on the context's thread only.
+template <typename Detail, typename Value>
 class Resident {
  public:
   // The value if resident; marks it as used by the current frame.
-  Value* find(const Key& key, std::uint64_t frame) {
-    const auto at = items_.find(key);
+  Value* find(const lod::TileKey& tile, const Detail& detail, std::uint64_t frame) {
+    return best(tile, frame, [&](const Detail& d) { return d == detail ? 0 : -1; });
+  }
+  // Of a tile's values the one of the largest score >= 0; marks it as used.
+  template <typename Score>
+  Value* best(const lod::TileKey& tile, std::uint64_t frame, const Score& score) {
+    const auto at = items_.find(tile);
     if (at == items_.end()) return nullptr;
-    at->second.frame = frame;
-    return &at->second.value;
-  }
-  void insert(const Key& key, Value value, std::uint64_t frame) {
-    bytes_ += value.bytes;
-    items_.emplace(key, Item{std::move(value), frame});
-  }
-  // Frees what was drawn longest ago until at most `limit` bytes are held.
-  void trim(std::size_t limit, std::uint64_t current_frame) {
-    while (bytes_ > limit) {
-      auto oldest = items_.end();
-      for (auto at = items_.begin(); at != items_.end(); ++at) {
-        if (at->second.frame != current_frame &&
-            (oldest == items_.end() || at->second.frame < oldest->second.frame)) {
-          oldest = at;
-        }
-      }
-      if (oldest == items_.end()) return;
-      bytes_ -= oldest->second.value.bytes;
-      items_.erase(oldest);
+    Item* found = nullptr;
+    int highest = -1;
+    for (Item& item : at->second) {
+      const int s = score(item.detail);
+      if (s > highest) found = &item, highest = s;
     }
+    if (found == nullptr) return nullptr;
+    found->frame = std::max(found->frame, frame);
+    return found->value.get();
+  }
+  void insert(const lod::TileKey& tile, const Detail& detail, Value value, std::uint64_t frame) {
+    if (find(tile, detail, frame) != nullptr) return;
+    bytes_ += value.bytes;
+    items_[tile].push_back({detail, std::make_unique<Value>(std::move(value)), frame});
+  }
+  // Frees what was used longest ago until at most `limit` bytes are held; returns how many objects left.
+  int trim(std::size_t limit, std::uint64_t current_frame) {
+    if (bytes_ <= limit) return 0;
+    struct Old {
+      std::uint64_t frame;
+      lod::TileKey tile;
+      std::size_t bytes;
+    };
+    std::vector<Old> old;
+    for (const auto& [tile, items] : items_) {
+      for (const Item& item : items) {
+        if (item.frame != current_frame) old.push_back({item.frame, tile, item.value->bytes});
+      }
+    }
+    std::sort(old.begin(), old.end(), [](const Old& a, const Old& b) { return a.frame < b.frame; });
+    int gone = 0;
+    for (const Old& o : old) {
+      if (bytes_ <= limit) break;
+      std::vector<Item>& items = items_[o.tile];
+      const auto item =
+          std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.frame == o.frame; });
+      bytes_ -= item->value->bytes;
+      items.erase(item);
+      if (items.empty()) items_.erase(o.tile);
+      ++gone;
+    }
+    return gone;
   }
   void clear() {
     items_.clear();
@@ -84,19 +112,11 @@ class Resident {
 
  private:
   struct Item {
-    Value value;
+    Detail detail;
+    std::unique_ptr<Value> value;
     std::uint64_t frame = 0;
   };
-  struct Hash {
-    std::size_t operator()(const MeshKey& k) const {
-      return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.variant) +
-             1009 * static_cast<std::size_t>(k.origin + 1);
-    }
-    std::size_t operator()(const TextureKey& k) const {
-      return lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.intervals);
-    }
-  };
-  std::unordered_map<Key, Item, Hash> items_;
+  std::unordered_map<lod::TileKey, std::vector<Item>, lod::TileKeyHash> items_;
   std::size_t bytes_ = 0;
 };
 

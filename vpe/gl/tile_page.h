@@ -1,0 +1,59 @@
+// What a tile needs to be drawn, made on the CPU by any thread. No OpenGL.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "paging/planet_file.h"
+#include "vpe/gl/shade.h"
+#include "vpe/gl/tile_geometry.h"
+
+namespace vpe::gl {
+
+enum class PageKind : std::uint8_t {
+  kMesh,     // of a variant, relative to an origin, at an exaggeration
+  kTexture,  // of some intervals, as a look paints it
+  kGround,   // posts of a finest tile
+};
+
+struct PageKey {
+  PageKind kind = PageKind::kMesh;
+  lod::TileKey tile;
+  int detail = 0;  // variant, or intervals
+  int origin = kTileCentre;
+  double exaggeration = 1;                  // of meshes
+  std::shared_ptr<const ShadeParams> look;  // of textures; equal looks are one object
+  bool operator==(const PageKey&) const = default;
+};
+struct PageKeyHash {
+  std::size_t operator()(const PageKey& k) const {
+    return (lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.detail)) * 4 +
+           static_cast<std::size_t>(k.kind) + 1009 * static_cast<std::size_t>(k.origin + 1);
+  }
+};
+
+// The member of the key's kind is there.
+struct Page {
+  TileGeometry geometry;
+  ShadedTile shaded;
+  std::shared_ptr<const paging::TileHeights> ground;
+};
+
+// Thread rule: any thread may load.
+class PageLoader {
+ public:
+  PageLoader(std::shared_ptr<const paging::PlanetFile> planet, std::shared_ptr<const Shader> shader)
+      : planet_(std::move(planet)), shader_(std::move(shader)) {}
+
+  // The page and its bytes. Throws paging::PlanetError that names the tile.
+  std::pair<Page, std::size_t> load(const PageKey& key) const;
+
+ private:
+  TileGeometry geometry(const PageKey& key) const;
+
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  std::shared_ptr<const Shader> shader_;
+};
+
+}  // namespace vpe::gl

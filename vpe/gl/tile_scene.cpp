@@ -1,0 +1,370 @@
+#include "vpe/gl/tile_scene.h"
+
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "vpe/core/parallel.h"
+
+namespace vpe::gl {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Share of the memory budget for each holder; the rest is for work in progress.
+constexpr double kShaderShare = 0.14;
+constexpr double kMeshShare = 0.17;
+constexpr double kTextureShare = 0.34;
+constexpr double kLoadedShare = 0.05;
+
+// What OpenGL without a GPU keeps of a frame of some 400 000 triangles, and the pictures on their way out.
+constexpr std::size_t kDriverBytes = std::size_t{160} << 20;
+// So a frame has at most as many triangles as --memory has this many bytes.
+constexpr std::size_t kBytesPerTriangle = 600;
+
+// Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
+constexpr double kFootError = 1e-6;
+
+// Nearer than this the near plane depends on the ground below the eye.
+constexpr double kGroundMatters_m = 1000.0;
+
+// Pages for later views are loaded while what this view needs takes up less than this part of the budget.
+constexpr double kRoomForLater = 0.6;
+
+constexpr std::size_t kTakeAtOnce = std::size_t{1} << 20;
+
+std::size_t for_tiles(std::size_t memory_bytes, std::size_t index_bytes) {
+  const std::size_t fixed = kDriverBytes + index_bytes;
+  return std::max(memory_bytes / 8, memory_bytes - std::min(memory_bytes, fixed));
+}
+
+}  // namespace
+
+TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options)
+    : planet_(std::move(planet)),
+      most_triangles_(static_cast<std::int64_t>(options.memory_bytes / kBytesPerTriangle)),
+      memory_(for_tiles(options.memory_bytes, planet_->tree().bytes())),
+      shader_(std::make_shared<Shader>(planet_, share(kShaderShare))),
+      loader_(planet_, shader_),
+      pager_([this](const PageKey& key) { return loader_.load(key); },
+             threads > 0 ? std::min(threads, core::kMaxThreads) : core::default_threads(),
+             share(kLoadedShare)) {}
+
+void TileScene::set_look(const core::DrawRequest& request) {
+  const ShadeParams look = shade_params(request, planet_->meta().finest_image_level >= 0);
+  mode_ = request.settings.mode;
+  if (look_ && *look_ == look) return;
+  // Meshes of two exaggerations do not meet.
+  if (!look_ || look_->exaggeration != look.exaggeration) meshes_.clear();
+  look_ = std::make_shared<const ShadeParams>(look);
+}
+
+lod::SelectOptions TileScene::select_options(const core::SettingsValues& settings) const {
+  lod::SelectOptions options;
+  options.tolerance_px = settings.lod_tolerance_px;
+  options.exaggeration = settings.exaggeration;
+  options.max_triangles = settings.lod_triangles > 0
+                              ? std::min<std::int64_t>(settings.lod_triangles, most_triangles_)
+                              : most_triangles_;
+  return options;
+}
+
+std::vector<TileNeed> TileScene::needs_of(const lod::Selection& selection, const core::View& view) const {
+  return tile_needs(selection.tiles, view, *planet_, *shader_, {mode_, look_->surfacing, share(kTextureShare)});
+}
+
+PageKey TileScene::mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const {
+  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, look_->exaggeration, nullptr};
+}
+PageKey TileScene::texture_page(const lod::TileKey& tile, int intervals) const {
+  return {PageKind::kTexture, tile, intervals, kTileCentre, 1, look_};
+}
+PageKey TileScene::ground_page(const glm::dvec3& eye_m) const {
+  const lod::TileKey finest = lod::tile_at(mars::chart_point(eye_m), lod::kMaxLevel);
+  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, 1, nullptr};
+}
+
+bool TileScene::is_resident(const PageKey& page, std::uint64_t frame) {
+  switch (page.kind) {
+    case PageKind::kMesh: return meshes_.find(page.tile, {page.detail, page.origin}, frame) != nullptr;
+    case PageKind::kTexture: return textures_.find(page.tile, {page.detail, page.look}, frame) != nullptr;
+    case PageKind::kGround: break;
+  }
+  return ground_ && ground_tile_ == page.tile;
+}
+
+// With any origin and any texture; better than a coarser tile in both cases.
+bool TileScene::can_be_drawn(const lod::TileInfo& tile, int variant) {
+  const bool mesh = meshes_.best(tile.key, frame_,
+                                 [&](const MeshDetail& m) { return m.variant == variant ? 0 : -1; }) != nullptr;
+  if (!mesh) return false;
+  return !is_textured(tile.key, *planet_, mode_) ||
+         textures_.best(tile.key, frame_, [](const TextureDetail&) { return 0; }) != nullptr;
+}
+
+bool TileScene::is_readable(const lod::TileInfo& tile, int) const { return unreadable_.count(tile.key) == 0; }
+
+void TileScene::upload(TilePager::Loaded page) {
+  const PageKey& key = page.key;
+  switch (key.kind) {
+    case PageKind::kMesh:
+      if (key.exaggeration != look_->exaggeration) return;  // asked for before it was changed
+      meshes_.insert(key.tile, {key.detail, key.origin}, gl::upload(page.value.geometry), frame_);
+      break;
+    case PageKind::kTexture:
+      textures_.insert(key.tile, {key.detail, key.look}, gl::upload(page.value.shaded), frame_);
+      break;
+    case PageKind::kGround:
+      ground_tile_ = key.tile;
+      ground_ = page.value.ground;
+      break;
+  }
+  ++stats_.pages_uploaded;
+}
+
+void TileScene::trim() {
+  stats_.pages_evicted += meshes_.trim(share(kMeshShare), frame_);
+  stats_.pages_evicted += textures_.trim(share(kTextureShare), frame_);
+}
+
+bool TileScene::has_room() const {
+  std::size_t used = 0;
+  for (const SceneTile& t : tiles_) used += t.mesh->bytes + (t.texture != nullptr ? t.texture->bytes : 0);
+  return static_cast<double>(used) < kRoomForLater * static_cast<double>(share(kMeshShare + kTextureShare));
+}
+
+// What a selection needs and is not resident, nearest tiles first; what is resident counts as used in `frame`.
+std::vector<PageKey> TileScene::absent_pages(const lod::Selection& selection, const core::View& view,
+                                             std::uint64_t frame) {
+  const std::vector<TileNeed> needs = needs_of(selection, view);
+  std::vector<std::pair<double, PageKey>> absent;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < needs.size(); ++n) {
+    const lod::SelectedTile& tile = selection.tiles[n];
+    nearest = std::min(nearest, tile.min_distance_m);
+    PageKey page = mesh_page(tile.key, needs[n].mesh);
+    if (!is_resident(page, frame)) absent.emplace_back(tile.min_distance_m, page);
+    if (needs[n].texture_intervals == 0) continue;
+    page = texture_page(tile.key, needs[n].texture_intervals);
+    if (!is_resident(page, frame)) absent.emplace_back(tile.min_distance_m, page);
+  }
+  std::stable_sort(absent.begin(), absent.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<PageKey> pages;
+  if (nearest <= kGroundMatters_m) {
+    const PageKey page = ground_page(view.eye.eye_m);
+    if (!is_resident(page, frame) && unreadable_.count(page.tile) == 0) pages.push_back(page);
+  }
+  for (auto& [distance, page] : absent) pages.push_back(std::move(page));
+  return pages;
+}
+
+void TileScene::note_failure(const PageKey& page, const std::string& why) {
+  if (unreadable_.emplace(page.tile, why).second) failures_.push_back(why);
+}
+
+TileScene::Load TileScene::load(std::vector<PageKey> pages, Deadline deadline) {
+  std::vector<TilePager::Want> wants;
+  std::unordered_set<PageKey, PageKeyHash> open;
+  for (const PageKey& page : pages) {
+    if (open.insert(page).second) wants.push_back({page, -static_cast<double>(wants.size())});
+  }
+  pager_.want(wants);
+  while (!open.empty()) {
+    const TilePager::Outcome outcome = pager_.wait(deadline);
+    if (outcome == TilePager::Outcome::kTimeout) return Load::kTimeout;
+    for (TilePager::Loaded& page : pager_.take(kTakeAtOnce)) {
+      open.erase(page.key);
+      upload(std::move(page));
+    }
+    trim();
+    if (pager_.any_failed()) {
+      bool failed = false;
+      for (const PageKey& page : open) {
+        if (const auto why = pager_.failure(page)) {
+          note_failure(page, *why);
+          failed = true;
+        }
+      }
+      if (failed) return Load::kFailure;
+    }
+  }
+  return Load::kAll;
+}
+
+void TileScene::complete(const core::DrawRequest& request, const lod::SelectOptions& options) {
+  const double limit_s = std::min(request.paging.timeout_s, 1e9);
+  const Deadline deadline =
+      limit_s < 1e9 ? Clock::now() + std::chrono::microseconds(static_cast<std::int64_t>(1e6 * limit_s))
+                    : Deadline::max();
+  const lod::SelectView view = lod::select_view(request.view);
+  const auto readable = [](const void* self, const lod::TileInfo& tile, int variant) {
+    return static_cast<const TileScene*>(self)->is_readable(tile, variant);
+  };
+  for (;;) {
+    lod::substitute(options, planet_->tree(), view, wanted_, {readable, this}, drawn_);
+    const std::vector<PageKey> absent = absent_pages(drawn_.drawn, request.view, frame_);
+    trim();
+    const Load outcome = load(absent, deadline);
+    if (outcome == Load::kAll) return;
+    if (outcome == Load::kTimeout) break;
+  }
+  settled_ = false;
+  draw_what_is_there(request, options);
+}
+
+void TileScene::take_some(double limit_ms) {
+  const auto start = Clock::now();
+  do {
+    std::vector<TilePager::Loaded> pages = pager_.take(kTakeAtOnce);
+    if (pages.empty()) break;
+    for (TilePager::Loaded& page : pages) upload(std::move(page));
+  } while (ms_since(start) < limit_ms);
+}
+
+// The roots of the faces that are missing; false when they are there already.
+bool TileScene::load_roots() {
+  std::array<bool, mars::kFaces> wanted{};
+  for (const std::size_t n : drawn_.missing) wanted[static_cast<std::size_t>(wanted_.tiles[n].key.face)] = true;
+  std::vector<PageKey> pages;
+  for (lod::TileTree::Index root = 0; root < mars::kFaces; ++root) {
+    const lod::TileInfo& tile = planet_->tree()[root];
+    if (!wanted[root] || !is_readable(tile, 0) || can_be_drawn(tile, 0)) continue;
+    pages.push_back(mesh_page(tile.key, {}));
+    if (is_textured(tile.key, *planet_, mode_)) pages.push_back(texture_page(tile.key, kSmallestTexture));
+  }
+  if (pages.empty()) return false;
+  while (load(pages, Deadline::max()) == Load::kFailure) {
+    std::erase_if(pages, [&](const PageKey& page) {
+      return unreadable_.count(page.tile) != 0 || is_resident(page, frame_);
+    });
+  }
+  return true;
+}
+
+void TileScene::draw_what_is_there(const core::DrawRequest& request, const lod::SelectOptions& options) {
+  const auto there = [](const void* self, const lod::TileInfo& tile, int variant) {
+    // Marks what it finds as used, which changes nothing that it answers.
+    return const_cast<TileScene*>(static_cast<const TileScene*>(self))->can_be_drawn(tile, variant);
+  };
+  const lod::SelectView view = lod::select_view(request.view);
+  lod::substitute(options, planet_->tree(), view, wanted_, {there, this}, drawn_);
+  if (drawn_.uncovered > 0 && load_roots()) {
+    lod::substitute(options, planet_->tree(), view, wanted_, {there, this}, drawn_);
+  }
+}
+
+void TileScene::prepare(const core::DrawRequest& request) {
+  ++frame_;
+  stats_ = {};
+  failures_.clear();
+  settled_ = true;
+  auto start = Clock::now();
+  set_look(request);
+  const lod::SelectOptions options = select_options(request.settings);
+  lod::select(options, planet_->tree(), lod::select_view(request.view), scratch_, wanted_);
+  stats_.select_ms = ms_since(start);
+  start = Clock::now();
+  if (request.paging.wait) {
+    complete(request, options);
+  } else {
+    take_some(request.paging.upload_ms);
+    draw_what_is_there(request, options);
+  }
+  lay_out(request.view);
+  ask(request, options);
+  find_ground(request);
+  trim();
+  stats_.load_ms = ms_since(start);
+}
+
+void TileScene::lay_out(const core::View& view) {
+  const lod::Selection& drawn = drawn_.drawn;
+  lod::skirt_depths(drawn, planet_->tree(), skirts_);
+  const std::vector<TileNeed> needs = needs_of(drawn, view);
+  tiles_.clear();
+  for (std::size_t n = 0; n < drawn.tiles.size(); ++n) {
+    const lod::SelectedTile& tile = drawn.tiles[n];
+    SceneTile& out = tiles_.emplace_back();
+    out.tile = &tile;
+    out.mesh = meshes_.best(tile.key, frame_, [&](const MeshDetail& m) {
+      return m.variant != tile.variant ? -1 : m == needs[n].mesh ? 1 : 0;
+    });
+    if (needs[n].texture_intervals > 0) {
+      const TextureDetail wanted{needs[n].texture_intervals, look_};
+      // Else the right look, else the nearest size.
+      out.texture = textures_.best(tile.key, frame_, [&](const TextureDetail& t) {
+        if (t == wanted) return 1 << 20;
+        return (t.look == look_ ? 1 << 16 : 0) + std::min(t.intervals, wanted.intervals);
+      });
+    }
+    out.skirt_m = skirts_[n];
+    const double side = lod::nominal_side_m(tile.key.level, planet_->radius_m());
+    for (float& depth : out.skirt_m) {
+      if (depth > 0.0F) depth += static_cast<float>(kFootError * (tile.min_distance_m + 2.0 * side));
+    }
+  }
+}
+
+double TileScene::nearest_m() const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const SceneTile& t : tiles_) nearest = std::min(nearest, t.tile->min_distance_m);
+  return nearest;
+}
+
+void TileScene::find_ground(const core::DrawRequest& request) {
+  const glm::dvec3& eye = request.view.eye.eye_m;
+  const double height = glm::length(eye) - planet_->radius_m();
+  const double x = request.settings.exaggeration;
+  const PageKey page = ground_page(eye);
+  if (is_resident(page, frame_)) {
+    const mars::ChartPoint at = mars::chart_point(eye);
+    const lod::Posts& posts = ground_->posts;
+    const double ground = lod::surface_height(posts, lod::grid_lines(page.tile, posts.intervals), at.u, at.v,
+                                              planet_->radius_m());
+    clearance_m_ = std::abs(height - x * ground);
+    return;
+  }
+  const lod::TileInfo& tile = *planet_->tree().find(page.tile);
+  clearance_m_ = std::max({0.0, height - x * tile.max_height_m, x * tile.min_height_m - height});
+}
+
+void TileScene::report(core::DrawResult& result) const {
+  core::FrameStats& s = result.stats;
+  s = stats_;
+  s.tiles_visited = wanted_.visited;
+  s.tiles_culled_frustum = wanted_.culled_frustum;
+  s.tiles_culled_horizon = wanted_.culled_horizon;
+  s.tiles_drawn = static_cast<int>(tiles_.size());
+  s.tiles_missing = static_cast<int>(drawn_.missing.size());
+  s.tiles_substituted = drawn_.substituted;
+  s.tiles_by_level = drawn_.drawn.tiles_by_level;
+  for (const SceneTile& t : tiles_) {
+    const IndexRanges& ranges = t.mesh->ranges;
+    s.triangles += ranges.surface / 3;
+    for (std::size_t e = 0; e < 4; ++e) {
+      if (t.skirt_m[e] > 0.0F) s.skirt_triangles += (ranges.skirts[e + 1] - ranges.skirts[e]) / 2;
+    }
+  }
+  const paging::PagerCounts counts = pager_.counts();
+  s.pages_wanted = static_cast<std::int64_t>(counts.wanted);
+  s.pages_loading = static_cast<std::int64_t>(counts.loading);
+  s.bytes_resident = static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + shader_->bytes_resident() +
+                                               counts.bytes + planet_->tree().bytes());
+  result.settled = settled_;
+  result.failures = failures_;
+  result.missing.clear();
+  for (const std::size_t n : drawn_.missing) {
+    const lod::TileKey& key = wanted_.tiles[n].key;
+    const auto why = unreadable_.find(key);
+    result.missing.push_back({lod::to_string(key), why == unreadable_.end() ? "not loaded yet" : why->second});
+  }
+}
+
+}  // namespace vpe::gl

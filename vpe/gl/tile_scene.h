@@ -1,0 +1,111 @@
+// The tiles of a frame: chosen, paged in, and what stands in for those that are not there yet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "lod/substitute.h"
+#include "paging/pager.h"
+#include "vpe/core/frame.h"
+#include "vpe/gl/polygon_renderer.h"
+#include "vpe/gl/residency.h"
+#include "vpe/gl/tile_needs.h"
+#include "vpe/gl/tile_page.h"
+
+namespace vpe::gl {
+
+struct SceneTile {
+  const lod::SelectedTile* tile = nullptr;
+  const GpuMesh* mesh = nullptr;
+  const GpuTexture* texture = nullptr;  // null when the mode needs none
+  std::array<float, 4> skirt_m{};       // by lod::Edge
+};
+
+// Thread rule: the context's thread.
+class TileScene {
+ public:
+  TileScene(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options);
+
+  // Decides what is drawn for a request and pages it in; afterwards the members below speak of that frame.
+  void prepare(const core::DrawRequest& request);
+
+  std::span<const SceneTile> tiles() const { return tiles_; }
+  double nearest_m() const;  // no tile is nearer to the eye; infinite when there are none
+
+  // Distance of the eye from the ground below or above it. A lower bound while the ground is not there yet.
+  double clearance_m() const { return clearance_m_; }
+
+  // Counts, times, missing tiles and failures of the frame.
+  void report(core::DrawResult& result) const;
+
+ private:
+  using TilePager = paging::Pager<PageKey, Page, PageKeyHash>;
+
+  using Deadline = TilePager::Clock::time_point;
+
+  std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
+  void set_look(const core::DrawRequest& request);
+  lod::SelectOptions select_options(const core::SettingsValues& settings) const;
+  std::vector<TileNeed> needs_of(const lod::Selection& selection, const core::View& view) const;
+  PageKey mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const;
+  PageKey texture_page(const lod::TileKey& tile, int intervals) const;
+  PageKey ground_page(const glm::dvec3& eye_m) const;
+
+  bool is_resident(const PageKey& page, std::uint64_t frame);  // counts as used in it
+  bool can_be_drawn(const lod::TileInfo& tile, int variant);
+  bool is_readable(const lod::TileInfo& tile, int variant) const;
+  void upload(TilePager::Loaded page);
+  void trim();
+  bool has_room() const;
+  std::vector<PageKey> absent_pages(const lod::Selection& selection, const core::View& view,
+                                    std::uint64_t frame);
+
+  void complete(const core::DrawRequest& request, const lod::SelectOptions& options);
+  enum class Load { kAll, kFailure, kTimeout };
+  Load load(std::vector<PageKey> pages, Deadline deadline);
+  void note_failure(const PageKey& page, const std::string& why);
+  void draw_what_is_there(const core::DrawRequest& request, const lod::SelectOptions& options);
+  void take_some(double limit_ms);
+  bool load_roots();
+  void ask(const core::DrawRequest& request, const lod::SelectOptions& options);
+  void want_upcoming(const core::DrawRequest& request, const lod::SelectOptions& options,
+                     std::vector<TilePager::Want>& wants);
+  void lay_out(const core::View& view);
+  void find_ground(const core::DrawRequest& request);
+
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  std::int64_t most_triangles_;
+  std::size_t memory_;
+  std::shared_ptr<Shader> shader_;
+  PageLoader loader_;
+
+  Resident<MeshDetail, GpuMesh> meshes_;
+  Resident<TextureDetail, GpuTexture> textures_;
+  lod::TileKey ground_tile_;
+  std::shared_ptr<const paging::TileHeights> ground_;
+  std::shared_ptr<const ShadeParams> look_;
+  core::Mode mode_ = core::Mode::kTextured;
+  std::uint64_t frame_ = 0;
+
+  lod::SelectScratch scratch_;
+  lod::Selection wanted_;
+  lod::Substitution drawn_;
+  std::vector<std::array<float, 4>> skirts_;
+  std::vector<SceneTile> tiles_;
+  double clearance_m_ = 0;
+  core::FrameStats stats_;
+  bool settled_ = true;
+  std::unordered_map<lod::TileKey, std::string, lod::TileKeyHash> unreadable_;
+  std::vector<std::string> failures_;
+
+  std::function<void(const lod::TileKey& tile)> before_load_;
+  TilePager pager_;  // last: its threads use the loader
+};
+
+}  // namespace vpe::gl
