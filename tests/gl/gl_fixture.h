@@ -17,7 +17,7 @@ class GlTest : public ::testing::Test {
 
   std::unique_ptr<vpe::core::Renderer> renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                 std::size_t memory = std::size_t{256} << 20) {
-    return vpe::gl::make_polygon_renderer(context_, std::move(planet), {memory, 2});
+    return vpe::gl::make_polygon_renderer(context_, std::move(planet), {memory, 2, {}});
   }
 
   static std::shared_ptr<vpe::gl::Context> context_;

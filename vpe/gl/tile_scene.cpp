@@ -52,8 +52,11 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
       memory_(for_tiles(options.memory_bytes, planet_->tree().bytes())),
       shader_(std::make_shared<Shader>(planet_, share(kShaderShare))),
       loader_(planet_, shader_),
-      pager_([this](const PageKey& key) { return loader_.load(key); },
-             threads > 0 ? std::min(threads, core::kMaxThreads) : core::default_threads(),
+      load_([this, before = options.before_load](const PageKey& key) {
+        if (before) before(key.tile);
+        return loader_.load(key);
+      }),
+      pager_(load_, options.threads > 0 ? std::min(options.threads, core::kMaxThreads) : core::default_threads(),
              share(kLoadedShare)) {}
 
 void TileScene::set_look(const core::DrawRequest& request) {
@@ -228,24 +231,31 @@ void TileScene::take_some(double limit_ms) {
   } while (ms_since(start) < limit_ms);
 }
 
-// The roots of the faces that are missing; false when they are there already.
+// The roots of the faces that are missing, on this thread: loaders may all be busy for long. False when none could be
+// added.
 bool TileScene::load_roots() {
-  std::array<bool, mars::kFaces> wanted{};
-  for (const std::size_t n : drawn_.missing) wanted[static_cast<std::size_t>(wanted_.tiles[n].key.face)] = true;
-  std::vector<PageKey> pages;
+  bool any = false;
   for (lod::TileTree::Index root = 0; root < mars::kFaces; ++root) {
     const lod::TileInfo& tile = planet_->tree()[root];
-    if (!wanted[root] || !is_readable(tile, 0) || can_be_drawn(tile, 0)) continue;
-    pages.push_back(mesh_page(tile.key, {}));
-    if (is_textured(tile.key, *planet_, mode_)) pages.push_back(texture_page(tile.key, kSmallestTexture));
-  }
-  if (pages.empty()) return false;
-  while (load(pages, Deadline::max()) == Load::kFailure) {
-    std::erase_if(pages, [&](const PageKey& page) {
-      return unreadable_.count(page.tile) != 0 || is_resident(page, frame_);
+    const bool wanted = std::any_of(drawn_.missing.begin(), drawn_.missing.end(), [&](std::size_t n) {
+      return wanted_.tiles[n].key.face == tile.key.face;
     });
+    if (!wanted || !is_readable(tile, 0) || can_be_drawn(tile, 0)) continue;
+    std::vector<PageKey> pages{mesh_page(tile.key, {})};
+    if (is_textured(tile.key, *planet_, mode_)) pages.push_back(texture_page(tile.key, kSmallestTexture));
+    for (const PageKey& page : pages) {
+      try {
+        auto [value, bytes] = load_(page);
+        upload({page, std::move(value), bytes});
+        any = true;
+      } catch (const std::bad_alloc&) {
+        throw;
+      } catch (const std::exception& e) {
+        note_failure(page, e.what());
+      }
+    }
   }
-  return true;
+  return any;
 }
 
 void TileScene::draw_what_is_there(const core::DrawRequest& request, const lod::SelectOptions& options) {

@@ -104,7 +104,7 @@ class TileScene {
   std::unordered_map<lod::TileKey, std::string, lod::TileKeyHash> unreadable_;
   std::vector<std::string> failures_;
 
-  std::function<void(const lod::TileKey& tile)> before_load_;
+  TilePager::Load load_;
   TilePager pager_;  // last: its threads use the loader
 };
 
