@@ -32,8 +32,8 @@ struct WallLine {
 // Thread rule: one at a time. Results depend on the eye, the margin and the walls added alone.
 class TerrainHorizon {
  public:
-  // Bins lie evenly along the sides of a square about the vertical: no trigonometry, and widths between 0.09
-  // and 0.18 degrees.
+  // Bins lie evenly along the sides of a square about the vertical: no trigonometry, and widths between 0.11
+  // and 0.22 degrees.
   static constexpr int kBinsPerSide = 512;
   static constexpr int kBins = 4 * kBinsPerSide;
 
