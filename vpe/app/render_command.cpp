@@ -16,6 +16,7 @@ namespace {
 struct RenderArguments {
   std::string planet;
   std::string pose;
+  std::string cull_from;
   double height_m = 0;
   bool has_height = false;
   std::string output;
@@ -45,6 +46,21 @@ mars::Pose parse_pose(const RenderArguments& arguments, const std::function<doub
   return pose;
 }
 
+// The view whose tiles are drawn, when it is another.
+std::optional<core::View> cull_view(const std::string& text, const core::View& view, double radius_m) {
+  if (text.empty()) return std::nullopt;
+  auto n = parse_numbers(text);
+  if (!n || n->size() < 3 || n->size() > 6 || !mars::is_valid({(*n)[0], (*n)[1]})) {
+    throw UsageError(
+        "--cull-from '" + text +
+        "': expected LON,LAT,ALT,YAW,PITCH,ROLL (degrees, latitude within -90..90; metres above the sphere)");
+  }
+  n->resize(6, 0.0);
+  core::View other = view;
+  other.eye = mars::to_eye(mars::Pose{(*n)[0], (*n)[1], (*n)[2], (*n)[3], (*n)[4], (*n)[5]}, radius_m);
+  return other;
+}
+
 void require_valid(const core::View& view) {
   if (const std::string trouble = core::check(view); !trouble.empty()) throw UsageError(trouble);
 }
@@ -59,6 +75,8 @@ void render(RenderArguments& arguments, const Common& common) {
   request.view.fov_deg = arguments.fov_deg;
   request.view.eye = mars::to_eye(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
   require_valid(request.view);
+  if (const auto other = cull_view(arguments.cull_from, request.view, mars::kMarsRadius_m))
+    require_valid(*other);
   check_picture_output(arguments.output);
   if (!arguments.range.empty()) check_range_output(arguments.range);
   if (!arguments.certificate.empty()) check_output(arguments.certificate);
@@ -74,6 +92,7 @@ void render(RenderArguments& arguments, const Common& common) {
   request.sun = sun_for(request.settings, pose);
   request.want_range = !arguments.range.empty();
   require_valid(request.view);
+  request.cull_view = cull_view(arguments.cull_from, request.view, planet->radius_m());
   const auto renderer = make_renderer(arguments.picture, common, planet);
   const core::DrawResult result = renderer->draw(request);
   core::write_image(arguments.output, result.frame.colour, result.frame.width, result.frame.height);
@@ -105,6 +124,8 @@ void add_render(CLI::App& program, Common& common) {
   CLI::Option* height =
       command->add_option("--height", arguments->height_m, "Metres above the terrain, instead of ALT")
           ->check(number_within(-1e7, 1e10));
+  command->add_option("--cull-from", arguments->cull_from,
+                      "LON,LAT,ALT,YAW,PITCH,ROLL: draw the tiles chosen for this pose, as seen from --pose");
   command->add_option("-o,--output", arguments->output, "Picture to write (.png, .jpg)")->required();
   command->add_option("--range", arguments->range, "Also write the range of every pixel, metres (.tif)");
   command->add_option("--certificate", arguments->certificate,

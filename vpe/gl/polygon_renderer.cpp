@@ -8,8 +8,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "lod/look_from.h"
 #include "lod/select.h"
 #include "vpe/core/edge_filter.h"
+#include "vpe/core/inspect.h"
 #include "vpe/core/parallel.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/residency.h"
@@ -39,6 +41,15 @@ constexpr std::size_t kBytesPerTriangle = 600;
 
 // Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
 constexpr double kFootError = 1e-6;
+
+const glm::vec3 kBorderColour(0.1F, 1.0F, 0.2F);  // no ground is that green
+// The relief shows through.
+glm::vec4 level_tint(int level) {
+  constexpr float kShare = 0.6F;
+  const mars::Rgb c = core::level_colour(level).colour;
+  return {static_cast<float>(c.r) / 255.0F, static_cast<float>(c.g) / 255.0F, static_cast<float>(c.b) / 255.0F,
+          kShare};
+}
 
 constexpr int kSmallestTexture = 128;
 constexpr int kLargestTexture = 1024;
@@ -138,7 +149,9 @@ void PolygonRenderer::select(const core::DrawRequest& request, const ShadeParams
   options.max_triangles = request.settings.lod_triangles > 0
                               ? std::min<std::int64_t>(request.settings.lod_triangles, most_triangles_)
                               : most_triangles_;
-  lod::select(options, planet_->tree(), lod::select_view(request.view), scratch_, selection_);
+  lod::select(options, planet_->tree(), lod::select_view(request.cull_view.value_or(request.view)), scratch_,
+              selection_);
+  if (request.cull_view) lod::look_from(lod::select_view(request.view), planet_->tree(), selection_);
   lod::skirt_depths(selection_, planet_->tree(), skirts_);
   drawn_.clear();
   for (std::size_t n = 0; n < selection_.tiles.size(); ++n) {
@@ -353,11 +366,17 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
     const bool textured = picture && this->textured(d.texture.tile, request.settings.mode);
     draws_.push_back({meshes_.find(d.mesh, frame_), textured ? textures_.find(d.texture, frame_) : nullptr,
                       request.settings.mode == core::Mode::kUnlit, d.mesh.tile, d.skirt_m});
+    if (picture && request.settings.inspect == core::Inspect::kLevels)
+      draws_.back().tint = level_tint(d.mesh.tile.level);
   }
   tiles_.draw(request.view, lens, draws_,
               picture && wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   if (picture && request.settings.background == core::Background::kSky) draw_sky(request, lens);
+  if (picture && request.settings.inspect == core::Inspect::kBorders) {
+    glDepthFunc(GL_GREATER);
+    tiles_.draw_borders(request.view, lens, draws_, kBorderColour);
+  }
 }
 
 // Depth is interpolated with an absolute error of some 2^-24 near the near plane, so a first pass finds the
