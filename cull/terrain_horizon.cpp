@@ -17,10 +17,16 @@ constexpr double kBinsInHalf = TerrainHorizon::kBins / 2;
 // Azimuths of two points closer than this may be the other way round, in bins; twice what kNearest_rad leaves.
 constexpr double kSame = 1e-8 * TerrainHorizon::kBinsPerSide;
 
-// Slope of the ray to a point at cot(ground angle) = c > 0 whose radius is r: rise = (r - eye) / r of its own
-// radius as seen from the eye's vertical, the rest is the fall of a sphere.
-double slope_at(double c, double q, double r, double eye) { return (r - eye) / r * q - 1.0 / (q + c); }
-double slope_at(double c, double r, double eye) { return slope_at(c, std::sqrt(1.0 + c * c), r, eye); }
+// Slopes of rays to points at one ground angle t > 0 with c = cot t > 0: rise over run to radius r is
+// (r cos t - eye) / (r sin t) = (r - eye) / r * sqrt(1 + c^2) - (sqrt(1 + c^2) - c), without that difference.
+struct SlopesAt {
+  double per_rise;
+  double fall;
+  explicit SlopesAt(double c) : per_rise(std::sqrt(1.0 + c * c)), fall(1.0 / (per_rise + c)) {}
+  double operator()(double rise) const { return rise * per_rise - fall; }
+};
+double rise_of(double r, double eye) { return (r - eye) / r; }
+double slope_at(double c, double r, double eye) { return SlopesAt(c)(rise_of(r, eye)); }
 
 // Difference of two azimuths, in [-kBins / 2, kBins / 2).
 double wrapped(double d) {
@@ -122,20 +128,28 @@ void TerrainHorizon::add(const WallLine& wall) {
   // cot of the ground angle along the line, as a function of azimuth: the scalar product with this.
   const glm::dvec2 cot(-glm::dot(normal, a_) / beside, -glm::dot(normal, b_) / beside);
 
+  // In the order of azimuths, from `first` on without a step back.
   std::array<double, WallLine::kMostPieces + 1> at;
+  std::array<double, WallLine::kMostPieces> rise;
   for (std::size_t n = 0; n <= pieces; ++n) {
     at[n] = azimuth(wall.column ? mars::cube_point(wall.face, wall.line, wall.ends[n])
                                 : mars::cube_point(wall.face, wall.ends[n], wall.line));
   }
-  const bool turned = wrapped(at[pieces] - at[0]) < 0.0;
-  const auto end_of = [&](std::size_t n) { return at[turned ? pieces - n : n]; };
-  const auto radius_of = [&](std::size_t n) { return wall.radius_m[turned ? pieces - 1 - n : n]; };
-  const double first = end_of(0);
-  const auto unwound = [&](std::size_t n) { return end_of(n) < first ? end_of(n) + kBins : end_of(n); };
   for (std::size_t n = 0; n < pieces; ++n) {
-    if (!(unwound(n + 1) >= unwound(n))) return;  // as good as straight away from the eye
+    if (!(wall.radius_m[n] > 0.0)) return;
+    rise[n] = rise_of(wall.radius_m[n], eye_.radius_m);
   }
-  const double last = unwound(pieces);
+  if (wrapped(at[pieces] - at[0]) < 0.0) {
+    std::reverse(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(pieces) + 1);
+    std::reverse(rise.begin(), rise.begin() + static_cast<std::ptrdiff_t>(pieces));
+  }
+  const double first = at[0];
+  const double end = at[pieces];
+  for (std::size_t n = 1; n <= pieces; ++n) {
+    if (at[n] < first) at[n] += kBins;
+    if (!(at[n] >= at[n - 1])) return;  // as good as straight away from the eye
+  }
+  const double last = at[pieces];
   if (last - first >= kBinsInHalf) return;
   const int whole_from = static_cast<int>(std::ceil(first + kSame));
   const int whole_to = static_cast<int>(std::floor(last - kSame));
@@ -148,31 +162,30 @@ void TerrainHorizon::add(const WallLine& wall) {
     return cot.x * d.x + cot.y * d.y;
   };
   std::size_t piece = 0;
-  double c0 = cot_at(whole_from - 1 + kBins);
-  double q0 = std::sqrt(1.0 + c0 * c0);
+  double c0 = cot_at(whole_from - 1);
+  SlopesAt slopes0(c0);
   for (int bin = whole_from - 1; bin <= whole_to; ++bin) {
-    const double c1 = cot_at(bin + 1 + kBins);
-    const double q1 = std::sqrt(1.0 + c1 * c1);
-    while (piece + 1 < pieces && unwound(piece + 1) < bin) ++piece;
-    double radius = radius_of(piece);
-    for (std::size_t n = piece + 1; n < pieces && unwound(n) <= bin + 1; ++n)
-      radius = std::min(radius, radius_of(n));
-    const int index = (bin + kBins) % kBins;
-    // The slope along an arc has one maximum and no other minimum than its ends: those of the bin and the foot
-    // of the perpendicular from the eye, where the arc turns.
-    if (c0 > 0.0 && c1 > 0.0 && radius > 0.0) {
-      double slope = std::min(slope_at(c0, q0, radius, eye_.radius_m), slope_at(c1, q1, radius, eye_.radius_m));
-      if (index == foot_bin) slope = std::min(slope, slope_at(cot_foot, radius, eye_.radius_m));
+    const double c1 = cot_at(bin + 1);
+    const SlopesAt slopes1(c1);
+    while (piece + 1 < pieces && at[piece + 1] < bin) ++piece;
+    double lowest = rise[piece];
+    for (std::size_t n = piece + 1; n < pieces && at[n] <= bin + 1; ++n) lowest = std::min(lowest, rise[n]);
+    // Along an arc the slope has one maximum and no minimum but at its ends: those of the bin, and where the
+    // arc is nearest to the eye and turns.
+    if (c0 > 0.0 && c1 > 0.0) {
+      const int index = bin % kBins;
+      double slope = std::min(slopes0(lowest), slopes1(lowest));
+      if (index == foot_bin) slope = std::min(slope, SlopesAt(cot_foot)(lowest));
       if (bin < whole_from) {
-        add_part(index, false, {end_of(0), slope});
+        add_part(index, false, {first, slope});
       } else if (bin == whole_to) {
-        add_part(index, true, {end_of(pieces), slope});
+        add_part(index, true, {end, slope});
       } else {
         raise(index, slope);
       }
     }
     c0 = c1;
-    q0 = q1;
+    slopes0 = slopes1;
   }
 }
 
