@@ -18,27 +18,28 @@ bool OcclusionPass::hidden(const cull::Shell& shell) const { return above_ && ho
 void OcclusionPass::add(const TileKey& key, const TileWalls& walls, double radius_m) {
   if (!above_) return;
   const mars::ChartRect rect = chart_rect(key);
-  // A tile of a few bins has little to say beyond its middle: pieces much narrower than a bin are joined.
+  // Pieces much narrower than a bin are joined, and with them strips.
   const double bins = horizon_.bins_spanned(rect);
   constexpr double kPieceBins = 0.5;
   if (bins < kPieceBins) return;
   std::size_t joined = 1;
-  while (joined < kWallBlocks && bins * static_cast<double>(joined) < kPieceBins * kWallBlocks) joined *= 2;
-  const std::size_t pieces = kWallBlocks / joined;
-  const GridLines lines = grid_lines(key, kWallBlocks);
-  std::array<double, kWallBlocks + 1> ends;
-  std::array<double, kWallBlocks> radius;
+  while (joined < kWallPieces && bins * static_cast<double>(joined) < kPieceBins * kWallPieces) joined *= 2;
+  const std::size_t pieces = kWallPieces / joined;
+  const std::size_t step = std::max<std::size_t>(1, joined * kWallStrips / kWallPieces);
+  const GridLines lines = grid_lines(key, kWallPieces);
+  std::array<double, kWallPieces + 1> ends;
+  std::array<double, kWallPieces> radius;
   const auto add_family = [&](bool column, const auto& wall, const std::vector<double>& across,
                               const std::vector<double>& along) {
     for (std::size_t n = 0; n <= pieces; ++n) ends[n] = along[n * joined];
-    for (std::size_t line = 0; line <= kWallBlocks; line += joined) {
+    for (std::size_t line = 0; line <= kWallStrips; line += step) {
       for (std::size_t n = 0; n < pieces; ++n) {
         const auto from = wall[line].begin() + static_cast<std::ptrdiff_t>(n * joined);
         radius[n] =
             radius_m + static_cast<double>(*std::min_element(from, from + static_cast<std::ptrdiff_t>(joined)));
       }
-      horizon_.add(
-          {key.face, column, across[line], std::span(ends).first(pieces + 1), std::span(radius).first(pieces)});
+      horizon_.add({key.face, column, across[line * kWallPieces / kWallStrips],
+                    std::span(ends).first(pieces + 1), std::span(radius).first(pieces)});
     }
   };
   add_family(true, walls.columns, lines.u, lines.v);

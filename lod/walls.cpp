@@ -38,9 +38,9 @@ double distance_to_centre(const PlanePoint& a, const PlanePoint& b) {
 class Family {
  public:
   Family(int intervals, const std::vector<double>& across, const std::vector<double>& along)
-      : step_(intervals / kWallBlocks), across_(across) {
-    for (int n = 0; n <= kWallBlocks; ++n)
-      ends_[static_cast<std::size_t>(n)] = along[static_cast<std::size_t>(n * step_)];
+      : step_(intervals / kWallStrips), across_(across) {
+    for (int n = 0; n <= kWallPieces; ++n)
+      ends_[static_cast<std::size_t>(n)] = along[static_cast<std::size_t>(n * (intervals / kWallPieces))];
     for (auto& line : lowest_m_) line.fill(std::numeric_limits<double>::infinity());
   }
 
@@ -49,10 +49,10 @@ class Family {
     for (int line = (low + step_ - 1) / step_; line * step_ <= high; ++line) cut(corner, line);
   }
 
-  std::array<TileWalls::Line, kWallBlocks + 1> lowered(double radius_m, double lower_m) const {
-    std::array<TileWalls::Line, kWallBlocks + 1> walls{};
+  std::array<TileWalls::Line, kWallStrips + 1> lowered(double radius_m, double lower_m) const {
+    std::array<TileWalls::Line, kWallStrips + 1> walls{};
     for (std::size_t line = 0; line < walls.size(); ++line) {
-      for (std::size_t piece = 0; piece < kWallBlocks; ++piece) {
+      for (std::size_t piece = 0; piece < kWallPieces; ++piece) {
         const double radius = lowest_m_[line][piece];
         const double height = radius * (1.0 - 2e-15) - radius_m - lower_m;
         float down = static_cast<float>(height);
@@ -89,7 +89,7 @@ class Family {
     }
     const auto first = static_cast<std::size_t>(
         std::max<std::ptrdiff_t>(0, std::upper_bound(ends_.begin(), ends_.end(), from) - ends_.begin() - 1));
-    for (std::size_t piece = first > 0 && from == ends_[first] ? first - 1 : first; piece < kWallBlocks;
+    for (std::size_t piece = first > 0 && from == ends_[first] ? first - 1 : first; piece < kWallPieces;
          ++piece) {
       if (ends_[piece] > to) break;
       const auto clipped = [&](double along) {
@@ -107,18 +107,18 @@ class Family {
 
   int step_;
   const std::vector<double>& across_;
-  std::array<double, kWallBlocks + 1> ends_{};
-  std::array<std::array<double, kWallBlocks>, kWallBlocks + 1> lowest_m_{};
+  std::array<double, kWallPieces + 1> ends_{};
+  std::array<std::array<double, kWallPieces>, kWallStrips + 1> lowest_m_{};
 };
 
 }  // namespace
 
 TileWalls make_walls(const TileKey& key, const TileMesh& mesh, std::span<const double> height_m,
                      double exaggeration, double radius_m, double lower_m) {
-  if (mesh.intervals <= 0 || mesh.intervals % kWallBlocks != 0) {
+  if (mesh.intervals <= 0 || mesh.intervals % kWallPieces != 0) {
     throw std::invalid_argument("walls of tile " + to_string(key) + ": its grid of " +
                                 std::to_string(mesh.intervals) + " intervals does not divide into " +
-                                std::to_string(kWallBlocks) + " blocks");
+                                std::to_string(kWallPieces) + " pieces");
   }
   if (height_m.size() != mesh.vertices.size()) {
     throw std::invalid_argument("walls of tile " + to_string(key) + ": " + std::to_string(height_m.size()) +

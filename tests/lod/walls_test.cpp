@@ -55,18 +55,18 @@ double drawn_height(const Drawn& tile, double exaggeration, double u, double v) 
 // slack: by how much walls could be higher, in post spacings.
 void expect_below(const Drawn& tile, double exaggeration, int samples, std::vector<double>& slack) {
   const lod::TileWalls walls = lod::make_walls(tile.key, tile.mesh, tile.height_m, exaggeration, kRadius);
-  const lod::GridLines lines = lod::grid_lines(tile.key, lod::kWallBlocks);
+  const lod::GridLines lines = lod::grid_lines(tile.key, lod::kWallPieces);
   const double spacing_m = lod::post_spacing_m(tile.key.level, tile.mesh.intervals, kRadius);
-  for (std::size_t line = 0; line <= lod::kWallBlocks; ++line) {
-    for (std::size_t piece = 0; piece < lod::kWallBlocks; ++piece) {
+  for (std::size_t line = 0; line <= lod::kWallStrips; ++line) {
+    for (std::size_t piece = 0; piece < lod::kWallPieces; ++piece) {
       double column = std::numeric_limits<double>::infinity();
       double row = column;
       for (int s = 0; s <= samples; ++s) {
         const double t = static_cast<double>(s) / samples;
         const double v = lines.v[piece] + t * (lines.v[piece + 1] - lines.v[piece]);
         const double u = lines.u[piece] + t * (lines.u[piece + 1] - lines.u[piece]);
-        column = std::min(column, drawn_height(tile, exaggeration, lines.u[line], v));
-        row = std::min(row, drawn_height(tile, exaggeration, u, lines.v[line]));
+        column = std::min(column, drawn_height(tile, exaggeration, lines.u[2 * line], v));
+        row = std::min(row, drawn_height(tile, exaggeration, u, lines.v[2 * line]));
       }
       const auto wall_c = static_cast<double>(walls.columns[line][piece]);
       const auto wall_r = static_cast<double>(walls.rows[line][piece]);
@@ -117,13 +117,13 @@ TEST(Walls, TheFullGridGivesTheLowestPostsOfALine) {
   const lod::Posts posts = terrain.posts(key, 32);
   const lod::TileMesh mesh = lod::mesh_full(32);
   const lod::TileWalls walls = lod::make_walls(key, mesh, lod::vertex_heights(mesh, posts), 2.0, kRadius, 0.25);
-  for (int line = 0; line <= lod::kWallBlocks; ++line) {
-    for (int piece = 0; piece < lod::kWallBlocks; ++piece) {
-      double column = posts.at(4 * line, 4 * piece);
-      double row = posts.at(4 * piece, 4 * line);
+  for (int line = 0; line <= lod::kWallStrips; ++line) {
+    for (int piece = 0; piece < lod::kWallPieces; ++piece) {
+      double column = posts.at(8 * line, 4 * piece);
+      double row = posts.at(4 * piece, 8 * line);
       for (int n = 1; n <= 4; ++n) {
-        column = std::min(column, posts.at(4 * line, 4 * piece + n));
-        row = std::min(row, posts.at(4 * piece + n, 4 * line));
+        column = std::min(column, posts.at(8 * line, 4 * piece + n));
+        row = std::min(row, posts.at(4 * piece + n, 8 * line));
       }
       const auto l = static_cast<std::size_t>(line);
       const auto p = static_cast<std::size_t>(piece);
