@@ -42,11 +42,11 @@ inline double rough_height(const glm::dvec3& d) {
   return h;
 }
 
-// Posts of some 200 m for 40 km round the canyon's and the crater's middle, in the basin and at the north pole.
+// Posts of some 320 m for 40 km round the canyon's and the crater's middle, in the basin and at the north pole.
 inline std::shared_ptr<const paging::PlanetFile> build_rough(const std::filesystem::path& path) {
   const FakeElevation source(rough_height, [](const mars::Cap& cap) {
     for (const glm::dvec3& at : {kCanyon, kCrater, kBasin, kPole}) {
-      if (glm::length(cap.centre - at) < cap.radius_rad + 0.012) return 200.0;
+      if (glm::length(cap.centre - at) < cap.radius_rad + 0.012) return 350.0;
     }
     return 1e9;
   });
