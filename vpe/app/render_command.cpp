@@ -7,6 +7,7 @@
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
 #include "vpe/core/image.h"
+#include "vpe/core/inspect.h"
 #include "vpe/core/number.h"
 
 namespace vpe::app {
@@ -65,6 +66,18 @@ void require_valid(const core::View& view) {
   if (const std::string trouble = core::check(view); !trouble.empty()) throw UsageError(trouble);
 }
 
+// What the colours of inspect=levels mean.
+void print_levels(const core::FrameStats& stats, const paging::PlanetFile& planet) {
+  for (std::size_t n = 0; n < stats.tiles_by_level.size(); ++n) {
+    if (stats.tiles_by_level[n] == 0) continue;
+    const int level = static_cast<int>(n);
+    const double spacing_m = lod::post_spacing_m(level, planet.meta().tile.intervals(), planet.radius_m());
+    std::printf("  %.*s: level %d, posts of %.*f m, %d tiles\n",
+                static_cast<int>(core::level_colour(level).name.size()), core::level_colour(level).name.data(),
+                core::shown_level(level), spacing_m < 10.0 ? 2 : 0, spacing_m, stats.tiles_by_level[n]);
+  }
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   const core::Settings settings = make_settings(arguments.picture);
   const Size size = parse_size(arguments.size);
@@ -110,6 +123,7 @@ void render(RenderArguments& arguments, const Common& common) {
     std::printf("%s: %lld triangles in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(),
                 static_cast<long long>(result.stats.triangles), result.stats.tiles_drawn,
                 result.certificate.shift_bound_px, result.certificate.tile_error_m);
+    if (settings.values().inspect == core::Inspect::kLevels) print_levels(result.stats, *planet);
   }
 }
 
