@@ -7,6 +7,7 @@
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
 #include "vpe/core/image.h"
+#include "vpe/core/inspect.h"
 #include "vpe/core/number.h"
 
 namespace vpe::app {
@@ -16,6 +17,7 @@ namespace {
 struct RenderArguments {
   std::string planet;
   std::string pose;
+  std::string cull_from;
   double height_m = 0;
   bool has_height = false;
   std::string output;
@@ -45,8 +47,35 @@ mars::Pose parse_pose(const RenderArguments& arguments, const std::function<doub
   return pose;
 }
 
+// The view whose tiles are drawn, when it is another.
+std::optional<core::View> cull_view(const std::string& text, const core::View& view, double radius_m) {
+  if (text.empty()) return std::nullopt;
+  auto n = parse_numbers(text);
+  if (!n || n->size() < 3 || n->size() > 6 || !mars::is_valid({(*n)[0], (*n)[1]})) {
+    throw UsageError(
+        "--cull-from '" + text +
+        "': expected LON,LAT,ALT,YAW,PITCH,ROLL (degrees, latitude within -90..90; metres above the sphere)");
+  }
+  n->resize(6, 0.0);
+  core::View other = view;
+  other.eye = mars::to_eye(mars::Pose{(*n)[0], (*n)[1], (*n)[2], (*n)[3], (*n)[4], (*n)[5]}, radius_m);
+  return other;
+}
+
 void require_valid(const core::View& view) {
   if (const std::string trouble = core::check(view); !trouble.empty()) throw UsageError(trouble);
+}
+
+// What the colours of inspect=levels mean.
+void print_levels(const core::FrameStats& stats, const paging::PlanetFile& planet) {
+  for (std::size_t n = 0; n < stats.tiles_by_level.size(); ++n) {
+    if (stats.tiles_by_level[n] == 0) continue;
+    const int level = static_cast<int>(n);
+    const double spacing_m = lod::post_spacing_m(level, planet.meta().tile.intervals(), planet.radius_m());
+    std::printf("  %.*s: level %d, posts of %.*f m, %d tiles\n",
+                static_cast<int>(core::level_colour(level).name.size()), core::level_colour(level).name.data(),
+                core::shown_level(level), spacing_m < 10.0 ? 2 : 0, spacing_m, stats.tiles_by_level[n]);
+  }
 }
 
 void render(RenderArguments& arguments, const Common& common) {
@@ -59,6 +88,8 @@ void render(RenderArguments& arguments, const Common& common) {
   request.view.fov_deg = arguments.fov_deg;
   request.view.eye = mars::to_eye(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
   require_valid(request.view);
+  if (const auto other = cull_view(arguments.cull_from, request.view, mars::kMarsRadius_m))
+    require_valid(*other);
   check_picture_output(arguments.output);
   if (!arguments.range.empty()) check_range_output(arguments.range);
   if (!arguments.certificate.empty()) check_output(arguments.certificate);
@@ -74,6 +105,7 @@ void render(RenderArguments& arguments, const Common& common) {
   request.sun = sun_for(request.settings, pose);
   request.want_range = !arguments.range.empty();
   require_valid(request.view);
+  request.cull_view = cull_view(arguments.cull_from, request.view, planet->radius_m());
   const auto renderer = make_renderer(arguments.picture, common, planet);
   request.paging.timeout_s = arguments.picture.wait_s;
   const core::DrawResult result = renderer->draw(request);
@@ -94,6 +126,7 @@ void render(RenderArguments& arguments, const Common& common) {
     std::printf("%s: %lld triangles in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(),
                 static_cast<long long>(result.stats.triangles), result.stats.tiles_drawn,
                 result.certificate.shift_bound_px, result.certificate.tile_error_m);
+    if (settings.values().inspect == core::Inspect::kLevels) print_levels(result.stats, *planet);
   }
 }
 
@@ -108,6 +141,8 @@ void add_render(CLI::App& program, Common& common) {
   CLI::Option* height =
       command->add_option("--height", arguments->height_m, "Metres above the terrain, instead of ALT")
           ->check(number_within(-1e7, 1e10));
+  command->add_option("--cull-from", arguments->cull_from,
+                      "LON,LAT,ALT,YAW,PITCH,ROLL: draw the tiles chosen for this pose, as seen from --pose");
   command->add_option("-o,--output", arguments->output, "Picture to write (.png, .jpg)")->required();
   command->add_option("--range", arguments->range, "Also write the range of every pixel, metres (.tif)");
   command->add_option("--certificate", arguments->certificate,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,9 @@ struct DrawRequest {
   SettingsValues settings;
   glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun (mars::sun_direction)
   bool want_range = false;
+  // Tiles are chosen and culled for this view, and drawn as `view` sees them: to look at culling from outside.
+  // What this view cannot see is not there. Nothing: for `view`.
+  std::optional<View> cull_view;
   PagingRequest paging;
 };
 

@@ -84,6 +84,12 @@ const std::vector<Key>& keys() {
        choice<&V::background>({word("black", Background::kBlack), word("white", Background::kWhite),
                                word("sky", Background::kSky)}),
        "", "colour behind the planet; sky is the dusty air of Mars, black seen from space"},
+      {"inspect",
+       choice<&V::inspect>({word("none", Inspect::kNone), word("borders", Inspect::kBorders),
+                            word("levels", Inspect::kLevels)}),
+       "",
+       "shows how the picture is made: lines along the tiles' borders, or tiles tinted by their level of "
+       "detail"},
   };
   return all;
 }

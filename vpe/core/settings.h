@@ -24,6 +24,13 @@ enum class Colour { kNone, kElevation };
 
 enum class Background { kBlack, kWhite, kSky };
 
+// What is shown of how the picture is made.
+enum class Inspect {
+  kNone,
+  kBorders,  // lines along the borders of tiles
+  kLevels,   // tiles tinted by their level (vpe/core/inspect.h)
+};
+
 struct SettingsValues {
   Mode mode = Mode::kTextured;
   Colour colour = Colour::kElevation;
@@ -36,6 +43,7 @@ struct SettingsValues {
   int samples = 1;
   bool smooth_edges = true;
   Background background = Background::kSky;
+  Inspect inspect = Inspect::kNone;
 
   bool operator==(const SettingsValues&) const = default;
 };

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "vpe/core/edge_filter.h"
+#include "vpe/core/inspect.h"
 #include "vpe/core/parallel.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/shaders.h"
@@ -24,6 +25,15 @@ using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+const glm::vec3 kBorderColour(0.1F, 1.0F, 0.2F);  // no ground is that green
+// The relief shows through.
+glm::vec4 level_tint(int level) {
+  constexpr float kShare = 0.6F;
+  const mars::Rgb c = core::level_colour(level).colour;
+  return {static_cast<float>(c.r) / 255.0F, static_cast<float>(c.g) / 255.0F, static_cast<float>(c.b) / 255.0F,
+          kShare};
 }
 
 class PolygonRenderer : public core::Renderer {
@@ -153,11 +163,17 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
   for (const SceneTile& t : scene_.tiles()) {
     draws_.push_back({t.mesh, picture ? t.texture : nullptr, request.settings.mode == core::Mode::kUnlit,
                       t.tile->key, t.skirt_m});
+    if (picture && request.settings.inspect == core::Inspect::kLevels)
+      draws_.back().tint = level_tint(t.tile->key.level);
   }
   tiles_.draw(request.view, lens, draws_,
               picture && wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   if (picture && request.settings.background == core::Background::kSky) draw_sky(request, lens);
+  if (picture && request.settings.inspect == core::Inspect::kBorders) {
+    glDepthFunc(GL_GREATER);
+    tiles_.draw_borders(request.view, lens, draws_, kBorderColour);
+  }
 }
 
 // Depth is interpolated with an absolute error of some 2^-24 near the near plane, so a first pass finds the

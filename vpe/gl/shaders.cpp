@@ -43,6 +43,7 @@ const char* const kTileFragmentShader = R"glsl(
 #version 450 core
 layout(location = 0) in vec3 texture_position;
 layout(location = 9) uniform vec4 flat_colour;
+layout(location = 14) uniform vec4 tint;
 layout(binding = 0) uniform sampler2D surface;
 layout(location = 0) out vec4 colour;
 #ifdef GAPS
@@ -57,6 +58,7 @@ void main() {
 #ifdef GAPS
   show_gaps(colour);
 #endif
+  colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
 }
 )glsl";
 
@@ -142,6 +144,7 @@ layout(location = 0) in vec3 texture_position;
 layout(location = 1) in float drop;
 layout(location = 2) flat in vec2 depths;
 layout(location = 9) uniform vec4 flat_colour;
+layout(location = 14) uniform vec4 tint;
 layout(binding = 0) uniform sampler2D surface;
 layout(location = 0) out vec4 colour;
 #ifdef GAPS
@@ -161,6 +164,7 @@ void main() {
 #ifdef GAPS
   show_gaps(colour);
 #endif
+  colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
 }
 )glsl";
 

@@ -34,6 +34,7 @@ enum TileUniform : int {
   kTileSides = 12,  // vec3: of the tile in its face's chart, u and v; log2 of how fine its stripes get, in
                     // periods to a unit of the chart. with_gaps() only, as the next
   kTilePhase = 13,  // uint: u + v at the tile's southwest corner, its fraction in 2^-32
+  kTint = 14,       // vec4: this colour takes the share alpha
 };
 
 // Uniform locations of the sky program.

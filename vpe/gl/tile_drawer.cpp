@@ -66,6 +66,7 @@ void TileDrawer::use(const TileDraw& tile, const core::View& view) {
   } else {
     glUniform4f(kFlatColour, 0.95F, 0.75F, 0.55F, 1);
   }
+  glUniform4fv(kTint, 1, &tile.tint[0]);
   if (has_gaps(tile)) {
     const mars::ChartRect rect = lod::chart_rect(tile.key);
     const double corner = rect.u0 + rect.v0;
@@ -132,6 +133,27 @@ void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const 
     draw_with(programs_, part, false);
     if (any_gaps) draw_with(*gap_programs_, part, true);
   }
+}
+
+void TileDrawer::draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+                              const glm::vec3& colour) {
+  constexpr float kHalfWidth_px = 0.75F;
+  constexpr float kNearer = 1.002F;
+  Lens nearer = lens;
+  nearer.near_m *= kNearer;  // depth is the near plane's over the distance
+  const glm::ivec2 size = core::drawn_size(view);
+  glBindVertexArray(array_.name());
+  glDepthMask(GL_FALSE);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+  use(programs_.ribbon, Part::kRibbon, view, nearer);
+  glUniform3f(kRibbon, 0.5F * static_cast<float>(size.x), 0.5F * static_cast<float>(size.y), kHalfWidth_px);
+  for (TileDraw tile : tiles) {
+    tile.texture = nullptr;
+    tile.tint = glm::vec4(colour, 1.0F);
+    draw_part(tile, Part::kRibbon, view);
+  }
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
 }
 
 }  // namespace vpe::gl

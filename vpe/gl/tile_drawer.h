@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -18,6 +20,7 @@ struct TileDraw {
   bool flat = false;  // the flat colour; of the texture only its gaps are shown. Null texture: flat, no gaps
   lod::TileKey key;
   std::array<float, 4> skirt_m{};  // by lod::Edge; 0 = none
+  glm::vec4 tint{0, 0, 0, 0};      // this colour takes the share alpha
 };
 
 // Two tiles store the same border relative to different centres, and rasterisers snap the two roundings of a
@@ -35,6 +38,12 @@ class TileDrawer {
   TileDrawer();
   // The target's framebuffer is bound, depth test and polygon mode are set.
   void draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, Gaps gaps);
+
+  // Lines along the borders of tiles over what draw() drew with the same view, lens and tiles. Depth and alpha
+  // stay as they are; a line is before the ground by a five-hundredth of its distance, so that its own tile
+  // does not hide it.
+  void draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+                    const glm::vec3& colour);
 
   // What is drawn at a pixel's centre is a point of the meshes moved by at most this in the picture: by a
   // vertex's snap, or from a border to the corner of a ribbon and its snap.

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "lod/look_from.h"
 #include "vpe/core/parallel.h"
 
 namespace vpe::gl {
@@ -278,7 +279,8 @@ void TileScene::prepare(const core::DrawRequest& request) {
   auto start = Clock::now();
   set_look(request);
   const lod::SelectOptions options = select_options(request.settings);
-  lod::select(options, planet_->tree(), lod::select_view(request.view), scratch_, wanted_);
+  lod::select(options, planet_->tree(), lod::select_view(request.cull_view.value_or(request.view)), scratch_, wanted_);
+  if (request.cull_view) lod::look_from(lod::select_view(request.view), planet_->tree(), wanted_);
   stats_.select_ms = ms_since(start);
   start = Clock::now();
   if (request.paging.wait) {

@@ -1,0 +1,314 @@
+// Nothing that brute force can see is culled: by the frustum, by the horizon, or by nearer ground.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "cull/horizon.h"
+#include "lod/occlusion.h"
+#include "tests/paging/drawn_ground.h"
+#include "tests/paging/rough_planet.h"
+#include "vpe/core/view.h"
+
+namespace {
+
+using test_support::DrawnGround;
+using test_support::DrawnMesh;
+using test_support::MeshStore;
+using test_support::Random;
+namespace core = vpe::core;
+
+class Ground {
+ public:
+  Ground()
+      : planet_(test_support::build_rough(dir_ / "rough.vpe")),
+        surface_(planet_, std::size_t{64} << 20),
+        store_(planet_) {}
+  const lod::TileTree& tree() const { return planet_->tree(); }
+  const paging::Surface& surface() const { return surface_; }
+  MeshStore& store() { return store_; }
+  double radius_m() const { return planet_->radius_m(); }
+
+ private:
+  test_support::TempDir dir_;
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  paging::Surface surface_;
+  MeshStore store_;
+};
+
+Ground& ground() {
+  static Ground made;
+  return made;
+}
+
+core::View look(Random& random, const glm::dvec3& eye_m, double pitch) {
+  core::View view;
+  const glm::dvec3 up = glm::normalize(eye_m);
+  const glm::dvec3 east = mars::any_perpendicular(up);
+  view.eye.eye_m = eye_m;
+  view.eye.axes = mars::oriented_axes({east, glm::cross(up, east), up}, random.uniform(-180, 180), pitch,
+                                      random.uniform(-30, 30));
+  view.width = 640;
+  view.height = 400;
+  view.fov_deg = random.integer(0, 3) == 0 ? random.log_uniform(5, 150) : 60.0;
+  if (random.integer(0, 4) == 0) view.projection = core::Projection::kEquirectangular;
+  return view;
+}
+
+// Near one of the places with detail, anywhere, or over a pole; from half a metre above ground to ten radii.
+glm::dvec3 hostile_eye(Random& random) {
+  glm::dvec3 d = random.direction();
+  const double near = random.log_uniform(1e-5, 0.05);
+  switch (random.integer(0, 7)) {
+    case 0:
+    case 1: d = glm::normalize(test_support::kCanyon + near * d); break;
+    case 2: d = glm::normalize(test_support::kCrater + near * d); break;
+    case 3:
+    case 4: d = glm::normalize(test_support::kBasin + near * d); break;
+    case 5:
+      d = random.integer(0, 3) == 0 ? glm::dvec3(0, 0, random.integer(0, 1) * 2 - 1)
+                                    : glm::normalize(test_support::kPole + near * d);
+      break;
+    default: break;
+  }
+  const double height = random.integer(0, 3) == 0  ? 0.5
+                        : random.integer(0, 2) > 0 ? random.log_uniform(0.5, 3000)
+                                                   : random.log_uniform(1000, 10 * ground().radius_m());
+  return d * (ground().surface().at(d).radius_m + height);
+}
+
+lod::Selection select(const core::View& view, double tolerance_px, double exaggeration) {
+  lod::SelectOptions options;
+  options.tolerance_px = tolerance_px;
+  options.exaggeration = exaggeration;
+  options.max_triangles = 150000;
+  lod::SelectScratch scratch;
+  lod::Selection selection;
+  lod::select(options, ground().tree(), lod::select_view(view), scratch, selection);
+  return selection;
+}
+
+struct Occlusion {
+  std::vector<std::uint8_t> hidden;
+  double ms = 0;
+};
+
+Occlusion occlude(const lod::Selection& selection, const glm::dvec3& eye_m, bool above, double margin_rad,
+                  lod::OcclusionPass& pass) {
+  std::vector<lod::OccludingTile> tiles;
+  for (const lod::SelectedTile& t : selection.tiles) {
+    tiles.push_back({t.key, ground().tree().shell(t.index, selection.exaggeration, t.error_m),
+                     &ground().store().mesh(t, selection.exaggeration).walls});
+  }
+  Occlusion out;
+  const auto start = std::chrono::steady_clock::now();
+  lod::occlude(tiles, eye_m, above, margin_rad, ground().radius_m(), pass, out.hidden);
+  out.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+// A point of a mesh: most often a vertex, and of a few the one that rises highest in the eye's view.
+glm::dvec3 hostile_point(Random& random, const DrawnMesh& mesh, const glm::dvec3& eye_m) {
+  const glm::dvec3 up = glm::normalize(eye_m);
+  const auto vertex = [&] {
+    return mesh
+        .vertices[static_cast<std::size_t>(random.integer(0, static_cast<int>(mesh.vertices.size()) - 1))];
+  };
+  if (random.integer(0, 3) == 0) {
+    const auto t =
+        static_cast<std::size_t>(3 * random.integer(0, static_cast<int>(mesh.triangles.size() / 3) - 1));
+    const double a = random.uniform(0, 1);
+    const double b = random.uniform(0, 1 - a);
+    return a * mesh.vertices[mesh.triangles[t]] + b * mesh.vertices[mesh.triangles[t + 1]] +
+           (1 - a - b) * mesh.vertices[mesh.triangles[t + 2]];
+  }
+  glm::dvec3 best = vertex();
+  double highest = glm::dot(glm::normalize(best - eye_m), up);
+  for (int n = 0; n < 30; ++n) {
+    const glm::dvec3 other = vertex();
+    const double rise = glm::dot(glm::normalize(other - eye_m), up);
+    if (rise > highest) best = other, highest = rise;
+  }
+  return best;
+}
+
+// Is a place of S in one of the tiles (all of which are drawn)?
+bool drawn_at(const lod::Selection& selection, const glm::dvec3& place) {
+  const std::int64_t z = lod::z_position(lod::tile_at(mars::chart_point(place), lod::kMaxLevel));
+  const auto after =
+      std::upper_bound(selection.tiles.begin(), selection.tiles.end(), z,
+                       [](std::int64_t at, const lod::SelectedTile& t) { return at < lod::z_position(t.key); });
+  return after != selection.tiles.begin() &&
+         z < lod::z_position((after - 1)->key) + lod::z_extent((after - 1)->key.level);
+}
+
+struct Tally {
+  int eyes = 0, above = 0, below_datum = 0, tiles = 0, hidden = 0, points = 0, rays = 0, hits = 0, limb = 0;
+};
+
+// Of what S shows in a pixel, on the picture's border or where the horizon is, nothing may be missing from the
+// tiles.
+void check_frustum_and_horizon(Random& random, const core::View& view, const lod::Selection& selection,
+                               Tally& tally) {
+  const glm::dvec3& eye = view.eye.eye_m;
+  for (int ray = 0; ray < 3; ++ray) {
+    double x = random.uniform(0, view.width);
+    double y = random.uniform(0, view.height);
+    if (random.integer(0, 2) == 0) x = random.integer(0, 1) * view.width;
+    if (random.integer(0, 2) == 0) y = random.integer(0, 1) * view.height;
+    glm::dvec3 d = core::pixel_ray(view, x, y);
+    if (ray == 2 && view.projection == core::Projection::kEquirectangular) {
+      // Just below where rays pass over the planet.
+      const double down = mars::horizon_dip_rad(glm::length(eye) - ground().radius_m(), ground().radius_m()) -
+                          random.uniform(-0.02, 0.01);
+      const glm::dvec3 up = glm::normalize(eye);
+      const glm::dvec3 ahead = glm::normalize(d - glm::dot(d, up) * up);
+      d = std::cos(down) * ahead - std::sin(down) * up;
+      ++tally.limb;
+    }
+    const double distance = ground().surface().cast(eye, glm::normalize(d));
+    ++tally.rays;
+    if (!std::isfinite(distance) || distance == 0.0) continue;
+    ++tally.hits;
+    const glm::dvec3 hit = eye + distance * glm::normalize(d);
+    // Off by rounding it may lie in the next tile.
+    const glm::dvec3 back = eye + distance * (1 - 1e-9) * glm::normalize(d);
+    ASSERT_TRUE(drawn_at(selection, hit) || drawn_at(selection, back))
+        << "eye " << tally.eyes << " at " << glm::length(eye) - ground().radius_m() << " m, hit at " << distance
+        << " m";
+  }
+}
+
+void check_occlusion(Random& random, const core::View& view, const lod::Selection& selection,
+                     lod::OcclusionPass& pass, Tally& tally) {
+  const glm::dvec3& eye = view.eye.eye_m;
+  const DrawnGround drawn(ground().store(), selection, eye);
+  // Where the ground under the eye is not in the picture, S stands for it, with room for the error.
+  const bool above = drawn.eye_is_above().value_or(
+      glm::length(eye) > ground().radius_m() + selection.exaggeration * (ground().surface().at(eye).height_m) +
+                             selection.max_error_m);
+  tally.above += above ? 1 : 0;
+  const Occlusion found = occlude(selection, eye, above, 0.0, pass);
+  std::vector<std::size_t> hidden;
+  for (std::size_t n = 0; n < found.hidden.size(); ++n) {
+    if (found.hidden[n] != 0) hidden.push_back(n);
+  }
+  tally.tiles += static_cast<int>(selection.tiles.size());
+  tally.hidden += static_cast<int>(hidden.size());
+  ASSERT_TRUE(above || hidden.empty());
+  for (int n = 0; n < 3 && !hidden.empty(); ++n) {
+    const std::size_t tile =
+        hidden[static_cast<std::size_t>(random.integer(0, static_cast<int>(hidden.size()) - 1))];
+    ++tally.points;
+    ASSERT_TRUE(drawn.blocked(hostile_point(random, drawn.mesh(tile), eye)))
+        << "eye " << tally.eyes << ", tile " << lod::to_string(selection.tiles[tile].key);
+  }
+}
+
+void expect_never_culled(std::uint64_t seed, int eyes) {
+  Random random(seed);
+  lod::OcclusionPass pass;
+  Tally tally;
+  for (; tally.eyes < eyes && !testing::Test::HasFatalFailure(); ++tally.eyes) {
+    const glm::dvec3 eye = hostile_eye(random);
+    tally.below_datum += glm::length(eye) < ground().radius_m() ? 1 : 0;
+    const core::View view = look(random, eye, random.uniform(-90, 45));
+    const lod::Selection selection = select(view, random.log_uniform(0.5, 20), 1.0);
+    check_frustum_and_horizon(random, view, selection, tally);
+    check_occlusion(random, view, selection, pass, tally);
+  }
+  std::printf(
+      "eyes %d (above ground %d, below the datum %d), rays %d, hits %d, at the limb %d, tiles %d, hidden %d, "
+      "points %d\n",
+      tally.eyes, tally.above, tally.below_datum, tally.rays, tally.hits, tally.limb, tally.tiles, tally.hidden,
+      tally.points);
+  EXPECT_GT(tally.above, eyes * 9 / 10);
+  EXPECT_GT(tally.below_datum, eyes / 10);
+  EXPECT_GT(tally.hits, eyes);
+  EXPECT_GT(tally.points, eyes);
+}
+
+TEST(NeverCull, WhatIsSeenIsDrawn) { expect_never_culled(61, 400); }
+
+// 100 000 eyes in all, in four tests so that they can run side by side.
+class LongNeverCull : public testing::TestWithParam<std::uint64_t> {};
+TEST_P(LongNeverCull, WhatIsSeenIsDrawn) { expect_never_culled(GetParam(), 25000); }
+INSTANTIATE_TEST_SUITE_P(LongSeeds, LongNeverCull, testing::Values(621, 622, 623, 624));
+
+// Exaggerated ground hides more, and its walls move with it.
+TEST(NeverCull, ExaggeratedGroundHidesOnlyWhatItHides) {
+  Random random(63);
+  lod::OcclusionPass pass;
+  for (const double exaggeration : {0.3, 4.0}) {
+    Tally tally;
+    for (; tally.eyes < 100; ++tally.eyes) {
+      const glm::dvec3 d =
+          glm::normalize(test_support::kCanyon + random.log_uniform(1e-5, 0.05) * random.direction());
+      const double height = ground().surface().at(d).height_m;
+      const core::View view =
+          look(random, d * (ground().radius_m() + exaggeration * height + random.log_uniform(10, 1e4)),
+               random.uniform(-30, 10));
+      check_occlusion(random, view, select(view, 4.0, exaggeration), pass, tally);
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(tally.points, 60);
+  }
+}
+
+// Tiles none of whose points are seen, of up to `most` a tile; and how many of them the pass found.
+struct Share {
+  int tiles = 0, hidden = 0, found = 0;
+  double ms = 0;
+};
+
+Share share_found(Random& random, const glm::dvec3& place, double spread_rad, int views, int most) {
+  lod::OcclusionPass pass;
+  Share share;
+  for (int n = 0; n < views; ++n) {
+    const glm::dvec3 d = glm::normalize(place + spread_rad * random.uniform(0, 1) * random.direction());
+    core::View view = look(random, d * (ground().surface().at(d).radius_m + random.log_uniform(2, 200)),
+                           random.uniform(-5, 5));
+    view.projection = core::Projection::kPerspective;
+    view.fov_deg = 60;
+    view.width = 1280;
+    view.height = 720;
+    const lod::Selection selection = select(view, 1.0, 1.0);
+    const DrawnGround drawn(ground().store(), selection, view.eye.eye_m);
+    const Occlusion found = occlude(selection, view.eye.eye_m, true, 0.0, pass);
+    share.ms += found.ms;
+    share.tiles += static_cast<int>(selection.tiles.size());
+    for (std::size_t tile = 0; tile < selection.tiles.size(); ++tile) {
+      const DrawnMesh& mesh = drawn.mesh(tile);
+      const auto step = std::max<std::size_t>(1, mesh.vertices.size() / static_cast<std::size_t>(most));
+      bool seen = false;
+      for (std::size_t v = 0; v < mesh.vertices.size() && !seen; v += step)
+        seen = !drawn.blocked(mesh.vertices[v]);
+      EXPECT_FALSE(seen && found.hidden[tile] != 0) << lod::to_string(selection.tiles[tile].key);
+      share.hidden += seen ? 0 : 1;
+      share.found += found.hidden[tile] != 0 ? 1 : 0;
+    }
+  }
+  std::printf("tiles %d, hidden %d, found %d (%.0f %%), %.3f ms a view, %.2f us a tile\n", share.tiles,
+              share.hidden, share.found, 100.0 * share.found / std::max(1, share.hidden), share.ms / views,
+              1e3 * share.ms / std::max(1, share.tiles));
+  return share;
+}
+
+TEST(NeverCull, FindsHalfOfWhatIsHiddenInACanyonAndACrater) {
+  Random random(64);
+  for (const glm::dvec3& place : {test_support::kCanyon, test_support::kCrater}) {
+    const Share share = share_found(random, place, 0.001, 4, 40);
+    EXPECT_GT(share.hidden, 20);
+    EXPECT_GE(2 * share.found, share.hidden);
+  }
+}
+
+TEST(LongNeverCullShare, FindsHalfOfWhatIsHiddenInACanyonAndACrater) {
+  Random random(65);
+  for (const glm::dvec3& place : {test_support::kCanyon, test_support::kCrater}) {
+    const Share share = share_found(random, place, 0.002, 60, 200);
+    EXPECT_GE(2 * share.found, share.hidden);
+  }
+}
+
+}  // namespace
