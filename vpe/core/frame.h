@@ -7,6 +7,7 @@
 
 #include "mars/source.h"
 #include "vpe/core/certificate.h"
+#include "vpe/core/interest.h"
 #include "vpe/core/settings.h"
 #include "vpe/core/view.h"
 
@@ -29,10 +30,10 @@ struct FrameStats {
   int tiles_culled_horizon = 0;
   int tiles_drawn = 0;
   int tiles_missing = 0;
-  std::int64_t triangles = 0;        // of the drawn meshes, skirts not counted
+  std::int64_t triangles = 0;  // of the drawn meshes, skirts not counted
   std::int64_t skirt_triangles = 0;
-  std::int64_t bytes_resident = 0;   // CPU and GPU payloads held
-  std::vector<int> tiles_by_level;   // index 0 = level 0
+  std::int64_t bytes_resident = 0;  // CPU and GPU payloads held
+  std::vector<int> tiles_by_level;  // index 0 = level 0
   double select_ms = 0;
   double load_ms = 0;
   double draw_ms = 0;
@@ -44,6 +45,10 @@ struct DrawRequest {
   SettingsValues settings;
   glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun (mars::sun_direction)
   bool want_range = false;
+  std::vector<InterestRegion> interest;  // where regions overlap, their levels add up
+  // >= 1: what is given up for speed (lod/frame_budget.h, lod/look_and_wait.h). The tolerance counts times
+  // this, in rule hitchner every distance. 1 in single pictures and films.
+  double coarsening = 1;
 };
 
 struct DrawResult {

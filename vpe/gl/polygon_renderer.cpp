@@ -8,7 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "lod/select.h"
+#include "lod/options.h"
 #include "vpe/core/edge_filter.h"
 #include "vpe/core/parallel.h"
 #include "vpe/gl/certify.h"
@@ -49,7 +49,7 @@ class PolygonRenderer : public core::Renderer {
                   const RendererOptions& options)
       : context_(std::move(context)),
         planet_(std::move(planet)),
-        most_triangles_(static_cast<std::int64_t>(options.memory_bytes / kBytesPerTriangle)),
+        most_triangles_(most_triangles(options.memory_bytes)),
         memory_(std::max(options.memory_bytes / 8,
                          options.memory_bytes - std::min(options.memory_bytes, kDriverBytes))),
         pool_(options.threads),
@@ -132,12 +132,7 @@ ShadeParams PolygonRenderer::shade_params(const core::DrawRequest& request) cons
 }
 
 void PolygonRenderer::select(const core::DrawRequest& request, const ShadeParams& shading) {
-  lod::SelectOptions options;
-  options.tolerance_px = request.settings.lod_tolerance_px;
-  options.exaggeration = request.settings.exaggeration;
-  options.max_triangles = request.settings.lod_triangles > 0
-                              ? std::min<std::int64_t>(request.settings.lod_triangles, most_triangles_)
-                              : most_triangles_;
+  const lod::SelectOptions options = lod::select_options(request, planet_->radius_m(), most_triangles_);
   lod::select(options, planet_->tree(), lod::select_view(request.view), scratch_, selection_);
   lod::skirt_depths(selection_, planet_->tree(), skirts_);
   drawn_.clear();
@@ -450,6 +445,10 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
 }
 
 }  // namespace
+
+std::int64_t most_triangles(std::size_t memory_bytes) {
+  return static_cast<std::int64_t>(memory_bytes / kBytesPerTriangle);
+}
 
 std::unique_ptr<core::Renderer> make_polygon_renderer(std::shared_ptr<Context> context,
                                                       std::shared_ptr<const paging::PlanetFile> planet,

@@ -14,6 +14,9 @@ struct RendererOptions {
   int threads = 0;                                  // for making tiles ready; 0 = all cores
 };
 
+// Triangles of the largest frame for which the memory is enough.
+std::int64_t most_triangles(std::size_t memory_bytes);
+
 // Draws with complete data: tiles that are not resident are loaded before the frame is drawn. Pictures do not
 // depend on what was drawn before. Positions are relative to each tile's centre, the eye is subtracted in
 // double, depth is reversed 32-bit float. Range of a pixel is the distance to the drawn triangle at the pixel's
