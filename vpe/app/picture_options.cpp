@@ -1,6 +1,9 @@
 #include "vpe/app/picture_options.h"
 
+#include <cmath>
+
 #include "mars/sun.h"
+#include "vpe/app/planet_argument.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/polygon_renderer.h"
 
@@ -16,7 +19,35 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")
       ->check(number_within(0.0, 1000.0));
+  command
+      .add_option("--interest", options.interest,
+                  "LON,LAT,RADIUS,LEVELS: a circle (degrees, metres) with so many levels of detail more or, "
+                  "negative, fewer (repeatable; overlapping circles add up)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
+
+std::vector<core::InterestRegion> parse_interest(const PictureOptions& options) {
+  using Limits = core::InterestLimits;
+  std::vector<core::InterestRegion> regions;
+  for (const std::string& text : options.interest) {
+    const auto n = parse_numbers(text);
+    const bool good = n && n->size() == 4 && std::abs((*n)[0]) <= 360.0 && std::abs((*n)[1]) <= 90.0 &&
+                      (*n)[2] >= 0.0 && (*n)[2] <= Limits::kMaxRadius_m &&
+                      std::abs((*n)[3]) <= Limits::kMaxLevels && (*n)[3] == std::trunc((*n)[3]);
+    if (!good) {
+      const std::string most = std::to_string(Limits::kMaxLevels);
+      throw UsageError(
+          "--interest '" + text +
+          "': expected LON,LAT,RADIUS,LEVELS: degrees (longitude -360..360, latitude -90..90), metres (0.." +
+          core::format_number(Limits::kMaxRadius_m) + "), a whole number (-" + most + ".." + most + ")");
+    }
+    regions.push_back({(*n)[0], (*n)[1], (*n)[2], static_cast<int>((*n)[3])});
+  }
+  return regions;
+}
+
+std::size_t memory_bytes(const Common& common) { return static_cast<std::size_t>(common.memory_mb) << 20; }
 
 core::Settings make_settings(const PictureOptions& options) {
   core::Settings settings;
@@ -35,7 +66,7 @@ std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, con
                                               std::shared_ptr<const paging::PlanetFile> planet) {
   (void)options;
   gl::RendererOptions renderer;
-  renderer.memory_bytes = static_cast<std::size_t>(common.memory_mb) << 20;
+  renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;
   return gl::make_polygon_renderer(gl::Context::create(), std::move(planet), renderer);
 }

@@ -14,7 +14,8 @@ namespace vpe::app {
 struct PictureOptions {
   std::vector<std::string> set;  // KEY=VALUE
   std::string backend = "polygon";
-  double tolerance_px = -1;  // < 0: as set
+  double tolerance_px = -1;           // < 0: as set
+  std::vector<std::string> interest;  // LON,LAT,RADIUS_M,LEVELS
 };
 
 void add_picture_options(CLI::App& command, PictureOptions& options);
@@ -23,6 +24,10 @@ void add_picture_options(CLI::App& command, PictureOptions& options);
 // UsageError naming the key.
 core::Settings make_settings(const PictureOptions& options);
 
+// The regions of every --interest, in order. Throws UsageError that says what is expected.
+std::vector<core::InterestRegion> parse_interest(const PictureOptions& options);
+
+std::size_t memory_bytes(const Common& common);
 std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet);
 
