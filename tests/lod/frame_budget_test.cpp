@@ -324,6 +324,7 @@ TEST(FrameBudget, HoldsTheTrianglesOfARecordedFlight) {
     const double median = ratios[ratios.size() / 2];
     EXPECT_GT(free, 10 * kBudget_ms);  // the budget is needed
     RecordProperty("frames_above_1.3_delay_" + std::to_string(delay), above);
+    RecordProperty("free_percent", static_cast<int>(100 * free / kBudget_ms));
     RecordProperty("turns_delay_" + std::to_string(delay), turns);
     RecordProperty("median_percent_delay_" + std::to_string(delay), static_cast<int>(100 * median));
     // Steps, tiles that come into view, and trials of single tiles worth two budgets.
