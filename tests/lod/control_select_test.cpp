@@ -238,6 +238,35 @@ TEST(ControlSelection, MoreInterestNeverCoarsens) {
   EXPECT_GT(finer, 10);
 }
 
+TEST(ControlSelection, CoarseningCountsOnTheToleranceOrOnDistances) {
+  Random random(64);
+  int fewer = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    core::DrawRequest request;
+    request.view = random_view(random);
+    request.settings.lod_tolerance_px = random.log_uniform(0.2, 4);
+    request.coarsening = 4;
+    core::DrawRequest same = request;
+    same.coarsening = 1;
+    same.settings.lod_tolerance_px *= 4;
+    const auto drawn = [](const core::DrawRequest& r) {
+      return selected(lod::select_options(r, fake::kRadius_m, 1'000'000'000), rough_tree(), r.view);
+    };
+    ASSERT_EQ(drawn(request).triangles, drawn(same).triangles);
+    request.settings.lod_rule = core::LodRule::kHitchner;
+    request.settings.lod_tolerance_px = 0;  // has no say
+    same = request;
+    same.coarsening = 1;
+    same.settings.lod_distance_scale_m /= 4;
+    const Selection coarse = drawn(request);
+    ASSERT_EQ(coarse.triangles, drawn(same).triangles);
+    same.settings.lod_distance_scale_m *= 4;
+    ASSERT_LE(coarse.visited, drawn(same).visited);
+    fewer += coarse.visited < drawn(same).visited ? 1 : 0;
+  }
+  EXPECT_GT(fewer, 30);
+}
+
 TEST(ControlSelection, TheErrorThatIsReportedIsTheTrueOne) {
   const core::View view = view_at(0, 0, 2e6, 0, -90);
   SelectOptions options;
