@@ -26,6 +26,7 @@ void check(const SelectOptions& options, const SelectView& view) {
     throw std::invalid_argument("select: the exaggeration is not a positive number");
   }
   if (options.max_triangles < 0) throw std::invalid_argument("select: the number of triangles is negative");
+  check(options.control);
 }
 
 double projected(double error_m, double focal_px, double distance_m, double stretch) {
@@ -39,7 +40,7 @@ double projected(double error_m, double focal_px, double distance_m, double stre
 SelectView select_view(const vpe::core::View& view) {
   const bool perspective = view.projection == vpe::core::Projection::kPerspective;
   return {view.eye.eye_m, perspective ? vpe::core::focal_px(view) : view.width / (2.0 * std::numbers::pi),
-          cull::make_frustum(view), picture_plane(view)};
+          cull::make_frustum(view), picture_plane(view), centre_of_view(view)};
 }
 
 class Selector {
@@ -52,7 +53,10 @@ class Selector {
         eye_(cull::make_eye(view.eye_m)),
         horizon_(cull::make_horizon(eye_, tree.lowest_radius_m(options.exaggeration))),
         heap_(scratch.heap_),
-        out_(out) {}
+        out_(out),
+        hitchner_(options.control.rule == vpe::core::LodRule::kHitchner),
+        controlled_(!is_neutral(options.control)),
+        enough_(hitchner_ ? 0.0 : options.tolerance_px) {}
 
   void run() {
     heap_.clear();
@@ -74,7 +78,6 @@ class Selector {
     c.error_m = error_m(tree_[index], variant);
     const cull::Shell shell = tree_.shell(index, options_.exaggeration, c.error_m);
     c.chord2 = cull::nearest_chord2(shell.rect, eye_.direction);
-    c.factor = 1.0;
     c.stretch = sky_stretch(shell, cull::make_volume(shell));
     measure(c, shell);
     return tile_of(c);
@@ -94,7 +97,8 @@ class Selector {
   };
 
   static bool less_urgent(const Candidate& a, const Candidate& b) {
-    return a.urgency != b.urgency ? a.urgency < b.urgency : a.index > b.index;
+    if (a.urgency != b.urgency) return a.urgency < b.urgency;
+    return a.error_px != b.error_px ? a.error_px < b.error_px : a.index > b.index;
   }
 
   void reset() {
@@ -117,10 +121,18 @@ class Selector {
                        tile.min_height_m, tile.max_height_m, tree_.radius_m());
   }
 
+  // Rule hitchner: the levels that the tile lacks.
+  double urgency(const Candidate& c) const {
+    if (!controlled_) return c.error_px;
+    if (!hitchner_) return c.error_px * std::exp2(c.control);
+    const TileInfo& tile = tree_[c.index];
+    return c.control - lod_number(tile.key, c.variant, static_cast<int>(tile.variants.size()));
+  }
+
   void measure(Candidate& c, const cull::Shell& shell) const {
     c.min_distance_m = cull::min_distance_m(eye_, c.chord2, shell.min_radius_m, shell.max_radius_m);
     c.error_px = projected(c.error_m, view_.focal_px, c.min_distance_m, c.stretch);
-    c.urgency = c.error_px * c.factor;
+    c.urgency = urgency(c);
   }
 
   double sky_stretch(const cull::Shell& shell, const cull::TileVolume& volume) const {
@@ -154,11 +166,12 @@ class Selector {
     }
     c.mask = mask;
     c.stretch = std::min(most_stretch, sky_stretch(shell, volume));
-    c.factor = 1.0;
     measure(c, shell);
-    if (options_.level_shift.levels != nullptr) {
-      c.factor = std::exp2(options_.level_shift.levels(options_.level_shift.context, tile, c.min_distance_m));
-      c.urgency = c.error_px * c.factor;
+    if (controlled_) {
+      const double sum =
+          control_terms(options_.control, view_.centre, {volume, shell.rect, c.min_distance_m}).sum;
+      c.control = hitchner_ ? wanted_lod(sum) : lod::level_shift(sum);
+      c.urgency = urgency(c);
     }
     family.triangles += triangles(c);
     family.members[family.size++] = c;
@@ -171,7 +184,7 @@ class Selector {
     out_.triangles += family.triangles;
     for (std::size_t n = 0; n < family.size; ++n) {
       const Candidate& c = family.members[n];
-      if (is_full_grid(tree_[c.index], c.variant) || !(c.urgency > options_.tolerance_px)) {
+      if (is_full_grid(tree_[c.index], c.variant) || !(c.urgency > enough_)) {
         draw(c);
       } else {
         heap_.push_back(c);
@@ -208,7 +221,8 @@ class Selector {
   }
 
   SelectedTile tile_of(const Candidate& c) const {
-    return {tree_[c.index].key, c.index, c.variant, c.error_m, c.error_px, c.min_distance_m, c.stretch};
+    return {tree_[c.index].key, c.index,          c.variant, c.error_m,
+            c.error_px,         c.min_distance_m, c.stretch, c.control};
   }
   void draw(const Candidate& c) { out_.tiles.push_back(tile_of(c)); }
 
@@ -225,6 +239,9 @@ class Selector {
   cull::Horizon horizon_;
   std::vector<Candidate>& heap_;
   Selection& out_;
+  bool hitchner_;
+  bool controlled_;
+  double enough_;  // urgency up to which a tile is drawn
 };
 
 void select(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,

@@ -5,8 +5,13 @@
 // with children is replaced by them, a finest tile by its next mesh. The projected error of a tile is
 //   error bound (m) * focal length (px) / least distance from the eye to where the tile's surface can be (m)
 //   * stretch of the tile's place in the picture (lod/stretch.h), where the tile may stand against the sky,
-// an upper bound of the shift of every pixel that the tile covers, and of how far off in the picture its outline lies
-// against the sky.
+// an upper bound of the shift of every pixel that the tile covers, and of how far off in the picture its
+// outline lies against the sky.
+//
+// Level control (lod/control.h) shifts that: in rule error a tile's projected error counts 2^levels times when
+// the worst tile is sought and compared with the tolerance. In rule hitchner the error decides nothing: the
+// tile that lacks most levels is refined (of equals the one with the worst error) until none lacks any. In both
+// rules what is reported is the true error.
 #pragma once
 
 #include <array>
@@ -15,26 +20,19 @@
 #include <vector>
 
 #include "cull/frustum.h"
+#include "lod/control.h"
 #include "lod/stretch.h"
 #include "lod/tree.h"
 
 namespace lod {
 
-// Levels that composite control adds to a tile (negative: takes away): its projected error counts 2^levels
-// times when the worst tile is sought and compared with the tolerance. What is reported stays the true error.
-// Called once for every tile that may be seen; pure, finite.
-struct LevelShift {
-  double (*levels)(const void* context, const TileInfo& tile, double min_distance_m) = nullptr;
-  const void* context = nullptr;
-};
-
 struct SelectOptions {
-  double tolerance_px = 1.0;  // >= 0; 0: only meshes without any error
+  double tolerance_px = 1.0;  // >= 0; 0: only meshes without any error. Not used in rule hitchner
   double exaggeration = 1.0;  // > 0; heights are drawn times this
   // Hard cap on the triangles of the meshes, 0 = none. Refining stops before it would be passed; only roots in
   // view, which nothing can be coarser than, may pass it by themselves.
   std::int64_t max_triangles = 0;
-  LevelShift level_shift;
+  LevelControl control;
 };
 
 struct SelectView {
@@ -42,6 +40,7 @@ struct SelectView {
   double focal_px = 1.0;  // pixels of picture for a tangent of 1
   cull::Frustum frustum;
   PicturePlane plane;
+  CentreOfView centre;
 };
 
 // Panoramas: no frustum, no plane, pixels for a radian on the horizon.
@@ -55,6 +54,7 @@ struct SelectedTile {
   double error_px = 0;        // projected; infinite where the eye is within the error of the ground
   double min_distance_m = 0;  // lower bound
   double stretch = 1;         // upper bound, >= 1; 1 for what cannot stand against the sky
+  double control = 0;         // rule error: levels that its error counted more; hitchner: the LOD number wanted
 };
 
 struct Selection {
@@ -68,7 +68,7 @@ struct Selection {
   std::int64_t triangles = 0;
   double max_error_m = 0;
   double max_error_px = 0;
-  bool capped = false;              // the triangles were spent before the tolerance was met
+  bool capped = false;              // the triangles were spent before the rule was met
   std::vector<int> tiles_by_level;  // drawn; index 0 = level 0, as long as the deepest level drawn
 };
 
@@ -83,7 +83,7 @@ class SelectScratch {
     double min_distance_m;
     double stretch;
     double chord2;
-    double factor;
+    double control;
     TileTree::Index index;
     int variant;
     cull::PlaneMask mask;

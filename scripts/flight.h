@@ -24,6 +24,7 @@
 
 #include "mars/pose.h"
 #include "scripts/frame_rate.h"
+#include "vpe/core/interest.h"
 
 namespace scripts {
 
@@ -31,8 +32,8 @@ struct FlightLimits {
   static constexpr double kMaxTime_s = 1e6;
   static constexpr double kMinAlt_m = -1e7;
   static constexpr double kMaxAlt_m = 1e10;
-  static constexpr double kMaxRadius_m = 1e8;  // of a region of interest
-  static constexpr int kMaxLevels = 30;
+  static constexpr double kMaxRadius_m = vpe::core::InterestLimits::kMaxRadius_m;  // of a region of interest
+  static constexpr int kMaxLevels = vpe::core::InterestLimits::kMaxLevels;
 };
 
 struct FlightView {
@@ -74,7 +75,7 @@ struct SetCommand {
   bool operator==(const SetCommand&) const = default;
 };
 
-// A region where the level of detail is shifted by `levels`.
+// From a time on, a region of interest (core::InterestRegion).
 struct Interest {
   double time_s = 0;
   double lon_deg = 0;

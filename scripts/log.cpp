@@ -33,7 +33,8 @@ FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view) 
 }
 
 void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadLook& look,
-                      const vpe::core::Settings& settings) {
+                      const vpe::core::Settings& settings,
+                      std::span<const vpe::core::InterestRegion> interest) {
   const Look turned{time_s, look.yaw_deg, look.pitch_deg, look.roll_deg};
   const bool moved =
       look.yaw_deg != look_.yaw_deg || look.pitch_deg != look_.pitch_deg || look.roll_deg != look_.roll_deg;
@@ -61,11 +62,13 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadLoo
     }
     settings_ = settings;
   }
+  for (; regions_ < interest.size(); ++regions_) {
+    const vpe::core::InterestRegion& r = interest[regions_];
+    lines += to_line(Interest{time_s, r.lon_deg, r.lat_deg, r.radius_m, r.levels});
+  }
   file_.write(lines);
   last_frame_s_ = time_s;
 }
-
-void FlightLog::interest(const Interest& interest) { file_.write(to_line(interest)); }
 
 void FlightLog::end(double time_s) {
   file_.write(end_line(time_s));

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -38,11 +39,10 @@ class FlightLog {
   FlightLog(const std::filesystem::path& path, const FlightView& view);
 
   // Times ascend. Writes the pose; the head and the settings only where they changed since the last frame.
+  // `interest` are all regions so far: those beyond the last frame's are written. (A flight cannot take a
+  // region back.)
   void frame(double time_s, const mars::Pose& pose, const mars::HeadLook& look,
-             const vpe::core::Settings& settings);
-
-  // At or after the time of the last frame.
-  void interest(const Interest& interest);
+             const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest = {});
 
   // Writes the end, at or after the last frame, and closes the file.
   void end(double time_s);
@@ -52,6 +52,7 @@ class FlightLog {
   std::optional<double> last_frame_s_;
   Look look_{.time_s = -1};       // last one written, or straight ahead
   vpe::core::Settings settings_;  // last ones written
+  std::size_t regions_ = 0;       // written so far
 };
 
 }  // namespace scripts

@@ -154,6 +154,7 @@ TEST_F(BadInput, OutputsOfPicturesAreCheckedBeforeTheWork) {
   render({"-o", "x.png", "--range", "r.png"}, {"r.png", "cannot write", ".tif"});
   render({"-o", "x.png", "--range", "none/r.tif"}, {"none/r.tif", "no folder 'none'"});
   render({"-o", "x.png", "--certificate", "none/c.json"}, {"none/c.json", "no folder 'none'"});
+  render({"-o", "x.png", "--explain-lod", "none/e.json"}, {"none/e.json", "no folder 'none'"});
   const auto fly = [&](const Words& more, const Words& parts) {
     Words words{"fly", "f.flight", "missing.vpe"};
     words.insert(words.end(), more.begin(), more.end());

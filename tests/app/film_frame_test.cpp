@@ -55,6 +55,13 @@ TEST(FilmFrame, EverythingThatAPictureDependsOnIsInItsFingerprint) {
   change("projection", [](Inputs& i) { i.request.view.projection = vpe::core::Projection::kCylinder; });
   change("offset", [](Inputs& i) { i.request.view.principal_offset_px.y = 1; });
   change("part", [](Inputs& i) { i.request.view.part.width = 8; });
+  change("coarsening", [](Inputs& i) { i.request.coarsening = 2; });
+  change("a region", [](Inputs& i) { i.request.interest = {{1, 2, 3, 4}}; });
+  change("its longitude", [](Inputs& i) { i.request.interest = {{9, 2, 3, 4}}; });
+  change("its latitude", [](Inputs& i) { i.request.interest = {{1, 9, 3, 4}}; });
+  change("its radius", [](Inputs& i) { i.request.interest = {{1, 2, 9, 4}}; });
+  change("its levels", [](Inputs& i) { i.request.interest = {{1, 2, 3, 9}}; });
+  change("two regions", [](Inputs& i) { i.request.interest = {{1, 2, 3, 4}, {1, 2, 3, 4}}; });
 }
 
 TEST(FilmFrame, EverySettingIsInItsFingerprint) {
@@ -62,6 +69,7 @@ TEST(FilmFrame, EverySettingIsInItsFingerprint) {
   for (const vpe::core::SettingInfo& info : Settings::list()) {
     Inputs inputs;
     std::string other = info.choices.empty() ? "1" : std::string(info.choices.front());
+    if (info.type == vpe::core::SettingType::kTable) other = "0:1";
     if (other == info.default_text) other = info.choices.empty() ? "2" : std::string(info.choices.back());
     ASSERT_EQ(inputs.settings.set(info.key, other), "") << info.key;
     EXPECT_TRUE(seen.insert(inputs.fingerprint()).second) << info.key;

@@ -74,6 +74,21 @@ TEST_F(PictureUsage, Pose) {
   expect_usage({"--height", "nan"}, {"--height", "'nan'"});
 }
 
+TEST_F(PictureUsage, InterestAndLevelControl) {
+  for (const char* bad :
+       {"", "1", "1,2,3", "1,2,3,4,5", "nan,0,1,1", "361,0,1,1", "0,91,1,1", "0,0,-1,1", "0,0,1e9,1",
+        "0,0,inf,1", "0,0,1,31", "0,0,1,-31", "0,0,1,0.5", "0,0,1,+", "0;0;1;1"}) {
+    expect_usage({"--interest", bad}, {"--interest '" + std::string(bad) + "'", "LON,LAT,RADIUS,LEVELS"});
+    expect_failure({"fly", "missing.flight", "--interest", bad, "-o", "x"}, 2, {"--interest"});
+  }
+  expect_usage({"--set", "lod.rule=1992"}, {"lod.rule=1992", "error, hitchner"});
+  expect_usage({"--set", "lod.distance.scale=-1"}, {"lod.distance.scale", "0 to 1000000000000 m"});
+  expect_usage({"--set", "lod.centre.weight=101"}, {"lod.centre.weight", "0 to 100"});
+  expect_usage({"--set", "lod.centre.table=1:2,1:3"}, {"lod.centre.table", "X:LEVELS"});
+  expect_usage({"--set", "lod.frame_ms=fast"}, {"lod.frame_ms", "10000 ms"});
+  expect_usage({"--set", "lod.center.scale=1"}, {"did you mean", "lod.centre.scale"});
+}
+
 TEST_F(PictureUsage, SizeAndFieldOfView) {
   for (const char* size : {"0x0", "640x0", "100000x100000", "axb", "640", "-1x5", "6.5x3"}) {
     expect_usage({"--size", size}, {"--size '" + std::string(size) + "'", "WIDTHxHEIGHT", "1..32768"});

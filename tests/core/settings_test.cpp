@@ -74,6 +74,8 @@ TEST(Settings, EachKeyChangesItsOwnValueAlone) {
       for (const std::string_view choice : info.choices) {
         if (choice != info.default_text) other = choice;
       }
+    } else if (info.type == SettingType::kTable) {
+      other = "0:12,1000:4.5";
     } else {
       other = format_number(info.max);
     }
@@ -96,6 +98,17 @@ TEST(Settings, MapsKeysToTheirMembers) {
   EXPECT_EQ(settings.assign("sun.ambient=0.5"), "");
   EXPECT_EQ(settings.assign("lod.tolerance=0"), "");
   EXPECT_EQ(settings.assign("lod.triangles=100000"), "");
+  EXPECT_EQ(settings.assign("lod.rule=hitchner"), "");
+  EXPECT_EQ(settings.assign("lod.distance.scale=5e5"), "");
+  EXPECT_EQ(settings.assign("lod.distance.offset=2"), "");
+  EXPECT_EQ(settings.assign("lod.distance.weight=0.5"), "");
+  EXPECT_EQ(settings.assign("lod.distance.table=0:12,1e5:8"), "");
+  EXPECT_EQ(settings.assign("lod.centre.scale=0.5"), "");
+  EXPECT_EQ(settings.assign("lod.centre.offset=-2"), "");
+  EXPECT_EQ(settings.assign("lod.centre.weight=1"), "");
+  EXPECT_EQ(settings.assign("lod.centre.table=0:2,0.5:0,1:-1"), "");
+  EXPECT_EQ(settings.assign("lod.interest.weight=2"), "");
+  EXPECT_EQ(settings.assign("lod.frame_ms=33"), "");
   EXPECT_EQ(settings.assign("samples=2"), "");
   EXPECT_EQ(settings.assign("background=sky"), "");
   const SettingsValues wanted{.mode = Mode::kWireframe,
@@ -106,6 +119,17 @@ TEST(Settings, MapsKeysToTheirMembers) {
                               .sun_ambient = 0.5,
                               .lod_tolerance_px = 0,
                               .lod_triangles = 100000,
+                              .lod_rule = LodRule::kHitchner,
+                              .lod_distance_scale_m = 5e5,
+                              .lod_distance_offset = 2,
+                              .lod_distance_weight = 0.5,
+                              .lod_distance_table = {{0, 12}, {1e5, 8}},
+                              .lod_centre_scale = 0.5,
+                              .lod_centre_offset = -2,
+                              .lod_centre_weight = 1,
+                              .lod_centre_table = {{0, 2}, {0.5, 0}, {1, -1}},
+                              .lod_interest_weight = 2,
+                              .lod_frame_ms = 33,
                               .samples = 2,
                               .background = Background::kSky};
   EXPECT_EQ(settings.values(), wanted);
@@ -113,7 +137,7 @@ TEST(Settings, MapsKeysToTheirMembers) {
 
 TEST(Settings, RangesIncludeTheirEndsAndNothingBeyond) {
   for (const SettingInfo& info : Settings::list()) {
-    if (info.type == SettingType::kChoice) continue;
+    if (info.type == SettingType::kChoice || info.type == SettingType::kTable) continue;
     Settings settings;
     EXPECT_EQ(settings.set(info.key, format_number(info.min)), "");
     EXPECT_EQ(settings.set(info.key, format_number(info.max)), "");
@@ -140,6 +164,44 @@ TEST(Settings, WrongWordsNameTheRightOnes) {
   EXPECT_TRUE(holds(problem, "wireframe, unlit, lit, coloured, textured")) << problem;
   EXPECT_TRUE(holds(settings.set("samples", "3"), "1, 2, 4"));
   EXPECT_TRUE(holds(settings.set("mode", "Lit"), "not allowed"));
+}
+
+TEST(Settings, TablesAreReadWholeOrNotAtAll) {
+  Settings settings;
+  ASSERT_EQ(settings.set("lod.distance.table", "0:12,1e5:8.5,1e6:-3"), "");
+  EXPECT_EQ(settings.get("lod.distance.table"), "0:12,100000:8.5,1000000:-3");
+  std::string full;
+  for (int n = 0; n < 64; ++n) full += (n == 0 ? "" : ",") + std::to_string(n) + ":1";
+  const Settings before = settings;
+  for (const std::string& text :
+       {std::string(), std::string("1"), std::string("0:"), std::string(":1"), std::string("0:1,"),
+        std::string(",0:1"), std::string("0:1;5:2"), std::string("5:1,5:2"), std::string("5:1,4:2"),
+        std::string("-1:2"), std::string("0:31"), std::string("0:-30.5"), std::string("0:nan"),
+        std::string("inf:1"), std::string("0:1:2"), std::string("0: 1"), std::string("None"), full + ",64:1"}) {
+    const std::string problem = settings.set("lod.distance.table", text);
+    EXPECT_TRUE(holds(problem, "lod.distance.table")) << text;
+    EXPECT_TRUE(holds(problem, "X:LEVELS")) << problem;
+  }
+  EXPECT_EQ(settings, before);
+  EXPECT_EQ(settings.set("lod.distance.table", full), "");
+  EXPECT_EQ(settings.get("lod.distance.table"), full);
+  EXPECT_EQ(settings.set("lod.distance.table", "none"), "");
+  EXPECT_EQ(settings, Settings());
+}
+
+TEST(LevelTable, ComesBackToTheBit) {
+  Random random(5);
+  for (int trial = 0; trial < 2000; ++trial) {
+    LevelTable table;
+    double x = random.integer(0, 1) * random.log_uniform(1e-9, 1);
+    for (int n = random.integer(0, 8); n > 0; --n) {
+      table.push_back({x, random.uniform(-30, 30)});
+      x += random.log_uniform(1e-3, 1e6);
+    }
+    const std::optional<LevelTable> read = parse_level_table(format_level_table(table));
+    ASSERT_TRUE(read.has_value()) << format_level_table(table);
+    ASSERT_EQ(*read, table);
+  }
 }
 
 TEST(Settings, UnknownKeysNameNearOnes) {

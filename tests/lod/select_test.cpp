@@ -81,7 +81,8 @@ core::View hostile_view(Random& random, double exaggeration) {
 
 double projected(double error_m, double focal_px, double distance_m, double stretch) {
   if (error_m == 0.0) return 0.0;
-  return distance_m == 0.0 ? std::numeric_limits<double>::infinity() : stretch * (error_m * focal_px / distance_m);
+  return distance_m == 0.0 ? std::numeric_limits<double>::infinity()
+                           : stretch * (error_m * focal_px / distance_m);
 }
 
 void expect_sound(const Selection& s, const TileTree& tree, const SelectOptions& options,
@@ -327,13 +328,15 @@ TEST(Select, TheCapIsHardAndSpentOnTheWorstFirst) {
                                                        shell.min_radius_m, shell.max_radius_m);
         double stretch = std::numeric_limits<double>::infinity();
         for (int level = 0; level < tile.key.level; ++level) {
-          const auto outer = static_cast<TileTree::Index>(
-              rough_tree().find(lod::ancestor(tile.key, level)) - &rough_tree()[0]);
+          const auto outer = static_cast<TileTree::Index>(rough_tree().find(lod::ancestor(tile.key, level)) -
+                                                          &rough_tree()[0]);
           const cull::Shell around =
               rough_tree().shell(outer, 1.0, rough_tree()[outer].variants[0].terms.total_m);
-          const bool sky = cull::against_sky(eye, cull::make_horizon(eye, rough_tree().lowest_radius_m(1.0)),
-                                             cull::farthest_chord2(around.rect, eye.direction), around.max_radius_m);
-          stretch = sky ? std::min(stretch, lod::stretch(lod::picture_plane(view), cull::make_volume(around))) : 1.0;
+          const bool sky =
+              cull::against_sky(eye, cull::make_horizon(eye, rough_tree().lowest_radius_m(1.0)),
+                                cull::farthest_chord2(around.rect, eye.direction), around.max_radius_m);
+          stretch =
+              sky ? std::min(stretch, lod::stretch(lod::picture_plane(view), cull::make_volume(around))) : 1.0;
         }
         ASSERT_GE(projected(error_m, lod::select_view(view).focal_px, distance_m, stretch), s.max_error_px);
       }
@@ -419,33 +422,19 @@ TEST(Select, IsTheSameWhateverWasSelectedBefore) {
   }
 }
 
-double constant_shift(const void* context, const TileInfo&, double distance_m) {
-  EXPECT_GE(distance_m, 0.0);
-  return *static_cast<const double*>(context);
-}
-
-double polar_shift(const void*, const TileInfo& tile, double) {
-  return tile.key.face == mars::Face::kPlusZ ? 2.0 : 0.0;
-}
-
 TEST(Select, ALevelsShiftIsAFactorTwoOfTheTolerance) {
   Random random(46);
   for (int trial = 0; trial < 100; ++trial) {
     const core::View view = hostile_view(random, 1.0);
     for (const double levels : {-1.0, 0.0, 1.0, 3.0}) {
       SelectOptions options = tolerance(1.0);
-      options.level_shift = {constant_shift, &levels};
+      options.control.centre = {0.0, levels, 1.0, {}};
       const Selection shifted = selected(options, rough_tree(), view);
       const Selection plain = selected(tolerance(std::exp2(-levels)), rough_tree(), view);
       ASSERT_EQ(counts(shifted), counts(plain));
       ASSERT_EQ(shifted.max_error_px, plain.max_error_px);
     }
   }
-  SelectOptions options = tolerance(1.0);
-  options.level_shift = {polar_shift, nullptr};
-  const core::View corner = view_at(45, 40, 2e6, 0, -90);
-  EXPECT_GT(selected(options, rough_tree(), corner).visited,
-            selected(tolerance(1), rough_tree(), corner).visited);
 }
 
 TEST(Select, ExaggerationMovesTheGroundAndItsError) {

@@ -45,8 +45,11 @@ void write_log(const std::filesystem::path& file, const Flight& flight, const Pa
     const FlightState state = path.at(t);
     vpe::core::Settings settings;
     path.apply_settings(t, settings);
-    log.frame(t, state.pose, state.look, settings);
-    if (k == 10) log.interest({t, 1, 2, 3, -1});
+    std::vector<vpe::core::InterestRegion> regions;
+    if (k >= 10) regions.push_back({1, 2, 3, -1});
+    if (k >= 20) regions.push_back({4, 5, 6, 7});
+    if (k >= 20) regions.push_back({4, 5, 6, 7});
+    log.frame(t, state.pose, state.look, settings, regions);
   }
   if (end) log.end(frame_time(flight.view.fps, frames));
 }
@@ -60,7 +63,10 @@ TEST(FlightLog, ReplaysToTheBit) {
     const ParsedFlight parsed = parse_flight(read_file(folder / "log.flight"), "log.flight");
     ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
     EXPECT_EQ(parsed.flight->view, flight.view);
-    EXPECT_EQ(parsed.flight->interests.size(), 1u);
+    const double later_s = frame_time(flight.view.fps, 20);
+    EXPECT_EQ(parsed.flight->interests, (std::vector<Interest>{{frame_time(flight.view.fps, 10), 1, 2, 3, -1},
+                                                               {later_s, 4, 5, 6, 7},
+                                                               {later_s, 4, 5, 6, 7}}));
     const Path replay(*parsed.flight, mars::kMarsRadius_m, {});
     const std::int64_t frames = frame_count(flight.view.fps, path.duration_s());
     const std::int64_t replayed = frame_count(flight.view.fps, replay.duration_s());

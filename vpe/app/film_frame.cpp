@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 // Raised whenever the encoding below changes its meaning.
-constexpr std::int64_t kEncoding = 1;
+constexpr std::int64_t kEncoding = 2;
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
@@ -58,6 +58,11 @@ std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& requ
   add(digest, view.eye.axes.up);
   add(digest, view.eye.axes.forward);
   add(digest, request.sun);
+  digest.add(static_cast<std::int64_t>(request.interest.size()));
+  for (const core::InterestRegion& r : request.interest) {
+    digest.add(r.lon_deg).add(r.lat_deg).add(r.radius_m).add(std::int64_t{r.levels});
+  }
+  digest.add(request.coarsening);
   // The registry's own text of a value gives back its bits.
   for (const core::SettingInfo& info : core::Settings::list()) {
     digest.add(info.key).add(settings.get(info.key).value_or(""));

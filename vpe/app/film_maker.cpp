@@ -110,7 +110,8 @@ void FilmMaker::report_kept(const FilmFrame& frame) {
 
 void FilmMaker::log(const FilmFrame& frame, const PlannedFrame& planned) {
   if (reports_->log)
-    reports_->log->frame(frame.time_s, planned.state.pose, planned.state.look, planned.settings);
+    reports_->log->frame(frame.time_s, planned.state.pose, planned.state.look, planned.settings,
+                         planned.request.interest);
 }
 
 void FilmMaker::show(std::size_t done) {

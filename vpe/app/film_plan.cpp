@@ -6,11 +6,13 @@
 
 namespace vpe::app {
 
-FilmPlan::FilmPlan(FilmBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base)
+FilmPlan::FilmPlan(FilmBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
+                   std::vector<core::InterestRegion> interest)
     : basis_(std::move(basis)),
       view_(view),
       path_(std::move(path)),
       base_(std::move(base)),
+      interest_(std::move(interest)),
       start_(path_.at(0.0).pose) {}
 
 PlannedFrame FilmPlan::at(std::int64_t frame) const {
@@ -25,6 +27,10 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   request.view.height = view_.height;
   request.view.fov_deg = view_.fov_deg;
   request.settings = out.settings.values();
+  request.interest = interest_;
+  for (const scripts::Interest& i : path_.interests(out.time_s)) {
+    request.interest.push_back({i.lon_deg, i.lat_deg, i.radius_m, i.levels});
+  }
   // The sun stands still: its azimuth and elevation are those at the ground below the flight's start.
   request.sun = sun_for(request.settings, start_);
   return out;

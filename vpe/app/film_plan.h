@@ -20,8 +20,9 @@ struct PlannedFrame {
 // Immutable; every member may be called from any number of threads at once.
 class FilmPlan {
  public:
-  // `base` are the settings before the flight's own.
-  FilmPlan(FilmBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base);
+  // `base` are the settings before the flight's own, `interest` regions beside its own, from the start on.
+  FilmPlan(FilmBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
+           std::vector<core::InterestRegion> interest = {});
 
   const scripts::Path& path() const { return path_; }
   const scripts::FlightView& view() const { return view_; }
@@ -35,6 +36,7 @@ class FilmPlan {
   scripts::FlightView view_;
   scripts::Path path_;
   core::Settings base_;
+  std::vector<core::InterestRegion> interest_;
   mars::Pose start_;
 };
 

@@ -104,6 +104,7 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
 }
 
 void fly(FlyArguments& arguments, const Common& common) {
+  const std::vector<core::InterestRegion> interest = parse_interest(arguments.picture);
   const scripts::Flight flight = read_flight(arguments);
   const core::Settings base = make_settings(arguments.picture);
   const FilmRequest request = film_request(arguments, flight);
@@ -117,7 +118,8 @@ void fly(FlyArguments& arguments, const Common& common) {
   const auto terrain = [surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
                            mars::LonLat place) { return surface->at(mars::direction(place)).height_m; };
   const FilmPlan plan({version(), meta.identity, arguments.picture.backend, common.memory_mb}, flight.view,
-                      scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration), base);
+                      scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration), base,
+                      interest);
   if (!common.quiet) warn_of_terrain(arguments.flight, plan, terrain);
 
   session.look(plan, common.threads);

@@ -1,9 +1,11 @@
 #include "vpe/app/picture_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "mars/sun.h"
+#include "vpe/app/planet_argument.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/polygon_renderer.h"
 
@@ -24,7 +26,35 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->capture_default_str();
   command.add_flag("--allow-incomplete", options.allow_incomplete,
                    "Draw coarser ground where tiles cannot be read or do not come in time, instead of failing");
+  command
+      .add_option("--interest", options.interest,
+                  "LON,LAT,RADIUS,LEVELS: a circle (degrees, metres) with so many levels of detail more or, "
+                  "negative, fewer (repeatable; overlapping circles add up)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
+
+std::vector<core::InterestRegion> parse_interest(const PictureOptions& options) {
+  using Limits = core::InterestLimits;
+  std::vector<core::InterestRegion> regions;
+  for (const std::string& text : options.interest) {
+    const auto n = parse_numbers(text);
+    const bool good = n && n->size() == 4 && std::abs((*n)[0]) <= 360.0 && std::abs((*n)[1]) <= 90.0 &&
+                      (*n)[2] >= 0.0 && (*n)[2] <= Limits::kMaxRadius_m &&
+                      std::abs((*n)[3]) <= Limits::kMaxLevels && (*n)[3] == std::trunc((*n)[3]);
+    if (!good) {
+      const std::string most = std::to_string(Limits::kMaxLevels);
+      throw UsageError(
+          "--interest '" + text +
+          "': expected LON,LAT,RADIUS,LEVELS: degrees (longitude -360..360, latitude -90..90), metres (0.." +
+          core::format_number(Limits::kMaxRadius_m) + "), a whole number (-" + most + ".." + most + ")");
+    }
+    regions.push_back({(*n)[0], (*n)[1], (*n)[2], static_cast<int>((*n)[3])});
+  }
+  return regions;
+}
+
+std::size_t memory_bytes(const Common& common) { return static_cast<std::size_t>(common.memory_mb) << 20; }
 
 core::Settings make_settings(const PictureOptions& options) {
   core::Settings settings;
@@ -43,7 +73,7 @@ std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, con
                                               std::shared_ptr<const paging::PlanetFile> planet) {
   (void)options;
   gl::RendererOptions renderer;
-  renderer.memory_bytes = static_cast<std::size_t>(common.memory_mb) << 20;
+  renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;
   return gl::make_polygon_renderer(gl::Context::create(), std::move(planet), renderer);
 }

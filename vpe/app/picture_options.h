@@ -17,6 +17,7 @@ struct PictureOptions {
   double tolerance_px = -1;  // < 0: as set
   double wait_s = 300;       // for the tiles of a picture
   bool allow_incomplete = false;
+  std::vector<std::string> interest;  // LON,LAT,RADIUS_M,LEVELS
 };
 
 void add_picture_options(CLI::App& command, PictureOptions& options);
@@ -25,6 +26,10 @@ void add_picture_options(CLI::App& command, PictureOptions& options);
 // UsageError naming the key.
 core::Settings make_settings(const PictureOptions& options);
 
+// The regions of every --interest, in order. Throws UsageError that says what is expected.
+std::vector<core::InterestRegion> parse_interest(const PictureOptions& options);
+
+std::size_t memory_bytes(const Common& common);
 std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet);
 

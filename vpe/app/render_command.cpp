@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "paging/surface.h"
+#include "vpe/app/explain_lod.h"
 #include "vpe/app/output.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/planet_argument.h"
@@ -23,6 +24,7 @@ struct RenderArguments {
   std::string output;
   std::string range;
   std::string certificate;
+  std::string explain_lod;
   std::string size = "1280x720";
   double fov_deg = 60;
   PictureOptions picture;
@@ -86,6 +88,7 @@ void render(RenderArguments& arguments, const Common& common) {
   request.view.width = size.width;
   request.view.height = size.height;
   request.view.fov_deg = arguments.fov_deg;
+  request.interest = parse_interest(arguments.picture);
   request.view.eye = mars::to_eye(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
   require_valid(request.view);
   if (const auto other = cull_view(arguments.cull_from, request.view, mars::kMarsRadius_m))
@@ -93,6 +96,7 @@ void render(RenderArguments& arguments, const Common& common) {
   check_picture_output(arguments.output);
   if (!arguments.range.empty()) check_range_output(arguments.range);
   if (!arguments.certificate.empty()) check_output(arguments.certificate);
+  if (!arguments.explain_lod.empty()) check_output(arguments.explain_lod);
 
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
@@ -117,6 +121,10 @@ void render(RenderArguments& arguments, const Common& common) {
   }
   if (!arguments.certificate.empty())
     core::write_file(arguments.certificate, core::to_json(result.certificate) + "\n");
+  if (!arguments.explain_lod.empty()) {
+    const nlohmann::json levels = explain_lod(request, *planet, memory_bytes(common));
+    core::write_file(arguments.explain_lod, levels.dump(2) + "\n");
+  }
   if (common.json) {
     nlohmann::json json{{"output", arguments.output},
                         {"certificate", nlohmann::json::parse(core::to_json(result.certificate))},
@@ -147,6 +155,8 @@ void add_render(CLI::App& program, Common& common) {
   command->add_option("--range", arguments->range, "Also write the range of every pixel, metres (.tif)");
   command->add_option("--certificate", arguments->certificate,
                       "Also write what the picture's error is (.json)");
+  command->add_option("--explain-lod", arguments->explain_lod,
+                      "Also write why every drawn tile has its level of detail (.json)");
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))

@@ -10,6 +10,7 @@ namespace vpe::app {
 namespace {
 
 std::string range_text(const core::SettingInfo& info) {
+  if (info.type == core::SettingType::kTable) return info.grammar;
   if (info.type != core::SettingType::kChoice) {
     return core::format_number(info.min) + " .. " + core::format_number(info.max);
   }
@@ -32,7 +33,7 @@ void settings(const Common& common) {
     return;
   }
   for (const core::SettingInfo& info : core::Settings::list()) {
-    std::printf("%-16s %s\n%-16s   default %s; %s%s%s\n", std::string(info.key).c_str(),
+    std::printf("%-20s %s\n%-20s   default %s; %s%s%s\n", std::string(info.key).c_str(),
                 std::string(info.meaning).c_str(), "", info.default_text.c_str(), range_text(info).c_str(),
                 info.unit.empty() ? "" : " ", std::string(info.unit).c_str());
   }

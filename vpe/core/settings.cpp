@@ -23,6 +23,10 @@ struct Integer {
   int max;
 };
 
+struct Table {
+  LevelTable SettingsValues::*member;
+};
+
 struct Word {
   std::string_view text;
   int value;
@@ -50,10 +54,12 @@ Word word(std::string_view text, Enum value) {
 
 struct Key {
   std::string_view name;
-  std::variant<Number, Integer, Choice> type;
+  std::variant<Number, Integer, Choice, Table> type;
   std::string_view unit;
   std::string_view meaning;
 };
+
+constexpr double kMost = LevelTableLimits::kMaxLevels;
 
 const std::vector<Key>& keys() {
   using V = SettingsValues;
@@ -68,7 +74,8 @@ const std::vector<Key>& keys() {
       {"exaggeration", Number{&V::exaggeration, 0.1, 100}, "",
        "factor on every elevation, about the planet's sphere"},
       {"sun.azimuth", Number{&V::sun_azimuth_deg, 0, 360}, "deg",
-       "where the light comes from, clockwise from north, at the ground below the eye (in a film: below its start)"},
+       "where the light comes from, clockwise from north, at the ground below the eye (in a film: below its "
+       "start)"},
       {"sun.elevation", Number{&V::sun_elevation_deg, 0, 90}, "deg",
        "height of the light above the horizon, at the same place"},
       {"sun.ambient", Number{&V::sun_ambient, 0, 1}, "", "share of the light that reaches shaded slopes"},
@@ -76,6 +83,34 @@ const std::vector<Key>& keys() {
        "largest geometric error that may be drawn; 0 draws the exact surface"},
       {"lod.triangles", Integer{&V::lod_triangles, 0, 1'000'000'000}, "",
        "hard cap on the triangles of a frame, above the tolerance; 0 = none"},
+      {"lod.rule", choice<&V::lod_rule>({word("error", LodRule::kError), word("hitchner", LodRule::kHitchner)}),
+       "",
+       "what decides how fine a tile is: its projected error, or the three control functions of 1992 alone"},
+      {"lod.distance.scale", Number{&V::lod_distance_scale_m, 0, 1e12}, "m",
+       "rule hitchner: a tile at distance x from the eye gets scale / x + offset levels"},
+      {"lod.distance.offset", Number{&V::lod_distance_offset, -kMost, kMost}, "levels",
+       "rule hitchner: levels that a tile gets however far it is"},
+      {"lod.distance.weight", Number{&V::lod_distance_weight, 0, 100}, "",
+       "rule hitchner: factor on the levels by distance"},
+      {"lod.distance.table", Table{&V::lod_distance_table}, "",
+       "rule hitchner: levels from each distance on, metres, in place of scale and offset; as in "
+       "0:12,1e5:8,1e6:4"},
+      {"lod.centre.scale", Number{&V::lod_centre_scale, 0, 1000}, "",
+       "a tile at distance x from the picture's centre, in halves of its height, gets scale / x + offset "
+       "levels"},
+      {"lod.centre.offset", Number{&V::lod_centre_offset, -kMost, kMost}, "levels",
+       "levels that a tile gets wherever it is in the picture"},
+      {"lod.centre.weight", Number{&V::lod_centre_weight, 0, 100}, "",
+       "factor on the levels by distance from the picture's centre; 0 = all of the picture alike"},
+      {"lod.centre.table", Table{&V::lod_centre_table}, "",
+       "levels from each distance from the centre on, halves of the picture's height, in place of scale and "
+       "offset"},
+      {"lod.interest.weight", Number{&V::lod_interest_weight, 0, 100}, "",
+       "factor on the levels of regions of interest"},
+      {"lod.frame_ms", Number{&V::lod_frame_ms, 0, 10000}, "ms",
+       "time that a frame should take while the eye moves, held by drawing coarser; 0 = none; single pictures "
+       "and "
+       "films are always drawn in full"},
       {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
        "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time"},
       {"edges", choice<&V::smooth_edges>({{"hard", 0}, {"smooth", 1}}), "",
@@ -102,6 +137,7 @@ const Key* find_key(std::string_view name) {
 std::string to_text(const SettingsValues& values, const Key& key) {
   if (const auto* number = std::get_if<Number>(&key.type)) return format_number(values.*number->member);
   if (const auto* integer = std::get_if<Integer>(&key.type)) return std::to_string(values.*integer->member);
+  if (const auto* table = std::get_if<Table>(&key.type)) return format_level_table(values.*table->member);
   const auto& words = std::get<Choice>(key.type);
   const auto found = std::find_if(words.words.begin(), words.words.end(),
                                   [&](const Word& w) { return w.value == words.read(values); });
@@ -121,6 +157,11 @@ bool apply(SettingsValues& values, const Key& key, std::string_view text) {
     if (!value || *value < integer->min || *value > integer->max) return false;
     values.*integer->member = static_cast<int>(*value);
     return true;
+  }
+  if (const auto* table = std::get_if<Table>(&key.type)) {
+    std::optional<LevelTable> value = parse_level_table(text);
+    if (value) values.*table->member = std::move(*value);
+    return value.has_value();
   }
   const auto& words = std::get<Choice>(key.type);
   const auto found =
@@ -143,6 +184,9 @@ SettingInfo info_of(const Key& key) {
     info.type = SettingType::kInteger;
     info.min = integer->min;
     info.max = integer->max;
+  } else if (std::holds_alternative<Table>(key.type)) {
+    info.type = SettingType::kTable;
+    info.grammar = level_table_grammar();
   } else {
     info.type = SettingType::kChoice;
     for (const Word& w : std::get<Choice>(key.type).words) info.choices.push_back(w.text);
@@ -158,6 +202,7 @@ std::string join(const std::vector<std::string_view>& words) {
 
 std::string what_is_allowed(const Key& key) {
   const SettingInfo info = info_of(key);
+  if (info.type == SettingType::kTable) return info.grammar;
   if (info.type == SettingType::kChoice) return "one of " + join(info.choices);
   std::string text = info.type == SettingType::kInteger ? "a whole number from " : "a number from ";
   text.append(format_number(info.min)).append(" to ").append(format_number(info.max));

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "vpe/core/level_table.h"
+
 namespace vpe::core {
 
 // How the surface is painted. Lit modes shade by the sun.
@@ -21,6 +23,12 @@ enum class Mode {
 };
 
 enum class Colour { kNone, kElevation };
+
+// What decides how fine a tile is drawn (lod/control.h).
+enum class LodRule {
+  kError,     // its projected error, in pixels
+  kHitchner,  // its distance and place in the picture alone, as in 1992
+};
 
 enum class Background { kBlack, kWhite, kSky };
 
@@ -40,6 +48,17 @@ struct SettingsValues {
   double sun_ambient = 0.05;
   double lod_tolerance_px = 1;
   int lod_triangles = 0;
+  LodRule lod_rule = LodRule::kError;
+  double lod_distance_scale_m = 1e6;
+  double lod_distance_offset = 3;
+  double lod_distance_weight = 1;
+  LevelTable lod_distance_table;
+  double lod_centre_scale = 0.25;
+  double lod_centre_offset = -1;
+  double lod_centre_weight = 0;
+  LevelTable lod_centre_table;
+  double lod_interest_weight = 1;
+  double lod_frame_ms = 0;
   int samples = 1;
   bool smooth_edges = true;
   Background background = Background::kSky;
@@ -48,7 +67,7 @@ struct SettingsValues {
   bool operator==(const SettingsValues&) const = default;
 };
 
-enum class SettingType { kNumber, kInteger, kChoice };
+enum class SettingType { kNumber, kInteger, kChoice, kTable };
 
 // What `vpe settings` shows of a key.
 struct SettingInfo {
@@ -57,6 +76,7 @@ struct SettingInfo {
   double min = 0;  // numbers and integers, both ends allowed
   double max = 0;
   std::vector<std::string_view> choices;  // words allowed, for kChoice
+  std::string grammar;                    // what is allowed, for kTable
   std::string default_text;
   std::string_view unit;  // empty for pure numbers and words
   std::string_view meaning;

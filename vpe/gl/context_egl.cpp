@@ -41,12 +41,19 @@ class EglContext : public Context {
     if (eglInitialize(display, &major, &minor) != EGL_TRUE) throw ContextError("eglInitialize " + egl_error());
     initialized_ = true;
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) fail("no desktop OpenGL");
-    const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                       EGL_NONE};
     EGLConfig config = nullptr;
     EGLint count = 0;
-    if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0) fail("no configuration");
-    const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0)
+      fail("no configuration");
+    const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                           4,
+                                           EGL_CONTEXT_MINOR_VERSION,
+                                           5,
+                                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                           EGL_NONE};
     context_ = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
     if (context_ == EGL_NO_CONTEXT) fail("no OpenGL 4.5 context: " + egl_error());
     if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
@@ -107,7 +114,8 @@ std::vector<Attempt> attempts() {
   }
   std::vector<Attempt> all = std::move(hardware);
   if (want_surfaceless && has_extension(client, "EGL_MESA_platform_surfaceless")) {
-    all.push_back({"EGL surfaceless", EGL_PLATFORM_SURFACELESS_MESA, reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY)});
+    all.push_back(
+        {"EGL surfaceless", EGL_PLATFORM_SURFACELESS_MESA, reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY)});
   }
   all.insert(all.end(), software.begin(), software.end());
   return all;
@@ -121,13 +129,15 @@ std::unique_ptr<Context> Context::create() {
   if (platform_display != nullptr) {
     for (const Attempt& attempt : attempts()) {
       try {
-        return std::make_unique<EglContext>(platform_display(attempt.platform, attempt.native, nullptr), attempt.name);
+        return std::make_unique<EglContext>(platform_display(attempt.platform, attempt.native, nullptr),
+                                            attempt.name);
       } catch (const ContextError& e) {
         tried += "; " + attempt.name + ": " + e.what();
       }
     }
   }
-  throw ContextError("cannot make an OpenGL 4.5 context through EGL" + (tried.empty() ? "; no EGL platform found" : tried) +
+  throw ContextError("cannot make an OpenGL 4.5 context through EGL" +
+                     (tried.empty() ? "; no EGL platform found" : tried) +
                      "; install libegl1 and libgl1-mesa-dri (software) or the GPU's driver");
 }
 

@@ -13,9 +13,17 @@ namespace {
 class MesaContext : public Context {
  public:
   MesaContext() {
-    const std::array<int, 11> attributes{OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE,
-                                         OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 4,
-                                         OSMESA_CONTEXT_MINOR_VERSION, 5, 0};
+    const std::array<int, 11> attributes{OSMESA_FORMAT,
+                                         OSMESA_RGBA,
+                                         OSMESA_DEPTH_BITS,
+                                         24,
+                                         OSMESA_PROFILE,
+                                         OSMESA_CORE_PROFILE,
+                                         OSMESA_CONTEXT_MAJOR_VERSION,
+                                         4,
+                                         OSMESA_CONTEXT_MINOR_VERSION,
+                                         5,
+                                         0};
     context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
     if (context_ == nullptr) throw ContextError("OSMesa: cannot make an OpenGL 4.5 context");
     // Everything is drawn into framebuffer objects; OSMesa only wants some memory of its own.

@@ -101,8 +101,11 @@ Program make_program(const std::string& label, const char* vertex, const char* f
 void check_gl(const char* operation) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;
-  const char* words = error == GL_OUT_OF_MEMORY ? "out of memory" : error == GL_INVALID_OPERATION ? "invalid operation" : "error";
-  throw std::runtime_error(std::string("OpenGL: ") + operation + ": " + words + " (" + std::to_string(error) + ")");
+  const char* words = error == GL_OUT_OF_MEMORY       ? "out of memory"
+                      : error == GL_INVALID_OPERATION ? "invalid operation"
+                                                      : "error";
+  throw std::runtime_error(std::string("OpenGL: ") + operation + ": " + words + " (" + std::to_string(error) +
+                           ")");
 }
 
 }  // namespace vpe::gl

@@ -27,6 +27,9 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+// What OpenGL without a GPU keeps of a triangle, with its share of the pictures on their way out.
+constexpr std::size_t kBytesPerTriangle = 600;
+
 const glm::vec3 kBorderColour(0.1F, 1.0F, 0.2F);  // no ground is that green
 // The relief shows through.
 glm::vec4 level_tint(int level) {
@@ -245,6 +248,10 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
 }
 
 }  // namespace
+
+std::int64_t most_triangles(std::size_t memory_bytes) {
+  return static_cast<std::int64_t>(memory_bytes / kBytesPerTriangle);
+}
 
 std::unique_ptr<core::Renderer> make_polygon_renderer(std::shared_ptr<Context> context,
                                                       std::shared_ptr<const paging::PlanetFile> planet,

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lod/look_from.h"
+#include "lod/options.h"
 #include "vpe/core/parallel.h"
 
 namespace vpe::gl {
@@ -26,9 +27,6 @@ constexpr double kLoadedShare = 0.05;
 
 // What OpenGL without a GPU keeps of a frame of some 400 000 triangles, and the pictures on their way out.
 constexpr std::size_t kDriverBytes = std::size_t{160} << 20;
-// So a frame has at most as many triangles as --memory has this many bytes.
-constexpr std::size_t kBytesPerTriangle = 600;
-
 // Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
 constexpr double kFootError = 1e-6;
 
@@ -49,7 +47,7 @@ std::size_t for_tiles(std::size_t memory_bytes, std::size_t index_bytes) {
 
 TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options)
     : planet_(std::move(planet)),
-      most_triangles_(static_cast<std::int64_t>(options.memory_bytes / kBytesPerTriangle)),
+      most_triangles_(most_triangles(options.memory_bytes)),
       memory_(for_tiles(options.memory_bytes, planet_->tree().bytes())),
       shader_(std::make_shared<Shader>(planet_, share(kShaderShare))),
       loader_(planet_, shader_),
@@ -57,7 +55,8 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
         if (before) before(key.tile);
         return loader_.load(key);
       }),
-      pager_(load_, options.threads > 0 ? std::min(options.threads, core::kMaxThreads) : core::default_threads(),
+      pager_(load_,
+             options.threads > 0 ? std::min(options.threads, core::kMaxThreads) : core::default_threads(),
              share(kLoadedShare)) {}
 
 void TileScene::set_look(const core::DrawRequest& request) {
@@ -67,16 +66,6 @@ void TileScene::set_look(const core::DrawRequest& request) {
   // Meshes of two exaggerations do not meet.
   if (!look_ || look_->exaggeration != look.exaggeration) meshes_.clear();
   look_ = std::make_shared<const ShadeParams>(look);
-}
-
-lod::SelectOptions TileScene::select_options(const core::SettingsValues& settings) const {
-  lod::SelectOptions options;
-  options.tolerance_px = settings.lod_tolerance_px;
-  options.exaggeration = settings.exaggeration;
-  options.max_triangles = settings.lod_triangles > 0
-                              ? std::min<std::int64_t>(settings.lod_triangles, most_triangles_)
-                              : most_triangles_;
-  return options;
 }
 
 std::vector<TileNeed> TileScene::needs_of(const lod::Selection& selection, const core::View& view) const {
@@ -232,15 +221,14 @@ void TileScene::take_some(double limit_ms) {
   } while (ms_since(start) < limit_ms);
 }
 
-// The roots of the faces that are missing, on this thread: loaders may all be busy for long. False when none could be
-// added.
+// The roots of the faces that are missing, on this thread: loaders may all be busy for long. False when none
+// could be added.
 bool TileScene::load_roots() {
   bool any = false;
   for (lod::TileTree::Index root = 0; root < mars::kFaces; ++root) {
     const lod::TileInfo& tile = planet_->tree()[root];
-    const bool wanted = std::any_of(drawn_.missing.begin(), drawn_.missing.end(), [&](std::size_t n) {
-      return wanted_.tiles[n].key.face == tile.key.face;
-    });
+    const bool wanted = std::any_of(drawn_.missing.begin(), drawn_.missing.end(),
+                                    [&](std::size_t n) { return wanted_.tiles[n].key.face == tile.key.face; });
     if (!wanted || !is_readable(tile, 0) || can_be_drawn(tile, 0)) continue;
     std::vector<PageKey> pages{mesh_page(tile.key, {})};
     if (is_textured(tile.key, *planet_, mode_)) pages.push_back(texture_page(tile.key, kSmallestTexture));
@@ -278,8 +266,9 @@ void TileScene::prepare(const core::DrawRequest& request) {
   settled_ = true;
   auto start = Clock::now();
   set_look(request);
-  const lod::SelectOptions options = select_options(request.settings);
-  lod::select(options, planet_->tree(), lod::select_view(request.cull_view.value_or(request.view)), scratch_, wanted_);
+  const lod::SelectOptions options = lod::select_options(request, planet_->radius_m(), most_triangles_);
+  lod::select(options, planet_->tree(), lod::select_view(request.cull_view.value_or(request.view)), scratch_,
+              wanted_);
   if (request.cull_view) lod::look_from(lod::select_view(request.view), planet_->tree(), wanted_);
   stats_.select_ms = ms_since(start);
   start = Clock::now();

@@ -51,7 +51,6 @@ class TileScene {
 
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
   void set_look(const core::DrawRequest& request);
-  lod::SelectOptions select_options(const core::SettingsValues& settings) const;
   std::vector<TileNeed> needs_of(const lod::Selection& selection, const core::View& view) const;
   PageKey mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const;
   PageKey texture_page(const lod::TileKey& tile, int intervals) const;

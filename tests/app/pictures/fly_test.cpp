@@ -31,6 +31,47 @@ class Fly : public AppTest {
   }
 };
 
+TEST_F(Fly, RegionsOfInterestAreDrawnAndLogged) {
+  const auto triangles = [&](const std::string& csv) {
+    std::istringstream in(read_text(dir_ / csv));
+    std::string line;
+    std::getline(in, line);
+    const auto column =
+        std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(line.find("triangles")), ',');
+    std::vector<long> all;
+    while (std::getline(in, line)) {
+      std::istringstream row(line);
+      std::string cell;
+      for (std::ptrdiff_t c = 0; c <= column; ++c) std::getline(row, cell, ',');
+      all.push_back(std::stol(cell));
+    }
+    return all;
+  };
+  ASSERT_EQ(fly("plain", {"--stats", "plain.csv"}).exit_code, 0);
+  // From the second half on the planet is finer, and from the start on it is as an option says.
+  std::string text = small_flight();
+  const std::size_t end = text.find("at 2 pose");
+  ASSERT_NE(end, std::string::npos) << text;
+  text.insert(end, "at 1 interest lon=0 lat=0 radius=1e8 levels=3\n");
+  write_text(dir_ / "i.flight", text);
+  ASSERT_EQ(fly("finer", {"--stats", "finer.csv", "--log", "l.flight", "--interest", "0,0,1e8,-2"}, "i.flight")
+                .exit_code,
+            0);
+  const std::vector<long> plain = triangles("plain.csv");
+  const std::vector<long> finer = triangles("finer.csv");
+  ASSERT_EQ(plain.size(), 20U);
+  ASSERT_EQ(finer.size(), 20U);
+  EXPECT_LT(finer.front(), plain.front());
+  EXPECT_GT(finer.back(), plain.back());
+  EXPECT_TRUE(says(read_text(dir_ / "l.flight"), {"at 0 interest lon=0 lat=0 radius=100000000 levels=-2",
+                                                  "at 1 interest lon=0 lat=0 radius=100000000 levels=3"}));
+  // The log gives the same frames by itself.
+  ASSERT_EQ(fly("again", {}, "l.flight").exit_code, 0);
+  for (const std::string& name : names("finer")) {
+    EXPECT_EQ(read_text(dir_ / "again" / name), read_text(dir_ / "finer" / name)) << name;
+  }
+}
+
 TEST_F(Fly, FramesStatsAndLog) {
   const Result result = fly("a/b", {"--json", "--stats", "s.csv", "--log", "l.flight"});
   ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -89,6 +89,48 @@ TEST_F(Render, SamePictureAgainAndInOtherFormats) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
+TEST_F(Render, ExplainsTheLevelOfEveryDrawnTile) {
+  const std::string pose = "-74,-13.5,300000,20,-40,5";
+  const auto explain = [&](Words more) {
+    more.insert(more.end(), {"--explain-lod", "e.json", "--json"});
+    const Result result = render(more, pose);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    json out = parse_json(read_text(dir_ / "e.json"));
+    // What is explained is what was drawn.
+    const json stats = parse_json(result.out)["stats"];
+    EXPECT_EQ(out["tiles"].size(), stats["tiles_drawn"]);
+    EXPECT_EQ(out["triangles"], stats["triangles"]);
+    return out;
+  };
+  const json plain = explain({});
+  EXPECT_EQ(plain["rule"], "error");
+  EXPECT_EQ(plain["tolerance_px"], 1);
+  ASSERT_FALSE(plain["tiles"].empty());
+  for (const json& tile : plain["tiles"]) {
+    EXPECT_TRUE(tile["reason"] == "finest there" || tile["reason"] == "within tolerance") << tile.dump();
+    EXPECT_EQ(tile["shift_levels"], 0);
+    EXPECT_GT(tile["post_spacing_m"], 0);
+    EXPECT_GE(tile["lod"], 1);
+  }
+  // A coarse region over the whole planet.
+  const json coarse = explain({"--interest", "0,0,1e8,-3"});
+  EXPECT_LT(coarse["triangles"], plain["triangles"]);
+  for (const json& tile : coarse["tiles"]) EXPECT_EQ(tile["interest"]["levels"], -3);
+  // The original rule: the same LOD wherever the scale is 0.
+  const json flat = explain(
+      {"--set", "lod.rule=hitchner", "--set", "lod.distance.scale=0", "--set", "lod.distance.offset=1.9"});
+  EXPECT_EQ(flat["rule"], "hitchner");
+  for (const json& tile : flat["tiles"]) {
+    EXPECT_EQ(tile["lod"], 1);  // (int) 1.9
+    EXPECT_EQ(tile["wanted_lod"], 1);
+    EXPECT_EQ(tile["distance"]["weighted"], 1.9);
+  }
+  const json spent = explain({"--tolerance", "0", "--set", "lod.triangles=5000"});
+  EXPECT_EQ(spent["budget_spent"], true);
+  EXPECT_LE(spent["triangles"], 5000);
+  EXPECT_NE(spent.dump().find("budget spent"), std::string::npos);
+}
+
 TEST_F(Render, ADamagedTileIsNamed) {
   // A picture of every place meets every tile.
   std::string bytes = read_text(planet());

@@ -1,0 +1,67 @@
+#include "lod/explain.h"
+
+#include <cmath>
+
+namespace lod {
+
+namespace {
+
+LevelReason reason_of(const SelectOptions& options, const TileInfo& info, const SelectedTile& tile) {
+  if (is_full_grid(info, tile.variant)) return LevelReason::kFinestThere;
+  if (options.control.rule == vpe::core::LodRule::kHitchner) {
+    const double number = lod_number(tile.key, tile.variant, static_cast<int>(info.variants.size()));
+    return number >= tile.control ? LevelReason::kLevelReached : LevelReason::kBudgetSpent;
+  }
+  return tile.error_px * std::exp2(tile.control) <= options.tolerance_px ? LevelReason::kWithinTolerance
+                                                                         : LevelReason::kBudgetSpent;
+}
+
+}  // namespace
+
+const char* to_string(LevelReason reason) {
+  switch (reason) {
+    case LevelReason::kFinestThere: return "finest there";
+    case LevelReason::kWithinTolerance: return "within tolerance";
+    case LevelReason::kLevelReached: return "level reached";
+    case LevelReason::kBudgetSpent: break;
+  }
+  return "budget spent";
+}
+
+std::vector<TileExplanation> explain(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                                     const Selection& selection) {
+  const cull::Eye eye = cull::make_eye(view.eye_m);
+  std::vector<TileExplanation> all;
+  all.reserve(selection.tiles.size());
+  for (const SelectedTile& tile : selection.tiles) {
+    const TileInfo& info = tree[tile.index];
+    TileExplanation e;
+    e.key = tile.key;
+    e.lod = lod_number(tile.key);
+    e.post_spacing_m = nominal_side_m(tile.key.level, tree.radius_m()) / tree.shape().intervals();
+    e.variant = tile.variant;
+    e.variants = static_cast<int>(info.variants.size());
+    e.min_distance_m = tile.min_distance_m;
+    e.error_m = tile.error_m;
+    e.error_px = tile.error_px;
+    const double coarsest_m = is_full_grid(info, 0)
+                                  ? 0.0
+                                  : error_bound(info.variants[0].terms, options.exaggeration, info.min_height_m,
+                                                info.max_height_m, tree.radius_m());
+    const cull::Shell shell = tree.shell(tile.index, options.exaggeration, coarsest_m);
+    const double distance_m = cull::min_distance_m(eye, cull::nearest_chord2(shell.rect, eye.direction),
+                                                   shell.min_radius_m, shell.max_radius_m);
+    e.terms =
+        control_terms(options.control, view.centre, {cull::make_volume(shell), shell.rect, distance_m}, true);
+    if (options.control.rule == vpe::core::LodRule::kHitchner) {
+      e.wanted = static_cast<int>(tile.control);
+    } else {
+      e.shift = tile.control;
+    }
+    e.reason = reason_of(options, info, tile);
+    all.push_back(e);
+  }
+  return all;
+}
+
+}  // namespace lod

@@ -1,0 +1,65 @@
+// Views, options and terms that the tests of level control share.
+#pragma once
+
+#include "lod/control.h"
+#include "lod/select.h"
+#include "mars/sphere.h"
+#include "tests/lod/fake_tree.h"
+#include "tests/support/support.h"
+
+namespace control_fixture {
+
+using lod::ControlFunction;
+using lod::Selection;
+using lod::SelectOptions;
+using lod::TileTree;
+using test_support::Random;
+namespace core = vpe::core;
+
+inline core::View view_at(double lon, double lat, double alt_m, double yaw, double pitch) {
+  core::View view;
+  view.eye = mars::to_eye(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
+  return view;
+}
+
+inline core::View random_view(Random& random) {
+  core::View view =
+      view_at(random.uniform(-180, 180), random.uniform(-90, 90), 8500 + random.log_uniform(10, 3e6),
+              random.uniform(0, 360), random.uniform(-90, 10));
+  view.fov_deg = random.uniform(20, 100);
+  return view;
+}
+
+inline const TileTree& rough_tree() {
+  static const TileTree tree = fake::tree(fake::rough(3, 9));
+  return tree;
+}
+
+inline Selection selected(const SelectOptions& options, const TileTree& tree, const core::View& view) {
+  lod::SelectScratch scratch;
+  Selection selection;
+  lod::select(options, tree, lod::select_view(view), scratch, selection);
+  return selection;
+}
+
+inline SelectOptions hitchner(const ControlFunction& distance, const ControlFunction& centre = {}) {
+  SelectOptions options;
+  options.control.rule = core::LodRule::kHitchner;
+  options.control.distance = distance;
+  options.control.centre = centre;
+  return options;
+}
+
+// Of a tile that is in a selection or was refined for it.
+inline lod::ControlTerms terms_of(const SelectOptions& options, const TileTree& tree, const core::View& view,
+                                  const lod::TileKey& key) {
+  const auto index = static_cast<TileTree::Index>(tree.find(key) - &tree[0]);
+  const cull::Shell shell = tree.shell(index, 1.0, tree[index].variants[0].terms.total_m);
+  const cull::Eye eye = cull::make_eye(view.eye.eye_m);
+  const double distance = cull::min_distance_m(eye, cull::nearest_chord2(shell.rect, eye.direction),
+                                               shell.min_radius_m, shell.max_radius_m);
+  return lod::control_terms(options.control, lod::centre_of_view(view),
+                            {cull::make_volume(shell), shell.rect, distance}, true);
+}
+
+}  // namespace control_fixture

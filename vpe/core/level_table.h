@@ -1,0 +1,40 @@
+// A lookup table from a distance to levels of detail, and its text: "X:LEVELS,X:LEVELS,...".
+//
+// Each row holds from its x on, up to the next row's; the first holds below its x too. x rises strictly from
+// row to row and is finite and not negative; levels are within -kMaxLevels..kMaxLevels. "none" is the table
+// without rows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vpe::core {
+
+struct LevelTableLimits {
+  static constexpr std::size_t kMaxRows = 64;
+  static constexpr double kMaxLevels = 30;
+};
+
+struct LevelStep {
+  double from_x = 0;
+  double levels = 0;
+
+  bool operator==(const LevelStep&) const = default;
+};
+using LevelTable = std::vector<LevelStep>;
+
+// What a bad table's error says is allowed.
+std::string level_table_grammar();
+
+// Nothing for any other text.
+std::optional<LevelTable> parse_level_table(std::string_view text);
+
+// parse_level_table(format_level_table(table)) == table, to the bit.
+std::string format_level_table(const LevelTable& table);
+
+// The table has rows; x >= 0.
+double levels_at(const LevelTable& table, double x);
+
+}  // namespace vpe::core
