@@ -93,12 +93,14 @@ struct Occlusion {
   double ms = 0;
 };
 
+// unknown: walls of every so many tiles are not at hand, as while they are loaded; 0 = all are.
 Occlusion occlude(const lod::Selection& selection, const glm::dvec3& eye_m, bool above, double margin_rad,
-                  lod::OcclusionPass& pass) {
+                  lod::OcclusionPass& pass, std::size_t unknown = 0) {
   std::vector<lod::OccludingTile> tiles;
   for (const lod::SelectedTile& t : selection.tiles) {
     tiles.push_back({t.key, ground().tree().shell(t.index, selection.exaggeration, t.error_m),
                      &ground().store().mesh(t, selection.exaggeration).walls});
+    if (unknown > 0 && tiles.size() % unknown == 0) tiles.back().walls = nullptr;
   }
   Occlusion out;
   const auto start = std::chrono::steady_clock::now();
@@ -188,7 +190,8 @@ void check_occlusion(Random& random, const core::View& view, const lod::Selectio
       glm::length(eye) > ground().radius_m() + selection.exaggeration * (ground().surface().at(eye).height_m) +
                              selection.max_error_m);
   tally.above += above ? 1 : 0;
-  const Occlusion found = occlude(selection, eye, above, 0.0, pass);
+  const Occlusion found =
+      occlude(selection, eye, above, 0.0, pass, static_cast<std::size_t>(std::max(0, random.integer(-6, 3))));
   std::vector<std::size_t> hidden;
   for (std::size_t n = 0; n < found.hidden.size(); ++n) {
     if (found.hidden[n] != 0) hidden.push_back(n);
