@@ -89,6 +89,13 @@ TEST_F(PictureUsage, InterestAndLevelControl) {
   expect_usage({"--set", "lod.center.scale=1"}, {"did you mean", "lod.centre.scale"});
 }
 
+TEST_F(PictureUsage, CullFrom) {
+  for (const char* pose : {"", "0,0", "0,91,1", "nan,0,1", "0,0,1,2,3,4,5"}) {
+    expect_usage({"--cull-from", pose}, {"--cull-from '" + std::string(pose) + "'", "LON,LAT,ALT"});
+  }
+  expect_usage({"--cull-from", "0,0,1e17"}, {"eye", "1000000000000000 m"});
+}
+
 TEST_F(PictureUsage, SizeAndFieldOfView) {
   for (const char* size : {"0x0", "640x0", "100000x100000", "axb", "640", "-1x5", "6.5x3"}) {
     expect_usage({"--size", size}, {"--size '" + std::string(size) + "'", "WIDTHxHEIGHT", "1..32768"});

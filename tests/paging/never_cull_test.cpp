@@ -71,9 +71,16 @@ glm::dvec3 hostile_eye(Random& random) {
       break;
     default: break;
   }
-  const double height = random.integer(0, 3) == 0  ? 0.5
-                        : random.integer(0, 2) > 0 ? random.log_uniform(0.5, 3000)
-                                                   : random.log_uniform(1000, 10 * ground().radius_m());
+  double height = random.log_uniform(0.5, 3000);
+  switch (random.integer(0, 7)) {
+    case 0:
+    case 1: height = 0.5; break;
+    case 2: height = random.log_uniform(1000, 10 * ground().radius_m()); break;
+    case 3:
+      height = random.integer(0, 3) == 0 ? 10 * ground().radius_m() : random.log_uniform(1000, 1e6);
+      break;
+    default: break;
+  }
   return d * (ground().surface().at(d).radius_m + height);
 }
 
@@ -93,12 +100,14 @@ struct Occlusion {
   double ms = 0;
 };
 
+// unknown: walls of every so many tiles are not at hand, as while they are loaded; 0 = all are.
 Occlusion occlude(const lod::Selection& selection, const glm::dvec3& eye_m, bool above, double margin_rad,
-                  lod::OcclusionPass& pass) {
+                  lod::OcclusionPass& pass, std::size_t unknown = 0) {
   std::vector<lod::OccludingTile> tiles;
   for (const lod::SelectedTile& t : selection.tiles) {
     tiles.push_back({t.key, ground().tree().shell(t.index, selection.exaggeration, t.error_m),
                      &ground().store().mesh(t, selection.exaggeration).walls});
+    if (unknown > 0 && tiles.size() % unknown == 0) tiles.back().walls = nullptr;
   }
   Occlusion out;
   const auto start = std::chrono::steady_clock::now();
@@ -143,7 +152,8 @@ bool drawn_at(const lod::Selection& selection, const glm::dvec3& place) {
 }
 
 struct Tally {
-  int eyes = 0, above = 0, below_datum = 0, tiles = 0, hidden = 0, points = 0, rays = 0, hits = 0, limb = 0;
+  int eyes = 0, half_metre = 0, ten_radii = 0, poles = 0, above = 0, below_datum = 0, tiles = 0, hidden = 0,
+      points = 0, rays = 0, hits = 0, limb = 0;
 };
 
 // Of what S shows in a pixel, on the picture's border or where the horizon is, nothing may be missing from the
@@ -188,7 +198,8 @@ void check_occlusion(Random& random, const core::View& view, const lod::Selectio
       glm::length(eye) > ground().radius_m() + selection.exaggeration * (ground().surface().at(eye).height_m) +
                              selection.max_error_m);
   tally.above += above ? 1 : 0;
-  const Occlusion found = occlude(selection, eye, above, 0.0, pass);
+  const Occlusion found =
+      occlude(selection, eye, above, 0.0, pass, static_cast<std::size_t>(std::max(0, random.integer(-6, 3))));
   std::vector<std::size_t> hidden;
   for (std::size_t n = 0; n < found.hidden.size(); ++n) {
     if (found.hidden[n] != 0) hidden.push_back(n);
@@ -212,18 +223,26 @@ void expect_never_culled(std::uint64_t seed, int eyes) {
   for (; tally.eyes < eyes && !testing::Test::HasFatalFailure(); ++tally.eyes) {
     const glm::dvec3 eye = hostile_eye(random);
     tally.below_datum += glm::length(eye) < ground().radius_m() ? 1 : 0;
+    const double height = glm::length(eye) - ground().surface().at(eye).radius_m;
+    tally.half_metre += height < 0.51 ? 1 : 0;
+    tally.ten_radii += height > 9.99 * ground().radius_m() ? 1 : 0;
+    tally.poles += eye.x == 0.0 && eye.y == 0.0 ? 1 : 0;
     const core::View view = look(random, eye, random.uniform(-90, 45));
     const lod::Selection selection = select(view, random.log_uniform(0.5, 20), 1.0);
     check_frustum_and_horizon(random, view, selection, tally);
     check_occlusion(random, view, selection, pass, tally);
   }
   std::printf(
-      "eyes %d (above ground %d, below the datum %d), rays %d, hits %d, at the limb %d, tiles %d, hidden %d, "
+      "eyes %d (0.5 m up %d, 10 radii %d, poles %d, above ground %d, below the datum %d), rays %d, hits %d, at "
+      "the limb %d, tiles %d, hidden %d, "
       "points %d\n",
-      tally.eyes, tally.above, tally.below_datum, tally.rays, tally.hits, tally.limb, tally.tiles, tally.hidden,
-      tally.points);
+      tally.eyes, tally.half_metre, tally.ten_radii, tally.poles, tally.above, tally.below_datum, tally.rays,
+      tally.hits, tally.limb, tally.tiles, tally.hidden, tally.points);
   EXPECT_GT(tally.above, eyes * 9 / 10);
   EXPECT_GT(tally.below_datum, eyes / 10);
+  EXPECT_GT(tally.half_metre, eyes / 8);
+  EXPECT_GT(tally.ten_radii, eyes / 100);
+  EXPECT_GT(tally.poles, eyes / 100);
   EXPECT_GT(tally.hits, eyes);
   EXPECT_GT(tally.points, eyes);
 }

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <optional>
 
 #include "paging/surface.h"
 #include "vpe/app/explain_lod.h"
@@ -18,7 +19,7 @@ namespace {
 struct RenderArguments {
   std::string planet;
   std::string pose;
-  std::string cull_from;
+  std::optional<std::string> cull_from;
   double height_m = 0;
   bool has_height = false;
   std::string output;
@@ -50,12 +51,13 @@ mars::Pose parse_pose(const RenderArguments& arguments, const std::function<doub
 }
 
 // The view whose tiles are drawn, when it is another.
-std::optional<core::View> cull_view(const std::string& text, const core::View& view, double radius_m) {
-  if (text.empty()) return std::nullopt;
-  auto n = parse_numbers(text);
+std::optional<core::View> cull_view(const std::optional<std::string>& text, const core::View& view,
+                                    double radius_m) {
+  if (!text) return std::nullopt;
+  auto n = parse_numbers(*text);
   if (!n || n->size() < 3 || n->size() > 6 || !mars::is_valid({(*n)[0], (*n)[1]})) {
     throw UsageError(
-        "--cull-from '" + text +
+        "--cull-from '" + *text +
         "': expected LON,LAT,ALT,YAW,PITCH,ROLL (degrees, latitude within -90..90; metres above the sphere)");
   }
   n->resize(6, 0.0);
