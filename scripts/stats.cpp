@@ -25,6 +25,7 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
   field("tiles_visited", stats.tiles_visited);
   field("tiles_culled_frustum", stats.tiles_culled_frustum);
   field("tiles_culled_horizon", stats.tiles_culled_horizon);
+  field("tiles_culled_occlusion", stats.tiles_culled_occlusion);
   field("tiles_drawn", stats.tiles_drawn);
   field("tiles_missing", stats.tiles_missing);
   field("triangles", stats.triangles);
@@ -40,6 +41,7 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
   field("pages_uploaded", stats.pages_uploaded);
   field("pages_evicted", stats.pages_evicted);
   field("select_ms", stats.select_ms);
+  field("occlude_ms", stats.occlude_ms);
   field("load_ms", stats.load_ms);
   field("draw_ms", stats.draw_ms);
   field("read_ms", stats.read_ms);

@@ -24,6 +24,7 @@ void visit(Figures& f, const Field& field) {
   field("tiles_visited", f.stats.tiles_visited);
   field("tiles_culled_frustum", f.stats.tiles_culled_frustum);
   field("tiles_culled_horizon", f.stats.tiles_culled_horizon);
+  field("tiles_culled_occlusion", f.stats.tiles_culled_occlusion);
   field("tiles_drawn", f.stats.tiles_drawn);
   field("tiles_missing", f.stats.tiles_missing);
   field("triangles", f.stats.triangles);
@@ -84,7 +85,7 @@ std::optional<FrameFigures> figures_from(const json& from) {
     return std::nullopt;
   }
   core::FrameStats& s = figures.stats;
-  s.select_ms = s.load_ms = s.draw_ms = s.read_ms = kNotKnown;
+  s.select_ms = s.occlude_ms = s.load_ms = s.draw_ms = s.read_ms = kNotKnown;
   s.bytes_resident = -1;
   return figures;
 }

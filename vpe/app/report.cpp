@@ -75,6 +75,7 @@ json stats_json(const core::FrameStats& s) {
   return {{"tiles_visited", s.tiles_visited},
           {"tiles_culled_frustum", s.tiles_culled_frustum},
           {"tiles_culled_horizon", s.tiles_culled_horizon},
+          {"tiles_culled_occlusion", s.tiles_culled_occlusion},
           {"tiles_drawn", s.tiles_drawn},
           {"tiles_missing", s.tiles_missing},
           {"tiles_substituted", s.tiles_substituted},
@@ -85,6 +86,7 @@ json stats_json(const core::FrameStats& s) {
           {"bytes_resident", s.bytes_resident},
           {"tiles_by_level", s.tiles_by_level},
           {"select_ms", s.select_ms},
+          {"occlude_ms", s.occlude_ms},
           {"load_ms", s.load_ms},
           {"draw_ms", s.draw_ms},
           {"read_ms", s.read_ms}};

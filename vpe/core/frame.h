@@ -30,6 +30,7 @@ struct FrameStats {
   int tiles_visited = 0;
   int tiles_culled_frustum = 0;
   int tiles_culled_horizon = 0;
+  int tiles_culled_occlusion = 0;  // hidden behind nearer ground
   int tiles_drawn = 0;
   int tiles_missing = 0;       // wanted for this view, but not drawn
   int tiles_substituted = 0;   // drawn in place of what is missing
@@ -42,7 +43,8 @@ struct FrameStats {
   std::int64_t pages_uploaded = 0;  // for this frame
   std::int64_t pages_evicted = 0;
   double select_ms = 0;
-  double load_ms = 0;  // waiting for loaders, and uploading
+  double occlude_ms = 0;  // finding what nearer ground hides; part of load_ms
+  double load_ms = 0;     // waiting for loaders, and uploading
   double draw_ms = 0;
   double read_ms = 0;
 };

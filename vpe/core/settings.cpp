@@ -111,6 +111,12 @@ const std::vector<Key>& keys() {
        "time that a frame should take while the eye moves, held by drawing coarser; 0 = none; single pictures "
        "and "
        "films are always drawn in full"},
+      {"cull.occlusion",
+       choice<&V::occlusion>(
+           {word("auto", Occlusion::kAuto), word("off", Occlusion::kOff), word("on", Occlusion::kOn)}),
+       "",
+       "leaves out what nearer ground hides, which changes no pixel; auto: in windows only while it saves more than "
+       "it costs"},
       {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
        "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time"},
       {"edges", choice<&V::smooth_edges>({{"hard", 0}, {"smooth", 1}}), "",

@@ -39,6 +39,8 @@ enum class Inspect {
   kLevels,   // tiles tinted by their level (vpe/core/inspect.h)
 };
 
+enum class Occlusion { kAuto, kOff, kOn };
+
 struct SettingsValues {
   Mode mode = Mode::kTextured;
   Colour colour = Colour::kElevation;
@@ -59,6 +61,7 @@ struct SettingsValues {
   LevelTable lod_centre_table;
   double lod_interest_weight = 1;
   double lod_frame_ms = 0;
+  Occlusion occlusion = Occlusion::kAuto;
   int samples = 1;
   bool smooth_edges = true;
   Background background = Background::kSky;

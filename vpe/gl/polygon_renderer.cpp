@@ -224,6 +224,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   glFinish();
   check_gl("draw");
   result.stats.draw_ms = ms_since(start);
+  scene_.drawn_in(result.stats.draw_ms);
 
   start = Clock::now();
   result.frame.width = size.x;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lod/tile_key.h"
+#include "lod/walls.h"
 #include "vpe/gl/objects.h"
 #include "vpe/gl/shade.h"
 #include "vpe/gl/tile_geometry.h"
@@ -23,6 +24,7 @@ struct GpuMesh {
   IndexRanges ranges;
   double quantisation_m = 0;
   double longest_edge_m = 0;
+  lod::TileWalls walls;
   std::size_t bytes = 0;
 };
 GpuMesh upload(const TileGeometry& geometry);

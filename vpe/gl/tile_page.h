@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "lod/walls.h"
 #include "paging/planet_file.h"
 #include "vpe/gl/shade.h"
 #include "vpe/gl/tile_geometry.h"
@@ -36,6 +37,7 @@ struct PageKeyHash {
 // The member of the key's kind is there.
 struct Page {
   TileGeometry geometry;
+  lod::TileWalls walls;  // of the geometry
   ShadedTile shaded;
   std::shared_ptr<const paging::TileHeights> ground;
 };
@@ -50,7 +52,7 @@ class PageLoader {
   std::pair<Page, std::size_t> load(const PageKey& key) const;
 
  private:
-  TileGeometry geometry(const PageKey& key) const;
+  void make_mesh(const PageKey& key, Page& page) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::shared_ptr<const Shader> shader_;

@@ -30,11 +30,11 @@ constexpr std::size_t kDriverBytes = std::size_t{160} << 20;
 // Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
 constexpr double kFootError = 1e-6;
 
-// Nearer than this the near plane depends on the ground below the eye.
-constexpr double kGroundMatters_m = 1000.0;
-
 // Pages for later views are loaded while what this view needs takes up less than this part of the budget.
 constexpr double kRoomForLater = 0.6;
+
+// Below the eye now and soon, and below the culling camera.
+constexpr std::size_t kGroundTiles = 8;
 
 constexpr std::size_t kTakeAtOnce = std::size_t{1} << 20;
 
@@ -89,7 +89,7 @@ bool TileScene::is_resident(const PageKey& page, std::uint64_t frame) {
     case PageKind::kTexture: return textures_.find(page.tile, {page.detail, page.look}, frame) != nullptr;
     case PageKind::kGround: break;
   }
-  return ground_ && ground_tile_ == page.tile;
+  return ground_tile(page.tile) != nullptr;
 }
 
 // With any origin and any texture; better than a coarser tile in both cases.
@@ -108,14 +108,18 @@ void TileScene::upload(TilePager::Loaded page) {
   switch (key.kind) {
     case PageKind::kMesh:
       if (key.exaggeration != look_->exaggeration) return;  // asked for before it was changed
-      meshes_.insert(key.tile, {key.detail, key.origin}, gl::upload(page.value.geometry), frame_);
-      break;
+      {
+        GpuMesh mesh = gl::upload(page.value.geometry);
+        mesh.walls = page.value.walls;
+        meshes_.insert(key.tile, {key.detail, key.origin}, std::move(mesh), frame_);
+        break;
+      }
     case PageKind::kTexture:
       textures_.insert(key.tile, {key.detail, key.look}, gl::upload(page.value.shaded), frame_);
       break;
     case PageKind::kGround:
-      ground_tile_ = key.tile;
-      ground_ = page.value.ground;
+      if (ground_.size() >= kGroundTiles) ground_.erase(ground_.begin());
+      ground_.emplace_back(key.tile, page.value.ground);
       break;
   }
   ++stats_.pages_uploaded;
@@ -137,10 +141,8 @@ std::vector<PageKey> TileScene::absent_pages(const lod::Selection& selection, co
                                              std::uint64_t frame) {
   const std::vector<TileNeed> needs = needs_of(selection, view);
   std::vector<std::pair<double, PageKey>> absent;
-  double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < needs.size(); ++n) {
     const lod::SelectedTile& tile = selection.tiles[n];
-    nearest = std::min(nearest, tile.min_distance_m);
     PageKey page = mesh_page(tile.key, needs[n].mesh);
     if (!is_resident(page, frame)) absent.emplace_back(tile.min_distance_m, page);
     if (needs[n].texture_intervals == 0) continue;
@@ -150,10 +152,6 @@ std::vector<PageKey> TileScene::absent_pages(const lod::Selection& selection, co
   std::stable_sort(absent.begin(), absent.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<PageKey> pages;
-  if (nearest <= kGroundMatters_m) {
-    const PageKey page = ground_page(view.eye.eye_m);
-    if (!is_resident(page, frame) && unreadable_.count(page.tile) == 0) pages.push_back(page);
-  }
   for (auto& [distance, page] : absent) pages.push_back(std::move(page));
   return pages;
 }
@@ -162,11 +160,17 @@ void TileScene::note_failure(const PageKey& page, const std::string& why) {
   if (unreadable_.emplace(page.tile, why).second) failures_.push_back(why);
 }
 
-TileScene::Load TileScene::load(std::vector<PageKey> pages, Deadline deadline) {
+TileScene::Load TileScene::load(std::span<const PageKey> pages, std::span<const PageKey> then,
+                                Deadline deadline) {
   std::vector<TilePager::Want> wants;
   std::unordered_set<PageKey, PageKeyHash> open;
+  const auto urgency = [&] { return -static_cast<double>(wants.size()); };
   for (const PageKey& page : pages) {
-    if (open.insert(page).second) wants.push_back({page, -static_cast<double>(wants.size())});
+    if (open.insert(page).second) wants.push_back({page, urgency()});
+  }
+  if (open.empty()) return Load::kAll;
+  for (const PageKey& page : then) {
+    if (!is_resident(page, frame_)) wants.push_back({page, urgency()});
   }
   pager_.want(wants);
   while (!open.empty()) {
@@ -191,27 +195,6 @@ TileScene::Load TileScene::load(std::vector<PageKey> pages, Deadline deadline) {
   return Load::kAll;
 }
 
-void TileScene::complete(const core::DrawRequest& request, const lod::SelectOptions& options) {
-  const double limit_s = std::min(request.paging.timeout_s, 1e9);
-  const Deadline deadline =
-      limit_s < 1e9 ? Clock::now() + std::chrono::microseconds(static_cast<std::int64_t>(1e6 * limit_s))
-                    : Deadline::max();
-  const lod::SelectView view = lod::select_view(request.view);
-  const auto readable = [](const void* self, const lod::TileInfo& tile, int variant) {
-    return static_cast<const TileScene*>(self)->is_readable(tile, variant);
-  };
-  for (;;) {
-    lod::substitute(options, planet_->tree(), view, wanted_, {readable, this}, drawn_);
-    const std::vector<PageKey> absent = absent_pages(drawn_.drawn, request.view, frame_);
-    trim();
-    const Load outcome = load(absent, deadline);
-    if (outcome == Load::kAll) return;
-    if (outcome == Load::kTimeout) break;
-  }
-  settled_ = false;
-  draw_what_is_there(request, options);
-}
-
 void TileScene::take_some(double limit_ms) {
   const auto start = Clock::now();
   do {
@@ -223,12 +206,12 @@ void TileScene::take_some(double limit_ms) {
 
 // The roots of the faces that are missing, on this thread: loaders may all be busy for long. False when none
 // could be added.
-bool TileScene::load_roots() {
+bool TileScene::load_roots(const lod::Selection& needed) {
   bool any = false;
   for (lod::TileTree::Index root = 0; root < mars::kFaces; ++root) {
     const lod::TileInfo& tile = planet_->tree()[root];
     const bool wanted = std::any_of(drawn_.missing.begin(), drawn_.missing.end(),
-                                    [&](std::size_t n) { return wanted_.tiles[n].key.face == tile.key.face; });
+                                    [&](std::size_t n) { return needed.tiles[n].key.face == tile.key.face; });
     if (!wanted || !is_readable(tile, 0) || can_be_drawn(tile, 0)) continue;
     std::vector<PageKey> pages{mesh_page(tile.key, {})};
     if (is_textured(tile.key, *planet_, mode_)) pages.push_back(texture_page(tile.key, kSmallestTexture));
@@ -247,18 +230,6 @@ bool TileScene::load_roots() {
   return any;
 }
 
-void TileScene::draw_what_is_there(const core::DrawRequest& request, const lod::SelectOptions& options) {
-  const auto there = [](const void* self, const lod::TileInfo& tile, int variant) {
-    // Marks what it finds as used, which changes nothing that it answers.
-    return const_cast<TileScene*>(static_cast<const TileScene*>(self))->can_be_drawn(tile, variant);
-  };
-  const lod::SelectView view = lod::select_view(request.view);
-  lod::substitute(options, planet_->tree(), view, wanted_, {there, this}, drawn_);
-  if (drawn_.uncovered > 0 && load_roots()) {
-    lod::substitute(options, planet_->tree(), view, wanted_, {there, this}, drawn_);
-  }
-}
-
 void TileScene::prepare(const core::DrawRequest& request) {
   ++frame_;
   stats_ = {};
@@ -272,6 +243,11 @@ void TileScene::prepare(const core::DrawRequest& request) {
   if (request.cull_view) lod::look_from(lod::select_view(request.view), planet_->tree(), wanted_);
   stats_.select_ms = ms_since(start);
   start = Clock::now();
+  const core::Occlusion occlusion = request.settings.occlusion;
+  occluding_ = occlusion == core::Occlusion::kOn ||
+               (occlusion == core::Occlusion::kAuto && (request.paging.wait || worth_.use()));
+  hidden_.clear();
+  not_needed_.clear();
   if (request.paging.wait) {
     complete(request, options);
   } else {
@@ -280,7 +256,7 @@ void TileScene::prepare(const core::DrawRequest& request) {
   }
   lay_out(request.view);
   ask(request, options);
-  find_ground(request);
+  find_clearance(request.view);
   trim();
   stats_.load_ms = ms_since(start);
 }
@@ -292,6 +268,7 @@ void TileScene::lay_out(const core::View& view) {
   tiles_.clear();
   for (std::size_t n = 0; n < drawn.tiles.size(); ++n) {
     const lod::SelectedTile& tile = drawn.tiles[n];
+    if (!hidden_.empty() && hidden_[n] != 0) continue;
     SceneTile& out = tiles_.emplace_back();
     out.tile = &tile;
     out.mesh = meshes_.best(tile.key, frame_, [&](const MeshDetail& m) {
@@ -315,25 +292,8 @@ void TileScene::lay_out(const core::View& view) {
 
 double TileScene::nearest_m() const {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const SceneTile& t : tiles_) nearest = std::min(nearest, t.tile->min_distance_m);
+  for (const lod::SelectedTile& t : drawn_.drawn.tiles) nearest = std::min(nearest, t.min_distance_m);
   return nearest;
-}
-
-void TileScene::find_ground(const core::DrawRequest& request) {
-  const glm::dvec3& eye = request.view.eye.eye_m;
-  const double height = glm::length(eye) - planet_->radius_m();
-  const double x = request.settings.exaggeration;
-  const PageKey page = ground_page(eye);
-  if (is_resident(page, frame_)) {
-    const mars::ChartPoint at = mars::chart_point(eye);
-    const lod::Posts& posts = ground_->posts;
-    const double ground = lod::surface_height(posts, lod::grid_lines(page.tile, posts.intervals), at.u, at.v,
-                                              planet_->radius_m());
-    clearance_m_ = std::abs(height - x * ground);
-    return;
-  }
-  const lod::TileInfo& tile = *planet_->tree().find(page.tile);
-  clearance_m_ = std::max({0.0, height - x * tile.max_height_m, x * tile.min_height_m - height});
 }
 
 void TileScene::report(core::DrawResult& result) const {
@@ -345,8 +305,11 @@ void TileScene::report(core::DrawResult& result) const {
   s.tiles_drawn = static_cast<int>(tiles_.size());
   s.tiles_missing = static_cast<int>(drawn_.missing.size());
   s.tiles_substituted = drawn_.substituted;
-  s.tiles_by_level = drawn_.drawn.tiles_by_level;
+  s.tiles_culled_occlusion = static_cast<int>(std::count(hidden_.begin(), hidden_.end(), 1));
   for (const SceneTile& t : tiles_) {
+    const auto level = static_cast<std::size_t>(t.tile->key.level);
+    if (s.tiles_by_level.size() <= level) s.tiles_by_level.resize(level + 1);
+    ++s.tiles_by_level[level];
     const IndexRanges& ranges = t.mesh->ranges;
     s.triangles += ranges.surface / 3;
     for (std::size_t e = 0; e < 4; ++e) {

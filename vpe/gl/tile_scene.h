@@ -4,12 +4,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
+#include "cull/worth.h"
+#include "lod/occlusion.h"
 #include "lod/substitute.h"
 #include "paging/pager.h"
 #include "vpe/core/frame.h"
@@ -36,6 +39,10 @@ class TileScene {
   void prepare(const core::DrawRequest& request);
 
   std::span<const SceneTile> tiles() const { return tiles_; }
+
+  // Of the frame that was prepared last, whose tiles took so long to draw.
+  void drawn_in(double draw_ms);
+
   double nearest_m() const;  // no tile is nearer to the eye; infinite when there are none
 
   // Distance of the eye from the ground below or above it. A lower bound while the ground is not there yet.
@@ -67,16 +74,27 @@ class TileScene {
 
   void complete(const core::DrawRequest& request, const lod::SelectOptions& options);
   enum class Load { kAll, kFailure, kTimeout };
-  Load load(std::vector<PageKey> pages, Deadline deadline);
+  Load load(std::span<const PageKey> pages, std::span<const PageKey> then, Deadline deadline);
+  Load load_cover(const core::DrawRequest& request, Deadline deadline);
+  Load load_ground(const core::View& view, Deadline deadline);
   void note_failure(const PageKey& page, const std::string& why);
   void draw_what_is_there(const core::DrawRequest& request, const lod::SelectOptions& options);
+  void cover_without(const std::vector<std::uint8_t>& left_out, const core::DrawRequest& request,
+                     const lod::SelectOptions& options);
+  void occlude(const lod::Selection& tiles, const core::DrawRequest& request,
+               std::vector<std::uint8_t>& hidden);
+  bool is_above_ground(const lod::Selection& cover, const core::View& view);
+  bool needs_ground(const core::View& view) const;
   void take_some(double limit_ms);
-  bool load_roots();
+  bool load_roots(const lod::Selection& needed);
   void ask(const core::DrawRequest& request, const lod::SelectOptions& options);
   void want_upcoming(const core::DrawRequest& request, const lod::SelectOptions& options,
                      std::vector<TilePager::Want>& wants);
   void lay_out(const core::View& view);
-  void find_ground(const core::DrawRequest& request);
+  const paging::TileHeights* ground_tile(const lod::TileKey& key) const;
+  // Height of the drawn ground below the eye, metres above the sphere; nothing while its tile is not there.
+  std::optional<double> ground_m(const core::View& view);
+  void find_clearance(const core::View& view);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::int64_t most_triangles_;
@@ -86,15 +104,20 @@ class TileScene {
 
   Resident<MeshDetail, GpuMesh> meshes_;
   Resident<TextureDetail, GpuTexture> textures_;
-  lod::TileKey ground_tile_;
-  std::shared_ptr<const paging::TileHeights> ground_;
+  std::vector<std::pair<lod::TileKey, std::shared_ptr<const paging::TileHeights>>> ground_;  // latest last
   std::shared_ptr<const ShadeParams> look_;
   core::Mode mode_ = core::Mode::kTextured;
   std::uint64_t frame_ = 0;
 
   lod::SelectScratch scratch_;
   lod::Selection wanted_;
+  // Its selection covers all that is seen: what is drawn and, as hidden_ says, what nearer ground hides.
   lod::Substitution drawn_;
+  std::vector<std::uint8_t> hidden_;
+  std::vector<std::uint8_t> not_needed_;  // of wanted_: hidden, and not there
+  lod::OcclusionPass pass_;
+  cull::CullerWorth worth_;
+  bool occluding_ = false;
   std::vector<std::array<float, 4>> skirts_;
   std::vector<SceneTile> tiles_;
   double clearance_m_ = 0;

@@ -45,6 +45,7 @@ void TileScene::ask(const core::DrawRequest& request, const lod::SelectOptions& 
     const std::vector<TileNeed> needs = needs_of(wanted_, request.view);
     for (std::size_t n = 0; n < needs.size(); ++n) {
       const lod::SelectedTile& tile = wanted_.tiles[n];
+      if (!not_needed_.empty() && not_needed_[n] != 0) continue;
       double urgency =
           0.5 * centre_weight(tile.key, request.view, planet_->radius_m());  // of its exact texture
       const lod::SelectedTile* stand = stand_in(drawn_.drawn, tile.key);
@@ -60,9 +61,10 @@ void TileScene::ask(const core::DrawRequest& request, const lod::SelectOptions& 
       add(mesh_page(tile.key, needs[n].mesh), urgency);
       if (needs[n].texture_intervals > 0) add(texture_page(tile.key, needs[n].texture_intervals), urgency);
     }
+    if (needs_ground(request.view)) add(ground_page(request.view.eye.eye_m), 1e6);
+    if (request.cull_view && needs_ground(*request.cull_view))
+      add(ground_page(request.cull_view->eye.eye_m), 1e6);
     if (!wants.empty()) settled_ = false;
-    const PageKey ground = ground_page(request.view.eye.eye_m);
-    add(ground, 1e6);
   }
   want_upcoming(request, options, wants);
   pager_.want(std::move(wants));
@@ -78,7 +80,9 @@ void TileScene::want_upcoming(const core::DrawRequest& request, const lod::Selec
   for (std::size_t k = 0; k < count; ++k) {
     const core::View& view = request.paging.upcoming[k];
     lod::select(options, planet_->tree(), lod::select_view(view), scratch_, later);
-    for (const PageKey& page : absent_pages(later, view, frame_ - 1)) {
+    std::vector<PageKey> pages = absent_pages(later, view, frame_ - 1);
+    if (needs_ground(view)) pages.insert(pages.begin(), ground_page(view.eye.eye_m));
+    for (const PageKey& page : pages) {
       if (unreadable_.count(page.tile) != 0 || !asked.insert(page).second) continue;
       wants.push_back({page, -kLater - static_cast<double>(wants.size())});
     }
