@@ -71,14 +71,14 @@ double post_spacing_m(int level, int intervals, double radius_m) {
 }
 
 double surface_height(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
-                      glm::dvec3* normal) {
+                      glm::dvec3* normal, double exaggeration) {
   u = std::clamp(u, lines.u.front(), lines.u.back());
   v = std::clamp(v, lines.v.front(), lines.v.back());
   const int i = interval_of(lines.u, u);
   const int j = interval_of(lines.v, v);
   const auto post = [&](int column, int row) {
     return vertex(lines.u[static_cast<std::size_t>(column)], lines.v[static_cast<std::size_t>(row)],
-                  posts.at(column, row), radius_m);
+                  exaggeration * posts.at(column, row), radius_m);
   };
   const Vertex a = post(i, j);
   const Vertex c = post(i + 1, j + 1);

@@ -54,14 +54,15 @@ inline double inverse_depth(double u, double v, double height_m, double radius_m
   return std::sqrt(u * u + v * v + 1.0) / (radius_m + height_m);
 }
 
-// Height of S at a chart point of the tile (clamped to it), metres above the sphere; the normal of the facet
+// Height of S at a chart point of the tile (clamped to it), metres above the sphere, of the facet through its posts
+// drawn `exaggeration` times as high (which is not so many times the facet's height: its sag stays); the normal of the facet
 // when wanted (outward, unit, body-fixed). Differences are formed before they are rounded, so with d the chart
 // side of the cell and h its largest |height| the height is right within kHeightError * (R d + h) and the
 // normal within kNormalError * (1 + h / (R d)) rad.
 inline constexpr double kHeightError = 1e-15;
 inline constexpr double kNormalError = 2e-15;
 double surface_height(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
-                      glm::dvec3* normal = nullptr);
+                      glm::dvec3* normal = nullptr, double exaggeration = 1.0);
 
 // Upper bound of the tangent of slope of the flat facets over the posts, against the vertical at any of their points.
 double steepest_slope(const Posts& posts, const GridLines& lines, double radius_m);

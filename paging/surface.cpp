@@ -21,7 +21,9 @@ SurfaceTile prepare_tile(TileHeights heights) {
   tile.min_height_m = *low;
   tile.max_height_m = *high;
   // Rounded up to float so that a block's maximum is never below its posts.
-  const auto up = [](double h) { return std::nextafter(static_cast<float>(h), std::numeric_limits<float>::infinity()); };
+  const auto up = [](double h) {
+    return std::nextafter(static_cast<float>(h), std::numeric_limits<float>::infinity());
+  };
   int side = posts.intervals / 2;
   std::vector<float> level(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   for (int j = 0; j < side; ++j) {
@@ -41,8 +43,8 @@ SurfaceTile prepare_tile(TileHeights heights) {
     for (int j = 0; j < half; ++j) {
       for (int i = 0; i < half; ++i) {
         const auto at = [&](int x, int y) { return fine[static_cast<std::size_t>(y * side + x)]; };
-        coarse[static_cast<std::size_t>(j * half + i)] = std::max({at(2 * i, 2 * j), at(2 * i + 1, 2 * j),
-                                                                   at(2 * i, 2 * j + 1), at(2 * i + 1, 2 * j + 1)});
+        coarse[static_cast<std::size_t>(j * half + i)] =
+            std::max({at(2 * i, 2 * j), at(2 * i + 1, 2 * j), at(2 * i, 2 * j + 1), at(2 * i + 1, 2 * j + 1)});
       }
     }
     tile.block_max.push_back(std::move(coarse));
@@ -66,7 +68,8 @@ namespace {
 
 lod::TileKey finest_tile(const lod::TileTree& tree, const mars::ChartPoint& point) {
   lod::TileKey key = lod::tile_at(point, 0);
-  for (const lod::TileInfo* info = tree.find(key); info != nullptr && info->has_children; info = tree.find(key)) {
+  for (const lod::TileInfo* info = tree.find(key); info != nullptr && info->has_children;
+       info = tree.find(key)) {
     key = lod::tile_at(point, key.level + 1);
   }
   return key;
@@ -74,12 +77,13 @@ lod::TileKey finest_tile(const lod::TileTree& tree, const mars::ChartPoint& poin
 
 }  // namespace
 
-SurfacePoint Surface::at(const glm::dvec3& direction) const {
+SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const {
   const mars::ChartPoint point = mars::chart_point(direction);
   SurfacePoint out;
   out.tile = finest_tile(planet_->tree(), point);
   const auto tile = this->tile(out.tile);
-  out.height_m = lod::surface_height(tile->data.posts, tile->lines, point.u, point.v, planet_radius_m(), &out.normal);
+  out.height_m = lod::surface_height(tile->data.posts, tile->lines, point.u, point.v, planet_radius_m(),
+                                     &out.normal, exaggeration);
   out.radius_m = planet_radius_m() + out.height_m;
   if (!tile->data.missing.empty()) {
     const auto nearest = [](const std::vector<double>& lines, double x) {

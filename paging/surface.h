@@ -41,7 +41,8 @@ class Surface {
   double planet_radius_m() const { return planet_->radius_m(); }
 
   // S at a direction (any length but 0). Error by rounding <= 4e-9 m * radius / 3.4e6 m. Throws PlanetError.
-  SurfacePoint at(const glm::dvec3& direction) const;
+  // With an exaggeration: height, radius and normal of S as it is drawn.
+  SurfacePoint at(const glm::dvec3& direction, double exaggeration = 1.0) const;
 
   // Radius of S at many directions; neighbours in the batch should be neighbours on the ground.
   void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m) const;

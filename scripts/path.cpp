@@ -18,16 +18,18 @@ using vpe::core::format_number;
 
 std::string pose_at(double time_s) { return "the flight's pose at " + format_number(time_s) + " s"; }
 
-mars::Pose resolve(const Waypoint& w, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration) {
+mars::Pose resolve(const Waypoint& w, double radius_m, const TerrainHeight& terrain_height_m,
+                   double exaggeration) {
   mars::Pose pose{w.lon_deg, w.lat_deg, w.up_m, w.yaw_deg, w.pitch_deg, w.roll_deg};
   if (w.above_terrain) {
-    const double terrain_m = terrain_height_m ? terrain_height_m({w.lon_deg, w.lat_deg}) : std::nan("");
+    const double terrain_m =
+        terrain_height_m ? terrain_height_m({w.lon_deg, w.lat_deg}, exaggeration) : std::nan("");
     if (!std::isfinite(terrain_m)) {
       throw std::runtime_error(pose_at(w.time_s) + " has height=, but the terrain's height at lon " +
                                format_number(w.lon_deg) + " lat " + format_number(w.lat_deg) +
                                " is not known: use alt= there");
     }
-    pose.alt_m += exaggeration * terrain_m;
+    pose.alt_m += terrain_m;
   }
   if (!(radius_m + pose.alt_m > 0.0)) {
     throw std::runtime_error(pose_at(w.time_s) + " lies at or below the planet's centre: alt must be above " +
@@ -198,7 +200,7 @@ std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rat
     const double time_s = frame_time(rate, k);
     const mars::Pose pose = path.at(time_s).pose;
     const mars::LonLat place{pose.lon_deg, pose.lat_deg};
-    const double height_m = pose.alt_m - path.exaggeration(time_s) * terrain_height_m(place);
+    const double height_m = pose.alt_m - terrain_height_m(place, path.exaggeration(time_s));
     if (std::isfinite(height_m) && (!lowest || height_m < lowest->height_m))
       lowest = {k, time_s, height_m, place};
   }

@@ -24,8 +24,8 @@
 
 namespace scripts {
 
-// Height of the terrain above the sphere at a place, not exaggerated, metres; NaN where it is not known.
-using TerrainHeight = std::function<double(mars::LonLat)>;
+// Height above the sphere of the terrain as it is drawn with an exaggeration, metres; NaN where it is not known.
+using TerrainHeight = std::function<double(mars::LonLat place, double exaggeration)>;
 
 struct FlightState {
   mars::Pose pose;  // of the platform

@@ -282,6 +282,22 @@ TEST(Posts, SurfaceIsWatertightAcrossAChangeOfDepth) {
   }
 }
 
+// A facet through exaggerated posts is not the exaggerated facet: its sag is what it was.
+TEST(SurfaceHeight, SagIsNotExaggerated) {
+  constexpr double kR = 1e6;
+  lod::Posts posts{{mars::Face::kPlusX, 3, 2, 5}, 4, std::vector<double>(25, 0.0)};
+  const lod::GridLines lines = lod::grid_lines(posts.key, 4);
+  const double u = 0.4 * lines.u[1] + 0.6 * lines.u[2];
+  const double v = 0.7 * lines.v[2] + 0.3 * lines.v[3];
+  const double sag = lod::surface_height(posts, lines, u, v, kR);
+  EXPECT_LT(sag, -50.0);
+  EXPECT_EQ(lod::surface_height(posts, lines, u, v, kR, nullptr, 5.0), sag);
+  for (double& h : posts.height_m) h = 1000.0;
+  lod::Posts high = posts;
+  for (double& h : high.height_m) h = 3000.0;
+  EXPECT_EQ(lod::surface_height(posts, lines, u, v, kR, nullptr, 3.0), lod::surface_height(high, lines, u, v, kR));
+}
+
 // Against the facets' normals as surface_height() gives them, at places all over the tile.
 TEST(SteepestSlope, BoundsTheSlopesOfTheFacets) {
   test_support::Random random(23);

@@ -362,7 +362,7 @@ TEST(Flight, ExamplesCanBeFlown) {
     ++files;
     if (!parsed.flight) continue;
     for (const double terrain_m : {-5000.0, 0.0}) {
-      const auto terrain = [&](mars::LonLat) { return terrain_m; };
+      const auto terrain = [&](mars::LonLat, double x) { return x * terrain_m; };
       const Path path(*parsed.flight, mars::kMarsRadius_m, terrain);
       EXPECT_GE(path.duration_s(), 3.0) << entry.path();
       EXPECT_GE(lowest_clearance(path, parsed.flight->view.fps, terrain)->height_m, 2500.0) << entry.path();

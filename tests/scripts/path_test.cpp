@@ -328,7 +328,7 @@ TEST(Path, SettingsHoldFromTheirTimeOn) {
 
 TEST(Path, HeightsAreAboveTheTerrain) {
   const Flight flight = flight_of("at 0 pose lon=10 lat=20 height=300\nat 1 pose lon=11 lat=20 alt=300\n");
-  const Path path(flight, kRadius_m, [](mars::LonLat p) { return p.lon_deg * 100 + p.lat_deg; });
+  const Path path(flight, kRadius_m, [](mars::LonLat p, double) { return p.lon_deg * 100 + p.lat_deg; });
   EXPECT_EQ(path.at(0).pose.alt_m, 1320);
   EXPECT_EQ(path.at(1).pose.alt_m, 300);
 }
@@ -346,7 +346,7 @@ TEST(Path, RefusesWhatCannotBeFlown) {
   const std::string low = "at 0 pose lon=0 lat=0 alt=1\nat 8.5 pose lon=10 lat=20 height=300\n";
   expect_throw(low, {}, "at 8.5 s has height=");
   expect_throw(
-      low, [](mars::LonLat) { return std::nan(""); }, "lon 10 lat 20 is not known");
+      low, [](mars::LonLat, double) { return std::nan(""); }, "lon 10 lat 20 is not known");
   expect_throw("at 0 pose lon=0 lat=0 alt=-3396190\n", {}, "at 0 s lies at or below the planet's centre");
   expect_throw("at 0 pose lon=0 lat=10 alt=0\nat 4 pose lon=180 lat=-10 alt=0\n", {}, "at 4 s is opposite");
   EXPECT_NO_THROW(path_of("at 0 pose lon=0 lat=10 alt=0\nat 4 pose lon=180 lat=-10.001 alt=0\n"));
@@ -355,14 +355,14 @@ TEST(Path, RefusesWhatCannotBeFlown) {
 
 TEST(Clearance, FindsTheLowestFrame) {
   const Path path = path_of("at 0 pose lon=0 lat=0 alt=1000\nat 10 pose lon=10 lat=0 alt=1000\n");
-  const TerrainHeight peak = [](mars::LonLat p) { return 900 - 100 * std::abs(p.lon_deg - 7.0); };
+  const TerrainHeight peak = [](mars::LonLat p, double) { return 900 - 100 * std::abs(p.lon_deg - 7.0); };
   const std::optional<Clearance> lowest = lowest_clearance(path, {10, 1}, peak);
   ASSERT_TRUE(lowest.has_value());
   EXPECT_EQ(lowest->frame, 70);
   EXPECT_EQ(lowest->time_s, 7);
   EXPECT_NEAR(lowest->height_m, 100, 1e-9);
   EXPECT_NEAR(lowest->place.lon_deg, 7, 1e-12);
-  EXPECT_FALSE(lowest_clearance(path, {10, 1}, [](mars::LonLat) { return std::nan(""); }).has_value());
+  EXPECT_FALSE(lowest_clearance(path, {10, 1}, [](mars::LonLat, double) { return std::nan(""); }).has_value());
 }
 
 }  // namespace
@@ -373,7 +373,7 @@ TEST(Path, HeightsAreAboveTheTerrainAsItIsDrawnThen) {
       "at 5 set exaggeration=0.5\nat 6 pose lon=3 lat=0 height=100\n",
       "test");
   ASSERT_TRUE(parsed.flight);
-  const auto terrain = [](mars::LonLat) { return 1000.0; };
+  const auto terrain = [](mars::LonLat, double x) { return 1000.0 * x; };
   const scripts::Path path(*parsed.flight, 3396190.0, terrain, 2.0);
   EXPECT_EQ(path.exaggeration(1.9), 2.0);
   EXPECT_EQ(path.exaggeration(2.0), 3.0);

@@ -116,7 +116,9 @@ void fly(FlyArguments& arguments, const Common& common) {
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
   const auto terrain = [surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
-                           mars::LonLat place) { return surface->at(mars::direction(place)).height_m; };
+                           mars::LonLat place, double exaggeration) {
+    return surface->at(mars::direction(place), exaggeration).height_m;
+  };
   const FilmPlan plan({version(), meta.identity, arguments.picture.backend, common.memory_mb}, flight.view,
                       scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration), base,
                       interest);

@@ -103,8 +103,9 @@ void render(RenderArguments& arguments, const Common& common) {
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
   const mars::Pose pose = parse_pose(arguments, [&](mars::LonLat place) {
-    const double x = settings.values().exaggeration;
-    return x * paging::Surface(planet, std::size_t{8} << 20).at(mars::direction(place)).height_m;
+    return paging::Surface(planet, std::size_t{8} << 20)
+        .at(mars::direction(place), settings.values().exaggeration)
+        .height_m;
   });
   request.view.eye = mars::to_eye(pose, planet->radius_m());
   request.settings = settings.values();

@@ -63,8 +63,8 @@ std::optional<double> TileScene::ground_m(const core::View& view) {
   if (tile == nullptr) return std::nullopt;
   const mars::ChartPoint at = mars::chart_point(view.eye.eye_m);
   const lod::Posts& posts = tile->posts;
-  return look_->exaggeration *
-         lod::surface_height(posts, lod::grid_lines(key, posts.intervals), at.u, at.v, planet_->radius_m());
+  return lod::surface_height(posts, lod::grid_lines(key, posts.intervals), at.u, at.v, planet_->radius_m(),
+                             nullptr, look_->exaggeration);
 }
 
 void TileScene::find_clearance(const core::View& view) {

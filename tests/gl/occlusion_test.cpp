@@ -1,0 +1,207 @@
+// Leaving out what nearer ground hides changes no pixel: of complete pictures, and of those with tiles missing.
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "tests/gl/certified.h"
+#include "tests/paging/rough_planet.h"
+
+namespace {
+
+using test_support::Random;
+using vpe::core::DrawRequest;
+using vpe::core::DrawResult;
+using vpe::core::Occlusion;
+using vpe::core::Renderer;
+
+class OcclusionBase : public test_support::GlTest {
+ protected:
+  void SetUp() override {
+    planet_ = test_support::build_rough(dir_ / "p.vpe");
+    surface_ = std::make_unique<paging::Surface>(planet_, std::size_t{1} << 28);
+  }
+
+  // Some eyes are just under the ground as it is drawn: exaggerated facets stand above exaggerated heights.
+  // In the canyon, the crater, the basin, at the pole and anywhere; from half a metre up to orbit.
+  DrawRequest random_request(Random& random) const {
+    const glm::dvec3 centres[] = {test_support::kCanyon, test_support::kCrater, test_support::kBasin,
+                                  test_support::kPole, random.direction()};
+    const glm::dvec3 at =
+        glm::normalize(centres[random.integer(0, 4)] + 0.004 * random.uniform(0, 1) * random.direction());
+    const mars::LonLat place = mars::lon_lat(at);
+    const double exaggeration = random.integer(0, 4) == 0 ? random.uniform(0.5, 4) : 1.0;
+    const double height =
+        random.integer(0, 3) == 0 ? random.log_uniform(1e4, 3e6) : random.log_uniform(0.5, 1e4);
+    const mars::Pose pose{place.lon_deg,
+                          place.lat_deg,
+                          exaggeration * surface_->at(at).height_m + height,
+                          random.uniform(0, 360),
+                          random.uniform(-60, 10),
+                          random.integer(0, 2) == 0 ? random.uniform(-180, 180) : 0.0};
+    DrawRequest request =
+        test_support::request_for(pose, planet_->radius_m(), 192, 108, random.integer(0, 3) == 0 ? 100 : 60);
+    request.settings.exaggeration = exaggeration;
+    return request;
+  }
+
+  static DrawRequest with(DrawRequest request, Occlusion occlusion) {
+    request.settings.occlusion = occlusion;
+    return request;
+  }
+
+  void expect_same_pictures(int views, unsigned seed, double least_share) {
+    const auto on = renderer(planet_);
+    const auto off = renderer(planet_);
+    Random random(seed);
+    int hidden = 0;
+    int all = 0;
+    for (int n = 0; n < views; ++n) {
+      const DrawRequest request = random_request(random);
+      const DrawResult with_it = on->draw(with(request, Occlusion::kOn));
+      const DrawResult without = off->draw(with(request, Occlusion::kOff));
+      ASSERT_EQ(with_it.frame.colour, without.frame.colour) << "view " << n;
+      ASSERT_EQ(with_it.frame.range_m, without.frame.range_m) << "view " << n;
+      EXPECT_EQ(with_it.stats.tiles_drawn + with_it.stats.tiles_culled_occlusion, without.stats.tiles_drawn);
+      EXPECT_EQ(without.stats.tiles_culled_occlusion, 0);
+      EXPECT_LE(with_it.certificate.shift_bound_px, without.certificate.shift_bound_px);
+      hidden += with_it.stats.tiles_culled_occlusion;
+      all += without.stats.tiles_drawn;
+    }
+    std::printf("%d views: %d of %d tiles hidden\n", views, hidden, all);
+    EXPECT_GT(hidden, least_share * all);  // else nothing was shown
+  }
+
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  std::unique_ptr<paging::Surface> surface_;
+};
+
+using Occluded = OcclusionBase;
+using LongOccluded = OcclusionBase;
+
+TEST_F(Occluded, PicturesAreTheSameWithAndWithout) { expect_same_pictures(40, 71, 0.2); }
+TEST_F(LongOccluded, PicturesAreTheSameWithAndWithout) { expect_same_pictures(600, 72, 0.2); }
+
+// Lets a number of loads pass, and holds the others back.
+class Gate {
+ public:
+  void pass() {
+    std::unique_lock lock(mutex_);
+    ++waiting_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return free_ > 0; });
+    --free_;
+    --waiting_;
+  }
+  void let(int more) {
+    const std::lock_guard lock(mutex_);
+    free_ += more;
+    changed_.notify_all();
+  }
+  // Until all that were let through are through and the loaders stand at the gate again.
+  void settle(int loaders) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::seconds(5), [&] { return free_ == 0 && waiting_ == loaders; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int free_ = 0;
+  int waiting_ = 0;
+};
+
+// Whatever is there, and whatever stands in for the rest.
+TEST_F(Occluded, UnfinishedPicturesAreTheSameToo) {
+  Random random(73);
+  int unfinished = 0;
+  for (int n = 0; n < 6; ++n) {
+    Gate gate;
+    const auto draw =
+        vpe::gl::make_polygon_renderer(context_, planet_, {std::size_t{256} << 20, 1, [&](const auto& tile) {
+                                                             if (tile.level > 0) gate.pass();
+                                                           }});
+    DrawRequest request = random_request(random);
+    request.paging.wait = false;
+    request.paging.upload_ms = 1e6;
+    for (int step = 0; step < 12; ++step) {
+      draw->draw(with(request, Occlusion::kOn));
+      gate.let(random.integer(0, 12));
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      // The first takes what has come, the others see the same.
+      draw->draw(with(request, Occlusion::kOff));
+      const DrawResult without = draw->draw(with(request, Occlusion::kOff));
+      const DrawResult with_it = draw->draw(with(request, Occlusion::kOn));
+      if (without.stats.pages_uploaded + with_it.stats.pages_uploaded > 0) continue;
+      unfinished += without.missing.empty() ? 0 : 1;
+      ASSERT_EQ(with_it.frame.range_m, without.frame.range_m) << "view " << n << " step " << step;
+      ASSERT_EQ(with_it.frame.colour, without.frame.colour) << "view " << n << " step " << step;
+    }
+    gate.let(1 << 20);
+  }
+  EXPECT_GT(unfinished, 10);
+}
+
+TEST_F(Occluded, SettledPicturesDoNotDependOnHistory) {
+  Random random(74);
+  const auto draw = renderer(planet_);
+  for (int n = 0; n < 10; ++n) {
+    DrawRequest request = random_request(random);
+    const DrawResult alone = renderer(planet_)->draw(request);
+    request.paging.wait = false;
+    request.settings.occlusion = Occlusion::kOn;
+    DrawResult result = draw->draw(request);
+    for (int k = 0; k < 20000 && !result.settled; ++k) result = draw->draw(request);
+    ASSERT_TRUE(result.settled) << n;
+    EXPECT_TRUE(result.missing.empty());
+    EXPECT_EQ(result.frame.colour, alone.frame.colour) << n;
+    EXPECT_EQ(result.frame.range_m, alone.frame.range_m) << n;
+    EXPECT_EQ(result.stats.tiles_culled_occlusion, alone.stats.tiles_culled_occlusion) << n;
+    EXPECT_EQ(result.stats.tiles_drawn, alone.stats.tiles_drawn) << n;
+  }
+}
+
+// The certificate is true, and not far above what is found: the median of stated to measured.
+class CertificateBase : public OcclusionBase {
+ protected:
+  void check(int views, unsigned seed) {
+    const auto draw = renderer(planet_);
+    Random random(seed);
+    std::vector<double> ratio;
+    for (int n = 0; n < views; ++n) {
+      DrawRequest request = random_request(random);
+      request.settings.exaggeration = 1;
+      request.view.width = 128;
+      request.view.height = 72;
+      const DrawResult result = draw->draw(request);
+      const std::vector<float> reference = test_support::reference_ranges(*surface_, request.view);
+      const auto errors = vpe::core::compare_to_reference(request.view, result.frame.range_m, reference,
+                                                          test_support::radius_of(*surface_), {2, 2});
+      float nearest = vpe::core::kSkyRange;
+      float farthest = 0;
+      for (const float range : result.frame.range_m) {
+        nearest = std::min(nearest, range);
+        if (std::isfinite(range)) farthest = std::max(farthest, range);
+      }
+      if (farthest == 0) continue;
+      const double range_px =
+          vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(request.view);
+      ASSERT_LE(errors.forward.max_px, result.certificate.shift_bound_px + range_px)
+          << "view " << n << " " << vpe::core::to_json(errors) << vpe::core::to_json(result.certificate);
+      if (errors.forward.max_px > 0) ratio.push_back(result.certificate.shift_bound_px / errors.forward.max_px);
+    }
+    ASSERT_GT(ratio.size(), 0.8 * views);
+    std::sort(ratio.begin(), ratio.end());
+    std::printf("%zu views: stated to measured: median %.2f, p10 %.2f, p90 %.2f\n", ratio.size(),
+                ratio[ratio.size() / 2], ratio[ratio.size() / 10], ratio[9 * ratio.size() / 10]);
+    EXPECT_LE(ratio[ratio.size() / 2], 4.0);
+  }
+};
+using Certificates = CertificateBase;
+using LongCertificates = CertificateBase;
+
+TEST_F(Certificates, AreTrueAndNotLazy) { check(40, 75); }
+TEST_F(LongCertificates, AreTrueAndNotLazy) { check(1000, 76); }
+
+}  // namespace
