@@ -30,16 +30,20 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
   field("tiles_missing", stats.tiles_missing);
   field("triangles", stats.triangles);
   field("skirt_triangles", stats.skirt_triangles);
-  if (stats.bytes_resident < 0) {
-    field("bytes_resident", std::numeric_limits<double>::quiet_NaN());
-  } else {
-    field("bytes_resident", stats.bytes_resident);
-  }
+  // A count that depends on what was drawn before is not known of a frame that was not drawn now.
+  const auto count = [&](std::string_view name, std::int64_t value) {
+    if (value < 0) {
+      field(name, std::numeric_limits<double>::quiet_NaN());
+    } else {
+      field(name, value);
+    }
+  };
+  count("bytes_resident", stats.bytes_resident);
   field("tiles_by_level", stats.tiles_by_level);
-  field("pages_wanted", stats.pages_wanted);
-  field("pages_loading", stats.pages_loading);
-  field("pages_uploaded", stats.pages_uploaded);
-  field("pages_evicted", stats.pages_evicted);
+  count("pages_wanted", stats.pages_wanted);
+  count("pages_loading", stats.pages_loading);
+  count("pages_uploaded", stats.pages_uploaded);
+  count("pages_evicted", stats.pages_evicted);
   field("select_ms", stats.select_ms);
   field("occlude_ms", stats.occlude_ms);
   field("load_ms", stats.load_ms);

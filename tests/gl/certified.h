@@ -9,6 +9,17 @@
 
 namespace test_support {
 
+// The range image has an error of its own, which moves points along their rays.
+inline double range_error_px(const vpe::core::View& view, const std::vector<float>& range_m) {
+  float nearest = vpe::core::kSkyRange;
+  float farthest = 0;
+  for (const float range : range_m) {
+    nearest = std::min(nearest, range);
+    if (std::isfinite(range)) farthest = std::max(farthest, range);
+  }
+  return vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(view);
+}
+
 inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surface& surface,
                              const vpe::core::DrawRequest& request, const std::string& name) {
   const vpe::core::DrawResult result = renderer.draw(request);
@@ -19,14 +30,7 @@ inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surfac
   EXPECT_EQ(errors.holes, 0);
   EXPECT_EQ(errors.false_surface, 0);
   EXPECT_EQ(errors.invalid, 0);
-  // The range image has an error of its own, which moves points along their rays.
-  float nearest = vpe::core::kSkyRange;
-  float farthest = 0;
-  for (const float range : result.frame.range_m) {
-    nearest = std::min(nearest, range);
-    if (std::isfinite(range)) farthest = std::max(farthest, range);
-  }
-  const double range_px = vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(request.view);
+  const double range_px = range_error_px(request.view, result.frame.range_m);
   EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px + range_px);
   EXPECT_LE(errors.forward.p999_px, 1.0);
   EXPECT_LE(errors.backward.p999_px, 1.5);

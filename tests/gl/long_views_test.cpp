@@ -1,6 +1,10 @@
 // Fifty named and two hundred random views of whole planets, real and embedded, against exact casts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "mars/embedded.h"
@@ -23,6 +27,33 @@ class LongViews : public test_support::GlTest {
     const auto draw = renderer(planet, std::size_t{1} << 29);
     named_views(*draw, surface);
     random_views(*draw, surface);
+  }
+
+  // $VPE_EMBEDDED_PLANET names a planet file of the embedded Mars that is there already.
+  std::shared_ptr<const paging::PlanetFile> embedded() {
+    const char* ready = std::getenv("VPE_EMBEDDED_PLANET");
+    std::string path = ready != nullptr ? ready : "";
+    if (path.empty()) {
+      paging::BuildOptions options;
+      options.output = path = (dir_ / "embedded.vpe").string();
+      options.resampling_posts = 10000;
+      paging::build_planet(options, *mars::embedded_elevation(), nullptr);
+    }
+    return paging::PlanetFile::open(path);
+  }
+
+  // Anywhere, every second time over the canyons; 1.5 m to 30 000 km above ground.
+  static vpe::core::DrawRequest random_request(Random& random, int n, const paging::Surface& surface, int width,
+                                               int height) {
+    const glm::dvec3 at = n % 2 == 0
+                              ? random.direction()
+                              : glm::normalize(mars::direction({-64, -12.8}) + 0.03 * random.direction());
+    const mars::LonLat place = mars::lon_lat(at);
+    const double ground = surface.at(at).height_m;
+    const mars::Pose pose{
+        place.lon_deg,          place.lat_deg,           ground + random.log_uniform(1.5, 3e7),
+        random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)};
+    return request_for(pose, surface.planet_radius_m(), width, height, random.log_uniform(2, 110));
   }
 
  private:
@@ -58,17 +89,8 @@ class LongViews : public test_support::GlTest {
 
   void random_views(vpe::core::Renderer& draw, const paging::Surface& surface) {
     Random random(82);
-    const double radius = surface.planet_radius_m();
     for (int n = 0; n < 200; ++n) {
-      const glm::dvec3 at = n % 2 == 0
-                                ? random.direction()
-                                : glm::normalize(mars::direction({-64, -12.8}) + 0.03 * random.direction());
-      const mars::LonLat place = mars::lon_lat(at);
-      const double ground = surface.at(at).height_m;
-      const mars::Pose pose{
-          place.lon_deg,          place.lat_deg,           ground + random.log_uniform(1.5, 3e7),
-          random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)};
-      expect_certified(draw, surface, request_for(pose, radius, kWidth, kHeight, random.log_uniform(2, 110)),
+      expect_certified(draw, surface, random_request(random, n, surface, kWidth, kHeight),
                        "random view " + std::to_string(n));
     }
   }
@@ -83,17 +105,42 @@ TEST_F(LongViews, MolaKeepsItsCertificates) {
   check(paging::PlanetFile::open(options.output));
 }
 
-// $VPE_EMBEDDED_PLANET names a planet file of the embedded Mars that is there already.
-TEST_F(LongViews, EmbeddedMarsKeepsItsCertificates) {
-  const char* ready = std::getenv("VPE_EMBEDDED_PLANET");
-  std::string path = ready != nullptr ? ready : "";
-  if (path.empty()) {
-    paging::BuildOptions options;
-    options.output = path = (dir_ / "embedded.vpe").string();
-    options.resampling_posts = 10000;
-    paging::build_planet(options, *mars::embedded_elevation(), nullptr);
+TEST_F(LongViews, EmbeddedMarsKeepsItsCertificates) { check(embedded()); }
+
+// Stated to measured, the largest of each picture, where anything is measured: bounds that nobody believes are
+// of no use.
+TEST_F(LongViews, CertificatesAreNotLazy) {
+  const auto planet = embedded();
+  const paging::Surface surface(planet, std::size_t{1} << 29);
+  const auto draw = renderer(planet, std::size_t{1} << 29);
+  Random random(83);
+  std::array<std::vector<double>, 8> ratio;  // by decade of height above ground
+  constexpr int kViews = 1000;
+  for (int n = 0; n < kViews; ++n) {
+    const vpe::core::DrawRequest request = random_request(random, n, surface, 128, 72);
+    const vpe::core::DrawResult result = draw->draw(request);
+    const auto reference = test_support::reference_ranges(surface, request.view);
+    const auto errors = vpe::core::compare_to_reference(request.view, result.frame.range_m, reference,
+                                                        test_support::radius_of(surface), {2, 2});
+    const double range_px = test_support::range_error_px(request.view, result.frame.range_m);
+    ASSERT_LE(errors.forward.max_px, result.certificate.shift_bound_px + range_px)
+        << "view " << n << " " << vpe::core::to_json(errors) << vpe::core::to_json(result.certificate);
+    if (errors.forward.pixels < 1000) continue;  // nearly all sky
+    const double height_m = glm::length(request.view.eye.eye_m) - surface.at(request.view.eye.eye_m).radius_m;
+    const auto decade = static_cast<std::size_t>(std::clamp(std::log10(height_m), 0.0, 7.0));
+    ratio[decade].push_back(result.certificate.shift_bound_px / std::max(errors.forward.max_px, 1e-9));
   }
-  check(paging::PlanetFile::open(path));
+  for (std::size_t decade = 0; decade < ratio.size(); ++decade) {
+    std::vector<double>& r = ratio[decade];
+    if (r.size() < 20) continue;
+    std::sort(r.begin(), r.end());
+    std::printf("from 1e%zu m: %zu views, median of stated to measured %.2f\n", decade, r.size(),
+                r[r.size() / 2]);
+    // Nearer to the ground most of a picture is S itself: measured is nothing, and what is stated is for the
+    // rest.
+    if (decade >= 4) EXPECT_LE(r[r.size() / 2], 4.0);
+  }
+  EXPECT_GT(ratio[4].size() + ratio[5].size() + ratio[6].size(), 0.2 * kViews);
 }
 
 using LongHairlines = test_support::GlTest;

@@ -162,46 +162,4 @@ TEST_F(Occluded, SettledPicturesDoNotDependOnHistory) {
   }
 }
 
-// The certificate is true, and not far above what is found: the median of stated to measured.
-class CertificateBase : public OcclusionBase {
- protected:
-  void check(int views, unsigned seed) {
-    const auto draw = renderer(planet_);
-    Random random(seed);
-    std::vector<double> ratio;
-    for (int n = 0; n < views; ++n) {
-      DrawRequest request = random_request(random);
-      request.settings.exaggeration = 1;
-      request.view.width = 128;
-      request.view.height = 72;
-      const DrawResult result = draw->draw(request);
-      const std::vector<float> reference = test_support::reference_ranges(*surface_, request.view);
-      const auto errors = vpe::core::compare_to_reference(request.view, result.frame.range_m, reference,
-                                                          test_support::radius_of(*surface_), {2, 2});
-      float nearest = vpe::core::kSkyRange;
-      float farthest = 0;
-      for (const float range : result.frame.range_m) {
-        nearest = std::min(nearest, range);
-        if (std::isfinite(range)) farthest = std::max(farthest, range);
-      }
-      if (farthest == 0) continue;
-      const double range_px =
-          vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(request.view);
-      ASSERT_LE(errors.forward.max_px, result.certificate.shift_bound_px + range_px)
-          << "view " << n << " " << vpe::core::to_json(errors) << vpe::core::to_json(result.certificate);
-      if (errors.forward.max_px > 0) ratio.push_back(result.certificate.shift_bound_px / errors.forward.max_px);
-    }
-    ASSERT_GT(ratio.size(), 0.8 * views);
-    std::sort(ratio.begin(), ratio.end());
-    std::printf("%zu views: stated to measured: median %.2f, p10 %.2f, p90 %.2f\n", ratio.size(),
-                ratio[ratio.size() / 2], ratio[ratio.size() / 10], ratio[9 * ratio.size() / 10]);
-    EXPECT_LE(ratio[ratio.size() / 2], 4.0);
-  }
-};
-using Certificates = CertificateBase;
-using LongCertificates = CertificateBase;
-
-TEST_F(Certificates, AreTrueAndNotLazy) { check(40, 75); }
-TEST_F(LongCertificates, AreTrueAndNotLazy) { check(1000, 76); }
-
 }  // namespace

@@ -86,7 +86,7 @@ std::optional<FrameFigures> figures_from(const json& from) {
   }
   core::FrameStats& s = figures.stats;
   s.select_ms = s.occlude_ms = s.load_ms = s.draw_ms = s.read_ms = kNotKnown;
-  s.bytes_resident = -1;
+  s.bytes_resident = s.pages_wanted = s.pages_loading = s.pages_uploaded = s.pages_evicted = -1;
   return figures;
 }
 

@@ -29,7 +29,7 @@ struct FrameFigures {
   core::FrameStats stats;
   core::Certificate certificate;
 };
-// Of a frame that was not drawn now: times are NaN, bytes_resident is -1.
+// Of a frame that was not drawn now: times are NaN, bytes_resident and pages are -1.
 nlohmann::json to_json(const FrameFigures& figures);
 std::optional<FrameFigures> figures_from(const nlohmann::json& json);
 

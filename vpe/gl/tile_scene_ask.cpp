@@ -10,7 +10,8 @@ namespace vpe::gl {
 namespace {
 
 constexpr std::size_t kMostUpcoming = 3;
-constexpr double kLater = 1e12;  // less urgent than anything of this view
+constexpr double kBufferZone = 1.25;  // the field of view of what is kept ready round a moving picture
+constexpr double kLater = 1e12;       // less urgent than anything of this view
 
 // Tiles in the middle of the picture count more: half at a radian from the view's axis, for instance.
 double centre_weight(const lod::TileKey& key, const core::View& view, double radius_m) {
@@ -72,13 +73,20 @@ void TileScene::ask(const core::DrawRequest& request, const lod::SelectOptions& 
 
 void TileScene::want_upcoming(const core::DrawRequest& request, const lod::SelectOptions& options,
                               std::vector<TilePager::Want>& wants) {
-  const std::size_t count = std::min(request.paging.upcoming.size(), kMostUpcoming);
-  if (count == 0 || !has_room()) return;
+  if (!has_room()) return;
+  std::vector<core::View> views(
+      request.paging.upcoming.begin(),
+      request.paging.upcoming.begin() +
+          static_cast<std::ptrdiff_t>(std::min(request.paging.upcoming.size(), kMostUpcoming)));
+  if (!request.paging.wait) {
+    core::View wider = request.view;
+    wider.fov_deg = std::min(kBufferZone * wider.fov_deg, core::ViewLimits::kMaxFov_deg);
+    views.push_back(wider);
+  }
   std::unordered_set<PageKey, PageKeyHash> asked;
   for (const TilePager::Want& w : wants) asked.insert(w.key);
   lod::Selection later;
-  for (std::size_t k = 0; k < count; ++k) {
-    const core::View& view = request.paging.upcoming[k];
+  for (const core::View& view : views) {
     lod::select(options, planet_->tree(), lod::select_view(view), scratch_, later);
     std::vector<PageKey> pages = absent_pages(later, view, frame_ - 1);
     if (needs_ground(view)) pages.insert(pages.begin(), ground_page(view.eye.eye_m));
