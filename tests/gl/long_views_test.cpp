@@ -138,7 +138,9 @@ TEST_F(LongViews, CertificatesAreNotLazy) {
                 r[r.size() / 2]);
     // Nearer to the ground most of a picture is S itself: measured is nothing, and what is stated is for the
     // rest.
-    if (decade >= 4) EXPECT_LE(r[r.size() / 2], 4.0);
+    if (decade >= 4) {
+      EXPECT_LE(r[r.size() / 2], 4.0);
+    }
   }
   EXPECT_GT(ratio[4].size() + ratio[5].size() + ratio[6].size(), 0.2 * kViews);
 }
