@@ -16,6 +16,7 @@
 #include "lod/tile_key.h"
 #include "mars/sun.h"
 #include "paging/planet_file.h"
+#include "vpe/core/heap.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/polygon_renderer.h"
 
@@ -49,6 +50,7 @@ double finest_spacing_m(const paging::PlanetFile& planet) {
 }
 
 void run(const mars::Pose& pose, int width, int height, int rounds, char** files, int count) {
+  vpe::core::keep_heap_compact();  // as `vpe` does
   const std::shared_ptr<vpe::gl::Context> context = vpe::gl::Context::create();
   std::printf("%s, %dx%d\n\n", context->info().renderer.c_str(), width, height);
   std::vector<Planet> planets;

@@ -18,6 +18,7 @@
 #include "paging/surface.h"
 #include "scripts/path.h"
 #include "tests/bench/flight.h"
+#include "vpe/core/heap.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/polygon_renderer.h"
 
@@ -149,6 +150,7 @@ int run(const char* planet_file, const char* flight_file, int width, int height,
   const auto planet = paging::PlanetFile::open(planet_file);
   const paging::Surface surface(planet, std::size_t{64} << 20);
   const Film film(bench::read_flight(flight_file), surface, width, height);
+  vpe::core::keep_heap_compact();  // as `vpe` does
   const std::shared_ptr<vpe::gl::Context> context = vpe::gl::Context::create();
   std::printf("%s, %d frames of %dx%d, %d MB\n\n", context->info().renderer.c_str(), film.frames(), width,
               height, memory_mb);
