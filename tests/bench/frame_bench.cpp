@@ -188,7 +188,7 @@ void run(const char* planet_file, const char* flight_file, std::int64_t count, s
   const std::vector<DrawRequest> frames = film(flight_file, count, surface);
   const std::shared_ptr<vpe::gl::Context> context = vpe::gl::Context::create();
   std::printf("%s\n\n", context->info().renderer.c_str());
-  const auto renderer = vpe::gl::make_polygon_renderer(context, planet, {std::size_t{1} << 30, 0});
+  const auto renderer = vpe::gl::make_polygon_renderer(context, planet, {std::size_t{1} << 30, 0, {}});
   const vpe::gl::Program flat = vpe::gl::make_program("flat", kVertex, kFlat);
   const vpe::gl::Program bilinear = vpe::gl::make_program("bilinear", kVertex, kBilinear);
   const vpe::gl::Texture2D texture = noise_texture();

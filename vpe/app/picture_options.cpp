@@ -6,6 +6,7 @@
 
 #include "mars/sun.h"
 #include "vpe/app/planet_argument.h"
+#include "vpe/core/heap.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/polygon_renderer.h"
 
@@ -72,6 +73,7 @@ core::Settings make_settings(const PictureOptions& options) {
 std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet) {
   (void)options;
+  core::keep_heap_compact();
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;

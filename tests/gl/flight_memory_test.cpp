@@ -1,0 +1,201 @@
+// Memory of the process on a flight that does not wait: within --memory, and flat.
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/gl/gl_fixture.h"
+#include "vpe/core/heap.h"
+
+namespace {
+
+using test_support::build_fake;
+using test_support::bumpy_height;
+using test_support::FakeElevation;
+
+constexpr double kMegabyte = 1 << 20;
+
+// What of this process lies in memory, as the kernel counts it (VmRSS).
+double resident_mb() {
+  std::ifstream in("/proc/self/statm");
+  double all = 0, resident = 0;
+  in >> all >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / kMegabyte;
+}
+
+struct Flight {
+  mars::LonLat from;
+  double bearing_deg = 0;
+  double speed_m_s = 0;
+  double duration_s = 0;
+  double fps = 0;
+  double least_height_m = 0;  // above the ground
+  int width = 0;
+  int height = 0;
+
+  int frames() const { return static_cast<int>(std::lround(duration_s * fps)); }
+  mars::LonLat place(double t, double radius_m) const {
+    return mars::destination(from, bearing_deg, speed_m_s * t / radius_m);
+  }
+};
+
+// Altitudes at whole seconds. The highest ground for 10 s each way, averaged over 10 s each way, is smooth and
+// never below the ground.
+std::vector<double> altitudes(const Flight& flight, const paging::Surface& surface) {
+  constexpr int kReach = 10;
+  const int count = static_cast<int>(flight.duration_s) + 2;
+  std::vector<double> ground, highest, out;
+  for (int s = -2 * kReach; s < count + 2 * kReach; ++s) {
+    ground.push_back(surface.at(mars::direction(flight.place(s, surface.planet_radius_m()))).height_m);
+  }
+  for (auto at = ground.begin(); at + 2 * kReach != ground.end(); ++at) {
+    highest.push_back(*std::max_element(at, at + 2 * kReach + 1));
+  }
+  for (int s = 0; s < count; ++s) {
+    double sum = 0;
+    for (int k = 0; k <= 2 * kReach; ++k) sum += highest[static_cast<std::size_t>(s + k)];
+    out.push_back(sum / (2 * kReach + 1) + flight.least_height_m);
+  }
+  return out;
+}
+
+// The eye looks ahead and a little down, sways to both sides and climbs and sinks by up to four times its least
+// height.
+vpe::core::View view_at(const Flight& flight, const std::vector<double>& altitude_m, double t,
+                        double radius_m) {
+  const mars::LonLat at = flight.place(t, radius_m);
+  const double yaw = mars::initial_bearing_deg(at, flight.place(t + 1, radius_m));
+  const auto second = static_cast<std::size_t>(t);
+  const double part = t - std::floor(t);
+  const double rise = flight.least_height_m * 2 * (1 - std::cos(t * 2 * mars::kPi / 97));
+  const double alt = altitude_m[second] * (1 - part) + altitude_m[second + 1] * part + rise;
+  const mars::Pose pose{at.lon_deg, at.lat_deg, alt, yaw + 40 * std::sin(t / 17), -12 + 8 * std::sin(t / 29),
+                        0};
+  return test_support::request_for(pose, radius_m, flight.width, flight.height).view;
+}
+
+struct LineFit {
+  double slope = 0;
+  double slope_error = 0;  // standard error, as if what is off the line were independent
+  double spread = 0;       // standard deviation off the line
+};
+LineFit fit_line(const std::vector<glm::dvec2>& points) {
+  glm::dvec2 mean(0);
+  for (const glm::dvec2& p : points) mean += p / static_cast<double>(points.size());
+  double xx = 0, xy = 0, squares = 0;
+  for (const glm::dvec2& p : points) {
+    xx += (p.x - mean.x) * (p.x - mean.x);
+    xy += (p.x - mean.x) * (p.y - mean.y);
+  }
+  const double slope = xy / xx;
+  for (const glm::dvec2& p : points) squares += std::pow(p.y - mean.y - slope * (p.x - mean.x), 2);
+  const double spread = std::sqrt(squares / (static_cast<double>(points.size()) - 2));
+  return {slope, spread / std::sqrt(xx), spread};
+}
+
+class FlightMemory : public test_support::GlTest {
+ protected:
+  // What the process takes with this context when it has drawn one frame of a tiny planet, in the mode and size
+  // of the flight.
+  double base_mb(const Flight& flight) {
+    vpe::core::keep_heap_compact();  // as `vpe` does
+    const auto tiny = build_fake(dir_ / "tiny.vpe", FakeElevation(bumpy_height), 500000);
+    const auto draw = renderer(tiny);
+    draw->draw(request({view_at(flight, std::vector<double>(10, 1e6), 0, tiny->radius_m())}));
+    return resident_mb();
+  }
+
+  // views[0] is to be drawn, the others come later.
+  static vpe::core::DrawRequest request(std::vector<vpe::core::View> views) {
+    vpe::core::DrawRequest out;
+    out.view = views[0];
+    out.settings.mode = vpe::core::Mode::kColoured;
+    out.sun = glm::normalize(glm::dvec3(1, 0.3, 0.2));
+    out.paging.wait = false;
+    out.paging.upcoming.assign(views.begin() + 1, views.end());
+    return out;
+  }
+
+  // Flies, and expects the process to stay within base + 1.15 x memory_mb, and flat from flat_from_s on: a line
+  // through the samples rises or falls by less than 5 % of the memory.
+  void fly(const Flight& flight, const std::string& file, double base, int memory_mb, double flat_from_s) {
+    const auto planet = paging::PlanetFile::open(file);
+    const double radius = planet->radius_m();
+    std::vector<double> altitude_m;
+    {
+      const paging::Surface surface(planet, std::size_t{4} << 20);
+      altitude_m = altitudes(flight, surface);
+    }
+    const auto draw =
+        vpe::gl::make_polygon_renderer(context_, planet, {static_cast<std::size_t>(memory_mb) << 20, 2, {}});
+    const auto start = std::chrono::steady_clock::now();
+    const double last = flight.frames() / flight.fps;
+    const int per_sample = std::max(1, static_cast<int>(flight.fps * flight.duration_s / 120));
+    double highest_mb = 0, held_mb = 0;
+    std::int64_t uploaded = 0, evicted = 0, wanted = 0, missing = 0;
+    std::vector<glm::dvec2> samples, uncounted;
+    for (int n = 0; n < flight.frames(); ++n) {
+      const double t = n / flight.fps;
+      const auto view = [&](double ahead) {
+        return view_at(flight, altitude_m, std::min(t + ahead, last), radius);
+      };
+      const auto result = draw->draw(request({view(0), view(0.25), view(1)}));
+      ASSERT_TRUE(result.failures.empty()) << result.failures[0];
+      held_mb = std::max(held_mb, static_cast<double>(result.stats.bytes_resident) / kMegabyte);
+      uploaded += result.stats.pages_uploaded;
+      evicted += result.stats.pages_evicted;
+      missing += result.stats.tiles_missing;
+      wanted += result.stats.tiles_missing + result.stats.tiles_drawn - result.stats.tiles_substituted;
+      if (n % per_sample != per_sample - 1) continue;
+      const double now_mb = resident_mb();
+      highest_mb = std::max(highest_mb, now_mb - base);
+      if (t >= flat_from_s) {
+        samples.emplace_back(t, now_mb - base);
+        uncounted.emplace_back(t, now_mb - base - static_cast<double>(result.stats.bytes_resident) / kMegabyte);
+      }
+      if (n / per_sample % 12 == 0) {
+        std::printf("%5.0f s of flight: %4.0f MB above base, %4.0f MB counted\n", t, now_mb - base,
+                    static_cast<double>(result.stats.bytes_resident) / kMegabyte);
+        std::fflush(stdout);
+      }
+    }
+    const LineFit line = fit_line(samples);
+    const double fitted_s = samples.back().x - samples.front().x;
+    const double counted_rise = line.slope * fitted_s - fit_line(uncounted).slope * fitted_s;
+    std::printf("base %.0f MB; at most %.1f MB above it, %.1f MB counted\n", base, highest_mb, held_mb);
+    std::printf("from %.0f s on %+.4f +- %.4f MB/s: %+.1f MB in all, %+.1f MB of it counted; spread %.1f MB\n",
+                flat_from_s, line.slope, line.slope_error, line.slope * fitted_s, counted_rise, line.spread);
+    std::printf("%lld pages uploaded, %lld evicted, %.1f %% of the tiles missing; %.0f s for %d frames\n",
+                static_cast<long long>(uploaded), static_cast<long long>(evicted),
+                100.0 * static_cast<double>(missing) / static_cast<double>(wanted),
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                flight.frames());
+    EXPECT_GT(evicted, flight.frames() / 10);  // else nothing was shown
+    EXPECT_LE(held_mb, memory_mb);
+    EXPECT_LE(highest_mb, 1.15 * memory_mb);
+    EXPECT_LE(std::abs(line.slope * fitted_s), 0.05 * memory_mb);
+  }
+};
+
+TEST_F(FlightMemory, StaysWithinTheBudgetAndFlat) {
+  const Flight flight{{20, 3}, 80, 40000, 60, 4, 8000, 160, 90};
+  const double base = base_mb(flight);
+  const auto near_route = [](const mars::Cap& cap) {
+    return std::abs(cap.centre.z) < 0.15 + cap.radius_rad ? 8000.0 : 1e9;
+  };
+  build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, near_route), 100000);
+  fly(flight, dir_ / "p.vpe", base, 64, 20);
+}
+
+// Ten minutes at 10 km/s over the largest planet file at hand.
+using LongFlight = FlightMemory;
+TEST_F(LongFlight, TenMinutesAtTenKilometresASecond) {
+  const char* file = std::getenv("VPE_LARGE_PLANET");
+  if (file == nullptr || *file == '\0') GTEST_SKIP() << "skipped: $VPE_LARGE_PLANET names no planet file";
+  const Flight flight{{-130, 5}, 100, 10000, 600, 10, 3000, 640, 360};
+  fly(flight, file, base_mb(flight), 256, 120);
+}
+
+}  // namespace

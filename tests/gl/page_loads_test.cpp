@@ -1,0 +1,86 @@
+// The loader of the polygon backend under a pager, without OpenGL: for the thread sanitizer above all.
+#include <set>
+
+#include "paging/pager.h"
+#include "tests/paging/planet_fixture.h"
+#include "vpe/gl/tile_page.h"
+
+namespace {
+
+using namespace std::chrono_literals;
+using test_support::bumpy_height;
+using test_support::FakeElevation;
+using test_support::Random;
+using vpe::gl::Page;
+using vpe::gl::PageKey;
+using vpe::gl::PageKeyHash;
+using vpe::gl::PageKind;
+using vpe::gl::PageLoader;
+using vpe::gl::ShadeParams;
+using TilePager = paging::Pager<PageKey, Page, PageKeyHash>;
+
+// Any page that the planet has: meshes of all variants, textures in two looks, posts.
+PageKey random_page(const paging::PlanetFile& planet, Random& random,
+                    const std::vector<std::shared_ptr<const ShadeParams>>& looks) {
+  const lod::TileTree& tree = planet.tree();
+  const lod::TileInfo& tile =
+      tree[static_cast<lod::TileTree::Index>(random.integer(0, static_cast<int>(tree.size()) - 1))];
+  PageKey page;
+  page.tile = tile.key;
+  switch (random.integer(0, tile.has_children ? 1 : 2)) {
+    case 0: page.detail = random.integer(0, static_cast<int>(tile.variants.size()) - 1); break;
+    case 1:
+      page.kind = PageKind::kTexture;
+      page.detail = planet.meta().tile.intervals() << random.integer(0, 1);
+      page.look = looks[static_cast<std::size_t>(random.integer(0, static_cast<int>(looks.size()) - 1))];
+      break;
+    default: page.kind = PageKind::kGround;
+  }
+  return page;
+}
+
+// Owners that ask, take, change their mind and go away at random, while the shader's small caches evict.
+TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
+  const test_support::TempDir dir;
+  const test_support::FakeImage image;
+  paging::BuildOptions options;
+  options.output = (dir / "p.vpe").string();
+  options.base_spacing_m = 100000;
+  options.threads = 2;
+  options.tile_k = 4;
+  options.resampling_posts = 1000;
+  paging::build_planet(options, FakeElevation(bumpy_height), &image);
+  const auto planet = paging::PlanetFile::open(options.output);
+  std::vector<std::shared_ptr<const ShadeParams>> looks;
+  for (const auto surfacing : {vpe::gl::Surfacing::kElevation, vpe::gl::Surfacing::kImage}) {
+    ShadeParams look;
+    look.surfacing = surfacing;
+    looks.push_back(std::make_shared<const ShadeParams>(look));
+  }
+  Random random(17);
+  std::size_t taken = 0;
+  for (int round = 0; round < 12; ++round) {
+    const auto shader = std::make_shared<const vpe::gl::Shader>(planet, std::size_t{50000});
+    const PageLoader loader(planet, shader);
+    TilePager pager([&](const PageKey& key) { return loader.load(key); }, random.integer(1, 4), 200000);
+    for (int step = 0; step < 25; ++step) {
+      std::vector<TilePager::Want> wants;
+      for (int k = random.integer(0, 30); k > 0; --k) {
+        wants.push_back({random_page(*planet, random, looks), random.uniform(0, 1)});
+      }
+      pager.want(std::move(wants));
+      if (random.integer(0, 2) == 0) pager.wait(TilePager::Clock::now() + 2ms);
+      for (const TilePager::Loaded& page : pager.take(static_cast<std::size_t>(random.integer(0, 100000)))) {
+        ++taken;
+        EXPECT_GT(page.bytes, 0U);
+        EXPECT_EQ(page.value.ground != nullptr, page.key.kind == PageKind::kGround);
+        EXPECT_EQ(page.value.shaded.rgba.empty(), page.key.kind != PageKind::kTexture);
+        EXPECT_EQ(page.value.geometry.vertices.empty(), page.key.kind != PageKind::kMesh);
+      }
+      EXPECT_EQ(pager.counts().failed, 0U);
+    }
+  }
+  EXPECT_GT(taken, 100U);
+}
+
+}  // namespace

@@ -1,0 +1,63 @@
+// What tiles take on the GPU is what is counted.
+#include <gtest/gtest.h>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+#include "tests/gl/gl_fixture.h"
+#include "vpe/gl/residency.h"
+
+namespace {
+
+class Residency : public test_support::GlTest {
+ protected:
+  // Without a GPU all objects are blocks of this process's heap.
+  void SetUp() override {
+#if defined(__GLIBC__)
+    if (context_->info().renderer.find("llvmpipe") != std::string::npos) return;
+#endif
+    GTEST_SKIP() << "skipped: what OpenGL allocates can be seen with llvmpipe and glibc alone";
+  }
+
+  // What `count` objects take over what they count, as a ratio. A first batch makes the driver's own tables.
+  template <class Make>
+  static double taken_to_counted(int count, Make make) {
+#if defined(__GLIBC__)
+    double ratio = 0;
+    for (int round = 0; round < 2; ++round) {
+      std::vector<decltype(make())> objects;
+      objects.reserve(static_cast<std::size_t>(count));
+      const struct mallinfo2 before = mallinfo2();
+      std::size_t counted = 0;
+      for (int n = 0; n < count; ++n) counted += objects.emplace_back(make()).bytes;
+      const struct mallinfo2 after = mallinfo2();
+      ratio = static_cast<double>(after.uordblks + after.hblkhd - before.uordblks - before.hblkhd) /
+              static_cast<double>(counted);
+    }
+    return ratio;
+#else
+    return static_cast<double>(make().bytes) * count;
+#endif
+  }
+};
+
+TEST_F(Residency, MeshesTakeWhatTheyCount) {
+  for (const int intervals : {2, 4, 8, 16, 32}) {
+    const std::vector<double> heights(static_cast<std::size_t>((intervals + 1) * (intervals + 1)), 100.0);
+    const auto geometry =
+        vpe::gl::make_geometry({}, lod::mesh_full(intervals), heights, 1, mars::kMarsRadius_m);
+    EXPECT_NEAR(taken_to_counted(300, [&] { return vpe::gl::upload(geometry); }), 1, 0.1) << intervals;
+  }
+}
+
+TEST_F(Residency, TexturesTakeWhatTheyCount) {
+  for (const int intervals : {32, 128, 256, 512}) {
+    vpe::gl::ShadedTile tile;
+    tile.intervals = intervals;
+    tile.rgba.resize(4 * static_cast<std::size_t>((intervals + 1) * (intervals + 1)));
+    EXPECT_NEAR(taken_to_counted(30, [&] { return vpe::gl::upload(tile); }), 1, 0.1) << intervals;
+  }
+}
+
+}  // namespace
