@@ -73,7 +73,9 @@ core::Settings make_settings(const PictureOptions& options) {
 std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet) {
   (void)options;
-  core::keep_heap_compact();
+  // It costs a fifth of a film's time in page faults, so only who is short of memory pays.
+  constexpr int kTightMemory_mb = 512;
+  if (common.memory_mb < kTightMemory_mb) core::keep_heap_compact();
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;

@@ -81,8 +81,7 @@ class TileScene {
   void draw_what_is_there(const core::DrawRequest& request, const lod::SelectOptions& options);
   void cover_without(const std::vector<std::uint8_t>& left_out, const core::DrawRequest& request,
                      const lod::SelectOptions& options);
-  void occlude(const lod::Selection& tiles, const core::DrawRequest& request,
-               std::vector<std::uint8_t>& hidden);
+  void occlude(const lod::Selection& tiles, const core::View& view, std::vector<std::uint8_t>& hidden);
   bool is_above_ground(const lod::Selection& cover, const core::View& view);
   bool needs_ground(const core::View& view) const;
   void take_some(double limit_ms);

@@ -88,6 +88,12 @@ void TileScene::want_upcoming(const core::DrawRequest& request, const lod::Selec
   lod::Selection later;
   for (const core::View& view : views) {
     lod::select(options, planet_->tree(), lod::select_view(view), scratch_, later);
+    if (occluding_) {
+      std::vector<std::uint8_t> hidden;
+      occlude(later, view, hidden);
+      std::size_t n = 0;
+      std::erase_if(later.tiles, [&](const lod::SelectedTile&) { return hidden[n++] != 0; });
+    }
     std::vector<PageKey> pages = absent_pages(later, view, frame_ - 1);
     if (needs_ground(view)) pages.insert(pages.begin(), ground_page(view.eye.eye_m));
     for (const PageKey& page : pages) {

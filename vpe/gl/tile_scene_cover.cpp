@@ -178,9 +178,8 @@ void TileScene::complete(const core::DrawRequest& request, const lod::SelectOpti
 }
 
 // hidden[n]: of tiles as they can be drawn now; a tile that is not there hides nothing.
-void TileScene::occlude(const lod::Selection& tiles, const core::DrawRequest& request,
+void TileScene::occlude(const lod::Selection& tiles, const core::View& view,
                         std::vector<std::uint8_t>& hidden) {
-  const core::View& view = culling_view(request);
   const Stopwatch watch(stats_.occlude_ms);
   std::vector<lod::OccludingTile> list;
   for (const lod::SelectedTile& tile : tiles.tiles) {
@@ -253,7 +252,7 @@ void TileScene::draw_what_is_there(const core::DrawRequest& request, const lod::
   }
   // With what is there of the tiles wanted, those that are hidden need neither be there nor be stood in for.
   std::vector<std::uint8_t> hidden;
-  occlude(wanted_, request, hidden);
+  occlude(wanted_, culling_view(request), hidden);
   bool any_absent = false;
   for (std::size_t n = 0; n < hidden.size(); ++n) {
     const lod::SelectedTile& tile = wanted_.tiles[n];
@@ -268,11 +267,11 @@ void TileScene::draw_what_is_there(const core::DrawRequest& request, const lod::
   }
   // Stand-ins may be lower than what they stand in for.
   const std::vector<std::uint8_t> left_out = hidden_;
-  occlude(drawn_.drawn, request, hidden_);
+  occlude(drawn_.drawn, culling_view(request), hidden_);
   for (std::size_t n = 0; n < left_out.size(); ++n) {
     if (left_out[n] == 0 || hidden_[n] != 0) continue;
     cover_without({}, request, options);
-    occlude(drawn_.drawn, request, hidden_);
+    occlude(drawn_.drawn, culling_view(request), hidden_);
     return;
   }
 }
