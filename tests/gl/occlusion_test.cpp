@@ -88,28 +88,19 @@ class Gate {
  public:
   void pass() {
     std::unique_lock lock(mutex_);
-    ++waiting_;
-    changed_.notify_all();
     changed_.wait(lock, [this] { return free_ > 0; });
     --free_;
-    --waiting_;
   }
   void let(int more) {
     const std::lock_guard lock(mutex_);
     free_ += more;
     changed_.notify_all();
   }
-  // Until all that were let through are through and the loaders stand at the gate again.
-  void settle(int loaders) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, std::chrono::seconds(5), [&] { return free_ == 0 && waiting_ == loaders; });
-  }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
   int free_ = 0;
-  int waiting_ = 0;
 };
 
 // Whatever is there, and whatever stands in for the rest.

@@ -101,7 +101,7 @@ bool TileScene::can_be_drawn(const lod::TileInfo& tile, int variant) {
          textures_.best(tile.key, frame_, [](const TextureDetail&) { return 0; }) != nullptr;
 }
 
-bool TileScene::is_readable(const lod::TileInfo& tile, int) const { return unreadable_.count(tile.key) == 0; }
+bool TileScene::is_readable(const lod::TileInfo& tile) const { return unreadable_.count(tile.key) == 0; }
 
 void TileScene::upload(TilePager::Loaded page) {
   const PageKey& key = page.key;
@@ -212,7 +212,7 @@ bool TileScene::load_roots(const lod::Selection& needed) {
     const lod::TileInfo& tile = planet_->tree()[root];
     const bool wanted = std::any_of(drawn_.missing.begin(), drawn_.missing.end(),
                                     [&](std::size_t n) { return needed.tiles[n].key.face == tile.key.face; });
-    if (!wanted || !is_readable(tile, 0) || can_be_drawn(tile, 0)) continue;
+    if (!wanted || !is_readable(tile) || can_be_drawn(tile, 0)) continue;
     std::vector<PageKey> pages{mesh_page(tile.key, {})};
     if (is_textured(tile.key, *planet_, mode_)) pages.push_back(texture_page(tile.key, kSmallestTexture));
     for (const PageKey& page : pages) {

@@ -65,7 +65,7 @@ class TileScene {
 
   bool is_resident(const PageKey& page, std::uint64_t frame);  // counts as used in it
   bool can_be_drawn(const lod::TileInfo& tile, int variant);
-  bool is_readable(const lod::TileInfo& tile, int variant) const;
+  bool is_readable(const lod::TileInfo& tile) const;
   void upload(TilePager::Loaded page);
   void trim();
   bool has_room() const;

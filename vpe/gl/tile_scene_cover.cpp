@@ -164,8 +164,8 @@ void TileScene::complete(const core::DrawRequest& request, const lod::SelectOpti
       limit_s < 1e9 ? Clock::now() + std::chrono::microseconds(static_cast<std::int64_t>(1e6 * limit_s))
                     : Deadline::max();
   const lod::SelectView view = lod::select_view(request.view);
-  const auto readable = [](const void* self, const lod::TileInfo& tile, int variant) {
-    return static_cast<const TileScene*>(self)->is_readable(tile, variant);
+  const auto readable = [](const void* self, const lod::TileInfo& tile, int) {
+    return static_cast<const TileScene*>(self)->is_readable(tile);
   };
   for (;;) {
     lod::substitute(options, planet_->tree(), view, wanted_, {readable, this}, drawn_);
