@@ -15,6 +15,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.quantisation_m = 0.001;
   c.quantisation_px = 0.0001;
   c.shift_bound_px = 0.5001;
+  c.picture_bound_px = 0.375;
   c.tolerance_px = 1;
   c.tiles_drawn = 12;
   c.tiles_missing = 3;
@@ -37,6 +38,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
                                   {"quantisation_m", 0.001},
                                   {"quantisation_px", 0.0001},
                                   {"shift_bound_px", 0.5001},
+                                  {"picture_bound_px", 0.375},
                                   {"tolerance_px", 1.0},
                                   {"tiles_drawn", 12},
                                   {"tiles_missing", 3},
@@ -57,6 +59,7 @@ TEST(Certificate, AbsentAndNotFiniteAreNull) {
   const nlohmann::json json = nlohmann::json::parse(to_json(c));
   EXPECT_TRUE(json.at("source_accuracy_m").is_null());
   EXPECT_TRUE(json.at("share_without_data").is_null());
+  EXPECT_TRUE(json.at("picture_bound_px").is_null());
   EXPECT_TRUE(json.at("tile_error_m").is_null());
   EXPECT_TRUE(json.at("tile_error_px").is_null());
   const std::string meaning = json.at("what_this_means");

@@ -31,7 +31,9 @@ inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surfac
   EXPECT_EQ(errors.false_surface, 0);
   EXPECT_EQ(errors.invalid, 0);
   const double range_px = range_error_px(request.view, result.frame.range_m);
-  EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px + range_px);
+  ASSERT_TRUE(result.certificate.picture_bound_px.has_value());
+  EXPECT_LE(errors.forward.max_px, *result.certificate.picture_bound_px + range_px);
+  EXPECT_LE(*result.certificate.picture_bound_px, result.certificate.shift_bound_px);
   EXPECT_LE(errors.forward.p999_px, 1.0);
   EXPECT_LE(errors.backward.p999_px, 1.5);
   const paging::PlanetMeta& meta = surface.planet().meta();

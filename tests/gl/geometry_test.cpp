@@ -9,8 +9,10 @@
 #include "lod/posts.h"
 #include "tests/lod/fake_tree.h"
 #include "tests/support/support.h"
+#include "vpe/core/frame.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/tile_geometry.h"
+#include "vpe/gl/tile_number.h"
 
 namespace {
 
@@ -127,7 +129,7 @@ TEST(Certify, BoundsWhatStorageMoves) {
     lod::SelectedTile tile;
     tile.key = tree[0].key;
     tile.min_distance_m = glm::length(exact);
-    const vpe::gl::CertifiedTile certified{&tile, quantisation_m, edge_m, glm::length(centre - eye)};
+    const vpe::gl::CertifiedTile certified{&tile, quantisation_m, edge_m, glm::length(centre - eye), 0};
     constexpr double kFocal_px = 600;
     const auto c = vpe::gl::certify({&certified, 1}, tree, 32, {kFocal_px, 0.001, 0, 1});
     const double moved_px = glm::length(drawn - exact) * kFocal_px / glm::length(exact);
@@ -156,7 +158,7 @@ TEST(Certify, AddsTheTermsOfTheWorstTile) {
   far.error_m = 50;
   far.error_px = 0.2;
   far.min_distance_m = 2e5;
-  const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&near, 1e-9, 100, 0}, {&far, 1e-9, 100, 0}}};
+  const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&near, 1e-9, 100, 0, 0}, {&far, 1e-9, 100, 0, 0}}};
   const auto c = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02, 1});
   EXPECT_EQ(c.tiles_drawn, 2);
   EXPECT_EQ(c.tile_error_m, 50);
@@ -167,6 +169,55 @@ TEST(Certify, AddsTheTermsOfTheWorstTile) {
   const auto twice = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02, 2});
   EXPECT_NEAR(twice.shift_bound_px, 0.9 + 0.02 * std::sqrt(61.0), 1e-3);
   EXPECT_EQ(twice.exaggeration, 2);
+}
+
+TEST(Certify, BoundsPartsWhereTheyAppear) {
+  std::vector<lod::TileInfo> infos;
+  for (int f = 0; f < 6; ++f)
+    infos.push_back({{static_cast<mars::Face>(f), 0, 0, 0}, 0, 0, false, {{{}, 32}}, std::sqrt(15.0)});
+  const lod::TileTree tree(infos, {2}, kRadius_m);
+  lod::SelectedTile hidden;  // worst of all, and nowhere in the picture
+  hidden.key = tree[0].key;
+  hidden.error_m = 500;
+  hidden.error_px = 50;
+  hidden.min_distance_m = 10000;
+  lod::SelectedTile seen = hidden;
+  seen.index = 1;
+  seen.key = tree[1].key;
+  seen.error_m = 2;
+  seen.error_px = 20;
+  seen.min_distance_m = 100;  // of what it never shows
+  const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&hidden, 1e-9, 100, 0, 0}, {&seen, 1e-9, 100, 0, 6}}};
+  using vpe::gl::TilePart;
+  const auto bound = [&](TilePart part, float near_m, float far_m) {
+    const std::array<std::uint32_t, 3> numbers{vpe::gl::kNoTile, vpe::gl::pack({1, part}),
+                                               vpe::gl::pack({1, TilePart::kSurface})};
+    const std::array<float, 3> ranges{vpe::core::kSkyRange, near_m, far_m};
+    return vpe::gl::bound_in_picture(tiles, tree, {numbers, ranges, 1e-6}, {1000, 0.5, 0.02, 1});
+  };
+  EXPECT_NEAR(bound(TilePart::kSurface, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
+  EXPECT_NEAR(bound(TilePart::kRibbon, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
+  EXPECT_NEAR(bound(TilePart::kSkirt, 4000, 8000), (2.0 + 6.0) / 4 + 0.02 * 4, 1e-3);
+  EXPECT_NEAR(bound(TilePart::kSkirt, 32000, 4000), 2.0 / 4 + 0.02 * 4, 1e-3);
+  // Ranges are known no better than they say.
+  EXPECT_GT(bound(TilePart::kSurface, 4000, 4e9F), bound(TilePart::kSurface, 4000, 8000) - 1e-12);
+  EXPECT_EQ(vpe::gl::bound_in_picture(tiles, tree, {}, {1000, 0.5, 0.02, 1}), 0);
+}
+
+TEST(TileNumber, SurvivesColours) {
+  std::uint32_t before = vpe::gl::kNoTile;
+  for (const std::size_t tile : {0U, 1U, 84U, 85U, 86U, 4095U, 70000U, (1U << 22U) - 1U}) {
+    for (const auto part :
+         {vpe::gl::TilePart::kSurface, vpe::gl::TilePart::kRibbon, vpe::gl::TilePart::kSkirt}) {
+      const std::uint32_t number = vpe::gl::pack({tile, part});
+      EXPECT_GT(number, before);
+      before = number;
+      const auto rgb = vpe::gl::number_colour(number);
+      const auto back = vpe::gl::unpack(vpe::gl::number_of_colour(rgb[0], rgb[1], rgb[2]));
+      EXPECT_EQ(back.tile, tile);
+      EXPECT_EQ(back.part, part);
+    }
+  }
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ void render(RenderArguments& arguments, const Common& common) {
   request.view.eye = mars::to_eye(pose, planet->radius_m());
   request.settings = settings.values();
   request.sun = sun_for(request.settings, pose);
-  request.want_range = !arguments.range.empty();
+  request.want_range = !arguments.range.empty() || !arguments.certificate.empty();
   require_valid(request.view);
   request.cull_view = cull_view(arguments.cull_from, request.view, planet->radius_m());
   const auto renderer = make_renderer(arguments.picture, common, planet);
@@ -119,7 +119,7 @@ void render(RenderArguments& arguments, const Common& common) {
   require_complete(arguments.picture, result);
   if (!common.quiet) warn_of(result.failures);
   core::write_image(arguments.output, result.frame.colour, result.frame.width, result.frame.height);
-  if (request.want_range) {
+  if (!arguments.range.empty()) {
     core::write_tiff(arguments.range, result.frame.range_m, result.frame.width, result.frame.height);
   }
   if (!arguments.certificate.empty())

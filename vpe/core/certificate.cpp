@@ -10,7 +10,8 @@ std::string meaning(const Certificate& c) {
   std::string text =
       "shift_bound_px: no surface pixel of this picture is off by more than this against the exact surface of "
       "the "
-      "planet file. resampling_*: that surface against the posts of its own sources. source_accuracy_m: the "
+      "planet file; picture_bound_px: the same, tighter, where the picture's ranges are known. resampling_*: "
+      "that surface against the posts of its own sources. source_accuracy_m: the "
       "sources "
       "against the planet, one sigma, null where unknown.";
   if (c.share_without_data.value_or(0) > 0) text += " Where no source has data the picture is striped.";
@@ -31,6 +32,8 @@ std::string to_json(const Certificate& c) {
   json["quantisation_m"] = c.quantisation_m;
   json["quantisation_px"] = c.quantisation_px;
   json["shift_bound_px"] = c.shift_bound_px;
+  json["picture_bound_px"] = nullptr;
+  if (c.picture_bound_px) json["picture_bound_px"] = *c.picture_bound_px;
   json["tolerance_px"] = c.tolerance_px;
   json["tiles_drawn"] = c.tiles_drawn;
   json["tiles_missing"] = c.tiles_missing;

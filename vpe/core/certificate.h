@@ -14,7 +14,10 @@ struct Certificate {
   double quantisation_m = 0;   // largest displacement of a vertex by float storage
   double quantisation_px = 0;  // projected likewise, with float arithmetic and the rasteriser's grid
   double shift_bound_px = 0;   // every pixel's shift is at most this: tile error + quantisation, projected
-  double tolerance_px = 0;     // what was asked for
+  // The same from the ranges at which tiles appear in the picture: tighter, as tiles need not show where they
+  // are nearest. Absent without a range image.
+  std::optional<double> picture_bound_px;
+  double tolerance_px = 0;  // what was asked for
   int tiles_drawn = 0;
   int tiles_missing = 0;
   int tiles_substituted = 0;

@@ -1,7 +1,12 @@
 #include "vpe/gl/certify.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
+
+#include "vpe/core/frame.h"
+#include "vpe/gl/tile_number.h"
 
 namespace vpe::gl {
 
@@ -18,6 +23,15 @@ double exaggerated(const lod::TileInfo& tile, double x, double radius_m) {
          std::max(1.0, radius_m + x * tile.min_height_m);
 }
 
+// What float storage does to a point of a tile at a distance.
+double storage_px(const CertifiedTile& t, double distance_m, double focal_px) {
+  const double stored_m =
+      std::min(t.quantisation_m, kRounding * (distance_m + t.eye_to_centre_m + t.longest_edge_m));
+  const double moved_m =
+      stored_m + kRounding * t.eye_to_centre_m + kTransformError * (distance_m + t.longest_edge_m);
+  return moved_m * focal_px / distance_m;
+}
+
 }  // namespace
 
 core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileTree& tree, int intervals,
@@ -31,18 +45,14 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
   for (const CertifiedTile& t : tiles) {
     const lod::SelectedTile& tile = *t.tile;
     const double distance_m = std::max(tile.min_distance_m, optics.near_m);
-    const double stored_m =
-        std::min(t.quantisation_m, kRounding * (distance_m + t.eye_to_centre_m + t.longest_edge_m));
-    const double moved_m =
-        stored_m + kRounding * t.eye_to_centre_m + kTransformError * (distance_m + t.longest_edge_m);
-    const double storage_px = moved_m * optics.focal_px / distance_m;
+    const double stored_px = storage_px(t, distance_m, optics.focal_px);
     const lod::TileInfo& info = tree[tile.index];
     slope = std::max(slope, exaggerated(info, optics.exaggeration, tree.radius_m()));
-    surface_px = std::max(surface_px, tile.error_px + storage_px);
+    surface_px = std::max(surface_px, tile.error_px + stored_px);
     c.tile_error_m = std::max(c.tile_error_m, tile.error_m);
     c.tile_error_px = std::max(c.tile_error_px, tile.error_px);
     c.quantisation_m = std::max(c.quantisation_m, t.quantisation_m);
-    c.quantisation_px = std::max(c.quantisation_px, storage_px);
+    c.quantisation_px = std::max(c.quantisation_px, stored_px);
     const double side_m = lod::nominal_side_m(tile.key.level, tree.radius_m());
     const double pixels =
         std::min(side_m * optics.focal_px / std::max(tile.min_distance_m, 0.5 * side_m), 4096.0);
@@ -56,6 +66,39 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
   c.exaggeration = optics.exaggeration;
   c.share_at_data_limit = area > 0 ? limited / area : 0.0;
   return c;
+}
+
+double bound_in_picture(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
+                        const DrawnPixels& pixels, const FrameOptics& optics) {
+  std::vector<std::array<float, kTileParts>> nearest(tiles.size(),
+                                                     {core::kSkyRange, core::kSkyRange, core::kSkyRange});
+  float nearest_m = core::kSkyRange;
+  for (std::size_t k = 0; k < pixels.range_m.size(); ++k) {
+    if (pixels.number[k] == kNoTile) continue;
+    const TileNumber drawn = unpack(pixels.number[k]);
+    float& least = nearest[drawn.tile][static_cast<std::size_t>(drawn.part)];
+    least = std::min(least, pixels.range_m[k]);
+    nearest_m = std::min(nearest_m, pixels.range_m[k]);
+  }
+  double slope = 0;
+  for (const CertifiedTile& t : tiles)
+    slope = std::max(slope, exaggerated(tree[t.tile->index], optics.exaggeration, tree.radius_m()));
+  const double steep = std::sqrt(1.0 + slope * slope);
+  double bound_px = 0;
+  for (std::size_t k = 0; k < tiles.size(); ++k) {
+    for (std::size_t part = 0; part < kTileParts; ++part) {
+      const auto range_m = static_cast<double>(nearest[k][part]);
+      if (std::isinf(range_m)) continue;
+      const double distance_m =
+          std::max(range_m * (1.0 - pixels.range_error * (1.0 + range_m / nearest_m)), double{nearest_m});
+      const bool skirt = part == static_cast<std::size_t>(TilePart::kSkirt);
+      const double error_m = tiles[k].tile->error_m + (skirt ? tiles[k].deepest_skirt_m : 0.0);
+      bound_px =
+          std::max(bound_px, error_m * optics.focal_px / distance_m +
+                                 storage_px(tiles[k], distance_m, optics.focal_px) + optics.snap_px * steep);
+    }
+  }
+  return bound_px;
 }
 
 }  // namespace vpe::gl

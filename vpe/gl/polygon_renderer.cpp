@@ -51,6 +51,7 @@ class PolygonRenderer : public core::Renderer {
         empty_array_(VertexArray::make()) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
+    glDisable(GL_DITHER);  // colours may be numbers
     glDisable(GL_CULL_FACE);
     check_gl("set up");
   }
@@ -64,7 +65,7 @@ class PolygonRenderer : public core::Renderer {
   void read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
   std::optional<double> share_without_data(core::Mode mode, const Target& picture) const;
-  core::Certificate certify(const core::DrawRequest& request, const Lens& lens);
+  core::Certificate certify(const core::DrawRequest& request, const Lens& lens, const core::Frame& frame);
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -78,6 +79,8 @@ class PolygonRenderer : public core::Renderer {
   std::vector<TileDraw> draws_;
   std::vector<CertifiedTile> certified_;
   std::vector<float> depth_;
+  std::vector<mars::Rgb> colours_;
+  std::vector<std::uint32_t> numbers_;  // of the range image's pixels (tile_number.h)
 };
 
 // Depth interpolation loses precision on triangles that reach from the near plane to far away, so the near
@@ -133,15 +136,22 @@ std::optional<double> PolygonRenderer::share_without_data(core::Mode mode, const
   return std::any_of(draws_.begin(), draws_.end(), TileDrawer::has_gaps) ? 1.0 - picture.mean_alpha() : 0.0;
 }
 
-core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens) {
+core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens,
+                                           const core::Frame& frame) {
   certified_.clear();
   for (const SceneTile& t : scene_.tiles()) {
     certified_.push_back({t.tile, t.mesh->quantisation_m, t.mesh->longest_edge_m,
-                          glm::length(t.mesh->centre_m - request.view.eye.eye_m)});
+                          glm::length(t.mesh->centre_m - request.view.eye.eye_m),
+                          *std::max_element(t.skirt_m.begin(), t.skirt_m.end())});
   }
-  core::Certificate c =
-      gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(),
-                  {core::focal_px(request.view), lens.near_m, tiles_.snap_px(), request.settings.exaggeration});
+  const FrameOptics optics{core::focal_px(request.view), lens.near_m, tiles_.snap_px(),
+                           request.settings.exaggeration};
+  core::Certificate c = gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(), optics);
+  if (request.want_range) {
+    const double bound_px =
+        bound_in_picture(certified_, planet_->tree(), {numbers_, frame.range_m, kRangeError}, optics);
+    c.picture_bound_px = std::min(bound_px, c.shift_bound_px);
+  }
   c.tolerance_px = request.settings.lod_tolerance_px;
   const paging::PlanetMeta& meta = planet_->meta();
   c.resampling_max_m = meta.resampling.max_m;
@@ -155,7 +165,8 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
 
 void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture) {
   const bool wireframe = request.settings.mode == core::Mode::kWireframe;
-  const float paper = request.settings.background == core::Background::kWhite ? 1.0F : 0.0F;
+  const bool white = picture && request.settings.background == core::Background::kWhite;
+  const float paper = white ? 1.0F : 0.0F;
   to.bind();
   glClearColor(paper, paper, paper, 1.0F);
   glClearDepth(0.0);
@@ -169,8 +180,11 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
     if (picture && request.settings.inspect == core::Inspect::kLevels)
       draws_.back().tint = level_tint(t.tile->key.level);
   }
-  tiles_.draw(request.view, lens, draws_,
-              picture && wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
+  if (picture) {
+    tiles_.draw(request.view, lens, draws_, wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
+  } else {
+    tiles_.draw_numbers(request.view, lens, draws_);
+  }
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   if (picture && request.settings.background == core::Background::kSky) draw_sky(request, lens);
   if (picture && request.settings.inspect == core::Inspect::kBorders) {
@@ -190,6 +204,10 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, Lens lens, co
     const float nearest = *std::max_element(frame.range_m.begin(), frame.range_m.end());
     if (pass == 0 && nearest > 0.0F) lens.near_m = std::max(lens.near_m, 0.5F * lens.near_m / nearest);
   }
+  to.read_colour(colours_);
+  numbers_.resize(colours_.size());
+  std::transform(colours_.begin(), colours_.end(), numbers_.begin(),
+                 [](const mars::Rgb& c) { return number_of_colour(c.r, c.g, c.b); });
   const core::View& view = request.view;
   const double f = core::focal_px(view);
   const double cx = 0.5 * view.width + view.principal_offset_px.x - view.part.x;
@@ -241,7 +259,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   if (request.want_range) read_range(request, lens, result.frame);
   result.stats.read_ms += ms_since(start);
 
-  result.certificate = certify(request, lens);
+  result.certificate = certify(request, lens, result.frame);
   result.certificate.share_without_data = without_data;
   result.certificate.tiles_missing = result.stats.tiles_missing;
   result.certificate.tiles_substituted = result.stats.tiles_substituted;

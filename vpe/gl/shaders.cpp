@@ -18,6 +18,7 @@ layout(location = 6) uniform int first_foot;
 layout(location = 7) uniform vec3 face_out;
 layout(location = 8) uniform vec2 texel;
 layout(location = 11) uniform vec2 steps;
+layout(location = 15) uniform float snap_from;
 layout(location = 0) out vec3 texture_position;
 void main() {
   vec3 p = position;
@@ -28,9 +29,10 @@ void main() {
   gl_Position = vec4(lens.x * e.x + lens.z * e.z, lens.y * e.y + lens.w * e.z, near, -e.z);
   // Onto the rasteriser's own grid, where it would put the vertex anyway: one that interpolates from where the vertex
   // was (Mesa's llvmpipe) leaves the range of depths of a triangle seen on its edge. Far outside the picture the grid
-  // is finer than a float.
+  // is finer than a float. A triangle that reaches behind the eye is left alone: it is cut before it is put on the grid,
+  // and a step of its far corner would be many of a near pixel.
   float far_out = max(abs(gl_Position.x), abs(gl_Position.y));
-  if (steps.x > 0.0 && gl_Position.w > near && far_out < 4.0 * gl_Position.w) {
+  if (steps.x > 0.0 && gl_Position.w > snap_from && far_out < 4.0 * gl_Position.w) {
     gl_Position.xy = round(gl_Position.xy / gl_Position.w * steps) / steps * gl_Position.w;
   }
   // Texture coordinates are gnomonic: a ratio of two functions that are linear on the flat triangle.
@@ -168,8 +170,8 @@ void main() {
 }
 )glsl";
 
-// Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. The line through both
-// ends in the picture comes from their homogeneous coordinates, so it is right with an end behind the eye too.
+// Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. What is behind the near plane is
+// cut off first: the corners of a ribbon to behind the eye would change sides on the way.
 const char* const kRibbonGeometryShader = R"glsl(
 #version 450 core
 layout(lines) in;
@@ -178,24 +180,33 @@ layout(location = 0) in vec3 line_texture_position[];
 layout(location = 10) uniform vec3 ribbon;
 layout(location = 0) out vec3 texture_position;
 void main() {
-  vec4 a = gl_in[0].gl_Position;
-  vec4 b = gl_in[1].gl_Position;
-  vec2 across = cross(vec3(a.xy * ribbon.xy, a.w), vec3(b.xy * ribbon.xy, b.w)).xy;
-  float size = length(across);
-  across = size > 0.0 ? across / size : vec2(1.0, 0.0);
-  // Ends reach over by half the width, so that ribbons that meet at an angle leave no notch.
-  vec2 along = vec2(0.0);
-  if (a.w > 0.0 && b.w > 0.0) {
-    along = vec2(-across.y, across.x);
-    if (dot((b.xy / b.w - a.xy / a.w) * ribbon.xy, along) < 0.0) along = -along;
+  vec4 end[2];
+  vec3 at[2];
+  float near = gl_in[0].gl_Position.z;
+  for (int k = 0; k < 2; ++k) {
+    vec4 p = gl_in[k].gl_Position;
+    vec4 q = gl_in[1 - k].gl_Position;
+    float cut = 0.0;
+    if (p.w < near) {
+      if (q.w <= near) return;
+      cut = (near - p.w) / (q.w - p.w);
+    }
+    end[k] = mix(p, q, cut);
+    if (cut > 0.0) end[k].w = near;
+    at[k] = mix(line_texture_position[k], line_texture_position[1 - k], cut);
   }
+  vec2 line = (end[1].xy / end[1].w - end[0].xy / end[0].w) * ribbon.xy;
+  float size = length(line);
+  // Ends reach over by half the width, so that ribbons that meet at an angle leave no notch.
+  vec2 along = size > 0.0 ? line / size : vec2(1.0, 0.0);
+  vec2 across = vec2(-along.y, along.x);
   vec2 wide = ribbon.z / ribbon.xy;
   for (int k = 0; k < 4; ++k) {
-    vec4 end = k < 2 ? a : b;
+    vec4 p = end[k / 2];
     float side = (k & 1) == 0 ? 1.0 : -1.0;
     float reach = k < 2 ? -1.0 : 1.0;
-    gl_Position = vec4(end.xy + (side * across + reach * along) * wide * end.w, end.zw);
-    texture_position = line_texture_position[k < 2 ? 0 : 1];
+    gl_Position = vec4(p.xy + (side * across + reach * along) * wide * p.w, p.zw);
+    texture_position = at[k / 2];
     EmitVertex();
   }
   EndPrimitive();

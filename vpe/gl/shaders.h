@@ -35,6 +35,7 @@ enum TileUniform : int {
                     // periods to a unit of the chart. with_gaps() only, as the next
   kTilePhase = 13,  // uint: u + v at the tile's southwest corner, its fraction in 2^-32
   kTint = 14,       // vec4: this colour takes the share alpha
+  kSnapFrom = 15,   // float: depth from which no vertex shares a triangle with one behind the near plane
 };
 
 // Uniform locations of the sky program.

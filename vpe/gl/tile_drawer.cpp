@@ -30,14 +30,14 @@ TileDrawer::TileDrawer()
   step_px_ = std::exp2(-bits);
 }
 
-void TileDrawer::use(const Program& program, Part part, const core::View& view, const Lens& lens) {
+void TileDrawer::use(const Program& program, TilePart part, const core::View& view, const Lens& lens) {
   const glm::mat3 rotation = body_to_eye(view.eye.axes);
   const glm::ivec2 size = core::drawn_size(view);
   glUseProgram(program.name());
   glUniformMatrix3fv(kRotation, 1, GL_FALSE, &rotation[0][0]);
   glUniform4fv(kLens, 1, &lens.scale_shift[0]);
   glUniform1f(kNear, lens.near_m);
-  if (part == Part::kSurface) {
+  if (part == TilePart::kSurface) {
     const auto per_px = static_cast<float>(0.5 / step_px_);
     glUniform2f(kSteps, per_px * static_cast<float>(size.x), per_px * static_cast<float>(size.y));
   } else {
@@ -46,7 +46,7 @@ void TileDrawer::use(const Program& program, Part part, const core::View& view, 
   }
 }
 
-void TileDrawer::use(const TileDraw& tile, const core::View& view) {
+void TileDrawer::use(const TileDraw& tile, TilePart part, const core::View& view, float near_m) {
   const GpuMesh& mesh = *tile.mesh;
   const glm::vec3 to_eye(mesh.centre_m - view.eye.eye_m);
   const glm::vec3 centre(mesh.centre_m);
@@ -55,6 +55,7 @@ void TileDrawer::use(const TileDraw& tile, const core::View& view) {
   glUniform3fv(kCentre, 1, &centre[0]);
   glUniform3fv(kFaceOut, 1, &out[0]);
   glUniform1f(kSkirt, 0.0F);
+  glUniform1f(kSnapFrom, near_m + static_cast<float>(mesh.longest_edge_m));
   glUniform1i(kFirstFoot, static_cast<GLint>(mesh.first_foot));
   if (tile.texture != nullptr) {
     const auto texels = static_cast<float>(tile.texture->intervals + 1);
@@ -66,7 +67,13 @@ void TileDrawer::use(const TileDraw& tile, const core::View& view) {
   } else {
     glUniform4f(kFlatColour, 0.95F, 0.75F, 0.55F, 1);
   }
-  glUniform4fv(kTint, 1, &tile.tint[0]);
+  glm::vec4 colour = tile.tint;
+  if (numbered_from_ != nullptr) {
+    const auto rgb = number_colour(pack({static_cast<std::size_t>(&tile - numbered_from_), part}));
+    for (int k = 0; k < 3; ++k) colour[k] = static_cast<float>(rgb[static_cast<std::size_t>(k)]) / 255.0F;
+    colour.a = 1.0F;
+  }
+  glUniform4fv(kTint, 1, &colour[0]);
   if (has_gaps(tile)) {
     const mars::ChartRect rect = lod::chart_rect(tile.key);
     const double corner = rect.u0 + rect.v0;
@@ -88,22 +95,22 @@ void TileDrawer::draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t be
                  reinterpret_cast<const void*>(index_size * begin));
 }
 
-void TileDrawer::draw_part(const TileDraw& tile, Part part, const core::View& view) {
+void TileDrawer::draw_part(const TileDraw& tile, TilePart part, const core::View& view, float near_m) {
   const GpuMesh& mesh = *tile.mesh;
   switch (part) {
-    case Part::kSurface:
-      use(tile, view);
+    case TilePart::kSurface:
+      use(tile, part, view, near_m);
       draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface);
       return;
-    case Part::kRibbon:
-      use(tile, view);
+    case TilePart::kRibbon:
+      use(tile, part, view, near_m);
       draw_indices(mesh, GL_LINES, mesh.ranges.skirts[4], mesh.ranges.border_end);
       return;
-    case Part::kSkirt:
+    case TilePart::kSkirt:
       bool used = false;
       for (std::size_t e = 0; e < tile.skirt_m.size(); ++e) {
         if (tile.skirt_m[e] <= 0.0F) continue;
-        if (!used) use(tile, view);
+        if (!used) use(tile, part, view, near_m);
         used = true;
         glUniform1f(kSkirt, tile.skirt_m[e]);
         draw_indices(mesh, GL_LINES_ADJACENCY, mesh.ranges.skirts[e], mesh.ranges.skirts[e + 1]);
@@ -119,20 +126,26 @@ void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const 
         make_programs("gap ", with_gaps(kTileFragmentShader).c_str(), with_gaps(kSkirtFragmentShader).c_str());
   }
   glBindVertexArray(array_.name());
-  const auto draw_with = [&](const Programs& programs, Part part, bool of_gaps) {
-    use(part == Part::kSurface  ? programs.surface
-        : part == Part::kRibbon ? programs.ribbon
-                                : programs.skirt,
+  const auto draw_with = [&](const Programs& programs, TilePart part, bool of_gaps) {
+    use(part == TilePart::kSurface  ? programs.surface
+        : part == TilePart::kRibbon ? programs.ribbon
+                                    : programs.skirt,
         part, view, lens);
     for (const TileDraw& tile : tiles) {
-      if (has_gaps(tile) == of_gaps) draw_part(tile, part, view);
+      if (has_gaps(tile) == of_gaps) draw_part(tile, part, view, lens.near_m);
     }
   };
-  for (const Part part : {Part::kSurface, Part::kRibbon, Part::kSkirt}) {
-    if (part != Part::kSurface && gaps == Gaps::kLeave) return;
+  for (const TilePart part : {TilePart::kSurface, TilePart::kRibbon, TilePart::kSkirt}) {
+    if (part != TilePart::kSurface && gaps == Gaps::kLeave) return;
     draw_with(programs_, part, false);
     if (any_gaps) draw_with(*gap_programs_, part, true);
   }
+}
+
+void TileDrawer::draw_numbers(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
+  numbered_from_ = tiles.data();
+  draw(view, lens, tiles, Gaps::kClose);
+  numbered_from_ = nullptr;
 }
 
 void TileDrawer::draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
@@ -145,12 +158,12 @@ void TileDrawer::draw_borders(const core::View& view, const Lens& lens, std::spa
   glBindVertexArray(array_.name());
   glDepthMask(GL_FALSE);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-  use(programs_.ribbon, Part::kRibbon, view, nearer);
+  use(programs_.ribbon, TilePart::kRibbon, view, nearer);
   glUniform3f(kRibbon, 0.5F * static_cast<float>(size.x), 0.5F * static_cast<float>(size.y), kHalfWidth_px);
   for (TileDraw tile : tiles) {
     tile.texture = nullptr;
     tile.tint = glm::vec4(colour, 1.0F);
-    draw_part(tile, Part::kRibbon, view);
+    draw_part(tile, TilePart::kRibbon, view, nearer.near_m);
   }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);

@@ -11,6 +11,7 @@
 
 #include "vpe/gl/lens.h"
 #include "vpe/gl/residency.h"
+#include "vpe/gl/tile_number.h"
 
 namespace vpe::gl {
 
@@ -45,6 +46,9 @@ class TileDrawer {
   void draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
                     const glm::vec3& colour);
 
+  // draw() without gaps in colours that number tiles and their parts (tile_number.h), on black.
+  void draw_numbers(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles);
+
   // What is drawn at a pixel's centre is a point of the meshes moved by at most this in the picture: by a
   // vertex's snap, or from a border to the corner of a ribbon and its snap.
   double snap_px() const { return (kRibbonSteps + 1) * std::numbers::sqrt2 * step_px_; }
@@ -57,18 +61,18 @@ class TileDrawer {
     Program ribbon;
     Program skirt;
   };
-  enum class Part { kSurface, kRibbon, kSkirt };
 
   static Programs make_programs(const char* label, const char* fragment, const char* skirt_fragment);
-  void use(const Program& program, Part part, const core::View& view, const Lens& lens);
-  void use(const TileDraw& tile, const core::View& view);
-  void draw_part(const TileDraw& tile, Part part, const core::View& view);
+  void use(const Program& program, TilePart part, const core::View& view, const Lens& lens);
+  void use(const TileDraw& tile, TilePart part, const core::View& view, float near_m);
+  void draw_part(const TileDraw& tile, TilePart part, const core::View& view, float near_m);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
 
   Programs programs_;
   std::optional<Programs> gap_programs_;  // made for the first tile that has gaps
   VertexArray array_;
   double step_px_ = 1.0 / 256;
+  const TileDraw* numbered_from_ = nullptr;  // numbers are drawn in place of colours
 };
 
 }  // namespace vpe::gl

@@ -29,6 +29,8 @@ TEST_F(Render, PictureRangeAndCertificate) {
   EXPECT_EQ(report["certificate"], parse_json(read_text(dir_ / "c.json")));
   const json& c = report["certificate"];
   EXPECT_GT(c["shift_bound_px"], 0);
+  EXPECT_GT(c["picture_bound_px"], 0);
+  EXPECT_LE(c["picture_bound_px"], c["shift_bound_px"]);
   EXPECT_LE(c["shift_bound_px"], 1.01);  // the default tolerance and the quantisation
   EXPECT_EQ(c["tolerance_px"], 1);
   EXPECT_EQ(c["tiles_missing"], 0);
