@@ -151,7 +151,7 @@ class Selector {
     const cull::Shell shell = tree_.shell(index, options_.exaggeration, c.error_m);
     ++family.visited;
     c.chord2 = cull::nearest_chord2(shell.rect, eye_.direction);
-    if (cull::hidden(horizon_, c.chord2, shell.max_radius_m)) {
+    if (options_.cull_horizon && cull::hidden(horizon_, c.chord2, shell.max_radius_m)) {
       ++family.culled_horizon;
       return;
     }

@@ -33,6 +33,7 @@ struct SelectOptions {
   // view, which nothing can be coarser than, may pass it by themselves.
   std::int64_t max_triangles = 0;
   LevelControl control;
+  bool cull_horizon = true;  // false: what the planet hides is selected too, to measure what this culler saves
 };
 
 struct SelectView {

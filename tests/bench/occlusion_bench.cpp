@@ -4,7 +4,6 @@
 //
 //   occlusion_bench PLANET.vpe [MARGIN_PX] [NAME LON LAT HEIGHT PITCH]...
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <glm/geometric.hpp>
@@ -12,37 +11,15 @@
 #include <vector>
 
 #include "lod/occlusion.h"
-#include "mars/pose.h"
 #include "paging/surface.h"
+#include "tests/bench/culling_views.h"
 #include "tests/paging/drawn_ground.h"
 
 namespace {
 
 namespace core = vpe::core;
-using Clock = std::chrono::steady_clock;
 
-struct Place {
-  std::string name;
-  double lon, lat, height_m, pitch_deg;
-};
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-template <class Work>
-double median_ms(Work&& work) {
-  std::vector<double> times;
-  for (int round = 0; round < 7; ++round) {
-    const auto start = Clock::now();
-    work();
-    times.push_back(ms_since(start));
-  }
-  std::nth_element(times.begin(), times.begin() + 3, times.end());
-  return times[3];
-}
-
-void measure(test_support::MeshStore& store, const paging::Surface& surface, const Place& place,
+void measure(test_support::MeshStore& store, const paging::Surface& surface, const bench::Place& place,
              double margin_px) {
   const paging::PlanetFile& planet = store.planet();
   int tiles = 0, hidden = 0, found = 0;
@@ -50,17 +27,11 @@ void measure(test_support::MeshStore& store, const paging::Surface& surface, con
   lod::OcclusionPass pass;
   constexpr int kYaws = 6;
   for (int n = 0; n < kYaws; ++n) {
-    core::View view;
-    view.width = 1280;
-    view.height = 720;
-    view.fov_deg = 60;
-    const double ground = surface.at(mars::direction({place.lon, place.lat})).height_m;
-    view.eye =
-        mars::to_eye({place.lon, place.lat, ground + place.height_m, 360.0 * n / kYaws, place.pitch_deg, 0},
-                     planet.radius_m());
+    const core::View view = bench::view_at(place, surface, n, kYaws);
     lod::SelectScratch scratch;
     lod::Selection selection;
-    select_ms += median_ms([&] { lod::select({}, planet.tree(), lod::select_view(view), scratch, selection); });
+    select_ms +=
+        bench::median_ms([&] { lod::select({}, planet.tree(), lod::select_view(view), scratch, selection); });
     const test_support::DrawnGround drawn(store, selection, view.eye.eye_m);
     std::vector<lod::OccludingTile> given;
     for (const lod::SelectedTile& t : selection.tiles) {
@@ -68,8 +39,8 @@ void measure(test_support::MeshStore& store, const paging::Surface& surface, con
     }
     std::vector<std::uint8_t> out;
     const double margin_rad = margin_px / core::focal_px(view);
-    pass_ms +=
-        median_ms([&] { lod::occlude(given, view.eye.eye_m, true, margin_rad, planet.radius_m(), pass, out); });
+    pass_ms += bench::median_ms(
+        [&] { lod::occlude(given, view.eye.eye_m, true, margin_rad, planet.radius_m(), pass, out); });
     tiles += static_cast<int>(out.size());
     for (std::size_t tile = 0; tile < out.size(); ++tile) {
       const test_support::DrawnMesh& mesh = drawn.mesh(tile);
@@ -100,18 +71,13 @@ int main(int argc, char** argv) {
   }
   const auto planet = paging::PlanetFile::open(argv[1]);
   const double margin_px = argc > 2 ? std::atof(argv[2]) : 0.25;
-  std::vector<Place> places;
+  std::vector<bench::Place> places;
   for (int n = 3; n + 4 < argc; n += 5) {
     places.push_back({argv[n], std::atof(argv[n + 1]), std::atof(argv[n + 2]), std::atof(argv[n + 3]),
                       std::atof(argv[n + 4])});
   }
-  if (places.empty()) {
-    places = {{"canyon", -72.0, -12.5, 100, 0},    {"canyon", -72.0, -12.5, 2, 0},
-              {"crater", 137.4, -5.0, 100, 0},     {"crater", 137.4, -5.0, 2, 0},
-              {"plain", 118.0, 48.0, 100, 0},      {"volcano", -133.8, 18.6, 1000, -10},
-              {"flight", -74.0, -13.5, 8000, -15}, {"orbit", -72.0, -12.5, 400000, -30}};
-  }
+  if (places.empty()) places = bench::culling_places();
   test_support::MeshStore store(planet);
   const paging::Surface surface(planet, std::size_t{64} << 20);
-  for (const Place& place : places) measure(store, surface, place, margin_px);
+  for (const bench::Place& place : places) measure(store, surface, place, margin_px);
 }
