@@ -10,7 +10,7 @@ namespace vpe::app {
 namespace {
 
 std::string range_text(const core::SettingInfo& info) {
-  if (info.type == core::SettingType::kTable) return info.grammar;
+  if (info.type == core::SettingType::kTable || info.type == core::SettingType::kText) return info.grammar;
   if (info.type != core::SettingType::kChoice) {
     return core::format_number(info.min) + " .. " + core::format_number(info.max);
   }

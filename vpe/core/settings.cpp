@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "vpe/core/number.h"
+#include "vpe/core/palette.h"
 
 namespace vpe::core {
 
@@ -25,6 +26,12 @@ struct Integer {
 
 struct Table {
   LevelTable SettingsValues::*member;
+};
+
+struct Text {
+  std::string SettingsValues::*member;
+  std::string_view grammar;
+  std::string (*problem)(const std::string& text);  // empty when all is well
 };
 
 struct Word {
@@ -54,7 +61,7 @@ Word word(std::string_view text, Enum value) {
 
 struct Key {
   std::string_view name;
-  std::variant<Number, Integer, Choice, Table> type;
+  std::variant<Number, Integer, Choice, Table, Text> type;
   std::string_view unit;
   std::string_view meaning;
 };
@@ -65,20 +72,76 @@ const std::vector<Key>& keys() {
   using V = SettingsValues;
   static const std::vector<Key> all{
       {"mode",
-       choice<&V::mode>({word("wireframe", Mode::kWireframe), word("unlit", Mode::kUnlit),
-                         word("lit", Mode::kLit), word("coloured", Mode::kColoured),
-                         word("textured", Mode::kTextured)}),
-       "", "how the surface is painted; textured falls back to coloured where there is no imagery"},
-      {"colour", choice<&V::colour>({word("none", Colour::kNone), word("elevation", Colour::kElevation)}), "",
-       "what the colour of coloured surfaces shows"},
+       choice<&V::mode>({word("wireframe", Mode::kWireframe), word("markers", Mode::kMarkers),
+                         word("unlit", Mode::kUnlit), word("lit", Mode::kLit),
+                         word("coloured", Mode::kColoured), word("textured", Mode::kTextured)}),
+       "",
+       "how the surface is painted: edges of triangles, a dot at each vertex, colour without light, light "
+       "without "
+       "colour, both, or imagery with light (coloured where there is none)"},
+      {"shading", choice<&V::shading>({word("flat", Shading::kFlat), word("gouraud", Shading::kGouraud)}), "",
+       "one light and colour for each drawn triangle, or from posts and interpolated between them"},
+      {"colour",
+       choice<&V::colour>({word("none", Colour::kNone), word("elevation", Colour::kElevation),
+                           word("slope", Colour::kSlope), word("aspect", Colour::kAspect),
+                           word("image", Colour::kImage)}),
+       "",
+       "what the colour of coloured and unlit surfaces shows; image: the planet file's imagery at each post"},
+      {"palette",
+       Text{&V::palette,
+            "auto, hsv, "
+            "one of the names 'vpe settings palette' lists, or a file",
+            [](const std::string& text) { return palette_problem(text); }},
+       "", "colours of elevation, slope and aspect; auto: as suits what is shown"},
+      {"palette.low", Number{&V::palette_low, -1e6, 1e6}, "",
+       "value at the palette's lower end, metres or degrees; both ends equal: as suits what is shown"},
+      {"palette.high", Number{&V::palette_high, -1e6, 1e6}, "", "value at the palette's upper end"},
+      {"ramp.low.hue", Number{&V::low_hue_deg, -360, 720}, "deg", "palette=hsv: hue at the lower end"},
+      {"ramp.low.saturation", Number{&V::low_saturation, 0, 1}, "", "saturation there"},
+      {"ramp.low.value", Number{&V::low_value, 0, 1}, "", "brightness there"},
+      {"ramp.high.hue", Number{&V::high_hue_deg, -360, 720}, "deg", "palette=hsv: hue at the upper end"},
+      {"ramp.high.saturation", Number{&V::high_saturation, 0, 1}, "", "saturation there"},
+      {"ramp.high.value", Number{&V::high_value, 0, 1}, "", "brightness there"},
+      {"colourise", choice<&V::colourise>({{"off", 0}, {"on", 1}}), "",
+       "imagery keeps its brightness and takes hue and saturation from what 'colour' shows"},
       {"exaggeration", Number{&V::exaggeration, 0.1, 100}, "",
        "factor on every elevation, about the planet's sphere"},
+      {"sun",
+       Text{&V::sun, "local, a date as 2026-11-20T12:00Z, or Ls90,15:00 (solar longitude and true solar time)",
+            [](const std::string&) { return std::string(); }},
+       "",
+       "where the light comes from: sun.azimuth and sun.elevation, a date, or a season and hour at the ground "
+       "below "
+       "the eye"},
       {"sun.azimuth", Number{&V::sun_azimuth_deg, 0, 360}, "deg",
        "where the light comes from, clockwise from north, at the ground below the eye (in a film: below its "
        "start)"},
       {"sun.elevation", Number{&V::sun_elevation_deg, 0, 90}, "deg",
        "height of the light above the horizon, at the same place"},
       {"sun.ambient", Number{&V::sun_ambient, 0, 1}, "", "share of the light that reaches shaded slopes"},
+      {"sun.diffuse", Number{&V::sun_diffuse, 0, 10}, "", "light on slopes that face the sun"},
+      {"shadows", choice<&V::shadows>({{"off", 0}, {"on", 1}}), "", "ground casts shadows on ground"},
+      {"gamma", Number{&V::gamma, 0.1, 10}, "", "coefficient of the display: greater is brighter"},
+      {"haze.visibility", Number{&V::haze_visibility_m, 0, 1e9}, "m",
+       "distance at which haze leaves 2 % of the contrast; 0 = clear air"},
+      {"markers.size", Number{&V::marker_px, 1, 64}, "px", "side of a dot of mode markers"},
+      {"overlay.legend", choice<&V::legend>({{"off", 0}, {"on", 1}}), "", "palette with values and units"},
+      {"overlay.graticule", choice<&V::graticule>({{"off", 0}, {"on", 1}}), "",
+       "lines of longitude and latitude"},
+      {"overlay.graticule.step", Number{&V::graticule_deg, 0, 90}, "deg",
+       "between lines; 0 = as suits the picture"},
+      {"overlay.contours", choice<&V::contours>({{"off", 0}, {"on", 1}}), "", "lines of equal elevation"},
+      {"overlay.contours.step", Number{&V::contour_m, 0, 1e6}, "m", "between lines; 0 = as suits the picture"},
+      {"overlay.scale", choice<&V::scale_bar>({{"off", 0}, {"on", 1}}), "",
+       "length of a kilometre at the picture's centre"},
+      {"overlay.north", choice<&V::north_arrow>({{"off", 0}, {"on", 1}}), "", "arrow to the north"},
+      {"overlay.time", choice<&V::time_code>({{"off", 0}, {"on", 1}}), "", "time of the frame in its flight"},
+      {"overlay.title", Text{&V::title, "any text", [](const std::string&) { return std::string(); }}, "",
+       "a line at the top"},
+      {"overlay.names",
+       Text{&V::names, "a CSV file with columns name, lon, lat",
+            [](const std::string&) { return std::string(); }},
+       "", "names of places, but of those that ground hides"},
       {"lod.tolerance", Number{&V::lod_tolerance_px, 0, 1000}, "px",
        "largest geometric error that may be drawn; 0 draws the exact surface"},
       {"lod.triangles", Integer{&V::lod_triangles, 0, 1'000'000'000}, "",
@@ -115,7 +178,8 @@ const std::vector<Key>& keys() {
        choice<&V::occlusion>(
            {word("auto", Occlusion::kAuto), word("off", Occlusion::kOff), word("on", Occlusion::kOn)}),
        "",
-       "leaves out what nearer ground hides, which changes no pixel; auto: in windows only while it saves more than "
+       "leaves out what nearer ground hides, which changes no pixel; auto: in windows only while it saves more "
+       "than "
        "it costs"},
       {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
        "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time"},
@@ -144,14 +208,15 @@ std::string to_text(const SettingsValues& values, const Key& key) {
   if (const auto* number = std::get_if<Number>(&key.type)) return format_number(values.*number->member);
   if (const auto* integer = std::get_if<Integer>(&key.type)) return std::to_string(values.*integer->member);
   if (const auto* table = std::get_if<Table>(&key.type)) return format_level_table(values.*table->member);
+  if (const auto* plain = std::get_if<Text>(&key.type)) return values.*plain->member;
   const auto& words = std::get<Choice>(key.type);
   const auto found = std::find_if(words.words.begin(), words.words.end(),
                                   [&](const Word& w) { return w.value == words.read(values); });
   return std::string(found->text);
 }
 
-// Sets the value when it is allowed.
-bool apply(SettingsValues& values, const Key& key, std::string_view text) {
+// Sets the value when it is allowed. problem: more than that it is not allowed, where more is known.
+bool apply(SettingsValues& values, const Key& key, std::string_view text, std::string& problem) {
   if (const auto* number = std::get_if<Number>(&key.type)) {
     const std::optional<double> value = parse_number(text);
     if (!value || *value < number->min || *value > number->max) return false;
@@ -168,6 +233,12 @@ bool apply(SettingsValues& values, const Key& key, std::string_view text) {
     std::optional<LevelTable> value = parse_level_table(text);
     if (value) values.*table->member = std::move(*value);
     return value.has_value();
+  }
+  if (const auto* plain = std::get_if<Text>(&key.type)) {
+    std::string value(text);
+    problem = plain->problem(value);
+    if (problem.empty()) values.*plain->member = std::move(value);
+    return problem.empty();
   }
   const auto& words = std::get<Choice>(key.type);
   const auto found =
@@ -193,6 +264,9 @@ SettingInfo info_of(const Key& key) {
   } else if (std::holds_alternative<Table>(key.type)) {
     info.type = SettingType::kTable;
     info.grammar = level_table_grammar();
+  } else if (const auto* plain = std::get_if<Text>(&key.type)) {
+    info.type = SettingType::kText;
+    info.grammar = plain->grammar;
   } else {
     info.type = SettingType::kChoice;
     for (const Word& w : std::get<Choice>(key.type).words) info.choices.push_back(w.text);
@@ -208,7 +282,7 @@ std::string join(const std::vector<std::string_view>& words) {
 
 std::string what_is_allowed(const Key& key) {
   const SettingInfo info = info_of(key);
-  if (info.type == SettingType::kTable) return info.grammar;
+  if (info.type == SettingType::kTable || info.type == SettingType::kText) return info.grammar;
   if (info.type == SettingType::kChoice) return "one of " + join(info.choices);
   std::string text = info.type == SettingType::kInteger ? "a whole number from " : "a number from ";
   text.append(format_number(info.min)).append(" to ").append(format_number(info.max));
@@ -261,10 +335,11 @@ std::span<const SettingInfo> Settings::list() {
 std::string Settings::set(std::string_view name, std::string_view text) {
   const Key* key = find_key(name);
   if (key == nullptr) return unknown_key(name);
-  if (apply(values_, *key, text)) return {};
+  std::string problem;
+  if (apply(values_, *key, text, problem)) return {};
   constexpr std::size_t kLongestText = 64;
-  return std::string(name) + "=" + std::string(text.substr(0, kLongestText)) + " is not allowed: expected " +
-         what_is_allowed(*key);
+  return std::string(name) + "=" + std::string(text.substr(0, kLongestText)) +
+         " is not allowed: " + (problem.empty() ? "" : problem + "; ") + "expected " + what_is_allowed(*key);
 }
 
 std::string Settings::assign(std::string_view assignment) {

@@ -9,28 +9,17 @@
 #include <string_view>
 #include <vector>
 
+#include "vpe/core/appearance.h"
 #include "vpe/core/level_table.h"
+#include "vpe/core/overlays.h"
 
 namespace vpe::core {
-
-// How the surface is painted. Lit modes shade by the sun.
-enum class Mode {
-  kWireframe,  // edges of the triangles
-  kUnlit,      // one colour, no normals
-  kLit,        // one colour, shaded
-  kColoured,   // vertex colour by `colour`, shaded
-  kTextured,   // imagery, shaded; as kColoured where the planet file has none
-};
-
-enum class Colour { kNone, kElevation };
 
 // What decides how fine a tile is drawn (lod/control.h).
 enum class LodRule {
   kError,     // its projected error, in pixels
   kHitchner,  // its distance and place in the picture alone, as in 1992
 };
-
-enum class Background { kBlack, kWhite, kSky };
 
 // What is shown of how the picture is made.
 enum class Inspect {
@@ -41,13 +30,7 @@ enum class Inspect {
 
 enum class Occlusion { kAuto, kOff, kOn };
 
-struct SettingsValues {
-  Mode mode = Mode::kTextured;
-  Colour colour = Colour::kElevation;
-  double exaggeration = 1;
-  double sun_azimuth_deg = 315;
-  double sun_elevation_deg = 35;
-  double sun_ambient = 0.05;
+struct SettingsValues : Appearance, Overlays {
   double lod_tolerance_px = 1;
   int lod_triangles = 0;
   LodRule lod_rule = LodRule::kError;
@@ -64,13 +47,12 @@ struct SettingsValues {
   Occlusion occlusion = Occlusion::kAuto;
   int samples = 1;
   bool smooth_edges = true;
-  Background background = Background::kSky;
   Inspect inspect = Inspect::kNone;
 
   bool operator==(const SettingsValues&) const = default;
 };
 
-enum class SettingType { kNumber, kInteger, kChoice, kTable };
+enum class SettingType { kNumber, kInteger, kChoice, kTable, kText };
 
 // What `vpe settings` shows of a key.
 struct SettingInfo {
@@ -79,7 +61,7 @@ struct SettingInfo {
   double min = 0;  // numbers and integers, both ends allowed
   double max = 0;
   std::vector<std::string_view> choices;  // words allowed, for kChoice
-  std::string grammar;                    // what is allowed, for kTable
+  std::string grammar;                    // what is allowed, for kTable and kText
   std::string default_text;
   std::string_view unit;  // empty for pure numbers and words
   std::string_view meaning;
