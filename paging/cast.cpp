@@ -41,8 +41,13 @@ Interval clip(Interval in, Linear f) {
 
 class FaceCaster {
  public:
-  FaceCaster(const Surface& surface, mars::Face face, const glm::dvec3& eye, const glm::dvec3& direction)
-      : surface_(surface), tree_(surface.planet().tree()), radius_(surface.planet_radius_m()), face_(face) {
+  FaceCaster(const Surface& surface, mars::Face face, const glm::dvec3& eye, const glm::dvec3& direction,
+             double exaggeration)
+      : surface_(surface),
+        tree_(surface.planet().tree()),
+        radius_(surface.planet_radius_m()),
+        exaggeration_(exaggeration),
+        face_(face) {
     const mars::FaceAxes& a = mars::face_axes(face);
     x_ = {glm::dot(a.right, eye), glm::dot(a.right, direction)};
     y_ = {glm::dot(a.up, eye), glm::dot(a.up, direction)};
@@ -79,7 +84,7 @@ class FaceCaster {
   }
 
   bool above(Interval part, double height) const {
-    const double top = radius_ + height;
+    const double top = radius_ + exaggeration_ * height;
     return least_radius2(part) > top * top;
   }
 
@@ -142,7 +147,7 @@ class FaceCaster {
     const double dv = tile.lines.v[y + 1] - v0;
     const auto depth = [&](int a, int b) {
       return lod::inverse_depth(tile.lines.u[x + static_cast<std::size_t>(a)], tile.lines.v[y + static_cast<std::size_t>(b)],
-                                tile.data.posts.at(i + a, j + b), radius_);
+                                exaggeration_ * tile.data.posts.at(i + a, j + b), radius_);
     };
     const double w00 = depth(0, 0);
     const double w11 = depth(1, 1);
@@ -177,6 +182,7 @@ class FaceCaster {
   const Surface& surface_;
   const lod::TileTree& tree_;
   double radius_;
+  double exaggeration_;
   mars::Face face_;
   Linear x_;
   Linear y_;
@@ -187,9 +193,10 @@ class FaceCaster {
 
 }  // namespace
 
-double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction) const {
+double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration) const {
   // Only the part inside the sphere of the highest terrain can hit.
-  const double top = planet_->meta().highest_radius_m;
+  const double radius = planet_->radius_m();
+  const double top = radius + exaggeration * (planet_->meta().highest_radius_m - radius);
   const double half = glm::dot(eye_m, direction);
   const double rest = half * half - (glm::dot(eye_m, eye_m) - top * top);
   if (!(rest >= 0.0)) return kNone;
@@ -203,14 +210,14 @@ double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction) const
   };
   std::vector<Candidate> candidates;
   for (int f = 0; f < mars::kFaces; ++f) {
-    Interval part = FaceCaster(*this, static_cast<mars::Face>(f), eye_m, direction).reach();
+    Interval part = FaceCaster(*this, static_cast<mars::Face>(f), eye_m, direction, exaggeration).reach();
     part = {std::max(part.begin, shell.begin), std::min(part.end, shell.end)};
     if (!part.empty()) candidates.push_back({part.begin, part.end, f});
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.begin < b.begin; });
   for (const Candidate& candidate : candidates) {
-    const FaceCaster caster(*this, static_cast<mars::Face>(candidate.face), eye_m, direction);
+    const FaceCaster caster(*this, static_cast<mars::Face>(candidate.face), eye_m, direction, exaggeration);
     const double hit = caster.cast({candidate.begin, candidate.end});
     if (hit < kNone) return hit;
   }

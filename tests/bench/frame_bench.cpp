@@ -76,6 +76,11 @@ std::vector<DrawRequest> film(const char* file, std::int64_t count, const paging
   return frames;
 }
 
+struct Vertex {
+  glm::vec3 position_m;
+  vpe::gl::VertexChart chart;
+};
+
 // The meshes of a frame in one buffer.
 class Plain {
  public:
@@ -86,7 +91,7 @@ class Plain {
     lod::SelectScratch scratch;
     lod::Selection selection;
     lod::select(options, planet.tree(), lod::select_view(request.view), scratch, selection);
-    std::vector<vpe::gl::TileVertex> vertices;
+    std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
     double nearest_m = 1e9;
     for (const lod::SelectedTile& tile : selection.tiles) {
@@ -94,9 +99,7 @@ class Plain {
       const auto base = static_cast<std::uint32_t>(vertices.size());
       const glm::dvec3 offset = g.centre_m - request.view.eye.eye_m;
       for (std::uint32_t v = 0; v < g.surface_vertices; ++v) {
-        vpe::gl::TileVertex moved = g.vertices[v];
-        moved.position_m = glm::vec3(glm::dvec3(moved.position_m) + offset);
-        vertices.push_back(moved);
+        vertices.push_back({glm::vec3(glm::dvec3(g.positions_m[v]) + offset), g.charts[v]});
       }
       for (std::uint32_t n = 0; n < g.ranges.surface; ++n) indices.push_back(base + g.indices[n]);
       nearest_m = std::min(nearest_m, tile.min_distance_m);
@@ -111,11 +114,11 @@ class Plain {
     const GLuint array = array_.name();
     glEnableVertexArrayAttrib(array, 0);
     glEnableVertexArrayAttrib(array, 1);
-    glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, offsetof(vpe::gl::TileVertex, position_m));
-    glVertexArrayAttribFormat(array, 1, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(vpe::gl::TileVertex, s));
+    glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, position_m));
+    glVertexArrayAttribFormat(array, 1, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(Vertex, chart));
     glVertexArrayAttribBinding(array, 0, 0);
     glVertexArrayAttribBinding(array, 1, 0);
-    glVertexArrayVertexBuffer(array, 0, vertices_.name(), 0, sizeof(vpe::gl::TileVertex));
+    glVertexArrayVertexBuffer(array, 0, vertices_.name(), 0, sizeof(Vertex));
     glVertexArrayElementBuffer(array, indices_.name());
     lens_ = vpe::gl::make_lens(request.view, std::max(1.0, 0.3 * nearest_m));
     rotation_ = vpe::gl::body_to_eye(request.view.eye.axes);
@@ -147,12 +150,12 @@ class Plain {
     if (lod::is_full_grid(planet.tree()[tile.index], tile.variant)) {
       const paging::TileHeights heights = planet.heights(tile.key);
       return vpe::gl::make_geometry(tile.key, lod::mesh_full(heights.posts.intervals), heights.posts.height_m,
-                                    exaggeration, radius);
+                                    radius, {exaggeration});
     }
     const paging::PackedMesh packed = planet.mesh(tile.key, tile.variant);
     std::vector<double> heights;
     for (const std::int32_t q : packed.height_q) heights.push_back(q * planet.meta().quantum_m);
-    return vpe::gl::make_geometry(tile.key, packed.mesh, heights, exaggeration, radius);
+    return vpe::gl::make_geometry(tile.key, packed.mesh, heights, radius, {exaggeration});
   }
 
   vpe::gl::VertexArray array_;

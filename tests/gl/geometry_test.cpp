@@ -45,12 +45,12 @@ TEST(TileGeometryTest, VerticesAreWithinTheStatedRoundingOfTheirPlaces) {
   for (double& h : heights) h = random.uniform(-3000, 5000);
   const lod::TileMesh mesh = lod::mesh_full(kIntervals);
   for (const int origin : {vpe::gl::kTileCentre, 0, 5 * (kIntervals + 1) + 11}) {
-    const TileGeometry g = make_geometry(kKey, mesh, heights, 1.5, kRadius_m, origin);
+    const TileGeometry g = make_geometry(kKey, mesh, heights, kRadius_m, {1.5, origin});
     ASSERT_EQ(g.surface_vertices, mesh.vertices.size());
     double worst = 0;
     for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
       const glm::dvec3 exact = place(mesh.vertices[n].i, mesh.vertices[n].j, 1.5 * heights[n]);
-      const glm::dvec3 stored = g.centre_m + glm::dvec3(g.vertices[n].position_m);
+      const glm::dvec3 stored = g.centre_m + glm::dvec3(g.positions_m[n]);
       const double error = glm::length(stored - exact);
       worst = std::max(worst, error);
       ASSERT_LE(error, g.quantisation_m + 1e-9);
@@ -65,15 +65,15 @@ TEST(TileGeometryTest, AnOriginNearTheEyeIsExactThere) {
   const std::vector<double> heights = heights_of([](int i, int j) { return 13.7 * i - 4.1 * j; });
   const lod::TileMesh mesh = lod::mesh_full(kIntervals);
   const int origin = 7 * (kIntervals + 1) + 3;
-  const TileGeometry g = make_geometry(kKey, mesh, heights, 1.0, kRadius_m, origin);
+  const TileGeometry g = make_geometry(kKey, mesh, heights, kRadius_m, {1.0, origin});
   EXPECT_LT(glm::length(g.centre_m - place(3, 7, 13.7 * 3 - 4.1 * 7)), 1e-6);
   const auto at = static_cast<std::size_t>(origin);
-  EXPECT_EQ(g.vertices[at].position_m, glm::vec3(0, 0, 0));
+  EXPECT_EQ(g.positions_m[at], glm::vec3(0, 0, 0));
 }
 
 TEST(TileGeometryTest, TheLongestEdgeIsTheDiagonalOfACell) {
   const lod::TileMesh mesh = lod::mesh_full(kIntervals);
-  const TileGeometry flat = make_geometry(kKey, mesh, heights_of([](int, int) { return 0.0; }), 1.0, kRadius_m);
+  const TileGeometry flat = make_geometry(kKey, mesh, heights_of([](int, int) { return 0.0; }), kRadius_m, {});
   const double east_m = glm::length(place(9, 8, 0) - place(8, 8, 0));
   EXPECT_NEAR(flat.longest_edge_m, std::hypot(east_m, glm::length(place(8, 9, 0) - place(8, 8, 0))),
               0.05 * east_m);
@@ -82,7 +82,7 @@ TEST(TileGeometryTest, TheLongestEdgeIsTheDiagonalOfACell) {
 TEST(TileGeometryTest, BordersHaveALineAndASkirtForEachPiece) {
   const lod::TileMesh mesh = lod::mesh_full(kIntervals);
   const TileGeometry g =
-      make_geometry(kKey, mesh, heights_of([](int i, int j) { return 10.0 * (i ^ j); }), 1.0, kRadius_m);
+      make_geometry(kKey, mesh, heights_of([](int i, int j) { return 10.0 * (i ^ j); }), kRadius_m, {});
   EXPECT_EQ(g.ranges.surface, mesh.triangles.size());
   EXPECT_EQ(g.ranges.border_end, g.indices.size());
   EXPECT_EQ(g.ranges.border_end - g.ranges.skirts[4], 2U * 4 * kIntervals);
@@ -94,7 +94,7 @@ TEST(TileGeometryTest, BordersHaveALineAndASkirtForEachPiece) {
         const std::uint32_t foot = g.indices[n + 2 + k];
         ASSERT_LT(top, g.surface_vertices);
         ASSERT_GE(foot, g.surface_vertices);
-        ASSERT_EQ(g.vertices[top].position_m, g.vertices[foot].position_m);
+        ASSERT_EQ(g.positions_m[top], g.positions_m[foot]);
       }
     }
   }

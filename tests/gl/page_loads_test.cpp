@@ -31,8 +31,10 @@ PageKey random_page(const paging::PlanetFile& planet, Random& random,
     case 0: page.detail = random.integer(0, static_cast<int>(tile.variants.size()) - 1); break;
     case 1:
       page.kind = PageKind::kTexture;
-      page.detail = planet.meta().tile.intervals() << random.integer(0, 1);
       page.look = looks[static_cast<std::size_t>(random.integer(0, static_cast<int>(looks.size()) - 1))];
+      page.detail = page.look->flat
+                        ? vpe::gl::facet_paint(random.integer(0, static_cast<int>(tile.variants.size()) - 1))
+                        : planet.meta().tile.intervals() << random.integer(0, 1);
       break;
     default: page.kind = PageKind::kGround;
   }
@@ -55,6 +57,10 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
   for (const auto surfacing : {vpe::gl::Surfacing::kElevation, vpe::gl::Surfacing::kImage}) {
     ShadeParams look;
     look.surfacing = surfacing;
+    look.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
+    looks.push_back(std::make_shared<const ShadeParams>(look));
+    look.flat = true;
+    look.shadows = true;
     looks.push_back(std::make_shared<const ShadeParams>(look));
   }
   Random random(17);
@@ -80,8 +86,8 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
         ++taken;
         EXPECT_GT(page.bytes, 0U);
         EXPECT_EQ(page.value.ground != nullptr, page.key.kind == PageKind::kGround);
-        EXPECT_EQ(page.value.shaded.rgba.empty(), page.key.kind != PageKind::kTexture);
-        EXPECT_EQ(page.value.geometry.vertices.empty(), page.key.kind != PageKind::kMesh);
+        EXPECT_EQ(page.value.shaded.texels.empty(), page.key.kind != PageKind::kTexture);
+        EXPECT_EQ(page.value.geometry.positions_m.empty(), page.key.kind != PageKind::kMesh);
       }
       EXPECT_EQ(pager.counts().failed, 0U);
     }

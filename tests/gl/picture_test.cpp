@@ -138,6 +138,7 @@ TEST_F(Picture, ShadingMeetsAtBorders) {
   const vpe::gl::Shader shader(planet, std::size_t{64} << 20);
   vpe::gl::ShadeParams params;
   params.sun = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
+  params.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
   const int level = planet->meta().finest_level;
   const int n = planet->meta().tile.intervals();
   const auto texel = [&](const vpe::gl::ShadedTile& tile, lod::Edge edge, int along) {
@@ -145,7 +146,7 @@ TEST_F(Picture, ShadingMeetsAtBorders) {
     const int x = edge == lod::Edge::kWest ? 0 : edge == lod::Edge::kEast ? last : along;
     const int y = edge == lod::Edge::kSouth ? 0 : edge == lod::Edge::kNorth ? last : along;
     const std::size_t at = 4 * static_cast<std::size_t>(y * (last + 1) + x);
-    return std::array<int, 3>{tile.rgba[at], tile.rgba[at + 1], tile.rgba[at + 2]};
+    return std::array<int, 3>{tile.texels[at], tile.texels[at + 1], tile.texels[at + 2]};
   };
   const int tiles = 1 << level;
   for (int f = 0; f < mars::kFaces; ++f) {

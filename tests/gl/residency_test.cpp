@@ -45,18 +45,25 @@ class Residency : public test_support::GlTest {
 TEST_F(Residency, MeshesTakeWhatTheyCount) {
   for (const int intervals : {2, 4, 8, 16, 32}) {
     const std::vector<double> heights(static_cast<std::size_t>((intervals + 1) * (intervals + 1)), 100.0);
-    const auto geometry =
-        vpe::gl::make_geometry({}, lod::mesh_full(intervals), heights, 1, mars::kMarsRadius_m);
-    EXPECT_NEAR(taken_to_counted(300, [&] { return vpe::gl::upload(geometry); }), 1, 0.1) << intervals;
+    for (const bool charts : {true, false}) {
+      const auto geometry = vpe::gl::make_geometry({}, lod::mesh_full(intervals), heights, mars::kMarsRadius_m,
+                                                   {1, vpe::gl::kTileCentre, charts});
+      EXPECT_NEAR(taken_to_counted(300, [&] { return vpe::gl::upload(geometry); }), 1, 0.1)
+          << intervals << " charts " << charts;
+    }
   }
 }
 
 TEST_F(Residency, TexturesTakeWhatTheyCount) {
   for (const int intervals : {32, 128, 256, 512}) {
-    vpe::gl::ShadedTile tile;
-    tile.intervals = intervals;
-    tile.rgba.resize(4 * static_cast<std::size_t>((intervals + 1) * (intervals + 1)));
-    EXPECT_NEAR(taken_to_counted(30, [&] { return vpe::gl::upload(tile); }), 1, 0.1) << intervals;
+    const auto texels = static_cast<std::size_t>((intervals + 1) * (intervals + 1));
+    for (const int channels : {1, 4}) {
+      vpe::gl::ShadedTile tile{intervals, channels, false, 1, {}};
+      tile.texels.resize(static_cast<std::size_t>(channels) * texels);
+      EXPECT_NEAR(taken_to_counted(30, [&] { return vpe::gl::upload(tile); }), 1, 0.1) << intervals << " " << channels;
+    }
+    vpe::gl::ShadedTile facets{0, 4, false, 1, std::vector<std::uint8_t>(4 * texels)};
+    EXPECT_NEAR(taken_to_counted(30, [&] { return vpe::gl::upload(facets); }), 1, 0.1) << intervals;
   }
 }
 

@@ -64,8 +64,8 @@ using Framebuffer = Object<FramebufferTraits>;
 using Renderbuffer = Object<RenderbufferTraits>;
 using Program = Object<ProgramTraits>;
 
-// Compiles and links; throws std::runtime_error with the driver's log. `label` names it in the message. geometry:
-// null = no geometry stage.
+// Compiles and links; throws std::runtime_error with the driver's log. `label` names it in the message.
+// geometry: null = no geometry stage.
 Program make_program(const std::string& label, const char* vertex, const char* fragment,
                      const char* geometry = nullptr);
 

@@ -11,6 +11,7 @@
 #include "vpe/core/edge_filter.h"
 #include "vpe/core/inspect.h"
 #include "vpe/core/parallel.h"
+#include "vpe/core/shading.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/shaders.h"
 #include "vpe/gl/target.h"
@@ -30,6 +31,7 @@ double ms_since(Clock::time_point start) {
 // What OpenGL without a GPU keeps of a triangle, with its share of the pictures on their way out.
 constexpr std::size_t kBytesPerTriangle = 600;
 
+const glm::vec3 kLineColour(0.95F, 0.75F, 0.55F);
 const glm::vec3 kBorderColour(0.1F, 1.0F, 0.2F);  // no ground is that green
 // The relief shows through.
 glm::vec4 level_tint(int level) {
@@ -47,7 +49,7 @@ class PolygonRenderer : public core::Renderer {
         planet_(std::move(planet)),
         pool_(options.threads),
         scene_(planet_, options),
-        sky_program_(make_program("sky", kSkyVertexShader, kSkyFragmentShader)),
+        tiles_(planet_->radius_m()),
         empty_array_(VertexArray::make()) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
@@ -61,6 +63,7 @@ class PolygonRenderer : public core::Renderer {
  private:
   double near_plane_m(const core::View& view, double exaggeration) const;
   void draw_sky(const core::DrawRequest& request, const Lens& lens);
+  void set_paint(const core::DrawRequest& request);
   void draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture);
   void read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
@@ -72,7 +75,8 @@ class PolygonRenderer : public core::Renderer {
   core::ThreadPool pool_;
   TileScene scene_;
   TileDrawer tiles_;
-  Program sky_program_;
+  std::shared_ptr<const core::ColourScale> palette_;  // that tiles_ has; null: none
+  Program sky_program_;                               // made for the first sky
   VertexArray empty_array_;
   std::optional<Target> colour_target_;
   std::optional<Target> range_target_;
@@ -103,6 +107,7 @@ void PolygonRenderer::draw_sky(const core::DrawRequest& request, const Lens& len
   const glm::mat3 to_body = glm::transpose(body_to_eye(request.view.eye.axes));
   const glm::vec3 up(eye / r);
   const glm::vec3 sun(request.sun);
+  if (!sky_program_) sky_program_ = make_program("sky", kSkyVertexShader, kSkyFragmentShader);
   glUseProgram(sky_program_.name());
   glBindVertexArray(empty_array_.name());
   glUniformMatrix3fv(kSkyRotation, 1, GL_FALSE, &to_body[0][0]);
@@ -127,13 +132,14 @@ Target& PolygonRenderer::target(std::optional<Target>& slot, const glm::ivec2& s
 
 // Of the picture that was drawn and read last.
 std::optional<double> PolygonRenderer::share_without_data(core::Mode mode, const Target& picture) const {
-  if (mode == core::Mode::kWireframe) {
+  if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers) {
     const auto has_missing = [&](const SceneTile& t) { return planet_->has_missing(t.tile->key); };
     const auto tiles = scene_.tiles();
     if (std::any_of(tiles.begin(), tiles.end(), has_missing)) return std::nullopt;
     return 0.0;
   }
-  return std::any_of(draws_.begin(), draws_.end(), TileDrawer::has_gaps) ? 1.0 - picture.mean_alpha() : 0.0;
+  const auto has_gaps = [](const TileDraw& t) { return t.texture != nullptr && t.texture->gaps; };
+  return std::any_of(draws_.begin(), draws_.end(), has_gaps) ? 1.0 - picture.mean_alpha() : 0.0;
 }
 
 core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens,
@@ -163,8 +169,37 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
   return c;
 }
 
+// What the programs of this picture's tiles need, and nothing else.
+void PolygonRenderer::set_paint(const core::DrawRequest& request) {
+  const core::Appearance& appearance = request.settings;
+  const bool shows = scene_.painting().by == PaintBy::kPalette;
+  const std::shared_ptr<const core::ColourScale> wanted = shows ? scene_.scale() : nullptr;
+  if (wanted != palette_) {
+    if (wanted) {
+      PaletteTable table{wanted->low(), wanted->high(), {}};
+      constexpr int kEntries = 4096;
+      for (int n = 0; n < kEntries; ++n) {
+        const glm::dvec3 c = (*wanted)(table.low + (table.high - table.low) * n / (kEntries - 1));
+        const glm::ivec3 bytes(glm::clamp(glm::round(c), 0.0, 255.0));
+        table.colours.push_back({static_cast<std::uint8_t>(bytes.r), static_cast<std::uint8_t>(bytes.g),
+                                 static_cast<std::uint8_t>(bytes.b)});
+      }
+      tiles_.set_palette(&table);
+    } else {
+      tiles_.set_palette(nullptr);
+    }
+    palette_ = wanted;
+  }
+  tiles_.set_exaggeration(appearance.exaggeration);
+  const glm::dvec3 up = glm::normalize(request.view.eye.eye_m);
+  tiles_.set_air({glm::vec3(core::haze_colour(glm::dot(up, request.sun)) / 255.0),
+                  static_cast<float>(appearance.haze_visibility_m)});
+  if (appearance.background != core::Background::kSky) sky_program_ = {};
+}
+
 void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture) {
   const bool wireframe = request.settings.mode == core::Mode::kWireframe;
+  const bool markers = request.settings.mode == core::Mode::kMarkers;
   const bool white = picture && request.settings.background == core::Background::kWhite;
   const float paper = white ? 1.0F : 0.0F;
   to.bind();
@@ -174,13 +209,27 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
   glDepthFunc(GL_GREATER);
   if (wireframe && picture) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   draws_.clear();
+  const PaintBy by = scene_.painting().by;
+  const glm::vec3 plain = wireframe || markers ? kLineColour : glm::vec3(core::kPlainGround / 255.0);
   for (const SceneTile& t : scene_.tiles()) {
-    draws_.push_back({t.mesh, picture ? t.texture : nullptr, request.settings.mode == core::Mode::kUnlit,
-                      t.tile->key, t.skirt_m});
+    TileDraw& draw = draws_.emplace_back();
+    draw.mesh = t.mesh;
+    draw.key = t.tile->key;
+    draw.skirt_m = t.skirt_m;
+    if (!picture) continue;
+    draw.texture = t.texture;
+    draw.flat = by == PaintBy::kColour;
+    draw.palette = by == PaintBy::kPalette;
+    draw.colour = plain;
     if (picture && request.settings.inspect == core::Inspect::kLevels)
       draws_.back().tint = level_tint(t.tile->key.level);
   }
-  if (picture) {
+  if (picture && markers) {
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    tiles_.draw_numbers(request.view, lens, draws_);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    tiles_.draw_vertices(request.view, lens, draws_, static_cast<float>(request.settings.marker_px));
+  } else if (picture) {
     tiles_.draw(request.view, lens, draws_, wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
   } else {
     tiles_.draw_numbers(request.view, lens, draws_);
@@ -238,6 +287,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   const glm::ivec2 size = core::drawn_size(request.view);
   const Lens lens = make_lens(request.view, near_plane_m(request.view, settings.exaggeration));
   Target& picture = target(colour_target_, size, settings.samples);
+  set_paint(request);
   draw_pass(request, lens, picture, true);
   glFinish();
   check_gl("draw");
@@ -249,16 +299,19 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   result.frame.height = size.y;
   picture.read_colour(result.frame.colour);
   const std::optional<double> without_data = share_without_data(settings.mode, picture);
-  const bool smooth = settings.samples == 1 && settings.smooth_edges && settings.mode != core::Mode::kWireframe;
+  const bool lines = settings.mode == core::Mode::kWireframe || settings.mode == core::Mode::kMarkers;
+  const bool smooth = settings.samples == 1 && settings.smooth_edges && !lines;
   if (smooth) picture.read_depth(depth_);
   result.stats.read_ms = ms_since(start);
   start = Clock::now();
   if (smooth) core::smooth_edges(result.frame.colour, depth_, size.x, size.y, pool_);
+  core::apply_gamma(result.frame.colour, settings.gamma);
   result.stats.draw_ms += ms_since(start);
   start = Clock::now();
   if (request.want_range) read_range(request, lens, result.frame);
   result.stats.read_ms += ms_since(start);
 
+  tiles_.drop_unused();
   result.certificate = certify(request, lens, result.frame);
   result.certificate.share_without_data = without_data;
   result.certificate.tiles_missing = result.stats.tiles_missing;

@@ -16,7 +16,8 @@
 namespace vpe::gl {
 
 struct GpuMesh {
-  Buffer vertices;
+  Buffer positions;
+  Buffer charts;  // none: no textures
   Buffer indices;
   bool short_indices = false;
   glm::dvec3 centre_m{0, 0, 0};
@@ -29,10 +30,15 @@ struct GpuMesh {
 };
 GpuMesh upload(const TileGeometry& geometry);
 
+// Facets lie in rows of kFacetRow texels.
+inline constexpr int kFacetRow = 256;
+
 struct GpuTexture {
   Texture2D texture;
-  int intervals = 0;
-  bool gaps = false;  // ShadedTile::gaps
+  int intervals = 0;     // 0: facets
+  bool light = false;    // one channel: ShadedTile::channels
+  double brightest = 1;  // of light
+  bool gaps = false;     // ShadedTile::gaps
   std::size_t bytes = 0;
 };
 GpuTexture upload(const ShadedTile& tile);
@@ -41,10 +47,11 @@ GpuTexture upload(const ShadedTile& tile);
 struct MeshDetail {
   int variant = 0;
   int origin = kTileCentre;  // what positions are relative to (make_geometry)
+  bool charts = true;
   bool operator==(const MeshDetail&) const = default;
 };
 struct TextureDetail {
-  int intervals = 0;
+  int paint = 0;  // TileNeed::paint
   std::shared_ptr<const ShadeParams> look;
   bool operator==(const TextureDetail&) const = default;
 };
@@ -105,6 +112,17 @@ class Resident {
       ++gone;
     }
     return gone;
+  }
+  template <typename Drop>
+  void drop(const Drop& drop) {
+    for (auto at = items_.begin(); at != items_.end();) {
+      std::erase_if(at->second, [&](const Item& item) {
+        if (!drop(item.detail)) return false;
+        bytes_ -= item.value->bytes;
+        return true;
+      });
+      at = at->second.empty() ? items_.erase(at) : std::next(at);
+    }
   }
   void clear() {
     items_.clear();

@@ -4,56 +4,20 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <type_traits>
+
+#include "vpe/core/shading.h"
 
 namespace vpe::gl {
 
 namespace {
 
-// Ground that faces a sun 50 degrees up keeps its colour.
-constexpr float kSunGain = 1.3F;
-
 constexpr std::size_t kImageSide = paging::kImageIntervals + 1;
 
-struct Stop {
-  double height_m;
-  glm::vec3 colour;
-};
-constexpr std::array<Stop, 11> kRamp{{{-8200, {42, 26, 90}},
-                                      {-6000, {58, 60, 148}},
-                                      {-4500, {62, 110, 168}},
-                                      {-3000, {84, 150, 150}},
-                                      {-1500, {128, 172, 118}},
-                                      {0, {186, 186, 108}},
-                                      {1500, {206, 160, 88}},
-                                      {3500, {190, 116, 72}},
-                                      {7000, {160, 84, 68}},
-                                      {12000, {204, 174, 160}},
-                                      {21500, {250, 248, 244}}}};
+glm::vec3 rgb(const mars::Rgb& c) { return {c.r, c.g, c.b}; }
 
-glm::vec3 ramp(double height_m) {
-  if (height_m <= kRamp.front().height_m) return kRamp.front().colour;
-  for (std::size_t s = 1; s < kRamp.size(); ++s) {
-    if (height_m > kRamp[s].height_m) continue;
-    const double t = (height_m - kRamp[s - 1].height_m) / (kRamp[s].height_m - kRamp[s - 1].height_m);
-    return glm::mix(kRamp[s - 1].colour, kRamp[s].colour, static_cast<float>(t));
-  }
-  return kRamp.back().colour;
-}
-
-// Ramp by table: one entry a 16 m step covers -16 km .. 48 km.
-class RampTable {
- public:
-  RampTable() {
-    for (std::size_t n = 0; n < table_.size(); ++n) table_[n] = ramp(-16384.0 + 16.0 * static_cast<double>(n));
-  }
-  const glm::vec3& operator()(float height_m) const {
-    const float at = (height_m + 16384.0F) * (1.0F / 16.0F);
-    return table_[static_cast<std::size_t>(std::clamp(at, 0.0F, static_cast<float>(table_.size() - 1)))];
-  }
-
- private:
-  std::array<glm::vec3, 4096> table_;
-};
+bool shows_image(Surfacing s) { return s == Surfacing::kImage || s == Surfacing::kImageAtPosts; }
+bool needs_vertical(Surfacing s) { return s == Surfacing::kSlope || s == Surfacing::kAspect; }
 
 std::uint8_t to_byte(float x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5F, 0.0F, 255.0F)); }
 
@@ -113,40 +77,39 @@ void make_even(const lod::TileKey& key, ShadedTile& tile) {
   };
   const auto columns = positions(rect.u0, rect.u1, key.i);
   const auto rows = positions(rect.v0, rect.v1, key.j);
-  std::vector<std::uint8_t> even(tile.rgba.size());
+  const auto channels = static_cast<std::size_t>(tile.channels);
+  std::vector<std::uint8_t> even(tile.texels.size());
   for (std::size_t y = 0; y < side; ++y) {
     for (std::size_t x = 0; x < side; ++x) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        even[4 * (y * side + x) + c] = to_byte(bilinear<float>(columns[x], rows[y], side, [&](std::size_t at) {
-          return static_cast<float>(tile.rgba[4 * at + c]);
+      std::uint8_t* texel = &even[channels * (y * side + x)];
+      for (std::size_t c = 0; c < channels; ++c) {
+        texel[c] = to_byte(bilinear<float>(columns[x], rows[y], side, [&](std::size_t at) {
+          return static_cast<float>(tile.texels[channels * at + c]);
         }));
       }
-      std::uint8_t& alpha = even[4 * (y * side + x) + 3];
-      alpha = alpha < 128 ? 0 : 255;
+      if (channels == 4) texel[3] = texel[3] < 128 ? 0 : 255;
     }
   }
-  tile.rgba = std::move(even);
+  tile.texels = std::move(even);
 }
 
 }  // namespace
 
-mars::Rgb elevation_colour(double height_m) {
-  const glm::vec3 c = ramp(height_m);
-  return {to_byte(c.x), to_byte(c.y), to_byte(c.z)};
-}
-
 std::size_t NormalTile::bytes() const {
   return sizeof(NormalTile) + normal.capacity() * sizeof(glm::vec3) + height_m.capacity() * sizeof(float) +
-         missing.capacity() / 8;
+         sees_sun.capacity() * sizeof(std::uint8_t) + missing.capacity() / 8;
 }
 
 Shader::Shader(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
-      heights_(budget_bytes * 2 / 5),
-      normals_(budget_bytes * 2 / 5),
-      images_(budget_bytes / 5) {}
+      surface_(planet_, budget_bytes * 3 / 20),
+      heights_(budget_bytes * 7 / 20),
+      normals_(budget_bytes * 7 / 20),
+      images_(budget_bytes * 3 / 20) {}
 
-std::size_t Shader::bytes_resident() const { return heights_.bytes() + normals_.bytes() + images_.bytes(); }
+std::size_t Shader::bytes_resident() const {
+  return surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
+}
 
 std::shared_ptr<const paging::TileHeights> Shader::heights(const lod::TileKey& key) const {
   return heights_.get(key, [&] {
@@ -165,9 +128,10 @@ std::shared_ptr<const paging::ImageTile> Shader::image(const lod::TileKey& key) 
   });
 }
 
-std::shared_ptr<const NormalTile> Shader::normals(const lod::TileKey& key, double exaggeration) const {
-  return normals_.get({key, exaggeration}, [&] {
-    auto made = std::make_shared<const NormalTile>(make_normals(key, exaggeration));
+std::shared_ptr<const NormalTile> Shader::normals(const lod::TileKey& key, const ShadeParams& params) const {
+  const glm::dvec3 sun = params.lit && params.shadows ? params.sun : glm::dvec3(0);
+  return normals_.get({key, params.exaggeration, sun}, [&] {
+    auto made = std::make_shared<const NormalTile>(make_normals(key, params));
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });
@@ -230,7 +194,8 @@ std::vector<double> Shader::heights_across(const lod::TileKey& key, lod::Edge ed
   return out;
 }
 
-NormalTile Shader::make_normals(const lod::TileKey& key, double exaggeration) const {
+NormalTile Shader::make_normals(const lod::TileKey& key, const ShadeParams& params) const {
+  const double exaggeration = params.exaggeration;
   const auto source = heights(key);
   const lod::Posts& posts = source->posts;
   const int n = posts.intervals;
@@ -266,7 +231,7 @@ NormalTile Shader::make_normals(const lod::TileKey& key, double exaggeration) co
     }
   }
 
-  NormalTile out{key, static_cast<int>(side), {}, {}, source->missing};
+  NormalTile out{key, static_cast<int>(side), {}, {}, {}, source->missing};
   out.normal.reserve(side * side);
   out.height_m.assign(posts.height_m.begin(), posts.height_m.end());
   for (std::size_t j = 1; j <= side; ++j) {
@@ -275,23 +240,62 @@ NormalTile Shader::make_normals(const lod::TileKey& key, double exaggeration) co
       out.normal.push_back(glm::normalize(glm::cross(row[i + 1] - row[i - 1], row[i + wide] - row[i - wide])));
     }
   }
+  if (!params.lit || !params.shadows) return out;
+  const double spacing_m = lod::nominal_side_m(key.level, radius) / n;
+  out.sees_sun.reserve(side * side);
+  for (std::size_t j = 0; j < side; ++j) {
+    for (std::size_t i = 0; i < side; ++i) {
+      const glm::dvec3 post = glm::dvec3(points[(j + 1) * wide + i + 1]) + origin;
+      const bool faces = glm::dot(glm::dvec3(out.normal[j * side + i]), params.sun) > 0.0;
+      out.sees_sun.push_back(faces && sees_sun(post, spacing_m, params) ? 1 : 0);
+    }
+  }
   return out;
+}
+
+// From a little above the ground, since the ray's own facets meet it there.
+bool Shader::sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadeParams& params) const {
+  constexpr double kLift = 1e-3;
+  const double radius = glm::length(place_m);
+  const glm::dvec3 eye = place_m * ((radius + kLift * spacing_m) / radius);
+  return std::isinf(surface_.cast(eye, params.sun, params.exaggeration));
+}
+
+// What a surfacing shows of a place on the ground.
+glm::dvec3 Shader::shown(Surfacing what, const Ground& at, const ShadeParams& params) const {
+  switch (what) {
+    case Surfacing::kElevation: return (*params.scale)(at.height_m);
+    case Surfacing::kSlope: return (*params.scale)(core::slope_deg(at.normal, at.up));
+    case Surfacing::kAspect: return (*params.scale)(core::aspect_deg(at.normal, at.up));
+    case Surfacing::kImage:
+    case Surfacing::kImageAtPosts: return at.image;
+    case Surfacing::kPlain: break;
+  }
+  return core::kPlainGround;
+}
+
+glm::dvec3 Shader::colour(const Ground& at, const ShadeParams& params) const {
+  glm::dvec3 out = shown(params.surfacing, at, params);
+  if (params.hue != Surfacing::kPlain) out = core::colourised(out, shown(params.hue, at, params));
+  return params.lit ? out * core::light(params.ambient, params.diffuse,
+                                        at.sun * glm::dot(glm::normalize(at.normal), params.sun))
+                    : out;
+}
+
+// The image's texels over a block or a part of it, or none.
+Shader::Picture Shader::picture(const lod::TileKey& block, const ShadeParams& params) const {
+  if (!shows_image(params.surfacing)) return {};
+  const auto found = planet_->image_key(block);
+  if (!found) throw paging::PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
+  return {image(*found), *found};
 }
 
 void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
                          ShadedTile& out) const {
-  static const RampTable ramp_table;
   const int n = planet_->meta().tile.intervals();
   const lod::TileKey stored = deepest(block);
-  const std::shared_ptr<const NormalTile> ground = normals(stored, params.exaggeration);
-  std::shared_ptr<const paging::ImageTile> picture;
-  lod::TileKey picture_key;
-  if (params.surfacing == Surfacing::kImage) {
-    const auto found = planet_->image_key(block);
-    if (!found) throw paging::PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
-    picture_key = *found;
-    picture = image(picture_key);
-  }
+  const std::shared_ptr<const NormalTile> ground = normals(stored, params);
+  const Picture picture = this->picture(block, params);
   // Where this block lies inside what is stored, in steps of the block's own texels.
   const auto offset = [&](std::int32_t index, const lod::TileKey& outer) {
     const int levels = block.level - outer.level;
@@ -300,44 +304,53 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, co
   const int ground_steps = n << (block.level - stored.level);
   const int gx = offset(block.i, stored);
   const int gy = offset(block.j, stored);
-  const int picture_steps = picture ? n << (block.level - picture_key.level) : 1;
-  const int px = picture ? offset(block.i, picture_key) : 0;
-  const int py = picture ? offset(block.j, picture_key) : 0;
+  const int picture_steps = picture.tile ? n << (block.level - picture.key.level) : 1;
+  const int px = picture.tile ? offset(block.i, picture.key) : 0;
+  const int py = picture.tile ? offset(block.j, picture.key) : 0;
   const bool direct = stored == block;
+  const bool needs_up = needs_vertical(params.surfacing) || needs_vertical(params.hue);
+  const lod::GridLines lines = needs_up ? lod::grid_lines(block, n) : lod::GridLines{};
 
-  const glm::vec3 sun(params.sun);
-  const auto ambient = static_cast<float>(params.ambient);
   const auto ground_side = static_cast<std::size_t>(ground->side);
+  const auto channels = static_cast<std::size_t>(out.channels);
+  Ground at;
   for (int y = 0; y <= n; ++y) {
     const GridPosition gyp = grid_position(gy, y, ground_steps, ground->side - 1);
     const GridPosition pyp = grid_position(py, y, picture_steps, paging::kImageIntervals);
-    std::uint8_t* texel = &out.rgba[4 * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
-                                         static_cast<std::size_t>(x0))];
-    for (int x = 0; x <= n; ++x, texel += 4) {
+    std::uint8_t* texel =
+        &out.texels[channels * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
+                                static_cast<std::size_t>(x0))];
+    for (int x = 0; x <= n; ++x, texel += channels) {
       const GridPosition gxp = grid_position(gx, x, ground_steps, ground->side - 1);
-      glm::vec3 colour(178, 142, 112);
-      if (params.surfacing == Surfacing::kElevation) {
-        colour = ramp_table(
-            bilinear<float>(gxp, gyp, ground_side, [&](std::size_t at) { return ground->height_m[at]; }));
-      } else if (picture) {
+      const auto between = [&](const auto& values) {
+        using T = std::decay_t<decltype(values[0])>;
+        using Sum = std::conditional_t<std::is_same_v<T, std::uint8_t>, float, T>;
+        return bilinear<Sum>(gxp, gyp, ground_side, [&](std::size_t k) { return static_cast<Sum>(values[k]); });
+      };
+      at.height_m = between(ground->height_m);
+      at.normal = direct
+                      ? ground->normal[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)]
+                      : between(ground->normal);
+      if (!ground->sees_sun.empty()) at.sun = between(ground->sees_sun);
+      if (needs_up)
+        at.up = mars::chart_direction(block.face, lines.u[static_cast<std::size_t>(x)],
+                                      lines.v[static_cast<std::size_t>(y)]);
+      if (picture.tile) {
         const GridPosition pxp = grid_position(px, x, picture_steps, paging::kImageIntervals);
-        colour = bilinear<glm::vec3>(pxp, pyp, kImageSide, [&](std::size_t at) {
-          const mars::Rgb& t = picture->texels[at];
-          return glm::vec3(t.r, t.g, t.b);
-        });
+        at.image = bilinear<glm::vec3>(pxp, pyp, kImageSide,
+                                       [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
       }
-      if (params.lit) {
-        const glm::vec3 normal =
-            direct ? ground->normal[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)]
-                   : bilinear<glm::vec3>(gxp, gyp, ground_side,
-                                         [&](std::size_t at) { return ground->normal[at]; });
-        const float light = std::max(0.0F, glm::dot(normal, sun));
-        // The square root stands for the display's gamma.
-        colour *= std::sqrt(ambient + (1.0F - ambient) * kSunGain * light);
+      if (channels == 1) {
+        texel[0] =
+            to_byte(static_cast<float>(255.0 / out.brightest *
+                                       core::light(params.ambient, params.diffuse,
+                                                   at.sun * glm::dot(glm::normalize(at.normal), params.sun))));
+        continue;
       }
-      texel[0] = to_byte(colour.x);
-      texel[1] = to_byte(colour.y);
-      texel[2] = to_byte(colour.z);
+      const glm::vec3 c(colour(at, params));
+      texel[0] = to_byte(c.x);
+      texel[1] = to_byte(c.y);
+      texel[2] = to_byte(c.z);
       texel[3] = 255;
       if (!ground->missing.empty() && ground->missing[nearest(gyp) * ground_side + nearest(gxp)]) {
         texel[3] = 0;
@@ -347,6 +360,62 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, co
   }
 }
 
+ShadedTile Shader::shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh,
+                                std::span<const double> height_m, const ShadeParams& params) const {
+  const double radius = planet_->radius_m();
+  const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
+  const mars::ChartRect rect = lod::chart_rect(key);
+  const double spacing_m = lod::nominal_side_m(key.level, radius) / mesh.intervals;
+  const Picture picture = this->picture(key, params);
+  const mars::ChartRect image_rect = picture.tile ? lod::chart_rect(picture.key) : rect;
+  const std::shared_ptr<const paging::TileHeights> posts =
+      planet_->has_missing(key) ? heights(deepest(key)) : nullptr;
+  const bool gaps = posts && !posts->missing.empty();
+  std::vector<glm::dvec3> places;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    places.push_back(mars::chart_direction(key.face, lines.u[mesh.vertices[v].i], lines.v[mesh.vertices[v].j]) *
+                     (radius + params.exaggeration * height_m[v]));
+  }
+  ShadedTile out;
+  Ground at;
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    const std::array<std::uint32_t, 3> v{mesh.triangles[t], mesh.triangles[t + 1], mesh.triangles[t + 2]};
+    at.normal = glm::normalize(glm::cross(places[v[1]] - places[v[0]], places[v[2]] - places[v[0]]));
+    const glm::dvec3 middle = (places[v[0]] + places[v[1]] + places[v[2]]) / 3.0;
+    at.up = glm::normalize(middle);
+    if (glm::dot(at.normal, at.up) < 0.0) at.normal = -at.normal;
+    at.height_m = (height_m[v[0]] + height_m[v[1]] + height_m[v[2]]) / 3.0;
+    at.sun = 1.0;
+    if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
+      at.sun = sees_sun(middle, spacing_m, params) ? 1.0 : 0.0;
+    if (picture.tile) {
+      const mars::ChartPoint place = mars::chart_on(key.face, middle);
+      const auto along = [](double x, double low, double high) {
+        const double cell = std::clamp((x - low) / (high - low), 0.0, 1.0) * paging::kImageIntervals;
+        const auto index = std::min(static_cast<std::size_t>(cell), std::size_t{paging::kImageIntervals - 1});
+        return GridPosition{index, static_cast<float>(cell - static_cast<double>(index))};
+      };
+      at.image = bilinear<glm::vec3>(along(place.u, image_rect.u0, image_rect.u1),
+                                     along(place.v, image_rect.v0, image_rect.v1), kImageSide,
+                                     [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
+    }
+    const glm::vec3 c(colour(at, params));
+    bool missing = false;
+    for (const std::uint32_t corner : v) {
+      if (!gaps) break;
+      // A parent's mesh is over the posts of its children.
+      const int finer = mesh.intervals / posts->posts.intervals;
+      const auto side = static_cast<std::size_t>(posts->posts.intervals) + 1;
+      const auto post = [&](int of_mesh) { return static_cast<std::size_t>((of_mesh + finer / 2) / finer); };
+      missing = missing || posts->missing[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
+    }
+    out.gaps = out.gaps || missing;
+    for (const std::uint8_t byte : {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(missing ? 0 : 255)})
+      out.texels.push_back(byte);
+  }
+  return out;
+}
+
 ShadedTile Shader::shade(const lod::TileKey& key, int intervals, const ShadeParams& params) const {
   const int n = planet_->meta().tile.intervals();
   int levels = 0;
@@ -354,7 +423,13 @@ ShadedTile Shader::shade(const lod::TileKey& key, int intervals, const ShadePara
   ShadedTile out;
   out.intervals = n << levels;
   const int side = out.intervals + 1;
-  out.rgba.resize(4 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  // Light alone takes a quarter; alpha would tell what has no data.
+  if (params.surfacing == Surfacing::kPlain && params.lit && !planet_->has_missing(key)) {
+    out.channels = 1;
+    out.brightest = core::light(params.ambient, params.diffuse, 1.0);
+  }
+  out.texels.resize(static_cast<std::size_t>(out.channels) * static_cast<std::size_t>(side) *
+                    static_cast<std::size_t>(side));
   const int blocks = 1 << levels;
   for (int by = 0; by < blocks; ++by) {
     for (int bx = 0; bx < blocks; ++bx) {

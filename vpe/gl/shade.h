@@ -1,28 +1,48 @@
-// Colours of a tile's surface, made on the CPU: light from the tile's posts, colour from elevation or image.
-// Pure functions over shared caches; no OpenGL.
+// Colours of a tile's surface, made on the CPU: light from the tile's posts or triangles, colour from
+// elevation, slope, aspect or image (vpe/core/shading.h has the definition). Pure functions over shared caches;
+// no OpenGL.
 //
-// Light is computed from posts as fine as the picture needs, not from the mesh that happens to be drawn, so
-// that shading does not change when the mesh does. It is baked into one texture a tile, because a single
-// bilinear lookup is what software OpenGL affords (docs/rendering.md).
+// With Gouraud shading light is computed from posts as fine as the picture needs, not from the mesh that
+// happens to be drawn, so that shading does not change when the mesh does. It is baked into one texture a tile,
+// because a single bilinear lookup is what software OpenGL affords (docs/rendering.md). With flat shading every
+// drawn triangle has one colour.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "lod/mesh.h"
 #include "paging/cache.h"
 #include "paging/planet_file.h"
+#include "paging/surface.h"
+#include "vpe/core/palette.h"
 
 namespace vpe::gl {
 
-enum class Surfacing { kPlain, kElevation, kImage };
+// Where colours come from.
+enum class Surfacing {
+  kPlain,  // core::kPlainGround
+  kElevation,
+  kSlope,
+  kAspect,
+  kImage,
+  kImageAtPosts,
+};
 
 struct ShadeParams {
   Surfacing surfacing = Surfacing::kElevation;
+  Surfacing hue = Surfacing::kPlain;  // of an image: not plain = colourised by this
   bool lit = true;
+  bool shadows = false;
+  bool flat = false;        // for triangles, not for grids
   glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun
-  double ambient = 0.25;
+  double ambient = 0.05;
+  double diffuse = 1.235;
   double exaggeration = 1;
+  std::shared_ptr<const core::ColourScale> scale;  // where elevation, slope or aspect is shown
+  // Two scales are one when they are one object.
   bool operator==(const ShadeParams&) const = default;
 };
 
@@ -32,17 +52,21 @@ struct NormalTile {
   int side = 0;
   std::vector<glm::vec3> normal;  // unit, body-fixed
   std::vector<float> height_m;
-  std::vector<bool> missing;  // empty when every post has data
+  std::vector<std::uint8_t> sees_sun;  // 1 or 0; empty without shadows
+  std::vector<bool> missing;           // empty when every post has data
   std::size_t bytes() const;
 };
 
-// Texels on the (intervals + 1)^2 lines of a tile, row 0 at the south; even in the chart's u and v. Alpha is 0
-// where the nearest post has no data, else 255.
+// Texels on the (intervals + 1)^2 lines of a tile, row 0 at the south; even in the chart's u and v. Or, with
+// intervals 0, one for each triangle of a mesh. With one channel it is light, 255 for `brightest`; with four
+// colour, and alpha 0 where the nearest post has no data (a triangle: any of its three), else 255.
 struct ShadedTile {
   int intervals = 0;
-  bool gaps = false;  // some alpha is 0
-  std::vector<std::uint8_t> rgba;
-  std::size_t bytes() const { return rgba.capacity(); }
+  int channels = 4;
+  bool gaps = false;  // some alpha is 0; never with one channel
+  double brightest = 1;
+  std::vector<std::uint8_t> texels;
+  std::size_t bytes() const { return texels.capacity(); }
 };
 
 // Any thread may call any member.
@@ -56,17 +80,35 @@ class Shader {
   // intervals: 2^k times a power of two (>= 1).
   ShadedTile shade(const lod::TileKey& key, int intervals, const ShadeParams& params) const;
 
+  // One colour for each triangle of a tile's mesh: of its normal, the mean height of its corners, and of the
+  // image below its middle. height_m: of the mesh's vertices, above the sphere.
+  ShadedTile shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
+                          const ShadeParams& params) const;
+
   std::size_t bytes_resident() const;
 
  private:
+  // What a colour is made of.
+  struct Ground {
+    double height_m = 0;
+    glm::dvec3 normal{0, 0, 1};
+    glm::dvec3 up{0, 0, 1};
+    double sun = 1;  // share of the sun that is seen
+    glm::dvec3 image{0, 0, 0};
+  };
+  struct Picture {
+    std::shared_ptr<const paging::ImageTile> tile;
+    lod::TileKey key;
+  };
   struct NormalKey {
     lod::TileKey key;
     double exaggeration;
+    glm::dvec3 sun;  // for shadows, else 0
     bool operator==(const NormalKey&) const = default;
   };
   struct NormalKeyHash {
     std::size_t operator()(const NormalKey& k) const {
-      return lod::TileKeyHash()(k.key) ^ std::hash<double>()(k.exaggeration);
+      return lod::TileKeyHash()(k.key) ^ std::hash<double>()(k.exaggeration + k.sun.x + 3 * k.sun.y);
     }
   };
 
@@ -74,20 +116,22 @@ class Shader {
   int levels_below(const lod::TileKey& key, int limit) const;
   std::shared_ptr<const paging::TileHeights> heights(const lod::TileKey& key) const;
   std::shared_ptr<const paging::ImageTile> image(const lod::TileKey& key) const;
-  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, double exaggeration) const;
-  NormalTile make_normals(const lod::TileKey& key, double exaggeration) const;
+  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadeParams& params) const;
+  NormalTile make_normals(const lod::TileKey& key, const ShadeParams& params) const;
+  Picture picture(const lod::TileKey& block, const ShadeParams& params) const;
+  glm::dvec3 shown(Surfacing what, const Ground& at, const ShadeParams& params) const;
+  glm::dvec3 colour(const Ground& at, const ShadeParams& params) const;
   std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge,
                                      std::vector<glm::dvec3>& points) const;
   void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
                    ShadedTile& out) const;
+  bool sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadeParams& params) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
+  paging::Surface surface_;  // casts shadows
   mutable paging::LruCache<lod::TileKey, paging::TileHeights, lod::TileKeyHash> heights_;
   mutable paging::LruCache<NormalKey, NormalTile, NormalKeyHash> normals_;
   mutable paging::LruCache<lod::TileKey, paging::ImageTile, lod::TileKeyHash> images_;
 };
-
-// Colour of an elevation, metres above the sphere.
-mars::Rgb elevation_colour(double height_m);
 
 }  // namespace vpe::gl

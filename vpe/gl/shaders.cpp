@@ -4,10 +4,12 @@
 
 namespace vpe::gl {
 
-const char* const kTileVertexShader = R"glsl(
-#version 450 core
+namespace {
+
+constexpr std::string_view kVersion = "#version 450 core\n";
+
+constexpr std::string_view kVertexShader = R"glsl(
 layout(location = 0) in vec3 position;
-layout(location = 1) in vec2 st;
 layout(location = 0) uniform vec3 to_eye;
 layout(location = 1) uniform vec3 centre;
 layout(location = 2) uniform mat3 rotation;
@@ -15,16 +17,33 @@ layout(location = 3) uniform vec4 lens;
 layout(location = 4) uniform float near;
 layout(location = 5) uniform float skirt;
 layout(location = 6) uniform int first_foot;
-layout(location = 7) uniform vec3 face_out;
-layout(location = 8) uniform vec2 texel;
 layout(location = 11) uniform vec2 steps;
 layout(location = 15) uniform float snap_from;
+#ifdef CHART
+layout(location = 1) in vec2 st;
+layout(location = 7) uniform vec3 face_out;
+layout(location = 8) uniform vec2 texel;
 layout(location = 0) out vec3 texture_position;
+#endif
+#ifdef PALETTE
+layout(location = 16) uniform vec3 height_terms;
+layout(location = 3) out float height;
+#endif
+#ifdef HAZE
+layout(location = 4) out vec3 eye_position;
+#endif
 void main() {
   vec3 p = position;
   vec3 from_centre = centre + p;
+#ifdef PALETTE
+  // |from_centre| - radius without the difference of two radii.
+  height = (dot(p, 2.0 * centre + p) + height_terms.x) / (length(from_centre) + height_terms.y) * height_terms.z;
+#endif
   if (gl_VertexID >= first_foot) p -= skirt * normalize(from_centre);
   vec3 e = rotation * (p + to_eye);
+#ifdef HAZE
+  eye_position = e;
+#endif
   // Infinite reversed depth: 1 at the near plane, 0 at infinity.
   gl_Position = vec4(lens.x * e.x + lens.z * e.z, lens.y * e.y + lens.w * e.z, near, -e.z);
   // Onto the rasteriser's own grid, where it would put the vertex anyway: one that interpolates from where the vertex
@@ -35,39 +54,73 @@ void main() {
   if (steps.x > 0.0 && gl_Position.w > snap_from && far_out < 4.0 * gl_Position.w) {
     gl_Position.xy = round(gl_Position.xy / gl_Position.w * steps) / steps * gl_Position.w;
   }
+#ifdef CHART
   // Texture coordinates are gnomonic: a ratio of two functions that are linear on the flat triangle.
   float depth = dot(face_out, from_centre) * 1e-6;
   texture_position = vec3((st * texel.x + texel.y) * depth, depth);
+#endif
 }
 )glsl";
 
-const char* const kTileFragmentShader = R"glsl(
-#version 450 core
-layout(location = 0) in vec3 texture_position;
+// The colour of ground, without and with its gaps, in air.
+constexpr std::string_view kPaint = R"glsl(
 layout(location = 9) uniform vec4 flat_colour;
 layout(location = 14) uniform vec4 tint;
+#if defined(TEXTURE) || defined(FACETS)
 layout(binding = 0) uniform sampler2D surface;
+#endif
+#ifdef CHART
+layout(location = 0) in vec3 texture_position;
+#endif
+#ifdef PALETTE
+layout(location = 3) in float height;
+layout(location = 17) uniform vec2 palette_terms;
+layout(binding = 1) uniform sampler2D palette;
+#endif
+#ifdef HAZE
+layout(location = 4) in vec3 eye_position;
+layout(location = 18) uniform vec4 haze;
+#endif
 layout(location = 0) out vec4 colour;
 #ifdef GAPS
-void show_gaps(inout vec4 colour);
+void show_gaps(inout vec4 colour, bool has_data);
 #endif
-void main() {
-  if (flat_colour.a > 0.0) {
-    colour = vec4(flat_colour.rgb, 1.0);
-  } else {
-    colour = vec4(texture(surface, texture_position.xy / texture_position.z).rgb, 1.0);
-  }
+void paint() {
+#if defined(FACETS)
+  colour = texelFetch(surface, ivec2(gl_PrimitiveID & 255, gl_PrimitiveID >> 8), 0);
+  bool has_data = colour.a > 0.5;
+  colour.a = 1.0;
+#elif defined(TEXTURE)
+  vec2 at = texture_position.xy / texture_position.z;
+  colour = vec4(texture(surface, at).rgb * flat_colour.rgb, 1.0);
+  if (flat_colour.a > 0.0) colour.rgb = flat_colour.rgb;
+#elif defined(PALETTE)
+  colour = vec4(texture(palette, vec2(height * palette_terms.x + palette_terms.y, 0.5)).rgb, 1.0);
+#else
+  colour = vec4(flat_colour.rgb, 1.0);
+#endif
 #ifdef GAPS
-  show_gaps(colour);
+#ifndef FACETS
+  ivec2 size = textureSize(surface, 0);
+  bool has_data = texelFetch(surface, clamp(ivec2(at * vec2(size)), ivec2(0), size - 1), 0).a > 0.5;
+#endif
+  show_gaps(colour, has_data);
+#endif
+#ifdef HAZE
+  colour.rgb = mix(haze.rgb, colour.rgb, exp(-haze.a * length(eye_position)));
 #endif
   colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
 }
 )glsl";
 
+constexpr std::string_view kFragmentShader = R"glsl(
+void main() { paint(); }
+)glsl";
+
 // Stripes across the face's chart, along u + v = constant. Each octave of periods halves the one before: as the
 // eye comes nearer, a dark stripe grows in the middle of each bright one while the old ones get thinner, so
 // that centres stay where they are on the ground and half of it is dark at any distance.
-const char* const kGapPattern = R"glsl(
+constexpr std::string_view kGapPattern = R"glsl(
 layout(location = 8) uniform vec2 texel;
 layout(location = 12) uniform vec3 tile_sides;
 layout(location = 13) uniform uint tile_phase;
@@ -78,12 +131,11 @@ const float kDark = 60.0 / 255.0;
 float stripe(float away, float reach, float wide) {
   return clamp((reach - away) / wide + 0.5, 0.0, min(1.0, 2.0 * reach / wide));
 }
-void show_gaps(inout vec4 colour) {
+void show_gaps(inout vec4 colour, bool has_data) {
   vec2 at = texture_position.xy / texture_position.z;
   float along = dot((at - texel.y) / texel.x, tile_sides.xy);
   float pixel = length(vec2(dFdx(along), dFdy(along)));
-  ivec2 size = textureSize(surface, 0);
-  if (texelFetch(surface, clamp(ivec2(at * vec2(size)), ivec2(0), size - 1), 0).a > 0.5) return;
+  if (has_data) return;
   float detail = clamp(-log2(kLeastPeriod * pixel), 0.0, tile_sides.z);
   float octave = floor(detail);
   float grown = detail - octave;
@@ -97,29 +149,58 @@ void show_gaps(inout vec4 colour) {
 }
 )glsl";
 
+// What geometry stages hand on of a corner, or between two.
+constexpr std::string_view kHandOn = R"glsl(
+#ifdef CHART
+layout(location = 0) in vec3 corner_texture_position[];
+layout(location = 0) out vec3 texture_position;
+#endif
+#ifdef PALETTE
+layout(location = 3) in float corner_height[];
+layout(location = 3) out float height;
+#endif
+#ifdef HAZE
+layout(location = 4) in vec3 corner_eye_position[];
+layout(location = 4) out vec3 eye_position;
+#endif
+#ifdef FACETS
+layout(location = 19) uniform int first_facet;
+#endif
+void hand_on(int from, int to, float share) {
+#ifdef CHART
+  texture_position = mix(corner_texture_position[from], corner_texture_position[to], share);
+#endif
+#ifdef PALETTE
+  height = mix(corner_height[from], corner_height[to], share);
+#endif
+#ifdef HAZE
+  eye_position = mix(corner_eye_position[from], corner_eye_position[to], share);
+#endif
+#ifdef FACETS
+  gl_PrimitiveID = first_facet + gl_PrimitiveIDIn;
+#endif
+}
+)glsl";
+
 // From two neighbouring vertices of a border and the feet below them. What is thinner in the picture than the
 // ribbon along its border is left to the ribbon: slivers near the size of the grid that rasterisers snap to
 // have no trustworthy depth.
-const char* const kSkirtGeometryShader = R"glsl(
-#version 450 core
-layout(lines_adjacency) in;
+constexpr std::string_view kSkirtGeometryShader = R"glsl(
 layout(triangle_strip, max_vertices = 4) out;
-layout(location = 0) in vec3 corner_texture_position[];
 layout(location = 10) uniform vec3 ribbon;
-layout(location = 0) out vec3 texture_position;
 layout(location = 1) out float drop;
 layout(location = 2) flat out vec2 depths;
 void main() {
   float nearest_w = min(min(gl_in[0].gl_Position.w, gl_in[1].gl_Position.w),
                         min(gl_in[2].gl_Position.w, gl_in[3].gl_Position.w));
-  depths = vec2(0.0, 1.0);
+  vec2 all_depths = vec2(0.0, 1.0);
   if (nearest_w > 0.0) {
     vec2 at[4];
-    depths = vec2(1.0, 0.0);
+    all_depths = vec2(1.0, 0.0);
     for (int k = 0; k < 4; ++k) {
       vec4 p = gl_in[k].gl_Position;
       at[k] = p.xy * ribbon.xy / p.w;
-      depths = vec2(min(depths.x, p.z / p.w), max(depths.y, p.z / p.w));
+      all_depths = vec2(min(all_depths.x, p.z / p.w), max(all_depths.y, p.z / p.w));
     }
     vec2 along = at[1] - at[0];
     float size = length(along);
@@ -130,7 +211,8 @@ void main() {
   }
   for (int k = 0; k < 4; ++k) {
     gl_Position = gl_in[k].gl_Position;
-    texture_position = corner_texture_position[k];
+    hand_on(k, k, 0.0);
+    depths = all_depths;
     drop = k < 2 ? 0.0 : 1.0;
     EmitVertex();
   }
@@ -140,60 +222,38 @@ void main() {
 
 // Pixels are covered up to a grid step outside of a skirt, where its depth, extrapolated, can stand before the
 // ground it hangs from. It is taken back to the nearest part of the skirt.
-const char* const kSkirtFragmentShader = R"glsl(
-#version 450 core
-layout(location = 0) in vec3 texture_position;
+constexpr std::string_view kSkirtFragmentShader = R"glsl(
 layout(location = 1) in float drop;
 layout(location = 2) flat in vec2 depths;
-layout(location = 9) uniform vec4 flat_colour;
-layout(location = 14) uniform vec4 tint;
-layout(binding = 0) uniform sampler2D surface;
-layout(location = 0) out vec4 colour;
-#ifdef GAPS
-void show_gaps(inout vec4 colour);
-#endif
 void main() {
   vec2 steps = vec2(dFdx(drop), dFdy(drop));
   vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
   float back = clamp(drop, 0.0, 1.0) - drop;
   float depth = gl_FragCoord.z + (back == 0.0 ? 0.0 : back * dot(slope, steps) / dot(steps, steps));
   gl_FragDepth = clamp(depth, depths.x, depths.y);
-  if (flat_colour.a > 0.0) {
-    colour = vec4(flat_colour.rgb, 1.0);
-  } else {
-    colour = vec4(texture(surface, texture_position.xy / texture_position.z).rgb, 1.0);
-  }
-#ifdef GAPS
-  show_gaps(colour);
-#endif
-  colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
+  paint();
 }
 )glsl";
 
-// Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. What is behind the near plane is
-// cut off first: the corners of a ribbon to behind the eye would change sides on the way.
-const char* const kRibbonGeometryShader = R"glsl(
-#version 450 core
-layout(lines) in;
+// Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. What is behind the near
+// plane is cut off first: the corners of a ribbon to behind the eye would change sides on the way.
+constexpr std::string_view kRibbonGeometryShader = R"glsl(
 layout(triangle_strip, max_vertices = 4) out;
-layout(location = 0) in vec3 line_texture_position[];
 layout(location = 10) uniform vec3 ribbon;
-layout(location = 0) out vec3 texture_position;
 void main() {
   vec4 end[2];
-  vec3 at[2];
+  float cut[2];
   float near = gl_in[0].gl_Position.z;
   for (int k = 0; k < 2; ++k) {
     vec4 p = gl_in[k].gl_Position;
     vec4 q = gl_in[1 - k].gl_Position;
-    float cut = 0.0;
+    cut[k] = 0.0;
     if (p.w < near) {
       if (q.w <= near) return;
-      cut = (near - p.w) / (q.w - p.w);
+      cut[k] = (near - p.w) / (q.w - p.w);
     }
-    end[k] = mix(p, q, cut);
-    if (cut > 0.0) end[k].w = near;
-    at[k] = mix(line_texture_position[k], line_texture_position[1 - k], cut);
+    end[k] = mix(p, q, cut[k]);
+    if (cut[k] > 0.0) end[k].w = near;
   }
   vec2 line = (end[1].xy / end[1].w - end[0].xy / end[0].w) * ribbon.xy;
   float size = length(line);
@@ -202,20 +262,44 @@ void main() {
   vec2 across = vec2(-along.y, along.x);
   vec2 wide = ribbon.z / ribbon.xy;
   for (int k = 0; k < 4; ++k) {
-    vec4 p = end[k / 2];
+    int n = k / 2;
+    vec4 p = end[n];
     float side = (k & 1) == 0 ? 1.0 : -1.0;
     float reach = k < 2 ? -1.0 : 1.0;
     gl_Position = vec4(p.xy + (side * across + reach * along) * wide * p.w, p.zw);
-    texture_position = at[k / 2];
+    hand_on(n, 1 - n, cut[n]);
     EmitVertex();
   }
   EndPrimitive();
 }
 )glsl";
 
-std::string with_gaps(const char* fragment) {
-  constexpr std::string_view kVersion = "\n#version 450 core\n";
-  return std::string(kVersion) + "#define GAPS\n" + (fragment + kVersion.size()) + kGapPattern;
+}  // namespace
+
+TileShaders tile_shaders(TilePart part, const TilePaint& paint) {
+  std::string defines(kVersion);
+  const auto define = [&](bool is, const char* name) {
+    if (is) defines.append("#define ").append(name).append("\n");
+  };
+  define(paint.texture, "TEXTURE");
+  define(paint.facets, "FACETS");
+  define(paint.palette, "PALETTE");
+  define(paint.gaps, "GAPS");
+  define(paint.haze, "HAZE");
+  define(paint.texture || paint.gaps, "CHART");
+  TileShaders out;
+  const auto join = [&](std::initializer_list<std::string_view> parts) {
+    std::string text = defines;
+    for (const std::string_view p : parts) text += p;
+    return text;
+  };
+  out.vertex = join({kVertexShader});
+  out.fragment = join({kPaint, paint.gaps ? kGapPattern : std::string_view(),
+                       part == TilePart::kSkirt ? kSkirtFragmentShader : kFragmentShader});
+  if (part != TilePart::kSurface)
+    out.geometry = join({part == TilePart::kSkirt ? "layout(lines_adjacency) in;" : "layout(lines) in;",
+                         kHandOn, part == TilePart::kSkirt ? kSkirtGeometryShader : kRibbonGeometryShader});
+  return out;
 }
 
 const char* const kSkyVertexShader = R"glsl(

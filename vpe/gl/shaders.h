@@ -1,18 +1,29 @@
 // GLSL sources of the polygon backend.
 #pragma once
 
+#include <compare>
 #include <string>
+
+#include "vpe/gl/tile_number.h"
 
 namespace vpe::gl {
 
-extern const char* const kTileVertexShader;
-extern const char* const kTileFragmentShader;
-extern const char* const kSkirtGeometryShader;
-extern const char* const kSkirtFragmentShader;
-extern const char* const kRibbonGeometryShader;
-// The fragment shader of tiles, of the surface or of skirts, that draws ground without data in stripes and with
-// alpha 0.
-std::string with_gaps(const char* fragment);
+// What the programs that draw tiles are made with: nothing that an appearance does not use is in them.
+struct TilePaint {
+  bool texture = false;  // baked colours, or light times a colour
+  bool facets = false;   // a baked colour for each triangle
+  bool palette = false;  // colour of the height of what is drawn
+  bool gaps = false;     // ground without data is striped and has alpha 0
+  bool haze = false;
+  auto operator<=>(const TilePaint&) const = default;
+};
+
+struct TileShaders {
+  std::string vertex;
+  std::string geometry;  // empty for surfaces
+  std::string fragment;
+};
+TileShaders tile_shaders(TilePart part, const TilePaint& paint);
 
 extern const char* const kSkyVertexShader;
 extern const char* const kSkyFragmentShader;
@@ -28,14 +39,18 @@ enum TileUniform : int {
   kFirstFoot = 6,   // int: first vertex that is the foot of a skirt
   kFaceOut = 7,     // vec3: the face's axis
   kTexel = 8,       // vec2: scale and shift from tile coordinates to texture coordinates
-  kFlatColour = 9,  // vec4: alpha > 0: this colour instead of the texture
+  kFlatColour = 9,  // vec4: alpha > 0: this colour instead of the texture, else a factor on it
   kRibbon = 10,     // vec3: half the picture's sides, half a ribbon's width; pixels
   kSteps = 11,  // vec2: steps of the rasteriser in half the picture's sides; 0 = vertices stay where they are
-  kTileSides = 12,  // vec3: of the tile in its face's chart, u and v; log2 of how fine its stripes get, in
-                    // periods to a unit of the chart. with_gaps() only, as the next
-  kTilePhase = 13,  // uint: u + v at the tile's southwest corner, its fraction in 2^-32
-  kTint = 14,       // vec4: this colour takes the share alpha
-  kSnapFrom = 15,   // float: depth from which no vertex shares a triangle with one behind the near plane
+  kTileSides = 12,     // vec3: of the tile in its face's chart, u and v; log2 of how fine its stripes get, in
+                       // periods to a unit of the chart. with_gaps() only, as the next
+  kTilePhase = 13,     // uint: u + v at the tile's southwest corner, its fraction in 2^-32
+  kTint = 14,          // vec4: this colour takes the share alpha
+  kSnapFrom = 15,      // float: depth from which no vertex shares a triangle with one behind the near plane
+  kHeightTerms = 16,   // vec3: |centre|^2 - radius^2, radius, 1 / exaggeration
+  kPaletteTerms = 17,  // vec2: palette coordinate = height * x + y
+  kHaze = 18,          // vec4: colour, extinction per metre
+  kFirstFacet = 19,    // int: facet of the first primitive
 };
 
 // Uniform locations of the sky program.

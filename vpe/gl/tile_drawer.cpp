@@ -3,34 +3,90 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
+#include "vpe/core/shading.h"
 #include "vpe/gl/shaders.h"
 
 namespace vpe::gl {
 
-TileDrawer::Programs TileDrawer::make_programs(const char* label, const char* fragment,
-                                               const char* skirt_fragment) {
-  const std::string name(label);
-  return {make_program(name + "tile", kTileVertexShader, fragment),
-          make_program(name + "ribbon", kTileVertexShader, fragment, kRibbonGeometryShader),
-          make_program(name + "skirt", kTileVertexShader, skirt_fragment, kSkirtGeometryShader)};
+namespace {
+
+// Lines and dots on the ground are before it by this part of their distance, so that it does not hide them.
+constexpr float kNearer = 1.002F;
+
+Program make_part(TilePart part, const TilePaint& paint) {
+  const TileShaders shaders = tile_shaders(part, paint);
+  const char* const names[] = {"tile", "ribbon", "skirt"};
+  return make_program(names[static_cast<std::size_t>(part)], shaders.vertex.c_str(), shaders.fragment.c_str(),
+                      shaders.geometry.empty() ? nullptr : shaders.geometry.c_str());
 }
 
-TileDrawer::TileDrawer()
-    : programs_(make_programs("", kTileFragmentShader, kSkirtFragmentShader)), array_(VertexArray::make()) {
+}  // namespace
+
+TilePaint TileDrawer::paint_of(const TileDraw& tile) const {
+  TilePaint paint;
+  if (numbered_from_ != nullptr) return paint;
+  paint.facets = tile.texture != nullptr && tile.texture->intervals == 0;
+  paint.texture = tile.texture != nullptr && !paint.facets;
+  paint.palette = tile.texture == nullptr && tile.palette;
+  paint.gaps = tile.texture != nullptr && tile.texture->gaps && tile.mesh->charts;
+  paint.haze = air_.visibility_m > 0.0F;
+  return paint;
+}
+
+TileDrawer::Programs& TileDrawer::programs(const TilePaint& paint) {
+  auto at = programs_.find(paint);
+  if (at == programs_.end()) {
+    at = programs_
+             .emplace(paint, Programs{make_part(TilePart::kSurface, paint), make_part(TilePart::kRibbon, paint),
+                                      make_part(TilePart::kSkirt, paint)})
+             .first;
+  }
+  at->second.used = true;
+  return at->second;
+}
+
+void TileDrawer::drop_unused() {
+  std::erase_if(programs_, [](const auto& entry) { return !entry.second.used; });
+  for (auto& [paint, programs] : programs_) programs.used = false;
+}
+
+void TileDrawer::set_palette(const PaletteTable* table) {
+  if (table == nullptr) {
+    palette_ = {};
+    return;
+  }
+  const auto count = static_cast<GLsizei>(table->colours.size());
+  palette_ = Texture2D::make();
+  const GLuint name = palette_.name();
+  glTextureStorage2D(name, 1, GL_RGB8, count, 1);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(name, 0, 0, 0, count, 1, GL_RGB, GL_UNSIGNED_BYTE, table->colours.data());
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  check_gl("upload a palette");
+  const double per_m = (count - 1.0) / count / (table->high - table->low);
+  palette_terms_ = {static_cast<float>(per_m), static_cast<float>(0.5 / count - per_m * table->low)};
+}
+
+TileDrawer::TileDrawer(double planet_radius_m) : radius_m_(planet_radius_m), array_(VertexArray::make()) {
   const GLuint array = array_.name();
   glEnableVertexArrayAttrib(array, 0);
-  glEnableVertexArrayAttrib(array, 1);
-  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, offsetof(TileVertex, position_m));
-  glVertexArrayAttribFormat(array, 1, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(TileVertex, s));
+  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribFormat(array, 1, 2, GL_UNSIGNED_SHORT, GL_TRUE, 0);
   glVertexArrayAttribBinding(array, 0, 0);
-  glVertexArrayAttribBinding(array, 1, 0);
+  glVertexArrayAttribBinding(array, 1, 1);
   GLint bits = 0;
   glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
   check_gl("set up drawing of tiles");
   step_px_ = std::exp2(-bits);
 }
 
-void TileDrawer::use(const Program& program, TilePart part, const core::View& view, const Lens& lens) {
+void TileDrawer::use(const Program& program, const TilePaint& paint, TilePart part, const core::View& view,
+                     const Lens& lens) {
   const glm::mat3 rotation = body_to_eye(view.eye.axes);
   const glm::ivec2 size = core::drawn_size(view);
   glUseProgram(program.name());
@@ -44,37 +100,61 @@ void TileDrawer::use(const Program& program, TilePart part, const core::View& vi
     glUniform3f(kRibbon, 0.5F * static_cast<float>(size.x), 0.5F * static_cast<float>(size.y),
                 static_cast<float>(kRibbonSteps * step_px_));
   }
+  if (paint.palette) {
+    glUniform2fv(kPaletteTerms, 1, &palette_terms_[0]);
+    glBindTextureUnit(1, palette_.name());
+  }
+  if (paint.haze) {
+    const auto extinction = static_cast<float>(core::kKoschmieder / air_.visibility_m);
+    glUniform4f(kHaze, air_.colour.x, air_.colour.y, air_.colour.z, extinction);
+  }
 }
 
-void TileDrawer::use(const TileDraw& tile, TilePart part, const core::View& view, float near_m) {
+void TileDrawer::use(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
+                     float near_m) {
   const GpuMesh& mesh = *tile.mesh;
   const glm::vec3 to_eye(mesh.centre_m - view.eye.eye_m);
   const glm::vec3 centre(mesh.centre_m);
-  const glm::vec3 out(mars::face_axes(tile.key.face).out);
   glUniform3fv(kToEye, 1, &to_eye[0]);
   glUniform3fv(kCentre, 1, &centre[0]);
-  glUniform3fv(kFaceOut, 1, &out[0]);
   glUniform1f(kSkirt, 0.0F);
   glUniform1f(kSnapFrom, near_m + static_cast<float>(mesh.longest_edge_m));
   glUniform1i(kFirstFoot, static_cast<GLint>(mesh.first_foot));
-  if (tile.texture != nullptr) {
-    const auto texels = static_cast<float>(tile.texture->intervals + 1);
-    glUniform2f(kTexel, static_cast<float>(tile.texture->intervals) / texels, 0.5F / texels);
-    glBindTextureUnit(0, tile.texture->texture.name());
-  }
-  if (tile.texture != nullptr && !tile.flat) {
-    glUniform4f(kFlatColour, 0, 0, 0, 0);
-  } else {
-    glUniform4f(kFlatColour, 0.95F, 0.75F, 0.55F, 1);
-  }
-  glm::vec4 colour = tile.tint;
+  glm::vec4 tint = tile.tint;
   if (numbered_from_ != nullptr) {
     const auto rgb = number_colour(pack({static_cast<std::size_t>(&tile - numbered_from_), part}));
-    for (int k = 0; k < 3; ++k) colour[k] = static_cast<float>(rgb[static_cast<std::size_t>(k)]) / 255.0F;
-    colour.a = 1.0F;
+    for (int k = 0; k < 3; ++k) tint[k] = static_cast<float>(rgb[static_cast<std::size_t>(k)]) / 255.0F;
+    tint.a = 1.0F;
   }
-  glUniform4fv(kTint, 1, &colour[0]);
-  if (has_gaps(tile)) {
+  glUniform4fv(kTint, 1, &tint[0]);
+  if (paint.texture || paint.gaps) {
+    const glm::vec3 out(mars::face_axes(tile.key.face).out);
+    glUniform3fv(kFaceOut, 1, &out[0]);
+    // Facets have no texels to be between.
+    const int intervals = paint.texture ? tile.texture->intervals : 0;
+    const auto texels = static_cast<float>(intervals + 1);
+    glUniform2f(kTexel, paint.texture ? static_cast<float>(intervals) / texels : 1.0F,
+                paint.texture ? 0.5F / texels : 0.0F);
+    glVertexArrayVertexBuffer(array_.name(), 1, mesh.charts.name(), 0, sizeof(VertexChart));
+    glEnableVertexArrayAttrib(array_.name(), 1);
+  } else {
+    glDisableVertexArrayAttrib(array_.name(), 1);
+  }
+  if (tile.texture != nullptr) glBindTextureUnit(0, tile.texture->texture.name());
+  if (!paint.facets && !paint.palette) {
+    const bool alone = tile.flat || tile.texture == nullptr;
+    const float factor = alone                                  ? 1.0F
+                         : paint.texture && tile.texture->light ? static_cast<float>(tile.texture->brightest)
+                                                                : 0.0F;
+    const glm::vec3 base = factor > 0.0F ? tile.colour * factor : glm::vec3(1.0F);
+    glUniform4f(kFlatColour, base.x, base.y, base.z, alone ? 1.0F : 0.0F);
+  }
+  if (paint.palette) {
+    const double outer2 = glm::dot(mesh.centre_m, mesh.centre_m) - radius_m_ * radius_m_;
+    glUniform3f(kHeightTerms, static_cast<float>(outer2), static_cast<float>(radius_m_),
+                static_cast<float>(1.0 / exaggeration_));
+  }
+  if (paint.gaps) {
     const mars::ChartRect rect = lod::chart_rect(tile.key);
     const double corner = rect.u0 + rect.v0;
     // Finer, stripes would show the rounding of texture coordinates, which is in proportion to the tile; and of
@@ -84,7 +164,7 @@ void TileDrawer::use(const TileDraw& tile, TilePart part, const core::View& view
                 static_cast<float>(finest));
     glUniform1ui(kTilePhase, static_cast<GLuint>((corner - std::floor(corner)) * 0x1p32));
   }
-  glVertexArrayVertexBuffer(array_.name(), 0, mesh.vertices.name(), 0, sizeof(TileVertex));
+  glVertexArrayVertexBuffer(array_.name(), 0, mesh.positions.name(), 0, sizeof(VertexPosition));
   glVertexArrayElementBuffer(array_.name(), mesh.indices.name());
 }
 
@@ -95,24 +175,30 @@ void TileDrawer::draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t be
                  reinterpret_cast<const void*>(index_size * begin));
 }
 
-void TileDrawer::draw_part(const TileDraw& tile, TilePart part, const core::View& view, float near_m) {
+void TileDrawer::draw_part(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
+                           float near_m) {
   const GpuMesh& mesh = *tile.mesh;
+  const auto first_facet = [&](std::uint32_t border_line) {
+    if (paint.facets) glUniform1i(kFirstFacet, static_cast<GLint>(mesh.ranges.surface / 3 + border_line));
+  };
   switch (part) {
     case TilePart::kSurface:
-      use(tile, part, view, near_m);
+      use(tile, paint, part, view, near_m);
       draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface);
       return;
     case TilePart::kRibbon:
-      use(tile, part, view, near_m);
+      use(tile, paint, part, view, near_m);
+      first_facet(0);
       draw_indices(mesh, GL_LINES, mesh.ranges.skirts[4], mesh.ranges.border_end);
       return;
     case TilePart::kSkirt:
       bool used = false;
       for (std::size_t e = 0; e < tile.skirt_m.size(); ++e) {
         if (tile.skirt_m[e] <= 0.0F) continue;
-        if (!used) use(tile, part, view, near_m);
+        if (!used) use(tile, paint, part, view, near_m);
         used = true;
         glUniform1f(kSkirt, tile.skirt_m[e]);
+        first_facet((mesh.ranges.skirts[e] - mesh.ranges.skirts[0]) / 4);
         draw_indices(mesh, GL_LINES_ADJACENCY, mesh.ranges.skirts[e], mesh.ranges.skirts[e + 1]);
       }
       return;
@@ -120,26 +206,35 @@ void TileDrawer::draw_part(const TileDraw& tile, TilePart part, const core::View
 }
 
 void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, Gaps gaps) {
-  const bool any_gaps = std::any_of(tiles.begin(), tiles.end(), has_gaps);
-  if (any_gaps && !gap_programs_) {
-    gap_programs_ =
-        make_programs("gap ", with_gaps(kTileFragmentShader).c_str(), with_gaps(kSkirtFragmentShader).c_str());
-  }
   glBindVertexArray(array_.name());
-  const auto draw_with = [&](const Programs& programs, TilePart part, bool of_gaps) {
-    use(part == TilePart::kSurface  ? programs.surface
-        : part == TilePart::kRibbon ? programs.ribbon
-                                    : programs.skirt,
-        part, view, lens);
-    for (const TileDraw& tile : tiles) {
-      if (has_gaps(tile) == of_gaps) draw_part(tile, part, view, lens.near_m);
-    }
-  };
+  std::map<TilePaint, std::vector<const TileDraw*>> by_paint;
+  for (const TileDraw& tile : tiles) by_paint[paint_of(tile)].push_back(&tile);
   for (const TilePart part : {TilePart::kSurface, TilePart::kRibbon, TilePart::kSkirt}) {
     if (part != TilePart::kSurface && gaps == Gaps::kLeave) return;
-    draw_with(programs_, part, false);
-    if (any_gaps) draw_with(*gap_programs_, part, true);
+    for (const auto& [paint, painted] : by_paint) {
+      const Programs& made = programs(paint);
+      use(part == TilePart::kSurface  ? made.surface
+          : part == TilePart::kRibbon ? made.ribbon
+                                      : made.skirt,
+          paint, part, view, lens);
+      for (const TileDraw* tile : painted) draw_part(*tile, paint, part, view, lens.near_m);
+    }
   }
+}
+
+void TileDrawer::draw_vertices(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+                               float size_px) {
+  Lens nearer = lens;
+  nearer.near_m *= kNearer;
+  glBindVertexArray(array_.name());
+  glPointSize(size_px);
+  for (const TileDraw& tile : tiles) {
+    const TilePaint paint = paint_of(tile);
+    use(programs(paint).surface, paint, TilePart::kSurface, view, nearer);
+    use(tile, paint, TilePart::kSurface, view, nearer.near_m);
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(tile.mesh->first_foot));
+  }
+  glPointSize(1.0F);
 }
 
 void TileDrawer::draw_numbers(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
@@ -151,19 +246,20 @@ void TileDrawer::draw_numbers(const core::View& view, const Lens& lens, std::spa
 void TileDrawer::draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
                               const glm::vec3& colour) {
   constexpr float kHalfWidth_px = 0.75F;
-  constexpr float kNearer = 1.002F;
   Lens nearer = lens;
   nearer.near_m *= kNearer;  // depth is the near plane's over the distance
   const glm::ivec2 size = core::drawn_size(view);
   glBindVertexArray(array_.name());
   glDepthMask(GL_FALSE);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-  use(programs_.ribbon, TilePart::kRibbon, view, nearer);
+  const TilePaint paint;
+  use(programs(paint).ribbon, paint, TilePart::kRibbon, view, nearer);
   glUniform3f(kRibbon, 0.5F * static_cast<float>(size.x), 0.5F * static_cast<float>(size.y), kHalfWidth_px);
   for (TileDraw tile : tiles) {
     tile.texture = nullptr;
+    tile.palette = false;
     tile.tint = glm::vec4(colour, 1.0F);
-    draw_part(tile, TilePart::kRibbon, view, nearer.near_m);
+    draw_part(tile, paint, TilePart::kRibbon, view, nearer.near_m);
   }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);

@@ -3,14 +3,17 @@
 #pragma once
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <map>
 #include <numbers>
-#include <optional>
 #include <span>
+#include <vector>
 
 #include "vpe/gl/lens.h"
 #include "vpe/gl/residency.h"
+#include "vpe/gl/shaders.h"
 #include "vpe/gl/tile_number.h"
 
 namespace vpe::gl {
@@ -18,10 +21,24 @@ namespace vpe::gl {
 struct TileDraw {
   const GpuMesh* mesh = nullptr;
   const GpuTexture* texture = nullptr;
-  bool flat = false;  // the flat colour; of the texture only its gaps are shown. Null texture: flat, no gaps
+  // Null texture: the palette's colours, or one. Of a texture only its gaps are shown when `flat`.
+  bool flat = false;
+  bool palette = false;
+  glm::vec3 colour{1, 1, 1};  // the one colour, and of light
   lod::TileKey key;
   std::array<float, 4> skirt_m{};  // by lod::Edge; 0 = none
   glm::vec4 tint{0, 0, 0, 0};      // this colour takes the share alpha
+};
+
+// What all tiles of a picture share.
+struct Air {
+  glm::vec3 colour{0, 0, 0};
+  float visibility_m = 0;  // 0: clear
+};
+struct PaletteTable {
+  double low = 0;
+  double high = 1;
+  std::vector<mars::Rgb> colours;  // from low to high, even
 };
 
 // Two tiles store the same border relative to different centres, and rasterisers snap the two roundings of a
@@ -33,12 +50,21 @@ class TileDrawer {
  public:
   enum class Gaps { kLeave, kClose };
 
-  // Whether the tile is drawn by the programs that show gaps.
-  static bool has_gaps(const TileDraw& tile) { return tile.texture != nullptr && tile.texture->gaps; }
+  explicit TileDrawer(double planet_radius_m);
 
-  TileDrawer();
+  // For the draws that follow. The table may be dropped when it returns; null: no tile shows a palette.
+  void set_palette(const PaletteTable* table);
+  void set_air(const Air& air) { air_ = air; }
+  void set_exaggeration(double exaggeration) { exaggeration_ = exaggeration; }
+
+  // Lets go of programs that have not drawn since the last call.
+  void drop_unused();
+
   // The target's framebuffer is bound, depth test and polygon mode are set.
   void draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, Gaps gaps);
+
+  // A square dot at each vertex that the surfaces, drawn before, do not hide.
+  void draw_vertices(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, float size_px);
 
   // Lines along the borders of tiles over what draw() drew with the same view, lens and tiles. Depth and alpha
   // stay as they are; a line is before the ground by a five-hundredth of its distance, so that its own tile
@@ -60,16 +86,24 @@ class TileDrawer {
     Program surface;
     Program ribbon;
     Program skirt;
+    bool used = true;
   };
 
-  static Programs make_programs(const char* label, const char* fragment, const char* skirt_fragment);
-  void use(const Program& program, TilePart part, const core::View& view, const Lens& lens);
-  void use(const TileDraw& tile, TilePart part, const core::View& view, float near_m);
-  void draw_part(const TileDraw& tile, TilePart part, const core::View& view, float near_m);
+  TilePaint paint_of(const TileDraw& tile) const;
+  Programs& programs(const TilePaint& paint);
+  void use(const Program& program, const TilePaint& paint, TilePart part, const core::View& view,
+           const Lens& lens);
+  void use(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view, float near_m);
+  void draw_part(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
+                 float near_m);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
 
-  Programs programs_;
-  std::optional<Programs> gap_programs_;  // made for the first tile that has gaps
+  double radius_m_;
+  double exaggeration_ = 1;
+  std::map<TilePaint, Programs> programs_;
+  Air air_;
+  Texture2D palette_;
+  glm::vec2 palette_terms_{0, 0};
   VertexArray array_;
   double step_px_ = 1.0 / 256;
   const TileDraw* numbered_from_ = nullptr;  // numbers are drawn in place of colours

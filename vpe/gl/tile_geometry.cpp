@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <unordered_map>
 
 namespace vpe::gl {
 
@@ -40,7 +41,8 @@ std::size_t nearest_vertex(const lod::TileMesh& mesh, int origin) {
 }  // namespace
 
 TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
-                           double exaggeration, double radius_m, int origin) {
+                           double radius_m, const GeometryOptions& options) {
+  const auto& [exaggeration, origin, with_charts] = options;
   const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
   const mars::ChartRect rect = lod::chart_rect(key);
   TileGeometry out;
@@ -66,10 +68,11 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
     const glm::vec3 stored(exact);
     const glm::dvec3 error = glm::dvec3(stored) - exact;
     worst2 = std::max(worst2, glm::dot(error, error));
-    out.vertices.push_back({stored, texel(u, rect.u0, rect.u1), texel(v, rect.v0, rect.v1)});
+    out.positions_m.push_back(stored);
+    if (with_charts) out.charts.push_back({texel(u, rect.u0, rect.u1), texel(v, rect.v0, rect.v1)});
   }
   out.quantisation_m = std::sqrt(worst2);
-  out.surface_vertices = static_cast<std::uint32_t>(out.vertices.size());
+  out.surface_vertices = static_cast<std::uint32_t>(out.positions_m.size());
   out.indices.assign(mesh.triangles.begin(), mesh.triangles.end());
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     const std::array<glm::dvec3, 3> corners{places[mesh.triangles[t]], places[mesh.triangles[t + 1]],
@@ -84,8 +87,11 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
   for (std::size_t e = 0; e < lod::kEdges.size(); ++e) {
     const std::vector<std::uint32_t> top = border(mesh, lod::kEdges[e]);
     out.ranges.skirts[e] = end();
-    const auto foot = static_cast<std::uint32_t>(out.vertices.size());
-    for (const std::uint32_t v : top) out.vertices.push_back(out.vertices[v]);
+    const auto foot = static_cast<std::uint32_t>(out.positions_m.size());
+    for (const std::uint32_t v : top) {
+      out.positions_m.push_back(out.positions_m[v]);
+      if (with_charts) out.charts.push_back(out.charts[v]);
+    }
     for (std::uint32_t n = 0; n + 1 < top.size(); ++n) {
       for (const std::uint32_t index : {top[n], top[n + 1], foot + n, foot + n + 1}) {
         out.indices.push_back(index);
@@ -96,6 +102,30 @@ TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, s
   out.ranges.skirts[4] = end();
   out.indices.insert(out.indices.end(), lines_of_border.begin(), lines_of_border.end());
   out.ranges.border_end = end();
+  return out;
+}
+
+std::vector<std::uint32_t> border_triangles(const lod::TileMesh& mesh) {
+  const auto side = [](std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b);
+  };
+  std::unordered_map<std::uint64_t, std::uint32_t> beside;
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const lod::MeshVertex a = mesh.vertices[mesh.triangles[t + k]];
+      const lod::MeshVertex b = mesh.vertices[mesh.triangles[t + (k + 1) % 3]];
+      const bool on_border = (a.i == b.i && (a.i == 0 || a.i == mesh.intervals)) ||
+                             (a.j == b.j && (a.j == 0 || a.j == mesh.intervals));
+      if (on_border)
+        beside.emplace(side(mesh.triangles[t + k], mesh.triangles[t + (k + 1) % 3]),
+                       static_cast<std::uint32_t>(t / 3));
+    }
+  }
+  std::vector<std::uint32_t> out;
+  for (const lod::Edge edge : lod::kEdges) {
+    const std::vector<std::uint32_t> line = border(mesh, edge);
+    for (std::size_t n = 0; n + 1 < line.size(); ++n) out.push_back(beside.at(side(line[n], line[n + 1])));
+  }
   return out;
 }
 

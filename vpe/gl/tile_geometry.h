@@ -11,41 +11,57 @@
 
 namespace vpe::gl {
 
-// 16 bytes. position_m is relative to TileGeometry::centre_m, body-fixed axes; s, t run from 0 to 65535 over
-// the tile's chart rectangle, even in u and v.
-struct TileVertex {
-  glm::vec3 position_m;
+// Relative to TileGeometry::centre_m, body-fixed axes. What every appearance needs of a vertex.
+using VertexPosition = glm::vec3;
+static_assert(sizeof(VertexPosition) == 12);
+
+// Where a vertex is in its tile: from 0 to 65535 over the chart rectangle, even in u and v. What textures need.
+struct VertexChart {
   std::uint16_t s = 0;
   std::uint16_t t = 0;
 };
-static_assert(sizeof(TileVertex) == 16);
+static_assert(sizeof(VertexChart) == 4);
 
 // Where the parts lie in the indices.
 struct IndexRanges {
-  std::uint32_t surface = 0;                // triangles of the mesh: [0, surface)
-  // Of the skirt of edge e: [skirts[e], skirts[e + 1]), four a piece: two vertices of the border, their two feet.
+  std::uint32_t surface = 0;  // triangles of the mesh: [0, surface)
+  // Of the skirt of edge e: [skirts[e], skirts[e + 1]), four a piece: two vertices of the border, their two
+  // feet.
   std::array<std::uint32_t, 5> skirts{};
-  std::uint32_t border_end = 0;             // lines of the border: [skirts[4], border_end)
+  std::uint32_t border_end = 0;  // lines of the border: [skirts[4], border_end)
 };
 
 struct TileGeometry {
   glm::dvec3 centre_m{0, 0, 0};
-  std::vector<TileVertex> vertices;     // the mesh's, then the feet of the skirts
-  std::uint32_t surface_vertices = 0;   // how many are the mesh's
+  std::vector<VertexPosition> positions_m;  // the mesh's, then the feet of the skirts
+  std::vector<VertexChart> charts;          // as many, or none
+  std::uint32_t surface_vertices = 0;       // how many are the mesh's
   std::vector<std::uint32_t> indices;
   IndexRanges ranges;
-  double quantisation_m = 0;            // no vertex is farther than this from its exact place, nor 2^-24 of its position
-  double longest_edge_m = 0;            // of a triangle of the mesh
-  std::size_t bytes() const { return vertices.capacity() * sizeof(TileVertex) + indices.capacity() * 4; }
+  double quantisation_m = 0;  // no vertex is farther than this from its exact place, nor 2^-24 of its position
+  double longest_edge_m = 0;  // of a triangle of the mesh
+  std::size_t bytes() const {
+    return positions_m.capacity() * sizeof(VertexPosition) + charts.capacity() * sizeof(VertexChart) +
+           indices.capacity() * 4;
+  }
 };
 
-// Positions are relative to the tile's centre, or to the vertex nearest to post i, j of the finest grid, where the eye
-// is so near that rounding relative to the centre would show: origin = j * (intervals + 1) + i.
+// Positions are relative to the tile's centre, or to the vertex nearest to post i, j of the finest grid, where
+// the eye is so near that rounding relative to the centre would show: origin = j * (intervals + 1) + i.
 inline constexpr int kTileCentre = -1;
 
-// height_m: one per vertex, above the sphere. The feet of the skirts stand at the border vertices themselves; the
-// vertex shader lowers them by the depth that the frame needs.
+// height_m: one per vertex, above the sphere. The feet of the skirts stand at the border vertices themselves;
+// the vertex shader lowers them by the depth that the frame needs.
+struct GeometryOptions {
+  double exaggeration = 1;
+  int origin = kTileCentre;
+  bool charts = true;
+};
 TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
-                           double exaggeration, double radius_m, int origin = kTileCentre);
+                           double radius_m, const GeometryOptions& options);
+
+// Of each line of a mesh's border, in the order of TileGeometry's, the triangle that it belongs to, counted
+// from 0.
+std::vector<std::uint32_t> border_triangles(const lod::TileMesh& mesh);
 
 }  // namespace vpe::gl

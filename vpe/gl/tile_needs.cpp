@@ -27,26 +27,67 @@ int origin(const lod::SelectedTile& tile, const core::View& view, const paging::
 
 }  // namespace
 
-bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, core::Mode mode) {
-  if (mode == core::Mode::kWireframe) return false;
-  return mode != core::Mode::kUnlit || planet.has_missing(tile);
+namespace {
+
+Surfacing surfacing_of(core::Colour colour, bool has_image) {
+  switch (colour) {
+    case core::Colour::kElevation: return Surfacing::kElevation;
+    case core::Colour::kSlope: return Surfacing::kSlope;
+    case core::Colour::kAspect: return Surfacing::kAspect;
+    case core::Colour::kImage: return has_image ? Surfacing::kImageAtPosts : Surfacing::kPlain;
+    case core::Colour::kNone: break;
+  }
+  return Surfacing::kPlain;
 }
 
-ShadeParams shade_params(const core::DrawRequest& request, bool has_image) {
-  const core::SettingsValues& s = request.settings;
-  ShadeParams params;
-  params.sun = request.sun;
-  params.ambient = s.sun_ambient;
-  params.exaggeration = s.exaggeration;
-  if (s.mode == core::Mode::kUnlit) {
-    params.surfacing = Surfacing::kPlain;
-    params.lit = false;
-  } else if (s.mode == core::Mode::kTextured && has_image) {
-    params.surfacing = Surfacing::kImage;
-  } else if (s.mode == core::Mode::kLit || s.colour == core::Colour::kNone) {
-    params.surfacing = Surfacing::kPlain;
+bool shows_scale(Surfacing s) {
+  return s == Surfacing::kElevation || s == Surfacing::kSlope || s == Surfacing::kAspect;
+}
+
+}  // namespace
+
+Painting painting(const core::Appearance& a, const glm::dvec3& sun, bool has_image,
+                  std::shared_ptr<const core::ColourScale> scale) {
+  using core::Mode;
+  Painting out;
+  ShadeParams& look = out.look;
+  const Surfacing shown = surfacing_of(a.colour, has_image);
+  const bool of_vertices = a.mode == Mode::kWireframe || a.mode == Mode::kMarkers;
+  out.shows_gaps = !of_vertices;
+  look.exaggeration = a.exaggeration;
+  look.flat = a.shading == core::Shading::kFlat && !of_vertices;
+  look.lit = !of_vertices && a.mode != Mode::kUnlit;
+  look.surfacing = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? Surfacing::kPlain
+                   : a.mode == Mode::kTextured && has_image           ? Surfacing::kImage
+                                                                      : shown;
+  if (look.surfacing == Surfacing::kImage && a.colourise) look.hue = shown;
+  // What is not used is not set, so that it cannot change a look.
+  if (look.lit) {
+    look.sun = sun;
+    look.ambient = a.sun_ambient;
+    look.diffuse = a.sun_diffuse;
+    look.shadows = a.shadows;
   }
-  return params;
+  if (shows_scale(look.surfacing) || shows_scale(look.hue)) look.scale = std::move(scale);
+  out.by = look.lit                                                ? PaintBy::kTexture
+           : look.surfacing == Surfacing::kPlain                   ? PaintBy::kColour
+           : look.surfacing == Surfacing::kElevation && !look.flat ? PaintBy::kPalette
+                                                                   : PaintBy::kTexture;
+  return out;
+}
+
+bool needs_scale(const core::Appearance& appearance, bool has_image) {
+  const ShadeParams look = painting(appearance, {1, 0, 0}, has_image, nullptr).look;
+  return shows_scale(look.surfacing) || shows_scale(look.hue);
+}
+
+bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting) {
+  return painting.by == PaintBy::kTexture || (painting.shows_gaps && planet.has_missing(tile));
+}
+
+bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting) {
+  if (!is_textured(tile, planet, painting)) return false;
+  return !painting.look.flat || planet.has_missing(tile);
 }
 
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
@@ -56,24 +97,30 @@ std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const
   std::vector<TileNeed> needs;
   needs.reserve(tiles.size());
   for (const lod::SelectedTile& tile : tiles) {
-    TileNeed need{{tile.variant, origin(tile, view, planet)}, 0};
-    if (is_textured(tile.key, planet, options.mode)) {
+    TileNeed need{{tile.variant, origin(tile, view, planet), needs_charts(tile.key, planet, options.painting)},
+                  0};
+    if (!is_textured(tile.key, planet, options.painting)) {
+    } else if (options.painting.look.flat) {
+      need.paint = facet_paint(tile.variant);
+    } else {
       const double side = lod::nominal_side_m(tile.key.level, planet.radius_m());
       const double wanted = 0.75 * side * focal / std::max(tile.min_distance_m, 1e-3 * side);
-      const int most = std::min(kLargestTexture, shader.useful_intervals(tile.key, options.surfacing));
-      need.texture_intervals = kSmallestTexture;
-      while (need.texture_intervals < wanted && need.texture_intervals < most) need.texture_intervals *= 2;
+      const int most =
+          std::min(kLargestTexture, shader.useful_intervals(tile.key, options.painting.look.surfacing));
+      need.paint = kSmallestTexture;
+      while (need.paint < wanted && need.paint < most) need.paint *= 2;
     }
     needs.push_back(need);
   }
   for (int cap = kLargestTexture; cap > kSmallestTexture; cap /= 2) {
     std::size_t bytes = 0;
     for (const TileNeed& need : needs) {
-      const auto side = static_cast<std::size_t>(need.texture_intervals) + 1;
+      if (need.paint <= 0) continue;
+      const auto side = static_cast<std::size_t>(need.paint) + 1;
       bytes += 4 * side * side;
     }
     if (bytes <= options.texture_bytes) break;
-    for (TileNeed& need : needs) need.texture_intervals = std::min(need.texture_intervals, cap / 2);
+    for (TileNeed& need : needs) need.paint = std::min(need.paint, cap / 2);
   }
   return needs;
 }

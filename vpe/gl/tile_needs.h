@@ -7,25 +7,43 @@
 #include "lod/select.h"
 #include "vpe/core/frame.h"
 #include "vpe/gl/residency.h"
+#include "vpe/gl/tile_page.h"
 
 namespace vpe::gl {
 
-ShadeParams shade_params(const core::DrawRequest& request, bool has_image);
+// How an appearance paints ground.
+enum class PaintBy {
+  kColour,   // one colour
+  kPalette,  // colour of the height of what is drawn, by the program
+  kTexture,  // ShadedTile: a grid, or with flat shading facets
+};
+
+struct Painting {
+  PaintBy by = PaintBy::kTexture;
+  bool shows_gaps = true;  // ground without data looks different: such tiles have textures in any case
+  ShadeParams look;        // of textures
+  bool operator==(const Painting&) const = default;
+};
+
+// scale: of the appearance; null where it shows none (needs_scale).
+Painting painting(const core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
+                  std::shared_ptr<const core::ColourScale> scale);
+bool needs_scale(const core::Appearance& appearance, bool has_image);
 
 inline constexpr int kSmallestTexture = 128;
 
-// Whether a tile is drawn with a texture. Unlit ground has one colour; its textures only say where there is no
-// data.
-bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, core::Mode mode);
+bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting);
+
+// Whether vertices need to know where they are in their tile.
+bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting);
 
 struct TileNeed {
   MeshDetail mesh;
-  int texture_intervals = 0;  // 0: none
+  int paint = 0;  // 0: no texture; > 0: intervals of its grid; < 0: facet_paint(variant)
 };
 
 struct NeedOptions {
-  core::Mode mode = core::Mode::kTextured;
-  Surfacing surfacing = Surfacing::kImage;
+  Painting painting;
   std::size_t texture_bytes = 0;  // for the textures of all the tiles
 };
 

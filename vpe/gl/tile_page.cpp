@@ -5,35 +5,47 @@
 
 namespace vpe::gl {
 
-void PageLoader::make_mesh(const PageKey& key, Page& page) const {
-  const double radius_m = planet_->radius_m();
-  const auto make = [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
-    page.geometry = make_geometry(key.tile, mesh, height_m, key.exaggeration, radius_m, key.origin);
-    page.walls =
-        lod::make_walls(key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m);
-  };
-  if (lod::is_full_grid(*planet_->tree().find(key.tile), key.detail)) {
-    const paging::TileHeights heights = planet_->heights(key.tile);
-    make(lod::mesh_full(heights.posts.intervals), heights.posts.height_m);
+template <typename Visit>
+void PageLoader::with_mesh(const lod::TileKey& tile, int variant, Visit&& visit) const {
+  if (lod::is_full_grid(*planet_->tree().find(tile), variant)) {
+    const paging::TileHeights heights = planet_->heights(tile);
+    visit(lod::mesh_full(heights.posts.intervals), std::span<const double>(heights.posts.height_m));
     return;
   }
-  const paging::PackedMesh packed = planet_->mesh(key.tile, key.detail);
+  const paging::PackedMesh packed = planet_->mesh(tile, variant);
   std::vector<double> heights(packed.height_q.size());
   std::transform(packed.height_q.begin(), packed.height_q.end(), heights.begin(),
                  [q = planet_->meta().quantum_m](std::int32_t n) { return n * q; });
-  make(packed.mesh, heights);
+  visit(packed.mesh, std::span<const double>(heights));
 }
 
 std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
   Page page;
   switch (key.kind) {
     case PageKind::kMesh: {
-      make_mesh(key, page);
+      const double radius_m = planet_->radius_m();
+      with_mesh(key.tile, key.detail, [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
+        page.geometry =
+            make_geometry(key.tile, mesh, height_m, radius_m, {key.exaggeration, key.origin, key.charts});
+        page.walls =
+            lod::make_walls(key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m);
+      });
       const std::size_t bytes = page.geometry.bytes();
       return {std::move(page), bytes};
     }
     case PageKind::kTexture: {
-      page.shaded = shader_->shade(key.tile, key.detail, *key.look);
+      if (key.look->flat) {
+        with_mesh(key.tile, painted_variant(key.detail),
+                  [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
+                    page.shaded = shader_->shade_facets(key.tile, mesh, height_m, *key.look);
+                    for (const std::uint32_t triangle : border_triangles(mesh)) {
+                      for (std::size_t c = 0; c < 4; ++c)
+                        page.shaded.texels.push_back(page.shaded.texels[4 * triangle + c]);
+                    }
+                  });
+      } else {
+        page.shaded = shader_->shade(key.tile, key.detail, *key.look);
+      }
       const std::size_t bytes = page.shaded.bytes();
       return {std::move(page), bytes};
     }

@@ -14,15 +14,16 @@ namespace vpe::gl {
 
 enum class PageKind : std::uint8_t {
   kMesh,     // of a variant, relative to an origin, at an exaggeration
-  kTexture,  // of some intervals, as a look paints it
+  kTexture,  // as a look paints it
   kGround,   // posts of a finest tile
 };
 
 struct PageKey {
   PageKind kind = PageKind::kMesh;
   lod::TileKey tile;
-  int detail = 0;  // variant, or intervals
+  int detail = 0;  // variant, or TileNeed::paint
   int origin = kTileCentre;
+  bool charts = true;                       // of meshes
   double exaggeration = 1;                  // of meshes
   std::shared_ptr<const ShadeParams> look;  // of textures; equal looks are one object
   bool operator==(const PageKey&) const = default;
@@ -30,9 +31,14 @@ struct PageKey {
 struct PageKeyHash {
   std::size_t operator()(const PageKey& k) const {
     return (lod::TileKeyHash()(k.tile) * 31 + static_cast<std::size_t>(k.detail)) * 4 +
-           static_cast<std::size_t>(k.kind) + 1009 * static_cast<std::size_t>(k.origin + 1);
+           static_cast<std::size_t>(k.kind) + (k.charts ? 7 : 0) +
+           1009 * static_cast<std::size_t>(k.origin + 1);
   }
 };
+
+// TileNeed::paint of the facets of a variant's mesh, and back.
+constexpr int facet_paint(int variant) { return -1 - variant; }
+constexpr int painted_variant(int paint) { return -1 - paint; }
 
 // The member of the key's kind is there.
 struct Page {
@@ -52,7 +58,9 @@ class PageLoader {
   std::pair<Page, std::size_t> load(const PageKey& key) const;
 
  private:
-  void make_mesh(const PageKey& key, Page& page) const;
+  // visit(mesh, heights of its vertices) for one of a tile's meshes.
+  template <typename Visit>
+  void with_mesh(const lod::TileKey& tile, int variant, Visit&& visit) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::shared_ptr<const Shader> shader_;

@@ -43,6 +43,16 @@ std::size_t for_tiles(std::size_t memory_bytes, std::size_t index_bytes) {
   return std::max(memory_bytes / 8, memory_bytes - std::min(memory_bytes, fixed));
 }
 
+bool same_scale(const core::Appearance& a, const core::Appearance& b) {
+  return a.colour == b.colour && a.palette == b.palette && a.palette_low == b.palette_low &&
+         a.palette_high == b.palette_high && static_cast<const core::HsvRamp&>(a) == b;
+}
+
+// Grids fit every mesh of a tile, facets their own.
+bool fits(const TextureDetail& texture, int variant) {
+  return texture.paint > 0 || painted_variant(texture.paint) == variant;
+}
+
 }  // namespace
 
 TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options)
@@ -60,32 +70,59 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
              share(kLoadedShare)) {}
 
 void TileScene::set_look(const core::DrawRequest& request) {
-  const ShadeParams look = shade_params(request, planet_->meta().finest_image_level >= 0);
-  mode_ = request.settings.mode;
-  if (look_ && *look_ == look) return;
-  // Meshes of two exaggerations do not meet.
-  if (!look_ || look_->exaggeration != look.exaggeration) meshes_.clear();
-  look_ = std::make_shared<const ShadeParams>(look);
+  const core::Appearance& appearance = request.settings;
+  const bool has_image = planet_->meta().finest_image_level >= 0;
+  if (!needs_scale(appearance, has_image)) {
+    scale_ = nullptr;
+  } else if (!scale_ || !same_scale(appearance, scale_of_)) {
+    scale_ = std::make_shared<const core::ColourScale>(appearance);
+    scale_of_ = appearance;
+  }
+  const Painting now = gl::painting(appearance, request.sun, has_image, scale_);
+  if (look_ && painting_ == now) return;
+  // Meshes of two exaggerations do not meet; what is painted in another way needs other vertices and programs.
+  const bool other_meshes = !look_ || look_->exaggeration != now.look.exaggeration;
+  const bool other_paint =
+      painting_.by != now.by || painting_.shows_gaps != now.shows_gaps || painting_.look.flat != now.look.flat;
+  if (other_meshes || other_paint) meshes_.clear();
+  if (other_paint) textures_.clear();
+  painting_ = now;
+  other_looks_ = true;
+  if (!look_ || *look_ != now.look) look_ = std::make_shared<const ShadeParams>(now.look);
+}
+
+// Once the picture is complete nothing of what was drawn before a change is of use.
+void TileScene::drop_other_looks() {
+  if (!std::exchange(other_looks_, false)) return;
+  textures_.drop([&](const TextureDetail& t) { return t.look != look_; });
 }
 
 std::vector<TileNeed> TileScene::needs_of(const lod::Selection& selection, const core::View& view) const {
-  return tile_needs(selection.tiles, view, *planet_, *shader_, {mode_, look_->surfacing, share(kTextureShare)});
+  return tile_needs(selection.tiles, view, *planet_, *shader_, {painting_, share(kTextureShare)});
 }
 
 PageKey TileScene::mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const {
-  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, look_->exaggeration, nullptr};
+  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, mesh.charts, look_->exaggeration, nullptr};
 }
-PageKey TileScene::texture_page(const lod::TileKey& tile, int intervals) const {
-  return {PageKind::kTexture, tile, intervals, kTileCentre, 1, look_};
+PageKey TileScene::texture_page(const lod::TileKey& tile, int paint) const {
+  return {PageKind::kTexture, tile, paint, kTileCentre, true, 1, look_};
+}
+TileNeed TileScene::coarse_need(const lod::TileKey& tile) const {
+  const bool textured = is_textured(tile, *planet_, painting_);
+  return {{0, kTileCentre, needs_charts(tile, *planet_, painting_)},
+          !textured     ? 0
+          : look_->flat ? facet_paint(0)
+                        : kSmallestTexture};
 }
 PageKey TileScene::ground_page(const glm::dvec3& eye_m) const {
   const lod::TileKey finest = lod::tile_at(mars::chart_point(eye_m), lod::kMaxLevel);
-  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, 1, nullptr};
+  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, true, 1, nullptr};
 }
 
 bool TileScene::is_resident(const PageKey& page, std::uint64_t frame) {
   switch (page.kind) {
-    case PageKind::kMesh: return meshes_.find(page.tile, {page.detail, page.origin}, frame) != nullptr;
+    case PageKind::kMesh:
+      return meshes_.find(page.tile, {page.detail, page.origin, page.charts}, frame) != nullptr;
     case PageKind::kTexture: return textures_.find(page.tile, {page.detail, page.look}, frame) != nullptr;
     case PageKind::kGround: break;
   }
@@ -97,8 +134,9 @@ bool TileScene::can_be_drawn(const lod::TileInfo& tile, int variant) {
   const bool mesh = meshes_.best(tile.key, frame_,
                                  [&](const MeshDetail& m) { return m.variant == variant ? 0 : -1; }) != nullptr;
   if (!mesh) return false;
-  return !is_textured(tile.key, *planet_, mode_) ||
-         textures_.best(tile.key, frame_, [](const TextureDetail&) { return 0; }) != nullptr;
+  return !is_textured(tile.key, *planet_, painting_) ||
+         textures_.best(tile.key, frame_, [&](const TextureDetail& t) { return fits(t, variant) ? 0 : -1; }) !=
+             nullptr;
 }
 
 bool TileScene::is_readable(const lod::TileInfo& tile) const { return unreadable_.count(tile.key) == 0; }
@@ -107,14 +145,17 @@ void TileScene::upload(TilePager::Loaded page) {
   const PageKey& key = page.key;
   switch (key.kind) {
     case PageKind::kMesh:
-      if (key.exaggeration != look_->exaggeration) return;  // asked for before it was changed
+      // Asked for before a change.
+      if (key.exaggeration != look_->exaggeration || key.charts != needs_charts(key.tile, *planet_, painting_))
+        return;
       {
         GpuMesh mesh = gl::upload(page.value.geometry);
         mesh.walls = page.value.walls;
-        meshes_.insert(key.tile, {key.detail, key.origin}, std::move(mesh), frame_);
+        meshes_.insert(key.tile, {key.detail, key.origin, key.charts}, std::move(mesh), frame_);
         break;
       }
     case PageKind::kTexture:
+      if (key.look->flat != look_->flat || !is_textured(key.tile, *planet_, painting_)) return;
       textures_.insert(key.tile, {key.detail, key.look}, gl::upload(page.value.shaded), frame_);
       break;
     case PageKind::kGround:
@@ -145,8 +186,8 @@ std::vector<PageKey> TileScene::absent_pages(const lod::Selection& selection, co
     const lod::SelectedTile& tile = selection.tiles[n];
     PageKey page = mesh_page(tile.key, needs[n].mesh);
     if (!is_resident(page, frame)) absent.emplace_back(tile.min_distance_m, page);
-    if (needs[n].texture_intervals == 0) continue;
-    page = texture_page(tile.key, needs[n].texture_intervals);
+    if (needs[n].paint == 0) continue;
+    page = texture_page(tile.key, needs[n].paint);
     if (!is_resident(page, frame)) absent.emplace_back(tile.min_distance_m, page);
   }
   std::stable_sort(absent.begin(), absent.end(),
@@ -213,8 +254,9 @@ bool TileScene::load_roots(const lod::Selection& needed) {
     const bool wanted = std::any_of(drawn_.missing.begin(), drawn_.missing.end(),
                                     [&](std::size_t n) { return needed.tiles[n].key.face == tile.key.face; });
     if (!wanted || !is_readable(tile) || can_be_drawn(tile, 0)) continue;
-    std::vector<PageKey> pages{mesh_page(tile.key, {})};
-    if (is_textured(tile.key, *planet_, mode_)) pages.push_back(texture_page(tile.key, kSmallestTexture));
+    const TileNeed coarse = coarse_need(tile.key);
+    std::vector<PageKey> pages{mesh_page(tile.key, coarse.mesh)};
+    if (coarse.paint != 0) pages.push_back(texture_page(tile.key, coarse.paint));
     for (const PageKey& page : pages) {
       try {
         auto [value, bytes] = load_(page);
@@ -257,6 +299,7 @@ void TileScene::prepare(const core::DrawRequest& request) {
   lay_out(request.view);
   ask(request, options);
   find_clearance(request.view);
+  if (settled_) drop_other_looks();
   trim();
   stats_.load_ms = ms_since(start);
 }
@@ -274,12 +317,13 @@ void TileScene::lay_out(const core::View& view) {
     out.mesh = meshes_.best(tile.key, frame_, [&](const MeshDetail& m) {
       return m.variant != tile.variant ? -1 : m == needs[n].mesh ? 1 : 0;
     });
-    if (needs[n].texture_intervals > 0) {
-      const TextureDetail wanted{needs[n].texture_intervals, look_};
+    if (needs[n].paint != 0) {
+      const TextureDetail wanted{needs[n].paint, look_};
       // Else the right look, else the nearest size.
       out.texture = textures_.best(tile.key, frame_, [&](const TextureDetail& t) {
         if (t == wanted) return 1 << 20;
-        return (t.look == look_ ? 1 << 16 : 0) + std::min(t.intervals, wanted.intervals);
+        if (!fits(t, tile.variant)) return -1;
+        return (t.look == look_ ? 1 << 16 : 0) + std::max(0, std::min(t.paint, wanted.paint));
       });
     }
     out.skirt_m = skirts_[n];

@@ -40,6 +40,9 @@ class TileScene {
 
   std::span<const SceneTile> tiles() const { return tiles_; }
 
+  const Painting& painting() const { return painting_; }
+  const std::shared_ptr<const core::ColourScale>& scale() const { return scale_; }  // null: none is shown
+
   // Of the frame that was prepared last, whose tiles took so long to draw.
   void drawn_in(double draw_ms);
 
@@ -58,9 +61,11 @@ class TileScene {
 
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
   void set_look(const core::DrawRequest& request);
+  void drop_other_looks();
   std::vector<TileNeed> needs_of(const lod::Selection& selection, const core::View& view) const;
   PageKey mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const;
-  PageKey texture_page(const lod::TileKey& tile, int intervals) const;
+  PageKey texture_page(const lod::TileKey& tile, int paint) const;
+  TileNeed coarse_need(const lod::TileKey& tile) const;  // of its first mesh
   PageKey ground_page(const glm::dvec3& eye_m) const;
 
   bool is_resident(const PageKey& page, std::uint64_t frame);  // counts as used in it
@@ -104,8 +109,11 @@ class TileScene {
   Resident<MeshDetail, GpuMesh> meshes_;
   Resident<TextureDetail, GpuTexture> textures_;
   std::vector<std::pair<lod::TileKey, std::shared_ptr<const paging::TileHeights>>> ground_;  // latest last
-  std::shared_ptr<const ShadeParams> look_;
-  core::Mode mode_ = core::Mode::kTextured;
+  Painting painting_;
+  std::shared_ptr<const ShadeParams> look_;  // painting_.look, one object while it stays the same
+  bool other_looks_ = false;                 // may be resident
+  core::Appearance scale_of_;                // whose scale this is
+  std::shared_ptr<const core::ColourScale> scale_;
   std::uint64_t frame_ = 0;
 
   lod::SelectScratch scratch_;

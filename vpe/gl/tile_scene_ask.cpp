@@ -54,13 +54,14 @@ void TileScene::ask(const core::DrawRequest& request, const lod::SelectOptions& 
         urgency *= 2.0 * std::min(stand->error_px, 1e6);
         if (stand->key.level + 1 < tile.key.level) {
           const lod::TileKey step = lod::ancestor(tile.key, stand->key.level + 1);
-          add(mesh_page(step, {}), 2.0 * urgency);
-          if (needs[n].texture_intervals > 0)
-            add(texture_page(step, needs[n].texture_intervals), 2.0 * urgency);
+          const TileNeed coarse = coarse_need(step);
+          add(mesh_page(step, coarse.mesh), 2.0 * urgency);
+          if (coarse.paint != 0)
+            add(texture_page(step, needs[n].paint > 0 ? needs[n].paint : coarse.paint), 2.0 * urgency);
         }
       }
       add(mesh_page(tile.key, needs[n].mesh), urgency);
-      if (needs[n].texture_intervals > 0) add(texture_page(tile.key, needs[n].texture_intervals), urgency);
+      if (needs[n].paint != 0) add(texture_page(tile.key, needs[n].paint), urgency);
     }
     if (needs_ground(request.view)) add(ground_page(request.view.eye.eye_m), 1e6);
     if (request.cull_view && needs_ground(*request.cull_view))

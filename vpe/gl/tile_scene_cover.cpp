@@ -114,7 +114,7 @@ TileScene::Load TileScene::load_cover(const core::DrawRequest& request, Deadline
     keys.push_back(cover.tiles[n].key);
     // Counts as used, so that nothing leaves before its turn comes.
     is_resident(mesh_page(keys[n], needs[n].mesh), frame_);
-    if (needs[n].texture_intervals > 0) is_resident(texture_page(keys[n], needs[n].texture_intervals), frame_);
+    if (needs[n].paint != 0) is_resident(texture_page(keys[n], needs[n].paint), frame_);
   }
   trim();
   for (const core::View* from : {&view, &seen}) {
@@ -149,8 +149,8 @@ TileScene::Load TileScene::load_cover(const core::DrawRequest& request, Deadline
       if (occluding_) {
         pass_.add(keys[n], meshes_.find(keys[n], needs[n].mesh, frame_)->walls, planet_->radius_m());
       }
-      if (needs[n].texture_intervals == 0) continue;
-      const PageKey page = texture_page(keys[n], needs[n].texture_intervals);
+      if (needs[n].paint == 0) continue;
+      const PageKey page = texture_page(keys[n], needs[n].paint);
       if (!is_resident(page, frame_)) textures.push_back(page);
     }
   }
