@@ -364,10 +364,8 @@ ShadedTile Shader::shade_facets(const lod::TileKey& key, const lod::TileMesh& me
                                 std::span<const double> height_m, const ShadeParams& params) const {
   const double radius = planet_->radius_m();
   const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
-  const mars::ChartRect rect = lod::chart_rect(key);
   const double spacing_m = lod::nominal_side_m(key.level, radius) / mesh.intervals;
   const Picture picture = this->picture(key, params);
-  const mars::ChartRect image_rect = picture.tile ? lod::chart_rect(picture.key) : rect;
   const std::shared_ptr<const paging::TileHeights> posts =
       planet_->has_missing(key) ? heights(deepest(key)) : nullptr;
   const bool gaps = posts && !posts->missing.empty();
@@ -390,13 +388,15 @@ ShadedTile Shader::shade_facets(const lod::TileKey& key, const lod::TileMesh& me
       at.sun = sees_sun(middle, spacing_m, params) ? 1.0 : 0.0;
     if (picture.tile) {
       const mars::ChartPoint place = mars::chart_on(key.face, middle);
-      const auto along = [](double x, double low, double high) {
-        const double cell = std::clamp((x - low) / (high - low), 0.0, 1.0) * paging::kImageIntervals;
-        const auto index = std::min(static_cast<std::size_t>(cell), std::size_t{paging::kImageIntervals - 1});
-        return GridPosition{index, static_cast<float>(cell - static_cast<double>(index))};
+      // Image texels are on lines even in the face's parameter.
+      const auto along = [&](double x, std::int32_t index) {
+        const double tiles = std::ldexp(1.0, picture.key.level);
+        const double texel =
+            std::clamp(mars::face_parameter(x) * tiles - index, 0.0, 1.0) * paging::kImageIntervals;
+        const auto before = std::min(static_cast<std::size_t>(texel), std::size_t{paging::kImageIntervals - 1});
+        return GridPosition{before, static_cast<float>(texel - static_cast<double>(before))};
       };
-      at.image = bilinear<glm::vec3>(along(place.u, image_rect.u0, image_rect.u1),
-                                     along(place.v, image_rect.v0, image_rect.v1), kImageSide,
+      at.image = bilinear<glm::vec3>(along(place.u, picture.key.i), along(place.v, picture.key.j), kImageSide,
                                      [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
     }
     const glm::vec3 c(colour(at, params));

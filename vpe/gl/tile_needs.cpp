@@ -107,7 +107,9 @@ std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const
       const double wanted = 0.75 * side * focal / std::max(tile.min_distance_m, 1e-3 * side);
       const int most =
           std::min(kLargestTexture, shader.useful_intervals(tile.key, options.painting.look.surfacing));
-      need.paint = kSmallestTexture;
+      // Colours of posts are not made finer than posts.
+      const bool at_posts = options.painting.look.surfacing == Surfacing::kImageAtPosts;
+      need.paint = at_posts ? std::min(kSmallestTexture, most) : kSmallestTexture;
       while (need.paint < wanted && need.paint < most) need.paint *= 2;
     }
     needs.push_back(need);

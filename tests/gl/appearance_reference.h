@@ -1,0 +1,180 @@
+// What an appearance looks like at a place on the ground, from its definition (vpe/core/shading.h,
+// docs/appearance.md) and the planet's posts alone: nothing of the renderer's way to its pictures is used.
+#pragma once
+
+#include <optional>
+
+#include "paging/surface.h"
+#include "vpe/core/palette.h"
+#include "vpe/core/shading.h"
+
+namespace test_support {
+
+struct GroundReference {
+  const paging::Surface& surface;
+  vpe::core::Appearance look;
+  glm::dvec3 sun;
+
+  // Colour, 0 to 255, not yet cut to that; nothing beside the rim of a face or where tiles of two depths meet.
+  GroundReference(const paging::Surface& of, const vpe::core::Appearance& appearance, const glm::dvec3& to_sun)
+      : surface(of), look(appearance), sun(to_sun) {}
+
+  std::optional<glm::dvec3> at(const glm::dvec3& direction) const {
+    const paging::PlanetFile& planet = surface.planet();
+    const lod::TileKey key = surface.at(direction).tile;
+    const int n = planet.meta().tile.intervals();
+    const mars::ChartPoint place = mars::chart_on(key.face, direction);
+    const lod::GridLines lines = lod::grid_lines(key, n);
+    const int i = cell(lines.u, place.u);
+    const int j = cell(lines.v, place.v);
+    const double s = along(lines.u, i, place.u);
+    const double t = along(lines.v, j, place.v);
+    const std::int64_t first_i = std::int64_t{key.i} * n + i;
+    const std::int64_t first_j = std::int64_t{key.j} * n + j;
+    const Grid grid{key.face, key.level, n};
+    const bool flat = look.shading == vpe::core::Shading::kFlat;
+    const auto post = [&](int a, int b) { return this->post(grid, first_i + a, first_j + b); };
+    double height_m = 0;
+    glm::dvec3 normal(0), image_rgb(0), up = glm::normalize(direction), from = direction;
+    if (flat || is_unlit_elevation()) {
+      const bool lower = s >= t;
+      const auto p00 = post(0, 0), p11 = post(1, 1), other = lower ? post(1, 0) : post(0, 1);
+      if (!p00 || !p11 || !other) return std::nullopt;
+      const glm::dvec3 a = drawn(*p00), b = drawn(*other), c = drawn(*p11);
+      normal = glm::normalize(glm::cross(b - a, c - a));
+      if (glm::dot(normal, up) < 0) normal = -normal;
+      if (flat) {
+        from = (a + b + c) / 3.0;
+        up = glm::normalize(from);
+        height_m = (p00->height_m + other->height_m + p11->height_m) / 3;
+        image_rgb = image(up);
+      } else {
+        height_m =
+            lower
+                ? p00->height_m + s * (other->height_m - p00->height_m) + t * (p11->height_m - other->height_m)
+                : p00->height_m + t * (other->height_m - p00->height_m) + s * (p11->height_m - other->height_m);
+      }
+    } else {
+      for (int b = 0; b < 2; ++b) {
+        for (int a = 0; a < 2; ++a) {
+          const auto here = post(a, b);
+          const auto east = post(a + 1, b), west = post(a - 1, b), north = post(a, b + 1),
+                     south = post(a, b - 1);
+          if (!here || !east || !west || !north || !south) return std::nullopt;
+          const double weight = (a == 1 ? s : 1 - s) * (b == 1 ? t : 1 - t);
+          normal +=
+              weight * glm::normalize(glm::cross(drawn(*east) - drawn(*west), drawn(*north) - drawn(*south)));
+          height_m += weight * here->height_m;
+          if (look.colour == vpe::core::Colour::kImage) image_rgb += weight * image(here->direction);
+        }
+      }
+      normal = glm::normalize(normal);
+      if (look.mode == vpe::core::Mode::kTextured) image_rgb = image(up);
+    }
+    return painted(height_m, normal, up, image_rgb);
+  }
+
+  // As the planet file holds it, straight between texels.
+  glm::dvec3 image(const glm::dvec3& direction) const {
+    const paging::PlanetFile& planet = surface.planet();
+    const auto key = planet.image_key(lod::tile_at(mars::chart_point(direction), lod::kMaxLevel));
+    if (!key) return glm::dvec3(0);
+    if (!image_tile_ || image_key_ != *key) image_tile_ = planet.image(*key);
+    image_key_ = *key;
+    const mars::ChartPoint place = mars::chart_on(key->face, direction);
+    const auto texel = [&](double x, std::int32_t index) {
+      return (mars::face_parameter(x) * (1 << key->level) - index) * paging::kImageIntervals;
+    };
+    const double x = texel(place.u, key->i), y = texel(place.v, key->j);
+    const auto get = [&](double a, double b) {
+      const auto clamped = [](double c) {
+        return static_cast<std::size_t>(std::clamp(c, 0.0, double{paging::kImageIntervals}));
+      };
+      const mars::Rgb c = image_tile_->texels[clamped(b) * (paging::kImageIntervals + 1) + clamped(a)];
+      return glm::dvec3(c.r, c.g, c.b);
+    };
+    const double i = std::floor(x), j = std::floor(y);
+    return glm::mix(glm::mix(get(i, j), get(i + 1, j), x - i),
+                    glm::mix(get(i, j + 1), get(i + 1, j + 1), x - i), y - j);
+  }
+
+ private:
+  mutable std::optional<paging::ImageTile> image_tile_;
+  mutable lod::TileKey image_key_;
+
+  struct Grid {
+    mars::Face face;
+    int level;
+    int intervals;
+  };
+  struct Post {
+    glm::dvec3 direction;
+    double height_m;
+  };
+
+  bool is_unlit_elevation() const {
+    return look.mode == vpe::core::Mode::kUnlit && look.colour == vpe::core::Colour::kElevation;
+  }
+
+  static int cell(const std::vector<double>& line, double x) {
+    int k = 0;
+    while (k + 2 < static_cast<int>(line.size()) && line[static_cast<std::size_t>(k + 1)] <= x) ++k;
+    return k;
+  }
+  static double along(const std::vector<double>& line, int k, double x) {
+    const auto at = static_cast<std::size_t>(k);
+    return (x - line[at]) / (line[at + 1] - line[at]);
+  }
+
+  std::optional<Post> post(const Grid& grid, std::int64_t i, std::int64_t j) const {
+    const std::int64_t all = std::int64_t{grid.intervals} << grid.level;
+    if (i < 1 || j < 1 || i >= all || j >= all) return std::nullopt;
+    const auto line = [&](std::int64_t k) {
+      const auto tile =
+          static_cast<std::int32_t>(std::min<std::int64_t>(k / grid.intervals, (all - 1) / grid.intervals));
+      const lod::TileKey key{grid.face, grid.level, tile, tile};
+      return std::pair(lod::grid_lines(key, grid.intervals),
+                       static_cast<std::size_t>(k - std::int64_t{tile} * grid.intervals));
+    };
+    const auto [lines_u, x] = line(i);
+    const auto [lines_v, y] = line(j);
+    const glm::dvec3 direction = mars::chart_direction(grid.face, lines_u.u[x], lines_v.v[y]);
+    const paging::SurfacePoint found = surface.at(direction);
+    if (found.tile.level != grid.level) return std::nullopt;
+    return Post{direction, found.height_m};
+  }
+
+  glm::dvec3 drawn(const Post& post) const {
+    return post.direction * (surface.planet_radius_m() + look.exaggeration * post.height_m);
+  }
+
+  glm::dvec3 painted(double height_m, const glm::dvec3& normal, const glm::dvec3& up,
+                     const glm::dvec3& image_rgb) const {
+    using vpe::core::Colour;
+    using vpe::core::Mode;
+    const auto shown = [&]() -> glm::dvec3 {
+      if (look.colour == Colour::kNone) return {178, 142, 112};
+      if (look.colour == Colour::kImage) return image_rgb;
+      const vpe::core::ColourScale scale(look);
+      if (look.colour == Colour::kElevation) return scale(height_m);
+      const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), up));
+      const glm::dvec3 north = glm::cross(up, east);
+      if (look.colour == Colour::kSlope) return scale(std::acos(glm::dot(normal, up)) * 180 / mars::kPi);
+      const double angle = std::atan2(glm::dot(normal, east), glm::dot(normal, north)) * 180 / mars::kPi;
+      return scale(angle < 0 ? angle + 360 : angle);
+    };
+    glm::dvec3 c = look.mode == Mode::kLit ? glm::dvec3(178, 142, 112) : shown();
+    if (look.mode == Mode::kTextured)
+      c = look.colourise && look.colour != Colour::kNone ? colourised(image_rgb, shown()) : image_rgb;
+    if (look.mode == Mode::kUnlit) return c;
+    return c * std::sqrt(look.sun_ambient + look.sun_diffuse * std::max(0.0, glm::dot(normal, sun)));
+  }
+
+  // The largest channel stays what it is in the image; the others keep their shares of it.
+  static glm::dvec3 colourised(const glm::dvec3& image_rgb, const glm::dvec3& c) {
+    const double value = std::max({image_rgb.x, image_rgb.y, image_rgb.z});
+    return c * (value / std::max({c.x, c.y, c.z}));
+  }
+};
+
+}  // namespace test_support
