@@ -1,6 +1,6 @@
-// The sun and the clock on Mars, after the algorithm of Mars24 (M. Allison, M. McEwen, NASA GISS; Allison and
-// McEwen 2000, Planet. Space Sci. 48, 215): solar longitude within 0.01 degrees and times within some seconds,
-// 1874 to 2127. Light time is left out, as there.
+// The sun and the clock on Mars, after the algorithm of Mars24 (NASA GISS; M. Allison and M. McEwen 2000,
+// Planet. Space Sci. 48, 215), whose published test cases come out in every printed digit. A time is a moment
+// on Mars: light time is no part of it.
 //
 // Longitude is east here as everywhere in this program (Mars24 counts west), latitude planetocentric. Pure
 // functions, for any thread.
