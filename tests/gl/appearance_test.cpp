@@ -16,8 +16,8 @@ namespace {
 
 namespace core = vpe::core;
 
-constexpr int kWidth = 160;
-constexpr int kHeight = 120;
+constexpr int kWidth = 96;
+constexpr int kHeight = 72;
 
 // Rises and falls over some 400 km.
 glm::dvec3 image_at(const glm::dvec3& d) {

@@ -18,13 +18,6 @@ inline constexpr glm::dvec3 kPlainGround{178, 142, 112};
 // possible; colours are cut at 255 at the very end.
 double light(double ambient, double diffuse, double incidence);
 
-// Slope in degrees, 0 to 180, between two unit vectors, exact for small angles too.
-double slope_deg(const glm::dvec3& normal, const glm::dvec3& up);
-
-// Direction of the way down of a facet, degrees clockwise from north in [0, 360); 0 where it is level to 1e-9. At the
-// poles north is along the meridian of longitude 180, respectively 0, as seen from the pole.
-double aspect_deg(const glm::dvec3& normal, const glm::dvec3& up);
-
 // Of Koschmieder's law: -ln 0.02.
 inline constexpr double kKoschmieder = 3.912;
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "vpe/core/shading.h"
+#include "vpe/core/slope.h"
 
 namespace vpe::gl {
 
@@ -15,6 +16,13 @@ namespace {
 constexpr std::size_t kImageSide = paging::kImageIntervals + 1;
 
 glm::vec3 rgb(const mars::Rgb& c) { return {c.r, c.g, c.b}; }
+
+// At the poles north is along the meridian of longitude 0.
+double downhill_deg(const glm::dvec3& normal, const glm::dvec3& up) {
+  const double flat = std::hypot(up.x, up.y);
+  const glm::dvec3 east = flat > 0.0 ? glm::dvec3(-up.y, up.x, 0) / flat : glm::dvec3(0, 1, 0);
+  return core::aspect_deg(normal, up, glm::cross(up, east), east);
+}
 
 bool shows_image(Surfacing s) { return s == Surfacing::kImage || s == Surfacing::kImageAtPosts; }
 bool needs_vertical(Surfacing s) { return s == Surfacing::kSlope || s == Surfacing::kAspect; }
@@ -266,7 +274,7 @@ glm::dvec3 Shader::shown(Surfacing what, const Ground& at, const ShadeParams& pa
   switch (what) {
     case Surfacing::kElevation: return (*params.scale)(at.height_m);
     case Surfacing::kSlope: return (*params.scale)(core::slope_deg(at.normal, at.up));
-    case Surfacing::kAspect: return (*params.scale)(core::aspect_deg(at.normal, at.up));
+    case Surfacing::kAspect: return (*params.scale)(downhill_deg(at.normal, at.up));
     case Surfacing::kImage:
     case Surfacing::kImageAtPosts: return at.image;
     case Surfacing::kPlain: break;
