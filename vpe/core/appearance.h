@@ -61,7 +61,7 @@ struct Appearance : HsvRamp {
   double sun_diffuse = 1.235;
   bool shadows = false;
   double gamma = 1;
-  double haze_visibility_m = 0;  // distance at which contrast has fallen to 2 %; 0 = clear air
+  double haze_visibility_m = 0;  // shading.h, transmittance(); 0 = clear air
   double marker_px = 3;
   Background background = Background::kSky;
 

@@ -117,7 +117,8 @@ const std::vector<Key>& keys() {
       {"shadows", choice<&V::shadows>({{"off", 0}, {"on", 1}}), "", "ground casts shadows on ground"},
       {"gamma", Number{&V::gamma, 0.1, 10}, "", "coefficient of the display: greater is brighter"},
       {"haze.visibility", Number{&V::haze_visibility_m, 0, 1e9}, "m",
-       "distance at which haze leaves 2 % of the contrast; 0 = clear air"},
+       "distance at which haze leaves 2 % of the contrast, in air as at the planet's sphere (thinner above, thicker below); "
+       "0 = clear air"},
       {"markers.size", Number{&V::marker_px, 1, 64}, "px", "side of a dot of mode markers"},
       {"overlay.legend", choice<&V::legend>({{"off", 0}, {"on", 1}}), "", "palette with values and units"},
       {"overlay.graticule", choice<&V::graticule>({{"off", 0}, {"on", 1}}), "",

@@ -207,7 +207,6 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
   glClearDepth(0.0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDepthFunc(GL_GREATER);
-  if (wireframe && picture) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   draws_.clear();
   const PaintBy by = scene_.painting().by;
   const glm::vec3 plain = wireframe || markers ? kLineColour : glm::vec3(core::kPlainGround / 255.0);
@@ -224,17 +223,21 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
     if (picture && request.settings.inspect == core::Inspect::kLevels)
       draws_.back().tint = level_tint(t.tile->key.level);
   }
-  if (picture && markers) {
+  if (picture && (wireframe || markers)) {
+    // What stands before them hides dots and lines, and no sky shows through.
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     tiles_.draw_numbers(request.view, lens, draws_);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    tiles_.draw_vertices(request.view, lens, draws_, static_cast<float>(request.settings.marker_px));
+    if (markers) {
+      tiles_.draw_vertices(request.view, lens, draws_, static_cast<float>(request.settings.marker_px));
+    } else {
+      tiles_.draw_edges(request.view, lens, draws_);
+    }
   } else if (picture) {
-    tiles_.draw(request.view, lens, draws_, wireframe ? TileDrawer::Gaps::kLeave : TileDrawer::Gaps::kClose);
+    tiles_.draw(request.view, lens, draws_);
   } else {
     tiles_.draw_numbers(request.view, lens, draws_);
   }
-  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   if (picture && request.settings.background == core::Background::kSky) draw_sky(request, lens);
   if (picture && request.settings.inspect == core::Inspect::kBorders) {
     glDepthFunc(GL_GREATER);

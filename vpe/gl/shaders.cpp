@@ -25,24 +25,29 @@ layout(location = 7) uniform vec3 face_out;
 layout(location = 8) uniform vec2 texel;
 layout(location = 0) out vec3 texture_position;
 #endif
-#ifdef PALETTE
+#if defined(PALETTE) || defined(HAZE)
 layout(location = 16) uniform vec3 height_terms;
+#endif
+#ifdef PALETTE
 layout(location = 3) out float height;
 #endif
 #ifdef HAZE
-layout(location = 4) out vec3 eye_position;
+layout(location = 4) out vec4 eye_position;
 #endif
 void main() {
   vec3 p = position;
   vec3 from_centre = centre + p;
-#ifdef PALETTE
+#if defined(PALETTE) || defined(HAZE)
   // |from_centre| - radius without the difference of two radii.
-  height = (dot(p, 2.0 * centre + p) + height_terms.x) / (length(from_centre) + height_terms.y) * height_terms.z;
+  float drawn_height = (dot(p, 2.0 * centre + p) + height_terms.x) / (length(from_centre) + height_terms.y);
+#endif
+#ifdef PALETTE
+  height = drawn_height * height_terms.z;
 #endif
   if (gl_VertexID >= first_foot) p -= skirt * normalize(from_centre);
   vec3 e = rotation * (p + to_eye);
 #ifdef HAZE
-  eye_position = e;
+  eye_position = vec4(e, drawn_height);
 #endif
   // Infinite reversed depth: 1 at the near plane, 0 at infinity.
   gl_Position = vec4(lens.x * e.x + lens.z * e.z, lens.y * e.y + lens.w * e.z, near, -e.z);
@@ -78,8 +83,35 @@ layout(location = 17) uniform vec2 palette_terms;
 layout(binding = 1) uniform sampler2D palette;
 #endif
 #ifdef HAZE
-layout(location = 4) in vec3 eye_position;
+layout(location = 4) in vec4 eye_position;  // and height
 layout(location = 18) uniform vec4 haze;
+layout(location = 20) uniform vec3 up;
+layout(location = 21) uniform vec4 air;  // planet's radius, eye's height, height of air's top, 1 / its scale
+// core::air_m(), with the same points and weights. Triangles far away are chords deep below the ground: the way ends at
+// the height between their corners.
+const vec3 kPoints = vec3(0.033765242898423987, 0.169395306766867743, 0.380690406958401546);
+const vec3 kWeights = vec3(0.0856622461895851725, 0.1803807865240693038, 0.2339569672863455237);
+float air_length() {
+  float range = length(eye_position.xyz);
+  float sine = dot(eye_position.xyz, up) / range;
+  float r = air.x + air.y;
+  float inner = air.y * (2.0 * air.x + air.y);
+  float half_way = -r * sine;
+  float under = half_way * half_way - (inner - air.z * (2.0 * air.x + air.z));
+  if (under <= 0.0) return 0.0;
+  float root = sqrt(under);
+  float begin = clamp(half_way - root, 0.0, range);
+  float size = clamp(half_way + root, 0.0, range) - begin;
+  float off = eye_position.w * (2.0 * air.x + eye_position.w) - (inner + range * (2.0 * r * sine + range));
+  float sum = 0.0;
+  for (int k = 0; k < 6; ++k) {
+    float x = k < 3 ? kPoints[k] : 1.0 - kPoints[k - 3];
+    float t = begin + x * size;
+    float rise = inner + t * (2.0 * r * sine + t) + x * off;
+    sum += kWeights[k < 3 ? k : k - 3] * exp(-rise / (sqrt(air.x * air.x + rise) + air.x) * air.w);
+  }
+  return size * sum;
+}
 #endif
 layout(location = 0) out vec4 colour;
 #ifdef GAPS
@@ -107,7 +139,7 @@ void paint() {
   show_gaps(colour, has_data);
 #endif
 #ifdef HAZE
-  colour.rgb = mix(haze.rgb, colour.rgb, exp(-haze.a * length(eye_position)));
+  colour.rgb = mix(haze.rgb, colour.rgb, exp(-haze.a * air_length()));
 #endif
   colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
 }
@@ -160,8 +192,8 @@ layout(location = 3) in float corner_height[];
 layout(location = 3) out float height;
 #endif
 #ifdef HAZE
-layout(location = 4) in vec3 corner_eye_position[];
-layout(location = 4) out vec3 eye_position;
+layout(location = 4) in vec4 corner_eye_position[];
+layout(location = 4) out vec4 eye_position;
 #endif
 #ifdef FACETS
 layout(location = 19) uniform int first_facet;

@@ -50,6 +50,8 @@ enum TileUniform : int {
   kHeightTerms = 16,   // vec3: |centre|^2 - radius^2, radius, 1 / exaggeration
   kPaletteTerms = 17,  // vec2: palette coordinate = height * x + y
   kHaze = 18,          // vec4: colour, extinction per metre
+  kUp = 20,            // vec3: the vertical at the eye, in eye coordinates
+  kAir = 21,           // vec4: planet's radius, eye's height, height of air's top, 1 / its scale
   kFirstFacet = 19,    // int: facet of the first primitive
 };
 

@@ -107,6 +107,11 @@ void TileDrawer::use(const Program& program, const TilePaint& paint, TilePart pa
   if (paint.haze) {
     const auto extinction = static_cast<float>(core::kKoschmieder / air_.visibility_m);
     glUniform4f(kHaze, air_.colour.x, air_.colour.y, air_.colour.z, extinction);
+    const double r = glm::length(view.eye.eye_m);
+    const glm::vec3 up = rotation * glm::vec3(view.eye.eye_m / r);
+    glUniform3fv(kUp, 1, &up[0]);
+    glUniform4f(kAir, static_cast<float>(radius_m_), static_cast<float>(r - radius_m_),
+                static_cast<float>(core::kAirTop_m), static_cast<float>(1.0 / core::kAirScale_m));
   }
 }
 
@@ -149,7 +154,7 @@ void TileDrawer::use(const TileDraw& tile, const TilePaint& paint, TilePart part
     const glm::vec3 base = factor > 0.0F ? tile.colour * factor : glm::vec3(1.0F);
     glUniform4f(kFlatColour, base.x, base.y, base.z, alone ? 1.0F : 0.0F);
   }
-  if (paint.palette) {
+  if (paint.palette || paint.haze) {
     const double outer2 = glm::dot(mesh.centre_m, mesh.centre_m) - radius_m_ * radius_m_;
     glUniform3f(kHeightTerms, static_cast<float>(outer2), static_cast<float>(radius_m_),
                 static_cast<float>(1.0 / exaggeration_));
@@ -205,12 +210,11 @@ void TileDrawer::draw_part(const TileDraw& tile, const TilePaint& paint, TilePar
   }
 }
 
-void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, Gaps gaps) {
+void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
   glBindVertexArray(array_.name());
   std::map<TilePaint, std::vector<const TileDraw*>> by_paint;
   for (const TileDraw& tile : tiles) by_paint[paint_of(tile)].push_back(&tile);
   for (const TilePart part : {TilePart::kSurface, TilePart::kRibbon, TilePart::kSkirt}) {
-    if (part != TilePart::kSurface && gaps == Gaps::kLeave) return;
     for (const auto& [paint, painted] : by_paint) {
       const Programs& made = programs(paint);
       use(part == TilePart::kSurface  ? made.surface
@@ -222,24 +226,39 @@ void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const 
   }
 }
 
-void TileDrawer::draw_vertices(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
-                               float size_px) {
+template <typename DrawOne>
+void TileDrawer::draw_before_ground(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+                                    const DrawOne& draw_one) {
   Lens nearer = lens;
   nearer.near_m *= kNearer;
   glBindVertexArray(array_.name());
-  glPointSize(size_px);
   for (const TileDraw& tile : tiles) {
     const TilePaint paint = paint_of(tile);
     use(programs(paint).surface, paint, TilePart::kSurface, view, nearer);
     use(tile, paint, TilePart::kSurface, view, nearer.near_m);
-    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(tile.mesh->first_foot));
+    draw_one(*tile.mesh);
   }
+}
+
+void TileDrawer::draw_vertices(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+                               float size_px) {
+  glPointSize(size_px);
+  draw_before_ground(view, lens, tiles, [](const GpuMesh& mesh) {
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(mesh.first_foot));
+  });
   glPointSize(1.0F);
+}
+
+void TileDrawer::draw_edges(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  draw_before_ground(view, lens, tiles,
+                     [this](const GpuMesh& mesh) { draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface); });
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
 void TileDrawer::draw_numbers(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
   numbered_from_ = tiles.data();
-  draw(view, lens, tiles, Gaps::kClose);
+  draw(view, lens, tiles);
   numbered_from_ = nullptr;
 }
 

@@ -48,8 +48,6 @@ struct PaletteTable {
 // edge-on, when the same ribbons close what they leave.
 class TileDrawer {
  public:
-  enum class Gaps { kLeave, kClose };
-
   explicit TileDrawer(double planet_radius_m);
 
   // For the draws that follow. The table may be dropped when it returns; null: no tile shows a palette.
@@ -61,9 +59,12 @@ class TileDrawer {
   void drop_unused();
 
   // The target's framebuffer is bound, depth test and polygon mode are set.
-  void draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, Gaps gaps);
+  void draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles);
 
-  // A square dot at each vertex that the surfaces, drawn before, do not hide.
+  // Edges of triangles that the surfaces, drawn before, do not hide.
+  void draw_edges(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles);
+
+  // A square dot at each vertex, likewise.
   void draw_vertices(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, float size_px);
 
   // Lines along the borders of tiles over what draw() drew with the same view, lens and tiles. Depth and alpha
@@ -72,7 +73,7 @@ class TileDrawer {
   void draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
                     const glm::vec3& colour);
 
-  // draw() without gaps in colours that number tiles and their parts (tile_number.h), on black.
+  // draw() in colours that number tiles and their parts (tile_number.h), on black.
   void draw_numbers(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles);
 
   // What is drawn at a pixel's centre is a point of the meshes moved by at most this in the picture: by a
@@ -96,6 +97,9 @@ class TileDrawer {
   void use(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view, float near_m);
   void draw_part(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
                  float near_m);
+  template <typename DrawOne>
+  void draw_before_ground(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+                          const DrawOne& draw_one);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
 
   double radius_m_;
