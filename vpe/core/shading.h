@@ -41,7 +41,10 @@ double air_m(double planet_radius_m, double eye_height_m, double up_sine, double
 // for visibility 0, clear air.
 double transmittance(double air_m, double visibility_m);
 
-// Colour of far ground and of the sky at the horizon, for the sun's height over it at the eye (sine).
+// Colour of dust in full light.
+inline constexpr glm::dvec3 kDust{212, 173, 135};
+
+// Colour that haze puts over ground where the sun stands so high (sine).
 glm::dvec3 haze_colour(double sun_sine);
 
 // x^(1 / gamma) on every channel, in place.

@@ -191,9 +191,7 @@ void PolygonRenderer::set_paint(const core::DrawRequest& request) {
     palette_ = wanted;
   }
   tiles_.set_exaggeration(appearance.exaggeration);
-  const glm::dvec3 up = glm::normalize(request.view.eye.eye_m);
-  tiles_.set_air({glm::vec3(core::haze_colour(glm::dot(up, request.sun)) / 255.0),
-                  static_cast<float>(appearance.haze_visibility_m)});
+  tiles_.set_air({glm::vec3(request.sun), static_cast<float>(appearance.haze_visibility_m)});
   if (appearance.background != core::Background::kSky) sky_program_ = {};
 }
 

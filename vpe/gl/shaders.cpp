@@ -86,6 +86,7 @@ layout(binding = 1) uniform sampler2D palette;
 layout(location = 4) in vec4 eye_position;  // and height
 layout(location = 18) uniform vec4 haze;
 layout(location = 20) uniform vec3 up;
+layout(location = 22) uniform vec3 sun;
 layout(location = 21) uniform vec4 air;  // planet's radius, eye's height, height of air's top, 1 / its scale
 // core::air_m(), with the same points and weights. Triangles far away are chords deep below the ground: the way ends at
 // the height between their corners.
@@ -139,7 +140,9 @@ void paint() {
   show_gaps(colour, has_data);
 #endif
 #ifdef HAZE
-  colour.rgb = mix(haze.rgb, colour.rgb, exp(-haze.a * air_length()));
+  // core::haze_colour() over the ground.
+  float day = smoothstep(-0.15, 0.3, dot(normalize(up * (air.x + air.y) + eye_position.xyz), sun));
+  colour.rgb = mix(haze.rgb * (0.08 + 0.92 * day), colour.rgb, exp(-haze.a * air_length()));
 #endif
   colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
 }

@@ -49,9 +49,10 @@ enum TileUniform : int {
   kSnapFrom = 15,      // float: depth from which no vertex shares a triangle with one behind the near plane
   kHeightTerms = 16,   // vec3: |centre|^2 - radius^2, radius, 1 / exaggeration
   kPaletteTerms = 17,  // vec2: palette coordinate = height * x + y
-  kHaze = 18,          // vec4: colour, extinction per metre
+  kHaze = 18,          // vec4: colour by day, extinction per metre
   kUp = 20,            // vec3: the vertical at the eye, in eye coordinates
   kAir = 21,           // vec4: planet's radius, eye's height, height of air's top, 1 / its scale
+  kSun = 22,           // vec3: towards the sun, in eye coordinates
   kFirstFacet = 19,    // int: facet of the first primitive
 };
 

@@ -106,10 +106,13 @@ void TileDrawer::use(const Program& program, const TilePaint& paint, TilePart pa
   }
   if (paint.haze) {
     const auto extinction = static_cast<float>(core::kKoschmieder / air_.visibility_m);
-    glUniform4f(kHaze, air_.colour.x, air_.colour.y, air_.colour.z, extinction);
+    const glm::vec3 dust(core::kDust / 255.0);
+    glUniform4f(kHaze, dust.x, dust.y, dust.z, extinction);
     const double r = glm::length(view.eye.eye_m);
     const glm::vec3 up = rotation * glm::vec3(view.eye.eye_m / r);
     glUniform3fv(kUp, 1, &up[0]);
+    const glm::vec3 sun = rotation * air_.sun;
+    glUniform3fv(kSun, 1, &sun[0]);
     glUniform4f(kAir, static_cast<float>(radius_m_), static_cast<float>(r - radius_m_),
                 static_cast<float>(core::kAirTop_m), static_cast<float>(1.0 / core::kAirScale_m));
   }

@@ -32,7 +32,7 @@ struct TileDraw {
 
 // What all tiles of a picture share.
 struct Air {
-  glm::vec3 colour{0, 0, 0};
+  glm::vec3 sun{1, 0, 0};  // body-fixed
   float visibility_m = 0;  // 0: clear
 };
 struct PaletteTable {
