@@ -179,7 +179,7 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
   const auto file = planet();
   const lod::TileInfo& tile = file->tree()[0];
   const auto needs = [&](const core::Appearance& a) {
-    const auto scale = vpe::gl::needs_scale(a, true) ? std::make_shared<const core::ColourScale>(a) : nullptr;
+    const auto scale = paging::needs_scale(a, true) ? std::make_shared<const core::ColourScale>(a) : nullptr;
     return vpe::gl::painting(a, {1, 0, 0}, true, scale);
   };
   const auto vertex_bytes = [&](const core::Appearance& a) {
@@ -192,7 +192,7 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
     const bool textured = vpe::gl::is_textured(tile.key, *file, p);
     EXPECT_EQ(textured, p.by == vpe::gl::PaintBy::kTexture);
     EXPECT_EQ(vertex_bytes(a) == 16U, textured && !p.look.flat);
-    EXPECT_EQ(p.look.scale != nullptr, vpe::gl::needs_scale(a, true));
+    EXPECT_EQ(p.look.scale != nullptr, paging::needs_scale(a, true));
     if (a.mode == core::Mode::kWireframe) {
       EXPECT_FALSE(textured);
       EXPECT_EQ(vertex_bytes(a), 12U);

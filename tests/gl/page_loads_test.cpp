@@ -16,7 +16,7 @@ using vpe::gl::PageKey;
 using vpe::gl::PageKeyHash;
 using vpe::gl::PageKind;
 using vpe::gl::PageLoader;
-using vpe::gl::ShadeParams;
+using paging::ShadeParams;
 using TilePager = paging::Pager<PageKey, Page, PageKeyHash>;
 
 // Any page that the planet has: meshes of all variants, textures in two looks, posts.
@@ -54,7 +54,7 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
   paging::build_planet(options, FakeElevation(bumpy_height), &image);
   const auto planet = paging::PlanetFile::open(options.output);
   std::vector<std::shared_ptr<const ShadeParams>> looks;
-  for (const auto surfacing : {vpe::gl::Surfacing::kElevation, vpe::gl::Surfacing::kImage}) {
+  for (const auto surfacing : {paging::Surfacing::kElevation, paging::Surfacing::kImage}) {
     ShadeParams look;
     look.surfacing = surfacing;
     look.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
@@ -67,7 +67,7 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
   std::size_t taken = 0;
   constexpr int kRounds = 12;
   for (int round = 0; round < kRounds; ++round) {
-    const auto shader = std::make_shared<const vpe::gl::Shader>(planet, std::size_t{50000});
+    const auto shader = std::make_shared<const paging::GroundPainter>(planet, std::size_t{50000});
     const PageLoader loader(planet, shader);
     TilePager pager([&](const PageKey& key) { return loader.load(key); }, random.integer(1, 4), 200000);
     for (int step = 0; step < 25; ++step) {

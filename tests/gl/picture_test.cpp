@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/gl/gl_fixture.h"
-#include "vpe/gl/shade.h"
+#include "paging/ground_paint.h"
 
 namespace {
 
@@ -135,13 +135,13 @@ TEST_F(Picture, NightIsDark) {
 // Texels on shared borders are equal from both sides, over cube edges and corners too: no seams.
 TEST_F(Picture, ShadingMeetsAtBorders) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 100000);
-  const vpe::gl::Shader shader(planet, std::size_t{64} << 20);
-  vpe::gl::ShadeParams params;
+  const paging::GroundPainter shader(planet, std::size_t{64} << 20);
+  paging::ShadeParams params;
   params.sun = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
   params.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
   const int level = planet->meta().finest_level;
   const int n = planet->meta().tile.intervals();
-  const auto texel = [&](const vpe::gl::ShadedTile& tile, lod::Edge edge, int along) {
+  const auto texel = [&](const paging::ShadedTile& tile, lod::Edge edge, int along) {
     const int last = tile.intervals;
     const int x = edge == lod::Edge::kWest ? 0 : edge == lod::Edge::kEast ? last : along;
     const int y = edge == lod::Edge::kSouth ? 0 : edge == lod::Edge::kNorth ? last : along;
@@ -153,10 +153,10 @@ TEST_F(Picture, ShadingMeetsAtBorders) {
     for (const auto& [i, j] :
          {std::pair{0, 0}, {tiles - 1, tiles - 1}, {0, tiles - 1}, {tiles / 2, tiles / 3}}) {
       const lod::TileKey key{static_cast<mars::Face>(f), level, i, j};
-      const vpe::gl::ShadedTile own = shader.shade(key, n, params);
+      const paging::ShadedTile own = shader.shade(key, n, params);
       for (const lod::Edge edge : lod::kEdges) {
         const lod::Neighbour across = lod::neighbour(key, edge);
-        const vpe::gl::ShadedTile other = shader.shade(across.key, n, params);
+        const paging::ShadedTile other = shader.shade(across.key, n, params);
         for (int a = 1; a < n; ++a) {  // corners of the cube have three tiles: their normals may differ
           const auto p = texel(own, edge, a);
           const auto q = texel(other, across.edge, across.reversed ? n - a : a);

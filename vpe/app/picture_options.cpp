@@ -10,16 +10,26 @@
 #include "vpe/core/heap.h"
 #include "vpe/core/number.h"
 #include "vpe/gl/polygon_renderer.h"
+#include "vpe/voxel/ray_renderer.h"
 
 namespace vpe::app {
+
+namespace {
+
+const std::string kPolygons = "polygon";
+const std::string kRays = "voxel";
+
+}  // namespace
 
 void add_picture_options(CLI::App& command, PictureOptions& options) {
   command
       .add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--backend", options.backend, "How to draw")
-      ->check(CLI::IsMember({"polygon"}))
+  command
+      .add_option("--backend", options.backend,
+                  "How to draw: triangles by OpenGL, or a ray a pixel against the exact surface")
+      ->check(CLI::IsMember({kPolygons, kRays}))
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")
       ->check(number_within(0.0, 1000.0));
@@ -81,10 +91,11 @@ core::Settings make_settings(const PictureOptions& options) {
 
 std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet) {
-  (void)options;
   // It costs a fifth of a film's time in page faults, so only who is short of memory pays.
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) core::keep_heap_compact();
+  if (options.backend == kRays)
+    return voxel::make_ray_renderer(std::move(planet), {memory_bytes(common), common.threads});
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;

@@ -9,11 +9,14 @@
 
 #include "lod/tile_key.h"
 #include "lod/walls.h"
+#include "paging/ground_paint.h"
 #include "vpe/gl/objects.h"
-#include "vpe/gl/shade.h"
 #include "vpe/gl/tile_geometry.h"
 
 namespace vpe::gl {
+
+using paging::ShadedTile;
+using paging::ShadeParams;
 
 struct GpuMesh {
   Buffer positions;

@@ -27,58 +27,17 @@ int origin(const lod::SelectedTile& tile, const core::View& view, const paging::
 
 }  // namespace
 
-namespace {
-
-Surfacing surfacing_of(core::Colour colour, bool has_image) {
-  switch (colour) {
-    case core::Colour::kElevation: return Surfacing::kElevation;
-    case core::Colour::kSlope: return Surfacing::kSlope;
-    case core::Colour::kAspect: return Surfacing::kAspect;
-    case core::Colour::kImage: return has_image ? Surfacing::kImageAtPosts : Surfacing::kPlain;
-    case core::Colour::kNone: break;
-  }
-  return Surfacing::kPlain;
-}
-
-bool shows_scale(Surfacing s) {
-  return s == Surfacing::kElevation || s == Surfacing::kSlope || s == Surfacing::kAspect;
-}
-
-}  // namespace
-
 Painting painting(const core::Appearance& a, const glm::dvec3& sun, bool has_image,
                   std::shared_ptr<const core::ColourScale> scale) {
-  using core::Mode;
   Painting out;
-  ShadeParams& look = out.look;
-  const Surfacing shown = surfacing_of(a.colour, has_image);
-  const bool of_vertices = a.mode == Mode::kWireframe || a.mode == Mode::kMarkers;
-  out.shows_gaps = !of_vertices;
-  look.exaggeration = a.exaggeration;
-  look.flat = a.shading == core::Shading::kFlat && !of_vertices;
-  look.lit = !of_vertices && a.mode != Mode::kUnlit;
-  look.surfacing = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? Surfacing::kPlain
-                   : a.mode == Mode::kTextured && has_image           ? Surfacing::kImage
-                                                                      : shown;
-  if (look.surfacing == Surfacing::kImage && a.colourise) look.hue = shown;
-  // What is not used is not set, so that it cannot change a look.
-  if (look.lit) {
-    look.sun = sun;
-    look.ambient = a.sun_ambient;
-    look.diffuse = a.sun_diffuse;
-    look.shadows = a.shadows;
-  }
-  if (shows_scale(look.surfacing) || shows_scale(look.hue)) look.scale = std::move(scale);
-  out.by = look.lit                                                ? PaintBy::kTexture
-           : look.surfacing == Surfacing::kPlain                   ? PaintBy::kColour
-           : look.surfacing == Surfacing::kElevation && !look.flat ? PaintBy::kPalette
-                                                                   : PaintBy::kTexture;
+  out.shows_gaps = a.mode != core::Mode::kWireframe && a.mode != core::Mode::kMarkers;
+  out.look = paging::shade_params(a, sun, has_image, std::move(scale));
+  const ShadeParams& look = out.look;
+  out.by = look.lit                                                        ? PaintBy::kTexture
+           : look.surfacing == paging::Surfacing::kPlain                   ? PaintBy::kColour
+           : look.surfacing == paging::Surfacing::kElevation && !look.flat ? PaintBy::kPalette
+                                                                           : PaintBy::kTexture;
   return out;
-}
-
-bool needs_scale(const core::Appearance& appearance, bool has_image) {
-  const ShadeParams look = painting(appearance, {1, 0, 0}, has_image, nullptr).look;
-  return shows_scale(look.surfacing) || shows_scale(look.hue);
 }
 
 bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting) {
@@ -91,7 +50,7 @@ bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, co
 }
 
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
-                                 const paging::PlanetFile& planet, const Shader& shader,
+                                 const paging::PlanetFile& planet, const GroundPainter& painter,
                                  const NeedOptions& options) {
   const double focal = core::focal_px(view);
   std::vector<TileNeed> needs;
@@ -106,9 +65,9 @@ std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const
       const double side = lod::nominal_side_m(tile.key.level, planet.radius_m());
       const double wanted = 0.75 * side * focal / std::max(tile.min_distance_m, 1e-3 * side);
       const int most =
-          std::min(kLargestTexture, shader.useful_intervals(tile.key, options.painting.look.surfacing));
+          std::min(kLargestTexture, painter.useful_intervals(tile.key, options.painting.look.surfacing));
       // Colours of posts are not made finer than posts.
-      const bool at_posts = options.painting.look.surfacing == Surfacing::kImageAtPosts;
+      const bool at_posts = options.painting.look.surfacing == paging::Surfacing::kImageAtPosts;
       need.paint = at_posts ? std::min(kSmallestTexture, most) : kSmallestTexture;
       while (need.paint < wanted && need.paint < most) need.paint *= 2;
     }

@@ -25,10 +25,9 @@ struct Painting {
   bool operator==(const Painting&) const = default;
 };
 
-// scale: of the appearance; null where it shows none (needs_scale).
+// scale: of the appearance; null where it shows none (paging::needs_scale).
 Painting painting(const core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
                   std::shared_ptr<const core::ColourScale> scale);
-bool needs_scale(const core::Appearance& appearance, bool has_image);
 
 inline constexpr int kSmallestTexture = 128;
 
@@ -50,7 +49,7 @@ struct NeedOptions {
 // One for each tile. Textures have one texel a pixel at the tile's nearest point, unless the data or the memory
 // has less.
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
-                                 const paging::PlanetFile& planet, const Shader& shader,
+                                 const paging::PlanetFile& planet, const GroundPainter& painter,
                                  const NeedOptions& options);
 
 }  // namespace vpe::gl

@@ -37,14 +37,14 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
       if (key.look->flat) {
         with_mesh(key.tile, painted_variant(key.detail),
                   [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
-                    page.shaded = shader_->shade_facets(key.tile, mesh, height_m, *key.look);
+                    page.shaded = painter_->shade_facets(key.tile, mesh, height_m, *key.look);
                     for (const std::uint32_t triangle : border_triangles(mesh)) {
                       for (std::size_t c = 0; c < 4; ++c)
                         page.shaded.texels.push_back(page.shaded.texels[4 * triangle + c]);
                     }
                   });
       } else {
-        page.shaded = shader_->shade(key.tile, key.detail, *key.look);
+        page.shaded = painter_->shade(key.tile, key.detail, *key.look);
       }
       const std::size_t bytes = page.shaded.bytes();
       return {std::move(page), bytes};

@@ -6,11 +6,15 @@
 #include <utility>
 
 #include "lod/walls.h"
+#include "paging/ground_paint.h"
 #include "paging/planet_file.h"
-#include "vpe/gl/shade.h"
 #include "vpe/gl/tile_geometry.h"
 
 namespace vpe::gl {
+
+using paging::GroundPainter;
+using paging::ShadedTile;
+using paging::ShadeParams;
 
 enum class PageKind : std::uint8_t {
   kMesh,     // of a variant, relative to an origin, at an exaggeration
@@ -51,8 +55,8 @@ struct Page {
 // Thread rule: any thread may load.
 class PageLoader {
  public:
-  PageLoader(std::shared_ptr<const paging::PlanetFile> planet, std::shared_ptr<const Shader> shader)
-      : planet_(std::move(planet)), shader_(std::move(shader)) {}
+  PageLoader(std::shared_ptr<const paging::PlanetFile> planet, std::shared_ptr<const GroundPainter> painter)
+      : planet_(std::move(planet)), painter_(std::move(painter)) {}
 
   // The page and its bytes. Throws paging::PlanetError that names the tile.
   std::pair<Page, std::size_t> load(const PageKey& key) const;
@@ -63,7 +67,7 @@ class PageLoader {
   void with_mesh(const lod::TileKey& tile, int variant, Visit&& visit) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  std::shared_ptr<const Shader> shader_;
+  std::shared_ptr<const GroundPainter> painter_;
 };
 
 }  // namespace vpe::gl

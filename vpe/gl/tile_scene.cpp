@@ -20,7 +20,7 @@ double ms_since(Clock::time_point start) {
 }
 
 // Share of the memory budget for each holder; the rest is for work in progress.
-constexpr double kShaderShare = 0.14;
+constexpr double kPainterShare = 0.14;
 constexpr double kMeshShare = 0.17;
 constexpr double kTextureShare = 0.34;
 constexpr double kLoadedShare = 0.05;
@@ -59,8 +59,8 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
     : planet_(std::move(planet)),
       most_triangles_(most_triangles(options.memory_bytes)),
       memory_(for_tiles(options.memory_bytes, planet_->tree().bytes())),
-      shader_(std::make_shared<Shader>(planet_, share(kShaderShare))),
-      loader_(planet_, shader_),
+      painter_(std::make_shared<GroundPainter>(planet_, share(kPainterShare))),
+      loader_(planet_, painter_),
       load_([this, before = options.before_load](const PageKey& key) {
         if (before) before(key.tile);
         return loader_.load(key);
@@ -72,7 +72,7 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
 void TileScene::set_look(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
   const bool has_image = planet_->meta().finest_image_level >= 0;
-  if (!needs_scale(appearance, has_image)) {
+  if (!paging::needs_scale(appearance, has_image)) {
     scale_ = nullptr;
   } else if (!scale_ || !same_scale(appearance, scale_of_)) {
     scale_ = std::make_shared<const core::ColourScale>(appearance);
@@ -98,7 +98,7 @@ void TileScene::drop_other_looks() {
 }
 
 std::vector<TileNeed> TileScene::needs_of(const lod::Selection& selection, const core::View& view) const {
-  return tile_needs(selection.tiles, view, *planet_, *shader_, {painting_, share(kTextureShare)});
+  return tile_needs(selection.tiles, view, *planet_, *painter_, {painting_, share(kTextureShare)});
 }
 
 PageKey TileScene::mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const {
@@ -363,7 +363,7 @@ void TileScene::report(core::DrawResult& result) const {
   const paging::PagerCounts counts = pager_.counts();
   s.pages_wanted = static_cast<std::int64_t>(counts.wanted);
   s.pages_loading = static_cast<std::int64_t>(counts.loading);
-  s.bytes_resident = static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + shader_->bytes_resident() +
+  s.bytes_resident = static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + painter_->bytes_resident() +
                                                counts.bytes + planet_->tree().bytes());
   result.settled = settled_;
   result.failures = failures_;

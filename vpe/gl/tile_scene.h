@@ -103,7 +103,7 @@ class TileScene {
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::int64_t most_triangles_;
   std::size_t memory_;
-  std::shared_ptr<Shader> shader_;
+  std::shared_ptr<GroundPainter> painter_;
   PageLoader loader_;
 
   Resident<MeshDetail, GpuMesh> meshes_;

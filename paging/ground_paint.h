@@ -10,6 +10,7 @@
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,11 +20,11 @@
 #include "paging/surface.h"
 #include "vpe/core/palette.h"
 
-namespace vpe::gl {
+namespace paging {
 
 // Where colours come from.
 enum class Surfacing {
-  kPlain,  // core::kPlainGround
+  kPlain,  // vpe::core::kPlainGround
   kElevation,
   kSlope,
   kAspect,
@@ -41,10 +42,15 @@ struct ShadeParams {
   double ambient = 0.05;
   double diffuse = 1.235;
   double exaggeration = 1;
-  std::shared_ptr<const core::ColourScale> scale;  // where elevation, slope or aspect is shown
+  std::shared_ptr<const vpe::core::ColourScale> scale;  // where elevation, slope or aspect is shown
   // Two scales are one when they are one object.
   bool operator==(const ShadeParams&) const = default;
 };
+
+// What an appearance asks of ground. scale: of the appearance; null where it shows none.
+ShadeParams shade_params(const vpe::core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
+                         std::shared_ptr<const vpe::core::ColourScale> scale);
+bool needs_scale(const vpe::core::Appearance& appearance, bool has_image);
 
 // Normals and heights at the posts of one stored tile.
 struct NormalTile {
@@ -70,9 +76,9 @@ struct ShadedTile {
 };
 
 // Any thread may call any member.
-class Shader {
+class GroundPainter {
  public:
-  Shader(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
+  GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes);
 
   // Number of texture intervals over a tile beyond which the data has nothing more to show.
   int useful_intervals(const lod::TileKey& key, Surfacing surfacing) const;
@@ -84,6 +90,21 @@ class Shader {
   // image below its middle. height_m: of the mesh's vertices, above the sphere.
   ShadedTile shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
                           const ShadeParams& params) const;
+
+  // What colour_at() looked at last; one a thread, and for one painter alone.
+  class Cursor {
+    friend class GroundPainter;
+    std::shared_ptr<const NormalTile> ground;
+    lod::TileKey ground_key;
+    std::shared_ptr<const ImageTile> image;
+    lod::TileKey image_key;
+  };
+
+  // Colour, 0 to 255 and not yet cut to that, of the ground in a direction: the same definition without texels.
+  // Posts and images are about footprint_m apart, or as fine as they are; facets are those of S. Nothing where
+  // the nearest post has no data.
+  std::optional<glm::dvec3> colour_at(const glm::dvec3& direction, double footprint_m,
+                                      const ShadeParams& params, Cursor& cursor) const;
 
   std::size_t bytes_resident() const;
 
@@ -97,7 +118,7 @@ class Shader {
     glm::dvec3 image{0, 0, 0};
   };
   struct Picture {
-    std::shared_ptr<const paging::ImageTile> tile;
+    std::shared_ptr<const ImageTile> tile;
     lod::TileKey key;
   };
   struct NormalKey {
@@ -114,24 +135,25 @@ class Shader {
 
   lod::TileKey deepest(const lod::TileKey& key) const;
   int levels_below(const lod::TileKey& key, int limit) const;
-  std::shared_ptr<const paging::TileHeights> heights(const lod::TileKey& key) const;
-  std::shared_ptr<const paging::ImageTile> image(const lod::TileKey& key) const;
+  std::shared_ptr<const TileHeights> heights(const lod::TileKey& key) const;
+  std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
   std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadeParams& params) const;
   NormalTile make_normals(const lod::TileKey& key, const ShadeParams& params) const;
   Picture picture(const lod::TileKey& block, const ShadeParams& params) const;
   glm::dvec3 shown(Surfacing what, const Ground& at, const ShadeParams& params) const;
   glm::dvec3 colour(const Ground& at, const ShadeParams& params) const;
+  glm::dvec3 image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const;
   std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge,
                                      std::vector<glm::dvec3>& points) const;
   void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
                    ShadedTile& out) const;
   bool sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadeParams& params) const;
 
-  std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::Surface surface_;  // casts shadows
-  mutable paging::LruCache<lod::TileKey, paging::TileHeights, lod::TileKeyHash> heights_;
-  mutable paging::LruCache<NormalKey, NormalTile, NormalKeyHash> normals_;
-  mutable paging::LruCache<lod::TileKey, paging::ImageTile, lod::TileKeyHash> images_;
+  std::shared_ptr<const PlanetFile> planet_;
+  Surface surface_;  // casts shadows
+  mutable LruCache<lod::TileKey, TileHeights, lod::TileKeyHash> heights_;
+  mutable LruCache<NormalKey, NormalTile, NormalKeyHash> normals_;
+  mutable LruCache<lod::TileKey, ImageTile, lod::TileKeyHash> images_;
 };
 
-}  // namespace vpe::gl
+}  // namespace paging

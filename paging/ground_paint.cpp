@@ -1,4 +1,4 @@
-#include "vpe/gl/shade.h"
+#include "paging/ground_paint.h"
 
 #include <algorithm>
 #include <array>
@@ -9,11 +9,11 @@
 #include "vpe/core/shading.h"
 #include "vpe/core/slope.h"
 
-namespace vpe::gl {
+namespace paging {
 
 namespace {
 
-constexpr std::size_t kImageSide = paging::kImageIntervals + 1;
+constexpr std::size_t kImageSide = kImageIntervals + 1;
 
 glm::vec3 rgb(const mars::Rgb& c) { return {c.r, c.g, c.b}; }
 
@@ -21,10 +21,25 @@ glm::vec3 rgb(const mars::Rgb& c) { return {c.r, c.g, c.b}; }
 double downhill_deg(const glm::dvec3& normal, const glm::dvec3& up) {
   const double flat = std::hypot(up.x, up.y);
   const glm::dvec3 east = flat > 0.0 ? glm::dvec3(-up.y, up.x, 0) / flat : glm::dvec3(0, 1, 0);
-  return core::aspect_deg(normal, up, glm::cross(up, east), east);
+  return vpe::core::aspect_deg(normal, up, glm::cross(up, east), east);
 }
 
 bool shows_image(Surfacing s) { return s == Surfacing::kImage || s == Surfacing::kImageAtPosts; }
+Surfacing surfacing_of(vpe::core::Colour colour, bool has_image) {
+  switch (colour) {
+    case vpe::core::Colour::kElevation: return Surfacing::kElevation;
+    case vpe::core::Colour::kSlope: return Surfacing::kSlope;
+    case vpe::core::Colour::kAspect: return Surfacing::kAspect;
+    case vpe::core::Colour::kImage: return has_image ? Surfacing::kImageAtPosts : Surfacing::kPlain;
+    case vpe::core::Colour::kNone: break;
+  }
+  return Surfacing::kPlain;
+}
+
+bool shows_scale(Surfacing s) {
+  return s == Surfacing::kElevation || s == Surfacing::kSlope || s == Surfacing::kAspect;
+}
+
 bool needs_vertical(Surfacing s) { return s == Surfacing::kSlope || s == Surfacing::kAspect; }
 
 std::uint8_t to_byte(float x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5F, 0.0F, 255.0F)); }
@@ -103,40 +118,70 @@ void make_even(const lod::TileKey& key, ShadedTile& tile) {
 
 }  // namespace
 
+ShadeParams shade_params(const vpe::core::Appearance& a, const glm::dvec3& sun, bool has_image,
+                         std::shared_ptr<const vpe::core::ColourScale> scale) {
+  using vpe::core::Mode;
+  ShadeParams look;
+  const Surfacing shown = surfacing_of(a.colour, has_image);
+  const bool of_vertices = a.mode == Mode::kWireframe || a.mode == Mode::kMarkers;
+  look.exaggeration = a.exaggeration;
+  look.flat = a.shading == vpe::core::Shading::kFlat && !of_vertices;
+  look.lit = !of_vertices && a.mode != Mode::kUnlit;
+  look.surfacing = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? Surfacing::kPlain
+                   : a.mode == Mode::kTextured && has_image           ? Surfacing::kImage
+                                                                      : shown;
+  if (look.surfacing == Surfacing::kImage && a.colourise) look.hue = shown;
+  // What is not used is not set, so that it cannot change a look.
+  if (look.lit) {
+    look.sun = sun;
+    look.ambient = a.sun_ambient;
+    look.diffuse = a.sun_diffuse;
+    look.shadows = a.shadows;
+  }
+  if (shows_scale(look.surfacing) || shows_scale(look.hue)) look.scale = std::move(scale);
+  return look;
+}
+
+bool needs_scale(const vpe::core::Appearance& appearance, bool has_image) {
+  const ShadeParams look = shade_params(appearance, {1, 0, 0}, has_image, nullptr);
+  return shows_scale(look.surfacing) || shows_scale(look.hue);
+}
+
 std::size_t NormalTile::bytes() const {
   return sizeof(NormalTile) + normal.capacity() * sizeof(glm::vec3) + height_m.capacity() * sizeof(float) +
          sees_sun.capacity() * sizeof(std::uint8_t) + missing.capacity() / 8;
 }
 
-Shader::Shader(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
+GroundPainter::GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
       surface_(planet_, budget_bytes * 3 / 20),
       heights_(budget_bytes * 7 / 20),
       normals_(budget_bytes * 7 / 20),
       images_(budget_bytes * 3 / 20) {}
 
-std::size_t Shader::bytes_resident() const {
+std::size_t GroundPainter::bytes_resident() const {
   return surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
 }
 
-std::shared_ptr<const paging::TileHeights> Shader::heights(const lod::TileKey& key) const {
+std::shared_ptr<const TileHeights> GroundPainter::heights(const lod::TileKey& key) const {
   return heights_.get(key, [&] {
-    auto made = std::make_shared<const paging::TileHeights>(planet_->heights(key));
+    auto made = std::make_shared<const TileHeights>(planet_->heights(key));
     const std::size_t bytes =
         sizeof(*made) + made->posts.height_m.capacity() * sizeof(double) + made->missing.capacity() / 8;
     return std::pair(std::move(made), bytes);
   });
 }
 
-std::shared_ptr<const paging::ImageTile> Shader::image(const lod::TileKey& key) const {
+std::shared_ptr<const ImageTile> GroundPainter::image(const lod::TileKey& key) const {
   return images_.get(key, [&] {
-    auto made = std::make_shared<const paging::ImageTile>(planet_->image(key));
+    auto made = std::make_shared<const ImageTile>(planet_->image(key));
     const std::size_t bytes = sizeof(*made) + made->texels.capacity() * sizeof(mars::Rgb);
     return std::pair(std::move(made), bytes);
   });
 }
 
-std::shared_ptr<const NormalTile> Shader::normals(const lod::TileKey& key, const ShadeParams& params) const {
+std::shared_ptr<const NormalTile> GroundPainter::normals(const lod::TileKey& key,
+                                                         const ShadeParams& params) const {
   const glm::dvec3 sun = params.lit && params.shadows ? params.sun : glm::dvec3(0);
   return normals_.get({key, params.exaggeration, sun}, [&] {
     auto made = std::make_shared<const NormalTile>(make_normals(key, params));
@@ -145,13 +190,13 @@ std::shared_ptr<const NormalTile> Shader::normals(const lod::TileKey& key, const
   });
 }
 
-lod::TileKey Shader::deepest(const lod::TileKey& key) const {
+lod::TileKey GroundPainter::deepest(const lod::TileKey& key) const {
   lod::TileKey at = key;
   while (at.level > 0 && planet_->tree().find(at) == nullptr) at = lod::parent(at);
   return at;
 }
 
-int Shader::levels_below(const lod::TileKey& key, int limit) const {
+int GroundPainter::levels_below(const lod::TileKey& key, int limit) const {
   const lod::TileInfo* info = planet_->tree().find(key);
   if (info == nullptr || !info->has_children || limit == 0) return 0;
   int most = 0;
@@ -159,13 +204,13 @@ int Shader::levels_below(const lod::TileKey& key, int limit) const {
   return most + 1;
 }
 
-int Shader::useful_intervals(const lod::TileKey& key, Surfacing surfacing) const {
+int GroundPainter::useful_intervals(const lod::TileKey& key, Surfacing surfacing) const {
   constexpr int kMost = 3;
   const int posts = planet_->meta().tile.intervals();
   int levels = levels_below(key, kMost);
   if (surfacing == Surfacing::kImage) {
     const int image_levels = planet_->meta().finest_image_level - key.level;
-    int intervals = paging::kImageIntervals;
+    int intervals = kImageIntervals;
     for (int l = 0; l < std::min(image_levels, kMost); ++l) intervals *= 2;
     while (levels < kMost && image_levels >= 0 && posts << levels < intervals) ++levels;
   }
@@ -173,8 +218,8 @@ int Shader::useful_intervals(const lod::TileKey& key, Surfacing surfacing) const
 }
 
 // Heights of the row of posts just across an edge, in this tile's order along it, and where those posts are.
-std::vector<double> Shader::heights_across(const lod::TileKey& key, lod::Edge edge,
-                                           std::vector<glm::dvec3>& points) const {
+std::vector<double> GroundPainter::heights_across(const lod::TileKey& key, lod::Edge edge,
+                                                  std::vector<glm::dvec3>& points) const {
   const int n = planet_->meta().tile.intervals();
   const lod::Neighbour across = lod::neighbour(key, edge);
   const lod::GridLines lines = lod::grid_lines(across.key, n);
@@ -202,7 +247,7 @@ std::vector<double> Shader::heights_across(const lod::TileKey& key, lod::Edge ed
   return out;
 }
 
-NormalTile Shader::make_normals(const lod::TileKey& key, const ShadeParams& params) const {
+NormalTile GroundPainter::make_normals(const lod::TileKey& key, const ShadeParams& params) const {
   const double exaggeration = params.exaggeration;
   const auto source = heights(key);
   const lod::Posts& posts = source->posts;
@@ -262,7 +307,7 @@ NormalTile Shader::make_normals(const lod::TileKey& key, const ShadeParams& para
 }
 
 // From a little above the ground, since the ray's own facets meet it there.
-bool Shader::sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadeParams& params) const {
+bool GroundPainter::sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadeParams& params) const {
   constexpr double kLift = 1e-3;
   const double radius = glm::length(place_m);
   const glm::dvec3 eye = place_m * ((radius + kLift * spacing_m) / radius);
@@ -270,36 +315,36 @@ bool Shader::sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadePa
 }
 
 // What a surfacing shows of a place on the ground.
-glm::dvec3 Shader::shown(Surfacing what, const Ground& at, const ShadeParams& params) const {
+glm::dvec3 GroundPainter::shown(Surfacing what, const Ground& at, const ShadeParams& params) const {
   switch (what) {
     case Surfacing::kElevation: return (*params.scale)(at.height_m);
-    case Surfacing::kSlope: return (*params.scale)(core::slope_deg(at.normal, at.up));
+    case Surfacing::kSlope: return (*params.scale)(vpe::core::slope_deg(at.normal, at.up));
     case Surfacing::kAspect: return (*params.scale)(downhill_deg(at.normal, at.up));
     case Surfacing::kImage:
     case Surfacing::kImageAtPosts: return at.image;
     case Surfacing::kPlain: break;
   }
-  return core::kPlainGround;
+  return vpe::core::kPlainGround;
 }
 
-glm::dvec3 Shader::colour(const Ground& at, const ShadeParams& params) const {
+glm::dvec3 GroundPainter::colour(const Ground& at, const ShadeParams& params) const {
   glm::dvec3 out = shown(params.surfacing, at, params);
-  if (params.hue != Surfacing::kPlain) out = core::colourised(out, shown(params.hue, at, params));
-  return params.lit ? out * core::light(params.ambient, params.diffuse,
-                                        at.sun * glm::dot(glm::normalize(at.normal), params.sun))
+  if (params.hue != Surfacing::kPlain) out = vpe::core::colourised(out, shown(params.hue, at, params));
+  return params.lit ? out * vpe::core::light(params.ambient, params.diffuse,
+                                             at.sun * glm::dot(glm::normalize(at.normal), params.sun))
                     : out;
 }
 
 // The image's texels over a block or a part of it, or none.
-Shader::Picture Shader::picture(const lod::TileKey& block, const ShadeParams& params) const {
+GroundPainter::Picture GroundPainter::picture(const lod::TileKey& block, const ShadeParams& params) const {
   if (!shows_image(params.surfacing)) return {};
   const auto found = planet_->image_key(block);
-  if (!found) throw paging::PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
+  if (!found) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
   return {image(*found), *found};
 }
 
-void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
-                         ShadedTile& out) const {
+void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
+                                ShadedTile& out) const {
   const int n = planet_->meta().tile.intervals();
   const lod::TileKey stored = deepest(block);
   const std::shared_ptr<const NormalTile> ground = normals(stored, params);
@@ -324,7 +369,7 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, co
   Ground at;
   for (int y = 0; y <= n; ++y) {
     const GridPosition gyp = grid_position(gy, y, ground_steps, ground->side - 1);
-    const GridPosition pyp = grid_position(py, y, picture_steps, paging::kImageIntervals);
+    const GridPosition pyp = grid_position(py, y, picture_steps, kImageIntervals);
     std::uint8_t* texel =
         &out.texels[channels * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
                                 static_cast<std::size_t>(x0))];
@@ -344,15 +389,15 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, co
         at.up = mars::chart_direction(block.face, lines.u[static_cast<std::size_t>(x)],
                                       lines.v[static_cast<std::size_t>(y)]);
       if (picture.tile) {
-        const GridPosition pxp = grid_position(px, x, picture_steps, paging::kImageIntervals);
+        const GridPosition pxp = grid_position(px, x, picture_steps, kImageIntervals);
         at.image = bilinear<glm::vec3>(pxp, pyp, kImageSide,
                                        [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
       }
       if (channels == 1) {
-        texel[0] =
-            to_byte(static_cast<float>(255.0 / out.brightest *
-                                       core::light(params.ambient, params.diffuse,
-                                                   at.sun * glm::dot(glm::normalize(at.normal), params.sun))));
+        texel[0] = to_byte(
+            static_cast<float>(255.0 / out.brightest *
+                               vpe::core::light(params.ambient, params.diffuse,
+                                                at.sun * glm::dot(glm::normalize(at.normal), params.sun))));
         continue;
       }
       const glm::vec3 c(colour(at, params));
@@ -368,14 +413,105 @@ void Shader::shade_block(const lod::TileKey& block, int x0, int y0, int side, co
   }
 }
 
-ShadedTile Shader::shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh,
-                                std::span<const double> height_m, const ShadeParams& params) const {
+namespace {
+
+// The level from which on posts, `intervals` a tile, are no farther apart.
+int level_for(double footprint_m, int intervals, double radius_m) {
+  const double root_m = lod::nominal_side_m(0, radius_m) / intervals;
+  return std::clamp(static_cast<int>(std::ceil(std::log2(root_m / footprint_m))), 0, lod::kMaxLevel);
+}
+
+// Place between the lines of a tile's grid, which are even in the face's parameter.
+GridPosition between_lines(double x, int level, std::int32_t index, int intervals) {
+  const double line =
+      std::clamp(mars::face_parameter(x) * std::ldexp(1.0, level) - index, 0.0, 1.0) * intervals;
+  const auto before = std::min(static_cast<std::size_t>(line), static_cast<std::size_t>(intervals - 1));
+  return {before, static_cast<float>(line - static_cast<double>(before))};
+}
+
+}  // namespace
+
+glm::dvec3 GroundPainter::image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const {
+  const mars::ChartPoint place = mars::chart_point(direction);
+  const int level = level_for(footprint_m, kImageIntervals, planet_->radius_m());
+  const auto key = planet_->image_key(lod::tile_at(place, level));
+  if (!key) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
+  if (!cursor.image || cursor.image_key != *key) {
+    cursor.image = image(*key);
+    cursor.image_key = *key;
+  }
+  return bilinear<glm::vec3>(between_lines(place.u, key->level, key->i, kImageIntervals),
+                             between_lines(place.v, key->level, key->j, kImageIntervals), kImageSide,
+                             [&](std::size_t k) { return rgb(cursor.image->texels[k]); });
+}
+
+std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, double footprint_m,
+                                                   const ShadeParams& params, Cursor& cursor) const {
+  const int n = planet_->meta().tile.intervals();
+  const double radius = planet_->radius_m();
+  const mars::ChartPoint place = mars::chart_point(direction);
+  const int level = params.flat ? lod::kMaxLevel : level_for(footprint_m, n, radius);
+  const lod::TileKey key = deepest(lod::tile_at(place, level));
+  if (!cursor.ground || cursor.ground_key != key) {
+    cursor.ground = normals(key, params);
+    cursor.ground_key = key;
+  }
+  const NormalTile& ground = *cursor.ground;
+  const auto side = static_cast<std::size_t>(ground.side);
+  const GridPosition x = between_lines(place.u, key.level, key.i, n);
+  const GridPosition y = between_lines(place.v, key.level, key.j, n);
+  if (!ground.missing.empty() && ground.missing[nearest(y) * side + nearest(x)]) return std::nullopt;
+  Ground at;
+  at.up = direction;
+  const lod::GridLines lines =
+      params.flat || params.surfacing == Surfacing::kImageAtPosts ? lod::grid_lines(key, n) : lod::GridLines{};
+  const auto post = [&](std::size_t a, std::size_t b) {
+    return mars::chart_direction(key.face, lines.u[x.index + a], lines.v[y.index + b]);
+  };
+  if (params.flat) {
+    const bool lower = x.rest >= y.rest;
+    std::array<glm::dvec3, 3> corners;
+    at.height_m = 0;
+    const std::array<std::array<std::size_t, 2>, 3> posts{
+        {{0, 0}, {lower ? std::size_t{1} : std::size_t{0}, lower ? std::size_t{0} : std::size_t{1}}, {1, 1}}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = posts[k];
+      const double height = static_cast<double>(ground.height_m[(y.index + b) * side + x.index + a]);
+      corners[k] = post(a, b) * (radius + params.exaggeration * height);
+      at.height_m += height / 3;
+    }
+    const glm::dvec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    at.up = glm::normalize(middle);
+    at.normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    if (glm::dot(at.normal, at.up) < 0.0) at.normal = -at.normal;
+    if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
+      at.sun = sees_sun(middle, lod::nominal_side_m(key.level, radius) / n, params) ? 1.0 : 0.0;
+    if (shows_image(params.surfacing)) at.image = image_at(at.up, footprint_m, cursor);
+    return colour(at, params);
+  }
+  at.height_m = bilinear<float>(x, y, side, [&](std::size_t k) { return ground.height_m[k]; });
+  at.normal = bilinear<glm::vec3>(x, y, side, [&](std::size_t k) { return ground.normal[k]; });
+  if (!ground.sees_sun.empty())
+    at.sun = bilinear<float>(x, y, side, [&](std::size_t k) { return static_cast<float>(ground.sees_sun[k]); });
+  if (params.surfacing == Surfacing::kImage) at.image = image_at(direction, footprint_m, cursor);
+  if (params.surfacing == Surfacing::kImageAtPosts) {
+    for (std::size_t b = 0; b < 2; ++b) {
+      for (std::size_t a = 0; a < 2; ++a) {
+        const float share = (a == 1 ? x.rest : 1.0F - x.rest) * (b == 1 ? y.rest : 1.0F - y.rest);
+        at.image += static_cast<double>(share) * image_at(post(a, b), footprint_m, cursor);
+      }
+    }
+  }
+  return colour(at, params);
+}
+
+ShadedTile GroundPainter::shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh,
+                                       std::span<const double> height_m, const ShadeParams& params) const {
   const double radius = planet_->radius_m();
   const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
   const double spacing_m = lod::nominal_side_m(key.level, radius) / mesh.intervals;
   const Picture picture = this->picture(key, params);
-  const std::shared_ptr<const paging::TileHeights> posts =
-      planet_->has_missing(key) ? heights(deepest(key)) : nullptr;
+  const std::shared_ptr<const TileHeights> posts = planet_->has_missing(key) ? heights(deepest(key)) : nullptr;
   const bool gaps = posts && !posts->missing.empty();
   std::vector<glm::dvec3> places;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -399,9 +535,8 @@ ShadedTile Shader::shade_facets(const lod::TileKey& key, const lod::TileMesh& me
       // Image texels are on lines even in the face's parameter.
       const auto along = [&](double x, std::int32_t index) {
         const double tiles = std::ldexp(1.0, picture.key.level);
-        const double texel =
-            std::clamp(mars::face_parameter(x) * tiles - index, 0.0, 1.0) * paging::kImageIntervals;
-        const auto before = std::min(static_cast<std::size_t>(texel), std::size_t{paging::kImageIntervals - 1});
+        const double texel = std::clamp(mars::face_parameter(x) * tiles - index, 0.0, 1.0) * kImageIntervals;
+        const auto before = std::min(static_cast<std::size_t>(texel), std::size_t{kImageIntervals - 1});
         return GridPosition{before, static_cast<float>(texel - static_cast<double>(before))};
       };
       at.image = bilinear<glm::vec3>(along(place.u, picture.key.i), along(place.v, picture.key.j), kImageSide,
@@ -424,7 +559,7 @@ ShadedTile Shader::shade_facets(const lod::TileKey& key, const lod::TileMesh& me
   return out;
 }
 
-ShadedTile Shader::shade(const lod::TileKey& key, int intervals, const ShadeParams& params) const {
+ShadedTile GroundPainter::shade(const lod::TileKey& key, int intervals, const ShadeParams& params) const {
   const int n = planet_->meta().tile.intervals();
   int levels = 0;
   while (n << levels < intervals) ++levels;
@@ -434,7 +569,7 @@ ShadedTile Shader::shade(const lod::TileKey& key, int intervals, const ShadePara
   // Light alone takes a quarter; alpha would tell what has no data.
   if (params.surfacing == Surfacing::kPlain && params.lit && !planet_->has_missing(key)) {
     out.channels = 1;
-    out.brightest = core::light(params.ambient, params.diffuse, 1.0);
+    out.brightest = vpe::core::light(params.ambient, params.diffuse, 1.0);
   }
   out.texels.resize(static_cast<std::size_t>(out.channels) * static_cast<std::size_t>(side) *
                     static_cast<std::size_t>(side));
@@ -449,4 +584,4 @@ ShadedTile Shader::shade(const lod::TileKey& key, int intervals, const ShadePara
   return out;
 }
 
-}  // namespace vpe::gl
+}  // namespace paging
