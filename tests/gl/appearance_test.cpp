@@ -8,7 +8,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
-#include "tests/gl/appearance_reference.h"
+#include "tests/gl/appearance_looks.h"
 #include "tests/gl/gl_fixture.h"
 #include "vpe/gl/tile_needs.h"
 
@@ -19,47 +19,16 @@ namespace core = vpe::core;
 constexpr int kWidth = 96;
 constexpr int kHeight = 72;
 
-// Rises and falls over some 400 km.
-glm::dvec3 image_at(const glm::dvec3& d) {
-  return {127 + 110 * std::sin(53 * d.x + 1), 127 + 110 * std::sin(47 * d.y),
-          127 + 110 * std::sin(59 * d.z + 2)};
+void set(core::DrawRequest& request, const core::Appearance& appearance) {
+  static_cast<core::Appearance&>(request.settings) = appearance;
 }
-
-class WavyImage : public test_support::FakeImage {
- public:
-  void sample(std::span<const glm::dvec3> directions, double, std::span<mars::Rgb> colours,
-              std::span<std::uint8_t> alpha) const override {
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      const glm::dvec3 c = glm::round(image_at(glm::normalize(directions[n])));
-      colours[n] = {static_cast<std::uint8_t>(c.x), static_cast<std::uint8_t>(c.y),
-                    static_cast<std::uint8_t>(c.z)};
-      alpha[n] = 255;
-    }
-  }
-  double spacing_in(const mars::Cap&) const override { return 20000; }
-};
-
-const glm::dvec3 kMiddle = glm::normalize(glm::dvec3(0.9, 0.3, 0.35));
 
 class Appearance : public test_support::GlTest {
  protected:
-  std::shared_ptr<const paging::PlanetFile> planet() {
-    paging::BuildOptions options;
-    options.output = (dir_ / "p.vpe").string();
-    options.base_spacing_m = 100000;
-    options.threads = 2;
-    options.tile_k = 5;
-    options.resampling_posts = 1000;
-    const WavyImage image;
-    paging::build_planet(
-        options,
-        test_support::FakeElevation(test_support::bumpy_height, test_support::fine_around(kMiddle, 0.06, 5000)),
-        &image);
-    return paging::PlanetFile::open(options.output);
-  }
+  std::shared_ptr<const paging::PlanetFile> planet() { return test_support::wavy_planet(dir_ / "p.vpe"); }
 
   static core::DrawRequest request(double radius_m) {
-    const mars::LonLat place = mars::lon_lat(kMiddle);
+    const mars::LonLat place = mars::lon_lat(test_support::kWavyMiddle);
     core::DrawRequest out = test_support::request_for({place.lon_deg, place.lat_deg, 60000, 40, -65, 10},
                                                       radius_m, kWidth, kHeight, 40);
     out.settings.background = core::Background::kBlack;
@@ -67,57 +36,16 @@ class Appearance : public test_support::GlTest {
     out.settings.lod_tolerance_px = 0;
     return out;
   }
-
-  // The share of pixels within 2 of the reference in every channel, of those that it knows.
-  static double agreement(core::Renderer& draw, const paging::Surface& surface,
-                          const core::DrawRequest& request) {
-    const core::DrawResult result = draw.draw(request);
-    const test_support::GroundReference reference(surface, request.settings, request.sun);
-    int known = 0, good = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const auto at = static_cast<std::size_t>(y * kWidth + x);
-        if (!std::isfinite(result.frame.range_m[at])) continue;
-        const glm::dvec3 hit = request.view.eye.eye_m + static_cast<double>(result.frame.range_m[at]) *
-                                                            core::pixel_ray(request.view, x + 0.5, y + 0.5);
-        const auto wanted = reference.at(glm::normalize(hit));
-        if (!wanted) continue;
-        ++known;
-        const mars::Rgb c = result.frame.colour[at];
-        const glm::dvec3 off = glm::abs(glm::dvec3(c.r, c.g, c.b) - glm::clamp(*wanted, 0.0, 255.0));
-        good += std::max({off.x, off.y, off.z}) <= 2.0 ? 1 : 0;
-      }
-    }
-    EXPECT_GT(known, kWidth * kHeight / 2);
-    return static_cast<double>(good) / known;
-  }
 };
 
 TEST_F(Appearance, EveryModeShadingAndColourAsDefined) {
   const auto file = planet();
   const paging::Surface surface(file, std::size_t{1} << 26);
   const auto draw = renderer(file);
-  for (const auto mode : {core::Mode::kUnlit, core::Mode::kLit, core::Mode::kColoured, core::Mode::kTextured}) {
-    for (const auto shading : {core::Shading::kFlat, core::Shading::kGouraud}) {
-      for (const auto colour : {core::Colour::kNone, core::Colour::kElevation, core::Colour::kSlope,
-                                core::Colour::kAspect, core::Colour::kImage}) {
-        for (const bool colourise : {false, true}) {
-          if (colourise && (mode != core::Mode::kTextured || colour == core::Colour::kImage)) continue;
-          if (mode == core::Mode::kLit && colour != core::Colour::kNone) continue;
-          core::DrawRequest r = request(file->radius_m());
-          r.settings.mode = mode;
-          r.settings.shading = shading;
-          r.settings.colour = colour;
-          r.settings.colourise = colourise;
-          r.settings.palette_high = colour == core::Colour::kElevation ? 4000 : 0;
-          r.settings.palette_low = colour == core::Colour::kElevation ? -4000 : 0;
-          r.settings.exaggeration = shading == core::Shading::kFlat ? 2 : 1;
-          EXPECT_GE(agreement(*draw, surface, r), 0.999)
-              << "mode " << static_cast<int>(mode) << " shading " << static_cast<int>(shading) << " colour "
-              << static_cast<int>(colour) << " colourise " << colourise;
-        }
-      }
-    }
+  for (const core::Appearance& look : test_support::all_looks()) {
+    core::DrawRequest r = request(file->radius_m());
+    set(r, look);
+    EXPECT_GE(test_support::agreement(*draw, surface, r), 0.999) << test_support::name(look);
   }
 }
 
@@ -145,10 +73,6 @@ std::vector<core::Appearance> appearances() {
   core::Appearance& bright = all.emplace_back();
   bright.gamma = 2;
   return all;
-}
-
-void set(core::DrawRequest& request, const core::Appearance& appearance) {
-  static_cast<core::Appearance&>(request.settings) = appearance;
 }
 
 // A mode on, then off, leaves the pixels and the memory of before.

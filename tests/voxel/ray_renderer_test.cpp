@@ -1,0 +1,177 @@
+// The ray backend against exact casts, the definition of appearances, and the polygon backend.
+#include "vpe/voxel/ray_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include "mars/embedded.h"
+#include "tests/gl/appearance_looks.h"
+#include "tests/gl/gl_fixture.h"
+
+namespace {
+
+namespace core = vpe::core;
+using test_support::Random;
+using test_support::request_for;
+
+class Rays : public test_support::GlTest {
+ protected:
+  std::shared_ptr<const paging::PlanetFile> bumpy() {
+    return test_support::build_fake(dir_ / "bumpy.vpe", test_support::FakeElevation(test_support::bumpy_height),
+                                    50000);
+  }
+  static std::unique_ptr<core::Renderer> rays(std::shared_ptr<const paging::PlanetFile> planet,
+                                              int threads = 2) {
+    return vpe::voxel::make_ray_renderer(std::move(planet), {std::size_t{256} << 20, threads});
+  }
+  static core::DrawRequest random_request(Random& random, const paging::Surface& surface, int width,
+                                          int height) {
+    const mars::LonLat place = mars::lon_lat(random.direction());
+    const double ground = surface.at(mars::direction(place)).height_m;
+    return request_for({place.lon_deg, place.lat_deg, ground + random.log_uniform(1.5, 3e7),
+                        random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)},
+                       surface.planet_radius_m(), width, height, random.log_uniform(5, 100));
+  }
+};
+
+TEST_F(Rays, RangesAreThoseOfSInEveryProjection) {
+  const auto planet = bumpy();
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto draw = rays(planet);
+  Random random(91);
+  for (const auto projection :
+       {core::Projection::kPerspective, core::Projection::kCylinder, core::Projection::kEquirectangular}) {
+    for (int n = 0; n < 4; ++n) {
+      core::DrawRequest request = random_request(random, surface, 64, 40);
+      request.view.projection = projection;
+      request.view.part = {8, 6, 40, 30};
+      const core::DrawResult result = draw->draw(request);
+      EXPECT_EQ(result.frame.range_m, test_support::reference_ranges(surface, request.view));
+      EXPECT_EQ(result.frame.width, 40);
+      EXPECT_TRUE(result.settled);
+      EXPECT_LT(result.certificate.shift_bound_px, 1e-3);
+    }
+  }
+}
+
+TEST_F(Rays, FlatPlanetIsTheSphere) {
+  const auto planet = test_support::build_fake(
+      dir_ / "flat.vpe", test_support::FakeElevation([](const glm::dvec3&) { return 0.0; }), 3000000);
+  const auto draw = rays(planet);
+  const double radius = planet->radius_m();
+  // Facets lie below the sphere by their sagitta at most.
+  const double spacing_m =
+      lod::post_spacing_m(planet->meta().finest_level, planet->meta().tile.intervals(), radius);
+  const double sag_m = spacing_m * spacing_m / (4 * radius);
+  for (const double height : {1e6, 3e7}) {
+    core::DrawRequest request = request_for({20, 30, height, 0, -90, 0}, radius, 80, 60, 40);
+    const core::DrawResult result = draw->draw(request);
+    for (int y = 0; y < 60; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        const glm::dvec3 ray = core::pixel_ray(request.view, x + 0.5, y + 0.5);
+        const double half = glm::dot(ray, request.view.eye.eye_m);
+        const double under =
+            half * half - glm::dot(request.view.eye.eye_m, request.view.eye.eye_m) + radius * radius;
+        const float drawn = result.frame.range_m[static_cast<std::size_t>(y * 80 + x)];
+        const double closest = std::sqrt(std::max(0.0, radius * radius - under));
+        if (std::abs(closest - radius) < 2 * sag_m) continue;  // the limb
+        ASSERT_EQ(std::isfinite(drawn), under > 0) << x << " " << y;
+        if (!(under > 0)) continue;
+        const double exact = -half - std::sqrt(under);
+        const double sine = std::sqrt(under) / radius;
+        ASSERT_NEAR(static_cast<double>(drawn), exact, 2e-7 * exact / sine + sag_m / sine * 1.1);
+      }
+    }
+  }
+}
+
+TEST_F(Rays, ThreadsChangeNothing) {
+  const auto planet = bumpy();
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  Random random(92);
+  const auto one = rays(planet, 1);
+  const auto three = rays(planet, 3);
+  for (int n = 0; n < 4; ++n) {
+    const core::DrawRequest request = random_request(random, surface, 80, 60);
+    const core::DrawResult a = one->draw(request);
+    const core::DrawResult b = three->draw(request);
+    EXPECT_EQ(a.frame.colour, b.frame.colour);
+    EXPECT_EQ(a.frame.range_m, b.frame.range_m);
+  }
+}
+
+TEST_F(Rays, EveryModeShadingAndColourAsDefined) {
+  const auto planet = test_support::wavy_planet(dir_ / "wavy.vpe");
+  const paging::Surface surface(planet, std::size_t{1} << 26);
+  const auto draw = rays(planet);
+  const mars::LonLat place = mars::lon_lat(test_support::kWavyMiddle);
+  for (const core::Appearance& look : test_support::all_looks()) {
+    core::DrawRequest request =
+        request_for({place.lon_deg, place.lat_deg, 60000, 40, -65, 10}, planet->radius_m(), 64, 48, 40);
+    request.settings.smooth_edges = false;
+    static_cast<core::Appearance&>(request.settings) = look;
+    EXPECT_GE(test_support::agreement(*draw, surface, request), 0.999) << test_support::name(look);
+  }
+}
+
+// Shift between both backends' pictures of one view: at most 1 px on all but 0.5 % of the pixels (skylines).
+void expect_agreement(core::Renderer& polygons, core::Renderer& rays, const paging::Surface& surface,
+                      core::DrawRequest request, const std::string& name) {
+  request.settings.lod_tolerance_px = 0.5;
+  request.settings.smooth_edges = false;
+  const core::DrawResult a = polygons.draw(request);
+  const core::DrawResult b = rays.draw(request);
+  const auto errors = core::compare_to_reference(request.view, a.frame.range_m, b.frame.range_m,
+                                                 test_support::radius_of(surface), {1, 1});
+  SCOPED_TRACE(name + " " + core::to_json(errors));
+  EXPECT_LE(errors.forward.share_over_1px, 0.005);
+  EXPECT_LE(errors.backward.share_over_1px, 0.005);
+  // Where both see sky, it is one sky.
+  std::int64_t sky = 0, differ = 0;
+  for (std::size_t n = 0; n < a.frame.colour.size(); ++n) {
+    if (std::isfinite(a.frame.range_m[n]) || std::isfinite(b.frame.range_m[n])) continue;
+    ++sky;
+    const mars::Rgb p = a.frame.colour[n], q = b.frame.colour[n];
+    differ += std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)}) > 2 ? 1 : 0;
+  }
+  EXPECT_EQ(differ, 0) << "of " << sky;
+}
+
+TEST_F(Rays, BackendsAgree) {
+  const auto planet = bumpy();
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto polygons = renderer(planet);
+  const auto draw = rays(planet);
+  Random random(93);
+  for (int n = 0; n < 8; ++n) {
+    expect_agreement(*polygons, *draw, surface, random_request(random, surface, 120, 80),
+                     "view " + std::to_string(n));
+  }
+}
+
+// $VPE_EMBEDDED_PLANET names a planet file of the embedded Mars.
+using LongRays = Rays;
+TEST_F(LongRays, BackendsAgreeOnTheEmbeddedMars) {
+  const char* ready = std::getenv("VPE_EMBEDDED_PLANET");
+  if (ready == nullptr) GTEST_SKIP() << "skipped: $VPE_EMBEDDED_PLANET names no planet file";
+  const auto planet = paging::PlanetFile::open(ready);
+  const paging::Surface surface(planet, std::size_t{1} << 28);
+  const auto polygons = renderer(planet, std::size_t{1} << 29);
+  const auto draw = rays(planet);
+  Random random(94);
+  for (int n = 0; n < 200; ++n)
+    expect_agreement(*polygons, *draw, surface, random_request(random, surface, 240, 144),
+                     "view " + std::to_string(n));
+}
+
+TEST_F(Rays, RefusesWhatItCannotDraw) {
+  const auto planet = bumpy();
+  const auto draw = rays(planet);
+  core::DrawRequest request = request_for({0, 0, 1000, 0, 0, 0}, planet->radius_m(), 16, 16);
+  request.settings.mode = core::Mode::kWireframe;
+  EXPECT_THROW(draw->draw(request), std::runtime_error);
+  request.settings.mode = core::Mode::kLit;
+  request.view.eye.eye_m.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(draw->draw(request), std::runtime_error);
+}
+
+}  // namespace
