@@ -6,7 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "tests/support/support.h"
 #include "vpe/app/film_digest.h"
+#include "vpe/core/file.h"
 
 namespace {
 
@@ -70,9 +72,28 @@ TEST(FilmFrame, EverySettingIsInItsFingerprint) {
     Inputs inputs;
     std::string other = info.choices.empty() ? "1" : std::string(info.choices.front());
     if (info.type == vpe::core::SettingType::kTable) other = "0:1";
+    if (info.type == vpe::core::SettingType::kText) {
+      other = info.key == "palette" ? "viridis" : info.key == "sun" ? "2026-11-20T12:00Z" : "Other";
+    }
     if (other == info.default_text) other = info.choices.empty() ? "2" : std::string(info.choices.back());
     ASSERT_EQ(inputs.settings.set(info.key, other), "") << info.key;
     EXPECT_TRUE(seen.insert(inputs.fingerprint()).second) << info.key;
+  }
+}
+
+TEST(FilmFrame, WhatAPaletteFileHoldsIsInItsFingerprint) {
+  const test_support::TempDir dir;
+  const std::string file = (dir / "p.txt").string();
+  Inputs inputs;
+  std::set<std::string> seen;
+  for (const char* text :
+       {"0 1 2 3\n9 4 5 6", "0 1 2 3\n9 4 5 7", "0 1 2 3\n8 4 5 6", "0 1 2 3\n1 4 5 6", "5 1 2 3"}) {
+    vpe::core::write_file(file, std::string_view(text));
+    ASSERT_EQ(inputs.settings.set("palette", file), "");
+    const std::string fingerprint = inputs.fingerprint();
+    EXPECT_TRUE(seen.insert(fingerprint).second) << text;
+    vpe::core::write_file(file, "# the same\n" + std::string(text));
+    EXPECT_EQ(inputs.fingerprint(), fingerprint) << text;
   }
 }
 

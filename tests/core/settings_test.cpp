@@ -14,6 +14,12 @@ namespace {
 
 using test_support::Random;
 
+// Another value than the default of a key of type kText.
+std::string other_text(std::string_view key) {
+  if (key == "palette") return "viridis";
+  return key == "sun" ? "2026-11-20T12:00Z" : "Other";
+}
+
 bool holds(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 TEST(Number, ReadsWhatItWritesToTheBit) {
@@ -76,6 +82,8 @@ TEST(Settings, EachKeyChangesItsOwnValueAlone) {
       }
     } else if (info.type == SettingType::kTable) {
       other = "0:12,1000:4.5";
+    } else if (info.type == SettingType::kText) {
+      other = other_text(info.key);
     } else {
       other = format_number(info.max);
     }
@@ -110,34 +118,95 @@ TEST(Settings, MapsKeysToTheirMembers) {
   EXPECT_EQ(settings.assign("lod.interest.weight=2"), "");
   EXPECT_EQ(settings.assign("lod.frame_ms=33"), "");
   EXPECT_EQ(settings.assign("samples=2"), "");
-  EXPECT_EQ(settings.assign("background=sky"), "");
-  const SettingsValues wanted{.mode = Mode::kWireframe,
-                              .colour = Colour::kNone,
-                              .exaggeration = 2.5,
-                              .sun_azimuth_deg = 90,
-                              .sun_elevation_deg = 10,
-                              .sun_ambient = 0.5,
-                              .lod_tolerance_px = 0,
-                              .lod_triangles = 100000,
-                              .lod_rule = LodRule::kHitchner,
-                              .lod_distance_scale_m = 5e5,
-                              .lod_distance_offset = 2,
-                              .lod_distance_weight = 0.5,
-                              .lod_distance_table = {{0, 12}, {1e5, 8}},
-                              .lod_centre_scale = 0.5,
-                              .lod_centre_offset = -2,
-                              .lod_centre_weight = 1,
-                              .lod_centre_table = {{0, 2}, {0.5, 0}, {1, -1}},
-                              .lod_interest_weight = 2,
-                              .lod_frame_ms = 33,
-                              .samples = 2,
-                              .background = Background::kSky};
+  EXPECT_EQ(settings.assign("background=black"), "");
+  EXPECT_EQ(settings.assign("shading=flat"), "");
+  EXPECT_EQ(settings.assign("palette=viridis"), "");
+  EXPECT_EQ(settings.assign("palette.low=-100"), "");
+  EXPECT_EQ(settings.assign("palette.high=100"), "");
+  EXPECT_EQ(settings.assign("ramp.low.hue=10"), "");
+  EXPECT_EQ(settings.assign("ramp.low.saturation=0.1"), "");
+  EXPECT_EQ(settings.assign("ramp.low.value=0.2"), "");
+  EXPECT_EQ(settings.assign("ramp.high.hue=20"), "");
+  EXPECT_EQ(settings.assign("ramp.high.saturation=0.3"), "");
+  EXPECT_EQ(settings.assign("ramp.high.value=0.4"), "");
+  EXPECT_EQ(settings.assign("colourise=on"), "");
+  EXPECT_EQ(settings.assign("sun=Ls90,15:00"), "");
+  EXPECT_EQ(settings.assign("sun.diffuse=2"), "");
+  EXPECT_EQ(settings.assign("shadows=on"), "");
+  EXPECT_EQ(settings.assign("gamma=2.2"), "");
+  EXPECT_EQ(settings.assign("haze.visibility=50000"), "");
+  EXPECT_EQ(settings.assign("markers.size=5"), "");
+  EXPECT_EQ(settings.assign("overlay.legend=on"), "");
+  EXPECT_EQ(settings.assign("overlay.graticule=on"), "");
+  EXPECT_EQ(settings.assign("overlay.graticule.step=10"), "");
+  EXPECT_EQ(settings.assign("overlay.contours=on"), "");
+  EXPECT_EQ(settings.assign("overlay.contours.step=500"), "");
+  EXPECT_EQ(settings.assign("overlay.scale=on"), "");
+  EXPECT_EQ(settings.assign("overlay.north=on"), "");
+  EXPECT_EQ(settings.assign("overlay.time=on"), "");
+  EXPECT_EQ(settings.assign("overlay.title=Olympus Mons"), "");
+  EXPECT_EQ(settings.assign("overlay.names=names.csv"), "");
+  EXPECT_EQ(settings.assign("cull.occlusion=off"), "");
+  EXPECT_EQ(settings.assign("edges=hard"), "");
+  EXPECT_EQ(settings.assign("inspect=levels"), "");
+  SettingsValues wanted;
+  wanted.mode = Mode::kWireframe;
+  wanted.colour = Colour::kNone;
+  wanted.exaggeration = 2.5;
+  wanted.sun_azimuth_deg = 90;
+  wanted.sun_elevation_deg = 10;
+  wanted.sun_ambient = 0.5;
+  wanted.lod_tolerance_px = 0;
+  wanted.lod_triangles = 100000;
+  wanted.lod_rule = LodRule::kHitchner;
+  wanted.lod_distance_scale_m = 5e5;
+  wanted.lod_distance_offset = 2;
+  wanted.lod_distance_weight = 0.5;
+  wanted.lod_distance_table = {{0, 12}, {1e5, 8}};
+  wanted.lod_centre_scale = 0.5;
+  wanted.lod_centre_offset = -2;
+  wanted.lod_centre_weight = 1;
+  wanted.lod_centre_table = {{0, 2}, {0.5, 0}, {1, -1}};
+  wanted.lod_interest_weight = 2;
+  wanted.lod_frame_ms = 33;
+  wanted.samples = 2;
+  wanted.background = Background::kBlack;
+  wanted.shading = Shading::kFlat;
+  wanted.palette = "viridis";
+  wanted.palette_low = -100;
+  wanted.palette_high = 100;
+  wanted.low_hue_deg = 10;
+  wanted.low_saturation = 0.1;
+  wanted.low_value = 0.2;
+  wanted.high_hue_deg = 20;
+  wanted.high_saturation = 0.3;
+  wanted.high_value = 0.4;
+  wanted.colourise = true;
+  wanted.sun = "Ls90,15:00";
+  wanted.sun_diffuse = 2;
+  wanted.shadows = true;
+  wanted.gamma = 2.2;
+  wanted.haze_visibility_m = 50000;
+  wanted.marker_px = 5;
+  wanted.legend = true;
+  wanted.graticule = true;
+  wanted.graticule_deg = 10;
+  wanted.contours = true;
+  wanted.contour_m = 500;
+  wanted.scale_bar = true;
+  wanted.north_arrow = true;
+  wanted.time_code = true;
+  wanted.title = "Olympus Mons";
+  wanted.names = "names.csv";
+  wanted.occlusion = Occlusion::kOff;
+  wanted.smooth_edges = false;
+  wanted.inspect = Inspect::kLevels;
   EXPECT_EQ(settings.values(), wanted);
 }
 
 TEST(Settings, RangesIncludeTheirEndsAndNothingBeyond) {
   for (const SettingInfo& info : Settings::list()) {
-    if (info.type == SettingType::kChoice || info.type == SettingType::kTable) continue;
+    if (info.type != SettingType::kNumber && info.type != SettingType::kInteger) continue;
     Settings settings;
     EXPECT_EQ(settings.set(info.key, format_number(info.min)), "");
     EXPECT_EQ(settings.set(info.key, format_number(info.max)), "");
@@ -161,9 +230,18 @@ TEST(Settings, WrongWordsNameTheRightOnes) {
   Settings settings;
   const std::string problem = settings.set("mode", "shiny");
   EXPECT_TRUE(holds(problem, "mode=shiny")) << problem;
-  EXPECT_TRUE(holds(problem, "wireframe, unlit, lit, coloured, textured")) << problem;
+  EXPECT_TRUE(holds(problem, "wireframe, markers, unlit, lit, coloured, textured")) << problem;
   EXPECT_TRUE(holds(settings.set("samples", "3"), "1, 2, 4"));
   EXPECT_TRUE(holds(settings.set("mode", "Lit"), "not allowed"));
+}
+
+TEST(Settings, ARejectedTextTellsWhyAndWhatIsAllowed) {
+  Settings settings;
+  const std::string problem = settings.set("palette", "viridish");
+  EXPECT_TRUE(holds(problem, "palette=viridish is not allowed: no palette and no file has this name"))
+      << problem;
+  EXPECT_TRUE(holds(problem, "expected auto, hsv, relief, mola, viridis")) << problem;
+  EXPECT_EQ(settings, Settings());
 }
 
 TEST(Settings, TablesAreReadWholeOrNotAtAll) {
@@ -212,11 +290,11 @@ TEST(Settings, UnknownKeysNameNearOnes) {
   EXPECT_TRUE(holds(settings.set("azimuth", "1"), "did you mean sun.azimuth?"));
   EXPECT_TRUE(holds(settings.set("sun.", "1"), "sun.azimuth, sun.elevation, sun.ambient"));
   const std::string far = settings.set("flux-capacitor", "1");
-  EXPECT_TRUE(holds(far, "the settings are mode, colour")) << far;
+  EXPECT_TRUE(holds(far, "the settings are mode, shading, colour, palette")) << far;
   EXPECT_FALSE(settings.set("", "").empty());
   EXPECT_LT(settings.set(std::string(1000000, 'x'), "1").size(), 1000u);
   EXPECT_EQ(settings, Settings());
-  EXPECT_FALSE(settings.get("sun").has_value());
+  EXPECT_FALSE(settings.get("su").has_value());
 }
 
 TEST(Settings, AssignNeedsAnEqualsSign) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "vpe/app/film_digest.h"
+#include "vpe/core/palette.h"
 
 namespace vpe::app {
 
@@ -13,11 +14,17 @@ namespace {
 using nlohmann::json;
 
 // Raised whenever the encoding below changes its meaning.
-constexpr std::int64_t kEncoding = 2;
+constexpr std::int64_t kEncoding = 3;
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 void add(Digest& digest, const glm::dvec3& v) { digest.add(v.x).add(v.y).add(v.z); }
+
+// What a palette's file holds: its name stays when it is edited.
+void add(Digest& digest, const core::Palette& palette) {
+  digest.add(static_cast<std::int64_t>(palette.scale()));
+  for (const core::PaletteStop& stop : palette.stops()) add(digest.add(stop.at), stop.rgb);
+}
 
 template <class Figures, class Field>
 void visit(Figures& f, const Field& field) {
@@ -68,6 +75,7 @@ std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& requ
   for (const core::SettingInfo& info : core::Settings::list()) {
     digest.add(info.key).add(settings.get(info.key).value_or(""));
   }
+  if (const auto file = core::palette_file(settings.values().palette)) add(digest, core::read_palette(*file));
   const core::SettingsValues& values = settings.values();
   if (values.time_code) digest.add("time").add(time_s);
   if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));

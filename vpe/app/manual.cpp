@@ -108,7 +108,7 @@ std::string man_page(const CLI::App& program) {
   page += ".SH SETTINGS\n" + roff("Keys of --set, and of 'set' in flights.") + "\n";
   for (const core::SettingInfo& info : core::Settings::list()) {
     page += ".TP\n.B " + roff(std::string(info.key)) + "\n" + roff(std::string(info.meaning)) + " (default " +
-            roff(info.default_text) + ")\n";
+            roff(info.default_text.empty() ? "nothing" : info.default_text) + ")\n";
   }
   page +=
       ".SH EXIT STATUS\n" +

@@ -33,8 +33,9 @@ void settings(const Common& common) {
     return;
   }
   for (const core::SettingInfo& info : core::Settings::list()) {
-    std::printf("%-20s %s\n%-20s   default %s; %s%s%s\n", std::string(info.key).c_str(),
-                std::string(info.meaning).c_str(), "", info.default_text.c_str(), range_text(info).c_str(),
+    std::printf("%-24s %s\n%-24s   default %s; %s%s%s\n", std::string(info.key).c_str(),
+                std::string(info.meaning).c_str(), "",
+                info.default_text.empty() ? "nothing" : info.default_text.c_str(), range_text(info).c_str(),
                 info.unit.empty() ? "" : " ", std::string(info.unit).c_str());
   }
 }

@@ -31,7 +31,7 @@ struct Table {
 
 struct Text {
   std::string SettingsValues::*member;
-  std::string_view grammar;
+  std::string grammar;
   std::string (*problem)(const std::string& text);  // empty when all is well
 };
 
@@ -88,12 +88,8 @@ const std::vector<Key>& keys() {
                            word("image", Colour::kImage)}),
        "",
        "what the colour of coloured and unlit surfaces shows; image: the planet file's imagery at each post"},
-      {"palette",
-       Text{&V::palette,
-            "auto, hsv, "
-            "one of the names 'vpe settings palette' lists, or a file",
-            [](const std::string& text) { return palette_problem(text); }},
-       "", "colours of elevation, slope and aspect; auto: as suits what is shown"},
+      {"palette", Text{&V::palette, palette_grammar(), palette_problem}, "",
+       "colours of elevation, slope and aspect; auto: as suits what is shown"},
       {"palette.low", Number{&V::palette_low, -1e6, 1e6}, "",
        "value at the palette's lower end, metres or degrees; both ends equal: as suits what is shown"},
       {"palette.high", Number{&V::palette_high, -1e6, 1e6}, "", "value at the palette's upper end"},
