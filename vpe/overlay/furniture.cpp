@@ -22,8 +22,9 @@ void draw_middle(Sheet& sheet, std::string text, Font font, bool at_top) {
   const std::string whole = printable_utf8(text);
   std::size_t kept = whole.size();
   while (size.width > most_px && kept > 0) {
-    do --kept;
-    while (kept > 0 && (static_cast<unsigned char>(whole[kept]) & 0xc0U) == 0x80U);
+    // By its share at once, then letter by letter.
+    kept = std::min(kept - 1, static_cast<std::size_t>(1.2 * most_px / size.width * static_cast<double>(kept)));
+    while (kept > 0 && (static_cast<unsigned char>(whole[kept]) & 0xc0U) == 0x80U) --kept;
     text = whole.substr(0, kept) + "\u2026";
     size = canvas.measure(text, font);
   }
@@ -33,6 +34,7 @@ void draw_middle(Sheet& sheet, std::string text, Font font, bool at_top) {
   const Box box = Box::about(centre, size);
   if (!sheet.is_free(box)) return;
   sheet.take(box.grown(sheet.px(4)));
+  canvas.clear(centre, size, 0);
   sheet.label(text, centre, font);
 }
 
@@ -88,6 +90,8 @@ void draw_scale_bar(Sheet& sheet, const Ground& ground) {
   const Box box{sheet.margin_px() - sheet.px(2), top, left + std::max(length_px, text_px), bottom};
   if (!sheet.is_free(box)) return;
   sheet.take(box.grown(sheet.px(6)));
+  canvas.clear({0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)},
+               {box.right - box.left, box.bottom - box.top}, 0);
   // Black and white in four fields, white first.
   const double bar_bottom = bottom - row_px - sheet.px(2);
   const auto field = [&](double from, double to, double grow, const Ink& ink) {
@@ -108,7 +112,7 @@ void draw_scale_bar(Sheet& sheet, const Ground& ground) {
 }
 
 void draw_north_arrow(Sheet& sheet, const Ground& ground) {
-  constexpr double kLeastTilt = 0.342;  // sine of 20 degrees
+  constexpr double kLeastTilt = 0.5;  // sine of 30 degrees
   constexpr double kPole = 1e-7;
   const Centre centre = centre_of(ground);
   const mars::Axes& axes = ground.scene().view.eye.axes;

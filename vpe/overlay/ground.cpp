@@ -16,7 +16,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Ground::Ground(const Scene& scene)
     : scene_(scene), part_(core::drawn_part(scene.view)), size_(core::drawn_size(scene.view)) {
-  if (scene.range_m.size() == static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y)) return;
+  if (scene.range_m.size() == static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y)) {
+    const auto nearest = std::min_element(scene.range_m.begin(), scene.range_m.end());
+    nearest_m_ = nearest == scene.range_m.end() ? 1 : std::max(static_cast<double>(*nearest), 1e-3);
+    return;
+  }
   throw std::invalid_argument("the range image has " + std::to_string(scene.range_m.size()) +
                               " pixels, the picture " + std::to_string(size_.x) + "x" +
                               std::to_string(size_.y));
@@ -25,6 +29,14 @@ Ground::Ground(const Scene& scene)
 bool Ground::is_ground(std::size_t pixel) const {
   const float range_m = scene_.range_m[pixel];
   return range_m > 0.0F && std::isfinite(range_m);
+}
+
+double Ground::noise_m(std::size_t pixel) const {
+  // A tenth of what vpe/gl bounds it by: what is usual, not what is possible.
+  constexpr double kShare = 5e-8;
+  constexpr double kRounding = 1.2e-7;
+  const auto range_m = static_cast<double>(scene_.range_m[pixel]);
+  return range_m * (kRounding + kShare * range_m / nearest_m_);
 }
 
 glm::dvec3 Ground::point(int x, int y) const {

@@ -30,6 +30,9 @@ class Ground {
   // where near ground hides far ground.
   bool is_whole(int x, int y) const;
 
+  // How far the range may be off at a pixel with ground, as a backend's depths and 32 bits make it.
+  double noise_m(std::size_t pixel) const;
+
   const Scene& scene() const { return scene_; }
 
   // A number of every pixel with ground, NaN for sky. Longitude in (-180, 180], degrees; metres.
@@ -45,6 +48,7 @@ class Ground {
   const Scene& scene_;
   core::SubRectangle part_;
   glm::ivec2 size_;
+  double nearest_m_;
 };
 
 // Range of the middle 90 % of values, NaN not counted; nothing without any. `period`: values are angles of that

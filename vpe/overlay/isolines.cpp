@@ -79,7 +79,8 @@ class Tracer {
     if ((high - low) / step > kMostInACell || std::abs(high / step) > kLargestMultiple) return;
     const auto first = static_cast<std::int64_t>(std::ceil(low / step));
     const auto last = static_cast<std::int64_t>(std::floor(high / step));
-    if (first > last || high - low <= options_.noise) return;
+    if (first > last) return;
+    if (options_.noise > 0 && high - low <= options_.noise * ground_.noise_m(p)) return;
     const double slope = std::hypot(0.5 * (v[1] - v[0] + v[2] - v[3]), 0.5 * (v[3] - v[0] + v[2] - v[1]));
     const double spacing_px = step / std::max(slope, 1e-300);
     if (spacing_px < options_.densest_px || !ground_.is_whole(x, y)) return;

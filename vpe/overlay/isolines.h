@@ -22,7 +22,7 @@ struct IsolineOptions {
   double step = 1;
   double period = 0;      // values are angles in (-period/2, period/2]
   int leave_out = 0;      // multiples of this are not made
-  double noise = 0;       // cells that span no more have no line
+  double noise = 0;       // cells that span no more than this times Ground::noise_m() have no line
   double densest_px = 1;  // nor have cells with lines closer than this
 };
 

@@ -66,6 +66,7 @@ void draw_legend(Sheet& sheet, const Scene& scene) {
   if (!shows_values(scene)) return;
   Canvas& canvas = sheet.canvas();
   const core::ColourScale scale(scene.appearance);
+  if (scale.low() == scale.high()) return;  // a palette of one colour
   const Figures figures = figures_of(scene.appearance.colour, scale.low(), scale.high());
   const Font font = sheet.font(14);
   const Font title_font = sheet.font(14, true);

@@ -20,9 +20,14 @@ struct LineStyle {
 };
 
 constexpr Ink kGraticule{1, 1, 1, 0.85};
-constexpr Ink kGraticuleHalo{0, 0, 0, 0.30};
+constexpr Ink kGraticuleHalo{0, 0, 0, 0.42};
 constexpr Ink kContour{0.22, 0.10, 0.03, 0.85};
 constexpr Ink kContourHalo{1, 0.93, 0.80, 0.30};
+
+constexpr double kInside_px = 1e-6;  // off the border, whatever is rounded
+
+// Of the gap in a line, beyond the text.
+double label_room_px(const Sheet& sheet) { return sheet.px(6); }
 
 // Opacity by the distance to the next line.
 double opacity(double spacing_px, const Sheet& sheet) {
@@ -99,7 +104,8 @@ void label_graticule(std::vector<LineLabel>& labels, Sheet& sheet, const std::ve
   const auto add = [&](const Isoline& line, glm::dvec2 at) {
     const std::string text = text_of(line.multiple);
     const TextSize box = sheet.canvas().measure(text, style.font);
-    const glm::dvec2 room(0.5 * box.width + sheet.px(6), 0.5 * box.height + sheet.px(3));
+    // No stub of the line remains between its label and the border.
+    const glm::dvec2 room(0.5 * (box.width + label_room_px(sheet)) + kInside_px, 0.5 * box.height + kInside_px);
     if (2 * room.x > size.x || 2 * room.y > size.y) return;
     labels.push_back({text, glm::clamp(at, room, size - room), 0, style});
     labelled.insert(line.multiple);
@@ -174,7 +180,7 @@ std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double 
   constexpr int kHeavy = 5;
   constexpr double kMostLines = 20;
   constexpr double kSmallestStep_m = 0.1;
-  constexpr double kNoise = 1e-7;  // of the largest number in play: float ranges of the ground
+  constexpr double kNoise = 2;  // one pixel off this way, its neighbour the other way
   const std::vector<double> elevations_m = ground.elevations_m();
   IsolineOptions options;
   options.step = step_m;
@@ -183,7 +189,7 @@ std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double 
     if (!spread) return {};
     options.step = round_above(std::max((spread->high - spread->low) / kMostLines, kSmallestStep_m));
   }
-  options.noise = kNoise * options.step;
+  options.noise = kNoise / ground.scene().appearance.exaggeration;
   options.leave_out = kHeavy;
   std::vector<Isoline> light = isolines(ground, elevations_m, options);
   const double step = options.step;
@@ -216,7 +222,7 @@ void draw_labels(Sheet& sheet, const std::vector<LineLabel>& labels) {
   std::vector<const LineLabel*> drawn;
   for (const LineLabel& label : labels) {
     TextSize size = sheet.canvas().measure(label.text, label.style.font);
-    size.width += sheet.px(6);
+    size.width += label_room_px(sheet);
     const Box box = Box::about(label.at, size, label.angle_rad);
     const bool again = std::any_of(drawn.begin(), drawn.end(), [&](const LineLabel* other) {
       return other->text == label.text && glm::length(other->at - label.at) < apart_px;

@@ -55,7 +55,7 @@ bool needs_range(const core::Overlays& overlays);
 // fade, and are gone at 2.
 // legend: only when the appearance shows elevation, slope or aspect as colours.
 // scale_bar: a length at the ground in the picture's centre, across the line of sight; absent when there is
-// sky. north_arrow: of the ground in the centre, on a disc that lies on the ground, tilted to 20 degrees at
+// sky. north_arrow: of the ground in the centre, on a disc that lies on the ground, tilted to 30 degrees at
 // least to
 //   be read; of the ground below the eye when there is sky. Absent at the very poles.
 // names: hidden where the ground in the picture, in all of the 3 x 3 pixels about the place, is nearer than the
