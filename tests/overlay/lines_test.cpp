@@ -253,6 +253,29 @@ TEST(Isolines, FlatGroundHasNoContours) {
   EXPECT_EQ(painted(lines_of(sight, [](Sheet& s, const Ground& g) { return draw_contours(s, g, 10); })), 0U);
 }
 
+TEST(Contours, FadeWhereTheDrawnGroundIsTooFarOff) {
+  const Ball ball{{20, 10}, 20000, 0.08, 1};
+  const Sight sight(ball, view_at({20, 9, 6e5, 0, -80, 0}, 200, 150));
+  const auto with = [&](double shift_px, double step_m) {
+    Scene scene = sight.scene();
+    scene.shift_px = shift_px;
+    const Ground ground(scene);
+    Canvas canvas(sight.view.width, sight.view.height);
+    Sheet sheet(canvas);
+    draw_contours(sheet, ground, step_m);
+    return painted(canvas.layer());
+  };
+  // A pixel is about 4500 m there.
+  const std::size_t all = with(0, 2000);
+  EXPECT_GT(all, 1000U);
+  EXPECT_EQ(with(0.1, 2000), all);
+  EXPECT_LT(with(1, 2000), all / 2);  // the heavy ones alone, of 10 km
+  EXPECT_GT(with(1, 2000), 100U);
+  EXPECT_EQ(with(5, 2000), 0U);
+  EXPECT_LT(with(0.5, 0), with(0, 0));  // automatic steps are larger then
+  EXPECT_GT(with(0.5, 0), 100U);
+}
+
 TEST(Graticule, AutomaticStepsPutSomeLinesIntoAnyPicture) {
   for (const mars::Pose& pose : {mars::Pose{10, 20, 2e7, 0, -90, 0}, mars::Pose{10, 20, 1e6, 0, -90, 0},
                                  mars::Pose{10, 20, 1e4, 0, -90, 0}, mars::Pose{10, 20, 300, 0, -90, 0},

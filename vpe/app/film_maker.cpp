@@ -99,7 +99,8 @@ bool FilmMaker::draw(std::size_t n) {
   const auto picture = std::make_shared<core::Frame>(std::move(result.frame));
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
   sink_->push([this, group, &frame, picture, request = planned.request] {
-    overlay::composite(overlays_.layer(request, *picture, frame.time_s), picture->colour);
+    overlay::composite(overlays_.layer(request, *picture, frame.figures.certificate, frame.time_s),
+                       picture->colour);
     target_.add(group, frame, *picture);
   });
   return true;

@@ -19,7 +19,8 @@ void FrameOverlays::load(const core::Overlays& overlays) {
   names_.emplace(overlays.names, std::move(names));
 }
 
-overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core::Frame& frame, double time_s) {
+overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core::Frame& frame,
+                                    const core::Certificate& certificate, double time_s) {
   const core::SettingsValues& settings = request.settings;
   if (!overlay::any(settings)) return {};
   load(settings);
@@ -28,6 +29,7 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core
   scene.range_m = frame.range_m;
   scene.radius_m = planet_->radius_m();
   scene.appearance = settings;
+  scene.shift_px = certificate.picture_bound_px.value_or(certificate.shift_bound_px);
   scene.has_imagery = has_imagery_;
   scene.time_s = time_s;
   if (!settings.names.empty()) {

@@ -22,7 +22,8 @@ class FrameOverlays {
 
   // Of a frame that was drawn for the request, with its range image when overlay::needs_range(). Throws what
   // overlay::draw() and paging::Surface throw.
-  overlay::Layer layer(const core::DrawRequest& request, const core::Frame& frame, double time_s);
+  overlay::Layer layer(const core::DrawRequest& request, const core::Frame& frame,
+                       const core::Certificate& certificate, double time_s);
 
  private:
   struct Names {

@@ -140,7 +140,7 @@ void render(RenderArguments& arguments, const Common& common) {
   require_complete(arguments.picture, result);
   if (!common.quiet) warn_of(result.failures);
   if (overlay::any(request.settings)) {
-    const overlay::Layer layer = FrameOverlays(planet).layer(request, result.frame, 0);
+    const overlay::Layer layer = FrameOverlays(planet).layer(request, result.frame, result.certificate, 0);
     if (arguments.overlay_layer.empty()) {
       overlay::composite(layer, result.frame.colour);
     } else {

@@ -31,6 +31,10 @@ bool Ground::is_ground(std::size_t pixel) const {
   return range_m > 0.0F && std::isfinite(range_m);
 }
 
+double Ground::error_m(std::size_t pixel) const {
+  return scene_.shift_px * static_cast<double>(scene_.range_m[pixel]) / core::focal_px(scene_.view);
+}
+
 double Ground::noise_m(std::size_t pixel) const {
   // A tenth of what vpe/gl bounds it by: what is usual, not what is possible.
   constexpr double kShare = 5e-8;

@@ -30,6 +30,8 @@ class Ground {
   // where near ground hides far ground.
   bool is_whole(int x, int y) const;
 
+  // How far the drawn ground may be off the surface, by Scene::shift_px.
+  double error_m(std::size_t pixel) const;
   // How far the range may be off at a pixel with ground, as a backend's depths and 32 bits make it.
   double noise_m(std::size_t pixel) const;
 

@@ -14,6 +14,7 @@ struct Isoline {
   bool closed = false;
   std::vector<glm::dvec2> points;  // in the layer's pixels
   std::vector<double> spacing_px;  // at each point, to the next line, smoothed along the line
+  std::vector<double> trust;       // 0 to 1 at each point; empty for 1
 
   double length_px() const;
 };

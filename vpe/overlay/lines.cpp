@@ -39,7 +39,8 @@ template <class Draw>
 void for_stretches(const Isoline& line, const Sheet& sheet, const Draw& draw) {
   constexpr int kShades = 8;
   const auto shade = [&](std::size_t n) {
-    return static_cast<int>(std::lround(kShades * opacity(line.spacing_px[n], sheet)));
+    const double trust = line.trust.empty() ? 1.0 : line.trust[n];
+    return static_cast<int>(std::lround(kShades * trust * opacity(line.spacing_px[n], sheet)));
   };
   std::size_t begin = 0;
   for (std::size_t n = 1; n <= line.points.size(); ++n) {
@@ -146,7 +147,8 @@ std::vector<Spot> spots_on(const Isoline& line, double length_px, double apart_p
     const glm::dvec2 way = line.points[end] - line.points[n];
     const std::size_t middle = (n + end) / 2;
     if (glm::length(way) < kStraight * (along[end] - along[n])) continue;
-    if (opacity(line.spacing_px[middle], sheet) < 1) continue;
+    if (opacity(line.spacing_px[middle], sheet) < 1 || (!line.trust.empty() && line.trust[middle] < 1))
+      continue;
     double angle = std::atan2(way.y, way.x);
     if (std::abs(angle) > 0.5 * mars::kPi) angle -= std::copysign(mars::kPi, angle);
     spots.push_back({line.points[middle], angle});
@@ -176,6 +178,36 @@ std::vector<LineLabel> draw_graticule(Sheet& sheet, const Ground& ground, double
   return labels;
 }
 
+namespace {
+
+// Elevations are to be believed where they are off by this part of the step at most.
+constexpr double kTrusted = 2;
+
+void weigh(std::vector<Isoline>& lines, const Ground& ground, double step_m) {
+  if (ground.scene().shift_px <= 0) return;
+  for (Isoline& line : lines) {
+    line.trust.reserve(line.points.size());
+    for (const glm::dvec2& p : line.points) {
+      const double error_m = ground.error_m(ground.index(static_cast<int>(p.x), static_cast<int>(p.y)));
+      line.trust.push_back(std::clamp((step_m / error_m - 1) / (kTrusted - 1), 0.0, 1.0));
+    }
+  }
+}
+
+// In the middle of all pixels with ground.
+double usual_error_m(const Ground& ground) {
+  std::vector<double> errors_m;
+  for (std::size_t p = 0; p < ground.scene().range_m.size(); p += 97) {
+    if (ground.is_ground(p)) errors_m.push_back(ground.error_m(p));
+  }
+  if (errors_m.empty()) return 0;
+  const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
+  std::nth_element(errors_m.begin(), middle, errors_m.end());
+  return *middle;
+}
+
+}  // namespace
+
 std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double step_m) {
   constexpr int kHeavy = 5;
   constexpr double kMostLines = 20;
@@ -187,7 +219,8 @@ std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double 
   if (step_m <= 0) {
     const std::optional<Spread> spread = spread_of(elevations_m);
     if (!spread) return {};
-    options.step = round_above(std::max((spread->high - spread->low) / kMostLines, kSmallestStep_m));
+    const double by_range_m = (spread->high - spread->low) / kMostLines;
+    options.step = round_above(std::max({by_range_m, kTrusted * usual_error_m(ground), kSmallestStep_m}));
   }
   options.noise = kNoise / ground.scene().appearance.exaggeration;
   options.leave_out = kHeavy;
@@ -196,6 +229,8 @@ std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double 
   options.step *= kHeavy;
   options.leave_out = 0;
   std::vector<Isoline> heavy = isolines(ground, elevations_m, options);
+  weigh(light, ground, step);
+  weigh(heavy, ground, options.step);
   drop_crumbs(light, sheet);
   drop_crumbs(heavy, sheet);
   draw_lines(sheet, light, {sheet.line_px(1.0), kContour, kContourHalo});

@@ -31,7 +31,8 @@ struct Scene {
   std::span<const float> range_m;  // core::Frame::range_m; needed where needs_range() says so
   double radius_m = mars::kMarsRadius_m;
   core::Appearance appearance;  // its exaggeration, and for the legend
-  bool has_imagery = true;      // mode textured shows imagery
+  double shift_px = 0;      // by which the ground in the picture may be off (core::Certificate); for contours
+  bool has_imagery = true;  // mode textured shows imagery
   double time_s = 0;
   std::span<const core::Place> places;  // of Overlays::names; earlier ones win
   // Metres above the sphere of a place on the ground, without exaggeration. Left out: 0.
@@ -50,7 +51,10 @@ bool needs_range(const core::Overlays& overlays);
 // graticule: where the ground's longitude and latitude are multiples of the step, to within a pixel. Automatic
 //   steps put 4 to 10 lines of each kind into the middle nine tenths of the ground in the picture.
 // contours: the same for metres above the sphere without exaggeration; every fifth one heavier and labelled.
-//   Automatic steps are 1, 2, 5 times a power of ten.
+//   They are those of the ground as drawn, whose elevations may be off by shift_px * range / focal length:
+//   lines fade where that is more than half of their distance in metres, and are gone where it is all of it.
+//   Automatic steps are 1, 2, 5 times a power of ten, and large enough for that in the nearer half of the
+//   ground.
 // Neither runs across an edge where near ground hides far ground. Lines closer together than 5 px (at 720 rows)
 // fade, and are gone at 2.
 // legend: only when the appearance shows elevation, slope or aspect as colours.
