@@ -112,6 +112,9 @@ TEST_F(PictureUsage, Settings) {
   expect_usage({"--set", "mode=pretty"}, {"--set mode=pretty", "wireframe", "textured"});
   expect_usage({"--set", "exaggeration=nan"}, {"--set exaggeration=nan", "number", "100"});
   expect_usage({"--set", "mode=lit", "--set", "exaggeration=1e9"}, {"--set exaggeration=1e9", "100"});
+  expect_usage({"--set", "palette=rainbow"}, {"palette=rainbow", "no palette and no file", "viridis", "turbo"});
+  expect_usage({"--set", "sun=noon"}, {"--set sun=noon", "neither local nor a date", "2026-11-20T12:00Z"});
+  expect_usage({"--sun", "2026-02-30"}, {"--sun", "no such day", "Ls90,15:00"});
   for (const char* tolerance : {"nan", "-1", "1001"})
     expect_usage({"--tolerance", tolerance}, {"--tolerance", tolerance});
 }

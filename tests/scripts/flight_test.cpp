@@ -273,6 +273,9 @@ SetCommand random_set(Random& random, double time_s) {
             std::string(info.choices[static_cast<std::size_t>(
                 random.integer(0, static_cast<int>(info.choices.size()) - 1))])};
   }
+  if (info.key == "palette") return {time_s, "palette", "viridis"};
+  if (info.key == "sun")
+    return {time_s, "sun", random.integer(0, 1) == 0 ? "2026-11-20T14:00:30.5+02:00" : "Ls90,15:00"};
   return {time_s, std::string(info.key), info.default_text};
 }
 

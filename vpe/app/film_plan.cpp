@@ -32,7 +32,7 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   for (const scripts::Interest& i : path_.interests(out.time_s)) {
     request.interest.push_back({i.lon_deg, i.lat_deg, i.radius_m, i.levels});
   }
-  // The sun stands still: its azimuth and elevation are those at the ground below the flight's start.
+  // The sun stands still: azimuth and elevation, or the hour, are those at the ground below the flight's start.
   request.sun = sun_for(request.settings, start_);
   request.want_range = overlay::needs_range(request.settings);
   return out;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "mars/mars_time.h"
 #include "mars/sun.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/core/heap.h"
@@ -22,6 +23,10 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")
       ->check(number_within(0.0, 1000.0));
+  command.add_option(
+      "--sun", options.sun,
+      "Where the light comes from: a date as 2026-11-20T12:00Z, Ls90,15:00 (solar longitude and local "
+      "true solar time at the ground below the eye), or local");
   command.add_option("--wait", options.wait_s, "Longest time to wait for the tiles of a picture, seconds")
       ->check(number_within(0.0, 1e6))
       ->capture_default_str();
@@ -63,6 +68,10 @@ core::Settings make_settings(const PictureOptions& options) {
     const std::string trouble = settings.set("lod.tolerance", core::format_number(options.tolerance_px));
     if (!trouble.empty()) throw UsageError("--tolerance: " + trouble);
   }
+  if (!options.sun.empty()) {
+    const std::string trouble = settings.set("sun", options.sun);
+    if (!trouble.empty()) throw UsageError("--sun: " + trouble);
+  }
   for (const std::string& assignment : options.set) {
     const std::string trouble = settings.assign(assignment);
     if (!trouble.empty()) throw UsageError("--set " + assignment + ": " + trouble);
@@ -98,8 +107,9 @@ void require_complete(const PictureOptions& options, const core::DrawResult& res
 }
 
 glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose) {
-  return mars::sun_direction({pose.lon_deg, pose.lat_deg}, settings.sun_azimuth_deg,
-                             settings.sun_elevation_deg);
+  const mars::LonLat below{pose.lon_deg, pose.lat_deg};
+  const auto sun = mars::sun_direction(mars::parse_sun(settings.sun).value_or(mars::LocalSun{}), below);
+  return sun ? *sun : mars::sun_direction(below, settings.sun_azimuth_deg, settings.sun_elevation_deg);
 }
 
 Size parse_size(const std::string& text) {

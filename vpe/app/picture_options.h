@@ -13,6 +13,7 @@ namespace vpe::app {
 
 struct PictureOptions {
   std::vector<std::string> set;  // KEY=VALUE
+  std::string sun;               // as the setting; empty: as set
   std::string backend = "polygon";
   double tolerance_px = -1;  // < 0: as set
   double wait_s = 300;       // for the tiles of a picture
@@ -22,8 +23,8 @@ struct PictureOptions {
 
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
-// Default settings (sky, and image or elevation colours), then --tolerance, then every --set in order. Throws
-// UsageError naming the key.
+// Default settings (sky, and image or elevation colours), then --tolerance and --sun, then every --set in
+// order. Throws UsageError naming the key.
 core::Settings make_settings(const PictureOptions& options);
 
 // The regions of every --interest, in order. Throws UsageError that says what is expected.
@@ -36,7 +37,8 @@ std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, con
 // Throws std::runtime_error that names what is missing in a picture, unless that is allowed.
 void require_complete(const PictureOptions& options, const core::DrawResult& result);
 
-// Where the sun stands when its azimuth and elevation are given at a place on the ground.
+// Where the sun stands: for its date, or for season and hour, or azimuth and elevation, at the ground below a
+// pose.
 glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose);
 
 struct Size {

@@ -37,7 +37,7 @@ class Palette {
   Scale scale() const { return scale_; }
   std::span<const PaletteStop> stops() const { return stops_; }
 
-  // Exact: no table is in between. Some ten nanoseconds, however many stops. NaN: the first stop's colour.
+  // Exact: no table is in between. Some 20 ns, however many stops. NaN: the first stop's colour.
   glm::dvec3 colour(double at) const;
 
   bool operator==(const Palette& other) const { return scale_ == other.scale_ && stops_ == other.stops_; }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <variant>
 
+#include "mars/mars_time.h"
 #include "vpe/core/gazetteer.h"
 #include "vpe/core/number.h"
 #include "vpe/core/palette.h"
@@ -104,12 +105,9 @@ const std::vector<Key>& keys() {
       {"exaggeration", Number{&V::exaggeration, 0.1, 100}, "",
        "factor on every elevation, about the planet's sphere"},
       {"sun",
-       Text{&V::sun, "local, a date as 2026-11-20T12:00Z, or Ls90,15:00 (solar longitude and true solar time)",
-            [](const std::string&) { return std::string(); }},
-       "",
-       "where the light comes from: sun.azimuth and sun.elevation, a date, or a season and hour at the ground "
-       "below "
-       "the eye"},
+       Text{&V::sun, mars::sun_grammar(), [](const std::string& text) { return mars::sun_problem(text); }}, "",
+       "where the light comes from: sun.azimuth and sun.elevation (local), a date, or a season and hour at the "
+       "ground below the eye (in a film: below its start)"},
       {"sun.azimuth", Number{&V::sun_azimuth_deg, 0, 360}, "deg",
        "where the light comes from, clockwise from north, at the ground below the eye (in a film: below its "
        "start)"},

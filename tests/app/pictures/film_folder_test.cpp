@@ -73,8 +73,8 @@ TEST_F(FilmFolder, NothingIsDrawnWhenEveryFrameIsThere) {
     ASSERT_EQ(x.size(), header.size());
     ASSERT_EQ(y.size(), header.size());
     for (std::size_t n = 0; n < header.size(); ++n) {
-      const bool only_drawing = header[n].ends_with("_ms") || header[n].starts_with("pages_") ||
-                                header[n] == "bytes_resident";
+      const bool only_drawing =
+          header[n].ends_with("_ms") || header[n].starts_with("pages_") || header[n] == "bytes_resident";
       EXPECT_EQ(y[n], only_drawing ? "" : x[n]) << header[n];
       EXPECT_NE(x[n], "") << header[n];
     }
@@ -140,6 +140,17 @@ TEST_F(FilmFolder, AnEditRemakesTheFramesThatChange) {
   write_text(dir_ / "f.flight", film_flight());
   expect_counts("out", 14, 10);
   EXPECT_EQ(files("out"), before);
+  // The sun, by its own option and as a setting; a palette, by what its file holds.
+  const Words sun{"--sun", "2026-11-20T12:00Z"};
+  expect_counts("out", kFrames, 0, sun);
+  EXPECT_GT(changed(before, files("out")), kFrames / 2);
+  expect_counts("out", 0, kFrames, {"--set", "sun=2026-11-20T12:00Z"});
+  const Words palette{"--set", "palette=" + path("p.txt")};
+  write_text(dir_ / "p.txt", "-8000 0 0 0\n9000 255 255 255\n");
+  expect_counts("out", kFrames, 0, palette);
+  expect_counts("out", 0, kFrames, palette);
+  write_text(dir_ / "p.txt", "-8000 0 0 1\n9000 255 255 255\n");
+  expect_counts("out", kFrames, 0, palette);
   // What changes every picture, or may.
   expect_counts("out", kFrames, 0, {"--memory", "512"});
   expect_counts("out", 0, kFrames, {"--memory", "512", "--threads", "1"});

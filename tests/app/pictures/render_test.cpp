@@ -1,9 +1,11 @@
 // One picture, its ranges and its certificate.
 #include <cmath>
 
+#include "mars/mars_time.h"
 #include "tests/app/support/app_fixture.h"
 #include "vpe/core/frame.h"
 #include "vpe/core/image.h"
+#include "vpe/core/number.h"
 
 namespace app_test {
 namespace {
@@ -89,6 +91,41 @@ TEST_F(Render, SamePictureAgainAndInOtherFormats) {
   ASSERT_EQ(render({"--set", "mode=wireframe"}, "-74,-13.5,300000,20,-40,5", "Bild mit Ü.png").exit_code, 0);
   EXPECT_NE(read_text(dir_ / "Bild mit Ü.png"), read_text(dir_ / "a.png"));
   EXPECT_EQ(leftovers(), Words{});
+}
+
+TEST_F(Render, TheSunOfADateOrASeason) {
+  const auto picture = [&](const Words& more) {
+    Words words{"--set", "mode=lit"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = render(words, "-74,-13.5,300000,0,-90,0", "s.png");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return vpe::core::read_image(dir_ / "s.png").pixels;
+  };
+  const auto brightness = [](const std::vector<mars::Rgb>& pixels) {
+    double sum = 0;
+    for (const mars::Rgb& p : pixels) sum += p.r;
+    return sum / static_cast<double>(pixels.size());
+  };
+  const auto noon = picture({"--sun", "Ls0,12:00"});
+  const auto evening = picture({"--sun", "Ls0,17:30"});
+  const auto night = picture({"--sun", "ls0,00:00"});
+  EXPECT_GT(brightness(noon), 1.3 * brightness(evening));
+  EXPECT_GT(brightness(evening), 1.3 * brightness(night));
+  EXPECT_EQ(picture({"--set", "sun=Ls0,17:30"}), evening);
+  EXPECT_EQ(picture({"--sun", "Ls0,12:00", "--set", "sun=Ls0,17:30"}), evening);
+  EXPECT_EQ(picture({"--sun", "local"}), picture({}));
+
+  // By date, and by where that sun stands at the ground below the eye.
+  const mars::LonLat below{-74, -13.5};
+  const mars::MarsTime time = mars::mars_time(1795176000);  // 2026-11-20T12:00Z
+  const mars::SunPlace at =
+      mars::sun_place(below, mars::direction({time.subsolar_lon_deg, time.subsolar_lat_deg}));
+  const auto dated = picture({"--sun", "2026-11-20T14:00+02:00"});
+  const auto put = picture({"--set", "sun.azimuth=" + vpe::core::format_number(at.azimuth_deg), "--set",
+                            "sun.elevation=" + vpe::core::format_number(at.elevation_deg)});
+  ASSERT_EQ(dated.size(), put.size());
+  for (std::size_t n = 0; n < put.size(); ++n) ASSERT_NEAR(dated[n].r, put[n].r, 1) << n;
+  EXPECT_GT(brightness(dated), 1.3 * brightness(night));
 }
 
 TEST_F(Render, ExplainsTheLevelOfEveryDrawnTile) {
