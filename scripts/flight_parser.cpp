@@ -18,7 +18,7 @@ using vpe::core::ViewLimits;
 
 namespace {
 
-using Words = std::vector<std::string_view>;
+using Words = std::vector<std::string>;
 
 // What was found, fit for a terminal whatever bytes it holds.
 std::string quote(std::string_view text) {
@@ -31,16 +31,39 @@ std::string quote(std::string_view text) {
   return quoted + (text.size() > kLongest ? "...\"" : "\"");
 }
 
-Words split_words(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r\v\f";
+constexpr std::string_view kBlanks = " \t\r\v\f";
+
+// The words of a line, without quotes; `fault` says what was expected where a quote is wrong.
+Words split_words(std::string_view line, std::string& fault) {
   Words words;
-  line = line.substr(0, line.find('#'));
   for (;;) {
     const std::size_t begin = line.find_first_not_of(kBlanks);
-    if (begin == std::string_view::npos) return words;
+    if (begin == std::string_view::npos || line[begin] == '#') return words;
     line.remove_prefix(begin);
-    words.push_back(line.substr(0, line.find_first_of(kBlanks)));
-    line.remove_prefix(words.back().size());
+    std::string& word = words.emplace_back();
+    std::size_t at = 0;
+    while (at < line.size() && kBlanks.find(line[at]) == std::string_view::npos && line[at] != '#') {
+      // Only the first equals sign can be before a quoted value.
+      const bool opens =
+          line[at] == '=' && word.find('=') == std::string::npos && line.substr(at + 1).starts_with('"');
+      word += line[at++];
+      if (!opens) continue;
+      for (++at; at < line.size() && line[at] != '"'; ++at) {
+        if (line[at] == '\\' && at + 1 < line.size()) ++at;
+        word += line[at];
+      }
+      if (at == line.size()) {
+        fault = "a closing quote after " + quote(word);
+        return {};
+      }
+      ++at;
+      if (at < line.size() && kBlanks.find(line[at]) == std::string_view::npos && line[at] != '#') {
+        fault = "a blank after a closing quote, found " + quote(line.substr(at));
+        return {};
+      }
+      break;
+    }
+    line.remove_prefix(at);
   }
 }
 
@@ -93,8 +116,10 @@ class Parser {
     while (!text.empty() && !full()) {
       const std::size_t end = text.find('\n');
       ++line_;
-      const Words words = split_words(text.substr(0, end));
+      std::string fault;
+      const Words words = split_words(text.substr(0, end), fault);
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+      if (!fault.empty()) fail(fault);
       if (words.empty()) continue;
       if (!version_seen_) {
         if (!version(words)) return {std::nullopt, std::move(errors_)};
@@ -147,7 +172,7 @@ class Parser {
       std::optional<std::string_view>* own =
           pair && pair->key == "size" ? &size : (pair && pair->key == "fps" ? &fps : nullptr);
       if (own == nullptr) {
-        numbers.push_back(word);
+        numbers.emplace_back(word);
       } else if (own->has_value()) {
         fail(std::string(pair->key) + " once, found it again");
       } else {

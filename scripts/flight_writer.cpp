@@ -19,6 +19,17 @@ std::string at_line(double time_s, const char* command, Fields fields) {
   return line + "\n";
 }
 
+// In quotes where it would not be read back as one word.
+std::string value_text(const std::string& text) {
+  if (text.find_first_of(" \t\r\v\f#\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
 }  // namespace
 
 std::string version_line() { return "flight 1\n"; }
@@ -44,7 +55,7 @@ std::string to_line(const Look& look) {
 }
 
 std::string to_line(const SetCommand& set) {
-  return "at " + format_number(set.time_s) + " set " + set.key + "=" + set.text + "\n";
+  return "at " + format_number(set.time_s) + " set " + set.key + "=" + value_text(set.text) + "\n";
 }
 
 std::string to_line(const Interest& interest) {

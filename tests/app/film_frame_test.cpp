@@ -73,7 +73,10 @@ TEST(FilmFrame, EverySettingIsInItsFingerprint) {
     std::string other = info.choices.empty() ? "1" : std::string(info.choices.front());
     if (info.type == vpe::core::SettingType::kTable) other = "0:1";
     if (info.type == vpe::core::SettingType::kText) {
-      other = info.key == "palette" ? "viridis" : info.key == "sun" ? "2026-11-20T12:00Z" : "Other";
+      other = info.key == "palette"         ? "viridis"
+              : info.key == "sun"           ? "2026-11-20T12:00Z"
+              : info.key == "overlay.names" ? "/dev/null"
+                                            : "Other";
     }
     if (other == info.default_text) other = info.choices.empty() ? "2" : std::string(info.choices.back());
     ASSERT_EQ(inputs.settings.set(info.key, other), "") << info.key;
@@ -95,6 +98,31 @@ TEST(FilmFrame, WhatAPaletteFileHoldsIsInItsFingerprint) {
     vpe::core::write_file(file, "# the same\n" + std::string(text));
     EXPECT_EQ(inputs.fingerprint(), fingerprint) << text;
   }
+}
+
+TEST(FilmFrame, WhatAGazetteerHoldsIsInItsFingerprint) {
+  const test_support::TempDir dir;
+  const std::string file = (dir / "n.csv").string();
+  Inputs inputs;
+  vpe::core::write_file(file, std::string_view("name,lon,lat\nA,1,2\n"));
+  ASSERT_EQ(inputs.settings.set("overlay.names", file), "");
+  const std::string before = inputs.fingerprint();
+  EXPECT_EQ(inputs.fingerprint(), before);
+  vpe::core::write_file(file, std::string_view("name,lon,lat\nA,1,3\n"));
+  EXPECT_NE(inputs.fingerprint(), before);
+  std::filesystem::remove(file);
+  EXPECT_THROW(inputs.fingerprint(), vpe::core::FileError);
+}
+
+TEST(FilmFrame, ItsTimeCountsOnlyWhereItIsShown) {
+  Inputs inputs;
+  const auto at = [&](double time_s) {
+    return fingerprint_of(inputs.basis, inputs.request, inputs.settings, time_s);
+  };
+  EXPECT_EQ(at(1), at(2));
+  ASSERT_EQ(inputs.settings.set("overlay.time", "on"), "");
+  EXPECT_NE(at(1), at(2));
+  EXPECT_EQ(at(1), at(1));
 }
 
 TEST(FilmDigest, TellsSequencesApart) {

@@ -21,6 +21,7 @@ struct Layer {
   std::vector<std::string> may_use;  // besides itself
   bool may_draw = false;             // OpenGL, EGL, GLFW, OSMesa
   bool may_read_rasters = false;     // GDAL
+  bool may_letter = false;           // Cairo
 };
 
 const std::vector<Layer>& layers() {
@@ -31,16 +32,18 @@ const std::vector<Layer>& layers() {
       {"lod", "lod", {"mars", "vpe/core", "cull"}},
       {"paging", "paging", {"mars", "vpe/core", "lod"}},
       {"scripts", "scripts", {"mars", "vpe/core"}},
+      {"vpe/overlay", "vpe::overlay", {"mars", "vpe/core"}, false, false, true},
       {"vpe/gl", "vpe::gl", {"mars", "vpe/core", "cull", "lod", "paging", "scripts"}, true},
       {"vpe/voxel", "vpe::voxel", {"mars", "vpe/core", "paging"}},
       {"panorama", "panorama", {"mars", "vpe/core", "paging"}},
       {"vpe/app",
        "vpe::app",
-       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/gl", "vpe/voxel", "panorama"},
+       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama"},
        true},
       {"tests",
        "",
-       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/gl", "vpe/voxel", "panorama", "vpe/app"},
+       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama",
+        "vpe/app"},
        true,
        true},
   };
@@ -64,6 +67,11 @@ bool is_raster_header(const std::string& name) {
   return std::regex_match(name, kPattern);
 }
 
+bool is_lettering_header(const std::string& name) {
+  static const std::regex kPattern(R"((cairo|pango)[^/]*(/.*)?\.h)");
+  return std::regex_match(name, kPattern);
+}
+
 bool is_source(const fs::path& path) {
   static const std::vector<std::string> kExtensions{".h", ".hpp", ".hh", ".c", ".cc", ".cpp", ".cxx", ".inl"};
   return std::find(kExtensions.begin(), kExtensions.end(), path.extension().string()) != kExtensions.end();
@@ -73,6 +81,7 @@ bool is_source(const fs::path& path) {
 std::string include_problem(const Layer& layer, const std::string& name, bool quoted) {
   if (is_drawing_header(name) && !layer.may_draw) return "only vpe/gl and vpe/app may include " + name;
   if (is_raster_header(name) && !layer.may_read_rasters) return "only mars may include " + name;
+  if (is_lettering_header(name) && !layer.may_letter) return "only vpe/overlay may include " + name;
   if (!quoted) return "";
   const Layer* used = layer_of(name);
   if (used == nullptr) return "\"" + name + "\" is not given from the root of the repository";
@@ -199,6 +208,9 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
     EXPECT_EQ(verdict("mars/a.cpp", line + "namespace mars {}"), "") << header;
     EXPECT_EQ(verdict("tests/mars/a.cpp", line), "") << header;
   }
+  EXPECT_EQ(verdict("vpe/overlay/a.cpp", "#include <cairo.h>\nnamespace vpe::overlay {}"), "");
+  EXPECT_NE(verdict("vpe/app/a.cpp", "#include <cairo.h>\nnamespace vpe::app {}"), "");
+  EXPECT_NE(verdict("vpe/core/a.cpp", "#include <cairo/cairo-ft.h>\nnamespace vpe::core {}"), "");
   EXPECT_NE(verdict("lod/a.h", lod), "");
   EXPECT_EQ(verdict("lod/a.h", "// What it is.\n#pragma once\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "namespace mars {}\n"), "");

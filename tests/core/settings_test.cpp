@@ -17,6 +17,7 @@ using test_support::Random;
 // Another value than the default of a key of type kText.
 std::string other_text(std::string_view key) {
   if (key == "palette") return "viridis";
+  if (key == "overlay.names") return "/dev/null";  // any file that can be read
   return key == "sun" ? "2026-11-20T12:00Z" : "Other";
 }
 
@@ -145,7 +146,7 @@ TEST(Settings, MapsKeysToTheirMembers) {
   EXPECT_EQ(settings.assign("overlay.north=on"), "");
   EXPECT_EQ(settings.assign("overlay.time=on"), "");
   EXPECT_EQ(settings.assign("overlay.title=Olympus Mons"), "");
-  EXPECT_EQ(settings.assign("overlay.names=names.csv"), "");
+  EXPECT_EQ(settings.assign("overlay.names=/dev/null"), "");
   EXPECT_EQ(settings.assign("cull.occlusion=off"), "");
   EXPECT_EQ(settings.assign("edges=hard"), "");
   EXPECT_EQ(settings.assign("inspect=levels"), "");
@@ -197,7 +198,7 @@ TEST(Settings, MapsKeysToTheirMembers) {
   wanted.north_arrow = true;
   wanted.time_code = true;
   wanted.title = "Olympus Mons";
-  wanted.names = "names.csv";
+  wanted.names = "/dev/null";
   wanted.occlusion = Occlusion::kOff;
   wanted.smooth_edges = false;
   wanted.inspect = Inspect::kLevels;
@@ -241,6 +242,25 @@ TEST(Settings, ARejectedTextTellsWhyAndWhatIsAllowed) {
   EXPECT_TRUE(holds(problem, "palette=viridish is not allowed: no palette and no file has this name"))
       << problem;
   EXPECT_TRUE(holds(problem, "expected auto, hsv, relief, mola, viridis")) << problem;
+  EXPECT_EQ(settings, Settings());
+}
+
+TEST(Settings, TextHasNoControlCharacters) {
+  Settings settings;
+  EXPECT_EQ(settings.set("overlay.title", "Olympus Mons, s\u00fcdlich"), "");
+  for (const char* text : {"a\nb", "a\tb", "\x1b[2J", "a\x7f"}) {
+    EXPECT_TRUE(holds(settings.set("overlay.title", text), "control characters")) << text;
+  }
+  EXPECT_EQ(settings.get("overlay.title"), "Olympus Mons, s\u00fcdlich");
+}
+
+TEST(Settings, AGazetteerThatIsNotThereIsRefused) {
+  Settings settings;
+  const std::string problem = settings.set("overlay.names", "/nowhere/names.csv");
+  EXPECT_TRUE(
+      holds(problem, "overlay.names=/nowhere/names.csv is not allowed: it cannot be read: No such file"))
+      << problem;
+  EXPECT_TRUE(holds(problem, "name, lon, lat")) << problem;
   EXPECT_EQ(settings, Settings());
 }
 

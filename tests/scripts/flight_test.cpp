@@ -208,6 +208,41 @@ TEST(Flight, BadSettingsLooksAndInterestsAreRefused) {
   expect_error(with_lines("at 1 interest lon=1 lat=1 radius=-1 levels=1\n"), 3, "radius=NUMBER");
 }
 
+TEST(Flight, QuotesHoldValuesWithBlanks) {
+  const auto text_of = [](const std::string& line) {
+    const ParsedFlight parsed = parse_flight(with_lines("at 1 set " + line + "\n"), "F");
+    EXPECT_TRUE(parsed.flight.has_value())
+        << line << " " << (parsed.errors.empty() ? "" : parsed.errors[0].expected);
+    return parsed.flight ? parsed.flight->sets.at(0).text : "";
+  };
+  EXPECT_EQ(text_of("overlay.title=\"West of it\""), "West of it");
+  EXPECT_EQ(text_of("overlay.title=\"  # 1  \"   # a comment"), "  # 1  ");
+  EXPECT_EQ(text_of("overlay.title=\"\"#"), "");
+  EXPECT_EQ(text_of("overlay.title="), "");
+  EXPECT_EQ(text_of("overlay.title=\"a \\\"b\\\" \\\\ \\c=\""), "a \"b\" \\ c=");
+  // Only a quote right after the first equals sign begins a quoted value.
+  EXPECT_EQ(text_of("overlay.title=5\"x"), "5\"x");
+  EXPECT_EQ(text_of("overlay.title=a=\"b\""), "a=\"b\"");
+  expect_error(with_lines("at 1 set overlay.title=\"no end\n"), 3, "a closing quote");
+  expect_error(with_lines("at 1 set overlay.title=\"end\\\"\n"), 3, "a closing quote");
+  expect_error(with_lines("at 1 set overlay.title=\"a\"b\n"), 3, "a blank after a closing quote, found \"b\"");
+}
+
+TEST(Flight, AnyTextOfASettingReadsBack) {
+  Random random(8);
+  constexpr std::string_view kCharacters = " \"\\#=ab";
+  for (int i = 0; i < 2000; ++i) {
+    SetCommand set{1, "overlay.title", ""};
+    for (int n = random.integer(0, 6); n > 0; --n) {
+      set.text +=
+          kCharacters[static_cast<std::size_t>(random.integer(0, static_cast<int>(kCharacters.size()) - 1))];
+    }
+    const ParsedFlight parsed = parse_flight(with_lines(to_line(set)), "F");
+    ASSERT_TRUE(parsed.flight.has_value()) << to_line(set);
+    ASSERT_EQ(parsed.flight->sets.at(0), set) << to_line(set);
+  }
+}
+
 TEST(Flight, ReportsEveryBadLineUpToALimit) {
   const ParsedFlight parsed = parse_flight(with_lines("at 1 jump\nat 2 look yaw=1\nat 3 hop\n"), "F");
   ASSERT_EQ(parsed.errors.size(), 2u);

@@ -52,7 +52,7 @@ void read(const json& value, T& to) {
 }  // namespace
 
 std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings) {
+                           const core::Settings& settings, double time_s) {
   const core::View& view = request.view;
   Digest digest;
   digest.add(kEncoding).add(basis.program).add(basis.planet).add(basis.backend);
@@ -76,6 +76,9 @@ std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& requ
     digest.add(info.key).add(settings.get(info.key).value_or(""));
   }
   if (const auto file = core::palette_file(settings.values().palette)) add(digest, core::read_palette(*file));
+  const core::SettingsValues& values = settings.values();
+  if (values.time_code) digest.add("time").add(time_s);
+  if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
   return digest.hex();
 }
 

@@ -19,10 +19,11 @@ struct FilmBasis {
   int memory_mb = 0;  // bounds triangles and textures
 };
 
-// Digest of everything the picture depends on, so that equal fingerprints mean equal pictures. Neither the name
-// of the flight nor the number or time of the frame counts.
+// Digest of everything the picture depends on, so that equal fingerprints mean equal pictures; of files that
+// the settings name, what they hold. Neither the name of the flight nor the number of the frame counts, and its
+// time only where the picture shows it. Throws core::FileError.
 std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& request,
-                           const core::Settings& settings);
+                           const core::Settings& settings, double time_s = 0);
 
 // The figures of a frame that are the same on every run: all of `--stats` but times and what caches hold.
 struct FrameFigures {

@@ -12,6 +12,7 @@
 #include "scripts/stats.h"
 #include "vpe/app/film_plan.h"
 #include "vpe/app/film_target.h"
+#include "vpe/app/frame_overlays.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/progress.h"
 
@@ -29,7 +30,7 @@ class FilmMaker {
 
   // The renderer is made when the first frame has to be drawn. `first` is the number of frames[0] in the film.
   FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
-            const PictureOptions& options, MakeRenderer make_renderer);
+            const PictureOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays);
 
   // Draws what is missing, in order. A frame that the renderer cannot draw or not completely (unless
   // the options allow it) is marked as failed, and its group
@@ -50,6 +51,7 @@ class FilmMaker {
   std::int64_t first_;
   const PictureOptions& options_;
   MakeRenderer make_renderer_;
+  FrameOverlays& overlays_;
   std::unique_ptr<core::Renderer> renderer_;
   FilmReports* reports_ = nullptr;
   ProgressLine* line_ = nullptr;

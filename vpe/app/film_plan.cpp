@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "vpe/app/picture_options.h"
+#include "vpe/overlay/overlay.h"
 
 namespace vpe::app {
 
@@ -33,6 +34,7 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   }
   // The sun stands still: azimuth and elevation, or the hour, are those at the ground below the flight's start.
   request.sun = sun_for(request.settings, start_);
+  request.want_range = overlay::needs_range(request.settings);
   return out;
 }
 
@@ -44,7 +46,7 @@ std::vector<FilmFrame> FilmPlan::frames(const FrameRange& range, std::int64_t be
     FilmFrame frame;
     frame.index = range.frame(n);
     frame.time_s = planned.time_s;
-    frame.fingerprint = fingerprint_of(basis_, planned.request, planned.settings);
+    frame.fingerprint = fingerprint_of(basis_, planned.request, planned.settings, planned.time_s);
     out.push_back(std::move(frame));
   }
   return out;

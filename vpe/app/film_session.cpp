@@ -33,10 +33,10 @@ void FilmSession::look(const FilmPlan& plan, int threads) {
 }
 
 void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const PictureOptions& options,
-                       const FilmMaker::MakeRenderer& make_renderer, bool quiet) {
+                       const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet) {
   try {
     ProgressLine line(quiet);
-    FilmMaker(plan, *target_, frames_, first_, options, make_renderer).run(reports, line);
+    FilmMaker(plan, *target_, frames_, first_, options, make_renderer, overlays).run(reports, line);
   } catch (const Interrupted& e) {
     throw Interrupted(e.signal(), std::string(e.what()) + ": " + what_is_there(kind(), frames_));
   } catch (const std::bad_alloc&) {

@@ -34,7 +34,7 @@ class FilmSession {
 
   // Makes the rest. Throws Interrupted and std::runtime_error, both saying how far the film is.
   void make(const FilmPlan& plan, FilmReports& reports, const PictureOptions& options,
-            const FilmMaker::MakeRenderer& make_renderer, bool quiet);
+            const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet);
 
   // The manifest; of a whole video also the film. Not to be called when make() threw.
   void finish(const FilmHead& head);

@@ -84,6 +84,14 @@ void warn_of_terrain(const std::string& flight, const FilmPlan& plan, const scri
   }
 }
 
+// What is wrong with a gazetteer is told before the first frame.
+void load_names(FrameOverlays& overlays, core::Settings settings, const scripts::Flight& flight) {
+  overlays.load(settings.values());
+  for (const scripts::SetCommand& set : flight.sets) {
+    if (settings.set(set.key, set.text).empty()) overlays.load(settings.values());
+  }
+}
+
 void report(const FlyArguments& arguments, const Common& common, const FilmSession& session, double seconds,
             bool illustration) {
   const std::vector<FilmFrame>& frames = session.frames();
@@ -124,6 +132,8 @@ void fly(FlyArguments& arguments, const Common& common) {
                       interest);
   if (!common.quiet) warn_of_terrain(arguments.flight, plan, terrain);
 
+  FrameOverlays overlays(planet);
+  load_names(overlays, base, flight);
   session.look(plan, common.threads);
   FilmReports reports;
   if (!arguments.stats.empty()) reports.stats.emplace(arguments.stats);
@@ -134,7 +144,7 @@ void fly(FlyArguments& arguments, const Common& common) {
     start = std::chrono::steady_clock::now();  // the rate is that of drawing and encoding
     return made;
   };
-  session.make(plan, reports, arguments.picture, renderer, common.quiet);
+  session.make(plan, reports, arguments.picture, renderer, overlays, common.quiet);
   if (!common.quiet) warn_of(reports.failures);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();

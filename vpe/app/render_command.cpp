@@ -1,8 +1,10 @@
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include "paging/surface.h"
 #include "vpe/app/explain_lod.h"
+#include "vpe/app/frame_overlays.h"
 #include "vpe/app/output.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/planet_argument.h"
@@ -26,6 +28,7 @@ struct RenderArguments {
   std::string range;
   std::string certificate;
   std::string explain_lod;
+  std::string overlay_layer;
   std::string size = "1280x720";
   double fov_deg = 60;
   PictureOptions picture;
@@ -82,6 +85,19 @@ void print_levels(const core::FrameStats& stats, const paging::PlanetFile& plane
   }
 }
 
+void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
+  if (path.empty()) return;
+  check_picture_output(path);
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  if (extension != ".png")
+    throw UsageError("--overlay-layer " + path + ": a layer has alpha; let the name end in .png");
+  if (!overlay::any(overlays)) {
+    throw UsageError("--overlay-layer " + path +
+                     ": no overlay is set; for one, add --set overlay.graticule=on");
+  }
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   const core::Settings settings = make_settings(arguments.picture);
   const Size size = parse_size(arguments.size);
@@ -99,6 +115,10 @@ void render(RenderArguments& arguments, const Common& common) {
   if (!arguments.range.empty()) check_range_output(arguments.range);
   if (!arguments.certificate.empty()) check_output(arguments.certificate);
   if (!arguments.explain_lod.empty()) check_output(arguments.explain_lod);
+  check_overlay_layer(arguments.overlay_layer, settings.values());
+
+  // Read now for what may be wrong with it.
+  if (!settings.values().names.empty()) (void)core::read_gazetteer(settings.values().names);
 
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
@@ -110,14 +130,23 @@ void render(RenderArguments& arguments, const Common& common) {
   request.view.eye = mars::to_eye(pose, planet->radius_m());
   request.settings = settings.values();
   request.sun = sun_for(request.settings, pose);
-  request.want_range = !arguments.range.empty() || !arguments.certificate.empty();
+  request.want_range =
+      !arguments.range.empty() || !arguments.certificate.empty() || overlay::needs_range(request.settings);
   require_valid(request.view);
   request.cull_view = cull_view(arguments.cull_from, request.view, planet->radius_m());
   const auto renderer = make_renderer(arguments.picture, common, planet);
   request.paging.timeout_s = arguments.picture.wait_s;
-  const core::DrawResult result = renderer->draw(request);
+  core::DrawResult result = renderer->draw(request);
   require_complete(arguments.picture, result);
   if (!common.quiet) warn_of(result.failures);
+  if (overlay::any(request.settings)) {
+    const overlay::Layer layer = FrameOverlays(planet).layer(request, result.frame, result.certificate, 0);
+    if (arguments.overlay_layer.empty()) {
+      overlay::composite(layer, result.frame.colour);
+    } else {
+      core::write_image(arguments.overlay_layer, layer.pixels, layer.width, layer.height);
+    }
+  }
   core::write_image(arguments.output, result.frame.colour, result.frame.width, result.frame.height);
   if (!arguments.range.empty()) {
     core::write_tiff(arguments.range, result.frame.range_m, result.frame.width, result.frame.height);
@@ -160,6 +189,8 @@ void add_render(CLI::App& program, Common& common) {
                       "Also write what the picture's error is (.json)");
   command->add_option("--explain-lod", arguments->explain_lod,
                       "Also write why every drawn tile has its level of detail (.json)");
+  command->add_option("--overlay-layer", arguments->overlay_layer,
+                      "Write the overlays alone, with alpha (.png), and leave them out of the picture");
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))

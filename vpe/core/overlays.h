@@ -2,8 +2,18 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace vpe::core {
+
+// Why this program draws no overlay, and every key overlay.* keeps its default; empty when it does.
+constexpr std::string_view overlays_refused() {
+#ifdef VPE_WITHOUT_CAIRO
+  return "this program was built without Cairo, which draws overlays; install libcairo2-dev and build it again";
+#else
+  return {};
+#endif
+}
 
 struct Overlays {
   bool legend = false;
@@ -15,7 +25,7 @@ struct Overlays {
   bool north_arrow = false;
   bool time_code = false;
   std::string title;
-  std::string names;  // gazetteer, a CSV file
+  std::string names;  // gazetteer, a CSV file (vpe/core/gazetteer.h)
 
   bool operator==(const Overlays&) const = default;
 };

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "mars/mars_time.h"
+#include "vpe/core/gazetteer.h"
 #include "vpe/core/number.h"
 #include "vpe/core/palette.h"
 
@@ -128,14 +129,14 @@ const std::vector<Key>& keys() {
       {"overlay.contours", choice<&V::contours>({{"off", 0}, {"on", 1}}), "", "lines of equal elevation"},
       {"overlay.contours.step", Number{&V::contour_m, 0, 1e6}, "m", "between lines; 0 = as suits the picture"},
       {"overlay.scale", choice<&V::scale_bar>({{"off", 0}, {"on", 1}}), "",
-       "length of a kilometre at the picture's centre"},
+       "bar of a round length at the ground in the picture's centre"},
       {"overlay.north", choice<&V::north_arrow>({{"off", 0}, {"on", 1}}), "", "arrow to the north"},
       {"overlay.time", choice<&V::time_code>({{"off", 0}, {"on", 1}}), "", "time of the frame in its flight"},
       {"overlay.title", Text{&V::title, "any text", [](const std::string&) { return std::string(); }}, "",
        "a line at the top"},
       {"overlay.names",
        Text{&V::names, "a CSV file with columns name, lon, lat",
-            [](const std::string&) { return std::string(); }},
+            [](const std::string& text) { return gazetteer_problem(text); }},
        "", "names of places, but of those that ground hides"},
       {"lod.tolerance", Number{&V::lod_tolerance_px, 0, 1000}, "px",
        "largest geometric error that may be drawn; 0 draws the exact surface"},
@@ -231,7 +232,9 @@ bool apply(SettingsValues& values, const Key& key, std::string_view text, std::s
   }
   if (const auto* plain = std::get_if<Text>(&key.type)) {
     std::string value(text);
-    problem = plain->problem(value);
+    const bool is_plain = std::none_of(
+        value.begin(), value.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\x7f'; });
+    problem = is_plain ? plain->problem(value) : "it holds control characters";
     if (problem.empty()) values.*plain->member = std::move(value);
     return problem.empty();
   }
@@ -331,6 +334,9 @@ std::string Settings::set(std::string_view name, std::string_view text) {
   const Key* key = find_key(name);
   if (key == nullptr) return unknown_key(name);
   std::string problem;
+  if (name.starts_with("overlay.") && !core::overlays_refused().empty() && text != to_text({}, *key)) {
+    return std::string(name) + ": " + std::string(core::overlays_refused());
+  }
   if (apply(values_, *key, text, problem)) return {};
   constexpr std::size_t kLongestText = 64;
   return std::string(name) + "=" + std::string(text.substr(0, kLongestText)) +

@@ -1,0 +1,132 @@
+// Overlays as people ask for them: in pictures, as layers, in films.
+#include <png.h>
+
+#include "tests/app/support/app_fixture.h"
+#include "vpe/core/image.h"
+#include "vpe/overlay/overlay.h"
+
+namespace app_test {
+namespace {
+
+class OverlayApp : public AppTest {
+ protected:
+  void SetUp() override {
+    if (!vpe::core::overlays_refused().empty()) GTEST_SKIP() << vpe::core::overlays_refused();
+    write_text(dir_ / "names.csv", "name,lon,lat\nHere,31,2\n");
+  }
+  Result render(const Words& more, const std::string& output) const {
+    Words words{"render", planet().string(),
+                "--pose", "31,1,300000,0,-60,0",
+                "--size", "320x180",
+                "--set",  "mode=coloured",
+                "-o",     output};
+    words.insert(words.end(), more.begin(), more.end());
+    return vpe(words);
+  }
+  static Words all() {
+    Words words;
+    for (const char* key : {"legend", "graticule", "contours", "scale", "north", "time"}) {
+      words.insert(words.end(), {"--set", std::string("overlay.") + key + "=on"});
+    }
+    words.insert(words.end(), {"--set", "overlay.title=A title", "--set", "overlay.names=names.csv"});
+    return words;
+  }
+};
+
+vpe::overlay::Layer read_layer(const std::filesystem::path& path) {
+  const std::string bytes = read_text(path);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  EXPECT_NE(image.format & PNG_FORMAT_FLAG_ALPHA, 0U);
+  image.format = PNG_FORMAT_RGBA;
+  vpe::overlay::Layer layer{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+  layer.pixels.resize(std::size_t{image.width} * image.height);
+  EXPECT_NE(png_image_finish_read(&image, nullptr, layer.pixels.data(), 0, nullptr), 0);
+  return layer;
+}
+
+TEST_F(OverlayApp, ThePictureIsThePlainOneUnderTheLayer) {
+  ASSERT_EQ(render({}, "plain.png").exit_code, 0);
+  const Result result = render(all(), "with.png");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  Words more = all();
+  more.insert(more.end(), {"--overlay-layer", "layer.png"});
+  ASSERT_EQ(render(more, "without.png").exit_code, 0);
+  EXPECT_TRUE(read_text(dir_ / "without.png") == read_text(dir_ / "plain.png"));
+  auto picture = vpe::core::read_image(dir_ / "plain.png");
+  const auto layer = read_layer(dir_ / "layer.png");
+  ASSERT_EQ(layer.width, 320);
+  const auto before = picture.pixels;
+  vpe::overlay::composite(layer, picture.pixels);
+  EXPECT_TRUE(picture.pixels != before);
+  EXPECT_TRUE(picture.pixels == vpe::core::read_image(dir_ / "with.png").pixels);
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+TEST_F(OverlayApp, EachOneOnAndOffLeavesThePlainPicture) {
+  // Contours are drawn only where the ground is right enough for them.
+  const Words exact{"--tolerance", "0"};
+  ASSERT_EQ(render(exact, "plain.png").exit_code, 0);
+  const Words words = all();
+  for (std::size_t n = 1; n < words.size(); n += 2) {
+    ASSERT_EQ(render({"--tolerance", "0", "--set", words[n]}, "on.png").exit_code, 0) << words[n];
+    EXPECT_TRUE(read_text(dir_ / "on.png") != read_text(dir_ / "plain.png")) << words[n];
+    const std::string key = words[n].substr(0, words[n].find('='));
+    const std::string off = key == "overlay.title" || key == "overlay.names" ? "=" : "=off";
+    ASSERT_EQ(render({"--tolerance", "0", "--set", words[n], "--set", key + off}, "off.png").exit_code, 0)
+        << key;
+    EXPECT_TRUE(read_text(dir_ / "off.png") == read_text(dir_ / "plain.png")) << key;
+  }
+}
+
+TEST_F(OverlayApp, WrongUseIsToldBeforeAnyWork) {
+  const Words base{"render", planet().string(), "--pose", "0,0,9e6", "-o", "x.png"};
+  const auto with = [&](const Words& more) {
+    Words words = base;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expect_failure(with({"--overlay-layer", "l.png"}), 2,
+                 {"--overlay-layer", "no overlay", "overlay.graticule=on"});
+  expect_failure(with({"--overlay-layer", "l.jpg", "--set", "overlay.time=on"}), 2, {"l.jpg", ".png"});
+  expect_failure(with({"--overlay-layer", "none/l.png", "--set", "overlay.time=on"}), 1, {"none"});
+  expect_failure(with({"--set", "overlay.names=none.csv"}), 2, {"overlay.names", "none.csv", "No such file"});
+  write_text(dir_ / "bad.csv", "name,lon,lat\nA,1,2\nB,x,2\n");
+  expect_failure(with({"--set", "overlay.names=bad.csv"}), 1, {"bad.csv:3", "a longitude", "\"x\""});
+  EXPECT_FALSE(exists("x.png"));
+}
+
+TEST_F(OverlayApp, FilmsHaveThemAndKnowWhatChanged) {
+  const auto fly = [&](const Words& more) {
+    Words words{"fly", "f.flight", planet().string(), "-o", "film", "--frames", "0-3", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = vpe(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return parse_json(result.out);
+  };
+  write_text(dir_ / "f.flight", small_flight("fov=50 size=320x180 fps=10"));
+  EXPECT_EQ(fly({})["made"], 4);
+  const std::string plain = read_text(dir_ / "film" / "frame_000001.png");
+  const std::string first_line =
+      "at 0 set overlay.title=\"Over # the hills\" overlay.time=on overlay.names=names.csv "
+      "overlay.graticule=on\n";
+  std::string text = small_flight("fov=50 size=320x180 fps=10");
+  text.insert(text.find("at 0"), first_line);
+  write_text(dir_ / "f.flight", text);
+  EXPECT_EQ(fly({})["made"], 4);
+  const std::string named = read_text(dir_ / "film" / "frame_000001.png");
+  EXPECT_TRUE(named != plain);
+  EXPECT_EQ(fly({})["made"], 0);
+  // The same again, to the byte; and again when the names change.
+  EXPECT_EQ(fly({"--force"})["made"], 4);
+  EXPECT_TRUE(read_text(dir_ / "film" / "frame_000001.png") == named);
+  write_text(dir_ / "names.csv", "name,lon,lat\nThere,31,2\n");
+  EXPECT_EQ(fly({})["made"], 4);
+  write_text(dir_ / "names.csv", "name,lon\n");
+  expect_failure({"fly", "f.flight", planet().string(), "-o", "film", "--frames", "0-3", "--quiet"}, 1,
+                 {"names.csv:1", "latitude"});
+}
+
+}  // namespace
+}  // namespace app_test

@@ -1,0 +1,209 @@
+#include "vpe/overlay/canvas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#ifndef VPE_WITHOUT_CAIRO
+
+#include <cairo.h>
+
+namespace vpe::overlay {
+
+namespace {
+
+constexpr const char* kFamily = "DejaVu Sans";
+
+// Share of the font's size: half of a capital's height.
+constexpr double kHalfCapital = 0.365;
+
+struct Release {
+  void operator()(cairo_t* context) const { cairo_destroy(context); }
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+  void operator()(cairo_font_options_t* options) const { cairo_font_options_destroy(options); }
+};
+
+void require(cairo_status_t status) {
+  if (status == CAIRO_STATUS_SUCCESS) return;
+  throw std::runtime_error(std::string("cannot draw the overlays: Cairo says: ") +
+                           cairo_status_to_string(status) + "; make the picture smaller or set fewer overlays");
+}
+
+void set_ink(cairo_t* context, const Ink& ink) { cairo_set_source_rgba(context, ink.r, ink.g, ink.b, ink.a); }
+
+void trace(cairo_t* context, std::span<const glm::dvec2> points, bool closed) {
+  cairo_new_path(context);
+  for (const glm::dvec2& p : points) cairo_line_to(context, p.x, p.y);
+  if (closed) cairo_close_path(context);
+}
+
+void set_font(cairo_t* context, const Font& font) {
+  cairo_select_font_face(context, kFamily, CAIRO_FONT_SLANT_NORMAL,
+                         font.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(context, font.size_px);
+}
+
+}  // namespace
+
+struct Canvas::State {
+  std::unique_ptr<cairo_surface_t, Release> surface;
+  std::unique_ptr<cairo_t, Release> context;
+};
+
+Canvas::Canvas(int width, int height) : width_(width), height_(height), state_(std::make_unique<State>()) {
+  state_->surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+  require(cairo_surface_status(state_->surface.get()));
+  state_->context.reset(cairo_create(state_->surface.get()));
+  cairo_t* context = state_->context.get();
+  require(cairo_status(context));
+  cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
+  // The same letters at every place and angle.
+  const std::unique_ptr<cairo_font_options_t, Release> options(cairo_font_options_create());
+  cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
+  cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_set_font_options(context, options.get());
+}
+
+Canvas::~Canvas() = default;
+
+void Canvas::line(std::span<const glm::dvec2> points, bool closed, double width_px, const Ink& ink) {
+  cairo_t* context = state_->context.get();
+  set_ink(context, ink);
+  cairo_set_line_width(context, width_px);
+  trace(context, points, closed);
+  cairo_stroke(context);
+}
+
+void Canvas::polygon(std::span<const glm::dvec2> points, const Ink& ink) {
+  cairo_t* context = state_->context.get();
+  set_ink(context, ink);
+  trace(context, points, true);
+  cairo_fill(context);
+}
+
+TextSize Canvas::measure(std::string_view text, const Font& font) const {
+  cairo_t* context = state_->context.get();
+  set_font(context, font);
+  cairo_text_extents_t extents;
+  cairo_text_extents(context, printable_utf8(text).c_str(), &extents);
+  // Room for what hangs below the line, and as much above it.
+  return {extents.x_advance, 1.25 * font.size_px};
+}
+
+void Canvas::text(std::string_view text, glm::dvec2 centre, double angle_rad, const Lettering& style) {
+  cairo_t* context = state_->context.get();
+  const std::string shown = printable_utf8(text);
+  const TextSize size = measure(text, style.font);
+  cairo_save(context);
+  cairo_translate(context, centre.x, centre.y);
+  cairo_rotate(context, angle_rad);
+  cairo_new_path(context);
+  cairo_move_to(context, -0.5 * size.width, kHalfCapital * style.font.size_px);
+  cairo_text_path(context, shown.c_str());
+  set_ink(context, style.halo);
+  cairo_set_line_width(context, std::max(2.0, 0.2 * style.font.size_px));
+  cairo_stroke_preserve(context);
+  set_ink(context, style.ink);
+  cairo_fill(context);
+  cairo_restore(context);
+}
+
+void Canvas::clear(glm::dvec2 centre, TextSize size, double angle_rad) {
+  cairo_t* context = state_->context.get();
+  cairo_save(context);
+  cairo_translate(context, centre.x, centre.y);
+  cairo_rotate(context, angle_rad);
+  cairo_set_operator(context, CAIRO_OPERATOR_CLEAR);
+  cairo_rectangle(context, -0.5 * size.width, -0.5 * size.height, size.width, size.height);
+  cairo_fill(context);
+  cairo_restore(context);
+}
+
+Layer Canvas::layer() const {
+  require(cairo_status(state_->context.get()));
+  cairo_surface_t* surface = state_->surface.get();
+  cairo_surface_flush(surface);
+  require(cairo_surface_status(surface));
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface));
+  const unsigned char* bytes = cairo_image_surface_get_data(surface);
+  Layer layer{width_, height_, {}};
+  layer.pixels.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  const auto width = static_cast<std::size_t>(width_);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y) {
+    const auto* row = reinterpret_cast<const std::uint32_t*>(bytes + y * stride);
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::uint32_t argb = row[x];
+      const std::uint32_t alpha = argb >> 24;
+      if (alpha == 0) {
+        layer.pixels[y * width + x] = {0, 0, 0, 0};
+        continue;
+      }
+      const auto straight = [&](unsigned shift) {
+        const std::uint32_t value = (argb >> shift & 255U) * 255U + alpha / 2;
+        return static_cast<std::uint8_t>(std::min(value / alpha, 255U));
+      };
+      layer.pixels[y * width + x] = {straight(16), straight(8), straight(0), static_cast<std::uint8_t>(alpha)};
+    }
+  }
+  return layer;
+}
+
+}  // namespace vpe::overlay
+
+#else
+
+namespace vpe::overlay {
+
+// Settings refuse every overlay in this build (core::overlays_refused), so that nobody comes here by them.
+struct Canvas::State {};
+Canvas::Canvas(int width, int height) : width_(width), height_(height) {
+  throw std::runtime_error(std::string(core::overlays_refused()));
+}
+Canvas::~Canvas() = default;
+void Canvas::line(std::span<const glm::dvec2>, bool, double, const Ink&) {}
+void Canvas::polygon(std::span<const glm::dvec2>, const Ink&) {}
+TextSize Canvas::measure(std::string_view, const Font&) const { return {}; }
+void Canvas::text(std::string_view, glm::dvec2, double, const Lettering&) {}
+void Canvas::clear(glm::dvec2, TextSize, double) {}
+Layer Canvas::layer() const { return {}; }
+
+}  // namespace vpe::overlay
+
+#endif
+
+namespace vpe::overlay {
+
+std::string printable_utf8(std::string_view text) {
+  std::string out;
+  for (std::size_t n = 0; n < text.size();) {
+    const auto byte = [&](std::size_t k) {
+      return n + k < text.size() ? static_cast<unsigned char>(text[n + k]) : 0U;
+    };
+    const unsigned first = byte(0);
+    if (first < 0x80) {
+      out += first < 0x20 || first == 0x7f ? ' ' : static_cast<char>(first);
+      ++n;
+      continue;
+    }
+    const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    unsigned code = first & (0xffU >> (length + 1));
+    bool good = first >= 0xc2 && first <= 0xf4;
+    for (std::size_t k = 1; k < length; ++k) {
+      good = good && (byte(k) & 0xc0U) == 0x80U;
+      code = code << 6 | (byte(k) & 0x3fU);
+    }
+    // Neither longer than needed, nor a half of a pair, nor past the last one.
+    good = good &&
+           code >= (length == 4   ? 0x10000U
+                    : length == 3 ? 0x800U
+                                  : 0x80U) &&
+           code <= 0x10ffffU && (code < 0xd800U || code > 0xdfffU);
+    if (good) out.append(text.substr(n, length));
+    if (!good) out += "\xef\xbf\xbd";
+    n += good ? length : 1;
+  }
+  return out;
+}
+
+}  // namespace vpe::overlay

@@ -1,0 +1,214 @@
+#include "vpe/overlay/isolines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <tuple>
+
+namespace vpe::overlay {
+
+namespace {
+
+constexpr double kMostInACell = 1000;
+constexpr double kLargestMultiple = 1e15;
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+// One end of a segment: a line's crossing of the edge between two pixels, shared with the segment next to it.
+struct End {
+  std::int64_t multiple;
+  std::size_t edge;  // 2 * pixel, + 1 for the edge downwards
+  std::size_t segment;
+  auto key() const { return std::tie(multiple, edge); }
+};
+
+struct Segment {
+  std::int64_t multiple;
+  std::array<std::size_t, 2> edge;
+  std::array<glm::dvec2, 2> at;
+  double spacing_px;
+  std::array<std::size_t, 2> next{kNone, kNone};  // segment beyond each end
+  bool used = false;
+};
+
+struct Corner {
+  double value;
+  glm::dvec2 at;
+};
+
+class Tracer {
+ public:
+  Tracer(const Ground& ground, const std::vector<double>& values, const IsolineOptions& options)
+      : ground_(ground), values_(values), options_(options) {}
+
+  std::vector<Isoline> run() {
+    for (int y = 0; y + 1 < ground_.height(); ++y) {
+      for (int x = 0; x + 1 < ground_.width(); ++x) cell(x, y);
+    }
+    join();
+    std::vector<Isoline> lines;
+    // Open lines first, from an end; what remains is closed.
+    for (const bool open : {true, false}) {
+      for (std::size_t n = 0; n < segments_.size(); ++n) {
+        const Segment& s = segments_[n];
+        if (s.used) continue;
+        if (open && s.next[0] != kNone && s.next[1] != kNone) continue;
+        lines.push_back(chain(n, open && s.next[0] != kNone ? 1 : 0));
+        lines.back().closed = !open;
+      }
+    }
+    return lines;
+  }
+
+ private:
+  void cell(int x, int y) {
+    const std::size_t p = ground_.index(x, y);
+    const auto down = static_cast<std::size_t>(ground_.width());
+    std::array<double, 4> v{values_[p], values_[p + 1], values_[p + down + 1], values_[p + down]};
+    if (std::isnan(v[0] + v[1] + v[2] + v[3])) return;
+    if (options_.period > 0) {
+      const auto way = [this](double from, double to) { return std::remainder(to - from, options_.period); };
+      // Round a pole the values do not come back to where they began.
+      if (std::abs(way(v[0], v[1]) + way(v[1], v[2]) + way(v[2], v[3]) + way(v[3], v[0])) > 1e-6) return;
+      v[1] = v[0] + way(v[0], v[1]);
+      v[2] = v[1] + way(v[1], v[2]);
+      v[3] = v[0] + way(v[0], v[3]);
+    }
+    const auto [low, high] = std::minmax({v[0], v[1], v[2], v[3]});
+    const double step = options_.step;
+    if ((high - low) / step > kMostInACell || std::abs(high / step) > kLargestMultiple) return;
+    const auto first = static_cast<std::int64_t>(std::ceil(low / step));
+    const auto last = static_cast<std::int64_t>(std::floor(high / step));
+    if (first > last) return;
+    if (options_.noise > 0 && high - low <= options_.noise * ground_.noise_m(p)) return;
+    const double slope = std::hypot(0.5 * (v[1] - v[0] + v[2] - v[3]), 0.5 * (v[3] - v[0] + v[2] - v[1]));
+    const double spacing_px = step / std::max(slope, 1e-300);
+    if (spacing_px < options_.densest_px || !ground_.is_whole(x, y)) return;
+    const std::array<Corner, 4> corners{Corner{v[0], {x + 0.5, y + 0.5}}, Corner{v[1], {x + 1.5, y + 0.5}},
+                                        Corner{v[2], {x + 1.5, y + 1.5}}, Corner{v[3], {x + 0.5, y + 1.5}}};
+    const std::array<std::size_t, 4> edges{2 * p, 2 * (p + 1) + 1, 2 * (p + down), 2 * p + 1};
+    for (std::int64_t k = first; k <= last; ++k) {
+      const std::int64_t multiple = within_turn(k);
+      if (options_.leave_out > 0 && multiple % options_.leave_out == 0) continue;
+      if (options_.period > 0 && !is_a_line(multiple, k)) continue;
+      cross(corners, edges, static_cast<double>(k) * step, multiple, spacing_px);
+    }
+  }
+
+  // Multiples of angles a turn apart are the same line where the step divides the turn.
+  std::int64_t within_turn(std::int64_t k) const {
+    if (options_.period <= 0) return k;
+    const double value = static_cast<double>(k) * options_.step;
+    double inside = std::remainder(value, options_.period);
+    if (inside <= -0.5 * options_.period + 1e-9 * options_.step) inside += options_.period;
+    return static_cast<std::int64_t>(std::llround(inside / options_.step));
+  }
+  bool is_a_line(std::int64_t multiple, std::int64_t k) const {
+    const double off = std::remainder(static_cast<double>(multiple - k) * options_.step, options_.period);
+    return std::abs(off) < 1e-6 * options_.step;
+  }
+
+  void cross(const std::array<Corner, 4>& corners, const std::array<std::size_t, 4>& edges, double level,
+             std::int64_t multiple, double spacing_px) {
+    std::array<std::size_t, 4> crossed{};
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < 4; ++e) {
+      if ((corners[e].value >= level) != (corners[(e + 1) % 4].value >= level)) crossed[count++] = e;
+    }
+    const auto add = [&](std::size_t from, std::size_t to) {
+      segments_.push_back({multiple,
+                           {edges[from], edges[to]},
+                           {place(corners, from, level), place(corners, to, level)},
+                           spacing_px});
+    };
+    if (count == 2) add(crossed[0], crossed[1]);
+    if (count != 4) return;
+    // A saddle: the mean decides which opposite corners are joined.
+    const double mean = 0.25 * (corners[0].value + corners[1].value + corners[2].value + corners[3].value);
+    const bool cut_off_first = (mean >= level) != (corners[0].value >= level);
+    add(cut_off_first ? 3 : 0, cut_off_first ? 0 : 1);
+    add(cut_off_first ? 1 : 2, cut_off_first ? 2 : 3);
+  }
+
+  static glm::dvec2 place(const std::array<Corner, 4>& corners, std::size_t edge, double level) {
+    // From the upper or left corner on, so that both cells beside an edge say the same.
+    const bool turned = edge >= 2;
+    const Corner& a = corners[turned ? (edge + 1) % 4 : edge];
+    const Corner& b = corners[turned ? edge : (edge + 1) % 4];
+    return a.at + (b.at - a.at) * std::clamp((level - a.value) / (b.value - a.value), 0.0, 1.0);
+  }
+
+  void join() {
+    std::vector<End> ends;
+    ends.reserve(2 * segments_.size());
+    for (std::size_t n = 0; n < segments_.size(); ++n) {
+      for (const std::size_t edge : segments_[n].edge) ends.push_back({segments_[n].multiple, edge, n});
+    }
+    std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) {
+      return a.key() != b.key() ? a.key() < b.key() : a.segment < b.segment;
+    });
+    for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
+      if (ends[n].key() != ends[n + 1].key() || ends[n].segment == ends[n + 1].segment) continue;
+      link(ends[n], ends[n + 1].segment);
+      link(ends[n + 1], ends[n].segment);
+      ++n;
+    }
+  }
+  void link(const End& end, std::size_t other) {
+    Segment& s = segments_[end.segment];
+    s.next[s.edge[0] == end.edge ? 0 : 1] = other;
+  }
+
+  // From a segment's end `entry` on, until there is none or the first one comes again.
+  Isoline chain(std::size_t n, std::size_t entry) {
+    Isoline line;
+    line.multiple = segments_[n].multiple;
+    line.points.push_back(segments_[n].at[entry]);
+    line.spacing_px.push_back(segments_[n].spacing_px);
+    for (;;) {
+      Segment& s = segments_[n];
+      s.used = true;
+      const std::size_t leave = 1 - entry;
+      line.points.push_back(s.at[leave]);
+      line.spacing_px.push_back(s.spacing_px);
+      const std::size_t next = s.next[leave];
+      if (next == kNone || segments_[next].used) break;
+      entry = segments_[next].edge[0] == s.edge[leave] ? 0 : 1;
+      n = next;
+    }
+    smooth(line.spacing_px);
+    return line;
+  }
+
+  // Harmonic mean over some pixels to each side: the density of lines, not its noise.
+  static void smooth(std::vector<double>& spacing) {
+    constexpr std::size_t kReach = 12;
+    std::vector<double> sums(spacing.size() + 1, 0.0);
+    for (std::size_t n = 0; n < spacing.size(); ++n) sums[n + 1] = sums[n] + 1.0 / spacing[n];
+    for (std::size_t n = 0; n < spacing.size(); ++n) {
+      const std::size_t begin = n - std::min(n, kReach);
+      const std::size_t end = std::min(n + kReach + 1, spacing.size());
+      spacing[n] = static_cast<double>(end - begin) / std::max(sums[end] - sums[begin], 1e-300);
+    }
+  }
+
+  const Ground& ground_;
+  const std::vector<double>& values_;
+  const IsolineOptions& options_;
+  std::vector<Segment> segments_;
+};
+
+}  // namespace
+
+double Isoline::length_px() const {
+  double sum = 0;
+  for (std::size_t n = 1; n < points.size(); ++n) sum += glm::length(points[n] - points[n - 1]);
+  return sum;
+}
+
+std::vector<Isoline> isolines(const Ground& ground, const std::vector<double>& values,
+                              const IsolineOptions& options) {
+  return Tracer(ground, values, options).run();
+}
+
+}  // namespace vpe::overlay

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vpe/core/palette.h"
+#include "vpe/overlay/figures.h"
+#include "vpe/overlay/parts.h"
+
+namespace vpe::overlay {
+
+namespace {
+
+using core::Colour;
+using core::Mode;
+
+bool shows_values(const Scene& scene) {
+  const core::Appearance& a = scene.appearance;
+  const bool coloured = a.mode == Mode::kUnlit || a.mode == Mode::kColoured || a.mode == Mode::kWireframe ||
+                        a.mode == Mode::kMarkers ||
+                        (a.mode == Mode::kTextured && (a.colourise || !scene.has_imagery));
+  return coloured &&
+         (a.colour == Colour::kElevation || a.colour == Colour::kSlope || a.colour == Colour::kAspect);
+}
+
+struct Tick {
+  double value;
+  std::string text;
+};
+
+struct Figures {
+  std::string title;
+  std::vector<Tick> ticks;
+};
+
+Figures figures_of(Colour colour, double low, double high) {
+  constexpr int kTicks = 6;
+  constexpr double kKilometresFrom_m = 5000;
+  Figures figures;
+  const double bottom = std::min(low, high);
+  const double top = std::max(low, high);
+  if (colour == Colour::kAspect && bottom <= 0 && top >= 360) {
+    constexpr std::array<const char*, 5> kWinds{"N", "E", "S", "W", "N"};
+    figures.title = "Aspect";
+    for (std::size_t n = 0; n < kWinds.size(); ++n)
+      figures.ticks.push_back({90.0 * static_cast<double>(n), kWinds[n]});
+    return figures;
+  }
+  const bool in_km =
+      colour == Colour::kElevation && std::max(std::abs(low), std::abs(high)) >= kKilometresFrom_m;
+  const double unit = in_km ? 1000 : 1;
+  figures.title = colour == Colour::kElevation ? in_km ? "Elevation, km" : "Elevation, m"
+                  : colour == Colour::kSlope   ? "Slope"
+                                               : "Aspect";
+  const std::vector<double> values = round_values(bottom / unit, top / unit, kTicks);
+  const int decimals = values.size() > 1 ? decimals_of(values[1] - values[0]) : 0;
+  for (const double v : values) {
+    figures.ticks.push_back(
+        {v * unit, number_text(v, decimals) + (colour == Colour::kElevation ? "" : "\u00b0")});
+  }
+  return figures;
+}
+
+}  // namespace
+
+void draw_legend(Sheet& sheet, const Scene& scene) {
+  if (!shows_values(scene)) return;
+  Canvas& canvas = sheet.canvas();
+  const core::ColourScale scale(scene.appearance);
+  if (scale.low() == scale.high()) return;  // a palette of one colour
+  const Figures figures = figures_of(scene.appearance.colour, scale.low(), scale.high());
+  const Font font = sheet.font(14);
+  const Font title_font = sheet.font(14, true);
+  const TextSize title = canvas.measure(figures.title, title_font);
+  double ticks_px = 0;
+  for (const Tick& tick : figures.ticks) ticks_px = std::max(ticks_px, canvas.measure(tick.text, font).width);
+
+  const double pad = sheet.px(8);
+  const double bar_width = std::max(sheet.px(16), 9.0);
+  const double bar_height = std::max(sheet.px(190), 95.0);
+  const double tick_px = sheet.px(4);
+  const double width = 2 * pad + std::max(title.width, bar_width + 3 * tick_px + ticks_px);
+  const double height = 2 * pad + 1.4 * title.height + bar_height + 0.5 * title.height;
+  const double right = canvas.width() - sheet.margin_px();
+  const double bottom = canvas.height() - sheet.margin_px();
+  const Box box{right - width, bottom - height, right, bottom};
+  if (!sheet.is_free(box)) return;
+  sheet.take(box.grown(sheet.px(4)));
+  const auto rectangle = [&](const Box& b, const Ink& ink) {
+    const std::vector<glm::dvec2> corners{
+        {b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}};
+    canvas.polygon(corners, ink);
+  };
+  canvas.clear({0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)}, {width, height}, 0);
+  rectangle(box, {0, 0, 0, 0.6});
+  sheet.label(figures.title, {0.5 * (box.left + box.right), box.top + pad + 0.5 * title.height}, title_font);
+
+  // Whole pixels, each with the colour of its middle.
+  const double left = std::round(box.left + pad);
+  const double top = std::round(box.top + pad + 1.4 * title.height);
+  const int rows = static_cast<int>(std::lround(bar_height));
+  rectangle({left - 1, top - 1, left + std::round(bar_width) + 1, top + rows + 1}, kWhite);
+  for (int row = 0; row < rows; ++row) {
+    const double at = (rows - row - 0.5) / rows;
+    const glm::dvec3 rgb = scale(scale.low() + at * (scale.high() - scale.low())) / 255.0;
+    rectangle({left, top + row, left + std::round(bar_width), top + row + 1}, {rgb.x, rgb.y, rgb.z, 1});
+  }
+  for (const Tick& tick : figures.ticks) {
+    const double at = (tick.value - scale.low()) / (scale.high() - scale.low());
+    const double y = top + rows * (1 - at);
+    const double x = left + std::round(bar_width) + 1;
+    const std::vector<glm::dvec2> mark{{x, y}, {x + tick_px, y}};
+    canvas.line(mark, false, sheet.line_px(1.3), kWhite);
+    const TextSize size = canvas.measure(tick.text, font);
+    sheet.label(tick.text, {x + 2 * tick_px + ticks_px - 0.5 * size.width, y}, font);
+  }
+}
+
+}  // namespace vpe::overlay

@@ -1,0 +1,273 @@
+// Graticule and contours.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <set>
+
+#include "vpe/overlay/figures.h"
+#include "vpe/overlay/isolines.h"
+#include "vpe/overlay/parts.h"
+
+namespace vpe::overlay {
+
+namespace {
+
+struct LineStyle {
+  double width_px;
+  Ink ink;
+  Ink halo;
+};
+
+constexpr Ink kGraticule{1, 1, 1, 0.85};
+constexpr Ink kGraticuleHalo{0, 0, 0, 0.42};
+constexpr Ink kContour{0.22, 0.10, 0.03, 0.85};
+constexpr Ink kContourHalo{1, 0.93, 0.80, 0.30};
+
+constexpr double kInside_px = 1e-6;  // off the border, whatever is rounded
+
+// Of the gap in a line, beyond the text.
+double label_room_px(const Sheet& sheet) { return sheet.px(6); }
+
+// Opacity by the distance to the next line.
+double opacity(double spacing_px, const Sheet& sheet) {
+  return std::clamp((spacing_px - sheet.line_px(2)) / (sheet.line_px(5) - sheet.line_px(2)), 0.0, 1.0);
+}
+
+// Calls draw(points, closed, opacity) for each stretch of a line that has one opacity, of eight.
+template <class Draw>
+void for_stretches(const Isoline& line, const Sheet& sheet, const Draw& draw) {
+  constexpr int kShades = 8;
+  const auto shade = [&](std::size_t n) {
+    const double trust = line.trust.empty() ? 1.0 : line.trust[n];
+    return static_cast<int>(std::lround(kShades * trust * opacity(line.spacing_px[n], sheet)));
+  };
+  std::size_t begin = 0;
+  for (std::size_t n = 1; n <= line.points.size(); ++n) {
+    if (n < line.points.size() && shade(n) == shade(begin)) continue;
+    const bool whole = begin == 0 && n == line.points.size();
+    // One point more, where the next stretch begins.
+    const std::size_t end = std::min(n + 1, line.points.size());
+    if (shade(begin) > 0 && end > begin + 1) {
+      draw(std::span(line.points).subspan(begin, end - begin), whole && line.closed,
+           static_cast<double>(shade(begin)) / kShades);
+    }
+    begin = n;
+  }
+}
+
+// Crumbs are noise of the ground, not lines to read.
+void drop_crumbs(std::vector<Isoline>& lines, const Sheet& sheet) {
+  std::erase_if(lines, [&](const Isoline& line) { return line.length_px() < sheet.line_px(10); });
+}
+
+void draw_lines(Sheet& sheet, const std::vector<Isoline>& lines, const LineStyle& style) {
+  const auto pass = [&](double width_px, const Ink& ink) {
+    for (const Isoline& line : lines) {
+      for_stretches(line, sheet, [&](std::span<const glm::dvec2> points, bool closed, double share) {
+        sheet.canvas().line(points, closed, width_px, {ink.r, ink.g, ink.b, ink.a * share});
+      });
+    }
+  };
+  // All halos below all lines.
+  pass(style.width_px + 2 * sheet.line_px(1), style.halo);
+  pass(style.width_px, style.ink);
+}
+
+double graticule_step(const std::optional<Spread>& spread) {
+  constexpr std::array<double, 19> kSteps{45,   30,   15,   10,    5,     2,    1,    0.5,  0.2, 0.1,
+                                          0.05, 0.02, 0.01, 0.005, 0.002, 1e-3, 5e-4, 2e-4, 1e-4};
+  constexpr double kFewest = 4;
+  if (!spread) return kSteps.front();
+  const double range = spread->high - spread->low;
+  const auto fits = std::find_if(kSteps.begin(), kSteps.end(), [&](double s) { return range / s >= kFewest; });
+  return fits == kSteps.end() ? kSteps.back() : *fits;
+}
+
+// The point halfway along a line, by length.
+std::size_t halfway(const Isoline& line) {
+  const double half = 0.5 * line.length_px();
+  double sum = 0;
+  for (std::size_t n = 1; n < line.points.size(); ++n) {
+    sum += glm::length(line.points[n] - line.points[n - 1]);
+    if (sum >= half) return n;
+  }
+  return 0;
+}
+
+// Where lines leave the picture; those that never do are labelled halfway.
+template <class TextOf>
+void label_graticule(std::vector<LineLabel>& labels, Sheet& sheet, const std::vector<Isoline>& lines,
+                     const TextOf& text_of) {
+  const Lettering style{sheet.font(14), {1, 1, 1, 1}, kShade};
+  const glm::dvec2 size(sheet.canvas().width(), sheet.canvas().height());
+  std::set<std::int64_t> labelled;
+  const auto add = [&](const Isoline& line, glm::dvec2 at) {
+    const std::string text = text_of(line.multiple);
+    const TextSize box = sheet.canvas().measure(text, style.font);
+    // No stub of the line remains between its label and the border.
+    const glm::dvec2 room(0.5 * (box.width + label_room_px(sheet)) + kInside_px, 0.5 * box.height + kInside_px);
+    if (2 * room.x > size.x || 2 * room.y > size.y) return;
+    labels.push_back({text, glm::clamp(at, room, size - room), 0, style});
+    labelled.insert(line.multiple);
+  };
+  for (const Isoline& line : lines) {
+    if (line.closed || line.length_px() < sheet.px(40)) continue;
+    for (const std::size_t n : {std::size_t{0}, line.points.size() - 1}) {
+      const glm::dvec2 p = line.points[n];
+      const bool leaves = p.x < 1 || p.y < 1 || p.x > size.x - 1 || p.y > size.y - 1;
+      if (leaves && opacity(line.spacing_px[n], sheet) > 0.5) add(line, p);
+    }
+  }
+  for (const Isoline& line : lines) {
+    if (labelled.contains(line.multiple) || line.length_px() < sheet.px(80)) continue;
+    const std::size_t n = halfway(line);
+    if (opacity(line.spacing_px[n], sheet) > 0.5) add(line, line.points[n]);
+  }
+}
+
+// Stretches of a line about `length_px` long that are straight enough to write on.
+struct Spot {
+  glm::dvec2 at;
+  double angle_rad;
+};
+std::vector<Spot> spots_on(const Isoline& line, double length_px, double apart_px, const Sheet& sheet) {
+  constexpr double kStraight = 0.93;  // of the way along the line, as the crow flies
+  std::vector<double> along(line.points.size(), 0.0);
+  for (std::size_t n = 1; n < along.size(); ++n) {
+    along[n] = along[n - 1] + glm::length(line.points[n] - line.points[n - 1]);
+  }
+  std::vector<Spot> spots;
+  double wait_until = 0.25 * apart_px;
+  std::size_t end = 0;
+  for (std::size_t n = 0; n < along.size(); ++n) {
+    while (end < along.size() && along[end] < along[n] + length_px) ++end;
+    if (end == along.size()) break;
+    if (along[n] < wait_until) continue;
+    const glm::dvec2 way = line.points[end] - line.points[n];
+    const std::size_t middle = (n + end) / 2;
+    if (glm::length(way) < kStraight * (along[end] - along[n])) continue;
+    if (opacity(line.spacing_px[middle], sheet) < 1 || (!line.trust.empty() && line.trust[middle] < 1))
+      continue;
+    double angle = std::atan2(way.y, way.x);
+    if (std::abs(angle) > 0.5 * mars::kPi) angle -= std::copysign(mars::kPi, angle);
+    spots.push_back({line.points[middle], angle});
+    wait_until = along[n] + apart_px;
+  }
+  return spots;
+}
+
+}  // namespace
+
+std::vector<LineLabel> draw_graticule(Sheet& sheet, const Ground& ground, double step_deg) {
+  std::vector<LineLabel> labels;
+  const LineStyle style{sheet.line_px(1.3), kGraticule, kGraticuleHalo};
+  const auto family = [&](const std::vector<double>& values, double period, const auto& text) {
+    IsolineOptions options;
+    options.step = step_deg > 0 ? step_deg : graticule_step(spread_of(values, period));
+    options.period = period;
+    std::vector<Isoline> lines = isolines(ground, values, options);
+    drop_crumbs(lines, sheet);
+    draw_lines(sheet, lines, style);
+    label_graticule(labels, sheet, lines, [&](std::int64_t multiple) {
+      return text(static_cast<double>(multiple) * options.step, options.step);
+    });
+  };
+  family(ground.latitudes_deg(), 0, latitude_text);
+  family(ground.longitudes_deg(), 360, longitude_text);
+  return labels;
+}
+
+namespace {
+
+// Elevations are to be believed where they are off by this part of the step at most.
+constexpr double kTrusted = 2;
+
+void weigh(std::vector<Isoline>& lines, const Ground& ground, double step_m) {
+  if (ground.scene().shift_px <= 0) return;
+  for (Isoline& line : lines) {
+    line.trust.reserve(line.points.size());
+    for (const glm::dvec2& p : line.points) {
+      const double error_m = ground.error_m(ground.index(static_cast<int>(p.x), static_cast<int>(p.y)));
+      line.trust.push_back(std::clamp((step_m / error_m - 1) / (kTrusted - 1), 0.0, 1.0));
+    }
+  }
+}
+
+// In the middle of all pixels with ground.
+double usual_error_m(const Ground& ground) {
+  std::vector<double> errors_m;
+  for (std::size_t p = 0; p < ground.scene().range_m.size(); p += 97) {
+    if (ground.is_ground(p)) errors_m.push_back(ground.error_m(p));
+  }
+  if (errors_m.empty()) return 0;
+  const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
+  std::nth_element(errors_m.begin(), middle, errors_m.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double step_m) {
+  constexpr int kHeavy = 5;
+  constexpr double kMostLines = 20;
+  constexpr double kSmallestStep_m = 0.1;
+  constexpr double kNoise = 2;  // one pixel off this way, its neighbour the other way
+  const std::vector<double> elevations_m = ground.elevations_m();
+  IsolineOptions options;
+  options.step = step_m;
+  if (step_m <= 0) {
+    const std::optional<Spread> spread = spread_of(elevations_m);
+    if (!spread) return {};
+    const double by_range_m = (spread->high - spread->low) / kMostLines;
+    options.step = round_above(std::max({by_range_m, kTrusted * usual_error_m(ground), kSmallestStep_m}));
+  }
+  options.noise = kNoise / ground.scene().appearance.exaggeration;
+  options.leave_out = kHeavy;
+  std::vector<Isoline> light = isolines(ground, elevations_m, options);
+  const double step = options.step;
+  options.step *= kHeavy;
+  options.leave_out = 0;
+  std::vector<Isoline> heavy = isolines(ground, elevations_m, options);
+  weigh(light, ground, step);
+  weigh(heavy, ground, options.step);
+  drop_crumbs(light, sheet);
+  drop_crumbs(heavy, sheet);
+  draw_lines(sheet, light, {sheet.line_px(1.0), kContour, kContourHalo});
+  draw_lines(sheet, heavy, {sheet.line_px(2.0), kContour, kContourHalo});
+
+  std::vector<LineLabel> labels;
+  const Lettering style{sheet.font(13), {0.18, 0.08, 0.02, 1}, {1, 0.95, 0.86, 0.85}};
+  // The longest lines first.
+  std::stable_sort(heavy.begin(), heavy.end(),
+                   [](const Isoline& a, const Isoline& b) { return a.points.size() > b.points.size(); });
+  for (const Isoline& line : heavy) {
+    const double value_m = static_cast<double>(line.multiple) * options.step;
+    const std::string text = number_text(value_m, decimals_of(step)) + " m";
+    const double length_px = 1.15 * sheet.canvas().measure(text, style.font).width;
+    for (const Spot& spot : spots_on(line, length_px, sheet.px(450), sheet)) {
+      labels.push_back({text, spot.at, spot.angle_rad, style});
+    }
+  }
+  return labels;
+}
+
+void draw_labels(Sheet& sheet, const std::vector<LineLabel>& labels) {
+  const double apart_px = sheet.px(220);
+  std::vector<const LineLabel*> drawn;
+  for (const LineLabel& label : labels) {
+    TextSize size = sheet.canvas().measure(label.text, label.style.font);
+    size.width += label_room_px(sheet);
+    const Box box = Box::about(label.at, size, label.angle_rad);
+    const bool again = std::any_of(drawn.begin(), drawn.end(), [&](const LineLabel* other) {
+      return other->text == label.text && glm::length(other->at - label.at) < apart_px;
+    });
+    if (again || !sheet.is_free(box)) continue;
+    sheet.take(box);
+    drawn.push_back(&label);
+    sheet.canvas().clear(label.at, size, label.angle_rad);
+    sheet.canvas().text(label.text, label.at, label.angle_rad, label.style);
+  }
+}
+
+}  // namespace vpe::overlay

@@ -1,0 +1,60 @@
+#include "vpe/overlay/overlay.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "vpe/overlay/parts.h"
+
+namespace vpe::overlay {
+
+bool needs_range(const core::Overlays& overlays) {
+  return overlays.graticule || overlays.contours || overlays.scale_bar || overlays.north_arrow ||
+         !overlays.names.empty();
+}
+
+bool any(const core::Overlays& overlays) {
+  return needs_range(overlays) || overlays.legend || overlays.time_code || !overlays.title.empty();
+}
+
+Layer draw(const core::Overlays& overlays, const Scene& scene) {
+  if (!any(overlays)) return {};
+  const glm::ivec2 size = core::drawn_size(scene.view);
+  std::optional<Ground> ground;
+  if (needs_range(overlays)) ground.emplace(scene);
+  Canvas canvas(size.x, size.y);
+  Sheet sheet(canvas);
+  std::vector<LineLabel> labels;
+  if (overlays.contours) labels = draw_contours(sheet, *ground, overlays.contour_m);
+  if (overlays.graticule) {
+    const std::vector<LineLabel> more = draw_graticule(sheet, *ground, overlays.graticule_deg);
+    labels.insert(labels.begin(), more.begin(), more.end());
+  }
+  if (!overlays.title.empty()) draw_title(sheet, overlays.title);
+  if (overlays.legend) draw_legend(sheet, scene);
+  if (overlays.scale_bar) draw_scale_bar(sheet, *ground);
+  if (overlays.north_arrow) draw_north_arrow(sheet, *ground);
+  if (overlays.time_code) draw_time(sheet, scene.time_s);
+  if (!overlays.names.empty()) draw_names(sheet, *ground);
+  draw_labels(sheet, labels);
+  return canvas.layer();
+}
+
+void composite(const Layer& layer, std::vector<mars::Rgb>& picture) {
+  if (layer.pixels.empty()) return;
+  if (layer.pixels.size() != picture.size()) {
+    throw std::invalid_argument("a layer of " + std::to_string(layer.pixels.size()) +
+                                " pixels over a picture of " + std::to_string(picture.size()));
+  }
+  for (std::size_t n = 0; n < picture.size(); ++n) {
+    const core::Rgba& over = layer.pixels[n];
+    if (over.a == 0) continue;
+    const auto mix = [&over](std::uint8_t top, std::uint8_t below) {
+      const unsigned sum = top * unsigned{over.a} + below * (255U - over.a);
+      return static_cast<std::uint8_t>((sum + 127U) / 255U);
+    };
+    mars::Rgb& p = picture[n];
+    p = {mix(over.r, p.r), mix(over.g, p.g), mix(over.b, p.b)};
+  }
+}
+
+}  // namespace vpe::overlay

@@ -1,0 +1,75 @@
+// What is drawn over a finished picture to read it by: lines, names, legend, scale, arrow, title, time.
+//
+// Everything is made from the picture's view and range image alone, on the CPU: no OpenGL, no clock, no
+// globals. Sizes follow the shorter side of the picture; nothing is drawn outside of it, and no text over
+// another. Furniture that does not fit is left out: title at the top, legend lower right, scale bar lower left,
+// arrow upper right, time lower centre. Text is UTF-8; bytes that are none show as U+FFFD. A picture's part
+// (View::part) is laid out like a picture of its own.
+#pragma once
+
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "mars/source.h"
+#include "mars/sphere.h"
+#include "vpe/core/appearance.h"
+#include "vpe/core/gazetteer.h"
+#include "vpe/core/image.h"
+#include "vpe/core/overlays.h"
+#include "vpe/core/view.h"
+
+namespace vpe::overlay {
+
+// Straight (not premultiplied) alpha, of the picture's size; without pixels when there is nothing to draw.
+// Where alpha is 0 so are the colours.
+using Layer = core::Image<core::Rgba>;
+
+struct Scene {
+  core::View view;
+  std::span<const float> range_m;  // core::Frame::range_m; needed where needs_range() says so
+  double radius_m = mars::kMarsRadius_m;
+  core::Appearance appearance;  // its exaggeration, and for the legend
+  double shift_px = 0;      // by which the ground in the picture may be off (core::Certificate); for contours
+  bool has_imagery = true;  // mode textured shows imagery
+  double time_s = 0;
+  std::span<const core::Place> places;  // of Overlays::names; earlier ones win
+  // Metres above the sphere of a place on the ground, without exaggeration. Left out: 0.
+  std::function<double(const core::Place&)> height_m;
+};
+
+// Whether anything is to be drawn. If not, neither draw() nor its caller does any work.
+bool any(const core::Overlays& overlays);
+
+// Whether draw() looks at the range image.
+bool needs_range(const core::Overlays& overlays);
+
+// Throws std::invalid_argument for a range image of another size, std::runtime_error when the library of
+// vectors and text fails. Any thread; height_m is called on that of the caller.
+//
+// graticule: where the ground's longitude and latitude are multiples of the step, to within a pixel. Automatic
+//   steps put 4 to 10 lines of each kind into the middle nine tenths of the ground in the picture.
+// contours: the same for metres above the sphere without exaggeration; every fifth one heavier and labelled.
+//   They are those of the ground as drawn, whose elevations may be off by shift_px * range / focal length:
+//   lines fade where that is more than half of their distance in metres, and are gone where it is all of it.
+//   Automatic steps are 1, 2, 5 times a power of ten, and large enough for that in the nearer half of the
+//   ground.
+// Neither runs across an edge where near ground hides far ground. Lines closer together than 5 px (at 720 rows)
+// fade, and are gone at 2.
+// legend: only when the appearance shows elevation, slope or aspect as colours.
+// scale_bar: a length at the ground in the picture's centre, across the line of sight; absent when there is
+// sky. north_arrow: of the ground in the centre, on a disc that lies on the ground, tilted to 30 degrees at
+// least to
+//   be read; of the ground below the eye when there is sky. Absent at the very poles.
+// names: hidden where the ground in the picture, in all of the 3 x 3 pixels about the place, is nearer than the
+//   place by more than kHiddenShare of its distance, or is sky; and where the place's diameter is known and
+//   less than 4 px (at 720 rows).
+inline constexpr double kHiddenShare = 0.01;
+Layer draw(const core::Overlays& overlays, const Scene& scene);
+
+// Lays it over a picture of the same number of pixels; an empty layer changes nothing. Throws
+// std::invalid_argument.
+void composite(const Layer& layer, std::vector<mars::Rgb>& picture);
+
+}  // namespace vpe::overlay

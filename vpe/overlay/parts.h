@@ -1,0 +1,28 @@
+// The overlays one by one. Each takes the room it uses on the sheet; what finds none is left out.
+#pragma once
+
+#include "vpe/overlay/ground.h"
+#include "vpe/overlay/sheet.h"
+
+namespace vpe::overlay {
+
+// Lines over the ground, and the labels that they get once everything else has its place.
+struct LineLabel {
+  std::string text;
+  glm::dvec2 at;
+  double angle_rad;
+  Lettering style;
+};
+std::vector<LineLabel> draw_graticule(Sheet& sheet, const Ground& ground, double step_deg);
+std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double step_m);
+// In gaps of the lines. Labels of the same text keep a distance.
+void draw_labels(Sheet& sheet, const std::vector<LineLabel>& labels);
+
+void draw_title(Sheet& sheet, const std::string& title);
+void draw_time(Sheet& sheet, double time_s);
+void draw_legend(Sheet& sheet, const Scene& scene);
+void draw_scale_bar(Sheet& sheet, const Ground& ground);
+void draw_north_arrow(Sheet& sheet, const Ground& ground);
+void draw_names(Sheet& sheet, const Ground& ground);
+
+}  // namespace vpe::overlay
