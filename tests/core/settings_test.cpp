@@ -75,6 +75,7 @@ TEST(Settings, EveryKeyIsListedOnceWithADefaultThatIsAllowed) {
 }
 
 TEST(Settings, EachKeyChangesItsOwnValueAlone) {
+  if (!overlays_refused().empty()) GTEST_SKIP() << overlays_refused();
   for (const SettingInfo& info : Settings::list()) {
     std::string other;
     if (info.type == SettingType::kChoice) {
@@ -98,6 +99,7 @@ TEST(Settings, EachKeyChangesItsOwnValueAlone) {
 }
 
 TEST(Settings, MapsKeysToTheirMembers) {
+  if (!overlays_refused().empty()) GTEST_SKIP() << overlays_refused();
   Settings settings;
   EXPECT_EQ(settings.assign("mode=wireframe"), "");
   EXPECT_EQ(settings.assign("colour=none"), "");
@@ -245,7 +247,20 @@ TEST(Settings, ARejectedTextTellsWhyAndWhatIsAllowed) {
   EXPECT_EQ(settings, Settings());
 }
 
+TEST(Settings, WithoutCairoOverlaysAreRefusedWithTheReason) {
+  if (overlays_refused().empty()) GTEST_SKIP() << "this build has Cairo";
+  Settings settings;
+  for (const SettingInfo& info : Settings::list()) {
+    if (!info.key.starts_with("overlay.")) continue;
+    const std::string problem = settings.set(info.key, info.type == SettingType::kNumber ? "1" : "on");
+    EXPECT_TRUE(holds(problem, info.key) && holds(problem, "libcairo2-dev")) << problem;
+    EXPECT_EQ(settings.set(info.key, info.default_text), "");
+  }
+  EXPECT_EQ(settings, Settings());
+}
+
 TEST(Settings, TextHasNoControlCharacters) {
+  if (!overlays_refused().empty()) GTEST_SKIP() << overlays_refused();
   Settings settings;
   EXPECT_EQ(settings.set("overlay.title", "Olympus Mons, s\u00fcdlich"), "");
   for (const char* text : {"a\nb", "a\tb", "\x1b[2J", "a\x7f"}) {
@@ -255,6 +270,7 @@ TEST(Settings, TextHasNoControlCharacters) {
 }
 
 TEST(Settings, AGazetteerThatIsNotThereIsRefused) {
+  if (!overlays_refused().empty()) GTEST_SKIP() << overlays_refused();
   Settings settings;
   const std::string problem = settings.set("overlay.names", "/nowhere/names.csv");
   EXPECT_TRUE(

@@ -25,11 +25,11 @@ struct Ball {
   double foot_rad = 0.1;  // angle from its top to its foot
   double exaggeration = 1;
 
-  double height_m(const glm::dvec3& direction) const {
+  double height_m(const glm::dvec3& direction) const { return height_m(direction, mars::direction(top)); }
+  double height_m(const glm::dvec3& direction, const glm::dvec3& top_direction) const {
     if (cone_m == 0) return 0;
-    return std::max(0.0, cone_m * (1 - mars::angle_between_rad(direction, mars::direction(top)) / foot_rad));
+    return std::max(0.0, cone_m * (1 - mars::angle_between_rad(direction, top_direction) / foot_rad));
   }
-  double radius_m(const glm::dvec3& direction) const { return kRadius_m + exaggeration * height_m(direction); }
 
   // Distance along a unit ray; infinity when it misses.
   double cast(const glm::dvec3& eye, const glm::dvec3& ray) const {
@@ -38,10 +38,11 @@ struct Ball {
     const double off2 = glm::dot(eye, eye) - along * along;
     if (off2 > outer * outer) return std::numeric_limits<double>::infinity();
     const double half = std::sqrt(outer * outer - off2);
+    const glm::dvec3 top_direction = mars::direction(top);
     double t = std::max(0.0, along - half);
     while (t <= along + half) {
       const glm::dvec3 p = eye + ray * t;
-      const double above = glm::length(p) - radius_m(p);
+      const double above = glm::length(p) - kRadius_m - exaggeration * height_m(p, top_direction);
       if (above < 1e-4) return t;
       t += 0.75 * above;  // slopes stay under 40 degrees
     }

@@ -192,6 +192,21 @@ TEST(Isolines, CloseRoundThePoles) {
   }
 }
 
+TEST(Ground, PointsAreThoseOfTheViewsRays) {
+  View view = view_at({20, 9, 3e4, 10, -60, 33}, 300, 200);
+  view.principal_offset_px = {17, -9};
+  view.part = {40, 30, 200, 120};
+  const Sight sight({}, view);
+  const Scene scene = sight.scene();
+  const Ground ground(scene);
+  for (const glm::ivec2 p : {glm::ivec2{0, 0}, {199, 0}, {0, 119}, {120, 60}}) {
+    const glm::dvec3 ray = vpe::core::pixel_ray(view, 40 + p.x + 0.5, 30 + p.y + 0.5);
+    const glm::dvec3 wanted = view.eye.eye_m + ray * static_cast<double>(sight.range_m[ground.index(p.x, p.y)]);
+    EXPECT_LT(glm::length(ground.point(p.x, p.y) - wanted), 1e-6);
+    EXPECT_LT(glm::length(ground.to_picture(wanted).value() - glm::dvec2(p) - 0.5), 1e-6);
+  }
+}
+
 TEST(Isolines, EndAtEdgesWhereNearGroundHidesFarGround) {
   // A cone seen from the side, low above the plain: its edge cuts the plain behind it.
   const Ball ball{{0, 1.5}, 25000, 0.01, 1};

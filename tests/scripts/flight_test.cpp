@@ -8,6 +8,7 @@
 
 #include "scripts/path.h"
 #include "tests/support/support.h"
+#include "vpe/core/overlays.h"
 #include "vpe/core/settings.h"
 
 namespace scripts {
@@ -209,6 +210,7 @@ TEST(Flight, BadSettingsLooksAndInterestsAreRefused) {
 }
 
 TEST(Flight, QuotesHoldValuesWithBlanks) {
+  if (!vpe::core::overlays_refused().empty()) GTEST_SKIP() << vpe::core::overlays_refused();
   const auto text_of = [](const std::string& line) {
     const ParsedFlight parsed = parse_flight(with_lines("at 1 set " + line + "\n"), "F");
     EXPECT_TRUE(parsed.flight.has_value())
@@ -229,6 +231,7 @@ TEST(Flight, QuotesHoldValuesWithBlanks) {
 }
 
 TEST(Flight, AnyTextOfASettingReadsBack) {
+  if (!vpe::core::overlays_refused().empty()) GTEST_SKIP() << vpe::core::overlays_refused();
   Random random(8);
   constexpr std::string_view kCharacters = " \"\\#=ab";
   for (int i = 0; i < 2000; ++i) {

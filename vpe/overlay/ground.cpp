@@ -15,7 +15,20 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 Ground::Ground(const Scene& scene)
-    : scene_(scene), part_(core::drawn_part(scene.view)), size_(core::drawn_size(scene.view)) {
+    : scene_(scene),
+      part_(core::drawn_part(scene.view)),
+      size_(core::drawn_size(scene.view)),
+      is_flat_(scene.view.projection == core::Projection::kPerspective) {
+  if (is_flat_) {
+    // As core::pixel_ray(), with what is the same for all pixels worked out once.
+    const mars::Axes& axes = scene.view.eye.axes;
+    const glm::dvec2 first = glm::dvec2(part_.x + 0.5, part_.y + 0.5) -
+                             glm::dvec2(scene.view.width, scene.view.height) * 0.5 -
+                             scene.view.principal_offset_px;
+    right_ = axes.right;
+    down_ = -axes.up;
+    corner_ = axes.forward * core::focal_px(scene.view) + right_ * first.x + down_ * first.y;
+  }
   if (scene.range_m.size() == static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y)) {
     const auto nearest = std::min_element(scene.range_m.begin(), scene.range_m.end());
     nearest_m_ = nearest == scene.range_m.end() ? 1 : std::max(static_cast<double>(*nearest), 1e-3);
@@ -44,8 +57,12 @@ double Ground::noise_m(std::size_t pixel) const {
 }
 
 glm::dvec3 Ground::point(int x, int y) const {
-  const glm::dvec3 ray = core::pixel_ray(scene_.view, part_.x + x + 0.5, part_.y + y + 0.5);
-  return scene_.view.eye.eye_m + ray * static_cast<double>(scene_.range_m[index(x, y)]);
+  const auto range_m = static_cast<double>(scene_.range_m[index(x, y)]);
+  if (is_flat_) {
+    const glm::dvec3 along = corner_ + right_ * static_cast<double>(x) + down_ * static_cast<double>(y);
+    return scene_.view.eye.eye_m + along * (range_m / glm::length(along));
+  }
+  return scene_.view.eye.eye_m + core::pixel_ray(scene_.view, part_.x + x + 0.5, part_.y + y + 0.5) * range_m;
 }
 
 std::optional<glm::dvec2> Ground::to_picture(const glm::dvec3& point_m) const {
@@ -101,8 +118,9 @@ std::vector<double> Ground::longitudes_deg() const {
 }
 
 std::vector<double> Ground::latitudes_deg() const {
-  return values(
-      [](const glm::dvec3& p) { return std::atan2(p.z, std::hypot(p.x, p.y)) / mars::kRadiansPerDegree; });
+  return values([](const glm::dvec3& p) {
+    return std::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y)) / mars::kRadiansPerDegree;
+  });
 }
 
 std::vector<double> Ground::elevations_m() const {

@@ -51,6 +51,11 @@ class Ground {
   core::SubRectangle part_;
   glm::ivec2 size_;
   double nearest_m_;
+  // Of a perspective view: the ray through a pixel is along corner_ + x * right_ + y * down_.
+  bool is_flat_;
+  glm::dvec3 corner_{0, 0, 1};
+  glm::dvec3 right_{0, 0, 0};
+  glm::dvec3 down_{0, 0, 0};
 };
 
 // Range of the middle 90 % of values, NaN not counted; nothing without any. `period`: values are angles of that

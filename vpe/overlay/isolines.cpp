@@ -67,7 +67,10 @@ class Tracer {
     std::array<double, 4> v{values_[p], values_[p + 1], values_[p + down + 1], values_[p + down]};
     if (std::isnan(v[0] + v[1] + v[2] + v[3])) return;
     if (options_.period > 0) {
-      const auto way = [this](double from, double to) { return std::remainder(to - from, options_.period); };
+      const auto way = [period = options_.period](double from, double to) {
+        const double straight = to - from;
+        return std::abs(straight) <= 0.5 * period ? straight : straight - std::copysign(period, straight);
+      };
       // Round a pole the values do not come back to where they began.
       if (std::abs(way(v[0], v[1]) + way(v[1], v[2]) + way(v[2], v[3]) + way(v[3], v[0])) > 1e-6) return;
       v[1] = v[0] + way(v[0], v[1]);
