@@ -222,9 +222,15 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
       draws_.back().tint = level_tint(t.tile->key.level);
   }
   if (picture && (wireframe || markers)) {
-    // What stands before them hides dots and lines, and no sky shows through.
+    // What stands before them hides dots and lines, and no sky shows through. The ground itself must not: it is
+    // pushed back by what its depth changes on the way from an edge or a vertex to the last pixel that shows
+    // it.
+    const float reach_px = markers ? 0.5F * static_cast<float>(request.settings.marker_px) + 0.5F : 1.0F;
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-2.0F * reach_px, 0.0F);  // times the larger of the slopes to the right and up
     tiles_.draw_numbers(request.view, lens, draws_);
+    glDisable(GL_POLYGON_OFFSET_FILL);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     if (markers) {
       tiles_.draw_vertices(request.view, lens, draws_, static_cast<float>(request.settings.marker_px));
