@@ -114,8 +114,10 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
     const vpe::gl::Painting p = needs(a);
     EXPECT_LE(vertex_bytes(a), 20U);
     const bool textured = vpe::gl::is_textured(tile.key, *file, p);
-    EXPECT_EQ(textured, p.by == vpe::gl::PaintBy::kTexture);
-    EXPECT_EQ(vertex_bytes(a) == 16U, textured && !p.look.flat);
+    if (p.by != vpe::gl::PaintBy::kPalette) {
+      EXPECT_EQ(textured, p.by == vpe::gl::PaintBy::kTexture);
+    }
+    EXPECT_EQ(vertex_bytes(a) == 16U, p.by == vpe::gl::PaintBy::kTexture && !p.look.flat);
     EXPECT_EQ(p.look.scale != nullptr, paging::needs_scale(a, true));
     if (a.mode == core::Mode::kWireframe) {
       EXPECT_FALSE(textured);
@@ -126,6 +128,37 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
   unlit.mode = core::Mode::kUnlit;
   EXPECT_EQ(vertex_bytes(unlit), 12U);
   EXPECT_EQ(needs(unlit).by, vpe::gl::PaintBy::kPalette);
+}
+
+// Elevation from afar: meshes are coarse there, and off by kilometres; their colours must not be.
+TEST_F(Appearance, UnlitElevationIsThatOfTheGroundFromOrbitToo) {
+  const auto file = planet();
+  const auto draw = renderer(file);
+  core::DrawRequest r =
+      test_support::request_for({20, 25, 3e6, 0, -90, 0}, file->radius_m(), kWidth, kHeight, 40);
+  r.settings.background = core::Background::kBlack;
+  r.settings.mode = core::Mode::kUnlit;
+  r.settings.palette_low = -4000;
+  r.settings.palette_high = 4000;
+  r.settings.palette = "grey";
+  r.settings.smooth_edges = false;
+  const auto fine = draw->draw(r);
+  ASSERT_GT(fine.certificate.tile_error_m, 500);
+  const paging::Surface surface(file, std::size_t{1} << 26);
+  int known = 0, good = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto at = static_cast<std::size_t>(y * kWidth + x);
+      const double range = surface.cast(r.view.eye.eye_m, core::pixel_ray(r.view, x + 0.5, y + 0.5));
+      if (!std::isfinite(range) || !std::isfinite(fine.frame.range_m[at])) continue;
+      const glm::dvec3 hit = r.view.eye.eye_m + range * core::pixel_ray(r.view, x + 0.5, y + 0.5);
+      const double wanted = 255 * std::clamp((surface.at(hit).height_m + 4000) / 8000, 0.0, 1.0);
+      ++known;
+      good += std::abs(fine.frame.colour[at].r - wanted) < 12 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(known, 3000);
+  EXPECT_GT(good, 0.97 * known);
 }
 
 using LongAppearance = Appearance;

@@ -170,6 +170,13 @@ TEST_F(Rays, RefusesWhatItCannotDraw) {
   request.settings.mode = core::Mode::kWireframe;
   EXPECT_THROW(draw->draw(request), std::runtime_error);
   request.settings.mode = core::Mode::kLit;
+  request.settings.inspect = core::Inspect::kBorders;
+  EXPECT_THROW(draw->draw(request), std::runtime_error);
+  request.settings.inspect = core::Inspect::kNone;
+  request.cull_view = request.view;
+  EXPECT_THROW(draw->draw(request), std::runtime_error);
+  request.cull_view.reset();
+  EXPECT_NO_THROW(draw->draw(request));
   request.view.eye.eye_m.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(draw->draw(request), std::runtime_error);
 }

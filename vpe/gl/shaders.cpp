@@ -19,8 +19,14 @@ layout(location = 5) uniform float skirt;
 layout(location = 6) uniform int first_foot;
 layout(location = 11) uniform vec2 steps;
 layout(location = 15) uniform float snap_from;
-#ifdef CHART
+#ifdef PLACED
+layout(location = 23) uniform vec3 face_right;
+layout(location = 24) uniform vec3 face_up;
+layout(location = 25) uniform vec4 face_rect;
+#elif defined(CHART)
 layout(location = 1) in vec2 st;
+#endif
+#ifdef CHART
 layout(location = 7) uniform vec3 face_out;
 layout(location = 8) uniform vec2 texel;
 layout(location = 0) out vec3 texture_position;
@@ -62,6 +68,10 @@ void main() {
 #ifdef CHART
   // Texture coordinates are gnomonic: a ratio of two functions that are linear on the flat triangle.
   float depth = dot(face_out, from_centre) * 1e-6;
+#ifdef PLACED
+  vec2 uv = vec2(dot(face_right, from_centre), dot(face_up, from_centre)) / dot(face_out, from_centre);
+  vec2 st = (uv - face_rect.xy) * face_rect.zw;
+#endif
   texture_position = vec3((st * texel.x + texel.y) * depth, depth);
 #endif
 }
@@ -321,6 +331,7 @@ TileShaders tile_shaders(TilePart part, const TilePaint& paint) {
   define(paint.palette, "PALETTE");
   define(paint.gaps, "GAPS");
   define(paint.haze, "HAZE");
+  define(paint.placed, "PLACED");
   define(paint.texture || paint.gaps, "CHART");
   TileShaders out;
   const auto join = [&](std::initializer_list<std::string_view> parts) {

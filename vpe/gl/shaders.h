@@ -15,6 +15,7 @@ struct TilePaint {
   bool palette = false;  // colour of the height of what is drawn
   bool gaps = false;     // ground without data is striped and has alpha 0
   bool haze = false;
+  bool placed = false;  // texture coordinates from positions, not from vertices: within 1e-7 of the face
   auto operator<=>(const TilePaint&) const = default;
 };
 
@@ -53,6 +54,9 @@ enum TileUniform : int {
   kUp = 20,            // vec3: the vertical at the eye, in eye coordinates
   kAir = 21,           // vec4: planet's radius, eye's height, height of air's top, 1 / its scale
   kSun = 22,           // vec3: towards the sun, in eye coordinates
+  kFaceRight = 23,     // vec3: of the face; placed only, as the next
+  kFaceUp = 24,        // vec3
+  kFaceRect = 25,      // vec4: the tile's least u and v, 1 / its sides
   kFirstFacet = 19,    // int: facet of the first primitive
 };
 

@@ -32,6 +32,7 @@ TilePaint TileDrawer::paint_of(const TileDraw& tile) const {
   paint.palette = tile.texture == nullptr && tile.palette;
   paint.gaps = tile.texture != nullptr && tile.texture->gaps && tile.mesh->charts;
   paint.haze = air_.visibility_m > 0.0F;
+  paint.placed = paint.texture && !tile.mesh->charts;
   return paint;
 }
 
@@ -143,8 +144,19 @@ void TileDrawer::use(const TileDraw& tile, const TilePaint& paint, TilePart part
     const auto texels = static_cast<float>(intervals + 1);
     glUniform2f(kTexel, paint.texture ? static_cast<float>(intervals) / texels : 1.0F,
                 paint.texture ? 0.5F / texels : 0.0F);
-    glVertexArrayVertexBuffer(array_.name(), 1, mesh.charts.name(), 0, sizeof(VertexChart));
-    glEnableVertexArrayAttrib(array_.name(), 1);
+    if (paint.placed) {
+      const mars::FaceAxes& axes = mars::face_axes(tile.key.face);
+      const glm::vec3 right(axes.right), up(axes.up);
+      const mars::ChartRect rect = lod::chart_rect(tile.key);
+      glUniform3fv(kFaceRight, 1, &right[0]);
+      glUniform3fv(kFaceUp, 1, &up[0]);
+      glUniform4f(kFaceRect, static_cast<float>(rect.u0), static_cast<float>(rect.v0),
+                  static_cast<float>(1.0 / (rect.u1 - rect.u0)), static_cast<float>(1.0 / (rect.v1 - rect.v0)));
+      glDisableVertexArrayAttrib(array_.name(), 1);
+    } else {
+      glVertexArrayVertexBuffer(array_.name(), 1, mesh.charts.name(), 0, sizeof(VertexChart));
+      glEnableVertexArrayAttrib(array_.name(), 1);
+    }
   } else {
     glDisableVertexArrayAttrib(array_.name(), 1);
   }

@@ -37,16 +37,22 @@ Painting painting(const core::Appearance& a, const glm::dvec3& sun, bool has_ima
            : look.surfacing == paging::Surfacing::kPlain                   ? PaintBy::kColour
            : look.surfacing == paging::Surfacing::kElevation && !look.flat ? PaintBy::kPalette
                                                                            : PaintBy::kTexture;
+  if (out.by == PaintBy::kPalette && look.scale)
+    out.palette_error_m = std::abs(look.scale->high() - look.scale->low()) / 256;
   return out;
 }
 
 bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting) {
-  return painting.by == PaintBy::kTexture || (painting.shows_gaps && planet.has_missing(tile));
+  if (painting.by == PaintBy::kTexture || (painting.shows_gaps && planet.has_missing(tile))) return true;
+  if (painting.by != PaintBy::kPalette) return false;
+  const lod::TileInfo* info = planet.tree().find(tile);
+  return info != nullptr && info->variants.front().terms.relief_m > painting.palette_error_m;
 }
 
 bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting) {
   if (!is_textured(tile, planet, painting)) return false;
-  return !painting.look.flat || planet.has_missing(tile);
+  // The programs of coarse tiles find the place by themselves (TilePaint::placed): a texel is wide there.
+  return (painting.by != PaintBy::kPalette && !painting.look.flat) || planet.has_missing(tile);
 }
 
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,

@@ -14,14 +14,16 @@ namespace vpe::gl {
 // How an appearance paints ground.
 enum class PaintBy {
   kColour,   // one colour
-  kPalette,  // colour of the height of what is drawn, by the program
+  kPalette,  // colour of the height of what is drawn, by the program; where its meshes are too coarse for the
+             // palette a texture
   kTexture,  // ShadedTile: a grid, or with flat shading facets
 };
 
 struct Painting {
   PaintBy by = PaintBy::kTexture;
-  bool shows_gaps = true;  // ground without data looks different: such tiles have textures in any case
-  ShadeParams look;        // of textures
+  bool shows_gaps = true;      // ground without data looks different: such tiles have textures in any case
+  double palette_error_m = 0;  // relief that a palette may be off: a 256th of its range
+  ShadeParams look;            // of textures
   bool operator==(const Painting&) const = default;
 };
 

@@ -363,8 +363,9 @@ void TileScene::report(core::DrawResult& result) const {
   const paging::PagerCounts counts = pager_.counts();
   s.pages_wanted = static_cast<std::int64_t>(counts.wanted);
   s.pages_loading = static_cast<std::int64_t>(counts.loading);
-  s.bytes_resident = static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + painter_->bytes_resident() +
-                                               counts.bytes + planet_->tree().bytes());
+  s.bytes_resident =
+      static_cast<std::int64_t>(meshes_.bytes() + textures_.bytes() + painter_->bytes_resident() +
+                                counts.bytes + planet_->tree().bytes());
   result.settled = settled_;
   result.failures = failures_;
   result.missing.clear();

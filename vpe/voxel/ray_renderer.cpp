@@ -152,6 +152,9 @@ core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   const core::Mode mode = request.settings.mode;
   if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers)
     throw std::runtime_error("the ray backend has no triangles to show: use --backend polygon for this mode");
+  if (request.cull_view || request.settings.inspect != core::Inspect::kNone)
+    throw std::runtime_error(
+        "the ray backend draws no tiles: --cull-from and inspect show those of --backend polygon");
   const auto start = Clock::now();
   set_look(request);
   core::DrawResult result;
