@@ -46,7 +46,7 @@ const Published kPublished[] = {{"2000-01-06T00:00:00Z", 277.18759, 174.72600, -
 TEST_F(Sun, SubsolarPointAndTerminatorAreWhereTheDatePutsThem) {
   constexpr int kSide = 260;
   const auto file =
-      test_support::build_fake(dir_ / "p.vpe", FakeElevation([](const glm::dvec3&) { return 0.0; }), 40000);
+      test_support::build_fake(dir_ / "p.vpe", FakeElevation([](const glm::dvec3&) { return 0.0; }), 50000);
   const auto draw = renderer(file);
   for (const Published& published : kPublished) {
     const glm::dvec3 subsolar = published.subsolar();
