@@ -22,7 +22,7 @@ using Haze = test_support::GlTest;
 TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
   const test_support::FakeElevation source(test_support::bumpy_height,
                                            test_support::fine_around(mars::direction(kPlace), 0.05, 4000));
-  const auto file = test_support::build_fake(dir_ / "p.vpe", source, 40000);
+  const auto file = test_support::build_fake(dir_ / "p.vpe", source, 60000);
   const double radius_m = file->radius_m();
   const double ground_m = test_support::bumpy_height(mars::direction(kPlace));
   const auto draw = renderer(file);
