@@ -32,6 +32,8 @@ enum class Surfacing {
   kImageAtPosts,
 };
 
+constexpr bool shows_image(Surfacing s) { return s == Surfacing::kImage || s == Surfacing::kImageAtPosts; }
+
 struct ShadeParams {
   Surfacing surfacing = Surfacing::kElevation;
   Surfacing hue = Surfacing::kPlain;  // of an image: not plain = colourised by this
