@@ -66,10 +66,7 @@ class FaceCaster {
     return clip(all, negated(line_v(1.0)));
   }
 
-  double cast(Interval part) const {
-    const lod::TileKey root{face_, 0, 0, 0};
-    return in_tile(root, part);
-  }
+  double cast(Interval part) const { return in_tile(static_cast<lod::TileTree::Index>(face_), part); }
 
  private:
   static Linear negated(Linear f) { return {-f.value, -f.slope}; }
@@ -104,24 +101,27 @@ class FaceCaster {
       const Interval piece{cuts[c], cuts[c + 1]};
       if (piece.empty()) continue;
       // Beyond the far end of an unbounded ray any later point will do to tell the side.
-      const double middle = std::isfinite(piece.end) ? 0.5 * (piece.begin + piece.end) : 2.0 * piece.begin + radius_;
+      const double middle =
+          std::isfinite(piece.end) ? 0.5 * (piece.begin + piece.end) : 2.0 * piece.begin + radius_;
       const double hit = visit(fu.at(middle) >= 0.0, fv.at(middle) >= 0.0, piece);
       if (hit < kNone) return hit;
     }
     return kNone;
   }
 
-  double in_tile(const lod::TileKey& key, Interval part) const {
-    const lod::TileInfo* info = tree_.find(key);
-    if (info == nullptr || above(part, info->max_height_m)) return kNone;
-    if (!info->has_children) {
+  double in_tile(lod::TileTree::Index index, Interval part) const {
+    const lod::TileInfo& info = tree_[index];
+    if (above(part, info.max_height_m)) return kNone;
+    const lod::TileKey& key = info.key;
+    if (!info.has_children) {
       const auto tile = surface_.tile(key);
       return in_block(*tile, static_cast<int>(tile->block_max.size()), 0, 0, part);
     }
-    const mars::ChartRect inner = lod::chart_rect(lod::child(key, 0));
-    return quarters(part, line_u(inner.u1), line_v(inner.v1), [&](bool east, bool north, Interval piece) {
-      return in_tile(lod::child(key, (east ? 1 : 0) + (north ? 2 : 0)), piece);
-    });
+    const lod::TileTree::Index first = tree_.first_child(index);
+    return quarters(part, line_u(surface_.middle_line(key.level, key.i)),
+                    line_v(surface_.middle_line(key.level, key.j)), [&](bool east, bool north, Interval piece) {
+                      return in_tile(first + (east ? 1U : 0U) + (north ? 2U : 0U), piece);
+                    });
   }
 
   double in_block(const SurfaceTile& tile, int b, int i, int j, Interval part) const {
@@ -146,7 +146,8 @@ class FaceCaster {
     const double v0 = tile.lines.v[y];
     const double dv = tile.lines.v[y + 1] - v0;
     const auto depth = [&](int a, int b) {
-      return lod::inverse_depth(tile.lines.u[x + static_cast<std::size_t>(a)], tile.lines.v[y + static_cast<std::size_t>(b)],
+      return lod::inverse_depth(tile.lines.u[x + static_cast<std::size_t>(a)],
+                                tile.lines.v[y + static_cast<std::size_t>(b)],
                                 exaggeration_ * tile.data.posts.at(i + a, j + b), radius_);
     };
     const double w00 = depth(0, 0);
@@ -160,7 +161,8 @@ class FaceCaster {
       // 1 - Z w: negative above the surface of the ray, positive below it; scaled so that it is linear.
       const double a = ws / du;
       const double b = wt / dv;
-      return Linear{1.0 - w00 * z_.value - a * fs.value - b * ft.value, -w00 * z_.slope - a * fs.slope - b * ft.slope};
+      return Linear{1.0 - w00 * z_.value - a * fs.value - b * ft.value,
+                    -w00 * z_.slope - a * fs.slope - b * ft.slope};
     };
     const Linear lower = surface(w10 - w00, w11 - w10);  // south-east of the diagonal
     const Linear upper = surface(w11 - w01, w01 - w00);

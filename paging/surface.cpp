@@ -54,7 +54,20 @@ SurfaceTile prepare_tile(TileHeights heights) {
 }
 
 Surface::Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
-    : planet_(std::move(planet)), cache_(budget_bytes) {}
+    : planet_(std::move(planet)), cache_(budget_bytes) {
+  constexpr int kTableLevels = 11;
+  for (int level = 0; level < kTableLevels; ++level) {
+    std::vector<double>& lines = middles_.emplace_back();
+    for (std::int32_t k = 0; k < 1 << level; ++k)
+      lines.push_back(mars::face_line(2 * std::int64_t{k} + 1, level + 1));
+  }
+}
+
+double Surface::middle_line(int level, std::int32_t index) const {
+  const auto at = static_cast<std::size_t>(level);
+  return at < middles_.size() ? middles_[at][static_cast<std::size_t>(index)]
+                              : mars::face_line(2 * std::int64_t{index} + 1, level + 1);
+}
 
 std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key) const {
   return cache_.get(key, [&] {

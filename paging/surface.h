@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "paging/cache.h"
 #include "paging/planet_file.h"
@@ -24,11 +25,11 @@ struct SurfaceTile {
 };
 
 struct SurfacePoint {
-  double height_m = 0;   // above the sphere
-  double radius_m = 0;   // from the planet's centre
+  double height_m = 0;         // above the sphere
+  double radius_m = 0;         // from the planet's centre
   glm::dvec3 normal{0, 0, 1};  // of the facet, outward, body-fixed
-  lod::TileKey tile;     // the finest tile there
-  bool missing = false;  // the nearest post has no source data
+  lod::TileKey tile;           // the finest tile there
+  bool missing = false;        // the nearest post has no source data
 };
 
 // Any thread may call any member. Results do not depend on the cache's state.
@@ -56,8 +57,12 @@ class Surface {
   std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key) const;
   std::size_t bytes_resident() const { return cache_.bytes(); }
 
+  // Chart coordinate of the line between a tile's halves; index: i for u, j for v.
+  double middle_line(int level, std::int32_t index) const;
+
  private:
   std::shared_ptr<const PlanetFile> planet_;
+  std::vector<std::vector<double>> middles_;  // chart lines through the middles of tiles, by level and index
   mutable LruCache<lod::TileKey, SurfaceTile, lod::TileKeyHash> cache_;
 };
 
