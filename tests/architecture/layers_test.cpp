@@ -34,7 +34,7 @@ const std::vector<Layer>& layers() {
       {"scripts", "scripts", {"mars", "vpe/core"}},
       {"vpe/overlay", "vpe::overlay", {"mars", "vpe/core"}, false, false, true},
       {"vpe/gl", "vpe::gl", {"mars", "vpe/core", "cull", "lod", "paging", "scripts"}, true},
-      {"vpe/voxel", "vpe::voxel", {"mars", "vpe/core", "paging"}},
+      {"vpe/voxel", "vpe::voxel", {"mars", "vpe/core", "lod", "paging"}},
       {"panorama", "panorama", {"mars", "vpe/core", "paging"}},
       {"vpe/app",
        "vpe::app",

@@ -1,0 +1,78 @@
+// Lattices of a planet's tiles, kept within a budget and shared by all threads that cast columns.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+
+#include "lod/tree.h"
+#include "paging/cache.h"
+#include "paging/planet_file.h"
+#include "vpe/voxel/lattice.h"
+
+namespace vpe::voxel {
+
+// Any thread may call any member. What is returned stays as it is for as long as it is held.
+class LatticeStore {
+ public:
+  LatticeStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
+
+  const paging::PlanetFile& planet() const { return *planet_; }
+
+  // Throw paging::PlanetError for a tile that cannot be read.
+  std::shared_ptr<const TileLattices<float>> lattices(lod::TileTree::Index tile, Family family,
+                                                      double exaggeration) const;
+  // In double: for the tiles about the eye's foot.
+  std::shared_ptr<const TileLattices<double>> exact_lattices(lod::TileTree::Index tile, Family family,
+                                                             double exaggeration) const;
+
+  std::size_t bytes_resident() const;
+
+ private:
+  struct Key {
+    lod::TileTree::Index tile;
+    Family family;
+    double exaggeration;
+    bool operator==(const Key&) const = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& k) const {
+      return (std::size_t{k.tile} * kFamilies + static_cast<std::size_t>(k.family)) * 0x9e3779b97f4a7c15ULL ^
+             std::hash<double>()(k.exaggeration);
+    }
+  };
+  template <typename T>
+  using Cache = paging::LruCache<Key, TileLattices<T>, KeyHash>;
+  template <typename T>
+  std::shared_ptr<const TileLattices<T>> get(Cache<T>& cache, const Key& key) const;
+
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  mutable Cache<float> lattices_;
+  mutable Cache<double> exact_;
+};
+
+// What one thread used last: finding it again takes no lock. Holds at most kSlots tiles.
+class LatticeShelf {
+ public:
+  LatticeShelf(const LatticeStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
+
+  // Valid until the next call.
+  const TileLattices<float>& lattices(lod::TileTree::Index tile, Family family);
+  const TileLattices<double>& exact_lattices(lod::TileTree::Index tile, Family family);
+
+ private:
+  static constexpr std::size_t kSlots = 256;
+  struct Slot {
+    lod::TileTree::Index tile = ~lod::TileTree::Index{0};
+    Family family = Family::kColumns;
+    std::shared_ptr<const TileLattices<float>> held;
+  };
+  const LatticeStore& store_;
+  double exaggeration_;
+  std::array<Slot, kSlots> slots_;
+  std::shared_ptr<const TileLattices<double>> exact_;
+  lod::TileTree::Index exact_tile_ = ~lod::TileTree::Index{0};
+  Family exact_family_ = Family::kColumns;
+};
+
+}  // namespace vpe::voxel
