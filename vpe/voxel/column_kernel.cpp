@@ -10,6 +10,7 @@
 #define HWY_TARGET_INCLUDE "vpe/voxel/column_kernel.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
+#include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -740,22 +741,11 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
   const V one = hn::Set(d, 1.0F);
   const V sky = hn::Set(d, std::numeric_limits<float>::infinity());
   const V resolved = hn::Load(d, group.row);
-  V start = one;
-  V gain = zero;
-  V from = zero;
-  for (int r = first; r < last; ++r) {
-    float* const starts = group.start + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
-    const V row = hn::Set(d, static_cast<float>(r));
-    const V slope = model.slope(row);
-    const V now = hn::Load(d, starts);
-    const auto begins = hn::Ne(now, zero);
-    start = hn::IfThenElse(begins, now, start);
-    gain = hn::IfThenElse(begins, hn::Load(d, group.gain + static_cast<std::ptrdiff_t>(r) * kMaxLanes), gain);
-    from = hn::IfThenElse(begins, slope, from);
-    hn::Store(zero, d, starts);
-    const V per = hn::MulAdd(gain, hn::Sub(slope, from), start);
-    const V range = hn::Div(hn::Sqrt(hn::MulAdd(slope, slope, one)), per);
-    const V seen = hn::IfThenElse(hn::Lt(row, resolved), range, sky);
+  const float most = hn::GetLane(hn::MaxOfLanes(d, resolved));
+  V start = hn::Load(d, group.run_start);
+  V gain = hn::Load(d, group.run_gain);
+  V from = hn::Load(d, group.run_slope);
+  const auto put = [&](int r, V seen) {
     float* const to = out + static_cast<std::ptrdiff_t>(r - first) * stride;
     if (whole) {
       hn::StoreU(seen, d, to);
@@ -764,7 +754,33 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
       hn::Store(seen, d, some);
       std::copy_n(some, group.columns, to);
     }
+  };
+  const int ground = std::clamp(static_cast<int>(most), first, last);
+  for (int r = first; r < ground; ++r) {
+    float* const starts = group.start + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
+    const V row = hn::Set(d, static_cast<float>(r));
+    const V slope = model.slope(row);
+    const V now = hn::Load(d, starts);
+    const auto begins = hn::Ne(now, zero);
+    if (!hn::AllFalse(d, begins)) {
+      start = hn::IfThenElse(begins, now, start);
+      gain = hn::IfThenElse(begins, hn::Load(d, group.gain + static_cast<std::ptrdiff_t>(r) * kMaxLanes), gain);
+      from = hn::IfThenElse(begins, slope, from);
+      hn::Store(zero, d, starts);
+    }
+    const V per = hn::MulAdd(gain, hn::Sub(slope, from), start);
+    V length;
+    if constexpr (kKind == RowKind::kFan) {
+      length = hn::Sqrt(hn::MulAdd(slope, slope, one));
+    } else {
+      length = hn::Set(d, rows.length[r]);
+    }
+    put(r, hn::IfThenElse(hn::Lt(row, resolved), hn::Div(length, per), sky));
   }
+  for (int r = ground; r < last; ++r) put(r, sky);
+  hn::Store(start, d, group.run_start);
+  hn::Store(gain, d, group.run_gain);
+  hn::Store(from, d, group.run_slope);
 }
 
 void ExpandRows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride) {
@@ -773,6 +789,26 @@ void ExpandRows(const Rows& rows, ColumnGroup& group, int first, int last, float
     case RowKind::kTable: return expand_as<RowKind::kTable>(rows, group, first, last, out, stride);
     case RowKind::kFan: return expand_as<RowKind::kFan>(rows, group, first, last, out, stride);
   }
+}
+
+void CopyRows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
+              int rows, bool stream) {
+  const FloatTag d;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  const auto bytes = static_cast<std::uintptr_t>(lanes) * sizeof(float);
+  for (int r = 0; r < rows; ++r, from += from_stride, to += to_stride) {
+    std::ptrdiff_t x = 0;
+    if (stream) {
+      // Up to the first whole vector.
+      while (x < columns && reinterpret_cast<std::uintptr_t>(to + x) % bytes != 0) {
+        to[x] = from[x];
+        ++x;
+      }
+      for (; x + lanes <= columns; x += lanes) hn::Stream(hn::LoadU(d, from + x), d, to + x);
+    }
+    std::copy(from + x, from + columns, to + x);
+  }
+  if (stream) hwy::FlushStream();
 }
 
 int ColumnLanes() { return static_cast<int>(hn::Lanes(FloatTag())); }
@@ -788,6 +824,7 @@ namespace vpe::voxel {
 HWY_EXPORT(WalkLattice);
 HWY_EXPORT(UpdateLeastSlope);
 HWY_EXPORT(ExpandRows);
+HWY_EXPORT(CopyRows);
 HWY_EXPORT(ColumnLanes);
 HWY_EXPORT(ColumnTarget);
 
@@ -801,6 +838,10 @@ void update_least_slope(const Rows& rows, ColumnGroup& group) {
 void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out,
                  std::ptrdiff_t stride) {
   HWY_DYNAMIC_DISPATCH(ExpandRows)(rows, group, first, last, out, stride);
+}
+void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
+               int rows, bool stream) {
+  HWY_DYNAMIC_DISPATCH(CopyRows)(from, from_stride, to, to_stride, columns, rows, stream);
 }
 int column_lanes() { return HWY_DYNAMIC_DISPATCH(ColumnLanes)(); }
 const char* column_target() { return HWY_DYNAMIC_DISPATCH(ColumnTarget)(); }

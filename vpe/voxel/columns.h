@@ -32,6 +32,7 @@ struct Rows {
   double step = 0;
   const float* slope = nullptr;  // count + 1 entries, the last infinite
   const double* slope_exact = nullptr;
+  const float* length = nullptr;  // sqrt(1 + slope^2); not for fans
   double first_elevation = 0;  // of row 0, radians
   double elevation_step = 0;
 };
@@ -60,6 +61,10 @@ struct ColumnGroup {
   float* start = nullptr;                // rows * kMaxLanes, at a multiple of 64 bytes
   float* gain = nullptr;
   double least_slope = 0;  // of all rows that are not resolved; infinite when there are none
+  // The run that expand_rows() is in.
+  alignas(64) float run_start[kMaxLanes];
+  alignas(64) float run_gain[kMaxLanes];
+  alignas(64) float run_slope[kMaxLanes];
 };
 
 // What the kernel reads of one lattice; made when asked for.
@@ -82,8 +87,14 @@ inline constexpr int kExactLines = 24;
 void update_least_slope(const Rows& rows, ColumnGroup& group);
 
 // Writes ranges (float, from the eye; infinity where no ground was met) of rows [first, last) for all columns:
-// out[(row - first) * stride + lane], and clears `start` for them. last <= rows.count.
+// out[(row - first) * stride + lane], and clears `start` for them. Rows are taken from 0 upward, in as many calls
+// as one likes. last <= rows.count.
 void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride);
+
+// Copies rows of floats; strides count floats and may be negative. stream: past the caches, for pictures that would
+// not stay in them.
+void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
+               int rows, bool stream);
 
 // Columns that are cast at once on this machine, at most kMaxLanes; and the name of its vector unit.
 int column_lanes();

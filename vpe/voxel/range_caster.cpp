@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <array>
+#include <exception>
 #include <limits>
 
 #include "vpe/voxel/column_walk.h"
@@ -24,20 +26,31 @@ bool upright(const core::View& view, const glm::dvec3& up) {
   return view.projection != core::Projection::kPerspective && glm::length(view.eye.axes.up - up) < kLevel;
 }
 
-struct alignas(64) LaneFloats {
-  float lane[kMaxLanes];
-};
+// Neighbouring groups that one thread casts in turn.
+constexpr int kTaskGroups = 6;
+constexpr int kBlockRows = 32;
+
+// Larger pictures are written past the caches.
+constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
 
 // Rows of a round picture from its lowest one, with their tables.
 struct PictureRows {
   Rows rows;
   std::vector<double> exact;
   std::vector<float> rounded;
+  std::vector<float> length;
 };
 
 PictureRows picture_rows(const core::View& view, const core::SubRectangle& part) {
   PictureRows p;
   p.rows.count = part.height;
+  const auto finish = [&] {
+    for (int r = 0; r < part.height; ++r) {
+      const double slope = p.exact.empty() ? (r - p.rows.centre) * p.rows.step : p.exact[static_cast<std::size_t>(r)];
+      p.length.push_back(static_cast<float>(std::hypot(1.0, slope)));
+    }
+    p.rows.length = p.length.data();
+  };
   const double centre_y = 0.5 * view.height + view.principal_offset_px.y;
   const double lowest = centre_y - (part.y + part.height - 0.5);  // of row 0, upward from the principal row
   const double focal = core::focal_px(view);
@@ -45,6 +58,7 @@ PictureRows picture_rows(const core::View& view, const core::SubRectangle& part)
     p.rows.kind = RowKind::kEven;
     p.rows.centre = -lowest;
     p.rows.step = 1.0 / focal;
+    finish();
     return p;
   }
   p.rows.kind = RowKind::kTable;
@@ -58,10 +72,62 @@ PictureRows picture_rows(const core::View& view, const core::SubRectangle& part)
   p.rounded.assign(p.exact.begin(), p.exact.end());
   p.rows.slope = p.rounded.data();
   p.rows.slope_exact = p.exact.data();
+  finish();
   return p;
 }
 
 }  // namespace
+
+struct alignas(64) LaneFloats {
+  float lane[kMaxLanes];
+};
+
+// What a thread works with; kept for the next task of the picture.
+struct RangeCaster::Desk {
+  Desk(const LatticeStore& store, int rows, double exaggeration)
+      : shelf(store, exaggeration),
+        buffers(2 * static_cast<std::size_t>(kTaskGroups) * static_cast<std::size_t>(rows)) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      groups[g].start = buffers[2 * g * static_cast<std::size_t>(rows)].lane;
+      groups[g].gain = buffers[(2 * g + 1) * static_cast<std::size_t>(rows)].lane;
+    }
+  }
+
+  LatticeShelf shelf;
+  std::vector<LaneFloats> buffers;  // zero between tasks
+  std::array<ColumnGroup, kTaskGroups> groups{};
+  std::array<LaneFloats, static_cast<std::size_t>(kTaskGroups) * kBlockRows> block{};  // of expanded rows
+
+  // A desk for one task. Not handed back when the task throws.
+  class Use {
+   public:
+    Use(RangeCaster& caster, int rows, double exaggeration)
+        : caster_(caster), thrown_(std::uncaught_exceptions()) {
+      const std::lock_guard lock(caster_.desks_mutex_);
+      if (!caster_.desks_.empty()) {
+        desk_ = std::move(caster_.desks_.back());
+        caster_.desks_.pop_back();
+      } else {
+        desk_ = std::make_unique<Desk>(caster_.store_, rows, exaggeration);
+      }
+    }
+    ~Use() {
+      if (std::uncaught_exceptions() != thrown_) return;
+      const std::lock_guard lock(caster_.desks_mutex_);
+      caster_.desks_.push_back(std::move(desk_));
+    }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    Desk* operator->() const { return desk_.get(); }
+
+   private:
+    RangeCaster& caster_;
+    int thrown_;
+    std::unique_ptr<Desk> desk_;
+  };
+};
+
+RangeCaster::~RangeCaster() = default;
 
 RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : surface_(planet, vpe::voxel::part(budget_bytes, kSurfaceShare)),
@@ -86,31 +152,40 @@ void RangeCaster::cast_upright(const core::View& view, double exaggeration, doub
   const ColumnEye eye{view.eye.eye_m / distance, distance, surface_.planet_radius_m(), ground_m};
   const ColumnWalk walk(surface_.planet(), eye, exaggeration);
   const int lanes = column_lanes();
-  const auto groups = static_cast<std::size_t>((part.width + lanes - 1) / lanes);
-  const auto row_count = static_cast<std::size_t>(part.height);
-  pool.run(groups, [&](std::size_t g) {
-    thread_local std::vector<LaneFloats> start;
-    thread_local std::vector<LaneFloats> gain;
-    start.assign(row_count, LaneFloats{});
-    gain.resize(row_count);
-    LatticeShelf shelf(store_, exaggeration);
-    ColumnGroup group{};
-    const int first = static_cast<int>(g) * lanes;
-    group.columns = std::min(lanes, part.width - first);
-    group.start = start.data()->lane;
-    group.gain = gain.data()->lane;
-    std::array<glm::dvec3, kMaxLanes> azimuth{};
-    const double level_y = 0.5 * view.height + view.principal_offset_px.y;
-    for (int lane = 0; lane < group.columns; ++lane) {
-      const glm::dvec3 ray = core::pixel_ray(view, part.x + first + lane + 0.5, level_y);
-      azimuth[static_cast<std::size_t>(lane)] = glm::normalize(ray - glm::dot(ray, eye.up) * eye.up);
-      group.row_end[lane] = static_cast<float>(part.height);
+  const int task_columns = lanes * kTaskGroups;
+  const auto tasks = static_cast<std::size_t>((part.width + task_columns - 1) / task_columns);
+  const bool stream = range_m.size_bytes() > kCachedBytes;
+  const double level_y = 0.5 * view.height + view.principal_offset_px.y;
+  pool.run(tasks, [&](std::size_t task) {
+    const Desk::Use desk(*this, part.height, exaggeration);
+    const int begin = static_cast<int>(task) * task_columns;
+    const int columns = std::min(task_columns, part.width - begin);
+    int groups = 0;
+    for (int first = 0; first < columns; first += lanes, ++groups) {
+      ColumnGroup& group = desk->groups[static_cast<std::size_t>(groups)];
+      group.columns = std::min(lanes, columns - first);
+      std::array<glm::dvec3, kMaxLanes> azimuth{};
+      for (int lane = 0; lane < kMaxLanes; ++lane) {
+        group.row[lane] = 0;
+        group.row_end[lane] = lane < group.columns ? static_cast<float>(part.height) : 0;
+        if (lane >= group.columns) continue;
+        const glm::dvec3 ray = core::pixel_ray(view, part.x + begin + first + lane + 0.5, level_y);
+        azimuth[static_cast<std::size_t>(lane)] = glm::normalize(ray - glm::dot(ray, eye.up) * eye.up);
+      }
+      walk.cast(azimuth.data(), picture.rows, desk->shelf, group);
     }
-    walk.cast(azimuth.data(), picture.rows, shelf, group);
-    float* const lowest =
-        range_m.data() + static_cast<std::size_t>(part.height - 1) * static_cast<std::size_t>(part.width) + first;
-    expand_rows(picture.rows, group, 0, part.height, lowest, -static_cast<std::ptrdiff_t>(part.width));
+    for (int row = 0; row < part.height; row += kBlockRows) {
+      const int rows = std::min(kBlockRows, part.height - row);
+      for (int g = 0; g < groups; ++g)
+        expand_rows(picture.rows, desk->groups[static_cast<std::size_t>(g)], row, row + rows,
+                    desk->block[0].lane + g * lanes, task_columns);
+      float* const out = range_m.data() +
+                         static_cast<std::size_t>(part.height - 1 - row) * static_cast<std::size_t>(part.width) + begin;
+      copy_rows(desk->block[0].lane, task_columns, out, -static_cast<std::ptrdiff_t>(part.width), columns, rows,
+                stream);
+    }
   });
+  desks_.clear();
 }
 
 void RangeCaster::cast_each(const core::View& view, double exaggeration, core::ThreadPool& pool,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <span>
+#include <vector>
 
 #include "paging/planet_file.h"
 #include "paging/surface.h"
@@ -16,6 +18,7 @@ namespace vpe::voxel {
 class RangeCaster {
  public:
   RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
+  ~RangeCaster();
 
   // Ranges from the eye to S as exaggerated, metres, infinity for the sky, of the view's drawn part, row by row
   // from the top. Columns where the picture's own columns are vertical planes (round pictures of a level eye),
@@ -27,12 +30,16 @@ class RangeCaster {
   std::size_t bytes_resident() const { return surface_.bytes_resident() + store_.bytes_resident(); }
 
  private:
+  struct Desk;
+
   void cast_upright(const core::View& view, double exaggeration, double ground_m, core::ThreadPool& pool,
                     std::span<float> range_m);
   void cast_each(const core::View& view, double exaggeration, core::ThreadPool& pool, std::span<float> range_m);
 
   paging::Surface surface_;
   LatticeStore store_;
+  std::mutex desks_mutex_;
+  std::vector<std::unique_ptr<Desk>> desks_;
 };
 
 }  // namespace vpe::voxel
