@@ -5,9 +5,11 @@
 #include <glm/geometric.hpp>
 #include <array>
 #include <exception>
+#include <functional>
 #include <limits>
 
 #include "vpe/voxel/column_walk.h"
+#include "vpe/voxel/fan.h"
 
 namespace vpe::voxel {
 
@@ -29,6 +31,9 @@ bool upright(const core::View& view, const glm::dvec3& up) {
 // Neighbouring groups that one thread casts in turn.
 constexpr int kTaskGroups = 6;
 constexpr int kBlockRows = 32;
+
+// Between the lines of a perspective picture's fans.
+constexpr double kFanSpacing_px = 1.0;
 
 // Larger pictures are written past the caches.
 constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
@@ -133,59 +138,151 @@ RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::
     : surface_(planet, vpe::voxel::part(budget_bytes, kSurfaceShare)),
       store_(planet, vpe::voxel::part(budget_bytes, 1.0 - kSurfaceShare)) {}
 
+// Columns side by side that share their rows.
+struct RangeCaster::Sheet {
+  Rows rows;
+  int columns = 0;
+  float* out = nullptr;        // of row 0, column 0
+  std::ptrdiff_t stride = 0;  // floats from a row to the next
+  bool stream = false;
+  // Sets a column's azimuth, its rows, and its part of a fan.
+  std::function<void(int column, ColumnGroup& group, int lane, glm::dvec3& azimuth)> set_column;
+};
+
 void RangeCaster::cast(const core::View& view, double exaggeration, core::ThreadPool& pool,
                        std::span<float> range_m) {
   const double distance = glm::length(view.eye.eye_m);
   if (distance > 0) {
     const glm::dvec3 up = view.eye.eye_m / distance;
-    const double ground = surface_.at(up, exaggeration).radius_m;
-    if (upright(view, up) && distance > ground) return cast_upright(view, exaggeration, ground, pool, range_m);
+    const ColumnEye eye{up, distance, surface_.planet_radius_m(), surface_.at(up, exaggeration).radius_m};
+    if (eye.distance_m > eye.ground_m) {
+      if (upright(view, up)) return cast_upright(view, eye, exaggeration, pool, range_m);
+      if (view.projection == core::Projection::kPerspective)
+        return cast_fans(view, eye, exaggeration, pool, range_m);
+    }
   }
   cast_each(view, exaggeration, pool, range_m);
 }
 
-void RangeCaster::cast_upright(const core::View& view, double exaggeration, double ground_m,
-                               core::ThreadPool& pool, std::span<float> range_m) {
-  const core::SubRectangle part = core::drawn_part(view);
-  const PictureRows picture = picture_rows(view, part);
-  const double distance = glm::length(view.eye.eye_m);
-  const ColumnEye eye{view.eye.eye_m / distance, distance, surface_.planet_radius_m(), ground_m};
+void RangeCaster::cast_sheets(std::span<const Sheet> sheets, const ColumnEye& eye, double exaggeration,
+                              core::ThreadPool& pool) {
   const ColumnWalk walk(surface_.planet(), eye, exaggeration);
   const int lanes = column_lanes();
   const int task_columns = lanes * kTaskGroups;
-  const auto tasks = static_cast<std::size_t>((part.width + task_columns - 1) / task_columns);
-  const bool stream = range_m.size_bytes() > kCachedBytes;
-  const double level_y = 0.5 * view.height + view.principal_offset_px.y;
-  pool.run(tasks, [&](std::size_t task) {
-    const Desk::Use desk(*this, part.height, exaggeration);
-    const int begin = static_cast<int>(task) * task_columns;
-    const int columns = std::min(task_columns, part.width - begin);
+  struct Task {
+    const Sheet* sheet;
+    int begin;
+  };
+  std::vector<Task> tasks;
+  int most_rows = 0;
+  for (const Sheet& sheet : sheets) {
+    most_rows = std::max(most_rows, sheet.rows.count);
+    for (int begin = 0; begin < sheet.columns; begin += task_columns) tasks.push_back({&sheet, begin});
+  }
+  pool.run(tasks.size(), [&](std::size_t t) {
+    const Desk::Use desk(*this, most_rows, exaggeration);
+    const Sheet& sheet = *tasks[t].sheet;
+    const int begin = tasks[t].begin;
+    const int columns = std::min(task_columns, sheet.columns - begin);
     int groups = 0;
+    float lowest = static_cast<float>(sheet.rows.count);
+    float highest = 0;
     for (int first = 0; first < columns; first += lanes, ++groups) {
       ColumnGroup& group = desk->groups[static_cast<std::size_t>(groups)];
       group.columns = std::min(lanes, columns - first);
       std::array<glm::dvec3, kMaxLanes> azimuth{};
       for (int lane = 0; lane < kMaxLanes; ++lane) {
         group.row[lane] = 0;
-        group.row_end[lane] = lane < group.columns ? static_cast<float>(part.height) : 0;
+        group.row_end[lane] = 0;
+        group.run_start[lane] = 1;
+        group.run_gain[lane] = 0;
+        group.run_slope[lane] = 0;
         if (lane >= group.columns) continue;
-        const glm::dvec3 ray = core::pixel_ray(view, part.x + begin + first + lane + 0.5, level_y);
-        azimuth[static_cast<std::size_t>(lane)] = glm::normalize(ray - glm::dot(ray, eye.up) * eye.up);
+        sheet.set_column(begin + first + lane, group, lane, azimuth[static_cast<std::size_t>(lane)]);
+        lowest = std::min(lowest, group.row[lane]);
+        highest = std::max(highest, group.row_end[lane]);
       }
-      walk.cast(azimuth.data(), picture.rows, desk->shelf, group);
+      walk.cast(azimuth.data(), sheet.rows, desk->shelf, group);
     }
-    for (int row = 0; row < part.height; row += kBlockRows) {
-      const int rows = std::min(kBlockRows, part.height - row);
+    const int end = static_cast<int>(highest);
+    for (int row = static_cast<int>(lowest); row < end; row += kBlockRows) {
+      const int rows = std::min(kBlockRows, end - row);
       for (int g = 0; g < groups; ++g)
-        expand_rows(picture.rows, desk->groups[static_cast<std::size_t>(g)], row, row + rows,
+        expand_rows(sheet.rows, desk->groups[static_cast<std::size_t>(g)], row, row + rows,
                     desk->block[0].lane + g * lanes, task_columns);
-      float* const out = range_m.data() +
-                         static_cast<std::size_t>(part.height - 1 - row) * static_cast<std::size_t>(part.width) + begin;
-      copy_rows(desk->block[0].lane, task_columns, out, -static_cast<std::ptrdiff_t>(part.width), columns, rows,
-                stream);
+      copy_rows(desk->block[0].lane, task_columns, sheet.out + row * sheet.stride + begin, sheet.stride, columns,
+                rows, sheet.stream);
     }
   });
   desks_.clear();
+}
+
+void RangeCaster::cast_upright(const core::View& view, const ColumnEye& eye, double exaggeration,
+                               core::ThreadPool& pool, std::span<float> range_m) {
+  const core::SubRectangle part = core::drawn_part(view);
+  const PictureRows picture = picture_rows(view, part);
+  const double level_y = 0.5 * view.height + view.principal_offset_px.y;
+  Sheet sheet;
+  sheet.rows = picture.rows;
+  sheet.columns = part.width;
+  sheet.stride = -static_cast<std::ptrdiff_t>(part.width);
+  sheet.out = range_m.data() - sheet.stride * (part.height - 1);
+  sheet.stream = range_m.size_bytes() > kCachedBytes;
+  sheet.set_column = [&](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+    const glm::dvec3 ray = core::pixel_ray(view, part.x + column + 0.5, level_y);
+    azimuth = glm::normalize(ray - glm::dot(ray, eye.up) * eye.up);
+    group.row_end[lane] = static_cast<float>(part.height);
+  };
+  cast_sheets({&sheet, 1}, eye, exaggeration, pool);
+}
+
+void RangeCaster::cast_fans(const core::View& view, const ColumnEye& eye, double exaggeration,
+                            core::ThreadPool& pool, std::span<float> range_m) {
+  const FanPlan plan(view, eye.up, kFanSpacing_px);
+  std::vector<Sheet> sheets;
+  fans_.resize(std::max(fans_.size(), plan.fans().size()));
+  for (std::size_t f = 0; f < plan.fans().size(); ++f) {
+    const Fan& fan = plan.fans()[f];
+    fans_[f].resize(static_cast<std::size_t>(fan.steps) * static_cast<std::size_t>(fan.lines));
+    Sheet& sheet = sheets.emplace_back();
+    sheet.rows.kind = RowKind::kFan;
+    sheet.rows.count = fan.steps;
+    sheet.columns = fan.lines;
+    // Stored by step.
+    sheet.stride = fan.rising ? fan.lines : -static_cast<std::ptrdiff_t>(fan.lines);
+    sheet.out = fans_[f].data() + (fan.rising ? 0 : std::ptrdiff_t{fan.lines} * (fan.steps - 1));
+    sheet.set_column = [&plan, &fan](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+      const FanLine line = plan.line(fan, column);
+      azimuth = line.azimuth;
+      group.fan_a0[lane] = line.a0;
+      group.fan_a1[lane] = line.a1;
+      group.fan_b0[lane] = line.b0;
+      group.fan_b1[lane] = line.b1;
+      group.row[lane] = static_cast<float>(line.row_begin);
+      group.row_end[lane] = static_cast<float>(line.row_end);
+    };
+  }
+  cast_sheets(sheets, eye, exaggeration, pool);
+
+  const core::SubRectangle part = core::drawn_part(view);
+  pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
+    float* const out = range_m.data() + row * static_cast<std::size_t>(part.width);
+    const double y = part.y + static_cast<double>(row) + 0.5;
+    for (int k = 0; k < part.width; ++k) {
+      const double x = part.x + k + 0.5;
+      const FanPlan::Side side = plan.side_of(x, y);
+      const int f = std::max(0, plan.fan_of(side));
+      const Fan& fan = plan.fans()[static_cast<std::size_t>(f)];
+      const double t = fan.upright ? y : x;
+      const double s = fan.upright ? x : y;
+      const int step = std::clamp(static_cast<int>(t - fan.first_step), 0, fan.steps - 1);
+      const Fan::Map& map = fan.maps[static_cast<std::size_t>(step)];
+      const double line = (map.stretch * s + map.shift - fan.first_line) / fan.spacing;
+      const int nearest = std::clamp(static_cast<int>(line + 0.5), 0, fan.lines - 1);
+      out[k] = fans_[static_cast<std::size_t>(f)][static_cast<std::size_t>(step) * static_cast<std::size_t>(fan.lines) +
+                                                  static_cast<std::size_t>(nearest)];
+    }
+  });
 }
 
 void RangeCaster::cast_each(const core::View& view, double exaggeration, core::ThreadPool& pool,

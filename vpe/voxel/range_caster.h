@@ -10,6 +10,7 @@
 #include "paging/surface.h"
 #include "vpe/core/parallel.h"
 #include "vpe/core/view.h"
+#include "vpe/voxel/columns.h"
 #include "vpe/voxel/lattice_store.h"
 
 namespace vpe::voxel {
@@ -31,15 +32,21 @@ class RangeCaster {
 
  private:
   struct Desk;
+  struct Sheet;
 
-  void cast_upright(const core::View& view, double exaggeration, double ground_m, core::ThreadPool& pool,
+  void cast_sheets(std::span<const Sheet> sheets, const ColumnEye& eye, double exaggeration,
+                   core::ThreadPool& pool);
+  void cast_upright(const core::View& view, const ColumnEye& eye, double exaggeration, core::ThreadPool& pool,
                     std::span<float> range_m);
+  void cast_fans(const core::View& view, const ColumnEye& eye, double exaggeration, core::ThreadPool& pool,
+                 std::span<float> range_m);
   void cast_each(const core::View& view, double exaggeration, core::ThreadPool& pool, std::span<float> range_m);
 
   paging::Surface surface_;
   LatticeStore store_;
   std::mutex desks_mutex_;
   std::vector<std::unique_ptr<Desk>> desks_;
+  std::vector<std::vector<float>> fans_;  // ranges of the last picture's fans
 };
 
 }  // namespace vpe::voxel
