@@ -8,10 +8,10 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vpe/voxel/column_kernel.cpp"
-#include <hwy/foreach_target.h>  // must come before highway.h
-#include <hwy/highway.h>
 #include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel::HWY_NAMESPACE {
@@ -218,7 +218,12 @@ class Walk {
 
   Walk(const LatticeLines<T>& lines, Family family, int intervals, const Paths& paths, int kind, int lane0,
        const ColumnEye& eye, const Rows& rows, ColumnGroup& group)
-      : lines_(lines), family_(family), n_(intervals), lane0_(lane0), group_(group), model_(rows, group, lane0) {
+      : lines_(lines),
+        family_(family),
+        n_(intervals),
+        lane0_(lane0),
+        group_(group),
+        model_(rows, group, lane0) {
     const D d;
     position_ = load(paths.position);
     turn_ = load(paths.turn);
@@ -251,8 +256,8 @@ class Walk {
     const V from = load(paths.from);
     const V to = load(paths.to);
     const V near = hn::Set(d, T(1e-9));
-    started_ = hn::And(active_, hn::Or(hn::Lt(hn::Abs(hn::Sub(from, at)), near),
-                                       hn::Lt(hn::Abs(hn::Sub(to, at)), near)));
+    started_ = hn::And(
+        active_, hn::Or(hn::Lt(hn::Abs(hn::Sub(from, at)), near), hn::Lt(hn::Abs(hn::Sub(to, at)), near)));
     seen_x_ = at;
     seen_h_ = hn::Set(d, height);
   }
@@ -302,7 +307,8 @@ class Walk {
   template <typename S>
   V load(const S* from) const {
     alignas(64) T values[kMaxLanes];
-    for (std::size_t k = 0; k < hn::Lanes(D()); ++k) values[k] = static_cast<T>(from[lane0_ + static_cast<int>(k)]);
+    for (std::size_t k = 0; k < hn::Lanes(D()); ++k)
+      values[k] = static_cast<T>(from[lane0_ + static_cast<int>(k)]);
     return hn::Load(D(), values);
   }
 
@@ -337,7 +343,8 @@ class Walk {
     at_high_ = extent(position_at(high));
     const T last = static_cast<T>(n_);
     const int c0 = static_cast<int>(std::clamp(std::min(at_low_.low, at_high_.low), T(0), last)) / kBlockLines;
-    const int c1 = static_cast<int>(std::clamp(std::max(at_low_.high, at_high_.high), T(0), last)) / kBlockLines;
+    const int c1 =
+        static_cast<int>(std::clamp(std::max(at_low_.high, at_high_.high), T(0), last)) / kBlockLines;
     const T* maxima = lines_.maxima(floor_block(low));
     T highest = maxima[c0];
     for (int c = c0 + 1; c <= c1; ++c) highest = std::max(highest, maxima[c]);
@@ -347,7 +354,9 @@ class Walk {
     return hn::AllFalse(d, hn::And(alive_, hn::Ge(top, hn::Zero(d))));
   }
 
-  T first_position(int k) const { return family_ == Family::kDiagonals ? static_cast<T>(std::max(0, k)) : T(0); }
+  T first_position(int k) const {
+    return family_ == Family::kDiagonals ? static_cast<T>(std::max(0, k)) : T(0);
+  }
   T last_position(int k) const {
     return static_cast<T>(family_ == Family::kDiagonals ? n_ + std::min(0, k) : n_);
   }
@@ -390,8 +399,7 @@ class Walk {
     if constexpr (sizeof(T) == 4) {
       const __m512 a = _mm512_loadu_ps(at);
       const __m512 b = _mm512_loadu_ps(at + 16);
-      const __m512i index =
-          _mm512_sub_epi32(_mm512_cvttps_epi32(line.whole.raw), _mm512_set1_epi32(base));
+      const __m512i index = _mm512_sub_epi32(_mm512_cvttps_epi32(line.whole.raw), _mm512_set1_epi32(base));
       line.low = V{_mm512_permutex2var_ps(a, index, b)};
       line.high = V{_mm512_permutex2var_ps(a, _mm512_add_epi32(index, _mm512_set1_epi32(1)), b)};
       return line;
@@ -425,9 +433,7 @@ class Walk {
     return c;
   }
 
-  static V height_on(const Line& line) {
-    return hn::MulAdd(line.part, hn::Sub(line.high, line.low), line.low);
-  }
+  static V height_on(const Line& line) { return hn::MulAdd(line.part, hn::Sub(line.high, line.low), line.low); }
 
   M on_line(int k, const Line& line) const {
     const D d;
@@ -435,9 +441,7 @@ class Walk {
                    hn::Lt(line.whole, hn::Set(d, last_position(k))));
   }
 
-  M in_front(V x) const {
-    return hn::Gt(hn::MulAdd(sigma1_, x, sigma0_), hn::Zero(D()));
-  }
+  M in_front(V x) const { return hn::Gt(hn::MulAdd(sigma1_, x, sigma0_), hn::Zero(D())); }
 
   // Whether all lanes that are alive are inside at both lines, have begun and are near each other.
   bool settled(int low, int high) const {
@@ -682,8 +686,7 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
               (plane.w0 + plane.wx * foot.x + plane.wy * foot.y - foot.depth) * eye.radius_m * eye.radius_m;
           for (int lane0 = 0; lane0 < static_cast<int>(hn::Lanes(FloatTag()));
                lane0 += static_cast<int>(hn::Lanes(DoubleTag()))) {
-            Walk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, eye,
-                                        rows, group);
+            Walk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, eye, rows, group);
             if (!walk.any()) continue;
             walk.start_at_foot(at, height, paths);
             walk.run(first, until);
@@ -835,8 +838,7 @@ void walk_lattice(const LatticeFrame& frame, LatticeSource& source, const Column
 void update_least_slope(const Rows& rows, ColumnGroup& group) {
   HWY_DYNAMIC_DISPATCH(UpdateLeastSlope)(rows, group);
 }
-void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out,
-                 std::ptrdiff_t stride) {
+void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride) {
   HWY_DYNAMIC_DISPATCH(ExpandRows)(rows, group, first, last, out, stride);
 }
 void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,

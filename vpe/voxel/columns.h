@@ -1,10 +1,10 @@
 // Columns: half-planes through the planet's axis of the eye, cast many at once.
 //
-// With the eye E = |E| U, a column is the half-plane of U and a unit azimuth vector A (A . U = 0). For a point p
-// of any length sigma = A . p, C = U . p and z = C - |E| w |p| (w |p|: over its inverse radius) make every ray of
-// elevation e in it the straight line z = tan(e) sigma (docs/rays.md). Going outward, the steepest z / sigma so
-// far is the floating horizon: the rows below it are resolved, lowest first, each by the first edge of S that
-// reaches it.
+// With the eye E = |E| U, a column is the half-plane of U and a unit azimuth vector A (A . U = 0). For a point
+// p of any length sigma = A . p, C = U . p and z = C - |E| w |p| (w |p|: over its inverse radius) make every
+// ray of elevation e in it the straight line z = tan(e) sigma (docs/rays.md). Going outward, the steepest z /
+// sigma so far is the floating horizon: the rows below it are resolved, lowest first, each by the first edge of
+// S that reaches it.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct Rows {
   const float* slope = nullptr;  // count + 1 entries, the last infinite
   const double* slope_exact = nullptr;
   const float* length = nullptr;  // sqrt(1 + slope^2); not for fans
-  double first_elevation = 0;  // of row 0, radians
+  double first_elevation = 0;     // of row 0, radians
   double elevation_step = 0;
 };
 
@@ -75,9 +75,9 @@ class LatticeSource {
   virtual const LatticeLines<double>& exact_lines(Family family) = 0;
 };
 
-// Walks all columns through one lattice and resolves rows. The group must have gone through everything before it,
-// as seen from the eye. up: of the eye, in the face's axes. Lines within kExactLines of the eye's foot are read in
-// double. Every crossing with an edge counts, so that facets are exact but for rounding:
+// Walks all columns through one lattice and resolves rows. The group must have gone through everything before
+// it, as seen from the eye. up: of the eye, in the face's axes. Lines within kExactLines of the eye's foot are
+// read in double. Every crossing with an edge counts, so that facets are exact but for rounding:
 // kColumnSlopeError of the slope. Results of a column do not depend on the others of its group.
 void walk_lattice(const LatticeFrame& frame, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
                   const Rows& rows, ColumnGroup& group);
@@ -87,12 +87,12 @@ inline constexpr int kExactLines = 24;
 void update_least_slope(const Rows& rows, ColumnGroup& group);
 
 // Writes ranges (float, from the eye; infinity where no ground was met) of rows [first, last) for all columns:
-// out[(row - first) * stride + lane], and clears `start` for them. Rows are taken from 0 upward, in as many calls
-// as one likes. last <= rows.count.
+// out[(row - first) * stride + lane], and clears `start` for them. Rows are taken from 0 upward, in as many
+// calls as one likes. last <= rows.count.
 void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride);
 
-// Copies rows of floats; strides count floats and may be negative. stream: past the caches, for pictures that would
-// not stay in them.
+// Copies rows of floats; strides count floats and may be negative. stream: past the caches, for pictures that
+// would not stay in them.
 void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
                int rows, bool stream);
 

@@ -46,6 +46,25 @@ FanPlan::Side FanPlan::side_of(double x, double y) const {
   return {upright, upright ? qy >= 0 : qx >= 0};
 }
 
+FanPlan::Span FanPlan::upright_span(int row) const {
+  const double y = part_.y + row + 0.5;
+  const auto is_upright = [&](int k) { return side_of(part_.x + k + 0.5, y).upright; };
+  if (vw_ == 0.0) return is_upright(0) ? Span{0, part_.width} : Span{0, 0};
+  const double half = std::abs(y * vw_ - vy_);
+  const auto pixel = [&](double x) {
+    return static_cast<int>(std::clamp(std::floor(x - part_.x), 0.0, static_cast<double>(part_.width)));
+  };
+  Span span{pixel((vx_ - half) / vw_), pixel((vx_ + half) / vw_)};
+  // Exactly those that side_of() says.
+  while (span.begin > 0 && is_upright(span.begin - 1)) --span.begin;
+  while (span.begin < part_.width && !is_upright(span.begin) && part_.x + span.begin + 0.5 < vx_ / vw_)
+    ++span.begin;
+  span.end = std::max(span.end, span.begin);
+  while (span.end < part_.width && is_upright(span.end)) ++span.end;
+  while (span.end > span.begin && !is_upright(span.end - 1)) --span.end;
+  return span;
+}
+
 void FanPlan::add(bool upright, bool forward) {
   const int t0 = upright ? part_.y : part_.x;
   const int t_count = upright ? part_.height : part_.width;
@@ -134,8 +153,8 @@ FanLine FanPlan::line(const Fan& fan, int index) const {
   const double t_first = fan.first_step + 0.5;
   const double t_last = t_first + fan.steps - 1;
   const glm::dvec3 begin = ray(fan.rising ? t_first : t_last);
-  const glm::dvec3 step = (fan.upright ? (lean * axes.right - axes.up) : (axes.right - lean * axes.up)) *
-                          (fan.rising ? 1.0 : -1.0);
+  const glm::dvec3 step =
+      (fan.upright ? (lean * axes.right - axes.up) : (axes.right - lean * axes.up)) * (fan.rising ? 1.0 : -1.0);
   out.a0 = glm::dot(begin, up_);
   out.a1 = glm::dot(step, up_);
   out.b0 = glm::dot(begin, out.azimuth);

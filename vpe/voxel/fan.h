@@ -1,10 +1,10 @@
 // Fans: how a perspective picture of any pitch and roll is cut into columns.
 //
-// All planes through the eye and the planet's centre appear in a picture as lines through one point, the vanishing
-// point V of the vertical. Diagonals through V part the picture into up to four sectors. In a sector, lines are a
-// fixed distance apart on the picture's row (or column) farthest from V, and a line's sample r lies where it
-// crosses the r-th row of pixel centres; along it slopes are (a0 + a1 r) / (b0 + b1 r). So a pixel's nearest
-// sample is in its own row, half the spacing away at most, and finding it is one affine map a row.
+// All planes through the eye and the planet's centre appear in a picture as lines through one point, the
+// vanishing point V of the vertical. Diagonals through V part the picture into up to four sectors. In a sector,
+// lines are a fixed distance apart on the picture's row (or column) farthest from V, and a line's sample r lies
+// where it crosses the r-th row of pixel centres; along it slopes are (a0 + a1 r) / (b0 + b1 r). So a pixel's
+// nearest sample is in its own row, half the spacing away at most, and finding it is one affine map a row.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -18,21 +18,21 @@ namespace vpe::voxel {
 // One sector. Steps run along y where `upright`, else along x; lines cross them at `s`, the other coordinate.
 struct Fan {
   bool upright = true;
-  bool forward = true;     // its steps grow away from V
-  int first_step = 0;      // pixels of the full picture
+  bool forward = true;  // its steps grow away from V
+  int first_step = 0;   // pixels of the full picture
   int steps = 0;
-  double reference = 0;    // step coordinate that lines are even at
-  double first_line = 0;   // s of line 0 there
-  double spacing = 1;      // pixels
+  double reference = 0;   // step coordinate that lines are even at
+  double first_line = 0;  // s of line 0 there
+  double spacing = 1;     // pixels
   int lines = 0;
-  bool rising = true;      // slopes rise with the step
+  bool rising = true;  // slopes rise with the step
 
   // s at step t of what crosses the reference at s_ref is (s_ref - shift) / stretch; s_ref = stretch s + shift.
   struct Map {
     double stretch;
     double shift;
   };
-  std::vector<Map> maps;   // by step
+  std::vector<Map> maps;  // by step
 };
 
 // What a line's columns need.
@@ -43,7 +43,7 @@ struct FanLine {
   double b0 = 0;
   double b1 = 0;
   int row_begin = 0;
-  int row_end = 0;     // past the last that is in the drawn part
+  int row_end = 0;  // past the last that is in the drawn part
 };
 
 class FanPlan {
@@ -54,14 +54,24 @@ class FanPlan {
   const std::vector<Fan>& fans() const { return fans_; }
   FanLine line(const Fan& fan, int index) const;
 
-  // Which fan a pixel centre belongs to: index into fans(), -1 at V itself when nothing covers it.
-  // upright sector or not, before or behind V.
+  // The sector of a picture position.
   struct Side {
     bool upright;
     bool forward;
   };
   Side side_of(double x, double y) const;
-  int fan_of(Side side) const { return index_[side.upright ? 1 : 0][side.forward ? 1 : 0]; }
+  // nullptr where the drawn part has none of it.
+  const Fan* fan_of(Side side) const {
+    const int index = index_[side.upright ? 1 : 0][side.forward ? 1 : 0];
+    return index < 0 ? nullptr : &fans_[static_cast<std::size_t>(index)];
+  }
+
+  // Pixels [begin, end) of the drawn part's row, counted from its left, that are in an upright sector.
+  struct Span {
+    int begin;
+    int end;
+  };
+  Span upright_span(int row) const;
 
  private:
   void add(bool upright, bool forward);

@@ -72,7 +72,8 @@ void fill_maxima(const LatticeLines<T>& lines, const Shape& shape, int intervals
       for (int p = span.begin; p < span.end; ++p) {
         T& own = row[p / kBlockLines];
         own = std::max(own, line[p]);
-        if (p % kBlockLines == 0 && p > 0) row[p / kBlockLines - 1] = std::max(row[p / kBlockLines - 1], line[p]);
+        if (p % kBlockLines == 0 && p > 0)
+          row[p / kBlockLines - 1] = std::max(row[p / kBlockLines - 1], line[p]);
       }
     }
   }

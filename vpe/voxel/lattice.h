@@ -70,7 +70,9 @@ class TileLattices {
   TileLattices& operator=(const TileLattices&) = delete;
 
   int per_side() const { return per_side_; }
-  const LatticeLines<T>& lines(int i, int j) const { return lines_[static_cast<std::size_t>(j * per_side_ + i)]; }
+  const LatticeLines<T>& lines(int i, int j) const {
+    return lines_[static_cast<std::size_t>(j * per_side_ + i)];
+  }
   std::size_t bytes() const;
 
  private:

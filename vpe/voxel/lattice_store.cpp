@@ -33,30 +33,47 @@ std::shared_ptr<const TileLattices<float>> LatticeStore::lattices(lod::TileTree:
   return get(lattices_, {tile, family, exaggeration});
 }
 
-std::shared_ptr<const TileLattices<double>> LatticeStore::exact_lattices(lod::TileTree::Index tile, Family family,
+std::shared_ptr<const TileLattices<double>> LatticeStore::exact_lattices(lod::TileTree::Index tile,
+                                                                         Family family,
                                                                          double exaggeration) const {
   return get(exact_, {tile, family, exaggeration});
 }
 
 std::size_t LatticeStore::bytes_resident() const { return lattices_.bytes() + exact_.bytes(); }
 
-const TileLattices<float>& LatticeShelf::lattices(lod::TileTree::Index tile, Family family) {
-  Slot& slot = slots_[(std::size_t{tile} * kFamilies + static_cast<std::size_t>(family)) % kSlots];
-  if (!slot.held || slot.tile != tile || slot.family != family) {
-    slot.held = store_.lattices(tile, family, exaggeration_);
-    slot.tile = tile;
-    slot.family = family;
+std::shared_ptr<const TileLattices<float>> LatticeStore::any_lattices(lod::TileTree::Index tile,
+                                                                      double exaggeration,
+                                                                      Family& family) const {
+  for (const Family f : {Family::kColumns, Family::kRows, Family::kDiagonals}) {
+    family = f;
+    if (auto found = lattices_.find({tile, f, exaggeration})) return found;
   }
+  family = Family::kColumns;
+  return lattices(tile, family, exaggeration);
+}
+
+const TileLattices<float>& LatticeShelf::lattices(lod::TileTree::Index tile, Family family) {
+  Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
+  if (!slot.is(tile, family)) slot = {tile, family, store_.lattices(tile, family, exaggeration_)};
   return *slot.held;
 }
 
 const TileLattices<double>& LatticeShelf::exact_lattices(lod::TileTree::Index tile, Family family) {
-  if (!exact_ || exact_tile_ != tile || exact_family_ != family) {
-    exact_ = store_.exact_lattices(tile, family, exaggeration_);
-    exact_tile_ = tile;
-    exact_family_ = family;
+  Slot<double>& slot = exact_[number(tile, family) % exact_.size()];
+  if (!slot.is(tile, family)) slot = {tile, family, store_.exact_lattices(tile, family, exaggeration_)};
+  return *slot.held;
+}
+
+const TileLattices<float>& LatticeShelf::any_lattices(lod::TileTree::Index tile, Family& family) {
+  for (const Family f : {Family::kColumns, Family::kRows, Family::kDiagonals}) {
+    family = f;
+    const Slot<float>& slot = slots_[number(tile, f) % slots_.size()];
+    if (slot.is(tile, f)) return *slot.held;
   }
-  return *exact_;
+  auto found = store_.any_lattices(tile, exaggeration_, family);
+  Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
+  slot = {tile, family, std::move(found)};
+  return *slot.held;
 }
 
 }  // namespace vpe::voxel

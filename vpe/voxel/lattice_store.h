@@ -26,6 +26,10 @@ class LatticeStore {
   std::shared_ptr<const TileLattices<double>> exact_lattices(lod::TileTree::Index tile, Family family,
                                                              double exaggeration) const;
 
+  // In whatever family is there; the same posts in all of them.
+  std::shared_ptr<const TileLattices<float>> any_lattices(lod::TileTree::Index tile, double exaggeration,
+                                                          Family& family) const;
+
   std::size_t bytes_resident() const;
 
  private:
@@ -51,7 +55,7 @@ class LatticeStore {
   mutable Cache<double> exact_;
 };
 
-// What one thread used last: finding it again takes no lock. Holds at most kSlots tiles.
+// What one thread used last: finding it again takes no lock.
 class LatticeShelf {
  public:
   LatticeShelf(const LatticeStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
@@ -59,20 +63,24 @@ class LatticeShelf {
   // Valid until the next call.
   const TileLattices<float>& lattices(lod::TileTree::Index tile, Family family);
   const TileLattices<double>& exact_lattices(lod::TileTree::Index tile, Family family);
+  const TileLattices<float>& any_lattices(lod::TileTree::Index tile, Family& family);
 
  private:
-  static constexpr std::size_t kSlots = 256;
+  template <typename T>
   struct Slot {
     lod::TileTree::Index tile = ~lod::TileTree::Index{0};
     Family family = Family::kColumns;
-    std::shared_ptr<const TileLattices<float>> held;
+    std::shared_ptr<const TileLattices<T>> held;
+    bool is(lod::TileTree::Index t, Family f) const { return tile == t && family == f && held; }
   };
+  static std::size_t number(lod::TileTree::Index tile, Family family) {
+    return std::size_t{tile} * kFamilies + static_cast<std::size_t>(family);
+  }
+
   const LatticeStore& store_;
   double exaggeration_;
-  std::array<Slot, kSlots> slots_;
-  std::shared_ptr<const TileLattices<double>> exact_;
-  lod::TileTree::Index exact_tile_ = ~lod::TileTree::Index{0};
-  Family exact_family_ = Family::kColumns;
+  std::array<Slot<float>, 256> slots_;
+  std::array<Slot<double>, 8> exact_;
 };
 
 }  // namespace vpe::voxel

@@ -1,14 +1,15 @@
 #include "vpe/voxel/range_caster.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <array>
+#include <cmath>
 #include <exception>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "vpe/voxel/column_walk.h"
+#include "vpe/voxel/facet_finder.h"
 #include "vpe/voxel/fan.h"
 
 namespace vpe::voxel {
@@ -51,7 +52,8 @@ PictureRows picture_rows(const core::View& view, const core::SubRectangle& part)
   p.rows.count = part.height;
   const auto finish = [&] {
     for (int r = 0; r < part.height; ++r) {
-      const double slope = p.exact.empty() ? (r - p.rows.centre) * p.rows.step : p.exact[static_cast<std::size_t>(r)];
+      const double slope =
+          p.exact.empty() ? (r - p.rows.centre) * p.rows.step : p.exact[static_cast<std::size_t>(r)];
       p.length.push_back(static_cast<float>(std::hypot(1.0, slope)));
     }
     p.rows.length = p.length.data();
@@ -100,6 +102,8 @@ struct RangeCaster::Desk {
 
   LatticeShelf shelf;
   std::vector<LaneFloats> buffers;  // zero between tasks
+  std::vector<float> hints;
+  std::vector<int> open;
   std::array<ColumnGroup, kTaskGroups> groups{};
   std::array<LaneFloats, static_cast<std::size_t>(kTaskGroups) * kBlockRows> block{};  // of expanded rows
 
@@ -142,7 +146,7 @@ RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::
 struct RangeCaster::Sheet {
   Rows rows;
   int columns = 0;
-  float* out = nullptr;        // of row 0, column 0
+  float* out = nullptr;       // of row 0, column 0
   std::ptrdiff_t stride = 0;  // floats from a row to the next
   bool stream = false;
   // Sets a column's azimuth, its rows, and its part of a fan.
@@ -210,8 +214,8 @@ void RangeCaster::cast_sheets(std::span<const Sheet> sheets, const ColumnEye& ey
       for (int g = 0; g < groups; ++g)
         expand_rows(sheet.rows, desk->groups[static_cast<std::size_t>(g)], row, row + rows,
                     desk->block[0].lane + g * lanes, task_columns);
-      copy_rows(desk->block[0].lane, task_columns, sheet.out + row * sheet.stride + begin, sheet.stride, columns,
-                rows, sheet.stream);
+      copy_rows(desk->block[0].lane, task_columns, sheet.out + row * sheet.stride + begin, sheet.stride,
+                columns, rows, sheet.stream);
     }
   });
   desks_.clear();
@@ -264,25 +268,89 @@ void RangeCaster::cast_fans(const core::View& view, const ColumnEye& eye, double
   }
   cast_sheets(sheets, eye, exaggeration, pool);
 
+  resample(view, plan, eye, exaggeration, pool, range_m);
+}
+
+// Samples on either side of each pixel of one row, in that row or column of samples.
+void RangeCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, float* a,
+                             float* b) const {
+  const double y = part.y + row + 0.5;
+  const FanPlan::Span span = plan.upright_span(row);
+  const auto none = [&](int k) {
+    a[k] = std::numeric_limits<float>::infinity();
+    b[k] = 0;
+  };
+  const auto samples = [&](const Fan& fan) {
+    return fans_[static_cast<std::size_t>(&fan - plan.fans().data())].data();
+  };
+  if (span.begin < span.end) {
+    if (const Fan* fan = plan.fan_of(plan.side_of(part.x + span.begin + 0.5, y))) {
+      const int step = std::clamp(part.y + row - fan->first_step, 0, fan->steps - 1);
+      const Fan::Map& map = fan->maps[static_cast<std::size_t>(step)];
+      const double first =
+          (map.stretch * (part.x + span.begin + 0.5) + map.shift - fan->first_line) / fan->spacing;
+      hints_from_row(samples(*fan) + std::ptrdiff_t{step} * fan->lines, fan->lines, first,
+                     map.stretch / fan->spacing, span.end - span.begin, a + span.begin, b + span.begin);
+    } else {
+      for (int k = span.begin; k < span.end; ++k) none(k);
+    }
+  }
+  const auto beside = [&](int begin, int end) {
+    if (begin >= end) return;
+    const Fan* fan = plan.fan_of(plan.side_of(part.x + begin + 0.5, y));
+    const float* from = fan != nullptr ? samples(*fan) : nullptr;
+    for (int k = begin; k < end; ++k) {
+      if (fan == nullptr) {
+        none(k);
+        continue;
+      }
+      const int step = std::clamp(part.x + k - fan->first_step, 0, fan->steps - 1);
+      const Fan::Map& map = fan->maps[static_cast<std::size_t>(step)];
+      const double line = (map.stretch * y + map.shift - fan->first_line) / fan->spacing;
+      const int before = std::clamp(static_cast<int>(line), 0, fan->lines - 2);
+      a[k] = from[std::ptrdiff_t{step} * fan->lines + before];
+      b[k] = from[std::ptrdiff_t{step} * fan->lines + before + 1];
+    }
+  };
+  beside(0, span.begin);
+  beside(span.end, part.width);
+}
+
+void RangeCaster::resample(const core::View& view, const FanPlan& plan, const ColumnEye& eye,
+                           double exaggeration, core::ThreadPool& pool, std::span<float> range_m) {
   const core::SubRectangle part = core::drawn_part(view);
-  pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
-    float* const out = range_m.data() + row * static_cast<std::size_t>(part.width);
-    const double y = part.y + static_cast<double>(row) + 0.5;
-    for (int k = 0; k < part.width; ++k) {
-      const double x = part.x + k + 0.5;
-      const FanPlan::Side side = plan.side_of(x, y);
-      const int f = std::max(0, plan.fan_of(side));
-      const Fan& fan = plan.fans()[static_cast<std::size_t>(f)];
-      const double t = fan.upright ? y : x;
-      const double s = fan.upright ? x : y;
-      const int step = std::clamp(static_cast<int>(t - fan.first_step), 0, fan.steps - 1);
-      const Fan::Map& map = fan.maps[static_cast<std::size_t>(step)];
-      const double line = (map.stretch * s + map.shift - fan.first_line) / fan.spacing;
-      const int nearest = std::clamp(static_cast<int>(line + 0.5), 0, fan.lines - 1);
-      out[k] = fans_[static_cast<std::size_t>(f)][static_cast<std::size_t>(step) * static_cast<std::size_t>(fan.lines) +
-                                                  static_cast<std::size_t>(nearest)];
+  const mars::Axes& axes = view.eye.axes;
+  const double focal = core::focal_px(view);
+  const double cx = 0.5 * view.width + view.principal_offset_px.x;
+  const double cy = 0.5 * view.height + view.principal_offset_px.y;
+  const int blocks = (part.height + kBlockRows - 1) / kBlockRows;
+  pool.run(static_cast<std::size_t>(blocks), [&](std::size_t block) {
+    const Desk::Use desk(*this, 0, exaggeration);
+    FacetFinder finder(surface_.planet().tree(), eye, desk->shelf);
+    const auto width = static_cast<std::size_t>(part.width);
+    desk->hints.resize(2 * width);
+    float* const a = desk->hints.data();
+    float* const b = a + width;
+    const int first = static_cast<int>(block) * kBlockRows;
+    for (int row = first; row < std::min(first + kBlockRows, part.height); ++row) {
+      find_hints(plan, part, row, a, b);
+      float* const out = range_m.data() + static_cast<std::size_t>(row) * width;
+      RayRow rays;
+      rays.eye_m = view.eye.eye_m;
+      rays.radius_m = eye.radius_m;
+      rays.first =
+          (part.x + 0.5 - cx) * axes.right + (cy - (part.y + row + 0.5)) * axes.up + focal * axes.forward;
+      rays.step = axes.right;
+      rays.count = part.width;
+      desk->open.clear();
+      refine_row(rays, a, b, finder, out, desk->open);
+      for (const int k : desk->open) {
+        const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
+        out[k] = static_cast<float>(surface_.cast(view.eye.eye_m, ray, exaggeration));
+      }
     }
   });
+  desks_.clear();
 }
 
 void RangeCaster::cast_each(const core::View& view, double exaggeration, core::ThreadPool& pool,
@@ -291,8 +359,8 @@ void RangeCaster::cast_each(const core::View& view, double exaggeration, core::T
   pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
     const auto width = static_cast<std::size_t>(part.width);
     for (std::size_t x = 0; x < width; ++x) {
-      const glm::dvec3 ray = core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5,
-                                             part.y + static_cast<double>(row) + 0.5);
+      const glm::dvec3 ray =
+          core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);
       range_m[row * width + x] = static_cast<float>(surface_.cast(view.eye.eye_m, ray, exaggeration));
     }
   });
