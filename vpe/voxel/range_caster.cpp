@@ -273,12 +273,13 @@ void RangeCaster::cast_fans(const core::View& view, const ColumnEye& eye, double
 
 // Samples on either side of each pixel of one row, in that row or column of samples.
 void RangeCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, float* a,
-                             float* b) const {
+                             float* b, float* share) const {
   const double y = part.y + row + 0.5;
   const FanPlan::Span span = plan.upright_span(row);
   const auto none = [&](int k) {
     a[k] = std::numeric_limits<float>::infinity();
     b[k] = 0;
+    share[k] = 0;
   };
   const auto samples = [&](const Fan& fan) {
     return fans_[static_cast<std::size_t>(&fan - plan.fans().data())].data();
@@ -290,7 +291,8 @@ void RangeCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part
       const double first =
           (map.stretch * (part.x + span.begin + 0.5) + map.shift - fan->first_line) / fan->spacing;
       hints_from_row(samples(*fan) + std::ptrdiff_t{step} * fan->lines, fan->lines, first,
-                     map.stretch / fan->spacing, span.end - span.begin, a + span.begin, b + span.begin);
+                     map.stretch / fan->spacing, span.end - span.begin, a + span.begin, b + span.begin,
+                     share + span.begin);
     } else {
       for (int k = span.begin; k < span.end; ++k) none(k);
     }
@@ -310,6 +312,7 @@ void RangeCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part
       const int before = std::clamp(static_cast<int>(line), 0, fan->lines - 2);
       a[k] = from[std::ptrdiff_t{step} * fan->lines + before];
       b[k] = from[std::ptrdiff_t{step} * fan->lines + before + 1];
+      share[k] = static_cast<float>(std::clamp(line - before, 0.0, 1.0));
     }
   };
   beside(0, span.begin);
@@ -328,12 +331,13 @@ void RangeCaster::resample(const core::View& view, const FanPlan& plan, const Co
     const Desk::Use desk(*this, 0, exaggeration);
     FacetFinder finder(surface_.planet().tree(), eye, desk->shelf);
     const auto width = static_cast<std::size_t>(part.width);
-    desk->hints.resize(2 * width);
+    desk->hints.resize(3 * width);
     float* const a = desk->hints.data();
     float* const b = a + width;
+    float* const share = b + width;
     const int first = static_cast<int>(block) * kBlockRows;
     for (int row = first; row < std::min(first + kBlockRows, part.height); ++row) {
-      find_hints(plan, part, row, a, b);
+      find_hints(plan, part, row, a, b, share);
       float* const out = range_m.data() + static_cast<std::size_t>(row) * width;
       RayRow rays;
       rays.eye_m = view.eye.eye_m;
@@ -343,7 +347,7 @@ void RangeCaster::resample(const core::View& view, const FanPlan& plan, const Co
       rays.step = axes.right;
       rays.count = part.width;
       desk->open.clear();
-      refine_row(rays, a, b, finder, out, desk->open);
+      refine_row(rays, a, b, share, finder, out, desk->open);
       for (const int k : desk->open) {
         const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
         out[k] = static_cast<float>(surface_.cast(view.eye.eye_m, ray, exaggeration));

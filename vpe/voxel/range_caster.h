@@ -42,7 +42,8 @@ class RangeCaster {
                     std::span<float> range_m);
   void cast_fans(const core::View& view, const ColumnEye& eye, double exaggeration, core::ThreadPool& pool,
                  std::span<float> range_m);
-  void find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, float* a, float* b) const;
+  void find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, float* a, float* b,
+                  float* share) const;
   void resample(const core::View& view, const FanPlan& plan, const ColumnEye& eye, double exaggeration,
                 core::ThreadPool& pool, std::span<float> range_m);
   void cast_each(const core::View& view, double exaggeration, core::ThreadPool& pool, std::span<float> range_m);

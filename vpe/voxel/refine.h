@@ -37,14 +37,15 @@ struct RayRow {
   int count = 0;
 };
 
-// range[k]: where ray k meets S between the hints a[k] and b[k], which are ranges on either side of the pixel;
-// as exact as the facets' posts, then rounded to float. Infinite where both hints are. Pixels whose hints do
-// not belong to one surface, and those that find no facet, are appended to `open` and left as the nearer hint.
-void refine_row(const RayRow& row, const float* a, const float* b, FacetSource& source, float* range,
-                std::vector<int>& open);
+// range[k]: where ray k meets S between the hints a[k] and b[k], ranges of samples on either side of the pixel, of
+// which it lies share[k] of the way from a to b. As exact as the facets' posts, then rounded to float. Infinite
+// where both hints are. Pixels whose hints do not belong to one surface, and those that find no facet, are
+// appended to `open` and left as the nearer hint.
+void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
+                float* range, std::vector<int>& open);
 
 // Hints from a row of samples: pixel k lies at first + k step, in samples; a and b are its neighbours there.
-void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
-                    float* b);
+void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a, float* b,
+                    float* share);
 
 }  // namespace vpe::voxel
