@@ -118,7 +118,8 @@ const std::vector<Key>& keys() {
       {"shadows", choice<&V::shadows>({{"off", 0}, {"on", 1}}), "", "ground casts shadows on ground"},
       {"gamma", Number{&V::gamma, 0.1, 10}, "", "coefficient of the display: greater is brighter"},
       {"haze.visibility", Number{&V::haze_visibility_m, 0, 1e9}, "m",
-       "distance at which haze leaves 2 % of the contrast, in air as at the planet's sphere (thinner above, thicker below); "
+       "distance at which haze leaves 2 % of the contrast, in air as at the planet's sphere (thinner above, "
+       "thicker below); "
        "0 = clear air"},
       {"markers.size", Number{&V::marker_px, 1, 64}, "px", "side of a dot of mode markers"},
       {"overlay.legend", choice<&V::legend>({{"off", 0}, {"on", 1}}), "", "palette with values and units"},
@@ -177,8 +178,18 @@ const std::vector<Key>& keys() {
        "leaves out what nearer ground hides, which changes no pixel; auto: in windows only while it saves more "
        "than "
        "it costs"},
+      {"rays.mode",
+       choice<&V::ray_mode>({word("exact", RayMode::kExact), word("multires", RayMode::kMultires),
+                             word("plain", RayMode::kPlain)}),
+       "",
+       "voxel backend: exact draws the exact surface; multires takes coarser cells far away; plain follows "
+       "every "
+       "ray in steps of 0.6 cells, slowly, for comparison"},
+      {"rays.cell", Number{&V::ray_cell_px, 0.125, 64}, "px",
+       "voxel backend, multires: largest width of a cell in the picture; more is faster"},
       {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
-       "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time"},
+       "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time; voxel "
+       "backend: rays a pixel"},
       {"edges", choice<&V::smooth_edges>({{"hard", 0}, {"smooth", 1}}), "",
        "stair steps at ridges and the skyline are smoothed when there is one sample a pixel"},
       {"background",

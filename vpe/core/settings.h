@@ -28,6 +28,13 @@ enum class Inspect {
   kLevels,   // tiles tinted by their level (vpe/core/inspect.h)
 };
 
+// How the ray backend looks for the ground.
+enum class RayMode {
+  kExact,     // the exact surface
+  kMultires,  // cells about as wide as a pixel, far away
+  kPlain,     // each ray by itself in fixed steps, as in the papers: what the others are measured against
+};
+
 enum class Occlusion { kAuto, kOff, kOn };
 
 struct SettingsValues : Appearance, Overlays {
@@ -45,6 +52,8 @@ struct SettingsValues : Appearance, Overlays {
   double lod_interest_weight = 1;
   double lod_frame_ms = 0;
   Occlusion occlusion = Occlusion::kAuto;
+  RayMode ray_mode = RayMode::kExact;
+  double ray_cell_px = 1;
   int samples = 1;
   bool smooth_edges = true;
   Inspect inspect = Inspect::kNone;

@@ -12,6 +12,10 @@ namespace vpe::voxel {
 
 namespace {
 
+// Answers of ends_at().
+constexpr std::uint8_t kNo = 1;
+constexpr std::uint8_t kYes = 2;
+
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // A cell of the quadtree in its face's chart.
@@ -37,17 +41,20 @@ double steepest(double radius_m, double distance_m, double near, double far) {
 
 }  // namespace
 
-ColumnWalk::ColumnWalk(const paging::PlanetFile& planet, const ColumnEye& eye, double exaggeration)
-    : tree_(planet.tree()), eye_(eye), exaggeration_(exaggeration), bounds_(planet.tree().size()) {
+ColumnWalk::ColumnWalk(const paging::PlanetFile& planet, const ColumnEye& eye, double exaggeration,
+                       const CellRule& rule)
+    : tree_(planet.tree()),
+      eye_(eye),
+      exaggeration_(exaggeration),
+      rule_(rule),
+      bounds_(planet.tree().size()),
+      ends_(planet.tree().size()) {
   for (std::atomic<float>& bound : bounds_)
     bound.store(std::numeric_limits<float>::quiet_NaN(), std::memory_order_relaxed);
 }
 
-float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
-  const float known = bounds_[tile].load(std::memory_order_relaxed);
-  if (!std::isnan(known)) return known;
-  const lod::TileInfo& info = tree_[tile];
-  const lod::TileKey& key = info.key;
+ColumnWalk::Angles ColumnWalk::angles(lod::TileTree::Index tile) const {
+  const lod::TileKey& key = tree_[tile].key;
   const auto line = [&](std::int32_t k) { return mars::face_line(k, key.level); };
   const double u[2] = {line(key.i), line(key.i + 1)};
   const double v[2] = {line(key.j), line(key.j + 1)};
@@ -60,12 +67,37 @@ float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
   constexpr double kSlack = 1e-9;
   const double opening = std::acos(std::clamp(cosine, -1.0, 1.0)) + kSlack;
   const double angle = std::atan2(glm::length(glm::cross(eye_.up, axis)), glm::dot(eye_.up, axis));
-  const double top = (eye_.radius_m + exaggeration_ * info.max_height_m) * (1 + 1e-12);
-  const double bound = steepest(top, eye_.distance_m, angle - opening, angle + opening);
+  return {std::max(0.0, angle - opening), angle + opening};
+}
+
+float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
+  const float known = bounds_[tile].load(std::memory_order_relaxed);
+  if (!std::isnan(known)) return known;
+  const Angles at = angles(tile);
+  const double top = (eye_.radius_m + exaggeration_ * tree_[tile].max_height_m) * (1 + 1e-12);
+  const double bound = steepest(top, eye_.distance_m, at.near, at.far);
   // Upward to float.
   const float rounded = std::nextafter(static_cast<float>(bound), std::numeric_limits<float>::infinity());
   bounds_[tile].store(rounded, std::memory_order_relaxed);
   return rounded;
+}
+
+bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
+  const lod::TileInfo& info = tree_[tile];
+  if (!info.has_children) return true;
+  if (!(rule_.cell_px > 0)) return false;
+  const std::uint8_t known = ends_[tile].load(std::memory_order_relaxed);
+  if (known != 0) return known == kYes;
+  // Nearest point of the shell that the tile's posts lie in.
+  const double low = eye_.radius_m + exaggeration_ * info.min_height_m;
+  const double high = eye_.radius_m + exaggeration_ * info.max_height_m;
+  const double along = eye_.distance_m * std::cos(angles(tile).near);
+  const double radius = std::clamp(along, low, high);
+  const double square = eye_.distance_m * eye_.distance_m + radius * radius - 2 * radius * along;
+  const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
+  const bool fine = spacing * rule_.focal_px <= rule_.cell_px * std::sqrt(std::max(0.0, square));
+  ends_[tile].store(fine ? kYes : kNo, std::memory_order_relaxed);
+  return fine;
 }
 
 // One group on one face after the other.
@@ -160,7 +192,7 @@ class GroupWalk : public LatticeSource {
   void visit(lod::TileTree::Index tile, const Cell& cell) {
     if (done() || hidden(tile) || outside(cell)) return;
     const lod::TileInfo& info = tree_[tile];
-    if (!info.has_children) {
+    if (walk_.ends_at(tile)) {
       tile_ = tile;
       const int per_side = lattices_per_side(info.key.level, tree_.shape().intervals());
       visit_parts(cell, 0, 0, per_side, per_side);

@@ -10,28 +10,47 @@
 
 namespace vpe::voxel {
 
+// Which tiles are fine enough: those whose posts are at most cell_px apart in the picture wherever they are.
+struct CellRule {
+  double cell_px = 0;   // 0: none but the finest, so S itself
+  double focal_px = 1;  // pixels per radian, at most
+};
+
 // Prepared for one eye and one exaggeration. Threads may share it.
 class ColumnWalk {
  public:
   // The eye stands above S: eye.distance_m > eye.ground_m.
-  ColumnWalk(const paging::PlanetFile& planet, const ColumnEye& eye, double exaggeration);
+  ColumnWalk(const paging::PlanetFile& planet, const ColumnEye& eye, double exaggeration, const CellRule& rule);
 
   // A group of columns from their azimuth vectors (unit, body-fixed, normal to eye.up), neighbours in order.
   // Rows, fans, and buffers of `group` are set before. Resolves all rows that see ground.
   void cast(const glm::dvec3* azimuth, const Rows& rows, LatticeShelf& shelf, ColumnGroup& group) const;
 
   const ColumnEye& eye() const { return eye_; }
+  const lod::TileTree& tree() const { return tree_; }
+
+  // Whether the tile's own posts are cast: it is fine enough, or the finest there.
+  bool ends_at(lod::TileTree::Index tile) const;
 
  private:
   friend class GroupWalk;
+  // Central angles that a tile lies within.
+  struct Angles {
+    double near;
+    double far;
+  };
+  Angles angles(lod::TileTree::Index tile) const;
+
   // No ray into the tile is steeper than this many times upward.
   float slope_bound(lod::TileTree::Index tile) const;
 
   const lod::TileTree& tree_;
   ColumnEye eye_;
   double exaggeration_;
-  // Made when first wanted; NaN before. Whoever makes one makes the same.
+  CellRule rule_;
+  // Made when first wanted; NaN and 0 before. Whoever makes one makes the same.
   mutable std::vector<std::atomic<float>> bounds_;
+  mutable std::vector<std::atomic<std::uint8_t>> ends_;
 };
 
 }  // namespace vpe::voxel

@@ -15,6 +15,7 @@ bool near(double x, int intervals) { return x > -kExactLines && x < intervals + 
 }  // namespace
 
 const Facets& FacetFinder::at(const glm::dvec3& place_m) {
+  const lod::TileTree& tree = walk_.tree();
   const mars::ChartPoint place = mars::chart_point(place_m);
   if (found_ && place.face == facets_.face) {
     const LatticeFrame& f = facets_.frame;
@@ -23,14 +24,14 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
     if (x >= 0 && x <= f.intervals && y >= 0 && y <= f.intervals) return facets_;
   }
   auto tile = static_cast<lod::TileTree::Index>(place.face);
-  while (tree_[tile].has_children) {
-    const lod::TileKey& key = tree_[tile].key;
+  while (!walk_.ends_at(tile)) {
+    const lod::TileKey& key = tree[tile].key;
     const bool east = place.u >= mars::face_line(2 * std::int64_t{key.i} + 1, key.level + 1);
     const bool north = place.v >= mars::face_line(2 * std::int64_t{key.j} + 1, key.level + 1);
-    tile = tree_.first_child(tile) + (east ? 1U : 0U) + (north ? 2U : 0U);
+    tile = tree.first_child(tile) + (east ? 1U : 0U) + (north ? 2U : 0U);
   }
-  const lod::TileKey& key = tree_[tile].key;
-  const int per_side = lattices_per_side(key.level, tree_.shape().intervals());
+  const lod::TileKey& key = tree[tile].key;
+  const int per_side = lattices_per_side(key.level, tree.shape().intervals());
   int parts_level = key.level;
   for (int k = 1; k < per_side; k *= 2) ++parts_level;
   const auto part = [&](double chart, std::int32_t index) {
@@ -42,7 +43,7 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   facets_.id = (std::uint64_t{tile} << 16) + static_cast<std::uint64_t>(j * per_side + i);
   facets_.face = place.face;
   LatticeFrame& f = facets_.frame;
-  f.intervals = tree_.shape().intervals() / per_side;
+  f.intervals = tree.shape().intervals() / per_side;
   const auto line = [&](std::int32_t index, int k) {
     return mars::face_line(std::int64_t{index} * per_side + k, parts_level);
   };
@@ -51,9 +52,9 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   f.v0 = line(key.j, j);
   f.dv = (line(key.j, j + 1) - f.v0) / f.intervals;
   const mars::FaceAxes& axes = mars::face_axes(place.face);
-  const double z = glm::dot(eye_.up, axes.out);
-  const bool exact = z > 0 && near((glm::dot(eye_.up, axes.right) / z - f.u0) / f.du, f.intervals) &&
-                     near((glm::dot(eye_.up, axes.up) / z - f.v0) / f.dv, f.intervals);
+  const double z = glm::dot(walk_.eye().up, axes.out);
+  const bool exact = z > 0 && near((glm::dot(walk_.eye().up, axes.right) / z - f.u0) / f.du, f.intervals) &&
+                     near((glm::dot(walk_.eye().up, axes.up) / z - f.v0) / f.dv, f.intervals);
   facets_.exact_lines = nullptr;
   if (exact) {
     facets_.family = Family::kColumns;

@@ -1,8 +1,7 @@
 // Finds the lattice that a place on the planet lies over.
 #pragma once
 
-#include "lod/tree.h"
-#include "vpe/voxel/columns.h"
+#include "vpe/voxel/column_walk.h"
 #include "vpe/voxel/lattice_store.h"
 #include "vpe/voxel/refine.h"
 
@@ -11,14 +10,13 @@ namespace vpe::voxel {
 // For one thread.
 class FacetFinder : public FacetSource {
  public:
-  FacetFinder(const lod::TileTree& tree, const ColumnEye& eye, LatticeShelf& shelf)
-      : tree_(tree), eye_(eye), shelf_(shelf) {}
+  // Lattices that the walk casts.
+  FacetFinder(const ColumnWalk& walk, LatticeShelf& shelf) : walk_(walk), shelf_(shelf) {}
 
   const Facets& at(const glm::dvec3& place_m) override;
 
  private:
-  const lod::TileTree& tree_;
-  const ColumnEye& eye_;
+  const ColumnWalk& walk_;
   LatticeShelf& shelf_;
   Facets facets_;
   bool found_ = false;

@@ -1,0 +1,154 @@
+#include "vpe/voxel/fan_caster.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "vpe/voxel/facet_finder.h"
+#include "vpe/voxel/refine.h"
+
+namespace vpe::voxel {
+
+namespace {
+
+// Between the lines of fans where they are farthest apart.
+constexpr double kSpacing_px = 1.0;
+constexpr int kTaskRows = 16;
+
+// For one thread.
+struct RowHints {
+  explicit RowHints(int width)
+      : a(static_cast<std::size_t>(width)),
+        b(static_cast<std::size_t>(width)),
+        share(static_cast<std::size_t>(width)) {}
+  std::vector<float> a;
+  std::vector<float> b;
+  std::vector<float> share;
+  std::vector<int> open;
+};
+
+}  // namespace
+
+std::size_t FanCaster::bytes() const {
+  std::size_t total = 0;
+  for (const auto& s : samples_) total += s.capacity() * sizeof(float);
+  return total;
+}
+
+void FanCaster::cast_fans(const FanPlan& plan, const ColumnWalk& walk, Desks& desks, core::ThreadPool& pool) {
+  std::vector<Sheet> sheets;
+  samples_.resize(std::max(samples_.size(), plan.fans().size()));
+  for (std::size_t f = 0; f < plan.fans().size(); ++f) {
+    const Fan& fan = plan.fans()[f];
+    samples_[f].resize(static_cast<std::size_t>(fan.steps) * static_cast<std::size_t>(fan.lines));
+    Sheet& sheet = sheets.emplace_back();
+    sheet.rows.kind = RowKind::kFan;
+    sheet.rows.count = fan.steps;
+    sheet.columns = fan.lines;
+    // Stored by step.
+    sheet.stride = fan.rising ? fan.lines : -static_cast<std::ptrdiff_t>(fan.lines);
+    sheet.out = samples_[f].data() + (fan.rising ? 0 : std::ptrdiff_t{fan.lines} * (fan.steps - 1));
+    sheet.set_column = [&plan, &fan](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+      const FanLine line = plan.line(fan, column);
+      azimuth = line.azimuth;
+      group.fan_a0[lane] = line.a0;
+      group.fan_a1[lane] = line.a1;
+      group.fan_b0[lane] = line.b0;
+      group.fan_b1[lane] = line.b1;
+      group.row[lane] = static_cast<float>(line.row_begin);
+      group.row_end[lane] = static_cast<float>(line.row_end);
+    };
+  }
+  cast_sheets(sheets, walk, desks, pool);
+}
+
+// Samples on either side of each pixel of one row, in that row or column of samples.
+void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, float* a, float* b,
+                           float* share) const {
+  const double y = part.y + row + 0.5;
+  const FanPlan::Span span = plan.upright_span(row);
+  const auto none = [&](int k) {
+    a[k] = std::numeric_limits<float>::infinity();
+    b[k] = 0;
+    share[k] = 0;
+  };
+  const auto samples = [&](const Fan& fan) {
+    return samples_[static_cast<std::size_t>(&fan - plan.fans().data())].data();
+  };
+  if (span.begin < span.end) {
+    if (const Fan* fan = plan.fan_of(plan.side_of(part.x + span.begin + 0.5, y))) {
+      const int step = std::clamp(part.y + row - fan->first_step, 0, fan->steps - 1);
+      const Fan::Map& map = fan->maps[static_cast<std::size_t>(step)];
+      const double first =
+          (map.stretch * (part.x + span.begin + 0.5) + map.shift - fan->first_line) / fan->spacing;
+      hints_from_row(samples(*fan) + std::ptrdiff_t{step} * fan->lines, fan->lines, first,
+                     map.stretch / fan->spacing, span.end - span.begin, a + span.begin, b + span.begin,
+                     share + span.begin);
+    } else {
+      for (int k = span.begin; k < span.end; ++k) none(k);
+    }
+  }
+  const auto beside = [&](int begin, int end) {
+    if (begin >= end) return;
+    const Fan* fan = plan.fan_of(plan.side_of(part.x + begin + 0.5, y));
+    const float* from = fan != nullptr ? samples(*fan) : nullptr;
+    for (int k = begin; k < end; ++k) {
+      if (fan == nullptr) {
+        none(k);
+        continue;
+      }
+      const int step = std::clamp(part.x + k - fan->first_step, 0, fan->steps - 1);
+      const Fan::Map& map = fan->maps[static_cast<std::size_t>(step)];
+      const double line = (map.stretch * y + map.shift - fan->first_line) / fan->spacing;
+      const int before = std::clamp(static_cast<int>(line), 0, fan->lines - 2);
+      a[k] = from[std::ptrdiff_t{step} * fan->lines + before];
+      b[k] = from[std::ptrdiff_t{step} * fan->lines + before + 1];
+      share[k] = static_cast<float>(std::clamp(line - before, 0.0, 1.0));
+    }
+  };
+  beside(0, span.begin);
+  beside(span.end, part.width);
+}
+
+void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desks,
+                     const paging::Surface& surface, double exaggeration, bool exact, core::ThreadPool& pool,
+                     std::span<float> range_m) {
+  const FanPlan plan(view, walk.eye().up, kSpacing_px);
+  cast_fans(plan, walk, desks, pool);
+  const core::SubRectangle part = core::drawn_part(view);
+  const mars::Axes& axes = view.eye.axes;
+  const double focal = core::focal_px(view);
+  const double cx = 0.5 * view.width + view.principal_offset_px.x;
+  const double cy = 0.5 * view.height + view.principal_offset_px.y;
+  const int tasks = (part.height + kTaskRows - 1) / kTaskRows;
+  pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
+    const Desks::Use use(desks);
+    FacetFinder finder(walk, use.shelf());
+    RowHints hints(part.width);
+    const int first = static_cast<int>(task) * kTaskRows;
+    for (int row = first; row < std::min(first + kTaskRows, part.height); ++row) {
+      find_hints(plan, part, row, hints.a.data(), hints.b.data(), hints.share.data());
+      float* const out = range_m.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width);
+      RayRow rays;
+      rays.eye_m = view.eye.eye_m;
+      rays.radius_m = walk.eye().radius_m;
+      rays.first =
+          (part.x + 0.5 - cx) * axes.right + (cy - (part.y + row + 0.5)) * axes.up + focal * axes.forward;
+      rays.step = axes.right;
+      rays.count = part.width;
+      hints.open.clear();
+      refine_row(rays, hints.a.data(), hints.b.data(), hints.share.data(), finder, out, hints.open);
+      for (const int k : hints.open) {
+        const auto at = static_cast<std::size_t>(k);
+        if (exact) {
+          const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
+          out[k] = static_cast<float>(surface.cast(view.eye.eye_m, ray, exaggeration));
+        } else {
+          out[k] = hints.share[at] < 0.5F ? hints.a[at] : hints.b[at];
+        }
+      }
+    }
+  });
+}
+
+}  // namespace vpe::voxel
