@@ -127,6 +127,24 @@ void find_bases(const LatticeFrame& f, const DepthPlane& plane, const ColumnEye&
   }
 }
 
+// 1 / x to the last bit or two; x finite and not tiny.
+template <class D>
+hn::Vec<D> reciprocal(D d, hn::Vec<D> x) {
+  if constexpr (sizeof(hn::TFromD<D>) == 4) {
+    const auto guess = hn::ApproximateReciprocal(x);
+    // One step of Newton's method doubles its bits.
+    const auto error = hn::NegMulAdd(x, guess, hn::Set(d, 1.0F));
+    const auto better = hn::MulAdd(guess, error, guess);
+#if HWY_TARGET <= HWY_AVX3
+    return better;
+#else
+    return hn::MulAdd(better, hn::NegMulAdd(x, better, hn::Set(d, 1.0F)), better);
+#endif
+  } else {
+    return hn::Div(hn::Set(d, 1.0), x);
+  }
+}
+
 // Rows as vectors of D see them.
 template <class D, RowKind kKind>
 class RowModel {
@@ -278,18 +296,17 @@ class Walk {
       } else {
         if (fresh) enter(k);
         fresh = false;
+        const bool near = together();
         if (settled(low, high)) {
           if (up) {
             fast<true>(k, next);
           } else {
             fast<false>(k, next);
           }
+        } else if (up) {
+          near ? careful<true, true>(k, next) : careful<true, false>(k, next);
         } else {
-          if (up) {
-            careful<true>(k, next);
-          } else {
-            careful<false>(k, next);
-          }
+          near ? careful<false, true>(k, next) : careful<false, false>(k, next);
         }
       }
       k = next;
@@ -387,7 +404,7 @@ class Walk {
     return line;
   }
 
-  // Positions of all lanes within kReadAhead - 3 of `from`.
+  // Positions of all lanes that matter are in [from, from + kReadAhead - 3]; others read anything.
   Line window(int k, T from) const {
     const D d;
     const DI di;
@@ -450,7 +467,6 @@ class Walk {
     const D d;
     if (at_low_.low < first_position(low) || at_low_.high >= last_position(low)) return false;
     if (at_high_.low < first_position(high) || at_high_.high >= last_position(high)) return false;
-    constexpr T kWindow = kReadAhead - 4;
     if (at_low_.high - at_low_.low > kWindow || at_high_.high - at_high_.low > kWindow) return false;
     const M ready = hn::And(started_, hn::And(in_front(hn::Set(d, static_cast<T>(low))),
                                               in_front(hn::Set(d, static_cast<T>(high)))));
@@ -484,13 +500,22 @@ class Walk {
     seen_h_ = hn::IfThenElse(here, height, seen_h_);
   }
 
-  template <bool kUp>
+  // Whether one window holds the block's posts of all lanes.
+  bool together() {
+    const T last = static_cast<T>(n_);
+    from_ = std::clamp(std::min(at_low_.low, at_high_.low), T(-1), last);
+    return std::clamp(std::max(at_low_.high, at_high_.high), T(-1), last) - from_ <= kWindow;
+  }
+
+  // Lanes may come and go. kNear: together().
+  template <bool kUp, bool kNear>
   void careful(int first, int last) {
     const D d;
-    Line line = gather(first);
+    const auto read = [&](int k) { return kNear ? window(k, from_) : gather(k); };
+    Line line = read(first);
     for (int k = first; k != last; k += kUp ? 1 : -1) {
       const int next_k = kUp ? k + 1 : k - 1;
-      const Line next = gather(next_k);
+      const Line next = read(next_k);
       const int low_k = kUp ? k : next_k;
       const Line& lower = kUp ? line : next;
       const Line& upper = kUp ? next : line;
@@ -563,21 +588,24 @@ class Walk {
     const V zero = hn::Zero(d);
     const V one = hn::Set(d, T(1));
     const V sigma = hn::MulAdd(sigma1_, x, sigma0_);
-    const V per_sigma = hn::Div(one, sigma);
+    const V per_sigma = reciprocal(d, sigma);
     const V reached = hn::Mul(hn::Add(height, hn::MulAdd(base1_, x, base0_)), per_sigma);
     V rows = hn::Max(model_.count_up_to(reached), hn::Add(row_, one));
     rows = hn::Min(rows, end_);
     // Where the next row's ray meets the facet.
     const V before = hn::Min(hn::Add(seen_h_, rest_at(seen_x_)), zero);
-    const V share = hn::Min(hn::Div(before, hn::Sub(before, rest)), one);
+    const V share = hn::Min(hn::Mul(before, reciprocal(d, hn::Sub(before, hn::Max(rest, least())))), one);
     const V at_x = hn::MulAdd(share, hn::Sub(x, seen_x_), seen_x_);
     const V at_h = hn::MulAdd(share, hn::Sub(height, seen_h_), seen_h_);
-    const V at = hn::Div(inverse(at_x, at_h), hn::MulAdd(sigma1_, at_x, sigma0_));
-    const V end = hn::Mul(inverse(x, height), per_sigma);
-    const V rise = hn::Sub(reached, slope_);
-    const V gain = hn::IfThenElse(hn::And(hn::Gt(rows, hn::Add(row_, one)), hn::Gt(rise, zero)),
-                                  hn::Div(hn::Sub(end, at), rise), zero);
-    scatter(who, at, gain);
+    const V at = hn::Mul(inverse(at_x, at_h), reciprocal(d, hn::MulAdd(sigma1_, at_x, sigma0_)));
+    scatter(group_.start, who, at);
+    const M more = hn::And(who, hn::Gt(rows, hn::Add(row_, one)));
+    if (!hn::AllFalse(d, more)) {
+      const V end = hn::Mul(inverse(x, height), per_sigma);
+      const V rise = hn::Sub(reached, slope_);
+      const M rises = hn::And(more, hn::Gt(rise, zero));
+      scatter(group_.gain, rises, hn::Div(hn::Sub(end, at), rise));
+    }
     row_ = hn::IfThenElse(who, rows, row_);
     aim();
   }
@@ -587,31 +615,32 @@ class Walk {
     return hn::NegMulAdd(height, per_distance_, hn::MulAdd(depth1_, x, depth0_));
   }
 
-  void scatter(M who, V at, V gain) const {
+  // Keeps a quotient of two zeros from being NaN.
+  static V least() { return hn::Set(D(), T(1e-30)); }
+
+  // To each lane's next row.
+  void scatter(float* to, M who, V values) const {
     const D d;
 #if HWY_TARGET <= HWY_AVX3
     if constexpr (sizeof(T) == 4) {
       const __m512i row = _mm512_cvttps_epi32(row_.raw);
       const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-      const __m512i index = _mm512_add_epi32(_mm512_slli_epi32(row, 4), lane);
-      _mm512_mask_i32scatter_ps(group_.start, who.raw, index, at.raw, 4);
-      _mm512_mask_i32scatter_ps(group_.gain, who.raw, index, gain.raw, 4);
+      _mm512_mask_i32scatter_ps(to, who.raw, _mm512_add_epi32(_mm512_slli_epi32(row, 4), lane), values.raw, 4);
       return;
     }
 #endif
     alignas(64) T rows[kMaxLanes];
-    alignas(64) T starts[kMaxLanes];
-    alignas(64) T gains[kMaxLanes];
+    alignas(64) T all[kMaxLanes];
     hn::Store(hn::IfThenElse(who, row_, hn::Set(d, T(-1))), d, rows);
-    hn::Store(at, d, starts);
-    hn::Store(gain, d, gains);
+    hn::Store(values, d, all);
     for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
       if (rows[k] < 0) continue;
-      const auto index = static_cast<std::size_t>(rows[k]) * kMaxLanes + static_cast<std::size_t>(lane0_) + k;
-      group_.start[index] = static_cast<float>(starts[k]);
-      group_.gain[index] = static_cast<float>(gains[k]);
+      to[static_cast<std::size_t>(rows[k]) * kMaxLanes + static_cast<std::size_t>(lane0_) + k] =
+          static_cast<float>(all[k]);
     }
   }
+
+  static constexpr T kWindow = kReadAhead - 4;
 
   const LatticeLines<T>& lines_;
   Family family_;
@@ -626,6 +655,7 @@ class Walk {
   V seen_x_, seen_h_;  // the last event of each lane
   Extent at_low_{};
   Extent at_high_{};
+  T from_ = 0;
 };
 
 using FloatTag = hn::CappedTag<float, kMaxLanes>;
@@ -763,15 +793,17 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
   const int ground = std::clamp(static_cast<int>(most), first, last);
   for (int r = first; r < ground; ++r) {
     float* const starts = group.start + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
+    float* const gains = group.gain + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
     const V row = hn::Set(d, static_cast<float>(r));
     const V slope = model.slope(row);
     const V now = hn::Load(d, starts);
     const auto begins = hn::Ne(now, zero);
     if (!hn::AllFalse(d, begins)) {
       start = hn::IfThenElse(begins, now, start);
-      gain = hn::IfThenElse(begins, hn::Load(d, group.gain + static_cast<std::ptrdiff_t>(r) * kMaxLanes), gain);
+      gain = hn::IfThenElse(begins, hn::Load(d, gains), gain);
       from = hn::IfThenElse(begins, slope, from);
       hn::Store(zero, d, starts);
+      hn::Store(zero, d, gains);
     }
     const V per = hn::MulAdd(gain, hn::Sub(slope, from), start);
     V length;
