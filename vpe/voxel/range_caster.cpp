@@ -22,8 +22,18 @@ std::size_t share_of(std::size_t bytes, double share) {
 // Tilt up to which a round picture's columns count as vertical: below a thousandth of a pixel.
 constexpr double kLevel = 1e-8;
 
+// Whether the picture's columns are vertical half-planes.
 bool upright(const core::View& view, const glm::dvec3& up) {
-  return view.projection != core::Projection::kPerspective && glm::length(view.eye.axes.up - up) < kLevel;
+  if (view.projection == core::Projection::kPerspective || glm::length(view.eye.axes.up - up) > kLevel)
+    return false;
+  if (view.projection == core::Projection::kCylinder) return true;
+  // Rows beyond the zenith or the nadir look backward.
+  const core::SubRectangle part = core::drawn_part(view);
+  const double middle = 0.5 * view.height + view.principal_offset_px.y;
+  const double highest = (middle - part.y - 0.5) / core::focal_px(view);
+  const double lowest = (middle - part.y - part.height + 0.5) / core::focal_px(view);
+  constexpr double kQuarter = 1.5707963267948966;
+  return highest < kQuarter && lowest > -kQuarter;
 }
 
 // Larger pictures are written past the caches.

@@ -1,0 +1,273 @@
+// Ranges of columns against single exact casts, the analytic sphere, and each other.
+#include "vpe/voxel/range_caster.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "tests/gl/gl_fixture.h"
+#include "vpe/voxel/columns.h"
+
+namespace {
+
+namespace core = vpe::core;
+using test_support::Random;
+using vpe::voxel::RangeCaster;
+using vpe::voxel::RangeOptions;
+
+constexpr std::size_t kBudget = std::size_t{1} << 28;
+
+std::vector<float> cast(RangeCaster& caster, const core::View& view, const RangeOptions& options = {},
+                        int threads = 2) {
+  core::ThreadPool pool(threads);
+  const glm::ivec2 size = core::drawn_size(view);
+  std::vector<float> out(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), -1.0F);
+  caster.cast(view, options, pool, out);
+  return out;
+}
+
+// Whether the ray, tilted by a little, meets S where it was seen: it only just touches something.
+bool is_tie(const paging::Surface& surface, const core::View& view, const glm::dvec3& ray, double seen,
+            double exaggeration, double tilt) {
+  const glm::dvec3 up = glm::normalize(view.eye.eye_m);
+  const glm::dvec3 side = glm::normalize(glm::cross(ray, up));
+  const glm::dvec3 over = glm::cross(side, ray);
+  for (const glm::dvec3& way : {over, -over, side, -side}) {
+    const double other = surface.cast(view.eye.eye_m, glm::normalize(ray + tilt * way), exaggeration);
+    if (std::isinf(seen) ? std::isinf(other) : std::abs(other - seen) <= 1e-3 * seen) return true;
+  }
+  return false;
+}
+
+struct Agreement {
+  int pixels = 0;
+  int ties = 0;
+  int wrong = 0;
+  std::vector<double> error;  // relative, where both hit and agree
+  double at(double share) {
+    if (error.empty()) return 0;
+    std::sort(error.begin(), error.end());
+    return error[std::min(error.size() - 1,
+                          static_cast<std::size_t>(share * static_cast<double>(error.size())))];
+  }
+};
+
+// Pixels whose range differs by more than `far` are ties when a ray `tilt` radians away explains them.
+void compare(Agreement& sum, const paging::Surface& surface, const core::View& view,
+             const std::vector<float>& range, double exaggeration, double tilt, double far = 1e-5) {
+  const core::SubRectangle part = core::drawn_part(view);
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x) {
+      const glm::dvec3 ray = core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5);
+      const double exact = surface.cast(view.eye.eye_m, ray, exaggeration);
+      const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * part.width + x)]);
+      ASSERT_FALSE(std::isnan(seen)) << x << " " << y;
+      ++sum.pixels;
+      if (std::isinf(exact) && std::isinf(seen)) continue;
+      const double error = std::abs(seen - exact) / exact;
+      if (std::isfinite(exact) && std::isfinite(seen) && error <= far) {
+        sum.error.push_back(error);
+      } else if (is_tie(surface, view, ray, seen, exaggeration, tilt)) {
+        ++sum.ties;
+      } else {
+        ++sum.wrong;
+        if (sum.wrong <= 3)
+          ADD_FAILURE() << x << " " << y << ": " << seen << " for " << exact << "; " << view.width << "x"
+                        << view.height << " fov " << view.fov_deg << " exaggeration " << exaggeration;
+      }
+    }
+  }
+}
+
+class Columns : public testing::Test {
+ protected:
+  std::shared_ptr<const paging::PlanetFile> bumpy() {
+    return test_support::build_fake(dir_ / "bumpy.vpe", test_support::FakeElevation(test_support::bumpy_height),
+                                    50000);
+  }
+
+  // Somewhere above ground, looking anywhere; every few times over an edge or a corner of the cube.
+  static core::View random_view(Random& random, const paging::Surface& surface, core::Projection projection,
+                                double exaggeration) {
+    glm::dvec3 place = random.direction();
+    if (random.integer(0, 3) == 0) {
+      place = {1, 1, random.integer(0, 1) == 0 ? 1.0 : random.uniform(-1, 1)};
+      place = glm::normalize(place + random.log_uniform(1e-9, 1e-2) * random.direction());
+    }
+    const mars::LonLat at = mars::lon_lat(place);
+    const double ground = surface.at(mars::direction(at), exaggeration).height_m;
+    mars::Pose pose{at.lon_deg, at.lat_deg, ground + random.log_uniform(1, 1e7), random.uniform(0, 360), 0, 0};
+    core::View view;
+    view.projection = projection;
+    view.width = random.integer(1, 90);
+    view.height = random.integer(1, 60);
+    view.fov_deg = random.log_uniform(2, projection == core::Projection::kEquirectangular ? 180 : 150);
+    view.principal_offset_px = {projection == core::Projection::kPerspective ? random.uniform(-30, 30) : 0.0,
+                                random.uniform(-20, 20)};
+    if (projection == core::Projection::kPerspective) {
+      pose.pitch_deg = random.integer(0, 4) == 0 ? -90 : random.uniform(-90, 30);
+      pose.roll_deg = random.integer(0, 3) == 0 ? 90 * random.integer(-1, 2) : random.uniform(-180, 180);
+    }
+    view.eye = mars::to_eye(pose, surface.planet_radius_m());
+    if (random.integer(0, 2) == 0 && view.width > 4 && view.height > 4)
+      view.part = {1, 2, view.width - 3, view.height - 4};
+    return view;
+  }
+
+  test_support::TempDir dir_;
+};
+
+TEST_F(Columns, RoundPicturesAreExact) {
+  RangeCaster caster(bumpy(), kBudget);
+  Random random(71);
+  Agreement sum;
+  for (int n = 0; n < 60; ++n) {
+    const double exaggeration = n % 3 == 0 ? random.uniform(0.5, 20) : 1.0;
+    const core::View view = random_view(
+        random, caster.surface(), n % 2 == 0 ? core::Projection::kCylinder : core::Projection::kEquirectangular,
+        exaggeration);
+    compare(sum, caster.surface(), view, cast(caster, view, {exaggeration}), exaggeration, 1e-6);
+  }
+  EXPECT_EQ(sum.wrong, 0) << "of " << sum.pixels;
+  EXPECT_LE(sum.ties, sum.pixels / 20000);
+  EXPECT_LT(sum.at(0.5), 2e-7);
+  EXPECT_LT(sum.at(0.99), 2e-6);
+}
+
+TEST_F(Columns, PerspectivePicturesAreExactButForWhatIsNarrowerThanAPixel) {
+  RangeCaster caster(bumpy(), kBudget);
+  Random random(72);
+  Agreement sum;
+  Agreement wide;
+  for (int n = 0; n < 120; ++n) {
+    const double exaggeration = n % 3 == 0 ? random.uniform(0.5, 20) : 1.0;
+    core::View view = random_view(random, caster.surface(), core::Projection::kPerspective, exaggeration);
+    const double pixel = 1.0 / core::focal_px(view);
+    compare(pixel < 2e-3 ? sum : wide, caster.surface(), view, cast(caster, view, {exaggeration}), exaggeration,
+            0.7 * pixel);
+  }
+  EXPECT_EQ(sum.wrong, 0) << "of " << sum.pixels;
+  EXPECT_EQ(wide.wrong, 0) << "of " << wide.pixels;
+  EXPECT_LE(sum.ties, sum.pixels / 2000);
+  EXPECT_LE(wide.ties, wide.pixels / 100);
+  EXPECT_LT(sum.at(0.99), 2e-7);
+  EXPECT_LT(wide.at(0.99), 2e-7);
+}
+
+TEST_F(Columns, FlatPlanetIsTheSphere) {
+  const auto planet = test_support::build_fake(
+      dir_ / "flat.vpe", test_support::FakeElevation([](const glm::dvec3&) { return 0.0; }), 100000);
+  RangeCaster caster(planet, kBudget);
+  const double radius = planet->radius_m();
+  const double spacing =
+      lod::post_spacing_m(planet->meta().finest_level, planet->meta().tile.intervals(), radius);
+  // Facets lie below the sphere by their sagitta at most.
+  const double sag = 1.2 * spacing * spacing / (4 * radius);
+  for (const double height : {1e5, 1e6, 1e7}) {
+    core::View view;
+    view.projection = core::Projection::kEquirectangular;
+    view.fov_deg = 179;
+    view.width = 64;
+    view.height = 400;
+    view.eye = mars::to_eye({20, 30, height, 0, 0, 0}, radius);
+    const std::vector<float> range = cast(caster, view);
+    for (int y = 0; y < view.height; ++y) {
+      for (int x = 0; x < view.width; ++x) {
+        const glm::dvec3 ray = core::pixel_ray(view, x + 0.5, y + 0.5);
+        const double half = glm::dot(ray, view.eye.eye_m);
+        const double closest = std::sqrt(glm::dot(view.eye.eye_m, view.eye.eye_m) - half * half);
+        const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * view.width + x)]);
+        // The limb, but for the sagitta and one millionth.
+        if (half >= 0 || closest > radius * (1 + 1e-6)) {
+          ASSERT_TRUE(std::isinf(seen)) << x << " " << y;
+        } else if (closest < radius * (1 - 1e-6) - 4 * sag) {
+          const double under = std::sqrt(radius * radius - closest * closest);
+          const double sine = under / radius;
+          ASSERT_NEAR(seen, -half - under, (1e-6 * (-half - under) + 1.2 * sag) / sine) << x << " " << y;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Columns, VectorUnitsAndThreadsAgree) {
+  RangeCaster caster(bumpy(), kBudget);
+  Random random(73);
+  for (int n = 0; n < 12; ++n) {
+    const core::View view = random_view(random, caster.surface(), static_cast<core::Projection>(n % 3), 1);
+    const std::vector<float> best = cast(caster, view);
+    ASSERT_EQ(best, cast(caster, view, {}, 1));
+    ASSERT_EQ(best, cast(caster, view, {}, 5));
+    for (std::int64_t targets = hwy::SupportedTargets() & ~HWY_SCALAR; targets != 0;) {
+      // Without its best one.
+      targets &= targets - 1;
+      hwy::SetSupportedTargetsForTest(targets != 0 ? targets : HWY_SCALAR);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      const std::string name = vpe::voxel::column_target();
+      const std::vector<float> other = cast(caster, view);
+      int differ = 0;
+      for (std::size_t k = 0; k < best.size(); ++k) {
+        const auto a = static_cast<double>(best[k]);
+        const auto b = static_cast<double>(other[k]);
+        if (a == b) continue;
+        // Grazing rays make more of a rounding.
+        differ += std::isinf(a) != std::isinf(b) || std::abs(a - b) > 1e-5 * a ? 1 : 0;
+      }
+      EXPECT_LE(differ, static_cast<int>(best.size()) / 1000) << name;
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+}
+
+TEST_F(Columns, ResultsDoNotDependOnWhatWasCastBefore) {
+  const auto planet = bumpy();
+  Random random(74);
+  RangeCaster used(planet, std::size_t{1} << 21);
+  for (int n = 0; n < 9; ++n) {
+    const core::View view = random_view(random, used.surface(), static_cast<core::Projection>(n % 3), 1);
+    RangeCaster fresh(planet, kBudget);
+    EXPECT_EQ(cast(fresh, view), cast(used, view)) << n;
+  }
+}
+
+TEST_F(Columns, CoarserCellsStayWithinTheirWidth) {
+  RangeCaster caster(bumpy(), kBudget);
+  const paging::Surface& surface = caster.surface();
+  Random random(75);
+  for (int n = 0; n < 12; ++n) {
+    core::View view = random_view(random, surface, static_cast<core::Projection>(n % 3), 1);
+    view.part = {};
+    const double focal = core::focal_px(view);
+    const std::vector<float> range = cast(caster, view, {1, 2.0});
+    for (int y = 0; y < view.height; ++y) {
+      for (int x = 0; x < view.width; ++x) {
+        const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * view.width + x)]);
+        ASSERT_FALSE(std::isnan(seen));
+        if (std::isinf(seen)) continue;
+        // Posts of coarser tiles lie on S, so a facet is off by its slope over a cell at most.
+        const glm::dvec3 place = view.eye.eye_m + seen * core::pixel_ray(view, x + 0.5, y + 0.5);
+        const double off = std::abs(glm::length(place) - surface.at(place).radius_m);
+        const double steepest = 4;
+        ASSERT_LE(off, 2.0 * 1.5 * steepest * seen / focal + 1.0) << x << " " << y;
+      }
+    }
+  }
+}
+
+TEST_F(Columns, AnEyeBelowTheGroundSeesNothingFar) {
+  RangeCaster caster(bumpy(), kBudget);
+  core::View view;
+  view.width = 16;
+  view.height = 9;
+  const double ground = caster.surface().at(mars::direction({10, 20})).height_m;
+  view.eye = mars::to_eye({10, 20, ground - 5, 0, 0, 0}, caster.surface().planet_radius_m());
+  for (const auto projection : {core::Projection::kPerspective, core::Projection::kCylinder}) {
+    view.projection = projection;
+    for (float range : cast(caster, view)) EXPECT_EQ(range, 0.0F);
+  }
+}
+
+}  // namespace
