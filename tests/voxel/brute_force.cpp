@@ -148,17 +148,17 @@ double BruteForce::deepest_m(const glm::dvec3& eye_m, const glm::dvec3& directio
 }
 
 Verdict judge(const BruteForce& truth, const glm::dvec3& eye_m, const glm::dvec3& direction, double claimed_m,
-              double tie) {
+              const Tie& tie) {
   const double exact_m = truth.cast(eye_m, direction);
   if (claimed_m == exact_m) return Verdict::kSame;  // none, too
   if (std::isfinite(exact_m) && std::abs(claimed_m - exact_m) <= kSameRange * exact_m) return Verdict::kSame;
   if (claimed_m > exact_m) {
     const double sunk_m = truth.deepest_m(eye_m, direction, exact_m, claimed_m);
-    return sunk_m < tie * exact_m ? Verdict::kTie : Verdict::kMissed;
+    return sunk_m < tie.share * exact_m + tie.metres ? Verdict::kTie : Verdict::kMissed;
   }
   // Also catches NaN.
   const double above_m = -truth.deepest_m(eye_m, direction, claimed_m, claimed_m);
-  return above_m < tie * claimed_m ? Verdict::kTie : Verdict::kPhantom;
+  return above_m < tie.share * claimed_m + tie.metres ? Verdict::kTie : Verdict::kPhantom;
 }
 
 }  // namespace test_support

@@ -56,13 +56,18 @@ class BruteForce {
 // What a caster's answer for a ray is worth.
 enum class Verdict {
   kSame,     // within kSameRange of the brute force, or both none
-  kTie,      // differs, but the ray is within `tie` of its range from S where they differ
+  kTie,      // differs, but the ray is that near to S where they differ
   kMissed,   // the caster went through ground
   kPhantom,  // the caster hit air
 };
-inline constexpr double kSameRange = 1e-7;
-inline constexpr double kTie = 1e-6;
+inline constexpr double kSameRange = 1e-9;
+
+// How far below S a ray may sink, or above it be stopped, in a tie: share of the range + metres.
+struct Tie {
+  double share = 1e-6;
+  double metres = 0;
+};
 Verdict judge(const BruteForce& truth, const glm::dvec3& eye_m, const glm::dvec3& direction, double claimed_m,
-              double tie = kTie);
+              const Tie& tie = {});
 
 }  // namespace test_support

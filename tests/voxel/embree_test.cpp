@@ -78,8 +78,8 @@ TEST_F(Embree, CastsOfSAreEmbrees) {
         const Verdict verdict = test_support::judge(truth, eye, direction / length, ours);
         EXPECT_TRUE(verdict == Verdict::kSame || verdict == Verdict::kTie)
             << "eye " << e << " ray " << n << ": S " << ours << " m, Embree " << theirs << " m";
-        const double tie = kQuantum * (1.0 + longest_m / std::min(ours, theirs));
-        const Verdict other = test_support::judge(truth, eye, direction / length, theirs, tie);
+        const Verdict other =
+            test_support::judge(truth, eye, direction / length, theirs, {kQuantum, kQuantum * longest_m});
         embree_wrong += other == Verdict::kMissed || other == Verdict::kPhantom ? 1 : 0;
       }
     }
