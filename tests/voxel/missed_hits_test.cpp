@@ -49,7 +49,7 @@ double pick_line(Random& random, const std::vector<double>& lines, bool border) 
   return random.uniform(lines.front(), lines.back());
 }
 
-// A point of S, on a border of tiles, levels or faces as a rule.
+// A point of S or, half of the time, just below it; on a border of tiles, levels or faces as a rule.
 glm::dvec3 pick_target(Random& random, const paging::Surface& surface) {
   const lod::TileTree& tree = surface.planet().tree();
   for (;;) {
@@ -61,7 +61,8 @@ glm::dvec3 pick_target(Random& random, const paging::Surface& surface) {
     const double u = pick_line(random, lines.u, border == 0 || border == 2);
     const double v = pick_line(random, lines.v, border == 1 || border == 2);
     const glm::dvec3 direction = mars::chart_direction(tile.key.face, u, v);
-    return direction * surface.at(direction).radius_m;
+    const double sunk_m = random.integer(0, 1) == 0 ? 0.0 : random.log_uniform(1e-8, 1.0);
+    return direction * (surface.at(direction).radius_m - sunk_m);
   }
 }
 
