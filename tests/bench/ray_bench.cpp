@@ -1,6 +1,6 @@
 // Range pictures by the ray backend against Embree over the same triangles: docs/rays.md has the figures.
 //
-//   ray_bench [--dir DIR] [--scenes 513,2049,mars] [--mars FILE] [--scale 1] [--threads 2] [--rounds 5]
+//   ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale 1] [--threads 2] [--rounds 5]
 //             [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX] [--benchmark_out=FILE ...]
 //
 // Scenes: patches of 513^2, 2049^2 and 8193^2 posts (ray_bench_scenes.h), built into DIR when they are not
@@ -14,41 +14,44 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tests/bench/ray_bench_agreement.h"
 #include "tests/bench/ray_bench_caster.h"
 #include "tests/bench/ray_bench_embree.h"
+#include "tests/bench/ray_bench_options.h"
 #include "tests/bench/ray_bench_views.h"
 #include "tests/support/support.h"
-#include "vpe/core/number.h"
 
 namespace {
 
 using test_support::EmbreeScene;
 using test_support::EmbreeShape;
 
-struct Options {
-  std::string dir;
-  std::string scenes = "513,2049,mars";
-  std::string mars;
-  double scale = 1;
-  int threads = 0;
-  int rounds = 5;
-  double memory_mib = 4096;
-  double mesh_limit = 4e7;  // triangles; beyond it only the grid, whose structure is a sixth as large
-};
-
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+std::string fixed(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
+
+// Of the processor, as the system calls it; empty when it does not say.
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(':') + 2));
+  }
+  return {};
 }
 
 // Embree's side of one view: a scene in the mode that is fastest on it.
@@ -69,7 +72,7 @@ struct Row {
 
 class Bench {
  public:
-  explicit Bench(const Options& options) : options_(options), pool_(options.threads) {}
+  explicit Bench(const bench::RayBenchOptions& options) : options_(options), pool_(options.threads) {}
 
   void add_scene(bench::RayScene scene) {
     const auto shared = std::make_shared<const bench::RayScene>(std::move(scene));
@@ -82,6 +85,8 @@ class Bench {
     }
   }
 
+  int threads() const { return pool_.threads(); }
+
   void print_table() const {
     if (rows_.empty()) return;
     std::printf(
@@ -90,9 +95,11 @@ class Bench {
         "(lowest, highest)\n\n"
         "| view | ours Mrays/s | mesh | grid | ratio | agreement |\n|---|---|---|---|---|---|\n",
         pool_.threads(), options_.scale, options_.rounds);
+    const auto rate = [](double mrays) { return mrays > 0.0 ? fixed(mrays) : "-"; };
     for (const Row& row : rows_)
-      std::printf("| %s | %.2f | %.1f | %.1f | %.3g (%.3g..%.3g) | %s |\n", row.name.c_str(), row.ours,
-                  row.mesh, row.grid, row.ratio, row.ratio_low, row.ratio_high, row.agreement.c_str());
+      std::printf("| %s | %.2f | %s | %s | %.3g (%.3g..%.3g) | %s |\n", row.name.c_str(), row.ours,
+                  rate(row.mesh).c_str(), rate(row.grid).c_str(), row.ratio, row.ratio_low, row.ratio_high,
+                  row.agreement.c_str());
   }
 
  private:
@@ -193,6 +200,7 @@ class Bench {
       const double rate = mrays / median(peer.seconds);
       (peer.scene == grid_.get() ? row.grid : row.mesh) = rate;
       state.counters[std::string(peer.shape) + "_Mrays"] = rate;
+      state.counters[std::string(peer.shape) + "_setup_ms"] = 1e3 * peer.setup_s;
     }
     state.counters["ratio"] = row.ratio;
     state.counters["ratio_low"] = row.ratio_low;
@@ -219,7 +227,7 @@ class Bench {
     rows_.push_back(std::move(row));
   }
 
-  Options options_;
+  bench::RayBenchOptions options_;
   vpe::core::ThreadPool pool_;
   std::shared_ptr<const bench::RayScene> scene_;
   std::unique_ptr<bench::RangeCaster> caster_;
@@ -230,78 +238,26 @@ class Bench {
   std::vector<Row> rows_;
 };
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument(what +
-                              "; ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale S] "
-                              "[--threads N] [--rounds N] [--memory MiB] [--mesh-limit TRIANGLES] "
-                              "[--benchmark_filter=REGEX] [--help]");
-}
-
-// Of what Google Benchmark has left.
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int n = 1; n < argc; n += 2) {
-    const std::string key = argv[n];
-    if (n + 1 == argc) refuse(key + " needs a value");
-    const std::string value = argv[n + 1];
-    const auto number = [&](double least) {
-      const auto parsed = vpe::core::parse_number(value);
-      if (!parsed || *parsed < least) refuse(key + " " + value + ": not a number, or too small");
-      return *parsed;
-    };
-    if (key == "--dir") {
-      options.dir = value;
-    } else if (key == "--scenes") {
-      options.scenes = value;
-    } else if (key == "--mars") {
-      options.mars = value;
-    } else if (key == "--scale") {
-      options.scale = number(0.001);
-    } else if (key == "--threads") {
-      options.threads = static_cast<int>(number(0));
-    } else if (key == "--rounds") {
-      options.rounds = static_cast<int>(number(1));
-    } else if (key == "--memory") {
-      options.memory_mib = number(1);
-    } else if (key == "--mesh-limit") {
-      options.mesh_limit = number(0);
-    } else {
-      refuse(key + " is no option");
-    }
-  }
-  return options;
-}
-
-// The planet file that `vpe` builds on its first run without a planet.
-std::string cached_mars() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  const std::filesystem::path folder = cache != nullptr
-                                           ? std::filesystem::path(cache)
-                                           : std::filesystem::path(home != nullptr ? home : ".") / ".cache";
-  return (folder / "vpe" / "embedded-mars-2.vpe").string();
-}
-
-void add_scenes(Bench& bench, const Options& options, const std::filesystem::path& folder) {
+void add_scenes(Bench& bench, const bench::RayBenchOptions& options, const std::filesystem::path& folder) {
   std::string rest = options.scenes + ",";
   for (std::size_t comma = rest.find(','); comma != std::string::npos; comma = rest.find(',')) {
     const std::string name = rest.substr(0, comma);
     rest.erase(0, comma + 1);
     if (name == "mars") {
-      const std::string file = options.mars.empty() ? cached_mars() : options.mars;
+      const std::string file = options.mars.empty() ? bench::cached_mars() : options.mars;
       if (std::filesystem::exists(file)) {
         bench.add_scene(bench::planet_scene(name, file));
       } else if (options.mars.empty()) {
         std::fprintf(stderr, "skipped: scene mars: no %s; any command of vpe without a planet builds it\n",
                      file.c_str());
       } else {
-        refuse(file + ": no such planet file");
+        bench::refuse(file + ": no such planet file");
       }
       continue;
     }
     const auto& specs = bench::patch_specs();
     const auto spec = std::find_if(specs.begin(), specs.end(), [&](const auto& s) { return s.name == name; });
-    if (spec == specs.end()) refuse("--scenes: no scene '" + name + "'");
+    if (spec == specs.end()) bench::refuse("--scenes: no scene '" + name + "'");
     bench.add_scene(bench::patch_scene(*spec, folder, options.threads));
   }
 }
@@ -311,10 +267,13 @@ void add_scenes(Bench& bench, const Options& options, const std::filesystem::pat
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   try {
-    const Options options = parse(argc, argv);
+    const bench::RayBenchOptions options = bench::parse_options(argc, argv);
     std::optional<test_support::TempDir> temporary;
     if (options.dir.empty()) temporary.emplace();
     Bench bench(options);
+    benchmark::AddCustomContext("processor", processor());
+    benchmark::AddCustomContext("threads", std::to_string(bench.threads()));
+    benchmark::AddCustomContext("embree", RTC_VERSION_STRING);
     add_scenes(bench, options, temporary ? temporary->path() : std::filesystem::path(options.dir));
     benchmark::RunSpecifiedBenchmarks();
     bench.print_table();
