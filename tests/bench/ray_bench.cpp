@@ -1,7 +1,8 @@
 // Range pictures by the ray backend against Embree over the same triangles: docs/rays.md has the figures.
 //
 //   ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale 1] [--threads 2] [--rounds 5]
-//             [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX] [--benchmark_out=FILE ...]
+//             [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX]
+//             [--benchmark_out=FILE ...]
 //
 // Scenes: patches of 513^2, 2049^2 and 8193^2 posts (ray_bench_scenes.h), built into DIR when they are not
 // there (without --dir into a folder that is removed at the end), and a planet file of the embedded Mars. Every
@@ -209,6 +210,12 @@ class Bench {
     // theirs_m is the last peer's; the mesh's corners are the grid's.
     const bench::Agreement agreement = bench::compare(c.view, ours_m, theirs_m, *surface_);
     row.agreement = bench::to_text(agreement);
+    for (std::size_t n = 0; n < std::min(agreement.ours_wrong.size(), static_cast<std::size_t>(options_.show));
+         ++n) {
+      const bench::WrongPixel& w = agreement.ours_wrong[n];
+      std::fprintf(stderr, "%s: pixel %d %d: ours %.9g m, Embree %.9g m, exact %.9g m\n", c.name.c_str(), w.x,
+                   w.y, w.ours_m, w.theirs_m, w.exact_m);
+    }
     const auto share = [&](std::int64_t count) {
       return static_cast<double>(count) / static_cast<double>(pixels);
     };

@@ -59,6 +59,9 @@ Agreement compare(const vpe::core::View& view, std::span<const float> ours_m, st
         vpe::core::pixel_ray(view, static_cast<double>(n % width) + 0.5, static_cast<double>(n / width) + 0.5));
     const bool ours = difference(static_cast<double>(ours_m[n]), exact_m) <= kAgree;
     const bool theirs = difference(static_cast<double>(theirs_m[n]), exact_m) <= kAgree;
+    if (!ours)
+      a.ours_wrong.push_back({static_cast<int>(n % width), static_cast<int>(n / width),
+                              static_cast<double>(ours_m[n]), static_cast<double>(theirs_m[n]), exact_m});
     ++(ours ? theirs ? a.both_right : a.ours_right : theirs ? a.theirs_right : a.none_right);
   }
   return a;

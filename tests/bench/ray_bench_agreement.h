@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "paging/surface.h"
 #include "vpe/core/view.h"
@@ -11,6 +12,12 @@
 namespace bench {
 
 inline constexpr double kAgree = 1e-4;  // relative range
+
+// A pixel where ours is not what an exact cast says.
+struct WrongPixel {
+  int x = 0, y = 0;
+  double ours_m = 0, theirs_m = 0, exact_m = 0;
+};
 
 struct Agreement {
   std::int64_t pixels = 0;
@@ -21,6 +28,7 @@ struct Agreement {
   // Of `judged` of the pixels that differ: who is within kAgree of an exact cast, or has its sky.
   std::int64_t judged = 0;
   std::int64_t ours_right = 0, theirs_right = 0, both_right = 0, none_right = 0;
+  std::vector<WrongPixel> ours_wrong;  // of the judged
 };
 
 // Judges at most `max_judged` pixels, evenly chosen.

@@ -9,10 +9,11 @@
 namespace bench {
 
 void refuse(const std::string& what) {
-  throw std::invalid_argument(what +
-                              "; ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale S] "
-                              "[--threads N] [--rounds N] [--memory MiB] [--mesh-limit TRIANGLES] "
-                              "[--benchmark_filter=REGEX] [--help]");
+  throw std::invalid_argument(
+      what +
+      "; ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale S] "
+      "[--threads N] [--rounds N] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] "
+      "[--benchmark_filter=REGEX] [--help]");
 }
 
 RayBenchOptions parse_options(int argc, char** argv) {
@@ -38,6 +39,8 @@ RayBenchOptions parse_options(int argc, char** argv) {
       options.threads = static_cast<int>(number(0));
     } else if (key == "--rounds") {
       options.rounds = static_cast<int>(number(1));
+    } else if (key == "--show") {
+      options.show = static_cast<int>(number(0));
     } else if (key == "--memory") {
       options.memory_mib = number(1);
     } else if (key == "--mesh-limit") {
