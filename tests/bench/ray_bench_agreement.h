@@ -1,0 +1,40 @@
+// How far two range pictures of a view agree, and who is right where they do not.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "paging/surface.h"
+#include "vpe/core/view.h"
+
+namespace bench {
+
+inline constexpr double kAgree = 1e-4;  // relative range
+
+// A pixel where ours is not what an exact cast says.
+struct WrongPixel {
+  int x = 0, y = 0;
+  double ours_m = 0, theirs_m = 0, exact_m = 0;
+};
+
+struct Agreement {
+  std::int64_t pixels = 0;
+  std::int64_t hits = 0;               // in both
+  std::int64_t hit_miss = 0;           // a hit in one, sky in the other
+  std::int64_t far = 0;                // hits in both that differ by more than kAgree
+  double p50 = 0, p99 = 0, p9999 = 0;  // of the relative difference of hits in both
+  // Of `judged` of the pixels that differ: who is within kAgree of an exact cast, or has its sky.
+  std::int64_t judged = 0;
+  std::int64_t ours_right = 0, theirs_right = 0, both_right = 0, none_right = 0;
+  std::vector<WrongPixel> ours_wrong;  // of the judged
+};
+
+// Judges at most `max_judged` pixels, evenly chosen.
+Agreement compare(const vpe::core::View& view, std::span<const float> ours_m, std::span<const float> theirs_m,
+                  const paging::Surface& surface, std::int64_t max_judged = 400);
+
+std::string to_text(const Agreement& agreement);
+
+}  // namespace bench

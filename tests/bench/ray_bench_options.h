@@ -1,0 +1,29 @@
+// The command line of the benchmark of rays.
+#pragma once
+
+#include <string>
+
+namespace bench {
+
+struct RayBenchOptions {
+  std::string dir;
+  std::string scenes = "513,2049,8193,mars";
+  std::string mars;
+  double scale = 1;
+  int threads = 0;
+  int rounds = 5;
+  int show = 0;  // pixels of a view where ours is wrong, on stderr
+  double memory_mib = 4096;
+  double mesh_limit = 4e7;  // triangles; beyond it only the grid, whose structure is a sixth as large
+};
+
+// Of what Google Benchmark has left of the command line. Throws std::invalid_argument with the usage.
+RayBenchOptions parse_options(int argc, char** argv);
+
+// Throws std::invalid_argument: what is wrong, and the usage.
+[[noreturn]] void refuse(const std::string& what);
+
+// The planet file that `vpe` builds on its first run without a planet.
+std::string cached_mars();
+
+}  // namespace bench

@@ -1,0 +1,64 @@
+// The triangles of S in Embree: an oracle, and a peer to be measured against, that we did not make.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "paging/planet_file.h"
+
+namespace test_support {
+
+enum class EmbreeShape {
+  kTriangles,  // RTC_GEOMETRY_TYPE_TRIANGLE
+  kGrid,       // RTC_GEOMETRY_TYPE_GRID: less memory, and slower
+};
+
+struct EmbreeOptions {
+  EmbreeShape shape = EmbreeShape::kTriangles;
+  RTCBuildQuality quality = RTC_BUILD_QUALITY_HIGH;
+  bool robust = false;  // RTC_SCENE_FLAG_ROBUST: fewer rays through edges, and slower
+  int threads = 0;      // of building; 0: all
+};
+
+// Finest tiles with ground that the eye can possibly see.
+std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const glm::dvec3& eye_m);
+std::int64_t triangle_count(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles);
+
+// Finest tiles as one Embree scene, a geometry each, in floats relative to the eye: rays start at 0. Cells are
+// split along the diagonal of lod/posts.h in both shapes. Any thread may cast into scene().
+class EmbreeScene {
+ public:
+  // Throws paging::PlanetError, and std::runtime_error with Embree's words.
+  EmbreeScene(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles, const glm::dvec3& eye_m,
+              const EmbreeOptions& options = {});
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  RTCScene scene() const { return scene_; }
+  std::int64_t triangles() const { return triangles_; }
+  double build_s() const { return build_s_; }    // of Embree's structure alone, posts at hand
+  std::int64_t bytes() const { return bytes_; }  // held by Embree, vertices included
+
+  // Distance along a direction of any length, in metres when that is 1; infinity when there is none.
+  double cast(const glm::dvec3& direction) const;
+
+ private:
+  void add_tile(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id, const glm::dvec3& eye_m,
+                const EmbreeOptions& options);
+  void check(const char* what) const;
+
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  std::vector<std::uint32_t> indices_;  // of the triangles of one tile, the same for all
+  std::int64_t triangles_ = 0;
+  double build_s_ = 0;
+  std::atomic<std::int64_t> bytes_{0};
+};
+
+}  // namespace test_support
