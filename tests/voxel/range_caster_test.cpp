@@ -131,7 +131,7 @@ TEST_F(Columns, RoundPicturesAreExact) {
     compare(sum, caster.surface(), view, cast(caster, view, {exaggeration}), exaggeration, 1e-6);
   }
   EXPECT_EQ(sum.wrong, 0) << "of " << sum.pixels;
-  EXPECT_LE(sum.ties, sum.pixels / 20000);
+  EXPECT_LE(sum.ties, sum.pixels / 2000);
   EXPECT_LT(sum.at(0.5), 2e-7);
   EXPECT_LT(sum.at(0.99), 2e-6);
 }

@@ -29,6 +29,8 @@ constexpr int kLanes = 8;
 constexpr int kRounds = 8;
 // Hints farther apart than this share of the nearer one are not taken for one surface.
 constexpr double kApart = 0.04;
+// Cells by which rounding may put a place outside its lattice.
+constexpr double kBorder = 1e-11;
 
 struct Vector3 {
   V x, y, z;
@@ -137,8 +139,8 @@ class RowRefiner {
   // A place on a border belongs to both sides.
   M inside(const Place& p) const {
     const D d;
-    const V low = hn::Set(d, -1e-6);
-    const V high = hn::Add(last_, hn::Set(d, 1 + 1e-6));
+    const V low = hn::Set(d, -kBorder);
+    const V high = hn::Add(last_, hn::Set(d, 1 + kBorder));
     const M x = hn::And(hn::Ge(p.x, low), hn::Le(p.x, high));
     const M y = hn::And(hn::Ge(p.y, low), hn::Le(p.y, high));
     return hn::And(hn::Gt(p.z, hn::Zero(d)), hn::And(x, y));
