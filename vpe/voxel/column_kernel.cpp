@@ -275,7 +275,7 @@ class Walk {
     const V at = hn::Set(d, foot);
     const V from = load(paths.from);
     const V to = load(paths.to);
-    const V near = hn::Set(d, T(1e-9));
+    const V near = hn::Set(d, sizeof(T) == 8 ? T(1e-9) : T(1e-4));
     started_ = hn::And(
         active_, hn::Or(hn::Lt(hn::Abs(hn::Sub(from, at)), near), hn::Lt(hn::Abs(hn::Sub(to, at)), near)));
     seen_x_ = at;
@@ -666,6 +666,14 @@ struct Foot {
   double x = 0;
   double y = 0;
   double depth = 0;  // w of S there
+
+  double on(Family family) const {
+    return family == Family::kColumns ? x : (family == Family::kRows ? y : x - y);
+  }
+  // As the posts of a lattice have it.
+  double height(const DepthPlane& plane, const ColumnEye& eye) const {
+    return (plane.w0 + plane.wx * x + plane.wy * y - depth) * eye.radius_m * eye.radius_m;
+  }
 };
 
 template <RowKind kKind>
@@ -702,11 +710,10 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
     int first = outward_up ? low : high;
     const int last = outward_up ? high : low;
     if (foot.inside) {
-      const double at =
-          family == Family::kColumns ? foot.x : (family == Family::kRows ? foot.y : foot.x - foot.y);
+      const double at = foot.on(family);
       // Outward all lines lie on one side of the foot's.
       const double nearest = outward_up ? first - at : at - first;
-      if (nearest < kExactLines) {
+      if (nearest < kExactLines && needs_exact(f, eye)) {
         const double reach = outward_up ? at + kExactLines : at - kExactLines;
         int until = static_cast<int>(outward_up ? std::ceil(reach) : std::floor(reach));
         until = outward_up ? std::min(until, last) : std::max(until, last);
@@ -714,8 +721,7 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
           const LatticeLines<double>& lines = source.exact_lines(family);
           const DepthPlane& plane = lines.reference;
           find_bases(f, plane, eye, up, paths);
-          const double height =
-              (plane.w0 + plane.wx * foot.x + plane.wy * foot.y - foot.depth) * eye.radius_m * eye.radius_m;
+          const double height = foot.height(plane, eye);
           for (int lane0 = 0; lane0 < static_cast<int>(hn::Lanes(FloatTag()));
                lane0 += static_cast<int>(hn::Lanes(DoubleTag()))) {
             Walk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, eye, rows, group);
@@ -731,8 +737,12 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
     if (first == last) continue;
     const LatticeLines<float>& lines = source.lines(family);
     find_bases(f, lines.reference, eye, up, paths);
+    const bool begins = foot.inside && first == (outward_up ? low : high);
     Walk<FloatTag, kKind> walk(lines, family, f.intervals, paths, kind, 0, eye, rows, group);
     if (!walk.any()) continue;
+    if (begins)
+      walk.start_at_foot(static_cast<float>(foot.on(family)),
+                         static_cast<float>(foot.height(lines.reference, eye)), paths);
     walk.run(first, last);
     walk.store();
   }
@@ -857,6 +867,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vpe::voxel {
+
+bool needs_exact(const LatticeFrame& frame, const ColumnEye& eye) {
+  return eye.distance_m - eye.ground_m < kExactLines * std::max(frame.du, frame.dv) * eye.radius_m;
+}
 
 HWY_EXPORT(WalkLattice);
 HWY_EXPORT(UpdateLeastSlope);

@@ -77,11 +77,14 @@ class LatticeSource {
 
 // Walks all columns through one lattice and resolves rows. The group must have gone through everything before
 // it, as seen from the eye. up: of the eye, in the face's axes. Lines within kExactLines of the eye's foot are
-// read in double. Every crossing with an edge counts, so that facets are exact but for rounding:
+// read in double, where needs_exact() says so. Every crossing with an edge counts, so that facets are exact but for rounding:
 // kColumnSlopeError of the slope. Results of a column do not depend on the others of its group.
 void walk_lattice(const LatticeFrame& frame, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
                   const Rows& rows, ColumnGroup& group);
 inline constexpr int kExactLines = 24;
+
+// Whether the eye is so low that the cells about its foot need double.
+bool needs_exact(const LatticeFrame& frame, const ColumnEye& eye);
 
 // Sets least_slope from the rows that are left.
 void update_least_slope(const Rows& rows, ColumnGroup& group);

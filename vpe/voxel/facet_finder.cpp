@@ -53,7 +53,8 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   f.dv = (line(key.j, j + 1) - f.v0) / f.intervals;
   const mars::FaceAxes& axes = mars::face_axes(place.face);
   const double z = glm::dot(walk_.eye().up, axes.out);
-  const bool exact = z > 0 && near((glm::dot(walk_.eye().up, axes.right) / z - f.u0) / f.du, f.intervals) &&
+  const bool exact = z > 0 && needs_exact(f, walk_.eye()) &&
+                     near((glm::dot(walk_.eye().up, axes.right) / z - f.u0) / f.du, f.intervals) &&
                      near((glm::dot(walk_.eye().up, axes.up) / z - f.v0) / f.dv, f.intervals);
   facets_.exact_lines = nullptr;
   if (exact) {

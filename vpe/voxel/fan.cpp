@@ -122,6 +122,12 @@ void FanPlan::add(bool upright, bool forward) {
   // Where lines are parallel and upright they go through pixel centres.
   fan.first_line = std::floor(low - 0.5) + 0.5;
   fan.lines = static_cast<int>(std::ceil((high - fan.first_line) / spacing_)) + 1;
+  fan.origin = 0.5 * (s_min + s_max);
+  for (const Fan::Map& map : fan.maps) {
+    fan.line_stretch.push_back(static_cast<float>(map.stretch / spacing_));
+    fan.line_shift.push_back(
+        static_cast<float>((map.stretch * fan.origin + map.shift - fan.first_line) / spacing_));
+  }
   index_[upright ? 1 : 0][forward ? 1 : 0] = static_cast<int>(fans_.size());
   // Slopes rise away from the nadir, and towards the zenith.
   fans_.push_back(std::move(fan));

@@ -33,6 +33,10 @@ struct Fan {
     double shift;
   };
   std::vector<Map> maps;  // by step
+  // The same for positions among the lines, in float: line = line_stretch (s - origin) + line_shift.
+  double origin = 0;
+  std::vector<float> line_stretch;
+  std::vector<float> line_shift;
 };
 
 // What a line's columns need.

@@ -91,19 +91,27 @@ void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, 
   const auto beside = [&](int begin, int end) {
     if (begin >= end) return;
     const Fan* fan = plan.fan_of(plan.side_of(part.x + begin + 0.5, y));
-    const float* from = fan != nullptr ? samples(*fan) : nullptr;
+    if (fan == nullptr) {
+      for (int k = begin; k < end; ++k) none(k);
+      return;
+    }
+    // Pixels that the fan's steps leave out have their neighbours' samples.
+    const int first = std::clamp(fan->first_step - part.x, begin, end);
+    const int last = std::clamp(fan->first_step + fan->steps - part.x, first, end);
+    if (first == last) {
+      for (int k = begin; k < end; ++k) none(k);
+      return;
+    }
+    const auto step = static_cast<std::size_t>(part.x + first - fan->first_step);
+    hints_from_columns(samples(*fan) + static_cast<std::ptrdiff_t>(step) * fan->lines, fan->lines,
+                       fan->line_stretch.data() + step, fan->line_shift.data() + step,
+                       static_cast<float>(y - fan->origin), last - first, a + first, b + first, share + first);
     for (int k = begin; k < end; ++k) {
-      if (fan == nullptr) {
-        none(k);
-        continue;
-      }
-      const int step = std::clamp(part.x + k - fan->first_step, 0, fan->steps - 1);
-      const Fan::Map& map = fan->maps[static_cast<std::size_t>(step)];
-      const double line = (map.stretch * y + map.shift - fan->first_line) / fan->spacing;
-      const int before = std::clamp(static_cast<int>(line), 0, fan->lines - 2);
-      a[k] = from[std::ptrdiff_t{step} * fan->lines + before];
-      b[k] = from[std::ptrdiff_t{step} * fan->lines + before + 1];
-      share[k] = static_cast<float>(std::clamp(line - before, 0.0, 1.0));
+      const int from = std::clamp(k, first, last - 1);
+      if (from == k) continue;
+      a[k] = a[from];
+      b[k] = b[from];
+      share[k] = share[from];
     }
   };
   beside(0, span.begin);
@@ -124,6 +132,7 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
   pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
     const Desks::Use use(desks);
     FacetFinder finder(walk, use.shelf());
+    FacetFinder exact_finder(walk, use.shelf());
     RowHints hints(part.width);
     const int first = static_cast<int>(task) * kTaskRows;
     for (int row = first; row < std::min(first + kTaskRows, part.height); ++row) {
@@ -137,7 +146,8 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
       rays.step = axes.right;
       rays.count = part.width;
       hints.open.clear();
-      refine_row(rays, hints.a.data(), hints.b.data(), hints.share.data(), finder, out, hints.open);
+      refine_row(rays, hints.a.data(), hints.b.data(), hints.share.data(), finder, exact_finder, out,
+                 hints.open);
       for (const int k : hints.open) {
         const auto at = static_cast<std::size_t>(k);
         if (exact) {

@@ -37,15 +37,20 @@ struct RayRow {
   int count = 0;
 };
 
-// range[k]: where ray k meets S between the hints a[k] and b[k], ranges of samples on either side of the pixel, of
-// which it lies share[k] of the way from a to b. As exact as the facets' posts, then rounded to float. Infinite
-// where both hints are. Pixels whose hints do not belong to one surface, and those that find no facet, are
-// appended to `open` and left as the nearer hint.
+// range[k]: where ray k meets S between the hints a[k] and b[k], ranges of samples on either side of the pixel,
+// of which it lies share[k] of the way from a to b. As exact as the facets' posts, then rounded to float.
+// Infinite where both hints are. Pixels whose hints do not belong to one surface, and those that find no facet,
+// are appended to `open` and left as the nearer hint. The two sources see the same lattices; each is asked by
+// turns of its own.
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
-                float* range, std::vector<int>& open);
+                FacetSource& exact_source, float* range, std::vector<int>& open);
 
 // Hints from a row of samples: pixel k lies at first + k step, in samples; a and b are its neighbours there.
-void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a, float* b,
-                    float* share);
+void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
+                    float* b, float* share);
+
+// Hints from rows of samples, one a pixel: pixel k lies at stretch[k] y + shift[k] of samples[k * lines ...].
+void hints_from_columns(const float* samples, int lines, const float* stretch, const float* shift, float y,
+                        int count, float* a, float* b, float* share);
 
 }  // namespace vpe::voxel

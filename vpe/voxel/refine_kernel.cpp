@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 #include <limits>
 
 #include "vpe/voxel/refine.h"
@@ -19,128 +20,138 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<double, 8>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-using DI = hn::RebindToSigned<D>;
-using VI = hn::Vec<DI>;
-
-constexpr int kLanes = 8;
 constexpr int kRounds = 8;
+constexpr int kLattices = 12;
 // Hints farther apart than this share of the nearer one are not taken for one surface.
 constexpr double kApart = 0.04;
-// Cells by which rounding may put a place outside its lattice.
-constexpr double kBorder = 1e-11;
 
-struct Vector3 {
-  V x, y, z;
-};
-
-Vector3 spread(const glm::dvec3& a) {
-  const D d;
-  return {hn::Set(d, a.x), hn::Set(d, a.y), hn::Set(d, a.z)};
-}
-V dot(const Vector3& a, const glm::dvec3& b) {
-  const D d;
-  return hn::MulAdd(a.x, hn::Set(d, b.x), hn::MulAdd(a.y, hn::Set(d, b.y), hn::Mul(a.z, hn::Set(d, b.z))));
-}
-
+// Neighbouring rays against facets; D a vector of float, or of double about the eye's foot.
+template <class D>
 class RowRefiner {
  public:
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+  static constexpr bool kExact = sizeof(T) == 8;
+
   RowRefiner(const RayRow& row, FacetSource& source) : row_(row), source_(source) {
     const V zero = hn::Zero(D());
-    ex_ = ey_ = ez_ = dx_ = dy_ = dz_ = zero;
-    u0_ = v0_ = du_ = dv_ = per_du_ = per_dv_ = last_ = w0_ = wx_ = wy_ = zero;
+    ex_ = ey_ = ez_ = dx_ = dy_ = dz_ = eye_rise_ = ray_rise_ = last_ = zero;
+    number_ = last_facet_ = hn::Zero(DI());
+    not_here_ = hn::MaskFromVec(zero);
   }
 
-  // Rays of the next lanes, unit.
-  void set_rays(const Vector3& ray) {
-    ray_ = ray;
-    turned_ = false;
+  // Rays k, k + 1, ...
+  void set_rays(int k) {
+    const D d;
+    first_ = k;
+    index_ = hn::Add(hn::Iota(d, T(0)), hn::Set(d, static_cast<T>(k)));
+    const glm::dvec3& a = row_.first;
+    const glm::dvec3& b = row_.step;
+    // |a + k b|^2
+    const V square = hn::MulAdd(index_, hn::MulAdd(index_, set(glm::dot(b, b)), set(2 * glm::dot(a, b))),
+                                set(glm::dot(a, a)));
+    per_length_ = hn::Div(hn::Set(d, T(1)), hn::Sqrt(square));
+    if (facets_ != nullptr) turn();
   }
 
-  // t holds first guesses of the lanes in `todo` and takes their ranges. Returns who was found.
+  // t holds first guesses of the lanes in `todo` and takes their ranges, if these are within [low, high].
+  // Returns who was found. Lanes over lattices of the other kind are left to it: not_here().
   M refine(M todo, V low, V high, V& t) {
     const D d;
-    const DI di;
     M found = hn::MaskFromVec(hn::Zero(d));
-    VI last_facet = hn::Set(di, -1);
-    for (int round = 0; round < kRounds && !hn::AllFalse(d, todo); ++round) {
+    not_here_ = found;
+    last_facet_ = hn::Set(DI(), -1);
+    for (int lattices = 0; lattices < kLattices && !hn::AllFalse(d, todo); ++lattices) {
       Place place = place_of(t);
       M here = hn::And(todo, inside(place));
       if (facets_ == nullptr || hn::AllFalse(d, here)) {
         aim(todo, t);
-        last_facet = hn::Set(di, -1);
         place = place_of(t);
         here = hn::And(todo, inside(place));
       }
-      step(here, place, todo, found, low, high, t, last_facet);
+      if ((facets_->exact_lines != nullptr) != kExact) {
+        not_here_ = hn::Or(not_here_, here);
+        todo = hn::AndNot(here, todo);
+        continue;
+      }
+      for (int round = 0; round < kRounds && !hn::AllFalse(d, here); ++round) {
+        step(here, place, todo, found, low, high, t);
+        place = place_of(t);
+        here = hn::And(todo, inside(place));
+      }
     }
     return found;
   }
+
+  M not_here() const { return not_here_; }
 
  private:
   struct Place {
     V x, y, z;
   };
 
+  static V set(double x) { return hn::Set(D(), static_cast<T>(x)); }
+
   // To the lattice of the first lane that is left.
   void aim(M todo, V t) {
     const D d;
     const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(d, todo));
-    alignas(64) double values[4][kLanes];
-    hn::Store(t, d, values[0]);
-    hn::Store(ray_.x, d, values[1]);
-    hn::Store(ray_.y, d, values[2]);
-    hn::Store(ray_.z, d, values[3]);
-    const mars::Face before = facets_ != nullptr ? facets_->face : mars::Face::kPlusX;
-    const bool first = facets_ == nullptr;
-    facets_ = &source_.at(row_.eye_m +
-                          values[0][lane] * glm::dvec3(values[1][lane], values[2][lane], values[3][lane]));
+    alignas(64) T ts[64 / sizeof(T)];
+    hn::Store(t, d, ts);
+    const glm::dvec3 ray =
+        glm::normalize(row_.first + static_cast<double>(first_ + static_cast<int>(lane)) * row_.step);
+    facets_ = &source_.at(row_.eye_m + static_cast<double>(ts[lane]) * ray);
     const Facets& f = *facets_;
-    if (first || f.face != before) turned_ = false;
-    turn();
-    u0_ = hn::Set(d, f.frame.u0);
-    v0_ = hn::Set(d, f.frame.v0);
-    du_ = hn::Set(d, f.frame.du);
-    dv_ = hn::Set(d, f.frame.dv);
-    per_du_ = hn::Set(d, 1.0 / f.frame.du);
-    per_dv_ = hn::Set(d, 1.0 / f.frame.dv);
-    last_ = hn::Set(d, static_cast<double>(f.frame.intervals - 1));
+    aims_ = (aims_ + 1) & 0x1fff;
+    // Beside 2^8 x 2^8 cells of two facets.
+    number_ = hn::Set(DI(), static_cast<hn::TFromD<DI>>(aims_ << 18));
+    last_ = set(f.frame.intervals - 1);
+    const mars::FaceAxes& axes = mars::face_axes(f.face);
     const DepthPlane& plane = f.exact_lines != nullptr ? f.exact_lines->reference : f.lines->reference;
-    w0_ = hn::Set(d, plane.w0);
-    wx_ = hn::Set(d, plane.wx);
-    wy_ = hn::Set(d, plane.wy);
-  }
-
-  // The rays in the axes of the face at hand.
-  void turn() {
-    if (turned_) return;
-    const D d;
-    const mars::FaceAxes& axes = mars::face_axes(facets_->face);
-    ex_ = hn::Set(d, glm::dot(row_.eye_m, axes.right));
-    ey_ = hn::Set(d, glm::dot(row_.eye_m, axes.up));
-    ez_ = hn::Set(d, glm::dot(row_.eye_m, axes.out));
-    dx_ = dot(ray_, axes.right);
-    dy_ = dot(ray_, axes.up);
-    dz_ = dot(ray_, axes.out);
-    turned_ = true;
-  }
-
-  Place place_of(V t) {
-    if (facets_ == nullptr) return {t, t, t};
+    const auto from = [&](const glm::dvec3& p) {
+      const double z = glm::dot(p, axes.out);
+      const double x = (glm::dot(p, axes.right) - f.frame.u0 * z) / f.frame.du;
+      const double y = (glm::dot(p, axes.up) - f.frame.v0 * z) / f.frame.dv;
+      return glm::dvec4(x, y, z, -row_.radius_m * (plane.w0 * z + plane.wx * x + plane.wy * y));
+    };
+    const glm::dvec4 eye = from(row_.eye_m);
+    ex_ = set(eye.x);
+    ey_ = set(eye.y);
+    ez_ = set(eye.z);
+    eye_rise_ = set(row_.radius_m + eye.w);
+    ray0_ = from(row_.first);
+    ray1_ = from(row_.step);
     turn();
+  }
+
+  // The rays against the lattice at hand.
+  void turn() {
+    const auto along = [&](double a, double b) {
+      return hn::Mul(hn::MulAdd(index_, set(b), set(a)), per_length_);
+    };
+    dx_ = along(ray0_.x, ray1_.x);
+    dy_ = along(ray0_.y, ray1_.y);
+    dz_ = along(ray0_.z, ray1_.z);
+    ray_rise_ = along(ray0_.w, ray1_.w);
+  }
+
+  Place place_of(V t) const {
+    const D d;
+    if (facets_ == nullptr) return {t, t, t};
     const V z = hn::MulAdd(t, dz_, ez_);
-    const V per_z = hn::Div(hn::Set(D(), 1.0), z);
-    return {hn::Mul(hn::MulSub(hn::MulAdd(t, dx_, ex_), per_z, u0_), per_du_),
-            hn::Mul(hn::MulSub(hn::MulAdd(t, dy_, ey_), per_z, v0_), per_dv_), z};
+    const V per_z = hn::Div(hn::Set(d, T(1)), z);
+    return {hn::Mul(hn::MulAdd(t, dx_, ex_), per_z), hn::Mul(hn::MulAdd(t, dy_, ey_), per_z), z};
   }
 
   // A place on a border belongs to both sides.
   M inside(const Place& p) const {
     const D d;
-    const V low = hn::Set(d, -kBorder);
-    const V high = hn::Add(last_, hn::Set(d, 1 + kBorder));
+    constexpr double kSlack = kExact ? 1e-11 : 1e-4;
+    const V low = set(-kSlack);
+    const V high = hn::Add(last_, set(1 + kSlack));
     const M x = hn::And(hn::Ge(p.x, low), hn::Le(p.x, high));
     const M y = hn::And(hn::Ge(p.y, low), hn::Le(p.y, high));
     return hn::And(hn::Gt(p.z, hn::Zero(d)), hn::And(x, y));
@@ -156,29 +167,25 @@ class RowRefiner {
     const VI position = f.family == Family::kColumns ? y : x;
     if (f.family == Family::kDiagonals)
       line = hn::IfThenElse(hn::Lt(line, hn::Zero(di)), hn::Add(line, hn::Set(di, side)), line);
-#if HWY_TARGET <= HWY_AVX3
-    const __m512i at = _mm512_add_epi64(_mm512_mul_epi32(line.raw, _mm512_set1_epi64(side)), position.raw);
-    if (f.exact_lines != nullptr) return V{_mm512_i64gather_pd(at, f.exact_lines->posts, 8)};
-    return V{_mm512_cvtps_pd(_mm512_i64gather_ps(at, f.lines->posts, 4))};
-#else
-    alignas(64) std::int64_t lines[kLanes];
-    alignas(64) std::int64_t positions[kLanes];
-    hn::Store(line, di, lines);
-    hn::Store(position, di, positions);
-    alignas(64) double values[kLanes];
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
-      const std::ptrdiff_t at = lines[k] * side + positions[k];
-      values[k] = f.exact_lines != nullptr ? f.exact_lines->posts[at] : static_cast<double>(f.lines->posts[at]);
+    if constexpr (kExact) {
+      alignas(64) std::int64_t lines[8];
+      alignas(64) std::int64_t positions[8];
+      hn::Store(line, di, lines);
+      hn::Store(position, di, positions);
+      alignas(64) double values[8];
+      for (std::size_t k = 0; k < hn::Lanes(d); ++k)
+        values[k] = f.exact_lines->posts[lines[k] * side + positions[k]];
+      return hn::Load(d, values);
+    } else {
+      const VI at = hn::Add(hn::Mul(line, hn::Set(di, side)), position);
+      return hn::GatherIndex(d, f.lines->posts, at);
     }
-    return hn::Load(d, values);
-#endif
   }
 
-  void step(M here, const Place& place, M& todo, M& found, V low, V high, V& t, VI& last_facet) const {
+  void step(M here, const Place& place, M& todo, M& found, V low, V high, V& t) {
     const D d;
     const DI di;
     const V zero = hn::Zero(d);
-    const V one = hn::Set(d, 1.0);
     const V i = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(place.x), zero), last_), zero);
     const V j = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(place.y), zero), last_), zero);
     const M lower = hn::Ge(hn::Sub(place.x, i), hn::Sub(place.y, j));
@@ -186,29 +193,29 @@ class RowRefiner {
     const VI yj = hn::ConvertTo(di, j);
     const VI one_i = hn::Set(di, 1);
     const VI lower_i = hn::IfThenElse(hn::RebindMask(di, lower), one_i, hn::Zero(di));
-    // The facet's number in the lattice.
-    const VI facet = hn::Add(hn::Add(hn::ShiftLeft<1>(xi), hn::ShiftLeft<16>(yj)), lower_i);
-    const M same = hn::And(here, hn::RebindMask(d, hn::Eq(facet, last_facet)));
+    const VI facet = hn::Add(hn::Add(hn::ShiftLeft<1>(xi), hn::ShiftLeft<9>(yj)), hn::Add(lower_i, number_));
+    const M same = hn::And(here, hn::RebindMask(d, hn::Eq(facet, last_facet_)));
     found = hn::Or(found, same);
     todo = hn::AndNot(same, todo);
     here = hn::AndNot(same, here);
     if (hn::AllFalse(d, here)) return;
-    last_facet = hn::IfThenElse(hn::RebindMask(di, here), facet, last_facet);
+    last_facet_ = hn::IfThenElse(hn::RebindMask(di, here), facet, last_facet_);
     const V h00 = post(xi, yj);
     const V h11 = post(hn::Add(xi, one_i), hn::Add(yj, one_i));
     const V hm = post(hn::Add(xi, lower_i), hn::Sub(hn::Add(yj, one_i), lower_i));
-    const V per_r2 = hn::Set(d, 1.0 / (row_.radius_m * row_.radius_m));
-    const V w00 = hn::NegMulAdd(h00, per_r2, hn::MulAdd(wx_, i, hn::MulAdd(wy_, j, w0_)));
-    const V first = hn::Mul(hn::Sub(hm, h00), per_r2);
-    const V second = hn::Mul(hn::Sub(h11, hm), per_r2);
-    const V ws = hn::Mul(hn::Sub(wx_, hn::IfThenElse(lower, first, second)), per_du_);
-    const V wt = hn::Mul(hn::Sub(wy_, hn::IfThenElse(lower, second, first)), per_dv_);
-    const V u = hn::MulAdd(du_, i, u0_);
-    const V v = hn::MulAdd(dv_, j, v0_);
-    // 1 - Z w: negative above the facet's plane.
-    const V c = hn::NegMulAdd(ws, u, hn::NegMulAdd(wt, v, w00));
-    const V at_eye = hn::NegMulAdd(ws, ex_, hn::NegMulAdd(wt, ey_, hn::NegMulAdd(c, ez_, one)));
-    const V slope = hn::Neg(hn::MulAdd(ws, dx_, hn::MulAdd(wt, dy_, hn::Mul(c, dz_))));
+    const V first = hn::Sub(hm, h00);
+    const V second = hn::Sub(h11, hm);
+    const V p = hn::IfThenElse(lower, first, second);
+    const V q = hn::IfThenElse(lower, second, first);
+    // Metres below the facet's plane: of the reference plane, and of the facet against it.
+    const V per_r = set(1.0 / row_.radius_m);
+    const auto below = [&](V x, V y, V z, V reference) {
+      const V px = hn::NegMulAdd(i, z, x);
+      const V py = hn::NegMulAdd(j, z, y);
+      return hn::MulAdd(per_r, hn::MulAdd(h00, z, hn::MulAdd(p, px, hn::Mul(q, py))), reference);
+    };
+    const V at_eye = below(ex_, ey_, ez_, eye_rise_);
+    const V slope = below(dx_, dy_, dz_, ray_rise_);
     const V next = hn::Neg(hn::Div(at_eye, slope));
     const M good = hn::And(hn::Gt(slope, zero), hn::And(hn::Ge(next, low), hn::Le(next, high)));
     t = hn::IfThenElse(hn::And(here, good), next, t);
@@ -219,45 +226,107 @@ class RowRefiner {
   const RayRow& row_;
   FacetSource& source_;
   const Facets* facets_ = nullptr;
-  bool turned_ = false;
-  Vector3 ray_{};
+  int first_ = 0;
+  int aims_ = 0;
+  glm::dvec4 ray0_{};
+  glm::dvec4 ray1_{};
+  V index_ = hn::Zero(D());
+  V per_length_ = hn::Zero(D());
   V ex_, ey_, ez_, dx_, dy_, dz_;
-  V u0_, v0_, du_, dv_, per_du_, per_dv_, last_, w0_, wx_, wy_;
+  V eye_rise_, ray_rise_;  // below the reference plane
+  V last_;
+  VI number_;      // of the lattice at hand
+  VI last_facet_;  // of each lane
+  M not_here_;
+};
+
+using FloatTag = hn::CappedTag<float, 16>;
+using DoubleTag = hn::CappedTag<double, 8>;
+
+// Both kinds of lattices for a vector of floats.
+class PixelRefiner {
+ public:
+  using V = hn::Vec<FloatTag>;
+  using M = hn::Mask<FloatTag>;
+
+  PixelRefiner(const RayRow& row, FacetSource& source, FacetSource& exact_source)
+      : floats_(row, source), doubles_(row, exact_source) {}
+
+  void set_rays(int k) {
+    first_ = k;
+    floats_.set_rays(k);
+  }
+
+  M refine(M todo, V low, V high, V& t) {
+    const FloatTag d;
+    const M found = floats_.refine(todo, low, high, t);
+    const M left = floats_.not_here();
+    if (HWY_LIKELY(hn::AllFalse(d, left))) return found;
+    const DoubleTag dd;
+    alignas(64) float marks[16];
+    alignas(64) float lows[16];
+    alignas(64) float highs[16];
+    alignas(64) float ts[16];
+    const V one = hn::Set(d, 1.0F);
+    const V zero = hn::Zero(d);
+    hn::Store(hn::IfThenElse(left, one, zero), d, marks);
+    hn::Store(low, d, lows);
+    hn::Store(high, d, highs);
+    hn::Store(t, d, ts);
+    const std::size_t step = hn::Lanes(dd);
+    alignas(64) double part[4][8];
+    for (std::size_t lane = 0; lane < hn::Lanes(d); lane += step) {
+      for (std::size_t k = 0; k < step; ++k) {
+        part[0][k] = static_cast<double>(marks[lane + k]);
+        part[1][k] = static_cast<double>(lows[lane + k]);
+        part[2][k] = static_cast<double>(highs[lane + k]);
+        part[3][k] = static_cast<double>(ts[lane + k]);
+      }
+      const auto wanted = hn::Gt(hn::Load(dd, part[0]), hn::Zero(dd));
+      if (hn::AllFalse(dd, wanted)) continue;
+      doubles_.set_rays(first_ + static_cast<int>(lane));
+      auto at = hn::Load(dd, part[3]);
+      const auto met = doubles_.refine(wanted, hn::Load(dd, part[1]), hn::Load(dd, part[2]), at);
+      hn::Store(at, dd, part[3]);
+      hn::Store(hn::IfThenElse(met, hn::Set(dd, 2.0), hn::Load(dd, part[0])), dd, part[0]);
+      for (std::size_t k = 0; k < step; ++k) {
+        marks[lane + k] = static_cast<float>(part[0][k]);
+        if (marks[lane + k] == 2.0F) ts[lane + k] = static_cast<float>(part[3][k]);
+      }
+    }
+    t = hn::Load(d, ts);
+    return hn::Or(found, hn::Eq(hn::Load(d, marks), hn::Set(d, 2.0F)));
+  }
+
+ private:
+  int first_ = 0;
+  RowRefiner<FloatTag> floats_;
+  RowRefiner<DoubleTag> doubles_;
 };
 
 void RefineRow(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
-               float* range, std::vector<int>& open) {
-  const D d;
-  const hn::Rebind<float, D> df;
+               FacetSource& exact_source, float* range, std::vector<int>& open) {
+  const FloatTag d;
+  using V = hn::Vec<FloatTag>;
+  using M = hn::Mask<FloatTag>;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  RowRefiner refiner(row, source);
+  PixelRefiner refiner(row, source, exact_source);
   const V zero = hn::Zero(d);
-  const V one = hn::Set(d, 1.0);
-  const V inf = hn::Set(d, std::numeric_limits<double>::infinity());
-  const Vector3 first = spread(row.first);
-  const Vector3 step = spread(row.step);
-  alignas(64) float as[kLanes];
-  alignas(64) float bs[kLanes];
-  alignas(64) float shares[kLanes];
+  const V one = hn::Set(d, 1.0F);
+  const V inf = hn::Set(d, std::numeric_limits<float>::infinity());
+  const V apart = hn::Set(d, static_cast<float>(kApart));
+  alignas(64) float some[3][16];
   for (int k = 0; k < row.count; k += lanes) {
     const int used = std::min(lanes, row.count - k);
-    V ha;
-    V hb;
-    V part;
-    if (used == lanes) {
-      ha = hn::PromoteTo(d, hn::LoadU(df, a + k));
-      hb = hn::PromoteTo(d, hn::LoadU(df, b + k));
-      part = hn::PromoteTo(d, hn::LoadU(df, share + k));
-    } else {
-      for (int lane = 0; lane < lanes; ++lane) {
-        as[lane] = lane < used ? a[k + lane] : std::numeric_limits<float>::infinity();
-        bs[lane] = lane < used ? b[k + lane] : std::numeric_limits<float>::infinity();
-        shares[lane] = lane < used ? share[k + lane] : 0.0F;
-      }
-      ha = hn::PromoteTo(d, hn::Load(df, as));
-      hb = hn::PromoteTo(d, hn::Load(df, bs));
-      part = hn::PromoteTo(d, hn::Load(df, shares));
-    }
+    const auto load = [&](const float* from, float* room, float rest) {
+      if (used == lanes) return hn::LoadU(d, from + k);
+      std::fill_n(room, lanes, rest);
+      std::copy_n(from + k, used, room);
+      return hn::Load(d, room);
+    };
+    const V ha = load(a, some[0], std::numeric_limits<float>::infinity());
+    const V hb = load(b, some[1], std::numeric_limits<float>::infinity());
+    const V part = load(share, some[2], 0.0F);
     const V near = hn::Min(ha, hb);
     const V far = hn::Max(ha, hb);
     const M sky = hn::Eq(near, inf);
@@ -265,32 +334,77 @@ void RefineRow(const RayRow& row, const float* a, const float* b, const float* s
       std::fill_n(range + k, used, std::numeric_limits<float>::infinity());
       continue;
     }
-    const V index = hn::Add(hn::Iota(d, 0.0), hn::Set(d, static_cast<double>(k)));
-    const Vector3 ray{hn::MulAdd(index, step.x, first.x), hn::MulAdd(index, step.y, first.y),
-                      hn::MulAdd(index, step.z, first.z)};
-    const V per =
-        hn::Div(one, hn::Sqrt(hn::MulAdd(ray.x, ray.x, hn::MulAdd(ray.y, ray.y, hn::Mul(ray.z, ray.z)))));
-    refiner.set_rays({hn::Mul(ray.x, per), hn::Mul(ray.y, per), hn::Mul(ray.z, per)});
-    const V reach = hn::Mul(near, hn::Set(d, kApart));
+    refiner.set_rays(k);
+    const V reach = hn::Mul(near, apart);
     const M close = hn::Le(hn::Sub(far, near), reach);
     // On one facet the inverse range is all but even from sample to sample.
     const V inverse = hn::MulAdd(part, hn::Sub(hn::Div(one, hb), hn::Div(one, ha)), hn::Div(one, ha));
-    V t = hn::IfThenElse(close, hn::Div(one, inverse), zero);
-    const M found = refiner.refine(hn::AndNot(sky, close), hn::Sub(near, reach), hn::Add(far, reach), t);
-    const M done = hn::Or(found, sky);
-    const V seen = hn::IfThenElse(found, t, near);
+    // Between two surfaces the nearer one comes first.
+    V t = hn::IfThenElse(close, hn::Div(one, inverse), near);
+    const V high = hn::IfThenElse(close, hn::Add(far, reach), hn::Add(near, reach));
+    const M found = refiner.refine(hn::Not(sky), hn::Sub(near, reach), high, t);
+    // A ray that misses it meets the farther one, if that is not the sky.
+    const M missed = hn::Not(hn::Or(found, hn::Or(sky, close)));
+    V seen = hn::IfThenElse(found, t, near);
+    M done = hn::Or(found, sky);
+    if (!hn::AllFalse(d, missed)) {
+      const M open_sky = hn::And(missed, hn::Eq(far, inf));
+      const M beyond = hn::AndNot(open_sky, missed);
+      V behind = far;
+      const V slack = hn::Mul(far, apart);
+      const M met = refiner.refine(beyond, hn::Sub(far, slack), hn::Add(far, slack), behind);
+      seen = hn::IfThenElse(met, behind, hn::IfThenElse(open_sky, inf, seen));
+      done = hn::Or(done, hn::Or(met, open_sky));
+    }
     if (used == lanes) {
-      hn::StoreU(hn::DemoteTo(df, seen), df, range + k);
+      hn::StoreU(seen, d, range + k);
     } else {
-      hn::Store(hn::DemoteTo(df, seen), df, as);
-      std::copy_n(as, used, range + k);
+      hn::Store(seen, d, some[0]);
+      std::copy_n(some[0], used, range + k);
     }
     if (!hn::AllTrue(d, done)) {
-      alignas(64) double marks[kLanes];
-      hn::Store(hn::IfThenElse(done, zero, one), d, marks);
+      hn::Store(hn::IfThenElse(done, zero, one), d, some[0]);
       for (int lane = 0; lane < used; ++lane) {
-        if (marks[lane] != 0) open.push_back(k + lane);
+        if (some[0][lane] != 0) open.push_back(k + lane);
       }
+    }
+  }
+}
+
+// Row `row` of samples [step][line] at line = stretch[k] y + shift[k], step first + k.
+void HintsFromColumns(const float* samples, int lines, const float* stretch, const float* shift, float y,
+                      int count, float* a, float* b, float* share) {
+  const FloatTag d;
+  const hn::RebindToSigned<FloatTag> di;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  alignas(64) float some[5][16];
+  for (int k = 0; k < count; k += lanes) {
+    const int used = std::min(lanes, count - k);
+    const auto load = [&](const float* from, float* room) {
+      if (used == lanes) return hn::LoadU(d, from + k);
+      std::fill_n(room, lanes, 0.0F);
+      std::copy_n(from + k, used, room);
+      return hn::Load(d, room);
+    };
+    const auto line = hn::MulAdd(load(stretch, some[0]), hn::Set(d, y), load(shift, some[1]));
+    const auto before =
+        hn::Min(hn::Max(hn::Floor(line), hn::Zero(d)), hn::Set(d, static_cast<float>(lines - 2)));
+    const auto step = hn::Min(hn::Add(hn::Iota(di, 0), hn::Set(di, k)), hn::Set(di, count - 1));
+    const auto at = hn::Add(hn::Mul(step, hn::Set(di, lines)), hn::ConvertTo(di, before));
+    const auto va = hn::GatherIndex(d, samples, at);
+    const auto vb = hn::GatherIndex(d, samples + 1, at);
+    const auto part = hn::Min(hn::Max(hn::Sub(line, before), hn::Zero(d)), hn::Set(d, 1.0F));
+    if (used == lanes) {
+      hn::StoreU(va, d, a + k);
+      hn::StoreU(vb, d, b + k);
+      hn::StoreU(part, d, share + k);
+    } else {
+      hn::Store(va, d, some[2]);
+      hn::Store(vb, d, some[3]);
+      hn::Store(part, d, some[4]);
+      std::copy_n(some[2], used, a + k);
+      std::copy_n(some[3], used, b + k);
+      std::copy_n(some[4], used, share + k);
     }
   }
 }
@@ -340,14 +454,19 @@ namespace vpe::voxel {
 
 HWY_EXPORT(RefineRow);
 HWY_EXPORT(HintsFromRow);
+HWY_EXPORT(HintsFromColumns);
 
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
-                float* range, std::vector<int>& open) {
-  HWY_DYNAMIC_DISPATCH(RefineRow)(row, a, b, share, source, range, open);
+                FacetSource& exact_source, float* range, std::vector<int>& open) {
+  HWY_DYNAMIC_DISPATCH(RefineRow)(row, a, b, share, source, exact_source, range, open);
 }
 void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
                     float* b, float* share) {
   HWY_DYNAMIC_DISPATCH(HintsFromRow)(samples, sample_count, first, step, count, a, b, share);
+}
+void hints_from_columns(const float* samples, int lines, const float* stretch, const float* shift, float y,
+                        int count, float* a, float* b, float* share) {
+  HWY_DYNAMIC_DISPATCH(HintsFromColumns)(samples, lines, stretch, shift, y, count, a, b, share);
 }
 
 }  // namespace vpe::voxel
