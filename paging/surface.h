@@ -51,8 +51,10 @@ class Surface {
   // Distance along the unit `direction` from `eye_m` (metres from the planet's centre) to the first point of
   // S; infinity when there is none. Exact on the flat triangles of S up to rounding (about 1e-9 relative plus
   // what a grazing facet makes of it); watertight: neighbouring facets are tested against the same lines.
-  // An eye below S gives 0. With an exaggeration: of S as it is drawn.
-  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration = 1.0) const;
+  // An eye below S gives 0. With an exaggeration: of S as it is drawn. From `begin_m` on along the ray: begin_m
+  // itself when the ray is below S there.
+  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration = 1.0,
+              double begin_m = 0.0) const;
 
   std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key) const;
   std::size_t bytes_resident() const { return cache_.bytes(); }

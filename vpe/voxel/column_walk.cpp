@@ -41,14 +41,15 @@ double steepest(double radius_m, double distance_m, double near, double far) {
 
 }  // namespace
 
-ColumnWalk::ColumnWalk(const paging::PlanetFile& planet, const ColumnEye& eye, double exaggeration,
+ColumnWalk::ColumnWalk(const paging::Surface& surface, const ColumnEye& eye, double exaggeration,
                        const CellRule& rule)
-    : tree_(planet.tree()),
+    : surface_(surface),
+      tree_(surface.planet().tree()),
       eye_(eye),
       exaggeration_(exaggeration),
       rule_(rule),
-      bounds_(planet.tree().size()),
-      ends_(planet.tree().size()) {
+      bounds_(tree_.size()),
+      ends_(tree_.size()) {
   for (std::atomic<float>& bound : bounds_)
     bound.store(std::numeric_limits<float>::quiet_NaN(), std::memory_order_relaxed);
 }
@@ -199,8 +200,8 @@ class GroupWalk : public LatticeSource {
       return;
     }
     const lod::TileTree::Index first = tree_.first_child(tile);
-    const double um = mars::face_line(2 * std::int64_t{info.key.i} + 1, info.key.level + 1);
-    const double vm = mars::face_line(2 * std::int64_t{info.key.j} + 1, info.key.level + 1);
+    const double um = walk_.middle_line(info.key.level, info.key.i);
+    const double vm = walk_.middle_line(info.key.level, info.key.j);
     quarters(cell, um, vm, [&](bool east, bool north, const Cell& part) {
       visit(first + (east ? 1U : 0U) + (north ? 2U : 0U), part);
     });

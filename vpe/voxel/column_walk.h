@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lod/tree.h"
+#include "paging/surface.h"
 #include "vpe/voxel/columns.h"
 #include "vpe/voxel/lattice_store.h"
 
@@ -20,7 +21,7 @@ struct CellRule {
 class ColumnWalk {
  public:
   // The eye stands above S: eye.distance_m > eye.ground_m.
-  ColumnWalk(const paging::PlanetFile& planet, const ColumnEye& eye, double exaggeration, const CellRule& rule);
+  ColumnWalk(const paging::Surface& surface, const ColumnEye& eye, double exaggeration, const CellRule& rule);
 
   // A group of columns from their azimuth vectors (unit, body-fixed, normal to eye.up), neighbours in order.
   // Rows, fans, and buffers of `group` are set before. Resolves all rows that see ground.
@@ -31,6 +32,9 @@ class ColumnWalk {
 
   // Whether the tile's own posts are cast: it is fine enough, or the finest there.
   bool ends_at(lod::TileTree::Index tile) const;
+
+  // Chart line through the middle of a cell of 2^level a side of a face.
+  double middle_line(int level, std::int32_t index) const { return surface_.middle_line(level, index); }
 
  private:
   friend class GroupWalk;
@@ -44,6 +48,7 @@ class ColumnWalk {
   // No ray into the tile is steeper than this many times upward.
   float slope_bound(lod::TileTree::Index tile) const;
 
+  const paging::Surface& surface_;
   const lod::TileTree& tree_;
   ColumnEye eye_;
   double exaggeration_;

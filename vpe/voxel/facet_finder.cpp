@@ -24,33 +24,40 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
     if (x >= 0 && x <= f.intervals && y >= 0 && y <= f.intervals) return facets_;
   }
   auto tile = static_cast<lod::TileTree::Index>(place.face);
-  while (!walk_.ends_at(tile)) {
-    const lod::TileKey& key = tree[tile].key;
-    const bool east = place.u >= mars::face_line(2 * std::int64_t{key.i} + 1, key.level + 1);
-    const bool north = place.v >= mars::face_line(2 * std::int64_t{key.j} + 1, key.level + 1);
-    tile = tree.first_child(tile) + (east ? 1U : 0U) + (north ? 2U : 0U);
-  }
+  // The cell at hand: (i, j) of 2^level a side.
+  double u0 = -1;
+  double u1 = 1;
+  double v0 = -1;
+  double v1 = 1;
+  int level = 0;
+  std::int32_t i = 0;
+  std::int32_t j = 0;
+  const auto halve = [&] {
+    const double u = walk_.middle_line(level, i);
+    const double v = walk_.middle_line(level, j);
+    const bool east = place.u >= u;
+    const bool north = place.v >= v;
+    (east ? u0 : u1) = u;
+    (north ? v0 : v1) = v;
+    i = 2 * i + (east ? 1 : 0);
+    j = 2 * j + (north ? 1 : 0);
+    ++level;
+    return (east ? 1U : 0U) + (north ? 2U : 0U);
+  };
+  while (!walk_.ends_at(tile)) tile = tree.first_child(tile) + halve();
   const lod::TileKey& key = tree[tile].key;
   const int per_side = lattices_per_side(key.level, tree.shape().intervals());
-  int parts_level = key.level;
-  for (int k = 1; k < per_side; k *= 2) ++parts_level;
-  const auto part = [&](double chart, std::int32_t index) {
-    const double lines = std::ldexp(mars::face_parameter(chart), parts_level);
-    return std::clamp(static_cast<int>(lines - static_cast<double>(index) * per_side), 0, per_side - 1);
-  };
-  const int i = part(place.u, key.i);
-  const int j = part(place.v, key.j);
+  for (int k = 1; k < per_side; k *= 2) halve();
+  i -= key.i * per_side;
+  j -= key.j * per_side;
   facets_.id = (std::uint64_t{tile} << 16) + static_cast<std::uint64_t>(j * per_side + i);
   facets_.face = place.face;
   LatticeFrame& f = facets_.frame;
   f.intervals = tree.shape().intervals() / per_side;
-  const auto line = [&](std::int32_t index, int k) {
-    return mars::face_line(std::int64_t{index} * per_side + k, parts_level);
-  };
-  f.u0 = line(key.i, i);
-  f.du = (line(key.i, i + 1) - f.u0) / f.intervals;
-  f.v0 = line(key.j, j);
-  f.dv = (line(key.j, j + 1) - f.v0) / f.intervals;
+  f.u0 = u0;
+  f.du = (u1 - u0) / f.intervals;
+  f.v0 = v0;
+  f.dv = (v1 - v0) / f.intervals;
   const mars::FaceAxes& axes = mars::face_axes(place.face);
   const double z = glm::dot(walk_.eye().up, axes.out);
   const bool exact = z > 0 && needs_exact(f, walk_.eye()) &&

@@ -1,6 +1,7 @@
 #include "vpe/voxel/fan_caster.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -14,6 +15,8 @@ namespace {
 // Between the lines of fans where they are farthest apart.
 constexpr double kSpacing_px = 1.0;
 constexpr int kTaskRows = 16;
+// Share of a hint that its ray is cast from before it.
+constexpr double kBefore = 0.03;
 
 // For one thread.
 struct RowHints {
@@ -152,7 +155,12 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
         const auto at = static_cast<std::size_t>(k);
         if (exact) {
           const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-          out[k] = static_cast<float>(surface.cast(view.eye.eye_m, ray, exaggeration));
+          // From a little before the nearer hint; from the eye where that is too far (Wan 1999, section 4).
+          const auto near = static_cast<double>(std::min(hints.a[at], hints.b[at]));
+          const double begin = std::isfinite(near) ? (1.0 - kBefore) * near : 0.0;
+          double range = surface.cast(view.eye.eye_m, ray, exaggeration, begin);
+          if (range == begin) range = surface.cast(view.eye.eye_m, ray, exaggeration);
+          out[k] = static_cast<float>(range);
         } else {
           out[k] = hints.share[at] < 0.5F ? hints.a[at] : hints.b[at];
         }

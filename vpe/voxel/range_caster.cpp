@@ -98,7 +98,7 @@ void RangeCaster::cast(const core::View& view, const RangeOptions& options, core
                         surface_.at(up, options.exaggeration).radius_m};
     const bool round = upright(view, up);
     if (eye.distance_m > eye.ground_m && (round || view.projection == core::Projection::kPerspective)) {
-      const ColumnWalk walk(surface_.planet(), eye, options.exaggeration,
+      const ColumnWalk walk(surface_, eye, options.exaggeration,
                             {options.cell_px, core::focal_px(view)});
       Desks desks(store_, options.exaggeration);
       if (round) {
