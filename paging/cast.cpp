@@ -196,14 +196,15 @@ class FaceCaster {
 }  // namespace
 
 double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration,
-                     double begin_m) const {
+                     const RayPart& wanted) const {
   // Only the part inside the sphere of the highest terrain can hit.
   const double radius = planet_->radius_m();
   const double top = radius + exaggeration * (planet_->meta().highest_radius_m - radius);
   const double half = glm::dot(eye_m, direction);
   const double rest = half * half - (glm::dot(eye_m, eye_m) - top * top);
   if (!(rest >= 0.0)) return kNone;
-  const Interval shell{std::max(begin_m, -half - std::sqrt(rest)), -half + std::sqrt(rest)};
+  const Interval shell{std::max(wanted.begin_m, -half - std::sqrt(rest)),
+                       std::min(wanted.end_m, -half + std::sqrt(rest))};
   if (shell.empty()) return kNone;
 
   struct Candidate {

@@ -51,10 +51,17 @@ class Surface {
   // Distance along the unit `direction` from `eye_m` (metres from the planet's centre) to the first point of
   // S; infinity when there is none. Exact on the flat triangles of S up to rounding (about 1e-9 relative plus
   // what a grazing facet makes of it); watertight: neighbouring facets are tested against the same lines.
-  // An eye below S gives 0. With an exaggeration: of S as it is drawn. From `begin_m` on along the ray: begin_m
-  // itself when the ray is below S there.
-  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration = 1.0,
-              double begin_m = 0.0) const;
+  // An eye below S gives 0. With an exaggeration: of S as it is drawn. `part`: of the ray, metres along it;
+  // where it begins below S that is the answer.
+  struct RayPart {
+    double begin_m = 0;
+    double end_m = std::numeric_limits<double>::infinity();
+  };
+  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration,
+              const RayPart& part) const;
+  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration = 1.0) const {
+    return cast(eye_m, direction, exaggeration, RayPart());
+  }
 
   std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key) const;
   std::size_t bytes_resident() const { return cache_.bytes(); }

@@ -15,8 +15,8 @@ namespace {
 // Between the lines of fans where they are farthest apart.
 constexpr double kSpacing_px = 1.0;
 constexpr int kTaskRows = 16;
-// Share of a hint that its ray is cast from before it.
-constexpr double kBefore = 0.03;
+// Share of a hint that a ray is cast before and behind it.
+constexpr double kAround = 0.04;
 
 // For one thread.
 struct RowHints {
@@ -29,6 +29,26 @@ struct RowHints {
   std::vector<float> share;
   std::vector<int> open;
 };
+
+// About the nearer hint, then from the farther one on; from the eye where either is too far (Wan 1999, section
+// 4).
+double cast_near(const paging::Surface& surface, const glm::dvec3& eye, const glm::dvec3& ray,
+                 double exaggeration, float a, float b) {
+  const auto near = static_cast<double>(std::min(a, b));
+  const auto far = static_cast<double>(std::max(a, b));
+  if (std::isfinite(near)) {
+    const double begin = (1.0 - kAround) * near;
+    const double end = (1.0 + kAround) * near;
+    double range = surface.cast(eye, ray, exaggeration, {begin, end});
+    if (std::isfinite(range) && range != begin) return range;
+    if (range != begin && std::isfinite(far)) {
+      const double beyond = std::max((1.0 - kAround) * far, end);
+      range = surface.cast(eye, ray, exaggeration, {beyond, std::numeric_limits<double>::infinity()});
+      if (range != beyond) return range;
+    }
+  }
+  return surface.cast(eye, ray, exaggeration);
+}
 
 }  // namespace
 
@@ -155,11 +175,7 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
         const auto at = static_cast<std::size_t>(k);
         if (exact) {
           const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-          // From a little before the nearer hint; from the eye where that is too far (Wan 1999, section 4).
-          const auto near = static_cast<double>(std::min(hints.a[at], hints.b[at]));
-          const double begin = std::isfinite(near) ? (1.0 - kBefore) * near : 0.0;
-          double range = surface.cast(view.eye.eye_m, ray, exaggeration, begin);
-          if (range == begin) range = surface.cast(view.eye.eye_m, ray, exaggeration);
+          const double range = cast_near(surface, view.eye.eye_m, ray, exaggeration, hints.a[at], hints.b[at]);
           out[k] = static_cast<float>(range);
         } else {
           out[k] = hints.share[at] < 0.5F ? hints.a[at] : hints.b[at];
