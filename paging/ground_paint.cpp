@@ -57,11 +57,7 @@ std::shared_ptr<const NormalTile> GroundPainter::normals(const lod::TileKey& key
   });
 }
 
-lod::TileKey GroundPainter::deepest(const lod::TileKey& key) const {
-  lod::TileKey at = key;
-  while (at.level > 0 && planet_->tree().find(at) == nullptr) at = lod::parent(at);
-  return at;
-}
+lod::TileKey GroundPainter::deepest(const lod::TileKey& key) const { return planet_->tree().deepest(key).key; }
 
 int GroundPainter::levels_below(const lod::TileKey& key, int limit) const {
   const lod::TileInfo* info = planet_->tree().find(key);

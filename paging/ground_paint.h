@@ -54,12 +54,16 @@ ShadeParams shade_params(const vpe::core::Appearance& appearance, const glm::dve
                          std::shared_ptr<const vpe::core::ColourScale> scale);
 bool needs_scale(const vpe::core::Appearance& appearance, bool has_image);
 
-// Normals and heights at the posts of one stored tile.
+// Normals and heights at the posts of one stored tile, row 0 at the south.
 struct NormalTile {
+  // 16 bytes, so that one load takes all of a post.
+  struct Post {
+    glm::vec3 normal;  // unit, body-fixed
+    float height_m;
+  };
   lod::TileKey key;
   int side = 0;
-  std::vector<glm::vec3> normal;  // unit, body-fixed
-  std::vector<float> height_m;
+  std::vector<Post> posts;
   std::vector<std::uint8_t> sees_sun;  // 1 or 0; empty without shadows
   std::vector<bool> missing;           // empty when every post has data
   std::size_t bytes() const;
@@ -108,6 +112,10 @@ class GroundPainter {
   std::optional<glm::dvec3> colour_at(const glm::dvec3& direction, double footprint_m,
                                       const ShadeParams& params, Cursor& cursor) const;
 
+  // What colours are made from: posts of a tile that the planet has, texels of one that image_key() returned.
+  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadeParams& params) const;
+  std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
+
   std::size_t bytes_resident() const;
 
  private:
@@ -138,8 +146,6 @@ class GroundPainter {
   lod::TileKey deepest(const lod::TileKey& key) const;
   int levels_below(const lod::TileKey& key, int limit) const;
   std::shared_ptr<const TileHeights> heights(const lod::TileKey& key) const;
-  std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
-  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadeParams& params) const;
   NormalTile make_normals(const lod::TileKey& key, const ShadeParams& params) const;
   Picture picture(const lod::TileKey& block, const ShadeParams& params) const;
   glm::dvec3 shown(Surfacing what, const Ground& at, const ShadeParams& params) const;

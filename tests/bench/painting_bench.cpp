@@ -1,0 +1,177 @@
+// Time of painting a picture whose ranges are known (vpe/voxel/picture_painter.h) against asking
+// GroundPainter::colour_at, sky and haze pixel by pixel: section "Painting" of docs/rays.md.
+//
+//   painting_bench PLANET.vpe [ROUNDS] [WIDTH HEIGHT]
+//
+// Both sides paint the same ranges on two threads with warm caches; rounds alternate; figures are medians.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "mars/sun.h"
+#include "paging/surface.h"
+#include "vpe/core/shading.h"
+#include "vpe/core/sky.h"
+#include "vpe/voxel/picture_painter.h"
+
+namespace {
+
+namespace core = vpe::core;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMemory = std::size_t{1} << 29;
+constexpr int kThreads = 2;
+
+double median(std::vector<double> all) {
+  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+  return all[all.size() / 2];
+}
+
+// The definition, straight.
+class ByPoint {
+ public:
+  ByPoint(std::shared_ptr<const paging::PlanetFile> planet) : planet_(planet), painter_(planet, kMemory) {}
+
+  void paint(const core::DrawRequest& request, const std::vector<float>& range_m,
+             std::vector<mars::Rgb>& colour, core::ThreadPool& pool) {
+    const core::Appearance& appearance = request.settings;
+    const bool has_image = planet_->meta().finest_image_level >= 0;
+    std::shared_ptr<const core::ColourScale> scale;
+    if (paging::needs_scale(appearance, has_image))
+      scale = std::make_shared<const core::ColourScale>(appearance);
+    const paging::ShadeParams look = paging::shade_params(appearance, request.sun, has_image, scale);
+    const core::View& view = request.view;
+    const glm::dvec3& eye = view.eye.eye_m;
+    const double focal = core::focal_px(view), eye_radius = glm::length(eye), radius = planet_->radius_m();
+    pool.run(static_cast<std::size_t>(view.height), [&](std::size_t y) {
+      paging::GroundPainter::Cursor cursor;
+      for (int x = 0; x < view.width; ++x) {
+        const std::size_t at = y * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+        const glm::dvec3 ray = core::pixel_ray(view, x + 0.5, static_cast<double>(y) + 0.5);
+        const auto range = static_cast<double>(range_m[at]);
+        glm::dvec3 out(0);
+        if (std::isinf(range)) {
+          out = core::sky_colour(eye, ray, request.sun, radius);
+        } else {
+          const glm::dvec3 up = glm::normalize(eye + range * ray);
+          out = glm::clamp(painter_.colour_at(up, range / focal, look, cursor).value_or(glm::dvec3(105)), 0.0,
+                           255.0);
+          if (appearance.haze_visibility_m > 0.0)
+            out = glm::mix(core::haze_colour(glm::dot(up, request.sun)), out,
+                           core::transmittance(
+                               core::air_m(radius, eye_radius - radius, glm::dot(ray, eye) / eye_radius, range),
+                               appearance.haze_visibility_m));
+        }
+        const glm::dvec3 c = glm::clamp(out + 0.5, 0.0, 255.0);
+        colour[at] = {static_cast<std::uint8_t>(c.x), static_cast<std::uint8_t>(c.y),
+                      static_cast<std::uint8_t>(c.z)};
+      }
+    });
+  }
+
+ private:
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  paging::GroundPainter painter_;
+};
+
+template <typename Paint>
+double time_ms(Paint&& paint) {
+  const auto start = Clock::now();
+  paint();
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct Look {
+  const char* name;
+  core::Mode mode;
+  core::Colour colour;
+  double haze_m = 0;
+  bool colourise = false;
+  core::Shading shading = core::Shading::kGouraud;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: painting_bench PLANET.vpe [ROUNDS] [WIDTH HEIGHT]\n");
+    return 2;
+  }
+  const auto planet = paging::PlanetFile::open(argv[1]);
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 7;
+  core::DrawRequest request;
+  request.view.width = argc > 4 ? std::atoi(argv[3]) : 1920;
+  request.view.height = argc > 4 ? std::atoi(argv[4]) : 1080;
+  request.sun = mars::sun_direction({-67, -13}, 315, 35);
+  core::ThreadPool pool(kThreads);
+  const paging::Surface surface(planet, kMemory);
+  ByPoint by_point(planet);
+  vpe::voxel::PicturePainter painter(planet, kMemory);
+  struct Eye {
+    const char* name;
+    mars::Pose pose;
+  };
+  const Eye eyes[] = {{"Coprates from 20 km", {-67, -13, 20000, 90, -20, 0}},
+                      {"Coprates from 20 km, rolled", {-67, -13, 20000, 90, -20, 40}},
+                      {"Coprates from 20 km, horizon", {-67, -13, 20000, 90, 0, 0}},
+                      {"Coprates from 500 km", {-67, -13, 500000, 90, -60, 0}},
+                      {"the planet", {-67, -13, 1e7, 0, -90, 0}}};
+  const Look looks[] = {{"lit", core::Mode::kLit, core::Colour::kNone},
+                        {"textured", core::Mode::kTextured, core::Colour::kNone},
+                        {"lit elevation", core::Mode::kColoured, core::Colour::kElevation},
+                        {"lit slope", core::Mode::kColoured, core::Colour::kSlope},
+                        {"lit aspect", core::Mode::kColoured, core::Colour::kAspect},
+                        {"textured, colourised", core::Mode::kTextured, core::Colour::kElevation, 0, true},
+                        {"textured, haze", core::Mode::kTextured, core::Colour::kNone, 150000},
+                        {"unlit elevation", core::Mode::kUnlit, core::Colour::kElevation},
+                        {"lit flat", core::Mode::kLit, core::Colour::kNone, 0, false, core::Shading::kFlat}};
+  const auto pixels =
+      static_cast<std::size_t>(request.view.width) * static_cast<std::size_t>(request.view.height);
+  std::printf("%dx%d, %d threads, median of %d rounds; off: share of pixels over 1 / over 2 of 255 apart\n",
+              request.view.width, request.view.height, kThreads, rounds);
+  for (const Eye& eye : eyes) {
+    request.view.eye = mars::to_eye(eye.pose, planet->radius_m());
+    std::vector<float> range_m(pixels);
+    pool.run(static_cast<std::size_t>(request.view.height), [&](std::size_t y) {
+      for (int x = 0; x < request.view.width; ++x)
+        range_m[y * static_cast<std::size_t>(request.view.width) + static_cast<std::size_t>(x)] =
+            static_cast<float>(surface.cast(
+                request.view.eye.eye_m, core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
+    });
+    const auto sky = static_cast<double>(std::count(range_m.begin(), range_m.end(), core::kSkyRange));
+    std::printf("%s (%.0f %% sky)\n", eye.name, 100 * sky / static_cast<double>(pixels));
+    for (const Look& look : looks) {
+      request.settings.mode = look.mode;
+      request.settings.colour = look.colour;
+      request.settings.colourise = look.colourise;
+      request.settings.shading = look.shading;
+      request.settings.haze_visibility_m = look.haze_m;
+      std::vector<mars::Rgb> a(pixels), b(pixels);
+      std::vector<double> ours, theirs;
+      for (int n = 0; n <= rounds; ++n) {
+        const double mine = time_ms([&] { painter.paint(request, range_m, a, {}, pool); });
+        const double plain =
+            n < 4 ? time_ms([&] { by_point.paint(request, range_m, b, pool); }) : theirs.back();
+        if (n == 0) continue;  // caches
+        ours.push_back(mine);
+        theirs.push_back(plain);
+      }
+      std::size_t one = 0, two = 0;
+      for (std::size_t n = 0; n < pixels; ++n) {
+        const int off =
+            std::max({std::abs(a[n].r - b[n].r), std::abs(a[n].g - b[n].g), std::abs(a[n].b - b[n].b)});
+        one += off > 1 ? 1 : 0;
+        two += off > 2 ? 1 : 0;
+      }
+      std::printf(
+          "  %-22s %7.1f ms  %5.1f ns a pixel and thread  colour_at %7.1f ms  %5.1f x  off %.4f %% / %.4f %%\n",
+          look.name, median(ours), median(ours) * 1e6 * kThreads / static_cast<double>(pixels), median(theirs),
+          median(theirs) / median(ours), 100.0 * static_cast<double>(one) / static_cast<double>(pixels),
+          100.0 * static_cast<double>(two) / static_cast<double>(pixels));
+    }
+  }
+}
