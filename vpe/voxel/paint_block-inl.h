@@ -23,6 +23,7 @@ using Halves = hn::Rebind<float, Doubles>;  // as many floats as there are doubl
 struct alignas(64) Block {
   // Of each pixel. Range and place are 0 and the eye where there is sky.
   double place[3][kBlock];
+  double per_length[kBlock];  // 1 / length of the row's direction
   float range[kBlock];
   float is_sky[kBlock];  // 1 or 0
   std::int32_t level[kBlock];
@@ -91,16 +92,21 @@ HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, in
   block.row = &job.rays.rows[static_cast<std::size_t>(y)];
   block.c0 = job.rays.c0.data() + x;
   block.c1 = job.rays.c1.data() + x;
-  block.all = count >= kBlock ? 0xffffU : (std::uint32_t{1} << count) - 1;
-  for (int i = 0; i < kBlock; ++i) block.range[i] = core::kSkyRange;
-  std::copy_n(job.range_m + at, count, block.range);
+  block.all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
+  // Whole blocks are read where they are: a copy would wait for its own stores.
+  const float* ranges = job.range_m + at;
+  float padded[kBlock];
+  if (count < kBlock) {
+    for (int i = 0; i < kBlock; ++i) padded[i] = i < count ? ranges[i] : core::kSkyRange;
+    ranges = padded;
+  }
 
   const Floats d;
   const Ints di;
   block.sky = 0;
   const auto root = hn::Set(d, static_cast<float>(job.root_range_m));
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
-    const auto range = hn::Load(d, block.range + i);
+    const auto range = hn::LoadU(d, ranges + i);
     const auto sky = hn::Eq(range, hn::Set(d, core::kSkyRange));
     block.sky |= bits_of(d, sky, i);
     hn::Store(hn::IfThenElse(sky, hn::Set(d, 1.0F), hn::Zero(d)), d, block.is_sky + i);
@@ -120,7 +126,9 @@ HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, in
   float depth[kBlock];
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
     const auto range = hn::PromoteTo(dd, hn::Load(dh, block.range + i));
-    const auto scale = hn::Mul(range, inverse_length(dd, block, i));
+    const auto per_length = inverse_length(dd, block, i);
+    hn::Store(per_length, dd, block.per_length + i);
+    const auto scale = hn::Mul(range, per_length);
     for (int c = 0; c < 3; ++c) {
       const auto way = along_row(dd, block, i, row.a[c], row.b[c], row.c[c]);
       hn::Store(hn::Add(hn::Set(dd, eye[c]), hn::Mul(scale, way)), dd, block.place[c] + i);
@@ -141,7 +149,7 @@ HWY_INLINE void ray_angles(const PaintJob& job, Block& block) {
   const auto set = [&](const glm::dvec3& to, double* out) HWY_ATTR {
     const double a = glm::dot(row.a, to), b = glm::dot(row.b, to), c = glm::dot(row.c, to);
     for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d)))
-      hn::Store(hn::Mul(along_row(d, block, i, a, b, c), inverse_length(d, block, i)), d, out + i);
+      hn::Store(hn::Mul(along_row(d, block, i, a, b, c), hn::Load(d, block.per_length + i)), d, out + i);
   };
   set(job.up, block.rise);
   set(job.request->sun, block.sunward);

@@ -24,6 +24,8 @@ struct alignas(64) Cells {
   float x[kBlock], y[kBlock];  // 0 to 1
 };
 
+constexpr int kTexels = paging::kImageIntervals + 1;
+
 struct alignas(64) Shares {
   float x[kBlock], y[kBlock];  // of a square's sides
 };
@@ -101,6 +103,17 @@ HWY_INLINE V between(D d, V south_west, V south_east, V north_west, V north_east
   return hn::Add(south, hn::Mul(hn::Set(d, y), hn::Sub(north, south)));
 }
 
+// Asks the memory for the corners of all cells before the first is needed.
+template <class T>
+HWY_INLINE void prefetch(const T* grid, std::size_t step, std::size_t side, const Cells& cells,
+                         std::uint32_t pixels) {
+  for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
+    const T* const south = grid + step * static_cast<std::size_t>(cells.index[__builtin_ctz(left)]);
+    __builtin_prefetch(south);
+    __builtin_prefetch(south + step * side);
+  }
+}
+
 HWY_INLINE void take_posts(const paging::NormalTile& tile, const Cells& cells, std::uint32_t pixels,
                            Block& block) {
   const Fours d;
@@ -122,7 +135,6 @@ HWY_INLINE void take_texels(const paging::ImageTile& tile, const Cells& cells, s
   const Fours d;
   const hn::Rebind<std::int32_t, Fours> di;
   const hn::Rebind<std::uint8_t, Fours> du;
-  constexpr std::size_t kSide = paging::kImageIntervals + 1;
   const std::uint8_t* const texels = &tile.texels.data()->r;
   const std::uint8_t* const last = &tile.texels.back().r;
   const auto texel = [&](const std::uint8_t* at, std::size_t c)
@@ -130,7 +142,7 @@ HWY_INLINE void take_texels(const paging::ImageTile& tile, const Cells& cells, s
   for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
     const std::uint8_t* const south = texels + 3 * static_cast<std::size_t>(cells.index[i]);
-    const std::uint8_t* const north = south + 3 * kSide;
+    const std::uint8_t* const north = south + 3 * kTexels;
     // Four bytes are loaded, and after the last texel there is none.
     std::uint8_t copy[4] = {last[0], last[1], last[2], 0};
     const std::uint8_t* const north_east = north + 3 == last ? copy : north + 3;
@@ -171,7 +183,7 @@ HWY_INLINE std::uint32_t paint_ground(const PaintJob& job, PaintTiles& tiles, co
   int charted = tile == nullptr ? -1 : static_cast<int>(tile->face);
   if (tile != nullptr) set_chart(*tile, block);
   Shares at;
-  Cells cells;
+  Cells cells, texels;
   for (std::uint32_t left = block.ground; left != 0;) {
     std::uint32_t here = tile == nullptr ? 0 : inside(*tile, block, at) & left;
     if (here == 0) {
@@ -186,13 +198,18 @@ HWY_INLINE std::uint32_t paint_ground(const PaintJob& job, PaintTiles& tiles, co
     if (tile->ground) {
       const paging::NormalTile& ground = *tile->ground;
       find_cells(at, tile->ground_x, tile->ground_y, ground.side, cells);
+      prefetch(&ground.posts.data()->normal.x, 4, static_cast<std::size_t>(ground.side), cells, here);
+    }
+    if (tile->image) {
+      find_cells(at, tile->image_x, tile->image_y, kTexels, texels);
+      prefetch(&tile->image->texels.data()->r, 3, kTexels, texels, here);
+    }
+    if (tile->ground) {
+      const paging::NormalTile& ground = *tile->ground;
       take_posts(ground, cells, here, block);
       if (!ground.missing.empty() || !ground.sees_sun.empty()) missing |= take_rest(ground, cells, here, block);
     }
-    if (tile->image) {
-      find_cells(at, tile->image_x, tile->image_y, paging::kImageIntervals + 1, cells);
-      take_texels(*tile->image, cells, here, block);
-    }
+    if (tile->image) take_texels(*tile->image, texels, here, block);
   }
   paint_look(job, block);
   return missing;

@@ -23,13 +23,15 @@ HWY_INLINE void store_colours(const Block& block, mars::Rgb* out, int count) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   const hn::Rebind<std::uint8_t, Floats> du;
-  alignas(64) std::uint8_t bytes[3 * kBlock];
+  static_assert(sizeof(mars::Rgb) == 3);
+  std::uint8_t part[3 * kBlock];
+  std::uint8_t* const bytes = count == kBlock ? &out->r : part;
   const auto byte = [&](const float* x) HWY_ATTR {
     return hn::DemoteTo(du, hn::ConvertTo(di, hn::Add(clamp(d, hn::Load(d, x), 0, 255), hn::Set(d, 0.5F))));
   };
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d)))
     hn::StoreInterleaved3(byte(block.red + i), byte(block.green + i), byte(block.blue + i), du, bytes + 3 * i);
-  std::copy_n(bytes, 3 * count, &out->r);
+  if (count < kBlock) std::copy_n(part, 3 * count, &out->r);
 }
 
 std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int begin, int end) {

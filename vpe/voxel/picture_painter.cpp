@@ -15,7 +15,7 @@ namespace {
 constexpr double kHeldShare = 0.3;
 
 // Rows a thread takes at a time: blocks of as many pixels down as across use the same lines of posts.
-constexpr int kBand = kBlock;
+constexpr int kBand = 16;
 
 std::size_t share(double part, std::size_t budget) {
   return static_cast<std::size_t>(part * static_cast<double>(budget));

@@ -9,7 +9,7 @@
 namespace vpe::voxel {
 
 // Pixels that the kernels take at once; columns are padded to it.
-inline constexpr int kBlock = 16;
+inline constexpr int kBlock = 32;
 
 // Body-fixed direction through the centre of pixel x of one row: a c0[x] + b c1[x] + c, with the columns c0 and
 // c1 that all rows share. b is 0 in perspective.
