@@ -20,27 +20,39 @@ using Ints = hn::RebindToSigned<Floats>;
 using Doubles = hn::CappedTag<double, kBlock>;
 using Halves = hn::Rebind<float, Doubles>;  // as many floats as there are doubles in a vector
 
+// Where a pixel's colours come from: the south-west corner of its cell in a grid, and where in the cell, 0
+// to 1.
+template <class T>
+struct alignas(64) Sources {
+  const T* at[kBlock];
+  float x[kBlock], y[kBlock];
+};
+
+// Arrays first: all of them are whole vectors.
 struct alignas(64) Block {
-  // Of each pixel. Range and place are 0 and the eye where there is sky.
+  // Set by begin_block(). Range and place are 0 and the eye where there is sky.
   double place[3][kBlock];
   double per_length[kBlock];  // 1 / length of the row's direction
   float range[kBlock];
   float is_sky[kBlock];  // 1 or 0
   std::int32_t level[kBlock];
-  // What ray_angles() sets: cosines between the ray and the vertical of the eye, and the sun.
-  double rise[kBlock];
-  double sunward[kBlock];
-  // What ground() sets.
-  float red[kBlock], green[kBlock], blue[kBlock];
-  // Scratch of ground().
-  double u[kBlock], v[kBlock];
+  // Set by locate().
+  Sources<float> posts;
+  Sources<std::uint8_t> texels;
+  float sun[kBlock];  // share of it that is seen; with shadows alone
+  // Set by take_posts(), take_texels() and take_scale().
   float post[kBlock][4];
   float texel[kBlock][4];
-  float sun[kBlock];
+  // Set by ray_angles(): cosines between the ray and the vertical of the eye, and the sun.
+  double rise[kBlock];
+  double sunward[kBlock];
+  float red[kBlock], green[kBlock], blue[kBlock];
+
   const RowRays* row;
   const double* c0;
   const double* c1;
-  std::uint32_t all, sky, ground;  // bits of pixels, lowest first
+  int x, y, count;
+  std::uint32_t sky, ground, missing;  // bits of pixels, lowest first
 };
 
 // Bits of a mask at its place in the block.
@@ -92,7 +104,11 @@ HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, in
   block.row = &job.rays.rows[static_cast<std::size_t>(y)];
   block.c0 = job.rays.c0.data() + x;
   block.c1 = job.rays.c1.data() + x;
-  block.all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
+  block.x = x;
+  block.y = y;
+  block.count = count;
+  block.missing = 0;
+  const std::uint32_t all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
   // Whole blocks are read where they are: a copy would wait for its own stores.
   const float* ranges = job.range_m + at;
   float padded[kBlock];
@@ -116,8 +132,8 @@ HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, in
     const auto level = hn::Sub(hn::ShiftRight<23>(hn::Add(ratio, hn::Set(di, 0x7fffff))), hn::Set(di, 127));
     hn::Store(hn::Min(hn::Max(level, hn::Zero(di)), hn::Set(di, max_level)), di, block.level + i);
   }
-  block.ground = block.all & ~block.sky;
-  block.sky &= block.all;
+  block.ground = all & ~block.sky;
+  block.sky &= all;
 
   const Doubles dd;
   const Halves dh;
@@ -128,6 +144,7 @@ HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, in
     const auto range = hn::PromoteTo(dd, hn::Load(dh, block.range + i));
     const auto per_length = inverse_length(dd, block, i);
     hn::Store(per_length, dd, block.per_length + i);
+    if (block.ground == 0) continue;
     const auto scale = hn::Mul(range, per_length);
     for (int c = 0; c < 3; ++c) {
       const auto way = along_row(dd, block, i, row.a[c], row.b[c], row.c[c]);

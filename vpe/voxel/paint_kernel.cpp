@@ -34,40 +34,63 @@ HWY_INLINE void store_colours(const Block& block, mars::Rgb* out, int count) {
   if (count < kBlock) std::copy_n(part, 3 * count, &out->r);
 }
 
-std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int begin, int end) {
-  const core::DrawRequest& request = *job.request;
-  const bool sky = request.settings.background == core::Background::kSky;
-  const float behind = request.settings.background == core::Background::kWhite ? 255.0F : 0.0F;
-  const double visibility_m = request.settings.haze_visibility_m;
+HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, const PaintTile*& tile, int x, int y,
+                      Block& block) {
+  begin_block(job, tiles.max_level(), x, y, std::min(kBlock, job.width - x), block);
+  if (block.ground != 0 && !job.by_point) locate(tiles, tile, block);
+}
+
+// Returns the number of pixels without data.
+HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
+  const core::SettingsValues& settings = job.request->settings;
+  if (block.ground != 0) {
+    if (job.by_point) {
+      paint_by_point(job, tiles, block);
+    } else {
+      paint_ground(job, block);
+    }
+  }
+  for (std::uint32_t left = block.missing; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    block.red[i] = block.green[i] = block.blue[i] = kGap;
+  }
+  const bool hazy = settings.haze_visibility_m > 0.0 && block.ground != 0;
+  const bool sky = settings.background == core::Background::kSky && block.sky != 0;
+  if (hazy || sky) ray_angles(job, block);
+  if (hazy) paint_haze(job, settings.haze_visibility_m, block);
+  if (sky) {
+    paint_sky(job, block);
+  } else if (block.sky != 0) {
+    const float behind = settings.background == core::Background::kWhite ? 255.0F : 0.0F;
+    for (int i = 0; i < kBlock; ++i) {
+      if (block.is_sky[i] > 0.0F) block.red[i] = block.green[i] = block.blue[i] = behind;
+    }
+  }
+  store_colours(block, job.colour + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x, block.count);
+  return __builtin_popcount(block.missing);
+}
+
+std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int end_row) {
   std::int64_t without_data = 0;
   const PaintTile* tile = nullptr;
-  Block block{};
+  // Two blocks are under way, so that memory has time to bring what the younger one needs.
+  Block blocks[2];
   // Columns of blocks: neighbouring rows take the same tiles.
   for (int x = 0; x < job.width; x += kBlock) {
-    const int count = std::min(kBlock, job.width - x);
-    for (int y = begin; y < end; ++y) {
-      begin_block(job, tiles.max_level(), x, y, count, block);
-      std::uint32_t missing = 0;
-      if (block.ground != 0)
-        missing = job.by_point ? paint_by_point(job, tiles, block) : paint_ground(job, tiles, tile, block);
-      for (std::uint32_t left = missing; left != 0; left &= left - 1) {
-        const int i = __builtin_ctz(left);
-        block.red[i] = block.green[i] = block.blue[i] = kGap;
-        ++without_data;
+    if (tiles.trim()) tile = nullptr;
+    for (int y = first_row; y <= end_row; ++y) {
+      // Ranges of a column lie far apart, and nothing but this says which come next.
+      constexpr int kAhead = 3;
+      const bool next_column = y + kAhead >= end_row;
+      const int ahead_x = next_column ? x + kBlock : x;
+      if (ahead_x < job.width) {
+        const int ahead_y = next_column ? std::min(first_row + y + kAhead - end_row, end_row - 1) : y + kAhead;
+        const float* const ahead = job.range_m + static_cast<std::ptrdiff_t>(ahead_y) * job.width + ahead_x;
+        __builtin_prefetch(ahead);
+        __builtin_prefetch(ahead + kBlock / 2);
       }
-      const bool hazy = visibility_m > 0.0 && block.ground != 0;
-      if (hazy || (sky && block.sky != 0)) ray_angles(job, block);
-      if (hazy) paint_haze(job, visibility_m, block);
-      if (block.sky != 0) {
-        if (sky) {
-          paint_sky(job, block);
-        } else {
-          for (int i = 0; i < kBlock; ++i) {
-            if (block.is_sky[i] > 0.0F) block.red[i] = block.green[i] = block.blue[i] = behind;
-          }
-        }
-      }
-      store_colours(block, job.colour + static_cast<std::ptrdiff_t>(y) * job.width + x, count);
+      if (y < end_row) begin(job, tiles, tile, x, y, blocks[y & 1]);
+      if (y > first_row) without_data += finish(job, tiles, blocks[(y - 1) & 1]);
     }
   }
   return without_data;

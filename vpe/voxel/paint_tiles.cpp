@@ -87,6 +87,14 @@ void PaintTiles::hold(const void* tile, std::size_t bytes) {
   if (tile != nullptr && held_.insert(tile).second) held_bytes_ += bytes;
 }
 
+bool PaintTiles::trim() {
+  if (held_bytes_ <= limit_) return false;
+  squares_.clear();
+  held_.clear();
+  held_bytes_ = 0;
+  return true;
+}
+
 const PaintTile& PaintTiles::find(const glm::dvec3& point, int level) {
   const int side_level = std::max({level, level - image_below_, kKnotLevel});
   const lod::TileKey square = lod::tile_at(mars::chart_point(point), side_level);
@@ -94,11 +102,6 @@ const PaintTile& PaintTiles::find(const glm::dvec3& point, int level) {
   // free.
   const std::int64_t name = lod::pack(square) + (level < kKnotLevel ? level + 1 : 0);
   if (const auto at = squares_.find(name); at != squares_.end()) return at->second;
-  if (held_bytes_ > limit_) {
-    squares_.clear();
-    held_.clear();
-    held_bytes_ = 0;
-  }
   const PaintTile& made = squares_.emplace(name, make(square, level)).first->second;
   if (made.ground) hold(made.ground.get(), made.ground->bytes());
   if (made.image) hold(made.image.get(), made.image->texels.capacity() * sizeof(mars::Rgb));

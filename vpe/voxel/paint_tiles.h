@@ -39,17 +39,20 @@ struct PaintTile {
   WindowAxis image_x, image_y;
 };
 
-// Used by one thread at a time. Holds on to at most about `limit_bytes` of tiles (and to one square's in any
-// case).
+// Used by one thread at a time.
 class PaintTiles {
  public:
   PaintTiles(const paging::PlanetFile& planet, const paging::GroundPainter& painter,
              const paging::ShadeParams& look, std::size_t limit_bytes);
 
-  // The square that holds a point (of any length but 0) at a level of posts: the tile's that
+  // The square that holds a point (of any length but 0) at a level of posts: of the tile that
   // GroundPainter::colour_at takes for it. Levels are 0 to max_level(); what is beyond shows no more. Valid
-  // until the next call. Throws PlanetError.
+  // until trim() says that it let go. Throws PlanetError.
   const PaintTile& find(const glm::dvec3& point, int level);
+
+  // Lets go of everything, and says so, when more than limit_bytes of tiles are held.
+  bool trim();
+
   int max_level() const { return max_level_; }
 
   paging::GroundPainter::Cursor cursor;  // for GroundPainter::colour_at

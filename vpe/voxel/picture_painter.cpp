@@ -80,6 +80,7 @@ std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<c
   job.radius_m = planet_->radius_m();
   job.focal_px = core::focal_px(request.view);
   job.root_range_m = lod::nominal_side_m(0, job.radius_m) / planet_->meta().tile.intervals() * job.focal_px;
+  job.posts_side = planet_->meta().tile.posts();
   job.by_point = look_.flat || look_.surfacing == paging::Surfacing::kImageAtPosts;
   job.eye_radius_m = glm::length(request.view.eye.eye_m);
   if (job.eye_radius_m > 0.0) job.up = request.view.eye.eye_m / job.eye_radius_m;
