@@ -81,10 +81,19 @@ struct ShadedTile {
   std::size_t bytes() const { return texels.capacity(); }
 };
 
-// Any thread may call any member.
+// What parts of a painter's budget may hold; together at most 1.
+struct PaintShares {
+  double surface = 0.15;  // S, for shadows and flat shading
+  double heights = 0.35;  // to make normals from: a tile's neighbours are needed too
+  double normals = 0.35;
+  double images = 0.15;
+};
+
+// Any thread may call any member. Keeps within the budget, but for the newest tile of each kind.
 class GroundPainter {
  public:
-  GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes);
+  GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
+                const PaintShares& shares = {});
 
   // Number of texture intervals over a tile beyond which the data has nothing more to show.
   int useful_intervals(const lod::TileKey& key, Surfacing surfacing) const;

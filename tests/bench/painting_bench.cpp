@@ -1,21 +1,21 @@
 // Time of painting a picture whose ranges are known (vpe/voxel/picture_painter.h) against asking
 // GroundPainter::colour_at, sky and haze pixel by pixel: section "Painting" of docs/rays.md.
 //
-//   painting_bench PLANET.vpe [ROUNDS] [WIDTH HEIGHT]
+//   painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]
+//
+// EYE and LOOK: parts of the names of those that are wanted.
 //
 // Both sides paint the same ranges on two threads with warm caches; rounds alternate; figures are medians.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
+#include <cstring>
 #include <string>
 
 #include "mars/sun.h"
 #include "paging/surface.h"
-#include "vpe/core/shading.h"
-#include "vpe/core/sky.h"
+#include "tests/voxel/painted_by_point.h"
 #include "vpe/voxel/picture_painter.h"
 
 namespace {
@@ -30,53 +30,6 @@ double median(std::vector<double> all) {
   std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
   return all[all.size() / 2];
 }
-
-// The definition, straight.
-class ByPoint {
- public:
-  ByPoint(std::shared_ptr<const paging::PlanetFile> planet) : planet_(planet), painter_(planet, kMemory) {}
-
-  void paint(const core::DrawRequest& request, const std::vector<float>& range_m,
-             std::vector<mars::Rgb>& colour, core::ThreadPool& pool) {
-    const core::Appearance& appearance = request.settings;
-    const bool has_image = planet_->meta().finest_image_level >= 0;
-    std::shared_ptr<const core::ColourScale> scale;
-    if (paging::needs_scale(appearance, has_image))
-      scale = std::make_shared<const core::ColourScale>(appearance);
-    const paging::ShadeParams look = paging::shade_params(appearance, request.sun, has_image, scale);
-    const core::View& view = request.view;
-    const glm::dvec3& eye = view.eye.eye_m;
-    const double focal = core::focal_px(view), eye_radius = glm::length(eye), radius = planet_->radius_m();
-    pool.run(static_cast<std::size_t>(view.height), [&](std::size_t y) {
-      paging::GroundPainter::Cursor cursor;
-      for (int x = 0; x < view.width; ++x) {
-        const std::size_t at = y * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
-        const glm::dvec3 ray = core::pixel_ray(view, x + 0.5, static_cast<double>(y) + 0.5);
-        const auto range = static_cast<double>(range_m[at]);
-        glm::dvec3 out(0);
-        if (std::isinf(range)) {
-          out = core::sky_colour(eye, ray, request.sun, radius);
-        } else {
-          const glm::dvec3 up = glm::normalize(eye + range * ray);
-          out = glm::clamp(painter_.colour_at(up, range / focal, look, cursor).value_or(glm::dvec3(105)), 0.0,
-                           255.0);
-          if (appearance.haze_visibility_m > 0.0)
-            out = glm::mix(core::haze_colour(glm::dot(up, request.sun)), out,
-                           core::transmittance(
-                               core::air_m(radius, eye_radius - radius, glm::dot(ray, eye) / eye_radius, range),
-                               appearance.haze_visibility_m));
-        }
-        const glm::dvec3 c = glm::clamp(out + 0.5, 0.0, 255.0);
-        colour[at] = {static_cast<std::uint8_t>(c.x), static_cast<std::uint8_t>(c.y),
-                      static_cast<std::uint8_t>(c.z)};
-      }
-    });
-  }
-
- private:
-  std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::GroundPainter painter_;
-};
 
 template <typename Paint>
 double time_ms(Paint&& paint) {
@@ -98,18 +51,19 @@ struct Look {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: painting_bench PLANET.vpe [ROUNDS] [WIDTH HEIGHT]\n");
+    std::fprintf(stderr, "usage: painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]\n");
     return 2;
   }
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const auto planet = paging::PlanetFile::open(argv[1]);
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 7;
   core::DrawRequest request;
-  request.view.width = argc > 4 ? std::atoi(argv[3]) : 1920;
-  request.view.height = argc > 4 ? std::atoi(argv[4]) : 1080;
+  request.view.width = 1920;
+  request.view.height = 1080;
   request.sun = mars::sun_direction({-67, -13}, 315, 35);
   core::ThreadPool pool(kThreads);
   const paging::Surface surface(planet, kMemory);
-  ByPoint by_point(planet);
+  const test_support::PaintedByPoint by_point(planet, kMemory);
   vpe::voxel::PicturePainter painter(planet, kMemory);
   struct Eye {
     const char* name;
@@ -133,7 +87,11 @@ int main(int argc, char** argv) {
       static_cast<std::size_t>(request.view.width) * static_cast<std::size_t>(request.view.height);
   std::printf("%dx%d, %d threads, median of %d rounds; off: share of pixels over 1 / over 2 of 255 apart\n",
               request.view.width, request.view.height, kThreads, rounds);
+  const auto wanted = [&](const char* name, int argument) {
+    return argc <= argument || std::strstr(name, argv[argument]) != nullptr;
+  };
   for (const Eye& eye : eyes) {
+    if (!wanted(eye.name, 3)) continue;
     request.view.eye = mars::to_eye(eye.pose, planet->radius_m());
     std::vector<float> range_m(pixels);
     pool.run(static_cast<std::size_t>(request.view.height), [&](std::size_t y) {
@@ -145,6 +103,7 @@ int main(int argc, char** argv) {
     const auto sky = static_cast<double>(std::count(range_m.begin(), range_m.end(), core::kSkyRange));
     std::printf("%s (%.0f %% sky)\n", eye.name, 100 * sky / static_cast<double>(pixels));
     for (const Look& look : looks) {
+      if (!wanted(look.name, 4)) continue;
       request.settings.mode = look.mode;
       request.settings.colour = look.colour;
       request.settings.colourise = look.colourise;
@@ -155,7 +114,7 @@ int main(int argc, char** argv) {
       for (int n = 0; n <= rounds; ++n) {
         const double mine = time_ms([&] { painter.paint(request, range_m, a, {}, pool); });
         const double plain =
-            n < 4 ? time_ms([&] { by_point.paint(request, range_m, b, pool); }) : theirs.back();
+            n < 6 ? time_ms([&] { b = by_point.paint(request, range_m, pool); }) : theirs.back();
         if (n == 0) continue;  // caches
         ours.push_back(mine);
         theirs.push_back(plain);

@@ -11,8 +11,10 @@ namespace vpe::voxel {
 
 namespace {
 
-// Of the budget: what threads hold on to while they paint. The caches have the rest.
+// Of the budget: what threads hold on to while they paint. The caches have the rest, and in it mostly what
+// every picture takes again: heights are looked at only when tiles are new.
 constexpr double kHeldShare = 0.3;
+constexpr paging::PaintShares kShares{.surface = 0.1, .heights = 0.2, .normals = 0.45, .images = 0.25};
 
 // Rows a thread takes at a time: blocks of as many pixels down as across use the same lines of posts.
 constexpr int kBand = 16;
@@ -51,7 +53,7 @@ class TilesOfThreads {
 PicturePainter::PicturePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
       budget_(budget_bytes),
-      painter_(planet_, share(1 - kHeldShare, budget_bytes)) {}
+      painter_(planet_, share(1 - kHeldShare, budget_bytes), kShares) {}
 
 void PicturePainter::set_look(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
