@@ -49,10 +49,12 @@ std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, 
   if (!ground.missing.empty() && ground.missing[nearest(y) * side + nearest(x)]) return std::nullopt;
   Ground at;
   at.up = direction;
-  const lod::GridLines lines =
-      params.flat || params.surfacing == Surfacing::kImageAtPosts ? lod::grid_lines(key, n) : lod::GridLines{};
+  const int grid_level = key.level + planet_->meta().tile.k;
   const auto post = [&](std::size_t a, std::size_t b) {
-    return mars::chart_direction(key.face, lines.u[x.index + a], lines.v[y.index + b]);
+    const auto line = [&](std::int32_t tile, std::size_t k) {
+      return mars::face_line(std::int64_t{tile} * n + static_cast<std::int64_t>(k), grid_level);
+    };
+    return mars::chart_direction(key.face, line(key.i, x.index + a), line(key.j, y.index + b));
   };
   if (params.flat) {
     const bool lower = x.rest >= y.rest;

@@ -111,6 +111,11 @@ HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, in
   const std::uint32_t all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
   // Whole blocks are read where they are: a copy would wait for its own stores.
   const float* ranges = job.range_m + at;
+  // Those of the next row, which comes soon: pages apart, so that nothing else would bring them.
+  if (y + 1 < job.height) {
+    __builtin_prefetch(ranges + job.width);
+    __builtin_prefetch(ranges + job.width + kBlock / 2);
+  }
   float padded[kBlock];
   if (count < kBlock) {
     for (int i = 0; i < kBlock; ++i) padded[i] = i < count ? ranges[i] : core::kSkyRange;

@@ -16,6 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
 
+constexpr int kColumn = 64;
+
 // Ground without data, the mean of the polygon backend's stripes.
 constexpr float kGap = 105;
 
@@ -75,23 +77,14 @@ std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int en
   const PaintTile* tile = nullptr;
   // Two blocks are under way, so that memory has time to bring what the younger one needs.
   Block blocks[2];
-  // Columns of blocks: neighbouring rows take the same tiles.
-  for (int x = 0; x < job.width; x += kBlock) {
+  for (int y = first_row; y < end_row; ++y) {
     if (tiles.trim()) tile = nullptr;
-    for (int y = first_row; y <= end_row; ++y) {
-      // Ranges of a column lie far apart, and nothing but this says which come next.
-      constexpr int kAhead = 3;
-      const bool next_column = y + kAhead >= end_row;
-      const int ahead_x = next_column ? x + kBlock : x;
-      if (ahead_x < job.width) {
-        const int ahead_y = next_column ? std::min(first_row + y + kAhead - end_row, end_row - 1) : y + kAhead;
-        const float* const ahead = job.range_m + static_cast<std::ptrdiff_t>(ahead_y) * job.width + ahead_x;
-        __builtin_prefetch(ahead);
-        __builtin_prefetch(ahead + kBlock / 2);
-      }
-      if (y < end_row) begin(job, tiles, tile, x, y, blocks[y & 1]);
-      if (y > first_row) without_data += finish(job, tiles, blocks[(y - 1) & 1]);
+    int n = 0;
+    for (int x = 0; x < job.width; x += kBlock, ++n) {
+      begin(job, tiles, tile, x, y, blocks[n & 1]);
+      if (n > 0) without_data += finish(job, tiles, blocks[(n - 1) & 1]);
     }
+    without_data += finish(job, tiles, blocks[(n - 1) & 1]);
   }
   return without_data;
 }

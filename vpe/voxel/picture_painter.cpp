@@ -13,10 +13,10 @@ namespace {
 
 // Of the budget: what threads hold on to while they paint. The caches have the rest, and in it mostly what
 // every picture takes again: heights are looked at only when tiles are new.
-constexpr double kHeldShare = 0.3;
+constexpr double kHeldShare = 0.15;
 constexpr paging::PaintShares kShares{.surface = 0.1, .heights = 0.2, .normals = 0.45, .images = 0.25};
 
-// Rows a thread takes at a time: blocks of as many pixels down as across use the same lines of posts.
+// Rows a thread takes at a time.
 constexpr int kBand = 16;
 
 std::size_t share(double part, std::size_t budget) {
