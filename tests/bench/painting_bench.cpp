@@ -90,6 +90,7 @@ int main(int argc, char** argv) {
                         {"textured, colourised", core::Mode::kTextured, core::Colour::kElevation, 0, true},
                         {"textured, haze", core::Mode::kTextured, core::Colour::kNone, 150000},
                         {"unlit elevation", core::Mode::kUnlit, core::Colour::kElevation},
+                        {"lit, image at posts", core::Mode::kColoured, core::Colour::kImage},
                         {"lit flat", core::Mode::kLit, core::Colour::kNone, 0, false, core::Shading::kFlat}};
   const auto pixels =
       static_cast<std::size_t>(request.view.width) * static_cast<std::size_t>(request.view.height);

@@ -23,7 +23,7 @@ struct alignas(64) RayAir {
 };
 
 // Puts the sky's colour where the block has sky. After ray_angles().
-HWY_INLINE void paint_sky(const PaintJob& job, Block& block) {
+inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
   const core::SkyAir& air = core::kSkyAir;
   const double height = std::max(job.eye_radius_m - job.radius_m, 0.0);
   const double r = job.radius_m + height;
@@ -85,7 +85,7 @@ HWY_INLINE void paint_sky(const PaintJob& job, Block& block) {
 }
 
 // Lays haze over the block's ground. After ray_angles().
-HWY_INLINE void paint_haze(const PaintJob& job, double visibility_m, Block& block) {
+inline HWY_NOINLINE void paint_haze(const PaintJob& job, double visibility_m, Block& block) {
   const double r = job.eye_radius_m;
   const double eye_height = r - job.radius_m;
   const double top = job.radius_m + core::kAirTop_m;

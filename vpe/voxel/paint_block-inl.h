@@ -29,6 +29,7 @@ struct alignas(64) Sources {
 };
 
 // Arrays first: all of them are whole vectors.
+// Functions over a block are not inlined: nothing is gained by it, and compilers take minutes with sanitizers.
 struct alignas(64) Block {
   // Set by begin_block(). Range and place are 0 and the eye where there is sky.
   double place[3][kBlock];
@@ -98,7 +99,8 @@ HWY_INLINE hn::Vec<D> inverse_length(D d, const Block& block, int i) {
 }
 
 // Sky, places and levels of `count` pixels from (x, y) on.
-HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, int count, Block& block) {
+inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, int y, int count,
+                                     Block& block) {
   const std::size_t at =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(job.width) + static_cast<std::size_t>(x);
   block.row = &job.rays.rows[static_cast<std::size_t>(y)];
@@ -165,7 +167,7 @@ HWY_INLINE void begin_block(const PaintJob& job, int max_level, int x, int y, in
   }
 }
 
-HWY_INLINE void ray_angles(const PaintJob& job, Block& block) {
+inline HWY_NOINLINE void ray_angles(const PaintJob& job, Block& block) {
   const Doubles d;
   const RowRays& row = *block.row;
   const auto set = [&](const glm::dvec3& to, double* out) HWY_ATTR {

@@ -32,7 +32,7 @@ struct alignas(64) Shares {
 };
 
 // Chart coordinates on the tile's face; beyond any square's where the place is on the other side.
-HWY_INLINE void set_chart(const PaintTile& tile, const Block& block, Chart& chart) {
+inline HWY_NOINLINE void set_chart(const PaintTile& tile, const Block& block, Chart& chart) {
   const Doubles d;
   const double* const p[3] = {block.place[tile.axis[0]], block.place[tile.axis[1]], block.place[tile.axis[2]]};
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
@@ -48,7 +48,8 @@ HWY_INLINE void set_chart(const PaintTile& tile, const Block& block, Chart& char
 }
 
 // Bits of the pixels whose places and levels are the square's.
-HWY_INLINE std::uint32_t inside(const PaintTile& tile, const Block& block, const Chart& chart, Shares& at) {
+inline HWY_NOINLINE std::uint32_t inside(const PaintTile& tile, const Block& block, const Chart& chart,
+                                         Shares& at) {
   const Doubles dd;
   const Halves dh;
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
@@ -75,8 +76,9 @@ HWY_INLINE std::uint32_t inside(const PaintTile& tile, const Block& block, const
 // Where some pixels lie in a grid of `side` lines with `step` values a corner. Asks the memory for it: by the
 // time that the block is painted it is there.
 template <class T>
-HWY_INLINE void find_sources(const Shares& at, const WindowAxis& across, const WindowAxis& up, const T* grid,
-                             int side, std::size_t step, std::uint32_t pixels, Sources<T>& out) {
+inline HWY_NOINLINE void find_sources(const Shares& at, const WindowAxis& across, const WindowAxis& up,
+                                      const T* grid, int side, std::size_t step, std::uint32_t pixels,
+                                      Sources<T>& out) {
   const Floats d;
   const Ints di;
   const auto zero = hn::Zero(d);
@@ -120,7 +122,7 @@ HWY_INLINE V between(D d, V south_west, V south_east, V north_west, V north_east
   return hn::Add(south, hn::Mul(hn::Set(d, y), hn::Sub(north, south)));
 }
 
-HWY_INLINE void take_posts(std::size_t side, Block& block) {
+inline HWY_NOINLINE void take_posts(std::size_t side, Block& block) {
   const Fours d;
   for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
@@ -133,7 +135,7 @@ HWY_INLINE void take_posts(std::size_t side, Block& block) {
   }
 }
 
-HWY_INLINE void take_texels(Block& block) {
+inline HWY_NOINLINE void take_texels(Block& block) {
   static_assert(std::endian::native == std::endian::little);
   const Fours d;
   const hn::Rebind<std::int32_t, Fours> di;
@@ -158,7 +160,7 @@ HWY_INLINE void take_texels(Block& block) {
 }
 
 // Pixels whose nearest post has no data; shares of the sun that is seen.
-HWY_INLINE void take_rest(const paging::NormalTile& tile, std::uint32_t pixels, Block& block) {
+inline HWY_NOINLINE void take_rest(const paging::NormalTile& tile, std::uint32_t pixels, Block& block) {
   const auto side = static_cast<std::size_t>(tile.side);
   for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
@@ -178,7 +180,7 @@ HWY_INLINE void take_rest(const paging::NormalTile& tile, std::uint32_t pixels, 
 }
 
 // Finds where the block's colours come from. `tile` is what was used last, or null.
-HWY_INLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block& block) {
+inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block& block) {
   Chart chart;
   int charted = tile == nullptr ? -1 : static_cast<int>(tile->face);
   if (tile != nullptr) set_chart(*tile, block, chart);
@@ -207,7 +209,7 @@ HWY_INLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block& block) 
 }
 
 // Colours the block's ground, after locate().
-HWY_INLINE void paint_ground(const PaintJob& job, Block& block) {
+inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
   const PaintNeeds needs = paint_needs(*job.look);
   if (needs.posts) take_posts(static_cast<std::size_t>(job.posts_side), block);
   if (needs.image) take_texels(block);

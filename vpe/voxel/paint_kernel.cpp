@@ -21,7 +21,7 @@ constexpr int kColumn = 64;
 // Ground without data, the mean of the polygon backend's stripes.
 constexpr float kGap = 105;
 
-HWY_INLINE void store_colours(const Block& block, mars::Rgb* out, int count) {
+inline HWY_NOINLINE void store_colours(const Block& block, mars::Rgb* out, int count) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   const hn::Rebind<std::uint8_t, Floats> du;

@@ -65,8 +65,8 @@ HWY_INLINE V aspect(D d, const Triple<V>& n, const Triple<V>& p, float nothing) 
 }
 
 // The scale's colours of the block's values, into `out`, four floats a pixel.
-HWY_INLINE void take_scale(const ScaleTable& table, const core::ColourScale& scale, const float* value,
-                           std::uint32_t pixels, float (*out)[4]) {
+inline HWY_NOINLINE void take_scale(const ScaleTable& table, const core::ColourScale& scale, const float* value,
+                                    std::uint32_t pixels, float (*out)[4]) {
   const Floats d;
   const Ints di;
   alignas(64) std::int32_t bucket[kBlock];
@@ -113,7 +113,7 @@ HWY_INLINE V shown_value(D d, const PaintJob& job, paging::Surfacing what, const
   return aspect(d, normal, p, job.scale->of_nothing);
 }
 
-HWY_INLINE void paint_look(const PaintJob& job, Block& block) {
+inline HWY_NOINLINE void paint_look(const PaintJob& job, Block& block) {
   const paging::ShadeParams& look = *job.look;
   const bool of_image = look.surfacing == paging::Surfacing::kImage;
   const bool scaled = job.scale != nullptr;

@@ -3,7 +3,7 @@
 // Many pixels at once: a ray's place comes from terms of its row and column and its range, the posts and texels
 // under it from squares of the chart that a thread has at hand, and the rest in vectors, for the instruction
 // set that the machine has. Flat shading and colour=image are left to paging::GroundPainter::colour_at, pixel
-// by pixel, at twenty times the cost (docs/rays.md).
+// by pixel, at some 17 and 50 times the cost (docs/rays.md).
 #pragma once
 
 #include <cstdint>
