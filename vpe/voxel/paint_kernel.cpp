@@ -16,8 +16,6 @@ HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
 
-constexpr int kColumn = 64;
-
 // Ground without data, the mean of the polygon backend's stripes.
 constexpr float kGap = 105;
 
