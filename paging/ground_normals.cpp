@@ -28,8 +28,8 @@ double bilinear_height(const lod::Posts& posts, const lod::GridLines& lines, dou
 }  // namespace
 
 std::size_t NormalTile::bytes() const {
-  return sizeof(NormalTile) + normal.capacity() * sizeof(glm::vec3) + height_m.capacity() * sizeof(float) +
-         sees_sun.capacity() * sizeof(std::uint8_t) + missing.capacity() / 8;
+  return sizeof(NormalTile) + posts.capacity() * sizeof(Post) + sees_sun.capacity() * sizeof(std::uint8_t) +
+         missing.capacity() / 8;
 }
 
 // Heights of the row of posts just across an edge, in this tile's order along it, and where those posts are.
@@ -99,13 +99,13 @@ NormalTile GroundPainter::make_normals(const lod::TileKey& key, const ShadeParam
     }
   }
 
-  NormalTile out{key, static_cast<int>(side), {}, {}, {}, source->missing};
-  out.normal.reserve(side * side);
-  out.height_m.assign(posts.height_m.begin(), posts.height_m.end());
+  NormalTile out{key, static_cast<int>(side), {}, {}, source->missing};
+  out.posts.reserve(side * side);
   for (std::size_t j = 1; j <= side; ++j) {
     const glm::vec3* row = &points[j * wide];
     for (std::size_t i = 1; i <= side; ++i) {
-      out.normal.push_back(glm::normalize(glm::cross(row[i + 1] - row[i - 1], row[i + wide] - row[i - wide])));
+      out.posts.push_back({glm::normalize(glm::cross(row[i + 1] - row[i - 1], row[i + wide] - row[i - wide])),
+                           static_cast<float>(posts.height_m[out.posts.size()])});
     }
   }
   if (!params.lit || !params.shadows) return out;
@@ -114,7 +114,7 @@ NormalTile GroundPainter::make_normals(const lod::TileKey& key, const ShadeParam
   for (std::size_t j = 0; j < side; ++j) {
     for (std::size_t i = 0; i < side; ++i) {
       const glm::dvec3 post = glm::dvec3(points[(j + 1) * wide + i + 1]) + origin;
-      const bool faces = glm::dot(glm::dvec3(out.normal[j * side + i]), params.sun) > 0.0;
+      const bool faces = glm::dot(glm::dvec3(out.posts[j * side + i].normal), params.sun) > 0.0;
       out.sees_sun.push_back(faces && sees_sun(post, spacing_m, params) ? 1 : 0);
     }
   }

@@ -17,14 +17,19 @@ double downhill_deg(const glm::dvec3& normal, const glm::dvec3& up) {
   return vpe::core::aspect_deg(normal, up, glm::cross(up, east), east);
 }
 
+std::size_t part(double share, std::size_t budget) {
+  return static_cast<std::size_t>(share * static_cast<double>(budget));
+}
+
 }  // namespace
 
-GroundPainter::GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
+GroundPainter::GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
+                             const PaintShares& shares)
     : planet_(std::move(planet)),
-      surface_(planet_, budget_bytes * 3 / 20),
-      heights_(budget_bytes * 7 / 20),
-      normals_(budget_bytes * 7 / 20),
-      images_(budget_bytes * 3 / 20) {}
+      surface_(planet_, part(shares.surface, budget_bytes)),
+      heights_(part(shares.heights, budget_bytes)),
+      normals_(part(shares.normals, budget_bytes)),
+      images_(part(shares.images, budget_bytes)) {}
 
 std::size_t GroundPainter::bytes_resident() const {
   return surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
@@ -57,11 +62,7 @@ std::shared_ptr<const NormalTile> GroundPainter::normals(const lod::TileKey& key
   });
 }
 
-lod::TileKey GroundPainter::deepest(const lod::TileKey& key) const {
-  lod::TileKey at = key;
-  while (at.level > 0 && planet_->tree().find(at) == nullptr) at = lod::parent(at);
-  return at;
-}
+lod::TileKey GroundPainter::deepest(const lod::TileKey& key) const { return planet_->tree().deepest(key).key; }
 
 int GroundPainter::levels_below(const lod::TileKey& key, int limit) const {
   const lod::TileInfo* info = planet_->tree().find(key);

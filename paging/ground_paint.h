@@ -54,12 +54,16 @@ ShadeParams shade_params(const vpe::core::Appearance& appearance, const glm::dve
                          std::shared_ptr<const vpe::core::ColourScale> scale);
 bool needs_scale(const vpe::core::Appearance& appearance, bool has_image);
 
-// Normals and heights at the posts of one stored tile.
+// Normals and heights at the posts of one stored tile, row 0 at the south.
 struct NormalTile {
+  // 16 bytes, so that one load takes all of a post.
+  struct Post {
+    glm::vec3 normal;  // unit, body-fixed
+    float height_m;
+  };
   lod::TileKey key;
   int side = 0;
-  std::vector<glm::vec3> normal;  // unit, body-fixed
-  std::vector<float> height_m;
+  std::vector<Post> posts;
   std::vector<std::uint8_t> sees_sun;  // 1 or 0; empty without shadows
   std::vector<bool> missing;           // empty when every post has data
   std::size_t bytes() const;
@@ -77,10 +81,19 @@ struct ShadedTile {
   std::size_t bytes() const { return texels.capacity(); }
 };
 
-// Any thread may call any member.
+// What parts of a painter's budget may hold; together at most 1.
+struct PaintShares {
+  double surface = 0.15;  // S, for shadows and flat shading
+  double heights = 0.35;  // to make normals from: a tile's neighbours are needed too
+  double normals = 0.35;
+  double images = 0.15;
+};
+
+// Any thread may call any member. Keeps within the budget, but for the newest tile of each kind.
 class GroundPainter {
  public:
-  GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes);
+  GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
+                const PaintShares& shares = {});
 
   // Number of texture intervals over a tile beyond which the data has nothing more to show.
   int useful_intervals(const lod::TileKey& key, Surfacing surfacing) const;
@@ -107,6 +120,10 @@ class GroundPainter {
   // the nearest post has no data.
   std::optional<glm::dvec3> colour_at(const glm::dvec3& direction, double footprint_m,
                                       const ShadeParams& params, Cursor& cursor) const;
+
+  // What colours are made from: posts of a tile that the planet has, texels of one that image_key() returned.
+  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadeParams& params) const;
+  std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
 
   std::size_t bytes_resident() const;
 
@@ -138,8 +155,6 @@ class GroundPainter {
   lod::TileKey deepest(const lod::TileKey& key) const;
   int levels_below(const lod::TileKey& key, int limit) const;
   std::shared_ptr<const TileHeights> heights(const lod::TileKey& key) const;
-  std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
-  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadeParams& params) const;
   NormalTile make_normals(const lod::TileKey& key, const ShadeParams& params) const;
   Picture picture(const lod::TileKey& block, const ShadeParams& params) const;
   glm::dvec3 shown(Surfacing what, const Ground& at, const ShadeParams& params) const;

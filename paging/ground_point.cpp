@@ -49,10 +49,12 @@ std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, 
   if (!ground.missing.empty() && ground.missing[nearest(y) * side + nearest(x)]) return std::nullopt;
   Ground at;
   at.up = direction;
-  const lod::GridLines lines =
-      params.flat || params.surfacing == Surfacing::kImageAtPosts ? lod::grid_lines(key, n) : lod::GridLines{};
+  const int grid_level = key.level + planet_->meta().tile.k;
   const auto post = [&](std::size_t a, std::size_t b) {
-    return mars::chart_direction(key.face, lines.u[x.index + a], lines.v[y.index + b]);
+    const auto line = [&](std::int32_t tile, std::size_t k) {
+      return mars::face_line(std::int64_t{tile} * n + static_cast<std::int64_t>(k), grid_level);
+    };
+    return mars::chart_direction(key.face, line(key.i, x.index + a), line(key.j, y.index + b));
   };
   if (params.flat) {
     const bool lower = x.rest >= y.rest;
@@ -62,7 +64,7 @@ std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, 
         {{0, 0}, {lower ? std::size_t{1} : std::size_t{0}, lower ? std::size_t{0} : std::size_t{1}}, {1, 1}}};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [a, b] = posts[k];
-      const double height = static_cast<double>(ground.height_m[(y.index + b) * side + x.index + a]);
+      const double height = static_cast<double>(ground.posts[(y.index + b) * side + x.index + a].height_m);
       corners[k] = post(a, b) * (radius + params.exaggeration * height);
       at.height_m += height / 3;
     }
@@ -75,8 +77,8 @@ std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, 
     if (shows_image(params.surfacing)) at.image = image_at(at.up, footprint_m, cursor);
     return colour(at, params);
   }
-  at.height_m = bilinear<float>(x, y, side, [&](std::size_t k) { return ground.height_m[k]; });
-  at.normal = bilinear<glm::vec3>(x, y, side, [&](std::size_t k) { return ground.normal[k]; });
+  at.height_m = bilinear<float>(x, y, side, [&](std::size_t k) { return ground.posts[k].height_m; });
+  at.normal = bilinear<glm::vec3>(x, y, side, [&](std::size_t k) { return ground.posts[k].normal; });
   if (!ground.sees_sun.empty())
     at.sun = bilinear<float>(x, y, side, [&](std::size_t k) { return static_cast<float>(ground.sees_sun[k]); });
   if (params.surfacing == Surfacing::kImage) at.image = image_at(direction, footprint_m, cursor);

@@ -1,7 +1,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <type_traits>
 
 #include "paging/ground_grid.h"
 #include "paging/ground_paint.h"
@@ -81,16 +80,15 @@ void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int s
                                 static_cast<std::size_t>(x0))];
     for (int x = 0; x <= n; ++x, texel += channels) {
       const GridPosition gxp = grid_position(gx, x, ground_steps, ground->side - 1);
-      const auto between = [&](const auto& values) {
-        using T = std::decay_t<decltype(values[0])>;
-        using Sum = std::conditional_t<std::is_same_v<T, std::uint8_t>, float, T>;
-        return bilinear<Sum>(gxp, gyp, ground_side, [&](std::size_t k) { return static_cast<Sum>(values[k]); });
-      };
-      at.height_m = between(ground->height_m);
-      at.normal = direct
-                      ? ground->normal[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)]
-                      : between(ground->normal);
-      if (!ground->sees_sun.empty()) at.sun = between(ground->sees_sun);
+      at.height_m =
+          bilinear<float>(gxp, gyp, ground_side, [&](std::size_t k) { return ground->posts[k].height_m; });
+      at.normal =
+          direct ? ground->posts[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)].normal
+                 : bilinear<glm::vec3>(gxp, gyp, ground_side,
+                                       [&](std::size_t k) { return ground->posts[k].normal; });
+      if (!ground->sees_sun.empty())
+        at.sun = bilinear<float>(gxp, gyp, ground_side,
+                                 [&](std::size_t k) { return static_cast<float>(ground->sees_sun[k]); });
       if (needs_up)
         at.up = mars::chart_direction(block.face, lines.u[static_cast<std::size_t>(x)],
                                       lines.v[static_cast<std::size_t>(y)]);

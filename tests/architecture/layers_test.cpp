@@ -101,10 +101,14 @@ std::vector<std::string> check_source(const std::string& path, const std::string
     report(1, "no folder of the table in tests/architecture/layers_test.cpp holds this source");
     return problems;
   }
-  static const std::regex kName(R"((.*/)?[a-z][a-z0-9_]*\.(h|cpp))");
-  if (!std::regex_match(path, kName)) report(1, "names are lower_case.h or lower_case.cpp");
-  if (path.ends_with(".h") && text.find("\n#pragma once\n") == std::string::npos &&
-      !text.starts_with("#pragma once\n")) {
+  static const std::regex kName(R"((.*/)?[a-z][a-z0-9_]*(-inl\.h|\.h|\.cpp))");
+  if (!std::regex_match(path, kName)) report(1, "names are lower_case.h, lower_case-inl.h or lower_case.cpp");
+  // Headers of Highway's kernels are read once for each instruction set.
+  if (path.ends_with("-inl.h")) {
+    if (text.find(" == defined(HWY_TARGET_TOGGLE)\n") == std::string::npos)
+      report(1, "a header -inl.h needs a guard with HWY_TARGET_TOGGLE");
+  } else if (path.ends_with(".h") && text.find("\n#pragma once\n") == std::string::npos &&
+             !text.starts_with("#pragma once\n")) {
     report(1, "a header needs #pragma once");
   }
   // A header of nothing but includes and macros needs no namespace.
@@ -216,6 +220,10 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   EXPECT_NE(verdict("lod/a.cpp", "namespace mars {}\n"), "");
   EXPECT_NE(verdict("lod/a.h", "#pragma once\n\nnamespace mars {}\n"), "");
   EXPECT_EQ(verdict("lod/a.h", "#pragma once\n#include <vector>\n"), "");
+  const std::string guard = "#if defined(LOD_A) == defined(HWY_TARGET_TOGGLE)\n#endif\n";
+  EXPECT_EQ(verdict("lod/a-inl.h", guard + lod), "");
+  EXPECT_NE(verdict("lod/a-inl.h", "#pragma once\n" + lod), "");
+  EXPECT_NE(verdict("lod/a-b.h", "#pragma once\n" + lod), "");
   EXPECT_NE(verdict("lod/CamelCase.cpp", lod), "");
   EXPECT_NE(verdict("lod/a.cc", lod), "");
   EXPECT_NE(verdict("util/a.cpp", "namespace util {}\n"), "");

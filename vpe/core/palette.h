@@ -95,7 +95,8 @@ class ColourScale {
 
   double low() const { return low_; }  // of the range that a legend shows; low > high when turned round
   double high() const { return high_; }
-  std::string_view unit() const { return unit_; }  // "m" or "deg"
+  std::string_view unit() const { return unit_; }                          // "m" or "deg"
+  std::span<const PaletteStop> stops() const { return palette_.stops(); }  // at values, rising
 
   // 0 to 255. As Palette::colour: exact, but for palette=hsv, which is within 0.1 of HSV's own curve. NaN: the
   // colour at low().

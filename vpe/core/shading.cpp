@@ -36,9 +36,9 @@ double transmittance(double air_m, double visibility_m) {
 }
 
 glm::dvec3 haze_colour(double sun_sine) {
-  const double s = std::clamp((sun_sine + 0.15) / 0.45, 0.0, 1.0);
+  const double s = std::clamp((sun_sine - kDawnSine) / (kDaySine - kDawnSine), 0.0, 1.0);
   const double day = s * s * (3.0 - 2.0 * s);
-  return kDust * (0.08 + 0.92 * day);
+  return kDust * (kNight + (1.0 - kNight) * day);
 }
 
 void apply_gamma(std::span<mars::Rgb> colours, double gamma) {

@@ -48,6 +48,12 @@ double transmittance(double air_m, double visibility_m);
 // Colour of dust in full light.
 inline constexpr glm::dvec3 kDust{212, 173, 135};
 
+// Dust is dark where the sun stands below kDawnSine, in full light above kDaySine (sines of its height); kNight
+// of the light is always left.
+inline constexpr double kDawnSine = -0.15;
+inline constexpr double kDaySine = 0.3;
+inline constexpr double kNight = 0.08;
+
 // Colour that haze puts over ground where the sun stands so high (sine).
 glm::dvec3 haze_colour(double sun_sine);
 

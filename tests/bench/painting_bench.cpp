@@ -1,0 +1,143 @@
+// Time of painting a picture whose ranges are known (vpe/voxel/picture_painter.h) against asking
+// GroundPainter::colour_at, sky and haze pixel by pixel: section "Painting" of docs/rays.md.
+//
+//   painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]
+//
+// EYE and LOOK: parts of the names of those that are wanted.
+//
+// Both sides paint the same ranges on two threads with warm caches; rounds alternate; figures are medians.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <string>
+
+#include "mars/sun.h"
+#include "paging/surface.h"
+#include "tests/voxel/painted_by_point.h"
+#include "vpe/voxel/picture_painter.h"
+
+namespace {
+
+namespace core = vpe::core;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMemory = std::size_t{1} << 29;
+constexpr int kThreads = 2;
+
+double median(std::vector<double> all) {
+  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+  return all[all.size() / 2];
+}
+
+// Wall clock, and the processors' time, which other programs on the machine disturb less.
+struct Times {
+  std::vector<double> wall_ms, cpu_ms;
+
+  template <typename Paint>
+  void add(Paint&& paint) {
+    const auto start = Clock::now();
+    const std::clock_t cpu = std::clock();
+    paint();
+    cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC);
+    wall_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+  }
+};
+
+struct Look {
+  const char* name;
+  core::Mode mode;
+  core::Colour colour;
+  double haze_m = 0;
+  bool colourise = false;
+  core::Shading shading = core::Shading::kGouraud;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]\n");
+    return 2;
+  }
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const auto planet = paging::PlanetFile::open(argv[1]);
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 7;
+  core::DrawRequest request;
+  request.view.width = 1920;
+  request.view.height = 1080;
+  request.sun = mars::sun_direction({-67, -13}, 315, 35);
+  core::ThreadPool pool(kThreads);
+  const paging::Surface surface(planet, kMemory);
+  const test_support::PaintedByPoint by_point(planet, kMemory);
+  vpe::voxel::PicturePainter painter(planet, kMemory);
+  struct Eye {
+    const char* name;
+    mars::Pose pose;
+  };
+  const Eye eyes[] = {{"Coprates from 20 km", {-67, -13, 20000, 90, -20, 0}},
+                      {"Coprates from 20 km, rolled", {-67, -13, 20000, 90, -20, 40}},
+                      {"Coprates from 20 km, horizon", {-67, -13, 20000, 90, 0, 0}},
+                      {"Coprates from 500 km", {-67, -13, 500000, 90, -60, 0}},
+                      {"the planet", {-67, -13, 1e7, 0, -90, 0}}};
+  const Look looks[] = {{"lit", core::Mode::kLit, core::Colour::kNone},
+                        {"textured", core::Mode::kTextured, core::Colour::kNone},
+                        {"lit elevation", core::Mode::kColoured, core::Colour::kElevation},
+                        {"lit slope", core::Mode::kColoured, core::Colour::kSlope},
+                        {"lit aspect", core::Mode::kColoured, core::Colour::kAspect},
+                        {"textured, colourised", core::Mode::kTextured, core::Colour::kElevation, 0, true},
+                        {"textured, haze", core::Mode::kTextured, core::Colour::kNone, 150000},
+                        {"unlit elevation", core::Mode::kUnlit, core::Colour::kElevation},
+                        {"lit, image at posts", core::Mode::kColoured, core::Colour::kImage},
+                        {"lit flat", core::Mode::kLit, core::Colour::kNone, 0, false, core::Shading::kFlat}};
+  const auto pixels =
+      static_cast<std::size_t>(request.view.width) * static_cast<std::size_t>(request.view.height);
+  std::printf("%dx%d, %d threads, median of %d rounds; off: share of pixels over 1 / over 2 of 255 apart\n",
+              request.view.width, request.view.height, kThreads, rounds);
+  const auto wanted = [&](const char* name, int argument) {
+    return argc <= argument || std::strstr(name, argv[argument]) != nullptr;
+  };
+  for (const Eye& eye : eyes) {
+    if (!wanted(eye.name, 3)) continue;
+    request.view.eye = mars::to_eye(eye.pose, planet->radius_m());
+    std::vector<float> range_m(pixels);
+    pool.run(static_cast<std::size_t>(request.view.height), [&](std::size_t y) {
+      for (int x = 0; x < request.view.width; ++x)
+        range_m[y * static_cast<std::size_t>(request.view.width) + static_cast<std::size_t>(x)] =
+            static_cast<float>(surface.cast(
+                request.view.eye.eye_m, core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
+    });
+    const auto sky = static_cast<double>(std::count(range_m.begin(), range_m.end(), core::kSkyRange));
+    std::printf("%s (%.0f %% sky)\n", eye.name, 100 * sky / static_cast<double>(pixels));
+    for (const Look& look : looks) {
+      if (!wanted(look.name, 4)) continue;
+      request.settings.mode = look.mode;
+      request.settings.colour = look.colour;
+      request.settings.colourise = look.colourise;
+      request.settings.shading = look.shading;
+      request.settings.haze_visibility_m = look.haze_m;
+      std::vector<mars::Rgb> a(pixels), b(pixels);
+      Times caches, ours, theirs;
+      for (int n = 0; n <= rounds; ++n) {
+        (n == 0 ? caches : ours).add([&] { painter.paint(request, range_m, a, {}, pool); });
+        (n == 0 ? caches : theirs).add([&] { b = by_point.paint(request, range_m, pool); });
+      }
+      std::size_t one = 0, two = 0;
+      for (std::size_t n = 0; n < pixels; ++n) {
+        const int off =
+            std::max({std::abs(a[n].r - b[n].r), std::abs(a[n].g - b[n].g), std::abs(a[n].b - b[n].b)});
+        one += off > 1 ? 1 : 0;
+        two += off > 2 ? 1 : 0;
+      }
+      const double per_pixel = 1e6 / static_cast<double>(pixels);
+      std::printf(
+          "  %-22s %6.1f ms, %5.1f ns a pixel of one core; colour_at %7.1f ms, %6.1f ns, %5.1f x; "
+          "off %.4f %% / %.4f %%\n",
+          look.name, median(ours.wall_ms), median(ours.cpu_ms) * per_pixel, median(theirs.wall_ms),
+          median(theirs.cpu_ms) * per_pixel, median(theirs.cpu_ms) / median(ours.cpu_ms),
+          100e-6 * static_cast<double>(one) * per_pixel, 100e-6 * static_cast<double>(two) * per_pixel);
+    }
+  }
+}
