@@ -12,9 +12,10 @@ namespace vpe::voxel {
 
 namespace {
 
-// Answers of ends_at().
-constexpr std::uint8_t kNo = 1;
+// Of ends_.
+constexpr std::uint8_t kKnown = 1;
 constexpr std::uint8_t kYes = 2;
+constexpr std::uint8_t kUsed = 4;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -47,6 +48,7 @@ ColumnWalk::ColumnWalk(const paging::Surface& surface, const ColumnEye& eye, dou
       tree_(surface.planet().tree()),
       eye_(eye),
       exaggeration_(exaggeration),
+      highest_m_(eye.radius_m + exaggeration * (surface.planet().meta().highest_radius_m - eye.radius_m)),
       rule_(rule),
       bounds_(tree_.size()),
       ends_(tree_.size()) {
@@ -83,22 +85,56 @@ float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
   return rounded;
 }
 
-bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
+// To the shell that the tile's posts lie in.
+double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
-  if (!info.has_children) return true;
-  if (!(rule_.cell_px > 0)) return false;
-  const std::uint8_t known = ends_[tile].load(std::memory_order_relaxed);
-  if (known != 0) return known == kYes;
-  // Nearest point of the shell that the tile's posts lie in.
   const double low = eye_.radius_m + exaggeration_ * info.min_height_m;
   const double high = eye_.radius_m + exaggeration_ * info.max_height_m;
   const double along = eye_.distance_m * std::cos(angles(tile).near);
   const double radius = std::clamp(along, low, high);
-  const double square = eye_.distance_m * eye_.distance_m + radius * radius - 2 * radius * along;
+  return std::sqrt(std::max(0.0, eye_.distance_m * eye_.distance_m + radius * radius - 2 * radius * along));
+}
+
+bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
+  const lod::TileInfo& info = tree_[tile];
+  if (!info.has_children) return true;
+  if (!(rule_.cell_px > 0)) return false;
+  const unsigned known = ends_[tile].load(std::memory_order_relaxed);
+  if ((known & kKnown) != 0) return (known & kYes) != 0;
   const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
-  const bool fine = spacing * rule_.focal_px <= rule_.cell_px * std::sqrt(std::max(0.0, square));
-  ends_[tile].store(fine ? kYes : kNo, std::memory_order_relaxed);
+  const bool fine = spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
+  ends_[tile].fetch_or(static_cast<std::uint8_t>(fine ? kKnown | kYes : kKnown), std::memory_order_relaxed);
   return fine;
+}
+
+void ColumnWalk::mark_used(lod::TileTree::Index tile) const {
+  if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0)
+    ends_[tile].fetch_or(kUsed, std::memory_order_relaxed);
+}
+
+ColumnWalk::Used ColumnWalk::used() const {
+  Used used;
+  for (lod::TileTree::Index tile = 0; tile < tree_.size(); ++tile) {
+    if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
+    const lod::TileInfo& info = tree_[tile];
+    const auto level = static_cast<std::size_t>(info.key.level);
+    if (used.tiles_by_level.size() <= level) used.tiles_by_level.resize(level + 1);
+    ++used.tiles_by_level[level];
+    if (!(rule_.cell_px > 0)) continue;
+    // A pixel between two surfaces may have the range of a sample beside it.
+    const double slope = exaggeration_ * info.steepest_slope;
+    used.error_px = std::max(used.error_px, 0.5 * slope);
+    if (!info.has_children) continue;
+    // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
+    // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
+    // are up to sqrt(2) times the nominal spacing apart.
+    const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
+    const double reach = std::sqrt(2.0) * spacing;
+    const double sag = reach * reach / (4 * eye_.radius_m);
+    const double error = 2 * slope * reach + sag;
+    used.error_px = std::max(used.error_px, error * rule_.focal_px / least_distance_m(tile) + 0.5 * slope);
+  }
+  return used;
 }
 
 // One group on one face after the other.
@@ -195,6 +231,7 @@ class GroupWalk : public LatticeSource {
     const lod::TileInfo& info = tree_[tile];
     if (walk_.ends_at(tile)) {
       tile_ = tile;
+      walk_.mark_used(tile);
       const int per_side = lattices_per_side(info.key.level, tree_.shape().intervals());
       visit_parts(cell, 0, 0, per_side, per_side);
       return;

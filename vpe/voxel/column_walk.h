@@ -33,6 +33,17 @@ class ColumnWalk {
   // Whether the tile's own posts are cast: it is fine enough, or the finest there.
   bool ends_at(lod::TileTree::Index tile) const;
 
+  // Radius of the highest ground, as exaggerated.
+  double highest_m() const { return highest_m_; }
+
+  // What the casts so far have used.
+  struct Used {
+    std::vector<int> tiles_by_level;  // index 0 = level 0
+    // Bound of |drawn - S| in the picture, pixels: 0 when all tiles were the finest.
+    double error_px = 0;
+  };
+  Used used() const;
+
   // Chart line through the middle of a cell of 2^level a side of a face.
   double middle_line(int level, std::int32_t index) const { return surface_.middle_line(level, index); }
 
@@ -44,6 +55,8 @@ class ColumnWalk {
     double far;
   };
   Angles angles(lod::TileTree::Index tile) const;
+  double least_distance_m(lod::TileTree::Index tile) const;
+  void mark_used(lod::TileTree::Index tile) const;
 
   // No ray into the tile is steeper than this many times upward.
   float slope_bound(lod::TileTree::Index tile) const;
@@ -52,8 +65,10 @@ class ColumnWalk {
   const lod::TileTree& tree_;
   ColumnEye eye_;
   double exaggeration_;
+  double highest_m_;
   CellRule rule_;
-  // Made when first wanted; NaN and 0 before. Whoever makes one makes the same.
+  // Made when first wanted; NaN and 0 before. ends_ also marks the tiles that were used. Whoever makes one
+  // makes the same.
   mutable std::vector<std::atomic<float>> bounds_;
   mutable std::vector<std::atomic<std::uint8_t>> ends_;
 };

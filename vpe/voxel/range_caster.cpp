@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vpe/voxel/column_walk.h"
+#include "vpe/voxel/plain_caster.h"
 #include "vpe/voxel/sheets.h"
 
 namespace vpe::voxel {
@@ -89,27 +90,31 @@ RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::
     : surface_(planet, share_of(budget_bytes, kSurfaceShare)),
       store_(planet, share_of(budget_bytes, 1.0 - kSurfaceShare)) {}
 
-void RangeCaster::cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
-                       std::span<float> range_m) {
+ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
+                                   std::span<float> range_m) {
   const double distance = glm::length(view.eye.eye_m);
-  if (distance > 0 && !options.each) {
+  if (distance > 0 && options.method != RangeOptions::Method::kEach) {
     const glm::dvec3 up = view.eye.eye_m / distance;
     const ColumnEye eye{up, distance, surface_.planet_radius_m(),
                         surface_.at(up, options.exaggeration).radius_m};
     const bool round = upright(view, up);
-    if (eye.distance_m > eye.ground_m && (round || view.projection == core::Projection::kPerspective)) {
-      const ColumnWalk walk(surface_, eye, options.exaggeration,
-                            {options.cell_px, core::focal_px(view)});
+    const bool plain = options.method == RangeOptions::Method::kPlain;
+    if (eye.distance_m > eye.ground_m &&
+        (plain || round || view.projection == core::Projection::kPerspective)) {
+      const ColumnWalk walk(surface_, eye, options.exaggeration, {options.cell_px, core::focal_px(view)});
       Desks desks(store_, options.exaggeration);
-      if (round) {
+      if (plain) {
+        cast_plain(view, walk, desks, pool, range_m);
+      } else if (round) {
         cast_upright(view, walk, desks, pool, range_m);
       } else {
         fans_.cast(view, walk, desks, surface_, options.exaggeration, options.cell_px == 0, pool, range_m);
       }
-      return;
+      return walk.used();
     }
   }
   cast_each(view, options.exaggeration, pool, range_m);
+  return {};
 }
 
 void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, Desks& desks,

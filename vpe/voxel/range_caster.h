@@ -18,7 +18,12 @@ struct RangeOptions {
   // 0: S itself. Else tiles are cast as coarse as their posts are at most this far apart in the picture; posts
   // of coarser tiles lie on S.
   double cell_px = 0;
-  bool each = false;  // every ray by itself, down the pyramids of S: what columns are measured against
+  enum class Method {
+    kColumns,
+    kEach,   // every ray by itself, down the pyramids of S
+    kPlain,  // every ray by itself in even steps (vpe/voxel/plain_caster.h)
+  };
+  Method method = Method::kColumns;  // the others are what columns are measured against
 };
 
 // One caller at a time.
@@ -31,8 +36,9 @@ class RangeCaster {
   // eye below S sees 0. With cell_px 0 as Surface::cast() says but for rounding: relative error below
   // kRangeError / sine of incidence. Does not depend on the number of threads, nor on what was cast
   // before. Throws paging::PlanetError for tiles that cannot be read.
-  void cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
-            std::span<float> range_m);
+  // Returns the tiles that columns went over and the bound of their error; nothing of single rays.
+  ColumnWalk::Used cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
+                        std::span<float> range_m);
   static constexpr double kRangeError = 1e-6;
 
   const paging::Surface& surface() const { return surface_; }

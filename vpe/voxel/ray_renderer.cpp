@@ -1,17 +1,22 @@
 #include "vpe/voxel/ray_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <glm/ext/scalar_constants.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
-#include "paging/surface.h"
 #include "vpe/core/edge_filter.h"
 #include "vpe/core/inspect.h"
 #include "vpe/core/parallel.h"
 #include "vpe/core/shading.h"
 #include "vpe/voxel/picture_painter.h"
+#include "vpe/voxel/range_caster.h"
 
 namespace vpe::voxel {
 
@@ -23,17 +28,14 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-constexpr double kSurfaceShare = 0.6;
+constexpr double kCastShare = 0.6;
 constexpr double kPaintShare = 0.4;
-
-// Rounding of a range to float.
-constexpr double kRangeRounding = 1.0 / (1 << 24);
 
 class RayRenderer : public core::Renderer {
  public:
   RayRenderer(std::shared_ptr<const paging::PlanetFile> planet, const RayOptions& options)
       : planet_(std::move(planet)),
-        surface_(planet_, share(options, kSurfaceShare)),
+        caster_(planet_, share(options, kCastShare)),
         painter_(planet_, share(options, kPaintShare)),
         pool_(options.threads) {}
 
@@ -44,35 +46,59 @@ class RayRenderer : public core::Renderer {
     return static_cast<std::size_t>(part * static_cast<double>(options.memory_bytes));
   }
 
-  void fill_ranges(const core::DrawRequest& request, std::span<float> range_m);
-  core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame,
-                            std::int64_t gaps) const;
+  ColumnWalk::Used draw_samples(const core::DrawRequest& request, core::Frame& frame, std::int64_t& gaps);
+  core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame, std::int64_t gaps,
+                            double error_px) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::Surface surface_;
+  RangeCaster caster_;
   PicturePainter painter_;
   core::ThreadPool pool_;
 };
 
-// One ray a pixel.
-void RayRenderer::fill_ranges(const core::DrawRequest& request, std::span<float> range_m) {
-  const core::View& view = request.view;
-  const core::SubRectangle part = core::drawn_part(view);
-  const auto width = static_cast<std::size_t>(part.width);
-  pool_.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
-    const double y = part.y + static_cast<double>(row) + 0.5;
-    for (int x = 0; x < part.width; ++x) {
-      range_m[row * width + static_cast<std::size_t>(x)] = static_cast<float>(surface_.cast(
-          view.eye.eye_m, core::pixel_ray(view, part.x + x + 0.5, y), request.settings.exaggeration));
-    }
-  });
+RangeOptions range_options(const core::DrawRequest& request) {
+  RangeOptions options;
+  options.exaggeration = request.settings.exaggeration;
+  if (request.settings.ray_mode == core::RayMode::kPlain) options.method = RangeOptions::Method::kPlain;
+  // What is given up for speed are cells.
+  if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
+    options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
+  return options;
+}
+
+// Where in a pixel its rays go through, from its middle.
+std::span<const glm::dvec2> places_in_pixel(int samples) {
+  static constexpr std::array<glm::dvec2, 1> kOne{{{0, 0}}};
+  static constexpr std::array<glm::dvec2, 2> kTwo{{{-0.25, -0.25}, {0.25, 0.25}}};
+  // A square turned by atan(1/2), so that no two are in one row or column.
+  static constexpr std::array<glm::dvec2, 4> kFour{
+      {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
+  if (samples >= 4) return kFour;
+  if (samples >= 2) return kTwo;
+  return kOne;
+}
+
+// The view whose pixel middles are this view's at `place` from theirs.
+core::View shifted(core::View view, const glm::dvec2& place) {
+  view.principal_offset_px.y -= place.y;
+  if (view.projection == core::Projection::kPerspective) {
+    view.principal_offset_px.x -= place.x;
+  } else {
+    const double turn = place.x / view.width * 2 * glm::pi<double>();
+    const glm::dvec3 right = view.eye.axes.right;
+    const glm::dvec3 forward = view.eye.axes.forward;
+    view.eye.axes.forward = std::cos(turn) * forward + std::sin(turn) * right;
+    view.eye.axes.right = std::cos(turn) * right - std::sin(turn) * forward;
+  }
+  return view;
 }
 
 core::Certificate RayRenderer::certify(const core::DrawRequest& request, const core::Frame& frame,
-                                       std::int64_t gaps) const {
+                                       std::int64_t gaps, double error_px) const {
   core::Certificate c;
-  c.quantisation_px = kRangeRounding * core::focal_px(request.view);
-  c.shift_bound_px = c.quantisation_px;
+  c.quantisation_px = RangeCaster::kRangeError * core::focal_px(request.view);
+  c.tile_error_px = error_px;
+  c.shift_bound_px = error_px + c.quantisation_px;
   c.picture_bound_px = c.shift_bound_px;
   c.tolerance_px = request.settings.lod_tolerance_px;
   c.share_without_data =
@@ -86,6 +112,32 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   c.illustration = meta.illustration;
   c.exaggeration = request.settings.exaggeration;
   return c;
+}
+
+// Several rays a pixel, shifted in parallel (Cohen-Or 1996, section 2), and their mean; range is that of the
+// middle.
+ColumnWalk::Used RayRenderer::draw_samples(const core::DrawRequest& request, core::Frame& frame,
+                                           std::int64_t& gaps) {
+  const RangeOptions options = range_options(request);
+  const std::span<const glm::dvec2> places = places_in_pixel(request.settings.samples);
+  std::vector<glm::ivec3> sum(frame.colour.size(), glm::ivec3(0));
+  std::vector<float> range(frame.range_m.size());
+  core::DrawRequest moved = request;
+  for (const glm::dvec2& place : places) {
+    moved.view = shifted(request.view, place);
+    caster_.cast(moved.view, options, pool_, range);
+    painter_.paint(moved, range, frame.colour, {}, pool_);
+    for (std::size_t k = 0; k < sum.size(); ++k)
+      sum[k] += glm::ivec3(frame.colour[k].r, frame.colour[k].g, frame.colour[k].b);
+  }
+  const ColumnWalk::Used used = caster_.cast(request.view, options, pool_, frame.range_m);
+  gaps = painter_.paint(request, frame.range_m, frame.colour, {}, pool_);
+  const int n = static_cast<int>(places.size());
+  for (std::size_t k = 0; k < sum.size(); ++k) {
+    const auto mean = [&](int s) { return static_cast<std::uint8_t>((s + n / 2) / n); };
+    frame.colour[k] = {mean(sum[k].x), mean(sum[k].y), mean(sum[k].z)};
+  }
+  return used;
 }
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
@@ -106,18 +158,27 @@ core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   frame.colour.resize(pixels);
   frame.range_m.resize(pixels);
-  fill_ranges(request, frame.range_m);
-  const bool smooth =
-      request.settings.smooth_edges && request.view.projection == core::Projection::kPerspective;
-  std::vector<float> inverse_depth(smooth ? pixels : 0);
-  const std::int64_t gaps = painter_.paint(request, frame.range_m, frame.colour, inverse_depth, pool_);
-  if (smooth) core::smooth_edges(frame.colour, inverse_depth, size.x, size.y, pool_);
+  ColumnWalk::Used used;
+  std::int64_t gaps = 0;
+  if (request.settings.samples > 1) {
+    used = draw_samples(request, frame, gaps);
+  } else {
+    used = caster_.cast(request.view, range_options(request), pool_, frame.range_m);
+    result.stats.select_ms = ms_since(start);
+    const bool smooth =
+        request.settings.smooth_edges && request.view.projection == core::Projection::kPerspective;
+    std::vector<float> inverse_depth(smooth ? pixels : 0);
+    gaps = painter_.paint(request, frame.range_m, frame.colour, inverse_depth, pool_);
+    if (smooth) core::smooth_edges(frame.colour, inverse_depth, size.x, size.y, pool_);
+  }
   core::apply_gamma(frame.colour, request.settings.gamma);
-  result.certificate = certify(request, frame, gaps);
+  result.certificate = certify(request, frame, gaps, used.error_px);
+  result.stats.tiles_by_level = used.tiles_by_level;
+  for (const int n : used.tiles_by_level) result.stats.tiles_drawn += n;
   if (!request.want_range) frame.range_m.clear();
   result.stats.draw_ms = ms_since(start);
-  result.stats.bytes_resident = static_cast<std::int64_t>(surface_.bytes_resident() +
-                                                          painter_.bytes_resident() + planet_->tree().bytes());
+  result.stats.bytes_resident =
+      static_cast<std::int64_t>(caster_.bytes_resident() + painter_.bytes_resident() + planet_->tree().bytes());
   result.settled = true;
   return result;
 }
