@@ -342,7 +342,16 @@ void RefineRow(const RayRow& row, const float* a, const float* b, const float* s
     // Between two surfaces the nearer one comes first.
     V t = hn::IfThenElse(close, hn::Div(one, inverse), near);
     const V high = hn::IfThenElse(close, hn::Add(far, reach), hn::Add(near, reach));
-    const M found = refiner.refine(hn::Not(sky), hn::Sub(near, reach), high, t);
+    M found = refiner.refine(hn::Not(sky), hn::Sub(near, reach), high, t);
+    // Rough ground may lead astray from between two samples; a sample's own facet faces the eye.
+    for (const V& start : {near, far}) {
+      const M again = hn::And(close, hn::Not(hn::Or(found, sky)));
+      if (hn::AllFalse(d, again)) break;
+      V other = start;
+      const M met = refiner.refine(again, hn::Sub(near, reach), high, other);
+      t = hn::IfThenElse(met, other, t);
+      found = hn::Or(found, met);
+    }
     // A ray that misses it meets the farther one, if that is not the sky.
     const M missed = hn::Not(hn::Or(found, hn::Or(sky, close)));
     V seen = hn::IfThenElse(found, t, near);
