@@ -853,7 +853,8 @@ void CopyRows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptr
       }
       for (; x + lanes <= columns; x += lanes) hn::Stream(hn::LoadU(d, from + x), d, to + x);
     }
-    std::copy(from + x, from + columns, to + x);
+    for (; x + lanes <= columns; x += lanes) hn::StoreU(hn::LoadU(d, from + x), d, to + x);
+    for (; x < columns; ++x) to[x] = from[x];
   }
   if (stream) hwy::FlushStream();
 }

@@ -14,7 +14,8 @@ namespace {
 
 // Between the lines of fans where they are farthest apart.
 constexpr double kSpacing_px = 1.0;
-constexpr int kTaskRows = 16;
+constexpr int kTaskRows = 32;
+constexpr int kTaskColumns = 128;
 // Share of a hint that a ray is cast before and behind it.
 constexpr double kAround = 0.04;
 
@@ -85,11 +86,13 @@ void FanCaster::cast_fans(const FanPlan& plan, const ColumnWalk& walk, Desks& de
   cast_sheets(sheets, walk, desks, pool);
 }
 
-// Samples on either side of each pixel of one row, in that row or column of samples.
-void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, float* a, float* b,
-                           float* share) const {
+// Samples on either side of pixels [first, last) of one row, in that row or column of samples.
+void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
+                           int last_pixel, float* a, float* b, float* share) const {
   const double y = part.y + row + 0.5;
-  const FanPlan::Span span = plan.upright_span(row);
+  FanPlan::Span span = plan.upright_span(row);
+  span.begin = std::clamp(span.begin, first_pixel, last_pixel);
+  span.end = std::clamp(span.end, span.begin, last_pixel);
   const auto none = [&](int k) {
     a[k] = std::numeric_limits<float>::infinity();
     b[k] = 0;
@@ -137,8 +140,8 @@ void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, 
       share[k] = share[from];
     }
   };
-  beside(0, span.begin);
-  beside(span.end, part.width);
+  beside(first_pixel, span.begin);
+  beside(span.end, last_pixel);
 }
 
 void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desks,
@@ -158,27 +161,33 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
     FacetFinder exact_finder(walk, use.shelf());
     RowHints hints(part.width);
     const int first = static_cast<int>(task) * kTaskRows;
-    for (int row = first; row < std::min(first + kTaskRows, part.height); ++row) {
-      find_hints(plan, part, row, hints.a.data(), hints.b.data(), hints.share.data());
-      float* const out = range_m.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width);
-      RayRow rays;
-      rays.eye_m = view.eye.eye_m;
-      rays.radius_m = walk.eye().radius_m;
-      rays.first =
-          (part.x + 0.5 - cx) * axes.right + (cy - (part.y + row + 0.5)) * axes.up + focal * axes.forward;
-      rays.step = axes.right;
-      rays.count = part.width;
-      hints.open.clear();
-      refine_row(rays, hints.a.data(), hints.b.data(), hints.share.data(), finder, exact_finder, out,
-                 hints.open);
-      for (const int k : hints.open) {
-        const auto at = static_cast<std::size_t>(k);
-        if (exact) {
-          const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-          const double range = cast_near(surface, view.eye.eye_m, ray, exaggeration, hints.a[at], hints.b[at]);
-          out[k] = static_cast<float>(range);
-        } else {
-          out[k] = hints.share[at] < 0.5F ? hints.a[at] : hints.b[at];
+    const int last = std::min(first + kTaskRows, part.height);
+    // In blocks, so that neighbouring rows find their samples and lattices at hand.
+    for (int begin = 0; begin < part.width; begin += kTaskColumns) {
+      const int end = std::min(begin + kTaskColumns, part.width);
+      for (int row = first; row < last; ++row) {
+        find_hints(plan, part, row, begin, end, hints.a.data(), hints.b.data(), hints.share.data());
+        float* const out =
+            range_m.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width) + begin;
+        RayRow rays;
+        rays.eye_m = view.eye.eye_m;
+        rays.radius_m = walk.eye().radius_m;
+        rays.first = (part.x + begin + 0.5 - cx) * axes.right + (cy - (part.y + row + 0.5)) * axes.up +
+                     focal * axes.forward;
+        rays.step = axes.right;
+        rays.count = end - begin;
+        hints.open.clear();
+        const float* const a = hints.a.data() + begin;
+        const float* const b = hints.b.data() + begin;
+        const float* const share = hints.share.data() + begin;
+        refine_row(rays, a, b, share, finder, exact_finder, out, hints.open);
+        for (const int k : hints.open) {
+          if (exact) {
+            const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
+            out[k] = static_cast<float>(cast_near(surface, view.eye.eye_m, ray, exaggeration, a[k], b[k]));
+          } else {
+            out[k] = share[k] < 0.5F ? a[k] : b[k];
+          }
         }
       }
     }

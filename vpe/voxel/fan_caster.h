@@ -24,8 +24,8 @@ class FanCaster {
 
  private:
   void cast_fans(const FanPlan& plan, const ColumnWalk& walk, Desks& desks, core::ThreadPool& pool);
-  void find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, float* a, float* b,
-                  float* share) const;
+  void find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, int first_pixel, int last_pixel,
+                  float* a, float* b, float* share) const;
 
   std::vector<std::vector<float>> samples_;  // of the last picture's fans, by step
 };

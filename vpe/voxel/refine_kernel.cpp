@@ -157,29 +157,51 @@ class RowRefiner {
     return hn::And(hn::Gt(p.z, hn::Zero(d)), hn::And(x, y));
   }
 
-  // Post (x, y) of each lane.
-  V post(VI x, VI y) const {
-    const D d;
+  // Where post (x, y) of each lane is.
+  VI index_of(VI x, VI y) const {
     const DI di;
-    const Facets& f = *facets_;
-    const int side = f.frame.intervals + 1;
-    VI line = f.family == Family::kColumns ? x : (f.family == Family::kRows ? y : hn::Sub(x, y));
-    const VI position = f.family == Family::kColumns ? y : x;
-    if (f.family == Family::kDiagonals)
-      line = hn::IfThenElse(hn::Lt(line, hn::Zero(di)), hn::Add(line, hn::Set(di, side)), line);
+    const VI side = hn::Set(di, facets_->frame.intervals + 1);
+    if (facets_->family == Family::kColumns) return hn::Add(hn::Mul(x, side), y);
+    if (facets_->family == Family::kRows) return hn::Add(hn::Mul(y, side), x);
+    VI line = hn::Sub(x, y);
+    line = hn::IfThenElse(hn::Lt(line, hn::Zero(di)), hn::Add(line, side), line);
+    return hn::Add(hn::Mul(line, side), x);
+  }
+
+  V posts_at(VI index) const {
+    const D d;
     if constexpr (kExact) {
-      alignas(64) std::int64_t lines[8];
-      alignas(64) std::int64_t positions[8];
-      hn::Store(line, di, lines);
-      hn::Store(position, di, positions);
+      alignas(64) std::int64_t at[8];
+      hn::Store(index, DI(), at);
       alignas(64) double values[8];
-      for (std::size_t k = 0; k < hn::Lanes(d); ++k)
-        values[k] = f.exact_lines->posts[lines[k] * side + positions[k]];
+      for (std::size_t k = 0; k < hn::Lanes(d); ++k) values[k] = facets_->exact_lines->posts[at[k]];
       return hn::Load(d, values);
     } else {
-      const VI at = hn::Add(hn::Mul(line, hn::Set(di, side)), position);
-      return hn::GatherIndex(d, f.lines->posts, at);
+      return hn::GatherIndex(d, facets_->lines->posts, index);
     }
+  }
+
+  // A facet's posts: its cell's corner, the one across, and the one between.
+  struct Corners {
+    V first;
+    V across;
+    V between;
+  };
+  Corners corners(VI x, VI y, M lower) const {
+    const DI di;
+    const VI one = hn::Set(di, 1);
+    const auto low = hn::RebindMask(di, lower);
+    const VI index = index_of(x, y);
+    if (facets_->family == Family::kDiagonals) {
+      const VI step = hn::IfThenElse(low, one, hn::Zero(di));
+      return {posts_at(index), posts_at(hn::Add(index, one)),
+              posts_at(index_of(hn::Add(x, step), hn::Sub(hn::Add(y, one), step)))};
+    }
+    const int side = facets_->frame.intervals + 1;
+    const VI east = hn::Set(di, facets_->family == Family::kColumns ? side : 1);
+    const VI north = hn::Set(di, facets_->family == Family::kColumns ? 1 : side);
+    return {posts_at(index), posts_at(hn::Add(index, hn::Set(di, side + 1))),
+            posts_at(hn::Add(index, hn::IfThenElse(low, east, north)))};
   }
 
   void step(M here, const Place& place, M& todo, M& found, V low, V high, V& t) {
@@ -191,8 +213,7 @@ class RowRefiner {
     const M lower = hn::Ge(hn::Sub(place.x, i), hn::Sub(place.y, j));
     const VI xi = hn::ConvertTo(di, i);
     const VI yj = hn::ConvertTo(di, j);
-    const VI one_i = hn::Set(di, 1);
-    const VI lower_i = hn::IfThenElse(hn::RebindMask(di, lower), one_i, hn::Zero(di));
+    const VI lower_i = hn::IfThenElse(hn::RebindMask(di, lower), hn::Set(di, 1), hn::Zero(di));
     const VI facet = hn::Add(hn::Add(hn::ShiftLeft<1>(xi), hn::ShiftLeft<9>(yj)), hn::Add(lower_i, number_));
     const M same = hn::And(here, hn::RebindMask(d, hn::Eq(facet, last_facet_)));
     found = hn::Or(found, same);
@@ -200,11 +221,9 @@ class RowRefiner {
     here = hn::AndNot(same, here);
     if (hn::AllFalse(d, here)) return;
     last_facet_ = hn::IfThenElse(hn::RebindMask(di, here), facet, last_facet_);
-    const V h00 = post(xi, yj);
-    const V h11 = post(hn::Add(xi, one_i), hn::Add(yj, one_i));
-    const V hm = post(hn::Add(xi, lower_i), hn::Sub(hn::Add(yj, one_i), lower_i));
-    const V first = hn::Sub(hm, h00);
-    const V second = hn::Sub(h11, hm);
+    const Corners c = corners(xi, yj, lower);
+    const V first = hn::Sub(c.between, c.first);
+    const V second = hn::Sub(c.across, c.between);
     const V p = hn::IfThenElse(lower, first, second);
     const V q = hn::IfThenElse(lower, second, first);
     // Metres below the facet's plane: of the reference plane, and of the facet against it.
@@ -212,7 +231,7 @@ class RowRefiner {
     const auto below = [&](V x, V y, V z, V reference) {
       const V px = hn::NegMulAdd(i, z, x);
       const V py = hn::NegMulAdd(j, z, y);
-      return hn::MulAdd(per_r, hn::MulAdd(h00, z, hn::MulAdd(p, px, hn::Mul(q, py))), reference);
+      return hn::MulAdd(per_r, hn::MulAdd(c.first, z, hn::MulAdd(p, px, hn::Mul(q, py))), reference);
     };
     const V at_eye = below(ex_, ey_, ez_, eye_rise_);
     const V slope = below(dx_, dy_, dz_, ray_rise_);
