@@ -1,0 +1,139 @@
+// The ray backend against itself: what coherence is worth (columns against single rays down the same pyramids
+// and against even steps), what coarser cells are worth, and what roll, pitch and a larger grid cost.
+// ray_modes_bench DIR [ROUNDS]: DIR holds the planets of ray_bench, or takes them.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "mars/pose.h"
+#include "tests/bench/ray_bench_scenes.h"
+#include "vpe/core/parallel.h"
+#include "vpe/voxel/range_caster.h"
+
+namespace {
+
+using vpe::core::View;
+using vpe::voxel::RangeCaster;
+using vpe::voxel::RangeOptions;
+
+constexpr RangeOptions kExact{};
+constexpr RangeOptions kMultires{1, 1};
+constexpr RangeOptions kEach{1, 0, RangeOptions::Method::kEach};
+constexpr RangeOptions kPlain{1, 0, RangeOptions::Method::kPlain};
+
+struct Scene {
+  bench::RayScene scene;
+  RangeCaster caster;
+  explicit Scene(bench::RayScene s) : scene(s), caster(s.planet, std::size_t{3} << 30) {}
+
+  View view(int width, int height, double fov_deg, double pitch_deg, double roll_deg) const {
+    View v;
+    v.width = width;
+    v.height = height;
+    v.fov_deg = fov_deg;
+    const double radius = caster.surface().planet_radius_m();
+    const mars::LonLat place = mars::lon_lat(scene.middle);
+    const double ground = caster.surface().at(scene.middle).height_m;
+    v.eye = mars::to_eye({place.lon_deg, place.lat_deg, ground + 1000, 22.5, pitch_deg, roll_deg}, radius);
+    return v;
+  }
+};
+
+double once(Scene& scene, const View& view, const RangeOptions& options, vpe::core::ThreadPool& pool) {
+  std::vector<float> out(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
+  const auto start = std::chrono::steady_clock::now();
+  scene.caster.cast(view, options, pool, out);
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Run {
+  Scene* scene;
+  View view;
+  RangeOptions options;
+};
+
+// Median of a, and of b / a in the same round, by turns; the first round loads and is left out.
+void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::core::ThreadPool& pool) {
+  std::vector<double> times;
+  std::vector<double> ratios;
+  for (int r = 0; r <= rounds; ++r) {
+    const double ta = once(*a.scene, a.view, a.options, pool);
+    const double tb = once(*b.scene, b.view, b.options, pool);
+    if (r == 0) continue;
+    times.push_back(ta);
+    ratios.push_back(tb / ta);
+  }
+  const auto [low, high] = std::minmax_element(ratios.begin(), ratios.end());
+  std::printf("| %s | %.1f | %.2f (%.2f..%.2f) |\n", name, median(times), median(ratios), *low, *high);
+  std::fflush(stdout);
+}
+
+void run(const std::string& dir, int rounds) {
+  vpe::core::ThreadPool pool(2);
+  std::map<std::string, Scene> scenes;
+  for (const bench::PatchSpec& spec : bench::patch_specs()) {
+    if (spec.name != "513") scenes.try_emplace(spec.name, bench::patch_scene(spec, dir, 2));
+  }
+  Scene& small = scenes.at("2049");
+  Scene& large = scenes.at("8193");
+  const View wan = small.view(500, 400, 60, -30, 0);
+  const View p10 = small.view(1920, 1080, 36, -10, 0);
+  const View p10_large = large.view(1920, 1080, 36, -10, 0);
+  View pano = small.view(6000, 2000, 60, 0, 0);
+  pano.projection = vpe::core::Projection::kCylinder;
+  View pano_large = large.view(6000, 2000, 60, 0, 0);
+  pano_large.projection = vpe::core::Projection::kCylinder;
+
+  std::printf("| view, 2 threads | ms | times as long (lowest..highest) |\n|---|---|---|\n");
+  compare("wan 2049: exact; each ray by itself", {&small, wan, kExact}, {&small, wan, kEach}, rounds, pool);
+  compare("p10 2049: exact; each ray by itself", {&small, p10, kExact}, {&small, p10, kEach}, rounds, pool);
+  compare("pano 2049: exact; each ray by itself", {&small, pano, kExact}, {&small, pano, kEach}, rounds, pool);
+  compare("wan 2049: exact; plain", {&small, wan, kExact}, {&small, wan, kPlain}, 3, pool);
+  compare("p10 2049: multires; exact", {&small, p10, kMultires}, {&small, p10, kExact}, rounds, pool);
+  compare("p10 8193: multires; exact", {&large, p10_large, kMultires}, {&large, p10_large, kExact}, rounds,
+          pool);
+  compare("pano 8193: multires; exact", {&large, pano_large, kMultires}, {&large, pano_large, kExact}, rounds,
+          pool);
+  compare("p10 multires: 2049; 8193", {&small, p10, kMultires}, {&large, p10_large, kMultires}, rounds, pool);
+  compare("pano multires: 2049; 8193", {&small, pano, kMultires}, {&large, pano_large, kMultires}, rounds,
+          pool);
+  for (const RangeOptions& options : {kExact, kMultires}) {
+    const char* name = options.cell_px == 0 ? "exact" : "multires";
+    for (double roll : {-15.0, -45.0, -90.0}) {
+      const std::string what =
+          "800x800, pitch -40, " + std::string(name) + ": roll 0; " + std::to_string(static_cast<int>(roll));
+      compare(what.c_str(), {&small, small.view(800, 800, 40, -40, 0), options},
+              {&small, small.view(800, 800, 40, -40, roll), options}, rounds, pool);
+    }
+    for (double pitch : {-15.0, -30.0, -45.0, -60.0, -75.0, -90.0}) {
+      const std::string what =
+          "1920x1080, " + std::string(name) + ": pitch 0; " + std::to_string(static_cast<int>(pitch));
+      compare(what.c_str(), {&small, small.view(1920, 1080, 36, 0, 0), options},
+              {&small, small.view(1920, 1080, 36, pitch, 0), options}, rounds, pool);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "ray_modes_bench DIR [ROUNDS]\n");
+    return 2;
+  }
+  try {
+    run(argv[1], argc > 2 ? std::max(1, std::atoi(argv[2])) : 9);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ray_modes_bench: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
