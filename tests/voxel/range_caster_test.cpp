@@ -140,6 +140,26 @@ TEST_F(Columns, RoundPicturesAreExact) {
   EXPECT_LT(sum.at(0.99), 2e-6);
 }
 
+// A million rays of columns, each against a cast of its own (which voxel/missed_hits_test holds to every
+// triangle).
+TEST_F(Columns, LongRoundPicturesOfAMillionRays) {
+  RangeCaster caster(bumpy(), kBudget);
+  Random random(76);
+  Agreement sum;
+  while (sum.pixels < 1000000) {
+    const double exaggeration = random.integer(0, 2) == 0 ? random.uniform(0.5, 20) : 1.0;
+    const core::View view = random_view(
+        random, caster.surface(),
+        random.integer(0, 1) == 0 ? core::Projection::kCylinder : core::Projection::kEquirectangular,
+        exaggeration);
+    compare(sum, caster.surface(), view, cast(caster, view, {exaggeration}), exaggeration, 1e-6);
+  }
+  EXPECT_EQ(sum.wrong, 0) << "of " << sum.pixels;
+  EXPECT_LE(sum.ties, sum.pixels / 2000);
+  std::printf("%d pixels, %d ties, %d wrong; error p50 %.2g p99 %.2g p99.9 %.2g\n", sum.pixels, sum.ties,
+              sum.wrong, sum.at(0.5), sum.at(0.99), sum.at(0.999));
+}
+
 TEST_F(Columns, PerspectivePicturesAreExactButForWhatIsNarrowerThanAPixel) {
   RangeCaster caster(bumpy(), kBudget);
   Random random(72);

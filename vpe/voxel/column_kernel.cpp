@@ -226,6 +226,9 @@ class RowModel {
   V a0_, a1_, b0_, b1_;
 };
 
+// How the posts of all lanes that matter are read: from a window of 32 or 64 about them, or each by itself.
+enum class Reach { kNear, kWide, kAny };
+
 // Lanes that go through one lattice the same way.
 template <class D, RowKind kKind>
 class Walk {
@@ -296,20 +299,26 @@ class Walk {
       } else {
         if (fresh) enter(k);
         fresh = false;
-        const bool near = together();
-        if (settled(low, high)) {
-          if (up) {
-            fast<true>(k, next);
-          } else {
-            fast<false>(k, next);
-          }
-        } else if (up) {
-          near ? careful<true, true>(k, next) : careful<true, false>(k, next);
+        const bool all = settled(low, high);
+        const Reach reach = all ? reach_of_all() : reach_of_some();
+        if (reach == Reach::kNear) {
+          block<Reach::kNear>(up, all, k, next);
+        } else if (reach == Reach::kWide) {
+          block<Reach::kWide>(up, all, k, next);
         } else {
-          near ? careful<false, true>(k, next) : careful<false, false>(k, next);
+          block<Reach::kAny>(up, false, k, next);
         }
       }
       k = next;
+    }
+  }
+
+  template <Reach kReach>
+  void block(bool up, bool all, int first, int last) {
+    if (kReach != Reach::kAny && all) {
+      up ? fast<true, kReach>(first, last) : fast<false, kReach>(first, last);
+    } else {
+      up ? careful<true, kReach>(first, last) : careful<false, kReach>(first, last);
     }
   }
 
@@ -404,7 +413,8 @@ class Walk {
     return line;
   }
 
-  // Positions of all lanes that matter are in [from, from + kReadAhead - 3]; others read anything.
+  // Positions of all lanes that matter are in [from, from + 28] or [from, from + 60]; others read anything.
+  template <Reach kReach>
   Line window(int k, T from) const {
     const D d;
     const DI di;
@@ -418,9 +428,19 @@ class Walk {
     if constexpr (sizeof(T) == 4) {
       const __m512 a = _mm512_loadu_ps(at);
       const __m512 b = _mm512_loadu_ps(at + 16);
-      const __m512i index = _mm512_sub_epi32(_mm512_cvttps_epi32(line.whole.raw), _mm512_set1_epi32(base));
-      line.low = V{_mm512_permutex2var_ps(a, index, b)};
-      line.high = V{_mm512_permutex2var_ps(a, _mm512_add_epi32(index, _mm512_set1_epi32(1)), b)};
+      const __m512i low = _mm512_sub_epi32(_mm512_cvttps_epi32(line.whole.raw), _mm512_set1_epi32(base));
+      const __m512i high = _mm512_add_epi32(low, _mm512_set1_epi32(1));
+      line.low = V{_mm512_permutex2var_ps(a, low, b)};
+      line.high = V{_mm512_permutex2var_ps(a, high, b)};
+      if constexpr (kReach == Reach::kWide) {
+        const __m512 c = _mm512_loadu_ps(at + 32);
+        const __m512 e = _mm512_loadu_ps(at + 48);
+        const __m512i half = _mm512_set1_epi32(32);
+        const __mmask16 low_far = _mm512_test_epi32_mask(low, half);
+        const __mmask16 high_far = _mm512_test_epi32_mask(high, half);
+        line.low = V{_mm512_mask_blend_ps(low_far, line.low.raw, _mm512_permutex2var_ps(c, low, e))};
+        line.high = V{_mm512_mask_blend_ps(high_far, line.high.raw, _mm512_permutex2var_ps(c, high, e))};
+      }
       return line;
     }
 #endif
@@ -429,6 +449,15 @@ class Walk {
     line.low = hn::GatherIndex(d, at, safe);
     line.high = hn::GatherIndex(d, at + 1, safe);
     return line;
+  }
+
+  template <Reach kReach>
+  Line read(int k, T from) const {
+    if constexpr (kReach == Reach::kAny) {
+      return gather(k);
+    } else {
+      return window<kReach>(k, from);
+    }
   }
 
   // The one edge between two lines, `lower` having the smaller number.
@@ -467,7 +496,6 @@ class Walk {
     const D d;
     if (at_low_.low < first_position(low) || at_low_.high >= last_position(low)) return false;
     if (at_high_.low < first_position(high) || at_high_.high >= last_position(high)) return false;
-    if (at_low_.high - at_low_.low > kWindow || at_high_.high - at_high_.low > kWindow) return false;
     const M ready = hn::And(started_, hn::And(in_front(hn::Set(d, static_cast<T>(low))),
                                               in_front(hn::Set(d, static_cast<T>(high)))));
     return hn::AllFalse(d, hn::AndNot(ready, alive_));
@@ -500,21 +528,31 @@ class Walk {
     seen_h_ = hn::IfThenElse(here, height, seen_h_);
   }
 
-  // Whether one window holds the block's posts of all lanes.
-  bool together() {
-    const T last = static_cast<T>(n_);
-    from_ = std::clamp(std::min(at_low_.low, at_high_.low), T(-1), last);
-    return std::clamp(std::max(at_low_.high, at_high_.high), T(-1), last) - from_ <= kWindow;
+  static Reach reach_for(T width) {
+    return width <= 28 ? Reach::kNear : (width <= 60 ? Reach::kWide : Reach::kAny);
   }
 
-  // Lanes may come and go. kNear: together().
-  template <bool kUp, bool kNear>
+  // A window of its own for each line.
+  Reach reach_of_all() const {
+    return reach_for(std::max(at_low_.high - at_low_.low, at_high_.high - at_high_.low));
+  }
+
+  // One for the whole block: lanes come and go.
+  Reach reach_of_some() {
+    const T last = static_cast<T>(n_);
+    from_ = std::clamp(std::min(at_low_.low, at_high_.low), T(-1), last);
+    return reach_for(std::clamp(std::max(at_low_.high, at_high_.high), T(-1), last) - from_);
+  }
+
+  // Lanes may come and go.
+  template <bool kUp, Reach kReach>
   void careful(int first, int last) {
     const D d;
-    const auto read = [&](int k) { return kNear ? window(k, from_) : gather(k); };
+    const auto read = [&](int k) { return this->template read<kReach>(k, from_); };
     Line line = read(first);
     for (int k = first; k != last; k += kUp ? 1 : -1) {
       const int next_k = kUp ? k + 1 : k - 1;
+
       const Line next = read(next_k);
       const int low_k = kUp ? k : next_k;
       const Line& lower = kUp ? line : next;
@@ -552,17 +590,19 @@ class Walk {
     seen_h_ = hn::IfThenElse(who, height, seen_h_);
   }
 
-  template <bool kUp>
+  // All lanes are there.
+  template <bool kUp, Reach kReach>
   void fast(int first, int last) {
     const D d;
     const V zero = hn::Zero(d);
     const T rate = (at_high_.low - at_low_.low) / static_cast<T>(std::abs(last - first));
     const int low_end = std::min(first, last);
     const auto from = [&](int k) { return at_low_.low + rate * static_cast<T>(k - low_end); };
-    Line line = window(first, from(first));
+    Line line = read<kReach>(first, from(first));
     for (int k = first; k != last; k += kUp ? 1 : -1) {
       const int next_k = kUp ? k + 1 : k - 1;
-      const Line next = window(next_k, from(next_k));
+
+      const Line next = read<kReach>(next_k, from(next_k));
       const Crossing c = between(kUp ? k : next_k, kUp ? line : next, kUp ? next : line);
       const V x = hn::Set(d, static_cast<T>(next_k));
       const V height = height_on(next);
@@ -639,8 +679,6 @@ class Walk {
           static_cast<float>(all[k]);
     }
   }
-
-  static constexpr T kWindow = kReadAhead - 4;
 
   const LatticeLines<T>& lines_;
   Family family_;

@@ -59,7 +59,7 @@ struct LatticeLines {
     return block_max + static_cast<std::ptrdiff_t>(b - first_block) * static_cast<std::ptrdiff_t>(blocks);
   }
 };
-inline constexpr int kReadAhead = 32;
+inline constexpr int kReadAhead = 64;
 
 // The lattices of one tile, in one family; lattice (i, j) of per_side^2 at j * per_side + i.
 template <typename T>
