@@ -142,7 +142,7 @@ TEST_F(Columns, RoundPicturesAreExact) {
 
 // A million rays of columns, each against a cast of its own (which voxel/missed_hits_test holds to every
 // triangle).
-TEST_F(Columns, LongRoundPicturesOfAMillionRays) {
+TEST_F(Columns, AMillionRaysOfRoundPictures) {
   RangeCaster caster(bumpy(), kBudget);
   Random random(76);
   Agreement sum;
