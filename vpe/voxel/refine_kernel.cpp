@@ -168,17 +168,19 @@ class RowRefiner {
     return hn::Add(hn::Mul(line, side), x);
   }
 
+  // One by one: since the mitigations of 2023 vector gathers take longer than loads on many processors.
   V posts_at(VI index) const {
-    const D d;
+    alignas(64) hn::TFromD<DI> at[64 / sizeof(T)];
+    alignas(64) T values[64 / sizeof(T)];
+    hn::Store(index, DI(), at);
+    const T* posts = nullptr;
     if constexpr (kExact) {
-      alignas(64) std::int64_t at[8];
-      hn::Store(index, DI(), at);
-      alignas(64) double values[8];
-      for (std::size_t k = 0; k < hn::Lanes(d); ++k) values[k] = facets_->exact_lines->posts[at[k]];
-      return hn::Load(d, values);
+      posts = facets_->exact_lines->posts;
     } else {
-      return hn::GatherIndex(d, facets_->lines->posts, index);
+      posts = facets_->lines->posts;
     }
+    for (std::size_t k = 0; k < hn::Lanes(D()); ++k) values[k] = posts[at[k]];
+    return hn::Load(D(), values);
   }
 
   // A facet's posts: its cell's corner, the one across, and the one between.
@@ -399,6 +401,16 @@ void RefineRow(const RayRow& row, const float* a, const float* b, const float* s
   }
 }
 
+// Loads one by one, for the same reason as in posts_at().
+template <class D>
+hn::Vec<D> pick(D d, const float* from, hn::Vec<hn::RebindToSigned<D>> index) {
+  alignas(64) std::int32_t at[16];
+  alignas(64) float values[16];
+  hn::Store(index, hn::RebindToSigned<D>(), at);
+  for (std::size_t k = 0; k < hn::Lanes(d); ++k) values[k] = from[at[k]];
+  return hn::Load(d, values);
+}
+
 // Row `row` of samples [step][line] at line = stretch[k] y + shift[k], step first + k.
 void HintsFromColumns(const float* samples, int lines, const float* stretch, const float* shift, float y,
                       int count, float* a, float* b, float* share) {
@@ -419,8 +431,8 @@ void HintsFromColumns(const float* samples, int lines, const float* stretch, con
         hn::Min(hn::Max(hn::Floor(line), hn::Zero(d)), hn::Set(d, static_cast<float>(lines - 2)));
     const auto step = hn::Min(hn::Add(hn::Iota(di, 0), hn::Set(di, k)), hn::Set(di, count - 1));
     const auto at = hn::Add(hn::Mul(step, hn::Set(di, lines)), hn::ConvertTo(di, before));
-    const auto va = hn::GatherIndex(d, samples, at);
-    const auto vb = hn::GatherIndex(d, samples + 1, at);
+    const auto va = pick(d, samples, at);
+    const auto vb = pick(d, samples + 1, at);
     const auto part = hn::Min(hn::Max(hn::Sub(line, before), hn::Zero(d)), hn::Set(d, 1.0F));
     if (used == lanes) {
       hn::StoreU(va, d, a + k);
@@ -456,8 +468,8 @@ void HintsFromRow(const float* samples, int sample_count, double first, double s
     const auto at = hn::Floor(place);
     const auto part = hn::Sub(place, at);
     const auto index = hn::Add(hn::ConvertTo(di, at), offset);
-    const auto va = hn::GatherIndex(d, samples, hn::Min(hn::Max(index, none), last));
-    const auto vb = hn::GatherIndex(d, samples, hn::Min(hn::Max(hn::Add(index, hn::Set(di, 1)), none), last));
+    const auto va = pick(d, samples, hn::Min(hn::Max(index, none), last));
+    const auto vb = pick(d, samples, hn::Min(hn::Max(hn::Add(index, hn::Set(di, 1)), none), last));
     if (k + lanes <= count) {
       hn::StoreU(va, d, a + k);
       hn::StoreU(vb, d, b + k);
