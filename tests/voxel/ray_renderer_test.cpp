@@ -121,6 +121,95 @@ TEST_F(Rays, EveryModeShadingAndColourAsDefined) {
   }
 }
 
+// What multires states of its error is true, and it draws fewer and coarser tiles.
+TEST_F(Rays, MultiresKeepsItsCertificate) {
+  const auto planet = test_support::build_fake(dir_ / "finer.vpe",
+                                               test_support::FakeElevation(test_support::bumpy_height), 20000);
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto draw = rays(planet);
+  Random random(93);
+  int coarser = 0;
+  for (int n = 0; n < 12; ++n) {
+    core::DrawRequest request = random_request(random, surface, 96, 64);
+    request.settings.smooth_edges = false;
+    const core::DrawResult exact = draw->draw(request);
+    request.settings.ray_mode = core::RayMode::kMultires;
+    request.settings.ray_cell_px = 2;
+    const core::DrawResult drawn = draw->draw(request);
+    const auto errors = core::compare_to_reference(request.view, drawn.frame.range_m, exact.frame.range_m,
+                                                   test_support::radius_of(surface), {1, 1});
+    EXPECT_LE(errors.forward.max_px, drawn.certificate.shift_bound_px) << n;
+    EXPECT_LE(drawn.stats.tiles_drawn, exact.stats.tiles_drawn);
+    coarser += drawn.stats.tiles_drawn < exact.stats.tiles_drawn ? 1 : 0;
+    // Frames that must be quick are coarser still.
+    request.coarsening = 4;
+    EXPECT_LE(draw->draw(request).stats.tiles_by_level.size(), drawn.stats.tiles_by_level.size());
+  }
+  EXPECT_GE(coarser, 4);
+}
+
+TEST_F(Rays, PlainStepsEndOnTheSurface) {
+  const auto planet = bumpy();
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto draw = rays(planet);
+  Random random(94);
+  std::int64_t hits = 0, same = 0;
+  for (int n = 0; n < 6; ++n) {
+    core::DrawRequest request = random_request(random, surface, 40, 30);
+    const core::DrawResult exact = draw->draw(request);
+    request.settings.ray_mode = core::RayMode::kPlain;
+    const core::DrawResult plain = draw->draw(request);
+    for (std::size_t k = 0; k < plain.frame.range_m.size(); ++k) {
+      const auto range = static_cast<double>(plain.frame.range_m[k]);
+      if (std::isinf(range)) continue;
+      ++hits;
+      const glm::dvec3 ray =
+          core::pixel_ray(request.view, static_cast<double>(k % 40) + 0.5, static_cast<double>(k / 40) + 0.5);
+      const glm::dvec3 place = request.view.eye.eye_m + range * ray;
+      ASSERT_NEAR(glm::length(place), surface.at(place).radius_m, 1e-6 * range + 0.01) << n << " " << k;
+      same += std::abs(range - static_cast<double>(exact.frame.range_m[k])) <= 1e-5 * range ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GE(same, hits * 95 / 100);
+}
+
+// Several rays a pixel come nearer to the mean over the pixel than one does.
+TEST_F(Rays, SamplesAverageThePixel) {
+  const auto planet = bumpy();
+  const auto draw = rays(planet);
+  const auto request = [&](int scale, int samples) {
+    core::DrawRequest r =
+        request_for({20, 30, 40000, 30, -15, 20}, planet->radius_m(), 80 * scale, 60 * scale, 40);
+    r.settings.smooth_edges = false;
+    r.settings.samples = samples;
+    return r;
+  };
+  constexpr int kScale = 8;
+  const core::Frame fine = draw->draw(request(kScale, 1)).frame;
+  const auto difference = [&](int samples) {
+    const core::Frame frame = draw->draw(request(1, samples)).frame;
+    double sum = 0;
+    for (int y = 0; y < 60; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        double mean = 0;
+        for (int b = 0; b < kScale; ++b) {
+          for (int a = 0; a < kScale; ++a)
+            mean += fine.colour[static_cast<std::size_t>((y * kScale + b) * 80 * kScale + x * kScale + a)].r;
+        }
+        const double off = mean / (kScale * kScale) - frame.colour[static_cast<std::size_t>(y * 80 + x)].r;
+        sum += off * off;
+      }
+    }
+    return sum;
+  };
+  const double one = difference(1);
+  EXPECT_LT(difference(2), 0.8 * one);
+  EXPECT_LT(difference(4), 0.5 * one);
+  // Ranges are those of the middle.
+  EXPECT_EQ(draw->draw(request(1, 4)).frame.range_m, draw->draw(request(1, 1)).frame.range_m);
+}
+
 // Shift between both backends' pictures of one view: at most 1 px on all but 0.5 % of the pixels (skylines).
 void expect_agreement(core::Renderer& polygons, core::Renderer& rays, const paging::Surface& surface,
                       core::DrawRequest request, const std::string& name) {

@@ -120,10 +120,6 @@ ColumnWalk::Used ColumnWalk::used() const {
     const auto level = static_cast<std::size_t>(info.key.level);
     if (used.tiles_by_level.size() <= level) used.tiles_by_level.resize(level + 1);
     ++used.tiles_by_level[level];
-    if (!(rule_.cell_px > 0)) continue;
-    // A pixel between two surfaces may have the range of a sample beside it.
-    const double slope = exaggeration_ * info.steepest_slope;
-    used.error_px = std::max(used.error_px, 0.5 * slope);
     if (!info.has_children) continue;
     // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
     // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
@@ -131,8 +127,8 @@ ColumnWalk::Used ColumnWalk::used() const {
     const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
     const double reach = std::sqrt(2.0) * spacing;
     const double sag = reach * reach / (4 * eye_.radius_m);
-    const double error = 2 * slope * reach + sag;
-    used.error_px = std::max(used.error_px, error * rule_.focal_px / least_distance_m(tile) + 0.5 * slope);
+    const double error = 2 * exaggeration_ * info.steepest_slope * reach + sag;
+    used.error_px = std::max(used.error_px, error * rule_.focal_px / least_distance_m(tile));
   }
   return used;
 }

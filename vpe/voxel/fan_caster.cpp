@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "vpe/voxel/facet_finder.h"
+#include "vpe/voxel/plain_caster.h"
 #include "vpe/voxel/refine.h"
 
 namespace vpe::voxel {
@@ -49,6 +50,15 @@ double cast_near(const paging::Surface& surface, const glm::dvec3& eye, const gl
     }
   }
   return surface.cast(eye, ray, exaggeration);
+}
+
+// The same over the walk's lattices, in steps.
+double march_near(const ColumnWalk& walk, FacetFinder& finder, const glm::dvec3& eye, const glm::dvec3& ray,
+                  float a, float b) {
+  const auto near = static_cast<double>(std::min(a, b));
+  const double begin = std::isfinite(near) ? (1.0 - kAround) * near : 0.0;
+  const double range = march(eye, ray, begin, walk.highest_m(), finder, walk.eye().radius_m);
+  return range == begin ? march(eye, ray, 0, walk.highest_m(), finder, walk.eye().radius_m) : range;
 }
 
 }  // namespace
@@ -182,12 +192,9 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
         const float* const share = hints.share.data() + begin;
         refine_row(rays, a, b, share, finder, exact_finder, out, hints.open);
         for (const int k : hints.open) {
-          if (exact) {
-            const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-            out[k] = static_cast<float>(cast_near(surface, view.eye.eye_m, ray, exaggeration, a[k], b[k]));
-          } else {
-            out[k] = share[k] < 0.5F ? a[k] : b[k];
-          }
+          const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
+          out[k] = static_cast<float>(exact ? cast_near(surface, view.eye.eye_m, ray, exaggeration, a[k], b[k])
+                                            : march_near(walk, finder, view.eye.eye_m, ray, a[k], b[k]));
         }
       }
     }

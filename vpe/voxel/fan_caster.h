@@ -13,8 +13,8 @@
 namespace vpe::voxel {
 
 // Casts fans of columns, then meets each pixel's own ray with the facet at its nearest samples. Where these
-// belong to different surfaces (ridges, the skyline) the ray is cast by itself against S, if `exact`; else the
-// nearest sample stands. One caller at a time.
+// belong to different surfaces (ridges, the skyline) the ray is cast by itself: against S, if `exact`, else in
+// steps over the walk's lattices. One caller at a time.
 class FanCaster {
  public:
   void cast(const core::View& view, const ColumnWalk& walk, Desks& desks, const paging::Surface& surface,

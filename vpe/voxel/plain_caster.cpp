@@ -59,13 +59,16 @@ double crossing(const glm::dvec3& eye, const glm::dvec3& ray, double above, doub
   return below;
 }
 
-double march(const glm::dvec3& eye, const glm::dvec3& ray, double top_m, FacetFinder& finder, double radius_m) {
+}  // namespace
+
+double march(const glm::dvec3& eye, const glm::dvec3& ray, double begin_m, double top_m, FacetFinder& finder,
+             double radius_m) {
   const double half = glm::dot(eye, ray);
   const double rest = half * half - glm::dot(eye, eye) + top_m * top_m;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (!(rest >= 0)) return kNone;
   const double end = -half + std::sqrt(rest);
-  double t = std::max(0.0, -half - std::sqrt(rest));
+  double t = std::max(begin_m, -half - std::sqrt(rest));
   double last_t = t;
   for (bool first = true; t <= end; first = false) {
     const Sample s = sample(eye + t * ray, finder, radius_m);
@@ -75,8 +78,6 @@ double march(const glm::dvec3& eye, const glm::dvec3& ray, double top_m, FacetFi
   }
   return kNone;
 }
-
-}  // namespace
 
 void cast_plain(const core::View& view, const ColumnWalk& walk, Desks& desks, core::ThreadPool& pool,
                 std::span<float> range_m) {
@@ -89,7 +90,7 @@ void cast_plain(const core::View& view, const ColumnWalk& walk, Desks& desks, co
       const glm::dvec3 ray =
           core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);
       range_m[row * width + x] =
-          static_cast<float>(march(view.eye.eye_m, ray, walk.highest_m(), finder, walk.eye().radius_m));
+          static_cast<float>(march(view.eye.eye_m, ray, 0, walk.highest_m(), finder, walk.eye().radius_m));
     }
   });
 }

@@ -6,6 +6,7 @@
 #include "vpe/core/parallel.h"
 #include "vpe/core/view.h"
 #include "vpe/voxel/column_walk.h"
+#include "vpe/voxel/facet_finder.h"
 #include "vpe/voxel/sheets.h"
 
 namespace vpe::voxel {
@@ -17,5 +18,10 @@ namespace vpe::voxel {
 void cast_plain(const core::View& view, const ColumnWalk& walk, Desks& desks, core::ThreadPool& pool,
                 std::span<float> range_m);
 inline constexpr double kPlainStep = 0.6;
+
+// One such ray (unit) over the lattices that `finder` knows, from `begin_m` on: the range where it comes below
+// their ground, infinite where it leaves the shell under `top_m` first.
+double march(const glm::dvec3& eye_m, const glm::dvec3& ray, double begin_m, double top_m, FacetFinder& finder,
+             double radius_m);
 
 }  // namespace vpe::voxel
