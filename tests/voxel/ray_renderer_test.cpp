@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <functional>
+
 #include "mars/embedded.h"
 #include "tests/gl/appearance_looks.h"
 #include "tests/gl/gl_fixture.h"
+#include "vpe/core/image.h"
 
 namespace {
 
@@ -210,9 +214,50 @@ TEST_F(Rays, SamplesAverageThePixel) {
   EXPECT_EQ(draw->draw(request(1, 4)).frame.range_m, draw->draw(request(1, 1)).frame.range_m);
 }
 
+// Grey where both backends agree; by the larger shift green over 1/4 px, yellow over 1/2, red over 1; white:
+// sky in one of them.
+void write_difference(const std::string& path, const core::DrawResult& a, const core::DrawResult& b,
+                      std::span<const double> forward, std::span<const double> backward) {
+  std::vector<mars::Rgb> out;
+  for (std::size_t k = 0; k < forward.size(); ++k) {
+    const mars::Rgb c = a.frame.colour[k];
+    const auto grey = static_cast<std::uint8_t>((c.r + c.g + c.b) / 6);
+    const double shift =
+        std::max(std::isnan(forward[k]) ? 0.0 : forward[k], std::isnan(backward[k]) ? 0.0 : backward[k]);
+    mars::Rgb colour{grey, grey, grey};
+    if (shift > 0.25) colour = {0, 160, 0};
+    if (shift > 0.5) colour = {230, 230, 0};
+    if (shift > 1) colour = {255, 0, 0};
+    if (std::isinf(a.frame.range_m[k]) != std::isinf(b.frame.range_m[k])) colour = {255, 255, 255};
+    out.push_back(colour);
+  }
+  core::write_image(path, out, a.frame.width, a.frame.height);
+}
+
+// Of some views, the largest of each figure.
+struct Worst {
+  core::ShiftSummary largest;
+  std::string worst_view;  // of p99_px
+  void add(const core::ShiftSummary& s, const std::string& view) {
+    if (worst_view.empty() || s.p99_px > largest.p99_px) worst_view = view;
+    largest.median_px = std::max(largest.median_px, s.median_px);
+    largest.p99_px = std::max(largest.p99_px, s.p99_px);
+    largest.p999_px = std::max(largest.p999_px, s.p999_px);
+    largest.max_px = std::max(largest.max_px, s.max_px);
+    largest.share_over_1px = std::max(largest.share_over_1px, s.share_over_1px);
+  }
+  void print(const char* name) const {
+    std::printf("%s: at most median %.4f, 99 %% %.3f (%s), 99.9 %% %.3f, largest %.2f px; over 1 px %.4f %%\n",
+                name, largest.median_px, largest.p99_px, worst_view.c_str(), largest.p999_px, largest.max_px,
+                100 * largest.share_over_1px);
+  }
+};
+
 // Shift between both backends' pictures of one view: at most 1 px on all but 0.5 % of the pixels (skylines).
-void expect_agreement(core::Renderer& polygons, core::Renderer& rays, const paging::Surface& surface,
-                      core::DrawRequest request, const std::string& name) {
+// $VPE_PICTURES names a folder for pictures of the differences.
+core::PictureErrors expect_agreement(core::Renderer& polygons, core::Renderer& rays,
+                                     const paging::Surface& surface, core::DrawRequest request,
+                                     const std::string& name) {
   request.settings.lod_tolerance_px = 0.5;
   request.settings.smooth_edges = false;
   const core::DrawResult a = polygons.draw(request);
@@ -222,6 +267,11 @@ void expect_agreement(core::Renderer& polygons, core::Renderer& rays, const pagi
   SCOPED_TRACE(name + " " + core::to_json(errors));
   EXPECT_LE(errors.forward.share_over_1px, 0.005);
   EXPECT_LE(errors.backward.share_over_1px, 0.005);
+  const char* pictures = std::getenv("VPE_PICTURES");
+  if (pictures != nullptr)
+    write_difference(std::string(pictures) + "/" + name + ".png", a, b,
+                     core::forward_shift_px(request.view, a.frame.range_m, test_support::radius_of(surface)),
+                     core::backward_shift_px(request.view, a.frame.range_m, b.frame.range_m, {1, 1}));
   // Where both see sky, it is one sky.
   std::int64_t sky = 0, differ = 0;
   for (std::size_t n = 0; n < a.frame.colour.size(); ++n) {
@@ -231,6 +281,7 @@ void expect_agreement(core::Renderer& polygons, core::Renderer& rays, const pagi
     differ += std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)}) > 2 ? 1 : 0;
   }
   EXPECT_EQ(differ, 0) << "of " << sky;
+  return errors;
 }
 
 TEST_F(Rays, BackendsAgree) {
@@ -245,19 +296,49 @@ TEST_F(Rays, BackendsAgree) {
   }
 }
 
+class LongRays : public Rays {
+ protected:
+  using Request = std::function<core::DrawRequest(Random& random, const paging::Surface& surface)>;
+  void expect_agreement_in_200_views(const char* file, const std::string& name, const Request& next) {
+    const auto planet = paging::PlanetFile::open(file);
+    const paging::Surface surface(planet, std::size_t{1} << 28);
+    const auto polygons = renderer(planet, std::size_t{1} << 29);
+    const auto draw = rays(planet);
+    Random random(94);
+    Worst forward, backward;
+    for (int n = 0; n < 200; ++n) {
+      const std::string view = name + "-" + std::to_string(n);
+      const auto errors = expect_agreement(*polygons, *draw, surface, next(random, surface), view);
+      forward.add(errors.forward, view);
+      backward.add(errors.backward, view);
+    }
+    forward.print("forward");
+    backward.print("backward");
+  }
+};
+
 // $VPE_EMBEDDED_PLANET names a planet file of the embedded Mars.
-using LongRays = Rays;
 TEST_F(LongRays, BackendsAgreeOnTheEmbeddedMars) {
   const char* ready = std::getenv("VPE_EMBEDDED_PLANET");
   if (ready == nullptr) GTEST_SKIP() << "skipped: $VPE_EMBEDDED_PLANET names no planet file";
-  const auto planet = paging::PlanetFile::open(ready);
-  const paging::Surface surface(planet, std::size_t{1} << 28);
-  const auto polygons = renderer(planet, std::size_t{1} << 29);
-  const auto draw = rays(planet);
-  Random random(94);
-  for (int n = 0; n < 200; ++n)
-    expect_agreement(*polygons, *draw, surface, random_request(random, surface, 240, 144),
-                     "view " + std::to_string(n));
+  expect_agreement_in_200_views(ready, "mars", [](Random& random, const paging::Surface& surface) {
+    return random_request(random, surface, 240, 144);
+  });
+}
+
+// $VPE_GALE_PLANET names a planet file with fine ground at Gale. From 1.5 m to 300 km, about the rover's place.
+TEST_F(LongRays, BackendsAgreeOverGale) {
+  const char* ready = std::getenv("VPE_GALE_PLANET");
+  if (ready == nullptr) GTEST_SKIP() << "skipped: $VPE_GALE_PLANET names no planet file";
+  expect_agreement_in_200_views(ready, "gale", [](Random& random, const paging::Surface& surface) {
+    const double turn = random.uniform(0, 2 * M_PI);
+    const double off_deg = random.log_uniform(1e-4, 2);
+    const mars::LonLat place{137.4417 + off_deg * std::cos(turn), -4.5895 + off_deg * std::sin(turn)};
+    const double ground = surface.at(mars::direction(place)).height_m;
+    return request_for({place.lon_deg, place.lat_deg, ground + random.log_uniform(1.5, 3e5),
+                        random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)},
+                       surface.planet_radius_m(), 240, 144, random.log_uniform(5, 100));
+  });
 }
 
 TEST_F(Rays, RefusesWhatItCannotDraw) {

@@ -394,7 +394,9 @@ void main() {
   float veil = 1.0 - exp(-depth);
   vec3 air = mix(zenith, dust, clamp(depth * 0.5, 0.0, 1.0));
   vec3 c = air * veil * (0.08 + 0.92 * day);
-  float disc = smoothstep(0.99999, 0.999995, dot(d, sun));
+  // 1 - cosine, which a cosine in float would lose.
+  vec3 off = d - sun;
+  float disc = 1.0 - smoothstep(5e-6, 1e-5, 0.5 * dot(off, off));
   c = mix(c, vec3(1.0, 0.98, 0.94), disc * exp(-0.3 * depth));
   colour = vec4(c, 1.0);
 }

@@ -1,0 +1,50 @@
+// How far drawn ground moves between two pictures of a flight.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "vpe/core/parallel.h"
+#include "vpe/core/view.h"
+
+namespace test_support {
+
+struct RangePicture {
+  vpe::core::View view;  // the whole picture is drawn
+  std::vector<float> range_m;
+
+  float range(int x, int y) const {
+    return range_m[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) +
+                   static_cast<std::size_t>(x)];
+  }
+};
+
+// For each pixel of `now`: how much higher its ground is drawn than it was in `before`, pixels: difference of
+// radii in one direction from the planet's centre, times focal_px(now.view) / range. The radius before is that
+// of the triangle through three of the four pixels about the point's place in `before`, so it holds what
+// interpolation makes of relief within a pixel. NaN where there is nothing to measure: sky; outside `before`;
+// the four pixels see more than one surface (their ranges differ by more than 1 % and the inverse ranges are
+// not even along either side); or the point lies more than 2 px from that triangle, hidden before.
+std::vector<float> pops_px(const RangePicture& before, const RangePicture& now, vpe::core::ThreadPool& pool);
+
+// Distribution of |pop|.
+class Pops {
+ public:
+  void add(std::span<const float> pops_px);  // NaN left out
+  void add(const Pops& other);
+
+  std::int64_t measured() const { return measured_; }
+  double max_px() const { return max_px_; }
+  double quantile_px(double share) const;  // the smallest bound of such a share, within 1/1000 px up to 8 px
+  double share_over(double px) const;
+
+ private:
+  static constexpr int kPerPixel = 1000;
+  std::vector<std::int64_t> bins_ = std::vector<std::int64_t>(8 * kPerPixel + 1);
+  std::int64_t measured_ = 0;
+  double max_px_ = 0;
+};
+
+}  // namespace test_support
