@@ -149,7 +149,7 @@ TEST_P(LongColourSwim, OverGale) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, LongColourSwim,
+INSTANTIATE_TEST_SUITE_P(LongModes, LongColourSwim,
                          testing::Values(core::RayMode::kExact, core::RayMode::kMultires));
 
 }  // namespace
