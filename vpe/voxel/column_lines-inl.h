@@ -20,7 +20,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// How the posts of all lanes that matter are read: from a window of 32 or 64 about them, or each by itself.
+// How the posts of all lanes that matter are read: from a window of two or four vectors, or each by itself.
 enum class Reach { kNear, kWide, kAny };
 
 // Posts along the paths of lanes that go through one lattice the same way.
@@ -78,7 +78,15 @@ class PathReader {
     return line;
   }
 
-  // Positions of all lanes that matter are in [from, from + 28] or [from, from + 60]; others read anything.
+  // Positions of all lanes that matter are in [from, from + width]; others read anything. One less than a
+  // window holds on either side of the first position's whole part, and one for the upper neighbour.
+#if HWY_TARGET == HWY_AVX2
+  static constexpr int kNearWidth = 5;
+  static constexpr int kWideWidth = 13;
+#else
+  static constexpr int kNearWidth = 28;
+  static constexpr int kWideWidth = 60;
+#endif
   template <Reach kReach>
   Line window(int k, T from) const {
     const D d;
@@ -105,6 +113,22 @@ class PathReader {
         const __mmask16 high_far = _mm512_test_epi32_mask(high, half);
         line.low = V{_mm512_mask_blend_ps(low_far, line.low.raw, _mm512_permutex2var_ps(c, low, e))};
         line.high = V{_mm512_mask_blend_ps(high_far, line.high.raw, _mm512_permutex2var_ps(c, high, e))};
+      }
+      return line;
+    }
+#endif
+#if HWY_TARGET == HWY_AVX2
+    if constexpr (sizeof(T) == 4) {
+      const __m256i at_low = _mm256_sub_epi32(_mm256_cvttps_epi32(line.whole.raw), _mm256_set1_epi32(base));
+      line.low = V{_mm256_permutevar8x32_ps(_mm256_loadu_ps(at), at_low)};
+      line.high = V{_mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 1), at_low)};
+      if constexpr (kReach == Reach::kWide) {
+        // Bit 3 of the index says which half.
+        const __m256 far = _mm256_castsi256_ps(_mm256_slli_epi32(at_low, 28));
+        const __m256 low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 8), at_low);
+        const __m256 high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 9), at_low);
+        line.low = V{_mm256_blendv_ps(line.low.raw, low, far)};
+        line.high = V{_mm256_blendv_ps(line.high.raw, high, far)};
       }
       return line;
     }

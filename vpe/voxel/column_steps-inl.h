@@ -11,6 +11,8 @@
 // clang-format on
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 
 #include "vpe/voxel/column_lines-inl.h"
 #include "vpe/voxel/column_paths-inl.h"
@@ -207,7 +209,9 @@ class Walk {
   }
 
   static Reach reach_for(T width) {
-    return width <= 28 ? Reach::kNear : (width <= 60 ? Reach::kWide : Reach::kAny);
+    return width <= PathReader<D>::kNearWidth
+               ? Reach::kNear
+               : (width <= PathReader<D>::kWideWidth ? Reach::kWide : Reach::kAny);
   }
 
   // A window of its own for each line.
@@ -350,10 +354,12 @@ class Walk {
 #endif
     alignas(64) T rows[kMaxLanes];
     alignas(64) T all[kMaxLanes];
-    hn::Store(hn::IfThenElse(who, row_, hn::Set(d, T(-1))), d, rows);
+    hn::Store(row_, d, rows);
     hn::Store(values, d, all);
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
-      if (rows[k] < 0) continue;
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, who, bits);
+    for (unsigned left = bits[0]; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
       to[static_cast<std::size_t>(rows[k]) * kMaxLanes + static_cast<std::size_t>(lane0_) + k] =
           static_cast<float>(all[k]);
     }

@@ -8,8 +8,9 @@ namespace vpe::voxel {
 
 namespace {
 
-// Neighbouring groups that one thread casts in turn.
-constexpr int kTaskGroups = 6;
+// Neighbouring columns that one thread casts in turn: whole cache lines of a row. Narrow vectors take fewer.
+constexpr int kTaskColumns = 96;
+constexpr int kMostGroups = 12;
 // Rows that are expanded before they are copied: few, so that neighbouring groups write to the same pages of
 // memory.
 constexpr int kBlockRows = 32;
@@ -23,13 +24,14 @@ struct alignas(64) LaneFloats {
 struct Desk {
   Desk(const LatticeStore& store, double exaggeration) : shelf(store, exaggeration) {}
 
-  // Buffers for so many rows.
-  void prepare(int rows) {
+  // Buffers for so many rows of each of `group_count` groups, the same number every time.
+  void prepare(int rows, int group_count) {
     const auto count = static_cast<std::size_t>(rows);
     if (count <= prepared) return;
     prepared = count;
-    buffers.assign(2 * kTaskGroups * count, LaneFloats{});
-    for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto used = static_cast<std::size_t>(group_count);
+    buffers.assign(2 * used * count, LaneFloats{});
+    for (std::size_t g = 0; g < used; ++g) {
       groups[g].start = buffers[2 * g * count].lane;
       groups[g].gain = buffers[(2 * g + 1) * count].lane;
     }
@@ -38,8 +40,9 @@ struct Desk {
   LatticeShelf shelf;
   std::size_t prepared = 0;
   std::vector<LaneFloats> buffers;  // zero between tasks
-  std::array<ColumnGroup, kTaskGroups> groups{};
-  std::array<LaneFloats, static_cast<std::size_t>(kTaskGroups) * kBlockRows> block{};  // of expanded rows
+  std::array<ColumnGroup, kMostGroups> groups{};
+  std::array<LaneFloats, static_cast<std::size_t>(kTaskColumns / kMaxLanes) * kBlockRows>
+      block{};  // of expanded rows
 };
 
 Desks::Desks(const LatticeStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
@@ -65,7 +68,7 @@ LatticeShelf& Desks::Use::shelf() const { return desk_->shelf; }
 
 void cast_sheets(std::span<const Sheet> sheets, const ColumnWalk& walk, Desks& desks, core::ThreadPool& pool) {
   const int lanes = column_lanes();
-  const int task_columns = lanes * kTaskGroups;
+  const int task_columns = std::min(kTaskColumns, lanes * kMostGroups);
   struct Task {
     const Sheet* sheet;
     int begin;
@@ -79,7 +82,7 @@ void cast_sheets(std::span<const Sheet> sheets, const ColumnWalk& walk, Desks& d
   pool.run(tasks.size(), [&](std::size_t t) {
     const Desks::Use use(desks);
     Desk* const desk = &use.desk();
-    desk->prepare(most_rows);
+    desk->prepare(most_rows, task_columns / lanes);
     const Sheet& sheet = *tasks[t].sheet;
     const int begin = tasks[t].begin;
     const int columns = std::min(task_columns, sheet.columns - begin);
