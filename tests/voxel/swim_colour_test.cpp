@@ -146,6 +146,10 @@ TEST_P(LongColourSwim, OverGale) {
     swim.all.print("all");
     swim.beside.print("beside a change");
     swim.crossing.print("level changed");
+    EXPECT_GT(swim.crossing.count(), 1000);
+    // A change of levels is a step about as large as what motion by parts of a pixel makes of textures anyhow.
+    EXPECT_LE(swim.crossing.rms(), 2 * swim.beside.rms());
+    EXPECT_LE(swim.crossing.share_from(16), 0.03);
   }
 }
 

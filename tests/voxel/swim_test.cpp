@@ -7,82 +7,20 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <map>
-#include <mutex>
 
-#include "mars/cube.h"
 #include "tests/paging/planet_fixture.h"
+#include "tests/voxel/drawn_ground.h"
 #include "vpe/core/image.h"
-#include "vpe/voxel/column_walk.h"
 #include "vpe/voxel/range_caster.h"
 
 namespace {
 
 namespace core = vpe::core;
+using test_support::DrawnGround;
 using test_support::Pops;
+using test_support::PostsOf;
 using test_support::RangePicture;
-using vpe::voxel::ColumnWalk;
 using vpe::voxel::RangeCaster;
-
-// The ground that a view draws, by the posts of its tiles: pops without interpolation, but blind to how rays
-// find them.
-class DrawnGround {
- public:
-  DrawnGround(const paging::Surface& surface, const core::View& view, double cell_px)
-      : surface_(surface), walk_(surface, eye(surface, view.eye.eye_m), 1, {cell_px, core::focal_px(view)}) {}
-
-  lod::TileTree::Index tile(const glm::dvec3& direction) const {
-    const mars::ChartPoint at = mars::chart_point(direction);
-    const lod::TileTree& tree = walk_.tree();
-    auto tile = static_cast<lod::TileTree::Index>(at.face);
-    while (!walk_.ends_at(tile)) {
-      const lod::TileKey& key = tree[tile].key;
-      tile = tree.first_child(tile) + (at.u >= walk_.middle_line(key.level, key.i) ? 1U : 0U) +
-             (at.v >= walk_.middle_line(key.level, key.j) ? 2U : 0U);
-    }
-    return tile;
-  }
-
- private:
-  static vpe::voxel::ColumnEye eye(const paging::Surface& surface, const glm::dvec3& eye_m) {
-    const double distance = glm::length(eye_m);
-    return {eye_m / distance, distance, surface.planet_radius_m(), surface.at(eye_m).radius_m};
-  }
-
-  const paging::Surface& surface_;
-  ColumnWalk walk_;
-};
-
-// Posts of tiles, for all threads.
-class PostsOf {
- public:
-  explicit PostsOf(const paging::PlanetFile& planet) : planet_(planet) {}
-
-  double radius_m(lod::TileTree::Index tile, const glm::dvec3& direction) {
-    const Tile& t = get(tile);
-    const mars::ChartPoint at = mars::chart_on(t.posts.key.face, direction);
-    return planet_.radius_m() + lod::surface_height(t.posts, t.lines, at.u, at.v, planet_.radius_m());
-  }
-
- private:
-  struct Tile {
-    lod::Posts posts;
-    lod::GridLines lines;
-  };
-  const Tile& get(lod::TileTree::Index tile) {
-    const std::lock_guard lock(mutex_);
-    auto [at, is_new] = tiles_.try_emplace(tile);
-    if (is_new) {
-      at->second.posts = planet_.heights(planet_.tree()[tile].key).posts;
-      at->second.lines = lod::grid_lines(at->second.posts.key, at->second.posts.intervals);
-    }
-    return at->second;
-  }
-
-  const paging::PlanetFile& planet_;
-  std::mutex mutex_;
-  std::map<lod::TileTree::Index, Tile> tiles_;
-};
 
 struct Swim {
   Pops drawn;     // as pictures show it
