@@ -199,7 +199,7 @@ TEST(Flight, BadSettingsLooksAndInterestsAreRefused) {
   expect_error(with_lines("at 1 set\n"), 3, "KEY=VALUE");
   expect_error(with_lines("at 1 set mode\n"), 3, "KEY=VALUE");
   expect_error(with_lines("at 1 set mode=shiny\n"), 3, "one of wireframe");
-  expect_error(with_lines("at 1 set mod=lit\n"), 3, "did you mean mode");
+  expect_error(with_lines("at 1 set mod=lit\n"), 3, "did you mean mode, rays.mode?");
   expect_error(with_lines("at 1 set exaggeration=1000\n"), 3, "from 0.1 to 100");
   expect_error(with_lines("at 1 look\n"), 3, "at least one of yaw, pitch, roll");
   expect_error(with_lines("at 1 look pitch=91\n"), 3, "pitch=NUMBER");

@@ -78,8 +78,8 @@ class PathReader {
     return line;
   }
 
-  // Positions of all lanes that matter are in [from, from + width]; others read anything. One less than a
-  // window holds on either side of the first position's whole part, and one for the upper neighbour.
+  // Positions of all lanes that matter are in [from, from + width]; others read anything. A window begins one
+  // post before `from`, and the last lane's upper neighbour is in it.
 #if HWY_TARGET == HWY_AVX2
   static constexpr int kNearWidth = 5;
   static constexpr int kWideWidth = 13;

@@ -14,12 +14,14 @@ struct RayOptions {
   int threads = 0;                                     // 0: as many as the machine runs at once
 };
 
-// Draws every projection, at any pitch and roll. Each pixel's ray is cast against S as exaggerated
-// (paging::Surface), so the picture has no tile error, and the range of a pixel is that of S but for rounding
-// to float. Colours are those of core::Appearance, with posts and images about as fine as a pixel; ground of
-// modes wireframe and markers, which show meshes, cannot be drawn. Does not depend on threads or on what was
-// drawn before. Draws with one thread at a time. draw() throws std::runtime_error for a view or an appearance
-// that it cannot draw, paging::PlanetError for unreadable tiles.
+// Draws every projection, at any pitch and roll (vpe/voxel/range_caster.h). With rays.mode=exact the picture
+// has no tile error: what a pixel shows is on S as exaggerated, within RangeCaster::kRangeError. With multires,
+// or where the request is for coarsening, tiles far away are coarser, and the certificate says by how much at
+// most. Colours are those of core::Appearance, with posts and images about as fine as a pixel; ground of modes
+// wireframe and markers, which show meshes, cannot be drawn. Several samples are rays shifted in parallel;
+// range is that of the middle. Does not depend on threads or on what was drawn before. Draws with one thread at
+// a time. draw() throws std::runtime_error for a view or an appearance that it cannot draw, paging::PlanetError
+// for unreadable tiles.
 std::unique_ptr<core::Renderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                   const RayOptions& options = {});
 
