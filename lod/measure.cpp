@@ -37,6 +37,7 @@ FinePosts::FinePosts(const Posts& posts, double radius_m)
 FinePosts::~FinePosts() = default;
 FinePosts::FinePosts(FinePosts&&) noexcept = default;
 FinePosts& FinePosts::operator=(FinePosts&&) noexcept = default;
+const FineGrid& FinePosts::grid() const { return *prepared_; }
 
 struct ErrorMeter::Prepared : CoarseMesh {
   using CoarseMesh::CoarseMesh;

@@ -100,6 +100,8 @@ TileMesh mesh_full(int intervals);
 // Heights of a mesh's vertices, in their order.
 std::vector<double> vertex_heights(const TileMesh& mesh, const Posts& posts);
 
+struct FineGrid;
+
 // S over one finest tile, prepared once to be measured against the meshes of all its ancestors. The borders
 // of `posts` are constrained. Immutable: any number of threads may share it.
 class FinePosts {
@@ -111,7 +113,9 @@ class FinePosts {
 
  private:
   friend class ErrorMeter;
+  friend class GridMeter;
   struct Prepared;
+  const FineGrid& grid() const;
   std::unique_ptr<const Prepared> prepared_;
 };
 

@@ -21,7 +21,8 @@ void check(const TileInfo& tile, double radius_m) {
     refuse(tile.key, "heights not finite");
   if (tile.min_height_m > tile.max_height_m) refuse(tile.key, "lowest height above the highest");
   if (tile.min_height_m <= -radius_m) refuse(tile.key, "lowest height below the planet's centre");
-  if (!std::isfinite(tile.steepest_slope) || tile.steepest_slope < 0.0) refuse(tile.key, "slope not finite or negative");
+  if (!std::isfinite(tile.steepest_slope) || tile.steepest_slope < 0.0)
+    refuse(tile.key, "slope not finite or negative");
   if (tile.variants.empty()) refuse(tile.key, "no mesh");
   if (tile.has_children && tile.variants.size() != 1) refuse(tile.key, "more than one mesh above children");
   for (const MeshVariant& variant : tile.variants) {
@@ -32,6 +33,12 @@ void check(const TileInfo& tile, double radius_m) {
   for (std::size_t v = 1; v < tile.variants.size(); ++v) {
     if (grows(tile.variants[v - 1].terms, tile.variants[v].terms))
       refuse(tile.key, "error grows with finer meshes");
+  }
+  if (tile.posts_terms) {
+    if (!tile.has_children) refuse(tile.key, "finest tile whose posts have an error");
+    if (grows(*tile.posts_terms, *tile.posts_terms) || grows(*tile.posts_terms, {}) ||
+        !std::isfinite(tile.posts_terms->total_m))
+      refuse(tile.key, "error of its posts not finite or negative");
   }
   if (!tile.has_children && grows({}, tile.variants.back().terms)) {
     refuse(tile.key, "finest tile whose last mesh has an error");
@@ -46,6 +53,8 @@ void check(const TileInfo& tile, const TileInfo& child) {
   if (grows(tile.variants.back().terms, child.variants.front().terms)) {
     refuse(child.key, "error larger than its parent's");
   }
+  if (tile.posts_terms && child.posts_terms && grows(*tile.posts_terms, *child.posts_terms))
+    refuse(child.key, "error of its posts larger than of its parent's");
 }
 
 bool before(const TileKey& a, const TileKey& b) {

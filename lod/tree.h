@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct TileInfo {
   // Coarser to finer. One for a tile with children; the last of a finest tile is its full grid, error 0.
   std::vector<MeshVariant> variants;
   double steepest_slope = 0;  // upper bound of the tangent of slope of S in the tile, not exaggerated
+  // With children: its own posts drawn as a grid, against S. None where the planet file does not say.
+  std::optional<ErrorTerms> posts_terms = std::nullopt;
 };
 
 // Whether a variant is the finest tile's full grid: S itself, at any exaggeration.
@@ -41,9 +44,9 @@ class TileTree {
 
   // Takes tiles in any order. Throws std::runtime_error that names the tile and what is wrong: six roots,
   // children all four or none and each below a tile that says so, no tile twice; heights finite, above the
-  // planet's centre and within the parent's, slopes likewise; variants as told above, errors never growing from a variant to the
-  // next nor from a tile to its children. lowest_radius_m: a lower bound of S's radius that is better known
-  // than from the tiles; 0 = none.
+  // planet's centre and within the parent's, slopes likewise; variants as told above, errors never growing from
+  // a variant to the next nor from a tile to its children, neither those of posts. lowest_radius_m: a lower
+  // bound of S's radius that is better known than from the tiles; 0 = none.
   TileTree(std::vector<TileInfo> tiles, const TileShape& shape, double radius_m, double lowest_radius_m = 0);
 
   double radius_m() const { return radius_m_; }

@@ -20,6 +20,15 @@ void put_child(lod::Posts& posts, int child, const lod::Posts& fine) {
   }
 }
 
+// An inner tile's own posts, of those that it is meshed over.
+std::vector<double> every_second(const lod::Posts& posts) {
+  std::vector<double> own;
+  for (int j = 0; j < posts.side(); j += 2) {
+    for (int i = 0; i < posts.side(); i += 2) own.push_back(posts.at(i, j));
+  }
+  return own;
+}
+
 // Of the child's posts, every second one is a post of its parent: marks those without data.
 void put_child_mask(std::vector<bool>& missing, int child, const Bytes& packed, std::size_t side) {
   if (packed.empty()) return;
@@ -61,7 +70,7 @@ lod::Posts sample_inner(const BuildContext& context, const lod::TileKey& key) {
 
 }  // namespace
 
-PackedMesh sample_mesh(const BuildContext& context, const lod::TileKey& key) {
+AboveTile sample_above(const BuildContext& context, const lod::TileKey& key) {
   const int n = 2 * context.meta.tile.intervals();
   lod::Posts posts{key, n,
                    std::vector<double>(static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(n + 1))};
@@ -70,7 +79,7 @@ PackedMesh sample_mesh(const BuildContext& context, const lod::TileKey& key) {
     put_child(posts, c,
               context.plan.is_inner(child) ? sample_inner(context, child) : sample_leaf(context, child).posts);
   }
-  return mesh_inner(context, posts);
+  return {mesh_inner(context, posts), {key, n / 2, every_second(posts)}};
 }
 
 PackedMesh mesh_inner(const BuildContext& context, const lod::Posts& posts) {
@@ -108,11 +117,7 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
     node.max_m = c == 0 ? below.max_m : std::max(node.max_m, below.max_m);
     node.slope = std::max(node.slope, below.slope);
   }
-  std::vector<double> own;
-  own.reserve(static_cast<std::size_t>(meta.tile.post_count()));
-  for (std::size_t j = 0; j < wide; j += 2) {
-    for (std::size_t i = 0; i < wide; i += 2) own.push_back(posts.height_m[j * wide + i]);
-  }
+  const std::vector<double> own = every_second(posts);
   TilePayload payload;
   payload.heights = encode_heights(to_quanta(own, meta.quantum_m), n + 1);
   if (std::find(missing.begin(), missing.end(), true) != missing.end()) payload.missing = encode_mask(missing);

@@ -24,6 +24,7 @@ Node node_of(const NodeRow& row) {
   node.steps = row.steps;
   node.sources = sources_of_row(row);
   node.variants = row.variants;
+  if (row.posts_terms) node.posts_terms = *row.posts_terms;
   return node;
 }
 
@@ -40,6 +41,7 @@ NodeRow to_row(const lod::TileKey& key, const Node& node) {
     row.sources.append(std::to_string(s));
   }
   row.variants = node.variants;
+  if (node.inner) row.posts_terms = node.posts_terms;
   return row;
 }
 
@@ -53,7 +55,7 @@ Node recall_leaf(const BuildContext& context, const NodeRow& row) {
 
 Node recall_inner(const BuildContext& context, const NodeRow& row) {
   Node node = node_of(row);
-  node.variants.front().terms = {};  // measured anew, or taken from notes
+  node.posts_terms = node.variants.front().terms = {};  // measured anew, or taken from notes
   for (int c = 0; c < 4; ++c) {
     const double lowest = context.nodes.at(lod::child(*lod::unpack(row.key), c)).lowest_m;
     node.lowest_m = c == 0 ? lowest : std::min(node.lowest_m, lowest);

@@ -31,7 +31,7 @@ Share share_of(const Plan& plan, const vpe::core::Part& part) {
 
 namespace {
 
-constexpr std::size_t kRow = 40;
+constexpr std::size_t kRow = 64;
 
 }  // namespace
 
@@ -43,9 +43,11 @@ Bytes pack_above(const std::map<lod::TileKey, AboveNote>& notes) {
   };
   for (const auto& [key, note] : notes) {
     put(lod::pack(key));
-    put(note.terms.relief_m);
-    put(note.terms.sag_m);
-    put(note.terms.total_m);
+    for (const lod::ErrorTerms& e : {note.terms.mesh, note.terms.posts}) {
+      put(e.relief_m);
+      put(e.sag_m);
+      put(e.total_m);
+    }
     put(note.mesh_checksum);
   }
   return out;
@@ -55,13 +57,15 @@ std::map<lod::TileKey, AboveNote> unpack_above(std::span<const std::uint8_t> pac
   if (packed.size() % kRow != 0) throw CodecError("notes of tiles above, of a wrong size");
   std::map<lod::TileKey, AboveNote> out;
   for (std::size_t at = 0; at < packed.size(); at += kRow) {
-    std::array<std::uint64_t, 5> bits{};
+    std::array<std::uint64_t, 8> bits{};
     for (std::size_t b = 0; b < kRow; ++b) bits[b / 8] |= std::uint64_t{packed[at + b]} << (8 * (b % 8));
     const auto key = lod::unpack(static_cast<std::int64_t>(bits[0]));
     if (!key) throw CodecError("a note of no tile");
-    out[*key] = {
-        {std::bit_cast<double>(bits[1]), std::bit_cast<double>(bits[2]), std::bit_cast<double>(bits[3])},
-        static_cast<std::int64_t>(bits[4])};
+    const auto terms = [&](std::size_t at_bits) {
+      return lod::ErrorTerms{std::bit_cast<double>(bits[at_bits]), std::bit_cast<double>(bits[at_bits + 1]),
+                             std::bit_cast<double>(bits[at_bits + 2])};
+    };
+    out[*key] = {{terms(1), terms(4)}, static_cast<std::int64_t>(bits[7])};
   }
   return out;
 }

@@ -21,7 +21,7 @@ Share share_of(const Plan& plan, const vpe::core::Part& part);
 
 // What a part knows of a tile in Share::above: the errors over its own leaves, of which mesh.
 struct AboveNote {
-  lod::ErrorTerms terms;
+  InnerTerms terms;
   std::int64_t mesh_checksum = 0;  // checksum(packed key, encode_mesh)
 };
 inline constexpr std::int64_t kAboveNote = -1;  // its number in the table `note`

@@ -25,6 +25,23 @@ struct Node {
   int steps = 0;  // NodeRow::steps
   std::set<int> sources;
   std::vector<lod::MeshVariant> variants;
+  lod::ErrorTerms posts_terms;  // of an inner tile, as lod::TileInfo
+};
+
+// What is measured of an inner tile against S.
+struct InnerTerms {
+  lod::ErrorTerms mesh;
+  lod::ErrorTerms posts;
+  void include(const InnerTerms& other) {
+    mesh.include(other.mesh);
+    posts.include(other.posts);
+  }
+};
+
+// Of an inner tile that other builds store.
+struct AboveTile {
+  PackedMesh mesh;
+  lod::Posts posts;
 };
 
 // Meshers keep scratch memory; each is used by one thread at a time.
@@ -66,7 +83,7 @@ struct BuildContext {
   const mars::ElevationSource* elevation;  // null where nothing is sampled any more
   PlanetWriter& writer;
   MesherPool& meshers;
-  std::map<lod::TileKey, PackedMesh> above;  // meshes of tiles that this build measures, but others store
+  std::map<lod::TileKey, AboveTile> above;  // tiles that this build measures, but others store
   std::map<lod::TileKey, Node> nodes;  // ordered, so that nothing depends on hashing; read-only during a step
 };
 
@@ -77,22 +94,22 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key);
 // error terms are 0 until they have been measured.
 Node build_inner(const BuildContext& context, const lod::TileKey& key);
 
-// The mesh that build_inner would make, from the sources instead of the children: for a tile that lies above
-// more than one part of a divided build.
-PackedMesh sample_mesh(const BuildContext& context, const lod::TileKey& key);
+// Mesh and posts that build_inner would make, from the sources instead of the children: for a tile that lies
+// above more than one part of a divided build.
+AboveTile sample_above(const BuildContext& context, const lod::TileKey& key);
 
 // The tile's Node from what is stored of it, instead of building it: equal to what building it returns. An
 // inner tile's children must be in context.nodes.
 Node recall_leaf(const BuildContext& context, const NodeRow& row);
 Node recall_inner(const BuildContext& context, const NodeRow& row);
 
-// Largest errors of every ancestor's mesh over some finest tiles; the mesh from context.above, else as stored.
-std::map<lod::TileKey, lod::ErrorTerms> measure_chunk(const BuildContext& context,
-                                                      std::span<const lod::TileKey> leaves);
+// Largest errors of every ancestor's mesh and posts over some finest tiles; from context.above, else as stored.
+std::map<lod::TileKey, InnerTerms> measure_chunk(const BuildContext& context,
+                                                 std::span<const lod::TileKey> leaves);
 
 // measure_chunk's result as bytes and back; unpack throws CodecError.
-Bytes pack_terms(const std::map<lod::TileKey, lod::ErrorTerms>& terms);
-std::map<lod::TileKey, lod::ErrorTerms> unpack_terms(std::span<const std::uint8_t> packed);
+Bytes pack_terms(const std::map<lod::TileKey, InnerTerms>& terms);
+std::map<lod::TileKey, InnerTerms> unpack_terms(std::span<const std::uint8_t> packed);
 
 // Makes errors nest: none of these inner tiles, deepest first, states less than anything below it.
 void nest_errors(BuildContext& context, std::span<const lod::TileKey> inner);

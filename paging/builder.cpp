@@ -84,7 +84,7 @@ class Build {
     }
   }
 
-  // 3. Every inner mesh against the finest posts and facets below it.
+  // 3. Every inner mesh and its posts against the finest posts and facets below it.
   void measure() {
     constexpr std::size_t kChunk = 32;
     const std::span<const lod::TileKey> leaves = share_.leaves;
@@ -117,22 +117,27 @@ class Build {
     nest_errors(context_, share_.inner);
   }
 
-  void include(const std::map<lod::TileKey, lod::ErrorTerms>& found) {
+  void include(const std::map<lod::TileKey, InnerTerms>& found) {
     for (const auto& [key, terms] : found) {
       const auto node = context_.nodes.find(key);
-      (node != context_.nodes.end() ? node->second.variants.front().terms : above_[key].terms).include(terms);
+      if (node == context_.nodes.end()) {
+        above_[key].terms.include(terms);
+        continue;
+      }
+      node->second.variants.front().terms.include(terms.mesh);
+      node->second.posts_terms.include(terms.posts);
     }
   }
 
-  // The meshes of tiles that lie above other parts too.
+  // Meshes and posts of tiles that lie above other parts too.
   void mesh_above() {
-    std::vector<PackedMesh> meshes(share_.above.size());
-    vpe::core::parallel_for(meshes.size(), threads_,
-                            [&](std::size_t n) { meshes[n] = sample_mesh(context_, share_.above[n]); });
-    for (std::size_t n = 0; n < meshes.size(); ++n) {
+    std::vector<AboveTile> tiles(share_.above.size());
+    vpe::core::parallel_for(tiles.size(), threads_,
+                            [&](std::size_t n) { tiles[n] = sample_above(context_, share_.above[n]); });
+    for (std::size_t n = 0; n < tiles.size(); ++n) {
       const lod::TileKey& key = share_.above[n];
-      above_[key].mesh_checksum = checksum(lod::pack(key), encode_mesh(meshes[n]));
-      context_.above.emplace(key, std::move(meshes[n]));
+      above_[key].mesh_checksum = checksum(lod::pack(key), encode_mesh(tiles[n].mesh));
+      context_.above.emplace(key, std::move(tiles[n]));
     }
   }
 

@@ -169,7 +169,8 @@ class Merge {
         refuse(*parts_.front(), key);
       }
       lod::MeshVariant& mesh = context.nodes.at(key).variants.front();
-      mesh.terms = above_.at(key).terms;
+      mesh.terms = above_.at(key).terms.mesh;
+      context.nodes.at(key).posts_terms = above_.at(key).terms.posts;
       mesh_triangles_ += mesh.triangles;
     }
     nest_errors(context, keys);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "paging/codec.h"
 #include "paging/planet_meta.h"
@@ -13,6 +14,12 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
                   "FROM node ORDER BY key");
   Statement variants(db, "SELECT key, relief_m, sag_m, total_m, triangles FROM variant ORDER BY key, variant");
   bool more = variants.step();
+  // Files before format 1.2 do not have it.
+  Statement known(db, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'posts_error'");
+  std::optional<Statement> posts;
+  if (known.step())
+    posts.emplace(db, "SELECT key, relief_m, sag_m, total_m, checksum FROM posts_error ORDER BY key");
+  bool more_posts = posts && posts->step();
   while (nodes.step()) {
     NodeRow row;
     row.key = nodes.integer(0);
@@ -27,6 +34,12 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
       row.variants.push_back(lod::MeshVariant{{variants.real(1), variants.real(2), variants.real(3)},
                                               static_cast<std::uint32_t>(variants.integer(4))});
       more = variants.step();
+    }
+    while (more_posts && posts->integer(0) < row.key) more_posts = posts->step();
+    if (more_posts && posts->integer(0) == row.key) {
+      row.posts_terms = lod::ErrorTerms{posts->real(1), posts->real(2), posts->real(3)};
+      if (posts_checksum(row) != posts->integer(4)) return row.key;
+      more_posts = posts->step();
     }
     const std::optional<lod::TileKey> key = lod::unpack(row.key);
     if (!key || checksum(row) != nodes.integer(6)) return row.key;

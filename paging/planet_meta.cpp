@@ -16,6 +16,7 @@ CREATE TABLE node(key INTEGER PRIMARY KEY, face INTEGER, level INTEGER, i INTEGE
   min_m REAL, max_m REAL, slope REAL, inner INTEGER, steps INTEGER, sources TEXT, checksum INTEGER);
 CREATE TABLE variant(key INTEGER, variant INTEGER, relief_m REAL, sag_m REAL, total_m REAL, triangles INTEGER,
   PRIMARY KEY(key, variant)) WITHOUT ROWID;
+CREATE TABLE posts_error(key INTEGER PRIMARY KEY, relief_m REAL, sag_m REAL, total_m REAL, checksum INTEGER);
 CREATE TABLE heights(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
 CREATE TABLE missing(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
 CREATE TABLE mesh(id INTEGER PRIMARY KEY, key INTEGER, variant INTEGER, checksum INTEGER, data BLOB);
@@ -212,13 +213,19 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
   return m;
 }
 
+namespace {
+
+void put(Bytes& bytes, double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<std::uint8_t>(bits >> shift));
+}
+
+}  // namespace
+
 std::int64_t checksum(const NodeRow& row) {
   Bytes bytes;
-  const auto put = [&bytes](double value) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    for (int shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<std::uint8_t>(bits >> shift));
-  };
+  const auto put = [&bytes](double value) { paging::put(bytes, value); };
   put(row.min_m);
   put(row.max_m);
   put(row.slope);
@@ -231,6 +238,13 @@ std::int64_t checksum(const NodeRow& row) {
     put(v.terms.total_m);
     put(v.triangles);
   }
+  return checksum(row.key, bytes);
+}
+
+std::int64_t posts_checksum(const NodeRow& row) {
+  const lod::ErrorTerms& terms = row.posts_terms.value();
+  Bytes bytes;
+  for (const double value : {terms.relief_m, terms.sag_m, terms.total_m}) put(bytes, value);
   return checksum(row.key, bytes);
 }
 

@@ -19,7 +19,7 @@ class Database;
 
 inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
 inline constexpr int kFormatMajor = 1;
-inline constexpr int kFormatMinor = 1;
+inline constexpr int kFormatMinor = 2;
 inline constexpr int kImageIntervals = 256;  // an image tile has 257 x 257 texels on its grid lines
 
 // A planet file that cannot be used. what() names the file, the trouble and what to do.
@@ -73,8 +73,10 @@ struct NodeRow {
   double slope = 0;     // TileInfo::steepest_slope
   std::string sources;  // indices into meta.sources, comma-separated
   std::vector<lod::MeshVariant> variants;
+  std::optional<lod::ErrorTerms> posts_terms;  // of an inner tile; has a checksum of its own (format 1.2)
 };
 std::int64_t checksum(const NodeRow& row);
+std::int64_t posts_checksum(const NodeRow& row);
 
 // All rows of the tile index, in key order, each with its variants. Returns the key of the first row that does
 // not fit its checksum, if any (rows then ends before it). Throws DatabaseError.

@@ -42,6 +42,7 @@ struct PlanetWriter::Statements {
         mesh(db, "INSERT INTO mesh VALUES(NULL, ?, ?, ?, ?)"),
         node(db, "INSERT OR REPLACE INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         variant(db, "INSERT OR REPLACE INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
+        posts_error(db, "INSERT OR REPLACE INTO posts_error VALUES(?, ?, ?, ?, ?)"),
         read_heights(db, "SELECT checksum, data FROM heights WHERE key = ?"),
         read_missing(db, "SELECT checksum, data FROM missing WHERE key = ?"),
         read_mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?") {}
@@ -52,6 +53,7 @@ struct PlanetWriter::Statements {
   Statement mesh;
   Statement node;
   Statement variant;
+  Statement posts_error;
   Statement read_heights;
   Statement read_missing;
   Statement read_mesh;
@@ -154,6 +156,13 @@ void PlanetWriter::put_node(const NodeRow& row) {
         .bind(6, std::int64_t{v.triangles});
     sql_->variant.step();
   }
+  if (!row.posts_terms) return;
+  sql_->posts_error.bind(1, row.key)
+      .bind(2, row.posts_terms->relief_m)
+      .bind(3, row.posts_terms->sag_m)
+      .bind(4, row.posts_terms->total_m)
+      .bind(5, posts_checksum(row));
+  sql_->posts_error.step();
 }
 
 void PlanetWriter::replace_nodes(std::span<const NodeRow> rows) {

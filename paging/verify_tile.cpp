@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "lod/grid_meter.h"
+
 namespace paging {
 
 namespace {
@@ -189,22 +191,28 @@ TileFindings measure_tile(const PlanetFile& planet, const lod::TileInfo& leaf) {
     const lod::FinePosts fine(planet.heights(leaf.key).posts, planet.radius_m());
     for (int level = leaf.key.level; level >= 0; --level) {
       const lod::TileInfo& tile = *planet.tree().find(lod::ancestor(leaf.key, level));
+      const auto compare = [&](const lod::ErrorTerms& found, const lod::ErrorTerms& stated,
+                               const std::string& what) {
+        ++out.report.measured;
+        if (found.total_m > stated.total_m || found.relief_m > stated.relief_m || found.sag_m > stated.sag_m) {
+          out.problem(tile.key,
+                      what + " farther from the surface below " + lod::to_string(leaf.key) + " than it states");
+        }
+        if (stated.total_m > 0) {
+          out.report.largest_share = std::max(out.report.largest_share, found.total_m / stated.total_m);
+        }
+      };
+      if (tile.posts_terms) {
+        const lod::GridMeter posts(planet.heights(tile.key).posts, planet.radius_m());
+        compare(posts.measure(fine), *tile.posts_terms, "its grid of posts is");
+      }
       const std::size_t meshes = tile.variants.size() - (tile.has_children ? 0 : 1);
       for (std::size_t v = 0; v < meshes; ++v) {
         const PackedMesh mesh = planet.mesh(tile.key, static_cast<int>(v));
         std::vector<double> heights;
         for (const std::int32_t q : mesh.height_q) heights.push_back(q * planet.meta().quantum_m);
-        const lod::ErrorTerms found =
-            lod::ErrorMeter(tile.key, mesh.mesh, heights, planet.radius_m()).measure(fine);
-        const lod::ErrorTerms& stated = tile.variants[v].terms;
-        ++out.report.measured;
-        if (found.total_m > stated.total_m || found.relief_m > stated.relief_m || found.sag_m > stated.sag_m) {
-          out.problem(tile.key, "mesh " + std::to_string(v) + " is farther from the surface below " +
-                                    lod::to_string(leaf.key) + " than it states");
-        }
-        if (stated.total_m > 0) {
-          out.report.largest_share = std::max(out.report.largest_share, found.total_m / stated.total_m);
-        }
+        compare(lod::ErrorMeter(tile.key, mesh.mesh, heights, planet.radius_m()).measure(fine),
+                tile.variants[v].terms, "mesh " + std::to_string(v) + " is");
       }
     }
   });

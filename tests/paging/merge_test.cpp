@@ -92,6 +92,7 @@ class Merge : public testing::Test {
           "SELECT key || ' ' || checksum || ' ' || steps || ' ' || sources || ' ' || inner FROM node ORDER BY "
           "key",
           "SELECT key || ' ' || variant || ' ' || triangles FROM variant ORDER BY key, variant",
+          "SELECT key || ' ' || checksum FROM posts_error ORDER BY key",
           "SELECT key || ' ' || hex(data) FROM heights ORDER BY key",
           "SELECT key || ' ' || hex(data) FROM missing ORDER BY key",
           "SELECT key || ' ' || variant || ' ' || hex(data) FROM mesh ORDER BY key, variant",

@@ -80,21 +80,25 @@ TEST(PlanetFile, RefusesNewerAndIncompleteFiles) {
     change(dir / name, sql);
     return message(dir / name);
   };
-  EXPECT_NE(variant("newer.vpe", "UPDATE meta SET value = '2.0' WHERE key = 'format'").find("newer"), std::string::npos);
-  EXPECT_NE(variant("nometa.vpe", "DELETE FROM meta WHERE key = 'radius_m'").find("checksum"), std::string::npos);
-  EXPECT_NE(variant("radius.vpe", "UPDATE meta SET value = '-5' WHERE key = 'radius_m'").find("checksum"), std::string::npos);
-  EXPECT_NE(variant("json.vpe", "UPDATE meta SET value = '{' WHERE key = 'sources'").find("checksum"), std::string::npos);
-  EXPECT_NE(variant("node.vpe", "UPDATE node SET min_m = min_m + 1 WHERE rowid = (SELECT max(key) FROM node)").find("tile index"), std::string::npos);
-  EXPECT_NE(variant("gone.vpe", "DELETE FROM node WHERE key = (SELECT max(key) FROM node)").find("tiles are in the index"), std::string::npos);
+  EXPECT_NE(variant("newer.vpe", "UPDATE meta SET value = '2.0' WHERE key = 'format'").find("newer"),
+            std::string::npos);
+  EXPECT_NE(variant("nometa.vpe", "DELETE FROM meta WHERE key = 'radius_m'").find("checksum"),
+            std::string::npos);
+  EXPECT_NE(variant("radius.vpe", "UPDATE meta SET value = '-5' WHERE key = 'radius_m'").find("checksum"),
+            std::string::npos);
+  EXPECT_NE(variant("json.vpe", "UPDATE meta SET value = '{' WHERE key = 'sources'").find("checksum"),
+            std::string::npos);
+  EXPECT_NE(variant("node.vpe", "UPDATE node SET min_m = min_m + 1 WHERE rowid = (SELECT max(key) FROM node)")
+                .find("tile index"),
+            std::string::npos);
+  EXPECT_NE(variant("gone.vpe", "DELETE FROM node WHERE key = (SELECT max(key) FROM node)")
+                .find("tiles are in the index"),
+            std::string::npos);
 }
 
-// Format 1.0 had no summary by level: such a file opens, and says nothing of levels.
-TEST(PlanetFile, FilesOfFormat10Open) {
-  TempDir dir;
-  const auto path = dir / "p.vpe";
-  build_fake(path, FakeElevation(bumpy_height), 400000);
-  change(path, "DELETE FROM meta WHERE key = 'levels'");
-  change(path, "UPDATE meta SET value = '1.0' WHERE key = 'format'");
+// Makes it a file of that format, and meta's checksum fit.
+void set_format(const std::filesystem::path& path, const std::string& format) {
+  change(path, "UPDATE meta SET value = '" + format + "' WHERE key = 'format'");
   paging::Bytes bytes;
   {
     // As docs/planet-file.md describes it.
@@ -107,10 +111,51 @@ TEST(PlanetFile, FilesOfFormat10Open) {
       }
     }
   }
-  change(path, "UPDATE meta SET value = '" + std::to_string(paging::checksum(0, bytes)) + "' WHERE key = 'checksum'");
+  change(path,
+         "UPDATE meta SET value = '" + std::to_string(paging::checksum(0, bytes)) + "' WHERE key = 'checksum'");
+}
+
+// Format 1.0 had no summary by level: such a file opens, and says nothing of levels. Up to 1.1 files do not say
+// how far inner tiles' posts are from S.
+TEST(PlanetFile, OlderFilesOpen) {
+  TempDir dir;
+  const auto path = dir / "p.vpe";
+  build_fake(path, FakeElevation(bumpy_height), 100000);
+  const auto inner = [](const PlanetFile& planet) {
+    const auto tiles = planet.tree().tiles();
+    return std::count_if(tiles.begin(), tiles.end(), [](const auto& tile) { return tile.has_children; });
+  };
+  const auto stated = [](const PlanetFile& planet) {
+    const auto tiles = planet.tree().tiles();
+    return std::count_if(tiles.begin(), tiles.end(),
+                         [](const auto& tile) { return tile.posts_terms.has_value(); });
+  };
+  {
+    const auto planet = PlanetFile::open(path.string());
+    EXPECT_GT(inner(*planet), 0);
+    EXPECT_EQ(stated(*planet), inner(*planet));
+  }
+  change(path, "DROP TABLE posts_error");
+  set_format(path, "1.1");
+  {
+    const auto planet = PlanetFile::open(path.string());
+    EXPECT_EQ(stated(*planet), 0);
+    EXPECT_FALSE(planet->meta().levels.empty());
+    read_all(*planet);
+  }
+  change(path, "DELETE FROM meta WHERE key = 'levels'");
+  set_format(path, "1.0");
   const auto planet = PlanetFile::open(path.string());
   EXPECT_TRUE(planet->meta().levels.empty());
   read_all(*planet);
+}
+
+TEST(PlanetFile, ChangedErrorsOfPostsAreSeen) {
+  TempDir dir;
+  const auto path = dir / "p.vpe";
+  build_fake(path, FakeElevation(bumpy_height), 100000);
+  change(path, "UPDATE posts_error SET total_m = total_m / 2 WHERE key = (SELECT max(key) FROM posts_error)");
+  EXPECT_NE(message(path).find("the tile index is wrong"), std::string::npos) << message(path);
 }
 
 TEST(PlanetFile, DamagedTilesAreNamed) {
@@ -120,8 +165,10 @@ TEST(PlanetFile, DamagedTilesAreNamed) {
   change(path, "UPDATE heights SET data = zeroblob(length(data)) WHERE key = (SELECT max(key) FROM heights)");
   change(path, "DELETE FROM mesh WHERE key = (SELECT max(key) FROM mesh)");
   const auto planet = PlanetFile::open(path.string());
-  const lod::TileKey worst = std::max_element(planet->tree().tiles().begin(), planet->tree().tiles().end(),
-                                              [](const auto& a, const auto& b) { return lod::pack(a.key) < lod::pack(b.key); })->key;
+  const lod::TileKey worst =
+      std::max_element(planet->tree().tiles().begin(), planet->tree().tiles().end(),
+                       [](const auto& a, const auto& b) { return lod::pack(a.key) < lod::pack(b.key); })
+          ->key;
   try {
     planet->heights(worst);
     FAIL();

@@ -125,7 +125,8 @@ TEST_F(Rays, EveryModeShadingAndColourAsDefined) {
   }
 }
 
-// What multires states of its error is true, and it draws fewer and coarser tiles.
+// What multires states of its error is true and no more than was asked for, and it draws fewer and coarser
+// tiles (in all; in one view ground behind a crest that sinks may take some more).
 TEST_F(Rays, MultiresKeepsItsCertificate) {
   const auto planet = test_support::build_fake(dir_ / "finer.vpe",
                                                test_support::FakeElevation(test_support::bumpy_height), 20000);
@@ -133,6 +134,8 @@ TEST_F(Rays, MultiresKeepsItsCertificate) {
   const auto draw = rays(planet);
   Random random(93);
   int coarser = 0;
+  std::int64_t tiles = 0;
+  std::int64_t exact_tiles = 0;
   for (int n = 0; n < 12; ++n) {
     core::DrawRequest request = random_request(random, surface, 96, 64);
     request.settings.smooth_edges = false;
@@ -143,13 +146,17 @@ TEST_F(Rays, MultiresKeepsItsCertificate) {
     const auto errors = core::compare_to_reference(request.view, drawn.frame.range_m, exact.frame.range_m,
                                                    test_support::radius_of(surface), {1, 1});
     EXPECT_LE(errors.forward.max_px, drawn.certificate.shift_bound_px) << n;
-    EXPECT_LE(drawn.stats.tiles_drawn, exact.stats.tiles_drawn);
+    EXPECT_LE(drawn.certificate.shift_bound_px, 2 + 0.01) << n;
+    EXPECT_LE(drawn.stats.tiles_by_level.size(), exact.stats.tiles_by_level.size());
+    tiles += drawn.stats.tiles_drawn;
+    exact_tiles += exact.stats.tiles_drawn;
     coarser += drawn.stats.tiles_drawn < exact.stats.tiles_drawn ? 1 : 0;
     // Frames that must be quick are coarser still.
     request.coarsening = 4;
     EXPECT_LE(draw->draw(request).stats.tiles_by_level.size(), drawn.stats.tiles_by_level.size());
   }
   EXPECT_GE(coarser, 4);
+  EXPECT_LT(tiles, exact_tiles / 2);
 }
 
 TEST_F(Rays, PlainStepsEndOnTheSurface) {

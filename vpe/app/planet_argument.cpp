@@ -21,7 +21,7 @@ namespace {
 
 // Raised whenever the builder or the embedded planet changes what a cached file would hold; the second whenever
 // rasters are understood in another way.
-constexpr int kCacheGeneration = 2;
+constexpr int kCacheGeneration = 3;
 constexpr int kRasterGeneration = 2;
 
 class FileLock {

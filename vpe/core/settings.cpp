@@ -186,7 +186,7 @@ const std::vector<Key>& keys() {
        "every "
        "ray in steps of 0.6 cells, slowly, for comparison"},
       {"rays.cell", Number{&V::ray_cell_px, 0.125, 64}, "px",
-       "voxel backend, multires: largest width of a cell in the picture; more is faster"},
+       "voxel backend, multires: cells are at most this wide in the picture, or off the surface by this; more is faster"},
       {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
        "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time; voxel "
        "backend: rays a pixel"},

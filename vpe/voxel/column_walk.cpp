@@ -95,6 +95,14 @@ double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
   return std::sqrt(std::max(0.0, eye_.distance_m * eye_.distance_m + radius * radius - 2 * radius * along));
 }
 
+double ColumnWalk::measured_error_px(lod::TileTree::Index tile) const {
+  const lod::TileInfo& info = tree_[tile];
+  if (!info.posts_terms) return kInfinite;
+  return lod::error_bound(*info.posts_terms, exaggeration_, info.min_height_m, info.max_height_m,
+                          eye_.radius_m) *
+         rule_.focal_px / least_distance_m(tile);
+}
+
 bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
   if (!info.has_children) return true;
@@ -102,7 +110,8 @@ bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
   const unsigned known = ends_[tile].load(std::memory_order_relaxed);
   if ((known & kKnown) != 0) return (known & kYes) != 0;
   const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
-  const bool fine = spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
+  const bool fine = spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile) ||
+                    measured_error_px(tile) <= rule_.cell_px;
   ends_[tile].fetch_or(static_cast<std::uint8_t>(fine ? kKnown | kYes : kKnown), std::memory_order_relaxed);
   return fine;
 }
@@ -121,6 +130,11 @@ ColumnWalk::Used ColumnWalk::used() const {
     if (used.tiles_by_level.size() <= level) used.tiles_by_level.resize(level + 1);
     ++used.tiles_by_level[level];
     if (!info.has_children) continue;
+    const double measured = measured_error_px(tile);
+    if (std::isfinite(measured)) {
+      used.error_px = std::max(used.error_px, measured);
+      continue;
+    }
     // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
     // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
     // are up to sqrt(2) times the nominal spacing apart.

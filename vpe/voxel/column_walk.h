@@ -11,7 +11,8 @@
 
 namespace vpe::voxel {
 
-// Which tiles are fine enough: those whose posts are at most cell_px apart in the picture wherever they are.
+// Which tiles are fine enough: those whose posts, drawn as a grid, are within cell_px of S in the picture
+// wherever they are (so crests sink by no more than that), or are at most cell_px apart there.
 struct CellRule {
   double cell_px = 0;   // 0: none but the finest, so S itself
   double focal_px = 1;  // pixels per radian, at most
@@ -57,6 +58,9 @@ class ColumnWalk {
   Angles angles(lod::TileTree::Index tile) const;
   double least_distance_m(lod::TileTree::Index tile) const;
   void mark_used(lod::TileTree::Index tile) const;
+
+  // Bound of |its posts as a grid - S| in the picture; infinite where the planet file does not say.
+  double measured_error_px(lod::TileTree::Index tile) const;
 
   // No ray into the tile is steeper than this many times upward.
   float slope_bound(lod::TileTree::Index tile) const;
