@@ -1,7 +1,7 @@
 // Range pictures by the ray backend against Embree over the same triangles: docs/rays.md has the figures.
 //
 //   ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale 1] [--threads 2] [--rounds 5]
-//             [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX]
+//             [--cell PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX]
 //             [--benchmark_out=FILE ...]
 //
 // Scenes: patches of 513^2, 2049^2 and 8193^2 posts (ray_bench_scenes.h), built into DIR when they are not
@@ -28,6 +28,7 @@
 #include "tests/bench/ray_bench_options.h"
 #include "tests/bench/ray_bench_views.h"
 #include "tests/support/support.h"
+#include "vpe/core/metrics.h"
 
 namespace {
 
@@ -167,7 +168,7 @@ class Bench {
     prepare(scene, c.view.eye.eye_m);
     const auto pixels = static_cast<std::size_t>(c.view.width) * static_cast<std::size_t>(c.view.height);
     std::vector<float> ours_m(pixels), theirs_m(pixels);
-    caster_->cast_ranges(c.view, ours_m);  // loads tiles
+    caster_->cast_ranges(c.view, options_.cell_px, ours_m);  // loads tiles
 
     const bench::EmbreePicture picture(c.view);
     std::vector<Peer> peers;
@@ -178,7 +179,7 @@ class Bench {
     std::vector<double> ours_s, ratio;
     for (auto _ : state) {
       const auto start = std::chrono::steady_clock::now();
-      caster_->cast_ranges(c.view, ours_m);
+      caster_->cast_ranges(c.view, options_.cell_px, ours_m);
       ours_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       state.SetIterationTime(ours_s.back());
       double best = std::numeric_limits<double>::infinity();
@@ -210,6 +211,7 @@ class Bench {
     // theirs_m is the last peer's; the mesh's corners are the grid's.
     const bench::Agreement agreement = bench::compare(c.view, ours_m, theirs_m, *surface_);
     row.agreement = bench::to_text(agreement);
+    if (options_.cell_px > 0) row.agreement += "; " + shifts(c.view, ours_m, theirs_m, state);
     for (std::size_t n = 0; n < std::min(agreement.ours_wrong.size(), static_cast<std::size_t>(options_.show));
          ++n) {
       const bench::WrongPixel& w = agreement.ours_wrong[n];
@@ -232,6 +234,23 @@ class Bench {
       label += std::string(label.empty() ? "" : ", ") + peer.shape + " in " + bench::name(peer.mode);
     state.SetLabel(label);
     rows_.push_back(std::move(row));
+  }
+
+  // How far ours is off in the picture, against S and against Embree's exact picture.
+  std::string shifts(const vpe::core::View& view, std::span<const float> ours_m,
+                     std::span<const float> theirs_m, benchmark::State& state) const {
+    const vpe::core::SurfaceRadius radius = [&](std::span<const glm::dvec3> at, std::span<double> radius_m) {
+      for (std::size_t k = 0; k < at.size(); ++k) radius_m[k] = surface_->at(at[k]).radius_m;
+    };
+    const vpe::core::PictureErrors errors =
+        vpe::core::compare_to_reference(view, ours_m, theirs_m, radius, {1, pool_.threads()});
+    state.counters["forward_p999_px"] = errors.forward.p999_px;
+    state.counters["backward_p999_px"] = errors.backward.p999_px;
+    char text[160];
+    std::snprintf(text, sizeof text, "shift 99.9 %% %.3f px forward, %.3f backward; over 1 px %.4f %%, %.4f %%",
+                  errors.forward.p999_px, errors.backward.p999_px, 100 * errors.forward.share_over_1px,
+                  100 * errors.backward.share_over_1px);
+    return text;
   }
 
   bench::RayBenchOptions options_;

@@ -14,8 +14,10 @@ RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, int t
 
 RangeCaster::~RangeCaster() = default;
 
-void RangeCaster::cast_ranges(const vpe::core::View& view, std::span<float> range_m) {
-  state_->caster.cast(view, {}, state_->pool, range_m);
+void RangeCaster::cast_ranges(const vpe::core::View& view, double cell_px, std::span<float> range_m) {
+  vpe::voxel::RangeOptions options;
+  options.cell_px = cell_px;
+  state_->caster.cast(view, options, state_->pool, range_m);
 }
 
 }  // namespace bench

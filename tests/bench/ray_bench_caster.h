@@ -15,8 +15,9 @@ class RangeCaster {
   RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::size_t memory_bytes);
   ~RangeCaster();
 
-  // Range of every pixel of the view, row by row, infinity for sky. As vpe::voxel::make_ray_renderer().
-  void cast_ranges(const vpe::core::View& view, std::span<float> range_m);
+  // Range of every pixel of the view, row by row, infinity for sky. As vpe::voxel::make_ray_renderer() does in
+  // multires of that cell, or in exact (0).
+  void cast_ranges(const vpe::core::View& view, double cell_px, std::span<float> range_m);
 
  private:
   struct State;

@@ -12,7 +12,7 @@ void refuse(const std::string& what) {
   throw std::invalid_argument(
       what +
       "; ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale S] "
-      "[--threads N] [--rounds N] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] "
+      "[--threads N] [--rounds N] [--cell PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] "
       "[--benchmark_filter=REGEX] [--help]");
 }
 
@@ -39,6 +39,8 @@ RayBenchOptions parse_options(int argc, char** argv) {
       options.threads = static_cast<int>(number(0));
     } else if (key == "--rounds") {
       options.rounds = static_cast<int>(number(1));
+    } else if (key == "--cell") {
+      options.cell_px = number(0);
     } else if (key == "--show") {
       options.show = static_cast<int>(number(0));
     } else if (key == "--memory") {
