@@ -51,14 +51,14 @@ std::uint64_t difference(const std::uint8_t* row, const std::uint8_t* before, st
 }
 
 // Each row against its left neighbours or the row above, whichever differs less, after the filter's number.
-std::vector<std::uint8_t> filtered(const std::uint8_t* pixels, std::size_t channels, std::size_t row_bytes,
-                                   std::size_t rows) {
-  std::vector<std::uint8_t> out((row_bytes + 1) * rows);
+std::unique_ptr<std::uint8_t[]> filtered(const std::uint8_t* pixels, std::size_t channels,
+                                         std::size_t row_bytes, std::size_t rows) {
+  auto out = std::make_unique_for_overwrite<std::uint8_t[]>((row_bytes + 1) * rows);
   std::vector<std::uint8_t> up(row_bytes);
   const std::vector<std::uint8_t> none(row_bytes);
   for (std::size_t y = 0; y < rows; ++y) {
     const std::uint8_t* const row = pixels + y * row_bytes;
-    std::uint8_t* const to = out.data() + y * (row_bytes + 1);
+    std::uint8_t* const to = out.get() + y * (row_bytes + 1);
     const std::uint64_t left = difference(row, none.data(), channels, to + 1) +
                                difference(row + channels, row, row_bytes - channels, to + 1 + channels);
     const std::uint64_t above = difference(row, y > 0 ? row - row_bytes : none.data(), row_bytes, up.data());
@@ -78,15 +78,18 @@ std::vector<std::uint8_t> pack_png(const std::uint8_t* pixels, int channels, int
       libdeflate_alloc_compressor(compression), libdeflate_free_compressor);
   if (!packer) throw ImageError("cannot encode a PNG: out of memory; make the picture smaller");
   const auto bytes = static_cast<std::size_t>(channels);
-  const std::vector<std::uint8_t> rows =
-      filtered(pixels, bytes, bytes * static_cast<std::size_t>(width), static_cast<std::size_t>(height));
-  std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(packer.get(), rows.size()));
-  packed.resize(libdeflate_zlib_compress(packer.get(), rows.data(), rows.size(), packed.data(), packed.size()));
+  const std::size_t row_bytes = bytes * static_cast<std::size_t>(width);
+  const std::size_t size = (row_bytes + 1) * static_cast<std::size_t>(height);
+  const auto rows = filtered(pixels, bytes, row_bytes, static_cast<std::size_t>(height));
+  // Memory that is not written first is not brought first: most of this never is.
+  const std::size_t most = libdeflate_zlib_compress_bound(packer.get(), size);
+  const auto packed = std::make_unique_for_overwrite<std::uint8_t[]>(most);
+  const std::size_t packed_size = libdeflate_zlib_compress(packer.get(), rows.get(), size, packed.get(), most);
 
   constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   constexpr std::size_t kOtherBytes = 128;
   std::vector<std::uint8_t> out;
-  out.reserve(packed.size() + kOtherBytes);
+  out.reserve(packed_size + kOtherBytes);
   out.assign(kSignature.begin(), kSignature.end());
   std::vector<std::uint8_t> header;
   put_number(header, static_cast<std::uint32_t>(width));
@@ -96,7 +99,7 @@ std::vector<std::uint8_t> pack_png(const std::uint8_t* pixels, int channels, int
   put_chunk(out, "IHDR", header.data(), header.size());
   constexpr std::uint8_t kPerceptual = 0;
   put_chunk(out, "sRGB", &kPerceptual, 1);
-  put_chunk(out, "IDAT", packed.data(), packed.size());
+  put_chunk(out, "IDAT", packed.get(), packed_size);
   put_chunk(out, "IEND", nullptr, 0);
   return out;
 }
