@@ -194,6 +194,7 @@ bool PictureAhead::read(Job& job, const core::DrawRequest& request, const core::
   options.cell_px /= kThinning;
   const LatticeStore& store = caster_.store();
   const core::SubRectangle whole = core::drawn_part(view);
+  std::vector<float> all_m(pixels_of(view));
   std::vector<float> range_m;
   for (int strip = 0; strip < kStrips; ++strip) {
     core::View part = view;
@@ -204,10 +205,12 @@ bool PictureAhead::read(Job& job, const core::DrawRequest& request, const core::
     caster_.cast(part, options, job.alone, range_m, thin_fans_);
     if (job.alone.is_stopped() || store.made().bytes - job.made_before > store.budget_bytes() / kLatticePart)
       return false;
-    painter_.read_ahead(request, part, range_m, job.alone);
-    if (job.alone.is_stopped()) return false;
+    for (int row = 0; row < whole.height; ++row)
+      std::copy_n(range_m.begin() + std::ptrdiff_t{row} * part.part.width, part.part.width,
+                  all_m.begin() + std::ptrdiff_t{row} * whole.width + begin);
   }
-  return true;
+  painter_.read_ahead(request, view, all_m, job.alone);
+  return !job.alone.is_stopped();
 }
 
 }  // namespace vpe::voxel
