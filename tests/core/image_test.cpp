@@ -123,6 +123,28 @@ TEST(Image, PngIsLosslessAsGdalReadsIt) {
   }
 }
 
+// Rows that differ least from the left, from above, or from neither; of every small size.
+TEST(Image, PngIsLosslessWhateverItsRowsAreLike) {
+  test_support::Random random(8);
+  for (int n = 0; n < 300; ++n) {
+    const int width = random.integer(1, n % 10 == 0 ? 700 : 70);
+    const int height = random.integer(1, 40);
+    std::vector<mars::Rgb> pixels = noise_picture(width, height);
+    const int kind = random.integer(0, 3);
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      const auto x = static_cast<int>(k % static_cast<std::size_t>(width));
+      const auto y = static_cast<int>(k / static_cast<std::size_t>(width));
+      const int value = kind == 0 ? 3 * x : kind == 1 ? 5 * y : 127 + (x + y) % 2;
+      const auto byte = static_cast<std::uint8_t>(value);
+      if (kind < 3) pixels[k] = {byte, static_cast<std::uint8_t>(byte + 1), 255};
+    }
+    const RgbImage back = decode_png(encode_png(pixels, width, height));
+    ASSERT_EQ(back.width, width);
+    ASSERT_EQ(back.height, height);
+    ASSERT_EQ(back.pixels, pixels) << width << "x" << height << " kind " << kind;
+  }
+}
+
 TEST(Image, PngWithAlphaKeepsColourUnderTransparency) {
   const test_support::TempDir folder;
   const std::vector<mars::Rgb> colours = noise_picture(20, 30);

@@ -1,8 +1,12 @@
 #include "vpe/core/parallel.h"
 
+#include <condition_variable>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "tests/support/support.h"
 
@@ -122,6 +126,150 @@ TEST(Parallel, ThreadsAreLimited) {
   EXPECT_LE(ThreadPool(1 << 30).threads(), kMaxThreads);
   EXPECT_EQ(ThreadPool(0).threads(), default_threads());
   EXPECT_EQ(ThreadPool(1).threads(), 1);
+}
+
+// Of a worker and a caller, who are let go one after the other.
+class Gate {
+ public:
+  void open() {
+    {
+      const std::lock_guard lock(mutex_);
+      open_ = true;
+    }
+    changed_.notify_all();
+  }
+  void pass() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return open_; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool open_ = false;
+};
+
+TEST(Parallel, LoopsBehindAreDoneByIdleThreads) {
+  ThreadPool pool(3);
+  ThreadPool behind(ThreadPool::Behind{pool});
+  EXPECT_EQ(behind.threads(), 3);
+  const std::thread::id caller = std::this_thread::get_id();
+  for (const std::size_t count : {0U, 1U, 2U, 17U, 5000U}) {
+    std::vector<int> made(count, 0);
+    EXPECT_TRUE(behind.run(count, [&](std::size_t n) {
+      EXPECT_NE(std::this_thread::get_id(), caller);
+      ++made[n];
+    }));
+    EXPECT_EQ(made, std::vector<int>(count, 1));
+  }
+}
+
+TEST(Parallel, LoopsBehindGiveWayAfterAnItem) {
+  ThreadPool pool(2);
+  ThreadPool behind(ThreadPool::Behind{pool});
+  Gate begun, go_on;
+  std::atomic<int> made = 0;
+  std::atomic<int> made_when_front_ran = -1;
+  std::thread later([&] {
+    behind.run(100, [&](std::size_t n) {
+      if (n == 0) begun.open();
+      if (n == 0) go_on.pass();
+      ++made;
+    });
+  });
+  begun.pass();  // the one worker is in item 0
+  Gate helped;
+  pool.run(2, [&](std::size_t n) {
+    if (n == 0) {
+      go_on.open();
+      helped.pass();  // by the worker, in place of its next item behind
+    } else {
+      made_when_front_ran = made.load();
+      helped.open();
+    }
+  });
+  EXPECT_EQ(made_when_front_ran, 1);
+  later.join();
+  EXPECT_EQ(made, 100);
+}
+
+// Also where nobody else could ever do them.
+TEST(Parallel, LoopsBehindCanBeHurried) {
+  for (const int threads : {1, 2, 4}) {
+    ThreadPool pool(threads);
+    ThreadPool behind(ThreadPool::Behind{pool});
+    std::vector<int> made(3000, 0);
+    Gate begun;
+    std::thread later([&] {
+      begun.open();
+      EXPECT_TRUE(behind.run(made.size(), [&](std::size_t n) { ++made[n]; }));
+      EXPECT_TRUE(behind.run(made.size(), [&](std::size_t n) { ++made[n]; }));
+    });
+    begun.pass();
+    behind.hurry();
+    later.join();
+    EXPECT_EQ(made, std::vector<int>(3000, 2));
+  }
+}
+
+TEST(Parallel, LoopsBehindCanBeStopped) {
+  for (const int threads : {1, 2, 4}) {
+    ThreadPool pool(threads);
+    ThreadPool behind(ThreadPool::Behind{pool});
+    Gate begun;
+    std::thread later([&] {
+      begun.open();
+      EXPECT_FALSE(behind.run(1U << 30, [&](std::size_t) { EXPECT_GT(threads, 1); }));
+      EXPECT_FALSE(behind.run(5, [&](std::size_t) { ADD_FAILURE() << "begun after the stop"; }));
+    });
+    begun.pass();
+    behind.stop();
+    later.join();
+    EXPECT_TRUE(behind.is_stopped());
+    // The front pool goes on.
+    EXPECT_TRUE(pool.run(100, [](std::size_t) {}));
+  }
+}
+
+TEST(Parallel, ExceptionsComeOutOfLoopsBehind) {
+  ThreadPool pool(3);
+  ThreadPool behind(ThreadPool::Behind{pool});
+  for (int round = 0; round < 100; ++round) {
+    EXPECT_THROW(behind.run(50,
+                            [&](std::size_t n) {
+                              if (n >= 7) throw std::runtime_error("n");
+                            }),
+                 std::runtime_error);
+  }
+  EXPECT_TRUE(behind.run(50, [](std::size_t) {}));
+}
+
+TEST(Parallel, LoopsInFrontAndBehindEndWhateverHappens) {
+  test_support::Random random(5);
+  for (int round = 0; round < 200; ++round) {
+    ThreadPool pool(random.integer(1, 4));
+    ThreadPool behind(ThreadPool::Behind{pool});
+    const auto count = static_cast<std::size_t>(random.integer(1, 200));
+    std::vector<int> made(count, 0);
+    bool whole = false;
+    std::thread later([&] { whole = behind.run(count, [&](std::size_t n) { ++made[n]; }); });
+    std::atomic<int> in_front = 0;
+    for (int loops = random.integer(0, 20); loops > 0; --loops) {
+      in_front = 0;
+      EXPECT_TRUE(pool.run(30, [&](std::size_t) { ++in_front; }));
+      EXPECT_EQ(in_front, 30);
+    }
+    const bool stops = random.integer(0, 1) == 0;
+    if (stops) {
+      behind.stop();
+    } else {
+      behind.hurry();
+    }
+    later.join();
+    const auto all = std::count(made.begin(), made.end(), 1);
+    EXPECT_EQ(whole, all == static_cast<std::ptrdiff_t>(count));
+    EXPECT_TRUE(whole || stops);
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "vpe/app/film_maker.h"
 
 #include <algorithm>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -79,7 +80,8 @@ bool FilmMaker::draw(std::size_t n) {
   core::DrawRequest request = planned.request;
   request.paging.timeout_s = options_.wait_s;
   if (n + 1 < frames_.size() && !frames_[n + 1].is_there()) {
-    request.paging.upcoming = {plan_.at(frames_[n + 1].index).request.view};
+    request.paging.next = std::make_shared<const core::DrawRequest>(plan_.at(frames_[n + 1].index).request);
+    request.paging.upcoming = {request.paging.next->view};
   }
   try {
     result = renderer_->draw(request);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,8 @@ struct FrameStats {
   double read_ms = 0;
 };
 
+struct DrawRequest;
+
 // How a frame deals with tiles that are not there yet.
 struct PagingRequest {
   // True: the frame waits for all that its view needs, so that its picture does not depend on what was drawn
@@ -59,6 +62,9 @@ struct PagingRequest {
   // Where the eye is expected soon, nearest first: loaded after all that the view itself needs. Never changes
   // what is drawn of a complete frame.
   std::vector<View> upcoming;
+  // What is drawn next, where that is known: may be begun while this frame is drawn. When something else comes
+  // next, that work was in vain, no more.
+  std::shared_ptr<const DrawRequest> next;
 };
 
 struct DrawRequest {

@@ -11,6 +11,7 @@
 
 #include "vpe/core/image.h"
 #include "vpe/core/image_checks.h"
+#include "vpe/core/png_packer.h"
 
 namespace vpe::core {
 
@@ -82,6 +83,12 @@ std::vector<std::uint8_t> encode_png(const void* pixels, int color_type, int wid
                                      int compression) {
   if (compression < 1 || compression > 9) {
     throw ImageError("PNG compression " + std::to_string(compression) + ": must be 1 to 9");
+  }
+  const bool has_alpha = color_type == PNG_COLOR_TYPE_RGBA;
+  const std::size_t channels = has_alpha ? 4 : 3;
+  if (can_pack_png(channels * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))) {
+    return pack_png(static_cast<const std::uint8_t*>(pixels), static_cast<int>(channels), width, height,
+                    compression);
   }
   const auto encoder = std::make_unique<PngEncoder>();
   if (!encoder->run(static_cast<const std::uint8_t*>(pixels), color_type, width, height, compression)) {

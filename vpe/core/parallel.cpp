@@ -1,9 +1,14 @@
 #include "vpe/core/parallel.h"
 
 #include <algorithm>
+#include <condition_variable>
+#include <deque>
 #include <exception>
 #include <limits>
+#include <mutex>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 namespace vpe::core {
 
@@ -15,6 +20,7 @@ constexpr std::size_t kMaxChunk = 1024;
 }  // namespace
 
 struct ThreadPool::Job {
+  const ThreadPool* pool = nullptr;
   std::size_t count = 0;
   const std::function<void(std::size_t)>* item = nullptr;
   const std::atomic<bool>* cancel = nullptr;
@@ -23,9 +29,15 @@ struct ThreadPool::Job {
   std::atomic<std::size_t> lowest_failure{kNone};
   std::mutex failure_mutex;
   std::exception_ptr failure;
-  int helpers = 0;  // guarded by the pool's mutex
+  int helpers = 0;  // guarded by the crew's mutex
 
-  bool is_cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
+  bool is_cancelled() const {
+    return (cancel != nullptr && cancel->load(std::memory_order_relaxed)) ||
+           pool->stopped_.load(std::memory_order_relaxed);
+  }
+
+  // Nobody will begin another item.
+  bool has_ended() const { return next.load() >= count || lowest_failure.load() != kNone || is_cancelled(); }
 
   void fail(std::size_t index) {
     const std::lock_guard lock(failure_mutex);
@@ -36,12 +48,112 @@ struct ThreadPool::Job {
 
   // A range of items nobody has taken yet; smaller towards the end, so that all threads finish together.
   bool take(std::size_t threads, std::size_t& begin, std::size_t& end) {
+    const std::size_t largest = pool->waits_behind() ? 1 : kMaxChunk;
     begin = next.load();
     do {
       if (begin >= count) return false;
-      end = begin + std::clamp((count - begin) / (8 * threads), std::size_t{1}, kMaxChunk);
+      end = begin + std::clamp((count - begin) / (8 * threads), std::size_t{1}, largest);
     } while (!next.compare_exchange_weak(begin, end));
     return true;
+  }
+};
+
+// The threads, and what they have to do.
+struct ThreadPool::Crew {
+  std::mutex mutex;
+  std::condition_variable job_posted;
+  std::condition_variable changed;  // a helper has left a job, or somebody is in a hurry
+  std::deque<Job*> jobs;
+  std::deque<Job*> jobs_behind;
+  std::atomic<std::size_t> job_count{0};  // of `jobs`; written under the mutex
+  bool stopping = false;
+  std::vector<std::thread> workers;
+
+  explicit Crew(int threads) {
+    workers.reserve(static_cast<std::size_t>(threads) - 1);
+    for (int n = 1; n < threads; ++n) {
+      try {
+        workers.emplace_back([this] { serve(); });
+      } catch (const std::system_error&) {
+        break;
+      }
+    }
+  }
+
+  void dismiss() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    job_posted.notify_all();
+    for (std::thread& worker : workers) worker.join();
+  }
+
+  // These three under the mutex.
+  void post(Job& job) {
+    jobs.push_back(&job);
+    job_count = jobs.size();
+  }
+  void withdraw(Job& job) {
+    std::erase(jobs, &job);
+    std::erase(jobs_behind, &job);
+    job_count = jobs.size();
+  }
+  Job* next_job() const {
+    if (!jobs.empty()) return jobs.front();
+    return jobs_behind.empty() ? nullptr : jobs_behind.front();
+  }
+
+  void serve() {
+    std::unique_lock lock(mutex);
+    for (;;) {
+      job_posted.wait(lock, [this] { return stopping || next_job() != nullptr; });
+      Job* const job = next_job();
+      if (job == nullptr) return;
+      ++job->helpers;
+      lock.unlock();
+      const bool ended = work(*job);
+      lock.lock();
+      if (ended) withdraw(*job);
+      // Under the lock: the caller of run() cannot destroy the job before this thread has let go of it.
+      if (--job->helpers == 0) changed.notify_all();
+    }
+  }
+
+  // Until the job has ended, or until it has to wait for others: then returns false.
+  bool work(Job& job) const {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    while (job.take(workers.size() + 1, begin, end)) {
+      std::size_t index = begin;
+      for (; index < end && index < job.lowest_failure.load(std::memory_order_relaxed) && !job.is_cancelled();
+           ++index) {
+        try {
+          (*job.item)(index);
+        } catch (...) {
+          job.fail(index);
+        }
+      }
+      job.made += index - begin;
+      if (index < end) return true;
+      if (job_count.load() > 0 && job.pool->waits_behind()) return job.has_ended();
+    }
+    return true;
+  }
+
+  // Waits until others have done the job, or until its turn has come.
+  void wait_behind(Job& job, const ThreadPool& pool) {
+    std::unique_lock lock(mutex);
+    if (pool.waits_behind() && !job.is_cancelled()) {
+      jobs_behind.push_back(&job);
+      job_posted.notify_all();
+      changed.wait(lock, [&] { return !pool.waits_behind() || (job.helpers == 0 && job.has_ended()); });
+    }
+    withdraw(job);
+    if (job.has_ended()) return;
+    post(job);
+    lock.unlock();
+    job_posted.notify_all();
   }
 };
 
@@ -49,81 +161,54 @@ int default_threads() {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
 }
 
-ThreadPool::ThreadPool(int threads) {
-  const int wanted = threads > 0 ? std::min(threads, kMaxThreads) : default_threads();
-  workers_.reserve(static_cast<std::size_t>(wanted) - 1);
-  for (int n = 1; n < wanted; ++n) {
-    try {
-      workers_.emplace_back([this] { serve(); });
-    } catch (const std::system_error&) {
-      break;
-    }
-  }
-}
+ThreadPool::ThreadPool(int threads)
+    : crew_(std::make_shared<Crew>(threads > 0 ? std::min(threads, kMaxThreads) : default_threads())) {}
+
+ThreadPool::ThreadPool(Behind behind) : crew_(behind.front.crew_), is_behind_(true) {}
 
 ThreadPool::~ThreadPool() {
+  if (!is_behind_) crew_->dismiss();
+}
+
+int ThreadPool::threads() const { return static_cast<int>(crew_->workers.size()) + 1; }
+
+void ThreadPool::hurry() {
   {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
+    const std::lock_guard lock(crew_->mutex);
+    hurried_ = true;
   }
-  job_posted_.notify_all();
-  for (std::thread& worker : workers_) worker.join();
+  crew_->changed.notify_all();
 }
 
-void ThreadPool::serve() {
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    job_posted_.wait(lock, [this] { return stopping_ || !jobs_.empty(); });
-    if (jobs_.empty()) return;
-    Job& job = *jobs_.front();
-    ++job.helpers;
-    lock.unlock();
-    work(job);
-    lock.lock();
-    withdraw(job);
-    // Under the lock: the caller of run() cannot destroy the job before this thread has let go of it.
-    if (--job.helpers == 0) helper_left_.notify_all();
+void ThreadPool::stop() {
+  {
+    const std::lock_guard lock(crew_->mutex);
+    stopped_ = true;
   }
+  crew_->changed.notify_all();
 }
-
-void ThreadPool::work(Job& job) const {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  while (job.take(workers_.size() + 1, begin, end)) {
-    std::size_t index = begin;
-    for (; index < end && index < job.lowest_failure.load(std::memory_order_relaxed) && !job.is_cancelled();
-         ++index) {
-      try {
-        (*job.item)(index);
-      } catch (...) {
-        job.fail(index);
-      }
-    }
-    job.made += index - begin;
-    if (index < end) return;
-  }
-}
-
-void ThreadPool::withdraw(Job& job) { std::erase(jobs_, &job); }
 
 bool ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& item,
                      const std::atomic<bool>* cancel) {
   Job job;
+  job.pool = this;
   job.count = count;
   job.item = &item;
   job.cancel = cancel;
-  if (!workers_.empty() && count > 1) {
+  if (waits_behind() && count > 0) {
+    crew_->wait_behind(job, *this);
+  } else if (!crew_->workers.empty() && count > 1) {
     {
-      const std::lock_guard lock(mutex_);
-      jobs_.push_back(&job);
+      const std::lock_guard lock(crew_->mutex);
+      crew_->post(job);
     }
-    job_posted_.notify_all();
+    crew_->job_posted.notify_all();
   }
-  work(job);
+  crew_->work(job);
   {
-    std::unique_lock lock(mutex_);
-    withdraw(job);
-    helper_left_.wait(lock, [&job] { return job.helpers == 0; });
+    std::unique_lock lock(crew_->mutex);
+    crew_->withdraw(job);
+    crew_->changed.wait(lock, [&job] { return job.helpers == 0; });
   }
   if (job.failure) std::rethrow_exception(job.failure);
   return job.made == count;

@@ -15,6 +15,7 @@ std::size_t part(std::size_t bytes, double share) {
 
 LatticeStore::LatticeStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
+      budget_(budget_bytes),
       lattices_(part(budget_bytes, 1.0 - kExactShare)),
       exact_(part(budget_bytes, kExactShare)) {}
 
@@ -24,6 +25,8 @@ std::shared_ptr<const TileLattices<T>> LatticeStore::get(Cache<T>& cache, const 
     auto made = std::make_shared<const TileLattices<T>>(planet_->heights(planet_->tree()[key.tile].key),
                                                         planet_->radius_m(), key.exaggeration, key.family);
     const std::size_t bytes = made->bytes();
+    ++tiles_made_;
+    bytes_made_ += bytes;
     return std::pair(std::move(made), bytes);
   });
 }

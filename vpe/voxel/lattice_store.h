@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "lod/tree.h"
@@ -31,6 +33,13 @@ class LatticeStore {
                                                           Family& family) const;
 
   std::size_t bytes_resident() const;
+  std::size_t budget_bytes() const { return budget_; }
+  // All that was ever made from the planet file, also what is gone.
+  struct Made {
+    std::int64_t tiles = 0;
+    std::size_t bytes = 0;
+  };
+  Made made() const { return {tiles_made_, bytes_made_}; }
 
  private:
   struct Key {
@@ -51,6 +60,9 @@ class LatticeStore {
   std::shared_ptr<const TileLattices<T>> get(Cache<T>& cache, const Key& key) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
+  std::size_t budget_;
+  mutable std::atomic<std::int64_t> tiles_made_{0};
+  mutable std::atomic<std::size_t> bytes_made_{0};
   mutable Cache<float> lattices_;
   mutable Cache<double> exact_;
 };

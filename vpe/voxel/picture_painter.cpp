@@ -1,8 +1,11 @@
 #include "vpe/voxel/picture_painter.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <mutex>
+#include <unordered_set>
 #include <vector>
 
 #include "vpe/voxel/paint_job.h"
@@ -48,6 +51,31 @@ class TilesOfThreads {
   std::vector<std::unique_ptr<PaintTiles>> idle_;
 };
 
+// Tiles up to so many bytes.
+class HeldTiles {
+ public:
+  explicit HeldTiles(std::size_t limit_bytes) : limit_(limit_bytes) {}
+  // False when it is one too many.
+  bool add(const void* tile, std::size_t bytes) {
+    if (held_.insert(tile).second) bytes_ += bytes;
+    return bytes_ <= limit_;
+  }
+
+ private:
+  std::size_t limit_;
+  std::size_t bytes_ = 0;
+  std::unordered_set<const void*> held_;
+};
+
+bool by_point(const paging::ShadeParams& look) {
+  return look.flat || look.surfacing == paging::Surfacing::kImageAtPosts;
+}
+
+// Where pixels are as wide as the posts of level 0 are apart.
+double root_range(const paging::PlanetFile& planet, const core::View& view) {
+  return lod::nominal_side_m(0, planet.radius_m()) / planet.meta().tile.intervals() * core::focal_px(view);
+}
+
 }  // namespace
 
 PicturePainter::PicturePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
@@ -81,9 +109,9 @@ std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<c
   job.rays = ray_rows(request.view);
   job.radius_m = planet_->radius_m();
   job.focal_px = core::focal_px(request.view);
-  job.root_range_m = lod::nominal_side_m(0, job.radius_m) / planet_->meta().tile.intervals() * job.focal_px;
+  job.root_range_m = root_range(*planet_, request.view);
   job.posts_side = planet_->meta().tile.posts();
-  job.by_point = look_.flat || look_.surfacing == paging::Surfacing::kImageAtPosts;
+  job.by_point = by_point(look_);
   job.eye_radius_m = glm::length(request.view.eye.eye_m);
   if (job.eye_radius_m > 0.0) job.up = request.view.eye.eye_m / job.eye_radius_m;
   job.width = size.x;
@@ -105,6 +133,34 @@ std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<c
     tiles_of_threads.give(std::move(tiles));
   });
   return without_data;
+}
+
+void PicturePainter::read_ahead(const core::DrawRequest& request, const core::View& thin,
+                                std::span<const float> range_m, const core::ThreadPool& pool) const {
+  const bool has_image = planet_->meta().finest_image_level >= 0;
+  // No tile depends on the scale of colours.
+  const paging::ShadeParams look = paging::shade_params(request.settings, request.sun, has_image, nullptr);
+  if (by_point(look)) return;
+  constexpr double kPart = 0.5 * (1 - kHeldShare);
+  PaintTiles tiles(*planet_, painter_, look, budget_);
+  HeldTiles ground(share(kPart * kShares.normals, budget_));
+  HeldTiles images(share(kPart * kShares.images, budget_));
+  const double root_range_m = root_range(*planet_, request.view);
+  const core::SubRectangle part = core::drawn_part(thin);
+  std::size_t at = 0;
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x, ++at) {
+      const auto range = static_cast<double>(range_m[at]);
+      if (!std::isfinite(range) || !(range > 0.0)) continue;
+      if (pool.is_stopped()) return;
+      const glm::dvec3 ray = core::pixel_ray(thin, part.x + x + 0.5, part.y + y + 0.5);
+      const int level = static_cast<int>(std::ceil(std::log2(root_range_m / range)));
+      const PaintTile& tile = tiles.find(thin.eye.eye_m + range * ray, std::clamp(level, 0, tiles.max_level()));
+      if (tile.ground && !ground.add(tile.ground.get(), tile.ground->bytes())) return;
+      if (tile.image && !images.add(tile.image.get(), tile.image->texels.capacity() * sizeof(mars::Rgb)))
+        return;
+    }
+  }
 }
 
 }  // namespace vpe::voxel

@@ -17,7 +17,7 @@
 
 namespace vpe::voxel {
 
-// Draws with one caller at a time.
+// paint(): one caller at a time.
 class PicturePainter {
  public:
   // Between pictures and while painting, holds at most about `budget_bytes` of posts and texels.
@@ -36,6 +36,13 @@ class PicturePainter {
   // unreadable palette.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
                      std::span<mars::Rgb> colour, std::span<float> inverse_depth, core::ThreadPool& pool);
+
+  // Reads what painting `request` takes, as far as rays through the pixels of `thin` tell, whose ranges are
+  // given. `thin` sees what request.view sees, or a part of it. Ends early when `pool` is stopped, and when the
+  // tiles of this picture would take more than half of what the caches have for their kind. Any thread; also
+  // while others paint. Throws PlanetError.
+  void read_ahead(const core::DrawRequest& request, const core::View& thin, std::span<const float> range_m,
+                  const core::ThreadPool& pool) const;
 
   std::size_t bytes_resident() const { return painter_.bytes_resident(); }
 

@@ -91,7 +91,7 @@ RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::
       store_(planet, share_of(budget_bytes, 1.0 - kSurfaceShare)) {}
 
 ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
-                                   std::span<float> range_m) {
+                                   std::span<float> range_m, FanCaster& fans) const {
   const double distance = glm::length(view.eye.eye_m);
   if (distance > 0 && options.method != RangeOptions::Method::kEach) {
     const glm::dvec3 up = view.eye.eye_m / distance;
@@ -108,7 +108,7 @@ ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& o
       } else if (round) {
         cast_upright(view, walk, desks, pool, range_m);
       } else {
-        fans_.cast(view, walk, desks, surface_, options.exaggeration, options.cell_px == 0, pool, range_m);
+        fans.cast(view, walk, desks, surface_, options.exaggeration, options.cell_px == 0, pool, range_m);
       }
       return walk.used();
     }

@@ -26,7 +26,6 @@ struct RangeOptions {
   Method method = Method::kColumns;  // the others are what columns are measured against
 };
 
-// One caller at a time.
 class RangeCaster {
  public:
   RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
@@ -37,11 +36,17 @@ class RangeCaster {
   // kRangeError / sine of incidence. Does not depend on the number of threads, nor on what was cast
   // before. Throws paging::PlanetError for tiles that cannot be read.
   // Returns the tiles that columns went over and the bound of their error; nothing of single rays.
+  // One caller at a time for each FanCaster, whose memory a cast uses; without one, one caller at a time.
   ColumnWalk::Used cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
-                        std::span<float> range_m);
+                        std::span<float> range_m) {
+    return cast(view, options, pool, range_m, fans_);
+  }
+  ColumnWalk::Used cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
+                        std::span<float> range_m, FanCaster& fans) const;
   static constexpr double kRangeError = 1e-6;
 
   const paging::Surface& surface() const { return surface_; }
+  const LatticeStore& store() const { return store_; }
   std::size_t bytes_resident() const {
     return surface_.bytes_resident() + store_.bytes_resident() + fans_.bytes();
   }

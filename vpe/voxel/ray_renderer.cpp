@@ -7,6 +7,7 @@
 #include <glm/ext/scalar_constants.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "vpe/core/inspect.h"
 #include "vpe/core/parallel.h"
 #include "vpe/core/shading.h"
+#include "vpe/voxel/picture_ahead.h"
 #include "vpe/voxel/picture_painter.h"
 #include "vpe/voxel/range_caster.h"
 
@@ -30,6 +32,7 @@ double ms_since(Clock::time_point start) {
 
 constexpr double kCastShare = 0.6;
 constexpr double kPaintShare = 0.4;
+constexpr std::size_t kMostKeptPixels = std::size_t{1} << 24;
 
 class RayRenderer : public core::Renderer {
  public:
@@ -37,7 +40,8 @@ class RayRenderer : public core::Renderer {
       : planet_(std::move(planet)),
         caster_(planet_, share(options, kCastShare)),
         painter_(planet_, share(options, kPaintShare)),
-        pool_(options.threads) {}
+        pool_(options.threads),
+        ahead_(caster_, painter_, pool_, options.memory_bytes) {}
 
   core::DrawResult draw(const core::DrawRequest& request) override;
 
@@ -46,6 +50,9 @@ class RayRenderer : public core::Renderer {
     return static_cast<std::size_t>(part * static_cast<double>(options.memory_bytes));
   }
 
+  core::DrawResult draw_picture(const core::DrawRequest& request);
+  bool has_room_ahead() const;
+  ColumnWalk::Used cast(const core::DrawRequest& request, std::vector<float>& range_m);
   ColumnWalk::Used draw_samples(const core::DrawRequest& request, core::Frame& frame, std::int64_t& gaps);
   core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame, std::int64_t gaps,
                             double error_px) const;
@@ -54,17 +61,12 @@ class RayRenderer : public core::Renderer {
   RangeCaster caster_;
   PicturePainter painter_;
   core::ThreadPool pool_;
+  PictureAhead ahead_;
+  // Used again by the next picture, so that it need not ask for memory.
+  std::vector<float> range_m_;
+  std::vector<float> inverse_depth_;
+  std::int64_t tiles_used_ = 0;  // by the last cast
 };
-
-RangeOptions range_options(const core::DrawRequest& request) {
-  RangeOptions options;
-  options.exaggeration = request.settings.exaggeration;
-  if (request.settings.ray_mode == core::RayMode::kPlain) options.method = RangeOptions::Method::kPlain;
-  // What is given up for speed are cells.
-  if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
-    options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
-  return options;
-}
 
 // Where in a pixel its rays go through, from its middle.
 std::span<const glm::dvec2> places_in_pixel(int samples) {
@@ -130,7 +132,7 @@ ColumnWalk::Used RayRenderer::draw_samples(const core::DrawRequest& request, cor
     for (std::size_t k = 0; k < sum.size(); ++k)
       sum[k] += glm::ivec3(frame.colour[k].r, frame.colour[k].g, frame.colour[k].b);
   }
-  const ColumnWalk::Used used = caster_.cast(request.view, options, pool_, frame.range_m);
+  const ColumnWalk::Used used = cast(request, frame.range_m);
   gaps = painter_.paint(request, frame.range_m, frame.colour, {}, pool_);
   const int n = static_cast<int>(places.size());
   for (std::size_t k = 0; k < sum.size(); ++k) {
@@ -140,7 +142,39 @@ ColumnWalk::Used RayRenderer::draw_samples(const core::DrawRequest& request, cor
   return used;
 }
 
+// Whether the caches have room for two pictures at once.
+bool RayRenderer::has_room_ahead() const {
+  const LatticeStore::Made made = caster_.store().made();
+  if (tiles_used_ == 0 || made.tiles == 0) return false;
+  const double tile_bytes = static_cast<double>(made.bytes) / static_cast<double>(made.tiles);
+  // Some tiles are there in two families.
+  return 2 * tile_bytes * static_cast<double>(tiles_used_) <=
+         0.5 * static_cast<double>(caster_.store().budget_bytes());
+}
+
+// Ranges of a view, and of those to come as soon as somebody is idle.
+ColumnWalk::Used RayRenderer::cast(const core::DrawRequest& request, std::vector<float>& range_m) {
+  const RangeOptions options = range_options(request);
+  std::optional<ColumnWalk::Used> used = ahead_.take(request.view, options, range_m);
+  const bool early = has_room_ahead();
+  if (early) ahead_.begin(request);
+  if (!used) used = caster_.cast(request.view, options, pool_, range_m);
+  tiles_used_ = 0;
+  for (const int n : used->tiles_by_level) tiles_used_ += n;
+  if (!early) ahead_.begin(request);
+  return *used;
+}
+
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
+  try {
+    return draw_picture(request);
+  } catch (...) {
+    ahead_.stop();
+    throw;
+  }
+}
+
+core::DrawResult RayRenderer::draw_picture(const core::DrawRequest& request) {
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   const core::Mode mode = request.settings.mode;
@@ -157,28 +191,35 @@ core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   frame.height = size.y;
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   frame.colour.resize(pixels);
+  frame.range_m.swap(range_m_);
   frame.range_m.resize(pixels);
   ColumnWalk::Used used;
   std::int64_t gaps = 0;
   if (request.settings.samples > 1) {
     used = draw_samples(request, frame, gaps);
   } else {
-    used = caster_.cast(request.view, range_options(request), pool_, frame.range_m);
+    used = cast(request, frame.range_m);
     result.stats.select_ms = ms_since(start);
     const bool smooth =
         request.settings.smooth_edges && request.view.projection == core::Projection::kPerspective;
-    std::vector<float> inverse_depth(smooth ? pixels : 0);
-    gaps = painter_.paint(request, frame.range_m, frame.colour, inverse_depth, pool_);
-    if (smooth) core::smooth_edges(frame.colour, inverse_depth, size.x, size.y, pool_);
+    inverse_depth_.resize(smooth ? pixels : 0);
+    gaps = painter_.paint(request, frame.range_m, frame.colour, inverse_depth_, pool_);
+    if (smooth) core::smooth_edges(frame.colour, inverse_depth_, size.x, size.y, pool_);
   }
   core::apply_gamma(frame.colour, request.settings.gamma);
   result.certificate = certify(request, frame, gaps, used.error_px);
   result.stats.tiles_by_level = used.tiles_by_level;
   for (const int n : used.tiles_by_level) result.stats.tiles_drawn += n;
-  if (!request.want_range) frame.range_m.clear();
+  if (!request.want_range) range_m_.swap(frame.range_m);
+  // Not those of a poster.
+  if (pixels > kMostKeptPixels) {
+    range_m_ = {};
+    inverse_depth_ = {};
+  }
   result.stats.draw_ms = ms_since(start);
-  result.stats.bytes_resident =
-      static_cast<std::int64_t>(caster_.bytes_resident() + painter_.bytes_resident() + planet_->tree().bytes());
+  result.stats.bytes_resident = static_cast<std::int64_t>(
+      caster_.bytes_resident() + painter_.bytes_resident() + ahead_.bytes() +
+      (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) + planet_->tree().bytes());
   result.settled = true;
   return result;
 }
