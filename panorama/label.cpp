@@ -145,7 +145,7 @@ double slack_px(double pixels_per_degree) { return std::max(4.0, kSlack_deg * pi
 void check_span(const char* what, double stated_px, double picture_px, double pixels_per_degree) {
   if (std::abs(stated_px - picture_px) <= slack_px(pixels_per_degree)) return;
   throw MetadataError(std::string("the label contradicts the picture: by ") + what + " it would have " +
-                      format_number(std::round(stated_px)) + " pixels across, but it has " +
+                      format_number(std::round(stated_px)) + " pixels, but it has " +
                       format_number(picture_px) + "; give the label of this very picture");
 }
 
@@ -199,6 +199,7 @@ PanoramaMap map_of(const RoverLabel& label, std::int64_t width_px, std::int64_t 
                         std::to_string(width_px) + "x" + std::to_string(height_px) +
                         "; give the label of this very picture");
   }
+  const double first = first_line(label);
   const double turn_px = 360.0 * label.columns_per_degree;
   if (label.stop_azimuth_deg) {
     // The same azimuth at both ends is a whole turn.
@@ -218,7 +219,7 @@ PanoramaMap map_of(const RoverLabel& label, std::int64_t width_px, std::int64_t 
   }
   PanoramaMap map = equirectangular_map(width_px, height_px, turn_px,
                                         label.start_azimuth_deg - 0.5 / label.columns_per_degree,
-                                        label.zero_elevation_line - first_line(label) + 0.5);
+                                        label.zero_elevation_line - first + 0.5);
   map.focal_px = label.rows_per_degree / mars::kRadiansPerDegree;
   if (const std::string problem = check(map); !problem.empty()) throw MetadataError("the label: " + problem);
   return map;

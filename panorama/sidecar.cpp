@@ -15,6 +15,9 @@ namespace {
 using nlohmann::json;
 using vpe::core::format_number;
 
+// Samples and lines are counted by pixel centres from 0: so the graticule of the MSL mosaics is drawn.
+constexpr double kFirstCentre_px = 0.5;
+
 // An object's values by key; a value of another type than asked for is an error that names the key.
 class Keys {
  public:
@@ -119,6 +122,7 @@ std::optional<double> row_scale_deg(const Keys& keys) {
 // Overwrites the scale of rows, which the columns have given, with what the keys say of it.
 void set_rows(PanoramaMap& map, const Keys& keys) {
   const auto top_deg = keys.number("elevation_deg_at_top", "elevation_deg_at_line_0");
+  const double top_px = keys.number("elevation_deg_at_top") ? 0.0 : kFirstCentre_px;
   const auto bottom_deg = keys.number("elevation_deg_at_bottom");
   if (const auto focal_px = keys.number("focal_px")) {
     map.focal_px = *focal_px;
@@ -130,13 +134,14 @@ void set_rows(PanoramaMap& map, const Keys& keys) {
     map.focal_px = 1.0 / (*scale_deg * mars::kRadiansPerDegree);
   } else if (top_deg && bottom_deg && map.kind != MapKind::kFacets) {
     const double rise = rise_of(map.kind, *top_deg) - rise_of(map.kind, *bottom_deg);
-    map.focal_px = static_cast<double>(map.height_px) /
+    map.focal_px = (static_cast<double>(map.height_px) - top_px) /
                    positive(rise, "elevation_deg_at_top less elevation_deg_at_bottom");
   }
   if (const auto row = keys.number("horizon_row")) {
     map.horizon_px = *row;
   } else {
-    map.horizon_px = map.focal_px * rise_of(map.kind, needed(top_deg, "horizon_row or elevation_deg_at_top"));
+    const double deg = needed(top_deg, "horizon_row or elevation_deg_at_top");
+    map.horizon_px = top_px + map.focal_px * rise_of(map.kind, deg);
   }
 }
 
@@ -159,7 +164,7 @@ void check_agreement(const PanoramaMap& map, const Keys& keys) {
     compare(key, is_deg + std::remainder(*stated - is_deg, 360.0), is_deg, 1.0 / column_deg);
   };
   compare_azimuth("azimuth_deg_at_left", 0.0);
-  compare_azimuth("azimuth_deg_at_sample_0", 0.0);
+  compare_azimuth("azimuth_deg_at_sample_0", kFirstCentre_px);
   compare_azimuth("azimuth_deg_at_right", width_px);
   if (map.kind == MapKind::kFacets) return;
   const auto compare_elevation = [&](const char* key, double y) {
@@ -170,7 +175,7 @@ void check_agreement(const PanoramaMap& map, const Keys& keys) {
             map.horizon_px - map.focal_px * rise_of(map.kind, is_deg), 1.0);
   };
   compare_elevation("elevation_deg_at_top", 0.0);
-  compare_elevation("elevation_deg_at_line_0", 0.0);
+  compare_elevation("elevation_deg_at_line_0", kFirstCentre_px);
   compare_elevation("elevation_deg_at_bottom", height_px);
 }
 
@@ -199,6 +204,9 @@ PanoramaMap map_of(const Keys& keys) {
   const double turn_px = turn_of(keys, static_cast<double>(width_px), left);
   PanoramaMap map = cylinder_map(width_px, height_px, turn_px, left, 0.0);
   map.kind = kind;
+  if (kind != MapKind::kFacets && !keys.number("azimuth_deg_at_left")) {
+    map.turn_azimuth_deg -= kFirstCentre_px * 360.0 / turn_px;
+  }
   if (kind == MapKind::kFacets) {
     map.facets = static_cast<int>(*facets);
     map.crop_left_px = keys.number("crop_left_px").value_or(0.0);

@@ -15,8 +15,8 @@
 //   facets                             how many to the turn
 //   pose                               lon_deg, lat_deg, alt_m (above the sphere), height_m (above the ground),
 //                                      ground_m (elevation of the ground), datum (mars/datum.h) of ground_m
-// and the words of pictures that others have described: azimuth_deg_at_sample_0, elevation_deg_at_line_0,
-// elevation_deg_per_line, rover {lon_deg_east, lat_deg, elevation_m_areoid,
+// and the words of pictures that others have described: azimuth_deg_at_sample_0 and elevation_deg_at_line_0 (of
+// the first pixel's centre), elevation_deg_per_line, rover {lon_deg_east, lat_deg, elevation_m_areoid,
 // camera_height_above_ground_m_approx}.
 #pragma once
 
