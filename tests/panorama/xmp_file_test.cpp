@@ -231,4 +231,23 @@ TEST(XmpFile, SizeOfAGigapixelBigTiffComesFromItsHeader) {
   EXPECT_TRUE(said.empty() || said.find("liar.tif") != std::string::npos) << said;
 }
 
+TEST(XmpFile, AnyDamagedTiffIsAMessageOrAHeader) {
+  const test_support::TempDir folder;
+  vpe::core::write_tiff(folder / "a.tif", std::vector<float>(31 * 17, 1.0F), 31, 17);
+  const Bytes whole = vpe::core::read_file(folder / "a.tif", 1 << 20);
+  test_support::Random random(822);
+  for (int n = 0; n < 1000; ++n) {
+    Bytes bytes = whole;
+    for (int k = random.integer(1, 3); k > 0; --k) {
+      const auto at = static_cast<std::size_t>(random.integer(0, static_cast<int>(bytes.size()) - 1));
+      bytes[at] = static_cast<std::uint8_t>(random.integer(0, 255));
+    }
+    vpe::core::write_file(folder / "b.tif", bytes);
+    message_of([&] {
+      const PictureHeader header = read_picture_header(folder / "b.tif");
+      EXPECT_GE(header.width_px, header.format == PictureFormat::kOther ? 0 : 1);
+    });
+  }
+}
+
 }  // namespace
