@@ -34,10 +34,9 @@ void check(const TileInfo& tile, double radius_m) {
     if (grows(tile.variants[v - 1].terms, tile.variants[v].terms))
       refuse(tile.key, "error grows with finer meshes");
   }
-  if (tile.posts_terms) {
+  if (const ErrorTerms posts = tile.posts_terms.terms(); tile.posts_terms.known()) {
     if (!tile.has_children) refuse(tile.key, "finest tile whose posts have an error");
-    if (grows(*tile.posts_terms, *tile.posts_terms) || grows(*tile.posts_terms, {}) ||
-        !std::isfinite(tile.posts_terms->total_m))
+    if (grows(posts, posts) || grows(posts, {}) || !std::isfinite(posts.total_m))
       refuse(tile.key, "error of its posts not finite or negative");
   }
   if (!tile.has_children && grows({}, tile.variants.back().terms)) {
@@ -53,7 +52,8 @@ void check(const TileInfo& tile, const TileInfo& child) {
   if (grows(tile.variants.back().terms, child.variants.front().terms)) {
     refuse(child.key, "error larger than its parent's");
   }
-  if (tile.posts_terms && child.posts_terms && grows(*tile.posts_terms, *child.posts_terms))
+  if (tile.posts_terms.known() && child.posts_terms.known() &&
+      grows(tile.posts_terms.terms(), child.posts_terms.terms()))
     refuse(child.key, "error of its posts larger than of its parent's");
 }
 

@@ -1,9 +1,10 @@
 // The tiles of a planet with what selection has to know of them, without any of their data.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,16 +21,39 @@ struct MeshVariant {
   std::uint32_t triangles = 0;
 };
 
+// Error terms that may be unknown, rounded up to floats: a planet in memory has millions of tiles.
+class StatedTerms {
+ public:
+  StatedTerms() = default;
+  StatedTerms(const ErrorTerms& terms)  // NOLINT(google-explicit-constructor): what is stated of them
+      : relief_m_(up(terms.relief_m)), sag_m_(up(terms.sag_m)), total_m_(up(terms.total_m)) {}
+
+  bool known() const { return total_m_ == total_m_; }
+  ErrorTerms terms() const {
+    return {static_cast<double>(relief_m_), static_cast<double>(sag_m_), static_cast<double>(total_m_)};
+  }
+
+ private:
+  static float up(double x) {
+    const auto rounded = static_cast<float>(x);
+    return static_cast<double>(rounded) >= x ? rounded
+                                             : std::nextafter(rounded, std::numeric_limits<float>::infinity());
+  }
+  float relief_m_ = std::numeric_limits<float>::quiet_NaN();
+  float sag_m_ = relief_m_;
+  float total_m_ = relief_m_;
+};
+
 struct TileInfo {
   TileKey key;
   double min_height_m = 0;  // the finest posts in the tile, borders included, lie in [min, max]
   double max_height_m = 0;
   bool has_children = false;
+  // With children: its own posts drawn as a grid, against S. Unknown where the planet file does not say.
+  StatedTerms posts_terms = {};
   // Coarser to finer. One for a tile with children; the last of a finest tile is its full grid, error 0.
   std::vector<MeshVariant> variants;
   double steepest_slope = 0;  // upper bound of the tangent of slope of S in the tile, not exaggerated
-  // With children: its own posts drawn as a grid, against S. None where the planet file does not say.
-  std::optional<ErrorTerms> posts_terms = std::nullopt;
 };
 
 // Whether a variant is the finest tile's full grid: S itself, at any exaggeration.

@@ -135,8 +135,9 @@ void PlanetFile::read_index(Connection& connection) {
   std::vector<lod::TileInfo> tiles;
   tiles.reserve(rows.size());
   for (NodeRow& row : rows) {
-    tiles.push_back({*lod::unpack(row.key), row.min_m, row.max_m, row.inner, std::move(row.variants), row.slope,
-                     row.posts_terms});
+    tiles.push_back({*lod::unpack(row.key), row.min_m, row.max_m, row.inner,
+                     row.posts_terms ? lod::StatedTerms(*row.posts_terms) : lod::StatedTerms(),
+                     std::move(row.variants), row.slope});
   }
   if (static_cast<std::int64_t>(tiles.size()) != meta_.tiles) {
     throw PlanetError(path_ + ": damaged: " + std::to_string(tiles.size()) + " of " +

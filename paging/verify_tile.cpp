@@ -202,9 +202,9 @@ TileFindings measure_tile(const PlanetFile& planet, const lod::TileInfo& leaf) {
           out.report.largest_share = std::max(out.report.largest_share, found.total_m / stated.total_m);
         }
       };
-      if (tile.posts_terms) {
+      if (tile.posts_terms.known()) {
         const lod::GridMeter posts(planet.heights(tile.key).posts, planet.radius_m());
-        compare(posts.measure(fine), *tile.posts_terms, "its grid of posts is");
+        compare(posts.measure(fine), tile.posts_terms.terms(), "its grid of posts is");
       }
       const std::size_t meshes = tile.variants.size() - (tile.has_children ? 0 : 1);
       for (std::size_t v = 0; v < meshes; ++v) {

@@ -144,7 +144,7 @@ TEST(Certify, AddsTheTermsOfTheWorstTile) {
   std::vector<lod::TileInfo> infos;
   for (int f = 0; f < 6; ++f) {
     const double slope = f == 1 ? std::sqrt(15.0) : 0.5;
-    infos.push_back({{static_cast<mars::Face>(f), 0, 0, 0}, 0, 0, false, {{{}, 32}}, slope});
+    infos.push_back({{static_cast<mars::Face>(f), 0, 0, 0}, 0, 0, false, {}, {{{}, 32}}, slope});
   }
   const lod::TileTree tree(infos, {2}, kRadius_m);
   lod::SelectedTile near;
@@ -174,7 +174,7 @@ TEST(Certify, AddsTheTermsOfTheWorstTile) {
 TEST(Certify, BoundsPartsWhereTheyAppear) {
   std::vector<lod::TileInfo> infos;
   for (int f = 0; f < 6; ++f)
-    infos.push_back({{static_cast<mars::Face>(f), 0, 0, 0}, 0, 0, false, {{{}, 32}}, std::sqrt(15.0)});
+    infos.push_back({{static_cast<mars::Face>(f), 0, 0, 0}, 0, 0, false, {}, {{{}, 32}}, std::sqrt(15.0)});
   const lod::TileTree tree(infos, {2}, kRadius_m);
   lod::SelectedTile hidden;  // worst of all, and nowhere in the picture
   hidden.key = tree[0].key;

@@ -106,10 +106,10 @@ TEST(Builder, ErrorsBoundTheDistanceAndNest) {
     }
     if (!info.has_children) {
       EXPECT_EQ(info.variants.back().terms.total_m, 0);
-      EXPECT_FALSE(info.posts_terms.has_value());
+      EXPECT_FALSE(info.posts_terms.known());
       continue;
     }
-    ASSERT_TRUE(info.posts_terms.has_value());
+    ASSERT_TRUE(info.posts_terms.known());
     const lod::Posts posts = planet->heights(info.key).posts;
     const lod::GridLines lines = lod::grid_lines(info.key, posts.intervals);
     double worst = 0;
@@ -120,8 +120,8 @@ TEST(Builder, ErrorsBoundTheDistanceAndNest) {
       const double grid_m = lod::surface_height(posts, lines, u, v, planet->radius_m());
       worst = std::max(worst, std::abs(grid_m - surface.at(direction).height_m));
     }
-    EXPECT_LE(worst, info.posts_terms->total_m + 1e-6) << lod::to_string(info.key);
-    EXPECT_GE(worst, info.posts_terms->total_m * 0.05) << lod::to_string(info.key);
+    EXPECT_LE(worst, info.posts_terms.terms().total_m + 1e-6) << lod::to_string(info.key);
+    EXPECT_GE(worst, info.posts_terms.terms().total_m * 0.05) << lod::to_string(info.key);
   }
 }
 

@@ -97,8 +97,8 @@ double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
 
 double ColumnWalk::measured_error_px(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
-  if (!info.posts_terms) return kInfinite;
-  return lod::error_bound(*info.posts_terms, exaggeration_, info.min_height_m, info.max_height_m,
+  if (!info.posts_terms.known()) return kInfinite;
+  return lod::error_bound(info.posts_terms.terms(), exaggeration_, info.min_height_m, info.max_height_m,
                           eye_.radius_m) *
          rule_.focal_px / least_distance_m(tile);
 }
