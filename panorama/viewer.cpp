@@ -127,7 +127,12 @@ void Viewer::hold(const Direction& direction, double x, double y) {
   const double v = (0.5 * size_.y - y) / focal_px;
   const double sine =
       std::sin(direction.elevation_deg * kRadiansPerDegree) * std::sqrt((1.0 + u * u + v * v) / (1.0 + v * v));
-  const double pitch_rad = std::asin(std::clamp(sine, -1.0, 1.0)) - std::atan(v);
+  const double rise_rad = std::asin(std::clamp(sine, -1.0, 1.0));
+  // Of the two pitches, one with the ray beyond the zenith or nadir, that which turns less.
+  const double here_rad = pitch_deg_ * kRadiansPerDegree + std::atan(v);
+  const double beyond_rad = (rise_rad < 0.0 ? -kPi : kPi) - rise_rad;
+  const bool is_beyond = std::abs(beyond_rad - here_rad) < std::abs(rise_rad - here_rad);
+  const double pitch_rad = (is_beyond ? beyond_rad : rise_rad) - std::atan(v);
   const ElevationRange range = pitch_range();
   const double pitch_deg = std::clamp(pitch_rad / kRadiansPerDegree, range.low_deg, range.high_deg);
   const double pitch = pitch_deg * kRadiansPerDegree;

@@ -42,6 +42,9 @@ struct Pair {
   double second = 0;
 };
 
+// For messages: a thousandth of a degree is less than anybody sees.
+std::string shown(double degrees) { return core::format_number(std::round(degrees * 1e3) / 1e3); }
+
 Pair parse_pair(const std::string& option, const std::string& text, const char* expected) {
   const auto numbers = parse_numbers(text);
   if (!numbers || numbers->size() != 2)
@@ -137,7 +140,7 @@ panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama:
     std::fprintf(
         stderr,
         "vpe: note: the field of view is %s degrees, not %s: a pixel of the picture is drawn at most %g wide\n",
-        core::format_number(viewer.fov_deg()).c_str(), core::format_number(arguments.fov_deg).c_str(),
+        shown(viewer.fov_deg()).c_str(), shown(arguments.fov_deg).c_str(),
         panorama::ViewerLimits::kMaxMagnification);
   }
   if (arguments.view.empty()) return viewer;
@@ -145,8 +148,7 @@ panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama:
   viewer.look_at(asked.azimuth_deg, asked.elevation_deg);
   if (std::abs(viewer.pitch_deg() - asked.elevation_deg) > 1e-9 && !quiet) {
     std::fprintf(stderr, "vpe: note: looks up %s degrees, not %s, to stay within the picture\n",
-                 core::format_number(viewer.pitch_deg()).c_str(),
-                 core::format_number(asked.elevation_deg).c_str());
+                 shown(viewer.pitch_deg()).c_str(), shown(asked.elevation_deg).c_str());
   }
   return viewer;
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "panorama/look.h"
-#include "panorama/plane.h"
+#include "panorama/raster_plane.h"
 #include "panorama/viewer.h"
 #include "vpe/core/number.h"
 
@@ -42,7 +42,7 @@ void add_planes(const panorama::PanoramaDescription& description, ShownPlace& pl
   const auto column = std::clamp<std::int64_t>(static_cast<std::int64_t>(place.x), 0, map.width_px - 1);
   const auto row = std::clamp<std::int64_t>(static_cast<std::int64_t>(place.y), 0, map.height_px - 1);
   for (const panorama::PlaneName& name : description.planes) {
-    const panorama::Plane plane(description.picture.parent_path() / name.file, map.width_px, map.height_px);
+    const panorama::RasterPlane plane(description.picture.parent_path() / name.file, map.width_px, map.height_px);
     const std::vector<double> values = plane.at(column, row);
     const std::vector<std::string> names = band_names(name.name, values.size());
     for (std::size_t n = 0; n < values.size(); ++n) {

@@ -1,4 +1,4 @@
-#include "panorama/plane.h"
+#include "panorama/raster_plane.h"
 
 #include <cstring>
 #include <utility>
@@ -59,7 +59,7 @@ double value_at(const std::uint8_t* bytes, std::size_t size) {
 
 }  // namespace
 
-Plane::Plane(std::filesystem::path path, std::int64_t width_px, std::int64_t height_px)
+RasterPlane::RasterPlane(std::filesystem::path path, std::int64_t width_px, std::int64_t height_px)
     : path_(std::move(path)) {
   const TiffFile file(path_);
   const Layout layout = layout_of(file);
@@ -70,7 +70,7 @@ Plane::Plane(std::filesystem::path path, std::int64_t width_px, std::int64_t hei
                    "a plane has to have the picture's size; remove it from the JSON or make it again");
 }
 
-std::vector<double> Plane::at(std::int64_t column, std::int64_t row) const {
+std::vector<double> RasterPlane::at(std::int64_t column, std::int64_t row) const {
   const TiffFile file(path_);
   const Layout layout = layout_of(file);
   const auto x = static_cast<std::uint32_t>(column);

@@ -9,10 +9,10 @@ namespace panorama {
 
 // A TIFF or BigTIFF, tiled or in rows, with one band or more of 32- or 64-bit floating point numbers that lie
 // together. NaN stands for sky and everything else that has no value.
-class Plane {
+class RasterPlane {
  public:
   // Reads the header. Throws vpe::core::FileError: damaged, another kind, or not of this size.
-  Plane(std::filesystem::path path, std::int64_t width_px, std::int64_t height_px);
+  RasterPlane(std::filesystem::path path, std::int64_t width_px, std::int64_t height_px);
 
   // The bands' values at a pixel of the picture. Reads one tile or strip. Throws vpe::core::FileError.
   std::vector<double> at(std::int64_t column, std::int64_t row) const;
