@@ -5,6 +5,7 @@
 #include "panorama/sidecar.h"
 #include "panorama/xmp_file.h"
 #include "tests/app/support/app_fixture.h"
+#include "tests/panorama/big_tiff_file.h"
 #include "vpe/core/image.h"
 
 namespace app_test {
@@ -113,7 +114,7 @@ TEST_F(Overlook, SaysWhatIsThere) {
   EXPECT_TRUE(places[2]["range_m"].is_null());  // the sky
   const Result text = vpe({"overlook", "a.png", "--at", "90.25,-10", "--at", "0,5"});
   EXPECT_EQ(text.out,
-            "x,y,azimuth_deg,elevation_deg,range_m\n180.500,170.205,90.250000,-10.000000,180.000\n"
+            "x,y,azimuth_deg,elevation_deg,range_m\n180.500,170.206,90.250000,-10.000000,180.000\n"
             "0.000,139.975,0.000000,5.000000,\n");
 }
 
@@ -152,7 +153,8 @@ TEST_F(Overlook, Pairs) {
   EXPECT_EQ(of_pair({"--stereo", "anaglyph"}).width, 160);
   expect_failure({"overlook", "a.png", "-o", "v.png", "--stereo", "sbs"}, 2,
                  {"--stereo sbs", "a.png", "--right"});
-  expect_failure({"overlook", "a.png", "-o", "v.png", "--stereo-layout", "ou"}, 1, {"a.png", "720x300"});
+  expect_failure({"overlook", "ou.png", "-o", "w.png", "--stereo-layout", "none"}, 1,
+                 {"ou.png", "720x600", "720x300"});
 }
 
 TEST_F(Overlook, NotesWhatIsNotAsAsked) {
@@ -187,7 +189,8 @@ TEST_F(Overlook, BadPanoramas) {
   vpe::core::write_image(dir_ / "plain.png", wheel_picture(map_), 720, 300);
   expect_failure({"overlook", "plain.png", "-o", "v.png"}, 1, {"plain.png", "directions", "plain.json"});
   write_wheel("a.png");
-  expect_failure({"overlook", "a.png", "--at", "0,80"}, 1, {"--at 0,80", "a.png", "does not show it", "-52.5"});
+  expect_failure({"overlook", "a.png", "--at", "0,80"}, 1,
+                 {"--at 0,80", "a.png", "does not show it", "-52.622"});
   expect_failure({"overlook", "a.png", "--at-pixel", "720.5,3"}, 1, {"--at-pixel 720.5,3", "720x300"});
   auto json = parse_json(read_text(dir_ / "a.json"));
   json["planes"] = {{"range", "gone.tif"}};
@@ -203,6 +206,23 @@ TEST_F(Overlook, BadPanoramas) {
   fs::resize_file(dir_ / "cut.jpg", fs::file_size(dir_ / "cut.jpg") / 2);
   expect_failure({"overlook", "cut.jpg", "-o", "v.png"}, 1, {"cut.jpg", "cannot read"});
   EXPECT_FALSE(exists("v.png"));
+}
+
+// 6 GB unpacked.
+TEST_F(Overlook, LargePicturesWithinTheirMemory) {
+  panorama_test::SharedTiles::write(dir_ / "big.tif", 100'000, 20'000);
+  write_text(
+      dir_ / "big.json",
+      panorama::to_json({"big.tif", panorama::equirectangular_map(100'000, 20'000, 100'000, 0.0, 1e4), {}}));
+  for (const char* fov : {"120", "20", "1"}) {
+    const Result result = vpe({"overlook", "big.tif", "--view", "200,-3", "--fov", fov, "-o", "v.png", "--size",
+                               "640x360", "--memory", "256", "--at", "200,-3"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");  // no copies were made
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    EXPECT_LT(result.peak_bytes, std::int64_t{256} << 20);
+#endif
+  }
 }
 
 // A header that claims a million pixels each way.

@@ -29,7 +29,7 @@ struct OverlookArguments {
   std::string right;
   std::string stereo_layout;
   std::string stereo;
-  std::string view;
+  std::optional<std::string> view;
   double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;
   std::string size = "1280x720";
   std::string output;
@@ -143,8 +143,8 @@ panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama:
         shown(viewer.fov_deg()).c_str(), shown(arguments.fov_deg).c_str(),
         panorama::ViewerLimits::kMaxMagnification);
   }
-  if (arguments.view.empty()) return viewer;
-  const panorama::Direction asked = parse_direction("--view", arguments.view);
+  if (!arguments.view) return viewer;
+  const panorama::Direction asked = parse_direction("--view", *arguments.view);
   viewer.look_at(asked.azimuth_deg, asked.elevation_deg);
   if (std::abs(viewer.pitch_deg() - asked.elevation_deg) > 1e-9 && !quiet) {
     std::fprintf(stderr, "vpe: note: looks up %s degrees, not %s, to stay within the picture\n",
@@ -158,7 +158,7 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   if (common.memory_mb < kTightMemory_mb) core::keep_heap_compact();
   // Wrong usage and what cannot be written are told before any work.
   const Size size = parse_size(arguments.size);
-  if (!arguments.view.empty()) (void)parse_direction("--view", arguments.view);
+  if (arguments.view) (void)parse_direction("--view", *arguments.view);
   std::vector<panorama::Direction> directions;
   for (const std::string& text : arguments.at) directions.push_back(parse_direction("--at", text));
   std::vector<Pair> pixels;
