@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <utility>
 
 #include "panorama/picture.h"
@@ -52,6 +53,29 @@ std::string name_of_copies(const fs::path& path) {
   return std::string(digits.data()) + ".levels";
 }
 
+// Whether copies begin with the level that they should and each is half of the one before.
+bool are_whole(const std::vector<TiffPage>& pages, const PictureLevel& size, int first_level) {
+  std::int64_t width_px = first_level > 0 ? half_px(size.width_px) : size.width_px;
+  std::int64_t height_px = first_level > 0 ? half_px(size.height_px) : size.height_px;
+  for (const TiffPage& page : pages) {
+    if (page.level.width_px != width_px || page.level.height_px != height_px) return false;
+    width_px = half_px(width_px);
+    height_px = half_px(height_px);
+  }
+  return !pages.empty();
+}
+
+// What killed processes left of copies.
+void remove_old_drafts(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    const auto age = fs::file_time_type::clock::now() - fs::last_write_time(entry->path(), ignored);
+    if (!ignored && entry->path().extension() == ".tmp" && age > std::chrono::hours(24))
+      fs::remove_all(entry->path(), ignored);
+  }
+}
+
 // The pages of the copies, which are made when they are not there.
 std::vector<TiffPage> copies(const fs::path& path, PictureFormat format, const PictureLevel& size,
                              int first_level, const PictureOptions& options) {
@@ -60,7 +84,11 @@ std::vector<TiffPage> copies(const fs::path& path, PictureFormat format, const P
                      "give more --memory");
   }
   const fs::path folder = options.cache_folder() / name_of_copies(path);
-  if (auto pages = pyramid_pages(folder); !pages.empty()) return pages;
+  if (fs::is_directory(folder)) {
+    if (auto pages = pyramid_pages(folder); are_whole(pages, size, first_level)) return pages;
+    fs::remove_all(folder);
+  }
+  remove_old_drafts(options.cache_folder());
   // Lossless copies of photographs take up to what the pixels take, and a third more for the smaller levels.
   const std::int64_t needed_bytes = pixels_of(size) * (first_level > 0 ? 1 : 4);
   std::error_code error;

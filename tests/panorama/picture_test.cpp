@@ -167,6 +167,17 @@ TEST(OpenPicture, LargePngIsCopiedOnce) {
   expect_pattern(*panorama::open_picture(folder / "a.png", PictureFormat::kPng, opening), kWidth + 4, kHeight);
 }
 
+TEST(OpenPicture, CopiesThatLostALevelAreMadeAgain) {
+  const test_support::TempDir folder;
+  vpe::core::write_image(folder / "a.png", pattern(kWidth, kHeight).pixels, kWidth, kHeight);
+  panorama::open_picture(folder / "a.png", PictureFormat::kPng, options(folder, 0));
+  for (const char* name : {"level-0.tif", "level-1.tif"}) {
+    for (const auto& entry : fs::directory_iterator(folder / "cache")) fs::remove(entry.path() / name);
+    expect_pattern(*panorama::open_picture(folder / "a.png", PictureFormat::kPng, options(folder, 0)), kWidth,
+                   kHeight);
+  }
+}
+
 TEST(OpenPicture, LargeJpegIsTheSameAsInMemory) {
   const test_support::TempDir folder;
   vpe::core::write_image(folder / "a.jpg", pattern(kWidth, kHeight).pixels, kWidth, kHeight);
