@@ -30,6 +30,7 @@ struct Found {
   PanoramaMap map;
   bool heading_is_known = true;
   std::optional<Station> station;
+  Companions companions;
 };
 
 std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
@@ -58,8 +59,17 @@ std::string size_text(std::int64_t width_px, std::int64_t height_px) {
   return std::to_string(width_px) + "x" + std::to_string(height_px);
 }
 
-void require_size(const Found& found, const fs::path& picture, const PictureHeader& header) {
-  if (found.map.width_px == header.width_px && found.map.height_px == header.height_px) return;
+// One eye of a pair, when the description is of both.
+void take_one_eye(Found& found, const PictureHeader& header, PairLayout pair) {
+  if (found.map.width_px != header.width_px || found.map.height_px != header.height_px) return;
+  if (pair == PairLayout::kSideBySide) found.map.width_px /= 2;
+  if (pair == PairLayout::kOverUnder) found.map.height_px /= 2;
+}
+
+void require_size(const Found& found, const fs::path& picture, const PictureHeader& header, PairLayout pair) {
+  const std::int64_t across = pair == PairLayout::kSideBySide ? 2 : 1;
+  const std::int64_t down = pair == PairLayout::kOverUnder ? 2 : 1;
+  if (across * found.map.width_px == header.width_px && down * found.map.height_px == header.height_px) return;
   throw FileError("cannot use " + quoted(picture) + ": it has " + size_text(header.width_px, header.height_px) +
                   " pixels, but " + found.source + " describes " +
                   size_text(found.map.width_px, found.map.height_px) +
@@ -78,14 +88,16 @@ std::optional<Found> find_sidecar(const fs::path& picture) {
   const fs::path of_folder = picture.parent_path() / "pano.json";
   for (const fs::path& path : {beside, of_folder}) {
     if (!is_file(path)) continue;
-    const Sidecar sidecar = reading(quoted(path), [&] { return read_sidecar(text_of(path)); });
+    const std::string text = text_of(path);
+    const Sidecar sidecar = reading(quoted(path), [&] { return read_sidecar(text); });
     const bool is_of_this = sidecar.image.empty() || sidecar.image == picture.filename();
     if (path == beside && !is_of_this) {
       throw file_error("use", path, "it describes the picture '" + sidecar.image + "', not " + quoted(picture),
                        "correct its \"image\" or rename it");
     }
     if (path == of_folder && path != beside && (!is_of_this || sidecar.image.empty())) continue;
-    return Found{quoted(path), sidecar.map, true, sidecar.station};
+    return Found{quoted(path), sidecar.map, true, sidecar.station,
+                 reading(quoted(path), [&] { return read_companions(text); })};
   }
   return std::nullopt;
 }
@@ -123,7 +135,7 @@ std::optional<Found> find_gpano(const fs::path& picture, const PictureHeader& he
   return reading(source, [&]() -> std::optional<Found> {
     const std::optional<GPano> gpano = read_gpano(*header.xmp);
     if (!gpano) return std::nullopt;
-    return Found{source, map_of(*gpano), gpano->heading_deg.has_value(), std::nullopt};
+    return Found{source, map_of(*gpano), gpano->heading_deg.has_value(), std::nullopt, {}};
   });
 }
 
@@ -139,7 +151,7 @@ fs::path picture_of(const fs::path& path) {
 
 }  // namespace
 
-PanoramaDescription describe(const fs::path& path) {
+PanoramaDescription describe(const fs::path& path, std::optional<PairLayout> pair) {
   const fs::path picture = picture_of(path);
   PictureHeader header = read_picture_header(picture);
   std::vector<Found> all;
@@ -155,7 +167,9 @@ PanoramaDescription describe(const fs::path& path) {
       all.push_back(
           {source,
            reading(source, [&, &rover = label] { return map_of(rover, header.width_px, header.height_px); }),
-           true, std::nullopt});
+           true,
+           std::nullopt,
+           {}});
     }
   }
   if (header.width_px < 1) {
@@ -169,14 +183,22 @@ PanoramaDescription describe(const fs::path& path) {
         "write " + quoted(fs::path(picture).replace_extension(".json")) +
             " with projection, width, height, azimuth_deg_at_left, degrees_per_pixel and horizon_row");
   }
-  PanoramaDescription description{picture, header.format, all.front().map, {}, all.front().heading_is_known,
-                                  {}};
-  for (const Found& found : all) {
-    require_size(found, picture, header);
+  PanoramaDescription description{picture,
+                                  header.format,
+                                  all.front().map,
+                                  {},
+                                  all.front().heading_is_known,
+                                  {},
+                                  pair.value_or(all.front().companions.pair),
+                                  all.front().companions.planes};
+  for (Found& found : all) {
+    take_one_eye(found, header, description.pair);
+    require_size(found, picture, header, description.pair);
     require_agreement(all.front(), found);
     description.sources.push_back(found.source);
     if (!description.station) description.station = found.station;
   }
+  description.map = all.front().map;
   return description;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "panorama/companions.h"
 #include "panorama/projection.h"
 #include "panorama/sidecar.h"
 #include "panorama/xmp_file.h"
@@ -15,12 +16,14 @@ namespace panorama {
 struct PanoramaDescription {
   std::filesystem::path picture;
   PictureFormat format = PictureFormat::kOther;
-  PanoramaMap map;  // of the picture's size
+  PanoramaMap map;  // of the picture's size; of one eye's when it holds a pair
   std::vector<std::string>
       sources;  // what described it, the one that counts first: "'x.json'", "GPano in 'x.jpg'"
   bool heading_is_known =
       true;  // false: GPano without a heading, azimuths are counted from the full picture's middle
   std::optional<Station> station;
+  PairLayout pair = PairLayout::kNone;
+  std::vector<PlaneName> planes;  // beside the picture; of the map's size
 };
 
 // `path` is a picture, or the JSON that names one. Looked for, and the first found counts:
@@ -29,6 +32,7 @@ struct PanoramaDescription {
 //   3. GPano inside of PNG, JPEG or TIFF (gpano.h)
 // Sizes are read without unpacking pixels. Throws vpe::core::FileError: nothing found; a description that
 // cannot be used; two that differ by more than a pixel, or one that does not fit the picture, naming both.
-PanoramaDescription describe(const std::filesystem::path& path);
+// `pair` says which eyes the picture holds, whatever its JSON says.
+PanoramaDescription describe(const std::filesystem::path& path, std::optional<PairLayout> pair = std::nullopt);
 
 }  // namespace panorama

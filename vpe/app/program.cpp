@@ -98,6 +98,7 @@ int run(int argc, char** argv) {
   add_profile(program, common);
   add_render(program, common);
   add_fly(program, common);
+  add_overlook(program, common);
   add_settings(program, common);
   add_doctor(program, common);
   add_manual(program, common);

@@ -38,6 +38,7 @@ void add_verify(CLI::App& program, Common& common);
 void add_query(CLI::App& program, Common& common);
 void add_profile(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
+void add_overlook(CLI::App& program, Common& common);
 void add_fly(CLI::App& program, Common& common);
 void add_settings(CLI::App& program, Common& common);
 void add_doctor(CLI::App& program, Common& common);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
+#include "vpe/app/stereo_render.h"
 #include "vpe/core/image.h"
 #include "vpe/core/inspect.h"
 #include "vpe/core/number.h"
@@ -32,6 +34,7 @@ struct RenderArguments {
   std::string size = "1280x720";
   double fov_deg = 60;
   PictureOptions picture;
+  StereoArguments stereo;
 };
 
 mars::Pose parse_pose(const RenderArguments& arguments, const std::function<double(mars::LonLat)>& terrain) {
@@ -98,6 +101,37 @@ void check_overlay_layer(const std::string& path, const core::Overlays& overlays
   }
 }
 
+// Files that say something of one eye.
+void check_stereo_outputs(const RenderArguments& arguments) {
+  check_stereo(arguments.stereo);
+  if (arguments.stereo.layout.empty()) return;
+  if (!arguments.range.empty() || !arguments.explain_lod.empty() || !arguments.overlay_layer.empty()) {
+    throw UsageError(
+        "--range, --explain-lod and --overlay-layer are of one eye; leave out --stereo, or render each eye by "
+        "itself");
+  }
+}
+
+void render_stereo(const RenderArguments& arguments, const Common& common, const core::DrawRequest& request,
+                   const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
+  const StereoPicture picture = draw_stereo(arguments.stereo, request, draw);
+  core::write_image(arguments.output, picture.image.pixels, picture.image.width, picture.image.height);
+  const nlohmann::json certificates{{"left", nlohmann::json::parse(core::to_json(picture.left.certificate))},
+                                    {"right", nlohmann::json::parse(core::to_json(picture.right.certificate))}};
+  if (!arguments.certificate.empty()) core::write_file(arguments.certificate, certificates.dump(1) + "\n");
+  if (common.json) {
+    print_json(
+        {{"output", arguments.output},
+         {"eye_base_m", picture.eye_base_m},
+         {"certificate", certificates},
+         {"stats", {{"left", stats_json(picture.left.stats)}, {"right", stats_json(picture.right.stats)}}}});
+  } else if (!common.quiet) {
+    std::printf("%s: eyes %.4g m apart, geometry within %.2f px\n", arguments.output.c_str(),
+                picture.eye_base_m,
+                std::max(picture.left.certificate.shift_bound_px, picture.right.certificate.shift_bound_px));
+  }
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   const core::Settings settings = make_settings(arguments.picture);
   const Size size = parse_size(arguments.size);
@@ -116,6 +150,7 @@ void render(RenderArguments& arguments, const Common& common) {
   if (!arguments.certificate.empty()) check_output(arguments.certificate);
   if (!arguments.explain_lod.empty()) check_output(arguments.explain_lod);
   check_overlay_layer(arguments.overlay_layer, settings.values());
+  check_stereo_outputs(arguments);
 
   // Read now for what may be wrong with it.
   if (!settings.values().names.empty()) (void)core::read_gazetteer(settings.values().names);
@@ -136,17 +171,22 @@ void render(RenderArguments& arguments, const Common& common) {
   request.cull_view = cull_view(arguments.cull_from, request.view, planet->radius_m());
   const auto renderer = make_renderer(arguments.picture, common, planet);
   request.paging.timeout_s = arguments.picture.wait_s;
-  core::DrawResult result = renderer->draw(request);
-  require_complete(arguments.picture, result);
-  if (!common.quiet) warn_of(result.failures);
-  if (overlay::any(request.settings)) {
-    const overlay::Layer layer = FrameOverlays(planet).layer(request, result.frame, result.certificate, 0);
+  // A finished picture of one eye.
+  const auto draw = [&](const core::DrawRequest& eye) {
+    core::DrawResult result = renderer->draw(eye);
+    require_complete(arguments.picture, result);
+    if (!common.quiet) warn_of(result.failures);
+    if (!overlay::any(eye.settings)) return result;
+    const overlay::Layer layer = FrameOverlays(planet).layer(eye, result.frame, result.certificate, 0);
     if (arguments.overlay_layer.empty()) {
       overlay::composite(layer, result.frame.colour);
     } else {
       core::write_image(arguments.overlay_layer, layer.pixels, layer.width, layer.height);
     }
-  }
+    return result;
+  };
+  if (!arguments.stereo.layout.empty()) return render_stereo(arguments, common, request, draw);
+  const core::DrawResult result = draw(request);
   core::write_image(arguments.output, result.frame.colour, result.frame.width, result.frame.height);
   if (!arguments.range.empty()) {
     core::write_tiff(arguments.range, result.frame.range_m, result.frame.width, result.frame.height);
@@ -195,6 +235,7 @@ void add_render(CLI::App& program, Common& common) {
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
       ->capture_default_str();
+  add_stereo_options(*command, arguments->stereo);
   add_picture_options(*command, arguments->picture);
   command->callback([arguments, height, &common] {
     arguments->has_height = height->count() > 0;

@@ -1,0 +1,248 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "panorama/look.h"
+#include "panorama/open_panorama.h"
+#include "panorama/viewer.h"
+#include "vpe/app/interrupt.h"
+#include "vpe/app/output.h"
+#include "vpe/app/overlook_places.h"
+#include "vpe/app/picture_options.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/app/program.h"
+#include "vpe/app/progress.h"
+#include "vpe/app/report.h"
+#include "vpe/core/heap.h"
+#include "vpe/core/number.h"
+#include "vpe/core/stereo.h"
+
+namespace vpe::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OverlookArguments {
+  std::string panorama;
+  std::string right;
+  std::string stereo_layout;
+  std::string stereo;
+  std::optional<std::string> view;
+  double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;
+  std::string size = "1280x720";
+  std::string output;
+  std::vector<std::string> at;
+  std::vector<std::string> at_pixel;
+};
+
+struct Pair {
+  double first = 0;
+  double second = 0;
+};
+
+// For messages: a thousandth of a degree is less than anybody sees.
+std::string shown(double degrees) { return core::format_number(std::round(degrees * 1e3) / 1e3); }
+
+Pair parse_pair(const std::string& option, const std::string& text, const char* expected) {
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 2)
+    throw UsageError(option + " '" + text + "': expected " + std::string(expected));
+  return {(*numbers)[0], (*numbers)[1]};
+}
+
+panorama::Direction parse_direction(const std::string& option, const std::string& text) {
+  const Pair pair = parse_pair(option, text, "AZIMUTH,ELEVATION (degrees, clockwise from north and up)");
+  if (std::abs(pair.second) > 90.0)
+    throw UsageError(option + " '" + text + "': the second number is an angle up and must be within -90..90");
+  return {pair.first, pair.second};
+}
+
+// One picture with its pixels, opened when they are asked for.
+class OpenPanorama {
+ public:
+  OpenPanorama(panorama::PanoramaDescription description, const Common& common, int pictures)
+      : description_(std::move(description)), common_(common), pictures_(pictures) {}
+
+  const panorama::PanoramaDescription& description() const { return description_; }
+
+  core::RgbImage look(const core::View& view, bool right_eye) {
+    if (picture_ == nullptr) open();
+    panorama::LookOptions options;
+    options.threads = common_.threads;
+    if (right_eye && description_.pair == panorama::PairLayout::kSideBySide)
+      options.origin.x_px = description_.map.width_px;
+    if (right_eye && description_.pair == panorama::PairLayout::kOverUnder)
+      options.origin.y_px = description_.map.height_px;
+    return panorama::look(*picture_, description_.map, view, options);
+  }
+
+ private:
+  void open() {
+    const InterruptGuard guard;
+    ProgressLine progress(common_.quiet);
+    panorama::PictureOptions options;
+    // The rest is for the view itself.
+    options.budget_bytes = memory_bytes(common_) / 4 * 3 / static_cast<std::size_t>(pictures_);
+    options.cache_folder = [] {
+      const fs::path folder = cache_folder() / "pictures";
+      make_folder(folder);
+      return folder;
+    };
+    options.progress = [&progress, this](double fraction) {
+      InterruptGuard::check();
+      progress.show("copying " + description_.picture.filename().string() + " once, in tiles", fraction);
+    };
+    picture_ = panorama::open_picture(description_.picture, description_.format, options);
+  }
+
+  panorama::PanoramaDescription description_;
+  const Common& common_;
+  int pictures_;
+  std::unique_ptr<panorama::Picture> picture_;
+};
+
+// The picture's second eye: of the same file, or of one of its own.
+struct Eyes {
+  std::unique_ptr<OpenPanorama> left;
+  std::unique_ptr<OpenPanorama> right;  // null: in the left one's file
+
+  core::RgbImage draw(const core::View& view, const std::optional<core::StereoLayout>& stereo) {
+    if (!stereo) return left->look(view, false);
+    const core::RgbImage left_image = left->look(view, false);
+    return core::combine_stereo(left_image, right ? right->look(view, false) : left->look(view, true), *stereo);
+  }
+};
+
+Eyes open_eyes(const OverlookArguments& arguments, const Common& common) {
+  std::optional<panorama::PairLayout> layout;
+  if (!arguments.stereo_layout.empty()) layout = panorama::parse_pair_layout(arguments.stereo_layout);
+  const int pictures = arguments.right.empty() ? 1 : 2;
+  Eyes eyes;
+  eyes.left = std::make_unique<OpenPanorama>(panorama::describe(arguments.panorama, layout), common, pictures);
+  if (!arguments.right.empty())
+    eyes.right = std::make_unique<OpenPanorama>(panorama::describe(arguments.right, layout), common, pictures);
+  const bool is_pair = eyes.right || eyes.left->description().pair != panorama::PairLayout::kNone;
+  if (!arguments.stereo.empty() && !is_pair) {
+    throw UsageError("--stereo " + arguments.stereo + ": '" + eyes.left->description().picture.string() +
+                     "' is for one eye; give the other's picture with --right, or --stereo-layout if it holds "
+                     "both");
+  }
+  return eyes;
+}
+
+panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama::PanoramaMap& map,
+                             const Size& size, bool quiet) {
+  panorama::Viewer viewer(map, size.width, size.height);
+  viewer.set_fov(arguments.fov_deg);
+  if (std::abs(viewer.fov_deg() - arguments.fov_deg) > 1e-9 && !quiet) {
+    std::fprintf(
+        stderr,
+        "vpe: note: the field of view is %s degrees, not %s: a pixel of the picture is drawn at most %g wide\n",
+        shown(viewer.fov_deg()).c_str(), shown(arguments.fov_deg).c_str(),
+        panorama::ViewerLimits::kMaxMagnification);
+  }
+  if (!arguments.view) return viewer;
+  const panorama::Direction asked = parse_direction("--view", *arguments.view);
+  viewer.look_at(asked.azimuth_deg, asked.elevation_deg);
+  if (std::abs(viewer.pitch_deg() - asked.elevation_deg) > 1e-9 && !quiet) {
+    std::fprintf(stderr, "vpe: note: looks up %s degrees, not %s, to stay within the picture\n",
+                 shown(viewer.pitch_deg()).c_str(), shown(asked.elevation_deg).c_str());
+  }
+  return viewer;
+}
+
+void overlook(const OverlookArguments& arguments, const Common& common) {
+  constexpr int kTightMemory_mb = 512;
+  if (common.memory_mb < kTightMemory_mb) core::keep_heap_compact();
+  // Wrong usage and what cannot be written are told before any work.
+  const Size size = parse_size(arguments.size);
+  if (arguments.view) (void)parse_direction("--view", *arguments.view);
+  std::vector<panorama::Direction> directions;
+  for (const std::string& text : arguments.at) directions.push_back(parse_direction("--at", text));
+  std::vector<Pair> pixels;
+  for (const std::string& text : arguments.at_pixel)
+    pixels.push_back(parse_pair("--at-pixel", text, "X,Y (pixels of the picture, centres at .5)"));
+  if (!arguments.output.empty()) check_picture_output(arguments.output);
+  if (arguments.output.empty() && directions.empty() && pixels.empty()) {
+    throw std::runtime_error(
+        "'" + arguments.panorama +
+        "': there is no window to look around in yet; draw a view with --view YAW,PITCH -o "
+        "VIEW.png, or ask what is somewhere with --at AZIMUTH,ELEVATION");
+  }
+
+  Eyes eyes = open_eyes(arguments, common);
+  const panorama::PanoramaDescription& description = eyes.left->description();
+  if (!description.heading_is_known && !common.quiet) {
+    std::fprintf(stderr, "vpe: note: '%s' does not say where north is; azimuths are counted from its middle\n",
+                 description.picture.c_str());
+  }
+  nlohmann::json json{{"picture", description.picture.string()},
+                      {"projection", panorama::to_string(description.map.kind)},
+                      {"described_by", description.sources}};
+
+  std::vector<ShownPlace> places;
+  for (const Pair& pixel : pixels) places.push_back(place_at_pixel(description, pixel.first, pixel.second));
+  for (const panorama::Direction& direction : directions) places.push_back(place_at(description, direction));
+  for (const ShownPlace& place : places) json["places"].push_back(to_json(place));
+
+  if (!arguments.output.empty()) {
+    const panorama::Viewer viewer = make_viewer(arguments, description.map, size, common.quiet);
+    const core::RgbImage image = eyes.draw(viewer.view(), core::parse_stereo(arguments.stereo));
+    core::write_image(arguments.output, image.pixels, image.width, image.height);
+    json["output"] = arguments.output;
+    json["view"] = {{"yaw_deg", viewer.yaw_deg()},
+                    {"pitch_deg", viewer.pitch_deg()},
+                    {"fov_deg", viewer.fov_deg()},
+                    {"width", image.width},
+                    {"height", image.height}};
+  }
+  if (common.json) {
+    print_json(json);
+    return;
+  }
+  if (!places.empty()) std::printf("%s\n", csv_header(places.front()).c_str());
+  for (const ShownPlace& place : places) std::printf("%s\n", csv_line(place).c_str());
+}
+
+}  // namespace
+
+void add_overlook(CLI::App& program, Common& common) {
+  using Limits = panorama::ViewerLimits;
+  auto arguments = std::make_shared<OverlookArguments>();
+  CLI::App* command = add_command(program, "overlook", "Look around in a panorama", common, true);
+  command->add_option("PANO", arguments->panorama, "Picture of a panorama, or the JSON that describes one")
+      ->required();
+  command->add_option(
+      "--view", arguments->view,
+      "YAW,PITCH: where to look, degrees clockwise from north and up; the middle when left out");
+  command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
+      ->check(number_within(Limits::kMinFov_deg, Limits::kMaxFov_deg))
+      ->capture_default_str();
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of an eye's view, pixels")
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "View to write (.png, .jpg)");
+  command->add_option("--at", arguments->at, "AZIMUTH,ELEVATION: print what is there (degrees; repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
+      ->add_option("--at-pixel", arguments->at_pixel,
+                   "X,Y: print what is at a pixel of the picture (centres at .5; repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--right", arguments->right, "The right eye's panorama; PANO is the left eye's");
+  command
+      ->add_option(
+          "--stereo-layout", arguments->stereo_layout,
+          "Eyes that the picture holds: left and right (sbs), left above right (ou), one (none); as its "
+          "JSON says when left out")
+      ->check(CLI::IsMember({"sbs", "ou", "none"}));
+  command
+      ->add_option("--stereo", arguments->stereo,
+                   "Draw both eyes: side by side (sbs), left above right (ou), red-cyan (anaglyph)")
+      ->check(CLI::IsMember({"sbs", "ou", "anaglyph"}));
+  command->callback([arguments, &common] { overlook(*arguments, common); });
+}
+
+}  // namespace vpe::app
