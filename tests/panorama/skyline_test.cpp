@@ -123,7 +123,7 @@ TEST(Skyline, BracketsOfAPicture) {
   }
 }
 
-// A peak far away and no wider than a third of a column, low in the picture, above nearer ground.
+// A gap low in the picture through which ground far away is seen, below nearer ground.
 TEST(Skyline, TheFarthestGroundIsFoundBelowTheSkylineToo) {
   const SkylineEye eye = panorama::skyline_eye({10, 20}, 100, kR);
   const auto flat = wall_range(eye, [](double) { return 3.0; });
@@ -140,7 +140,10 @@ TEST(Skyline, TheFarthestGroundIsFoundBelowTheSkylineToo) {
   }
   ThreadPool pool(2);
   const GroundPoint p = panorama::farthest_ground(eye, {map, ranges}, {}, range, pool);
-  EXPECT_NEAR(p.range_m, 5035, 5.1);
+  float farthest = 0;
+  for (const float r : ranges) farthest = std::isinf(r) ? farthest : std::max(farthest, r);
+  EXPECT_GT(farthest, 5000);
+  EXPECT_NEAR(p.range_m, static_cast<double>(farthest), 1e-3);
   EXPECT_NEAR(p.direction.azimuth_deg, 200.1, 0.4);
   EXPECT_NEAR(p.direction.elevation_deg, -1, 0.4);
   // One of the skyline is taken where that is farther, and then searched about for better.
