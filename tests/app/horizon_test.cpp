@@ -126,7 +126,9 @@ TEST_F(Horizon, NamedFeatures) {
   }
   EXPECT_TRUE(behind);
   const std::string csv = read_text(dir_ / "f.csv");
-  EXPECT_NE(csv.find("\n\"near, by\",20.01,10,,9"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n\"near, by\",20.01,10,,89.99"), std::string::npos) << csv;
+  // Just west of north: no azimuth of 360.
+  EXPECT_NE(csv.find("\nbehind,20,14,10,0.0000000,"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",plain\n"), std::string::npos) << csv;
 }
 
@@ -152,8 +154,10 @@ TEST_F(Horizon, BadInput) {
   expect_failure(words({"-o", "s.csv", "--height", "1", "--altitude", "1"}), 2,
                  {"either --height", "--altitude"});
   expect_failure(words({"-o", "s.csv", "--height", "-3"}), 2, {"--height"});
+  EXPECT_EQ(vpe(words({"-o", "low.csv", "--height", "0.001", "--step", "30"})).exit_code, 0);
   expect_failure(words({"-o", "s.csv", "--height", "0"}), 1, {"above the ground", "--height"});
-  expect_failure(words({"-o", "s.csv", "--altitude", "-900000"}), 1, {"20,10", "put it higher"});
+  expect_failure(words({"-o", "s.csv", "--altitude", "-900000"}), 1,
+                 {"20,10", "above the ground", "--altitude"});
   expect_failure(words({"--height", "2"}), 2, {"nothing to write", "-o"});
   expect_failure(words({"--height", "2", "-o", "s.csv", "--step", "0"}), 2, {"--step"});
   expect_failure(words({"--height", "2", "-o", "s.csv", "--from", "9", "--to", "9"}), 2,

@@ -12,8 +12,12 @@
 namespace app_test {
 namespace {
 
-constexpr int kSide = 100;  // 10 000 posts
-constexpr double kCell_m = 100;
+// 10 000 posts are asked for, every fourth either way. gdal_viewshed compares a post with lines of sight over
+// the ring of posts before it, and so sees some that lie less than a post behind a crest: of 100 x 100 posts of
+// 100 m of the same hills it differed on 2 %, mostly seen by it alone and on the border of what is seen.
+constexpr int kSide = 400;
+constexpr int kEvery = 4;
+constexpr double kCell_m = 25;
 constexpr double kWest_m = 600000;  // 10 degrees east, on the equator, where this projection keeps lengths
 constexpr double kNorth_m = 0.5 * kSide * kCell_m;
 constexpr double kEyeHeight_m = 10;
@@ -77,9 +81,9 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
   const std::filesystem::path program = find_program("gdal_viewshed");
   if (program.empty()) GTEST_SKIP() << "skipped: no gdal_viewshed";
   write_hills(dir_ / "hills.tif");
-  ASSERT_EQ(vpe({"build", "hills.tif", "-o", "hills.vpe", "--base-spacing", "50000", "-q"}).exit_code, 0);
-  constexpr int kColumn = 37;
-  constexpr int kRow = 58;
+  ASSERT_EQ(vpe({"build", "hills.tif", "-o", "hills.vpe", "--base-spacing", "200000", "-q"}).exit_code, 0);
+  constexpr int kColumn = 148;
+  constexpr int kRow = 232;
 
   const auto number = [](double x) {
     char text[40];
@@ -101,8 +105,8 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
   const std::vector<std::uint8_t> theirs = read_bytes(dir_ / "seen.tif");
 
   std::string names = "name,lon,lat\n";
-  for (int row = 0; row < kSide; ++row) {
-    for (int column = 0; column < kSide; ++column)
+  for (int row = 0; row < kSide; row += kEvery) {
+    for (int column = 0; column < kSide; column += kEvery)
       names += std::to_string(row * kSide + column) + "," + number(degrees(x_of(column))) + "," +
                number(degrees(y_of(row))) + "\n";
   }
@@ -112,7 +116,7 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
                              "s.csv", "--step", "10", "--names", "posts.csv", "--within", "1e5", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json list = parse_json(result.out)["features"];
-  ASSERT_EQ(list.size(), theirs.size());
+  ASSERT_EQ(list.size(), 10000U);
 
   const paging::Surface surface(paging::PlanetFile::open((dir_ / "hills.vpe").string()), std::size_t{64} << 20);
   const glm::dvec3 up = mars::direction({degrees(x_of(kColumn)), degrees(y_of(kRow))});
@@ -138,7 +142,7 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
       ADD_FAILURE() << f << " " << clearance;
     }
   }
-  EXPECT_GT(seen, 2000);
+  EXPECT_GT(seen, 1500);
   EXPECT_LT(seen, 8000);
   EXPECT_GE(agree, 9900) << seen;
   RecordProperty("agree", agree);

@@ -38,7 +38,7 @@ struct HorizonArguments {
 };
 
 constexpr double kLeastStep_deg = 0.0001;
-// Above the rounding of the ground's own height.
+// Well above rounding.
 constexpr double kLeastHeight_m = 0.001;
 // The picture that finds where to look: as wide as there are azimuths, within these.
 constexpr double kLeastColumns = 720;
@@ -149,17 +149,23 @@ std::string describe(const panorama::GroundPoint& p) {
   return text;
 }
 
-mars::Pose pose_of(const HorizonArguments& a, const paging::Surface& surface, double& ground_m) {
+struct Eye {
+  mars::Pose pose;
+  double height_m = 0;  // above the ground
+};
+
+Eye eye_of(const HorizonArguments& a, const paging::Surface& surface) {
   const mars::LonLat place = place_of(a);
-  mars::Pose pose{place.lon_deg, place.lat_deg, 0, 0, 0, 0};
-  ground_m = surface.at(mars::direction(place)).height_m;
-  pose.alt_m = a.height_m ? ground_m + *a.height_m : *a.altitude_m;
-  if (pose.alt_m - ground_m < kLeastHeight_m) {
-    throw std::runtime_error("the eye at " + a.at + " is " + short_number(pose.alt_m - ground_m, 0.01) +
-                             " m above the ground, which lies " + short_number(ground_m, 0.01) +
-                             " m above the sphere there; put it higher (--height, --altitude)");
+  const double ground_m = surface.at(mars::direction(place)).height_m;
+  Eye eye{{place.lon_deg, place.lat_deg, 0, 0, 0, 0}, a.height_m ? *a.height_m : *a.altitude_m - ground_m};
+  eye.pose.alt_m = a.altitude_m ? *a.altitude_m : ground_m + eye.height_m;
+  if (eye.height_m < kLeastHeight_m) {
+    throw std::runtime_error(
+        "the eye at " + a.at + " is " + short_number(eye.height_m, 0.01) + " m above the ground, which lies " +
+        short_number(ground_m, 0.01) + " m above the sphere there; put it at least " +
+        core::format_number(kLeastHeight_m) + " m above the ground (--height, --altitude)");
   }
-  return pose;
+  return eye;
 }
 
 void horizon(const HorizonArguments& a, const Common& common) {
@@ -172,8 +178,7 @@ void horizon(const HorizonArguments& a, const Common& common) {
   note_illustration(meta, common.quiet);
   const voxel::RangeCaster caster(planet, memory_bytes(common));
   const paging::Surface& surface = caster.surface();
-  double ground_m = 0;
-  const mars::Pose pose = pose_of(a, surface, ground_m);
+  const auto [pose, height_m] = eye_of(a, surface);
   const mars::LonLat place{pose.lon_deg, pose.lat_deg};
   const panorama::SkylineEye eye = panorama::skyline_eye(place, pose.alt_m, planet->radius_m());
   const panorama::GroundRange range = [&](const glm::dvec3& ray) { return surface.cast(eye.eye_m, ray); };
@@ -223,7 +228,7 @@ void horizon(const HorizonArguments& a, const Common& common) {
                          {{"lon_deg", mars::normalize_lon_deg(place.lon_deg)},
                           {"lat_deg", place.lat_deg},
                           {"alt_m", pose.alt_m},
-                          {"height_m", pose.alt_m - ground_m}}},
+                          {"height_m", height_m}}},
                         {"datum", to_string(meta.datum)},
                         {"radius_m", meta.radius_m},
                         {"illustration", meta.illustration},
@@ -242,7 +247,7 @@ void horizon(const HorizonArguments& a, const Common& common) {
     print_json(json);
   } else if (!common.quiet) {
     std::printf("%zu azimuths from %s m above the ground\n", points.size(),
-                short_number(pose.alt_m - ground_m, 0.01).c_str());
+                short_number(height_m, 0.01).c_str());
     std::printf("highest   %s\n", describe(*highest).c_str());
     std::printf("lowest    %s\n", describe(*lowest).c_str());
     std::printf("farthest  %s\n", describe(farthest).c_str());

@@ -21,6 +21,12 @@ std::string fixed(double value, int digits) {
 constexpr int kPlaceDigits = 8;
 constexpr int kAngleDigits = 7;
 
+// What rounds up to a whole turn is north.
+std::string azimuth(double degrees) {
+  const std::string text = fixed(degrees, kAngleDigits);
+  return text == fixed(360, kAngleDigits) ? fixed(0, kAngleDigits) : text;
+}
+
 std::string csv_point(const panorama::GroundPoint& p) {
   return fixed(p.place.lon_deg, kPlaceDigits) + "," + fixed(p.place.lat_deg, kPlaceDigits) + ",";
 }
@@ -45,7 +51,7 @@ std::string landmarks_csv(std::span<const panorama::Landmark> landmarks) {
     out += csv_field(l.feature.name) + "," + core::format_number(l.feature.lon_deg) + "," +
            core::format_number(l.feature.lat_deg) + "," +
            (diameter_km > 0 ? core::format_number(diameter_km) : std::string()) + "," +
-           fixed(l.centre.direction.azimuth_deg, kAngleDigits) + "," +
+           azimuth(l.centre.direction.azimuth_deg) + "," +
            fixed(l.centre.direction.elevation_deg, kAngleDigits) + "," + fixed(l.centre.range_m, 3) + "," +
            fixed(l.centre.elevation_m, 3) + "," + (l.hidden_by ? "0," : "1,");
     if (l.hidden_by) {
