@@ -51,9 +51,11 @@ TEST_F(LongHorizon, OfTheNavcamMosaic) {
     VPE_NEED_SHARED(ctx, "gale-ctx20/gale_ctx20_mosaic.tif");
     VPE_NEED_SHARED(hirise, "gale-hirise1/missionDEM.tif");
     planet = path("gale.vpe");
-    const Result built = vpe({"build", globe.string(), crater.string(), ctx.string(), hirise.string(),
-                              "--datum", "areoid", "--level", "bend", "--mask-blunders", "--base-spacing",
-                              "20000", "--region", "136,-6.3,139.2,-3.0", "-q", "-o", planet});
+    Command build = command_for({"build", globe.string(), crater.string(), ctx.string(), hirise.string(),
+                                 "--datum", "areoid", "--level", "bend", "--mask-blunders", "--base-spacing",
+                                 "20000", "--region", "136,-6.3,139.2,-3.0", "-q", "-o", planet});
+    build.limit_s = 1200;
+    const Result built = run(build);
     ASSERT_EQ(built.exit_code, 0) << built.err;
   }
   const json rover = parse_json(read_text(pano_path))["rover"];
