@@ -96,6 +96,7 @@ int run(int argc, char** argv) {
   add_verify(program, common);
   add_query(program, common);
   add_profile(program, common);
+  add_horizon(program, common);
   add_render(program, common);
   add_fly(program, common);
   add_overlook(program, common);

@@ -37,6 +37,7 @@ void add_info(CLI::App& program, Common& common);
 void add_verify(CLI::App& program, Common& common);
 void add_query(CLI::App& program, Common& common);
 void add_profile(CLI::App& program, Common& common);
+void add_horizon(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
 void add_overlook(CLI::App& program, Common& common);
 void add_fly(CLI::App& program, Common& common);

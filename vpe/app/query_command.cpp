@@ -74,13 +74,6 @@ nlohmann::json to_json(const Answer& a, const paging::PlanetMeta& meta) {
           {"illustration", meta.illustration}};
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 void print_csv(const Answer& a, const std::string& datum) {
   const auto number = [&](double x, int digits) {
     if (a.missing) return std::string();

@@ -40,6 +40,13 @@ json levels_json(const paging::PlanetMeta& m) {
 
 }  // namespace
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
 json planet_json(const paging::PlanetMeta& m) {
   return {{"body", m.body},
           {"radius_m", m.radius_m},

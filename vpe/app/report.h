@@ -15,6 +15,9 @@ nlohmann::json planet_json(const paging::PlanetMeta& meta);
 std::string describe_datum(const paging::PlanetMeta& meta);
 nlohmann::json stats_json(const core::FrameStats& stats);
 
+// Quoted where it has to be.
+std::string csv_field(const std::string& text);
+
 // To stdout. Paths that are not UTF-8 get replacement characters.
 void print_json(const nlohmann::json& json);
 

@@ -1,0 +1,120 @@
+// Named places seen over a sphere, and past it.
+#include "panorama/landmarks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "panorama/stellarium.h"
+
+namespace {
+
+using panorama::Landmark;
+using panorama::SkylineEye;
+using vpe::core::Place;
+using vpe::core::ThreadPool;
+
+constexpr double kR = mars::kMarsRadius_m;
+
+double sphere_range(const glm::dvec3& eye_m, const glm::dvec3& ray) {
+  const double along = -glm::dot(eye_m, ray);
+  const double half2 = kR * kR - glm::dot(eye_m, eye_m) + along * along;
+  if (along < 0 || half2 < 0) return std::numeric_limits<double>::infinity();
+  return along - std::sqrt(half2);
+}
+
+std::vector<Landmark> seen(const SkylineEye& eye, const std::vector<Place>& features, double within_m) {
+  ThreadPool pool(2);
+  return panorama::landmarks(
+      eye, features, within_m, [](const glm::dvec3&) { return kR; },
+      [&](const glm::dvec3& ray) { return sphere_range(eye.eye_m, ray); }, pool);
+}
+
+TEST(Landmarks, VisibleUpToTheHorizonAndHiddenByTheGroundBefore) {
+  const mars::LonLat at{170, 30};
+  constexpr double kAlt = 5000;
+  const SkylineEye eye = panorama::skyline_eye(at, kAlt, kR);
+  const double dip = mars::horizon_dip_rad(kAlt, kR);
+  std::vector<Place> features;
+  for (int n = 40; n >= 1; --n) {
+    const mars::LonLat p = mars::destination(at, 9.0 * n, 0.05 * n * dip);
+    features.push_back({"f" + std::to_string(n), p.lon_deg, p.lat_deg, 1000});
+  }
+  const auto list = seen(eye, features, 1e6);
+  ASSERT_EQ(list.size(), features.size());
+  for (std::size_t n = 0; n < list.size(); ++n) {
+    const Landmark& l = list[n];
+    const auto number = static_cast<double>(n + 1);
+    EXPECT_EQ(l.feature.name, "f" + std::to_string(n + 1));  // nearest first
+    const double angle = 0.05 * number * dip;
+    EXPECT_NEAR(std::remainder(l.centre.direction.azimuth_deg - 9 * number, 360), 0, 1e-6);
+    EXPECT_GE(l.centre.direction.azimuth_deg, 0);
+    EXPECT_LT(l.centre.direction.azimuth_deg, 360);
+    const double height = kR * std::cos(angle) - (kR + kAlt);
+    EXPECT_NEAR(l.centre.range_m, std::hypot(kR * std::sin(angle), height), 1e-3);
+    EXPECT_NEAR(l.centre.direction.elevation_deg,
+                std::atan2(height, kR * std::sin(angle)) / mars::kRadiansPerDegree, 1e-7);
+    if (n == 19) continue;  // just on the horizon
+    EXPECT_EQ(l.hidden_by.has_value(), n > 19) << n;
+    if (!l.hidden_by) continue;
+    EXPECT_LT(l.hidden_by->range_m, mars::horizon_distance_m(kAlt, kR));
+    EXPECT_NEAR(l.hidden_by->elevation_m, 0, 1e-3);
+    EXPECT_NEAR(std::remainder(mars::initial_bearing_deg(at, l.hidden_by->place) - 9 * number, 360), 0, 1e-5);
+  }
+}
+
+TEST(Landmarks, TheDistanceLimitIsStraightAndNamesWhatHides) {
+  const mars::LonLat at{0, 0};
+  const SkylineEye eye = panorama::skyline_eye(at, 100, kR);  // horizon at 26 km
+  const std::vector<Place> features{{"planet", 0, 0, 3e7},
+                                    {"plain", 0.3, 0, 100000},
+                                    {"hill", 0.43, 0, 6000},
+                                    {"far", 2, 0, 0},
+                                    {"behind", 180, 0, 0}};
+  auto list = seen(eye, features, 200000);
+  ASSERT_EQ(list.size(), 4U);
+  EXPECT_EQ(list[3].feature.name, "far");
+  ASSERT_TRUE(list[3].hidden_by);
+  EXPECT_NEAR(list[3].hidden_by->place.lat_deg, 0, 1e-9);
+  // The line to it goes into the ground before the horizon.
+  EXPECT_EQ(list[3].hidden_by_name, "plain");
+  EXPECT_EQ(seen(eye, features, 118000).size(), 3U);
+  EXPECT_EQ(seen(eye, features, 1e9).size(), 5U);
+  EXPECT_EQ(panorama::smallest_feature_around(features, {0.44, 0}, kR)->name, "hill");
+  EXPECT_EQ(panorama::smallest_feature_around(std::span(features).subspan(3), {2, 0}, kR), nullptr);
+}
+
+TEST(Landmarks, FarthestSight) {
+  // Both of one height: twice the way to the horizon; an eye at the bottom sees the top alone.
+  EXPECT_NEAR(panorama::farthest_sight_m(kR + 2000, kR, kR + 2000), 2 * mars::horizon_distance_m(2000, kR),
+              1e-6);
+  EXPECT_NEAR(panorama::farthest_sight_m(kR, kR, kR + 2000), mars::horizon_distance_m(2000, kR), 1e-6);
+}
+
+std::vector<panorama::GroundPoint> horizon_at(double elevation_deg) {
+  std::vector<panorama::GroundPoint> out(4);
+  for (std::size_t n = 0; n < out.size(); ++n)
+    out[n].direction = {90.0 * static_cast<double>(n), elevation_deg};
+  return out;
+}
+
+TEST(Stellarium, ListAndPlace) {
+  EXPECT_EQ(panorama::stellarium_list(horizon_at(1.25)),
+            "# azimuth (clockwise from north) and elevation, degrees\n0.000000 1.250000\n90.000000 1.250000\n"
+            "180.000000 1.250000\n270.000000 1.250000\n");
+  const std::string ini =
+      panorama::stellarium_ini({"two\nlines", "Mars", {137.5, -4.25}, -4444.6}, horizon_at(1));
+  for (const char* line :
+       {"[landscape]\nname = two lines\ntype = polygonal\n", "\npolygonal_horizon_list = horizon.txt\n",
+        "\npolygonal_horizon_list_mode = azDeg_altDeg\n", "\nminimal_altitude = -2\n",
+        "\n[location]\nplanet = Mars\n",
+        "\nlatitude = -4.25000000\nlongitude = 137.50000000\naltitude = -4445\n"})
+    EXPECT_NE(ini.find(line), std::string::npos) << line << ini;
+  // From orbit the ground begins far down.
+  EXPECT_NE(panorama::stellarium_ini({}, horizon_at(-60.5)).find("\nminimal_altitude = -61\n"),
+            std::string::npos);
+}
+
+}  // namespace
