@@ -11,7 +11,6 @@ namespace panorama {
 namespace {
 
 constexpr std::string_view kMagic = "vpe strip 1\n";
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40;
 
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -33,20 +32,23 @@ std::string head_of(const std::string& fingerprint) { return std::string(kMagic)
 
 }  // namespace
 
-void write_strip(vpe::core::OutputFile& file, const std::string& fingerprint, const Blocks& blocks) {
-  file.write(bytes_of(std::string_view(head_of(fingerprint))));
-  file.write(bytes_of(std::uint64_t{blocks.size()}));
-  std::int64_t sum = 0;
-  for (const auto& block : blocks) {
-    const std::uint64_t size = block.size();
-    file.write(bytes_of(size));
-    sum = paging::checksum(sum, bytes_of(size));
+StripWriter::StripWriter(vpe::core::OutputFile& file, const std::string& fingerprint) : file_(file) {
+  file_.write(bytes_of(std::string_view(head_of(fingerprint))));
+}
+
+void StripWriter::add(std::span<const std::uint8_t> block) {
+  file_.write(block);
+  sizes_.push_back(block.size());
+  sum_ = paging::checksum(sum_, block);
+}
+
+void StripWriter::finish() {
+  for (const std::uint64_t& size : sizes_) {
+    file_.write(bytes_of(size));
+    sum_ = paging::checksum(sum_, bytes_of(size));
   }
-  for (const auto& block : blocks) {
-    file.write(block);
-    sum = paging::checksum(sum, block);
-  }
-  file.write(bytes_of(static_cast<std::uint64_t>(sum)));
+  file_.write(bytes_of(std::uint64_t{sizes_.size()}));
+  file_.write(bytes_of(static_cast<std::uint64_t>(sum_)));
 }
 
 std::optional<StripFile> StripFile::open(const std::filesystem::path& path, const std::string& fingerprint,
@@ -54,33 +56,41 @@ std::optional<StripFile> StripFile::open(const std::filesystem::path& path, cons
   const Stream stream = open_stream(path);
   if (stream == nullptr) return std::nullopt;
   const std::string head = head_of(fingerprint);
+  const std::uint64_t tail = sizeof(std::uint64_t) * (blocks + 2);
+  std::error_code error;
+  const std::uint64_t all = std::filesystem::file_size(path, error);
   std::string found(head.size(), '\0');
-  std::uint64_t count = 0;
-  if (std::fread(found.data(), 1, found.size(), stream.get()) != found.size() || found != head ||
-      !read(stream.get(), count) || count != blocks) {
+  if (error || all < head.size() + tail ||
+      std::fread(found.data(), 1, found.size(), stream.get()) != found.size() || found != head ||
+      fseeko(stream.get(), static_cast<off_t>(all - tail), SEEK_SET) != 0) {
     return std::nullopt;
   }
   StripFile strip;
   strip.path_ = path;
-  strip.begin_.push_back(head.size() + sizeof count * (blocks + 1));
-  std::int64_t sum = 0;
+  strip.begin_.push_back(head.size());
   for (std::size_t n = 0; n < blocks; ++n) {
     std::uint64_t size = 0;
-    if (!read(stream.get(), size) || size > kMostBytes) return std::nullopt;
-    sum = paging::checksum(sum, bytes_of(size));
+    if (!read(stream.get(), size) || size > all) return std::nullopt;
     strip.begin_.push_back(strip.begin_.back() + size);
   }
-  std::error_code error;
-  const std::uint64_t all = strip.begin_.back() + sizeof(std::uint64_t);
-  if (std::filesystem::file_size(path, error) != all || error) return std::nullopt;
+  std::uint64_t count = 0;
+  std::uint64_t stated = 0;
+  if (strip.begin_.back() != all - tail || !read(stream.get(), count) || count != blocks ||
+      !read(stream.get(), stated) || fseeko(stream.get(), static_cast<off_t>(head.size()), SEEK_SET) != 0) {
+    return std::nullopt;
+  }
+  std::int64_t sum = 0;
   std::vector<std::uint8_t> block;
   for (std::size_t n = 0; n < blocks; ++n) {
     block.resize(strip.begin_[n + 1] - strip.begin_[n]);
     if (std::fread(block.data(), 1, block.size(), stream.get()) != block.size()) return std::nullopt;
     sum = paging::checksum(sum, block);
   }
-  std::uint64_t stated = 0;
-  if (!read(stream.get(), stated) || stated != static_cast<std::uint64_t>(sum)) return std::nullopt;
+  for (std::size_t n = 0; n < blocks; ++n) {
+    const std::uint64_t size = strip.begin_[n + 1] - strip.begin_[n];
+    sum = paging::checksum(sum, bytes_of(size));
+  }
+  if (stated != static_cast<std::uint64_t>(sum)) return std::nullopt;
   return strip;
 }
 

@@ -17,10 +17,18 @@
 
 namespace panorama {
 
-using Blocks = std::vector<std::vector<std::uint8_t>>;
+class StripWriter {
+ public:
+  // Into a file that is empty; the caller commits it. Throws vpe::core::FileError.
+  StripWriter(vpe::core::OutputFile& file, const std::string& fingerprint);
+  void add(std::span<const std::uint8_t> block);
+  void finish();
 
-// Into a file that is empty; the caller commits it. Throws vpe::core::FileError.
-void write_strip(vpe::core::OutputFile& file, const std::string& fingerprint, const Blocks& blocks);
+ private:
+  vpe::core::OutputFile& file_;
+  std::vector<std::uint64_t> sizes_;
+  std::int64_t sum_ = 0;
+};
 
 class StripFile {
  public:

@@ -226,10 +226,12 @@ TEST_F(BigTiff, RowsMakeTheJpegThatOthersRead) {
 }
 
 TEST_F(BigTiff, StripsAreTakenOnlyWhole) {
-  const Blocks blocks{{1, 2, 3}, {}, std::vector<std::uint8_t>(100000, 7)};
+  const std::vector<std::vector<std::uint8_t>> blocks{{1, 2, 3}, {}, std::vector<std::uint8_t>(100000, 7)};
   const auto write = [&] {
     OutputFile file(path);
-    write_strip(file, "abc", blocks);
+    StripWriter writer(file, "abc");
+    for (const auto& block : blocks) writer.add(block);
+    writer.finish();
     file.commit();
   };
   write();
@@ -240,8 +242,8 @@ TEST_F(BigTiff, StripsAreTakenOnlyWhole) {
   EXPECT_FALSE(StripFile::open(path, "abc", 2));
   EXPECT_FALSE(StripFile::open(dir / "none", "abc", 3));
   const auto bytes = vpe::core::read_file(path, 1 << 20);
-  for (const std::size_t at :
-       {std::size_t{0}, std::size_t{14}, std::size_t{20}, std::size_t{40}, bytes.size() - 1}) {
+  for (const std::size_t at : {std::size_t{0}, std::size_t{14}, std::size_t{20}, std::size_t{40},
+                               bytes.size() - 1, bytes.size() - 9, bytes.size() - 20}) {
     auto bad = bytes;
     bad[at] ^= 1;
     vpe::core::write_file(path, bad);

@@ -1,0 +1,408 @@
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "paging/surface.h"
+#include "panorama/sidecar.h"
+#include "vpe/app/film_digest.h"
+#include "vpe/app/film_frame.h"
+#include "vpe/app/interrupt.h"
+#include "vpe/app/output.h"
+#include "vpe/app/panorama_files.h"
+#include "vpe/app/panorama_maker.h"
+#include "vpe/app/panorama_recipe.h"
+#include "vpe/app/picture_options.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/app/program.h"
+#include "vpe/app/report.h"
+#include "vpe/core/number.h"
+#include "vpe/overlay/overlay.h"
+
+namespace vpe::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using panorama::MapKind;
+
+// The largest JSON that is read.
+constexpr std::uintmax_t kMostSidecarBytes = std::uintmax_t{1} << 24;
+// Lower, and the eye's own facet fills the picture.
+constexpr double kLeastHeight_m = 0.01;
+
+struct PanoramaArguments {
+  std::string planet;
+  std::string at;
+  std::optional<double> height_m;
+  std::optional<double> altitude_m;
+  std::string output;
+  std::string projection;
+  int facets = panorama::PlanLimits::kDefaultFacets;
+  double yaw_deg = 0;
+  std::optional<double> from_deg;
+  std::optional<double> to_deg;
+  std::string elevation;
+  std::optional<std::int64_t> width_px;
+  std::optional<double> degrees_per_pixel;
+  std::string planes;
+  std::string again;
+  bool has_facets = false;
+  bool has_yaw = false;
+  PictureOptions picture;
+};
+
+MapKind kind_of(const PanoramaArguments& arguments) {
+  const bool is_polygons = arguments.picture.backend == "polygon";
+  if (arguments.projection.empty()) return is_polygons ? MapKind::kFacets : MapKind::kCylinder;
+  for (const MapKind kind : {MapKind::kCylinder, MapKind::kEquirectangular, MapKind::kFacets}) {
+    if (arguments.projection != panorama::to_string(kind)) continue;
+    if (is_polygons && kind != MapKind::kFacets) {
+      throw UsageError("--projection " + arguments.projection +
+                       ": triangles are drawn in planes only; use --projection facets or --backend voxel");
+    }
+    return kind;
+  }
+  throw UsageError("--projection '" + arguments.projection + "': give facets, cylinder or equirectangular");
+}
+
+panorama::PlanOptions plan_options(const PanoramaArguments& arguments) {
+  panorama::PlanOptions plan;
+  plan.kind = kind_of(arguments);
+  if (arguments.has_facets && plan.kind != MapKind::kFacets) {
+    throw UsageError("--facets: a picture of projection " + std::string(panorama::to_string(plan.kind)) +
+                     " has none; add --projection facets");
+  }
+  plan.facets = arguments.facets;
+  plan.yaw_deg = arguments.yaw_deg;
+  if (arguments.from_deg.has_value() != arguments.to_deg.has_value()) {
+    throw UsageError("--from and --to belong together: the azimuths of the picture's left and right edge");
+  }
+  if (arguments.from_deg) plan.arc = panorama::Arc{*arguments.from_deg, *arguments.to_deg};
+  if (plan.arc && arguments.has_yaw && plan.kind != MapKind::kFacets) {
+    throw UsageError("--yaw and --from both say where the picture begins; leave one out");
+  }
+  if (!arguments.elevation.empty()) {
+    const auto numbers = parse_numbers(arguments.elevation);
+    if (!numbers || numbers->size() != 2) {
+      throw UsageError("--elevation '" + arguments.elevation + "': expected MIN,MAX in degrees");
+    }
+    plan.lowest_deg = numbers->front();
+    plan.highest_deg = numbers->back();
+  }
+  plan.width_px = arguments.width_px;
+  plan.degrees_per_pixel = arguments.degrees_per_pixel;
+  return plan;
+}
+
+// What a panorama is to be, but for what only the planet knows.
+struct Order {
+  PanoramaRecipe recipe;
+  std::optional<double> height_m;  // above the ground, in place of recipe.eye.alt_m
+  fs::path output;
+  std::string again;  // sidecar that is made again, or empty
+};
+
+std::string absolute_planet(const std::string& argument) {
+  return argument.empty() ? argument : fs::absolute(argument).lexically_normal().string();
+}
+
+Order new_order(const PanoramaArguments& arguments, const Common& common) {
+  if (arguments.at.empty() || arguments.output.empty())
+    throw UsageError("--at LON,LAT and -o PANO are needed, or --again PANO.json");
+  const auto place = parse_place(arguments.at);
+  if (!place) throw UsageError("--at '" + arguments.at + "': expected LON,LAT in degrees");
+  if (!mars::is_valid(*place)) throw UsageError("--at '" + arguments.at + "': latitude must be within -90..90");
+  if (arguments.height_m.has_value() == arguments.altitude_m.has_value()) {
+    throw UsageError("give either --height (metres above the ground) or --altitude (metres above the sphere)");
+  }
+  Order order;
+  PanoramaRecipe& recipe = order.recipe;
+  recipe.backend = arguments.picture.backend;
+  recipe.plan = plan_options(arguments);
+  recipe.eye.lon_deg = place->lon_deg;
+  recipe.eye.lat_deg = place->lat_deg;
+  recipe.eye.alt_m = arguments.altitude_m.value_or(0);
+  recipe.settings = make_settings(arguments.picture);
+  parse_interest(arguments.picture);
+  recipe.interest = arguments.picture.interest;
+  recipe.planes = panorama::parse_planes(arguments.planes);
+  recipe.planet = absolute_planet(arguments.planet);
+  recipe.memory_mb = recipe.backend == "polygon" ? common.memory_mb : 0;
+  recipe.allow_incomplete = arguments.picture.allow_incomplete;
+  order.height_m = arguments.height_m;
+  order.output = arguments.output;
+  return order;
+}
+
+Order order_again(const PanoramaArguments& arguments) {
+  const fs::path path = arguments.again;
+  const std::vector<std::uint8_t> bytes = core::read_file(path, kMostSidecarBytes);
+  Order order;
+  try {
+    const auto json = nlohmann::json::parse(bytes, nullptr, false);
+    const auto made = json.is_object() ? json.find("vpe") : json.end();
+    if (json.is_discarded()) throw panorama::MetadataError("not well-formed JSON");
+    if (made == json.end() || !made->is_object() || !made->contains("recipe")) {
+      throw panorama::MetadataError("it has no \"vpe\" with a \"recipe\"");
+    }
+    order.recipe = recipe_from(made->at("recipe"));
+    const std::string image = json.value("image", "");
+    if (arguments.output.empty() && image.empty()) throw panorama::MetadataError("it names no image");
+    order.output =
+        arguments.output.empty() ? path.parent_path() / fs::path(image).filename() : fs::path(arguments.output);
+    const std::string by = made->value("version", "");
+    if (by != version()) {
+      std::fprintf(stderr, "vpe: warning: %s was made by version %s; this is %s, whose bytes may differ\n",
+                   path.c_str(), by.c_str(), version());
+    }
+  } catch (const panorama::MetadataError& e) {
+    throw core::file_error("use", path, e.what(), "give the JSON that 'vpe panorama' wrote beside a picture");
+  } catch (const nlohmann::json::exception& e) {
+    throw core::file_error("use", path, e.what(), "give the JSON that 'vpe panorama' wrote beside a picture");
+  }
+  if (!arguments.planet.empty()) order.recipe.planet = absolute_planet(arguments.planet);
+  order.again = arguments.again;
+  return order;
+}
+
+void require_drawable(const PanoramaRecipe& recipe) {
+  if (recipe.backend != "voxel" && recipe.backend != "polygon")
+    throw UsageError("backend '" + recipe.backend + "' is not known");
+  if (overlay::any(recipe.settings.values())) {
+    throw UsageError("--set overlay.*: overlays are for single pictures (vpe render); leave them out");
+  }
+}
+
+// Elevation of the ground as drawn, and as it is.
+struct Ground {
+  double drawn_m = 0;
+  double height_m = 0;
+};
+
+Ground ground_below(const std::shared_ptr<const paging::PlanetFile>& planet, const PanoramaRecipe& recipe) {
+  const paging::Surface surface(planet, std::size_t{8} << 20);
+  const glm::dvec3 direction = mars::direction({recipe.eye.lon_deg, recipe.eye.lat_deg});
+  return {surface.at(direction, recipe.settings.values().exaggeration).height_m,
+          surface.at(direction).height_m};
+}
+
+void place_eye(Order& order, const Ground& ground) {
+  double& alt_m = order.recipe.eye.alt_m;
+  if (order.height_m) alt_m = ground.drawn_m + *order.height_m;
+  if (alt_m - ground.drawn_m >= kLeastHeight_m) return;
+  throw std::runtime_error(
+      "the eye is " + core::format_number(std::round(100 * (alt_m - ground.drawn_m)) / 100) +
+      " m above the ground, which lies " + core::format_number(std::round(100 * ground.drawn_m) / 100) +
+      " m above the sphere there; put it at least " + core::format_number(kLeastHeight_m) +
+      " m above (--height, --altitude)");
+}
+
+std::string sidecar_text(const Order& order, const PanoramaJob& job, const paging::PlanetMeta& meta,
+                         const Ground& ground, const PanoramaFigures& figures, const Common& common) {
+  panorama::Sidecar sidecar;
+  sidecar.image = job.output.filename().string();
+  sidecar.map = job.map;
+  const mars::Pose& eye = order.recipe.eye;
+  sidecar.station = panorama::Station{mars::normalize_lon_deg(eye.lon_deg), eye.lat_deg,     eye.alt_m,
+                                      eye.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
+  auto json = nlohmann::ordered_json::parse(panorama::to_json(sidecar));
+  json["radius_m"] = meta.radius_m;
+  json["illustration"] = meta.illustration;
+  for (const panorama::Plane plane : job.planes) {
+    const panorama::PlaneInfo& info = panorama::info_of(plane);
+    json["planes"][std::string(info.name)] = {{"file", plane_file(job.output, plane).filename().string()},
+                                              {"unit", info.unit},
+                                              {"meaning", info.meaning}};
+  }
+  json["error"] = {{"tile_error_m", figures.tile_error_m},
+                   {"shift_bound_px", figures.shift_bound_px},
+                   {"tiles_missing", figures.tiles_missing}};
+  json["vpe"] = {{"version", version()}, {"command", common.words}, {"recipe", to_json(order.recipe)}};
+  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string fingerprint(const Order& order, const PanoramaJob& job, const core::DrawRequest& request,
+                        double radius_m) {
+  const PanoramaRecipe& recipe = order.recipe;
+  core::DrawRequest first = request;
+  first.view = panorama::pieces_of(job.map, {recipe.eye, radius_m}, job.strips.front(), 0).front().view;
+  Digest digest;
+  digest.add(
+      fingerprint_of({version(), recipe.identity, recipe.backend, recipe.memory_mb}, first, recipe.settings));
+  digest.add(panorama::to_json(panorama::Sidecar{"", job.map, std::nullopt}));
+  digest.add(static_cast<std::int64_t>(job.format == PanoramaFormat::kTiff));
+  for (const panorama::Plane plane : job.planes) digest.add(panorama::info_of(plane).name);
+  return digest.hex();
+}
+
+nlohmann::json report_json(const PanoramaJob& job, const PanoramaMaker& maker, const PanoramaTimes& times,
+                           double total_s, const panorama::Plan& plan, const std::string& backend) {
+  nlohmann::json planes = nlohmann::json::object();
+  for (const panorama::Plane plane : job.planes)
+    planes[std::string(panorama::info_of(plane).name)] = plane_file(job.output, plane).string();
+  nlohmann::json seconds{{"start", times.start},   {"casting", times.casting},   {"shading", times.shading},
+                         {"planes", times.planes}, {"encoding", times.encoding}, {"total", total_s}};
+  // Rays load tiles in the midst of casting and shading.
+  seconds["paging"] = backend == "polygon" ? nlohmann::json(times.paging) : nlohmann::json();
+  return {{"output", job.output.string()},
+          {"sidecar", sidecar_file(job.output).string()},
+          {"planes", planes},
+          {"projection", panorama::to_string(job.map.kind)},
+          {"width", job.map.width_px},
+          {"height", job.map.height_px},
+          {"rounded", plan.rounded},
+          {"strips_made", maker.made()},
+          {"strips_kept", maker.kept()},
+          {"shift_bound_px", maker.figures().shift_bound_px},
+          {"seconds", seconds}};
+}
+
+void make_panorama(const PanoramaArguments& arguments, const Common& common) {
+  const auto start = Clock::now();
+  const auto seconds = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  Order order;
+  panorama::Plan plan;
+  PanoramaJob job;
+  try {
+    order = arguments.again.empty() ? new_order(arguments, common) : order_again(arguments);
+    plan = panorama::plan_panorama(order.recipe.plan);
+  } catch (const panorama::PlanError& e) {
+    throw UsageError(e.what());
+  }
+  PanoramaRecipe& recipe = order.recipe;
+  require_drawable(recipe);
+  // What cannot be written is told before any work.
+  job.output = order.output;
+  job.format = panorama_format(job.output);
+  job.map = plan.map;
+  job.planes = recipe.planes;
+  job.software = std::string("vpe ") + version();
+  job.strips = panorama::strips_of(job.map);
+  check_panorama_size(job.output, job.map, common.memory_mb);
+  for (const panorama::Plane plane : job.planes) check_output(plane_file(job.output, plane));
+  check_output(sidecar_file(job.output));
+
+  const InterruptGuard guard;
+  const auto planet = open_planet(recipe.planet, common);
+  const paging::PlanetMeta& meta = planet->meta();
+  if (!order.again.empty() && recipe.identity != meta.identity) {
+    throw std::runtime_error(order.again + ": was made from a planet of identity " + recipe.identity +
+                             ", but " +
+                             (recipe.planet.empty() ? std::string("the embedded Mars") : recipe.planet) +
+                             " has " + meta.identity + "; name the right planet file as PLANET");
+  }
+  recipe.identity = meta.identity;
+  note_illustration(meta, common.quiet);
+  if (!common.quiet) {
+    for (const std::string& text : plan.rounded) std::fprintf(stderr, "vpe: %s\n", text.c_str());
+  }
+  const Ground ground = ground_below(planet, recipe);
+  place_eye(order, ground);
+
+  core::DrawRequest request;
+  request.settings = recipe.settings.values();
+  request.sun = sun_for(request.settings, recipe.eye);
+  PictureOptions options = arguments.picture;
+  options.backend = recipe.backend;
+  options.interest = recipe.interest;
+  request.interest = parse_interest(options);
+  request.paging.timeout_s = options.wait_s;
+
+  core::ThreadPool pool(common.threads);
+  PanoramaTimes times;
+  times.start = seconds();
+  const auto renderer = [&](int memory_mb) {
+    Common share = common;
+    share.memory_mb = memory_mb;
+    return make_renderer(options, share, planet);
+  };
+  PanoramaMaker maker(job, recipe, request, fingerprint(order, job, request, planet->radius_m()), planet,
+                      renderer, pool, recipe.memory_mb > 0 ? recipe.memory_mb : common.memory_mb);
+  {
+    ProgressLine line(common.quiet);
+    const auto strips = maker.run(line, times);
+    const auto joining = Clock::now();
+    job.sidecar = sidecar_text(order, job, meta, ground, maker.figures(), common);
+    join_strips(job, strips, pool, [&](double part) {
+      InterruptGuard::check();
+      line.show("joining", 0.95 + 0.05 * part);
+    });
+    std::error_code ignored;
+    fs::remove_all(strips_folder(job.output), ignored);
+    times.encoding += std::chrono::duration<double>(Clock::now() - joining).count();
+  }
+  if (!common.quiet) warn_of(maker.failures());
+  if (common.json) {
+    print_json(report_json(job, maker, times, seconds(), plan, recipe.backend));
+  } else if (!common.quiet) {
+    std::printf("%s: %s of %lldx%lld pixels in %.1f s, geometry within %.2g px\n", job.output.c_str(),
+                panorama::to_string(job.map.kind), static_cast<long long>(job.map.width_px),
+                static_cast<long long>(job.map.height_px), seconds(), maker.figures().shift_bound_px);
+  }
+}
+
+}  // namespace
+
+void add_panorama(CLI::App& program, Common& common) {
+  using Limits = panorama::PlanLimits;
+  auto arguments = std::make_shared<PanoramaArguments>();
+  CLI::App* command = add_command(program, "panorama",
+                                  "Draw a panorama; what an interrupted run has drawn is kept", common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  std::vector<CLI::Option*> own;  // what --again knows by itself
+  own.push_back(command->add_option("--at", arguments->at, "LON,LAT of the eye, degrees"));
+  own.push_back(command->add_option("--height", arguments->height_m, "Of the eye above the ground, metres")
+                    ->check(number_within(0, 1e10)));
+  own.push_back(command->add_option("--altitude", arguments->altitude_m, "Of the eye above the sphere, metres")
+                    ->check(number_within(-1e6, 1e10)));
+  command->add_option(
+      "-o,--output", arguments->output,
+      "Picture (.tif of any size, .png, .jpg); its description goes to the same name with .json");
+  own.push_back(
+      command->add_option("--projection", arguments->projection,
+                          "facets, cylinder or equirectangular; cylinder for rays, facets for triangles "
+                          "when left out"));
+  CLI::Option* facets =
+      command->add_option("--facets", arguments->facets, "Planes to the turn, 3 to 64")->capture_default_str();
+  own.push_back(facets);
+  CLI::Option* yaw = command
+                         ->add_option("--yaw", arguments->yaw_deg,
+                                      "Azimuth of facet 0's middle, or of a whole turn's left edge, degrees")
+                         ->check(number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg))
+                         ->capture_default_str();
+  own.push_back(yaw);
+  own.push_back(command->add_option("--from", arguments->from_deg, "Azimuth of the left edge, degrees")
+                    ->check(number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg)));
+  own.push_back(command->add_option("--to", arguments->to_deg, "Azimuth of the right edge, degrees")
+                    ->check(number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg)));
+  own.push_back(
+      command->add_option("--elevation", arguments->elevation,
+                          "MIN,MAX elevation, degrees; -45,45 or, equirectangular, -90,90 when left out"));
+  CLI::Option* width =
+      command->add_option("--width", arguments->width_px, "Columns of the picture; 4096 when left out");
+  CLI::Option* scale =
+      command->add_option("--degrees-per-pixel", arguments->degrees_per_pixel, "Degrees of azimuth a column")
+          ->excludes(width);
+  own.push_back(width);
+  own.push_back(scale);
+  own.push_back(
+      command->add_option("--planes", arguments->planes,
+                          "Also write rasters: any of range,lonlat,elevation,slope,incidence (.tif)"));
+  CLI::Option* again =
+      command->add_option("--again", arguments->again, "PANO.json: make the same picture again, as it says");
+  arguments->picture.backend = "voxel";
+  add_picture_options(*command, arguments->picture);
+  for (const char* name : {"--set", "--backend", "--tolerance", "--sun", "--interest"})
+    own.push_back(command->get_option(name));
+  for (CLI::Option* option : own) again->excludes(option);
+  command->callback([arguments, facets, yaw, &common] {
+    arguments->has_facets = facets->count() > 0;
+    arguments->has_yaw = yaw->count() > 0;
+    make_panorama(*arguments, common);
+  });
+}
+
+}  // namespace vpe::app
