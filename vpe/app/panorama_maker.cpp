@@ -221,9 +221,26 @@ void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas,
   }
 }
 
-void PanoramaMaker::add_tiles(
-    panorama::StripWriter& writer, const StripLayout& layout, const panorama::SampleFormat& format,
-    const std::function<void(std::int64_t, std::int64_t, std::uint8_t*)>& fill) const {
+void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
+                              const panorama::SampleFormat& format, const FillRow& fill) const {
+  constexpr std::int64_t kSide = panorama::kTile_px;
+  const std::size_t pixel_bytes = format.pixel_bytes();
+  const std::size_t row_bytes = pixel_bytes * kSide;
+  // What lies beyond the picture repeats its edge.
+  const auto fill_tile = [&](std::int64_t column, std::int64_t row, std::uint8_t* tile) {
+    const std::int64_t columns = std::min(kSide, canvas.width - column);
+    const std::int64_t rows = std::min(kSide, canvas.height - row);
+    for (std::int64_t j = 0; j < rows; ++j) {
+      std::uint8_t* out = tile + static_cast<std::size_t>(j) * row_bytes;
+      fill(column, row + j, columns, out);
+      for (std::int64_t i = columns; i < kSide; ++i)
+        std::memcpy(out + static_cast<std::size_t>(i) * pixel_bytes,
+                    out + static_cast<std::size_t>(columns - 1) * pixel_bytes, pixel_bytes);
+    }
+    for (std::int64_t j = rows; j < kSide; ++j)
+      std::memcpy(tile + static_cast<std::size_t>(j) * row_bytes,
+                  tile + static_cast<std::size_t>(rows - 1) * row_bytes, row_bytes);
+  };
   const std::size_t batch = 4 * static_cast<std::size_t>(pool_.threads());
   std::vector<std::vector<std::uint8_t>> packed(batch);
   for (std::size_t begin = 0; begin < layout.tiles(); begin += batch) {
@@ -232,7 +249,7 @@ void PanoramaMaker::add_tiles(
     pool_.run(count, [&](std::size_t n) {
       std::vector<std::uint8_t> tile(format.tile_bytes());
       const auto index = static_cast<std::int64_t>(begin + n);
-      fill(index % layout.tiles_across, index / layout.tiles_across, tile.data());
+      fill_tile(index % layout.tiles_across * kSide, index / layout.tiles_across * kSide, tile.data());
       packed[n] = panorama::pack_tile(tile, format);
     });
     for (std::size_t n = 0; n < count; ++n) writer.add(packed[n]);
@@ -251,43 +268,34 @@ void PanoramaMaker::add_picture(panorama::StripWriter& writer, const StripLayout
     }
     return;
   }
-  add_tiles(writer, layout, panorama::kRgb, [&](std::int64_t across, std::int64_t down, std::uint8_t* tile) {
-    for (std::int64_t j = 0; j < panorama::kTile_px; ++j) {
-      const std::int64_t row = std::min(down * panorama::kTile_px + j, canvas.height - 1);
-      for (std::int64_t i = 0; i < panorama::kTile_px; ++i) {
-        const std::int64_t column = std::min(across * panorama::kTile_px + i, canvas.width - 1);
-        std::memcpy(tile, &canvas.colour[canvas.index(column, row)], sizeof(mars::Rgb));
-        tile += sizeof(mars::Rgb);
-      }
-    }
-  });
+  add_tiles(writer, layout, canvas, panorama::kRgb,
+            [&](std::int64_t column, std::int64_t row, std::int64_t count, std::uint8_t* out) {
+              std::memcpy(out, &canvas.colour[canvas.index(column, row)],
+                          static_cast<std::size_t>(count) * sizeof(mars::Rgb));
+            });
 }
 
 void PanoramaMaker::add_plane(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
                               panorama::Plane plane) const {
   const panorama::SampleFormat& format = panorama::info_of(plane).format;
   const double exaggeration = recipe_.settings.values().exaggeration;
-  add_tiles(writer, layout, format, [&](std::int64_t across, std::int64_t down, std::uint8_t* tile) {
+  const auto holds = [](const Piece& p, std::int64_t x, std::int64_t y) {
+    return x >= p.x && x < p.x + p.width && y >= p.y && y < p.y + p.height;
+  };
+  const auto fill = [&](std::int64_t column, std::int64_t row, std::int64_t count, std::uint8_t* out) {
     const Piece* piece = canvas.pieces.data();
-    const auto holds = [](const Piece& p, std::int64_t x, std::int64_t y) {
-      return x >= p.x && x < p.x + p.width && y >= p.y && y < p.y + p.height;
-    };
-    for (std::int64_t j = 0; j < panorama::kTile_px; ++j) {
-      const std::int64_t row = std::min(down * panorama::kTile_px + j, canvas.height - 1);
-      for (std::int64_t i = 0; i < panorama::kTile_px; ++i) {
-        const std::int64_t column = std::min(across * panorama::kTile_px + i, canvas.width - 1);
-        const std::int64_t x = canvas.x + column;
-        if (!holds(*piece, x, row)) {
-          piece = &*std::find_if(canvas.pieces.begin(), canvas.pieces.end(),
-                                 [&](const Piece& p) { return holds(p, x, row); });
-        }
-        panorama::measure(plane, *surface_, exaggeration, piece->view.eye.eye_m,
-                          panorama::line_of_sight(*piece, x, row), canvas.range_m[canvas.index(column, row)],
-                          tile);
-        tile += format.pixel_bytes();
+    for (std::int64_t x = canvas.x + column; x < canvas.x + column + count; ++x) {
+      if (!holds(*piece, x, row)) {
+        piece = &*std::find_if(canvas.pieces.begin(), canvas.pieces.end(),
+                               [&](const Piece& p) { return holds(p, x, row); });
       }
+      panorama::measure(plane, *surface_, exaggeration, piece->view.eye.eye_m,
+                        panorama::line_of_sight(*piece, x, row),
+                        canvas.range_m[canvas.index(x - canvas.x, row)], out);
+      out += format.pixel_bytes();
     }
-  });
+  };
+  add_tiles(writer, layout, canvas, format, fill);
 }
 
 }  // namespace vpe::app

@@ -63,9 +63,11 @@ class PanoramaMaker {
   void add_picture(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas) const;
   void add_plane(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
                  panorama::Plane plane) const;
-  void add_tiles(
-      panorama::StripWriter& writer, const StripLayout& layout, const panorama::SampleFormat& format,
-      const std::function<void(std::int64_t across, std::int64_t down, std::uint8_t* tile)>& fill) const;
+  // Pixels of one row of the strip from a column on, as the format has them.
+  using FillRow =
+      std::function<void(std::int64_t column, std::int64_t row, std::int64_t count, std::uint8_t* out)>;
+  void add_tiles(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
+                 const panorama::SampleFormat& format, const FillRow& fill) const;
 
   const PanoramaJob& job_;
   const PanoramaRecipe& recipe_;

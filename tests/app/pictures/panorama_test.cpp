@@ -8,6 +8,7 @@
 #include "panorama/open_panorama.h"
 #include "panorama/plan.h"
 #include "tests/app/support/app_fixture.h"
+#include "vpe/core/frame.h"
 #include "vpe/core/image.h"
 #include "vpe/core/metrics.h"
 
@@ -84,7 +85,7 @@ TEST_F(PolygonPanorama, EightFacetsAgreeWithTheCylinderOfRays) {
     if (!is_there[n]) shift_px[n] = std::nan("");
   }
   const vpe::core::ShiftSummary summary = vpe::core::summarize(shift_px, static_cast<int>(map.width_px));
-  EXPECT_GT(summary.pixels, 250000);
+  EXPECT_GT(summary.pixels, 100000);
   EXPECT_LE(summary.share_over_1px, 0.005);
   EXPECT_GT(summary.median_px, 0);  // they are two pictures
   RecordProperty("share_over_1px", std::to_string(summary.share_over_1px));
@@ -107,7 +108,7 @@ double step_at(const vpe::core::RgbImage& image, int column) {
 TEST_F(PolygonPanorama, SeamsAreNotSeen) {
   for (const Words& more :
        {Words{"--backend", "polygon", "--tolerance", "0.5"}, Words{"--projection", "facets"}}) {
-    Words all{"--width", "1600"};
+    Words all{"--width", "1600", "--set", "exaggeration=3", "--set", "sun.elevation=15"};
     all.insert(all.end(), more.begin(), more.end());
     make("f.png", all);
     const vpe::core::RgbImage image = vpe::core::read_image(dir_ / "f.png");
