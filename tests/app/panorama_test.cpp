@@ -275,6 +275,9 @@ TEST_F(Panorama, BadInputIsToldBeforeAnyWork) {
                  {"m above the ground", "--height, --altitude"});
   expect_failure({"panorama", planet().string(), "--at", "30,0", "--height", "0", "-o", "x.png", "-q"}, 1,
                  {"0 m above the ground"});
+  write_text(dir_ / "mine.json", "{\"image\": \"mine.jpg\"}");
+  refuse(1, {}, {"mine.json", "did not write it", "mine.png"}, "mine.png");
+  EXPECT_TRUE(exists("mine.json"));
   fs::create_directory(dir_ / "locked");
   fs::permissions(dir_ / "locked", fs::perms::owner_read | fs::perms::owner_exec);
   if (::access((dir_ / "locked").c_str(), W_OK) != 0) refuse(1, {}, {"locked", "permissions"}, "locked/x.png");

@@ -283,7 +283,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   job.strips = panorama::strips_of(job.map);
   check_panorama_size(job.output, job.map, common.memory_mb);
   for (const panorama::Plane plane : job.planes) check_output(plane_file(job.output, plane));
-  check_output(sidecar_file(job.output));
+  check_sidecar(job.output);
 
   const InterruptGuard guard;
   const auto planet = open_planet(recipe.planet, common);
@@ -311,6 +311,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   request.interest = parse_interest(options);
   request.paging.timeout_s = options.wait_s;
 
+  remove_stale_files(job.output);
   core::ThreadPool pool(common.threads);
   PanoramaTimes times;
   times.start = seconds();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "panorama/big_tiff.h"
@@ -145,6 +147,30 @@ fs::path plane_file(const fs::path& picture, panorama::Plane plane) {
 }
 
 fs::path sidecar_file(const fs::path& picture) { return with_end(picture, ".json"); }
+
+void check_sidecar(const fs::path& picture) {
+  const fs::path path = sidecar_file(picture);
+  check_output(path);
+  std::error_code error;
+  if (!fs::exists(path, error)) return;
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 24;
+  const auto bytes = core::read_file(path, kMostBytes);
+  const auto json = nlohmann::json::parse(bytes, nullptr, false);
+  if (json.is_object() && json.contains("vpe")) return;
+  throw std::runtime_error(
+      path.string() + ": is there, and 'vpe panorama' did not write it; move it or choose another name for " +
+      picture.filename().string());
+}
+
+void remove_stale_files(const fs::path& picture) {
+  std::vector<std::string> names{picture.filename().string(), sidecar_file(picture).filename().string()};
+  for (const panorama::PlaneInfo& info : panorama::all_planes())
+    names.push_back(plane_file(picture, info.plane).filename().string());
+  const fs::path folder = picture.has_parent_path() ? picture.parent_path() : fs::path(".");
+  remove_stale_temporaries(folder, [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+}
 
 fs::path strips_folder(const fs::path& picture) { return picture.string() + ".parts"; }
 

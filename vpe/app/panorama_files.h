@@ -23,6 +23,10 @@ void check_panorama_size(const std::filesystem::path& path, const panorama::Pano
 
 std::filesystem::path plane_file(const std::filesystem::path& picture, panorama::Plane plane);
 std::filesystem::path sidecar_file(const std::filesystem::path& picture);
+// Throws std::runtime_error when the sidecar's name is taken by a file that this program did not write.
+void check_sidecar(const std::filesystem::path& picture);
+// Removes what killed runs left half-written of the picture, its planes and sidecar.
+void remove_stale_files(const std::filesystem::path& picture);
 // Where strips are kept until all are there.
 std::filesystem::path strips_folder(const std::filesystem::path& picture);
 

@@ -59,6 +59,9 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
+// Strips with ground that could not be drawn are made again by the next run.
+constexpr const char* kIncomplete = "-incomplete";
+
 bool is_strip_name(const std::string& name) { return name.starts_with("strip_"); }
 
 }  // namespace
@@ -168,7 +171,8 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
   }
   const fs::path path = strip_path(n);
   core::OutputFile file(path, temporary_name(path));
-  panorama::StripWriter writer(file, fingerprint_);
+  const std::string fingerprint = fingerprint_ + (canvas.figures.tiles_missing > 0 ? kIncomplete : "");
+  panorama::StripWriter writer(file, fingerprint);
   {
     const Stopwatch watch(times.encoding);
     writer.add(bytes_of(text_of(canvas.figures)));
@@ -181,7 +185,7 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
   const Stopwatch watch(times.encoding);
   writer.finish();
   file.commit();
-  auto made = panorama::StripFile::open(path, fingerprint_, layout.blocks());
+  auto made = panorama::StripFile::open(path, fingerprint, layout.blocks());
   if (!made) throw core::file_error("read back", path, "it is not what was written", "check the disk");
   figures_.add(canvas.figures);
   ++made_;
