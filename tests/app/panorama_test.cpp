@@ -192,6 +192,14 @@ TEST_F(Panorama, AgainItHasTheSameBytes) {
   ASSERT_EQ(vpe({"panorama", "--again", path("p.json"), "-q"}).exit_code, 0);
   EXPECT_TRUE(read_text(dir_ / "p.png") == bytes);
 
+  expect_failure({"panorama", "--again", "p.json", "--width=5"}, 2, {"--width and --again"});
+  // Defaults of a configuration file do not count.
+  write_text(dir_ / "c.toml", "[panorama]\nwidth = 77\nbackend = \"polygon\"\n");
+  fs::remove(dir_ / "q.png");
+  const Result by_file = vpe({"panorama", "--again", "p.json", "-o", "q.png", "-q", "--config", "c.toml"});
+  ASSERT_EQ(by_file.exit_code, 0) << by_file.err;
+  EXPECT_TRUE(read_text(dir_ / "q.png") == bytes);
+
   // Another planet is not taken for the same.
   Dem dem;
   dem.height_m = [](int, int) { return 100; };

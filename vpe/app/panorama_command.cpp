@@ -137,7 +137,20 @@ Order new_order(const PanoramaArguments& arguments, const Common& common) {
   return order;
 }
 
-Order order_again(const PanoramaArguments& arguments) {
+// A configuration file may have defaults of these; who names them beside --again means something else.
+void check_alone(const Common& common) {
+  for (const char* name : {"--at", "--height", "--altitude", "--projection", "--facets", "--yaw", "--from",
+                           "--to", "--elevation", "--width", "--degrees-per-pixel", "--planes", "--set",
+                           "--backend", "--tolerance", "--sun", "--interest", "--allow-incomplete"}) {
+    for (const std::string& word : common.words) {
+      if (word != name && !word.starts_with(std::string(name) + "=")) continue;
+      throw UsageError(std::string(name) + " and --again: the picture is made as the JSON says; leave one out");
+    }
+  }
+}
+
+Order order_again(const PanoramaArguments& arguments, const Common& common) {
+  check_alone(common);
   const fs::path path = arguments.again;
   const std::vector<std::uint8_t> bytes = core::read_file(path, kMostSidecarBytes);
   Order order;
@@ -267,7 +280,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   panorama::Plan plan;
   PanoramaJob job;
   try {
-    order = arguments.again.empty() ? new_order(arguments, common) : order_again(arguments);
+    order = arguments.again.empty() ? new_order(arguments, common) : order_again(arguments, common);
     plan = panorama::plan_panorama(order.recipe.plan);
   } catch (const panorama::PlanError& e) {
     throw UsageError(e.what());
@@ -353,52 +366,37 @@ void add_panorama(CLI::App& program, Common& common) {
   CLI::App* command = add_command(program, "panorama",
                                   "Draw a panorama; what an interrupted run has drawn is kept", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
-  std::vector<CLI::Option*> own;  // what --again knows by itself
-  own.push_back(command->add_option("--at", arguments->at, "LON,LAT of the eye, degrees"));
-  own.push_back(command->add_option("--height", arguments->height_m, "Of the eye above the ground, metres")
-                    ->check(number_within(0, 1e10)));
-  own.push_back(command->add_option("--altitude", arguments->altitude_m, "Of the eye above the sphere, metres")
-                    ->check(number_within(-1e6, 1e10)));
+  command->add_option("--at", arguments->at, "LON,LAT of the eye, degrees");
+  command->add_option("--height", arguments->height_m, "Of the eye above the ground, metres")
+      ->check(number_within(0, 1e10));
+  command->add_option("--altitude", arguments->altitude_m, "Of the eye above the sphere, metres")
+      ->check(number_within(-1e6, 1e10));
   command->add_option(
       "-o,--output", arguments->output,
       "Picture (.tif of any size, .png, .jpg); its description goes to the same name with .json");
-  own.push_back(
-      command->add_option("--projection", arguments->projection,
-                          "facets, cylinder or equirectangular; cylinder for rays, facets for triangles "
-                          "when left out"));
+  command->add_option(
+      "--projection", arguments->projection,
+      "facets, cylinder or equirectangular; cylinder for rays, facets for triangles when left out");
   CLI::Option* facets =
       command->add_option("--facets", arguments->facets, "Planes to the turn, 3 to 64")->capture_default_str();
-  own.push_back(facets);
-  CLI::Option* yaw = command
-                         ->add_option("--yaw", arguments->yaw_deg,
-                                      "Azimuth of facet 0's middle, or of a whole turn's left edge, degrees")
-                         ->check(number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg))
-                         ->capture_default_str();
-  own.push_back(yaw);
-  own.push_back(command->add_option("--from", arguments->from_deg, "Azimuth of the left edge, degrees")
-                    ->check(number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg)));
-  own.push_back(command->add_option("--to", arguments->to_deg, "Azimuth of the right edge, degrees")
-                    ->check(number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg)));
-  own.push_back(
-      command->add_option("--elevation", arguments->elevation,
-                          "MIN,MAX elevation, degrees; -45,45 or, equirectangular, -90,90 when left out"));
+  const auto is_yaw = number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg);
+  CLI::Option* yaw = command->add_option(
+      "--yaw", arguments->yaw_deg, "Azimuth of facet 0's middle, or of a whole turn's left edge, degrees");
+  yaw->check(is_yaw)->capture_default_str();
+  command->add_option("--from", arguments->from_deg, "Azimuth of the left edge, degrees")->check(is_yaw);
+  command->add_option("--to", arguments->to_deg, "Azimuth of the right edge, degrees")->check(is_yaw);
+  command->add_option("--elevation", arguments->elevation,
+                      "MIN,MAX elevation, degrees; -45,45 or, equirectangular, -90,90 when left out");
   CLI::Option* width =
       command->add_option("--width", arguments->width_px, "Columns of the picture; 4096 when left out");
-  CLI::Option* scale =
-      command->add_option("--degrees-per-pixel", arguments->degrees_per_pixel, "Degrees of azimuth a column")
-          ->excludes(width);
-  own.push_back(width);
-  own.push_back(scale);
-  own.push_back(
-      command->add_option("--planes", arguments->planes,
-                          "Also write rasters: any of range,lonlat,elevation,slope,incidence (.tif)"));
-  CLI::Option* again =
-      command->add_option("--again", arguments->again, "PANO.json: make the same picture again, as it says");
+  command->add_option("--degrees-per-pixel", arguments->degrees_per_pixel, "Degrees of azimuth a column")
+      ->excludes(width);
+  command->add_option("--planes", arguments->planes,
+                      "Also write rasters: any of range,lonlat,elevation,slope,incidence (.tif)");
+  command->add_option("--again", arguments->again,
+                      "PANO.json: make the same picture again, as it says; goes with PLANET and -o only");
   arguments->picture.backend = "voxel";
   add_picture_options(*command, arguments->picture);
-  for (const char* name : {"--set", "--backend", "--tolerance", "--sun", "--interest"})
-    own.push_back(command->get_option(name));
-  for (CLI::Option* option : own) again->excludes(option);
   command->callback([arguments, facets, yaw, &common] {
     arguments->has_facets = facets->count() > 0;
     arguments->has_yaw = yaw->count() > 0;
