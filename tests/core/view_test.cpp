@@ -353,5 +353,19 @@ TEST_F(BadView, Part) {
   }
 }
 
+TEST(View, PartOfAPictureLargerThanCanBeDrawn) {
+  View view;
+  view.width = 100000;
+  view.height = 20000;
+  EXPECT_NE(check(view), "");
+  view.part = {99000, 0, 1000, 20000};
+  EXPECT_EQ(check(view), "");
+  view.part = {0, 0, ViewLimits::kMaxSide_px + 1, 10};
+  EXPECT_NE(check(view), "");
+  view.part = {0, 0, 10, 10};
+  view.width = ViewLimits::kMaxFullSide_px + 1;
+  EXPECT_NE(check(view), "");
+}
+
 }  // namespace
 }  // namespace vpe::core

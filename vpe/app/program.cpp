@@ -90,6 +90,7 @@ int run(int argc, char** argv) {
   program.footer(
       "'vpe COMMAND --help' explains a command. Without a PLANET the embedded Mars (an illustration) is used.");
   Common common;
+  common.words.assign(argv + std::min(argc, 1), argv + argc);
   add_build(program, common);
   add_merge(program, common);
   add_info(program, common);
@@ -99,6 +100,7 @@ int run(int argc, char** argv) {
   add_horizon(program, common);
   add_render(program, common);
   add_fly(program, common);
+  add_panorama(program, common);
   add_overlook(program, common);
   add_settings(program, common);
   add_doctor(program, common);

@@ -16,6 +16,7 @@ struct Common {
   int threads = 0;  // 0 = all cores
   bool quiet = false;
   bool json = false;
+  std::vector<std::string> words;  // the whole command line but for the program's name
 };
 
 // Runs one command line; returns the exit code. Messages go to stderr, results to stdout.
@@ -41,6 +42,7 @@ void add_horizon(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
 void add_overlook(CLI::App& program, Common& common);
 void add_fly(CLI::App& program, Common& common);
+void add_panorama(CLI::App& program, Common& common);
 void add_settings(CLI::App& program, Common& common);
 void add_doctor(CLI::App& program, Common& common);
 void add_manual(CLI::App& program, Common& common);  // completion, man

@@ -24,9 +24,18 @@ glm::dvec2 principal_point(const View& view) {
   return glm::dvec2(view.width, view.height) * 0.5 + view.principal_offset_px;
 }
 
+bool has_part(const View& view) {
+  const SubRectangle& p = view.part;
+  return p.width != 0 || p.height != 0 || p.x != 0 || p.y != 0;
+}
+
 std::string check_part(const View& view) {
   const SubRectangle& p = view.part;
-  if (p.width == 0 && p.height == 0 && p.x == 0 && p.y == 0) return {};
+  if (!has_part(view)) return {};
+  if (p.width > ViewLimits::kMaxSide_px || p.height > ViewLimits::kMaxSide_px) {
+    return "a part of " + std::to_string(p.width) + "x" + std::to_string(p.height) +
+           " pixels: each side must be 1 to " + std::to_string(ViewLimits::kMaxSide_px);
+  }
   const bool inside = p.x >= 0 && p.y >= 0 && p.width >= 1 && p.height >= 1 && p.x <= view.width - p.width &&
                       p.y <= view.height - p.height;
   if (inside) return {};
@@ -38,15 +47,15 @@ std::string check_part(const View& view) {
 }  // namespace
 
 std::string check(const View& view) {
-  constexpr int kMaxSide = ViewLimits::kMaxSide_px;
   if (!is_finite(view.eye.eye_m) || glm::length(view.eye.eye_m) > ViewLimits::kMaxEyeDistance_m) {
     return "the eye's position is not finite or farther than " + format_number(ViewLimits::kMaxEyeDistance_m) +
            " m from the planet's centre";
   }
   if (!is_orthonormal(view.eye.axes)) return "the eye's axes are not orthonormal; make them with mars::to_eye";
-  if (view.width < 1 || view.height < 1 || view.width > kMaxSide || view.height > kMaxSide) {
+  const int max_side_px = has_part(view) ? ViewLimits::kMaxFullSide_px : ViewLimits::kMaxSide_px;
+  if (view.width < 1 || view.height < 1 || view.width > max_side_px || view.height > max_side_px) {
     return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
-           ": each side must be 1 to " + std::to_string(kMaxSide) + " pixels";
+           ": each side must be 1 to " + std::to_string(max_side_px) + " pixels";
   }
   const bool is_equirectangular = view.projection == Projection::kEquirectangular;
   const double max_fov_deg = is_equirectangular ? 180.0 : ViewLimits::kMaxFov_deg;

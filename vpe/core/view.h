@@ -24,8 +24,9 @@ enum class Projection : std::uint8_t { kPerspective, kCylinder, kEquirectangular
 
 struct ViewLimits {
   static constexpr double kMinFov_deg = 0.001;
-  static constexpr double kMaxFov_deg = 179.0;  // kEquirectangular: 180
-  static constexpr int kMaxSide_px = 32768;
+  static constexpr double kMaxFov_deg = 179.0;       // kEquirectangular: 180
+  static constexpr int kMaxSide_px = 32768;          // of the drawn part
+  static constexpr int kMaxFullSide_px = 1'000'000;  // of the full picture, when only a part is drawn
   static constexpr double kMaxOffset_px = 1e6;
   static constexpr double kMaxEyeDistance_m = 1e15;  // from the planet's centre
 };

@@ -1,0 +1,133 @@
+#include "vpe/app/panorama_recipe.h"
+
+#include <cmath>
+
+#include "mars/sphere.h"
+#include "panorama/metadata_error.h"
+
+namespace vpe::app {
+
+namespace {
+
+using nlohmann::json;
+using panorama::MetadataError;
+using panorama::PlanOptions;
+
+template <class Value>
+void put(nlohmann::ordered_json& out, const char* key, const std::optional<Value>& value) {
+  if (value) out[key] = *value;
+}
+
+template <class Value>
+std::optional<Value> find(const json& from, const char* key) {
+  const auto found = from.find(key);
+  if (found == from.end()) return std::nullopt;
+  try {
+    return found->get<Value>();
+  } catch (const json::exception&) {
+    throw MetadataError(std::string("recipe: ") + key + " is of the wrong type");
+  }
+}
+
+template <class Value>
+Value needed(const json& from, const char* key) {
+  if (auto value = find<Value>(from, key)) return *value;
+  throw MetadataError(std::string("recipe: ") + key + " is missing");
+}
+
+const json& object(const json& from, const char* key) {
+  const auto found = from.is_object() ? from.find(key) : from.end();
+  if (found == from.end() || !found->is_object()) {
+    throw MetadataError(std::string("recipe: ") + key + " is missing or no object {...}");
+  }
+  return *found;
+}
+
+nlohmann::ordered_json plan_json(const PlanOptions& plan) {
+  nlohmann::ordered_json out;
+  out["projection"] = panorama::to_string(plan.kind);
+  if (plan.kind == panorama::MapKind::kFacets) out["facets"] = plan.facets;
+  out["yaw_deg"] = plan.yaw_deg;
+  if (plan.arc) out["from_deg"] = plan.arc->from_deg;
+  if (plan.arc) out["to_deg"] = plan.arc->to_deg;
+  put(out, "lowest_deg", plan.lowest_deg);
+  put(out, "highest_deg", plan.highest_deg);
+  put(out, "width", plan.width_px);
+  put(out, "degrees_per_pixel", plan.degrees_per_pixel);
+  return out;
+}
+
+PlanOptions plan_from(const json& from) {
+  using panorama::MapKind;
+  PlanOptions plan;
+  const auto name = needed<std::string>(from, "projection");
+  bool is_known = false;
+  for (const MapKind kind : {MapKind::kCylinder, MapKind::kEquirectangular, MapKind::kFacets}) {
+    if (name == panorama::to_string(kind)) plan.kind = kind;
+    is_known = is_known || name == panorama::to_string(kind);
+  }
+  if (!is_known) throw MetadataError("recipe: projection '" + name + "' is not known");
+  plan.facets = find<int>(from, "facets").value_or(plan.facets);
+  plan.yaw_deg = needed<double>(from, "yaw_deg");
+  const auto from_deg = find<double>(from, "from_deg");
+  if (from_deg) plan.arc = {*from_deg, needed<double>(from, "to_deg")};
+  plan.lowest_deg = find<double>(from, "lowest_deg");
+  plan.highest_deg = find<double>(from, "highest_deg");
+  plan.width_px = find<std::int64_t>(from, "width");
+  plan.degrees_per_pixel = find<double>(from, "degrees_per_pixel");
+  return plan;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const PanoramaRecipe& recipe) {
+  nlohmann::ordered_json out;
+  out["planet"] = {{"file", recipe.planet}, {"identity", recipe.identity}};
+  out["backend"] = recipe.backend;
+  out["eye"] = {{"lon_deg", recipe.eye.lon_deg}, {"lat_deg", recipe.eye.lat_deg}, {"alt_m", recipe.eye.alt_m}};
+  out["plan"] = plan_json(recipe.plan);
+  std::string planes;
+  for (const panorama::Plane plane : recipe.planes)
+    planes += (planes.empty() ? "" : ",") + std::string(panorama::info_of(plane).name);
+  out["planes"] = planes;
+  out["interest"] = recipe.interest;
+  out["memory_mb"] = recipe.memory_mb;
+  out["allow_incomplete"] = recipe.allow_incomplete;
+  nlohmann::ordered_json settings;
+  for (const core::SettingInfo& info : core::Settings::list())
+    settings[std::string(info.key)] = recipe.settings.get(info.key).value_or("");
+  out["settings"] = settings;
+  return out;
+}
+
+PanoramaRecipe recipe_from(const json& from) {
+  PanoramaRecipe recipe;
+  const json& planet = object(from, "planet");
+  recipe.planet = needed<std::string>(planet, "file");
+  recipe.identity = needed<std::string>(planet, "identity");
+  recipe.backend = needed<std::string>(from, "backend");
+  const json& eye = object(from, "eye");
+  recipe.eye.lon_deg = needed<double>(eye, "lon_deg");
+  recipe.eye.lat_deg = needed<double>(eye, "lat_deg");
+  recipe.eye.alt_m = needed<double>(eye, "alt_m");
+  if (!mars::is_valid({recipe.eye.lon_deg, recipe.eye.lat_deg}) || !std::isfinite(recipe.eye.alt_m)) {
+    throw MetadataError("recipe: eye is no place; latitudes are -90 to 90");
+  }
+  recipe.plan = plan_from(object(from, "plan"));
+  try {
+    recipe.planes = panorama::parse_planes(needed<std::string>(from, "planes"));
+  } catch (const panorama::PlanError& e) {
+    throw MetadataError(std::string("recipe: ") + e.what());
+  }
+  recipe.interest = needed<std::vector<std::string>>(from, "interest");
+  recipe.memory_mb = needed<int>(from, "memory_mb");
+  recipe.allow_incomplete = needed<bool>(from, "allow_incomplete");
+  for (const auto& [key, text] : object(from, "settings").items()) {
+    const std::string trouble =
+        text.is_string() ? recipe.settings.set(key, text.get<std::string>()) : "it is not a text";
+    if (!trouble.empty()) throw MetadataError("recipe: settings: " + key + ": " + trouble);
+  }
+  return recipe;
+}
+
+}  // namespace vpe::app
