@@ -156,7 +156,7 @@ lod::TileTree regular_tree(RegularTiles tiles, int grid, const paging::PlanetMet
   std::vector<lod::TileInfo> infos;
   for (const lod::TileKey& key : keys) {
     const RegularTile& tile = tiles.at(key);
-    infos.push_back({key, tile.min_m, tile.max_m, tile.inner, {{tile.terms, triangles}}});
+    infos.push_back({key, tile.min_m, tile.max_m, tile.inner, {}, {{tile.terms, triangles}}});
     if (key.level > 0) tiles.at(lod::parent(key)).include({tile.terms, tile.min_m, tile.max_m, true});
   }
   return {std::move(infos), {grid}, meta.radius_m, meta.lowest_radius_m};
