@@ -355,6 +355,7 @@ TEST_F(BadView, Part) {
 
 TEST(View, PartOfAPictureLargerThanCanBeDrawn) {
   View view;
+  view.eye = pose(0, 0, 1000, 0, 0, 0);
   view.width = 100000;
   view.height = 20000;
   EXPECT_NE(check(view), "");

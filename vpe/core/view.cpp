@@ -32,12 +32,12 @@ bool has_part(const View& view) {
 std::string check_part(const View& view) {
   const SubRectangle& p = view.part;
   if (!has_part(view)) return {};
-  if (p.width > ViewLimits::kMaxSide_px || p.height > ViewLimits::kMaxSide_px) {
+  const bool inside = p.x >= 0 && p.y >= 0 && p.width >= 1 && p.height >= 1 && p.x <= view.width - p.width &&
+                      p.y <= view.height - p.height;
+  if (inside && (p.width > ViewLimits::kMaxSide_px || p.height > ViewLimits::kMaxSide_px)) {
     return "a part of " + std::to_string(p.width) + "x" + std::to_string(p.height) +
            " pixels: each side must be 1 to " + std::to_string(ViewLimits::kMaxSide_px);
   }
-  const bool inside = p.x >= 0 && p.y >= 0 && p.width >= 1 && p.height >= 1 && p.x <= view.width - p.width &&
-                      p.y <= view.height - p.height;
   if (inside) return {};
   return "the part (x " + std::to_string(p.x) + ", y " + std::to_string(p.y) + ", " + std::to_string(p.width) +
          "x" + std::to_string(p.height) + ") does not lie inside the picture of " + std::to_string(view.width) +
