@@ -23,6 +23,9 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
+// An object's name stands before each of its keywords: a long one, which nobody asks for, is cut.
+constexpr std::size_t kMaxName = 100;
+
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
@@ -50,7 +53,7 @@ class Reader {
       if (!assigned) continue;
       const std::string text = value();
       if (key == "OBJECT" || key == "GROUP") {
-        objects.push_back(upper(text));
+        objects.push_back(upper(std::string_view(text).substr(0, kMaxName)));
       } else {
         label.values.emplace(objects.empty() ? key : objects.back() + "." + key, text);
       }

@@ -62,7 +62,7 @@ const std::array<Field, 27>& fields() {
 }
 
 [[noreturn]] void refuse_value(const char* name, const std::string& text, const char* wanted) {
-  throw MetadataError(std::string("GPano:") + name + " is '" + text.substr(0, 80) + "', not " + wanted);
+  throw MetadataError(std::string("GPano:") + name + " is '" + excerpt(text) + "', not " + wanted);
 }
 
 template <class Value>
@@ -226,7 +226,7 @@ GPano gpano_of(const PanoramaMap& map, double max_shift_px) {
 PanoramaMap map_of(const GPano& gpano) {
   const std::string type = lower_case(gpano.projection_type);
   if (type != "cylindrical" && type != "equirectangular") {
-    throw MetadataError("GPano:ProjectionType is '" + gpano.projection_type +
+    throw MetadataError("GPano:ProjectionType is '" + excerpt(gpano.projection_type) +
                         "'; only cylindrical and equirectangular are read");
   }
   for (const auto& [name, angle_deg] :

@@ -53,7 +53,7 @@ bool is_pixel(std::string_view unit) {
 }
 
 [[noreturn]] void refuse_unit(std::string_view key, const LabelValue& value) {
-  throw MetadataError(std::string(key) + " is in '" + value.unit +
+  throw MetadataError(std::string(key) + " is in '" + excerpt(value.unit) +
                       "', which is no unit of angles that is read here" +
                       "; describe the picture in a JSON file instead");
 }
@@ -61,7 +61,7 @@ bool is_pixel(std::string_view unit) {
 double number_of(std::string_view key, const LabelValue& value) {
   const std::optional<double> number = vpe::core::parse_number(trim(value.text));
   if (!number) {
-    throw MetadataError(std::string(key) + " is '" + value.text.substr(0, 80) +
+    throw MetadataError(std::string(key) + " is '" + excerpt(value.text) +
                         "', not a number; correct the label");
   }
   return *number;
@@ -166,7 +166,7 @@ double first_line(const RoverLabel& label) {
 
 void require_cylindrical(std::string_view projection) {
   if (bare(projection) == "cylindrical") return;
-  throw MetadataError("projection " + (projection.empty() ? "without a name" : std::string(projection)) +
+  throw MetadataError("projection " + (projection.empty() ? "without a name" : excerpt(projection)) +
                       " of the label is not read, only Cylindrical (even in azimuth and elevation)" +
                       "; project the mosaic again, e.g. marsmap projection=cylindrical");
 }
@@ -177,7 +177,7 @@ RoverLabel label_of(const LabelLookup& look_up) {
   RoverLabel label;
   label.frame = values.text("REFERENCE_COORD_SYSTEM_NAME");
   if (!is_level_frame(label.frame)) {
-    throw MetadataError("azimuths of the label are in " + label.frame +
+    throw MetadataError("azimuths of the label are in " + excerpt(label.frame) +
                         ", which is not level or not counted from north; use a mosaic in SITE_FRAME");
   }
   label.columns_per_degree = needed("MAP_RESOLUTION", values.resolution("MAP_RESOLUTION_X"));

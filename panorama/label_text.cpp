@@ -13,6 +13,8 @@ namespace {
 // Both spellings occur.
 constexpr std::array<const char*, 2> kGroups{"SURFACE_PROJECTION_PARMS", "SURFACE_PROJECTION_PARAMS"};
 
+constexpr std::size_t kMaxName = 100;
+
 // Keys as "SECTION.KEY"; of equal keys the first counts.
 using VicarLabel = std::map<std::string, std::string, std::less<>>;
 
@@ -32,8 +34,9 @@ class VicarReader {
       const std::string key(trim(text_.substr(at_, equals - at_)));
       at_ = equals + 1;
       const std::string value = read_value();
-      // A new property, or a task of the history that follows the properties, begins a section.
-      if (key == "PROPERTY" || key == "TASK") section = value + ".";
+      // A new property, or a task of the history that follows the properties, begins a section. Its name stands
+      // before all of its keys: a long one, which nobody asks for, is cut.
+      if (key == "PROPERTY" || key == "TASK") section = value.substr(0, kMaxName) + ".";
       label.emplace(section + key, value);
     }
   }

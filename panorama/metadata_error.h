@@ -2,6 +2,8 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace panorama {
 
@@ -10,5 +12,8 @@ class MetadataError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+// What a file says, for a message: as much of its start as a message may have, in whole characters of UTF-8.
+std::string excerpt(std::string_view text, std::size_t max_bytes = 80);
 
 }  // namespace panorama

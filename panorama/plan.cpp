@@ -10,7 +10,6 @@ namespace panorama {
 
 namespace {
 
-using mars::kPi;
 using mars::kRadiansPerDegree;
 using vpe::core::format_number;
 using vpe::core::Projection;
@@ -170,26 +169,6 @@ Plan plan_panorama(const PlanOptions& options) {
 
 namespace {
 
-// The whole round picture as a View; map.crop_left_px and width say which part of it is the panorama.
-View round_view(const PanoramaMap& map, const Standpoint& standpoint) {
-  View view;
-  mars::Pose pose = standpoint.pose;
-  pose.yaw_deg = map.turn_azimuth_deg + 180.0;
-  pose.pitch_deg = pose.roll_deg = 0.0;
-  view.eye = mars::to_eye(pose, standpoint.radius_m);
-  view.width = static_cast<int>(map.turn_px);
-  view.height = static_cast<int>(map.height_px);
-  view.principal_offset_px.y = map.horizon_px - 0.5 * view.height;
-  if (map.kind == MapKind::kCylinder) {
-    view.projection = Projection::kCylinder;
-    view.fov_deg = 2.0 * std::atan(0.5 * view.height / map.focal_px) / kRadiansPerDegree;
-  } else {
-    view.projection = Projection::kEquirectangular;
-    view.fov_deg = std::min(180.0, view.height * 360.0 / map.turn_px);
-  }
-  return view;
-}
-
 View facet_view(const PanoramaMap& map, const Standpoint& standpoint, std::int64_t facet, int margin_px) {
   View view;
   mars::Pose pose = standpoint.pose;
@@ -212,15 +191,36 @@ std::int64_t piece_columns(std::int64_t rows) {
 
 }  // namespace
 
-std::vector<Strip> strips_of(const PanoramaMap& map) {
+View round_view(const PanoramaMap& map, const Standpoint& standpoint) {
+  View view;
+  mars::Pose pose = standpoint.pose;
+  pose.yaw_deg = map.turn_azimuth_deg + 180.0;
+  pose.pitch_deg = pose.roll_deg = 0.0;
+  view.eye = mars::to_eye(pose, standpoint.radius_m);
+  view.width = static_cast<int>(map.turn_px);
+  view.height = static_cast<int>(map.height_px);
+  view.principal_offset_px.y = map.horizon_px - 0.5 * view.height;
+  if (map.kind == MapKind::kCylinder) {
+    view.projection = Projection::kCylinder;
+    view.fov_deg = 2.0 * std::atan(0.5 * view.height / map.focal_px) / kRadiansPerDegree;
+  } else {
+    view.projection = Projection::kEquirectangular;
+    view.fov_deg = std::min(180.0, view.height * 360.0 / map.turn_px);
+  }
+  return view;
+}
+
+std::vector<Strip> strips_of(const PanoramaMap& map) { return strips_of(map.width_px, map.height_px); }
+
+std::vector<Strip> strips_of(std::int64_t picture_width_px, std::int64_t height_px) {
   const std::int64_t tiles =
-      std::max<std::int64_t>(1, PlanLimits::kStripPixels / map.height_px / PlanLimits::kTile_px);
+      std::max<std::int64_t>(1, PlanLimits::kStripPixels / height_px / PlanLimits::kTile_px);
   // Wide and low pictures have strips of a bounded width, too.
   const std::int64_t width_px =
       std::min<std::int64_t>(tiles * PlanLimits::kTile_px, PlanLimits::kMaxPieceSide_px);
   std::vector<Strip> strips;
-  for (std::int64_t x = 0; x < map.width_px; x += width_px) {
-    strips.push_back({x, static_cast<int>(std::min(width_px, map.width_px - x))});
+  for (std::int64_t x = 0; x < picture_width_px; x += width_px) {
+    strips.push_back({x, static_cast<int>(std::min(width_px, picture_width_px - x))});
   }
   return strips;
 }

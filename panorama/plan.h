@@ -90,8 +90,11 @@ struct Standpoint {
   double radius_m = mars::kMarsRadius_m;
 };
 
-// Left to right without gaps. Of a map of plan_panorama().
+// Left to right without gaps, of a picture of this size; of a map's picture.
+std::vector<Strip> strips_of(std::int64_t width_px, std::int64_t height_px);
 std::vector<Strip> strips_of(const PanoramaMap& map);
+// The whole turn of a round map of plan_panorama() as a View, column 0 at the start of the turn.
+vpe::core::View round_view(const PanoramaMap& map, const Standpoint& standpoint);
 // Of one strip, without gaps or overlaps. Of a facet, margin_px gives filters that look at neighbouring pixels
 // what they need; round pictures get none.
 std::vector<Piece> pieces_of(const PanoramaMap& map, const Standpoint& standpoint, const Strip& strip,

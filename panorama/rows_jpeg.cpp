@@ -18,10 +18,7 @@ using vpe::core::file_error;
 // The functions that are left by longjmp hold nothing that needs destroying.
 class JpegRows : public RowSource {
  public:
-  explicit JpegRows(const std::filesystem::path& path)
-      : path_(path), stream_(std::fopen(path.c_str(), "rb"), std::fclose) {
-    if (stream_ == nullptr)
-      throw file_error("read", path, std::strerror(errno), "check the name and the permissions");
+  explicit JpegRows(const std::filesystem::path& path) : JpegRows(path, Closed()) {
     if (!start()) fail();
     if (jpeg_has_multiple_scans(&codec_) != 0) {
       throw file_error("read", path, "it is progressive, so that it has to be unpacked in memory whole",
@@ -40,6 +37,14 @@ class JpegRows : public RowSource {
   }
 
  private:
+  // What it makes is destroyed when the constructor that goes on from it throws.
+  struct Closed {};
+  JpegRows(const std::filesystem::path& path, Closed)
+      : path_(path), stream_(std::fopen(path.c_str(), "rb"), std::fclose) {
+    if (stream_ == nullptr)
+      throw file_error("read", path, std::strerror(errno), "check the name and the permissions");
+  }
+
   struct Errors {
     jpeg_error_mgr manager{};
     std::jmp_buf escape{};

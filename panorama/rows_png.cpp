@@ -19,10 +19,7 @@ static_assert(sizeof(mars::Rgb) == 3, "the library writes pixels in place");
 // The functions that are left by longjmp hold nothing that needs destroying.
 class PngRows : public RowSource {
  public:
-  explicit PngRows(const std::filesystem::path& path)
-      : path_(path), stream_(std::fopen(path.c_str(), "rb"), std::fclose) {
-    if (stream_ == nullptr)
-      throw file_error("read", path, std::strerror(errno), "check the name and the permissions");
+  explicit PngRows(const std::filesystem::path& path) : PngRows(path, Closed()) {
     if (!start()) fail();
     if (is_interlaced_) {
       throw file_error("read", path, "it is interlaced, so that it has to be unpacked in memory whole",
@@ -40,6 +37,14 @@ class PngRows : public RowSource {
   }
 
  private:
+  // What it makes is destroyed when the constructor that goes on from it throws.
+  struct Closed {};
+  PngRows(const std::filesystem::path& path, Closed)
+      : path_(path), stream_(std::fopen(path.c_str(), "rb"), std::fclose) {
+    if (stream_ == nullptr)
+      throw file_error("read", path, std::strerror(errno), "check the name and the permissions");
+  }
+
   [[noreturn]] static void leave(png_structp codec, png_const_charp message) {
     auto& self = *static_cast<PngRows*>(png_get_error_ptr(codec));
     std::snprintf(self.words_, sizeof self.words_, "%s", message);

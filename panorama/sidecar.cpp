@@ -84,11 +84,11 @@ MapKind kind_of(const Keys& keys) {
   if (is_cylindrical && keys.number("degrees_per_row", "elevation_deg_per_line"))
     return MapKind::kEquirectangular;
   if (is_cylindrical) {
-    throw MetadataError("projection '" + name +
+    throw MetadataError("projection '" + excerpt(name) +
                         "' has two meanings: give \"equirectangular\" for rows even in angle (rover mosaics), "
                         "\"cylinder\" for rows even in tangent");
   }
-  throw MetadataError("projection '" + name +
+  throw MetadataError("projection '" + excerpt(name) +
                       "' is not known: give \"cylinder\", \"equirectangular\" or \"facets\"");
 }
 
@@ -185,7 +185,7 @@ PanoramaMap map_of(const Keys& keys) {
   const std::int64_t height_px = needed(keys.count("height"), "height");
   const std::string sense = lower_case(keys.text("azimuth_increases"));
   if (sense.find("counter") != std::string::npos || sense.find("anti") != std::string::npos) {
-    throw MetadataError("azimuth_increases is '" + sense +
+    throw MetadataError("azimuth_increases is '" + excerpt(sense) +
                         "'; only pictures with azimuth to the right are read");
   }
   const auto facets = keys.count("facets");
@@ -222,7 +222,7 @@ mars::VerticalDatum datum_of(const Keys& keys) {
   const std::string name = keys.text("datum");
   if (name.empty()) return {};
   const auto datum = mars::parse_datum(name, mars::kMarsRadius_m);
-  if (!datum) throw MetadataError("datum '" + name + "' is not known: areoid, sphere:RADIUS, radius");
+  if (!datum) throw MetadataError("datum '" + excerpt(name) + "' is not known: areoid, sphere:RADIUS, radius");
   return *datum;
 }
 
@@ -262,7 +262,7 @@ Sidecar read_sidecar(std::string_view text) {
   try {
     root = json::parse(text);
   } catch (const json::exception& e) {
-    throw MetadataError(std::string("not well-formed JSON: ") + e.what());
+    throw MetadataError("not well-formed JSON: " + excerpt(e.what(), 300));
   }
   if (!root.is_object()) throw MetadataError("JSON without an object {...} of keys");
   const Keys keys(root);

@@ -1,15 +1,11 @@
 // A TIFF or BigTIFF that is read in parts. Private to panorama.
 #pragma once
 
-#include <tiffio.h>
-
-#include <cstdarg>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <string>
 
 #include "vpe/core/file.h"
+#include "vpe/core/tiff_handle.h"
 
 namespace panorama {
 
@@ -33,16 +29,8 @@ class TiffFile {
   vpe::core::FileError damaged() const;
 
  private:
-  struct Words {
-    char text[512] = "unknown error";
-  };
-  static int keep_words(TIFF* tiff, void* user, const char* module, const char* format, std::va_list arguments);
-  static int ignore_words(TIFF* tiff, void* user, const char* module, const char* format,
-                          std::va_list arguments);
-
   std::filesystem::path path_;
-  std::unique_ptr<Words> words_ = std::make_unique<Words>();
-  std::unique_ptr<TIFF, void (*)(TIFF*)> tiff_{nullptr, TIFFClose};
+  vpe::core::TiffHandle tiff_;
 };
 
 }  // namespace panorama

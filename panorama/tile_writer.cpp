@@ -1,23 +1,12 @@
 #include "panorama/tile_writer.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 namespace panorama {
 
-int TileWriter::keep_words(TIFF* /*tiff*/, void* user, const char* /*module*/, const char* format,
-                           std::va_list arguments) {
-  std::vsnprintf(static_cast<Words*>(user)->text, sizeof Words::text, format, arguments);
-  return 1;
-}
-
 TileWriter::TileWriter(std::filesystem::path path, const PictureLevel& level)
-    : path_(std::move(path)), level_(level) {
-  const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
-                                                                             TIFFOpenOptionsFree);
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_words, words_.get());
-  tiff_.reset(TIFFOpenExt(path_.c_str(), "w8", options.get()));
+    : path_(std::move(path)), level_(level), tiff_(path_, "w8") {
   TIFF* tiff = tiff_.get();
   // Speed counts more than size: the copies are made once and can be made again.
   const bool ok =
@@ -39,7 +28,7 @@ TileWriter::TileWriter(std::filesystem::path path, const PictureLevel& level)
 }
 
 void TileWriter::fail() const {
-  throw vpe::core::file_error("write", path_, words_->text, "check the free space and the permissions there");
+  throw vpe::core::file_error("write", path_, tiff_.words(), "check the free space and the permissions there");
 }
 
 void TileWriter::take(std::span<const mars::Rgb> row) {
@@ -64,7 +53,7 @@ void TileWriter::write_tiles() {
 void TileWriter::finish() {
   if (kept_ > 0) write_tiles();
   if (TIFFFlush(tiff_.get()) != 1) fail();
-  tiff_.reset();
+  tiff_.close();
 }
 
 }  // namespace panorama

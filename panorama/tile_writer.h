@@ -1,16 +1,13 @@
 // One picture as a tiled BigTIFF, written row by row. Private to panorama.
 #pragma once
 
-#include <tiffio.h>
-
-#include <cstdarg>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "panorama/tiles.h"
 #include "vpe/core/file.h"
+#include "vpe/core/tiff_handle.h"
 
 namespace panorama {
 
@@ -25,17 +22,12 @@ class TileWriter {
   void finish();
 
  private:
-  struct Words {
-    char text[512] = "unknown error";
-  };
-  static int keep_words(TIFF* tiff, void* user, const char* module, const char* format, std::va_list arguments);
   [[noreturn]] void fail() const;
   void write_tiles();
 
   std::filesystem::path path_;
   PictureLevel level_;
-  std::unique_ptr<Words> words_ = std::make_unique<Words>();
-  std::unique_ptr<TIFF, void (*)(TIFF*)> tiff_{nullptr, TIFFClose};
+  vpe::core::TiffHandle tiff_;
   std::vector<mars::Rgb> rows_;  // of one row of tiles
   std::vector<mars::Rgb> tile_;
   std::int64_t kept_ = 0;

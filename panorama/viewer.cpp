@@ -50,12 +50,8 @@ Direction to_direction(const glm::dvec3& vector) {
 }
 
 vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int width_px, int height_px) {
-  mars::LocalFrame frame;
-  frame.east = {1, 0, 0};
-  frame.north = {0, 1, 0};
-  frame.up = {0, 0, 1};
   vpe::core::View view;
-  view.eye = {{0, 0, 0}, mars::oriented_axes(frame, std::fmod(yaw_deg, 360.0), pitch_deg, 0.0)};
+  view.eye = {{0, 0, 0}, mars::oriented_axes(kViewerFrame, std::fmod(yaw_deg, 360.0), pitch_deg, 0.0)};
   view.fov_deg = fov_deg;
   view.width = width_px;
   view.height = height_px;

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
+#include "mars/sphere.h"
 #include "panorama/projection.h"
 #include "vpe/core/view.h"
 
@@ -78,6 +79,9 @@ class Viewer {
 // Unit vector (east, north, up) of a direction, and back.
 glm::dvec3 to_vector(const Direction& direction);
 Direction to_direction(const glm::dvec3& vector);
+
+// North and up of views whose axes are in the panorama's frame.
+inline constexpr mars::LocalFrame kViewerFrame{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 // A level perspective view of a panorama, its axes in the panorama's frame.
 vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int width_px, int height_px);

@@ -1,6 +1,7 @@
 #include "panorama/xml.h"
 
 #include <utility>
+#include <vector>
 
 namespace panorama {
 
@@ -8,32 +9,56 @@ namespace {
 
 constexpr int kMaxDepth = 100;
 
-// Whether a name's prefix stands for the namespace where it is used.
-bool is_of(std::string_view name, pugi::xml_node where, std::string_view uri, bool is_attribute) {
-  const std::size_t colon = name.find(':');
-  const bool has_prefix = colon != std::string_view::npos;
-  if (is_attribute && !has_prefix) return false;  // attributes have no default namespace
-  const std::string declaration = has_prefix ? "xmlns:" + std::string(name.substr(0, colon)) : "xmlns";
-  for (; where; where = where.parent()) {
-    if (const pugi::xml_attribute found = where.attribute(declaration.c_str())) return found.value() == uri;
+// Which prefixes stand for one namespace, from the root to the element that is visited.
+class Scopes {
+ public:
+  explicit Scopes(std::string_view uri) : uri_(uri) {}
+
+  // At an element that has `depth` others around it.
+  void enter(pugi::xml_node element, std::size_t depth) {
+    declared_.resize(depth + 1);
+    Declarations& here = declared_.back();
+    here.clear();
+    for (const pugi::xml_attribute attribute : element.attributes()) {
+      const std::string_view name = attribute.name();
+      if (name == "xmlns") here.emplace("", attribute.value() == uri_);
+      if (name.starts_with("xmlns:")) here.emplace(name.substr(6), attribute.value() == uri_);
+    }
   }
-  return false;
-}
+
+  bool holds(std::string_view name, bool is_attribute) const {
+    const std::size_t colon = name.find(':');
+    const bool has_prefix = colon != std::string_view::npos;
+    if (is_attribute && !has_prefix) return false;  // attributes have no default namespace
+    const std::string_view prefix = has_prefix ? name.substr(0, colon) : std::string_view();
+    for (auto scope = declared_.rbegin(); scope != declared_.rend(); ++scope) {
+      if (const auto found = scope->find(prefix); found != scope->end()) return found->second;
+    }
+    return false;
+  }
+
+ private:
+  using Declarations = std::map<std::string_view, bool>;  // of equal ones the first
+
+  std::string_view uri_;
+  std::vector<Declarations> declared_;
+};
 
 class Collector : public pugi::xml_tree_walker {
  public:
-  explicit Collector(std::string_view uri) : uri_(uri) {}
+  explicit Collector(std::string_view uri) : scopes_(uri) {}
 
   bool for_each(pugi::xml_node& node) override {
     // Looking up prefixes takes time in proportion to the depth.
     if (depth() > kMaxDepth) throw MetadataError("XML nested deeper than " + std::to_string(kMaxDepth));
     if (node.type() != pugi::node_element) return true;
+    scopes_.enter(node, static_cast<std::size_t>(depth()));
     for (const pugi::xml_attribute attribute : node.attributes()) {
-      if (is_of(attribute.name(), node, uri_, true)) put(attribute.name(), attribute.value());
+      if (scopes_.holds(attribute.name(), true)) put(attribute.name(), attribute.value());
     }
     bool is_leaf = true;
     for (const pugi::xml_node child : node.children()) is_leaf = is_leaf && child.type() != pugi::node_element;
-    if (is_leaf && is_of(node.name(), node, uri_, false)) put(node.name(), node.child_value());
+    if (is_leaf && scopes_.holds(node.name(), false)) put(node.name(), node.child_value());
     return true;
   }
 
@@ -43,12 +68,12 @@ class Collector : public pugi::xml_tree_walker {
   void put(std::string_view name, std::string_view value) {
     const auto [at, is_new] = found.emplace(local_name(name), trim(value));
     if (!is_new && at->second != trim(value)) {
-      throw MetadataError("two values of " + std::string(name) + ", '" + at->second + "' and '" +
-                          std::string(trim(value)) + "'; keep one");
+      throw MetadataError("two values of " + excerpt(name) + ", '" + excerpt(at->second) + "' and '" +
+                          excerpt(trim(value)) + "'; keep one");
     }
   }
 
-  std::string_view uri_;
+  Scopes scopes_;
 };
 
 }  // namespace

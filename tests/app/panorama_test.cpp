@@ -1,15 +1,13 @@
 // vpe panorama by rays, as a user runs it.
-#include <tiffio.h>
-
 #include <cmath>
 #include <csignal>
 #include <cstring>
-#include <memory>
 
 #include "mars/pose.h"
 #include "panorama/open_panorama.h"
 #include "panorama/plan.h"
 #include "tests/app/support/app_fixture.h"
+#include "tests/app/support/tiff_numbers.h"
 #include "tests/paging/planet_fixture.h"
 #include "vpe/core/image.h"
 
@@ -18,36 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Numbers of a tiled TIFF, row by row.
-template <class Number>
-std::vector<Number> read_numbers(const fs::path& path, int samples = 1) {
-  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(path.c_str(), "r"), TIFFClose);
-  if (tiff == nullptr) throw std::runtime_error("cannot open " + path.string());
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
-  TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
-  constexpr std::uint32_t kTile = 256;
-  const auto count = static_cast<std::size_t>(samples);
-  std::vector<Number> all(std::size_t{width} * height * count);
-  std::vector<Number> tile(std::size_t{kTile} * kTile * count);
-  for (std::uint32_t y = 0; y < height; y += kTile) {
-    for (std::uint32_t x = 0; x < width; x += kTile) {
-      if (TIFFReadTile(tiff.get(), tile.data(), x, y, 0, 0) < 0) throw std::runtime_error("cannot read a tile");
-      for (std::uint32_t j = 0; j < std::min(kTile, height - y); ++j) {
-        std::copy_n(tile.begin() + static_cast<std::ptrdiff_t>(std::size_t{j} * kTile * count),
-                    std::min(kTile, width - x) * count,
-                    all.begin() + static_cast<std::ptrdiff_t>((std::size_t{y + j} * width + x) * count));
-      }
-    }
-  }
-  return all;
-}
-
 class Panorama : public AppTest {
  protected:
-  static void SetUpTestSuite() { TIFFSetWarningHandler(nullptr); }
-
   Words words(const std::string& output, const Words& more = {}) const {
     Words all{"panorama", planet().string(), "--at", "10,5", "--height", "4000", "-o", output, "-q"};
     all.insert(all.end(), more.begin(), more.end());
@@ -130,7 +100,7 @@ TEST_F(Panorama, AtAPoleItIsTheOneOfItsMeridian) {
 }
 
 TEST_F(Panorama, ResumedAfterASignalItIsTheSame) {
-  for (const std::string name : {"p.tif", "p.png"}) {
+  for (const std::string name : {"p.tif", "p.png", "p.jpg"}) {
     Words more = wide();
     more.insert(more.end(), {"--planes", "range,elevation"});
     make(name, more);
@@ -236,6 +206,16 @@ TEST_F(Panorama, DamagedDescriptionsAreNotMadeAgain) {
   changed = json;
   changed["vpe"]["recipe"]["plan"]["projection"] = 7;
   expect(changed.dump(), {"projection", "wrong type"});
+  // Whole numbers are those that fit.
+  for (const nlohmann::json& number : {nlohmann::json(8.5), nlohmann::json(1e300), nlohmann::json(1LL << 40),
+                                       nlohmann::json(~0ULL), nlohmann::json(true)}) {
+    changed = json;
+    changed["vpe"]["recipe"]["memory_mb"] = number;
+    expect(changed.dump(), {"memory_mb", "wrong type"});
+  }
+  changed = json;
+  changed["vpe"]["recipe"]["plan"]["width"] = 1e300;
+  expect(changed.dump(), {"width", "wrong type"});
   changed = json;
   changed["vpe"]["recipe"]["planes"] = "range,colour";
   expect(changed.dump(), {"'colour'"});
@@ -265,7 +245,6 @@ TEST_F(Panorama, BadInputIsToldBeforeAnyWork) {
   refuse(2, {"--from", "0", "--to", "400"}, {"0.1 to 360"});
   refuse(2, {"--planes", "range,depth"}, {"'depth'", "range, lonlat, elevation, slope, incidence"});
   refuse(2, {"--set", "nonsense=1"}, {"nonsense"});
-  refuse(2, {"--set", "overlay.graticule=on"}, {"overlay", "vpe render"});
   refuse(1, {}, {"x.bmp", ".tif, .png or .jpg"}, "x.bmp");
   refuse(1, {}, {"no folder", "none"}, "none/x.png");
   refuse(1, {"--width", "66000", "--elevation=-5,5"}, {"x.jpg", "65500", ".tif"}, "x.jpg");

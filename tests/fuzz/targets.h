@@ -30,6 +30,15 @@ extern const Target kPlanet;
 // Labels of PDS images, the label being the image's own: parsing, placing, and opening as a user does.
 extern const Target kLabel;
 
+// What describes a panorama: labels of rover mosaics (the first byte chooses PDS3 and VICAR, or PDS4), GPano's
+// XMP, the JSON beside a picture. What is read can be used, and survives being written.
+extern const Target kRover;
+extern const Target kGpano;
+extern const Target kSidecar;
+
+// PNG, JPEG and TIFF as panoramas and planes: describing, looking, reading by rows, putting a packet in.
+extern const Target kPicture;
+
 // Ends the process with the words when `promise` does not hold.
 void require(bool promise, const char* words);
 

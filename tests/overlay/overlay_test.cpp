@@ -23,18 +23,21 @@ using vpe::overlay::needs_range;
 Overlays all_of_them() {
   Overlays all;
   all.legend = all.graticule = all.contours = all.scale_bar = all.north_arrow = all.time_code = true;
+  all.compass = vpe::core::CompassStrip::kBottom;
   all.title = "A title";
   all.names = "places";
+  all.distances = true;
   return all;
 }
 
 // Each of them alone.
 std::vector<Overlays> one_by_one() {
-  std::vector<Overlays> each(8);
+  std::vector<Overlays> each(9);
   each[0].legend = each[1].graticule = each[2].contours = each[3].scale_bar = true;
   each[4].north_arrow = each[5].time_code = true;
   each[6].title = "A title";
   each[7].names = "places";
+  each[8].compass = vpe::core::CompassStrip::kTop;
   return each;
 }
 
@@ -65,7 +68,7 @@ TEST(Overlay, NothingSetCostsNothing) {
 }
 
 TEST(Overlay, OnlyWhatLooksAtTheGroundNeedsRanges) {
-  const std::vector<bool> needs{false, true, true, true, true, false, false, true};
+  const std::vector<bool> needs{false, true, true, true, true, false, false, true, false};
   const std::vector<Overlays> each = one_by_one();
   for (std::size_t n = 0; n < each.size(); ++n) {
     EXPECT_TRUE(any(each[n]));

@@ -42,7 +42,7 @@ void look_around(const fs::path& path, int requests) {
   test_support::Random random(42);
   panorama::LookOptions look;
   look.outside = {1, 2, 3};
-  const std::int64_t resident_kib = of_process("status", "VmRSS:");
+  [[maybe_unused]] const std::int64_t resident_kib = of_process("status", "VmRSS:");
   for (int n = 0; n < requests; ++n) {
     panorama::Viewer viewer(map, 64, 36);
     viewer.look_at(random.uniform(-1e4, 1e4), random.uniform(-90.0, 90.0));

@@ -88,6 +88,16 @@ TEST(RasterPlane, ValuesOfEveryKind) {
   }
 }
 
+TEST(Companions, DeepNestingIsNoDanger) {
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  for (const std::string& json : {"{\"stereo\": " + deep + "}", "{\"planes\": {\"range\": " + deep + "}}",
+                                  "{\"planes\": " + deep + "}", deep}) {
+    const std::string message = message_of([&] { panorama::read_companions(json); });
+    EXPECT_FALSE(message.empty());
+    EXPECT_LT(message.size(), 1000U);
+  }
+}
+
 TEST(RasterPlane, BadOnesAreNamed) {
   const test_support::TempDir folder;
   vpe::core::write_tiff(folder / "a.tif", std::vector<float>(64, 1.0F), 8, 8);

@@ -119,6 +119,45 @@ TEST(GPano, RefusesWhatCannotBeUnderstood) {
               "nested");
 }
 
+// Looking up a prefix must not take time in proportion to the attributes beside it.
+TEST(GPano, IsFoundAmongManyAttributes) {
+  std::string many;
+  for (int n = 0; n < 300'000; ++n) many += " q:a" + std::to_string(n) + "=''";
+  const std::string xmp =
+      "<x" + many +
+      " xmlns:q='other' xmlns:g='http://ns.google.com/photos/1.0/panorama/' g:ProjectionType='cylindrical' "
+      "g:CroppedAreaImageWidthPixels='7' g:CroppedAreaImageHeightPixels='5' "
+      "g:FullPanoWidthPixels='7' g:FullPanoHeightPixels='5' g:CroppedAreaLeftPixels='0' "
+      "g:CroppedAreaTopPixels='-2'/>";
+  const auto found = panorama::read_gpano(xmp);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->full_width_px, 7);
+}
+
+TEST(GPano, PrefixesStandForWhatTheNearestElementSays) {
+  const auto xmp = [](const std::string& inner) {
+    return "<x xmlns:g='http://ns.google.com/photos/1.0/panorama/' xmlns:h='other'>" + inner + "</x>";
+  };
+  EXPECT_FALSE(panorama::read_gpano(xmp("<y xmlns:g='other'><g:ProjectionType>a</g:ProjectionType></y>")));
+  EXPECT_FALSE(panorama::read_gpano(xmp("<h:ProjectionType>a</h:ProjectionType>")));
+  EXPECT_FALSE(panorama::read_gpano(xmp("<ProjectionType>a</ProjectionType>")));
+  EXPECT_SAYS(message_of([&] { panorama::read_gpano(xmp("<g:ProjectionType>a</g:ProjectionType>")); }),
+              "GPano without");
+  // An element's declarations end with it.
+  EXPECT_SAYS(message_of([&] {
+                panorama::read_gpano(
+                    xmp("<y xmlns:g='other'><z xmlns:h='third'/></y><g:ProjectionType>a"
+                        "</g:ProjectionType>"));
+              }),
+              "GPano without");
+  EXPECT_SAYS(message_of([&] {
+                panorama::read_gpano(
+                    xmp("<y xmlns='http://ns.google.com/photos/1.0/panorama/' ProjectionType='no'>"
+                        "<ProjectionType>a</ProjectionType></y>"));
+              }),
+              "GPano without");
+}
+
 TEST(GPano, GivesTheMapOfTheDescribedPicture) {
   // 3600 columns to the turn, heading 90 in its middle, 200 columns cut at the left, top 150 rows above the
   // horizon.

@@ -186,6 +186,20 @@ TEST(RoverLabel, BadOnesAreMessages) {
   EXPECT_SAYS(refused("69.9294", "60.0"), "ZERO_ELEVATION_LINE");
 }
 
+// A name that is repeated in front of every key must not multiply the label's size.
+TEST(RoverLabel, LongNamesTakeNoMoreMemoryThanTheLabel) {
+  const std::string name(1'000'000, 'P');
+  std::string vicar = "LBLSIZE=2048 PROPERTY='" + name + "' ";
+  std::string pds3 = "PDS_VERSION_ID = PDS3\nGROUP = " + name + "\n";
+  for (int n = 0; n < 30'000; ++n) {
+    vicar += "K" + std::to_string(n) + "=1 ";
+    pds3 += "K" + std::to_string(n) + " = 1\n";
+  }
+  EXPECT_EQ(panorama::read_text_label(vicar), std::nullopt);
+  EXPECT_EQ(panorama::read_text_label(pds3), std::nullopt);
+  EXPECT_TRUE(panorama::read_text_label(vicar + kVicar.substr(kVicar.find("PROPERTY='SURFACE"))));
+}
+
 TEST(RoverLabel, AnythingIsAMessageOrALabel) {
   test_support::Random random(831);
   for (const std::string* text : {&kPds3, &kVicar, &kPds4}) {

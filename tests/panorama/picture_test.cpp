@@ -264,6 +264,22 @@ TEST(OpenPicture, TiffOfOtherProgramsWithReducedPages) {
   EXPECT_TRUE(fs::exists(folder / "cache"));
 }
 
+// What the libraries hold by then is given back: the address sanitizer looks.
+TEST(OpenRows, RefusedPicturesLeaveNothingBehind) {
+  const test_support::TempDir folder;
+  const std::vector<std::uint8_t> png = panorama_test::png(64, 48);
+  vpe::core::write_file(folder / "cut.png", std::span(png).first(30));
+  EXPECT_SAYS(message_of([&] { panorama::open_png_rows(folder / "cut.png"); }), "cut.png", "damaged");
+  const std::vector<std::uint8_t> jpeg = panorama_test::jpeg(64, 48);
+  vpe::core::write_file(folder / "cut.jpg", std::span(jpeg).first(200));
+  EXPECT_SAYS(message_of([&] { panorama::open_jpeg_rows(folder / "cut.jpg"); }), "cut.jpg", "damaged");
+  vpe::core::write_file(folder / "a.jpg", jpeg);
+  panorama_test::output_of("gdal_translate", {"-q", "-of", "JPEG", "-co", "PROGRESSIVE=YES",
+                                              (folder / "a.jpg").string(), (folder / "p.jpg").string()});
+  EXPECT_SAYS(message_of([&] { panorama::open_jpeg_rows(folder / "p.jpg"); }), "p.jpg", "progressive",
+              "--memory");
+}
+
 TEST(OpenPicture, KindsThatCannotBeReadAreToldWithWhatToDo) {
   const test_support::TempDir folder;
   vpe::core::write_tiff(folder / "float.tif", std::vector<float>(64, 1.0F), 8, 8);

@@ -117,6 +117,22 @@ TEST(Sidecar, RefusesWhatIsMissingOrContradictory) {
   EXPECT_SAYS(said(good + ", \"pose\": 7"), "pose");
 }
 
+// What a file says is quoted, but not a megabyte of it.
+TEST(Sidecar, MessagesAreShort) {
+  const std::string word(1'000'000, 'w');
+  for (
+      const std::string& json :
+      {"{\"image\": \"" + word, "{\"projection\": \"" + word + "\"}",
+       R"({"projection": "cylinder", "width": 9, "height": 9, "azimuth_increases": "anti)" + word + "\"}",
+       R"({"projection": "cylinder", "width": 9, "height": 9, "azimuth_deg_at_left": 0, "columns_per_turn": 9,)"
+       R"( "horizon_row": 4, "pose": {"lon_deg": 1, "lat_deg": 2, "datum": ")" +
+           word + "\"}}"}) {
+    const std::string message = message_of([&] { panorama::read_sidecar(json); });
+    EXPECT_FALSE(message.empty());
+    EXPECT_LT(message.size(), 1000U);
+  }
+}
+
 TEST(Sidecar, DeepNestingIsNoDanger) {
   const std::string deep = "{\"a\":" + std::string(200000, '[') + std::string(200000, ']') + "}";
   EXPECT_SAYS(message_of([&] { panorama::read_sidecar(deep); }), "projection");

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -12,12 +13,12 @@
 #include "vpe/app/panorama_files.h"
 #include "vpe/app/panorama_maker.h"
 #include "vpe/app/panorama_order.h"
+#include "vpe/app/panorama_stereo.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
 #include "vpe/core/number.h"
-#include "vpe/overlay/overlay.h"
 
 namespace vpe::app {
 
@@ -30,12 +31,10 @@ using Clock = std::chrono::steady_clock;
 // Lower, and the eye's own facet fills the picture.
 constexpr double kLeastHeight_m = 0.01;
 
-void require_drawable(const PanoramaRecipe& recipe) {
+void require_drawable(PanoramaRecipe& recipe) {
   if (recipe.backend != "voxel" && recipe.backend != "polygon")
     throw UsageError("backend '" + recipe.backend + "' is not known");
-  if (overlay::any(recipe.settings.values())) {
-    throw UsageError("--set overlay.*: overlays are for single pictures (vpe render); leave them out");
-  }
+  settle_overlays(recipe);
 }
 
 // Elevation of the ground as drawn, and as it is.
@@ -71,6 +70,10 @@ std::string sidecar_text(const PanoramaOrder& order, const PanoramaJob& job, con
   sidecar.station = panorama::Station{mars::normalize_lon_deg(eye.lon_deg), eye.lat_deg,     eye.alt_m,
                                       eye.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
   auto json = nlohmann::ordered_json::parse(panorama::to_json(sidecar));
+  if (const auto& eyes = order.recipe.stereo) {
+    if (eyes->layout != core::StereoLayout::kAnaglyph) json["stereo"] = core::to_string(eyes->layout);
+    json["eye_base_m"] = eyes->base_m;
+  }
   json["radius_m"] = meta.radius_m;
   json["illustration"] = meta.illustration;
   for (const panorama::Plane plane : job.planes) {
@@ -97,6 +100,7 @@ std::string fingerprint(const PanoramaOrder& order, const PanoramaJob& job, cons
   digest.add(panorama::to_json(panorama::Sidecar{"", job.map, std::nullopt}));
   digest.add(static_cast<std::int64_t>(job.format == PanoramaFormat::kTiff));
   for (const panorama::Plane plane : job.planes) digest.add(panorama::info_of(plane).name);
+  if (recipe.stereo) digest.add(to_json(recipe)["stereo"].dump());
   return digest.hex();
 }
 
@@ -113,8 +117,8 @@ nlohmann::json report_json(const PanoramaJob& job, const PanoramaMaker& maker, c
           {"sidecar", sidecar_file(job.output).string()},
           {"planes", planes},
           {"projection", panorama::to_string(job.map.kind)},
-          {"width", job.map.width_px},
-          {"height", job.map.height_px},
+          {"width", job.size.width_px},
+          {"height", job.size.height_px},
           {"rounded", plan.rounded},
           {"strips_made", maker.made()},
           {"strips_kept", maker.kept()},
@@ -136,14 +140,22 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   }
   PanoramaRecipe& recipe = order.recipe;
   require_drawable(recipe);
+  check_stereo_panorama(order.stereo, recipe);
+  std::optional<core::StereoLayout> layout = core::parse_stereo(order.stereo.layout);
+  if (recipe.stereo) layout = recipe.stereo->layout;
   // What cannot be written is told before any work.
   job.output = order.output;
   job.format = panorama_format(job.output);
   job.map = plan.map;
   job.planes = recipe.planes;
   job.software = std::string("vpe ") + version();
-  job.strips = panorama::strips_of(job.map);
-  check_panorama_size(job.output, job.map, common.memory_mb);
+  job.size = layout ? panorama::size_of_pair(job.map, *layout)
+                    : panorama::PictureSize{job.map.width_px, job.map.height_px};
+  job.is_red_cyan = layout == core::StereoLayout::kAnaglyph;
+  // GPano knows of one picture.
+  job.has_gpano = job.map.kind != panorama::MapKind::kFacets && (!layout || job.is_red_cyan);
+  job.strips = panorama::strips_of(job.size.width_px, job.size.height_px);
+  check_panorama_size(job.output, job.size, common.memory_mb);
   for (const panorama::Plane plane : job.planes) check_output(plane_file(job.output, plane));
   check_sidecar(job.output);
 
@@ -176,14 +188,26 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   remove_stale_files(job.output);
   core::ThreadPool pool(common.threads);
   PanoramaTimes times;
-  times.start = seconds();
-  const auto renderer = [&](int memory_mb) {
+  const int memory_mb = recipe.memory_mb > 0 ? recipe.memory_mb : common.memory_mb;
+  std::unique_ptr<core::Renderer> warm;  // has the ground of the middle already
+  const auto renderer = [&](int share_mb) {
+    if (warm) return std::move(warm);
     Common share = common;
-    share.memory_mb = memory_mb;
+    share.memory_mb = share_mb;
     return make_renderer(options, share, planet);
   };
+  if (layout && !recipe.stereo) {
+    warm = renderer(renderer_memory_mb(job, memory_mb));
+    recipe.stereo = measure_eyes(order.stereo, recipe, planet->radius_m(), request, *warm);
+  }
+  if (recipe.stereo) {
+    const paging::Surface surface(planet, std::size_t{8} << 20);
+    require_eyes_above_ground(recipe, surface, kLeastHeight_m);
+  }
+  times.start = seconds();
+  PanoramaOverlays overlays(recipe, job.map, planet, pool, memory_bytes(common) / 2);
   PanoramaMaker maker(job, recipe, request, fingerprint(order, job, request, planet->radius_m()), planet,
-                      renderer, pool, recipe.memory_mb > 0 ? recipe.memory_mb : common.memory_mb);
+                      renderer, overlays, pool, memory_mb);
   {
     ProgressLine line(common.quiet);
     const auto strips = maker.run(line, times);
@@ -199,11 +223,14 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   }
   if (!common.quiet) warn_of(maker.failures());
   if (common.json) {
-    print_json(report_json(job, maker, times, seconds(), plan, recipe.backend));
+    auto report = report_json(job, maker, times, seconds(), plan, recipe.backend);
+    if (recipe.stereo) report["eye_base_m"] = recipe.stereo->base_m;
+    print_json(report);
   } else if (!common.quiet) {
     std::printf("%s: %s of %lldx%lld pixels in %.1f s, geometry within %.2g px\n", job.output.c_str(),
-                panorama::to_string(job.map.kind), static_cast<long long>(job.map.width_px),
-                static_cast<long long>(job.map.height_px), seconds(), maker.figures().shift_bound_px);
+                panorama::to_string(job.map.kind), static_cast<long long>(job.size.width_px),
+                static_cast<long long>(job.size.height_px), seconds(), maker.figures().shift_bound_px);
+    if (recipe.stereo) std::printf("eyes %.4g m apart\n", recipe.stereo->base_m);
   }
 }
 
@@ -246,6 +273,7 @@ void add_panorama(CLI::App& program, Common& common) {
                       "PANO.json: make the same picture again, as it says; goes with PLANET and -o only");
   arguments->picture.backend = "voxel";
   add_picture_options(*command, arguments->picture);
+  add_eye_options(*command, arguments->stereo);
   command->callback([arguments, facets, yaw, &common] {
     arguments->has_facets = facets->count() > 0;
     arguments->has_yaw = yaw->count() > 0;

@@ -29,7 +29,7 @@ fs::path with_end(const fs::path& picture, const std::string& end) {
 
 // Empty for pictures that GPano cannot describe.
 std::string packet_of(const PanoramaJob& job) {
-  if (job.map.kind == panorama::MapKind::kFacets) return {};
+  if (!job.has_gpano) return {};
   try {
     panorama::GPano gpano = panorama::gpano_of(job.map);
     gpano.use_viewer = true;
@@ -46,7 +46,7 @@ void copy_tiles(panorama::BigTiffWriter& writer, const PanoramaJob& job,
                 const std::function<void(double)>& done) {
   std::int64_t across = 0;
   for (std::size_t n = 0; n < strips.size(); ++n) {
-    const StripLayout layout = layout_of(job.format, job.map, job.strips[n], job.planes.size());
+    const StripLayout layout = layout_of(job.format, job.size.height_px, job.strips[n], job.planes.size());
     const std::size_t first = first_of_strip(layout, plane);
     for (std::int64_t y = 0; y < layout.tiles_down; ++y) {
       for (std::int64_t x = 0; x < layout.tiles_across; ++x) {
@@ -66,12 +66,12 @@ std::size_t first_of_plane(const StripLayout& layout, std::size_t plane) {
 
 void copy_rows(panorama::RowWriter& writer, const PanoramaJob& job,
                const std::vector<panorama::StripFile>& strips, const std::function<void(double)>& done) {
-  const std::int64_t bands = layout_of(job.format, job.map, job.strips.front(), 0).bands;
-  const auto width = static_cast<std::size_t>(job.map.width_px);
+  const std::int64_t bands = layout_of(job.format, job.size.height_px, job.strips.front(), 0).bands;
+  const auto width = static_cast<std::size_t>(job.size.width_px);
   std::vector<mars::Rgb> rows;
   for (std::int64_t band = 0; band < bands; ++band) {
     const std::int64_t begin = band * StripLayout::kBandRows;
-    const auto count = static_cast<std::size_t>(std::min(StripLayout::kBandRows, job.map.height_px - begin));
+    const auto count = static_cast<std::size_t>(std::min(StripLayout::kBandRows, job.size.height_px - begin));
     rows.resize(count * width);
     for (std::size_t n = 0; n < strips.size(); ++n) {
       const std::vector<std::uint8_t> bytes = strips[n].block(1 + static_cast<std::size_t>(band));
@@ -91,17 +91,17 @@ void copy_rows(panorama::RowWriter& writer, const PanoramaJob& job,
 void write_picture(core::OutputFile& file, const PanoramaJob& job,
                    const std::vector<panorama::StripFile>& strips, core::ThreadPool& pool,
                    const std::function<void(double)>& done) {
-  const panorama::PanoramaMap& map = job.map;
+  const panorama::PictureSize& size = job.size;
   const std::string packet = packet_of(job);
   if (job.format != PanoramaFormat::kTiff) {
     const auto writer =
         job.format == PanoramaFormat::kPng
-            ? panorama::make_png_writer(file, map.width_px, map.height_px, packet, pool)
-            : panorama::make_jpeg_writer(file, map.width_px, map.height_px, packet, kJpegQuality);
+            ? panorama::make_png_writer(file, size.width_px, size.height_px, packet, pool)
+            : panorama::make_jpeg_writer(file, size.width_px, size.height_px, packet, kJpegQuality);
     copy_rows(*writer, job, strips, done);
     return;
   }
-  panorama::BigTiffWriter writer(file, map.width_px, map.height_px, panorama::kRgb,
+  panorama::BigTiffWriter writer(file, size.width_px, size.height_px, panorama::kRgb,
                                  {job.software, packet, false});
   copy_tiles(writer, job, strips, first_of_picture, 0, [&](double part) { done(0.6 * part); });
   writer.add_reduced_pages(pool, [&](double part) { done(0.6 + 0.4 * part); });
@@ -125,16 +125,17 @@ PanoramaFormat panorama_format(const fs::path& path) {
   return *format;
 }
 
-void check_panorama_size(const fs::path& path, const panorama::PanoramaMap& map, int memory_mb) {
-  const std::string size = std::to_string(map.width_px) + "x" + std::to_string(map.height_px);
+void check_panorama_size(const fs::path& path, const panorama::PictureSize& picture, int memory_mb) {
+  const std::string size = std::to_string(picture.width_px) + "x" + std::to_string(picture.height_px);
   const PanoramaFormat format = panorama_format(path);
   if (format == PanoramaFormat::kTiff) return;
-  if (format == PanoramaFormat::kJpeg && std::max(map.width_px, map.height_px) > panorama::kMaxJpegSide_px) {
+  if (format == PanoramaFormat::kJpeg &&
+      std::max(picture.width_px, picture.height_px) > panorama::kMaxJpegSide_px) {
     throw std::runtime_error(path.string() + ": cannot write " + size + " pixels: a JPEG has at most " +
                              std::to_string(panorama::kMaxJpegSide_px) + " a side; let the name end in .tif");
   }
   // A band of rows, as it is and packed.
-  const std::int64_t band_mb = 2 * StripLayout::kBandRows * map.width_px * 3 / (1 << 20);
+  const std::int64_t band_mb = 2 * StripLayout::kBandRows * picture.width_px * 3 / (1 << 20);
   if (band_mb > memory_mb) {
     throw std::runtime_error(path.string() + ": cannot write " + size + " pixels: rows this long take " +
                              std::to_string(band_mb) + " MB; let the name end in .tif or raise --memory (now " +
@@ -174,14 +175,14 @@ void remove_stale_files(const fs::path& picture) {
 
 fs::path strips_folder(const fs::path& picture) { return picture.string() + ".parts"; }
 
-StripLayout layout_of(PanoramaFormat format, const panorama::PanoramaMap& map, const panorama::Strip& strip,
+StripLayout layout_of(PanoramaFormat format, std::int64_t height_px, const panorama::Strip& strip,
                       std::size_t planes) {
   const auto tiles = [](std::int64_t px) { return (px + panorama::kTile_px - 1) / panorama::kTile_px; };
   StripLayout layout;
   layout.in_tiles = format == PanoramaFormat::kTiff;
   layout.tiles_across = tiles(strip.width);
-  layout.tiles_down = tiles(map.height_px);
-  layout.bands = (map.height_px + StripLayout::kBandRows - 1) / StripLayout::kBandRows;
+  layout.tiles_down = tiles(height_px);
+  layout.bands = (height_px + StripLayout::kBandRows - 1) / StripLayout::kBandRows;
   layout.planes = planes;
   return layout;
 }
@@ -195,8 +196,8 @@ void join_strips(const PanoramaJob& job, const std::vector<panorama::StripFile>&
   };
   for (std::size_t n = 0; n < job.planes.size(); ++n) {
     const panorama::SampleFormat format = panorama::info_of(job.planes[n]).format;
-    panorama::BigTiffWriter writer(make(plane_file(job.output, job.planes[n])), job.map.width_px,
-                                   job.map.height_px, format, {job.software, "", true});
+    panorama::BigTiffWriter writer(make(plane_file(job.output, job.planes[n])), job.size.width_px,
+                                   job.size.height_px, format, {job.software, "", true});
     copy_tiles(writer, job, strips, first_of_plane, n,
                [&](double part) { done((static_cast<double>(n) + part) / steps); });
     writer.finish();

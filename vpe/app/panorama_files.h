@@ -8,6 +8,7 @@
 
 #include "panorama/planes.h"
 #include "panorama/projection.h"
+#include "panorama/stereo_pieces.h"
 #include "panorama/strip_file.h"
 #include "vpe/core/parallel.h"
 
@@ -19,7 +20,7 @@ enum class PanoramaFormat : std::uint8_t { kTiff, kPng, kJpeg };
 PanoramaFormat panorama_format(const std::filesystem::path& path);
 
 // Throws std::runtime_error when the format cannot hold the size.
-void check_panorama_size(const std::filesystem::path& path, const panorama::PanoramaMap& map, int memory_mb);
+void check_panorama_size(const std::filesystem::path& path, const panorama::PictureSize& size, int memory_mb);
 
 std::filesystem::path plane_file(const std::filesystem::path& picture, panorama::Plane plane);
 std::filesystem::path sidecar_file(const std::filesystem::path& picture);
@@ -45,13 +46,16 @@ struct StripLayout {
   std::size_t picture_blocks() const { return in_tiles ? tiles() : static_cast<std::size_t>(bands); }
   std::size_t blocks() const { return 1 + picture_blocks() + planes * tiles(); }
 };
-StripLayout layout_of(PanoramaFormat format, const panorama::PanoramaMap& map, const panorama::Strip& strip,
+StripLayout layout_of(PanoramaFormat format, std::int64_t height_px, const panorama::Strip& strip,
                       std::size_t planes);
 
 struct PanoramaJob {
   std::filesystem::path output;
   PanoramaFormat format = PanoramaFormat::kTiff;
-  panorama::PanoramaMap map;
+  panorama::PanoramaMap map;   // of one eye
+  panorama::PictureSize size;  // of the file
+  bool is_red_cyan = false;    // two eyes in one picture
+  bool has_gpano = false;      // where GPano can describe the map
   std::vector<panorama::Strip> strips;
   std::vector<panorama::Plane> planes;
   std::string software;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "panorama/tile_codec.h"
@@ -48,7 +49,12 @@ std::string text_of(const PanoramaFigures& figures) {
 std::optional<PanoramaFigures> figures_from(const std::vector<std::uint8_t>& text) {
   try {
     const auto json = nlohmann::json::parse(text);
-    return PanoramaFigures{json.at("tile_error_m"), json.at("shift_bound_px"), json.at("tiles_substituted"),
+    // JSON has null for what nothing bounds.
+    const auto bound = [&json](const char* key) {
+      const auto& value = json.at(key);
+      return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+    };
+    return PanoramaFigures{bound("tile_error_m"), bound("shift_bound_px"), json.at("tiles_substituted"),
                            json.at("tiles_missing")};
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;
@@ -73,6 +79,30 @@ void PanoramaFigures::add(const PanoramaFigures& other) {
   tiles_missing += other.tiles_missing;
 }
 
+namespace {
+
+// What is held of the picture comes out of the same memory: a strip, and a piece with its samples.
+int free_memory_mb(const PanoramaJob& job, int memory_mb) {
+  constexpr std::size_t kPieceBytes = 24;
+  constexpr int kLeast_mb = 64;
+  const std::size_t pixel_bytes =
+      sizeof(mars::Rgb) * (job.is_red_cyan ? 2 : 1) + (job.planes.empty() ? 0 : sizeof(float));
+  const std::size_t held =
+      static_cast<std::size_t>(job.strips.front().width * job.size.height_px) * pixel_bytes +
+      static_cast<std::size_t>(panorama::PlanLimits::kPiecePixels) * kPieceBytes;
+  return std::max(kLeast_mb, memory_mb - static_cast<int>(held >> 20));
+}
+
+}  // namespace
+
+int planes_memory_mb(const PanoramaJob& job, int memory_mb) {
+  return job.planes.empty() ? 0 : free_memory_mb(job, memory_mb) / 4;
+}
+
+int renderer_memory_mb(const PanoramaJob& job, int memory_mb) {
+  return free_memory_mb(job, memory_mb) - planes_memory_mb(job, memory_mb);
+}
+
 // One strip while it is drawn: colours, and ranges where planes are wanted.
 struct PanoramaMaker::Canvas {
   std::int64_t width = 0;
@@ -91,13 +121,14 @@ struct PanoramaMaker::Canvas {
 PanoramaMaker::PanoramaMaker(const PanoramaJob& job, const PanoramaRecipe& recipe,
                              const core::DrawRequest& request, std::string fingerprint,
                              std::shared_ptr<const paging::PlanetFile> planet, MakeRenderer make_renderer,
-                             core::ThreadPool& pool, int memory_mb)
+                             PanoramaOverlays& overlays, core::ThreadPool& pool, int memory_mb)
     : job_(job),
       recipe_(recipe),
       request_(request),
       fingerprint_(std::move(fingerprint)),
       planet_(std::move(planet)),
       make_renderer_(std::move(make_renderer)),
+      overlays_(overlays),
       pool_(pool),
       memory_mb_(memory_mb),
       margin_px_(recipe.settings.values().smooth_edges ? kSmoothingMargin_px : 0) {}
@@ -109,7 +140,7 @@ fs::path PanoramaMaker::strip_path(std::size_t n) const {
 }
 
 std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
-  const StripLayout layout = layout_of(job_.format, job_.map, job_.strips[n], job_.planes.size());
+  const StripLayout layout = layout_of(job_.format, job_.size.height_px, job_.strips[n], job_.planes.size());
   auto strip = panorama::StripFile::open(strip_path(n), fingerprint_, layout.blocks());
   if (!strip) return std::nullopt;
   const auto figures = figures_from(strip->block(0));
@@ -141,34 +172,36 @@ std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, Panorama
 
 panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, PanoramaTimes& times) {
   const Strip& strip = job_.strips[n];
-  const StripLayout layout = layout_of(job_.format, job_.map, strip, job_.planes.size());
-  const panorama::Standpoint standpoint{recipe_.eye, planet_->radius_m()};
+  const StripLayout layout = layout_of(job_.format, job_.size.height_px, strip, job_.planes.size());
   Canvas canvas;
   canvas.x = strip.x;
   canvas.width = strip.width;
-  canvas.height = job_.map.height_px;
+  canvas.height = job_.size.height_px;
   const std::size_t pixels = static_cast<std::size_t>(canvas.width * canvas.height);
   if (!renderer_) {
     const Stopwatch watch(times.start);
-    // What is held of the picture comes out of the same memory: the strip, and a piece with its samples.
-    constexpr std::size_t kPieceBytes = 24;
-    constexpr int kLeast_mb = 64;
-    const std::size_t held = pixels * (sizeof(mars::Rgb) + (job_.planes.empty() ? 0 : sizeof(float))) +
-                             static_cast<std::size_t>(panorama::PlanLimits::kPiecePixels) * kPieceBytes;
-    const int free_mb = std::max(kLeast_mb, memory_mb_ - static_cast<int>(held >> 20));
-    const int surface_mb = job_.planes.empty() ? 0 : free_mb / 4;
+    overlays_.prepare();
+    const int surface_mb = planes_memory_mb(job_, memory_mb_);
     if (surface_mb > 0) surface_ = std::make_unique<paging::Surface>(planet_, std::size_t(surface_mb) << 20);
-    renderer_ = make_renderer_(free_mb - surface_mb);
+    renderer_ = make_renderer_(renderer_memory_mb(job_, memory_mb_));
   }
+  canvas.colour.swap(colour_);
   canvas.colour.resize(pixels);
   if (!job_.planes.empty()) canvas.range_m.resize(pixels);
-  canvas.pieces = panorama::pieces_of(job_.map, standpoint, strip, margin_px_);
-  for (std::size_t k = 0; k < canvas.pieces.size(); ++k) {
+  const auto show = [&](double part) {
     InterruptGuard::check();
-    const double part = static_cast<double>(k) / static_cast<double>(canvas.pieces.size());
     line.show("drawing", 0.95 * (static_cast<double>(n) + part) / static_cast<double>(job_.strips.size()));
-    draw(canvas.pieces[k], strip, canvas, times);
+  };
+  if (recipe_.stereo) {
+    draw_eyes(strip, canvas, show, times);
+  } else {
+    canvas.pieces = panorama::pieces_of(job_.map, standpoint(), strip, margin_px_);
+    for (std::size_t k = 0; k < canvas.pieces.size(); ++k) {
+      show(static_cast<double>(k) / static_cast<double>(canvas.pieces.size()));
+      draw(canvas.pieces[k], strip, canvas, times);
+    }
   }
+  lay_overlays(canvas);
   const fs::path path = strip_path(n);
   core::OutputFile file(path, temporary_name(path));
   const std::string fingerprint = fingerprint_ + (canvas.figures.tiles_missing > 0 ? kIncomplete : "");
@@ -185,11 +218,66 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
   const Stopwatch watch(times.encoding);
   writer.finish();
   file.commit();
+  colour_.swap(canvas.colour);
   auto made = panorama::StripFile::open(path, fingerprint, layout.blocks());
   if (!made) throw core::file_error("read back", path, "it is not what was written", "check the disk");
   figures_.add(canvas.figures);
   ++made_;
   return std::move(*made);
+}
+
+// Over both eyes of a pair the same, as if infinitely far.
+void PanoramaMaker::lay_overlays(Canvas& canvas) {
+  const bool is_pair = recipe_.stereo && !job_.is_red_cyan;
+  if (!is_pair) return overlays_.lay({canvas.x, 0, canvas.width, canvas.height, canvas.colour});
+  std::vector<mars::Rgb> part;
+  for (std::int64_t y = 0; y < job_.size.height_px; y += job_.map.height_px) {
+    for (std::int64_t x = 0; x < job_.size.width_px; x += job_.map.width_px) {
+      const std::int64_t begin = std::max(x, canvas.x);
+      const std::int64_t width = std::min(x + job_.map.width_px, canvas.x + canvas.width) - begin;
+      if (width <= 0) continue;
+      part.clear();
+      const auto row_of = [&](std::int64_t row) {
+        return std::span(canvas.colour)
+            .subspan(canvas.index(begin - canvas.x, y + row), static_cast<std::size_t>(width));
+      };
+      for (std::int64_t row = 0; row < job_.map.height_px; ++row) {
+        const auto pixels = row_of(row);
+        part.insert(part.end(), pixels.begin(), pixels.end());
+      }
+      overlays_.lay({begin - x, 0, width, job_.map.height_px, part});
+      for (std::int64_t row = 0; row < job_.map.height_px; ++row)
+        std::copy_n(part.begin() + row * width, width, row_of(row).begin());
+    }
+  }
+}
+
+panorama::Standpoint PanoramaMaker::standpoint() const { return {recipe_.eye, planet_->radius_m()}; }
+
+// In columns of a tile, as cutting them all at once could take more memory than the picture.
+void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
+                              PanoramaTimes& times) {
+  const bool is_mixed = job_.is_red_cyan;
+  std::vector<mars::Rgb> left;
+  for (int begin = 0; begin < strip.width; begin += panorama::kTile_px) {
+    const int width = std::min(static_cast<int>(panorama::kTile_px), strip.width - begin);
+    const std::vector<Piece> pieces =
+        panorama::pair_pieces_of(job_.map, standpoint(), *recipe_.stereo, {strip.x + begin, width});
+    const std::size_t of_left = is_mixed ? pieces.size() / 2 : pieces.size();
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(pieces.size());
+      show((begin + width * part) / strip.width);
+      if (k == of_left) left = canvas.colour;
+      draw(pieces[k], strip, canvas, times);
+    }
+    for (std::int64_t row = 0; row < canvas.height && is_mixed; ++row) {
+      const auto columns = [&](std::vector<mars::Rgb>& pixels) {
+        return std::span<mars::Rgb>(pixels).subspan(canvas.index(begin, row), static_cast<std::size_t>(width));
+      };
+      core::mix_red_cyan(columns(left), columns(canvas.colour));
+      std::ranges::copy(columns(left), columns(canvas.colour).begin());
+    }
+  }
 }
 
 void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas, PanoramaTimes& times) {
@@ -251,7 +339,8 @@ void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& 
     InterruptGuard::check();
     const std::size_t count = std::min(batch, layout.tiles() - begin);
     pool_.run(count, [&](std::size_t n) {
-      std::vector<std::uint8_t> tile(format.tile_bytes());
+      thread_local std::vector<std::uint8_t> tile;  // as the packer keeps its own
+      tile.resize(format.tile_bytes());
       const auto index = static_cast<std::int64_t>(begin + n);
       fill_tile(index % layout.tiles_across * kSide, index / layout.tiles_across * kSide, tile.data());
       packed[n] = panorama::pack_tile(tile, format);

@@ -9,6 +9,7 @@
 #include "paging/surface.h"
 #include "panorama/plan.h"
 #include "vpe/app/panorama_files.h"
+#include "vpe/app/panorama_overlays.h"
 #include "vpe/app/panorama_recipe.h"
 #include "vpe/app/progress.h"
 #include "vpe/core/frame.h"
@@ -35,6 +36,10 @@ struct PanoramaFigures {
   void add(const PanoramaFigures& other);
 };
 
+// Of memory_mb for all, what a renderer may take beside the strip that is drawn; and the planes' share of that.
+int renderer_memory_mb(const PanoramaJob& job, int memory_mb);
+int planes_memory_mb(const PanoramaJob& job, int memory_mb);
+
 class PanoramaMaker {
  public:
   using MakeRenderer = std::function<std::unique_ptr<core::Renderer>(int memory_mb)>;
@@ -43,7 +48,7 @@ class PanoramaMaker {
   // strips depend on. References are kept.
   PanoramaMaker(const PanoramaJob& job, const PanoramaRecipe& recipe, const core::DrawRequest& request,
                 std::string fingerprint, std::shared_ptr<const paging::PlanetFile> planet,
-                MakeRenderer make_renderer, core::ThreadPool& pool, int memory_mb);
+                MakeRenderer make_renderer, PanoramaOverlays& overlays, core::ThreadPool& pool, int memory_mb);
 
   // All strips, kept or made. Throws Interrupted, saying what is kept, and what renderers and writers throw.
   std::vector<panorama::StripFile> run(ProgressLine& line, PanoramaTimes& times);
@@ -60,6 +65,10 @@ class PanoramaMaker {
   std::optional<panorama::StripFile> keep(std::size_t n);
   panorama::StripFile make(std::size_t n, ProgressLine& line, PanoramaTimes& times);
   void draw(const panorama::Piece& piece, const panorama::Strip& strip, Canvas& canvas, PanoramaTimes& times);
+  void lay_overlays(Canvas& canvas);
+  void draw_eyes(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
+                 PanoramaTimes& times);
+  panorama::Standpoint standpoint() const;
   void add_picture(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas) const;
   void add_plane(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
                  panorama::Plane plane) const;
@@ -75,11 +84,13 @@ class PanoramaMaker {
   std::string fingerprint_;
   std::shared_ptr<const paging::PlanetFile> planet_;
   MakeRenderer make_renderer_;
+  PanoramaOverlays& overlays_;
   core::ThreadPool& pool_;
   int memory_mb_;
   int margin_px_ = 0;
   std::unique_ptr<core::Renderer> renderer_;
   std::unique_ptr<paging::Surface> surface_;
+  std::vector<mars::Rgb> colour_;  // a strip's, used again by the next
   std::vector<std::string> failures_;
   PanoramaFigures figures_;
   int kept_ = 0;

@@ -66,9 +66,26 @@ std::string absolute_planet(const std::string& argument) {
 
 // A configuration file may have defaults of these; who names them beside --again means something else.
 void check_alone(const Common& common) {
-  for (const char* name : {"--at", "--height", "--altitude", "--projection", "--facets", "--yaw", "--from",
-                           "--to", "--elevation", "--width", "--degrees-per-pixel", "--planes", "--set",
-                           "--backend", "--tolerance", "--sun", "--interest", "--allow-incomplete"}) {
+  for (const char* name : {"--at",
+                           "--height",
+                           "--altitude",
+                           "--projection",
+                           "--facets",
+                           "--yaw",
+                           "--from",
+                           "--to",
+                           "--elevation",
+                           "--width",
+                           "--degrees-per-pixel",
+                           "--planes",
+                           "--set",
+                           "--backend",
+                           "--stereo",
+                           "--eye-base",
+                           "--tolerance",
+                           "--sun",
+                           "--interest",
+                           "--allow-incomplete"}) {
     for (const std::string& word : common.words) {
       if (word != name && !word.starts_with(std::string(name) + "=")) continue;
       throw UsageError(std::string(name) + " and --again: the picture is made as the JSON says; leave one out");
@@ -101,6 +118,7 @@ PanoramaOrder new_order(const PanoramaArguments& arguments, const Common& common
   recipe.planet = absolute_planet(arguments.planet);
   recipe.memory_mb = recipe.backend == "polygon" ? common.memory_mb : 0;
   recipe.allow_incomplete = arguments.picture.allow_incomplete;
+  order.stereo = arguments.stereo;
   order.height_m = arguments.height_m;
   order.output = arguments.output;
   return order;

@@ -8,6 +8,7 @@
 #include "vpe/app/panorama_recipe.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/program.h"
+#include "vpe/app/stereo_render.h"
 
 namespace vpe::app {
 
@@ -30,12 +31,14 @@ struct PanoramaArguments {
   bool has_facets = false;
   bool has_yaw = false;
   PictureOptions picture;
+  StereoArguments stereo;
 };
 
 // What a panorama is to be, but for what only the planet knows.
 struct PanoramaOrder {
   PanoramaRecipe recipe;
   std::optional<double> height_m;  // above the ground, in place of recipe.eye.alt_m
+  StereoArguments stereo;          // recipe.stereo is what the planet lets become of it
   std::filesystem::path output;
   std::string again;  // sidecar that is made again, or empty
 };

@@ -1,6 +1,8 @@
 #include "vpe/app/panorama_recipe.h"
 
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "mars/sphere.h"
 #include "panorama/metadata_error.h"
@@ -18,14 +20,24 @@ void put(nlohmann::ordered_json& out, const char* key, const std::optional<Value
   if (value) out[key] = *value;
 }
 
+[[noreturn]] void refuse(const char* key) {
+  throw MetadataError(std::string("recipe: ") + key + " is of the wrong type");
+}
+
 template <class Value>
 std::optional<Value> find(const json& from, const char* key) {
   const auto found = from.find(key);
   if (found == from.end()) return std::nullopt;
   try {
+    // The library makes a whole number of any other and of what does not fit.
+    if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+      const bool fits = found->is_number_unsigned() ? std::in_range<Value>(found->get<std::uint64_t>())
+                                                    : std::in_range<Value>(found->get<std::int64_t>());
+      if (!found->is_number_integer() || !fits) refuse(key);
+    }
     return found->get<Value>();
   } catch (const json::exception&) {
-    throw MetadataError(std::string("recipe: ") + key + " is of the wrong type");
+    refuse(key);
   }
 }
 
@@ -78,6 +90,26 @@ PlanOptions plan_from(const json& from) {
   return plan;
 }
 
+nlohmann::ordered_json stereo_json(const panorama::EyePair& eyes) {
+  nlohmann::ordered_json out;
+  out["layout"] = core::to_string(eyes.layout);
+  out["eye_base_m"] = eyes.base_m;
+  put(out, "nearest_m", eyes.nearest_m);
+  return out;
+}
+
+panorama::EyePair stereo_from(const json& from) {
+  panorama::EyePair eyes;
+  const auto layout = core::parse_stereo(needed<std::string>(from, "layout"));
+  if (!layout) throw MetadataError("recipe: stereo: layout is not sbs, ou or anaglyph");
+  eyes.layout = *layout;
+  eyes.base_m = needed<double>(from, "eye_base_m");
+  eyes.nearest_m = find<double>(from, "nearest_m");
+  if (const std::string trouble = panorama::check(eyes); !trouble.empty())
+    throw MetadataError("recipe: stereo: " + trouble);
+  return eyes;
+}
+
 }  // namespace
 
 nlohmann::ordered_json to_json(const PanoramaRecipe& recipe) {
@@ -90,9 +122,11 @@ nlohmann::ordered_json to_json(const PanoramaRecipe& recipe) {
   for (const panorama::Plane plane : recipe.planes)
     planes += (planes.empty() ? "" : ",") + std::string(panorama::info_of(plane).name);
   out["planes"] = planes;
+  if (recipe.stereo) out["stereo"] = stereo_json(*recipe.stereo);
   out["interest"] = recipe.interest;
   out["memory_mb"] = recipe.memory_mb;
   out["allow_incomplete"] = recipe.allow_incomplete;
+  if (!recipe.names_checksum.empty()) out["names_checksum"] = recipe.names_checksum;
   nlohmann::ordered_json settings;
   for (const core::SettingInfo& info : core::Settings::list())
     settings[std::string(info.key)] = recipe.settings.get(info.key).value_or("");
@@ -119,9 +153,11 @@ PanoramaRecipe recipe_from(const json& from) {
   } catch (const panorama::PlanError& e) {
     throw MetadataError(std::string("recipe: ") + e.what());
   }
+  if (from.contains("stereo")) recipe.stereo = stereo_from(object(from, "stereo"));
   recipe.interest = needed<std::vector<std::string>>(from, "interest");
   recipe.memory_mb = needed<int>(from, "memory_mb");
   recipe.allow_incomplete = needed<bool>(from, "allow_incomplete");
+  recipe.names_checksum = find<std::string>(from, "names_checksum").value_or("");
   for (const auto& [key, text] : object(from, "settings").items()) {
     const std::string trouble =
         text.is_string() ? recipe.settings.set(key, text.get<std::string>()) : "it is not a text";

@@ -9,6 +9,7 @@
 #include "mars/pose.h"
 #include "panorama/plan.h"
 #include "panorama/planes.h"
+#include "panorama/stereo_pieces.h"
 #include "vpe/core/settings.h"
 
 namespace vpe::app {
@@ -20,10 +21,12 @@ struct PanoramaRecipe {
   core::Settings settings;
   std::vector<std::string> interest;  // as --interest
   std::vector<panorama::Plane> planes;
-  std::string planet;    // file, absolute; empty: the embedded Mars
-  std::string identity;  // PlanetMeta::identity
-  int memory_mb = 0;     // bounds what polygons may take; 0 for rays, whose pictures do not depend on it
+  std::optional<panorama::EyePair> stereo;  // nothing: one eye
+  std::string planet;                       // file, absolute; empty: the embedded Mars
+  std::string identity;                     // PlanetMeta::identity
+  int memory_mb = 0;  // bounds what polygons may take; 0 for rays, whose pictures do not depend on it
   bool allow_incomplete = false;
+  std::string names_checksum;  // of the file of overlay.names, when it is set
 };
 
 // Every number to the bit: recipe_from(to_json(r)) is r.

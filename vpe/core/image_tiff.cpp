@@ -1,14 +1,12 @@
-#include <tiffio.h>
-
 #include <algorithm>
 #include <cerrno>
-#include <cstdarg>
 #include <cstring>
 #include <limits>
 #include <memory>
 
 #include "vpe/core/image.h"
 #include "vpe/core/image_checks.h"
+#include "vpe/core/tiff_handle.h"
 
 namespace vpe::core {
 
@@ -19,63 +17,6 @@ constexpr char kDamagedAdvice[] = "the file is damaged or was not made by write_
 constexpr std::size_t kStripBytes = std::size_t{1} << 18;
 // Classic TIFF holds 4 GiB; leave room for what compression may add.
 constexpr std::size_t kMaxClassicBytes = std::size_t{3} << 30;
-
-struct Words {
-  char text[512] = "unknown error";
-};
-
-int keep_words(TIFF* /*tiff*/, void* user, const char* /*module*/, const char* format, std::va_list arguments) {
-  auto* words = static_cast<Words*>(user);
-  std::vsnprintf(words->text, sizeof words->text, format, arguments);
-  return 1;
-}
-
-int ignore_words(TIFF* /*tiff*/, void* /*user*/, const char* /*module*/, const char* /*format*/,
-                 std::va_list /*arguments*/) {
-  return 1;
-}
-
-std::FILE* stream_of(thandle_t handle) { return static_cast<std::FILE*>(handle); }
-
-tmsize_t read_bytes(thandle_t handle, void* data, tmsize_t size) {
-  return static_cast<tmsize_t>(std::fread(data, 1, static_cast<std::size_t>(size), stream_of(handle)));
-}
-
-tmsize_t write_bytes(thandle_t handle, void* data, tmsize_t size) {
-  return static_cast<tmsize_t>(std::fwrite(data, 1, static_cast<std::size_t>(size), stream_of(handle)));
-}
-
-toff_t seek(thandle_t handle, toff_t offset, int whence) {
-  if (fseeko(stream_of(handle), static_cast<off_t>(offset), whence) != 0) return static_cast<toff_t>(-1);
-  return static_cast<toff_t>(ftello(stream_of(handle)));
-}
-
-int leave_open(thandle_t /*handle*/) { return 0; }
-
-toff_t size_of(thandle_t handle) {
-  const off_t here = ftello(stream_of(handle));
-  fseeko(stream_of(handle), 0, SEEK_END);
-  const off_t size = ftello(stream_of(handle));
-  fseeko(stream_of(handle), here, SEEK_SET);
-  return static_cast<toff_t>(size);
-}
-
-int no_map(thandle_t /*handle*/, void** /*base*/, toff_t* /*size*/) { return 0; }
-void no_unmap(thandle_t /*handle*/, void* /*base*/, toff_t /*size*/) {}
-
-using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
-
-// On a stream of our own, so that full disks show and paths are bytes; messages go to `words`, not to the
-// handlers that the library shares between all its users.
-Tiff open_tiff(std::FILE* stream, const char* name, const char* mode, Words& words) {
-  const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
-                                                                             TIFFOpenOptionsFree);
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_words, &words);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_words, nullptr);
-  return {TIFFClientOpenExt(name, mode, stream, read_bytes, write_bytes, seek, leave_open, size_of, no_map,
-                            no_unmap, options.get()),
-          TIFFClose};
-}
 
 std::uint16_t tag_of(TiffCompression compression) {
   switch (compression) {
@@ -123,14 +64,11 @@ void write_tiff(const std::filesystem::path& path, std::span<const float> values
     throw FileError("cannot write '" + path.string() + "': " + e.what());
   }
   OutputFile file(path);
-  Words words;
-  {
-    const Tiff tiff =
-        open_tiff(file.stream(), path.c_str(), values.size_bytes() > kMaxClassicBytes ? "w8" : "w", words);
-    if (tiff == nullptr || !write_rows(tiff.get(), values, width, height, options.tiff)) {
-      throw file_error("write", path, words.text, kDiskAdvice);
-    }
+  TiffHandle tiff(file.stream(), path, values.size_bytes() > kMaxClassicBytes ? "w8" : "w");
+  if (tiff.get() == nullptr || !write_rows(tiff.get(), values, width, height, options.tiff)) {
+    throw file_error("write", path, tiff.words(), kDiskAdvice);
   }
+  tiff.close();
   file.commit();
 }
 
@@ -139,9 +77,8 @@ FloatImage read_tiff(const std::filesystem::path& path, std::int64_t max_pixels)
   if (stream == nullptr) {
     throw file_error("read", path, std::strerror(errno), "check the name and the permissions");
   }
-  Words words;
-  const Tiff tiff = open_tiff(stream.get(), path.c_str(), "r", words);
-  if (tiff == nullptr) throw file_error("read", path, words.text, kDamagedAdvice);
+  const TiffHandle tiff(stream.get(), path, "r");
+  if (tiff.get() == nullptr) throw file_error("read", path, tiff.words(), kDamagedAdvice);
 
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -166,7 +103,7 @@ FloatImage read_tiff(const std::filesystem::path& path, std::int64_t max_pixels)
   image.pixels.resize(std::size_t{width} * height);
   for (std::uint32_t row = 0; row < height; ++row) {
     if (TIFFReadScanline(tiff.get(), image.pixels.data() + std::size_t{row} * width, row) != 1) {
-      throw file_error("read", path, words.text, kDamagedAdvice);
+      throw file_error("read", path, tiff.words(), kDamagedAdvice);
     }
   }
   return image;

@@ -15,6 +15,14 @@ constexpr std::string_view overlays_refused() {
 #endif
 }
 
+// Where azimuths are marked.
+enum class CompassStrip {
+  kOff,
+  kBottom,   // along the lower edge
+  kTop,      // along the upper edge
+  kHorizon,  // along elevation 0; along the lower edge where the picture does not show it
+};
+
 struct Overlays {
   bool legend = false;
   bool graticule = false;
@@ -24,8 +32,10 @@ struct Overlays {
   bool scale_bar = false;
   bool north_arrow = false;
   bool time_code = false;
+  CompassStrip compass = CompassStrip::kOff;
   std::string title;
-  std::string names;  // gazetteer, a CSV file (vpe/core/gazetteer.h)
+  std::string names;       // gazetteer, a CSV file (vpe/core/gazetteer.h)
+  bool distances = false;  // from the eye, beside names
 
   bool operator==(const Overlays&) const = default;
 };

@@ -133,12 +133,18 @@ const std::vector<Key>& keys() {
        "bar of a round length at the ground in the picture's centre"},
       {"overlay.north", choice<&V::north_arrow>({{"off", 0}, {"on", 1}}), "", "arrow to the north"},
       {"overlay.time", choice<&V::time_code>({{"off", 0}, {"on", 1}}), "", "time of the frame in its flight"},
+      {"overlay.compass",
+       choice<&V::compass>({word("off", CompassStrip::kOff), word("on", CompassStrip::kBottom),
+                            word("top", CompassStrip::kTop), word("horizon", CompassStrip::kHorizon)}),
+       "", "marks of azimuth along the lower edge (on), the upper edge or the horizon"},
       {"overlay.title", Text{&V::title, "any text", [](const std::string&) { return std::string(); }}, "",
        "a line at the top"},
       {"overlay.names",
        Text{&V::names, "a CSV file with columns name, lon, lat",
             [](const std::string& text) { return gazetteer_problem(text); }},
        "", "names of places, but of those that ground hides"},
+      {"overlay.distances", choice<&V::distances>({{"off", 0}, {"on", 1}}), "",
+       "how far away it is beside each name, in a straight line from the eye"},
       {"lod.tolerance", Number{&V::lod_tolerance_px, 0, 1000}, "px",
        "largest geometric error that may be drawn; 0 draws the exact surface"},
       {"lod.triangles", Integer{&V::lod_triangles, 0, 1'000'000'000}, "",
@@ -186,7 +192,8 @@ const std::vector<Key>& keys() {
        "every "
        "ray in steps of 0.6 cells, slowly, for comparison"},
       {"rays.cell", Number{&V::ray_cell_px, 0.125, 64}, "px",
-       "voxel backend, multires: cells are at most this wide in the picture, or off the surface by this; more is faster"},
+       "voxel backend, multires: cells are at most this wide in the picture, or off the surface by this; more "
+       "is faster"},
       {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
        "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time; voxel "
        "backend: rays a pixel"},

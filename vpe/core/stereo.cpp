@@ -53,16 +53,12 @@ RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayou
                      std::to_string(both.height) + " pixels, but a side may have at most " +
                      std::to_string(kMaxImageSide_px) + "; make them smaller");
   }
-  both.pixels.reserve(static_cast<std::size_t>(both.width) * static_cast<std::size_t>(both.height));
   if (layout == StereoLayout::kAnaglyph) {
-    for (std::size_t n = 0; n < left.pixels.size(); ++n) {
-      const mars::Rgb& l = left.pixels[n];
-      const mars::Rgb& r = right.pixels[n];
-      both.pixels.push_back(
-          {mix(kDuboisRedCyan[0], l, r), mix(kDuboisRedCyan[1], l, r), mix(kDuboisRedCyan[2], l, r)});
-    }
+    both.pixels = left.pixels;
+    mix_red_cyan(both.pixels, right.pixels);
     return both;
   }
+  both.pixels.reserve(static_cast<std::size_t>(both.width) * static_cast<std::size_t>(both.height));
   const auto width = static_cast<std::ptrdiff_t>(beside ? left.width : left.width * left.height);
   const auto rows = static_cast<std::ptrdiff_t>(left.pixels.size()) / width;
   for (std::ptrdiff_t row = 0; row < rows; ++row) {
@@ -72,6 +68,14 @@ RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayou
     }
   }
   return both;
+}
+
+void mix_red_cyan(std::span<mars::Rgb> left, std::span<const mars::Rgb> right) {
+  for (std::size_t n = 0; n < left.size(); ++n) {
+    const mars::Rgb l = left[n];
+    const mars::Rgb& r = right[n];
+    left[n] = {mix(kDuboisRedCyan[0], l, r), mix(kDuboisRedCyan[1], l, r), mix(kDuboisRedCyan[2], l, r)};
+  }
 }
 
 View eye_aside(const View& view, double aside_m, std::optional<double> convergence_m) {

@@ -26,6 +26,9 @@ const char* to_string(StereoLayout layout);
 // values. Throws ImageError when the pictures differ in size or the result has a side over kMaxImageSide_px.
 RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayout layout);
 
+// Red-cyan in place of the left eye's pixels; both as long as each other.
+void mix_red_cyan(std::span<mars::Rgb> left, std::span<const mars::Rgb> right);
+
 // The view of an eye that is aside_m to the right (negative: left) along the view's right axis, the axes
 // parallel. With a convergence distance the principal point moves so that what is at that distance in front
 // of the middle between both eyes is at the same pixel in each; without, what is infinitely far.

@@ -91,6 +91,20 @@ std::string length_text(double metres, double step) {
   return number_text(metres, decimals_of(step)) + " m";
 }
 
+std::string distance_text(double metres) {
+  // What is rounded up to the next unit is said in it.
+  constexpr double kHundred_m = 99.5;
+  constexpr double kKilometre_m = 995;
+  constexpr double kTenKilometres_m = 9950;
+  if (metres < kHundred_m) return number_text(metres, 0) + " m";
+  if (metres < kKilometre_m) return number_text(10 * std::round(metres / 10), 0) + " m";
+  return number_text(metres / 1000, metres < kTenKilometres_m ? 1 : 0) + " km";
+}
+
+std::string name_text(const std::string& name, double distance_m) {
+  return name + " \u00b7 " + distance_text(distance_m);
+}
+
 std::string longitude_text(double lon_deg, double step) {
   if (std::abs(lon_deg) > 180 - kBitsOff) return "180\u00b0";
   return degrees_text(lon_deg, step, "E", "W");

@@ -21,6 +21,10 @@ int decimals_of(double step);
 std::string number_text(double value, int decimals);
 // "250 m", "20 km"; `step` says how many decimals there are.
 std::string length_text(double metres, double step);
+// "850 m", "4.2 km", "17 km": two figures of what is nearer than 10 km, whole kilometres beyond.
+std::string distance_text(double metres);
+// "Gale · 17 km".
+std::string name_text(const std::string& name, double distance_m);
 // "74.5°W", "0°", "180°"; "13°S".
 std::string longitude_text(double lon_deg, double step);
 std::string latitude_text(double lat_deg, double step);

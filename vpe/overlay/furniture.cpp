@@ -28,8 +28,8 @@ void draw_middle(Sheet& sheet, std::string text, Font font, bool at_top) {
     text = whole.substr(0, kept) + "\u2026";
     size = canvas.measure(text, font);
   }
-  const double y =
-      at_top ? sheet.margin_px() + 0.5 * size.height : canvas.height() - sheet.margin_px() - 0.5 * size.height;
+  const double y = at_top ? sheet.area().top + sheet.margin_px() + 0.5 * size.height
+                          : sheet.area().bottom - sheet.margin_px() - 0.5 * size.height;
   const glm::dvec2 centre(0.5 * canvas.width(), y);
   const Box box = Box::about(centre, size);
   if (!sheet.is_free(box)) return;
@@ -83,7 +83,7 @@ void draw_scale_bar(Sheet& sheet, const Ground& ground) {
   const double text_px = std::max(canvas.measure(text, font).width, canvas.measure(where, small).width);
   const double bar_px = std::max(sheet.px(6), 4.0);
   const double left = sheet.margin_px() + std::max(0.0, 0.5 * (text_px - length_px));
-  const double bottom = canvas.height() - sheet.margin_px();
+  const double bottom = sheet.area().bottom - sheet.margin_px();
   const double row_px = canvas.measure(where, small).height;
   const double upper_px = canvas.measure(text, font).height;
   const double top = bottom - row_px - bar_px - upper_px - 2 * sheet.px(2);
@@ -137,7 +137,8 @@ void draw_north_arrow(Sheet& sheet, const Ground& ground) {
   const Font font = sheet.font(18, true);
   const double letter_px = sheet.canvas().measure("N", font).height;
   const double half_px = radius_px + letter_px + sheet.px(2);
-  const glm::dvec2 middle(sheet.canvas().width() - sheet.margin_px() - half_px, sheet.margin_px() + half_px);
+  const glm::dvec2 middle(sheet.area().right - sheet.margin_px() - half_px,
+                          sheet.area().top + sheet.margin_px() + half_px);
   const Box box = Box::about(middle, {2 * half_px, 2 * half_px});
   if (!sheet.is_free(box)) return;
   sheet.take(box);

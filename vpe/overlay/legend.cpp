@@ -80,8 +80,8 @@ void draw_legend(Sheet& sheet, const Scene& scene) {
   const double tick_px = sheet.px(4);
   const double width = 2 * pad + std::max(title.width, bar_width + 3 * tick_px + ticks_px);
   const double height = 2 * pad + 1.4 * title.height + bar_height + 0.5 * title.height;
-  const double right = canvas.width() - sheet.margin_px();
-  const double bottom = canvas.height() - sheet.margin_px();
+  const double right = sheet.area().right - sheet.margin_px();
+  const double bottom = sheet.area().bottom - sheet.margin_px();
   const Box box{right - width, bottom - height, right, bottom};
   if (!sheet.is_free(box)) return;
   sheet.take(box.grown(sheet.px(4)));

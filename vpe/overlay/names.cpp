@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "vpe/overlay/figures.h"
 #include "vpe/overlay/parts.h"
 
 namespace vpe::overlay {
@@ -52,7 +53,7 @@ bool is_hidden(const Ground& ground, glm::dvec2 at, double distance_m) {
 
 }  // namespace
 
-void draw_names(Sheet& sheet, const Ground& ground) {
+void draw_names(Sheet& sheet, const Ground& ground, bool distances) {
   constexpr double kSmallest_px = 4;
   const Scene& scene = ground.scene();
   const Font font = sheet.font(14);
@@ -71,7 +72,8 @@ void draw_names(Sheet& sheet, const Ground& ground) {
     if (is_hidden(ground, *at, distance_m)) continue;
 
     const Box dot = Box::about(*at, {2 * dot_px, 2 * dot_px});
-    const TextSize size = sheet.canvas().measure(place.name, font);
+    const std::string text = distances ? name_text(place.name, distance_m) : place.name;
+    const TextSize size = sheet.canvas().measure(text, font);
     const double beside = 0.5 * size.width + 2.2 * dot_px;
     const double over = 0.5 * size.height + 1.2 * dot_px;
     const std::array<glm::dvec2, 4> offsets{glm::dvec2{beside, 0}, glm::dvec2{-beside, 0}, glm::dvec2{0, -over},
@@ -93,7 +95,7 @@ void draw_names(Sheet& sheet, const Ground& ground) {
     };
     disc(dot_px + sheet.line_px(1), kShade);
     disc(dot_px, kWhite);
-    sheet.label(place.name, *at + *offset, font);
+    sheet.label(text, *at + *offset, font);
     if (++count == kMostNames) return;
   }
 }

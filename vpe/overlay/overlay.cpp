@@ -13,7 +13,8 @@ bool needs_range(const core::Overlays& overlays) {
 }
 
 bool any(const core::Overlays& overlays) {
-  return needs_range(overlays) || overlays.legend || overlays.time_code || !overlays.title.empty();
+  return needs_range(overlays) || overlays.legend || overlays.time_code || !overlays.title.empty() ||
+         overlays.compass != core::CompassStrip::kOff;
 }
 
 Layer draw(const core::Overlays& overlays, const Scene& scene) {
@@ -29,14 +30,23 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
     const std::vector<LineLabel> more = draw_graticule(sheet, *ground, overlays.graticule_deg);
     labels.insert(labels.begin(), more.begin(), more.end());
   }
+  if (overlays.compass != core::CompassStrip::kOff) draw_compass(sheet, scene, overlays.compass);
   if (!overlays.title.empty()) draw_title(sheet, overlays.title);
   if (overlays.legend) draw_legend(sheet, scene);
   if (overlays.scale_bar) draw_scale_bar(sheet, *ground);
   if (overlays.north_arrow) draw_north_arrow(sheet, *ground);
   if (overlays.time_code) draw_time(sheet, scene.time_s);
-  if (!overlays.names.empty()) draw_names(sheet, *ground);
+  if (!overlays.names.empty()) draw_names(sheet, *ground, overlays.distances);
   draw_labels(sheet, labels);
   return canvas.layer();
+}
+
+mars::Rgb blend(const core::Rgba& over, mars::Rgb below) {
+  const auto mix = [&over](std::uint8_t top, std::uint8_t under) {
+    const unsigned sum = top * unsigned{over.a} + under * (255U - over.a);
+    return static_cast<std::uint8_t>((sum + 127U) / 255U);
+  };
+  return {mix(over.r, below.r), mix(over.g, below.g), mix(over.b, below.b)};
 }
 
 void composite(const Layer& layer, std::vector<mars::Rgb>& picture) {
@@ -46,14 +56,7 @@ void composite(const Layer& layer, std::vector<mars::Rgb>& picture) {
                                 " pixels over a picture of " + std::to_string(picture.size()));
   }
   for (std::size_t n = 0; n < picture.size(); ++n) {
-    const core::Rgba& over = layer.pixels[n];
-    if (over.a == 0) continue;
-    const auto mix = [&over](std::uint8_t top, std::uint8_t below) {
-      const unsigned sum = top * unsigned{over.a} + below * (255U - over.a);
-      return static_cast<std::uint8_t>((sum + 127U) / 255U);
-    };
-    mars::Rgb& p = picture[n];
-    p = {mix(over.r, p.r), mix(over.g, p.g), mix(over.b, p.b)};
+    if (layer.pixels[n].a != 0) picture[n] = blend(layer.pixels[n], picture[n]);
   }
 }
 

@@ -3,12 +3,13 @@
 // Everything is made from the picture's view and range image alone, on the CPU: no OpenGL, no clock, no
 // globals. Sizes follow the shorter side of the picture; nothing is drawn outside of it, and no text over
 // another. Furniture that does not fit is left out: title at the top, legend lower right, scale bar lower left,
-// arrow upper right, time lower centre. Text is UTF-8; bytes that are none show as U+FFFD. A picture's part
-// (View::part) is laid out like a picture of its own.
+// arrow upper right, time lower centre, all of it clear of a compass at an edge. Text is UTF-8; bytes that are
+// none show as U+FFFD. A picture's part (View::part) is laid out like a picture of its own.
 #pragma once
 
 #include <functional>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct Scene {
   double shift_px = 0;      // by which the ground in the picture may be off (core::Certificate); for contours
   bool has_imagery = true;  // mode textured shows imagery
   double time_s = 0;
+  // North and up of the compass at the eye; left out: those of the ground below it.
+  std::optional<mars::LocalFrame> frame;
   std::span<const core::Place> places;  // of Overlays::names; earlier ones win
   // Metres above the sphere of a place on the ground, without exaggeration. Left out: 0.
   std::function<double(const core::Place&)> height_m;
@@ -65,8 +68,15 @@ bool needs_range(const core::Overlays& overlays);
 // names: hidden where the ground in the picture, in all of the 3 x 3 pixels about the place, is nearer than the
 //   place by more than kHiddenShare of its distance, or is sky; and where the place's diameter is known and
 //   less than 4 px (at 720 rows).
+// compass: marks (vpe/overlay/compass.h) along an edge, where the azimuths of the picture's middle row are in
+// that
+//   row, or along the line of elevation 0. Absent at the very poles, and where the middle row comes within 2
+//   degrees of the zenith or nadir.
 inline constexpr double kHiddenShare = 0.01;
 Layer draw(const core::Overlays& overlays, const Scene& scene);
+
+// What shows of a pixel below another.
+mars::Rgb blend(const core::Rgba& over, mars::Rgb below);
 
 // Lays it over a picture of the same number of pixels; an empty layer changes nothing. Throws
 // std::invalid_argument.

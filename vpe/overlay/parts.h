@@ -23,6 +23,8 @@ void draw_time(Sheet& sheet, double time_s);
 void draw_legend(Sheet& sheet, const Scene& scene);
 void draw_scale_bar(Sheet& sheet, const Ground& ground);
 void draw_north_arrow(Sheet& sheet, const Ground& ground);
-void draw_names(Sheet& sheet, const Ground& ground);
+// Takes the edge for itself. With `distances` a name has its distance beside it (name_text()).
+void draw_compass(Sheet& sheet, const Scene& scene, core::CompassStrip where);
+void draw_names(Sheet& sheet, const Ground& ground, bool distances);
 
 }  // namespace vpe::overlay

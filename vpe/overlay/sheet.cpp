@@ -13,7 +13,12 @@ Box Box::about(glm::dvec2 centre, TextSize size, double angle_rad) {
   return {centre.x - x, centre.y - y, centre.x + x, centre.y + y};
 }
 
-Sheet::Sheet(Canvas& canvas) : canvas_(canvas), unit_(std::min(canvas.width(), canvas.height()) / 720.0) {}
+Sheet::Sheet(Canvas& canvas) : Sheet(canvas, std::min(canvas.width(), canvas.height()) / 720.0) {}
+
+Sheet::Sheet(Canvas& canvas, double unit)
+    : canvas_(canvas),
+      unit_(unit),
+      area_{0, 0, static_cast<double>(canvas.width()), static_cast<double>(canvas.height())} {}
 
 double Sheet::line_px(double at_720) const { return std::max(px(at_720), 0.75 * at_720); }
 
@@ -23,7 +28,8 @@ Font Sheet::font(double at_720, bool bold) const {
 }
 
 bool Sheet::is_free(const Box& box) const {
-  if (box.left < 0 || box.top < 0 || box.right > canvas_.width() || box.bottom > canvas_.height()) return false;
+  if (box.left < area_.left || box.top < area_.top || box.right > area_.right || box.bottom > area_.bottom)
+    return false;
   return std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.meets(other); });
 }
 

@@ -24,6 +24,8 @@ inline constexpr Ink kShade{0, 0, 0, 0.65};
 class Sheet {
  public:
   explicit Sheet(Canvas& canvas);
+  // Of a part of a picture, where a pixel at 720 rows is `unit` pixels.
+  Sheet(Canvas& canvas, double unit);
 
   Canvas& canvas() { return canvas_; }
   // Pixels that are one pixel at 720 rows, and the least that can be seen where that matters.
@@ -32,9 +34,15 @@ class Sheet {
   Font font(double at_720 = 16, bool bold = false) const;
   double margin_px() const { return px(16); }
 
-  // Whether the box lies in the picture, off everything taken.
+  // What is left of the picture for what stands at its edges.
+  const Box& area() const { return area_; }
+  void cut_top(double px) { area_.top += px; }
+  void cut_bottom(double px) { area_.bottom -= px; }
+
+  // Whether the box lies in the area, off everything taken.
   bool is_free(const Box& box) const;
   void take(const Box& box) { taken_.push_back(box); }
+  const std::vector<Box>& taken() const { return taken_; }
 
   // A line of text in white with a dark halo.
   void label(std::string_view text, glm::dvec2 centre, const Font& font);
@@ -44,6 +52,7 @@ class Sheet {
  private:
   Canvas& canvas_;
   double unit_;
+  Box area_;
   std::vector<Box> taken_;
 };
 
