@@ -1,8 +1,11 @@
 #include "paging/profile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <stdexcept>
+
+#include "paging/section.h"
 
 namespace paging {
 
@@ -43,6 +46,7 @@ std::vector<ProfilePoint> profile(const Surface& surface, std::span<const mars::
   std::vector<ProfilePoint> points;
   points.reserve(static_cast<std::size_t>(steps));
   double start_m = 0;
+  glm::dvec3 before{0, 0, 0};
   for (std::size_t n = 1; n < places.size(); ++n) {
     const glm::dvec3 a = mars::direction(places[n - 1]);
     const glm::dvec3 b = mars::direction(places[n]);
@@ -50,7 +54,16 @@ std::vector<ProfilePoint> profile(const Surface& surface, std::span<const mars::
     const auto count = static_cast<std::int64_t>(std::max(1.0, std::ceil(arc_m / step_m)));
     for (std::int64_t i = n == 1 ? 0 : 1; i <= count; ++i) {
       const double t = static_cast<double>(i) / static_cast<double>(count);
-      ProfilePoint p = point_at(surface, i == 0 ? a : i == count ? b : mars::slerp(a, b, t));
+      const glm::dvec3 here = i == 0 ? a : i == count ? b : mars::slerp(a, b, t);
+      ProfilePoint p = point_at(surface, here);
+      p.lowest_m = p.highest_m = p.height_m;
+      if (!points.empty()) {
+        const SectionFigures step = section_figures(surface, before, here);
+        p.ground_distance_m = points.back().ground_distance_m + step.length_m;
+        p.lowest_m = std::min({p.height_m, points.back().height_m, step.lowest_m});
+        p.highest_m = std::max({p.height_m, points.back().height_m, step.highest_m});
+      }
+      before = here;
       p.distance_m = start_m + t * arc_m;
       p.waypoint = i == 0 || i == count;
       if (p.waypoint) {  // as it was given, also at a pole
@@ -63,14 +76,13 @@ std::vector<ProfilePoint> profile(const Surface& surface, std::span<const mars::
   }
   for (std::size_t i = 1; i < points.size(); ++i) {
     ProfilePoint& p = points[i];
-    const ProfilePoint& before = points[i - 1];
-    const double arc = (p.distance_m - before.distance_m) / radius_m;
-    const double rise = p.height_m - before.height_m;
+    const ProfilePoint& last = points[i - 1];
+    const double arc = (p.distance_m - last.distance_m) / radius_m;
+    const double rise = p.height_m - last.height_m;
     // The straight line between two points at radii r and r + rise, an arc apart.
-    const double middle = radius_m + 0.5 * (p.height_m + before.height_m);
+    const double middle = radius_m + 0.5 * (p.height_m + last.height_m);
     const double across =
         2 * std::sqrt(std::max(0.0, middle * middle - 0.25 * rise * rise)) * std::sin(0.5 * arc);
-    p.ground_distance_m = before.ground_distance_m + std::hypot(across, rise);
     p.slope_deg = across > 0 ? std::atan2(rise, across) / mars::kRadiansPerDegree : 0;
   }
   if (points.size() > 1) points.front().slope_deg = points[1].slope_deg;

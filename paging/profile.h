@@ -12,8 +12,10 @@ namespace paging {
 struct ProfilePoint {
   mars::LonLat place;
   double distance_m = 0;         // along the great circles, on the planet's sphere, from the start
-  double ground_distance_m = 0;  // along the straight lines between the points before it, on S
+  double ground_distance_m = 0;  // along S from the start, over every facet between: exact but for rounding
   double height_m = 0;           // S above the sphere
+  double lowest_m = 0;           // of S on the step before the point, both ends included, above the sphere
+  double highest_m = 0;
   double slope_deg = 0;  // along the way: positive uphill; of the step before the point (after, at the start)
   double cross_slope_deg = 0;  // steepest slope of the facet there, in whatever direction
   bool missing = false;        // no source has data there; ground distance and slope go over the drawn ground

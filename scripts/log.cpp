@@ -1,5 +1,6 @@
 #include "scripts/log.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -68,6 +69,13 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadLoo
   }
   file_.write(lines);
   last_frame_s_ = time_s;
+}
+
+void FlightLog::note(std::string_view text) {
+  std::string line = "# " + std::string(text);
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  file_.write(line + "\n");
 }
 
 void FlightLog::end(double time_s) {

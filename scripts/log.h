@@ -44,6 +44,10 @@ class FlightLog {
   void frame(double time_s, const mars::Pose& pose, const mars::HeadLook& look,
              const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest = {});
 
+  // A comment line, for people and for programs that know how to read it; playback passes over it. Line ends
+  // become blanks.
+  void note(std::string_view text);
+
   // Writes the end, at or after the last frame, and closes the file.
   void end(double time_s);
 

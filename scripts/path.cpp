@@ -57,6 +57,10 @@ bool same(const mars::Pose& a, const mars::Pose& b) {
          a.pitch_deg == b.pitch_deg && a.roll_deg == b.roll_deg;
 }
 
+bool same(const Look& a, const Look& b) {
+  return a.yaw_deg == b.yaw_deg && a.pitch_deg == b.pitch_deg && a.roll_deg == b.roll_deg;
+}
+
 // What is held from the start and to the end becomes knots of its own, so that motion starts and ends smoothly.
 template <class Timed>
 std::vector<Timed> held_at_ends(std::vector<Timed> knots, double end_s) {
@@ -162,8 +166,10 @@ FlightState Path::at(double time_s) const {
     state.pose.alt_m = alt_m_.at(t);
   }
 
-  const Look& look = looks_[knot_at_or_after(looks_, t)];
-  if (look.time_s == t) {
+  const std::size_t l = knot_at_or_after(looks_, t);
+  const Look& look = looks_[l];
+  // A head that is held is held to the bit: its angles went through no unwrapping.
+  if (look.time_s == t || same(look, looks_[l - 1])) {
     state.look = {look.yaw_deg, look.pitch_deg, look.roll_deg};
   } else {
     state.look = {mars::normalize_lon_deg(look_yaw_deg_.at(t)), look_pitch_deg_.at(t),

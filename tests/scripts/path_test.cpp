@@ -282,6 +282,25 @@ TEST(Path, IsHeldBeforeTheFirstPoseAndAfterTheLast) {
   EXPECT_EQ(single.at(1).pose.lat_deg, 2);
 }
 
+// Between its look lines too, wherever it has turned before: a log of a head that rests replays to the bit.
+TEST(Path, AHeadThatIsHeldIsHeldToTheBit) {
+  const Path path(*parse_flight("flight 1\n"
+                                "at 0 pose lon=0 lat=0 alt=1\n"
+                                "at 1 look yaw=170.3 pitch=0.1 roll=-100.7\n"
+                                "at 2 look yaw=-102.259 pitch=0.3 roll=100.1\n"
+                                "at 5 look yaw=-102.259 pitch=0.3 roll=100.1\n"
+                                "at 9 end\n",
+                                "")
+                       .flight,
+                  mars::kMarsRadius_m, {});
+  for (const double t : {2.0, 2.1, 3.7, 4.9, 5.0, 8.0, 9.0}) {
+    const mars::HeadLook look = path.at(t).look;
+    EXPECT_EQ(look.yaw_deg, -102.259) << t;
+    EXPECT_EQ(look.pitch_deg, 0.3) << t;
+    EXPECT_EQ(look.roll_deg, 100.1) << t;
+  }
+}
+
 TEST(Path, HeadTurnsSmoothlyTheShortWayAndIsHeldOutside) {
   const Path path = path_of(
       "at 0 pose lon=0 lat=0 alt=0\nat 2 look yaw=170\nat 4 look yaw=-170 pitch=10\nat 8 look yaw=-170 "
