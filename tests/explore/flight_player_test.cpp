@@ -1,0 +1,209 @@
+#include "vpe/explore/flight_player.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace vpe::explore {
+namespace {
+
+constexpr const char* kFlight =
+    "flight 1\n"
+    "at 0 pose lon=-74 lat=-13.5 alt=12000 yaw=90 pitch=-15\n"
+    "at 2 look yaw=0\n"
+    "at 3 look yaw=40 pitch=5\n"
+    "at 3 set mode=wireframe exaggeration=2\n"
+    "at 4 pose lon=-70 lat=-12 alt=9000 yaw=100 pitch=-10 roll=-20\n"
+    "at 5 set exaggeration=3\n"
+    "at 6 interest lon=0 lat=0 radius=1000 levels=2\n"
+    "at 8 pose lon=-68 lat=-11 alt=3000 yaw=80 pitch=-10\n"
+    "at 10 end\n";
+
+scripts::Path path_of(const char* text) {
+  return {*scripts::parse_flight(text, "").flight, mars::kMarsRadius_m, {}};
+}
+
+FlightPlayer player_of(const char* text = kFlight) { return {path_of(text), mars::kMarsRadius_m}; }
+
+void expect_state(const FlightPlayer& player, double time_s) {
+  const scripts::FlightState is = player.state();
+  const scripts::FlightState wanted = path_of(kFlight).at(time_s);
+  EXPECT_EQ(is.eye.eye_m, wanted.eye.eye_m) << time_s;
+  EXPECT_EQ(is.eye.axes.forward, wanted.eye.axes.forward) << time_s;
+  EXPECT_EQ(is.look.yaw_deg, wanted.look.yaw_deg) << time_s;
+}
+
+std::string exaggeration_of(const FlightPlayer& player, const core::Settings& base = {}) {
+  return *player.settings(base).get("exaggeration");
+}
+
+TEST(FlightPlayer, EndsExactlyAtTheEndAndBeginsAgain) {
+  FlightPlayer player = player_of();
+  EXPECT_FALSE(player.is_playing());
+  player.advance(3);
+  EXPECT_EQ(player.time_s(), 0);  // paused
+  player.play();
+  for (int n = 0; n < 99; ++n) player.advance(0.1);
+  EXPECT_TRUE(player.is_playing());
+  EXPECT_NEAR(player.time_s(), 9.9, 1e-12);
+  expect_state(player, player.time_s());
+  player.advance(0.3);
+  EXPECT_EQ(player.time_s(), 10);
+  EXPECT_TRUE(player.at_end());
+  EXPECT_FALSE(player.is_playing());
+  expect_state(player, 10);
+  player.play();
+  EXPECT_EQ(player.time_s(), 0);
+  player.advance(1.5);
+  player.pause();
+  player.advance(1.5);
+  EXPECT_EQ(player.time_s(), 1.5);
+  player.play();
+  player.advance(0.25);
+  EXPECT_EQ(player.time_s(), 1.75);
+}
+
+TEST(FlightPlayer, LoopsExactlyHoweverLongAFrameTook) {
+  FlightPlayer player = player_of();
+  player.set_loop(true);
+  player.play();
+  player.advance(9.75);
+  player.advance(0.5);
+  EXPECT_EQ(player.time_s(), 0.25);
+  player.advance(40);  // four rounds
+  EXPECT_EQ(player.time_s(), 0.25);
+  player.advance(9.75);  // the end is the start
+  EXPECT_EQ(player.time_s(), 0);
+  EXPECT_TRUE(player.is_playing());
+  player.set_speed(-2);
+  player.advance(1);
+  EXPECT_EQ(player.time_s(), 8);
+  player.advance(10);
+  EXPECT_EQ(player.time_s(), 8);
+  EXPECT_TRUE(player.is_playing());
+}
+
+TEST(FlightPlayer, PlaysAtAnySpeedAlsoBackwards) {
+  FlightPlayer player = player_of();
+  player.set_speed(4);
+  player.play();
+  player.advance(1.25);
+  EXPECT_EQ(player.time_s(), 5);
+  player.set_speed(-0.5);
+  player.advance(2);
+  EXPECT_EQ(player.time_s(), 4);
+  expect_state(player, 4);
+  player.advance(100);
+  EXPECT_EQ(player.time_s(), 0);
+  EXPECT_FALSE(player.is_playing());
+  player.play();  // backwards from the end
+  EXPECT_EQ(player.time_s(), 10);
+  player.set_speed(0);
+  player.set_speed(std::nan(""));
+  EXPECT_EQ(player.speed(), -0.5);
+  player.set_speed(1e9);
+  EXPECT_EQ(player.speed(), FlightPlayerLimits::kFastest);
+  player.set_speed(-1e-9);
+  EXPECT_EQ(player.speed(), -FlightPlayerLimits::kSlowest);
+  player.advance(-5);
+  player.advance(std::nan(""));
+  EXPECT_EQ(player.time_s(), 10);
+}
+
+TEST(FlightPlayer, ScrubbedBackwardsSettingsAreThoseOfThatTime) {
+  FlightPlayer player = player_of();
+  core::Settings base;
+  ASSERT_EQ(base.set("exaggeration", "1.5"), "");
+  const auto at = [&](double time_s) {
+    player.scrub(time_s);
+    return exaggeration_of(player, base);
+  };
+  EXPECT_EQ(at(0), "1.5");
+  EXPECT_EQ(at(3), "2");
+  EXPECT_EQ(at(9), "3");
+  EXPECT_EQ(player.interests().size(), 1U);
+  EXPECT_EQ(at(4.9), "2");
+  EXPECT_TRUE(player.interests().empty());
+  EXPECT_EQ(at(2.9), "1.5");
+  EXPECT_EQ(*player.settings(base).get("mode"), *base.get("mode"));
+  player.scrub(-5);
+  EXPECT_EQ(player.time_s(), 0);
+  player.scrub(1e9);
+  EXPECT_EQ(player.time_s(), 10);
+  player.scrub(std::nan(""));
+  EXPECT_EQ(player.time_s(), 0);
+}
+
+TEST(FlightPlayer, LookingAroundLeavesTheFlightAlone) {
+  FlightPlayer alone = player_of();
+  FlightPlayer turned = player_of();
+  alone.play();
+  turned.play();
+  for (int n = 0; n < 80; ++n) {
+    alone.advance(0.1);
+    turned.advance(0.1);
+    turned.turn_look(7, n % 2 == 0 ? 3 : -1, 0.5);
+    const scripts::FlightState a = alone.state();
+    const scripts::FlightState b = turned.state();
+    EXPECT_EQ(alone.time_s(), turned.time_s());
+    EXPECT_EQ(a.pose.lon_deg, b.pose.lon_deg);
+    EXPECT_EQ(a.pose.yaw_deg, b.pose.yaw_deg);
+    EXPECT_EQ(a.eye.eye_m, b.eye.eye_m);
+    EXPECT_NE(a.eye.axes.forward, b.eye.axes.forward);
+  }
+  turned.look_ahead();
+  expect_state(turned, turned.time_s());
+}
+
+TEST(FlightPlayer, TheUsersLookIsAddedToTheFlights) {
+  FlightPlayer player = player_of();
+  player.scrub(3);
+  player.look_around({20, 10, -5});
+  const scripts::FlightState state = player.state();
+  EXPECT_EQ(state.look.yaw_deg, 60);
+  EXPECT_EQ(state.look.pitch_deg, 15);
+  EXPECT_EQ(state.look.roll_deg, -5);
+  const mars::EyePose eye = mars::to_eye(state.pose, {60, 15, -5}, mars::kMarsRadius_m);
+  EXPECT_EQ(state.eye.axes.forward, eye.axes.forward);
+  EXPECT_EQ(state.eye.axes.up, eye.axes.up);
+  player.turn_look(400, 500);
+  EXPECT_EQ(player.state().look.pitch_deg, 90);
+  EXPECT_EQ(player.state().look.yaw_deg, 100);
+  player.turn_look(0, -1);  // felt at once
+  EXPECT_EQ(player.state().look.pitch_deg, 89);
+  player.look_around({std::nan(""), std::numeric_limits<double>::infinity(), 0});
+  expect_state(player, 3);
+}
+
+TEST(FlightPlayer, TheUsersSettingsHoldWhileTheFlightPlays) {
+  FlightPlayer player = player_of();
+  EXPECT_EQ(player.keep_setting("exaggeration", "7"), "");
+  EXPECT_NE(player.keep_setting("exaggeration", "much"), "");
+  EXPECT_NE(player.keep_setting("nonsense", "1"), "");
+  for (const double t : {0.0, 3.0, 5.0}) {
+    player.scrub(t);
+    EXPECT_EQ(exaggeration_of(player), "7");
+  }
+  EXPECT_EQ(*player.settings({}).get("mode"), "wireframe");
+  player.release_setting("exaggeration");
+  EXPECT_EQ(exaggeration_of(player), "3");
+  ASSERT_EQ(player.keep_setting("mode", "unlit"), "");
+  player.release_settings();
+  EXPECT_EQ(*player.settings({}).get("mode"), "wireframe");
+}
+
+TEST(FlightPlayer, AFlightOfNoLengthStandsAtItsPose) {
+  FlightPlayer player = player_of("flight 1\nat 0 pose lon=1 lat=2 alt=3\n");
+  for (const bool loop : {false, true}) {
+    player.set_loop(loop);
+    player.play();
+    player.advance(1);
+    EXPECT_EQ(player.time_s(), 0);
+    EXPECT_FALSE(player.is_playing());
+  }
+  EXPECT_EQ(player.state().pose.lon_deg, 1);
+}
+
+}  // namespace
+}  // namespace vpe::explore

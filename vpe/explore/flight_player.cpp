@@ -1,0 +1,85 @@
+#include "vpe/explore/flight_player.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vpe::explore {
+
+namespace {
+
+double finite(double value) { return std::isfinite(value) ? value : 0.0; }
+
+}  // namespace
+
+FlightPlayer::FlightPlayer(scripts::Path path, double radius_m) : path_(std::move(path)), radius_m_(radius_m) {}
+
+void FlightPlayer::play() {
+  if (speed_ > 0 && at_end()) time_s_ = 0;
+  if (speed_ < 0 && at_start()) time_s_ = duration_s();
+  playing_ = true;
+}
+
+void FlightPlayer::advance(double dt_s) {
+  if (!playing_ || !(dt_s > 0)) return;
+  const double length_s = duration_s();
+  const double next_s = time_s_ + dt_s * speed_;
+  if (next_s > 0 && next_s < length_s) {
+    time_s_ = next_s;
+  } else if (loop_ && length_s > 0 && std::isfinite(next_s)) {
+    time_s_ = std::fmod(next_s, length_s);
+    if (time_s_ < 0) time_s_ += length_s;
+  } else {
+    time_s_ = speed_ > 0 ? length_s : 0.0;
+    playing_ = loop_ && length_s > 0;
+  }
+}
+
+void FlightPlayer::scrub(double time_s) { time_s_ = time_s > 0 ? std::min(time_s, duration_s()) : 0.0; }
+
+void FlightPlayer::set_speed(double speed) {
+  if (speed == 0 || !std::isfinite(speed)) return;
+  const double size = std::clamp(std::abs(speed), FlightPlayerLimits::kSlowest, FlightPlayerLimits::kFastest);
+  speed_ = std::copysign(size, speed);
+}
+
+void FlightPlayer::look_around(const mars::HeadLook& offset) {
+  offset_ = {mars::normalize_lon_deg(finite(offset.yaw_deg)),
+             std::clamp(finite(offset.pitch_deg), -180.0, 180.0),
+             mars::normalize_lon_deg(finite(offset.roll_deg))};
+}
+
+void FlightPlayer::turn_look(double yaw_deg, double pitch_deg, double roll_deg) {
+  // Kept to what can be seen, so that turning back is felt at once.
+  const double flight_deg = path_.at(time_s_).look.pitch_deg;
+  const double pitch = std::clamp(flight_deg + offset_.pitch_deg + finite(pitch_deg), -90.0, 90.0) - flight_deg;
+  look_around({offset_.yaw_deg + finite(yaw_deg), pitch, offset_.roll_deg + finite(roll_deg)});
+}
+
+scripts::FlightState FlightPlayer::state() const {
+  scripts::FlightState state = path_.at(time_s_);
+  if (offset_.yaw_deg == 0 && offset_.pitch_deg == 0 && offset_.roll_deg == 0) return state;
+  state.look = {mars::normalize_lon_deg(state.look.yaw_deg + offset_.yaw_deg),
+                std::clamp(state.look.pitch_deg + offset_.pitch_deg, -90.0, 90.0),
+                mars::normalize_lon_deg(state.look.roll_deg + offset_.roll_deg)};
+  state.eye = mars::to_eye(state.pose, state.look, radius_m_);
+  return state;
+}
+
+core::Settings FlightPlayer::settings(const core::Settings& base) const {
+  core::Settings settings = base;
+  path_.apply_settings(time_s_, settings);
+  for (const auto& [key, text] : kept_) {
+    // keep_setting() has tried it.
+    static_cast<void>(settings.set(key, text));
+  }
+  return settings;
+}
+
+std::string FlightPlayer::keep_setting(const std::string& key, const std::string& text) {
+  std::string problem = core::Settings().set(key, text);
+  if (problem.empty()) kept_[key] = text;
+  return problem;
+}
+
+}  // namespace vpe::explore
