@@ -1,0 +1,154 @@
+// The window of `vpe explore`, driven as a person would: a mouse and keys on a screen of its own.
+#include "vpe/window/explore_window.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "mars/sun.h"
+#include "tests/window/explore_window_fixture.h"
+#include "vpe/core/image.h"
+#include "vpe/explore/steer.h"
+
+namespace vpe::window {
+namespace {
+
+TEST_F(ExploreWindowTest, ShowsThePlanetAndComesToRest) {
+  open();
+  ASSERT_NE(window_->picture(), nullptr);
+  EXPECT_TRUE(window_->picture()->error.empty());
+  EXPECT_EQ(window_->picture()->order.request.coarsening, 1.0);
+  EXPECT_EQ(window_->image().width, window_->session().screen().width);
+  const std::int64_t frames = window_->frames();
+  const std::int64_t pictures = window_->pictures();
+  for (int n = 0; n < 50; ++n) window_->step(0.001);
+  EXPECT_EQ(window_->frames(), frames);  // draws only when something changes
+  EXPECT_EQ(window_->pictures(), pictures);
+}
+
+TEST_F(ExploreWindowTest, AClickOnTheMapGoesThere) {
+  open();
+  const WidgetPlace map = window_->widgets().places().at("map");
+  click(map.x0 + 0.75 * (map.x1 - map.x0), map.y0 + 0.25 * (map.y1 - map.y0));
+  settle();
+  EXPECT_NEAR(window_->session().pose().lon_deg, 90, 2);
+  EXPECT_NEAR(window_->session().pose().lat_deg, 45, 2);
+}
+
+TEST_F(ExploreWindowTest, ADragHoldsTheGround) {
+  open();
+  click(600, 240);
+  settle();
+  const explore::Screen screen = window_->session().screen();
+  const auto held =
+      explore::ground_at(window_->session().pose(), screen, {600 - 330, 250}, window_->session().ground());
+  ASSERT_TRUE(held.has_value());
+  move(600, 250);
+  robot_->press();
+  turns(2);
+  for (int n = 1; n <= 10; ++n) move(600 + 10 * n, 250 + 4 * n);
+  robot_->release();
+  settle();
+  const core::Projected now = core::project(window_->session().view(), *held);
+  EXPECT_NEAR(now.xy.x, 700 - 330, 1.0);
+  EXPECT_NEAR(now.xy.y, 290, 1.0);
+}
+
+TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
+  open();
+  const std::int64_t before = window_->pictures();
+  int left = 0;
+  int top = 0;
+  glfwGetWindowPos(window_->display().handle(), &left, &top);
+  move(600, 250);
+  settle();
+  const mars::Pose pose = window_->session().pose();
+  robot_->wheel(1);
+  for (int n = 0; n < 100 && window_->session().pose().alt_m == pose.alt_m; ++n) window_->step(0.01);
+  ASSERT_NE(window_->session().pose().alt_m, pose.alt_m);
+  // The turn that took the event has ordered the picture; it is the next one shown.
+  for (int n = 0; n < 100 && window_->pictures() == before; ++n) window_->step(0.01);
+  EXPECT_EQ(glm::length(window_->picture()->order.request.view.eye.eye_m - window_->session().view().eye.eye_m),
+            0.0);
+}
+
+TEST_F(ExploreWindowTest, EveryModeAndBothBackendsWhileRunning) {
+  open();
+  for (const char* backend : {"Triangles", "Rays"}) {
+    click(backend);
+    settle();
+    EXPECT_EQ(window_->picture()->order.backend,
+              backend == std::string("Rays") ? Backend::kRays : Backend::kPolygons);
+    EXPECT_TRUE(window_->picture()->error.empty()) << window_->picture()->error;
+    click("Appearance");
+    for (const char* mode : {"wireframe", "markers", "unlit", "lit", "coloured", "textured"}) {
+      // Rays draw surfaces; lines and dots are refused with a reason, and the window goes on.
+      click("mode");
+      click(std::string("mode=") + mode);
+      settle();
+      EXPECT_EQ(window_->session().settings().get("mode"), mode);
+    }
+    click("Control");
+  }
+}
+
+TEST_F(ExploreWindowTest, KeysMoveTurnAndHide) {
+  open();
+  click(600, 240);  // the view has the focus
+  settle();
+  const mars::Pose before = window_->session().pose();
+  robot_->key_down("w");
+  turns(10);
+  robot_->key_up("w");
+  settle();
+  EXPECT_LT(window_->session().pose().alt_m, before.alt_m);  // looks down, so forward is down
+  robot_->key_down("Right");
+  turns(10);
+  robot_->key_up("Right");
+  settle();
+  EXPECT_NE(window_->session().pose().yaw_deg, before.yaw_deg);
+  key("n");
+  settle();
+  EXPECT_NEAR(window_->session().pose().yaw_deg, 0, 1e-9);
+  key("h");
+  settle();
+  EXPECT_EQ(window_->session().screen().width, 960);
+  key("h");
+  settle();
+  EXPECT_LT(window_->session().screen().width, 960);
+}
+
+TEST_F(ExploreWindowTest, NothingOverlaps) {
+  for (const auto& [width, height] : {std::pair{1280, 720}, std::pair{2560, 1440}}) {
+    open(width, height);
+    for (const char* tab : {"Control", "Appearance", "Detail"}) {
+      click(tab);
+      settle();
+      const auto& places = window_->widgets().places();
+      for (auto a = places.begin(); a != places.end(); ++a) {
+        for (auto b = std::next(a); b != places.end(); ++b) {
+          const double w = std::min(a->second.x1, b->second.x1) - std::max(a->second.x0, b->second.x0);
+          const double h = std::min(a->second.y1, b->second.y1) - std::max(a->second.y0, b->second.y0);
+          EXPECT_FALSE(w > 1 && h > 1) << a->first << " and " << b->first << " at " << width;
+        }
+      }
+    }
+    window_.reset();
+  }
+}
+
+TEST_F(ExploreWindowTest, WithoutADisplayItSaysWhatToDo) {
+  unsetenv("DISPLAY");
+  DisplayOptions options;
+  options.instead = "do something else";
+  try {
+    Display display(options);
+    FAIL() << "a window without a display";
+  } catch (const DisplayError& e) {
+    EXPECT_NE(std::string(e.what()).find("do something else"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace vpe::window

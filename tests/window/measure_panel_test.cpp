@@ -1,0 +1,361 @@
+// The measuring panel without a window: Dear ImGui asks for no OpenGL until something is shown.
+#include "vpe/window/measure_panel.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/explore/ground_fixture.h"
+#include "vpe/explore/profile_plot.h"
+#include "vpe/window/profile_plot_view.h"
+
+namespace vpe::window {
+namespace {
+
+const mars::LonLat kWest{-35.15, 20};
+const mars::LonLat kEast{-34.85, 20};  // the ridge is between them
+
+class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGround> {
+ protected:
+  void SetUp() override {
+    shared_ = std::shared_ptr<const paging::Surface>(&surface(), [](const paging::Surface*) {});
+    session_ = std::make_unique<explore::Session>(shared_, explore::SessionOptions{});
+    session_->resize(800, 600);
+    panel_ = std::make_unique<MeasurePanel>(shared_, [this] { ++told_; });
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = {340, 2000};
+    io.ClipboardUserData = &logged_;
+    io.SetClipboardTextFn = [](void* to, const char* words) { *static_cast<std::string*>(to) = words; };
+    unsigned char* pixels = nullptr;
+    int width = 0;
+    int height = 0;
+    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+#if IMGUI_VERSION_NUM < 18700
+    io.KeyMap[ImGuiKey_Enter] = 1;
+#endif
+    frame();
+    frame();
+  }
+  void TearDown() override {
+    panel_.reset();
+    ImGui::DestroyContext();
+  }
+
+  // All that stands in the panel.
+  const std::string& frame(std::optional<mars::LonLat> under_cursor = {}) {
+    ImGui::GetIO().DeltaTime = 0.02F;
+    ImGui::NewFrame();
+    widgets_.begin_frame();
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({330, 1990});
+    ImGui::Begin("side", nullptr, ImGuiWindowFlags_NoDecoration);
+    ImGui::LogToClipboard();
+    MeasureWish wish = panel_->draw(*session_, under_cursor, widgets_);
+    ImGui::LogFinish();
+    ImGui::End();
+    if (wish.go_to || !wish.message.empty()) wish_ = wish;
+    ImGui::Render();
+    return logged_;
+  }
+  // With the mouse elsewhere: no words of help, which would end the list.
+  const std::string& words() {
+    move(-1, -1);
+    return logged_;
+  }
+  void settle() {
+    for (int n = 0; n < 5000 && !panel_->is_at_rest(); ++n) {
+      frame();
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    ASSERT_TRUE(panel_->is_at_rest());
+    frame();
+  }
+  WidgetPlace place_of(const std::string& label) const {
+    const auto found = widgets_.places().find(label);
+    EXPECT_NE(found, widgets_.places().end()) << "no widget is called " << label;
+    return found == widgets_.places().end() ? WidgetPlace{} : found->second;
+  }
+  void move(double x, double y) {
+    ImGui::GetIO().MousePos = {static_cast<float>(x), static_cast<float>(y)};
+    frame();
+    frame();
+  }
+  void click(const std::string& label) {
+    const WidgetPlace p = place_of(label);
+    move(p.x0 + 0.3 * (p.x1 - p.x0), (p.y0 + p.y1) / 2);
+    ImGui::GetIO().MouseDown[0] = true;
+    frame();
+    ImGui::GetIO().MouseDown[0] = false;
+    frame();
+    frame();
+  }
+  void type(const std::string& label, const std::string& words) {
+    click(label);
+    ImGui::GetIO().AddInputCharactersUTF8(words.c_str());
+    frame();
+    enter(true);
+    frame();
+    enter(false);
+    frame();
+  }
+  static void enter(bool down) {
+#if IMGUI_VERSION_NUM < 18700
+    ImGui::GetIO().KeysDown[1] = down;
+#else
+    ImGui::GetIO().AddKeyEvent(ImGuiKey_Enter, down);
+#endif
+  }
+  void add_both() {
+    panel_->add(kWest);
+    panel_->add(kEast);
+    settle();
+    ASSERT_NE(panel_->measured(), nullptr);
+  }
+
+  std::shared_ptr<const paging::Surface> shared_;
+  std::unique_ptr<explore::Session> session_;
+  std::atomic<int> told_{0};
+  std::unique_ptr<MeasurePanel> panel_;
+  Widgets widgets_;
+  MeasureWish wish_;
+  std::string logged_;
+};
+
+bool has(const std::string& words, const std::string& part) { return words.find(part) != std::string::npos; }
+
+TEST_F(MeasurePanelTest, WhatIsUnderTheCursorIsReadOutAndStays) {
+  session_->put({145, -20, 20000, 0, -90, 0});
+  EXPECT_TRUE(has(words(), "Point at the ground"));
+  const std::string there = frame(kEast);
+  for (const explore::ReadOutLine& line : explore::read_out_lines(explore::read_out_at(surface(), kEast)))
+    EXPECT_TRUE(has(there, line.text)) << line.text << " in\n" << there;
+  EXPECT_FALSE(has(there, "Range")) << there;  // the eye is on the other side
+  EXPECT_TRUE(has(frame(), "-34.85000"));
+  session_->put({-34.85, 20, 20000, 0, -90, 0});
+  EXPECT_TRUE(has(frame(kEast), "Range"));
+}
+
+TEST_F(MeasurePanelTest, ATypedPlaceSaysHowItIsUnderstoodAndIsGoneTo) {
+  type("##place", "4.5895 S 222.5583 W");
+  EXPECT_TRUE(has(words(), "137.441700\u00b0 E, 4.589500\u00b0 S")) << logged_;
+  click("Go there");
+  ASSERT_TRUE(wish_.go_to.has_value());
+  EXPECT_NEAR(wish_.go_to->lon_deg, 137.4417, 1e-9);
+  EXPECT_NEAR(wish_.go_to->lat_deg, -4.5895, 1e-9);
+  click("Add as a point");
+  ASSERT_EQ(panel_->points().size(), 1U);
+  EXPECT_NEAR(panel_->points()[0].lon_deg, 137.4417, 1e-9);
+}
+
+TEST_F(MeasurePanelTest, AWrongPlaceSaysWhatIsExpectedAndIsNotGoneTo) {
+  type("##place", "somewhere");
+  EXPECT_TRUE(has(words(), "expected")) << logged_;
+  click("Go there");
+  EXPECT_FALSE(wish_.go_to.has_value());
+}
+
+TEST_F(MeasurePanelTest, TwoPointsAreMeasured) {
+  add_both();
+  const Measured& m = *panel_->measured();
+  ASSERT_NE(m.profile, nullptr);
+  EXPECT_EQ(explore::to_csv(*m.profile),
+            explore::to_csv(explore::make_profile(surface(), std::vector<mars::LonLat>{kWest, kEast})));
+  ASSERT_TRUE(m.sight.has_value());
+  EXPECT_FALSE(m.sight->visible);
+  EXPECT_GE(told_, 1);
+  const std::string all = words();
+  EXPECT_TRUE(has(all, explore::length_text(m.profile->ground_length_m)));
+  EXPECT_TRUE(has(all, "A and B do not see each other"));
+  EXPECT_TRUE(has(all, "B at " + explore::length_text(m.sight->needed_height_m) + " above ground"));
+}
+
+TEST_F(MeasurePanelTest, FromHighEnoughTheySeeEachOther) {
+  add_both();
+  const std::shared_ptr<const explore::Profile> profile = panel_->measured()->profile;
+  const double needed_m = panel_->measured()->sight->needed_height_m;
+  type("B (m)##to", std::to_string(std::ceil(needed_m)));
+  settle();
+  ASSERT_NE(panel_->measured(), nullptr);
+  EXPECT_EQ(panel_->measured()->order.to_height_m, std::ceil(needed_m));
+  EXPECT_TRUE(panel_->measured()->sight->visible);
+  EXPECT_EQ(panel_->measured()->profile, profile);  // not made again
+  EXPECT_TRUE(has(words(), "A and B see each other")) << logged_;
+}
+
+TEST_F(MeasurePanelTest, WhatIsShownIsOfThePointsAsTheyAre) {
+  panel_->add(kWest);
+  panel_->add(kEast);
+  frame();
+  panel_->add({-34.9, 20.1});  // while the first two may be under way
+  settle();
+  ASSERT_EQ(panel_->measured()->order.places.size(), 3U);
+  click("x##B");
+  EXPECT_EQ(panel_->points().size(), 2U);
+  settle();
+  ASSERT_NE(panel_->measured(), nullptr);
+  EXPECT_EQ(panel_->measured()->order.places.back().lat_deg, 20.1);
+  click("Clear");
+  EXPECT_TRUE(panel_->points().empty());
+  EXPECT_EQ(panel_->measured(), nullptr);
+  panel_->add({std::nan(""), 0});
+  panel_->add({0, 91});
+  EXPECT_TRUE(panel_->points().empty());
+  EXPECT_TRUE(panel_->is_at_rest());
+}
+
+// An order that comes while another is being measured: the older one's figures are never shown.
+TEST_F(MeasurePanelTest, WhatIsFinishedTooLateIsDropped) {
+  for (int n = 0; n < 20; ++n) {
+    panel_->add({-100.0 - n, 0});
+    panel_->add({50, 10});
+    std::this_thread::sleep_for(std::chrono::microseconds(500));  // most often it is under way by now
+    panel_->add({60, 20});
+    while (!panel_->is_at_rest()) {
+      frame();
+      const Measured* shown = panel_->measured();
+      ASSERT_EQ(shown == nullptr ? 3U : shown->order.places.size(), 3U);
+    }
+    frame();
+    ASSERT_NE(panel_->measured(), nullptr);
+    panel_->clear();
+  }
+}
+
+TEST_F(MeasurePanelTest, WhatCannotBeMeasuredSaysWhy) {
+  panel_->add({10, 0});
+  panel_->add({-170, 0});
+  settle();
+  ASSERT_NE(panel_->measured(), nullptr);
+  EXPECT_EQ(panel_->measured()->profile, nullptr);
+  EXPECT_TRUE(has(words(), "opposite sides")) << logged_;
+  // And the panel goes on.
+  panel_->clear();
+  add_both();
+  EXPECT_NE(panel_->measured()->profile, nullptr);
+}
+
+TEST_F(MeasurePanelTest, OnePlaceTwiceIsAWayOfNoLength) {
+  panel_->add(kWest);
+  panel_->add(kWest);
+  settle();
+  ASSERT_NE(panel_->measured(), nullptr);
+  ASSERT_NE(panel_->measured()->profile, nullptr);
+  EXPECT_EQ(panel_->measured()->profile->length_m, 0);
+  const WidgetPlace plot = place_of("profile plot");
+  move((plot.x0 + plot.x1) / 2, (plot.y0 + plot.y1) / 2);
+  EXPECT_FALSE(panel_->marked().has_value());
+}
+
+TEST_F(MeasurePanelTest, TheCursorOnThePlotMarksThePlace) {
+  add_both();
+  EXPECT_FALSE(panel_->marked().has_value());
+  const WidgetPlace plot = place_of("profile plot");
+  move(plot.x1 - 1, (plot.y0 + plot.y1) / 2);
+  ASSERT_TRUE(panel_->marked().has_value());
+  EXPECT_LT(mars::distance_rad(*panel_->marked(), kEast) * mars::kMarsRadius_m, 400);
+  // Its figures are those of a point of the profile.
+  const paging::ProfilePoint& last = panel_->measured()->profile->points.back();
+  EXPECT_TRUE(has(frame(), explore::length_text(last.distance_m) + ": ")) << logged_;
+  move(plot.x1 - 1, plot.y1 + 900);
+  EXPECT_FALSE(panel_->marked().has_value());
+  // Gone too when the panel is not drawn any longer.
+  move(plot.x1 - 1, (plot.y0 + plot.y1) / 2);
+  ASSERT_TRUE(panel_->marked().has_value());
+  for (int n = 0; n < 2; ++n) {
+    ImGui::NewFrame();
+    ImGui::Render();
+  }
+  EXPECT_FALSE(panel_->marked().has_value());
+}
+
+TEST_F(MeasurePanelTest, TheProfileIsSavedWholeOrNotAtAll) {
+  add_both();
+  const test_support::TempDir folder;
+  type("##file", (folder / "p.csv").string());
+  click("Save CSV");
+  ASSERT_FALSE(wish_.message.empty());
+  EXPECT_FALSE(wish_.message_is_trouble) << wish_.message;
+  std::ifstream file(folder / "p.csv");
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_EQ(text.str(), explore::to_csv(*panel_->measured()->profile));
+  click("Save CSV");
+  EXPECT_TRUE(has(wish_.message, "replaced")) << wish_.message;
+  std::filesystem::remove_all(folder.path());
+  click("Save CSV");
+  EXPECT_TRUE(wish_.message_is_trouble);
+  EXPECT_TRUE(has(wish_.message, (folder / "p.csv").string())) << wish_.message;
+}
+
+TEST_F(MeasurePanelTest, ItMayEndWhileItMeasures) {
+  for (int n = 0; n < 5; ++n) {
+    panel_->add({-100.0 + n, 0});
+    panel_->add({70, 10.0 * n});
+    panel_ = std::make_unique<MeasurePanel>(shared_, [] {});
+  }
+  EXPECT_TRUE(panel_->is_at_rest());
+}
+
+constexpr ImU32 kMark = IM_COL32(255, 214, 90, 255);
+
+// Vertices of the marks' full colour within some pixels of a place.
+int vertices_at(const ImDrawList& list, const explore::Session& session, mars::LonLat place, double x0,
+                double y0, double within_px) {
+  const glm::dvec3 d = mars::direction(place);
+  const core::Projected p =
+      core::project(session.view(), d * (session.ground().radius_m + session.ground().height_m(d)));
+  int count = 0;
+  for (const ImDrawVert& v : list.VtxBuffer) {
+    const glm::dvec2 at{static_cast<double>(v.pos.x) - x0, static_cast<double>(v.pos.y) - y0};
+    count += v.col == kMark && glm::length(at - p.xy) < within_px ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(MeasurePanelTest, MarksStandWhereTheirPlacesAreAndHiddenOnesAreFaint) {
+  const auto draw = [&](const mars::Pose& pose) {
+    session_->put(pose);
+    ImGui::NewFrame();
+    auto list = std::make_unique<ImDrawList>(ImGui::GetDrawListSharedData());
+    list->_ResetForNewFrame();
+    list->PushClipRectFullScreen();
+    list->PushTextureID(ImGui::GetIO().Fonts->TexID);
+    panel_->draw_marks(*list, *session_, 100, 50);
+    ImGui::Render();
+    return list;
+  };
+  add_both();
+  // From above: both points and the line between them.
+  const auto above = draw({-35, 20, 40000, 0, -90, 0});
+  for (const double lon_deg : {-35.15, -35.1, -35.0, -34.9, -34.85})
+    EXPECT_GT(vertices_at(*above, *session_, {lon_deg, 20}, 100, 50, 6), 0) << lon_deg;
+  EXPECT_EQ(vertices_at(*above, *session_, {-35.1, 20.02}, 100, 50, 6), 0);
+  // From the south-west, low: the ridge hides what is behind it, and the line ends at its top.
+  const auto low = draw({-35.2, 19.9, 300, 50, 0, 0});
+  EXPECT_GT(vertices_at(*low, *session_, {-35.15, 20}, 100, 50, 6), 0);
+  EXPECT_GT(vertices_at(*low, *session_, {-35.02, 20}, 100, 50, 10), 0);
+  for (const double lon_deg : {-34.95, -34.9, -34.85})
+    EXPECT_EQ(vertices_at(*low, *session_, {lon_deg, 20}, 100, 50, 6), 0) << lon_deg;
+  // From the other side of the planet: nothing in full colour.
+  const auto far = draw({145, -20, 5e6, 0, -90, 0});
+  for (const ImDrawVert& v : far->VtxBuffer) EXPECT_NE(v.col, kMark);
+}
+
+TEST(PointNames, GoOnBehindZ) {
+  EXPECT_EQ(point_name(0), "A");
+  EXPECT_EQ(point_name(25), "Z");
+  EXPECT_EQ(point_name(26), "AA");
+  EXPECT_EQ(point_name(27), "AB");
+  EXPECT_EQ(point_name(26 + 26 * 26), "AAA");
+}
+
+}  // namespace
+}  // namespace vpe::window

@@ -1,0 +1,290 @@
+// A session from beginning to end, by hand, and the same again from its log.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "scripts/path.h"
+#include "tests/window/explore_window_fixture.h"
+#include "vpe/voxel/ray_renderer.h"
+
+namespace vpe::window {
+namespace {
+
+struct Shown {
+  PictureOrder order;
+  core::RgbImage image;
+  mars::Pose pose;
+};
+
+class SessionTest : public ExploreWindowTest {
+ protected:
+  // Turns of the loop; every picture that is shown is kept.
+  void watch(int count) {
+    for (int n = 0; n < count; ++n) {
+      const std::int64_t before = window_->pictures();
+      ASSERT_TRUE(window_->step(0.01));
+      if (window_->pictures() != before && window_->picture()->order.logged_s)
+        shown_.push_back({window_->picture()->order, window_->image(), window_->session().pose()});
+    }
+  }
+
+  scripts::Flight read_log() {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      if (entry.path().extension() != ".flight") continue;
+      std::ifstream in(entry.path());
+      std::stringstream text;
+      text << in.rdbuf();
+      const scripts::ParsedFlight parsed = scripts::parse_flight(text.str(), entry.path().string());
+      EXPECT_TRUE(parsed.errors.empty()) << scripts::to_string(parsed.errors.front());
+      return parsed.flight.value_or(scripts::Flight{});
+    }
+    ADD_FAILURE() << "there is no log";
+    return {};
+  }
+
+  std::vector<Shown> shown_;
+};
+
+TEST_F(SessionTest, IsTheSameFromItsLog) {
+  open();
+  // Nearer, over a place clicked on the map.
+  const WidgetPlace map = place_of("map");
+  const auto on_map = [&](double u, double v) {
+    return std::pair{map.x0 + u * (map.x1 - map.x0), map.y0 + v * (map.y1 - map.y0)};
+  };
+  click(on_map(0.6, 0.4).first, on_map(0.6, 0.4).second);
+  settle();
+  click("Flight");
+  click("Record");
+  EXPECT_TRUE(window_->is_recording());
+  // Five waypoints on the map.
+  robot_->key_down("Control_L");
+  turns(3);
+  for (const double u : {0.55, 0.6, 0.65, 0.7, 0.75}) click(on_map(u, 0.45).first, on_map(u, 0.45).second);
+  robot_->key_up("Control_L");
+  turns(3);
+  ASSERT_NE(window_->session().flights().editor(), nullptr);
+  ASSERT_EQ(window_->session().flights().editor()->flight().waypoints.size(), 5U);
+  explore::FlightEditor& editor = *window_->session().flights().editor();
+  ASSERT_EQ(editor.scale_times(2.0 / scripts::duration_s(editor.flight())), "");  // two seconds
+  const scripts::Flight flown = editor.flight();
+
+  // It plays while somebody looks around in it and changes what is drawn.
+  click("Play");
+  ASSERT_TRUE(window_->session().follows_flight());
+  move(600, 200);
+  robot_->press();
+  for (int n = 1; n <= 12; ++n) {
+    move(600 + 15 * n, 200 + 5 * n);
+    watch(2);
+  }
+  robot_->release();
+  watch(10);
+  EXPECT_TRUE(window_->session().set("colour", "slope").empty());
+  watch(20);
+  EXPECT_NE(window_->session().look().yaw_deg, 0);
+  for (int n = 0; n < 2000 && window_->session().player()->is_playing(); ++n) watch(1);
+  EXPECT_TRUE(window_->session().player()->at_end());
+  for (int n = 0; n < 2000 && !window_->is_at_rest(); ++n) watch(1);
+  // Looking around has not moved the flight.
+  EXPECT_EQ(flown, window_->session().flights().editor()->flight());
+  EXPECT_EQ(window_->session().pose().lon_deg, flown.waypoints.back().lon_deg);
+  EXPECT_EQ(window_->session().pose().alt_m, flown.waypoints.back().up_m);
+  click("Record");
+  EXPECT_FALSE(window_->is_recording());
+  window_.reset();
+
+  const scripts::Flight log = read_log();
+  const double radius_m = planet()->radius_m();
+  const scripts::Path path(log, radius_m, {});
+  ASSERT_GE(shown_.size(), 5U);
+  core::Settings first;
+  const auto renderer = voxel::make_ray_renderer(planet(), {std::size_t{256} << 20, 2});
+  int compared = 0;
+  double off_m = 0;
+  double off_rad = 0;
+  for (const Shown& shown : shown_) {
+    const double time_s = *shown.order.logged_s;
+    const mars::EyePose eye = path.at(time_s).eye;
+    const mars::EyePose& drawn = shown.order.request.view.eye;
+    off_m = std::max(off_m, glm::length(eye.eye_m - drawn.eye_m));
+    off_rad = std::max(off_rad, mars::angle_between_rad(eye.axes.forward, drawn.axes.forward));
+    off_rad = std::max(off_rad, mars::angle_between_rad(eye.axes.up, drawn.axes.up));
+    if (shown.order.request.coarsening != 1.0 || compared >= 3) continue;
+    core::Settings settings = first;
+    path.apply_settings(time_s, settings);
+    core::DrawRequest request;
+    request.view = shown.order.request.view;
+    request.view.eye = eye;
+    request.settings = settings.values();
+    request.sun = app::sun_for(settings.values(), path.at(time_s).pose);
+    const core::Frame frame = renderer->draw(request).frame;
+    EXPECT_EQ(frame.colour, shown.image.pixels) << "at " << time_s;
+    ++compared;
+  }
+  EXPECT_LT(off_m, 1e-9 * radius_m);
+  EXPECT_LT(off_rad, 1e-9);
+  RecordProperty("off_m", std::to_string(off_m));
+  EXPECT_GE(compared, 1);
+}
+
+TEST_F(SessionTest, BookmarksAndViewsLeadBack) {
+  open();
+  const mars::Pose start = window_->session().pose();
+  robot_->key_down("Control_L");
+  turns(2);
+  key("1");
+  robot_->key_up("Control_L");
+  turns(2);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "bookmarks"));
+  click(600, 240);
+  robot_->wheel(8);
+  settle();
+  EXPECT_LT(window_->session().pose().alt_m, start.alt_m / 2);
+  // A view counts once it has been looked at for half a second.
+  const double begun = glfwGetTime();
+  while (glfwGetTime() < begun + 0.7) turns(1);
+  key("1");
+  settle();
+  EXPECT_NEAR(window_->session().pose().alt_m, start.alt_m, 1e-6);
+  key("BackSpace");
+  settle();
+  EXPECT_LT(window_->session().pose().alt_m, start.alt_m / 2);
+}
+
+TEST_F(SessionTest, APictureIsWhatIsShown) {
+  open();
+  key("F12");
+  settle();
+  int pictures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    if (entry.path().extension() != ".png") continue;
+    ++pictures;
+    const core::RgbImage saved = core::read_image(entry.path().string());
+    EXPECT_EQ(saved.pixels, window_->image().pixels);
+  }
+  EXPECT_EQ(pictures, 1);
+}
+
+TEST_F(SessionTest, AGamepadASpaceMouseAndAHeadMoveTheEye) {
+  struct Cap : explore::SpaceMouseSource {
+    std::vector<explore::SpaceMouseEvent> next;
+    std::vector<explore::SpaceMouseEvent> poll() override { return std::exchange(next, {}); }
+  };
+  auto cap = std::make_unique<Cap>();
+  Cap* hand = cap.get();
+  auto pad = std::make_shared<std::optional<explore::PadState>>();
+  extra_.devices.pad = [pad] { return *pad; };
+  extra_.devices.space_mouse = std::move(cap);
+  extra_.preferences.use_head_tracker = true;
+  extra_.preferences.head_from.port = 0;
+  open();
+  const mars::Pose start = window_->session().pose();
+  *pad = explore::PadState{};
+  (*pad)->axes[static_cast<std::size_t>(explore::PadAxis::kRightX)] = 1;
+  turns(12);
+  EXPECT_NE(window_->session().pose().yaw_deg, start.yaw_deg);
+  pad->reset();
+  turns(2);
+  const double alt_m = window_->session().pose().alt_m;
+  hand->next.push_back(explore::SpaceMouseMotion{{0, 0, 350}, {0, 0, 0}});
+  turns(12);
+  EXPECT_LT(window_->session().pose().alt_m, alt_m);  // ahead is down
+  hand->next.push_back(explore::SpaceMouseMotion{});
+  turns(2);
+
+  // A head, 20 degrees to the right; one datagram is no datagram.
+  ASSERT_TRUE(window_->devices().tracker_port().has_value());
+  const int out = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(*window_->devices().tracker_port()));
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const std::array<double, 6> head{0, 0, 0, 20, 5, 0};
+  const auto send = [&](std::size_t bytes) {
+    EXPECT_EQ(sendto(out, head.data(), bytes, 0, reinterpret_cast<const sockaddr*>(&to), sizeof to),
+              static_cast<ssize_t>(bytes));
+  };
+  const mars::Pose pose = window_->session().pose();
+  send(sizeof head - 1);
+  turns(3);
+  EXPECT_EQ(window_->session().look().yaw_deg, 0);
+  for (int n = 0; n < 300 && window_->session().look().yaw_deg < 19; ++n) {
+    send(sizeof head);
+    turns(1);
+  }
+  EXPECT_NEAR(window_->session().look().yaw_deg, 20, 1);
+  EXPECT_NEAR(window_->session().look().pitch_deg, 5, 1);
+  EXPECT_EQ(window_->session().pose().yaw_deg, pose.yaw_deg);  // the platform stays
+  close(out);
+}
+
+TEST_F(SessionTest, AWaypointIsDraggedAndARegionDrawnOnTheMap) {
+  open();
+  click("Flight");
+  const WidgetPlace map = place_of("map");
+  const auto x_of = [&](double u) { return map.x0 + u * (map.x1 - map.x0); };
+  const auto y_of = [&](double v) { return map.y0 + v * (map.y1 - map.y0); };
+  robot_->key_down("Control_L");
+  turns(2);
+  click(x_of(0.3), y_of(0.3));
+  click(x_of(0.5), y_of(0.3));
+  robot_->key_up("Control_L");
+  turns(2);
+  const explore::FlightEditor* editor = window_->session().flights().editor();
+  ASSERT_NE(editor, nullptr);
+  const scripts::Flight before = editor->flight();
+  move(x_of(0.3), y_of(0.3));
+  robot_->press();
+  turns(2);
+  for (int n = 1; n <= 4; ++n) move(x_of(0.3), y_of(0.3 + 0.05 * n));
+  robot_->release();
+  turns(2);
+  const double degrees_px = 180.0 / (map.y1 - map.y0);
+  EXPECT_NEAR(editor->flight().waypoints[0].lat_deg, before.waypoints[0].lat_deg - 0.2 * 180, 2 * degrees_px);
+  EXPECT_EQ(editor->flight().waypoints[0].up_m, before.waypoints[0].up_m);
+  EXPECT_EQ(editor->flight().waypoints[1], before.waypoints[1]);
+  click("Undo");  // the drag is one step
+  EXPECT_EQ(editor->flight(), before);
+
+  robot_->key_down("Shift_L");
+  move(x_of(0.7), y_of(0.6));
+  robot_->press();
+  turns(2);
+  for (int n = 1; n <= 4; ++n) move(x_of(0.7), y_of(0.6 + 0.02 * n));
+  robot_->release();
+  turns(2);
+  robot_->key_up("Shift_L");
+  settle();
+  ASSERT_EQ(window_->session().interest().size(), 1U);
+  const core::InterestRegion region = window_->session().interest().front();
+  EXPECT_NEAR(region.lon_deg, 0.2 * 360, 2 * degrees_px);
+  EXPECT_NEAR(region.radius_m / planet()->radius_m() / mars::kRadiansPerDegree, 0.08 * 180, 2 * degrees_px);
+  EXPECT_EQ(window_->picture()->order.request.interest.size(), 1U);
+}
+
+TEST_F(SessionTest, TwoEyesInEveryLayout) {
+  open();
+  const explore::Screen screen = window_->session().screen();
+  for (const auto& [name, layout] : {std::pair{"side by side", core::StereoLayout::kSideBySide},
+                                     std::pair{"over and under", core::StereoLayout::kOverUnder},
+                                     std::pair{"red and cyan", core::StereoLayout::kAnaglyph}}) {
+    click("##eyes");
+    click(std::string("##eyes=") + name);
+    settle();
+    ASSERT_EQ(window_->picture()->order.stereo, layout);
+    EXPECT_EQ(window_->image().width, screen.width * (layout == core::StereoLayout::kSideBySide ? 2 : 1));
+    EXPECT_EQ(window_->image().height, screen.height * (layout == core::StereoLayout::kOverUnder ? 2 : 1));
+  }
+}
+
+}  // namespace
+}  // namespace vpe::window

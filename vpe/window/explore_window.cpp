@@ -1,0 +1,224 @@
+#include "vpe/window/explore_window.h"
+
+// OpenGL's own headers are not wanted.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+namespace vpe::window {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kShortestFrame_s = 1.0 / 120;
+constexpr double kDoubleClick_s = 0.35;
+constexpr double kDoubleClick_px = 6;
+constexpr double kIdle_s = 0.5;
+constexpr double kMessage_s = 6;      // for which one is shown
+constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
+
+double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+}  // namespace
+
+ExploreWindow::ExploreWindow(ExploreSetup setup)
+    : setup_(std::move(setup)),
+      session_(setup_.surface, setup_.session),
+      display_(setup_.display),
+      map_(setup_.planet, setup_.threads, [] { Display::wake(); }),
+      measure_(setup_.surface, [] { Display::wake(); }),
+      guide_(setup_.spots, setup_.open_overlook),
+      live_({setup_.session.settings.values().lod_frame_ms}),
+      devices_(setup_.preferences, std::move(setup_.devices)),
+      history_(session_.ground().radius_m),
+      first_fov_deg_(setup_.session.fov_deg),
+      begun_(Clock::now()),
+      last_frame_(begun_),
+      maker_(std::make_unique<PictureMaker>(setup_.make_painter, [] { Display::wake(); })) {
+  state_.backend = setup_.backend;
+  lay_out();
+  if (!setup_.session.start)
+    session_.put(explore::overview({0, 0}, session_.screen(), session_.ground().radius_m));
+  for (const std::string& trouble : devices_.troubles()) say(trouble, true);
+  if (setup_.flight) {
+    const std::string trouble = session_.flights().take(*setup_.flight);
+    if (!trouble.empty()) say(trouble, true);
+  }
+  if (!setup_.log.empty()) start_log(setup_.log);
+}
+
+ExploreWindow::~ExploreWindow() {
+  try {
+    stop_log();
+  } catch (const std::exception&) {
+    // What was written before is a flight all the same.
+  }
+}
+
+double ExploreWindow::now_s() const { return seconds(Clock::now() - begun_); }
+
+void ExploreWindow::run() {
+  while (step(kIdle_s) && next_planet_ == nullptr) {
+  }
+}
+
+bool ExploreWindow::is_at_rest() const {
+  if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
+  return maker_->is_idle() && map_.is_at_rest() && measure_.is_at_rest() && !session_.is_going() &&
+         frames_due_ <= 0 && live_.state() == lod::LookState::kWaiting;
+}
+
+bool ExploreWindow::shows_final_picture() const {
+  return picture_ && picture_->result.settled && picture_->order.request.coarsening == 1.0 &&
+         maker_->is_idle() && live_.state() == lod::LookState::kWaiting;
+}
+
+bool ExploreWindow::step(double wait_s) {
+  const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
+  const bool plays = flight != nullptr && flight->is_playing();
+  const bool moves = session_.is_going() || plays || was_moving_ || !maker_->is_idle();
+  const double since_s = seconds(Clock::now() - last_frame_);
+  const double pause_s = std::max(0.0, kShortestFrame_s - since_s);
+  const bool looks = guide_.inside() != nullptr;
+  const bool busy = looks ? !guide_.inside()->is_at_rest() || frames_due_ > 0
+                          : moves || frames_due_ > 0 || live_.state() != lod::LookState::kWaiting;
+  const double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
+  const std::vector<Event> events = display_.events(busy ? pause_s : rest_s);
+  if (display_.should_close()) return false;
+  for (const Event& event : events) {
+    handle(event);
+    frames_due_ = kFramesAfterChange;
+  }
+  lay_out();
+  const DeviceReading hands = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
+  for (const explore::Action& action : hands.actions) {
+    const std::string trouble = act(action);
+    if (!trouble.empty()) say(trouble, true);
+    frames_due_ = kFramesAfterChange;
+  }
+  const auto now = Clock::now();
+  // After a rest no time has passed for what moves.
+  const double dt_s = busy ? seconds(now - last_frame_) : 0.0;
+  last_frame_ = now;
+  if (look_around(hands, dt_s)) return !display_.should_close();
+  explore::Controls controls = hands.controls;
+  controls.speed *= state_.speed;
+  was_moving_ = explore::any(controls);
+  session_.advance(dt_s, controls, hands.look);
+
+  take_opened();
+  if (const std::string words = guide_.follow(session_); !words.empty()) say(words);
+  if (!state_.message.empty() && now_s() - state_.message_since_s > kMessage_s) {
+    state_.message = opening_.valid() ? "opening " + opening_file_ + " ..." : "";
+    state_.message_is_trouble = false;
+    state_.message_since_s = now_s();
+    frames_due_ = kFramesAfterChange;
+  }
+
+  order_picture();
+  take_picture(kPictureWait_s);
+  if (!map_.is_at_rest() || !measure_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
+  if (frames_due_ > 0 || session_.is_going() || plays) {
+    draw_frame();
+    --frames_due_;
+  }
+  return !display_.should_close();
+}
+
+void ExploreWindow::handle(const Event& event) {
+  cursor_ = {event.x, event.y};
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool is_key = event.kind == Event::Kind::kKeyPress || event.kind == Event::Kind::kKeyRepeat ||
+                      event.kind == Event::Kind::kKeyRelease;
+  if (guide_.inside() != nullptr && !is_key) {
+    guide_.inside()->handle(event, io.WantCaptureMouse);
+    return;
+  }
+  switch (event.kind) {
+    case Event::Kind::kKeyPress:
+    case Event::Kind::kKeyRepeat:
+    case Event::Kind::kKeyRelease: devices_.key(event); break;
+    case Event::Kind::kPress:
+    case Event::Kind::kRelease: handle_button(event); break;
+    case Event::Kind::kMove:
+      if (session_.mouse_use() != explore::MouseUse::kNone)
+        session_.drag(cursor_ - glm::dvec2{view_area_.x, view_area_.y});
+      break;
+    case Event::Kind::kScroll:
+      if (view_area_.holds(event.x, event.y) && !io.WantCaptureMouse)
+        session_.wheel(cursor_ - glm::dvec2{view_area_.x, view_area_.y}, event.scroll);
+      break;
+    case Event::Kind::kDrop:
+      if (!event.files.empty()) open_dropped(event.files.front());
+      break;
+  }
+}
+
+void ExploreWindow::handle_button(const Event& event) {
+  if (event.kind == Event::Kind::kRelease) {
+    session_.release();
+    return;
+  }
+  if (state_.large_map || !view_area_.holds(event.x, event.y) || ImGui::GetIO().WantCaptureMouse) return;
+  const glm::dvec2 xy = cursor_ - glm::dvec2{view_area_.x, view_area_.y};
+  if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
+    const bool again = last_press_ && event.time_s - last_press_->first < kDoubleClick_s &&
+                       glm::length(last_press_->second - cursor_) < kDoubleClick_px;
+    last_press_ = again ? std::nullopt : std::optional(std::pair{event.time_s, cursor_});
+    if (again) {
+      session_.release();
+      session_.fly_towards(xy);
+      return;
+    }
+    session_.press(
+        (event.modifiers & GLFW_MOD_SHIFT) != 0 ? explore::MouseUse::kTilt : explore::MouseUse::kHold, xy);
+    return;
+  }
+  session_.press(explore::MouseUse::kTilt, xy);
+}
+
+void ExploreWindow::lay_out() {
+  int width = 1;
+  int height = 1;
+  display_.framebuffer(width, height);
+  const double side = state_.panels ? std::round(330.0 * display_.scale()) : 0.0;
+  const double status = state_.panels ? std::round(50.0 * display_.scale()) : 0.0;
+  view_area_.x = std::min(side, width - 16.0);
+  view_area_.y = 0;
+  view_area_.width = std::max(16.0, width - side);
+  view_area_.height = std::max(16.0, height - status);
+  session_.resize(static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
+}
+
+void ExploreWindow::say(std::string words, bool is_trouble) {
+  state_.message = std::move(words);
+  state_.message_is_trouble = is_trouble;
+  state_.message_since_s = now_s();
+  frames_due_ = kFramesAfterChange;
+}
+
+void ExploreWindow::draw_frame() {
+  display_.begin_frame();
+  widgets_.begin_frame();
+  find_cursor();
+  if (state_.large_map)
+    draw_large_map();
+  else if (guide_.inside() != nullptr)
+    guide_.inside()->draw();
+  else
+    draw_view();
+  if (state_.panels) {
+    draw_side();
+    draw_status();
+  }
+  if (state_.help) draw_help();
+  display_.end_frame(std::exchange(capture_, nullptr));
+  ++frames_;
+}
+
+}  // namespace vpe::window

@@ -1,0 +1,270 @@
+#include "vpe/window/map_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "paging/planet_meta.h"
+#include "vpe/explore/map_line.h"
+#include "vpe/window/screen_point.h"
+
+namespace vpe::window {
+
+namespace {
+
+constexpr std::size_t kBudget_bytes = std::size_t{96} << 20;
+constexpr double kDragBegins_px = 4;
+constexpr ImU32 kEye = IM_COL32(255, 214, 90, 255);
+constexpr ImU32 kOutline = IM_COL32(255, 214, 90, 190);
+constexpr ImU32 kRegion = IM_COL32(90, 200, 255, 220);
+constexpr ImU32 kFlight = IM_COL32(255, 255, 255, 230);
+constexpr ImU32 kWay = IM_COL32(120, 255, 160, 255);
+constexpr ImU32 kDark = IM_COL32(0, 0, 0, 160);
+
+}  // namespace
+
+MapPanel::MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> tell)
+    : planet_(std::move(planet)), threads_(threads), tell_(std::move(tell)), thread_([this] { run(); }) {}
+
+MapPanel::~MapPanel() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+bool MapPanel::is_at_rest() const {
+  const std::lock_guard lock(mutex_);
+  return !waiting_ && !is_busy_ && !finished_;
+}
+
+void MapPanel::run() {
+  std::unique_ptr<explore::MapPainter> painter;
+  std::unique_ptr<core::ThreadPool> pool;
+  while (true) {
+    Order order;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return waiting_ || ends_; });
+      if (ends_) return;
+      order = *std::exchange(waiting_, std::nullopt);
+      is_busy_ = true;
+    }
+    core::RgbImage image;
+    try {
+      if (painter == nullptr) {
+        painter = std::make_unique<explore::MapPainter>(planet_, kBudget_bytes);
+        pool = std::make_unique<core::ThreadPool>(threads_);
+      }
+      image = painter->paint(order.map, order.ground, *pool);
+    } catch (const std::exception&) {
+      // Tiles that cannot be read leave the map as it was; the view tells of them.
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      is_busy_ = false;
+      if (image.width > 0) finished_.emplace(order, std::move(image));
+    }
+    tell_();
+  }
+}
+
+MapWish MapPanel::draw(const explore::Session& session, explore::MapGround ground,
+                       std::span<const mars::LonLat> way, int width, int height, Widgets& widgets) {
+  MapWish wish;
+  if (is_fresh_) {
+    map_ = explore::whole_map(width, height);
+    is_fresh_ = false;
+  } else if (map_.width != width || map_.height != height) {
+    map_ = explore::resized(map_, width, height);
+  }
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("map", at(width, height));
+  widgets.note("map");
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::dvec2 xy{static_cast<double>(io.MousePos.x - corner.x),
+                      static_cast<double>(io.MousePos.y - corner.y)};
+  if (ImGui::IsItemHovered()) wish.under_cursor = map_.place(xy);
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0.0F)
+    map_ = explore::zoomed(map_, xy, std::pow(1.25, static_cast<double>(io.MouseWheel)));
+  if (ImGui::IsItemActivated()) {
+    pressed_ = xy;
+    dragged_ = xy;
+    is_drag_ = false;
+    waypoint_ = waypoint_near(session, xy);
+    waypoint_moved_ = false;
+    with_shift_ = io.KeyShift;
+    with_control_ = io.KeyCtrl;
+  }
+  if (pressed_ && ImGui::IsItemActive()) {
+    is_drag_ = is_drag_ || glm::length(xy - *pressed_) > kDragBegins_px;
+    if (is_drag_ && waypoint_) {
+      if (const auto place = map_.place(xy); place && xy != dragged_) {
+        wish.drag = MapWish::Drag{*waypoint_, *place, waypoint_moved_};
+        waypoint_moved_ = true;
+      }
+    } else if (is_drag_ && !with_shift_) {
+      map_ = explore::moved(map_, xy - dragged_);
+    }
+    dragged_ = xy;
+  }
+  if (pressed_ && ImGui::IsItemDeactivated()) {
+    const auto place = map_.place(xy);
+    const auto begun = map_.place(*pressed_);
+    if (waypoint_ && is_drag_) {
+      // It is where it was dropped.
+    } else if (with_shift_ && is_drag_ && place && begun) {
+      const double radius_m = mars::distance_rad(*begun, *place) * planet_->radius_m();
+      wish.new_region = core::InterestRegion{begun->lon_deg, begun->lat_deg, radius_m, 1};
+    } else if (!is_drag_ && place) {
+      if (with_control_)
+        wish.new_waypoint = place;
+      else
+        wish.go_to = place;
+    }
+    pressed_.reset();
+  }
+
+  const Order order{map_, ground};
+  {
+    const std::lock_guard lock(mutex_);
+    if (!(asked_ == order)) {
+      asked_ = order;
+      waiting_ = order;
+    }
+    if (finished_) {
+      if (texture_ == nullptr) texture_ = std::make_unique<Texture>();
+      texture_->upload(finished_->second);
+      shown_ = finished_->first.map;
+      finished_.reset();
+    }
+  }
+  changed_.notify_all();
+
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(corner, at(corner.x + static_cast<float>(width), corner.y + static_cast<float>(height)),
+                    true);
+  list.AddRectFilled(corner, at(corner.x + static_cast<float>(width), corner.y + static_cast<float>(height)),
+                     IM_COL32(40, 42, 46, 255));
+  if (texture_ != nullptr) {
+    // The picture that is there, where it belongs on the map as it is now.
+    const double scale = shown_.degrees_per_px / map_.degrees_per_px;
+    const double wide = shown_.lon_degrees_per_px() / map_.lon_degrees_per_px();
+    const glm::dvec2 middle = map_.position(shown_.middle);
+    const double w = shown_.width * wide / 2;
+    const double h = shown_.height * scale / 2;
+    list.AddImage(texture_->id(), at(corner.x + middle.x - w, corner.y + middle.y - h),
+                  at(corner.x + middle.x + w, corner.y + middle.y + h));
+  }
+  draw_marks(session, corner.x, corner.y);
+  draw_way(way, corner.x, corner.y);
+  list.PopClipRect();
+  return wish;
+}
+
+// The waypoint that is taken hold of at a position, if any.
+std::optional<std::size_t> MapPanel::waypoint_near(const explore::Session& session, glm::dvec2 xy) const {
+  const explore::FlightEditor* editor = session.flights().editor();
+  if (editor == nullptr) return std::nullopt;
+  const double reach_px = static_cast<double>(ImGui::GetFontSize()) * 0.6;
+  std::optional<std::size_t> nearest;
+  double nearest_px = reach_px;
+  const std::vector<scripts::Waypoint>& all = editor->flight().waypoints;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const double off_px = glm::length(map_.position({all[n].lon_deg, all[n].lat_deg}) - xy);
+    if (off_px < nearest_px) {
+      nearest = n;
+      nearest_px = off_px;
+    }
+  }
+  return nearest;
+}
+
+void MapPanel::draw_marks(const explore::Session& session, double x0, double y0) const {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const mars::Pose& pose = session.pose();
+  const double radius_m = session.ground().radius_m;
+  const auto point = [&](mars::LonLat place) {
+    const glm::dvec2 p = map_.position(place);
+    return at(x0 + p.x, y0 + p.y);
+  };
+  // Lines that would run the long way round the map are left out.
+  const auto line = [&](mars::LonLat a, mars::LonLat b, ImU32 colour, float thick) {
+    const ImVec2 p = point(a);
+    const ImVec2 q = point(b);
+    if (std::abs(p.x - q.x) < static_cast<float>(180.0 / map_.lon_degrees_per_px()))
+      list.AddLine(p, q, colour, thick);
+  };
+  const double ground_m = radius_m + pose.alt_m - session.height_m();
+  const std::vector<mars::LonLat> outline = explore::footprint(session.view(), ground_m);
+  for (std::size_t n = 0; n < outline.size(); ++n)
+    line(outline[n], outline[(n + 1) % outline.size()], kOutline, 1.5F);
+
+  for (const core::InterestRegion& region : session.interest()) {
+    constexpr int kCorners = 48;
+    const mars::LonLat middle{region.lon_deg, region.lat_deg};
+    mars::LonLat before = mars::destination(middle, 0, region.radius_m / radius_m);
+    for (int n = 1; n <= kCorners; ++n) {
+      const mars::LonLat next = mars::destination(middle, 360.0 * n / kCorners, region.radius_m / radius_m);
+      line(before, next, kRegion, 1.5F);
+      before = next;
+    }
+  }
+  if (const explore::FlightEditor* editor = session.flights().editor(); editor != nullptr) {
+    // Of a long log every so many poses are enough for a line.
+    constexpr std::size_t kMost = 2000;
+    const std::vector<scripts::Waypoint>& all = editor->flight().waypoints;
+    const std::size_t every = 1 + all.size() / kMost;
+    const bool few = all.size() <= 200;
+    for (std::size_t n = 0; n + every < all.size(); n += every) {
+      constexpr int kParts = 8;
+      const glm::dvec3 a = mars::direction({all[n].lon_deg, all[n].lat_deg});
+      const glm::dvec3 b = mars::direction({all[n + every].lon_deg, all[n + every].lat_deg});
+      mars::LonLat before{all[n].lon_deg, all[n].lat_deg};
+      for (int k = 1; k <= kParts; ++k) {
+        const mars::LonLat next = mars::lon_lat(mars::slerp(a, b, static_cast<double>(k) / kParts));
+        line(before, next, kFlight, 1.5F);
+        before = next;
+      }
+    }
+    for (std::size_t n = 0; few && n < all.size(); ++n) {
+      const ImVec2 p = point({all[n].lon_deg, all[n].lat_deg});
+      list.AddCircleFilled(p, ImGui::GetFontSize() * 0.28F, kFlight);
+      list.AddCircle(p, ImGui::GetFontSize() * 0.28F, kDark, 0, 1.5F);
+    }
+  }
+  if (pressed_ && is_drag_ && with_shift_) {
+    const double radius = glm::length(dragged_ - *pressed_);
+    list.AddCircle(at(x0 + pressed_->x, y0 + pressed_->y), static_cast<float>(radius), kRegion, 48, 1.5F);
+  }
+
+  const ImVec2 eye = point({pose.lon_deg, pose.lat_deg});
+  const double heading = (pose.yaw_deg + session.look().yaw_deg) * mars::kRadiansPerDegree;
+  const double size = ImGui::GetFontSize() * 0.6;
+  const auto corner_at = [&](double angle, double r) {
+    return at(eye.x + r * std::sin(heading + angle), eye.y - r * std::cos(heading + angle));
+  };
+  list.AddTriangleFilled(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kEye);
+  list.AddTriangle(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kDark, 1.5F);
+}
+
+void MapPanel::draw_way(std::span<const mars::LonLat> way, double x0, double y0) const {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  std::vector<ImVec2> points;
+  for (const std::vector<glm::dvec2>& piece : explore::map_line(map_, way)) {
+    points.clear();
+    for (const glm::dvec2 p : piece) points.push_back(at(x0 + p.x, y0 + p.y));
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), kWay, 0, 1.5F);
+  }
+  for (std::size_t n = 0; n < way.size(); ++n) {
+    const glm::dvec2 p = map_.position(way[n]);
+    list.AddCircleFilled(at(x0 + p.x, y0 + p.y), ImGui::GetFontSize() * 0.22F, kWay);
+    const char letter[2] = {static_cast<char>('A' + static_cast<char>(n % 26)), 0};
+    list.AddText(at(x0 + p.x + ImGui::GetFontSize() * 0.4, y0 + p.y - ImGui::GetFontSize() * 1.1), kWay,
+                 letter);
+  }
+}
+
+}  // namespace vpe::window

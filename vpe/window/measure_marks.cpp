@@ -1,0 +1,161 @@
+#include "vpe/window/measure_marks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "vpe/window/profile_plot_view.h"
+
+namespace vpe::window {
+
+namespace {
+
+constexpr ImU32 kMark = IM_COL32(255, 214, 90, 255);
+constexpr ImU32 kFaint = IM_COL32(255, 214, 90, 90);
+constexpr ImU32 kDark = IM_COL32(0, 0, 0, 200);
+constexpr ImU32 kFaintDark = IM_COL32(0, 0, 0, 60);
+
+class Marker {
+ public:
+  Marker(ImDrawList& list, const explore::Session& session, double x0, double y0)
+      : list_(list),
+        session_(session),
+        view_(session.view()),
+        x0_(x0),
+        y0_(y0),
+        thick_(std::max(1.5F, ImGui::GetFontSize() / 8)) {}
+
+  glm::dvec3 on_ground(mars::LonLat place) const {
+    const glm::dvec3 direction = mars::direction(place);
+    return direction * (session_.ground().radius_m + session_.ground().height_m(direction));
+  }
+
+  // What is aimed at stands a little above the ground: about two pixels, so that its own facet does not hide
+  // it.
+  bool is_hidden(const glm::dvec3& point_m) const {
+    const glm::dvec3& eye_m = view_.eye.eye_m;
+    const double lift_m = std::max(0.5, 2 * glm::length(point_m - eye_m) / core::focal_px(view_));
+    const glm::dvec3 way = point_m * (1 + lift_m / glm::length(point_m)) - eye_m;
+    const double distance_m = glm::length(way);
+    return session_.ground().cast_m(eye_m, way / distance_m) < distance_m * (1 - 1e-9);
+  }
+
+  core::Projected seen(const glm::dvec3& point_m) const { return core::project(view_, point_m); }
+  bool is_in_view(const core::Projected& p) const {
+    return !p.behind && p.xy.x >= 0 && p.xy.y >= 0 && p.xy.x <= view_.width && p.xy.y <= view_.height;
+  }
+  ImVec2 at(glm::dvec2 xy) const { return {static_cast<float>(x0_ + xy.x), static_cast<float>(y0_ + xy.y)}; }
+
+  void line(const explore::Profile& profile) const;
+  void point(mars::LonLat place, const std::string& name) const;
+  void cross(mars::LonLat place) const;
+  void clip() const { list_.PushClipRect(at({0, 0}), at({view_.width, view_.height}), true); }
+  void end_clip() const { list_.PopClipRect(); }
+
+ private:
+  struct LinePoint {
+    glm::dvec3 place_m;
+    core::Projected seen;
+    bool hidden = false;
+  };
+  void stretch(std::vector<LinePoint> points) const;
+
+  ImDrawList& list_;
+  const explore::Session& session_;
+  core::View view_;
+  double x0_;
+  double y0_;
+  float thick_;  // of lines; a dark one twice as wide is below them
+};
+
+// One part of the line that crosses the view.
+void Marker::stretch(std::vector<LinePoint> points) const {
+  const std::size_t every = 1 + points.size() / MarkLimits::kLinePoints;
+  std::vector<LinePoint> kept;
+  for (std::size_t n = 0; n < points.size(); ++n)
+    if (n % every == 0 || n + 1 == points.size()) kept.push_back(points[n]);
+  const std::size_t cast_every = 1 + kept.size() / MarkLimits::kCasts;
+  bool hidden = false;
+  for (std::size_t n = 0; n < kept.size(); ++n) {
+    if (n % cast_every == 0) hidden = is_hidden(kept[n].place_m);
+    kept[n].hidden = hidden;
+  }
+  const auto runs = [&](const auto& draw) {
+    for (std::size_t n = 1; n < kept.size(); ++n) {
+      const LinePoint& a = kept[n - 1];
+      const LinePoint& b = kept[n];
+      if (!a.seen.behind && !b.seen.behind) draw(at(a.seen.xy), at(b.seen.xy), a.hidden || b.hidden);
+    }
+  };
+  runs([&](ImVec2 a, ImVec2 b, bool faint) { list_.AddLine(a, b, faint ? kFaintDark : kDark, 2 * thick_); });
+  runs([&](ImVec2 a, ImVec2 b, bool faint) { list_.AddLine(a, b, faint ? kFaint : kMark, thick_); });
+}
+
+void Marker::line(const explore::Profile& profile) const {
+  const double exaggeration = session_.settings().values().exaggeration;
+  std::vector<LinePoint> all;
+  all.reserve(profile.points.size());
+  for (const paging::ProfilePoint& p : profile.points) {
+    LinePoint next;
+    next.place_m = mars::direction(p.place) * (session_.ground().radius_m + p.height_m * exaggeration);
+    next.seen = seen(next.place_m);
+    all.push_back(next);
+  }
+  // Pieces whose ends are both beside the view may yet cross it.
+  const auto crosses = [&](std::size_t n) {
+    const core::Projected& p = all[n - 1].seen;
+    const core::Projected& q = all[n].seen;
+    return !p.behind && !q.behind && std::min(p.xy.x, q.xy.x) <= view_.width && std::max(p.xy.x, q.xy.x) >= 0 &&
+           std::min(p.xy.y, q.xy.y) <= view_.height && std::max(p.xy.y, q.xy.y) >= 0;
+  };
+  for (std::size_t n = 1; n < all.size(); ++n) {
+    if (!crosses(n)) continue;
+    const std::size_t begin = n - 1;
+    while (n < all.size() && crosses(n)) ++n;
+    stretch({all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(n)});
+  }
+}
+
+void Marker::point(mars::LonLat place, const std::string& name) const {
+  const glm::dvec3 place_m = on_ground(place);
+  const core::Projected p = seen(place_m);
+  if (!is_in_view(p)) return;
+  const ImVec2 middle = at(p.xy);
+  const auto size = static_cast<float>(ImGui::GetFontSize() * 0.28);
+  const bool hidden = is_hidden(place_m);
+  list_.AddCircleFilled(middle, size + 0.8F * thick_, hidden ? kFaintDark : kDark);
+  if (hidden)
+    list_.AddCircle(middle, size, kFaint, 0, thick_);
+  else
+    list_.AddCircleFilled(middle, size, kMark);
+  const ImVec2 corner{middle.x + size + 3, middle.y - ImGui::GetFontSize() - 1};
+  for (const auto& [dx, dy] : {std::pair{-1.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, -1.0F}, {0.0F, 1.0F}})
+    list_.AddText({corner.x + dx, corner.y + dy}, hidden ? kFaintDark : kDark, name.c_str());
+  list_.AddText(corner, hidden ? IM_COL32(255, 214, 90, 170) : kMark, name.c_str());
+}
+
+void Marker::cross(mars::LonLat place) const {
+  const core::Projected p = seen(on_ground(place));
+  if (!is_in_view(p)) return;
+  const ImVec2 m = at(p.xy);
+  const auto size = static_cast<float>(ImGui::GetFontSize() * 0.5);
+  for (const auto& [colour, thick] : {std::pair{kDark, 2 * thick_}, {IM_COL32(255, 255, 255, 255), thick_}}) {
+    list_.AddLine({m.x - size, m.y}, {m.x + size, m.y}, colour, thick);
+    list_.AddLine({m.x, m.y - size}, {m.x, m.y + size}, colour, thick);
+  }
+}
+
+}  // namespace
+
+void draw_measure_marks(ImDrawList& list, const explore::Session& session, const MeasureMarks& marks, double x0,
+                        double y0) {
+  const Marker marker(list, session, x0, y0);
+  marker.clip();
+  if (marks.profile != nullptr) marker.line(*marks.profile);
+  for (std::size_t n = 0; n < marks.points.size(); ++n) marker.point(marks.points[n], point_name(n));
+  if (marks.marked) marker.cross(*marks.marked);
+  marker.end_clip();
+}
+
+}  // namespace vpe::window

@@ -1,0 +1,275 @@
+#include "vpe/window/measure_panel.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <system_error>
+#include <utility>
+
+#include "paging/planet_meta.h"
+#include "vpe/core/file.h"
+#include "vpe/explore/digits.h"
+#include "vpe/explore/place_text.h"
+#include "vpe/window/measure_marks.h"
+#include "vpe/window/panel_words.h"
+#include "vpe/window/profile_plot_view.h"
+
+namespace vpe::window {
+
+namespace {
+
+constexpr const char* kMeasuring = "measuring \u2026";
+constexpr double kMostHeight_m = 1e9;
+
+std::string coordinates(mars::LonLat place) {
+  return explore::fixed_text(place.lon_deg, 5) + ", " + explore::fixed_text(place.lat_deg, 5);
+}
+
+std::filesystem::path in_home(const std::string& name) {
+  const char* home = std::getenv("HOME");
+  if (name.starts_with("~/") && home != nullptr && *home != '\0')
+    return std::filesystem::path(home) / name.substr(2);
+  return name;
+}
+
+}  // namespace
+
+MeasurePanel::MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> tell)
+    : surface_(std::move(surface)), measurer_(surface_, std::move(tell)) {}
+
+void MeasurePanel::add(mars::LonLat place) {
+  if (!mars::is_valid(place)) return;
+  places_.push_back({mars::normalize_lon_deg(place.lon_deg), place.lat_deg});
+  order();
+}
+
+void MeasurePanel::erase(std::size_t index) {
+  if (index >= places_.size()) return;
+  places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(index));
+  order();
+}
+
+void MeasurePanel::clear() {
+  places_.clear();
+  order();
+}
+
+std::optional<mars::LonLat> MeasurePanel::marked() const {
+  return ImGui::GetFrameCount() - marked_frame_ <= 1 ? marked_ : std::nullopt;
+}
+
+void MeasurePanel::order() {
+  measured_.reset();
+  marked_.reset();
+  measurer_.forget();
+  wanted_ = places_.size() < 2 ? 0 : measurer_.ask({places_, from_height_m_, to_height_m_});
+}
+
+void MeasurePanel::take() {
+  std::optional<Measured> made = measurer_.take();
+  if (made && made->number == wanted_) measured_ = std::move(made);
+}
+
+MeasureWish MeasurePanel::draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
+                               Widgets& widgets) {
+  take();
+  MeasureWish wish;
+  ImGui::BeginChild("measure");
+  if (ImGui::CollapsingHeader("Under the cursor", ImGuiTreeNodeFlags_DefaultOpen))
+    draw_read_out(session, under_cursor);
+  if (ImGui::CollapsingHeader("Place", ImGuiTreeNodeFlags_DefaultOpen)) draw_place(wish, widgets);
+  if (ImGui::CollapsingHeader("Way", ImGuiTreeNodeFlags_DefaultOpen)) {
+    draw_points(widgets);
+    if (places_.size() >= 2) draw_figures();
+  }
+  if (places_.size() >= 2) {
+    if (ImGui::CollapsingHeader("Profile", ImGuiTreeNodeFlags_DefaultOpen)) draw_profile(wish, widgets);
+    if (ImGui::CollapsingHeader("Line of sight", ImGuiTreeNodeFlags_DefaultOpen)) draw_sight(widgets);
+  }
+  ImGui::EndChild();
+  return wish;
+}
+
+void MeasurePanel::draw_read_out(const explore::Session& session, std::optional<mars::LonLat> under_cursor) {
+  if (under_cursor) {
+    read_out_trouble_.clear();
+    try {
+      explore::ReadOut out =
+          explore::read_out_at(session.surface(), *under_cursor, session.settings().values().exaggeration);
+      // A place pointed at on the map has a range when it can be seen.
+      const glm::dvec3 eye_m = session.view().eye.eye_m;
+      const glm::dvec3 way = out.point_m - eye_m;
+      const double range_m = glm::length(way);
+      const double cast_m = range_m > 0 ? session.ground().cast_m(eye_m, way / range_m) : 0;
+      if (std::abs(cast_m - range_m) <= 0.01 + 1e-3 * range_m) out.range_m = range_m;
+      read_out_ = explore::read_out_lines(out);
+    } catch (const std::exception& e) {
+      read_out_.clear();
+      read_out_trouble_ = e.what();
+    }
+  }
+  if (!read_out_trouble_.empty()) {
+    coloured(kTrouble, read_out_trouble_);
+  } else if (read_out_.empty()) {
+    ImGui::TextDisabled("Point at the ground, in the view or the map.");
+  } else {
+    const Figures figures("read-out");
+    for (const explore::ReadOutLine& line : read_out_) figures.add(line.label.c_str(), line.text);
+  }
+}
+
+void MeasurePanel::draw_place(MeasureWish& wish, Widgets& widgets) {
+  ImGui::SetNextItemWidth(-1);
+  if (widgets.text("##place", place_text_,
+                   "Longitude, latitude; or with E, W, N, S; degrees, minutes, seconds. Enter reads it.")) {
+    std::string fault;
+    place_read_ = explore::read_place(place_text_, fault);
+    place_said_ = place_read_ ? explore::place_words(*place_read_) : fault;
+    if (place_text_.empty()) place_said_.clear();
+  }
+  if (place_said_.empty())
+    ImGui::TextDisabled("Paste longitude, latitude and press Enter.");
+  else
+    coloured(place_read_ ? kGood : kTrouble, place_said_);
+  ImGui::BeginDisabled(!place_read_);
+  if (widgets.button("Go there") && place_read_) wish.go_to = place_read_;
+  ImGui::SameLine();
+  if (widgets.button("Add as a point") && place_read_) add(*place_read_);
+  ImGui::EndDisabled();
+}
+
+void MeasurePanel::draw_points(Widgets& widgets) {
+  if (places_.empty()) {
+    ImGui::TextDisabled("M: a point under the cursor. Two make a way.");
+    return;
+  }
+  std::optional<std::size_t> gone;
+  for (std::size_t n = 0; n < places_.size(); ++n) {
+    const std::string name = point_name(n);
+    if (widgets.button(("x##" + name).c_str(), "take this point away")) gone = n;
+    ImGui::SameLine();
+    ImGui::Text("%s   %s", name.c_str(), coordinates(places_[n]).c_str());
+  }
+  if (gone) erase(*gone);
+  if (widgets.button("Clear", "take all points away")) clear();
+}
+
+void MeasurePanel::draw_figures() {
+  const Figures figures("figures");
+  double arc_rad = 0;
+  for (std::size_t n = 1; n < places_.size(); ++n) arc_rad += mars::distance_rad(places_[n - 1], places_[n]);
+  figures.add("Great circle", explore::length_text(arc_rad * surface_->planet_radius_m()));
+  const explore::Profile* profile = measured_ ? measured_->profile.get() : nullptr;
+  const auto of_profile = [&](const std::string& words) {
+    return profile != nullptr ? words : std::string(measured_ ? "not known" : kMeasuring);
+  };
+  const explore::Profile none;
+  const explore::Profile& p = profile != nullptr ? *profile : none;
+  figures.add("Over ground", of_profile(explore::length_text(p.ground_length_m)));
+  figures.add("Lowest", of_profile(explore::fixed_text(p.lowest_m, 1) + " m"));
+  figures.add("Highest", of_profile(explore::fixed_text(p.highest_m, 1) + " m"));
+  if (p.some_missing) figures.add("", "some of the way has no data");
+}
+
+void MeasurePanel::draw_sight(Widgets& widgets) {
+  const std::string first = point_name(0);
+  const std::string last = point_name(places_.size() - 1);
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 5);
+  bool changed = widgets.number((first + " (m)##from").c_str(), from_height_m_, 0, kMostHeight_m, 0, "%.6g",
+                                "height above the ground");
+  ImGui::SameLine();
+  changed |= widgets.number((last + " (m)##to").c_str(), to_height_m_, 0, kMostHeight_m, 0, "%.6g",
+                            "height above the ground");
+  ImGui::PopItemWidth();
+  if (changed) order();
+  if (!measured_) {
+    ImGui::TextDisabled("%s", kMeasuring);
+    return;
+  }
+  if (!measured_->sight) {
+    coloured(kTrouble, measured_->trouble);
+    return;
+  }
+  const explore::LineOfSight& sight = *measured_->sight;
+  coloured(sight.visible ? kGood : kTrouble, sight.visible ? first + " and " + last + " see each other"
+                                                           : first + " and " + last + " do not see each other");
+  const Figures figures("sight");
+  figures.add("Straight", explore::length_text(sight.distance_m));
+  figures.add("Clearance", explore::length_text(sight.clearance_m) + ", " +
+                               explore::length_text(sight.clearance_distance_m) + " from " + first);
+  if (!sight.obstruction) return;
+  figures.add("In the way", coordinates(sight.obstruction->place) + "; " +
+                                explore::length_text(sight.obstruction->distance_m) + " from " + first + ", " +
+                                explore::fixed_text(sight.obstruction->elevation_m, 1) + " m high");
+  figures.add("To be seen", std::isfinite(sight.needed_height_m)
+                                ? last + " at " + explore::length_text(sight.needed_height_m) + " above ground"
+                                : "no height of " + last + " is enough: it is too far round the planet");
+}
+
+void MeasurePanel::draw_profile(MeasureWish& wish, Widgets& widgets) {
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const double height = ImGui::GetFontSize() * 12;
+  if (!measured_ || measured_->profile == nullptr) {
+    const ImVec2 corner = ImGui::GetCursorPos();
+    if (measured_)
+      coloured(kTrouble, measured_->trouble);
+    else
+      ImGui::TextDisabled("%s", kMeasuring);
+    ImGui::SetCursorPos(corner);
+    ImGui::Dummy({room.x, static_cast<float>(height)});
+    return;
+  }
+  const explore::Profile& profile = *measured_->profile;
+  PlotOfProfile plot{profile, surface_->planet_radius_m(), nullptr, from_height_m_, to_height_m_};
+  const bool along = measured_->sight && places_.size() == 2;
+  if (along) plot.sight = &*measured_->sight;
+  const std::optional<double> cursor_m = draw_plot(plot, static_cast<double>(room.x), height, widgets);
+  marked_.reset();
+  marked_frame_ = ImGui::GetFrameCount();
+  if (cursor_m) {
+    const paging::ProfilePoint& point = explore::nearest_point(profile, *cursor_m);
+    marked_ = point.place;
+    ImGui::TextUnformatted((explore::length_text(point.distance_m) + ": " +
+                            (point.missing ? std::string("no data")
+                                           : explore::fixed_text(point.height_m, 1) + " m, slope " +
+                                                 explore::fixed_text(point.slope_deg, 1) + "\u00b0"))
+                               .c_str());
+    ImGui::TextUnformatted(coordinates(point.place).c_str());
+  } else {
+    ImGui::TextDisabled("above %s, a point every %s", paging::describe_datum(surface_->planet().meta()).c_str(),
+                        explore::length_text(profile.step_m).c_str());
+    ImGui::TextDisabled(along ? "with the line of sight" : "the line of sight runs elsewhere");
+  }
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
+  widgets.text("##file", file_, "file to write; ~/ is your home");
+  ImGui::SameLine();
+  if (widgets.button("Save CSV")) save(wish);
+}
+
+void MeasurePanel::save(MeasureWish& wish) const {
+  wish.message_is_trouble = true;
+  if (file_.empty()) {
+    wish.message = "type the name of a file for the profile";
+    return;
+  }
+  try {
+    const std::filesystem::path path = in_home(file_);
+    std::error_code ignored;
+    const bool was_there = std::filesystem::exists(path, ignored);
+    core::write_file(path, explore::to_csv(*measured_->profile));
+    const std::filesystem::path whole = std::filesystem::absolute(path, ignored);
+    wish.message = (was_there ? "profile replaced: " : "profile saved: ") + (ignored ? path : whole).string();
+    wish.message_is_trouble = false;
+  } catch (const std::exception& e) {
+    wish.message = e.what();
+  }
+}
+
+void MeasurePanel::draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0) {
+  take();
+  draw_measure_marks(list, session, {places_, measured_ ? measured_->profile.get() : nullptr, marked()}, x0,
+                     y0);
+}
+
+}  // namespace vpe::window

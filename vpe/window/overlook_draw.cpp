@@ -1,0 +1,92 @@
+// What an overlook view draws: its picture, and the compass strip.
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "vpe/window/overlook_view.h"
+#include "vpe/window/screen_point.h"
+
+namespace vpe::window {
+
+namespace {
+
+constexpr ImU32 kBand = IM_COL32(0, 0, 0, 120);
+constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235);
+constexpr ImU32 kWindInk = IM_COL32(255, 190, 130, 255);
+constexpr double kWidest_em = 4.2;  // a label with decimals, and the space beside it
+
+void draw_words(ImDrawList& list, const ViewArea& area, const std::string& words) {
+  const double most = area.width * 0.8;
+  const ImVec2 size = ImGui::CalcTextSize(words.c_str(), nullptr, false, static_cast<float>(most));
+  const double left = area.x + (area.width - static_cast<double>(size.x)) / 2;
+  const double top = area.y + (area.height - static_cast<double>(size.y)) / 2;
+  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at(left, top), kInk, words.c_str(), nullptr,
+               static_cast<float>(most));
+}
+
+// "90" degrees without a name, where north is not known.
+std::string figure(double azimuth_deg) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g°", azimuth_deg - 360.0 * std::floor(azimuth_deg / 360.0));
+  return text;
+}
+
+}  // namespace
+
+void OverlookView::draw() {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect(at(area_.x, area_.y), at(area_.x + area_.width, area_.y + area_.height));
+  const glm::ivec2 eye = eye_size();
+  const int across = stereo_ == core::StereoLayout::kSideBySide ? 2 : 1;
+  const int down = stereo_ == core::StereoLayout::kOverUnder ? 2 : 1;
+  if (picture_) {
+    list.AddImage(texture_.id(), at(area_.x, area_.y), at(area_.x + eye.x * across, area_.y + eye.y * down));
+    for (int right = 0; right < across; ++right) {
+      for (int below = 0; below < down; ++below) draw_strip({area_.x + right * eye.x, area_.y + below * eye.y});
+    }
+  } else if (shown_copying_ >= 0) {
+    char words[256];
+    std::snprintf(words, sizeof words, "copying %s once, in tiles: %.0f %%",
+                  setup_.panorama.picture.filename().c_str(), 100 * shown_copying_);
+    draw_words(list, area_, words);
+  } else if (message_is_trouble_) {
+    draw_words(list, area_, message_);
+  }
+  list.PopClipRect();
+}
+
+void OverlookView::draw_strip(const glm::dvec2& corner) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto letters = static_cast<double>(ImGui::GetFontSize());
+  const double height = std::round(letters * 1.9);
+  const double tick = std::round(letters * 0.55);
+  const double thick = std::max(1.0, std::round(letters / 14));
+  const glm::ivec2 size = viewer_.size();
+  // Of the picture that is shown, which may be one behind where it is to look.
+  core::View view = picture_->order.request.view;
+  view.width = size.x;
+  view.height = size.y;
+  marks_ = overlay::compass_row(view, panorama::kViewerFrame, kWidest_em * letters);
+  if (marks_.empty()) return;
+  list.AddRectFilled(at(corner.x, corner.y), at(corner.x + size.x, corner.y + height), kBand);
+  for (overlay::PlacedMark& placed : marks_) {
+    overlay::CompassMark& mark = placed.mark;
+    const bool is_wind = mark.rank == overlay::CompassRank::kWind;
+    if (is_wind && !setup_.panorama.heading_is_known) mark.label = figure(mark.azimuth_deg);
+    const ImU32 ink = is_wind && setup_.panorama.heading_is_known ? kWindInk : kInk;
+    const double x = corner.x + placed.at.x;
+    const double length = mark.rank == overlay::CompassRank::kTick ? 0.55 * tick : tick;
+    list.AddRectFilled(at(x - thick / 2, corner.y), at(x + thick / 2, corner.y + length), ink);
+    if (mark.label.empty()) continue;
+    const auto width = static_cast<double>(ImGui::CalcTextSize(mark.label.c_str()).x);
+    // A label that the edge would cut says something else.
+    if (placed.at.x < width / 2 || placed.at.x > size.x - width / 2) continue;
+    list.AddText(at(std::round(x - width / 2), corner.y + tick + std::round(letters * 0.1)), ink,
+                 mark.label.c_str());
+  }
+}
+
+}  // namespace vpe::window
