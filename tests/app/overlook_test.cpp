@@ -181,8 +181,18 @@ TEST_F(Overlook, WrongUsageIsToldBeforeAnyWork) {
   expect_failure({"overlook", "no.png", "-o", "v.png", "--size", "0x5"}, 2, {"--size", "0x5"});
   expect_failure({"overlook", "no.png", "-o", "v.png", "--stereo", "cross"}, 2, {"--stereo", "cross"});
   expect_failure({"overlook", "no.png", "-o", "v.gif"}, 1, {"v.gif", ".png"});
-  expect_failure({"overlook", "no.png"}, 1, {"no.png", "no window", "--view YAW,PITCH -o", "--at"});
   expect_failure({"overlook", "no.png", "-o", "v.png"}, 1, {"no.png", "No such file"});
+}
+
+// Of a window that cannot be had; what to do instead is the same without windows in the build.
+TEST_F(Overlook, WithoutADisplayItSaysWhatToDo) {
+  write_wheel("a.png");
+  Command command = command_for({"overlook", "a.png"});
+  command.environment["DISPLAY"] = "";
+  const Result result = run(command);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(says(result.err, {"window", "--view YAW,PITCH -o", "--at"})) << result.err;
+  EXPECT_EQ(result.out, "");
 }
 
 TEST_F(Overlook, BadPanoramas) {

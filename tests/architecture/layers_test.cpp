@@ -36,14 +36,20 @@ const std::vector<Layer>& layers() {
       {"vpe/gl", "vpe::gl", {"mars", "vpe/core", "cull", "lod", "paging", "scripts"}, true},
       {"vpe/voxel", "vpe::voxel", {"mars", "vpe/core", "lod", "paging"}},
       {"panorama", "panorama", {"mars", "vpe/core", "paging"}},
+      {"vpe/explore", "vpe::explore", {"mars", "vpe/core", "lod", "paging", "scripts", "panorama"}},
+      {"vpe/window",
+       "vpe::window",
+       {"mars", "vpe/core", "lod", "paging", "scripts", "vpe/overlay", "panorama", "vpe/explore"},
+       true},
       {"vpe/app",
        "vpe::app",
-       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama"},
+       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama",
+        "vpe/explore", "vpe/window"},
        true},
       {"tests",
        "",
        {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama",
-        "vpe/app"},
+        "vpe/explore", "vpe/window", "vpe/app"},
        true,
        true},
   };
@@ -79,7 +85,7 @@ bool is_source(const fs::path& path) {
 
 // What is wrong with one include, empty when nothing is.
 std::string include_problem(const Layer& layer, const std::string& name, bool quoted) {
-  if (is_drawing_header(name) && !layer.may_draw) return "only vpe/gl and vpe/app may include " + name;
+  if (is_drawing_header(name) && !layer.may_draw) return "only vpe/gl, vpe/window and vpe/app may include " + name;
   if (is_raster_header(name) && !layer.may_read_rasters) return "only mars may include " + name;
   if (is_lettering_header(name) && !layer.may_letter) return "only vpe/overlay may include " + name;
   if (!quoted) return "";

@@ -1,5 +1,6 @@
 #include "vpe/app/build_sources.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>

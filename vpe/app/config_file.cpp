@@ -1,6 +1,7 @@
 #include "vpe/app/config_file.h"
 
 #include <toml++/toml.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cctype>

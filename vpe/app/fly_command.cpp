@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -7,6 +8,7 @@
 
 #include "paging/surface.h"
 #include "vpe/app/film_session.h"
+#include "vpe/app/flight_file.h"
 #include "vpe/app/interrupt.h"
 #include "vpe/app/output.h"
 #include "vpe/app/picture_options.h"
@@ -33,26 +35,14 @@ struct FlyArguments {
   PictureOptions picture;
 };
 
-scripts::Flight read_flight(const FlyArguments& arguments) {
-  const std::string& path = arguments.flight;
-  std::ifstream in(path, std::ios::binary);
-  if (!in)
-    throw std::runtime_error(path + ": cannot open the flight: " + std::strerror(errno) + "; check the name");
-  std::ostringstream text;
-  text << in.rdbuf();
-  scripts::ParsedFlight parsed = scripts::parse_flight(text.str(), path);
-  if (!parsed.flight) {
-    std::string all;
-    for (const scripts::FlightError& e : parsed.errors)
-      all += (all.empty() ? "" : "\n     ") + scripts::to_string(e);
-    throw std::runtime_error(all);
-  }
+scripts::Flight flight_of(const FlyArguments& arguments) {
+  scripts::Flight flight = read_flight(arguments.flight);
   if (!arguments.size.empty()) {
     const Size size = parse_size(arguments.size);
-    parsed.flight->view.width = size.width;
-    parsed.flight->view.height = size.height;
+    flight.view.width = size.width;
+    flight.view.height = size.height;
   }
-  return *parsed.flight;
+  return flight;
 }
 
 FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& flight) {
@@ -113,7 +103,7 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
 
 void fly(FlyArguments& arguments, const Common& common) {
   const std::vector<core::InterestRegion> interest = parse_interest(arguments.picture);
-  const scripts::Flight flight = read_flight(arguments);
+  const scripts::Flight flight = flight_of(arguments);
   const core::Settings base = make_settings(arguments.picture);
   const FilmRequest request = film_request(arguments, flight);
 

@@ -1,4 +1,5 @@
 // vpe horizon.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,7 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "paging/query.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
@@ -28,7 +30,7 @@ void info(const std::string& argument, const Common& common) {
   line("file", planet->path());
   if (m.illustration) line("NOTE", "an illustration: numbers are not data");
   line("body", m.body + ", sphere of radius " + number(m.radius_m, "m"));
-  line("vertical datum", describe_datum(m));
+  line("vertical datum", paging::describe_datum(m));
   line("heights", number(m.lowest_radius_m - m.radius_m, "m") + " .. " +
                       number(m.highest_radius_m - m.radius_m, "m") + ", stored in steps of " +
                       number(m.quantum_m, "m"));

@@ -1,5 +1,6 @@
 #include "vpe/app/manual.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <vector>
 

@@ -1,8 +1,11 @@
 // The man page and the bash completion, made from the same declarations as --help.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace vpe::app {
 

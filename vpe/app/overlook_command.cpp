@@ -1,12 +1,12 @@
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 
-#include "panorama/look.h"
-#include "panorama/open_panorama.h"
 #include "panorama/viewer.h"
 #include "vpe/app/interrupt.h"
+#include "vpe/app/look_around.h"
+#include "vpe/app/open_eyes.h"
 #include "vpe/app/output.h"
 #include "vpe/app/overlook_places.h"
 #include "vpe/app/picture_options.h"
@@ -17,12 +17,11 @@
 #include "vpe/core/heap.h"
 #include "vpe/core/number.h"
 #include "vpe/core/stereo.h"
+#include "vpe/overlay/overlay.h"
 
 namespace vpe::app {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 struct OverlookArguments {
   std::string panorama;
@@ -35,6 +34,8 @@ struct OverlookArguments {
   std::string output;
   std::vector<std::string> at;
   std::vector<std::string> at_pixel;
+  double scale = 0;
+  bool compass = false;
 };
 
 struct Pair {
@@ -59,73 +60,17 @@ panorama::Direction parse_direction(const std::string& option, const std::string
   return {pair.first, pair.second};
 }
 
-// One picture with its pixels, opened when they are asked for.
-class OpenPanorama {
- public:
-  OpenPanorama(panorama::PanoramaDescription description, const Common& common, int pictures)
-      : description_(std::move(description)), common_(common), pictures_(pictures) {}
+EyesFiles files_of(const OverlookArguments& arguments) {
+  EyesFiles files{arguments.panorama, arguments.right, {}};
+  if (!arguments.stereo_layout.empty()) files.layout = panorama::parse_pair_layout(arguments.stereo_layout);
+  return files;
+}
 
-  const panorama::PanoramaDescription& description() const { return description_; }
-
-  core::RgbImage look(const core::View& view, bool right_eye) {
-    if (picture_ == nullptr) open();
-    panorama::LookOptions options;
-    options.threads = common_.threads;
-    if (right_eye && description_.pair == panorama::PairLayout::kSideBySide)
-      options.origin.x_px = description_.map.width_px;
-    if (right_eye && description_.pair == panorama::PairLayout::kOverUnder)
-      options.origin.y_px = description_.map.height_px;
-    return panorama::look(*picture_, description_.map, view, options);
-  }
-
- private:
-  void open() {
-    const InterruptGuard guard;
-    ProgressLine progress(common_.quiet);
-    panorama::PictureOptions options;
-    // The rest is for the view itself.
-    options.budget_bytes = memory_bytes(common_) / 4 * 3 / static_cast<std::size_t>(pictures_);
-    options.cache_folder = [] {
-      const fs::path folder = cache_folder() / "pictures";
-      make_folder(folder);
-      return folder;
-    };
-    options.progress = [&progress, this](double fraction) {
-      InterruptGuard::check();
-      progress.show("copying " + description_.picture.filename().string() + " once, in tiles", fraction);
-    };
-    picture_ = panorama::open_picture(description_.picture, description_.format, options);
-  }
-
-  panorama::PanoramaDescription description_;
-  const Common& common_;
-  int pictures_;
-  std::unique_ptr<panorama::Picture> picture_;
-};
-
-// The picture's second eye: of the same file, or of one of its own.
-struct Eyes {
-  std::unique_ptr<OpenPanorama> left;
-  std::unique_ptr<OpenPanorama> right;  // null: in the left one's file
-
-  core::RgbImage draw(const core::View& view, const std::optional<core::StereoLayout>& stereo) {
-    if (!stereo) return left->look(view, false);
-    const core::RgbImage left_image = left->look(view, false);
-    return core::combine_stereo(left_image, right ? right->look(view, false) : left->look(view, true), *stereo);
-  }
-};
-
-Eyes open_eyes(const OverlookArguments& arguments, const Common& common) {
-  std::optional<panorama::PairLayout> layout;
-  if (!arguments.stereo_layout.empty()) layout = panorama::parse_pair_layout(arguments.stereo_layout);
-  const int pictures = arguments.right.empty() ? 1 : 2;
-  Eyes eyes;
-  eyes.left = std::make_unique<OpenPanorama>(panorama::describe(arguments.panorama, layout), common, pictures);
-  if (!arguments.right.empty())
-    eyes.right = std::make_unique<OpenPanorama>(panorama::describe(arguments.right, layout), common, pictures);
-  const bool is_pair = eyes.right || eyes.left->description().pair != panorama::PairLayout::kNone;
-  if (!arguments.stereo.empty() && !is_pair) {
-    throw UsageError("--stereo " + arguments.stereo + ": '" + eyes.left->description().picture.string() +
+OpenEyes open_eyes(const OverlookArguments& arguments, const Common& common) {
+  OpenEyes eyes(files_of(arguments), memory_bytes(common) / 4 * 3,
+                common.threads);  // the rest is for the view itself
+  if (!arguments.stereo.empty() && !eyes.is_pair()) {
+    throw UsageError("--stereo " + arguments.stereo + ": '" + eyes.description().picture.string() +
                      "' is for one eye; give the other's picture with --right, or --stereo-layout if it holds "
                      "both");
   }
@@ -153,6 +98,38 @@ panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama:
   return viewer;
 }
 
+overlay::Layer compass_of(const core::View& view) {
+  core::Overlays overlays;
+  overlays.compass = core::CompassStrip::kBottom;
+  overlay::Scene scene;
+  scene.view = view;
+  scene.frame = panorama::kViewerFrame;
+  return overlay::draw(overlays, scene);
+}
+
+core::RgbImage draw_view(OpenEyes& eyes, const core::View& view, const OverlookArguments& arguments,
+                         const Common& common) {
+  const InterruptGuard guard;
+  ProgressLine progress(common.quiet);
+  const auto copying = [&](const std::string& what, double fraction) {
+    InterruptGuard::check();
+    progress.show(what, fraction);
+  };
+  const overlay::Layer layer = arguments.compass ? compass_of(view) : overlay::Layer();
+  const auto finish = [&layer](core::RgbImage& image) { overlay::composite(layer, image.pixels); };
+  core::RgbImage image = eyes.draw(view, core::parse_stereo(arguments.stereo), copying, finish);
+  InterruptGuard::check();
+  return image;
+}
+
+nlohmann::json describe_view(const panorama::Viewer& viewer, int width, int height) {
+  return {{"yaw_deg", viewer.yaw_deg()},
+          {"pitch_deg", viewer.pitch_deg()},
+          {"fov_deg", viewer.fov_deg()},
+          {"width", width},
+          {"height", height}};
+}
+
 void overlook(const OverlookArguments& arguments, const Common& common) {
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) core::keep_heap_compact();
@@ -165,15 +142,18 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   for (const std::string& text : arguments.at_pixel)
     pixels.push_back(parse_pair("--at-pixel", text, "X,Y (pixels of the picture, centres at .5)"));
   if (!arguments.output.empty()) check_picture_output(arguments.output);
-  if (arguments.output.empty() && directions.empty() && pixels.empty()) {
-    throw std::runtime_error(
-        "'" + arguments.panorama +
-        "': there is no window to look around in yet; draw a view with --view YAW,PITCH -o "
-        "VIEW.png, or ask what is somewhere with --at AZIMUTH,ELEVATION");
-  }
+  if (arguments.compass && !core::overlays_refused().empty())
+    throw UsageError("--compass: " + std::string(core::overlays_refused()));
+  const bool in_window = arguments.output.empty() && directions.empty() && pixels.empty();
+  if (in_window) check_window();
 
-  Eyes eyes = open_eyes(arguments, common);
-  const panorama::PanoramaDescription& description = eyes.left->description();
+  OpenEyes eyes = open_eyes(arguments, common);
+  const panorama::PanoramaDescription& description = eyes.description();
+  if (!description.heading_is_known && arguments.compass) {
+    throw UsageError(
+        "--compass: '" + description.picture.string() +
+        "' does not say where north is; leave it out, or describe the picture in a JSON beside it");
+  }
   if (!description.heading_is_known && !common.quiet) {
     std::fprintf(stderr, "vpe: note: '%s' does not say where north is; azimuths are counted from its middle\n",
                  description.picture.c_str());
@@ -187,16 +167,19 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   for (const panorama::Direction& direction : directions) places.push_back(place_at(description, direction));
   for (const ShownPlace& place : places) json["places"].push_back(to_json(place));
 
+  if (in_window) {
+    LookAround request{files_of(arguments), {}, arguments.fov_deg, core::parse_stereo(arguments.stereo), size,
+                       arguments.scale};
+    if (arguments.view) request.look = parse_direction("--view", *arguments.view);
+    const panorama::Viewer viewer = look_around(request, common);
+    json["view"] = describe_view(viewer, viewer.size().x, viewer.size().y);
+  }
   if (!arguments.output.empty()) {
     const panorama::Viewer viewer = make_viewer(arguments, description.map, size, common.quiet);
-    const core::RgbImage image = eyes.draw(viewer.view(), core::parse_stereo(arguments.stereo));
+    const core::RgbImage image = draw_view(eyes, viewer.view(), arguments, common);
     core::write_image(arguments.output, image.pixels, image.width, image.height);
     json["output"] = arguments.output;
-    json["view"] = {{"yaw_deg", viewer.yaw_deg()},
-                    {"pitch_deg", viewer.pitch_deg()},
-                    {"fov_deg", viewer.fov_deg()},
-                    {"width", image.width},
-                    {"height", image.height}};
+    json["view"] = describe_view(viewer, image.width, image.height);
   }
   if (common.json) {
     print_json(json);
@@ -220,9 +203,10 @@ void add_overlook(CLI::App& program, Common& common) {
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(Limits::kMinFov_deg, Limits::kMaxFov_deg))
       ->capture_default_str();
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of an eye's view, pixels")
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of an eye's view, or of the window, pixels")
       ->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "View to write (.png, .jpg)");
+  command->add_option("-o,--output", arguments->output,
+                      "View to write (.png, .jpg); without it and --at a window opens");
   command->add_option("--at", arguments->at, "AZIMUTH,ELEVATION: print what is there (degrees; repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -242,6 +226,12 @@ void add_overlook(CLI::App& program, Common& common) {
       ->add_option("--stereo", arguments->stereo,
                    "Draw both eyes: side by side (sbs), left above right (ou), red-cyan (anaglyph)")
       ->check(CLI::IsMember({"sbs", "ou", "anaglyph"}));
+  command
+      ->add_option("--scale", arguments->scale,
+                   "Size of the window's letters; as the monitor has it when left out")
+      ->check(number_within(0.5, 4));
+  command->add_flag("--compass", arguments->compass,
+                    "Marks of azimuth along the view's lower edge; a window has them always");
   command->callback([arguments, &common] { overlook(*arguments, common); });
 }
 

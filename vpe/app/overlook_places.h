@@ -1,21 +1,14 @@
-// What a panorama shows at a place of its picture or in a direction.
+// What a panorama shows at a place of its picture or in a direction, as the command line asks and prints it.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
-#include "panorama/open_panorama.h"
+#include "panorama/place_reader.h"
 
 namespace vpe::app {
 
-struct ShownPlace {
-  double x = 0;  // of the picture, pixel centres at +0.5
-  double y = 0;
-  panorama::Direction direction;
-  // In the order of the planes; null where a plane has no value, as for sky.
-  std::vector<std::pair<std::string, nlohmann::json>> values;
-};
+using ShownPlace = panorama::PlaceRead;
 
 // Throws std::runtime_error that names the picture and what it shows, when it does not show the place.
 ShownPlace place_at_pixel(const panorama::PanoramaDescription& description, double x, double y);

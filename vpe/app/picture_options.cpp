@@ -1,5 +1,6 @@
 #include "vpe/app/picture_options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

@@ -1,5 +1,6 @@
 #include "vpe/app/program.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <clocale>
@@ -101,6 +102,7 @@ int run(int argc, char** argv) {
   add_render(program, common);
   add_fly(program, common);
   add_panorama(program, common);
+  add_explore(program, common);
   add_overlook(program, common);
   add_settings(program, common);
   add_doctor(program, common);

@@ -1,10 +1,15 @@
 // The command line program: vpe COMMAND [options].
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+// CLI11's header takes seconds to compile: only sources that declare options include it.
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace vpe::app {
 
@@ -41,6 +46,7 @@ void add_profile(CLI::App& program, Common& common);
 void add_horizon(CLI::App& program, Common& common);
 void add_render(CLI::App& program, Common& common);
 void add_overlook(CLI::App& program, Common& common);
+void add_explore(CLI::App& program, Common& common);
 void add_fly(CLI::App& program, Common& common);
 void add_panorama(CLI::App& program, Common& common);
 void add_settings(CLI::App& program, Common& common);

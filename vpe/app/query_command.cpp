@@ -1,13 +1,11 @@
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <glm/geometric.hpp>
 #include <iostream>
 #include <numeric>
-#include <utility>
 
-#include "paging/surface.h"
+#include "paging/query.h"
 #include "vpe/app/places.h"
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
@@ -19,45 +17,7 @@ namespace vpe::app {
 
 namespace {
 
-struct Answer {
-  mars::LonLat place;
-  bool missing = false;
-  double elevation_m = 0;
-  double slope_deg = 0;
-  double aspect_deg = 0;  // direction of steepest descent, clockwise from north
-  int level = 0;          // 1 = coarsest
-  double spacing_m = 0;
-  std::string source;
-  double error_m = 0;  // of the finest tile as drawn: 0, S is evaluated itself
-};
-
-Answer ask(const paging::Surface& surface, mars::LonLat place) {
-  Answer a;
-  a.place = {mars::normalize_lon_deg(place.lon_deg), place.lat_deg};
-  const paging::SurfacePoint point = surface.at(mars::direction(place));
-  const paging::PlanetMeta& meta = surface.planet().meta();
-  a.missing = point.missing;
-  a.elevation_m = point.height_m;
-  const mars::LocalFrame frame = mars::local_frame(place);
-  const double up = glm::dot(point.normal, frame.up);
-  const double east = glm::dot(point.normal, frame.east);
-  const double north = glm::dot(point.normal, frame.north);
-  a.slope_deg = std::atan2(std::hypot(east, north), up) / mars::kRadiansPerDegree;
-  a.aspect_deg = std::atan2(east, north) / mars::kRadiansPerDegree;
-  if (a.aspect_deg < 0) a.aspect_deg += 360;
-  a.level = point.tile.level + 1;
-  a.spacing_m = lod::post_spacing_m(point.tile.level, meta.tile.intervals(), meta.radius_m);
-  const auto tile = surface.tile(point.tile);
-  for (const int s : tile->data.source) {
-    if (s >= 0 && s < static_cast<int>(meta.sources.size())) {
-      a.source += (a.source.empty() ? "" : ";") + meta.sources[static_cast<std::size_t>(s)].name;
-    }
-  }
-  a.error_m = surface.planet().tree().find(point.tile)->variants.back().terms.total_m;
-  return a;
-}
-
-nlohmann::json to_json(const Answer& a, const paging::PlanetMeta& meta) {
+nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
   using nlohmann::json;
   const auto value = [&](double x) { return a.missing ? json() : json(x); };
   return {{"lon_deg", a.place.lon_deg},
@@ -69,12 +29,12 @@ nlohmann::json to_json(const Answer& a, const paging::PlanetMeta& meta) {
           {"level", a.level},
           {"post_spacing_m", a.spacing_m},
           {"source", a.source},
-          {"tile_error_m", a.error_m},
+          {"tile_error_m", a.tile_error_m},
           {"resampling_max_m", meta.resampling.max_m},
           {"illustration", meta.illustration}};
 }
 
-void print_csv(const Answer& a, const std::string& datum) {
+void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
   const auto number = [&](double x, int digits) {
     if (a.missing) return std::string();
     char text[48];
@@ -84,7 +44,7 @@ void print_csv(const Answer& a, const std::string& datum) {
   std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s\n", core::format_number(a.place.lon_deg).c_str(),
               core::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
               number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
-              csv_field(a.source).c_str(), a.error_m, datum.c_str());
+              csv_field(a.source).c_str(), a.tile_error_m, datum.c_str());
 }
 
 void query(const std::vector<std::string>& arguments, const Common& common) {
@@ -106,24 +66,25 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return position[a] < position[b]; });
-  std::vector<Answer> answers(places.size());
+  std::vector<paging::PlaceAnswer> answers(places.size());
   constexpr std::size_t kChunk = 2048;
   core::ThreadPool pool(common.threads);
   pool.run((order.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     const std::size_t end = std::min(order.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i) answers[order[i]] = ask(surface, places[order[i]]);
+    for (std::size_t i = chunk * kChunk; i < end; ++i)
+      answers[order[i]] = paging::query(surface, places[order[i]]);
   });
 
   if (common.json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const Answer& a : answers) list.push_back(to_json(a, meta));
+    for (const paging::PlaceAnswer& a : answers) list.push_back(to_json(a, meta));
     print_json(list);
     return;
   }
   std::printf(
       "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum\n");
   const std::string datum = csv_field(to_string(meta.datum));
-  for (const Answer& a : answers) print_csv(a, datum);
+  for (const paging::PlaceAnswer& a : answers) print_csv(a, datum);
 }
 
 }  // namespace

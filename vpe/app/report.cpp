@@ -73,11 +73,6 @@ json planet_json(const paging::PlanetMeta& m) {
           {"identity", m.identity}};
 }
 
-std::string describe_datum(const paging::PlanetMeta& m) {
-  if (m.shape == "radius") return to_string(m.datum) + " (true radii)";
-  return to_string(m.datum);
-}
-
 json stats_json(const core::FrameStats& s) {
   return {{"tiles_visited", s.tiles_visited},
           {"tiles_culled_frustum", s.tiles_culled_frustum},

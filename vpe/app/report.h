@@ -11,8 +11,6 @@
 namespace vpe::app {
 
 nlohmann::json planet_json(const paging::PlanetMeta& meta);
-// "areoid", or "sphere:3396190 (true radii)".
-std::string describe_datum(const paging::PlanetMeta& meta);
 nlohmann::json stats_json(const core::FrameStats& stats);
 
 // Quoted where it has to be.

@@ -1,5 +1,6 @@
 #include "vpe/app/stereo_render.h"
 
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 
 #include "vpe/core/number.h"
@@ -31,7 +32,7 @@ core::RgbImage take_image(core::DrawResult& result) {
 
 }  // namespace
 
-void add_stereo_options(CLI::App& command, StereoArguments& arguments) {
+void add_eye_options(CLI::App& command, StereoArguments& arguments) {
   command
       .add_option("--stereo", arguments.layout,
                   "Draw two eyes: side by side (sbs), left above right (ou), red-cyan (anaglyph)")
@@ -40,6 +41,10 @@ void add_stereo_options(CLI::App& command, StereoArguments& arguments) {
       .add_option("--eye-base", arguments.eye_base_m,
                   "Distance between both eyes, metres; a thirtieth of the nearest ground's when left out")
       ->check(number_within(kMinBase_m, kMaxBase_m));
+}
+
+void add_stereo_options(CLI::App& command, StereoArguments& arguments) {
+  add_eye_options(command, arguments);
   command
       .add_option("--convergence", arguments.convergence_m,
                   "Distance at which both eyes see the same pixel, metres; infinitely far when left out")

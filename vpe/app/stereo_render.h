@@ -17,7 +17,9 @@ struct StereoArguments {
   double convergence_m = 0;  // 0: parallel
 };
 
-// --stereo, --eye-base, --convergence.
+// --stereo, --eye-base.
+void add_eye_options(CLI::App& command, StereoArguments& arguments);
+// The same and --convergence.
 void add_stereo_options(CLI::App& command, StereoArguments& arguments);
 
 // Wrong combinations; throws UsageError.

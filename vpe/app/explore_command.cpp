@@ -1,0 +1,207 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "vpe/app/picture_options.h"
+#include "vpe/app/planet_argument.h"
+#include "vpe/app/program.h"
+#include "vpe/app/report.h"
+#include "vpe/core/number.h"
+#ifdef VPE_HAS_WINDOW
+#include "vpe/app/flight_file.h"
+#include "vpe/app/output.h"
+#include "vpe/app/panorama_painter.h"
+#include "vpe/app/window_painter.h"
+#include "vpe/explore/preferences.h"
+#include "vpe/explore/spots.h"
+#include "vpe/window/explore_window.h"
+#endif
+
+namespace vpe::app {
+
+namespace {
+
+struct ExploreArguments {
+  std::string planet;
+  std::string pose;
+  std::string size;
+  double fov_deg = 50;
+  double scale = 0;
+  std::string log;
+  std::string flight;
+  std::string spots;
+  bool print_settings = false;
+  PictureOptions picture;
+};
+
+#ifdef VPE_HAS_WINDOW
+
+bool sets(const PictureOptions& options, const std::string& key) {
+  for (const std::string& assignment : options.set)
+    if (assignment.starts_with(key + "=")) return true;
+  return false;
+}
+
+// What a session remembers of a planet: its file, from anywhere; the embedded one has none.
+std::string known_as(const std::string& planet) {
+  return planet.empty() ? planet : std::filesystem::absolute(planet).lexically_normal().string();
+}
+
+mars::Pose parse_start(const std::string& text) {
+  const auto n = parse_numbers(text);
+  if (!n || n->size() < 3 || n->size() > 6 || !mars::is_valid({(*n)[0], (*n)[1]})) {
+    throw UsageError("--pose '" + text +
+                     "': expected LON,LAT,ALT,YAW,PITCH,ROLL (degrees, latitude within -90..90; metres above "
+                     "the sphere)");
+  }
+  const auto angle = [&](std::size_t k) { return k < n->size() ? (*n)[k] : 0.0; };
+  return {(*n)[0], (*n)[1], (*n)[2], angle(3), angle(4), angle(5)};
+}
+
+// Everything but the planet. Wrong usage is told before any work.
+window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common& common,
+                                const vpe::explore::Preferences& preferences,
+                                const vpe::explore::LastSession& last) {
+  window::ExploreSetup setup;
+  setup.preferences = preferences;
+  setup.log = arguments.log;
+  setup.flight_file = arguments.flight;
+  if (!arguments.log.empty()) check_output(arguments.log);
+  if (!arguments.flight.empty() && std::filesystem::exists(arguments.flight))
+    setup.flight = read_flight(arguments.flight);
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  setup.bookmarks =
+      vpe::explore::bookmarks_path(data == nullptr ? "" : data, home == nullptr ? "" : home).value_or("");
+  if (!arguments.spots.empty()) {
+    const vpe::explore::ParsedSpots parsed = vpe::explore::load_spots(arguments.spots);
+    std::string wrong;
+    for (const auto& error : parsed.errors)
+      wrong += (wrong.empty() ? "" : "\n     ") + scripts::to_string(error);
+    if (!wrong.empty()) throw std::runtime_error(wrong);
+    setup.spots = parsed.spots;
+  }
+  setup.open_overlook = [common,
+                         budget_ms = preferences.draw_budget_ms](const std::filesystem::path& panorama) {
+    window::OverlookSetup overlook =
+        overlook_setup({panorama.string(), {}, {}}, memory_bytes(common) / 4, common.threads);
+    overlook.budget_ms = budget_ms;
+    return overlook;
+  };
+  setup.session.settings = make_settings(arguments.picture);
+  setup.session.interest = parse_interest(arguments.picture);
+  setup.session.fov_deg = arguments.fov_deg;
+  if (!sets(arguments.picture, "lod.frame_ms")) {
+    const std::string trouble =
+        setup.session.settings.set("lod.frame_ms", core::format_number(preferences.draw_budget_ms));
+    if (!trouble.empty()) throw std::logic_error(trouble);
+  }
+  if (!arguments.pose.empty()) setup.session.start = parse_start(arguments.pose);
+  setup.display.width = last.window_width_px;
+  setup.display.height = last.window_height_px;
+  if (!arguments.size.empty()) {
+    const Size size = parse_size(arguments.size);
+    setup.display.width = size.width;
+    setup.display.height = size.height;
+  }
+  setup.display.scale = arguments.scale > 0 ? arguments.scale : preferences.ui_scale;
+  setup.display.instead =
+      "set DISPLAY to an X server, or work without a window: 'vpe render' draws a picture, 'vpe fly' a flight, "
+      "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this one out of sight";
+  setup.backend = arguments.picture.backend == "voxel" ? window::Backend::kRays : window::Backend::kPolygons;
+  setup.sun = sun_for;
+  setup.threads = common.threads;
+  setup.open_planet = [common](const std::string& dropped) { return open_planet(dropped, common); };
+  return setup;
+}
+
+void explore(const ExploreArguments& arguments, const Common& common) {
+  const vpe::explore::ExploreFiles files = vpe::explore::explore_files();
+  const vpe::explore::Preferences preferences = vpe::explore::read_preferences(files.preferences);
+  if (arguments.print_settings) {
+    std::fputs(vpe::explore::to_text(preferences).c_str(), stdout);
+    return;
+  }
+  vpe::explore::LastSession last;
+  try {
+    last = vpe::explore::read_session(files.session);
+  } catch (const std::exception& e) {
+    if (!common.quiet) std::fprintf(stderr, "vpe: note: %s\n", e.what());
+  }
+  window::check_display(make_setup(arguments, common, preferences, last).display);
+  std::string file = known_as(arguments.planet);
+  auto planet = open_planet(arguments.planet, common);
+  bool is_first = true;
+  while (planet != nullptr) {
+    note_illustration(planet->meta(), common.quiet);
+    window::ExploreSetup setup = make_setup(arguments, common, preferences, last);
+    if (!is_first) {
+      setup.session.start.reset();
+      setup.log.clear();  // its places are of another planet
+      setup.flight.reset();
+    } else if (!setup.session.start && last.planet == file) {
+      setup.session.start = last.pose;
+    }
+    is_first = false;
+    setup.planet = planet;
+    setup.display.title = "vpe - " + planet->meta().body;
+    constexpr std::size_t kSurfaceShare = 8;
+    setup.surface = std::make_shared<const paging::Surface>(planet, memory_bytes(common) / kSurfaceShare);
+    setup.make_painter = [planet, common] { return std::make_unique<WindowPainter>(planet, common); };
+    window::ExploreWindow shown(std::move(setup));
+    shown.run();
+    last.planet = file;
+    last.pose = shown.session().pose();
+    last.backend = shown.state().backend == window::Backend::kRays ? vpe::explore::SessionBackend::kVoxel
+                                                                   : vpe::explore::SessionBackend::kPolygon;
+    const auto [width, height] = shown.display().size();
+    last.window_width_px = width;
+    last.window_height_px = height;
+    const std::string trouble = files.session.empty() ? "" : vpe::explore::save(last, files.session);
+    if (!trouble.empty() && !common.quiet) std::fprintf(stderr, "vpe: note: %s\n", trouble.c_str());
+    planet = shown.next_planet();
+    file = known_as(shown.next_planet_file());
+  }
+}
+
+#else
+
+void explore(const ExploreArguments&, const Common&) {
+  throw std::runtime_error(
+      "this program was built without windows; install libglfw3-dev and libimgui-dev and build it again, or "
+      "work "
+      "without one: 'vpe render' draws a picture, 'vpe fly' a flight, 'vpe panorama' a panorama");
+}
+
+#endif
+
+}  // namespace
+
+void add_explore(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<ExploreArguments>();
+  CLI::App* command = add_command(program, "explore", "Fly over a planet in a window", common, false);
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  command->add_option(
+      "--pose", arguments->pose,
+      "LON,LAT,ALT,YAW,PITCH,ROLL to begin at: degrees, metres above the sphere; the whole planet "
+      "when left out");
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of the window; as it was last when left out");
+  command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
+      ->check(number_within(5, 120))
+      ->capture_default_str();
+  command
+      ->add_option("--scale", arguments->scale,
+                   "Size of letters and panels; as the monitor has it when left out")
+      ->check(number_within(0.5, 4));
+  command->add_option("--flight", arguments->flight, "Flight to play and edit; where it is saved");
+  command->add_option("--spots", arguments->spots, "File of places that have a panorama to step into");
+  command->add_option("--log", arguments->log, "Record everything that happens, as a flight");
+  command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and end");
+  add_picture_options(*command, arguments->picture);
+  command->callback([arguments, &common] { explore(*arguments, common); });
+}
+
+}  // namespace vpe::app
