@@ -1,6 +1,5 @@
 // vpe verify on the command line.
 #include <filesystem>
-#include <fstream>
 
 #include "tests/app/support/app_fixture.h"
 
@@ -21,13 +20,7 @@ TEST_F(VerifyCommand, AGoodFileIsSound) {
 
 TEST_F(VerifyCommand, ADamagedTileIsNamedAndTheExitCodeSaysSo) {
   std::filesystem::copy_file(planet(), dir_ / "x.vpe");
-  {
-    // In the middle of the file lie payloads.
-    std::fstream file(dir_ / "x.vpe", std::ios::in | std::ios::out | std::ios::binary);
-    const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(planet()) / 2);
-    file.seekp(middle);
-    file << "damaged!";
-  }
+  damage_payloads(dir_ / "x.vpe", "heights");
   const Result result = vpe({"verify", "x.vpe"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.out, "");

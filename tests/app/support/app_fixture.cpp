@@ -2,6 +2,7 @@
 
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <cmath>
@@ -56,6 +57,22 @@ void write_text(const fs::path& path, const std::string& text) {
 std::string read_text(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void damage_payloads(const fs::path& planet, const std::string& table) {
+  struct Closer {
+    void operator()(sqlite3* file) const { sqlite3_close(file); }
+  };
+  sqlite3* opened = nullptr;
+  const int code = sqlite3_open_v2(planet.c_str(), &opened, SQLITE_OPEN_READWRITE, nullptr);
+  const std::unique_ptr<sqlite3, Closer> file(opened);
+  const std::string sql = "UPDATE " + table +
+                          " SET data = CAST(substr(data, 1, length(data) / 2) || x'5a5a5a5a' || "
+                          "substr(data, length(data) / 2 + 5) AS BLOB)";
+  if (code != SQLITE_OK || sqlite3_exec(opened, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) {
+    throw std::runtime_error("cannot damage " + planet.string() + ": " + sqlite3_errmsg(opened));
+  }
+  if (sqlite3_total_changes(opened) == 0) throw std::runtime_error(table + " is empty in " + planet.string());
 }
 
 ::testing::AssertionResult says(const std::string& message, const Words& parts) {

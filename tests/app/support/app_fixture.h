@@ -31,6 +31,9 @@ void write_dem(const std::filesystem::path& path, const Dem& dem = {});
 void write_text(const std::filesystem::path& path, const std::string& text);
 std::string read_text(const std::filesystem::path& path);
 
+// Other bytes in the middle of every payload of a planet file's table ("heights", "mesh"), its checksums as before.
+void damage_payloads(const std::filesystem::path& planet, const std::string& table);
+
 // Every part of a message that must be there: what, which file, why, what to do.
 ::testing::AssertionResult says(const std::string& message, const Words& parts);
 

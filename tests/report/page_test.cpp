@@ -1,0 +1,130 @@
+// Tables, plots and pages as text.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+
+#include "vpe/report/axis.h"
+#include "vpe/report/page.h"
+
+namespace vpe::report {
+namespace {
+
+Table small_table() {
+  Table table{"speeds", "Speeds of <all>", {{"way", "how"}, {"time_s", "median"}}, {}};
+  table.add({"rays, \"exact\"", 0.1});
+  table.add({"triangles", std::nan("")});
+  table.add({std::monostate{}, 2.0});
+  return table;
+}
+
+TEST(Table, IsCsv) {
+  EXPECT_EQ(to_csv(small_table()), "way,time_s\n\"rays, \"\"exact\"\"\",0.1\ntriangles,\n,2\n");
+}
+
+TEST(Table, IsJson) {
+  const nlohmann::json json = to_json(small_table());
+  EXPECT_EQ(json["name"], "speeds");
+  EXPECT_EQ(json["columns"][1]["name"], "time_s");
+  EXPECT_EQ(json["rows"][0]["time_s"], 0.1);
+  EXPECT_TRUE(json["rows"][1]["time_s"].is_null());
+  EXPECT_TRUE(json["rows"][2]["way"].is_null());
+}
+
+TEST(Table, RefusesARowOfAnotherLength) {
+  Table table = small_table();
+  EXPECT_THROW(table.add({1.0}), std::invalid_argument);
+}
+
+TEST(Axis, LogarithmsEndAtDecades) {
+  const Axis axis({0.02, 0, -1, 300, std::nan("")}, true);
+  EXPECT_NEAR(axis.place(0.01), 0, 1e-12);
+  EXPECT_NEAR(axis.place(1000), 1, 1e-12);
+  EXPECT_NEAR(axis.place(1), 0.4, 1e-12);
+  EXPECT_EQ(axis.place(-5), 0);
+  EXPECT_TRUE(axis.below(0));
+  const std::vector<Tick> ticks = axis.ticks();
+  ASSERT_EQ(ticks.size(), 6U);
+  EXPECT_EQ(ticks[0].text, "0.01");
+  EXPECT_EQ(ticks[5].text, "1000");
+}
+
+TEST(Axis, ManyDecadesAreThinnedOut) {
+  const Axis axis({1e-20, 1e20}, true);
+  EXPECT_LE(axis.ticks().size(), 9U);
+  EXPECT_EQ(axis.ticks()[0].text, "1e-20");
+}
+
+TEST(Axis, LinesEndAtRoundNumbers) {
+  const Axis axis({0.07, 0.93}, false);
+  EXPECT_NEAR(axis.place(0), 0, 1e-12);
+  EXPECT_NEAR(axis.place(1), 1, 1e-12);
+  EXPECT_EQ(axis.ticks()[1].text, "0.2");
+  EXPECT_LT(Axis({5, 5}, false).place(5), 1);  // one value has a span too
+  EXPECT_GT(Axis({5, 5}, false).place(5), 0);
+  EXPECT_EQ(Axis({}, true).ticks().size(), 2U);
+}
+
+Plot small_plot() {
+  Plot plot;
+  plot.title = "Error & time";
+  plot.x_label = "time, ms";
+  plot.y_label = "shift, px";
+  plot.series.push_back({"triangles", {{1, 10, "tolerance 8", 12.0, true}, {10, 1, "", {}, false}}, true});
+  plot.series.push_back({"rays", {{100, 0, "", {}, false}, {5, std::nan(""), "", {}, false}}, true});
+  return plot;
+}
+
+TEST(Plot, IsXmlWithAPointForEachThatIsFinite) {
+  pugi::xml_document document;
+  const std::string svg = to_svg(small_plot());
+  ASSERT_TRUE(document.load_string(svg.c_str())) << svg;
+  const pugi::xml_node root = document.child("svg");
+  EXPECT_EQ(std::string(root.child("title").text().get()), "Error & time");
+  int points = 0;
+  for (const pugi::xpath_node& found : root.select_nodes("(circle|polygon)[title]")) {
+    (void)found;
+    ++points;
+  }
+  EXPECT_EQ(points, 3);
+  EXPECT_EQ(
+      root.select_nodes("(circle|polygon)[title='triangles, tolerance 8: 1, 10; at most 12 stated']").size(),
+      1U);
+  EXPECT_EQ(root.select_nodes("polygon[contains(title, 'no logarithm')]").size(), 1U);
+  EXPECT_EQ(to_svg(small_plot()), svg);
+}
+
+// One decade in x is a third of the axis here: 1, 10, 100 stand at the same distances.
+TEST(Plot, PointsStandAtTheirLogarithms) {
+  Plot plot;
+  plot.series.push_back(
+      {"a", {{1, 1, "", {}, false}, {10, 10, "", {}, false}, {100, 100, "", {}, false}}, true});
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(to_svg(plot).c_str()));
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const pugi::xpath_node& found : document.child("svg").select_nodes("circle[title]")) {
+    x.push_back(found.node().attribute("cx").as_double());
+    y.push_back(found.node().attribute("cy").as_double());
+  }
+  ASSERT_EQ(x.size(), 3U);
+  EXPECT_NEAR(x[1] - x[0], x[2] - x[1], 0.03);
+  EXPECT_GT(x[1], x[0]);
+  EXPECT_LT(y[1], y[0]);  // up is larger
+}
+
+TEST(Page, IsOneFileAndEscapesText) {
+  Page page{"A <report>", {"1 < 2 & 3"}, {{"First", {"text"}, {small_plot()}, {small_table()}}}};
+  const std::string html = to_html(page);
+  EXPECT_NE(html.find("<h1>A &lt;report&gt;</h1>"), std::string::npos);
+  EXPECT_NE(html.find("1 &lt; 2 &amp; 3"), std::string::npos);
+  EXPECT_NE(html.find("rays, &quot;exact&quot;"), std::string::npos);
+  EXPECT_NE(html.find("<svg"), std::string::npos);
+  for (const char* outside : {"<script", "src=", "href=", "@import", "url("}) {
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  }
+}
+
+}  // namespace
+}  // namespace vpe::report
