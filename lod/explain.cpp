@@ -44,10 +44,8 @@ std::vector<TileExplanation> explain(const SelectOptions& options, const TileTre
     e.min_distance_m = tile.min_distance_m;
     e.error_m = tile.error_m;
     e.error_px = tile.error_px;
-    const double coarsest_m = is_full_grid(info, 0)
-                                  ? 0.0
-                                  : error_bound(info.variants[0].terms, options.exaggeration, info.min_height_m,
-                                                info.max_height_m, tree.radius_m());
+    const double coarsest_m =
+        is_full_grid(info, 0) ? 0.0 : tree.error_m(info, info.variants[0].terms, options.exaggeration);
     const cull::Shell shell = tree.shell(tile.index, options.exaggeration, coarsest_m);
     const double distance_m = cull::min_distance_m(eye, cull::nearest_chord2(shell.rect, eye.direction),
                                                    shell.min_radius_m, shell.max_radius_m);

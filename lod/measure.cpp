@@ -14,18 +14,22 @@ void ErrorTerms::include(const ErrorTerms& other) {
   total_m = std::max(total_m, other.total_m);
 }
 
-double error_bound(const ErrorTerms& terms, double exaggeration, double min_height_m, double max_height_m,
-                   double radius_m) {
+double second_order_bound(double exaggeration, double range_m, double min_height_m, double max_height_m,
+                          double radius_m) {
   const double x = exaggeration;
-  if (x == 1.0) return terms.total_m;
   const double low = std::min(0.0, x);
   const double high = std::max(1.0, x);
   const double a =
       radius_m + std::min({low * min_height_m, low * max_height_m, high * min_height_m, high * max_height_m});
   if (a <= 0.0) return std::numeric_limits<double>::infinity();
-  const double range = max_height_m - min_height_m;
-  const double second_order = std::abs(x * (x - 1.0)) * range * range * radius_m * radius_m / (4.0 * a * a * a);
-  return std::abs(x) * terms.relief_m + terms.sag_m + second_order;
+  return std::abs(x * (x - 1.0)) * range_m * range_m * radius_m * radius_m / (4.0 * a * a * a);
+}
+
+double error_bound(const ErrorTerms& terms, double exaggeration, double min_height_m, double max_height_m,
+                   double radius_m) {
+  if (exaggeration == 1.0) return terms.total_m;
+  return std::abs(exaggeration) * terms.relief_m + terms.sag_m +
+         second_order_bound(exaggeration, max_height_m - min_height_m, min_height_m, max_height_m, radius_m);
 }
 
 struct FinePosts::Prepared : FineGrid {

@@ -98,7 +98,8 @@ double surface_height(const Posts& posts, const GridLines& lines, double u, doub
   return height_at(a, u, v, slope_u * (u - a.u) + slope_v * (v - a.v), radius_m);
 }
 
-void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m) {
+void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m,
+                    double exaggeration) {
   const int n = posts.intervals;
   const bool vertical = edge == Edge::kWest || edge == Edge::kEast;
   const int fixed = edge == Edge::kEast || edge == Edge::kNorth ? n : 0;
@@ -110,7 +111,7 @@ void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, d
   const auto post = [&](int k) {
     const double u = lines.u[static_cast<std::size_t>(vertical ? fixed : k)];
     const double v = lines.v[static_cast<std::size_t>(vertical ? k : fixed)];
-    return vertex(u, v, posts.height_m[index(k)], radius_m);
+    return vertex(u, v, exaggeration * posts.height_m[index(k)], radius_m);
   };
   const std::vector<double>& along = vertical ? lines.v : lines.u;
   for (int start = 0; start < n; start += step) {
@@ -122,7 +123,7 @@ void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, d
       const double here = along[static_cast<std::size_t>(k)];
       const double u = vertical ? a.u : here;
       const double v = vertical ? here : a.v;
-      posts.height_m[index(k)] = height_at(a, u, v, slope * (here - from), radius_m);
+      posts.height_m[index(k)] = height_at(a, u, v, slope * (here - from), radius_m) / exaggeration;
     }
   }
 }

@@ -69,7 +69,9 @@ double steepest_slope(const Posts& posts, const GridLines& lines, double radius_
 
 // Makes the posts of one edge lie on the flat edges of the grid that keeps every `step`-th of them (step a
 // power of two, at most the number of intervals): how a tile meets a coarser neighbour without a crack. The
-// moved posts are within kHeightError * (R step d + h) of the coarse edge.
-void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m);
+// moved posts are within kHeightError * (R step d + h) of the coarse edge. With an exaggeration (> 0) those that
+// are on it when all posts are drawn so many times as high: an edge's sag stays, so they are others.
+void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m,
+                    double exaggeration = 1.0);
 
 }  // namespace lod

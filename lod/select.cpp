@@ -117,8 +117,7 @@ class Selector {
 
   double error_m(const TileInfo& tile, int variant) const {
     if (is_full_grid(tile, variant)) return 0.0;
-    return error_bound(tile.variants[static_cast<std::size_t>(variant)].terms, options_.exaggeration,
-                       tile.min_height_m, tile.max_height_m, tree_.radius_m());
+    return tree_.error_m(tile, tile.variants[static_cast<std::size_t>(variant)].terms, options_.exaggeration);
   }
 
   // Rule hitchner: the levels that the tile lacks.

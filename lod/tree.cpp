@@ -100,6 +100,7 @@ TileTree::TileTree(std::vector<TileInfo> tiles, const TileShape& shape, double r
     lowest_height_m_ = std::min(lowest_height_m_, tile.min_height_m);
     if (!tile.has_children) {
       coarsest_facets_ = std::min(coarsest_facets_, tile.key.level);
+      finest_facets_ = std::max(finest_facets_, tile.key.level);
       continue;
     }
     first_child_[n] = static_cast<Index>(next);
@@ -132,7 +133,10 @@ const TileInfo& TileTree::deepest(const TileKey& key) const { return tiles_[desc
 cull::Shell TileTree::shell(Index tile, double exaggeration, double error_m) const {
   const TileInfo& info = tiles_[tile];
   const double facets = facet_factor(info.has_children ? info.key.level + 1 : info.key.level, shape_);
-  const double lowest = (radius_m_ + exaggeration * info.min_height_m) * facets - error_m;
+  // At another exaggeration posts on a coarser neighbour's edge stay on it: below its ends by that edge's sag.
+  const auto finer = exaggeration == 1.0 ? std::nullopt : coarsest_beside_coarser(info);
+  const double edges = finer ? facet_factor(*finer - 1, shape_) : 1.0;
+  const double lowest = (radius_m_ + exaggeration * info.min_height_m) * edges * facets - error_m;
   return {chart_rect(info.key), std::max(0.0, lowest),
           std::max(0.0, radius_m_ + exaggeration * info.max_height_m)};
 }
@@ -140,7 +144,41 @@ cull::Shell TileTree::shell(Index tile, double exaggeration, double error_m) con
 double TileTree::lowest_radius_m(double exaggeration) const {
   const double lowest =
       std::max(0.0, radius_m_ + exaggeration * lowest_height_m_) * facet_factor(coarsest_facets_, shape_);
-  return exaggeration == 1.0 ? std::max(lowest, known_lowest_m_) : lowest;
+  if (exaggeration == 1.0) return std::max(lowest, known_lowest_m_);
+  return finest_facets_ > coarsest_facets_ ? lowest * facet_factor(coarsest_facets_ + 1, shape_) : lowest;
+}
+
+std::optional<int> TileTree::coarsest_beside_coarser(const TileInfo& tile) const {
+  const int level = std::max(tile.has_children ? tile.key.level + 1 : tile.key.level, coarsest_facets_ + 1);
+  if (level > finest_facets_) return std::nullopt;
+  return level;
+}
+
+double TileTree::error_m(const TileInfo& tile, const ErrorTerms& terms, double exaggeration) const {
+  return error_bound(terms, exaggeration, tile.min_height_m, tile.max_height_m, radius_m_) +
+         edge_shift_m(tile, exaggeration);
+}
+
+// On an edge between posts of radius R + x h the radius is r(x) = 1 / sum(m / (R + x h)). A post kept on it is at
+// r(x), one exaggerated by itself at R + x (r(1) - R). They agree at x = 1 and differ by the edge's sag at x = 0;
+// between and beyond, by the line through both and a second order that error_bound has too. A facet moves by no
+// more than its posts do, but for the ratio of their radii squared.
+double TileTree::edge_shift_m(const TileInfo& tile, double exaggeration) const {
+  if (exaggeration == 1.0) return 0.0;
+  const std::optional<int> level = coarsest_beside_coarser(tile);
+  if (!level) return 0.0;
+  const double factor = facet_factor(*level - 1, shape_);
+  const double sag_m = radius_m_ * (1.0 - factor);
+  const double edge_m = 2 * kCapPerSide * nominal_side_m(*level - 1 + shape_.k, 1.0) * (radius_m_ + tile.max_height_m);
+  const double range_m = std::min(tile.max_height_m - tile.min_height_m, tile.steepest_slope * edge_m);
+  const double post_m =
+      std::abs(exaggeration - 1.0) * sag_m +
+      second_order_bound(exaggeration, range_m, tile.min_height_m, tile.max_height_m, radius_m_);
+  const double lowest = std::min(radius_m_ + tile.min_height_m, radius_m_ + exaggeration * tile.min_height_m);
+  if (!(lowest > 0.0)) return std::numeric_limits<double>::infinity();
+  const double highest = std::max(radius_m_ + tile.max_height_m, radius_m_ + exaggeration * tile.max_height_m);
+  const double ratio = highest / (lowest * factor);
+  return post_m * ratio * ratio;
 }
 
 std::size_t TileTree::bytes() const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -93,6 +94,14 @@ class TileTree {
   // above its highest post: all meshes of the tile and of those below it when error_m bounds the tile's own.
   cull::Shell shell(Index tile, double exaggeration, double error_m) const;
 
+  // Upper bound in metres of the radial distance between a mesh of the tile that has these terms and S, both
+  // exaggerated: lod::error_bound, and where S is not what each post exaggerated by itself would make, as posts
+  // on the edges of coarser neighbours stay on these edges. Never grows from a tile to its children.
+  double error_m(const TileInfo& tile, const ErrorTerms& terms, double exaggeration) const;
+
+  // That second part alone: 0 at exaggeration 1, and where all finest tiles are of one level.
+  double edge_shift_m(const TileInfo& tile, double exaggeration) const;
+
   // No point of S is nearer to the planet's centre: the occluder for the horizon. Sag of the facets included.
   double lowest_radius_m(double exaggeration) const;
 
@@ -100,6 +109,8 @@ class TileTree {
   std::size_t bytes() const;
 
  private:
+  // Level of the coarsest finest tiles that are in a tile and may lie beside coarser ones; nothing: there are none.
+  std::optional<int> coarsest_beside_coarser(const TileInfo& tile) const;
   Index descend(const TileKey& key) const;
 
   std::vector<TileInfo> tiles_;
@@ -109,6 +120,7 @@ class TileTree {
   double known_lowest_m_;
   double lowest_height_m_ = 0;
   int coarsest_facets_ = kMaxLevel;  // level of the coarsest finest tile
+  int finest_facets_ = 0;            // and of the finest
 };
 
 }  // namespace lod

@@ -61,7 +61,7 @@ class FaceCaster {
     if (above(part, info.max_height_m)) return kNone;
     const lod::TileKey& key = info.key;
     if (!info.has_children) {
-      const auto tile = surface_.tile(key);
+      const auto tile = surface_.tile(key, exaggeration_);
       return in_block(*tile, static_cast<int>(tile->block_max.size()), 0, 0, part);
     }
     const lod::TileTree::Index first = tree_.first_child(index);

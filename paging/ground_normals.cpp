@@ -64,7 +64,12 @@ std::vector<double> GroundPainter::heights_across(const lod::TileKey& key, lod::
 
 NormalTile GroundPainter::make_normals(const lod::TileKey& key, const ShadeParams& params) const {
   const double exaggeration = params.exaggeration;
-  const auto source = heights(key);
+  auto source = heights(key);
+  if (exaggeration != 1.0 && source->steps != 0) {
+    auto drawn = std::make_shared<TileHeights>(*source);
+    put_on_coarser_edges(*drawn, planet_->radius_m(), exaggeration);
+    source = std::move(drawn);
+  }
   const lod::Posts& posts = source->posts;
   const int n = posts.intervals;
   const auto side = static_cast<std::size_t>(n) + 1;

@@ -171,17 +171,25 @@ bool PlanetFile::has_missing(const lod::TileKey& key) const {
   return std::binary_search(missing_keys_.begin(), missing_keys_.end(), lod::pack(key));
 }
 
-TileHeights PlanetFile::heights(const lod::TileKey& key) const {
+void put_on_coarser_edges(TileHeights& heights, double radius_m, double exaggeration) {
+  if (heights.steps == 0) return;
+  const lod::GridLines lines = lod::grid_lines(heights.posts.key, heights.posts.intervals);
+  for (const lod::Edge edge : lod::kEdges) {
+    if ((heights.steps >> static_cast<int>(edge) & 1) != 0)
+      lod::constrain_edge(heights.posts, lines, edge, 2, radius_m, exaggeration);
+  }
+}
+
+TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) const {
   const std::int64_t row = lod::pack(key);
   TileHeights out;
-  int steps = 0;
   Bytes packed;
   std::optional<Bytes> mask;
   try {
     const Borrowed connection(*this);
     connection->node.bind(1, row);
     if (!connection->node.step()) throw PlanetError(damaged(path_, key, "not in the index"));
-    steps = static_cast<int>(connection->node.integer(0));
+    out.steps = static_cast<int>(connection->node.integer(0));
     out.source = parse_sources(connection->node.text(1));
     connection->heights.bind(1, row);
     auto found = verified(connection->heights, row, path_, key, "heights");
@@ -203,13 +211,7 @@ TileHeights PlanetFile::heights(const lod::TileKey& key) const {
   } catch (const CodecError& e) {
     throw PlanetError(damaged(path_, key, e.what()));
   }
-  if (steps != 0) {
-    const lod::GridLines lines = lod::grid_lines(key, out.posts.intervals);
-    for (const lod::Edge edge : lod::kEdges) {
-      if ((steps >> static_cast<int>(edge) & 1) != 0)
-        lod::constrain_edge(out.posts, lines, edge, 2, meta_.radius_m);
-    }
-  }
+  put_on_coarser_edges(out, meta_.radius_m, exaggeration);
   return out;
 }
 

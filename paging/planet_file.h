@@ -16,9 +16,14 @@ namespace paging {
 // Everything of a finest or inner tile but its meshes.
 struct TileHeights {
   lod::Posts posts;           // borders constrained to coarser neighbours
+  int steps = 0;              // bit of each Edge across which a finest tile one level coarser lies
   std::vector<bool> missing;  // empty when no post is missing
   std::vector<int> source;    // indices into PlanetMeta::sources that the tile draws on
 };
+
+// Puts the posts that lie on a coarser neighbour's edges onto these edges as exaggerated, so that S stays
+// watertight: an edge's height grows with the exaggeration, its sag does not. Does nothing where steps is 0.
+void put_on_coarser_edges(TileHeights& heights, double radius_m, double exaggeration);
 
 struct ImageTile {
   std::vector<mars::Rgb> texels;  // 257 * 257, row 0 at the south border (v0), column 0 at the west border
@@ -38,7 +43,8 @@ class PlanetFile {
   double radius_m() const { return meta_.radius_m; }
 
   // Throw PlanetError with the tile's key when it is missing or damaged (checksum, codec).
-  TileHeights heights(const lod::TileKey& key) const;
+  // With an exaggeration (> 0): the posts of S as drawn so many times as high; see put_on_coarser_edges().
+  TileHeights heights(const lod::TileKey& key, double exaggeration = 1.0) const;
   PackedMesh mesh(const lod::TileKey& key, int variant) const;
 
   // Whether no source has data at some post of the tile or of one below it. Known without reading the tile.

@@ -53,8 +53,20 @@ SurfaceTile prepare_tile(TileHeights heights) {
   return tile;
 }
 
+namespace {
+
+// Few tiles lie beside coarser ones.
+constexpr double kExaggeratedShare = 0.1;
+
+std::size_t part(std::size_t bytes, double share) {
+  return static_cast<std::size_t>(share * static_cast<double>(bytes));
+}
+
+}  // namespace
+
 Surface::Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
-    : planet_(std::move(planet)), cache_(budget_bytes) {
+    : planet_(std::move(planet)), cache_(part(budget_bytes, 1 - kExaggeratedShare)),
+      exaggerated_(part(budget_bytes, kExaggeratedShare)) {
   constexpr int kTableLevels = 11;
   for (int level = 0; level < kTableLevels; ++level) {
     std::vector<double>& lines = middles_.emplace_back();
@@ -69,9 +81,17 @@ double Surface::middle_line(int level, std::int32_t index) const {
                               : mars::face_line(2 * std::int64_t{index} + 1, level + 1);
 }
 
-std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key) const {
-  return cache_.get(key, [&] {
+std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key, double exaggeration) const {
+  auto tile = cache_.get(key, [&] {
     auto made = std::make_shared<const SurfaceTile>(prepare_tile(planet_->heights(key)));
+    const std::size_t bytes = made->bytes();
+    return std::pair(std::move(made), bytes);
+  });
+  if (exaggeration == 1.0 || tile->data.steps == 0) return tile;
+  return exaggerated_.get({key, exaggeration}, [&] {
+    TileHeights heights = tile->data;
+    put_on_coarser_edges(heights, planet_radius_m(), exaggeration);
+    auto made = std::make_shared<const SurfaceTile>(prepare_tile(std::move(heights)));
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });
@@ -94,7 +114,7 @@ SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const
   const mars::ChartPoint point = mars::chart_point(direction);
   SurfacePoint out;
   out.tile = finest_tile(planet_->tree(), point);
-  const auto tile = this->tile(out.tile);
+  const auto tile = this->tile(out.tile, exaggeration);
   out.height_m = lod::surface_height(tile->data.posts, tile->lines, point.u, point.v, planet_radius_m(),
                                      &out.normal, exaggeration);
   out.radius_m = planet_radius_m() + out.height_m;
@@ -113,15 +133,17 @@ SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const
   return out;
 }
 
-void Surface::radius(std::span<const glm::dvec3> directions, std::span<double> radius_m) const {
+void Surface::radius(std::span<const glm::dvec3> directions, std::span<double> radius_m,
+                     double exaggeration) const {
   std::shared_ptr<const SurfaceTile> held;
   for (std::size_t n = 0; n < directions.size(); ++n) {
     const mars::ChartPoint point = mars::chart_point(directions[n]);
     const bool same = held && held->data.posts.key.face == point.face &&
                       lod::tile_at(point, held->data.posts.key.level) == held->data.posts.key;
-    if (!same) held = tile(finest_tile(planet_->tree(), point));
+    if (!same) held = tile(finest_tile(planet_->tree(), point), exaggeration);
     radius_m[n] = planet_radius_m() +
-                  lod::surface_height(held->data.posts, held->lines, point.u, point.v, planet_radius_m());
+                  lod::surface_height(held->data.posts, held->lines, point.u, point.v, planet_radius_m(), nullptr,
+                                      exaggeration);
   }
 }
 

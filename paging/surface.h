@@ -46,7 +46,7 @@ class Surface {
   SurfacePoint at(const glm::dvec3& direction, double exaggeration = 1.0) const;
 
   // Radius of S at many directions; neighbours in the batch should be neighbours on the ground.
-  void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m) const;
+  void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m, double exaggeration = 1.0) const;
 
   // Distance along the unit `direction` from `eye_m` (metres from the planet's centre) to the first point of
   // S; infinity when there is none. Exact on the flat triangles of S up to rounding (about 1e-9 relative plus
@@ -63,8 +63,10 @@ class Surface {
     return cast(eye_m, direction, exaggeration, RayPart());
   }
 
-  std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key) const;
-  std::size_t bytes_resident() const { return cache_.bytes(); }
+  // Of a finest tile, or a coarser one's own posts. Throws PlanetError. With an exaggeration: S's posts as it is
+  // drawn (PlanetFile::heights).
+  std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key, double exaggeration = 1.0) const;
+  std::size_t bytes_resident() const { return cache_.bytes() + exaggerated_.bytes(); }
 
   // Chart coordinate of the line between a tile's halves; index: i for u, j for v.
   double middle_line(int level, std::int32_t index) const;
@@ -73,6 +75,19 @@ class Surface {
   std::shared_ptr<const PlanetFile> planet_;
   std::vector<std::vector<double>> middles_;  // chart lines through the middles of tiles, by level and index
   mutable LruCache<lod::TileKey, SurfaceTile, lod::TileKeyHash> cache_;
+
+  // Only of tiles beside coarser ones: all others are the same at every exaggeration.
+  struct Exaggerated {
+    lod::TileKey key;
+    double exaggeration;
+    bool operator==(const Exaggerated&) const = default;
+  };
+  struct ExaggeratedHash {
+    std::size_t operator()(const Exaggerated& e) const {
+      return lod::TileKeyHash()(e.key) ^ std::hash<double>()(e.exaggeration);
+    }
+  };
+  mutable LruCache<Exaggerated, SurfaceTile, ExaggeratedHash> exaggerated_;
 };
 
 // Makes a tile ready: grid lines, height range, block maxima. Pure.

@@ -170,12 +170,5 @@ TEST(BookmarkFile, ALinkIsFollowedAndAFailureLeavesTheOldFile) {
   EXPECT_EQ(read_text(folder / "dotfiles/marks"), "1 0 0 0 0 0 0 60\n2 0 0 0 0 0 0 60\n");
 }
 
-TEST(BookmarkFile, LiesInTheUsersDataFolder) {
-  EXPECT_EQ(bookmarks_path("/d", "/h"), "/d/vpe/bookmarks");
-  EXPECT_EQ(bookmarks_path("", "/h"), "/h/.local/share/vpe/bookmarks");
-  EXPECT_EQ(bookmarks_path("relative", "/h"), "/h/.local/share/vpe/bookmarks");
-  EXPECT_FALSE(bookmarks_path("", "").has_value());
-}
-
 }  // namespace
 }  // namespace vpe::explore

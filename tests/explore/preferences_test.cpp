@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using test_support::TempDir;
 
-Environment environment(const std::map<std::string, std::string>& variables) {
+core::Environment environment(const std::map<std::string, std::string>& variables) {
   return [variables](const char* name) {
     const auto found = variables.find(name);
     return found == variables.end() ? nullptr : found->second.c_str();
@@ -37,6 +37,7 @@ TEST(UserFiles, AreWhereTheSpecificationSays) {
     const ExploreFiles found = explore_files(environment(variables));
     return std::pair(found.preferences.string(), found.session.string());
   };
+  EXPECT_EQ(explore_files(environment({{"HOME", "/h"}})).bookmarks, "/h/.local/share/vpe/bookmarks");
   using P = std::pair<std::string, std::string>;
   EXPECT_EQ(files({{"HOME", "/h"}}), P("/h/.config/vpe/explore.toml", "/h/.local/state/vpe/explore.toml"));
   EXPECT_EQ(files({{"HOME", "/h"}, {"XDG_CONFIG_HOME", "/c"}, {"XDG_STATE_HOME", "/s"}}),

@@ -18,7 +18,7 @@ const DrawnMesh& MeshStore::mesh(const lod::SelectedTile& tile, double exaggerat
   lod::TileMesh mesh;
   std::vector<double> heights;
   if (lod::is_full_grid(planet_->tree()[tile.index], tile.variant)) {
-    const paging::TileHeights posts = planet_->heights(tile.key);
+    const paging::TileHeights posts = planet_->heights(tile.key, exaggeration);
     mesh = lod::mesh_full(posts.posts.intervals);
     heights = posts.posts.height_m;
   } else {

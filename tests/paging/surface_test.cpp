@@ -117,6 +117,78 @@ TEST(Surface, NoRayGetsThrough) {
   }
 }
 
+// Where the depth of the tree changes both sides give one surface, however high it is drawn; posts that were each
+// exaggerated by itself would not.
+TEST(Surface, IsClosedAtEveryExaggeration) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 20000));
+  const auto planet = build_fake(dir / "p.vpe", source, 200000);
+  const paging::Surface surface(planet, 1 << 26);
+  const lod::TileTree& tree = planet->tree();
+  Random random(45);
+  for (const double x : {0.1, 1.0, 7.0, 100.0}) {
+    double gap_m = 0;
+    double each_by_itself_m = 0;
+    int edges = 0;
+    for (const lod::TileInfo& info : tree.tiles()) {
+      if (info.has_children) continue;
+      for (const lod::Edge edge : lod::kEdges) {
+        const lod::TileInfo& beside = tree.deepest(lod::neighbour(info.key, edge).key);
+        if (beside.key.level >= info.key.level) continue;
+        ++edges;
+        const auto own = surface.tile(info.key, x);
+        const auto plain = surface.tile(info.key);
+        const auto other = surface.tile(beside.key, x);
+        for (int n = 0; n < 40; ++n) {
+          const bool vertical = edge == lod::Edge::kWest || edge == lod::Edge::kEast;
+          const bool far = edge == lod::Edge::kEast || edge == lod::Edge::kNorth;
+          const auto ends = [&](const std::vector<double>& lines) { return far ? lines.back() : lines.front(); };
+          const auto along = [&](const std::vector<double>& lines) {
+            return random.uniform(lines.front(), lines.back());
+          };
+          const double u = vertical ? ends(own->lines.u) : along(own->lines.u);
+          const double v = vertical ? along(own->lines.v) : ends(own->lines.v);
+          const mars::ChartPoint there = mars::chart_on(beside.key.face, mars::cube_point(info.key.face, u, v));
+          const auto height = [&](const paging::SurfaceTile& tile, double cu, double cv) {
+            return lod::surface_height(tile.data.posts, tile.lines, cu, cv, planet->radius_m(), nullptr, x);
+          };
+          const double outside = height(*other, there.u, there.v);
+          gap_m = std::max(gap_m, std::abs(height(*own, u, v) - outside));
+          each_by_itself_m = std::max(each_by_itself_m, std::abs(height(*plain, u, v) - outside));
+        }
+      }
+    }
+    EXPECT_GT(edges, 20);
+    EXPECT_LE(gap_m, 1e-8 * std::max(1.0, x)) << x;
+    if (x > 1.0) {
+      EXPECT_GT(each_by_itself_m, 10 * (x - 1)) << x;
+    }
+  }
+}
+
+TEST(Surface, NoRayGetsThroughExaggeratedGround) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 20000));
+  const auto planet = build_fake(dir / "p.vpe", source, 200000);
+  const paging::Surface surface(planet, 1 << 26);
+  Random random(46);
+  for (const double x : {0.1, 7.0, 40.0}) {
+    for (int n = 0; n < 8000; ++n) {
+      const glm::dvec3 up = glm::normalize(kCorner + 0.2 * random.direction());
+      const glm::dvec3 eye = up * (surface.at(up, x).radius_m + random.log_uniform(10, 1e7));
+      const glm::dvec3 target = glm::normalize(kCorner + 0.2 * random.direction()) * 2.5e6;
+      const glm::dvec3 direction = glm::normalize(target - eye);
+      const double t = surface.cast(eye, direction, x);
+      ASSERT_TRUE(std::isfinite(t)) << n << " times " << x;
+      const glm::dvec3 hit = eye + t * direction;
+      std::vector<double> radius_m(1);
+      surface.radius(std::vector{hit}, radius_m, x);
+      ASSERT_EQ(radius_m[0], surface.at(hit, x).radius_m);
+      ASSERT_NEAR(glm::length(hit), radius_m[0], 1e-4) << n << " times " << x;
+    }
+  }
+}
+
 TEST(Surface, EyeBelowTheGroundHitsAtOnce) {
   TempDir dir;
   const auto planet = build_fake(dir / "p.vpe", FakeElevation(bumpy_height), 400000);

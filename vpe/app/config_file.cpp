@@ -12,6 +12,7 @@
 #include <set>
 
 #include "vpe/core/number.h"
+#include "vpe/core/user_folders.h"
 
 namespace vpe::app {
 
@@ -129,35 +130,13 @@ void apply_environment(CLI::App& command) {
   }
 }
 
-fs::path absolute_variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value != nullptr && fs::path(value).is_absolute() ? fs::path(value) : fs::path();
-}
-
 }  // namespace
 
 std::vector<fs::path> config_files() {
-  std::vector<fs::path> folders;
-  const fs::path home = absolute_variable("HOME");
-  const fs::path user = absolute_variable("XDG_CONFIG_HOME");
-  if (!user.empty()) {
-    folders.push_back(user);
-  } else if (!home.empty()) {
-    folders.push_back(home / ".config");
-  }
-  const char* listed = std::getenv("XDG_CONFIG_DIRS");
-  const std::string system = listed != nullptr && *listed != '\0' ? listed : "/etc/xdg";
-  for (std::size_t begin = 0; begin <= system.size();) {
-    const std::size_t end = std::min(system.find(':', begin), system.size());
-    const fs::path folder = system.substr(begin, end - begin);
-    if (folder.is_absolute()) folders.push_back(folder);
-    begin = end + 1;
-  }
   std::vector<fs::path> files;
   std::error_code none;
-  for (const fs::path& folder : folders) {
-    const fs::path file = folder / "vpe" / "config.toml";
-    if (fs::exists(file, none)) files.push_back(file);
+  for (const fs::path& folder : core::config_folders()) {
+    if (fs::exists(folder / "config.toml", none)) files.push_back(folder / "config.toml");
   }
   return files;
 }

@@ -72,10 +72,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   if (!arguments.log.empty()) check_output(arguments.log);
   if (!arguments.flight.empty() && std::filesystem::exists(arguments.flight))
     setup.flight = read_flight(arguments.flight);
-  const char* data = std::getenv("XDG_DATA_HOME");
-  const char* home = std::getenv("HOME");
-  setup.bookmarks =
-      vpe::explore::bookmarks_path(data == nullptr ? "" : data, home == nullptr ? "" : home).value_or("");
+  setup.bookmarks = vpe::explore::explore_files().bookmarks;
   if (!arguments.spots.empty()) {
     const vpe::explore::ParsedSpots parsed = vpe::explore::load_spots(arguments.spots);
     std::string wrong;

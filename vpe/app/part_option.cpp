@@ -88,7 +88,7 @@ Part parse_part(const std::string& text, const Environment& environment) {
 }
 
 Part parse_part(const std::string& text) {
-  return parse_part(text, [](const char* name) -> const char* { return std::getenv(name); });
+  return parse_part(text, core::process_environment());
 }
 
 }  // namespace vpe::app

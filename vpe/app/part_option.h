@@ -1,17 +1,15 @@
 // `--part`: which share of divided work this run does.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "vpe/core/part.h"
+#include "vpe/core/user_folders.h"
 
 namespace vpe::app {
 
+using core::Environment;
 using core::Part;
-
-// Value of an environment variable, null when it is not set.
-using Environment = std::function<const char*(const char* name)>;
 
 // "k/n", or "auto": from the variables of a SLURM array (SLURM_ARRAY_TASK_ID, _COUNT; _MIN, 0 when not set;
 // _STEP, 1 when not set), else of Open MPI (OMPI_COMM_WORLD_RANK, _SIZE), of PMI (PMI_RANK, PMI_SIZE), of srun

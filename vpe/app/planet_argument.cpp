@@ -12,6 +12,7 @@
 #include "vpe/app/build_sources.h"
 #include "vpe/app/planet_build.h"
 #include "vpe/core/number.h"
+#include "vpe/core/user_folders.h"
 
 namespace vpe::app {
 
@@ -89,16 +90,8 @@ bool is_sqlite(const std::string& path) {
 }
 
 fs::path cache_folder() {
-  const char* xdg = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  fs::path folder;
-  if (xdg != nullptr && fs::path(xdg).is_absolute()) {
-    folder = fs::path(xdg) / "vpe";
-  } else if (home != nullptr && fs::path(home).is_absolute()) {
-    folder = fs::path(home) / ".cache" / "vpe";
-  } else {
-    throw std::runtime_error("no cache folder: set HOME or XDG_CACHE_HOME to an absolute path");
-  }
+  const fs::path folder = core::user_folder(core::UserFolder::kCache);
+  if (folder.empty()) throw std::runtime_error("no cache folder: set HOME or XDG_CACHE_HOME to an absolute path");
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(folder.string() + ": cannot make the cache folder: " + error.message());

@@ -178,10 +178,4 @@ void save_bookmarks(const fs::path& path, const Bookmarks& bookmarks) {
   file.commit();
 }
 
-std::optional<fs::path> bookmarks_path(const fs::path& data_home, const fs::path& home) {
-  if (data_home.is_absolute()) return data_home / "vpe" / "bookmarks";
-  if (home.is_absolute()) return home / ".local" / "share" / "vpe" / "bookmarks";
-  return std::nullopt;
-}
-
 }  // namespace vpe::explore

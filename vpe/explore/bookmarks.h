@@ -77,9 +77,4 @@ ParsedBookmarks load_bookmarks(const std::filesystem::path& path);
 // core::FileError. Of two programs that save, the last one counts: load, change and save in one go.
 void save_bookmarks(const std::filesystem::path& path, const Bookmarks& bookmarks);
 
-// DATA_HOME/vpe/bookmarks, or HOME/.local/share/vpe/bookmarks where the first is not an absolute path, or
-// nothing: from the values of $XDG_DATA_HOME and $HOME.
-std::optional<std::filesystem::path> bookmarks_path(const std::filesystem::path& data_home,
-                                                    const std::filesystem::path& home);
-
 }  // namespace vpe::explore

@@ -131,9 +131,13 @@ std::vector<KeyEntry> keys_of(LastSession& s) {
   };
 }
 
-ExploreFiles explore_files(const Environment& environment) {
-  const auto in = [](const fs::path& folder) { return folder.empty() ? fs::path() : folder / kName; };
-  return {in(config_folder(environment)), in(state_folder(environment))};
+ExploreFiles explore_files(const core::Environment& environment) {
+  const auto in = [&environment](core::UserFolder kind, const char* name) {
+    const fs::path folder = core::user_folder(kind, environment);
+    return folder.empty() ? fs::path() : folder / name;
+  };
+  return {in(core::UserFolder::kConfig, kName), in(core::UserFolder::kState, kName),
+          in(core::UserFolder::kData, "bookmarks")};
 }
 
 Preferences read_preferences(const fs::path& file) { return read<Preferences>(file); }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mars/pose.h"
+#include "vpe/core/user_folders.h"
 #include "vpe/explore/gamepad.h"
 #include "vpe/explore/head_tracker.h"
 #include "vpe/explore/key_file.h"
@@ -68,12 +69,14 @@ struct LastSession {
 std::vector<KeyEntry> keys_of(Preferences& preferences);
 std::vector<KeyEntry> keys_of(LastSession& session);
 
-// explore.toml in config_folder() and state_folder(); an empty path where there is no such folder.
+// explore.toml in the user's folders of settings and of state, bookmarks in that of data (vpe/core/user_folders.h);
+// an empty path where there is no such folder.
 struct ExploreFiles {
   std::filesystem::path preferences;
   std::filesystem::path session;
+  std::filesystem::path bookmarks;
 };
-ExploreFiles explore_files(const Environment& environment = process_environment());
+ExploreFiles explore_files(const core::Environment& environment = core::process_environment());
 
 // Defaults where there is no file and for an empty path. Throw KeyFileError and core::FileError; the window
 // goes on with defaults and shows the message when it is the session that cannot be read.

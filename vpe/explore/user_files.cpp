@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <span>
 #include <system_error>
 
@@ -18,16 +17,6 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
 
-fs::path folder(const Environment& environment, const char* variable, const char* in_home) {
-  const auto absolute = [&environment](const char* name) {
-    const char* value = environment(name);
-    return value != nullptr && fs::path(value).is_absolute() ? fs::path(value) : fs::path();
-  };
-  if (const fs::path set = absolute(variable); !set.empty()) return set / "vpe";
-  if (const fs::path home = absolute("HOME"); !home.empty()) return home / in_home / "vpe";
-  return {};
-}
-
 void make_folders(const fs::path& folder) {
   std::error_code ignored;
   if (folder.empty() || fs::is_directory(folder, ignored)) return;
@@ -40,17 +29,6 @@ void make_folders(const fs::path& folder) {
 }
 
 }  // namespace
-
-Environment process_environment() {
-  return [](const char* name) -> const char* { return std::getenv(name); };
-}
-
-fs::path config_folder(const Environment& environment) {
-  return folder(environment, "XDG_CONFIG_HOME", ".config");
-}
-fs::path state_folder(const Environment& environment) {
-  return folder(environment, "XDG_STATE_HOME", ".local/state");
-}
 
 std::optional<std::string> read_user_file(const fs::path& file) {
   std::error_code failure;

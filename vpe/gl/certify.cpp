@@ -18,9 +18,14 @@ constexpr double kRounding = 1.0 / (1 << 24);
 constexpr double kTransformError = 4e-7;
 
 // dr / d(angle) / r with heights times x.
-double exaggerated(const lod::TileInfo& tile, double x, double radius_m) {
-  return x * tile.steepest_slope * (radius_m + tile.max_height_m) /
-         std::max(1.0, radius_m + x * tile.min_height_m);
+double exaggerated(const lod::TileInfo& tile, double x, const lod::TileTree& tree) {
+  const double radius_m = tree.radius_m();
+  const double relief = x * tile.steepest_slope * (radius_m + tile.max_height_m) /
+                        std::max(1.0, radius_m + x * tile.min_height_m);
+  if (tile.has_children) return relief;
+  // Lines of posts are nowhere nearer to each other than half the nominal spacing.
+  const double least_m = 0.5 * lod::nominal_side_m(tile.key.level, radius_m) / tree.shape().intervals();
+  return relief + tree.edge_shift_m(tile, x) / least_m;
 }
 
 // What float storage does to a point of a tile at a distance.
@@ -47,7 +52,7 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
     const double distance_m = std::max(tile.min_distance_m, optics.near_m);
     const double stored_px = storage_px(t, distance_m, optics.focal_px);
     const lod::TileInfo& info = tree[tile.index];
-    slope = std::max(slope, exaggerated(info, optics.exaggeration, tree.radius_m()));
+    slope = std::max(slope, exaggerated(info, optics.exaggeration, tree));
     surface_px = std::max(surface_px, tile.error_px + stored_px);
     c.tile_error_m = std::max(c.tile_error_m, tile.error_m);
     c.tile_error_px = std::max(c.tile_error_px, tile.error_px);
@@ -82,7 +87,7 @@ double bound_in_picture(std::span<const CertifiedTile> tiles, const lod::TileTre
   }
   double slope = 0;
   for (const CertifiedTile& t : tiles)
-    slope = std::max(slope, exaggerated(tree[t.tile->index], optics.exaggeration, tree.radius_m()));
+    slope = std::max(slope, exaggerated(tree[t.tile->index], optics.exaggeration, tree));
   const double steep = std::sqrt(1.0 + slope * slope);
   double bound_px = 0;
   for (std::size_t k = 0; k < tiles.size(); ++k) {

@@ -6,9 +6,9 @@
 namespace vpe::gl {
 
 template <typename Visit>
-void PageLoader::with_mesh(const lod::TileKey& tile, int variant, Visit&& visit) const {
+void PageLoader::with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const {
   if (lod::is_full_grid(*planet_->tree().find(tile), variant)) {
-    const paging::TileHeights heights = planet_->heights(tile);
+    const paging::TileHeights heights = planet_->heights(tile, exaggeration);
     visit(lod::mesh_full(heights.posts.intervals), std::span<const double>(heights.posts.height_m));
     return;
   }
@@ -24,7 +24,7 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
   switch (key.kind) {
     case PageKind::kMesh: {
       const double radius_m = planet_->radius_m();
-      with_mesh(key.tile, key.detail, [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
+      with_mesh(key.tile, key.detail, key.exaggeration, [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
         page.geometry =
             make_geometry(key.tile, mesh, height_m, radius_m, {key.exaggeration, key.origin, key.charts});
         page.walls =
@@ -35,7 +35,7 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
     }
     case PageKind::kTexture: {
       if (key.look->flat) {
-        with_mesh(key.tile, painted_variant(key.detail),
+        with_mesh(key.tile, painted_variant(key.detail), key.look->exaggeration,
                   [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
                     page.shaded = painter_->shade_facets(key.tile, mesh, height_m, *key.look);
                     for (const std::uint32_t triangle : border_triangles(mesh)) {
@@ -51,7 +51,7 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
     }
     case PageKind::kGround: break;
   }
-  page.ground = std::make_shared<const paging::TileHeights>(planet_->heights(key.tile));
+  page.ground = std::make_shared<const paging::TileHeights>(planet_->heights(key.tile, key.exaggeration));
   return {page, page.ground->posts.height_m.size() * sizeof(double)};
 }
 

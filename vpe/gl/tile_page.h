@@ -19,7 +19,7 @@ using paging::ShadeParams;
 enum class PageKind : std::uint8_t {
   kMesh,     // of a variant, relative to an origin, at an exaggeration
   kTexture,  // as a look paints it
-  kGround,   // posts of a finest tile
+  kGround,   // posts of a finest tile, as drawn at an exaggeration
 };
 
 struct PageKey {
@@ -28,7 +28,7 @@ struct PageKey {
   int detail = 0;  // variant, or TileNeed::paint
   int origin = kTileCentre;
   bool charts = true;                       // of meshes
-  double exaggeration = 1;                  // of meshes
+  double exaggeration = 1;                  // of meshes and posts
   std::shared_ptr<const ShadeParams> look;  // of textures; equal looks are one object
   bool operator==(const PageKey&) const = default;
 };
@@ -62,9 +62,9 @@ class PageLoader {
   std::pair<Page, std::size_t> load(const PageKey& key) const;
 
  private:
-  // visit(mesh, heights of its vertices) for one of a tile's meshes.
+  // visit(mesh, heights of its vertices, drawn so many times as high) for one of a tile's meshes.
   template <typename Visit>
-  void with_mesh(const lod::TileKey& tile, int variant, Visit&& visit) const;
+  void with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::shared_ptr<const GroundPainter> painter_;

@@ -84,6 +84,7 @@ void TileScene::set_look(const core::DrawRequest& request) {
   const bool other_meshes = !look_ || look_->exaggeration != now.look.exaggeration;
   const bool other_paint =
       painting_.by != now.by || painting_.shows_gaps != now.shows_gaps || painting_.look.flat != now.look.flat;
+  if (other_meshes) ground_.clear();
   if (other_meshes || other_paint) meshes_.clear();
   if (other_paint) textures_.clear();
   painting_ = now;
@@ -116,7 +117,8 @@ TileNeed TileScene::coarse_need(const lod::TileKey& tile) const {
 }
 PageKey TileScene::ground_page(const glm::dvec3& eye_m) const {
   const lod::TileKey finest = lod::tile_at(mars::chart_point(eye_m), lod::kMaxLevel);
-  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, true, 1, nullptr};
+  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, true, look_->exaggeration,
+          nullptr};
 }
 
 bool TileScene::is_resident(const PageKey& page, std::uint64_t frame) {
@@ -159,6 +161,7 @@ void TileScene::upload(TilePager::Loaded page) {
       textures_.insert(key.tile, {key.detail, key.look}, gl::upload(page.value.shaded), frame_);
       break;
     case PageKind::kGround:
+      if (key.exaggeration != look_->exaggeration) return;
       if (ground_.size() >= kGroundTiles) ground_.erase(ground_.begin());
       ground_.emplace_back(key.tile, page.value.ground);
       break;

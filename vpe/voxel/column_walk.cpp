@@ -98,9 +98,7 @@ double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
 double ColumnWalk::measured_error_px(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
   if (!info.posts_terms.known()) return kInfinite;
-  return lod::error_bound(info.posts_terms.terms(), exaggeration_, info.min_height_m, info.max_height_m,
-                          eye_.radius_m) *
-         rule_.focal_px / least_distance_m(tile);
+  return tree_.error_m(info, info.posts_terms.terms(), exaggeration_) * rule_.focal_px / least_distance_m(tile);
 }
 
 bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
@@ -141,7 +139,8 @@ ColumnWalk::Used ColumnWalk::used() const {
     const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
     const double reach = std::sqrt(2.0) * spacing;
     const double sag = reach * reach / (4 * eye_.radius_m);
-    const double error = 2 * exaggeration_ * info.steepest_slope * reach + sag;
+    const double error =
+        2 * exaggeration_ * info.steepest_slope * reach + sag + tree_.edge_shift_m(info, exaggeration_);
     used.error_px = std::max(used.error_px, error * rule_.focal_px / least_distance_m(tile));
   }
   return used;

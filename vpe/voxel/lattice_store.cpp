@@ -22,8 +22,9 @@ LatticeStore::LatticeStore(std::shared_ptr<const paging::PlanetFile> planet, std
 template <typename T>
 std::shared_ptr<const TileLattices<T>> LatticeStore::get(Cache<T>& cache, const Key& key) const {
   return cache.get(key, [&] {
-    auto made = std::make_shared<const TileLattices<T>>(planet_->heights(planet_->tree()[key.tile].key),
-                                                        planet_->radius_m(), key.exaggeration, key.family);
+    auto made = std::make_shared<const TileLattices<T>>(
+        planet_->heights(planet_->tree()[key.tile].key, key.exaggeration),
+        planet_->radius_m(), key.exaggeration, key.family);
     const std::size_t bytes = made->bytes();
     ++tiles_made_;
     bytes_made_ += bytes;

@@ -135,6 +135,10 @@ void ExploreWindow::handle(const Event& event) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool is_key = event.kind == Event::Kind::kKeyPress || event.kind == Event::Kind::kKeyRepeat ||
                       event.kind == Event::Kind::kKeyRelease;
+  if (event.kind == Event::Kind::kDrop) {
+    if (!event.files.empty()) open_dropped(event.files.front());
+    return;
+  }
   if (guide_.inside() != nullptr && !is_key) {
     guide_.inside()->handle(event, io.WantCaptureMouse);
     return;
@@ -153,9 +157,7 @@ void ExploreWindow::handle(const Event& event) {
       if (view_area_.holds(event.x, event.y) && !io.WantCaptureMouse)
         session_.wheel(cursor_ - glm::dvec2{view_area_.x, view_area_.y}, event.scroll);
       break;
-    case Event::Kind::kDrop:
-      if (!event.files.empty()) open_dropped(event.files.front());
-      break;
+    case Event::Kind::kDrop: break;  // above
   }
 }
 
