@@ -51,7 +51,8 @@ TEST_F(ExploreMouseTest, TheWheelComesNearerToWhatIsUnderTheCursor) {
   robot_->wheel(-3);
   turns(5);
   settle();
-  EXPECT_NEAR(distance_to(under), before_m, 1e-6 * before_m);
+  // A notch holds what is under the cursor then: a pixel of the whole planet is kilometres of ground.
+  EXPECT_NEAR(distance_to(under), before_m, 0.01 * before_m);
 }
 
 TEST_F(ExploreMouseTest, ARightDragTiltsAboutTheMiddle) {

@@ -150,5 +150,74 @@ TEST_F(ExploreWindowTest, WithoutADisplayItSaysWhatToDo) {
   }
 }
 
+// Pairs side by side: each half is a whole view. What is under the cursor there is what is seen there.
+TEST_F(ExploreWindowTest, TheCursorIsOnTheGroundThatIsSeenThereAlsoInPairs) {
+  open();
+  click("##eyes");
+  click("##eyes=side by side");
+  settle();
+  const explore::Screen screen = window_->session().screen();
+  // The same place of both eyes' pictures: a quarter of the way from their middles to their right ends.
+  const double half = screen.width / 2.0;
+  for (const double left : {330.0, 330.0 + half}) {
+    const double x = left + half * 0.6;
+    const double y = screen.height / 2.0;
+    move(x, y);
+    settle();
+    const mars::Pose before = window_->session().pose();
+    const auto under = explore::ground_at(before, screen, {0.6 * screen.width, 0.5 * screen.height},
+                                          window_->session().ground());
+    ASSERT_TRUE(under.has_value());
+    robot_->wheel(1);
+    turns(5);
+    settle();
+    const core::Projected now = core::project(window_->session().view(), *under);
+    EXPECT_NEAR(now.xy.x, 0.6 * screen.width, 0.5) << left;
+    EXPECT_NEAR(now.xy.y, 0.5 * screen.height, 0.5) << left;
+    EXPECT_LT(window_->session().pose().alt_m, before.alt_m);
+  }
+  // In the bars above and below there is nothing.
+  const mars::Pose before = window_->session().pose();
+  move(330 + half, 8);
+  robot_->wheel(1);
+  turns(5);
+  EXPECT_EQ(window_->session().pose().alt_m, before.alt_m);
+}
+
+TEST_F(ExploreWindowTest, HiddenPanelsLetItRest) {
+  open();
+  key("Tab");
+  key("Tab");
+  key("h");
+  settle();
+  const std::int64_t frames = window_->frames();
+  for (int n = 0; n < 50; ++n) window_->step(0.001);
+  EXPECT_EQ(window_->frames(), frames);
+}
+
+TEST_F(ExploreWindowTest, APictureThatCannotBeMadeIsToldInItsPlace) {
+  open();
+  ASSERT_EQ(window_->session().set("mode", "wireframe"), "");
+  settle();
+  EXPECT_FALSE(window_->state().picture_error.empty());
+  EXPECT_FALSE(window_->shows_final_picture());
+  click("Triangles");
+  settle();
+  EXPECT_TRUE(window_->state().picture_error.empty());
+  EXPECT_TRUE(window_->shows_final_picture());
+}
+
+TEST_F(ExploreWindowTest, AFlightThatWasNotSavedIsKept) {
+  open();
+  EXPECT_EQ(window_->parting_words(), "");
+  key("p");
+  const std::string words = window_->parting_words();
+  EXPECT_NE(words.find("unsaved"), std::string::npos) << words;
+  int kept = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    kept += entry.path().string().find("unsaved") != std::string::npos ? 1 : 0;
+  EXPECT_EQ(kept, 1);
+}
+
 }  // namespace
 }  // namespace vpe::window

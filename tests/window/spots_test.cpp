@@ -59,6 +59,12 @@ TEST_F(SpotsTest, EnterStepsInAndEscapeOut) {
   robot_->key_up("Right");
   settle();
   EXPECT_GT(window_->overlook()->viewer().yaw_deg(), yaw_deg);
+  const double turned_deg = window_->overlook()->viewer().yaw_deg();
+  // Nothing moves the eye that nobody sees through.
+  key("Home");
+  EXPECT_TRUE(window_->state().message_is_trouble);
+  click("map");
+  settle();
   key("Escape");
   settle();
   EXPECT_EQ(window_->overlook(), nullptr);
@@ -74,6 +80,14 @@ TEST_F(SpotsTest, EnterStepsInAndEscapeOut) {
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_EQ(steps[0].spot, "Ridge");
   EXPECT_FALSE(steps[1].in);
+  // Played, the eye stands at the spot and the head looks where the overlook's view did.
+  const scripts::Path path(*scripts::parse_flight(text.str(), "log").flight, planet_->radius_m(),
+                           [](mars::LonLat, double) { return 0.0; });
+  const scripts::FlightState before_out = path.at(steps[1].time_s - 1e-3);
+  EXPECT_NEAR(before_out.pose.lon_deg, spot.place.lon_deg, 1e-9);
+  EXPECT_NEAR(before_out.pose.lat_deg, spot.place.lat_deg, 1e-9);
+  EXPECT_NEAR(before_out.pose.alt_m, ground_m + spot.height_m, 1e-3);
+  EXPECT_NEAR(std::remainder(before_out.pose.yaw_deg + before_out.look.yaw_deg - turned_deg, 360.0), 0, 1e-6);
 }
 
 }  // namespace

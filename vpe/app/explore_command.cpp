@@ -34,6 +34,7 @@ struct ExploreArguments {
   std::string flight;
   std::string spots;
   bool print_settings = false;
+  bool backend_is_given = false;
   PictureOptions picture;
 };
 
@@ -81,13 +82,17 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
     if (!wrong.empty()) throw std::runtime_error(wrong);
     setup.spots = parsed.spots;
   }
-  setup.open_overlook = [common,
-                         budget_ms = preferences.draw_budget_ms](const std::filesystem::path& panorama) {
+  setup.open_overlook = [common, budget_ms = preferences.draw_budget_ms,
+                         invert_wheel = preferences.invert_wheel](const std::filesystem::path& panorama) {
     window::OverlookSetup overlook =
         overlook_setup({panorama.string(), {}, {}}, memory_bytes(common) / 4, common.threads);
     overlook.budget_ms = budget_ms;
+    overlook.invert_wheel = invert_wheel;
     return overlook;
   };
+  setup.session.mouse_speed = preferences.mouse_speed;
+  setup.session.invert_wheel = preferences.invert_wheel;
+  setup.panels = last.panels;
   setup.session.settings = make_settings(arguments.picture);
   setup.session.interest = parse_interest(arguments.picture);
   setup.session.fov_deg = arguments.fov_deg;
@@ -97,6 +102,9 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
     if (!trouble.empty()) throw std::logic_error(trouble);
   }
   if (!arguments.pose.empty()) setup.session.start = parse_start(arguments.pose);
+  const vpe::explore::LastSession fresh;
+  setup.display.scales_size = arguments.size.empty() && last.window_width_px == fresh.window_width_px &&
+                              last.window_height_px == fresh.window_height_px;
   setup.display.width = last.window_width_px;
   setup.display.height = last.window_height_px;
   if (!arguments.size.empty()) {
@@ -108,7 +116,9 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.display.instead =
       "set DISPLAY to an X server, or work without a window: 'vpe render' draws a picture, 'vpe fly' a flight, "
       "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this one out of sight";
-  setup.backend = arguments.picture.backend == "voxel" ? window::Backend::kRays : window::Backend::kPolygons;
+  const bool rays = arguments.backend_is_given ? arguments.picture.backend == "voxel"
+                                               : last.backend == vpe::explore::SessionBackend::kVoxel;
+  setup.backend = rays ? window::Backend::kRays : window::Backend::kPolygons;
   setup.sun = sun_for;
   setup.threads = common.threads;
   setup.open_planet = [common](const std::string& dropped) { return open_planet(dropped, common); };
@@ -132,16 +142,13 @@ void explore(const ExploreArguments& arguments, const Common& common) {
   std::string file = known_as(arguments.planet);
   auto planet = open_planet(arguments.planet, common);
   bool is_first = true;
+  ExploreArguments here = arguments;
+  std::optional<core::Settings> settings;
   while (planet != nullptr) {
     note_illustration(planet->meta(), common.quiet);
-    window::ExploreSetup setup = make_setup(arguments, common, preferences, last);
-    if (!is_first) {
-      setup.session.start.reset();
-      setup.log.clear();  // its places are of another planet
-      setup.flight.reset();
-    } else if (!setup.session.start && last.planet == file) {
-      setup.session.start = last.pose;
-    }
+    window::ExploreSetup setup = make_setup(here, common, preferences, last);
+    if (is_first && !setup.session.start && last.planet == file) setup.session.start = last.pose;
+    if (settings) setup.session.settings = *settings;
     is_first = false;
     setup.planet = planet;
     setup.display.title = "vpe - " + planet->meta().body;
@@ -150,6 +157,17 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     setup.make_painter = [planet, common] { return std::make_unique<WindowPainter>(planet, common); };
     window::ExploreWindow shown(std::move(setup));
     shown.run();
+    if (const std::string words = shown.parting_words(); !words.empty())
+      std::fprintf(stderr, "vpe: note: %s\n", words.c_str());
+    // Flights, logs, spots and regions are of one planet; how it is drawn goes on.
+    here.pose = here.log = here.flight = here.spots = "";
+    here.picture.interest.clear();
+    here.backend_is_given = false;
+    here.size = "";
+    here.fov_deg = shown.session().screen().fov_deg;
+    shown.session().leave_flight();
+    settings = shown.session().settings();
+    last.panels = shown.state().panels;
     last.planet = file;
     last.pose = shown.session().pose();
     last.backend = shown.state().backend == window::Backend::kRays ? vpe::explore::SessionBackend::kVoxel
@@ -198,7 +216,10 @@ void add_explore(CLI::App& program, Common& common) {
   command->add_option("--log", arguments->log, "Record everything that happens, as a flight");
   command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and end");
   add_picture_options(*command, arguments->picture);
-  command->callback([arguments, &common] { explore(*arguments, common); });
+  command->callback([arguments, command, &common] {
+    arguments->backend_is_given = command->count("--backend") > 0;
+    explore(*arguments, common);
+  });
 }
 
 }  // namespace vpe::app

@@ -25,8 +25,16 @@ window::Picture PanoramaPainter::paint(const window::PictureOrder& order) {
     copying_->fraction = fraction;
     window::Display::wake();
   };
+  // What cannot be copied once is not tried again with every view.
+  if (!failure_.empty()) throw std::runtime_error(failure_);
   window::Picture picture;
-  picture.image = eyes_.draw(order.request.view, order.stereo, copied);
+  try {
+    picture.image = eyes_.draw(order.request.view, order.stereo, copied);
+  } catch (const std::exception& e) {
+    const bool copied_some = copying_->fraction.exchange(-1) >= 0;
+    if (copied_some && !copying_->stop) failure_ = e.what();
+    throw;
+  }
   picture.result.settled = true;
   copying_->fraction = -1;
   return picture;

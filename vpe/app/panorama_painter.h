@@ -18,6 +18,7 @@ class PanoramaPainter : public window::Painter {
  private:
   OpenEyes eyes_;
   std::shared_ptr<window::CopyingState> copying_;
+  std::string failure_;  // of copying
 };
 
 // What a window needs to show a panorama: an overlook's description, eyes and painter, all else as by default.

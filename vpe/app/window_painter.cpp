@@ -21,6 +21,7 @@ core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double ti
 window::Picture WindowPainter::paint(const window::PictureOrder& order) {
   if (backend_ != order.backend) {
     renderer_.reset();
+    backend_.reset();  // until there is one: making it may fail
     PictureOptions options;
     options.backend = window::to_string(order.backend);
     renderer_ = make_renderer(options, common_, planet_);

@@ -40,7 +40,9 @@ std::string FlightDesk::add(const mars::Pose& pose, double speed_m_per_s) {
   if (editor_) return editor_->append(waypoint, speed_m_per_s);
   scripts::Flight flight;
   flight.waypoints.push_back(waypoint);
-  return take(flight);
+  std::string trouble = take(flight);
+  if (trouble.empty()) editor_->mark_unsaved();
+  return trouble;
 }
 
 FlightPlayer* FlightDesk::player(double exaggeration) {
@@ -62,6 +64,7 @@ FlightPlayer* FlightDesk::player(double exaggeration) {
     player_->set_loop(before->loops());
     player_->scrub(before->time_s());
     player_->look_around(before->look_offset());
+    player_->keep_settings_of(*before);
     if (before->is_playing()) player_->play();
   }
   return &*player_;

@@ -26,7 +26,7 @@ class FlightDesk {
   // Null when there is no flight.
   FlightEditor* editor() { return editor_ ? &*editor_ : nullptr; }
   const FlightEditor* editor() const { return editor_ ? &*editor_ : nullptr; }
-  // As the flight is now: an edit shows at once, with the player's time, speed and loop as they were. Null when
+  // As the flight is now: an edit shows at once, with the player's time, speed, loop, look and settings kept by hand as they were. Null when
   // there is no flight or it cannot be played (problem()).
   FlightPlayer* player(double exaggeration);
   // Why it cannot be played; empty when it can.

@@ -89,6 +89,7 @@ class FlightEditor {
   // Whether the flight differs from what it was made with or last marked as saved.
   bool is_changed() const { return !(flight_ == saved_); }
   void mark_saved() { saved_ = flight_; }
+  void mark_unsaved() { saved_ = {}; }
 
  private:
   struct Step {

@@ -69,6 +69,8 @@ class FlightPlayer {
   [[nodiscard]] std::string keep_setting(const std::string& key, const std::string& text);
   void release_setting(const std::string& key) { kept_.erase(key); }
   void release_settings() { kept_.clear(); }
+  // Those of another player of the same flight, in place of its own.
+  void keep_settings_of(const FlightPlayer& other) { kept_ = other.kept_; }
 
   std::span<const scripts::Interest> interests() const { return path_.interests(time_s_); }
 

@@ -43,7 +43,7 @@ mars::Pose dragged(const mars::Pose& begun, const Screen& screen, const glm::dve
 mars::Pose looked(const mars::Pose& begun, const Screen& screen, glm::dvec2 from, glm::dvec2 to);
 
 // Multiplies the distance to the ground under the cursor by `factor` (0.1 to 10); that ground stays under the
-// cursor. Over the sky the altitude above the ground is multiplied.
+// cursor, for which the eye moves aside: the distance is within 6 % of that below 1000 km, within 25 % above. Over the sky the altitude above the ground is multiplied.
 mars::Pose zoomed(const mars::Pose& pose, const Screen& screen, glm::dvec2 xy, double factor,
                   const Ground& ground);
 

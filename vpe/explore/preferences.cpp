@@ -13,8 +13,7 @@ constexpr const char* kName = "explore.toml";
 constexpr int kMaxWindow_px = 16384;
 
 constexpr std::string_view kPreferencesHead =
-    "# Preferences of vpe explore. Lines that begin with # are defaults: take the first # away to change one.\n"
-    "# The window rewrites this file when preferences are changed there.\n\n";
+    "# Preferences of vpe explore. Lines that begin with # are defaults: take the first # away to change one.\n\n";
 constexpr std::string_view kSessionHead =
     "# The last session of vpe explore, written by it. May be deleted.\n\n";
 
@@ -78,9 +77,8 @@ std::vector<KeyEntry> keys_of(Preferences& p) {
       {"draw.budget_ms", NumberKey{&p.draw_budget_ms, 0, 1000},
        "milliseconds that a picture may take while the eye moves, held by drawing coarser; 0 = none"},
       {"ui.scale", NumberKey{&p.ui_scale, 0, 8}, "of letters and panels; 0 = as the display says"},
-      {"ui.length", choice_key(p.length, {"auto", "m", "km"}), "unit of lengths; auto: as suits each"},
       {"ui.longitude", choice_key(p.longitude, {"180", "360"}),
-       "longitudes from -180 to 180 or from 0 to 360, east positive"},
+       "longitudes of the status line from -180 to 180 or from 0 to 360, east positive"},
       {"gamepad.enabled", SwitchKey{&p.use_gamepad}, "use a gamepad when one is plugged in"},
       {"gamepad.dead_zone", NumberKey{&p.gamepad.dead_zone, 0, Pad::kMaxDeadZone},
        "share of a stick's way that counts as rest"},
@@ -117,17 +115,10 @@ std::vector<KeyEntry> keys_of(LastSession& s) {
   return {
       {"window.width", IntegerKey{&s.window_width_px, 1, kMaxWindow_px}, "pixels"},
       {"window.height", IntegerKey{&s.window_height_px, 1, kMaxWindow_px}, "pixels"},
-      {"window.maximised", SwitchKey{&s.maximised}, "the window filled the screen"},
+      {"window.panels", SwitchKey{&s.panels}, "map, panels and figures are shown"},
       {"last.planet", TextKey{&s.planet, "the name of a planet file, or nothing", any_text}, "shown last"},
       {"last.pose", PoseKey{&s.pose}, "of the eye"},
       {"last.backend", choice_key(s.backend, {"polygon", "voxel"}), "that drew last"},
-      {"panels.map", SwitchKey{&s.panels.map}, "open"},
-      {"panels.control", SwitchKey{&s.panels.control}, "open"},
-      {"panels.status", SwitchKey{&s.panels.status}, "open"},
-      {"panels.appearance", SwitchKey{&s.panels.appearance}, "open"},
-      {"panels.lod", SwitchKey{&s.panels.lod}, "open"},
-      {"panels.measuring", SwitchKey{&s.panels.measuring}, "open"},
-      {"panels.flight", SwitchKey{&s.panels.flight}, "open"},
   };
 }
 

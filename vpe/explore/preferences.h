@@ -17,7 +17,6 @@
 
 namespace vpe::explore {
 
-enum class LengthUnit { kAuto, kMetres, kKilometres };
 enum class LongitudeRange { kSigned, kPositive };  // -180..180, 0..360; east is positive in both
 
 struct Preferences {
@@ -27,8 +26,7 @@ struct Preferences {
   double turn_speed = 1;       // factor on turning, of keys, gamepad and space mouse
   double draw_budget_ms = 40;  // lod.frame_ms while the eye moves; 0 = none
   double ui_scale = 0;         // of letters and panels; 0 = as the display says
-  LengthUnit length = LengthUnit::kAuto;
-  LongitudeRange longitude = LongitudeRange::kSigned;
+  LongitudeRange longitude = LongitudeRange::kSigned;  // in the status line
   bool use_gamepad = true;
   PadOptions gamepad;
   bool use_space_mouse = true;
@@ -42,27 +40,13 @@ struct Preferences {
 
 enum class SessionBackend { kPolygon, kVoxel };
 
-// Which panels are open.
-struct OpenPanels {
-  bool map = true;
-  bool control = true;
-  bool status = true;
-  bool appearance = false;
-  bool lod = false;
-  bool measuring = false;
-  bool flight = false;
-
-  bool operator==(const OpenPanels&) const = default;
-};
-
 struct LastSession {
   int window_width_px = 1280;
   int window_height_px = 720;
-  bool maximised = false;
   std::string planet;              // the last one's file as it was given; empty = none
   std::optional<mars::Pose> pose;  // of the eye, there
   SessionBackend backend = SessionBackend::kPolygon;
-  OpenPanels panels;
+  bool panels = true;  // map, panels and figures are shown
 };
 
 // All keys, bound to the members of the object.

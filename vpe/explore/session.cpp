@@ -15,6 +15,16 @@ constexpr double kTilt_deg_px = 0.25;  // of a drag, on a picture of 720 rows
 constexpr double kWheelNotch = 0.8;    // of the distance
 constexpr double kDoubleClick = 0.4;   // of the distance
 
+// A head does not go over backwards, and a log takes no steeper look.
+mars::HeadLook added(const mars::HeadLook& a, const mars::HeadLook& b) {
+  return {std::remainder(a.yaw_deg + b.yaw_deg, 360.0), std::clamp(a.pitch_deg + b.pitch_deg, -90.0, 90.0),
+          std::remainder(a.roll_deg + b.roll_deg, 360.0)};
+}
+
+bool is_ahead(const mars::HeadLook& look) {
+  return look.yaw_deg == 0 && look.pitch_deg == 0 && look.roll_deg == 0;
+}
+
 }  // namespace
 
 Session::Session(std::shared_ptr<const paging::Surface> surface, const SessionOptions& options)
@@ -25,7 +35,9 @@ Session::Session(std::shared_ptr<const paging::Surface> surface, const SessionOp
                [ground = surface_](mars::LonLat place, double exaggeration) {
                  return ground->at(mars::direction(place), exaggeration).height_m;
                }),
-      interest_(options.interest) {
+      interest_(options.interest),
+      mouse_speed_(options.mouse_speed),
+      invert_wheel_(options.invert_wheel) {
   ground_ = ground_of(surface_, settings_.values().exaggeration);
   set_fov(options.fov_deg);
   pose_ = kept_clear(options.start ? *options.start : overview({0, 0}, screen_, ground_.radius_m), ground_);
@@ -37,6 +49,26 @@ core::View Session::view() const {
   core::View view = view_of(pose_, screen_, ground_.radius_m);
   view.eye = mars::to_eye(pose_, look_, ground_.radius_m);
   return view;
+}
+
+mars::Pose Session::seen() const {
+  return is_ahead(look_) ? pose_ : mars::to_pose(mars::to_eye(pose_, look_, ground_.radius_m), ground_.radius_m);
+}
+
+// The head's axes in those of its platform, right, ahead and up, taken off the eye's.
+mars::Pose Session::platform_of(const mars::Pose& seen) const {
+  if (is_ahead(look_)) return seen;
+  const mars::EyePose eye = mars::to_eye(seen, ground_.radius_m);
+  const mars::Axes head =
+      mars::oriented_axes({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, look_.yaw_deg, look_.pitch_deg, look_.roll_deg);
+  const auto axis = [&](int k) {
+    return eye.axes.right * head.right[k] + eye.axes.up * head.up[k] + eye.axes.forward * head.forward[k];
+  };
+  return mars::to_pose({eye.eye_m, {axis(0), axis(2), axis(1)}}, ground_.radius_m);
+}
+
+double Session::wheel_factor(double notches) const {
+  return std::pow(kWheelNotch, std::clamp(invert_wheel_ ? -notches : notches, -10.0, 10.0));
 }
 
 std::string Session::set(std::string_view key, std::string_view text) {
@@ -131,8 +163,7 @@ void Session::take_flight_state(const mars::HeadLook& tracker) {
   }
   const scripts::FlightState state = flight->state();
   pose_ = state.pose;
-  look_ = {state.look.yaw_deg + tracker.yaw_deg, state.look.pitch_deg + tracker.pitch_deg,
-           state.look.roll_deg + tracker.roll_deg};
+  look_ = added(state.look, tracker);
   follow_settings();
 }
 
@@ -211,9 +242,9 @@ void Session::advance(double dt_s, const Controls& controls, const mars::HeadLoo
 void Session::press(MouseUse use, glm::dvec2 xy) {
   stop();
   use_ = use;
-  begun_ = pose_;
+  begun_ = seen();
   begun_xy_ = xy;
-  held_m_ = use == MouseUse::kHold && !follows_ ? ground_at(pose_, screen_, xy, ground_) : std::nullopt;
+  held_m_ = use == MouseUse::kHold && !follows_ ? ground_at(begun_, screen_, xy, ground_) : std::nullopt;
   if (FlightPlayer* flight = follows_ ? player() : nullptr; flight != nullptr)
     begun_look_ = flight->look_offset();
 }
@@ -224,34 +255,37 @@ void Session::drag(glm::dvec2 xy) {
     if (flight == nullptr || use_ == MouseUse::kNone) return;
     // As the sky is held: to the left shows what is right.
     const mars::Pose turned_by = looked({0, 0, 0, 0, 0, 0}, screen_, begun_xy_, xy);
-    flight->look_around({begun_look_.yaw_deg + turned_by.yaw_deg, begun_look_.pitch_deg + turned_by.pitch_deg,
+    flight->look_around({begun_look_.yaw_deg + mouse_speed_ * turned_by.yaw_deg,
+                         begun_look_.pitch_deg + mouse_speed_ * turned_by.pitch_deg,
                          begun_look_.roll_deg});
     take_flight_state(tracker_);
     return;
   }
   if (use_ == MouseUse::kHold) {
-    pose_ = held_m_ ? dragged(begun_, screen_, *held_m_, xy, ground_) : looked(begun_, screen_, begun_xy_, xy);
+    pose_ = platform_of(held_m_ ? dragged(begun_, screen_, *held_m_, xy, ground_)
+                                : looked(begun_, screen_, begun_xy_, xy));
   } else if (use_ == MouseUse::kTilt) {
-    const glm::dvec2 by = (xy - begun_xy_) * (kTilt_deg_px * 720.0 / screen_.height);
-    pose_ = tilted(begun_, screen_, by.x, by.y, ground_);
+    const glm::dvec2 by = (xy - begun_xy_) * (mouse_speed_ * kTilt_deg_px * 720.0 / screen_.height);
+    pose_ = platform_of(tilted(begun_, screen_, by.x, by.y, ground_));
   }
 }
 
 void Session::wheel(glm::dvec2 xy, double notches) {
   if (follows_) {
-    set_fov(screen_.fov_deg * std::pow(kWheelNotch, std::clamp(notches, -10.0, 10.0)));
+    set_fov(screen_.fov_deg * wheel_factor(notches));
     return;
   }
   stop();
-  pose_ = zoomed(pose_, screen_, xy, std::pow(kWheelNotch, std::clamp(notches, -10.0, 10.0)), ground_);
+  pose_ = platform_of(zoomed(seen(), screen_, xy, wheel_factor(notches), ground_));
 }
 
 void Session::fly_towards(glm::dvec2 xy) {
   if (follows_) return;
-  const std::optional<glm::dvec3> point = ground_at(pose_, screen_, xy, ground_);
+  const mars::Pose from = seen();
+  const std::optional<glm::dvec3> point = ground_at(from, screen_, xy, ground_);
   if (!point) return;
-  const double distance_m = glm::length(mars::to_eye(pose_, ground_.radius_m).eye_m - *point);
-  go(looking_at(pose_, *point, distance_m * kDoubleClick, ground_));
+  const double distance_m = glm::length(mars::to_eye(from, ground_.radius_m).eye_m - *point);
+  go(platform_of(looking_at(from, *point, distance_m * kDoubleClick, ground_)));
 }
 
 }  // namespace vpe::explore

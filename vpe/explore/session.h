@@ -28,6 +28,8 @@ struct SessionOptions {
   std::optional<mars::Pose> start;  // left out: the whole planet
   double fov_deg = 50;
   std::vector<core::InterestRegion> interest;
+  double mouse_speed = 1;     // factor on what a drag turns and tilts
+  bool invert_wheel = false;  // rolling away goes away
 };
 
 enum class MouseUse : std::uint8_t { kNone, kHold, kTilt };
@@ -91,7 +93,8 @@ class Session {
   // A frame: what hands ask for, and where a tracker says that the head looks.
   void advance(double dt_s, const Controls& controls, const mars::HeadLook& tracker = {});
 
-  // Positions on the screen. A press ends a flight to somewhere.
+  // Positions on the screen, of what is seen there: with the head on its platform. A press ends a flight to
+  // somewhere.
   void press(MouseUse use, glm::dvec2 xy);
   void drag(glm::dvec2 xy);
   void release() { use_ = MouseUse::kNone; }
@@ -100,6 +103,9 @@ class Session {
   void fly_towards(glm::dvec2 xy);  // double click
 
  private:
+  mars::Pose seen() const;                               // the eye's, with the head
+  mars::Pose platform_of(const mars::Pose& seen) const;  // its inverse
+  double wheel_factor(double notches) const;
   void go_turned(double yaw_deg, double pitch_deg, double roll_deg);
   void take_flight_state(const mars::HeadLook& tracker);
   void follow_settings();
@@ -115,12 +121,14 @@ class Session {
   mars::Pose pose_;
   mars::HeadLook look_;
   std::vector<core::InterestRegion> interest_;
+  double mouse_speed_ = 1;
+  bool invert_wheel_ = false;
   std::uint64_t changes_ = 0;
   std::optional<FlyTo> going_;
   double gone_s_ = 0;
   MouseUse use_ = MouseUse::kNone;
   mars::HeadLook begun_look_;  // when the button was pressed, in a flight
-  mars::Pose begun_;           // when the button was pressed
+  mars::Pose begun_;           // what was seen when the button was pressed
   glm::dvec2 begun_xy_{0, 0};
   std::optional<glm::dvec3> held_m_;  // ground under it then
 };

@@ -1,9 +1,13 @@
 // What keys and buttons ask of the explore window, and the files that it writes.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
+#include <glm/geometric.hpp>
 
 #include "vpe/core/file.h"
 #include "vpe/core/image.h"
+#include "vpe/core/number.h"
 #include "vpe/explore/keyboard.h"
 #include "vpe/window/explore_window.h"
 
@@ -14,6 +18,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kZoomStep = 1.15;  // of the field of view
+
+// What the window itself does while one stands in a panorama; all else would move an eye that nobody sees through.
+using Kind = explore::ActionKind;
+constexpr std::array kInside{Kind::kRecord,     Kind::kLeave,      Kind::kRecentreHead, Kind::kMap,
+                             Kind::kHidePanels, Kind::kFullScreen, Kind::kHelp,         Kind::kEnterOverlook};
 
 }  // namespace
 
@@ -71,7 +80,7 @@ void ExploreWindow::start_log(const fs::path& file) {
     log_ = std::make_unique<explore::SessionLog>(file, view, session_.ground().radius_m);
     log_file_ = file;
     log_begun_s_ = now_s();
-    log_->note(0, std::string("drawn by ") + to_string(state_.backend));
+    log_note_.clear();
     say("recording: " + file.string());
   } catch (const std::exception& e) {
     log_.reset();
@@ -82,8 +91,44 @@ void ExploreWindow::start_log(const fs::path& file) {
 void ExploreWindow::stop_log() {
   if (log_ == nullptr) return;
   const std::unique_ptr<explore::SessionLog> log = std::move(log_);
-  log->end(now_s() - log_begun_s_);
-  say("recorded: " + log_file_.string());
+  try {
+    log->end(now_s() - log_begun_s_);
+    say("recorded: " + log_file_.string());
+  } catch (const std::exception& e) {
+    say(e.what(), true);  // what was written before is a flight all the same
+  }
+}
+
+// In a panorama the eye stands at the spot and the head looks where its view does.
+void ExploreWindow::log_overlook() {
+  if (log_ == nullptr) return;
+  const panorama::Viewer& viewer = guide_.inside()->viewer();
+  const std::pair look{viewer.yaw_deg(), viewer.pitch_deg()};
+  if (look == logged_look_) return;
+  logged_look_ = look;
+  mars::EyePose eye;
+  eye.eye_m = guide_.inside_eye_m();
+  const mars::LonLat place = mars::lon_lat(eye.eye_m);
+  const mars::Pose stand{place.lon_deg, place.lat_deg, glm::length(eye.eye_m) - session_.ground().radius_m, 0, 0, 0};
+  try {
+    log_->frame({now_s() - log_begun_s_, stand, {std::remainder(look.first, 360.0), look.second, 0}},
+                session_.settings(), session_.all_interest());
+  } catch (const std::exception& e) {
+    log_.reset();
+    say(e.what(), true);
+  }
+}
+
+std::string ExploreWindow::parting_words() {
+  const explore::FlightEditor* editor = session_.flights().editor();
+  if (editor == nullptr || !editor->is_changed()) return {};
+  const fs::path file = new_file("unsaved-", ".flight");
+  try {
+    core::write_file(file, editor->to_text());
+    return "the flight was not saved; it is kept in " + file.string();
+  } catch (const std::exception& e) {
+    return std::string("the flight that was not saved is lost: ") + e.what();
+  }
 }
 
 void ExploreWindow::log_picture(PictureOrder& order) {
@@ -92,7 +137,9 @@ void ExploreWindow::log_picture(PictureOrder& order) {
     const double time_s = now_s() - log_begun_s_;
     const std::string drawn = std::string("drawn by ") + to_string(order.backend) + ", " +
                               std::to_string(session_.screen().width) + "x" +
-                              std::to_string(session_.screen().height);
+                              std::to_string(session_.screen().height) + ", field of view " +
+                              core::format_number(session_.screen().fov_deg) + " degrees" +
+                              (order.stereo ? ", " + std::string(core::to_string(*order.stereo)) : "");
     if (drawn != log_note_) log_->note(time_s, drawn);
     log_note_ = drawn;
     order.logged_s =
@@ -150,14 +197,16 @@ void ExploreWindow::save_flight() {
 }
 
 std::string ExploreWindow::act(const explore::Action& action) {
-  using Kind = explore::ActionKind;
   const auto go = [this](const std::optional<explore::SavedView>& view) -> std::string {
     if (!view) return "there is no other view to go to";
     session_.set_fov(view->fov_deg);
     session_.go(view->pose);
     return {};
   };
-  if (guide_.inside() != nullptr && guide_.inside()->act(action)) return {};
+  if (guide_.inside() != nullptr) {
+    if (guide_.inside()->act(action)) return {};
+    if (!std::ranges::count(kInside, action.kind)) return "Esc steps out of the panorama first";
+  }
   switch (action.kind) {
     case Kind::kNorthUp: session_.north_up(); return {};
     case Kind::kLookDown: session_.look_down(false); return {};
@@ -209,8 +258,15 @@ std::string ExploreWindow::act(const explore::Action& action) {
       const std::string trouble = guide_.step_in();
       if (!trouble.empty()) return trouble;
       const explore::Spot& spot = *guide_.inside_spot();
-      if (log_ != nullptr) log_->step_in(now_s() - log_begun_s_, spot.name, spot.panorama);
       say(spot.name + ": Esc steps out");
+      session_.release();
+      if (log_ == nullptr) return {};
+      try {
+        log_->step_in(now_s() - log_begun_s_, spot.name, spot.panorama);
+      } catch (const std::exception& e) {
+        log_.reset();
+        return e.what();
+      }
       return {};
     }
   }

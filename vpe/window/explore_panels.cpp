@@ -11,6 +11,7 @@
 #include "vpe/explore/keyboard.h"
 #include "vpe/explore/steer.h"
 #include "vpe/window/explore_window.h"
+#include "vpe/window/panel_words.h"
 #include "vpe/window/screen_point.h"
 #include "vpe/window/words.h"
 
@@ -27,6 +28,15 @@ std::string print(const char* format, Args... args) {
   char text[256];
   std::snprintf(text, sizeof text, format, args...);
   return text;
+}
+
+// One line; what does not fit into it is told where it is pointed at.
+void status_line(const std::string& words, const ImVec4& colour) {
+  std::string first = words;
+  std::ranges::replace(first, '\n', ' ');
+  ImGui::TextColored(colour, "%s", first.c_str());
+  if (ImGui::IsItemHovered() && ImGui::GetItemRectSize().x > ImGui::GetContentRegionAvail().x)
+    ImGui::SetTooltip("%s", words.c_str());
 }
 
 }  // namespace
@@ -85,8 +95,12 @@ void ExploreWindow::measure_panel() {
 }
 
 void ExploreWindow::draw_map(int width, int height) {
-  const MapWish wish = map_.draw(session_, state_.map_ground, measure_.points(), width, height, widgets_);
+  const MapWish wish = map_.draw(session_, state_.map_ground, measure_.points(), guide_.spots(), width, height, widgets_);
   if (wish.under_cursor) under_cursor_ = wish.under_cursor;
+  if (guide_.inside() != nullptr) {
+    if (wish.go_to || wish.new_waypoint || wish.new_region || wish.drag) say("Esc steps out of the panorama first", true);
+    return;
+  }
   if (wish.go_to) session_.go_to(*wish.go_to);
   if (wish.new_region) {
     std::vector<core::InterestRegion> regions(session_.interest().begin(), session_.interest().end());
@@ -180,18 +194,23 @@ void ExploreWindow::draw_status() {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, at(8 * display_.scale(), 5 * display_.scale()));
   ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
   const mars::Pose& pose = session_.pose();
+  const bool from_zero = setup_.preferences.longitude == explore::LongitudeRange::kPositive;
+  const double lon_deg = from_zero && pose.lon_deg < 0 ? pose.lon_deg + 360 : pose.lon_deg;
   std::string place =
-      print("%.5f°, %.5f°   %s above ground   heading %.1f°  pitch %.1f°  roll %.1f°", pose.lon_deg,
-            pose.lat_deg, metres(session_.height_m()).c_str(),
+      print("%.5f°, %.5f°   %s up, %s above ground   heading %.1f°  pitch %.1f°  roll %.1f°", lon_deg, pose.lat_deg,
+            metres(pose.alt_m).c_str(), metres(session_.height_m()).c_str(),
             pose.yaw_deg < 0 ? pose.yaw_deg + 360 : pose.yaw_deg, pose.pitch_deg, pose.roll_deg);
-  ImGui::TextUnformatted(place.c_str());
+  if (const OverlookView* inside = guide_.inside(); inside != nullptr)
+    place = guide_.inside_spot()->name +
+            print("   azimuth %.2f°  elevation %.2f°  field of view %.1f°",
+                  std::fmod(inside->viewer().yaw_deg() + 720.0, 360.0), inside->viewer().pitch_deg(),
+                  inside->viewer().fov_deg());
+  status_line(place, ImGui::GetStyleColorVec4(ImGuiCol_Text));
   if (!state_.message.empty()) {
-    const ImVec4 colour = state_.message_is_trouble ? ImVec4(1, 0.5F, 0.4F, 1) : ImVec4(0.7F, 0.9F, 0.7F, 1);
-    ImGui::PushStyleColor(ImGuiCol_Text, colour);
-    ImGui::TextUnformatted(state_.message.c_str());
-    ImGui::PopStyleColor();
-  } else if (picture_) {
+    status_line(state_.message, state_.message_is_trouble ? kTrouble : kGood);
+  } else if (guide_.inside() == nullptr && picture_) {
     const core::DrawResult& r = picture_->result;
+    const bool rays = picture_->order.backend == Backend::kRays;
     double mean_s = 0;
     for (const double s : frame_times_s_) mean_s += s / static_cast<double>(frame_times_s_.size());
     int finest = 0;
@@ -200,17 +219,18 @@ void ExploreWindow::draw_status() {
     const double spacing_m =
         lod::post_spacing_m(finest, setup_.planet->meta().tile.intervals(), setup_.planet->radius_m());
     std::string line = session_.settings().get("mode").value_or("") +
-                       (state_.backend == Backend::kRays ? " by rays" : " by triangles") + "   level " +
+                       (rays ? " by rays" : " by triangles") + "   level " +
                        std::to_string(core::shown_level(finest)) + " (" + metres(spacing_m) +
                        " posts)   within " + print("%.2f px", r.certificate.shift_bound_px);
-    if (state_.backend == Backend::kPolygons)
-      line += "   " + print("%.0f k triangles", static_cast<double>(r.stats.triangles) / 1e3);
+    const core::View& drawn = picture_->order.request.view;
+    line += "   " + (rays ? print("%.0f k rays", drawn.width * drawn.height / 1e3)
+                          : print("%.0f k triangles", static_cast<double>(r.stats.triangles) / 1e3));
     line += "   " + print("%.0f MB", static_cast<double>(r.stats.bytes_resident) / 1e6) + "   " +
             print("%.0f ms", mean_s * 1e3);
     const std::int64_t loading = r.stats.pages_wanted + r.stats.pages_loading;
     if (loading > 0 && !r.settled) line += "   loading " + std::to_string(loading);
     if (picture_->order.request.coarsening > 1) line += "   coarser while moving";
-    ImGui::TextUnformatted(line.c_str());
+    status_line(line, ImGui::GetStyleColorVec4(ImGuiCol_Text));
   }
   ImGui::End();
   ImGui::PopStyleVar();

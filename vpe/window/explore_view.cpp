@@ -6,6 +6,7 @@
 
 #include "vpe/core/number.h"
 #include "vpe/window/explore_window.h"
+#include "vpe/window/panel_words.h"
 #include "vpe/window/screen_point.h"
 
 namespace vpe::window {
@@ -44,13 +45,17 @@ void ExploreWindow::take_picture(double wait_s) {
   std::optional<Picture> made = maker_->take(wait_s);
   if (!made) return;
   frames_due_ = std::max(frames_due_, 1);
+  state_.picture_error = made->error;
   if (!made->error.empty()) {
     live_.made(made->seconds * 1e3, true);
     say(made->error, true);
     return;
   }
   live_.made(made->seconds * 1e3, made->result.settled);
-  for (const std::string& failure : made->result.failures) say(failure, true);
+  if (const auto& failures = made->result.failures; !failures.empty()) {
+    const std::size_t more = failures.size() - 1;
+    say(failures.front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : ""), true);
+  }
   view_texture_.upload(made->image);
   ++pictures_;
   last_image_ = std::move(made->image);
@@ -65,10 +70,13 @@ void ExploreWindow::take_picture(double wait_s) {
 bool ExploreWindow::look_around(const DeviceReading& hands, double dt_s) {
   OverlookView* inside = guide_.inside();
   if (inside == nullptr) return false;
-  inside->place({view_area_.x, view_area_.y, view_area_.width, view_area_.height});
+  inside->place(view_area_);
   inside->advance(hands.controls, hands.look, dt_s);
   if (inside->update(kPictureWait_s)) frames_due_ = std::max(frames_due_, 1);
-  if (log_ != nullptr && explore::any(hands.controls)) frames_due_ = std::max(frames_due_, 1);
+  if (inside->message() != state_.message && !inside->message().empty())
+    say(inside->message(), inside->message_is_trouble());
+  log_overlook();
+  if (shows_map() && !map_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
   if (frames_due_ > 0) {
     draw_frame();
     --frames_due_;
@@ -79,33 +87,74 @@ bool ExploreWindow::look_around(const DeviceReading& hands, double dt_s) {
 void ExploreWindow::step_out() {
   if (guide_.inside() == nullptr) return;
   guide_.step_out();
-  if (log_ != nullptr) log_->step_out(now_s() - log_begun_s_);
+  forget_message();
+  session_.release();
   frames_due_ = kFramesAfterChange;
+  if (log_ == nullptr) return;
+  try {
+    log_->step_out(now_s() - log_begun_s_);
+  } catch (const std::exception& e) {
+    log_.reset();
+    say(e.what(), true);
+  }
+}
+
+// Where pictures stand: pairs have another shape than the view and are shown whole.
+ExploreWindow::Area ExploreWindow::picture_area() const {
+  const bool wide = state_.stereo == core::StereoLayout::kSideBySide;
+  const bool tall = state_.stereo == core::StereoLayout::kOverUnder;
+  if (!wide && !tall) return view_area_;
+  const double width = view_area_.width * (wide ? 2 : 1);
+  const double height = view_area_.height * (tall ? 2 : 1);
+  const double scale = std::min(view_area_.width / width, view_area_.height / height);
+  return {view_area_.x + (view_area_.width - width * scale) / 2,
+          view_area_.y + (view_area_.height - height * scale) / 2, width * scale, height * scale};
+}
+
+// A position of the window in the picture of one eye; nothing beside it.
+std::optional<glm::dvec2> ExploreWindow::eye_xy(glm::dvec2 cursor) const {
+  const Area area = picture_area();
+  if (!area.holds(cursor.x, cursor.y)) return std::nullopt;
+  const double wide = state_.stereo == core::StereoLayout::kSideBySide ? 2 : 1;
+  const double tall = state_.stereo == core::StereoLayout::kOverUnder ? 2 : 1;
+  const glm::dvec2 eye{(cursor.x - area.x) * wide * view_area_.width / area.width,
+                       (cursor.y - area.y) * tall * view_area_.height / area.height};
+  return glm::dvec2{std::fmod(eye.x, view_area_.width), std::fmod(eye.y, view_area_.height)};
+}
+
+// Of a drag: it belongs to the eye in whose picture it began, wherever the hand goes.
+glm::dvec2 ExploreWindow::held_xy(glm::dvec2 cursor) const {
+  const Area area = picture_area();
+  const double wide = state_.stereo == core::StereoLayout::kSideBySide ? 2 : 1;
+  const double tall = state_.stereo == core::StereoLayout::kOverUnder ? 2 : 1;
+  return glm::dvec2{(cursor.x - area.x) * wide * view_area_.width / area.width,
+                    (cursor.y - area.y) * tall * view_area_.height / area.height} -
+         held_half_;
 }
 
 // The ground under the cursor; over panels there is none.
 void ExploreWindow::find_cursor() {
   measure_.update();
   under_cursor_.reset();
-  if (state_.large_map || !view_area_.holds(cursor_.x, cursor_.y) || ImGui::GetIO().WantCaptureMouse) return;
+  if (state_.large_map || guide_.inside() != nullptr || ImGui::GetIO().WantCaptureMouse) return;
+  const std::optional<glm::dvec2> xy = eye_xy(cursor_);
+  if (!xy) return;
   const core::View view = session_.view();
-  const glm::dvec3 ray = core::pixel_ray(view, cursor_.x - view_area_.x, cursor_.y - view_area_.y);
+  const glm::dvec3 ray = core::pixel_ray(view, xy->x, xy->y);
   const double range_m = session_.ground().cast_m(view.eye.eye_m, ray);
   if (std::isfinite(range_m)) under_cursor_ = mars::lon_lat(view.eye.eye_m + ray * range_m);
 }
 
 void ExploreWindow::draw_view() {
-  if (!picture_) return;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  // Pairs have another shape than the view; they are shown whole.
-  const double scale =
-      std::min(view_area_.width / view_texture_.width(), view_area_.height / view_texture_.height());
-  const bool fits = !picture_->order.stereo;
-  const double w = fits ? view_area_.width : view_texture_.width() * scale;
-  const double h = fits ? view_area_.height : view_texture_.height() * scale;
-  const double x = view_area_.x + (view_area_.width - w) / 2;
-  const double y = view_area_.y + (view_area_.height - h) / 2;
-  list.AddImage(view_texture_.id(), at(x, y), at(x + w, y + h));
+  if (!state_.picture_error.empty()) {
+    // The picture before is of something else by now.
+    draw_words(list, view_area_, state_.picture_error);
+    return;
+  }
+  if (!picture_) return;
+  const Area area = picture_->order.stereo == state_.stereo ? picture_area() : view_area_;
+  list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
   if (state_.stereo) return;
   list.PushClipRect(at(view_area_.x, view_area_.y),
                     at(view_area_.x + view_area_.width, view_area_.y + view_area_.height), true);

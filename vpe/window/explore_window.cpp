@@ -20,6 +20,7 @@ constexpr double kDoubleClick_s = 0.35;
 constexpr double kDoubleClick_px = 6;
 constexpr double kIdle_s = 0.5;
 constexpr double kMessage_s = 6;      // for which one is shown
+constexpr double kTrouble_s = 30;
 constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
@@ -44,20 +45,20 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   lay_out();
   if (!setup_.session.start)
     session_.put(explore::overview({0, 0}, session_.screen(), session_.ground().radius_m));
-  for (const std::string& trouble : devices_.troubles()) say(trouble, true);
-  if (setup_.flight) {
-    const std::string trouble = session_.flights().take(*setup_.flight);
-    if (!trouble.empty()) say(trouble, true);
-  }
+  state_.panels = setup_.panels;
   if (!setup_.log.empty()) start_log(setup_.log);
+  // All of them, and before what went well.
+  std::string troubles = state_.message_is_trouble ? state_.message : "";
+  const auto add = [&troubles](const std::string& trouble) {
+    if (!trouble.empty()) troubles += (troubles.empty() ? "" : "; ") + trouble;
+  };
+  for (const std::string& trouble : devices_.troubles()) add(trouble);
+  if (setup_.flight) add(session_.flights().take(*setup_.flight));
+  if (!troubles.empty()) say(troubles, true);
 }
 
 ExploreWindow::~ExploreWindow() {
-  try {
-    stop_log();
-  } catch (const std::exception&) {
-    // What was written before is a flight all the same.
-  }
+  stop_log();
 }
 
 double ExploreWindow::now_s() const { return seconds(Clock::now() - begun_); }
@@ -69,12 +70,13 @@ void ExploreWindow::run() {
 
 bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
-  return maker_->is_idle() && map_.is_at_rest() && measure_.is_at_rest() && !session_.is_going() &&
+  return maker_->is_idle() && (!shows_map() || map_.is_at_rest()) && measure_.is_at_rest() &&
+         !session_.is_going() &&
          frames_due_ <= 0 && live_.state() == lod::LookState::kWaiting;
 }
 
 bool ExploreWindow::shows_final_picture() const {
-  return picture_ && picture_->result.settled && picture_->order.request.coarsening == 1.0 &&
+  return picture_ && state_.picture_error.empty() && picture_->result.settled && picture_->order.request.coarsening == 1.0 &&
          maker_->is_idle() && live_.state() == lod::LookState::kWaiting;
 }
 
@@ -105,24 +107,19 @@ bool ExploreWindow::step(double wait_s) {
   // After a rest no time has passed for what moves.
   const double dt_s = busy ? seconds(now - last_frame_) : 0.0;
   last_frame_ = now;
+  take_opened();
+  forget_old_message();
   if (look_around(hands, dt_s)) return !display_.should_close();
   explore::Controls controls = hands.controls;
   controls.speed *= state_.speed;
   was_moving_ = explore::any(controls);
   session_.advance(dt_s, controls, hands.look);
 
-  take_opened();
-  if (const std::string words = guide_.follow(session_); !words.empty()) say(words);
-  if (!state_.message.empty() && now_s() - state_.message_since_s > kMessage_s) {
-    state_.message = opening_.valid() ? "opening " + opening_file_ + " ..." : "";
-    state_.message_is_trouble = false;
-    state_.message_since_s = now_s();
-    frames_due_ = kFramesAfterChange;
-  }
+  if (const std::string words = guide_.follow(session_, view_area_); !words.empty()) say(words);
 
   order_picture();
   take_picture(kPictureWait_s);
-  if (!map_.is_at_rest() || !measure_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
+  if ((shows_map() && !map_.is_at_rest()) || !measure_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
   if (frames_due_ > 0 || session_.is_going() || plays) {
     draw_frame();
     --frames_due_;
@@ -140,6 +137,7 @@ void ExploreWindow::handle(const Event& event) {
     return;
   }
   if (guide_.inside() != nullptr && !is_key) {
+    if (event.kind == Event::Kind::kRelease) session_.release();
     guide_.inside()->handle(event, io.WantCaptureMouse);
     return;
   }
@@ -150,12 +148,11 @@ void ExploreWindow::handle(const Event& event) {
     case Event::Kind::kPress:
     case Event::Kind::kRelease: handle_button(event); break;
     case Event::Kind::kMove:
-      if (session_.mouse_use() != explore::MouseUse::kNone)
-        session_.drag(cursor_ - glm::dvec2{view_area_.x, view_area_.y});
+      if (session_.mouse_use() != explore::MouseUse::kNone) session_.drag(held_xy(cursor_));
       break;
     case Event::Kind::kScroll:
-      if (view_area_.holds(event.x, event.y) && !io.WantCaptureMouse)
-        session_.wheel(cursor_ - glm::dvec2{view_area_.x, view_area_.y}, event.scroll);
+      if (const auto xy = eye_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
+        session_.wheel(*xy, event.scroll);
       break;
     case Event::Kind::kDrop: break;  // above
   }
@@ -166,8 +163,11 @@ void ExploreWindow::handle_button(const Event& event) {
     session_.release();
     return;
   }
-  if (state_.large_map || !view_area_.holds(event.x, event.y) || ImGui::GetIO().WantCaptureMouse) return;
-  const glm::dvec2 xy = cursor_ - glm::dvec2{view_area_.x, view_area_.y};
+  const std::optional<glm::dvec2> over = eye_xy(cursor_);
+  if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
+  const glm::dvec2 xy = *over;
+  held_half_ = {0, 0};
+  held_half_ = held_xy(cursor_) - xy;
   if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
     const bool again = last_press_ && event.time_s - last_press_->first < kDoubleClick_s &&
                        glm::length(last_press_->second - cursor_) < kDoubleClick_px;
@@ -195,6 +195,18 @@ void ExploreWindow::lay_out() {
   view_area_.width = std::max(16.0, width - side);
   view_area_.height = std::max(16.0, height - status);
   session_.resize(static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
+}
+
+void ExploreWindow::forget_message() {
+  state_.message = opening_.valid() ? "opening " + opening_file_ + " ..." : "";
+  state_.message_is_trouble = false;
+  state_.message_since_s = now_s();
+  frames_due_ = kFramesAfterChange;
+}
+
+void ExploreWindow::forget_old_message() {
+  const double shown_s = now_s() - state_.message_since_s;
+  if (!state_.message.empty() && shown_s > (state_.message_is_trouble ? kTrouble_s : kMessage_s)) forget_message();
 }
 
 void ExploreWindow::say(std::string words, bool is_trouble) {

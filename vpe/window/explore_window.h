@@ -25,6 +25,7 @@
 #include "vpe/window/painter.h"
 #include "vpe/window/picture_maker.h"
 #include "vpe/window/spot_guide.h"
+#include "vpe/window/view_area.h"
 #include "vpe/window/widgets.h"
 
 namespace vpe::window {
@@ -49,6 +50,7 @@ struct ExploreSetup {
   std::filesystem::path log;        // recorded from the start when not empty
   std::optional<scripts::Flight> flight;
   std::string flight_file;  // where it is saved
+  bool panels = true;       // shown at the start
   int threads = 0;
 };
 
@@ -67,6 +69,7 @@ struct WindowState {
   std::string message;  // what was done last, or what went wrong
   bool message_is_trouble = false;
   double message_since_s = 0;
+  std::string picture_error;  // why there is no picture of what is set; empty: there is
 };
 
 class ExploreWindow {
@@ -80,6 +83,8 @@ class ExploreWindow {
   // What was dropped on the window, once it is open: then run() has ended, and it is to be shown next.
   const std::shared_ptr<const paging::PlanetFile>& next_planet() const { return next_planet_; }
   const std::string& next_planet_file() const { return opening_file_; }
+  // What is to be told when the window is gone: where an unsaved flight was put. Empty: nothing.
+  std::string parting_words();
   // One turn: events, devices, panels, a picture when one is due. Waits for events for at most so long when
   // there is nothing to do. False when the window is closed.
   bool step(double wait_s);
@@ -110,19 +115,20 @@ class ExploreWindow {
   static constexpr double kPictureWait_s = 0.1;  // for which a turn waits for its picture
   static constexpr int kFramesAfterChange = 3;   // ImGui settles within so many
 
-  struct Area {
-    double x = 0;
-    double y = 0;
-    double width = 1;
-    double height = 1;
-    bool holds(double px, double py) const { return px >= x && py >= y && px < x + width && py < y + height; }
-  };
+  using Area = ViewArea;
 
   void handle(const Event& event);
   void handle_button(const Event& event);
   void lay_out();
   void draw_frame();
   void find_cursor();
+  Area picture_area() const;
+  std::optional<glm::dvec2> eye_xy(glm::dvec2 cursor) const;
+  glm::dvec2 held_xy(glm::dvec2 cursor) const;
+  bool shows_map() const { return state_.panels || state_.large_map; }
+  void forget_message();
+  void forget_old_message();
+  void log_overlook();
   bool look_around(const DeviceReading& hands, double dt_s);
   void step_out();
   void draw_view();
@@ -172,12 +178,14 @@ class ExploreWindow {
   Area view_area_;
   glm::dvec2 cursor_{0, 0};
   std::optional<std::pair<double, glm::dvec2>> last_press_;  // for double clicks
+  glm::dvec2 held_half_{0, 0};  // of a pair's picture: where the eye's own begins that the button was pressed in
   Devices devices_;
   explore::ViewHistory history_;
   std::unique_ptr<explore::SessionLog> log_;
   std::filesystem::path log_file_;
   double log_begun_s_ = 0;
   std::string log_note_;
+  std::pair<double, double> logged_look_{0, 0};  // in a panorama
   core::RgbImage last_image_;  // of the picture shown
   std::future<std::shared_ptr<const paging::PlanetFile>> opening_;
   std::string opening_file_;

@@ -14,10 +14,13 @@ namespace {
 
 constexpr std::size_t kBudget_bytes = std::size_t{96} << 20;
 constexpr double kDragBegins_px = 4;
+constexpr std::size_t kMostMarks = 200;     // of waypoints, and of spots that are named
+constexpr double kSpotNames_deg_px = 0.05;  // from afar names would lie over each other
 constexpr ImU32 kEye = IM_COL32(255, 214, 90, 255);
 constexpr ImU32 kOutline = IM_COL32(255, 214, 90, 190);
 constexpr ImU32 kRegion = IM_COL32(90, 200, 255, 220);
 constexpr ImU32 kFlight = IM_COL32(255, 255, 255, 230);
+constexpr ImU32 kSpot = IM_COL32(120, 220, 255, 255);
 constexpr ImU32 kWay = IM_COL32(120, 255, 160, 255);
 constexpr ImU32 kDark = IM_COL32(0, 0, 0, 160);
 
@@ -72,7 +75,8 @@ void MapPanel::run() {
 }
 
 MapWish MapPanel::draw(const explore::Session& session, explore::MapGround ground,
-                       std::span<const mars::LonLat> way, int width, int height, Widgets& widgets) {
+                       std::span<const mars::LonLat> way, std::span<const explore::Spot> spots, int width,
+                       int height, Widgets& widgets) {
   MapWish wish;
   if (is_fresh_) {
     map_ = explore::whole_map(width, height);
@@ -159,6 +163,7 @@ MapWish MapPanel::draw(const explore::Session& session, explore::MapGround groun
                   at(corner.x + middle.x + w, corner.y + middle.y + h));
   }
   draw_marks(session, corner.x, corner.y);
+  draw_spots(spots, corner.x, corner.y);
   draw_way(way, corner.x, corner.y);
   list.PopClipRect();
   return wish;
@@ -167,7 +172,7 @@ MapWish MapPanel::draw(const explore::Session& session, explore::MapGround groun
 // The waypoint that is taken hold of at a position, if any.
 std::optional<std::size_t> MapPanel::waypoint_near(const explore::Session& session, glm::dvec2 xy) const {
   const explore::FlightEditor* editor = session.flights().editor();
-  if (editor == nullptr) return std::nullopt;
+  if (editor == nullptr || editor->flight().waypoints.size() > kMostMarks) return std::nullopt;
   const double reach_px = static_cast<double>(ImGui::GetFontSize()) * 0.6;
   std::optional<std::size_t> nearest;
   double nearest_px = reach_px;
@@ -217,7 +222,7 @@ void MapPanel::draw_marks(const explore::Session& session, double x0, double y0)
     constexpr std::size_t kMost = 2000;
     const std::vector<scripts::Waypoint>& all = editor->flight().waypoints;
     const std::size_t every = 1 + all.size() / kMost;
-    const bool few = all.size() <= 200;
+    const bool few = all.size() <= kMostMarks;
     for (std::size_t n = 0; n + every < all.size(); n += every) {
       constexpr int kParts = 8;
       const glm::dvec3 a = mars::direction({all[n].lon_deg, all[n].lat_deg});
@@ -248,6 +253,27 @@ void MapPanel::draw_marks(const explore::Session& session, double x0, double y0)
   };
   list.AddTriangleFilled(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kEye);
   list.AddTriangle(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kDark, 1.5F);
+}
+
+void MapPanel::draw_spots(std::span<const explore::Spot> spots, double x0, double y0) const {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float size = ImGui::GetFontSize() * 0.35F;
+  const bool named = spots.size() <= kMostMarks && map_.degrees_per_px < kSpotNames_deg_px;
+  for (const explore::Spot& spot : spots) {
+    const glm::dvec2 p = map_.position(spot.place);
+    if (p.x < 0 || p.y < 0 || p.x > map_.width || p.y > map_.height) continue;
+    const ImVec2 middle = at(x0 + p.x, y0 + p.y);
+    const ImVec2 corners[4] = {{middle.x, middle.y - size},
+                               {middle.x + size, middle.y},
+                               {middle.x, middle.y + size},
+                               {middle.x - size, middle.y}};
+    list.AddConvexPolyFilled(corners, 4, kSpot);
+    list.AddPolyline(corners, 4, kDark, ImDrawFlags_Closed, 1.5F);
+    if (!named) continue;
+    const ImVec2 text{middle.x + size * 1.6F, middle.y - ImGui::GetFontSize() * 0.5F};
+    list.AddText({text.x + 1, text.y + 1}, kDark, spot.name.c_str());
+    list.AddText(text, kSpot, spot.name.c_str());
+  }
 }
 
 void MapPanel::draw_way(std::span<const mars::LonLat> way, double x0, double y0) const {

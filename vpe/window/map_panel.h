@@ -14,6 +14,7 @@
 #include "vpe/explore/map_painter.h"
 #include "vpe/explore/map_view.h"
 #include "vpe/explore/session.h"
+#include "vpe/explore/spots.h"
 #include "vpe/window/display.h"
 #include "vpe/window/widgets.h"
 
@@ -39,9 +40,9 @@ class MapPanel {
   MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> tell);
   ~MapPanel();
 
-  // Inside an ImGui window: takes so many pixels of it. `way`: points that are measured.
+  // Inside an ImGui window: takes so many pixels of it. `way`: points that are measured. `spots`: that have panoramas.
   MapWish draw(const explore::Session& session, explore::MapGround ground, std::span<const mars::LonLat> way,
-               int width, int height, Widgets& widgets);
+               std::span<const explore::Spot> spots, int width, int height, Widgets& widgets);
 
   const explore::MapView& map() const { return map_; }
   bool is_at_rest() const;
@@ -56,6 +57,7 @@ class MapPanel {
   void run();
   std::optional<std::size_t> waypoint_near(const explore::Session& session, glm::dvec2 xy) const;
   void draw_marks(const explore::Session& session, double x0, double y0) const;
+  void draw_spots(std::span<const explore::Spot> spots, double x0, double y0) const;
   void draw_way(std::span<const mars::LonLat> way, double x0, double y0) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;

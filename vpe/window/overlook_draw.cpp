@@ -7,6 +7,7 @@
 #include <string>
 
 #include "vpe/window/overlook_view.h"
+#include "vpe/window/panel_words.h"
 #include "vpe/window/screen_point.h"
 
 namespace vpe::window {
@@ -17,15 +18,6 @@ constexpr ImU32 kBand = IM_COL32(0, 0, 0, 120);
 constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235);
 constexpr ImU32 kWindInk = IM_COL32(255, 190, 130, 255);
 constexpr double kWidest_em = 4.2;  // a label with decimals, and the space beside it
-
-void draw_words(ImDrawList& list, const ViewArea& area, const std::string& words) {
-  const double most = area.width * 0.8;
-  const ImVec2 size = ImGui::CalcTextSize(words.c_str(), nullptr, false, static_cast<float>(most));
-  const double left = area.x + (area.width - static_cast<double>(size.x)) / 2;
-  const double top = area.y + (area.height - static_cast<double>(size.y)) / 2;
-  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at(left, top), kInk, words.c_str(), nullptr,
-               static_cast<float>(most));
-}
 
 // "90" degrees without a name, where north is not known.
 std::string figure(double azimuth_deg) {

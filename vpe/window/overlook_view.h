@@ -35,17 +35,9 @@
 #include "vpe/window/display.h"
 #include "vpe/window/painter.h"
 #include "vpe/window/picture_maker.h"
+#include "vpe/window/view_area.h"
 
 namespace vpe::window {
-
-// A part of the window, framebuffer pixels.
-struct ViewArea {
-  double x = 0;
-  double y = 0;
-  double width = 16;
-  double height = 16;
-  bool holds(double px, double py) const { return px >= x && py >= y && px < x + width && py < y + height; }
-};
 
 // Between a view and its painter, on two threads: how far the copying of a large picture is, and that nobody
 // wants it any more.

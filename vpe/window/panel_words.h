@@ -1,9 +1,12 @@
-// Words in panels: good news and trouble in their colours, figures behind their labels.
+// Words in panels and over views: good news and trouble in their colours, figures behind their labels.
 #pragma once
 
 #include <imgui.h>
 
 #include <string>
+
+#include "vpe/window/screen_point.h"
+#include "vpe/window/view_area.h"
 
 namespace vpe::window {
 
@@ -14,6 +17,16 @@ inline void coloured(const ImVec4& colour, const std::string& words) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
   ImGui::TextWrapped("%s", words.c_str());
   ImGui::PopStyleColor();
+}
+
+// In the middle of a view that has no picture, in lines as wide as most of it.
+inline void draw_words(ImDrawList& list, const ViewArea& area, const std::string& words) {
+  const double most = area.width * 0.8;
+  const ImVec2 size = ImGui::CalcTextSize(words.c_str(), nullptr, false, static_cast<float>(most));
+  const ImVec2 corner = at(area.x + (area.width - static_cast<double>(size.x)) / 2,
+                           area.y + (area.height - static_cast<double>(size.y)) / 2);
+  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), corner, IM_COL32(255, 255, 255, 235), words.c_str(),
+               nullptr, static_cast<float>(most));
 }
 
 // Two columns, words behind a label.

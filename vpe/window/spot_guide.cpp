@@ -31,9 +31,14 @@ void SpotGuide::place(const explore::Session& session) {
   tracker_.emplace(eyes_m_);
 }
 
-std::string SpotGuide::follow(const explore::Session& session) {
+std::string SpotGuide::follow(const explore::Session& session, const ViewArea& area) {
   if (spots_.empty() || inside_ != nullptr) return {};
   place(session);
+  if (ahead_ != nullptr) {
+    // What is copied once is copied on the way there.
+    ahead_->place(area);
+    ahead_->update(0);
+  }
   const explore::SpotTracker::State before = state_;
   state_ = tracker_->update(session.view().eye.eye_m);
   if (state_ == before) return {};

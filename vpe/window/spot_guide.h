@@ -25,8 +25,8 @@ class SpotGuide {
   const std::vector<explore::Spot>& spots() const { return spots_; }
 
   // Where the eye is now. While it approaches a spot its panorama is opened ahead. Returns what is worth saying
-  // when that has changed, else nothing.
-  std::string follow(const explore::Session& session);
+  // when that has changed, else nothing. Its first picture is made for a view of that size.
+  std::string follow(const explore::Session& session, const ViewArea& area);
   // The spot that one may step into.
   const explore::Spot* within_reach() const;
 
@@ -36,6 +36,7 @@ class SpotGuide {
   // The panorama that one stands in; null outside.
   OverlookView* inside() { return inside_.get(); }
   const OverlookView* inside() const { return inside_.get(); }
+  const glm::dvec3& inside_eye_m() const { return eyes_m_[inside_index_]; }
   const explore::Spot* inside_spot() const { return inside_ ? &spots_[inside_index_] : nullptr; }
 
   // Markers and names over a view with its upper left corner at (x0, y0); those that ground hides are left out.

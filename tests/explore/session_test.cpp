@@ -1,0 +1,154 @@
+// A session told what hands do: without a window.
+#include "vpe/explore/session.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "scripts/flight.h"
+#include "tests/paging/planet_fixture.h"
+
+namespace vpe::explore {
+namespace {
+
+std::shared_ptr<const paging::Surface> surface() {
+  static const test_support::TempDir folder;
+  static const auto planet = test_support::build_fake(
+      folder / "p.vpe", test_support::FakeElevation(test_support::bumpy_height), 200'000);
+  static const auto made = std::make_shared<const paging::Surface>(planet, std::size_t{32} << 20);
+  return made;
+}
+
+Session session_at(const mars::Pose& pose) {
+  SessionOptions options;
+  options.start = pose;
+  Session session(surface(), options);
+  session.resize(1280, 720);
+  return session;
+}
+
+glm::dvec3 seen_at(const Session& session, glm::dvec2 xy) {
+  const core::View view = session.view();
+  const glm::dvec3 ray = core::pixel_ray(view, xy.x, xy.y);
+  const double range_m = session.ground().cast_m(view.eye.eye_m, ray);
+  EXPECT_TRUE(std::isfinite(range_m));
+  return view.eye.eye_m + ray * range_m;
+}
+
+glm::dvec2 place_of(const Session& session, const glm::dvec3& at_m) {
+  const core::Projected at = core::project(session.view(), at_m);
+  EXPECT_FALSE(at.behind);
+  return at.xy;
+}
+
+const mars::Pose kOver{20, 10, 150'000, 40, -35, 3};
+// A head that looks aside, straight ahead as a check.
+const std::vector<mars::HeadLook> kHeads{{0, 0, 0}, {30, -20, 8}, {-25, 10, 0}};
+
+TEST(Session, TheMouseHoldsWhatIsSeenWhereverTheHeadLooks) {
+  for (const mars::HeadLook& head : kHeads) {
+    Session session = session_at(kOver);
+    session.advance(0, {}, head);
+    const glm::dvec2 from{500, 420};
+    const glm::dvec3 held = seen_at(session, from);
+    session.press(MouseUse::kHold, from);
+    session.drag({620, 470});
+    session.release();
+    EXPECT_LT(glm::length(place_of(session, held) - glm::dvec2(620, 470)), 0.5) << head.yaw_deg;
+  }
+}
+
+TEST(Session, TheWheelComesNearerToWhatIsSeenWhereverTheHeadLooks) {
+  for (const mars::HeadLook& head : kHeads) {
+    Session session = session_at(kOver);
+    session.advance(0, {}, head);
+    const glm::dvec2 xy{800, 450};
+    const glm::dvec3 under = seen_at(session, xy);
+    const double before_m = glm::length(session.view().eye.eye_m - under);
+    session.wheel(xy, 2);
+    EXPECT_LT(glm::length(place_of(session, under) - xy), 0.5) << head.yaw_deg;
+    EXPECT_NEAR(glm::length(session.view().eye.eye_m - under), 0.64 * before_m, 0.06 * before_m);
+  }
+}
+
+TEST(Session, ADoubleClickEndsWithThePlaceInTheMiddleWhereverTheHeadLooks) {
+  for (const mars::HeadLook& head : kHeads) {
+    Session session = session_at(kOver);
+    session.advance(0, {}, head);
+    const glm::dvec3 wanted = seen_at(session, {900, 500});
+    session.fly_towards({900, 500});
+    for (int n = 0; n < 1000 && session.is_going(); ++n) session.advance(0.1, {}, head);
+    EXPECT_FALSE(session.is_going());
+    EXPECT_LT(glm::length(place_of(session, wanted) - glm::dvec2(640, 360)), 1) << head.yaw_deg;
+  }
+}
+
+TEST(Session, AnInvertedWheelGoesAway) {
+  SessionOptions options;
+  options.start = kOver;
+  options.invert_wheel = true;
+  Session session(surface(), options);
+  const double before_m = session.height_m();
+  session.wheel({640, 360}, 1);
+  EXPECT_GT(session.height_m(), before_m);
+}
+
+TEST(Session, AFasterMouseTiltsFurther) {
+  SessionOptions options;
+  options.start = kOver;
+  double turned_deg[2];
+  for (const double speed : {1.0, 2.0}) {
+    options.mouse_speed = speed;
+    Session session(surface(), options);
+    session.press(MouseUse::kTilt, {640, 360});
+    session.drag({640, 350});
+    turned_deg[speed == 2.0] = session.pose().pitch_deg - kOver.pitch_deg;
+  }
+  EXPECT_NEAR(turned_deg[1], 2 * turned_deg[0], 0.05 * std::abs(turned_deg[0]));
+  EXPECT_GT(std::abs(turned_deg[0]), 1);
+}
+
+scripts::Flight flight(const std::string& more) {
+  const scripts::ParsedFlight parsed = scripts::parse_flight(
+      "flight 1\n" + more +
+          "at 0 pose lon=0 lat=0 alt=200000 pitch=-30\nat 10 pose lon=5 lat=0 alt=200000 pitch=-30\n",
+      "test");
+  EXPECT_TRUE(parsed.flight.has_value());
+  return *parsed.flight;
+}
+
+// A tracker on a look that the flight has already: no log takes a look beyond straight up.
+TEST(Session, AHeadNeverGoesOverBackwards) {
+  Session session = session_at(kOver);
+  ASSERT_EQ(session.flights().take(flight("at 0 look yaw=170 pitch=60\n")), "");
+  ASSERT_EQ(session.follow(false), "");
+  session.advance(0.01, {}, {30, 45, 0});
+  EXPECT_EQ(session.look().pitch_deg, 90);
+  EXPECT_NEAR(session.look().yaw_deg, -160, 1e-9);
+}
+
+TEST(Session, WhatIsSetByHandInAFlightHoldsAlsoWhenTheFlightIsEdited) {
+  Session session = session_at(kOver);
+  ASSERT_EQ(session.flights().take(flight("at 0 set exaggeration=2\n")), "");
+  ASSERT_EQ(session.follow(true), "");
+  EXPECT_EQ(session.settings().values().exaggeration, 2);
+  ASSERT_EQ(session.set("exaggeration", "5"), "");
+  session.advance(0.5, {});
+  EXPECT_EQ(session.settings().values().exaggeration, 5);
+  ASSERT_EQ(session.flights().add(kOver, 1000), "");
+  session.advance(0.5, {});
+  session.advance(0.5, {});
+  EXPECT_EQ(session.settings().values().exaggeration, 5);
+}
+
+TEST(Session, TheFirstWaypointIsNotSavedYet) {
+  Session session = session_at(kOver);
+  ASSERT_EQ(session.flights().add(kOver, 1000), "");
+  EXPECT_TRUE(session.flights().editor()->is_changed());
+  session.flights().editor()->mark_saved();
+  EXPECT_FALSE(session.flights().editor()->is_changed());
+}
+
+}  // namespace
+}  // namespace vpe::explore
