@@ -197,7 +197,7 @@ void ExploreWindow::draw_status() {
   const bool from_zero = setup_.preferences.longitude == explore::LongitudeRange::kPositive;
   const double lon_deg = from_zero && pose.lon_deg < 0 ? pose.lon_deg + 360 : pose.lon_deg;
   std::string place =
-      print("%.5f°, %.5f°   %s up, %s above ground   heading %.1f°  pitch %.1f°  roll %.1f°", lon_deg, pose.lat_deg,
+      print("%.5f°, %.5f°   altitude %s, %s above ground   heading %.1f°  pitch %.1f°  roll %.1f°", lon_deg, pose.lat_deg,
             metres(pose.alt_m).c_str(), metres(session_.height_m()).c_str(),
             pose.yaw_deg < 0 ? pose.yaw_deg + 360 : pose.yaw_deg, pose.pitch_deg, pose.roll_deg);
   if (const OverlookView* inside = guide_.inside(); inside != nullptr)
