@@ -5,8 +5,12 @@
 
 #include "lod/mesh.h"
 #include "lod/mesh_overlay.h"
+#include "vpe/core/mutation.h"
 
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 void ErrorTerms::include(const ErrorTerms& other) {
   relief_m = std::max(relief_m, other.relief_m);
@@ -25,7 +29,7 @@ double error_bound(const ErrorTerms& terms, double exaggeration, double min_heig
   if (a <= 0.0) return std::numeric_limits<double>::infinity();
   const double range = max_height_m - min_height_m;
   const double second_order = std::abs(x * (x - 1.0)) * range * range * radius_m * radius_m / (4.0 * a * a * a);
-  return std::abs(x) * terms.relief_m + terms.sag_m + second_order;
+  return std::abs(x) * terms.relief_m + terms.sag_m + (mutated(Guard::kSecondOrder) ? 0.0 : second_order);
 }
 
 struct FinePosts::Prepared : FineGrid {

@@ -6,8 +6,12 @@
 #include <stdexcept>
 
 #include "lod/mesh_overlay.h"
+#include "vpe/core/mutation.h"
 
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -124,7 +128,9 @@ class Overlay {
 
   ErrorTerms terms() const {
     const double kappa =
-        (1.0 + fine_.length_variation) * (1.0 + fine_.depth_variation) * (1.0 + depth_variation_);
+        mutated(Guard::kCellVariation)
+            ? 1.0
+            : (1.0 + fine_.length_variation) * (1.0 + fine_.depth_variation) * (1.0 + depth_variation_);
     const double flat =
         (1.0 + fine_.length_variation) * (1.0 + fine_.length_variation) * (1.0 + length_variation_);
     const double total = largest(total_);
