@@ -43,6 +43,7 @@ class Overlay {
     const int turn = fine_.v.first(middle.v);
     const int end = fine_.v.first(high.v);
     const auto rows = [&](int from, int to, const CoarseMesh::Vertex& a, const CoarseMesh::Vertex& b) {
+      if (from >= to) return;  // level edges have no slope
       const double half = (b.u - a.u) / (b.v - a.v);
       for (int j = from; j < to; ++j) {
         const double v = fine_.v[j];

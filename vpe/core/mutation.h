@@ -1,6 +1,6 @@
-// Guards that a build of its own can switch off, one a run, to see that a test misses it: what a test cannot
-// miss it does not hold. Only in builds with VPE_MUTATIONS; in all others mutated() is the constant false and
-// leaves no code. docs/numerics.md lists the guards, why they are there, and the tests
+// Guards that a build of its own can switch off, one a run, to see that a test fails for it: a guard without
+// such a test can be lost unseen. Only in builds with VPE_MUTATIONS; in all others mutated() is the constant
+// false and leaves no code. docs/numerics.md lists the guards, why they are there, and the tests
 // (tests/stability/mutants.sh runs them).
 #pragma once
 
