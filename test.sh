@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs the tests.
 #   ./test.sh                    the default tests
-#   ./test.sh --all              also the long ones, clang, and both sanitizer builds
+#   ./test.sh --all              also the long ones, clang, both sanitizer builds, floating-point traps and mutants
 #   ./test.sh --fuzz [SECONDS]   the fuzzers alone, each for so long (600)
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -15,7 +15,12 @@ esac
 if [ "$what" = default ]; then .ci/install.sh; else .ci/install.sh --all; fi
 jobs=${JOBS:-$(nproc)}
 
-build() { cmake --preset "$1" -DVPE_TESTS=ON >/dev/null && cmake --build "build/$1" -- -j"$jobs"; }
+# build PRESET [TARGETS ...]
+build() {
+  local targets=("${@:2}")
+  cmake --preset "$1" -DVPE_TESTS=ON >/dev/null &&
+    cmake --build "build/$1" ${targets[0]:+--target "${targets[@]}"} -- -j"$jobs"
+}
 
 # Runs ctest in a build folder and says how many tests ran and which were skipped, and why.
 run() {
@@ -61,3 +66,8 @@ build asan
 run asan -L default -LE gl
 build tsan
 run tsan -L default -R '(Parallel|ThreadPool|Cache|Surface|Builder|Threads)' -LE gl
+# Pure functions under floating-point traps; then every guard switched off, which a test has to notice.
+build traps cull_tests lod_tests scripts_tests mars_tests core_tests paging_tests explore_tests panorama_tests stability_tests
+tests/stability/traps.sh
+build mutations lod_tests paging_tests scripts_tests stability_tests stability_gl_tests
+tests/stability/mutants.sh

@@ -69,6 +69,7 @@ double levels(const ControlFunction& function, double x) {
   x *= function.x_factor;
   if (!function.table.empty()) return core::levels_at(function.table, x);
   if (function.scale == 0.0) return function.offset;
+  if (x == 0.0) return std::numeric_limits<double>::infinity();
   return function.scale / x + function.offset;
 }
 

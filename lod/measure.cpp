@@ -5,8 +5,12 @@
 
 #include "lod/mesh.h"
 #include "lod/mesh_overlay.h"
+#include "vpe/core/mutation.h"
 
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 void ErrorTerms::include(const ErrorTerms& other) {
   relief_m = std::max(relief_m, other.relief_m);
@@ -22,6 +26,7 @@ double second_order_bound(double exaggeration, double range_m, double min_height
   const double a =
       radius_m + std::min({low * min_height_m, low * max_height_m, high * min_height_m, high * max_height_m});
   if (a <= 0.0) return std::numeric_limits<double>::infinity();
+  if (mutated(Guard::kSecondOrder)) return 0.0;
   return std::abs(x * (x - 1.0)) * range_m * range_m * radius_m * radius_m / (4.0 * a * a * a);
 }
 

@@ -6,8 +6,12 @@
 #include <stdexcept>
 
 #include "lod/mesh_overlay.h"
+#include "vpe/core/mutation.h"
 
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -39,6 +43,7 @@ class Overlay {
     const int turn = fine_.v.first(middle.v);
     const int end = fine_.v.first(high.v);
     const auto rows = [&](int from, int to, const CoarseMesh::Vertex& a, const CoarseMesh::Vertex& b) {
+      if (from >= to) return;  // level edges have no slope
       const double half = (b.u - a.u) / (b.v - a.v);
       for (int j = from; j < to; ++j) {
         const double v = fine_.v[j];
@@ -124,7 +129,9 @@ class Overlay {
 
   ErrorTerms terms() const {
     const double kappa =
-        (1.0 + fine_.length_variation) * (1.0 + fine_.depth_variation) * (1.0 + depth_variation_);
+        mutated(Guard::kCellVariation)
+            ? 1.0
+            : (1.0 + fine_.length_variation) * (1.0 + fine_.depth_variation) * (1.0 + depth_variation_);
     const double flat =
         (1.0 + fine_.length_variation) * (1.0 + fine_.length_variation) * (1.0 + length_variation_);
     const double total = largest(total_);

@@ -4,7 +4,12 @@
 #include <bit>
 #include <glm/geometric.hpp>
 
+#include "vpe/core/mutation.h"
+
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -100,6 +105,7 @@ double surface_height(const Posts& posts, const GridLines& lines, double u, doub
 
 void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m,
                     double exaggeration) {
+  if (mutated(Guard::kBorderPosts)) return;
   const int n = posts.intervals;
   const bool vertical = edge == Edge::kWest || edge == Edge::kEast;
   const int fixed = edge == Edge::kEast || edge == Edge::kNorth ? n : 0;
@@ -159,7 +165,8 @@ double steepest_slope(const Posts& posts, const GridLines& lines, double radius_
     std::swap(low, high);
   }
   // The vertical turns over a facet by no more than the angle of its longest side.
-  const double turn = std::sqrt(longest2) / (radius_m + *std::min_element(posts.height_m.begin(), posts.height_m.end()));
+  const double turn =
+      std::sqrt(longest2) / (radius_m + *std::min_element(posts.height_m.begin(), posts.height_m.end()));
   const double tangent = std::sqrt(largest2);
   return turn * tangent < 0.9 ? (tangent + 1.1 * turn) / (1.0 - turn * tangent) : 1e6;
 }

@@ -7,8 +7,12 @@
 #include <stdexcept>
 
 #include "cull/horizon.h"
+#include "vpe/core/mutation.h"
 
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -51,7 +55,9 @@ class Selector {
         tree_(tree),
         view_(view),
         eye_(cull::make_eye(view.eye_m)),
-        horizon_(cull::make_horizon(eye_, tree.lowest_radius_m(options.exaggeration))),
+        horizon_(cull::make_horizon(eye_, mutated(Guard::kLowestOccluder)
+                                              ? tree.radius_m()
+                                              : tree.lowest_radius_m(options.exaggeration))),
         heap_(scratch.heap_),
         out_(out),
         hitchner_(options.control.rule == vpe::core::LodRule::kHitchner),

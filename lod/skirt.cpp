@@ -3,8 +3,12 @@
 #include <limits>
 
 #include "lod/select.h"
+#include "vpe/core/mutation.h"
 
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -36,7 +40,9 @@ double gap_m(const Selection& selection, const TileTree& tree, const SelectedTil
   const std::int64_t begin = z_position(next.key);
   const std::int64_t end = begin + z_extent(next.key.level);
   const auto gap_to = [&](const SelectedTile& other) {
-    return meet_exactly(tree, tile, other) ? 0.0 : tile.error_m + other.error_m;
+    return meet_exactly(tree, tile, other)   ? 0.0
+           : mutated(Guard::kSkirtNeighbour) ? tile.error_m
+                                             : tile.error_m + other.error_m;
   };
   // Of disjoint tiles along the curve the last that begins at or before a place is the one that may hold it.
   const auto after = std::partition_point(selection.tiles.begin(), selection.tiles.end(),

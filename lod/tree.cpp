@@ -4,7 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "vpe/core/mutation.h"
+
 namespace lod {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -13,6 +18,7 @@ namespace {
 }
 
 bool grows(const ErrorTerms& from, const ErrorTerms& to) {
+  if (mutated(Guard::kErrorsNest)) return false;
   return !(to.relief_m <= from.relief_m && to.sag_m <= from.sag_m && to.total_m <= from.total_m);
 }
 
@@ -64,6 +70,7 @@ bool before(const TileKey& a, const TileKey& b) {
 // A flat facet over posts of radius >= r stays above r times this: the cosine of the half-width of the widest
 // cell of a level, from below.
 double facet_factor(int level, const TileShape& shape) {
+  if (mutated(Guard::kFacetSag)) return 1.0;
   const double half_width = kCapPerSide * nominal_side_m(level + shape.k, 1.0);
   return 1.0 - 0.5 * half_width * half_width;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "paging/build_steps.h"
 
@@ -13,7 +14,9 @@ std::size_t edge_post(lod::Edge edge, int along, int side);
 // Unit directions of a tile's posts, in their order.
 std::vector<glm::dvec3> post_directions(const lod::TileKey& key, const lod::GridLines& lines);
 
-std::vector<std::int32_t> to_quanta(const std::vector<double>& heights_m, double quantum_m);
+// Throws PlanetError for a height that no 32-bit number of quanta is, naming its place when directions are given.
+std::vector<std::int32_t> to_quanta(const std::vector<double>& heights_m, double quantum_m,
+                                    std::span<const glm::dvec3> directions = {});
 
 // Border posts that a mesh keeps, out of every step-th of each edge.
 lod::BorderPosts borders_of(const lod::Posts& posts, const lod::GridLines& lines,

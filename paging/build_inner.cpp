@@ -63,7 +63,7 @@ lod::Posts sample_inner(const BuildContext& context, const lod::TileKey& key) {
     for (std::size_t m = 0; m < some.size(); ++m)
       posts.height_m[some[m]] = std::isfinite(heights[m]) ? heights[m] : meta.fill_m;
   }
-  const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m);
+  const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m, directions);
   for (std::size_t p = 0; p < quanta.size(); ++p) posts.height_m[p] = quanta[p] * meta.quantum_m;
   return posts;
 }

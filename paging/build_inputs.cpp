@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "vpe/core/number.h"
+
 #ifndef VPE_VERSION
 #define VPE_VERSION "0"
 #endif
@@ -114,6 +116,11 @@ std::string recipe_part(const vpe::core::Part& part) {
 PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
                            const mars::ImageSource* image) {
   PlanetMeta meta;
+  if (!(options.radius_m >= kMinRadius_m && options.radius_m < kMaxRadius_m)) {
+    throw PlanetError("a planet's radius of " + vpe::core::format_number(options.radius_m) + " m: must be " +
+                      vpe::core::format_number(kMinRadius_m) + " m or more and less than " +
+                      vpe::core::format_number(kMaxRadius_m) + " m");
+  }
   meta.body = options.body;
   meta.radius_m = options.radius_m;
   meta.tile.k = options.tile_k;

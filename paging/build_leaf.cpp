@@ -2,8 +2,12 @@
 #include <cmath>
 
 #include "paging/build_grid.h"
+#include "vpe/core/mutation.h"
 
 namespace paging {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -67,11 +71,11 @@ SampledLeaf sample_leaf(const BuildContext& context, const lod::TileKey& key) {
 
   leaf.missing.resize(heights.size());
   for (std::size_t p = 0; p < heights.size(); ++p) {
-    if (std::isfinite(heights[p])) continue;
+    if (std::isfinite(heights[p]) || mutated(Guard::kMissingHeights)) continue;
     leaf.missing[p] = leaf.any_missing = true;
     heights[p] = meta.fill_m;
   }
-  leaf.quanta = to_quanta(heights, meta.quantum_m);
+  leaf.quanta = to_quanta(heights, meta.quantum_m, leaf.directions);
   for (std::size_t p = 0; p < heights.size(); ++p) heights[p] = leaf.quanta[p] * meta.quantum_m;
   for (const lod::Edge edge : lod::kEdges) {
     if ((leaf.steps >> static_cast<int>(edge) & 1) == 0) continue;

@@ -8,8 +8,12 @@
 
 #include "paging/chart_line.h"
 #include "paging/surface.h"
+#include "vpe/core/mutation.h"
 
 namespace paging {
+
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 namespace {
 
@@ -137,8 +141,10 @@ double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction, doubl
     part = {std::max(part.begin, shell.begin), std::min(part.end, shell.end)};
     if (!part.empty()) candidates.push_back({part.begin, part.end, f});
   }
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& a, const Candidate& b) { return a.begin < b.begin; });
+  if (!mutated(Guard::kFaceOrder)) {
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Candidate& a, const Candidate& b) { return a.begin < b.begin; });
+  }
   for (const Candidate& candidate : candidates) {
     const FaceCaster caster(*this, static_cast<mars::Face>(candidate.face), eye_m, direction, exaggeration);
     const double hit = caster.cast({candidate.begin, candidate.end});

@@ -20,6 +20,8 @@ class Database;
 inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
 inline constexpr int kFormatMajor = 1;
 inline constexpr int kFormatMinor = 2;
+inline constexpr double kMinRadius_m = 1;     // of a planet, included
+inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;  // an image tile has 257 x 257 texels on its grid lines
 
 // A planet file that cannot be used. what() names the file, the trouble and what to do.

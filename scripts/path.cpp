@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "vpe/core/mutation.h"
 #include "vpe/core/number.h"
 
 namespace scripts {
@@ -15,6 +16,8 @@ namespace scripts {
 namespace {
 
 using vpe::core::format_number;
+using vpe::core::Guard;
+using vpe::core::mutated;
 
 std::string pose_at(double time_s) { return "the flight's pose at " + format_number(time_s) + " s"; }
 
@@ -99,7 +102,8 @@ std::vector<glm::dvec4> aligned(std::vector<glm::dvec4> attitudes) {
 MonotoneSpline angle_spline(const std::vector<Look>& looks, double Look::*angle_deg) {
   std::vector<double> values = map(looks, [&](const Look& look) { return look.*angle_deg; });
   for (std::size_t i = 1; i < values.size(); ++i) {
-    values[i] = values[i - 1] + std::remainder(values[i] - values[i - 1], 360.0);
+    if (!mutated(Guard::kShortWay))
+      values[i] = values[i - 1] + std::remainder(values[i] - values[i - 1], 360.0);
   }
   return {times_of(looks), std::move(values)};
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/support/support.h"
+#include "tests/support/worst.h"
 
 namespace vpe::core {
 namespace {
@@ -90,6 +91,7 @@ TEST(View, PixelRayErrorIsWithinItsBoundAndTheBoundIsNotLazy) {
     }
   }
   EXPECT_GE(worst, kPixelRayError_rad / 20);
+  test_support::record_worst("pixel_ray: angle", static_cast<double>(worst), kPixelRayError_rad, "rad");
 }
 
 TEST(View, ProjectInvertsPixelRayWithinItsBound) {
@@ -123,6 +125,7 @@ TEST(View, ProjectInvertsPixelRayWithinItsBound) {
     }
   }
   EXPECT_GE(worst_share, 1.0 / 20);
+  test_support::record_worst("project inverts pixel_ray", worst_share, 1, "of the bound in the header");
 }
 
 TEST(View, PerspectiveAgreesWithGlm) {

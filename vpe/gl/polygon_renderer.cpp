@@ -10,6 +10,7 @@
 
 #include "vpe/core/edge_filter.h"
 #include "vpe/core/inspect.h"
+#include "vpe/core/mutation.h"
 #include "vpe/core/parallel.h"
 #include "vpe/core/shading.h"
 #include "vpe/gl/certify.h"
@@ -51,7 +52,8 @@ class PolygonRenderer : public core::Renderer {
         scene_(planet_, options),
         tiles_(planet_->radius_m()),
         empty_array_(VertexArray::make()) {
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    const bool halved = core::mutated(core::Guard::kReversedDepth);
+    glClipControl(GL_LOWER_LEFT, halved ? GL_NEGATIVE_ONE_TO_ONE : GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_DITHER);  // colours may be numbers
     glDisable(GL_CULL_FACE);

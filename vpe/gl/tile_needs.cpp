@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "vpe/core/mutation.h"
+
 namespace vpe::gl {
 
 namespace {
@@ -12,6 +14,7 @@ constexpr int kLargestTexture = 1024;
 // The tile's centre, unless rounding relative to that would show: then the post nearest to the eye.
 int origin(const lod::SelectedTile& tile, const core::View& view, const paging::PlanetFile& planet) {
   constexpr double kShows_px = 0.01;
+  if (core::mutated(core::Guard::kNearOrigin)) return kTileCentre;
   const double side_m = lod::nominal_side_m(tile.key.level, planet.radius_m());
   if (side_m * core::focal_px(view) < kShows_px * (1 << 24) * tile.min_distance_m) return kTileCentre;
   if (glm::dot(mars::face_axes(tile.key.face).out, view.eye.eye_m) <= 0.0) return kTileCentre;
@@ -19,8 +22,9 @@ int origin(const lod::SelectedTile& tile, const core::View& view, const paging::
   const lod::GridLines lines = lod::grid_lines(tile.key, intervals);
   const mars::ChartPoint eye = mars::chart_on(tile.key.face, view.eye.eye_m);
   const auto nearest = [](const std::vector<double>& line, double x) {
-    const auto at = std::lower_bound(line.begin(), line.end(), x) - line.begin();
-    return static_cast<int>(std::min(at, static_cast<std::ptrdiff_t>(line.size()) - 1));
+    auto at = std::lower_bound(line.begin(), line.end(), x);
+    if (at == line.end() || (at != line.begin() && x - *(at - 1) < *at - x)) --at;
+    return static_cast<int>(at - line.begin());
   };
   return nearest(lines.v, eye.v) * (intervals + 1) + nearest(lines.u, eye.u);
 }

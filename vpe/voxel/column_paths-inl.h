@@ -84,11 +84,14 @@ void find_paths(const LatticeFrame& f, const ColumnEye& eye, const ColumnGroup& 
     double to = kHuge;
     cut(x0, xk, n, from, to);
     cut(y0, yk, n, from, to);
-    const double foot = -s0 / away_from_zero(s1);
+    // In front of the eye is where sigma is positive. It stays the same along paths that point straight up: those
+    // of other faces under an eye exactly over a face's middle.
     if (s1 > 0) {
-      from = std::max(from, foot);
-    } else {
-      to = std::min(to, foot);
+      from = std::max(from, -s0 / away_from_zero(s1));
+    } else if (s1 < 0) {
+      to = std::min(to, -s0 / away_from_zero(s1));
+    } else if (!(s0 > 0)) {
+      to = from;
     }
     const bool inside = from < to && group.row[lane] < group.row_end[lane];
     out.position[lane] = diagonal ? x0 : (columns ? y0 : x0);

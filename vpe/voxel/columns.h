@@ -78,7 +78,7 @@ class LatticeSource {
 // Walks all columns through one lattice and resolves rows. The group must have gone through everything before
 // it, as seen from the eye. up: of the eye, in the face's axes. Lines within kExactLines of the eye's foot are
 // read in double, where needs_exact() says so. Every crossing with an edge counts, so that facets are exact but
-// for rounding (RangeCaster::kRangeError). Results of a column do not depend on the others of its group.
+// for rounding (RangeCaster::range_error). Results of a column do not depend on the others of its group.
 void walk_lattice(const LatticeFrame& frame, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
                   const Rows& rows, ColumnGroup& group);
 inline constexpr int kExactLines = 24;

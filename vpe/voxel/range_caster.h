@@ -33,7 +33,7 @@ class RangeCaster {
   // Ranges from the eye to S as exaggerated, metres, infinity for the sky, of the view's drawn part, row by row
   // from the top. Columns for perspective views and for round ones whose eye is level, else a ray a pixel; an
   // eye below S sees 0. With cell_px 0 as Surface::cast() says but for rounding: relative error below
-  // kRangeError / sine of incidence. Does not depend on the number of threads, nor on what was cast
+  // range_error(view) / sine of incidence. Does not depend on the number of threads, nor on what was cast
   // before. Throws paging::PlanetError for tiles that cannot be read.
   // Returns the tiles that columns went over and the bound of their error; nothing of single rays.
   // One caller at a time for each FanCaster, whose memory a cast uses; without one, one caller at a time.
@@ -44,6 +44,14 @@ class RangeCaster {
   ColumnWalk::Used cast(const core::View& view, const RangeOptions& options, core::ThreadPool& pool,
                         std::span<float> range_m, FanCaster& fans) const;
   static constexpr double kRangeError = 1e-6;
+  // In fields of view wider than kWide_deg, whose lowest rows look almost straight down, and of ground whose relief
+  // as exaggerated is more than a tenth of the radius.
+  static constexpr double kWideRangeError = 5e-6;
+  static constexpr double kWide_deg = 150;
+  // Without exaggerated relief.
+  static double range_error(const core::View& view) {
+    return view.fov_deg > kWide_deg ? kWideRangeError : kRangeError;
+  }
 
   const paging::Surface& surface() const { return surface_; }
   const LatticeStore& store() const { return store_; }

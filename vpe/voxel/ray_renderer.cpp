@@ -98,7 +98,7 @@ core::View shifted(core::View view, const glm::dvec2& place) {
 core::Certificate RayRenderer::certify(const core::DrawRequest& request, const core::Frame& frame,
                                        std::int64_t gaps, double error_px) const {
   core::Certificate c;
-  c.quantisation_px = RangeCaster::kRangeError * core::focal_px(request.view);
+  c.quantisation_px = RangeCaster::range_error(request.view) * core::focal_px(request.view);
   c.tile_error_px = error_px;
   c.shift_bound_px = error_px + c.quantisation_px;
   c.picture_bound_px = c.shift_bound_px;

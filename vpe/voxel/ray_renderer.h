@@ -15,7 +15,7 @@ struct RayOptions {
 };
 
 // Draws every projection, at any pitch and roll (vpe/voxel/range_caster.h). With rays.mode=exact the picture
-// has no tile error: what a pixel shows is on S as exaggerated, within RangeCaster::kRangeError. With multires,
+// has no tile error: what a pixel shows is on S as exaggerated, within RangeCaster::range_error(). With multires,
 // or where the request is for coarsening, tiles far away are coarser, and the certificate says by how much at
 // most. Colours are those of core::Appearance, with posts and images about as fine as a pixel; ground of modes
 // wireframe and markers, which show meshes, cannot be drawn. Several samples are rays shifted in parallel;

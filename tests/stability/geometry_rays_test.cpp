@@ -1,0 +1,222 @@
+// Rays against ground that strains arithmetic: what is hit lies on S, and nothing is passed through on the way.
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "tests/stability/grounds.h"
+#include "tests/support/worst.h"
+
+namespace {
+
+using test_support::build_ground;
+using test_support::kFacePosts;
+using test_support::Random;
+using test_support::record_worst;
+using test_support::StrangeGround;
+
+constexpr std::size_t kBudget = std::size_t{1} << 26;
+
+struct Ray {
+  glm::dvec3 eye_m;
+  glm::dvec3 direction;
+};
+
+glm::dvec3 random_post(Random& random) {
+  return mars::chart_direction(static_cast<mars::Face>(random.integer(0, 5)),
+                               mars::face_line(random.integer(0, kFacePosts), 6),
+                               mars::face_line(random.integer(0, kFacePosts), 6));
+}
+
+// Over anything, poles, edges and posts included; from 1e-7 to ten radii above S.
+glm::dvec3 random_eye(Random& random, const paging::Surface& surface, double exaggeration) {
+  static const std::vector<mars::LonLat> places = test_support::hostile_places();
+  glm::dvec3 up = random.direction();
+  const int kind = random.integer(0, 2);
+  if (kind == 0)
+    up = mars::direction(
+        places[static_cast<std::size_t>(random.integer(0, static_cast<int>(places.size()) - 1))]);
+  if (kind == 1) up = random_post(random);
+  const double above = random.log_uniform(1e-7, 10) * surface.planet_radius_m();
+  return up * (surface.at(up, exaggeration).radius_m + above);
+}
+
+Ray random_ray(Random& random, const paging::Surface& surface, double exaggeration) {
+  const glm::dvec3 eye = random_eye(random, surface, exaggeration);
+  const glm::dvec3 up = glm::normalize(eye);
+  const double radius_m = surface.planet_radius_m();
+  const glm::dvec3 post = random_post(random);
+  switch (random.integer(0, 5)) {
+    case 0: return {eye, -up};
+    case 1: return {eye, up};
+    case 2:
+      return {eye, glm::normalize(post * surface.at(post, exaggeration).radius_m - eye)};  // through a post
+    case 3: {  // in the plane of a grid line, where two neighbours share all they are asked
+      const mars::Face face = mars::chart_point(up).face;
+      const double u = mars::face_line(random.integer(0, kFacePosts), 6);
+      const glm::dvec3 on = mars::chart_direction(face, u, random.uniform(-1, 1));
+      const glm::dvec3 to = mars::chart_direction(face, u, random.uniform(-1, 1)) * (0.9 * radius_m);
+      const glm::dvec3 from = on * std::max(glm::length(eye), 1.0001 * surface.at(on, exaggeration).radius_m);
+      return {from, glm::normalize(to - from)};
+    }
+    case 4: {  // touching the sphere, or about to
+      const glm::dvec3 side = glm::normalize(glm::cross(up, random.direction()));
+      const double dip =
+          mars::horizon_dip_rad(glm::length(eye) - radius_m, radius_m) + random.uniform(-1e-3, 1e-3);
+      return {eye, side * std::cos(dip) - up * std::sin(dip)};
+    }
+    default: return {eye, random.direction()};
+  }
+}
+
+struct Worst {
+  double off = 0;      // of what is hit from the facet, by distance from the centre and from the eye
+  double through = 0;  // how far below S a ray was before its hit, likewise
+  int hits = 0;
+  int misses = 0;
+};
+
+void check(Random& random, const paging::Surface& surface, double exaggeration, int rays, Worst& worst) {
+  for (int n = 0; n < rays; ++n) {
+    const Ray ray = random_ray(random, surface, exaggeration);
+    const double hit_m = surface.cast(ray.eye_m, ray.direction, exaggeration);
+    ASSERT_FALSE(std::isnan(hit_m) || hit_m < 0);
+    const double away_m = glm::length(ray.eye_m);
+    // Past the far side of everything when nothing is hit.
+    const double length_m = std::isfinite(hit_m) ? hit_m : 2.2 * away_m;
+    const double scale_m = away_m + length_m;
+    (std::isfinite(hit_m) ? worst.hits : worst.misses) += 1;
+    const auto below_m = [&](double t) {
+      const glm::dvec3 p = ray.eye_m + t * ray.direction;
+      const paging::SurfacePoint s = surface.at(p, exaggeration);
+      // Across the facet: on a wall the radius says nothing.
+      return (s.radius_m - glm::length(p)) * glm::dot(s.normal, glm::normalize(p));
+    };
+    if (std::isfinite(hit_m)) worst.off = std::max(worst.off, std::abs(below_m(hit_m)) / scale_m);
+    for (int k = 0; k < 24; ++k) {
+      const double t = length_m * random.uniform(0, 1);
+      worst.through = std::max(worst.through, below_m(t) / scale_m);
+    }
+  }
+}
+
+TEST(GeometryRays, HitWhatIsThereAndNothingElse) {
+  test_support::TempDir dir;
+  Random random(311);
+  Worst worst;
+  int n = 0;
+  for (const double radius_m : {1.0, mars::kMarsRadius_m, 1e8}) {
+    for (const StrangeGround& ground : test_support::strange_grounds(0.008)) {
+      const auto planet = build_ground(dir / std::to_string(n++), radius_m, ground);
+      ASSERT_EQ(planet->meta().finest_level, 1);
+      const paging::Surface surface(planet, kBudget);
+      for (const double exaggeration : {0.1, 1.0, 100.0}) {
+        SCOPED_TRACE(std::string(ground.name) + " on a radius of " + std::to_string(radius_m) + " m times " +
+                     std::to_string(exaggeration));
+        check(random, surface, exaggeration, 300, worst);
+      }
+    }
+  }
+  EXPECT_GT(worst.hits, 10000);
+  EXPECT_GT(worst.misses, 5000);
+  record_worst("casts: what is hit lies on S", worst.off, 1e-13, "of the distances to centre and eye");
+  record_worst("casts: nothing is passed through", worst.through, 1e-13, "of the distances to centre and eye");
+}
+
+// From the planet's centre's neighbourhood to the largest height that can be stored.
+TEST(GeometryRays, RampFromTheCentreToTheLargestHeightThatCanBeStored) {
+  test_support::TempDir dir;
+  constexpr double kRadius_m = 1e6;
+  paging::BuildOptions options;
+  options.output = (dir / "ramp.vpe").string();
+  options.radius_m = kRadius_m;
+  options.tile_k = 5;
+  options.base_spacing_m = 1.01 * lod::post_spacing_m(1, 32, kRadius_m);
+  options.quantum_m = 1;
+  const test_support::FakeElevation source(
+      [](const glm::dvec3& d) { return -999000 + (2147483647.0 + 999000) * (0.5 + 0.5 * d.z); });
+  paging::build_planet(options, source, nullptr);
+  const auto planet = paging::PlanetFile::open(options.output);
+  const paging::Surface surface(planet, kBudget);
+  EXPECT_NEAR(surface.at({0, 0, 1}).height_m, 2147483647.0, 0.5);
+  EXPECT_NEAR(surface.at({0, 0, -1}).height_m, -999000.0, 0.5);
+  Random random(312);
+  Worst worst;
+  check(random, surface, 1.0, 2000, worst);
+  record_worst("casts: a ramp over 2000 radii", std::max(worst.off, worst.through), 1e-12,
+               "of the distances to centre and eye");
+}
+
+// Down is the height above S, up is the sky, at every place that could be special.
+TEST(GeometryRays, StraightDownIsTheHeightAndStraightUpTheSky) {
+  test_support::TempDir dir;
+  double off = 0;
+  int n = 0;
+  for (const double radius_m : {1.0, 1e8}) {
+    for (const StrangeGround& ground : test_support::strange_grounds(0.008)) {
+      const auto planet = build_ground(dir / std::to_string(n++), radius_m, ground);
+      const paging::Surface surface(planet, kBudget);
+      for (const mars::LonLat& place : test_support::hostile_places()) {
+        const glm::dvec3 up = mars::direction(place);
+        for (const double height : {1e-7, 1e-3, 1.0, 10.0}) {
+          const double ground_m = surface.at(up).radius_m;
+          const glm::dvec3 eye = up * (ground_m + height * radius_m);
+          const double down_m = surface.cast(eye, -glm::normalize(eye));
+          off = std::max(off, std::abs(down_m - (glm::length(eye) - ground_m)) / glm::length(eye));
+          ASSERT_EQ(surface.cast(eye, glm::normalize(eye)), std::numeric_limits<double>::infinity())
+              << ground.name << " " << place.lon_deg << " " << place.lat_deg;
+        }
+      }
+    }
+  }
+  // Between two posts of a wall the foot of the ray moves by its own rounding, 1.2e-16, times the slope.
+  record_worst("casts: straight down", off, 1e-13, "of the distance from the centre");
+}
+
+// Ground that no source knows is drawn, and told.
+TEST(GeometryRays, GroundWithoutDataIsThereAndToldAsMissing) {
+  test_support::TempDir dir;
+  const auto planet =
+      build_ground(dir / "none", 1e6, {"no data", [](const glm::dvec3&) { return std::nan(""); }});
+  const paging::Surface surface(planet, kBudget);
+  Random random(313);
+  for (int n = 0; n < 200; ++n) {
+    const paging::SurfacePoint at = surface.at(random.direction());
+    ASSERT_TRUE(at.missing);
+    ASSERT_NEAR(at.height_m, planet->meta().fill_m, 1e6 / 1000);
+  }
+}
+
+// A height that is a number but cannot be stored is refused by name; it is never another height.
+TEST(GeometryRays, HeightsThatCannotBeStoredAreRefused) {
+  test_support::TempDir dir;
+  for (const double wild_m : {3.0e38, -3.4028226550889045e38, 1e25, 1e13, -1e13}) {
+    const glm::dvec3 spot =
+        mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
+    const StrangeGround ground{
+        "wild", [&](const glm::dvec3& d) { return glm::length(d - spot) < 1e-9 ? wild_m / 1e6 : 0; }};
+    try {
+      build_ground(dir / "wild.vpe", 1e6, ground);
+      FAIL() << wild_m << " was taken";
+    } catch (const std::runtime_error& e) {
+      EXPECT_NE(std::string(e.what()).find("height"), std::string::npos) << e.what();
+    }
+    EXPECT_FALSE(std::filesystem::exists(dir / "wild.vpe"));
+  }
+}
+
+TEST(GeometryRays, RadiiOutOfRangeAreRefusedBeforeAnythingIsBuilt) {
+  test_support::TempDir dir;
+  const StrangeGround flat{"flat", [](const glm::dvec3&) { return 0.0; }};
+  for (const double radius_m : {0.999, 0.0, -1.0, 1e12, std::nan("")}) {
+    try {
+      build_ground(dir / "p.vpe", radius_m, flat);
+      FAIL() << radius_m << " was taken";
+    } catch (const std::runtime_error& e) {
+      EXPECT_NE(std::string(e.what()).find("radius"), std::string::npos) << e.what();
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(dir.path()));
+  }
+}
+
+}  // namespace
