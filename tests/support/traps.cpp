@@ -67,6 +67,20 @@ struct Excused {
   std::string_view why;
 };
 constexpr Excused kExcused[] = {
+    {"Sphere.NoNumberIsNoNumber", "numbers that are none"},
+    {"Pose.NoNumberIsNoNumber", "numbers that are none"},
+    {"GeometryViews.*", "vector kernels, whose idle lanes compute what nobody reads"},
+    {"Jitter.GroundOfRays*", "vector kernels"},
+    {"Depth.*", "vector kernels"},
+    {"GeometryRays.RadiiOutOfRangeAreRefusedBeforeAnythingIsBuilt", "radii that are none"},
+    {"FlightPlayer.PlaysAtAnySpeedAlsoBackwards", "a step of time that is no number is none"},
+    {"FlightPlayer.ScrubbedBackwardsSettingsAreThoseOfThatTime", "a time that is no number is the start"},
+    {"HeadTracker.TimesThatRunBackwardsAreTheLastOne", "times that are no numbers"},
+    {"MapView.ZoomEndsAtItsLimits", "a factor that is no number"},
+    {"OnHills.InvalidRangesAreCountedAndHurt", "ranges that are no numbers"},
+    {"Palette.IsStraightBetweenStopsAndConstantBeyond", "the colour of what is no number"},
+    {"Palette.RefusesStopsThatMakeNone", "stops that are no numbers are refused"},
+    {"BadView.*", "numbers that are none, and eyes whose squared distance no double holds, are refused"},
     {"LookAndWait.WhatIsNoNumberIsFastAndBadOptionsAreRefused", "motion that is no number counts as fast"},
     {"Path.IsHeldBeforeTheFirstPoseAndAfterTheLast", "asks for the time that is no number: the start"},
     {"MonotoneSpline.IsExactOnLinesAndHoldsOutside", "asks for the time that is no number: the first value"},
