@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 19960713;
 constexpr double kLongest_m = 20000;
-constexpr double kHeightOfWave = 0.02;  // of its length
+constexpr double kHeightOfWave = 0.02;    // of its length
 constexpr double kRootSpacing_m = 45000;  // that of the six tiles of level 0
 
 double lattice(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {

@@ -25,10 +25,10 @@ struct PatchSpec {
   double spacing_m() const;
 };
 
-// Octaves of seeded noise as a function of direction: waves from 20 km down to twice the spacing asked for, each
-// half as long and half as high as the one before, so that tiles of all levels look alike and only their number
-// grows with the grid. Slopes are some 7 degrees (RMS). Fine in the patch and in what contains it, coarser from
-// level to level elsewhere. The same bits on every machine. Any thread may call any member.
+// Octaves of seeded noise as a function of direction: waves from 20 km down to twice the spacing asked for,
+// each half as long and half as high as the one before, so that tiles of all levels look alike and only their
+// number grows with the grid. Slopes are some 7 degrees (RMS). Fine in the patch and in what contains it,
+// coarser from level to level elsewhere. The same bits on every machine. Any thread may call any member.
 class FractalPatch : public mars::ElevationSource {
  public:
   explicit FractalPatch(const PatchSpec& spec);

@@ -97,8 +97,8 @@ Table law_table(std::span<const Law> laws) {
     const std::optional<LawFit> fitted = fit(law);
     if (fitted) {
       const Growth& growth = fitted->growth;
-      row.insert(row.end(), {growth.exponent, growth.half_width, growth.factor,
-                             static_cast<double>(growth.points)});
+      row.insert(row.end(),
+                 {growth.exponent, growth.half_width, growth.factor, static_cast<double>(growth.points)});
     } else {
       row.insert(row.end(), {Cell(), Cell(), Cell(), static_cast<double>(law.samples.size())});
     }

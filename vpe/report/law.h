@@ -20,10 +20,10 @@ struct LawSample {
 };
 
 struct Law {
-  std::string axis;   // what is varied, as in "image"; laws of one axis stand in one plot
-  std::string what;   // what is measured, as in "rays, exact"
-  std::string x_name;  // with its unit, as in "pixels"
-  std::string y_name;  // with its unit at the end, as in "frame_s"
+  std::string axis;                      // what is varied, as in "image"; laws of one axis stand in one plot
+  std::string what;                      // what is measured, as in "rays, exact"
+  std::string x_name;                    // with its unit, as in "pixels"
+  std::string y_name;                    // with its unit at the end, as in "frame_s"
   std::optional<double> least_exponent;  // asked for, both ends allowed
   std::optional<double> most_exponent;
   std::vector<LawSample> samples;
