@@ -109,6 +109,9 @@ TileTree::TileTree(std::vector<TileInfo> tiles, const TileShape& shape, double r
     }
   }
   if (next < tiles_.size()) refuse_stray();
+  bytes_ = sizeof(*this) + tiles_.capacity() * sizeof(TileInfo) + first_child_.capacity() * sizeof(Index);
+  for (const TileInfo& tile : tiles_)
+    bytes_ += tile.variants.capacity() * sizeof(MeshVariant) + 2 * sizeof(void*);
 }
 
 TileTree::Index TileTree::descend(const TileKey& key) const {
@@ -141,13 +144,6 @@ double TileTree::lowest_radius_m(double exaggeration) const {
   const double lowest =
       std::max(0.0, radius_m_ + exaggeration * lowest_height_m_) * facet_factor(coarsest_facets_, shape_);
   return exaggeration == 1.0 ? std::max(lowest, known_lowest_m_) : lowest;
-}
-
-std::size_t TileTree::bytes() const {
-  std::size_t sum =
-      sizeof(*this) + tiles_.capacity() * sizeof(TileInfo) + first_child_.capacity() * sizeof(Index);
-  for (const TileInfo& tile : tiles_) sum += tile.variants.capacity() * sizeof(MeshVariant) + 2 * sizeof(void*);
-  return sum;
 }
 
 }  // namespace lod

@@ -97,7 +97,7 @@ class TileTree {
   double lowest_radius_m(double exaggeration) const;
 
   // Memory held, all of it.
-  std::size_t bytes() const;
+  std::size_t bytes() const { return bytes_; }
 
  private:
   Index descend(const TileKey& key) const;
@@ -106,6 +106,7 @@ class TileTree {
   std::vector<Index> first_child_;
   TileShape shape_;
   double radius_m_;
+  std::size_t bytes_ = 0;
   double known_lowest_m_;
   double lowest_height_m_ = 0;
   int coarsest_facets_ = kMaxLevel;  // level of the coarsest finest tile
