@@ -6,10 +6,11 @@
 
 namespace vpe::app {
 
-void add_report(CLI::App& program, Common&) {
+void add_report(CLI::App& program, Common& common) {
   CLI::App* report =
       program.add_subcommand("report", "Measure errors, times and growth, and write pages of them");
   report->require_subcommand(1);
+  add_report_error_time(*report, common);
 }
 
 }  // namespace vpe::app
