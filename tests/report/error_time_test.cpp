@@ -165,11 +165,39 @@ TEST_F(ErrorTime, TimesInTurnsByRenderersThatAreWarm) {
   const std::vector<std::string> round{"a 8", "a 4", "a 2", "b 4"};
   std::vector<std::string> expected{"a with ranges 0", "a with ranges 8", "a with ranges 4", "a with ranges 2",
                                     "b with ranges 4"};
-  for (int n = 0; n < 4; ++n) expected.insert(expected.end(), round.begin(), round.end());
+  expected.insert(expected.end(), round.begin(), round.end());
+  // Before the first round that counts each is asked whether it still has all.
+  for (const std::string& frame : round) expected.insert(expected.end(), 2, frame);
+  for (int n = 0; n < 2; ++n) expected.insert(expected.end(), round.begin(), round.end());
   EXPECT_EQ(world_.log, expected);
   EXPECT_EQ(world_.made, 7);
   EXPECT_EQ(world_.most_alive, 2);
   EXPECT_EQ(shares_, (std::vector<double>{1, 1, 1, 1, 1, 0.5, 0.5}));
+}
+
+// Where another way takes the memory, what is loaded again is not timed.
+TEST_F(ErrorTime, LoadingAgainIsNotTimed) {
+  class Forgetful : public core::Renderer {
+   public:
+    explicit Forgetful(World& world) : real_(world, "f"), world_(world) {}
+    core::DrawResult draw(const core::DrawRequest& request) override {
+      core::DrawResult result = real_.draw(request);
+      const double wanted = request.settings.lod_tolerance_px;
+      result.stats.pages_uploaded = wanted == held_ ? 0 : 3;
+      if (wanted != held_) world_.now_s += 40;
+      held_ = wanted;
+      return result;
+    }
+
+   private:
+    FakeRenderer real_;
+    World& world_;
+    double held_ = -1;
+  };
+  options_.make = [this](const std::string&, double) { return std::make_unique<Forgetful>(world_); };
+  const SubjectResult result = measure(subject(), options_);
+  EXPECT_NEAR(result.measured[0].timing.median_s(), 1 / 8.0, 1e-9);
+  EXPECT_EQ(result.measured[0].pages_reloaded, 0);
 }
 
 TEST_F(ErrorTime, TellsAFalseStatement) {

@@ -92,7 +92,7 @@ class Planner {
 
   void add_rays() {
     add_picture("rays, exact", kRayPictures, {}, "rays.mode=exact").is_default = true;
-    if (!options_.is_short) add_picture("rays, plain", kRayPictures, {"rays.mode=plain"});
+    if (!options_.is_short) add_picture("rays, plain", kRayPictures, {"rays.mode=plain"}).most_rounds = 1;
     for (const double cell : values(64, 0.125, 8)) {
       add_picture("rays by cell", kRayPictures,
                   {"rays.mode=multires", "rays.cell=" + core::format_number(cell)},
@@ -119,7 +119,7 @@ class Planner {
     const bool has_images = planet_.meta().image_tiles > 0;
     for (const bool textured : {true, false}) {
       if (!textured && !has_images) continue;
-      for (int level = std::max(1, finest - 6); level <= finest + 1; level += options_.is_short ? 2 : 1) {
+      for (int level = std::max(1, finest - 5); level <= finest + 1; level += options_.is_short ? 2 : 1) {
         std::string table = "0:" + std::to_string(level);
         for (int down = 1; down < level; ++down) {
           table += "," + core::format_number(pixel_m * (1 << (down - 1))) + ":" + std::to_string(level - down);
@@ -184,7 +184,7 @@ class Planner {
     if (options_.is_short) facets = {0, 8};
     for (const int many : facets) {
       const std::string sweep = many == 0 ? "cylinder by columns" : std::to_string(many) + " facets by columns";
-      for (std::int64_t width = 32; width <= 8192; width *= options_.is_short ? 4 : 2) {
+      for (std::int64_t width = 64; width <= 8192; width *= options_.is_short ? 4 : 2) {
         const panorama::PanoramaMap map = many == 0 ? cylinder_of(width) : facets_of(many, width);
         report::Way& way =
             add(sweep, std::to_string(width) + " columns", kRayPictures, requests_of(map, standing));

@@ -101,28 +101,36 @@ void measure_times(const Subject& subject, const ErrorTimeOptions& options, std:
   for (const Way& way : subject.ways) names.insert(way.renderer);
   std::map<std::string, std::unique_ptr<core::Renderer>> renderers;
   for (const std::string& name : names) renderers[name] = options.make(name, share_of(names.size()));
-  std::vector<std::function<void()>> contestants;
-  std::vector<int> drawn(subject.ways.size(), 0);
-  for (std::size_t k = 0; k < subject.ways.size(); ++k) {
-    contestants.emplace_back([&, k] {
-      const Way& way = subject.ways[k];
-      std::int64_t uploaded = 0;
-      for (const core::DrawRequest& request : way.requests) {
-        core::DrawRequest plain = request;
-        plain.want_range = !way.has_colours;
-        uploaded += renderers.at(way.renderer)->draw(plain).stats.pages_uploaded;
-      }
-      if (drawn[k]++ > 0) measured[k].pages_reloaded += uploaded;
-    });
-  }
-  // Progress is told between two of them, never while one is timed.
-  std::size_t next = 0;
-  const Clock clock = [&] {
-    if (next % 2 == 0) step("timing " + subject.ways[next / 2 % subject.ways.size()].sweep);
-    ++next;
-    return options.clock();
+  const auto draw = [&](const Way& way) {
+    std::int64_t uploaded = 0;
+    for (const core::DrawRequest& request : way.requests) {
+      core::DrawRequest plain = request;
+      plain.want_range = !way.has_colours;
+      uploaded += renderers.at(way.renderer)->draw(plain).stats.pages_uploaded;
+    }
+    return uploaded;
   };
-  const std::vector<Timing> timings = time_in_turns(contestants, options.rounds, clock);
+  std::vector<Contestant> contestants;
+  std::vector<int> turns(subject.ways.size(), 0);
+  std::vector<bool> forgotten(subject.ways.size(), false);  // what it needs, while others are drawn
+  for (std::size_t k = 0; k < subject.ways.size(); ++k) {
+    Contestant contestant;
+    contestant.most_rounds = subject.ways[k].most_rounds;
+    contestant.prepare = [&, k] {
+      step("timing " + subject.ways[k].sweep);
+      if (turns[k] == 1) {
+        forgotten[k] = draw(subject.ways[k]) > 0;
+      } else if (forgotten[k]) {
+        draw(subject.ways[k]);
+      }
+    };
+    contestant.run = [&, k] {
+      const std::int64_t uploaded = draw(subject.ways[k]);
+      if (turns[k]++ > 0) measured[k].pages_reloaded += uploaded;
+    };
+    contestants.push_back(std::move(contestant));
+  }
+  const std::vector<Timing> timings = time_in_turns(contestants, options.rounds, options.clock);
   for (std::size_t k = 0; k < timings.size(); ++k) {
     measured[k].timing = timings[k];
     measured[k].ratio = ratio(timings[k], timings[subject.baseline]);

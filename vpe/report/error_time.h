@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,8 +45,9 @@ struct Way {
   // Relative error of the renderer's range images at the nearest ground; at the farthest 1 + farthest / nearest
   // times (vpe/gl/polygon_renderer.h). 0: in what it states.
   double range_error = 0;
-  bool has_colours = true;  // false: ranges alone are drawn
-  bool has_ranges = true;   // false: colours alone are compared
+  int most_rounds = std::numeric_limits<int>::max();  // of timing, for what is slow
+  bool has_colours = true;                            // false: ranges alone are drawn
+  bool has_ranges = true;                             // false: colours alone are compared
 };
 
 // A picture that counts as exact, and how it is made.
@@ -84,7 +86,7 @@ struct Measured {
   std::int64_t bytes = 0;  // held by a renderer that drew this alone
   Timing timing;
   double ratio = 0;                 // to the baseline
-  std::int64_t pages_reloaded = 0;  // while it was timed: with 0 the times are of drawing alone
+  std::int64_t pages_reloaded = 0;  // in the rounds that count: with 0 the times are of drawing alone
 
   double error(ErrorKind kind) const;
   double shift_p99_px() const;  // the larger of forward and backward
@@ -108,9 +110,10 @@ struct ErrorTimeOptions {
 };
 
 // Draws the references, then every way by a renderer of its own with ranges, then all ways in turns, without
-// ranges, by one renderer for each name. Throws what renderers throw, std::invalid_argument for a subject
-// without ways or with pictures of other sizes than their reference's, std::runtime_error when a picture is not
-// complete.
+// ranges, by one renderer for each name; where that had to load something again, as other ways took the memory,
+// a frame that does not count goes before the next. Throws what renderers throw, std::invalid_argument for a
+// subject without ways or with pictures of other sizes than their reference's, std::runtime_error when a
+// picture is not complete.
 SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options);
 
 }  // namespace vpe::report

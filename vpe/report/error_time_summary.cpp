@@ -27,6 +27,7 @@ std::vector<CostAndError> costs(const SubjectResult& result, const std::string& 
 }  // namespace
 
 double error_floor(ErrorKind kind) { return kind == ErrorKind::kShift ? 0.01 : 0.05; }
+double rounding_floor(ErrorKind kind) { return kind == ErrorKind::kShift ? 0.001 : 0.05; }
 
 std::vector<SweepSummary> summarize_sweeps(const SubjectResult& result) {
   std::vector<SweepSummary> sweeps;
@@ -60,7 +61,7 @@ std::vector<SweepSummary> summarize_sweeps(const SubjectResult& result) {
   }
   std::erase_if(sweeps, [](const SweepSummary& s) { return s.points < 2; });
   for (SweepSummary& s : sweeps) {
-    const double floor = error_floor(s.kind);
+    const double floor = rounding_floor(s.kind);
     s.decades = std::log10(std::max(s.largest_error, floor) / std::max(s.smallest_error, floor));
   }
   return sweeps;

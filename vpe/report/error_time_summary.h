@@ -8,8 +8,10 @@
 
 namespace vpe::report {
 
-// Below these, errors are rounding's: they need not fall any more (kShift, px; kColour, steps of 8-bit sRGB).
+// Below these nobody sees errors: they need not fall any more (kShift, px; kColour, steps of 8-bit sRGB).
 double error_floor(ErrorKind kind);
+// Below these they are rounding's.
+double rounding_floor(ErrorKind kind);
 
 struct SweepSummary {
   std::string view;
@@ -20,9 +22,9 @@ struct SweepSummary {
   int points = 0;
   double largest_error = 0;
   double smallest_error = 0;
-  double decades = 0;  // between both; errors below the floor count as that
-  // The largest factor by which an error rises from a point to the next finer one, both counted as at least the
-  // floor; <= 1: errors fall along the sweep.
+  double decades = 0;  // between both; errors below rounding_floor() count as that
+  // The largest factor by which an error rises from a point to the next finer one, both counted as at least
+  // error_floor(); <= 1: errors fall along the sweep.
   double worst_rise = 0;
   bool within_stated = true;
 };

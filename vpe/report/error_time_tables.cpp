@@ -153,7 +153,7 @@ Table sweeps_table(const std::vector<SubjectResult>& results) {
                {"points", "how many"},
                {"largest_error", "shift of 99 % of the pixels, px; of colours their RMS"},
                {"smallest_error", "the same"},
-               {"decades", "between both; errors of rounding count as 0.01 px or 0.05 steps of colour"},
+               {"decades", "between both; errors of rounding count as 0.001 px or 0.05 steps of colour"},
                {"worst_rise", "largest factor from a point to the next finer one: up to 1 where errors fall"},
                {"within_stated", "no measured shift exceeds what its certificate states"}},
               {}};
