@@ -18,7 +18,7 @@ const std::vector<std::string> kBare{"mode=unlit", "colour=none",        "backgr
 std::span<const FeatureScene> feature_scenes() {
   static const std::array<FeatureScene, 11> kScenes{{
       {"bare", "", {}},
-      {"imagery", "bare", {"colour=image"}},
+      {"imagery", "bare", {"colour=image"}, false, false, false, true, true},
       {"pseudo-colour", "bare", {"colour=elevation"}},
       {"light of facets", "bare", {"mode=lit", "shading=flat"}},
       {"light and normals of posts", "bare", {"mode=lit"}},

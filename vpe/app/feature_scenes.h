@@ -22,6 +22,7 @@ struct FeatureScene {
   bool statistics = false;  // a row a frame into a file
   bool stereo = false;      // two eyes side by side
   bool rays = true;         // the ray backend can draw it, and it is something there
+  bool imagery = false;     // of the planet file
 };
 
 // The bare one first: one colour, no light, no imagery, black sky, hard edges, no culling by occlusion, one

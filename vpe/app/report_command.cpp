@@ -10,6 +10,7 @@ void add_report(CLI::App& program, Common& common) {
   CLI::App* report =
       program.add_subcommand("report", "Measure errors, times and growth, and write pages of them");
   report->require_subcommand(1);
+  add_report_error_time(*report, common);
   add_report_scaling(*report, common);
   add_report_features(*report, common);
 }

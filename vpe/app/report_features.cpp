@@ -60,11 +60,12 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-std::vector<Row> rows_to_measure() {
+std::vector<Row> rows_to_measure(bool has_imagery) {
   std::vector<Row> rows;
   for (const std::string& backend : {kPolygonBackend, kRayBackend}) {
     for (const FeatureScene& scene : feature_scenes()) {
       if ((backend == kRayBackend && !scene.rays) || !is_built_in(scene)) continue;
+      if (scene.imagery && !has_imagery) continue;
       Row& row = rows.emplace_back();
       row.scene = &scene;
       row.backend = backend;
@@ -243,7 +244,7 @@ void report_features(FeatureArguments& arguments, const Common& common) {
   const Scratch scratch(temporary_name(folder / "statistics").string() + ".csv");
   order.statistics_file = scratch.name();
 
-  std::vector<Row> rows = rows_to_measure();
+  std::vector<Row> rows = rows_to_measure(planet->meta().finest_image_level >= 0);
   ProgressLine line(common.quiet);
   const double others = arguments.against.empty() ? 0 : 4;
   const double all = arguments.starts * (static_cast<double>(rows.size()) + others) + 2;
