@@ -77,7 +77,7 @@ double count_pictures(const ScalingPlan& plan) {
 const char* about(const std::string& axis) {
   if (axis == "builder") return "What a build costs, over the finest posts of the planet.";
   if (axis == "grid")
-    return "Grids of posts 20 m apart, from a few kilometres to the whole patch, seen from 500 m above their "
+    return "Grids of posts 10 m apart, from a few kilometres to the whole patch, seen from 500 m above their "
            "middle.";
   if (axis == "depth")
     return "One patch of 42 km, one eye, ever finer posts. The exponent is that of time over posts a side: the "

@@ -9,7 +9,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr lod::TileKey kPlace{mars::Face::kPlusX, 7, 75, 52};
-constexpr int kGridFinestLevel = 12;  // posts of 20 m
+constexpr int kGridFinestLevel = 12;  // posts of 10 m
 // Planets of fewer posts are built several times: they are done in seconds.
 constexpr double kFewPosts = 4e6;
 

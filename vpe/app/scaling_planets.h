@@ -13,7 +13,7 @@
 
 namespace vpe::app {
 
-// Grids of 20 m posts whose patch grows, and grids over one patch of 42 km whose posts get finer. `side_posts`
+// Grids of 10 m posts whose patch grows, and grids over one patch of 42 km whose posts get finer. `side_posts`
 // is 2^n + 1 with n from 8 to 14. Both are the same planet at 4097 posts.
 PatchSpec grid_patch(int side_posts);
 PatchSpec depth_patch(int side_posts);

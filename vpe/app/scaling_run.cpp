@@ -157,7 +157,7 @@ std::vector<report::Law> measure_grid(const ScalingBench& bench) {
       const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.size);
       pictures.add(side, make_way(bench, way, spec), way_request(way, view));
     }
-    append(laws, measure_way(pictures, way, "grid", way.name, "posts a side, all 20 m apart", {}, {}));
+    append(laws, measure_way(pictures, way, "grid", way.name, "posts a side, all 10 m apart", {}, {}));
   }
   return laws;
 }

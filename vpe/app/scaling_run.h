@@ -23,7 +23,7 @@ struct ScalingPlan {
   Size thread_size{1280, 720};
   int rounds = 7;
   int build_rounds = 3;
-  double flight_s = 4;
+  double flight_s = 6;  // a quarter of it before anything counts
   std::size_t memory_bytes = std::size_t{1} << 30;  // of each renderer
 };
 
