@@ -1,7 +1,5 @@
 #include "vpe/app/fractal_ground.h"
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -9,6 +7,7 @@
 
 #include "lod/posts.h"
 #include "paging/builder.h"
+#include "vpe/app/processor_time.h"
 
 namespace vpe::app {
 namespace {
@@ -70,15 +69,6 @@ class Spent {
   std::atomic<std::int64_t>& sum_ns_;
   std::int64_t begin_ns_ = now_ns();
 };
-
-double process_s() {
-  rusage used{};
-  ::getrusage(RUSAGE_SELF, &used);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(used.ru_utime) + seconds(used.ru_stime);
-}
 
 }  // namespace
 
@@ -149,13 +139,13 @@ PatchBuild build_patch(const PatchSpec& spec, const std::filesystem::path& file,
   options.tile_k = kPatchTileK;
   options.threads = threads;
   const FractalPatch ground(spec);
-  const double begin_s = process_s();
+  const double begin_s = app::processor_s();
   const auto start = std::chrono::steady_clock::now();
   const paging::BuildSummary summary = paging::build_planet(
       options, ground, nullptr, [&](const paging::BuildProgress& progress) { step(progress.fraction); });
   PatchBuild out;
   out.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  out.processor_s = process_s() - begin_s - ground.processor_s();
+  out.processor_s = app::processor_s() - begin_s - ground.processor_s();
   out.bytes = summary.bytes;
   out.finest_posts = summary.meta.leaf_tiles * summary.meta.tile.post_count();
   out.planet = paging::PlanetFile::open(file.string());

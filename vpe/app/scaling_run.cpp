@@ -5,6 +5,7 @@
 
 #include "mars/sun.h"
 #include "paging/surface.h"
+#include "vpe/app/processor_time.h"
 #include "vpe/core/parallel.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/report/turns.h"
@@ -26,10 +27,10 @@ class Pictures {
   explicit Pictures(const ScalingBench& bench) : bench_(bench) {}
 
   void add(double x, std::unique_ptr<core::Renderer> renderer, const core::DrawRequest& request) {
-    shots_.push_back({x, std::move(renderer), request, {}});
+    shots_.push_back({x, std::move(renderer), request, {}, {}});
   }
 
-  // Frame times and, in the second law, what was counted in each frame.
+  // Times of frames, processor times of frames under the same law, and what was counted in each frame.
   std::vector<report::Law> measure(report::Law time, report::Law count,
                                    const std::function<double(const core::DrawResult&)>& counted) {
     std::vector<std::function<void()>> contestants;
@@ -38,12 +39,20 @@ class Pictures {
       x.push_back(shot.x);
       contestants.emplace_back([this, &shot, &counted] {
         bench_.step();
+        const double begin_s = processor_s();
         shot.count = counted(shot.renderer->draw(shot.request));
+        shot.processor_s.push_back(processor_s() - begin_s);
       });
     }
+    report::Law processor = time;
+    processor.y_name = "processor_s";
     time.samples = report::timed_samples(x, report::time_in_turns(contestants, bench_.plan.rounds));
-    for (const Shot& shot : shots_) count.samples.push_back({shot.x, {shot.count}});
-    return {std::move(time), std::move(count)};
+    for (Shot& shot : shots_) {
+      shot.processor_s.erase(shot.processor_s.begin());  // the round that does not count
+      processor.samples.push_back({shot.x, shot.processor_s});
+      count.samples.push_back({shot.x, {shot.count}});
+    }
+    return {std::move(time), std::move(processor), std::move(count)};
   }
 
  private:
@@ -52,6 +61,7 @@ class Pictures {
     std::unique_ptr<core::Renderer> renderer;
     core::DrawRequest request;
     double count;
+    std::vector<double> processor_s;  // a round each
   };
   const ScalingBench& bench_;
   std::vector<Shot> shots_;
@@ -207,7 +217,11 @@ std::vector<report::Law> measure_threads(const ScalingBench& bench) {
     Pictures pictures(bench);
     for (const int threads : bench.plan.threads)
       pictures.add(threads, make_way(bench, way, spec, threads), way_request(way, view));
-    append(laws, measure_way(pictures, way, "threads", way.name, "threads", least, most));
+    for (report::Law& law : measure_way(pictures, way, "threads", way.name, "threads", least, most)) {
+      // All threads together are asked for no less.
+      if (law.y_name == "processor_s") law.least_exponent = law.most_exponent = {};
+      laws.push_back(std::move(law));
+    }
   }
   return laws;
 }
