@@ -117,6 +117,9 @@ TileTree::TileTree(std::vector<TileInfo> tiles, const TileShape& shape, double r
     }
   }
   if (next < tiles_.size()) refuse_stray();
+  bytes_ = sizeof(*this) + tiles_.capacity() * sizeof(TileInfo) + first_child_.capacity() * sizeof(Index);
+  for (const TileInfo& tile : tiles_)
+    bytes_ += tile.variants.capacity() * sizeof(MeshVariant) + 2 * sizeof(void*);
 }
 
 TileTree::Index TileTree::descend(const TileKey& key) const {
@@ -186,13 +189,6 @@ double TileTree::edge_shift_m(const TileInfo& tile, double exaggeration) const {
   const double highest = std::max(radius_m_ + tile.max_height_m, radius_m_ + exaggeration * tile.max_height_m);
   const double ratio = highest / (lowest * factor);
   return post_m * ratio * ratio;
-}
-
-std::size_t TileTree::bytes() const {
-  std::size_t sum =
-      sizeof(*this) + tiles_.capacity() * sizeof(TileInfo) + first_child_.capacity() * sizeof(Index);
-  for (const TileInfo& tile : tiles_) sum += tile.variants.capacity() * sizeof(MeshVariant) + 2 * sizeof(void*);
-  return sum;
 }
 
 }  // namespace lod

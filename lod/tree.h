@@ -106,7 +106,7 @@ class TileTree {
   double lowest_radius_m(double exaggeration) const;
 
   // Memory held, all of it.
-  std::size_t bytes() const;
+  std::size_t bytes() const { return bytes_; }
 
  private:
   // Level of the coarsest finest tiles that are in a tile and may lie beside coarser ones; nothing: there are none.
@@ -117,6 +117,7 @@ class TileTree {
   std::vector<Index> first_child_;
   TileShape shape_;
   double radius_m_;
+  std::size_t bytes_ = 0;
   double known_lowest_m_;
   double lowest_height_m_ = 0;
   int coarsest_facets_ = kMaxLevel;  // level of the coarsest finest tile

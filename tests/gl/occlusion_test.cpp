@@ -153,4 +153,23 @@ TEST_F(Occluded, SettledPicturesDoNotDependOnHistory) {
   }
 }
 
+// Without occlusion meshes come without the walls that it needs.
+TEST_F(Occluded, SwitchedOnItHidesWhatANewOneHides) {
+  Random random(75);
+  const auto draw = renderer(planet_);
+  int hidden = 0;
+  for (int n = 0; n < 10; ++n) {
+    const DrawRequest request = random_request(random);
+    const DrawResult alone = renderer(planet_)->draw(with(request, Occlusion::kOn));
+    const DrawResult off = draw->draw(with(request, Occlusion::kOff));
+    const DrawResult on = draw->draw(with(request, Occlusion::kOn));
+    EXPECT_EQ(off.stats.tiles_culled_occlusion, 0);
+    EXPECT_EQ(on.stats.tiles_culled_occlusion, alone.stats.tiles_culled_occlusion) << n;
+    EXPECT_EQ(on.stats.tiles_drawn, alone.stats.tiles_drawn) << n;
+    ASSERT_EQ(on.frame.colour, alone.frame.colour) << n;
+    hidden += on.stats.tiles_culled_occlusion;
+  }
+  EXPECT_GT(hidden, 0);
+}
+
 }  // namespace

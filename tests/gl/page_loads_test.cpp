@@ -28,7 +28,10 @@ PageKey random_page(const paging::PlanetFile& planet, Random& random,
   PageKey page;
   page.tile = tile.key;
   switch (random.integer(0, tile.has_children ? 1 : 2)) {
-    case 0: page.detail = random.integer(0, static_cast<int>(tile.variants.size()) - 1); break;
+    case 0:
+      page.detail = random.integer(0, static_cast<int>(tile.variants.size()) - 1);
+      page.walls = page.detail % 2 == 0;
+      break;
     case 1:
       page.kind = PageKind::kTexture;
       page.look = looks[static_cast<std::size_t>(random.integer(0, static_cast<int>(looks.size()) - 1))];
@@ -41,18 +44,22 @@ PageKey random_page(const paging::PlanetFile& planet, Random& random,
   return page;
 }
 
-// Owners that ask, take, change their mind and go away at random, while the shader's small caches evict.
-TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
-  const test_support::TempDir dir;
+std::shared_ptr<const paging::PlanetFile> build_bumpy(const std::filesystem::path& file) {
   const test_support::FakeImage image;
   paging::BuildOptions options;
-  options.output = (dir / "p.vpe").string();
+  options.output = file.string();
   options.base_spacing_m = 100000;
   options.threads = 2;
   options.tile_k = 4;
   options.resampling_posts = 1000;
   paging::build_planet(options, FakeElevation(bumpy_height), &image);
-  const auto planet = paging::PlanetFile::open(options.output);
+  return paging::PlanetFile::open(options.output);
+}
+
+// Owners that ask, take, change their mind and go away at random, while the shader's small caches evict.
+TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
+  const test_support::TempDir dir;
+  const auto planet = build_bumpy(dir / "p.vpe");
   std::vector<std::shared_ptr<const ShadeParams>> looks;
   for (const auto surfacing : {paging::Surfacing::kElevation, paging::Surfacing::kImage}) {
     ShadeParams look;
@@ -93,6 +100,18 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
     }
   }
   EXPECT_GE(taken, static_cast<std::size_t>(kRounds));
+}
+
+// They take a third of the work that a mesh is.
+TEST(PageLoads, WallsAreMadeForThoseWhoAsk) {
+  const test_support::TempDir dir;
+  const auto planet = build_bumpy(dir / "p.vpe");
+  const PageLoader loader(planet, std::make_shared<const paging::GroundPainter>(planet, std::size_t{50000}));
+  PageKey page;
+  page.tile = planet->tree()[0].key;
+  EXPECT_EQ(loader.load(page).first.walls, nullptr);
+  page.walls = true;
+  EXPECT_NE(loader.load(page).first.walls, nullptr);
 }
 
 }  // namespace

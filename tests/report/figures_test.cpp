@@ -121,6 +121,30 @@ TEST(Turns, AreTakenInTurnsAndTheFirstDoesNotCount) {
   EXPECT_THROW(ratio(timings[0], Timing{}), std::invalid_argument);
 }
 
+TEST(Turns, WhatIsMadeReadyDoesNotCountAndSlowOnesRunLess) {
+  double now_s = 0;
+  std::string order;
+  std::vector<Contestant> contestants(2);
+  contestants[0].prepare = [&] {
+    order += 'p';
+    now_s += 50;
+  };
+  contestants[0].run = [&] {
+    order += 'a';
+    now_s += 2;
+  };
+  contestants[1].run = [&] {
+    order += 'b';
+    now_s += 8;
+  };
+  contestants[1].most_rounds = 1;
+  const std::vector<Timing> timings = time_in_turns(contestants, 3, [&] { return now_s; });
+  EXPECT_EQ(order, "papabpapa");
+  EXPECT_EQ(timings[0].round_s, (std::vector<double>{2, 2, 2}));
+  EXPECT_EQ(timings[1].round_s, std::vector<double>{8});
+  EXPECT_EQ(ratio(timings[1], timings[0]), 4);
+}
+
 TEST(Turns, MedianIsTheMiddle) {
   EXPECT_EQ(median({3, 1, 2}), 2);
   EXPECT_EQ(median({4, 1, 2, 3}), 2.5);

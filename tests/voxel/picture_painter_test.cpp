@@ -144,6 +144,29 @@ TEST_F(Painting, SkyAndSunFromEverywhere) {
   }
 }
 
+// Where nothing is looked up for a pixel.
+TEST_F(Painting, OneColourBehindAnyAirAsDefined) {
+  const paging::Surface surface(planet_, kMemory);
+  const test_support::PaintedByPoint definition(planet_, kMemory);
+  PicturePainter painter(planet_, kMemory);
+  core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 15000, 40, -5, 10}, 77, 52, 60);
+  r.settings.mode = core::Mode::kUnlit;
+  r.settings.colour = core::Colour::kNone;
+  const auto range_m = ranges(surface, r);
+  for (const core::Background sky :
+       {core::Background::kBlack, core::Background::kWhite, core::Background::kSky}) {
+    for (const double visibility_m : {0.0, 30000.0}) {
+      r.settings.background = sky;
+      r.settings.haze_visibility_m = visibility_m;
+      const auto expected = definition.paint(r, range_m, pool_);
+      const Painted painted = paint(painter, r, range_m, pool_, true);
+      EXPECT_EQ(apart(painted.colour, expected, 1), 0U) << visibility_m;
+      EXPECT_EQ(paint(painter, r, range_m, pool_).colour, painted.colour) << visibility_m;
+      EXPECT_EQ(painted.without_data, 0);
+    }
+  }
+}
+
 TEST_F(Painting, ShadowsAndGapsAsDefined) {
   const auto holed = test_support::build_fake(
       dir_ / "holed.vpe", test_support::FakeElevation([](const glm::dvec3& d) {
@@ -156,9 +179,17 @@ TEST_F(Painting, ShadowsAndGapsAsDefined) {
   PicturePainter painter(holed, kMemory);
   core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 700000, 40, -70, 0}, 100, 70);
   r.sun = mars::sun_direction(kPlace, 315, 4);
+  struct Look {
+    core::Mode mode;
+    core::Colour colour;
+  };
   for (const bool shadows : {false, true}) {
-    for (const auto mode : {core::Mode::kUnlit, core::Mode::kLit, core::Mode::kColoured}) {
-      r.settings.mode = mode;
+    for (const Look look :
+         {Look{core::Mode::kUnlit, core::Colour::kElevation}, Look{core::Mode::kUnlit, core::Colour::kNone},
+          Look{core::Mode::kLit, core::Colour::kElevation},
+          Look{core::Mode::kColoured, core::Colour::kElevation}}) {
+      r.settings.mode = look.mode;
+      r.settings.colour = look.colour;
       r.settings.shadows = shadows;
       const auto range_m = ranges(surface, r);
       const auto expected = definition.paint(r, range_m, pool_);

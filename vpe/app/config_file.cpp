@@ -11,6 +11,7 @@
 #include <fstream>
 #include <set>
 
+#include "vpe/app/command_list.h"
 #include "vpe/core/number.h"
 #include "vpe/core/user_folders.h"
 
@@ -29,11 +30,11 @@ class ConfigFile {
   void apply() {
     const toml::table config = parse();
     for (const auto& [key, node] : config) {
-      if (const toml::table* table = node.as_table()) apply_table(key, *table);
+      if (const toml::table* table = node.as_table()) apply_table(std::string(key.str()), *table);
     }
     for (const auto& [key, node] : config) {
       if (node.is_table()) continue;
-      const auto all = program_.get_subcommands({});
+      const auto all = all_commands(program_);
       if (std::none_of(all.begin(), all.end(),
                        [name = key.str()](CLI::App* c) { return option(*c, name) != nullptr; })) {
         fail(node, "no command has an option --" + std::string(key.str()));
@@ -66,16 +67,21 @@ class ConfigFile {
     }
   }
 
-  void apply_table(const toml::key& name, const toml::table& table) {
-    const auto all = program_.get_subcommands({});
+  // name: the command's words, or the first of them.
+  void apply_table(const std::string& name, const toml::table& table) {
+    const auto all = all_commands(program_);
     const auto at =
-        std::find_if(all.begin(), all.end(), [&](CLI::App* c) { return c->get_name() == name.str(); });
-    if (at == all.end()) fail(table, "[" + std::string(name.str()) + "] is not a command");
+        std::find_if(all.begin(), all.end(), [&](CLI::App* c) { return command_words(*c) == name; });
+    const bool is_first_word = std::any_of(
+        all.begin(), all.end(), [&](CLI::App* c) { return command_words(*c).starts_with(name + " "); });
+    if (at == all.end() && !is_first_word) fail(table, "[" + name + "] is not a command");
     for (const auto& [key, node] : table) {
-      CLI::Option* found = option(**at, key.str());
-      if (found == nullptr) {
-        fail(node, "'" + std::string(name.str()) + "' has no option --" + std::string(key.str()));
+      if (const toml::table* inner = node.as_table(); inner != nullptr && is_first_word) {
+        apply_table(name + " " + std::string(key.str()), *inner);
+        continue;
       }
+      CLI::Option* found = at == all.end() ? nullptr : option(**at, key.str());
+      if (found == nullptr) fail(node, "'" + name + "' has no option --" + std::string(key.str()));
       if (*at == &command_) set(*found, key.str(), node);
     }
   }
@@ -141,14 +147,17 @@ std::vector<fs::path> config_files() {
   return files;
 }
 
-void add_config_option(CLI::App& program, CLI::App& command) {
+void add_config_option(CLI::App& command) {
   // CLI11 calls this when the whole command line is read and before it misses required options; its own
   // set_config() is silent on subcommands.
   command
       .add_option_function<std::string>(
           "--config",
-          [&program, &command](const std::string& path) {
+          [&command](const std::string& path) {
             if (!command.parsed()) return;
+            CLI::App* top = &command;
+            while (top->get_parent() != nullptr) top = top->get_parent();
+            CLI::App& program = *top;
             apply_environment(command);
             std::set<std::string> done;
             if (!path.empty()) ConfigFile(program, command, path, done).apply();

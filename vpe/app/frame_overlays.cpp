@@ -9,7 +9,7 @@ namespace vpe::app {
 FrameOverlays::FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet)
     : planet_(std::move(planet)),
       surface_(planet_, std::size_t{16} << 20),
-      has_imagery_(!planet_->image_keys().empty()) {}
+      has_imagery_(planet_->meta().finest_image_level >= 0) {}
 
 void FrameOverlays::load(const core::Overlays& overlays) {
   if (overlays.names.empty() || names_.contains(overlays.names)) return;

@@ -4,17 +4,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "vpe/app/command_list.h"
 #include "vpe/app/program.h"
 #include "vpe/core/settings.h"
 
 namespace vpe::app {
 
 namespace {
-
-std::vector<const CLI::App*> commands(const CLI::App& program) {
-  std::vector<const CLI::App*> all = program.get_subcommands([](const CLI::App*) { return true; });
-  return all;
-}
 
 // As roff wants text: no line begins with a control character, hyphens stay hyphens.
 std::string roff(const std::string& text) {
@@ -101,8 +97,8 @@ std::string man_page(const CLI::App& program) {
                      roff("explores planets: builds planet files, asks them, draws them, flies over them") +
                      "\n.SH SYNOPSIS\n.B vpe\n\\fICOMMAND\\fR [options]\n.SH DESCRIPTION\n" +
                      roff(program.get_description()) + "\n" + roff(program.get_footer()) + "\n.SH COMMANDS\n";
-  for (const CLI::App* command : commands(program)) {
-    page += ".SS vpe " + roff(command->get_name() + synopsis(*command)) + "\n" +
+  for (const CLI::App* command : all_commands(program)) {
+    page += ".SS vpe " + roff(command_words(*command) + synopsis(*command)) + "\n" +
             roff(command->get_description()) + ".\n";
     for (const CLI::Option* option : command->get_options()) describe(*option, page);
   }
@@ -134,11 +130,20 @@ std::string man_page(const CLI::App& program) {
 }
 
 std::string bash_completion(const CLI::App& program) {
-  std::vector<std::string> names;
+  std::vector<std::string> names;  // first words
   std::string cases;
-  for (const CLI::App* command : commands(program)) {
+  std::string second_words;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
     names.push_back(command->get_name());
-    cases += "    " + command->get_name() + ") words=\"" + join(long_options(*command)) + "\" ;;\n";
+    std::vector<std::string> seconds;
+    for (const CLI::App* inner : command->get_subcommands([](const CLI::App*) { return true; })) {
+      seconds.push_back(inner->get_name());
+    }
+    if (!seconds.empty())
+      second_words += "      " + command->get_name() + ") words=\"" + join(seconds) + "\" ;;\n";
+  }
+  for (const CLI::App* command : all_commands(program)) {
+    cases += "    '" + command_words(*command) + " '*) words=\"" + join(long_options(*command)) + "\" ;;\n";
   }
   std::vector<std::string> keys;
   std::string choices;
@@ -161,6 +166,15 @@ std::string bash_completion(const CLI::App& program) {
          join(first) +
          "\" -- \"$current\"))\n"
          "    return\n"
+         "  fi\n"
+         "  if [ \"$COMP_CWORD\" -eq 2 ]; then\n"
+         "    case ${COMP_WORDS[1]} in\n" +
+         second_words +
+         "    esac\n"
+         "    if [ -n \"$words\" ]; then\n"
+         "      COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
+         "      return\n"
+         "    fi\n"
          "  fi\n"
          "  # '=' is a word of its own to bash: --set KEY=VALUE arrives in up to three.\n"
          "  if [ \"$before\" = --set ]; then\n"
@@ -185,7 +199,7 @@ std::string bash_completion(const CLI::App& program) {
          "    return\n"
          "  fi\n"
          "  if [[ $current == -* ]]; then\n"
-         "    case ${COMP_WORDS[1]} in\n" +
+         "    case \"${COMP_WORDS[1]} ${COMP_WORDS[2]} \" in\n" +
          cases +
          "    esac\n"
          "    COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"

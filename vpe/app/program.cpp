@@ -74,7 +74,7 @@ CLI::App* add_command(CLI::App& program, const std::string& name, const std::str
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_flag("--quiet,-q", common.quiet, "No progress, only errors");
-  add_config_option(program, *command);
+  add_config_option(*command);
   if (with_json) command->add_flag("--json", common.json, "Print figures as JSON on stdout");
   return command;
 }
@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
   add_panorama(program, common);
   add_explore(program, common);
   add_overlook(program, common);
+  add_report(program, common);
   add_settings(program, common);
   add_doctor(program, common);
   add_manual(program, common);

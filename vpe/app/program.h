@@ -49,6 +49,7 @@ void add_overlook(CLI::App& program, Common& common);
 void add_explore(CLI::App& program, Common& common);
 void add_fly(CLI::App& program, Common& common);
 void add_panorama(CLI::App& program, Common& common);
+void add_report(CLI::App& program, Common& common);  // its parts: report_parts.h
 void add_settings(CLI::App& program, Common& common);
 void add_doctor(CLI::App& program, Common& common);
 void add_manual(CLI::App& program, Common& common);  // completion, man

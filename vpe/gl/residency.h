@@ -28,7 +28,7 @@ struct GpuMesh {
   IndexRanges ranges;
   double quantisation_m = 0;
   double longest_edge_m = 0;
-  lod::TileWalls walls;
+  std::shared_ptr<const lod::TileWalls> walls;  // null: nobody asked for them
   std::size_t bytes = 0;
 };
 GpuMesh upload(const TileGeometry& geometry);

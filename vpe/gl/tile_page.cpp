@@ -27,8 +27,9 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
       with_mesh(key.tile, key.detail, key.exaggeration, [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
         page.geometry =
             make_geometry(key.tile, mesh, height_m, radius_m, {key.exaggeration, key.origin, key.charts});
-        page.walls =
-            lod::make_walls(key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m);
+        if (!key.walls) return;
+        page.walls = std::make_shared<const lod::TileWalls>(
+            lod::make_walls(key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m));
       });
       const std::size_t bytes = page.geometry.bytes();
       return {std::move(page), bytes};

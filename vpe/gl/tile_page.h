@@ -30,6 +30,7 @@ struct PageKey {
   bool charts = true;                       // of meshes
   double exaggeration = 1;                  // of meshes and posts
   std::shared_ptr<const ShadeParams> look;  // of textures; equal looks are one object
+  bool walls = false;                       // of meshes: with them
   bool operator==(const PageKey&) const = default;
 };
 struct PageKeyHash {
@@ -47,7 +48,7 @@ constexpr int painted_variant(int paint) { return -1 - paint; }
 // The member of the key's kind is there.
 struct Page {
   TileGeometry geometry;
-  lod::TileWalls walls;  // of the geometry
+  std::shared_ptr<const lod::TileWalls> walls;  // of the geometry; null unless asked for
   ShadedTile shaded;
   std::shared_ptr<const paging::TileHeights> ground;
 };

@@ -78,6 +78,12 @@ void TileScene::set_look(const core::DrawRequest& request) {
     scale_ = std::make_shared<const core::ColourScale>(appearance);
     scale_of_ = appearance;
   }
+  // Those that are there have none, and would hide nothing. Once asked for they are made from then on, so that
+  // switching to and fro loses nothing.
+  if (!needs_walls_ && request.settings.occlusion != core::Occlusion::kOff) {
+    needs_walls_ = true;
+    meshes_.clear();
+  }
   const Painting now = gl::painting(appearance, request.sun, has_image, scale_);
   if (look_ && painting_ == now) return;
   // Meshes of two exaggerations do not meet; what is painted in another way needs other vertices and programs.
@@ -103,7 +109,8 @@ std::vector<TileNeed> TileScene::needs_of(const lod::Selection& selection, const
 }
 
 PageKey TileScene::mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const {
-  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, mesh.charts, look_->exaggeration, nullptr};
+  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, mesh.charts, look_->exaggeration, nullptr,
+          needs_walls_};
 }
 PageKey TileScene::texture_page(const lod::TileKey& tile, int paint) const {
   return {PageKind::kTexture, tile, paint, kTileCentre, true, 1, look_};
@@ -150,9 +157,10 @@ void TileScene::upload(TilePager::Loaded page) {
       // Asked for before a change.
       if (key.exaggeration != look_->exaggeration || key.charts != needs_charts(key.tile, *planet_, painting_))
         return;
+      if (needs_walls_ && !key.walls) return;
       {
         GpuMesh mesh = gl::upload(page.value.geometry);
-        mesh.walls = page.value.walls;
+        mesh.walls = std::move(page.value.walls);
         meshes_.insert(key.tile, {key.detail, key.origin, key.charts}, std::move(mesh), frame_);
         break;
       }

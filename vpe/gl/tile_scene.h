@@ -125,6 +125,7 @@ class TileScene {
   lod::OcclusionPass pass_;
   cull::CullerWorth worth_;
   bool occluding_ = false;
+  bool needs_walls_ = false;  // of the meshes that come: some frame was asked to leave out what is hidden
   std::vector<std::array<float, 4>> skirts_;
   std::vector<SceneTile> tiles_;
   double clearance_m_ = 0;

@@ -147,7 +147,7 @@ TileScene::Load TileScene::load_cover(const core::DrawRequest& request, Deadline
     for (const std::uint32_t n : wave) {
       if (hidden(n)) continue;
       if (occluding_) {
-        pass_.add(keys[n], meshes_.find(keys[n], needs[n].mesh, frame_)->walls, planet_->radius_m());
+        pass_.add(keys[n], *meshes_.find(keys[n], needs[n].mesh, frame_)->walls, planet_->radius_m());
       }
       if (needs[n].paint == 0) continue;
       const PageKey page = texture_page(keys[n], needs[n].paint);
@@ -189,7 +189,7 @@ void TileScene::occlude(const lod::Selection& tiles, const core::View& view,
                           [&](const MeshDetail& m) { return m.variant == tile.variant ? 0 : -1; });
     }
     list.push_back({tile.key, planet_->tree().shell(tile.index, tiles.exaggeration, tile.error_m),
-                    mesh == nullptr ? nullptr : &mesh->walls});
+                    mesh == nullptr ? nullptr : mesh->walls.get()});
   }
   lod::occlude(list, view.eye.eye_m, is_above_ground(tiles, view), occlusion_margin_rad(view),
                planet_->radius_m(), pass_, hidden);

@@ -21,14 +21,17 @@ double median(std::vector<double> values) {
 
 double Timing::median_s() const { return median(round_s); }
 
-std::vector<Timing> time_in_turns(std::span<const std::function<void()>> contestants, int rounds,
-                                  const Clock& clock) {
+std::vector<Timing> time_in_turns(std::span<const Contestant> contestants, int rounds, const Clock& clock) {
   if (rounds < 1) throw std::invalid_argument("time_in_turns: at least one round");
   std::vector<Timing> timings(contestants.size());
   for (int round = -1; round < rounds; ++round) {
     for (std::size_t k = 0; k < contestants.size(); ++k) {
+      const Contestant& contestant = contestants[k];
+      const bool is_rare = contestant.most_rounds < rounds;
+      if (is_rare && (round < 0 || round >= contestant.most_rounds)) continue;
+      if (contestant.prepare) contestant.prepare();
       const double begin_s = clock();
-      contestants[k]();
+      contestant.run();
       const double end_s = clock();
       if (round >= 0) timings[k].round_s.push_back(end_s - begin_s);
     }
@@ -36,13 +39,18 @@ std::vector<Timing> time_in_turns(std::span<const std::function<void()>> contest
   return timings;
 }
 
+std::vector<Timing> time_in_turns(std::span<const std::function<void()>> contestants, int rounds,
+                                  const Clock& clock) {
+  std::vector<Contestant> all;
+  for (const std::function<void()>& run : contestants) all.push_back({run, {}});
+  return time_in_turns(all, rounds, clock);
+}
+
 double ratio(const Timing& timing, const Timing& baseline) {
-  if (timing.round_s.size() != baseline.round_s.size()) {
-    throw std::invalid_argument("ratio: the rounds of both must be the same");
-  }
+  const std::size_t rounds = std::min(timing.round_s.size(), baseline.round_s.size());
+  if (rounds == 0) throw std::invalid_argument("ratio: one of both was not timed");
   std::vector<double> ratios;
-  for (std::size_t k = 0; k < timing.round_s.size(); ++k)
-    ratios.push_back(timing.round_s[k] / baseline.round_s[k]);
+  for (std::size_t k = 0; k < rounds; ++k) ratios.push_back(timing.round_s[k] / baseline.round_s[k]);
   return median(std::move(ratios));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,13 +17,23 @@ struct Timing {
   double median_s() const;
 };
 
+// What is timed, and what makes it ready, which is not.
+struct Contestant {
+  std::function<void()> run;
+  std::function<void()> prepare;  // before each run; may be left out
+  // Runs in so many of the rounds that count at most, the first ones, and then not in the one that does not.
+  int most_rounds = std::numeric_limits<int>::max();
+};
+
 // Runs every contestant once a round, in turns: first one round that does not count, then `rounds` that do. The
 // clock is read right before and right after each. Throws std::invalid_argument for rounds < 1.
+std::vector<Timing> time_in_turns(std::span<const Contestant> contestants, int rounds,
+                                  const Clock& clock = wall_clock());
 std::vector<Timing> time_in_turns(std::span<const std::function<void()>> contestants, int rounds,
                                   const Clock& clock = wall_clock());
 
-// How many times as long as the other, in the median of the rounds: what disturbs a round disturbs both. Throws
-// std::invalid_argument for different numbers of rounds.
+// How many times as long as the other, in the median of the rounds that both have: what disturbs a round
+// disturbs both. Throws std::invalid_argument where one has none.
 double ratio(const Timing& timing, const Timing& baseline);
 
 // Of an even number the mean of the two in the middle; NaN of none.

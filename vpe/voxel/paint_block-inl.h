@@ -31,7 +31,8 @@ struct alignas(64) Sources {
 // Arrays first: all of them are whole vectors.
 // Functions over a block are not inlined: nothing is gained by it, and compilers take minutes with sanitizers.
 struct alignas(64) Block {
-  // Set by begin_block(). Range and place are 0 and the eye where there is sky.
+  // Set by begin_block(). Range and place are 0 and the eye where there is sky. Places and per_length only
+  // where something is made of them.
   double place[3][kBlock];
   double per_length[kBlock];  // 1 / length of the row's direction
   float range[kBlock];
@@ -142,6 +143,10 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   block.ground = all & ~block.sky;
   block.sky &= all;
 
+  const core::SettingsValues& settings = job.request->settings;
+  if (job.one_colour && job.inverse_depth == nullptr && settings.haze_visibility_m <= 0.0 &&
+      settings.background != core::Background::kSky)
+    return;
   const Doubles dd;
   const Halves dh;
   const RowRays& row = *block.row;

@@ -23,6 +23,7 @@ struct PaintJob {
   double root_range_m = 0;  // at this range pixels are as wide as the posts of level 0 are apart
   int posts_side = 0;       // lines of a tile's grid
   bool by_point = false;    // ground is left to GroundPainter::colour_at
+  bool one_colour = false;  // all ground has the same, and data: no tile is looked at
   glm::dvec3 up{0, 0, 1};   // at the eye
   double eye_radius_m = 0;
 

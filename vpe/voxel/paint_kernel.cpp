@@ -37,7 +37,7 @@ inline HWY_NOINLINE void store_colours(const Block& block, mars::Rgb* out, int c
 HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, const PaintTile*& tile, int x, int y,
                       Block& block) {
   begin_block(job, tiles.max_level(), x, y, std::min(kBlock, job.width - x), block);
-  if (block.ground != 0 && !job.by_point) locate(tiles, tile, block);
+  if (block.ground != 0 && !job.by_point && !job.one_colour) locate(tiles, tile, block);
 }
 
 // Returns the number of pixels without data.

@@ -71,6 +71,15 @@ bool by_point(const paging::ShadeParams& look) {
   return look.flat || look.surfacing == paging::Surfacing::kImageAtPosts;
 }
 
+bool is_one_colour(const paging::ShadeParams& look, const paging::PlanetFile& planet) {
+  const PaintNeeds needs = paint_needs(look);
+  if (by_point(look) || needs.posts || needs.image) return false;
+  for (int face = 0; face < mars::kFaces; ++face) {
+    if (planet.has_missing({static_cast<mars::Face>(face), 0, 0, 0})) return false;
+  }
+  return true;
+}
+
 // Where pixels are as wide as the posts of level 0 are apart.
 double root_range(const paging::PlanetFile& planet, const core::View& view) {
   return lod::nominal_side_m(0, planet.radius_m()) / planet.meta().tile.intervals() * core::focal_px(view);
@@ -112,6 +121,7 @@ std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<c
   job.root_range_m = root_range(*planet_, request.view);
   job.posts_side = planet_->meta().tile.posts();
   job.by_point = by_point(look_);
+  job.one_colour = is_one_colour(look_, *planet_);
   job.eye_radius_m = glm::length(request.view.eye.eye_m);
   if (job.eye_radius_m > 0.0) job.up = request.view.eye.eye_m / job.eye_radius_m;
   job.width = size.x;

@@ -1,0 +1,181 @@
+// vpe report scaling and vpe report features at their smallest: what is counted, and that all files say the
+// same. Times are in them and are not judged.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <set>
+#include <sstream>
+
+#include "tests/app/support/app_fixture.h"
+
+namespace app_test {
+namespace {
+
+using nlohmann::json;
+
+class Report : public AppTest {
+ protected:
+  std::set<std::string> files(const std::string& folder) const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(dir_ / folder))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+
+  // A CSV file has the table's columns and as many rows.
+  void expect_csv(const std::string& file, const json& table) const {
+    std::istringstream csv(read_text(dir_ / file));
+    std::string line;
+    ASSERT_TRUE(std::getline(csv, line));
+    std::string names;
+    for (const json& column : table["columns"])
+      names += (names.empty() ? "" : ",") + column["name"].get<std::string>();
+    EXPECT_EQ(line, names);
+    std::size_t rows = 0;
+    while (std::getline(csv, line)) ++rows;
+    EXPECT_EQ(rows, table["rows"].size()) << file;
+  }
+
+  void expect_page(const std::string& file, std::size_t least_plots) const {
+    const std::string html = read_text(dir_ / file);
+    std::size_t plots = 0;
+    for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) ++plots;
+    EXPECT_GE(plots, least_plots);
+    for (const char* outside : {"<script", "src=", "href="}) EXPECT_EQ(html.find(outside), std::string::npos);
+  }
+
+  static json row(const json& table, const json& wanted) {
+    for (const json& one : table["rows"]) {
+      const bool same = std::all_of(wanted.items().begin(), wanted.items().end(),
+                                    [&](const auto& item) { return one[item.key()] == item.value(); });
+      if (same) return one;
+    }
+    ADD_FAILURE() << "no row of " << wanted;
+    return json::object();
+  }
+};
+
+TEST_F(Report, ScalingCountsWhatItVaries) {
+  const Result result = vpe({"report", "scaling", "--short", "-o", "out", "--json", "-q"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json report = parse_json(result.out);
+  EXPECT_EQ(files("out"),
+            (std::set<std::string>{"scaling.html", "scaling.json", "scaling-laws.csv", "scaling-samples.csv",
+                                   "scaling-planets.csv", "scaling-flights.csv"}));
+  EXPECT_EQ(parse_json(read_text(dir_ / "out/scaling.json")), report);
+  expect_csv("out/scaling-laws.csv", report["laws"]);
+  expect_csv("out/scaling-samples.csv", report["samples"]);
+  expect_csv("out/scaling-planets.csv", report["planets"]);
+  expect_csv("out/scaling-flights.csv", report["flights"]);
+  expect_page("out/scaling.html", 8);
+  EXPECT_EQ(report["run"]["command"], "vpe report scaling --short -o out --json -q");
+
+  const json cells = row(report["laws"], {{"axis", "builder"}, {"y", "cells"}});
+  EXPECT_NEAR(cells["exponent"].get<double>(), 2, 1e-9);
+  const json rays = row(report["laws"], {{"axis", "image"}, {"what", "rays, exact"}, {"y", "rays"}});
+  EXPECT_NEAR(rays["exponent"].get<double>(), 1, 1e-9);
+  EXPECT_EQ(rays["points"], 3);
+  const json triangles = row(report["laws"], {{"axis", "image"}, {"what", "polygons"}, {"y", "triangles"}});
+  EXPECT_GT(triangles["exponent"].get<double>(), 0.1);
+  EXPECT_LT(triangles["exponent"].get<double>(), 1.5);
+
+  // 257 and 513 posts a side, of both series.
+  ASSERT_EQ(report["planets"]["rows"].size(), 4U);
+  for (const json& planet : report["planets"]["rows"]) {
+    EXPECT_EQ(std::fmod(planet["finest_posts"].get<double>(), 129 * 129), 0);
+    const double side = planet["side_posts"].get<double>() - 1;
+    EXPECT_GT(planet["finest_posts"].get<double>(), side * side);
+    EXPECT_GT(planet["tiles"].get<double>(), planet["finest_posts"].get<double>() / (129 * 129));
+    EXPECT_GT(planet["bytes"].get<double>(), planet["finest_posts"].get<double>());
+  }
+  const json coarse = row(report["planets"], {{"side_posts", 257}, {"finest_level", 9}});
+  const json fine = row(report["planets"], {{"side_posts", 257}, {"finest_level", 13}});
+  EXPECT_NEAR(coarse["spacing_m"].get<double>() / fine["spacing_m"].get<double>(), 16, 1e-9);
+
+  for (const json& sample : report["samples"]["rows"]) {
+    EXPECT_GE(sample["median"], sample["least"]);
+    EXPECT_LE(sample["median"], sample["most"]);
+    if (sample["y_name"] == "frame_s" && sample["axis"] != "speed") {
+      EXPECT_EQ(sample["rounds"], 2);
+      EXPECT_GT(sample["least"], 0);
+    }
+  }
+  for (const json& flight : report["flights"]["rows"]) {
+    EXPECT_GT(flight["frames"], 0);
+    EXPECT_GE(flight["incomplete_share"], 0);
+    EXPECT_LE(flight["incomplete_share"], 1);
+  }
+}
+
+TEST_F(Report, ScalingRefusesWhatItCannotDo) {
+  expect_failure({"report", "scaling"}, 2, {"--output"});
+  expect_failure({"report", "scaling", "-o", "out", "--sizes", "257,300"}, 2, {"--sizes", "257, 513"});
+  expect_failure({"report", "scaling", "-o", "out", "--depths", "513,257"}, 2, {"--depths", "rising"});
+  expect_failure({"report", "scaling", "-o", "out", "--full", "--short"}, 2, {"--full", "--short"});
+  write_text(dir_ / "file", "x");
+  expect_failure({"report", "scaling", "-o", "file", "--short"}, 1, {"file"});
+  EXPECT_EQ(read_text(dir_ / "file"), "x");
+  EXPECT_FALSE(exists("out"));
+}
+
+// Nothing is left of a run that is stopped, and what was there stays.
+TEST_F(Report, ScalingStoppedLeavesNothing) {
+  std::filesystem::create_directory(dir_ / "out");
+  write_text(dir_ / "out/scaling.json", "old");
+  Command command = command_for({"report", "scaling", "-o", "out", "-q"});
+  command.signal = SIGINT;
+  command.when = [&] { return files("out").size() > 1; };
+  const Result result = run(command);
+  EXPECT_TRUE(result.signalled);
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(files("out"), std::set<std::string>{"scaling.json"});
+  EXPECT_EQ(read_text(dir_ / "out/scaling.json"), "old");
+}
+
+TEST_F(Report, FeaturesHoldWhatTheyUse) {
+  const Result result = vpe({"report", "features", planet().string(), "--short", "-o", "out", "--json", "-q",
+                             "--against", command_for({}).program.string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json report = parse_json(result.out);
+  EXPECT_EQ(files("out"), (std::set<std::string>{"features.html", "features.json", "features.csv"}));
+  EXPECT_EQ(parse_json(read_text(dir_ / "out/features.json")), report);
+  expect_csv("out/features.csv", report["features"]);
+  expect_page("out/features.html", 0);
+
+  const json& table = report["features"];
+  for (const char* backend : {"polygon", "voxel"}) {
+    const auto of = [&](const char* feature) {
+      return row(table, {{"feature", feature}, {"backend", backend}});
+    };
+    for (const char* feature : {"pseudo-colour", "light of facets", "light and normals of posts", "shadows",
+                                "planes", "statistics", "stereo", "certificate", "window"}) {
+      const json one = of(feature);
+      EXPECT_GT(one[feature == std::string("window") ? "peak_mb_off" : "peak_mb_on"], 10) << feature;
+    }
+    // Counted, so the same on every machine.
+    EXPECT_GT(of("light and normals of posts")["resident_mb_on"],
+              of("light and normals of posts")["resident_mb_off"]);
+    EXPECT_GT(of("shadows")["resident_mb_on"], of("shadows")["resident_mb_off"]);
+    EXPECT_EQ(of("statistics")["resident_mb_on"], of("statistics")["resident_mb_off"]);
+    // The other program is this one.
+    EXPECT_EQ(of("window")["resident_mb_never"], of("window")["resident_mb_off"]);
+    EXPECT_TRUE(of("shadows")["peak_mb_never"].is_null());
+  }
+  // This planet has none.
+  for (const json& one : table["rows"]) EXPECT_NE(one["feature"], "imagery");
+}
+
+TEST_F(Report, FeaturesRefuseWhatTheyCannotDo) {
+  const std::string small = planet().string();
+  expect_failure({"report", "features", small}, 2, {"-o"});
+  expect_failure({"report", "features", small, "-o", "out", "--short", "--pose", "1,2,3"}, 2,
+                 {"--pose", "LON,LAT,HEIGHT"});
+  expect_failure({"report", "features", small, "-o", "out", "--short", "-q", "--against", "/bin/true"}, 1,
+                 {"/bin/true", "same version"});
+  expect_failure({"report", "features", small, "-o", "out", "--short", "-q", "--against", "/bin/false"}, 1,
+                 {"/bin/false", "bare"});
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+}  // namespace
+}  // namespace app_test

@@ -1,0 +1,177 @@
+#include "vpe/report/error_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+namespace vpe::report {
+
+namespace {
+
+using Results = std::vector<core::DrawResult>;
+
+// Of memory, for each of the renderers that are there at once.
+double share_of(std::size_t renderers) {
+  return 1.0 / static_cast<double>(std::max<std::size_t>(1, renderers));
+}
+
+Results draw_all(core::Renderer& renderer, const std::vector<core::DrawRequest>& requests, bool want_range) {
+  Results results;
+  for (core::DrawRequest request : requests) {
+    request.want_range = want_range;
+    results.push_back(renderer.draw(request));
+    if (!results.back().missing.empty()) {
+      throw std::runtime_error("a picture to be measured lacks " + results.back().missing.front().tile + ": " +
+                               results.back().missing.front().why);
+    }
+  }
+  return results;
+}
+
+core::Frame put_together(const Compose& compose, Results& results, const core::View& view) {
+  std::vector<core::Frame> frames;
+  for (core::DrawResult& result : results) frames.push_back(std::move(result.frame));
+  if (!compose && frames.size() != 1)
+    throw std::invalid_argument("measure: several pictures and no way to join them");
+  core::Frame frame = compose ? compose(std::move(frames)) : std::move(frames.front());
+  const glm::ivec2 size = core::drawn_size(view);
+  if (frame.width != size.x || frame.height != size.y) {
+    throw std::invalid_argument("measure: a picture of " + std::to_string(frame.width) + "x" +
+                                std::to_string(frame.height) + " for a view of " + std::to_string(size.x) +
+                                "x" + std::to_string(size.y));
+  }
+  return frame;
+}
+
+// What a range image's own error makes of a shift.
+double slack_px(const core::View& view, const std::vector<float>& range_m, double range_error) {
+  float nearest = core::kSkyRange;
+  float farthest = 0;
+  for (const float range : range_m) {
+    if (!(range > 0)) continue;
+    nearest = std::min(nearest, range);
+    if (std::isfinite(range)) farthest = std::max(farthest, range);
+  }
+  if (!std::isfinite(nearest)) return 0;
+  return range_error * (1.0 + static_cast<double>(farthest) / static_cast<double>(nearest)) *
+         core::focal_px(view);
+}
+
+void count(const core::DrawRequest& request, const core::DrawResult& result, Measured& measured) {
+  const core::Certificate& c = result.certificate;
+  measured.stated_px =
+      std::max(measured.stated_px.value_or(0.0), c.picture_bound_px.value_or(c.shift_bound_px));
+  measured.triangles += result.stats.triangles + result.stats.skirt_triangles;
+  measured.tiles += result.stats.tiles_drawn;
+  if (result.stats.triangles == 0) {
+    const glm::ivec2 size = core::drawn_size(request.view);
+    measured.rays += std::int64_t{size.x} * size.y * request.settings.samples;
+  }
+  measured.bytes = std::max(measured.bytes, result.stats.bytes_resident);
+}
+
+Measured measure_errors(const Way& way, const core::View& view, const core::Frame& truth,
+                        const ErrorTimeOptions& options) {
+  Measured measured;
+  const std::unique_ptr<core::Renderer> renderer = options.make(way.renderer, 1.0);
+  Results results = draw_all(*renderer, way.requests, way.has_ranges);
+  for (std::size_t k = 0; k < results.size(); ++k) count(way.requests[k], results[k], measured);
+  const core::Frame frame = put_together(way.compose, results, view);
+  if (way.has_colours) {
+    measured.colour_rms = core::colour_rms(frame.colour, truth.colour);
+    measured.similarity = core::structural_similarity(frame.colour, truth.colour, frame.width, frame.height);
+  }
+  if (!way.has_ranges || way.compose) measured.stated_px.reset();
+  if (way.has_ranges) {
+    core::MetricOptions metrics;
+    metrics.threads = options.threads;
+    measured.shift = core::compare_to_reference(view, frame.range_m, truth.range_m, options.surface, metrics);
+    measured.skyline = core::skyline_shift_px(frame.range_m, truth.range_m, frame.width, frame.height);
+    measured.range = core::range_error(frame.range_m, truth.range_m);
+    measured.slack_px = slack_px(view, frame.range_m, way.range_error);
+  }
+  return measured;
+}
+
+void measure_times(const Subject& subject, const ErrorTimeOptions& options, std::vector<Measured>& measured,
+                   const std::function<void(const std::string&)>& step) {
+  std::set<std::string> names;
+  for (const Way& way : subject.ways) names.insert(way.renderer);
+  std::map<std::string, std::unique_ptr<core::Renderer>> renderers;
+  for (const std::string& name : names) renderers[name] = options.make(name, share_of(names.size()));
+  const auto draw = [&](const Way& way) {
+    std::int64_t uploaded = 0;
+    for (const core::DrawRequest& request : way.requests) {
+      core::DrawRequest plain = request;
+      plain.want_range = !way.has_colours;
+      uploaded += renderers.at(way.renderer)->draw(plain).stats.pages_uploaded;
+    }
+    return uploaded;
+  };
+  std::vector<Contestant> contestants;
+  std::vector<int> turns(subject.ways.size(), 0);
+  std::vector<bool> forgotten(subject.ways.size(), false);  // what it needs, while others are drawn
+  for (std::size_t k = 0; k < subject.ways.size(); ++k) {
+    Contestant contestant;
+    contestant.most_rounds = subject.ways[k].most_rounds;
+    contestant.prepare = [&, k] {
+      step("timing " + subject.ways[k].sweep);
+      if (turns[k] == 1) {
+        forgotten[k] = draw(subject.ways[k]) > 0;
+      } else if (forgotten[k]) {
+        draw(subject.ways[k]);
+      }
+    };
+    contestant.run = [&, k] {
+      const std::int64_t uploaded = draw(subject.ways[k]);
+      if (turns[k]++ > 0) measured[k].pages_reloaded += uploaded;
+    };
+    contestants.push_back(std::move(contestant));
+  }
+  const std::vector<Timing> timings = time_in_turns(contestants, options.rounds, options.clock);
+  for (std::size_t k = 0; k < timings.size(); ++k) {
+    measured[k].timing = timings[k];
+    measured[k].ratio = ratio(timings[k], timings[subject.baseline]);
+  }
+}
+
+}  // namespace
+
+double Measured::shift_p99_px() const { return std::max(shift.forward.p99_px, shift.backward.p99_px); }
+
+double Measured::error(ErrorKind kind) const {
+  return kind == ErrorKind::kShift ? shift_p99_px() : colour_rms.value_or(0.0);
+}
+
+bool Measured::within_stated() const { return !stated_px || shift.forward.max_px <= *stated_px + slack_px; }
+
+SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options) {
+  if (subject.ways.empty() || subject.baseline >= subject.ways.size() || subject.references.empty())
+    throw std::invalid_argument("measure: a subject without ways, baseline or reference");
+  const double ways = static_cast<double>(subject.ways.size());
+  const double steps = static_cast<double>(subject.references.size()) + 2 * ways + (options.rounds + 1) * ways;
+  double done = 0;
+  const auto step = [&](const std::string& what, double many) {
+    options.progress(subject.view + ", " + what, std::min(1.0, done / steps));
+    done += many;
+  };
+  std::vector<core::Frame> truths;
+  for (const Reference& reference : subject.references) {
+    step("reference", 1);
+    const std::unique_ptr<core::Renderer> renderer = options.make(reference.renderer, 1.0);
+    Results results = draw_all(*renderer, reference.requests, reference.has_ranges);
+    truths.push_back(put_together(reference.compose, results, reference.view));
+  }
+  SubjectResult result{subject, {}};
+  for (const Way& way : subject.ways) {
+    step(way.sweep, 2);
+    result.measured.push_back(
+        measure_errors(way, subject.references.at(way.reference).view, truths.at(way.reference), options));
+  }
+  measure_times(subject, options, result.measured, [&](const std::string& what) { step(what, 1); });
+  return result;
+}
+
+}  // namespace vpe::report

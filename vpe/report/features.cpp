@@ -1,0 +1,71 @@
+#include "vpe/report/features.h"
+
+#include "vpe/report/turns.h"
+
+namespace vpe::report {
+namespace {
+
+using Figure = std::optional<double> SceneCost::*;
+
+struct NamedFigure {
+  const char* name;
+  Figure figure;
+  double factor;
+  const char* meaning;
+};
+
+constexpr NamedFigure kFigures[] = {
+    {"peak_mb", &SceneCost::peak_mb, 1, "memory of the process at most"},
+    {"startup_s", &SceneCost::startup_s, 1, "from starting the process to the first finished picture"},
+    {"frame_ms", &SceneCost::frame_s, 1e3, "of a picture whose tiles are there"},
+    {"resident_mb", &SceneCost::resident_mb, 1, "tiles' payloads held, as counted"}};
+
+Cell cell(const std::optional<double>& value, double factor = 1) {
+  return value ? Cell(*value * factor) : Cell();
+}
+
+}  // namespace
+
+SceneCost median_cost(std::span<const SceneCost> rounds) {
+  SceneCost out;
+  for (const NamedFigure& named : kFigures) {
+    std::vector<double> values;
+    for (const SceneCost& round : rounds) {
+      if (round.*named.figure) values.push_back(*(round.*named.figure));
+    }
+    if (!values.empty()) out.*named.figure = median(std::move(values));
+  }
+  return out;
+}
+
+Table feature_table(std::span<const FeatureCost> costs) {
+  Table table{"features",
+              "What each thing costs: not used (off), used (on), and in a program that was built without it "
+              "(never). Empty: does not apply; the note says why.",
+              {{"feature", "what a scene can do without"},
+               {"backend", "that draws"},
+               {"compared", "the scene without it"}},
+              {}};
+  for (const NamedFigure& named : kFigures) {
+    for (const char* state : {"off", "on", "never"})
+      table.columns.push_back(
+          {std::string(named.name) + "_" + state, std::string(named.meaning) + ", " + state});
+  }
+  table.columns.push_back({"frame_ratio", "frame on to off, in turns within one process"});
+  table.columns.push_back({"never_ratio", "frame off to never, processes in turns"});
+  table.columns.push_back({"note", ""});
+  for (const FeatureCost& cost : costs) {
+    std::vector<Cell> row{cost.feature, cost.backend, cost.compared};
+    for (const NamedFigure& named : kFigures) {
+      for (const SceneCost* state : {&cost.off, &cost.on, &cost.never})
+        row.push_back(cell(state->*named.figure, named.factor));
+    }
+    row.push_back(cell(cost.frame_ratio));
+    row.push_back(cell(cost.never_ratio));
+    row.emplace_back(cost.note);
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace vpe::report

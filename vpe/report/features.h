@@ -1,0 +1,40 @@
+// What things that a scene can do without cost: used, not used, and never compiled in.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vpe/report/table.h"
+
+namespace vpe::report {
+
+// Of one process that drew a scene. Nothing: not measured.
+struct SceneCost {
+  std::optional<double> peak_mb;      // of the process
+  std::optional<double> startup_s;    // from starting the process to the first finished picture
+  std::optional<double> frame_s;      // in the median, tiles there
+  std::optional<double> resident_mb;  // counted by the renderer: payloads of tiles on CPU and GPU
+};
+
+// The medians of each figure over processes that were run in turns; nothing where none has it.
+SceneCost median_cost(std::span<const SceneCost> rounds);
+
+struct FeatureCost {
+  std::string feature;
+  std::string backend;
+  std::string compared;  // the scene without it, as in "bare"
+  SceneCost off;
+  SceneCost on;
+  SceneCost never;                    // of a program without it, in the scene without it
+  std::optional<double> frame_ratio;  // on to off, in turns within one process
+  std::optional<double> never_ratio;  // frames off to never, in turns between processes
+  std::string note;                   // as why it cannot be left out of the program
+};
+
+// A row a feature and backend: feature, backend, compared, then peak_mb, startup_s, frame_ms and resident_mb
+// each _off, _on, _never; frame_ratio, never_ratio, note.
+Table feature_table(std::span<const FeatureCost> costs);
+
+}  // namespace vpe::report
