@@ -31,6 +31,17 @@ TEST_F(Config, TopAndTable) {
   EXPECT_EQ(query("fov = 40\nset = ['mode=lit']\n[render]\njson = true\n").out.find("lon_deg,lat_deg"), 0U);
 }
 
+// Commands of two words have a table in a table, whose keys are theirs.
+TEST_F(Config, CommandsOfTwoWords) {
+  EXPECT_EQ(query("[report.error-time]\nrounds = 3\n").out.find("lon_deg,lat_deg"), 0U);
+  expect_error("[report.error-time]\nround = 3\n", {"c.toml:2", "'report error-time'", "--round"});
+  expect_error("[report]\nrounds = 3\n", {"c.toml:2", "'report'", "--rounds"});
+  expect_error("[report.none]\nrounds = 3\n", {"c.toml:1", "[report none]", "not a command"});
+  write_text(dir_ / "two.toml", "[report.error-time]\nview = 'moon'\noutput = 'there'\n");
+  expect_failure({"report", "error-time", planet().string(), "--config", "two.toml"}, 2, {"--view 'moon'"});
+  EXPECT_TRUE(exists("there"));
+}
+
 TEST_F(Config, CommandLineWins) {
   EXPECT_EQ(query("memory = 1\n").exit_code, 2);
   EXPECT_EQ(query("memory = 1\n", {"--memory", "128"}).exit_code, 0);

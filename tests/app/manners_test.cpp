@@ -95,6 +95,7 @@ TEST_F(Manual, TheManPageNamesEveryCommandOptionAndSetting) {
     }
   }
   EXPECT_GE(commands, 10);
+  EXPECT_NE(plain.find(".SS vpe report error-time [PLANET]"), std::string::npos);
   for (const auto& setting : parse_json(vpe({"settings", "--json"}).out)) {
     EXPECT_NE(plain.find(".B " + setting.at("key").get<std::string>()), std::string::npos);
   }
@@ -130,6 +131,8 @@ TEST_F(Manual, BashCompletesCommandsOptionsKeysAndChoices) {
   EXPECT_EQ(offers("vpe ren", 1), "render\n");
   EXPECT_NE(offers("vpe ''", 1).find("verify\n"), std::string::npos);
   EXPECT_EQ(offers("vpe render --cert", 2), "--certificate\n");
+  EXPECT_EQ(offers("vpe report err", 2), "error-time\n");
+  EXPECT_EQ(offers("vpe report error-time --base", 3), "--baseline\n");
   EXPECT_EQ(offers("vpe render --set exagg", 3), "exaggeration=\n");
   EXPECT_EQ(offers("vpe render --set mode = wire", 5), "wireframe\n");
   EXPECT_NE(offers("vpe render --set edges =", 4).find("smooth\n"), std::string::npos);

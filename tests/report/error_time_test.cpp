@@ -207,6 +207,13 @@ TEST_F(ErrorTime, TellsAFalseStatement) {
   EXPECT_FALSE(summarize_sweeps(result).at(0).within_stated);
 }
 
+TEST_F(ErrorTime, WhatStatesNothingIsNotHeldToIt) {
+  stated_factor_ = std::numeric_limits<double>::quiet_NaN();
+  const SubjectResult result = measure(subject(), options_);
+  EXPECT_FALSE(result.measured[0].stated_px.has_value());
+  EXPECT_TRUE(result.measured[0].within_stated());
+}
+
 TEST_F(ErrorTime, SweepsSayHowFarErrorsFall) {
   const SubjectResult result = measure(subject(), options_);
   const std::vector<SweepSummary> sweeps = summarize_sweeps(result);

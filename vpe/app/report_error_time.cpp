@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "vpe/app/embree_ranges.h"
 #include "vpe/app/interrupt.h"
 #include "vpe/app/output.h"
 #include "vpe/app/picture_options.h"
@@ -27,6 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kExactBaseline = "exact";
+constexpr const char* kEmbreeBaseline = "embree";
+
 struct ErrorTimeArguments {
   std::string planet;
   std::string output;
@@ -34,6 +38,7 @@ struct ErrorTimeArguments {
   std::string size;  // empty: as suits
   int rounds = 0;    // 0: as suits
   std::vector<std::string> views;
+  std::string baseline = kExactBaseline;
 };
 
 constexpr const char* kShortViews[] = {"high oblique", "canyon floor"};
@@ -85,6 +90,7 @@ class Renderers {
   std::unique_ptr<core::Renderer> make(const std::string& name, double share) const {
     const auto bytes = static_cast<std::size_t>(share * static_cast<double>(memory_bytes(common_)));
     if (name == kRayPictures) return voxel::make_ray_renderer(planet_, {bytes, common_.threads});
+    if (name == kEmbreeRanges) return make_embree_renderer(planet_, common_.threads);
     gl::RendererOptions options;
     options.memory_bytes = bytes;
     options.threads = common_.threads;
@@ -154,6 +160,8 @@ void error_time(const ErrorTimeArguments& arguments, const Common& common) {
   constexpr int kLeastSide = 32;  // halves of it have windows of structural similarity
   if (size.width < kLeastSide || size.height < kLeastSide)
     throw UsageError("--size " + arguments.size + ": each side must be at least " + std::to_string(kLeastSide));
+  if (arguments.baseline == kEmbreeBaseline && !has_embree())
+    throw UsageError("--baseline embree: not built in; configure with -DVPE_EMBREE=ON (libembree-dev)");
   const int rounds = arguments.rounds > 0 ? arguments.rounds : arguments.is_short ? 3 : 5;
   const fs::path folder = arguments.output;
   make_folder(folder);
@@ -187,6 +195,7 @@ void error_time(const ErrorTimeArguments& arguments, const Common& common) {
       ways.width = size.width;
       ways.height = size.height;
       ways.is_short = arguments.is_short;
+      ways.with_embree = arguments.baseline == kEmbreeBaseline;
       report.results.push_back(report::measure(subject_of(views[k], *planet, ways), options));
     }
     InterruptGuard::check();
@@ -221,6 +230,12 @@ void add_report_error_time(CLI::App& report, Common& common) {
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (640x360; with --short 320x180)");
   command->add_option("--rounds", arguments->rounds, "Of timing, in turns; 0: 5, with --short 3")
       ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--baseline", arguments->baseline,
+          "What times are ratios to: rays in mode exact, or ranges alone by Embree, where it is built in")
+      ->check(CLI::IsMember({kExactBaseline, kEmbreeBaseline}))
       ->capture_default_str();
   command->callback([arguments, &common] { error_time(*arguments, common); });
 }

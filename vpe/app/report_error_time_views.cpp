@@ -25,9 +25,10 @@ constexpr Place kEmbedded[] = {
     {"canyon floor", "200 m above the floor of Coprates Chasma", -64.2, -12.9, 200, 281, 2, true},
     {"rim", "800 m above the wall of Coprates Chasma", -59.2, -13.7, 800, 90, -8, true},
     {"crater", "3 km above the rim of Gale, towards its mound", 137.4, -4, 3000, 180, -10, true},
-    {"plain", "1.5 km above Utopia Planitia", 118, 48, 1500, 120, -6, true},
+    {"plain", "1.5 km above the plateau south of Coprates Chasma, away from it", -61, -16.2, 1500, 150, -6,
+     true},
     {"grazing", "300 m above a slope of Coprates Chasma, level", -64.5, -13, 300, 110, 0, false},
-    {"polar", "30 km above the north pole", 0, 89.9995, 30000, 40, -25, false},
+    {"polar", "1500 km above the north pole", 0, 89.9995, 1.5e6, 40, -80, false},
 };
 
 struct Ground {

@@ -119,7 +119,7 @@ class Planner {
     const bool has_images = planet_.meta().image_tiles > 0;
     for (const bool textured : {true, false}) {
       if (!textured && !has_images) continue;
-      for (int level = std::max(1, finest - 5); level <= finest + 1; level += options_.is_short ? 2 : 1) {
+      for (int level = std::max(1, finest - 5); level <= finest + 3; level += options_.is_short ? 2 : 1) {
         std::string table = "0:" + std::to_string(level);
         for (int down = 1; down < level; ++down) {
           table += "," + core::format_number(pixel_m * (1 << (down - 1))) + ":" + std::to_string(level - down);
@@ -154,7 +154,7 @@ class Planner {
     };
     for (int times = 1; times <= many / 2; times *= 2) {
       report::Way& way =
-          add("rays, pictures many times as large", std::to_string(times) + " x " + std::to_string(times),
+          add("rays, averaged", std::to_string(times) + " x " + std::to_string(times) + " rays a pixel",
               kRayPictures, enlarged(hard, times));
       way.compose = average(small.view, times);
       describe(way);
@@ -182,9 +182,11 @@ class Planner {
                                    true});
     std::vector<int> facets{0, 4, 8, 16};
     if (options_.is_short) facets = {0, 8};
+    std::vector<std::int64_t> widths{64, 128, 256, 512, 1024, 2048, 4096, 8192};
+    if (options_.is_short) widths = {64, 256, 1024, 8192};
     for (const int many : facets) {
       const std::string sweep = many == 0 ? "cylinder by columns" : std::to_string(many) + " facets by columns";
-      for (std::int64_t width = 64; width <= 8192; width *= options_.is_short ? 4 : 2) {
+      for (const std::int64_t width : widths) {
         const panorama::PanoramaMap map = many == 0 ? cylinder_of(width) : facets_of(many, width);
         report::Way& way =
             add(sweep, std::to_string(width) + " columns", kRayPictures, requests_of(map, standing));

@@ -61,8 +61,8 @@ double slack_px(const core::View& view, const std::vector<float>& range_m, doubl
 
 void count(const core::DrawRequest& request, const core::DrawResult& result, Measured& measured) {
   const core::Certificate& c = result.certificate;
-  measured.stated_px =
-      std::max(measured.stated_px.value_or(0.0), c.picture_bound_px.value_or(c.shift_bound_px));
+  const double stated_px = c.picture_bound_px.value_or(c.shift_bound_px);
+  if (std::isfinite(stated_px)) measured.stated_px = std::max(measured.stated_px.value_or(0.0), stated_px);
   measured.triangles += result.stats.triangles + result.stats.skirt_triangles;
   measured.tiles += result.stats.tiles_drawn;
   if (result.stats.triangles == 0) {
