@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <thread>
 
 #include "tests/paging/planet_fixture.h"
+#include "tests/support/worst.h"
 
 namespace {
 
@@ -159,7 +161,9 @@ TEST(Surface, IsClosedAtEveryExaggeration) {
       }
     }
     EXPECT_GT(edges, 20);
-    EXPECT_LE(gap_m, 1e-8 * std::max(1.0, x)) << x;
+    char claim[64];
+    std::snprintf(claim, sizeof claim, "S is closed between levels, drawn %g times as high", x);
+    test_support::record_worst(claim, gap_m, 1e-8 * std::max(1.0, x), "m");
     if (x > 1.0) {
       EXPECT_GT(each_by_itself_m, 10 * (x - 1)) << x;
     }
