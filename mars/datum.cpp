@@ -28,8 +28,8 @@ double ellipsoidal_height(double a, double b, double p, double z) {
   const double e2 = 1 - (b * b) / (a * a);
   // Bowring's parametric latitude converges by about e^4 h / a a step; three steps are beyond double precision
   // for flattenings of planets.
+  if (p <= 1e-150 * std::abs(z)) return std::abs(z) - b;  // over a pole
   double t = z * a / (p * b);
-  if (!std::isfinite(t)) return std::abs(z) - b;
   for (int step = 0; step < 6; ++step) {
     const double c = 1 / std::sqrt(1 + t * t);
     const double s = t * c;
