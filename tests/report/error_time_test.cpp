@@ -244,6 +244,14 @@ TEST_F(ErrorTime, DefaultsAreHeldAgainstTheFront) {
   EXPECT_NEAR(place_defaults(result).at(0).over_front, 1, 1e-6);
 }
 
+TEST_F(ErrorTime, WhatIsRoundingsIsNotBetter) {
+  SubjectResult result = measure(subject(), options_);
+  result.measured[1].shift.forward.p99_px = result.measured[1].shift.backward.p99_px = 2e-5;
+  result.measured[2].shift.forward.p99_px = result.measured[2].shift.backward.p99_px = 1e-5;  // and slower
+  EXPECT_EQ(fronts(result).back(), 1U);
+  EXPECT_EQ(place_defaults(result).at(0).error, 2e-5);
+}
+
 // Two halves of a picture, put together.
 TEST_F(ErrorTime, PicturesMayBePutTogether) {
   Subject all = subject();

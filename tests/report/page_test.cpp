@@ -95,6 +95,12 @@ TEST(Plot, IsXmlWithAPointForEachThatIsFinite) {
   EXPECT_EQ(to_svg(small_plot()), svg);
 }
 
+TEST(Plot, AFileHasABackground) {
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(to_svg_file(small_plot()).c_str()));
+  EXPECT_EQ(std::string(document.child("svg").child("rect").attribute("fill").value()), "#fff");
+}
+
 // One decade in x is a third of the axis here: 1, 10, 100 stand at the same distances.
 TEST(Plot, PointsStandAtTheirLogarithms) {
   Plot plot;

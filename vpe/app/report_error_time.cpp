@@ -126,7 +126,7 @@ std::vector<std::string> about(const ErrorTimeArguments& arguments, const Common
 void write_files(const fs::path& folder, const report::ErrorTimeReport& report) {
   write_whole(folder / "error-time.csv", report::to_csv(report::points_table(report.results)));
   write_whole(folder / "error-time.json", report::error_time_json(report).dump(1) + "\n");
-  write_whole(folder / "error-time.svg", report::to_svg(report::summary_plot(report.results)));
+  write_whole(folder / "error-time.svg", report::to_svg_file(report::summary_plot(report.results)));
   write_whole(folder / "error-time.html", report::to_html(report::error_time_page(report)));
 }
 

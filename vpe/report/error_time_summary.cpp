@@ -10,7 +10,7 @@ namespace vpe::report {
 
 namespace {
 
-// Rivals of one name, all others infinitely slow.
+// Rivals of one name, all others infinitely slow. What is rounding's counts alike.
 std::vector<CostAndError> costs(const SubjectResult& result, const std::string& rivals,
                                 const std::string& renderer) {
   std::vector<CostAndError> points;
@@ -19,7 +19,7 @@ std::vector<CostAndError> costs(const SubjectResult& result, const std::string& 
     const bool counts = way.rivals == rivals && (renderer.empty() || way.renderer == renderer);
     points.push_back(
         {counts ? 1e3 * result.measured[k].timing.median_s() : std::numeric_limits<double>::infinity(),
-         result.measured[k].error(way.kind)});
+         std::max(result.measured[k].error(way.kind), rounding_floor(way.kind))});
   }
   return points;
 }
@@ -78,16 +78,16 @@ std::vector<DefaultPlace> place_defaults(const SubjectResult& result) {
     place.view = result.subject.view;
     place.sweep = way.sweep;
     place.knob = way.knob;
-    place.error = all[k].error;
+    place.error = result.measured[k].error(way.kind);
     place.time_ms = all[k].cost;
-    place.front_ms = cost_at_error(all, place.error);
+    place.front_ms = cost_at_error(all, all[k].error);
     for (std::size_t n = 0; n < all.size(); ++n) {
       const Way& rival = result.subject.ways[n];
-      if (all[n].cost == place.front_ms && all[n].error <= place.error)
+      if (all[n].cost == place.front_ms && all[n].error <= all[k].error)
         place.front = rival.sweep + ", " + rival.knob;
     }
     place.over_front = place.time_ms / place.front_ms;
-    place.over_own_front = place.time_ms / cost_at_error(own, place.error);
+    place.over_own_front = place.time_ms / cost_at_error(own, own[k].error);
     places.push_back(place);
   }
   return places;

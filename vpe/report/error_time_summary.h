@@ -32,7 +32,7 @@ struct SweepSummary {
 // Of ways in their order, from coarse to fine; sweeps of one way are left out.
 std::vector<SweepSummary> summarize_sweeps(const SubjectResult& result);
 
-// Where a default stands among its rivals of the same view.
+// Where a default stands among its rivals of the same view. Errors below rounding_floor() count as that.
 struct DefaultPlace {
   std::string view;
   std::string sweep;

@@ -169,4 +169,12 @@ class Drawing {
 
 std::string to_svg(const Plot& plot) { return Drawing(plot).svg(); }
 
+std::string to_svg_file(const Plot& plot) {
+  std::string svg = to_svg(plot);
+  const std::string title_end = "</title>\n";
+  svg.insert(svg.find(title_end) + title_end.size(), "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
+  svg.insert(4, " style=\"color:#000\"");
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg;
+}
+
 }  // namespace vpe::report

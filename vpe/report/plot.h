@@ -37,4 +37,7 @@ struct Plot {
 // colour and in the shape of their points, which the legend shows. The same plot, the same text.
 std::string to_svg(const Plot& plot);
 
+// The same for a file of its own: black on white, wherever it is shown.
+std::string to_svg_file(const Plot& plot);
+
 }  // namespace vpe::report

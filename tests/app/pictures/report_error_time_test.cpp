@@ -151,8 +151,10 @@ void ReportErrorTime::files_agree() const {
 
 TEST_F(ReportErrorTime, ShortRunHolds) {
   test_support::build_rough(dir_ / "rough.vpe");
-  const Result result = vpe({"report", "error-time", "rough.vpe", "-o", "out", "--short", "--size", "192x108",
-                             "--rounds", "1", "--json", "-q"});
+  Command command = command_for({"report", "error-time", "rough.vpe", "-o", "out", "--short", "--size", "192x108",
+                                 "--rounds", "1", "--json", "-q"});
+  command.limit_s = 600;  // seconds where nothing else runs
+  const Result result = run(command);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   json_ = parse_json(result.out);
