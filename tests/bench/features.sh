@@ -72,11 +72,11 @@ within() {
 polygon,overlays,overlay::draw
 polygon,statistics,StatsWriter::row
 polygon,stereo,draw_stereo
-polygon,planes,read_range
+polygon,planes,Target::read_depth
 polygon,occlusion culling,make_walls
 polygon,occlusion culling,OcclusionPass::add
 polygon,light and normals of posts,GroundPainter::shade
-polygon,shadows,shadow
+polygon,shadows,GroundPainter::sees_sun
 voxel,light and normals of posts,GroundPainter::normals
 voxel,imagery,GroundPainter::image
 voxel,overlays,overlay::draw

@@ -107,7 +107,7 @@ TEST(Law, TimesOfTurnsAreSamples) {
 }
 
 TEST(Features, MediansOfWhatWasMeasured) {
-  const std::vector<SceneCost> rounds{{1, 10, {}, 7}, {3, 20, {}, {}}, {2, 90, {}, {}}};
+  const std::vector<SceneCost> rounds{{1, 10, {}, {}, 7}, {3, 20, {}, {}, {}}, {2, 90, {}, {}, {}}};
   const SceneCost cost = median_cost(rounds);
   EXPECT_EQ(cost.peak_mb, 2);
   EXPECT_EQ(cost.startup_s, 20);

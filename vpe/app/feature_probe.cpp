@@ -8,6 +8,7 @@
 #include "paging/surface.h"
 #include "vpe/app/child.h"
 #include "vpe/app/planet_argument.h"
+#include "vpe/app/processor_time.h"
 #include "vpe/app/report.h"
 #include "vpe/report/turns.h"
 
@@ -59,14 +60,18 @@ void run_probe(const ProbeOrder& order) {
   const report::Clock clock = report::wall_clock();
   const double finished_s = clock();
   std::vector<double> frames_s;
+  std::vector<double> processors_s;
   for (int frame = 0; frame < order.frames; ++frame) {
     const double begin_s = clock();
+    const double before_s = processor_s();
     stats = painter.paint(*renderer, request);
     frames_s.push_back(clock() - begin_s);
+    processors_s.push_back(processor_s() - before_s);
   }
   print_json({{"finished_s", finished_s},
               {"peak_mb", peak_mb()},
               {"frame_s", report::median(std::move(frames_s))},
+              {"processor_s", report::median(std::move(processors_s))},
               {"resident_mb", static_cast<double>(stats.bytes_resident) * 1e-6}});
 }
 
@@ -106,6 +111,7 @@ report::SceneCost probe(const ProbeOrder& order) {
   cost.startup_s = json["finished_s"].get<double>() - begin_s;
   cost.peak_mb = json["peak_mb"].get<double>();
   cost.frame_s = json["frame_s"].get<double>();
+  cost.processor_s = json["processor_s"].get<double>();
   cost.resident_mb = json["resident_mb"].get<double>();
   return cost;
 }

@@ -26,8 +26,8 @@ struct ProbeOrder {
 core::View feature_view(const std::string& pose, const std::string& size,
                         const std::shared_ptr<const paging::PlanetFile>& planet);
 
-// Draws the scene in this process and prints {"finished_s", "peak_mb", "frame_s", "resident_mb"}: finished_s is
-// when the first picture was finished, on the clock that all processes share.
+// Draws the scene in this process and prints {"finished_s", "peak_mb", "frame_s", "processor_s",
+// "resident_mb"}: finished_s is when the first picture was finished, on the clock that all processes share.
 void run_probe(const ProbeOrder& order);
 
 // The same in a child process. Throws std::runtime_error with what the child said.

@@ -27,7 +27,8 @@ const char* note_on(const std::string& feature, bool compared_with_other) {
   if (feature == "overlays")
     return compared_with_other ? "never: VPE_OVERLAYS=OFF"
                                : "never: give --against a program built with VPE_OVERLAYS=OFF";
-  if (feature == "imagery") return "without imagery in the planet file nothing of it is read; built in always";
+  if (feature.starts_with("imagery"))
+    return "without imagery in the planet file nothing of it is read; built in always";
   if (feature == "shadows") return "their cost is in making tiles (start-up), not in frames; built in always";
   return kNotLeftOut;
 }
@@ -70,12 +71,12 @@ void measure_processes(const FeaturePlan& plan, std::vector<FeatureRow>& rows,
       order.program = self;
       step();
       costs[k].push_back(probe(order));
-      rows[k].frame_s.push_back(*costs[k].back().frame_s);
+      rows[k].processor_s.push_back(*costs[k].back().processor_s);
       if (plan.against.empty() || !is_asked_of_other(*rows[k].scene)) continue;
       order.program = plan.against;
       step();
       never[k].push_back(probe(order));
-      rows[k].never_frame_s.push_back(*never[k].back().frame_s);
+      rows[k].never_processor_s.push_back(*never[k].back().processor_s);
     }
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -142,7 +143,7 @@ std::vector<report::FeatureCost> feature_costs(const std::vector<FeatureRow>& ro
     cost.note = note_on(cost.feature, has_other);
     if (cost.feature == "overlays" && has_other) {
       cost.never = without.never;
-      cost.never_ratio = report::ratio({without.frame_s}, {without.never_frame_s});
+      cost.never_ratio = report::ratio({without.processor_s}, {without.never_processor_s});
     }
   }
   for (const std::string& backend : {kPolygonBackend, kRayBackend}) {
@@ -166,7 +167,7 @@ std::vector<report::FeatureCost> feature_costs(const std::vector<FeatureRow>& ro
     window.note = "on: needs a screen, see docs/window.md; never: VPE_WINDOW=OFF";
     if (has_other) {
       window.never = bare.never;
-      window.never_ratio = report::ratio({bare.frame_s}, {bare.never_frame_s});
+      window.never_ratio = report::ratio({bare.processor_s}, {bare.never_processor_s});
     }
   }
   return costs;

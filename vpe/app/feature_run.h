@@ -28,10 +28,10 @@ struct FeaturePlan {
 struct FeatureRow {
   const FeatureScene* scene = nullptr;
   std::string backend;
-  report::SceneCost cost;   // of this program's processes
-  report::SceneCost never;  // of the other's, where it is asked
-  std::vector<double> frame_s;
-  std::vector<double> never_frame_s;
+  report::SceneCost cost;           // of this program's processes
+  report::SceneCost never;          // of the other's, where it is asked
+  std::vector<double> processor_s;  // of a frame, a process each
+  std::vector<double> never_processor_s;
   report::Timing turns;
   std::optional<double> rest_ratio;  // picture to the same without what no stage of it counts
 };

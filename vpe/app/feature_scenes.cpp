@@ -16,12 +16,13 @@ const std::vector<std::string> kBare{"mode=unlit", "colour=none",        "backgr
 }  // namespace
 
 std::span<const FeatureScene> feature_scenes() {
-  static const std::array<FeatureScene, 11> kScenes{{
+  static const std::array<FeatureScene, 12> kScenes{{
       {"bare", "", {}},
-      {"imagery", "bare", {"colour=image"}, false, false, false, true, true},
+      {"imagery at posts", "bare", {"colour=image"}, false, false, false, true, true},
       {"pseudo-colour", "bare", {"colour=elevation"}},
       {"light of facets", "bare", {"mode=lit", "shading=flat"}},
       {"light and normals of posts", "bare", {"mode=lit"}},
+      {"imagery", "light and normals of posts", {"mode=textured"}, false, false, false, true, true},
       {"shadows", "light and normals of posts", {"mode=lit", "shadows=on"}},
       {"overlays",
        "planes",

@@ -83,6 +83,7 @@ std::string join(const std::vector<std::string>& words) {
 std::vector<std::string> long_options(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group().empty()) continue;  // not for people
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   std::sort(names.begin(), names.end());

@@ -18,6 +18,7 @@ constexpr NamedFigure kFigures[] = {
     {"peak_mb", &SceneCost::peak_mb, 1, "memory of the process at most"},
     {"startup_s", &SceneCost::startup_s, 1, "from starting the process to the first finished picture"},
     {"frame_ms", &SceneCost::frame_s, 1e3, "of a picture whose tiles are there"},
+    {"processor_ms", &SceneCost::processor_s, 1e3, "of all threads for such a picture"},
     {"resident_mb", &SceneCost::resident_mb, 1, "tiles' payloads held, as counted"}};
 
 Cell cell(const std::optional<double>& value, double factor = 1) {
@@ -52,7 +53,7 @@ Table feature_table(std::span<const FeatureCost> costs) {
           {std::string(named.name) + "_" + state, std::string(named.meaning) + ", " + state});
   }
   table.columns.push_back({"frame_ratio", "frame on to off, in turns within one process"});
-  table.columns.push_back({"never_ratio", "frame off to never, processes in turns"});
+  table.columns.push_back({"never_ratio", "processor time of a picture, off to never, processes in turns"});
   table.columns.push_back({"note", ""});
   for (const FeatureCost& cost : costs) {
     std::vector<Cell> row{cost.feature, cost.backend, cost.compared};

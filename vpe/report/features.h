@@ -15,6 +15,7 @@ struct SceneCost {
   std::optional<double> peak_mb;      // of the process
   std::optional<double> startup_s;    // from starting the process to the first finished picture
   std::optional<double> frame_s;      // in the median, tiles there
+  std::optional<double> processor_s;  // of all threads for such a frame
   std::optional<double> resident_mb;  // counted by the renderer: payloads of tiles on CPU and GPU
 };
 
@@ -29,12 +30,12 @@ struct FeatureCost {
   SceneCost on;
   SceneCost never;                    // of a program without it, in the scene without it
   std::optional<double> frame_ratio;  // on to off, in turns within one process
-  std::optional<double> never_ratio;  // frames off to never, in turns between processes
+  std::optional<double> never_ratio;  // processor time of frames off to never, processes in turns
   std::string note;                   // as why it cannot be left out of the program
 };
 
-// A row a feature and backend: feature, backend, compared, then peak_mb, startup_s, frame_ms and resident_mb
-// each _off, _on, _never; frame_ratio, never_ratio, note.
+// A row a feature and backend: feature, backend, compared, then peak_mb, startup_s, frame_ms, processor_ms and
+// resident_mb each _off, _on, _never; frame_ratio, never_ratio, note.
 Table feature_table(std::span<const FeatureCost> costs);
 
 }  // namespace vpe::report

@@ -90,7 +90,7 @@ TEST_F(Report, ScalingCountsWhatItVaries) {
   }
   const json coarse = row(report["planets"], {{"side_posts", 257}, {"finest_level", 9}});
   const json fine = row(report["planets"], {{"side_posts", 257}, {"finest_level", 13}});
-  EXPECT_NEAR(coarse["spacing_m"].get<double>() / fine["spacing_m"].get<double>(), 16, 1e-9);
+  EXPECT_NEAR(coarse["spacing_m"].get<double>() / fine["spacing_m"].get<double>(), 16, 1e-6);
 
   for (const json& sample : report["samples"]["rows"]) {
     EXPECT_GE(sample["median"], sample["least"]);
@@ -162,7 +162,8 @@ TEST_F(Report, FeaturesHoldWhatTheyUse) {
     EXPECT_TRUE(of("shadows")["peak_mb_never"].is_null());
   }
   // This planet has none.
-  for (const json& one : table["rows"]) EXPECT_NE(one["feature"], "imagery");
+  for (const json& one : table["rows"])
+    EXPECT_EQ(one["feature"].get<std::string>().find("imagery"), std::string::npos);
 }
 
 TEST_F(Report, FeaturesRefuseWhatTheyCannotDo) {
