@@ -74,7 +74,6 @@ polygon,statistics,StatsWriter::row
 polygon,stereo,draw_stereo
 polygon,planes,Target::read_depth
 polygon,occlusion culling,make_walls
-polygon,occlusion culling,OcclusionPass::add
 polygon,light and normals of posts,GroundPainter::shade
 polygon,shadows,GroundPainter::sees_sun
 voxel,light and normals of posts,GroundPainter::normals
