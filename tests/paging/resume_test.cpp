@@ -181,14 +181,17 @@ void kill_and_continue(const std::function<void()>& build, int kills, double lon
 TEST_F(Resume, KilledAtRandomMoments) {
   Random random(77);
   int total = 0;
-  for (int round = 0; round < 3; ++round) {
+  // A quick machine is done before it is killed: then sooner.
+  double longest_s = 0.15;
+  for (int round = 0; round < 3 || (round < 12 && total < 6); ++round, longest_s *= 0.7) {
     std::filesystem::remove(options().output);
     int killed = 0;
-    kill_and_continue([this] { build(options()); }, 12, 0.15, random, killed);
+    kill_and_continue([this] { build(options()); }, 12, longest_s, random, killed);
+    ASSERT_FALSE(HasFatalFailure());
     expect_whole();
     total += killed;
   }
-  EXPECT_GT(total, 5);
+  EXPECT_GE(total, 6);
 }
 
 class LongResume : public Resume {};
