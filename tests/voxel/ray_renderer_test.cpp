@@ -9,6 +9,7 @@
 #include "mars/embedded.h"
 #include "tests/gl/appearance_looks.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/paging/rough_planet.h"
 #include "vpe/core/image.h"
 
 namespace {
@@ -157,6 +158,32 @@ TEST_F(Rays, MultiresKeepsItsCertificate) {
   }
   EXPECT_GE(coarser, 4);
   EXPECT_LT(tiles, exact_tiles / 2);
+}
+
+// Also where cells a pixel wide are farther off than a pixel, by steep ground or exaggeration.
+TEST_F(Rays, MultiresStatesNoMoreThanTheCell) {
+  test_support::build_rough(dir_ / "rough.vpe");
+  const auto planet = paging::PlanetFile::open(dir_ / "rough.vpe");
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto draw = rays(planet);
+  Random random(95);
+  int coarser = 0;
+  for (int n = 0; n < 40; ++n) {
+    const mars::LonLat place = mars::lon_lat(n % 3 == 0 ? test_support::kCrater : test_support::kCanyon);
+    const double exaggeration = n % 2 == 0 ? 1 : 6;
+    core::DrawRequest request =
+        request_for({place.lon_deg, place.lat_deg, exaggeration * 9000 + random.log_uniform(1000, 3e6),
+                     random.uniform(0, 360), random.uniform(-90, 0), random.uniform(-180, 180)},
+                    surface.planet_radius_m(), 64, 48, random.log_uniform(5, 100));
+    request.want_range = false;
+    request.settings.ray_mode = core::RayMode::kMultires;
+    request.settings.ray_cell_px = random.log_uniform(0.1, 8);
+    request.settings.exaggeration = exaggeration;
+    const core::DrawResult drawn = draw->draw(request);
+    EXPECT_LE(drawn.certificate.shift_bound_px, request.settings.ray_cell_px + 0.01) << n;
+    coarser += drawn.certificate.tile_error_px > 0.5 * request.settings.ray_cell_px ? 1 : 0;
+  }
+  EXPECT_GE(coarser, 10);
 }
 
 TEST_F(Rays, PlainStepsEndOnTheSurface) {

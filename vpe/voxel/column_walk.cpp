@@ -108,8 +108,9 @@ bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
   const unsigned known = ends_[tile].load(std::memory_order_relaxed);
   if ((known & kKnown) != 0) return (known & kYes) != 0;
   const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
-  const bool fine = spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile) ||
-                    measured_error_px(tile) <= rule_.cell_px;
+  const bool fine = info.posts_terms.known()
+                        ? measured_error_px(tile) <= rule_.cell_px
+                        : spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
   ends_[tile].fetch_or(static_cast<std::uint8_t>(fine ? kKnown | kYes : kKnown), std::memory_order_relaxed);
   return fine;
 }

@@ -12,7 +12,8 @@
 namespace vpe::voxel {
 
 // Which tiles are fine enough: those whose posts, drawn as a grid, are within cell_px of S in the picture
-// wherever they are (so crests sink by no more than that), or are at most cell_px apart there.
+// wherever they are (so crests sink by no more than that). In planet files that do not say how far they are (before
+// 1.2): those whose posts are at most cell_px apart there.
 struct CellRule {
   double cell_px = 0;   // 0: none but the finest, so S itself
   double focal_px = 1;  // pixels per radian, at most
