@@ -371,5 +371,50 @@ TEST(View, PartOfAPictureLargerThanCanBeDrawn) {
   EXPECT_NE(check(view), "");
 }
 
+// Against every pixel's corner, by the angle to the horizon; where the picture ends within rounding of it
+// either answer will do.
+TEST(View, ReachesTheHorizonWhereAPixelDoes) {
+  test_support::Random random(20261122);
+  int reaches = 0;
+  int tried = 0;
+  for (int n = 0; n < 4000; ++n) {
+    View view = random_view(random, Projection::kPerspective);
+    view.width = random.integer(1, 24);
+    view.height = random.integer(1, 24);
+    if (random.integer(0, 1) == 1) {
+      const int x = random.integer(0, view.width - 1);
+      const int y = random.integer(0, view.height - 1);
+      view.part = {x, y, random.integer(1, view.width - x), random.integer(1, view.height - y)};
+    }
+    const double radius_m = mars::kMarsRadius_m - random.log_uniform(1e-3, 8e3);
+    const double distance_m = glm::length(view.eye.eye_m);
+    const double horizon_rad = std::asin(radius_m / distance_m);
+    const SubRectangle part = drawn_part(view);
+    double most_rad = 0;
+    for (int y = part.y; y <= part.y + part.height; ++y) {
+      for (int x = part.x; x <= part.x + part.width; ++x) {
+        const glm::dvec3 ray = pixel_ray(view, x, y);
+        const glm::dvec3 down = -view.eye.eye_m / distance_m;
+        most_rad = std::max(most_rad, std::atan2(glm::length(glm::cross(ray, down)), glm::dot(ray, down)));
+      }
+    }
+    if (std::abs(most_rad - horizon_rad) < 1e-6) continue;
+    ++tried;
+    reaches += reaches_horizon(view, radius_m) ? 1 : 0;
+    ASSERT_EQ(reaches_horizon(view, radius_m), most_rad > horizon_rad) << n << ": " << most_rad - horizon_rad;
+  }
+  EXPECT_GT(reaches, tried / 10);
+  EXPECT_LT(reaches, tried * 9 / 10);
+  EXPECT_GT(tried, 3500);
+  View round;
+  round.projection = Projection::kCylinder;
+  round.eye = pose(0, 0, 1000, 0, 0, 0);
+  EXPECT_TRUE(reaches_horizon(round, mars::kMarsRadius_m));
+  View inside = round;
+  inside.projection = Projection::kPerspective;
+  inside.eye = pose(0, 0, -1000, 0, -90, 0);
+  EXPECT_TRUE(reaches_horizon(inside, mars::kMarsRadius_m));
+}
+
 }  // namespace
 }  // namespace vpe::core

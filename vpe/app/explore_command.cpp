@@ -34,7 +34,6 @@ struct ExploreArguments {
   std::string flight;
   std::string spots;
   bool print_settings = false;
-  bool backend_is_given = false;
   PictureOptions picture;
 };
 
@@ -116,8 +115,9 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.display.instead =
       "set DISPLAY to an X server, or work without a window: 'vpe render' draws a picture, 'vpe fly' a flight, "
       "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this one out of sight";
-  const bool rays = arguments.backend_is_given ? arguments.picture.backend == "voxel"
-                                               : last.backend == vpe::explore::SessionBackend::kVoxel;
+  const bool rays = arguments.picture.backend == kAutoBackend
+                        ? last.backend == vpe::explore::SessionBackend::kVoxel
+                        : arguments.picture.backend == kRayBackend;
   setup.backend = rays ? window::Backend::kRays : window::Backend::kPolygons;
   setup.sun = sun_for;
   setup.threads = common.threads;
@@ -162,7 +162,7 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     // Flights, logs, spots and regions are of one planet; how it is drawn goes on.
     here.pose = here.log = here.flight = here.spots = "";
     here.picture.interest.clear();
-    here.backend_is_given = false;
+    here.picture.backend = kAutoBackend;
     here.size = "";
     here.fov_deg = shown.session().screen().fov_deg;
     shown.session().leave_flight();
@@ -216,10 +216,7 @@ void add_explore(CLI::App& program, Common& common) {
   command->add_option("--log", arguments->log, "Record everything that happens, as a flight");
   command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and end");
   add_picture_options(*command, arguments->picture);
-  command->callback([arguments, command, &common] {
-    arguments->backend_is_given = command->count("--backend") > 0;
-    explore(*arguments, common);
-  });
+  command->callback([arguments, &common] { explore(*arguments, common); });
 }
 
 }  // namespace vpe::app

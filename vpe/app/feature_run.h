@@ -14,9 +14,6 @@
 
 namespace vpe::app {
 
-inline const std::string kPolygonBackend = "polygon";
-inline const std::string kRayBackend = "voxel";
-
 struct FeaturePlan {
   ProbeOrder order;     // but for program, scene and backend
   std::string against;  // another program; empty: none

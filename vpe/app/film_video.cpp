@@ -107,7 +107,7 @@ std::string FilmVideo::fingerprint(std::span<const FilmFrame> frames) const {
 }
 
 void FilmVideo::keep(std::span<FilmFrame> frames, const FilmPlace& place, core::ThreadPool& pool) {
-  if (remake_ || keep_film(frames, place)) return;
+  if (remake_ || keep_film(frames, place) || !fs::exists(folder_)) return;
   encoder();
   const auto size = static_cast<std::size_t>(group_);
   pool.run((frames.size() + size - 1) / size, [&](std::size_t n) {

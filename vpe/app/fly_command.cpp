@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include <sstream>
 
 #include "paging/surface.h"
+#include "vpe/app/backend_choice.h"
 #include "vpe/app/film_session.h"
 #include "vpe/app/flight_file.h"
 #include "vpe/app/interrupt.h"
@@ -15,6 +17,7 @@
 #include "vpe/app/planet_argument.h"
 #include "vpe/app/program.h"
 #include "vpe/app/report.h"
+#include "vpe/gl/context.h"
 
 namespace vpe::app {
 
@@ -88,6 +91,7 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
   if (common.json) {
     nlohmann::json json = film_json(frames, seconds);
     json["output"] = arguments.output;
+    json["backend"] = arguments.picture.backend;
     json["illustration"] = illustration;
     json["manifest"] =
         session.manifest().empty() ? nlohmann::json() : nlohmann::json(session.manifest().string());
@@ -101,8 +105,54 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
   }
 }
 
+struct PlannedFilm {
+  std::string backend;
+  FilmPlan plan;
+};
+
+// All frames by one backend: as --backend says, or as suits the most of them, and then the other. Parts of a
+// film may be made on machines of different kinds, and must be alike: triangles come first there.
+std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& common,
+                                   const scripts::Flight& flight, const core::Settings& base,
+                                   const paging::PlanetFile& planet, const scripts::TerrainHeight& terrain) {
+  const auto plan_of = [&](const BackendChoice& chosen) {
+    return PlannedFilm{
+        chosen.backend,
+        FilmPlan({version(), planet.meta().identity, chosen.backend, common.memory_mb}, flight.view,
+                 scripts::Path(flight, planet.radius_m(), terrain, base.values().exaggeration), chosen.settings,
+                 parse_interest(arguments.picture))};
+  };
+  const PictureOptions& picture = arguments.picture;
+  std::vector<PlannedFilm> films{plan_of({kPolygonBackend, base})};
+  if (picture.backend != kAutoBackend) return {plan_of({picture.backend, base})};
+  const bool changes_tolerance = std::any_of(flight.sets.begin(), flight.sets.end(),
+                                             [](const auto& set) { return set.key == "lod.tolerance"; });
+  if (changes_tolerance) return films;
+  constexpr std::int64_t kMostLooked = 100;
+  const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
+  const std::int64_t looked = std::min(count, kMostLooked);
+  std::vector<core::DrawRequest> pictures;
+  for (std::int64_t k = 0; k < looked; ++k)
+    pictures.push_back(films.front().plan.at(k * count / looked).request);
+  const BackendChoice rays = choose_backend(picture, base, pictures, planet.radius_m(), false);
+  if (rays.backend != kRayBackend) return films;
+  films.push_back(plan_of(rays));
+  if (arguments.part.empty() && !gl::has_gpu()) std::swap(films[0], films[1]);
+  return films;
+}
+
+// Looks for what is there of a film: who began it goes on with it.
+const PlannedFilm& look_for(FilmSession& session, const std::vector<PlannedFilm>& films, int threads) {
+  for (const PlannedFilm& film : films) {
+    session.look(film.plan, threads);
+    if (count(session.frames()).kept > 0) return film;
+  }
+  if (films.size() > 1) session.look(films.front().plan, threads);
+  return films.front();
+}
+
 void fly(FlyArguments& arguments, const Common& common) {
-  const std::vector<core::InterestRegion> interest = parse_interest(arguments.picture);
+  parse_interest(arguments.picture);
   const scripts::Flight flight = flight_of(arguments);
   const core::Settings base = make_settings(arguments.picture);
   const FilmRequest request = film_request(arguments, flight);
@@ -117,14 +167,14 @@ void fly(FlyArguments& arguments, const Common& common) {
                            mars::LonLat place, double exaggeration) {
     return surface->at(mars::direction(place), exaggeration).height_m;
   };
-  const FilmPlan plan({version(), meta.identity, arguments.picture.backend, common.memory_mb}, flight.view,
-                      scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration), base,
-                      interest);
+  const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, *planet, terrain);
+  const PlannedFilm& film = look_for(session, films, common.threads);
+  const FilmPlan& plan = film.plan;
+  arguments.picture.backend = film.backend;
   if (!common.quiet) warn_of_terrain(arguments.flight, plan, terrain);
 
   FrameOverlays overlays(planet);
   load_names(overlays, base, flight);
-  session.look(plan, common.threads);
   FilmReports reports;
   if (!arguments.stats.empty()) reports.stats.emplace(arguments.stats);
   if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view);

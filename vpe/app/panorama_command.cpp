@@ -271,7 +271,7 @@ void add_panorama(CLI::App& program, Common& common) {
                       "Also write rasters: any of range,lonlat,elevation,slope,incidence (.tif)");
   command->add_option("--again", arguments->again,
                       "PANO.json: make the same picture again, as it says; goes with PLANET and -o only");
-  arguments->picture.backend = "voxel";
+  arguments->picture.backend = kRayBackend;
   add_picture_options(*command, arguments->picture);
   add_eye_options(*command, arguments->stereo);
   command->callback([arguments, facets, yaw, &common] {

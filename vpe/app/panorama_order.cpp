@@ -95,7 +95,8 @@ void check_alone(const Common& common) {
 
 }  // namespace
 
-PanoramaOrder new_order(const PanoramaArguments& arguments, const Common& common) {
+PanoramaOrder new_order(PanoramaArguments arguments, const Common& common) {
+  if (arguments.picture.backend == kAutoBackend) arguments.picture.backend = kRayBackend;
   if (arguments.at.empty() || arguments.output.empty())
     throw UsageError("--at LON,LAT and -o PANO are needed, or --again PANO.json");
   const auto place = parse_place(arguments.at);

@@ -43,8 +43,9 @@ struct PanoramaOrder {
   std::string again;  // sidecar that is made again, or empty
 };
 
-// Both throw UsageError, panorama::PlanError, and core::FileError for a sidecar that cannot be used.
-PanoramaOrder new_order(const PanoramaArguments& arguments, const Common& common);
+// Both throw UsageError, panorama::PlanError, and core::FileError for a sidecar that cannot be used. Rays draw
+// unless triangles are named.
+PanoramaOrder new_order(PanoramaArguments arguments, const Common& common);
 PanoramaOrder order_again(const PanoramaArguments& arguments, const Common& common);
 
 }  // namespace vpe::app

@@ -15,13 +15,6 @@
 
 namespace vpe::app {
 
-namespace {
-
-const std::string kPolygons = "polygon";
-const std::string kRays = "voxel";
-
-}  // namespace
-
 void add_picture_options(CLI::App& command, PictureOptions& options) {
   command
       .add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
@@ -29,8 +22,11 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--backend", options.backend,
-                  "How to draw: triangles by OpenGL, or a ray a pixel against the exact surface")
-      ->check(CLI::IsMember({kPolygons, kRays}))
+                  "How to draw: polygon: triangles by OpenGL; voxel: a ray a pixel against the exact surface; "
+                  "auto: what is quicker within the tolerance (rays in views to the horizon from nearby when "
+                  "there is no "
+                  "GPU)")
+      ->check(CLI::IsMember({kAutoBackend, kPolygonBackend, kRayBackend}))
       ->capture_default_str();
   command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")
       ->check(number_within(0.0, 1000.0));
@@ -95,7 +91,8 @@ std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, con
   // It costs a fifth of a film's time in page faults, so only who is short of memory pays.
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) core::keep_heap_compact();
-  if (options.backend == kRays)
+  if (options.backend == kAutoBackend) throw std::logic_error("make_renderer: a backend is chosen before");
+  if (options.backend == kRayBackend)
     return voxel::make_ray_renderer(std::move(planet), {memory_bytes(common), common.threads});
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);

@@ -11,10 +11,15 @@
 
 namespace vpe::app {
 
+// Values of --backend.
+inline const std::string kAutoBackend = "auto";  // as backend_choice.h chooses
+inline const std::string kPolygonBackend = "polygon";
+inline const std::string kRayBackend = "voxel";
+
 struct PictureOptions {
   std::vector<std::string> set;  // KEY=VALUE
   std::string sun;               // as the setting; empty: as set
-  std::string backend = "polygon";
+  std::string backend = kAutoBackend;
   double tolerance_px = -1;  // < 0: as set
   double wait_s = 300;       // for the tiles of a picture
   bool allow_incomplete = false;
@@ -31,6 +36,7 @@ core::Settings make_settings(const PictureOptions& options);
 std::vector<core::InterestRegion> parse_interest(const PictureOptions& options);
 
 std::size_t memory_bytes(const Common& common);
+// Of a named backend.
 std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet);
 

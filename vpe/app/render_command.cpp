@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "paging/surface.h"
+#include "vpe/app/backend_choice.h"
 #include "vpe/app/explain_lod.h"
 #include "vpe/app/frame_overlays.h"
 #include "vpe/app/output.h"
@@ -16,6 +17,7 @@
 #include "vpe/core/image.h"
 #include "vpe/core/inspect.h"
 #include "vpe/core/number.h"
+#include "vpe/gl/context.h"
 
 namespace vpe::app {
 
@@ -123,6 +125,7 @@ void render_stereo(const RenderArguments& arguments, const Common& common, const
   if (common.json) {
     print_json(
         {{"output", arguments.output},
+         {"backend", arguments.picture.backend},
          {"eye_base_m", picture.eye_base_m},
          {"certificate", certificates},
          {"stats", {{"left", stats_json(picture.left.stats)}, {"right", stats_json(picture.right.stats)}}}});
@@ -131,6 +134,27 @@ void render_stereo(const RenderArguments& arguments, const Common& common, const
                 picture.eye_base_m,
                 std::max(picture.left.certificate.shift_bound_px, picture.right.certificate.shift_bound_px));
   }
+}
+
+// Of the picture, unless it is named; what --explain-lod tells of are triangles.
+void choose_backend_of(RenderArguments& arguments, core::DrawRequest& request, double radius_m) {
+  PictureOptions& picture = arguments.picture;
+  if (picture.backend == kAutoBackend && !arguments.explain_lod.empty()) picture.backend = kPolygonBackend;
+  const BackendChoice chosen =
+      choose_backend(picture, make_settings(picture), {&request, 1}, radius_m, gl::has_gpu());
+  picture.backend = chosen.backend;
+  request.settings = chosen.settings.values();
+}
+
+void print_summary(const RenderArguments& arguments, const core::DrawRequest& request,
+                   const core::DrawResult& result) {
+  std::string what = core::format_number(static_cast<double>(result.stats.triangles)) + " triangles";
+  if (arguments.picture.backend == kRayBackend) {
+    const glm::ivec2 size = core::drawn_size(request.view);
+    what = core::format_number(static_cast<double>(size.x) * size.y * request.settings.samples) + " rays";
+  }
+  std::printf("%s: %s in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(), what.c_str(),
+              result.stats.tiles_drawn, result.certificate.shift_bound_px, result.certificate.tile_error_m);
 }
 
 void render(RenderArguments& arguments, const Common& common) {
@@ -170,6 +194,7 @@ void render(RenderArguments& arguments, const Common& common) {
       !arguments.range.empty() || !arguments.certificate.empty() || overlay::needs_range(request.settings);
   require_valid(request.view);
   request.cull_view = cull_view(arguments.cull_from, request.view, planet->radius_m());
+  choose_backend_of(arguments, request, planet->radius_m());
   const auto renderer = make_renderer(arguments.picture, common, planet);
   request.paging.timeout_s = arguments.picture.wait_s;
   // A finished picture of one eye.
@@ -200,13 +225,12 @@ void render(RenderArguments& arguments, const Common& common) {
   }
   if (common.json) {
     nlohmann::json json{{"output", arguments.output},
+                        {"backend", arguments.picture.backend},
                         {"certificate", nlohmann::json::parse(core::to_json(result.certificate))},
                         {"stats", stats_json(result.stats)}};
     print_json(json);
   } else if (!common.quiet) {
-    std::printf("%s: %lld triangles in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(),
-                static_cast<long long>(result.stats.triangles), result.stats.tiles_drawn,
-                result.certificate.shift_bound_px, result.certificate.tile_error_m);
+    print_summary(arguments, request, result);
     if (settings.values().inspect == core::Inspect::kLevels) print_levels(result.stats, *planet);
   }
 }

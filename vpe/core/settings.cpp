@@ -146,7 +146,8 @@ const std::vector<Key>& keys() {
       {"overlay.distances", choice<&V::distances>({{"off", 0}, {"on", 1}}), "",
        "how far away it is beside each name, in a straight line from the eye"},
       {"lod.tolerance", Number{&V::lod_tolerance_px, 0, 1000}, "px",
-       "largest geometric error that may be drawn; 0 draws the exact surface"},
+       "largest geometric error that may be drawn; 0 draws the exact surface (with --backend voxel: see "
+       "rays.mode)"},
       {"lod.triangles", Integer{&V::lod_triangles, 0, 1'000'000'000}, "",
        "hard cap on the triangles of a frame, above the tolerance; 0 = none"},
       {"lod.rule", choice<&V::lod_rule>({word("error", LodRule::kError), word("hitchner", LodRule::kHitchner)}),
@@ -191,9 +192,8 @@ const std::vector<Key>& keys() {
        "voxel backend: exact draws the exact surface; multires takes coarser cells far away; plain follows "
        "every "
        "ray in steps of 0.6 cells, slowly, for comparison"},
-      {"rays.cell", Number{&V::ray_cell_px, 0.125, 64}, "px",
-       "voxel backend, multires: cells are at most this wide in the picture, or off the surface by this; more "
-       "is faster"},
+      {"rays.cell", Number{&V::ray_cell_px, RayLimits::kLeastCell_px, RayLimits::kMostCell_px}, "px",
+       "voxel backend, multires: cells are off the surface by at most this in the picture; more is faster"},
       {"samples", choice<&V::samples>({{"1", 1}, {"2", 2}, {"4", 4}}), "",
        "colour samples a pixel (anti-aliasing); without a GPU more than one more than doubles the time; voxel "
        "backend: rays a pixel"},

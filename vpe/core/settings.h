@@ -37,6 +37,12 @@ enum class RayMode {
 
 enum class Occlusion { kAuto, kOff, kOn };
 
+// Of rays.cell.
+struct RayLimits {
+  static constexpr double kLeastCell_px = 1.0 / 64;
+  static constexpr double kMostCell_px = 64;
+};
+
 struct SettingsValues : Appearance, Overlays {
   double lod_tolerance_px = 1;
   int lod_triangles = 0;

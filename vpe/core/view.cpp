@@ -154,4 +154,20 @@ std::array<Plane, 4> side_planes(const View& view) {
           plane(axes.up * f + axes.forward * high.y), plane(-axes.up * f - axes.forward * low.y)};
 }
 
+bool reaches_horizon(const View& view, double radius_m) {
+  const double distance_m = glm::length(view.eye.eye_m);
+  if (view.projection != Projection::kPerspective || !(distance_m > radius_m)) return true;
+  const glm::dvec3 down = -view.eye.eye_m / distance_m;
+  const double sine = radius_m / distance_m;
+  const double least_cosine = std::sqrt((1 - sine) * (1 + sine));
+  // What lies below the horizon is a convex cone: the picture is within it when its corners are.
+  const SubRectangle part = drawn_part(view);
+  for (const int x : {part.x, part.x + part.width}) {
+    for (const int y : {part.y, part.y + part.height}) {
+      if (glm::dot(pixel_ray(view, x, y), down) <= least_cosine) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace vpe::core

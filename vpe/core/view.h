@@ -88,4 +88,9 @@ struct Plane {
 // std::invalid_argument for other projections, which have no flat sides.
 std::array<Plane, 4> side_planes(const View& view);
 
+// Whether the horizon of a sphere about the planet's centre, or anything above it, is in the drawn part of a
+// perspective view; then the picture may show ground of any distance. True for round views, and for an eye at
+// or within the sphere.
+bool reaches_horizon(const View& view, double radius_m);
+
 }  // namespace vpe::core

@@ -21,6 +21,10 @@ struct ContextInfo {
   bool software = false;  // no GPU: llvmpipe, softpipe, ...
 };
 
+// Whether there is a device for OpenGL that is not a program on the CPU. A millisecond: no context is made, so
+// that it may turn out not to be usable. False for OSMesa.
+bool has_gpu();
+
 // Current on the thread that made it, for as long as it lives; one at a time a thread. Hardware EGL devices
 // are preferred, then Mesa's surfaceless platform, then software devices. $VPE_EGL = device | surfaceless
 // restricts the choice. Needs no display server and no root.

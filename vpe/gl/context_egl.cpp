@@ -2,6 +2,7 @@
 
 #include <epoxy/egl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
@@ -89,6 +90,29 @@ struct Attempt {
   void* native;
 };
 
+struct Device {
+  int number = 0;
+  EGLDeviceEXT handle = nullptr;
+  bool is_software = false;
+};
+
+std::vector<Device> devices(const char* client) {
+  std::vector<Device> found;
+  if (!has_extension(client, "EGL_EXT_platform_device")) return found;
+  const auto query_devices = load<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+  const auto query_string = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+  std::array<EGLDeviceEXT, 32> handles{};
+  EGLint count = 0;
+  if (query_devices == nullptr || query_string == nullptr ||
+      query_devices(static_cast<EGLint>(handles.size()), handles.data(), &count) != EGL_TRUE)
+    return found;
+  for (EGLint d = 0; d < count; ++d) {
+    EGLDeviceEXT handle = handles[static_cast<std::size_t>(d)];
+    found.push_back({d, handle, has_extension(query_string(handle, EGL_EXTENSIONS), kSoftwareDevice)});
+  }
+  return found;
+}
+
 std::vector<Attempt> attempts() {
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const char* choice = std::getenv("VPE_EGL");
@@ -97,19 +121,10 @@ std::vector<Attempt> attempts() {
 
   std::vector<Attempt> hardware;
   std::vector<Attempt> software;
-  if (want_device && has_extension(client, "EGL_EXT_platform_device")) {
-    const auto query_devices = load<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
-    const auto query_string = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
-    std::array<EGLDeviceEXT, 32> devices{};
-    EGLint count = 0;
-    if (query_devices != nullptr && query_string != nullptr &&
-        query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count) == EGL_TRUE) {
-      for (EGLint d = 0; d < count; ++d) {
-        EGLDeviceEXT device = devices[static_cast<std::size_t>(d)];
-        const bool is_software = has_extension(query_string(device, EGL_EXTENSIONS), kSoftwareDevice);
-        (is_software ? software : hardware)
-            .push_back({"EGL device " + std::to_string(d), EGL_PLATFORM_DEVICE_EXT, device});
-      }
+  if (want_device) {
+    for (const Device& device : devices(client)) {
+      (device.is_software ? software : hardware)
+          .push_back({"EGL device " + std::to_string(device.number), EGL_PLATFORM_DEVICE_EXT, device.handle});
     }
   }
   std::vector<Attempt> all = std::move(hardware);
@@ -122,6 +137,11 @@ std::vector<Attempt> attempts() {
 }
 
 }  // namespace
+
+bool has_gpu() {
+  const std::vector<Device> all = devices(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS));
+  return std::any_of(all.begin(), all.end(), [](const Device& device) { return !device.is_software; });
+}
 
 std::unique_ptr<Context> Context::create() {
   const auto platform_display = load<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");

@@ -42,6 +42,8 @@ class MesaContext : public Context {
 
 }  // namespace
 
+bool has_gpu() { return false; }
+
 std::unique_ptr<Context> Context::create() { return std::make_unique<MesaContext>(); }
 
 }  // namespace vpe::gl

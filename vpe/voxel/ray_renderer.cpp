@@ -177,12 +177,7 @@ core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
 core::DrawResult RayRenderer::draw_picture(const core::DrawRequest& request) {
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
-  const core::Mode mode = request.settings.mode;
-  if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers)
-    throw std::runtime_error("the ray backend has no triangles to show: use --backend polygon for this mode");
-  if (request.cull_view || request.settings.inspect != core::Inspect::kNone)
-    throw std::runtime_error(
-        "the ray backend draws no tiles: --cull-from and inspect show those of --backend polygon");
+  if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);
   const auto start = Clock::now();
   core::DrawResult result;
   core::Frame& frame = result.frame;
@@ -225,6 +220,15 @@ core::DrawResult RayRenderer::draw_picture(const core::DrawRequest& request) {
 }
 
 }  // namespace
+
+std::string why_not(const core::DrawRequest& request) {
+  const core::Mode mode = request.settings.mode;
+  if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers)
+    return "the ray backend has no triangles to show: use --backend polygon for this mode";
+  if (request.cull_view || request.settings.inspect != core::Inspect::kNone)
+    return "the ray backend draws no tiles: --cull-from and inspect show those of --backend polygon";
+  return {};
+}
 
 std::unique_ptr<core::Renderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                   const RayOptions& options) {

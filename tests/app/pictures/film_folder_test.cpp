@@ -33,16 +33,17 @@ class FilmFolder : public FilmTest {
   static void write_bytes(const fs::path& file, const std::vector<std::uint8_t>& bytes) {
     write_text(file, std::string(bytes.begin(), bytes.end()));
   }
-  // A machine on which nothing can be drawn.
+  // A machine on which no triangles can be drawn.
   Result fly_without_egl(const std::string& output, const Words& more = {}) const {
     Command command = fly_command(output, more);
+    command.arguments.insert(command.arguments.end(), {"--backend", "polygon"});
     command.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = path("none.json");
     return run(command);
   }
 };
 
 TEST_F(FilmFolder, NothingIsDrawnWhenEveryFrameIsThere) {
-  expect_counts("out", kFrames, 0, {"--stats", "a.csv", "--log", "a.flight"});
+  expect_counts("out", kFrames, 0, {"--stats", "a.csv", "--log", "a.flight", "--backend", "polygon"});
   const auto first = files("out");
   EXPECT_EQ(first.size(), std::size_t{kFrames});
   ASSERT_EQ(fly_without_egl("other").exit_code, 1);
@@ -183,6 +184,31 @@ TEST_F(FilmFolder, SelectionsAndPartsFillOneFolder) {
   EXPECT_GT(whole["frames"][7]["figures"]["shift_bound_px"], 0);
   // More parts than frames: some have nothing to do.
   expect_counts("out", 0, 0, {"--part", "1/100"});
+}
+
+// Which backend draws depends on the machine when none is named; what is there decides first.
+TEST_F(FilmFolder, WhoBeganAFilmGoesOnWithIt) {
+  const auto drawn_by = [&](const std::string& folder, Words more, int made, int kept) {
+    more.emplace_back("--json");
+    const Result result = fly(folder, more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const json report = parse_json(result.out);
+    EXPECT_EQ(report["made"], made);
+    EXPECT_EQ(report["kept"], kept);
+    return report["backend"].get<std::string>();
+  };
+  write_text(dir_ / "f.flight",
+             "flight 1\nview size=64x48 fov=50 fps=2\nat 0 pose lon=-74 lat=-13 alt=50000 yaw=20 pitch=-20\n"
+             "at 12 pose lon=-60 lat=-10 alt=60000 yaw=60 pitch=-30\n");
+  EXPECT_EQ(drawn_by("parts", {"--part", "1/2"}, kFrames / 2, 0), "polygon");
+  EXPECT_EQ(drawn_by("parts", {}, kFrames / 2, kFrames / 2), "polygon");
+  EXPECT_EQ(drawn_by("rays", {"--frames", "0-7", "--backend", "voxel", "--set", "rays.mode=multires"}, 8, 0),
+            "voxel");
+  EXPECT_EQ(drawn_by("rays", {"--part", "1/2"}, 4, 8), "voxel");
+  EXPECT_EQ(drawn_by("rays", {}, kFrames / 2, kFrames / 2), "voxel");
+  // Exact rays are not what would be chosen.
+  EXPECT_EQ(drawn_by("exact", {"--frames", "0-7", "--backend", "voxel"}, 8, 0), "voxel");
+  EXPECT_EQ(drawn_by("exact", {"--part", "1/1"}, kFrames, 0), "polygon");
 }
 
 TEST_F(FilmFolder, PartAutoReadsTheEnvironment) {

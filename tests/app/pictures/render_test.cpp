@@ -6,6 +6,7 @@
 #include "vpe/core/frame.h"
 #include "vpe/core/image.h"
 #include "vpe/core/number.h"
+#include "vpe/gl/context.h"
 
 namespace app_test {
 namespace {
@@ -23,11 +24,13 @@ class Render : public AppTest {
 };
 
 TEST_F(Render, PictureRangeAndCertificate) {
-  const Result result = render({"--range", "r.tif", "--certificate", "c.json", "--json", "--fov", "60"},
-                               "-74,-13.5,300000,0,-30,0");
+  const Result result =
+      render({"--range", "r.tif", "--certificate", "c.json", "--json", "--fov", "60", "--backend", "polygon"},
+             "-74,-13.5,300000,0,-30,0");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json report = parse_json(result.out);
   EXPECT_EQ(report["output"], "x.png");
+  EXPECT_EQ(report["backend"], "polygon");
   EXPECT_EQ(report["certificate"], parse_json(read_text(dir_ / "c.json")));
   const json& c = report["certificate"];
   EXPECT_GT(c["shift_bound_px"], 0);
@@ -65,6 +68,30 @@ TEST_F(Render, PictureRangeAndCertificate) {
   }
   EXPECT_GT(sky, 96 * 54 / 8);
   EXPECT_LT(sky, 96 * 54 / 2);
+}
+
+TEST_F(Render, WhatDrawsWhenNoBackendIsNamed) {
+  const auto backend = [&](Words more, const std::string& pose, const std::string& file = "x.png") {
+    more.emplace_back("--json");
+    const Result result = render(more, pose, file);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const json report = parse_json(result.out);
+    EXPECT_LE(report["certificate"]["shift_bound_px"], 1.01);
+    return report["backend"].get<std::string>();
+  };
+  const std::string far = "-74,-13.5,60000,20,-20,0";
+  const std::string down = "-74,-13.5,60000,20,-90,0";
+  EXPECT_EQ(backend({}, down), "polygon");
+  EXPECT_EQ(backend({"--set", "mode=wireframe"}, far), "polygon");
+  EXPECT_EQ(backend({"--explain-lod", "e.json"}, far), "polygon");
+  EXPECT_EQ(backend({"--backend", "auto"}, far, "a.png"), vpe::gl::has_gpu() ? "polygon" : "voxel");
+  if (vpe::gl::has_gpu()) GTEST_SKIP() << "skipped: triangles are drawn wherever there is a GPU";
+  EXPECT_EQ(backend({"--backend", "voxel", "--set", "rays.mode=multires"}, far, "b.png"), "voxel");
+  EXPECT_EQ(read_text(dir_ / "a.png"), read_text(dir_ / "b.png"));
+  // Where there is no OpenGL at all.
+  Command command = command_for({"render", planet().string(), "--pose", far, "-o", "c.png", "--size", "96x54"});
+  command.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = path("none.json");
+  EXPECT_EQ(run(command).exit_code, 0);
 }
 
 TEST_F(Render, StraightDownTheRangeIsTheAltitudeOverTheTerrain) {
@@ -175,11 +202,12 @@ TEST_F(Render, ADamagedTileIsNamed) {
   const std::vector<std::pair<std::string, std::string>> cases{{"heights", "0"}, {"mesh", "20"}};
   for (const auto& [table, tolerance] : cases) {
     SCOPED_TRACE(table);
-    std::filesystem::copy_file(planet(), dir_ / "damaged.vpe", std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(planet(), dir_ / "damaged.vpe",
+                               std::filesystem::copy_options::overwrite_existing);
     damage_payloads(dir_ / "damaged.vpe", table);
     for (const char* pose : {"0,0,9e6,0,-90,0", "180,0,9e6,0,-90,0", "0,90,9e6,0,-90,0", "0,-90,9e6,0,-90,0"}) {
-      const Result result =
-          vpe({"render", "damaged.vpe", "--pose", pose, "-o", "x.png", "--size", "64x64", "--tolerance", tolerance});
+      const Result result = vpe({"render", "damaged.vpe", "--pose", pose, "-o", "x.png", "--size", "64x64",
+                                 "--tolerance", tolerance, "--backend", "polygon"});
       EXPECT_EQ(result.exit_code, 1) << "signal " << result.signal;
       EXPECT_TRUE(says(result.err, {"damaged.vpe", "damaged", "build"}));
       EXPECT_FALSE(exists("x.png"));

@@ -1,0 +1,87 @@
+// What --backend auto draws with.
+#include "vpe/app/backend_choice.h"
+
+#include <gtest/gtest.h>
+
+namespace vpe::app {
+namespace {
+
+core::DrawRequest looking(double pitch_deg, double alt_m = 20000) {
+  core::DrawRequest request;
+  request.view.eye = mars::to_eye({30, 10, alt_m, 70, pitch_deg, 0}, mars::kMarsRadius_m);
+  return request;
+}
+
+BackendChoice choice(const std::vector<core::DrawRequest>& pictures, const PictureOptions& options = {},
+                     bool has_gpu = false) {
+  return choose_backend(options, make_settings(options), pictures, mars::kMarsRadius_m, has_gpu);
+}
+
+TEST(BackendChoice, RaysToTheHorizonFromNearbyWithoutAGpu) {
+  EXPECT_EQ(choice({looking(-10)}).backend, "voxel");
+  EXPECT_EQ(choice({looking(-10)}, {}, true).backend, "polygon");
+  EXPECT_EQ(choice({looking(-70)}).backend, "polygon");
+  EXPECT_EQ(choice({looking(-30, 1e5)}).backend, "voxel");
+  EXPECT_EQ(choice({looking(-30, 2e5)}).backend, "polygon");
+  EXPECT_EQ(choice({looking(-70, 1e7)}).backend, "polygon");  // the whole planet
+  // Of several, what suits the half.
+  EXPECT_EQ(choice({looking(-10), looking(-70)}).backend, "voxel");
+  EXPECT_EQ(choice({looking(-10), looking(-70), looking(-80)}).backend, "polygon");
+}
+
+TEST(BackendChoice, ANamedBackendIsTaken) {
+  for (const std::string backend : {"voxel", "polygon"}) {
+    PictureOptions options;
+    options.backend = backend;
+    for (const double pitch_deg : {-10.0, -70.0}) {
+      const BackendChoice chosen = choice({looking(pitch_deg)}, options);
+      EXPECT_EQ(chosen.backend, backend);
+      EXPECT_EQ(chosen.settings, make_settings(options));
+    }
+  }
+}
+
+TEST(BackendChoice, WhatIsAboutTrianglesIsDrawnByThem) {
+  const auto expect_triangles = [](const auto& change) {
+    core::DrawRequest request = looking(-10);
+    EXPECT_TRUE(suits_rays(request));
+    change(request);
+    EXPECT_FALSE(suits_rays(request));
+    // One picture of many is enough.
+    EXPECT_EQ(choice({looking(-10), request, looking(-10)}).backend, "polygon");
+  };
+  expect_triangles([](auto& r) { r.settings.mode = core::Mode::kWireframe; });
+  expect_triangles([](auto& r) { r.settings.mode = core::Mode::kMarkers; });
+  expect_triangles([](auto& r) { r.settings.shading = core::Shading::kFlat; });
+  expect_triangles([](auto& r) { r.settings.inspect = core::Inspect::kLevels; });
+  expect_triangles([](auto& r) { r.settings.lod_rule = core::LodRule::kHitchner; });
+  expect_triangles([](auto& r) { r.settings.lod_triangles = 1000; });
+  expect_triangles([](auto& r) { r.settings.lod_centre_weight = 1; });
+  expect_triangles([](auto& r) { r.interest.push_back({0, 0, 1000, 1}); });
+  expect_triangles([](auto& r) { r.cull_view = r.view; });
+}
+
+TEST(BackendChoice, RaysKeepToTheTolerance) {
+  const auto settings = [](const std::vector<std::string>& set, double tolerance_px = -1) {
+    PictureOptions options;
+    options.set = set;
+    options.tolerance_px = tolerance_px;
+    const BackendChoice chosen = choice({looking(-10)}, options);
+    EXPECT_EQ(chosen.backend, "voxel");
+    return chosen.settings.values();
+  };
+  EXPECT_EQ(settings({}).ray_mode, core::RayMode::kMultires);
+  EXPECT_EQ(settings({}).ray_cell_px, 1);
+  EXPECT_EQ(settings({}, 0.3).ray_cell_px, 0.3);
+  EXPECT_EQ(settings({"lod.tolerance=4"}).ray_cell_px, 4);
+  EXPECT_EQ(settings({}, 1000).ray_cell_px, core::RayLimits::kMostCell_px);
+  EXPECT_EQ(settings({}, 0).ray_mode, core::RayMode::kExact);
+  EXPECT_EQ(settings({}, 0.001).ray_mode, core::RayMode::kExact);
+  // As it is said where it is said.
+  EXPECT_EQ(settings({"rays.mode=exact"}).ray_mode, core::RayMode::kExact);
+  EXPECT_EQ(settings({"rays.cell=2"}).ray_mode, core::RayMode::kExact);
+  EXPECT_EQ(settings({"rays.mode=multires", "rays.cell=2"}).ray_cell_px, 2);
+}
+
+}  // namespace
+}  // namespace vpe::app
