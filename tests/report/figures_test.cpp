@@ -125,7 +125,7 @@ TEST(Turns, WhatIsMadeReadyDoesNotCountAndSlowOnesRunLess) {
   double now_s = 0;
   std::string order;
   std::vector<Contestant> contestants(2);
-  contestants[0].prepare = [&] {
+  contestants[0].prepare = [&](double) {
     order += 'p';
     now_s += 50;
   };

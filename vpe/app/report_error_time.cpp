@@ -1,8 +1,6 @@
 // vpe report error-time.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <ctime>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 
@@ -14,6 +12,7 @@
 #include "vpe/app/progress.h"
 #include "vpe/app/report.h"
 #include "vpe/app/report_error_time_ways.h"
+#include "vpe/app/report_folder.h"
 #include "vpe/app/report_parts.h"
 #include "vpe/app/temporary.h"
 #include "vpe/core/number.h"
@@ -42,30 +41,6 @@ struct ErrorTimeArguments {
 };
 
 constexpr const char* kShortViews[] = {"high oblique", "canyon floor"};
-
-std::string processor() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    if (const std::size_t colon = line.find(": "); line.starts_with("model name") && colon != std::string::npos)
-      return line.substr(colon + 2);
-  }
-  return "an unknown processor";
-}
-
-std::string date_utc() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts);
-  return text;
-}
-
-std::string command_line(const Common& common) {
-  std::string line = "vpe";
-  for (const std::string& word : common.words) line += " " + word;
-  return line;
-}
 
 std::vector<NamedView> chosen_views(const ErrorTimeArguments& arguments, std::vector<NamedView> all) {
   std::vector<std::string> wanted = arguments.views;
@@ -104,37 +79,34 @@ class Renderers {
   std::shared_ptr<gl::Context> context_;
 };
 
-std::vector<std::string> about(const ErrorTimeArguments& arguments, const Common& common,
-                               const paging::PlanetMeta& meta, const gl::ContextInfo& gl, const Size& size,
-                               int rounds) {
-  const int threads = common.threads > 0 ? common.threads : core::default_threads();
-  std::vector<std::string> lines{
-      command_line(common) + ", " + date_utc() + ", vpe " + version() + ".",
-      processor() + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") +
-          "; triangles by OpenGL on " + gl.renderer + (gl.software ? ", without a GPU" : "") + ".",
-      (arguments.planet.empty() ? std::string("The embedded Mars") : arguments.planet) + ", pictures of " +
-          std::to_string(size.width) + "x" + std::to_string(size.height) +
-          ", 60 degrees high. Times are medians of " + std::to_string(rounds) +
-          " rounds in turns, everything loaded, from the request to colours in memory.",
+std::vector<std::string> about(const ErrorTimeArguments& arguments, const RunFacts& facts,
+                               const paging::PlanetMeta& meta, const Size& size, int rounds) {
+  std::vector<std::string> lines = to_paragraphs(facts);
+  lines.push_back((arguments.planet.empty() ? std::string("The embedded Mars") : arguments.planet) +
+                  ", pictures of " + std::to_string(size.width) + "x" + std::to_string(size.height) +
+                  ", 60 degrees high. Times are medians of " + std::to_string(rounds) +
+                  " rounds in turns, everything loaded, from the request to colours in memory.");
+  lines.emplace_back(
       "Errors are measured against rays in mode exact, and their shifts against the exact surface S "
-      "(docs/numbers.md); docs/error-and-time.md says what each figure means."};
+      "(docs/numbers.md); docs/error-and-time.md says what each figure means.");
   if (meta.illustration)
     lines.emplace_back("This planet is an illustration; its numbers are not data about Mars.");
   return lines;
 }
 
-void write_files(const fs::path& folder, const report::ErrorTimeReport& report) {
+void write_files(const fs::path& folder, const report::ErrorTimeReport& report, const report::Page& page) {
   write_whole(folder / "error-time.csv", report::to_csv(report::points_table(report.results)));
   write_whole(folder / "error-time.json", report::error_time_json(report).dump(1) + "\n");
   write_whole(folder / "error-time.svg", report::to_svg_file(report::summary_plot(report.results)));
-  write_whole(folder / "error-time.html", report::to_html(report::error_time_page(report)));
+  write_whole(folder / "error-time.html", report::to_html(page));
 }
 
 void print_summary(const fs::path& folder, const report::ErrorTimeReport& report) {
   for (const report::SubjectResult& result : report.results) {
     for (const report::DefaultPlace& p : report::place_defaults(result)) {
-      std::printf("%-13s %-24s %-16s %8.4g  %8.4g ms  %.2f of the front, %.2f of its own\n", p.view.c_str(),
-                  p.sweep.c_str(), p.knob.c_str(), p.error, p.time_ms, p.over_front, p.over_own_front);
+      std::printf("%-13s %s%-24s %-16s %8.4g  %8.4g ms  %.2f of the front, %.2f of its own\n", p.view.c_str(),
+                  p.is_chosen ? "* " : "  ", p.sweep.c_str(), p.knob.c_str(), p.error, p.time_ms, p.over_front,
+                  p.over_own_front);
     }
   }
   std::printf("%s\n", (folder / "error-time.html").c_str());
@@ -153,7 +125,7 @@ void warn_of_false_statements(const std::vector<report::SubjectResult>& results)
   }
 }
 
-void error_time(const ErrorTimeArguments& arguments, const Common& common) {
+report::Page error_time(const ErrorTimeArguments& arguments, const Common& common) {
   const Size size = parse_size(!arguments.size.empty() ? arguments.size
                                : arguments.is_short    ? "320x180"
                                                        : "640x360");
@@ -173,7 +145,9 @@ void error_time(const ErrorTimeArguments& arguments, const Common& common) {
   const paging::Surface surface(planet, memory_bytes(common) / 8);
   const std::vector<NamedView> views =
       chosen_views(arguments, arguments.planet.empty() ? embedded_views(surface) : views_of(surface));
+  RunFacts facts = read_run_facts(common);
   const Renderers renderers(planet, common);
+  facts.opengl = renderers.info().renderer + ", " + renderers.info().version;
 
   report::ErrorTimeReport report{"Error against time", {}, {}};
   {
@@ -195,22 +169,33 @@ void error_time(const ErrorTimeArguments& arguments, const Common& common) {
       ways.width = size.width;
       ways.height = size.height;
       ways.is_short = arguments.is_short;
+      ways.has_gpu = gl::has_gpu();
       ways.with_embree = arguments.baseline == kEmbreeBaseline;
       report.results.push_back(report::measure(subject_of(views[k], *planet, ways), options));
     }
     InterruptGuard::check();
   }
-  report.about = about(arguments, common, planet->meta(), renderers.info(), size, rounds);
-  write_files(folder, report);
+  report.about = about(arguments, facts, planet->meta(), size, rounds);
+  report::Page page = report::error_time_page(report);
+  write_files(folder, report, page);
   warn_of_false_statements(report.results);
   if (common.json) {
     print_json(report::error_time_json(report));
   } else if (!common.quiet) {
     print_summary(folder, report);
   }
+  return page;
 }
 
 }  // namespace
+
+report::Page error_time_report(const ReportOrder& order, const Common& common) {
+  ErrorTimeArguments arguments;
+  arguments.output = order.folder.string();
+  arguments.planet = order.planet;
+  arguments.is_short = order.is_short;
+  return error_time(arguments, common);
+}
 
 void add_report_error_time(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<ErrorTimeArguments>();

@@ -111,6 +111,50 @@ report::Compose average(const core::View& view, int times) {
   };
 }
 
+core::DrawRequest reduced(const core::DrawRequest& request, int times) {
+  core::DrawRequest small = request;
+  core::View& view = small.view;
+  view.width = (view.width + times - 1) / times;
+  view.height = (view.height + times - 1) / times;
+  const double focal_px = core::focal_px(request.view) / times;
+  view.fov_deg = 2 * std::atan(0.5 * view.height / focal_px) / mars::kRadiansPerDegree;
+  return small;
+}
+
+report::Compose stretch(const core::View& view, int times) {
+  return [size = glm::ivec2(view.width, view.height), times](std::vector<core::Frame> frames) {
+    const core::Frame& small = frames.at(0);
+    core::Frame large = blank(size);
+    // Both pictures' middles are one place.
+    const auto place = [times](int k, int large_side, int small_side) {
+      return std::clamp(0.5 * (small_side - 1) + (k + 0.5 - 0.5 * large_side) / times, 0.0, small_side - 1.0);
+    };
+    const auto pixel = [&small](int x, int y) {
+      const mars::Rgb& c = small.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(small.width) +
+                                        static_cast<std::size_t>(x)];
+      return glm::dvec3(c.r, c.g, c.b);
+    };
+    for (int y = 0; y < size.y; ++y) {
+      const double row = place(y, size.y, small.height);
+      const int top = static_cast<int>(row);
+      const int below = std::min(top + 1, small.height - 1);
+      for (int x = 0; x < size.x; ++x) {
+        const double column = place(x, size.x, small.width);
+        const int left = static_cast<int>(column);
+        const int right = std::min(left + 1, small.width - 1);
+        const glm::dvec3 colour =
+            glm::mix(glm::mix(pixel(left, top), pixel(right, top), column - left),
+                     glm::mix(pixel(left, below), pixel(right, below), column - left), row - top);
+        large.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
+                     static_cast<std::size_t>(x)] = {static_cast<std::uint8_t>(colour.r + 0.5),
+                                                     static_cast<std::uint8_t>(colour.g + 0.5),
+                                                     static_cast<std::uint8_t>(colour.b + 0.5)};
+      }
+    }
+    return large;
+  };
+}
+
 panorama::PanoramaMap cylinder_of(std::int64_t columns) { return plan(columns, 0); }
 
 panorama::PanoramaMap facets_of(int facets, std::int64_t columns) { return plan(columns, facets); }

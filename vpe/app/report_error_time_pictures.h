@@ -1,4 +1,5 @@
-// Pictures that are put together from others: larger ones averaged, facets and cylinders looked up.
+// Pictures that are put together from others: larger ones averaged, smaller ones stretched, facets and cylinders
+// looked up.
 #pragma once
 
 #include <vector>
@@ -12,6 +13,11 @@ namespace vpe::app {
 std::vector<core::DrawRequest> enlarged(const core::DrawRequest& request, int times);
 // The mean of each `times` x `times` pixels of those strips, rounded; without ranges.
 report::Compose average(const core::View& view, int times);
+
+// The same view with `times` fewer columns and rows, or with a few pixels more on each side where they do not divide.
+core::DrawRequest reduced(const core::DrawRequest& request, int times);
+// That picture drawn as large as the view, between its pixels linearly; without ranges.
+report::Compose stretch(const core::View& view, int times);
 
 // A whole turn from 25 degrees below the horizon to 15 above it.
 panorama::PanoramaMap cylinder_of(std::int64_t columns);

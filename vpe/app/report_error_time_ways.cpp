@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "vpe/app/backend_choice.h"
 #include "vpe/app/picture_options.h"
 #include "vpe/app/report_error_time_pictures.h"
 #include "vpe/core/number.h"
@@ -45,6 +46,7 @@ class Planner {
     base_.view.height = options.height;
     subject_.view = view.name;
     subject_.about = view.about;
+    chosen_ = choose_backend({}, {}, {&base_, 1}, planet.radius_m(), options.has_gpu).backend;
   }
 
   report::Subject plan() {
@@ -93,19 +95,21 @@ class Planner {
   void add_rays() {
     add_picture("rays, exact", kRayPictures, {}, "rays.mode=exact").is_default = true;
     if (!options_.is_short) add_picture("rays, plain", kRayPictures, {"rays.mode=plain"}).most_rounds = 1;
-    for (const double cell : values(64, 0.125, 8)) {
-      add_picture("rays by cell", kRayPictures,
-                  {"rays.mode=multires", "rays.cell=" + core::format_number(cell)},
-                  "rays.cell=" + core::format_number(cell));
+    for (const double cell : values(core::RayLimits::kMostCell_px, core::RayLimits::kLeastCell_px, 8)) {
+      report::Way& way = add_picture("rays by cell", kRayPictures,
+                                     {"rays.mode=multires", "rays.cell=" + core::format_number(cell)},
+                                     "rays.cell=" + core::format_number(cell));
+      way.is_chosen = chosen_ == kRayBackend && cell == core::SettingsValues().lod_tolerance_px;
     }
   }
 
   void add_tolerances() {
-    for (const double tolerance : values(64, 0.125, 8)) {
+    for (const double tolerance : values(64, 0.0625, 8)) {
       report::Way& way = add_picture("triangles by tolerance", kTriangles,
                                      {"lod.tolerance=" + core::format_number(tolerance)});
       way.colour_plot = kTexture;
       way.is_default = tolerance == core::SettingsValues().lod_tolerance_px;
+      way.is_chosen = way.is_default && chosen_ == kPolygonBackend;
     }
   }
 
@@ -152,20 +156,33 @@ class Planner {
       way.reference = reference;
       way.has_ranges = false;
     };
-    for (int times = 1; times <= many / 2; times *= 2) {
-      report::Way& way =
-          add("rays, averaged", std::to_string(times) + " x " + std::to_string(times) + " rays a pixel",
-              kRayPictures, enlarged(hard, times));
-      way.compose = average(small.view, times);
-      describe(way);
-    }
+    const std::string tolerance = core::format_number(core::SettingsValues().lod_tolerance_px);
     for (const char* renderer : {kRayPictures, kTriangles}) {
-      for (const int samples : {1, 2, 4}) {
-        const Words settings{"samples=" + std::to_string(samples)};
-        report::Way& way = add(std::string(renderer) + " by samples", join(settings), renderer,
-                               {with(small, settings, view_.pose)});
+      const bool is_rays = renderer == std::string(kRayPictures);
+      // As they are drawn when nothing is named.
+      const auto settings = [&](const std::string& one) {
+        return is_rays ? Words{"rays.mode=multires", "rays.cell=" + tolerance, one} : Words{one};
+      };
+      const core::DrawRequest plain = with(small, settings("edges=hard"), view_.pose);
+      const std::string sweep = std::string(renderer) + " by resolution";
+      const int step = options_.is_short ? 4 : 2;
+      for (int times = options_.is_short ? 16 : 32; times > 1; times /= step) {
+        report::Way& way = add(sweep, "1/" + std::to_string(times), renderer, {reduced(plain, times)});
+        way.compose = stretch(small.view, times);
         describe(way);
-        way.is_default = samples == 1;
+      }
+      for (int times = 1; times <= many / 2; times *= step) {
+        report::Way& way = add(sweep, std::to_string(times), renderer, enlarged(plain, times));
+        way.compose = average(small.view, times);
+        describe(way);
+      }
+      // Three values are no sweep.
+      for (const int samples : {1, 2, 4}) {
+        const std::string setting = "samples=" + std::to_string(samples);
+        report::Way& way = add(std::string(renderer) + ", " + setting, setting, renderer,
+                               {with(small, settings(setting), view_.pose)});
+        describe(way);
+        way.is_chosen = samples == 1 && is_rays == (chosen_ == kRayBackend);
       }
     }
   }
@@ -182,7 +199,7 @@ class Planner {
                                    true});
     std::vector<int> facets{0, 4, 8, 16};
     if (options_.is_short) facets = {0, 8};
-    std::vector<std::int64_t> widths{64, 128, 256, 512, 1024, 2048, 4096, 8192};
+    std::vector<std::int64_t> widths{128, 256, 512, 1024, 2048, 4096, 8192, 16384};
     if (options_.is_short) widths = {64, 256, 1024, 8192};
     for (const int many : facets) {
       const std::string sweep = many == 0 ? "cylinder by columns" : std::to_string(many) + " facets by columns";
@@ -208,6 +225,7 @@ class Planner {
   const paging::PlanetFile& planet_;
   WayOptions options_;
   core::DrawRequest base_;
+  std::string chosen_;  // backend, when none is named
   report::Subject subject_;
 };
 

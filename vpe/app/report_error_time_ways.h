@@ -17,6 +17,7 @@ struct WayOptions {
   int width = 640;
   int height = 360;
   bool is_short = false;     // fewer values of every knob, smaller pictures of many samples and panoramas
+  bool has_gpu = false;      // for what is drawn when no backend is named
   bool with_embree = false;  // which is the baseline then
 };
 

@@ -19,6 +19,12 @@ struct FeatureArguments {
   FeaturePlan plan;  // the order's scene is empty unless this is a child
   std::string folder;
   bool brief = false;
+
+  FeatureArguments() {
+    plan.order.pose = "-70,-13.5,4000,80,-15";
+    plan.order.size = "640x360";
+    plan.order.backend = kPolygonBackend;
+  }
 };
 
 // Removes a file when it goes.
@@ -37,11 +43,10 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-void report_features(FeatureArguments& arguments, const Common& common) {
+report::Page report_features(FeatureArguments& arguments, const Common& common) {
   ProbeOrder& order = arguments.plan.order;
   order.memory_mb = common.memory_mb;
   order.threads = common.threads;
-  if (!order.scene.empty()) return run_probe(order);
   if (arguments.folder.empty()) throw UsageError("-o FOLDER is missing: where the report shall be written");
   if (arguments.brief) {
     order.size = "160x90";
@@ -96,16 +101,34 @@ void report_features(FeatureArguments& arguments, const Common& common) {
   } else if (!common.quiet) {
     std::printf("%s\n", (folder / "features.html").c_str());
   }
+  return page;
+}
+
+// A process that another report has started measures itself.
+void report_or_probe(FeatureArguments& arguments, const Common& common) {
+  ProbeOrder& order = arguments.plan.order;
+  if (order.scene.empty()) {
+    report_features(arguments, common);
+    return;
+  }
+  order.memory_mb = common.memory_mb;
+  order.threads = common.threads;
+  run_probe(order);
 }
 
 }  // namespace
 
+report::Page features_report(const ReportOrder& order, const Common& common) {
+  FeatureArguments arguments;
+  arguments.folder = order.folder.string();
+  arguments.plan.order.planet = order.planet;
+  arguments.brief = order.is_short;
+  return report_features(arguments, common);
+}
+
 void add_report_features(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<FeatureArguments>();
   ProbeOrder& order = arguments->plan.order;
-  order.pose = "-70,-13.5,4000,80,-15";
-  order.size = "640x360";
-  order.backend = kPolygonBackend;
   CLI::App* command = add_command(report, "features",
                                   "What imagery, light, shadows, overlays and the like cost: on, off, and in a "
                                   "program built without them",
@@ -132,7 +155,7 @@ void add_report_features(CLI::App& report, Common& common) {
       ->check(CLI::IsMember({kPolygonBackend, kRayBackend}));
   command->add_option("--frames", order.frames)->group("")->check(CLI::Range(1, 1000));
   command->add_option("--statistics", order.statistics_file)->group("");
-  command->callback([arguments, &common] { report_features(*arguments, common); });
+  command->callback([arguments, &common] { report_or_probe(*arguments, common); });
 }
 
 }  // namespace vpe::app

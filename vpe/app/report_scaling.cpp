@@ -119,7 +119,7 @@ void print_laws(const std::vector<report::Law>& laws) {
   }
 }
 
-void report_scaling(const ScalingArguments& arguments, const Common& common) {
+report::Page report_scaling(const ScalingArguments& arguments, const Common& common) {
   const ScalingPlan plan = make_plan(arguments, common);
   const std::filesystem::path folder = arguments.folder;
   check_report_folder(folder);
@@ -159,17 +159,25 @@ void report_scaling(const ScalingArguments& arguments, const Common& common) {
                       {"samples", report::to_json(samples)},
                       {"planets", report::to_json(built)},
                       {"flights", report::to_json(flights.table)}};
-  write_report(folder, "scaling", make_page(facts, laws, built, flights.table), json,
-               {fits, samples, built, flights.table});
+  report::Page page = make_page(facts, laws, built, flights.table);
+  write_report(folder, "scaling", page, json, {fits, samples, built, flights.table});
   if (common.json) {
     print_json(json);
   } else if (!common.quiet) {
     print_laws(laws);
     std::printf("%s\n", (folder / "scaling.html").c_str());
   }
+  return page;
 }
 
 }  // namespace
+
+report::Page scaling_report(const ReportOrder& order, const Common& common) {
+  ScalingArguments arguments;
+  arguments.folder = order.folder.string();
+  arguments.brief = order.is_short;
+  return report_scaling(arguments, common);
+}
 
 void add_report_scaling(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<ScalingArguments>();

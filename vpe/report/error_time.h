@@ -33,7 +33,8 @@ using Compose = std::function<core::Frame(std::vector<core::Frame> frames)>;
 struct Way {
   std::string sweep;        // as in "triangles by tolerance"
   std::string knob;         // as in "lod.tolerance=2"
-  bool is_default = false;  // what is drawn when nothing is set, of its backend
+  bool is_default = false;  // what is drawn when no more than the backend is named
+  bool is_chosen = false;   // what is drawn when nothing is named
   ErrorKind kind = ErrorKind::kShift;
   std::string rivals;       // ways of equal name show the same and may stand on one front; empty: on none
   std::string plot;         // of the view, by its kind of error, on which it stands; empty: on none
@@ -111,7 +112,7 @@ struct ErrorTimeOptions {
 
 // Draws the references, then every way by a renderer of its own with ranges, then all ways in turns, without
 // ranges, by one renderer for each name; where that had to load something again, as other ways took the memory,
-// a frame that does not count goes before the next. Throws what renderers throw, std::invalid_argument for a
+// and before every quick one, a frame that does not count goes before the next. Throws what renderers throw, std::invalid_argument for a
 // subject without ways or with pictures of other sizes than their reference's, std::runtime_error when a
 // picture is not complete.
 SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options);

@@ -16,7 +16,9 @@ Series& series_of(Plot& plot, const std::string& name) {
   return plot.series.back();
 }
 
-std::string label(const Way& way) { return way.knob + (way.is_default ? " (default)" : ""); }
+std::string label(const Way& way) {
+  return way.knob + (way.is_chosen ? " (default)" : way.is_default ? " (default of its backend)" : "");
+}
 
 class Plots {
  public:
@@ -73,7 +75,7 @@ Plot summary_plot(const std::vector<SubjectResult>& results) {
   plot.x_label = "time, to that of " + baseline.sweep + ", " + baseline.knob;
   for (const WayOverViews& w : over_views(results)) {
     if (w.way.plot != baseline.plot || w.way.kind != ErrorKind::kShift) continue;
-    Point point{w.ratio, w.error, label(w.way), {}, w.way.is_default};
+    Point point{w.ratio, w.error, label(w.way), {}, w.way.is_default || w.way.is_chosen};
     if (std::isfinite(w.stated_px)) point.bound = w.stated_px;
     series_of(plot, w.way.sweep).points.push_back(point);
   }

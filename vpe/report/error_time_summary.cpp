@@ -71,13 +71,14 @@ std::vector<DefaultPlace> place_defaults(const SubjectResult& result) {
   std::vector<DefaultPlace> places;
   for (std::size_t k = 0; k < result.measured.size(); ++k) {
     const Way& way = result.subject.ways[k];
-    if (!way.is_default || way.rivals.empty()) continue;
+    if (!(way.is_default || way.is_chosen) || way.rivals.empty()) continue;
     const std::vector<CostAndError> all = costs(result, way.rivals, "");
     const std::vector<CostAndError> own = costs(result, way.rivals, way.renderer);
     DefaultPlace place;
     place.view = result.subject.view;
     place.sweep = way.sweep;
     place.knob = way.knob;
+    place.is_chosen = way.is_chosen;
     place.error = result.measured[k].error(way.kind);
     place.time_ms = all[k].cost;
     place.front_ms = cost_at_error(all, all[k].error);
@@ -126,6 +127,7 @@ std::vector<WayOverViews> over_views(const std::vector<SubjectResult>& results) 
         ways.back().way.requests.clear();
         collected.emplace_back();
       }
+      ways[at].way.is_chosen |= way.is_chosen;
       collected[at].ratio.push_back(measured.ratio);
       collected[at].error.push_back(measured.error(way.kind));
       if (measured.stated_px) collected[at].stated.push_back(*measured.stated_px);

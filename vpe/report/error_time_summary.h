@@ -37,6 +37,7 @@ struct DefaultPlace {
   std::string view;
   std::string sweep;
   std::string knob;
+  bool is_chosen = false;  // as Way::is_chosen; else Way::is_default
   double error = 0;
   double time_ms = 0;
   double front_ms = 0;        // the shortest time of any rival that errs no more
@@ -51,7 +52,7 @@ std::vector<std::size_t> fronts(const SubjectResult& result);
 
 // A way over all views that have it: medians.
 struct WayOverViews {
-  Way way;  // without its requests
+  Way way;  // without its requests; chosen if it is so in any view
   int views = 0;
   double ratio = 0;  // time to the baseline's
   double error = 0;

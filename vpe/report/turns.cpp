@@ -24,15 +24,17 @@ double Timing::median_s() const { return median(round_s); }
 std::vector<Timing> time_in_turns(std::span<const Contestant> contestants, int rounds, const Clock& clock) {
   if (rounds < 1) throw std::invalid_argument("time_in_turns: at least one round");
   std::vector<Timing> timings(contestants.size());
+  std::vector<double> last_s(contestants.size(), std::numeric_limits<double>::quiet_NaN());
   for (int round = -1; round < rounds; ++round) {
     for (std::size_t k = 0; k < contestants.size(); ++k) {
       const Contestant& contestant = contestants[k];
       const bool is_rare = contestant.most_rounds < rounds;
       if (is_rare && (round < 0 || round >= contestant.most_rounds)) continue;
-      if (contestant.prepare) contestant.prepare();
+      if (contestant.prepare) contestant.prepare(last_s[k]);
       const double begin_s = clock();
       contestant.run();
       const double end_s = clock();
+      last_s[k] = end_s - begin_s;
       if (round >= 0) timings[k].round_s.push_back(end_s - begin_s);
     }
   }

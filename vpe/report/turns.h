@@ -20,7 +20,8 @@ struct Timing {
 // What is timed, and what makes it ready, which is not.
 struct Contestant {
   std::function<void()> run;
-  std::function<void()> prepare;  // before each run; may be left out
+  // Before each run, given how long the last one took (NaN: none yet); may be left out.
+  std::function<void(double last_s)> prepare;
   // Runs in so many of the rounds that count at most, the first ones, and then not in the one that does not.
   int most_rounds = std::numeric_limits<int>::max();
 };
