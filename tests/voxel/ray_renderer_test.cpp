@@ -244,6 +244,16 @@ TEST_F(Rays, SamplesAverageThePixel) {
   const double one = difference(1);
   EXPECT_LT(difference(2), 0.8 * one);
   EXPECT_LT(difference(4), 0.5 * one);
+  // What is stated is so of every ray.
+  core::DrawRequest coarse = request(1, 1);
+  coarse.settings.ray_mode = core::RayMode::kMultires;
+  const core::Certificate single = draw->draw(coarse).certificate;
+  coarse.settings.samples = 4;
+  const core::Certificate several = draw->draw(coarse).certificate;
+  EXPECT_GE(several.tile_error_px, single.tile_error_px);
+  EXPECT_LE(several.tile_error_px, coarse.settings.ray_cell_px);
+  EXPECT_GT(several.tile_error_m, 0);
+  EXPECT_GE(several.tiles_drawn, single.tiles_drawn);
   // Ranges are those of the middle.
   EXPECT_EQ(draw->draw(request(1, 4)).frame.range_m, draw->draw(request(1, 1)).frame.range_m);
 }

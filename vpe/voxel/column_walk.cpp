@@ -95,10 +95,14 @@ double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
   return std::sqrt(std::max(0.0, eye_.distance_m * eye_.distance_m + radius * radius - 2 * radius * along));
 }
 
-double ColumnWalk::measured_error_px(lod::TileTree::Index tile) const {
+double ColumnWalk::measured_error_m(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
   if (!info.posts_terms.known()) return kInfinite;
-  return tree_.error_m(info, info.posts_terms.terms(), exaggeration_) * rule_.focal_px / least_distance_m(tile);
+  return tree_.error_m(info, info.posts_terms.terms(), exaggeration_);
+}
+
+double ColumnWalk::in_picture_px(double error_m, lod::TileTree::Index tile) const {
+  return error_m * rule_.focal_px / least_distance_m(tile);
 }
 
 bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
@@ -109,7 +113,7 @@ bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
   if ((known & kKnown) != 0) return (known & kYes) != 0;
   const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
   const bool fine = info.posts_terms.known()
-                        ? measured_error_px(tile) <= rule_.cell_px
+                        ? in_picture_px(measured_error_m(tile), tile) <= rule_.cell_px
                         : spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
   ends_[tile].fetch_or(static_cast<std::uint8_t>(fine ? kKnown | kYes : kKnown), std::memory_order_relaxed);
   return fine;
@@ -129,22 +133,28 @@ ColumnWalk::Used ColumnWalk::used() const {
     if (used.tiles_by_level.size() <= level) used.tiles_by_level.resize(level + 1);
     ++used.tiles_by_level[level];
     if (!info.has_children) continue;
-    const double measured = measured_error_px(tile);
-    if (std::isfinite(measured)) {
-      used.error_px = std::max(used.error_px, measured);
-      continue;
+    double error_m = measured_error_m(tile);
+    if (!std::isfinite(error_m)) {
+      // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
+      // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
+      // are up to sqrt(2) times the nominal spacing apart.
+      const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
+      const double reach = std::sqrt(2.0) * spacing;
+      const double sag = reach * reach / (4 * eye_.radius_m);
+      error_m = 2 * exaggeration_ * info.steepest_slope * reach + sag + tree_.edge_shift_m(info, exaggeration_);
     }
-    // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
-    // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
-    // are up to sqrt(2) times the nominal spacing apart.
-    const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
-    const double reach = std::sqrt(2.0) * spacing;
-    const double sag = reach * reach / (4 * eye_.radius_m);
-    const double error =
-        2 * exaggeration_ * info.steepest_slope * reach + sag + tree_.edge_shift_m(info, exaggeration_);
-    used.error_px = std::max(used.error_px, error * rule_.focal_px / least_distance_m(tile));
+    used.error_m = std::max(used.error_m, error_m);
+    used.error_px = std::max(used.error_px, in_picture_px(error_m, tile));
   }
   return used;
+}
+
+void ColumnWalk::Used::add(const Used& other) {
+  tiles_by_level.resize(std::max(tiles_by_level.size(), other.tiles_by_level.size()));
+  for (std::size_t level = 0; level < other.tiles_by_level.size(); ++level)
+    tiles_by_level[level] = std::max(tiles_by_level[level], other.tiles_by_level[level]);
+  error_px = std::max(error_px, other.error_px);
+  error_m = std::max(error_m, other.error_m);
 }
 
 // One group on one face after the other.

@@ -12,8 +12,8 @@
 namespace vpe::voxel {
 
 // Which tiles are fine enough: those whose posts, drawn as a grid, are within cell_px of S in the picture
-// wherever they are (so crests sink by no more than that). In planet files that do not say how far they are (before
-// 1.2): those whose posts are at most cell_px apart there.
+// wherever they are (so crests sink by no more than that). In planet files that do not say how far they are
+// (before 1.2): those whose posts are at most cell_px apart there.
 struct CellRule {
   double cell_px = 0;   // 0: none but the finest, so S itself
   double focal_px = 1;  // pixels per radian, at most
@@ -43,6 +43,9 @@ class ColumnWalk {
     std::vector<int> tiles_by_level;  // index 0 = level 0
     // Bound of |drawn - S| in the picture, pixels: 0 when all tiles were the finest.
     double error_px = 0;
+    double error_m = 0;  // largest of the tiles
+    // Of several pictures of nearly one view: at least the tiles of each, and all their errors.
+    void add(const Used& other);
   };
   Used used() const;
 
@@ -60,8 +63,10 @@ class ColumnWalk {
   double least_distance_m(lod::TileTree::Index tile) const;
   void mark_used(lod::TileTree::Index tile) const;
 
-  // Bound of |its posts as a grid - S| in the picture; infinite where the planet file does not say.
-  double measured_error_px(lod::TileTree::Index tile) const;
+  // Bound of |its posts as a grid - S|; infinite where the planet file does not say.
+  double measured_error_m(lod::TileTree::Index tile) const;
+  // What such an error makes in the picture at most.
+  double in_picture_px(double error_m, lod::TileTree::Index tile) const;
 
   // No ray into the tile is steeper than this many times upward.
   float slope_bound(lod::TileTree::Index tile) const;

@@ -19,7 +19,7 @@ struct PaintJob {
   const ScaleTable* scale = nullptr;  // where the look has one
   RayRows rays;
   double radius_m = 0;
-  double focal_px = 0;
+  double focal_px = 0;      // rays a radian
   double root_range_m = 0;  // at this range pixels are as wide as the posts of level 0 are apart
   int posts_side = 0;       // lines of a tile's grid
   bool by_point = false;    // ground is left to GroundPainter::colour_at

@@ -80,9 +80,14 @@ bool is_one_colour(const paging::ShadeParams& look, const paging::PlanetFile& pl
   return true;
 }
 
-// Where pixels are as wide as the posts of level 0 are apart.
-double root_range(const paging::PlanetFile& planet, const core::View& view) {
-  return lod::nominal_side_m(0, planet.radius_m()) / planet.meta().tile.intervals() * core::focal_px(view);
+// Several rays a pixel are coloured as finely as they lie apart.
+double rays_per_radian(const core::DrawRequest& request) {
+  return core::focal_px(request.view) * std::sqrt(static_cast<double>(request.settings.samples));
+}
+
+// Where rays are as far apart as the posts of level 0.
+double root_range(const paging::PlanetFile& planet, const core::DrawRequest& request) {
+  return lod::nominal_side_m(0, planet.radius_m()) / planet.meta().tile.intervals() * rays_per_radian(request);
 }
 
 }  // namespace
@@ -117,8 +122,8 @@ std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<c
   job.scale = look_.scale ? &table_ : nullptr;
   job.rays = ray_rows(request.view);
   job.radius_m = planet_->radius_m();
-  job.focal_px = core::focal_px(request.view);
-  job.root_range_m = root_range(*planet_, request.view);
+  job.focal_px = rays_per_radian(request);
+  job.root_range_m = root_range(*planet_, request);
   job.posts_side = planet_->meta().tile.posts();
   job.by_point = by_point(look_);
   job.one_colour = is_one_colour(look_, *planet_);
@@ -155,7 +160,7 @@ void PicturePainter::read_ahead(const core::DrawRequest& request, const core::Vi
   PaintTiles tiles(*planet_, painter_, look, budget_);
   HeldTiles ground(share(kPart * kShares.normals, budget_));
   HeldTiles images(share(kPart * kShares.images, budget_));
-  const double root_range_m = root_range(*planet_, request.view);
+  const double root_range_m = root_range(*planet_, request);
   const core::SubRectangle part = core::drawn_part(thin);
   std::size_t at = 0;
   for (int y = 0; y < part.height; ++y) {

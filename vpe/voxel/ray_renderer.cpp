@@ -55,7 +55,7 @@ class RayRenderer : public core::Renderer {
   ColumnWalk::Used cast(const core::DrawRequest& request, std::vector<float>& range_m);
   ColumnWalk::Used draw_samples(const core::DrawRequest& request, core::Frame& frame, std::int64_t& gaps);
   core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame, std::int64_t gaps,
-                            double error_px) const;
+                            const ColumnWalk::Used& used) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   RangeCaster caster_;
@@ -96,11 +96,13 @@ core::View shifted(core::View view, const glm::dvec2& place) {
 }
 
 core::Certificate RayRenderer::certify(const core::DrawRequest& request, const core::Frame& frame,
-                                       std::int64_t gaps, double error_px) const {
+                                       std::int64_t gaps, const ColumnWalk::Used& used) const {
   core::Certificate c;
   c.quantisation_px = RangeCaster::range_error(request.view) * core::focal_px(request.view);
-  c.tile_error_px = error_px;
-  c.shift_bound_px = error_px + c.quantisation_px;
+  c.tile_error_m = used.error_m;
+  c.tile_error_px = used.error_px;
+  c.shift_bound_px = used.error_px + c.quantisation_px;
+  for (const int n : used.tiles_by_level) c.tiles_drawn += n;
   c.picture_bound_px = c.shift_bound_px;
   c.tolerance_px = request.settings.lod_tolerance_px;
   c.share_without_data =
@@ -125,16 +127,19 @@ ColumnWalk::Used RayRenderer::draw_samples(const core::DrawRequest& request, cor
   std::vector<glm::ivec3> sum(frame.colour.size(), glm::ivec3(0));
   std::vector<float> range(frame.range_m.size());
   core::DrawRequest moved = request;
+  ColumnWalk::Used used;
+  gaps = 0;
   for (const glm::dvec2& place : places) {
     moved.view = shifted(request.view, place);
-    caster_.cast(moved.view, options, pool_, range);
-    painter_.paint(moved, range, frame.colour, {}, pool_);
+    used.add(caster_.cast(moved.view, options, pool_, range));
+    gaps += painter_.paint(moved, range, frame.colour, {}, pool_);
     for (std::size_t k = 0; k < sum.size(); ++k)
       sum[k] += glm::ivec3(frame.colour[k].r, frame.colour[k].g, frame.colour[k].b);
   }
-  const ColumnWalk::Used used = cast(request, frame.range_m);
-  gaps = painter_.paint(request, frame.range_m, frame.colour, {}, pool_);
+  if (request.want_range) used.add(caster_.cast(request.view, options, pool_, frame.range_m));
+  ahead_.begin(request);
   const int n = static_cast<int>(places.size());
+  gaps /= n;
   for (std::size_t k = 0; k < sum.size(); ++k) {
     const auto mean = [&](int s) { return static_cast<std::uint8_t>((s + n / 2) / n); };
     frame.colour[k] = {mean(sum[k].x), mean(sum[k].y), mean(sum[k].z)};
@@ -202,9 +207,9 @@ core::DrawResult RayRenderer::draw_picture(const core::DrawRequest& request) {
     if (smooth) core::smooth_edges(frame.colour, inverse_depth_, size.x, size.y, pool_);
   }
   core::apply_gamma(frame.colour, request.settings.gamma);
-  result.certificate = certify(request, frame, gaps, used.error_px);
+  result.certificate = certify(request, frame, gaps, used);
   result.stats.tiles_by_level = used.tiles_by_level;
-  for (const int n : used.tiles_by_level) result.stats.tiles_drawn += n;
+  result.stats.tiles_drawn = result.certificate.tiles_drawn;
   if (!request.want_range) range_m_.swap(frame.range_m);
   // Not those of a poster.
   if (pixels > kMostKeptPixels) {
