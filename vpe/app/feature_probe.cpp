@@ -2,8 +2,10 @@
 
 #include <sys/resource.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "paging/surface.h"
 #include "vpe/app/child.h"
@@ -15,10 +17,16 @@
 namespace vpe::app {
 namespace {
 
+// Not ru_maxrss: on Linux that of a process counts what its parent held when it was started.
 double peak_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    constexpr std::string_view kKey = "VmHWM:";
+    if (line.starts_with(kKey)) return std::stod(line.substr(kKey.size())) * 1024e-6;  // given in KiB
+  }
   rusage used{};
   ::getrusage(RUSAGE_SELF, &used);
-  return static_cast<double>(used.ru_maxrss) * 1024e-6;  // given in KiB
+  return static_cast<double>(used.ru_maxrss) * 1024e-6;
 }
 
 }  // namespace

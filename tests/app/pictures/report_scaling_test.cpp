@@ -1,4 +1,4 @@
-// vpe report scaling and vpe report features at their smallest: what is counted, and that all files say the
+// vpe report scaling, features and all at their smallest: what is counted, and that all files say the
 // same. Times are in them and are not judged.
 #include <algorithm>
 #include <cmath>
@@ -176,6 +176,35 @@ TEST_F(Report, FeaturesRefuseWhatTheyCannotDo) {
   expect_failure({"report", "features", small, "-o", "out", "--short", "-q", "--against", "/bin/false"}, 1,
                  {"/bin/false", "bare"});
   EXPECT_EQ(leftovers(), Words{});
+}
+
+class LongReport : public Report {};
+
+TEST_F(LongReport, AllInOneFolder) {
+  Command command = command_for({"report", "all", planet().string(), "-o", "all", "--short", "-q"});
+  command.limit_s = 900;
+  const Result result = run(command);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out + result.err, "");
+  const std::set<std::string> there = files("all");
+  const std::string page = read_text(dir_ / "all/report.html");
+  for (const char* report : {"error-time", "scaling", "features"}) {
+    for (const char* kind : {".html", ".json"})
+      EXPECT_TRUE(there.contains(std::string(report) + kind)) << report;
+  }
+  for (const char* heading : {"Error against time: All views", "How costs grow: Exponents",
+                              "What things cost that a scene can do without: Costs"})
+    EXPECT_NE(page.find(heading), std::string::npos) << heading;
+  for (const char* outside : {"<script", "src=", "href=", "@import", "url("})
+    EXPECT_EQ(page.find(outside), std::string::npos);
+  // Peaks are those of the processes, not of the one that started them.
+  const json features = parse_json(read_text(dir_ / "all/features.json"));
+  for (const json& one : features["features"]["rows"]) {
+    if (one["backend"] == "voxel" && !one["peak_mb_on"].is_null()) {
+      EXPECT_LT(one["peak_mb_on"].get<double>(), 250) << one;
+    }
+  }
+  for (const std::string& name : there) EXPECT_EQ(name.find(".tmp"), std::string::npos) << name;
 }
 
 }  // namespace
