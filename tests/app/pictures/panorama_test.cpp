@@ -274,7 +274,7 @@ TEST_F(LongPolygonPanorama, SeamsOfTheEmbeddedMarsAreNotSeen) {
   expect_no_seams(ready, over_mars(), 1.1);
 }
 
-// $VPE_GALE_PLANET names a planet file with fine ground at Gale.
+// $VPE_GALE_PLANET names a planet file with fine ground and imagery at Gale (docs/data.md has the command).
 TEST_F(LongPolygonPanorama, FacetsOverGaleAreTheRays) {
   const char* ready = std::getenv("VPE_GALE_PLANET");
   if (ready == nullptr) GTEST_SKIP() << "skipped: $VPE_GALE_PLANET names no planet file";
