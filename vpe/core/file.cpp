@@ -43,6 +43,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return;  // fwrite wants a place also for nothing
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) {
     throw file_error("write", path_, system_words(errno), kDiskAdvice);
   }
