@@ -125,9 +125,15 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   const PictureOptions& picture = arguments.picture;
   std::vector<PlannedFilm> films{plan_of({kPolygonBackend, base})};
   if (picture.backend != kAutoBackend) return {plan_of({picture.backend, base})};
-  const bool changes_tolerance = std::any_of(flight.sets.begin(), flight.sets.end(),
-                                             [](const auto& set) { return set.key == "lod.tolerance"; });
-  if (changes_tolerance) return films;
+  // Whatever the flight sets, however shortly: looking at some of the frames would miss it.
+  if (!flight.interests.empty()) return films;
+  core::DrawRequest set_so = films.front().plan.at(0).request;
+  for (const scripts::SetCommand& set : flight.sets) {
+    core::Settings settings = base;
+    films.front().plan.path().apply_settings(set.time_s, settings);
+    set_so.settings = settings.values();
+    if (set.key == "lod.tolerance" || !suits_rays(set_so)) return films;
+  }
   constexpr std::int64_t kMostLooked = 100;
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   const std::int64_t looked = std::min(count, kMostLooked);

@@ -211,6 +211,23 @@ TEST_F(FilmFolder, WhoBeganAFilmGoesOnWithIt) {
   EXPECT_EQ(drawn_by("exact", {"--part", "1/1"}, kFrames, 0), "polygon");
 }
 
+// A film of many frames, of which one is not for rays: every setting of the flight counts, however short.
+TEST_F(FilmFolder, OneWireframeOfManyFramesMakesTriangles) {
+  const auto backend = [&](const std::string& more) {
+    write_text(
+        dir_ / "f.flight",
+        "flight 1\nview size=64x48 fov=50 fps=100\nat 0 pose lon=-74 lat=-13 alt=50000 yaw=20 pitch=-20\n" +
+            more + "at 12 pose lon=-60 lat=-10 alt=60000 yaw=60 pitch=-30\n");
+    const Result result = fly("many", {"--frames", "0-0", "--force", "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return parse_json(result.out)["backend"].get<std::string>();
+  };
+  EXPECT_EQ(backend("at 6.005 set mode=wireframe\nat 6.015 set mode=textured\n"), "polygon");
+  EXPECT_EQ(backend("at 6.005 interest lon=-70 lat=-12 radius=1000 levels=1\n"
+                    "at 6.015 interest lon=-70 lat=-12 radius=1000 levels=-1\n"),
+            "polygon");
+}
+
 TEST_F(FilmFolder, PartAutoReadsTheEnvironment) {
   const std::vector<std::map<std::string, std::string>> environments{
       {{"SLURM_ARRAY_TASK_ID", "1"}, {"SLURM_ARRAY_TASK_COUNT", "4"}, {"SLURM_ARRAY_TASK_MIN", "1"}},
