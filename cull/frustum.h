@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-#include "cull/shell.h"
+#include "cull/bounding_region.h"
 #include "vpe/core/view.h"
 
 namespace cull {

@@ -1,7 +1,7 @@
 // What lies behind the planet.
 #pragma once
 
-#include "cull/shell.h"
+#include "cull/bounding_region.h"
 
 namespace cull {
 

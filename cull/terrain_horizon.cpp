@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 
 namespace cull {
 

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "cull/shell.h"
+#include "cull/bounding_region.h"
 
 namespace cull {
 

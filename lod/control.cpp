@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 
 namespace lod {
 

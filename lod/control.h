@@ -19,10 +19,10 @@
 #include <span>
 #include <vector>
 
-#include "cull/shell.h"
-#include "lod/tile_key.h"
+#include "cull/bounding_region.h"
+#include "lod/tree/tile_key.h"
 #include "vpe/core/interest.h"
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
 
 namespace lod {

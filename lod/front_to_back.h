@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lod/tile_key.h"
+#include "lod/tree/tile_key.h"
 
 namespace lod {
 

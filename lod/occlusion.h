@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cull/terrain_horizon.h"
-#include "lod/walls.h"
+#include "lod/occluder_profile.h"
 
 namespace lod {
 

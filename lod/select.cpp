@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "cull/horizon.h"
-#include "vpe/core/mutation.h"
+#include "vpe/base/mutation.h"
 
 namespace lod {
 
-using vpe::core::Guard;
-using vpe::core::mutated;
+using vpe::base::Guard;
+using vpe::base::mutated;
 
 namespace {
 

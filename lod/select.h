@@ -4,7 +4,7 @@
 // worst projected error is refined, until the worst is within the tolerance or the triangles are spent. A tile
 // with children is replaced by them, a finest tile by its next mesh. The projected error of a tile is
 //   error bound (m) * focal length (px) / least distance from the eye to where the tile's surface can be (m)
-//   * stretch of the tile's place in the picture (lod/stretch.h), where the tile may stand against the sky,
+//   * stretch of the tile's place in the picture (lod/off_axis_magnification.h), where the tile may stand against the sky,
 // an upper bound of the shift of every pixel that the tile covers, and of how far off in the picture its
 // outline lies against the sky.
 //
@@ -21,8 +21,8 @@
 
 #include "cull/frustum.h"
 #include "lod/control.h"
-#include "lod/stretch.h"
-#include "lod/tree.h"
+#include "lod/off_axis_magnification.h"
+#include "lod/tree/tree.h"
 
 namespace lod {
 

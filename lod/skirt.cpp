@@ -3,12 +3,12 @@
 #include <limits>
 
 #include "lod/select.h"
-#include "vpe/core/mutation.h"
+#include "vpe/base/mutation.h"
 
 namespace lod {
 
-using vpe::core::Guard;
-using vpe::core::mutated;
+using vpe::base::Guard;
+using vpe::base::mutated;
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "mars/sphere.h"
-#include "vpe/core/slope.h"
+#include "mars/geodesy/sphere.h"
+#include "vpe/core/appearance/slope.h"
 
 namespace panorama {
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "paging/surface.h"
-#include "panorama/plan.h"
-#include "panorama/tile_codec.h"
+#include "paging/surface/surface.h"
+#include "panorama/panorama_plan.h"
+#include "panorama/image/tile_codec.h"
 
 namespace panorama {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mars/pose.h"
-#include "mars/sphere.h"
-#include "vpe/core/number.h"
+#include "mars/geodesy/pose.h"
+#include "mars/geodesy/sphere.h"
+#include "vpe/base/number.h"
 
 namespace panorama {
 
@@ -15,7 +15,7 @@ namespace {
 
 using mars::kPi;
 using mars::kRadiansPerDegree;
-using vpe::core::format_number;
+using vpe::base::format_number;
 
 // What rounding may push a place over an edge.
 constexpr double kEdge_px = 1e-8;
@@ -115,10 +115,10 @@ bool PanoramaMap::is_full_turn() const { return std::abs(static_cast<double>(wid
 std::string check(const PanoramaMap& map) {
   using Limits = PanoramaLimits;
   if (std::string problem = check_facets(map); !problem.empty()) return problem;
-  if (map.width_px < 1 || map.height_px < 1 || map.width_px > Limits::kMaxSide_px ||
-      map.height_px > Limits::kMaxSide_px) {
+  if (map.width_px < 1 || map.height_px < 1 || map.width_px > kMaxSide_px ||
+      map.height_px > kMaxSide_px) {
     return "picture size " + std::to_string(map.width_px) + "x" + std::to_string(map.height_px) +
-           ": each side must be 1 to " + std::to_string(Limits::kMaxSide_px) + " pixels";
+           ": each side must be 1 to " + std::to_string(kMaxSide_px) + " pixels";
   }
   const double width_px = static_cast<double>(map.width_px);
   const double height_px = static_cast<double>(map.height_px);

@@ -18,6 +18,7 @@
 #include <optional>
 #include <string>
 
+#include "panorama/image/image_limits.h"
 #include "vpe/core/view.h"
 
 namespace panorama {
@@ -30,7 +31,6 @@ const char* to_string(MapKind kind);
 struct PanoramaLimits {
   static constexpr int kMinFacets = 3;
   static constexpr int kMaxFacets = 64;
-  static constexpr std::int64_t kMaxSide_px = 1'000'000;
   static constexpr double kMaxTurn_px = 1e9;      // also of focal_px and |horizon_px|
   static constexpr double kMaxAzimuth_deg = 1e6;  // of |turn_azimuth_deg|
   static constexpr double kMaxTurns = 2;          // that a picture may be wide

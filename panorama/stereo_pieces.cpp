@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "mars/sphere.h"
-#include "vpe/core/number.h"
+#include "mars/geodesy/sphere.h"
+#include "vpe/base/number.h"
 
 namespace panorama {
 
@@ -77,9 +77,9 @@ View eye_view(const View& middle, const PanoramaMap& map, Eye eye, double base_m
 
 // For messages.
 std::string three_digits(double number) {
-  if (!(number > 0)) return vpe::core::format_number(number);
+  if (!(number > 0)) return vpe::base::format_number(number);
   const double parts = std::pow(10.0, 2.0 - std::floor(std::log10(number)));
-  return vpe::core::format_number(std::round(number * parts) / parts);
+  return vpe::base::format_number(std::round(number * parts) / parts);
 }
 
 void shift(std::vector<Piece>& pieces, std::int64_t x, std::int64_t y) {
@@ -92,7 +92,7 @@ void shift(std::vector<Piece>& pieces, std::int64_t x, std::int64_t y) {
 }  // namespace
 
 std::string check(const EyePair& eyes) {
-  using vpe::core::format_number;
+  using vpe::base::format_number;
   if (!(eyes.base_m > 0 && std::isfinite(eyes.base_m)))
     return "eyes " + format_number(eyes.base_m) + " m apart: must be above 0";
   if (!eyes.nearest_m) return {};

@@ -33,7 +33,7 @@
 #include <string>
 #include <vector>
 
-#include "panorama/plan.h"
+#include "panorama/panorama_plan.h"
 #include "panorama/stereo_eyes.h"
 #include "vpe/core/stereo.h"
 

@@ -7,7 +7,7 @@
 //   view fov=60 size=1280x720 fps=30          at most once, before the first `at`; each key may be left out
 //   at 0   pose lon=-74 lat=-13.5 alt=12000 yaw=90 pitch=-15 roll=0
 //   at 8   pose lon=-68 lat=-13.2 height=3000 yaw=100 pitch=-10 roll=-20
-//   at 8   set mode=textured exaggeration=2   keys of the settings registry (vpe/core/settings.h)
+//   at 8   set mode=textured exaggeration=2   keys of the settings registry (vpe/core/appearance/settings.h)
 //   at 9   set overlay.title="West of it"     a value with blanks or # stands in quotes; inside, a backslash keeps the
 //                                            next character as it is
 //   at 10  look yaw=40 pitch=5                head on its platform
@@ -24,7 +24,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 #include "scripts/frame_rate.h"
 #include "vpe/core/interest.h"
 

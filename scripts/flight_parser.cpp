@@ -5,15 +5,15 @@
 #include <span>
 
 #include "scripts/flight.h"
-#include "vpe/core/number.h"
-#include "vpe/core/settings.h"
+#include "vpe/base/number.h"
+#include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
 
 namespace scripts {
 
-using vpe::core::format_number;
-using vpe::core::parse_integer;
-using vpe::core::parse_number;
+using vpe::base::format_number;
+using vpe::base::parse_integer;
+using vpe::base::parse_number;
 using vpe::core::ViewLimits;
 
 namespace {

@@ -3,11 +3,11 @@
 #include <utility>
 
 #include "scripts/flight.h"
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace scripts {
 
-using vpe::core::format_number;
+using vpe::base::format_number;
 
 namespace {
 

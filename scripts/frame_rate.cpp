@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace scripts {
 
-using vpe::core::parse_integer;
+using vpe::base::parse_integer;
 
 std::optional<FrameRate> parse_frame_rate(std::string_view text) {
   constexpr std::size_t kMaxDigits = 10;

@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 #include "scripts/flight.h"
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/settings.h"
 
 namespace scripts {
 

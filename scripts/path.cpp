@@ -8,16 +8,16 @@
 #include <string>
 #include <utility>
 
-#include "vpe/core/mutation.h"
-#include "vpe/core/number.h"
+#include "vpe/base/mutation.h"
+#include "vpe/base/number.h"
 
 namespace scripts {
 
 namespace {
 
-using vpe::core::format_number;
-using vpe::core::Guard;
-using vpe::core::mutated;
+using vpe::base::format_number;
+using vpe::base::Guard;
+using vpe::base::mutated;
 
 std::string pose_at(double time_s) { return "the flight's pose at " + format_number(time_s) + " s"; }
 
@@ -195,7 +195,7 @@ void Path::apply_settings(double time_s, vpe::core::Settings& settings) const {
 double Path::exaggeration(double time_s) const {
   double value = exaggeration_;
   for (const SetCommand& command : up_to(sets_, time_s)) {
-    if (command.key == "exaggeration") value = vpe::core::parse_number(command.text).value_or(value);
+    if (command.key == "exaggeration") value = vpe::base::parse_number(command.text).value_or(value);
   }
   return value;
 }

@@ -15,12 +15,12 @@
 #include <span>
 #include <vector>
 
-#include "mars/pose.h"
-#include "mars/sphere.h"
+#include "mars/geodesy/pose.h"
+#include "mars/geodesy/sphere.h"
 #include "scripts/flight.h"
 #include "scripts/monotone_spline.h"
 #include "scripts/spherical_spline.h"
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/settings.h"
 
 namespace scripts {
 

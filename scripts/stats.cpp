@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace scripts {
 
@@ -63,7 +63,7 @@ struct Format {
   std::string operator()(std::int64_t value) const { return std::to_string(value); }
   std::string operator()(int value) const { return std::to_string(value); }
   std::string operator()(double value) const {
-    return std::isfinite(value) ? vpe::core::format_number(value) : std::string(not_finite);
+    return std::isfinite(value) ? vpe::base::format_number(value) : std::string(not_finite);
   }
   std::string operator()(const std::vector<int>& values) const {
     std::string text(open);

@@ -1,5 +1,5 @@
 // What --backend auto draws with.
-#include "vpe/app/backend_choice.h"
+#include "vpe/app/picture/backend_choice.h"
 
 #include <gtest/gtest.h>
 

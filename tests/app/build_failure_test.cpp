@@ -1,5 +1,5 @@
 // A build whose disk is full, or whose source goes away, says so and can be continued.
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 #include "tests/app/support/app_fixture.h"
 
 namespace app_test {

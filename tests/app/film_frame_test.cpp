@@ -1,5 +1,5 @@
 // Fingerprints, digests and figures of frames.
-#include "vpe/app/film_frame.h"
+#include "vpe/app/film/film_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <set>
 
 #include "tests/support/support.h"
-#include "vpe/app/film_digest.h"
-#include "vpe/core/file.h"
+#include "vpe/app/cli/digest.h"
+#include "vpe/base/file.h"
 
 namespace {
 
@@ -92,11 +92,11 @@ TEST(FilmFrame, WhatAPaletteFileHoldsIsInItsFingerprint) {
   std::set<std::string> seen;
   for (const char* text :
        {"0 1 2 3\n9 4 5 6", "0 1 2 3\n9 4 5 7", "0 1 2 3\n8 4 5 6", "0 1 2 3\n1 4 5 6", "5 1 2 3"}) {
-    vpe::core::write_file(file, std::string_view(text));
+    vpe::base::write_file(file, std::string_view(text));
     ASSERT_EQ(inputs.settings.set("palette", file), "");
     const std::string fingerprint = inputs.fingerprint();
     EXPECT_TRUE(seen.insert(fingerprint).second) << text;
-    vpe::core::write_file(file, "# the same\n" + std::string(text));
+    vpe::base::write_file(file, "# the same\n" + std::string(text));
     EXPECT_EQ(inputs.fingerprint(), fingerprint) << text;
   }
 }
@@ -106,14 +106,14 @@ TEST(FilmFrame, WhatAGazetteerHoldsIsInItsFingerprint) {
   const test_support::TempDir dir;
   const std::string file = (dir / "n.csv").string();
   Inputs inputs;
-  vpe::core::write_file(file, std::string_view("name,lon,lat\nA,1,2\n"));
+  vpe::base::write_file(file, std::string_view("name,lon,lat\nA,1,2\n"));
   ASSERT_EQ(inputs.settings.set("overlay.names", file), "");
   const std::string before = inputs.fingerprint();
   EXPECT_EQ(inputs.fingerprint(), before);
-  vpe::core::write_file(file, std::string_view("name,lon,lat\nA,1,3\n"));
+  vpe::base::write_file(file, std::string_view("name,lon,lat\nA,1,3\n"));
   EXPECT_NE(inputs.fingerprint(), before);
   std::filesystem::remove(file);
-  EXPECT_THROW(inputs.fingerprint(), vpe::core::FileError);
+  EXPECT_THROW(inputs.fingerprint(), vpe::base::FileError);
 }
 
 TEST(FilmFrame, ItsTimeCountsOnlyWhereItIsShown) {

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <memory>
 
-#include "paging/surface.h"
+#include "paging/surface/surface.h"
 #include "tests/app/support/app_fixture.h"
 
 namespace app_test {

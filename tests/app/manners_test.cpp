@@ -5,8 +5,8 @@
 #include <fstream>
 #include <regex>
 
-#include "paging/planet_file.h"
-#include "paging/sqlite.h"
+#include "paging/planet/planet_file.h"
+#include "paging/planet/sqlite.h"
 #include "tests/app/support/app_fixture.h"
 
 namespace app_test {

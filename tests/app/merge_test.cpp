@@ -3,7 +3,7 @@
 #include <csignal>
 
 #include "tests/app/support/app_fixture.h"
-#include "vpe/app/planet_build.h"
+#include "vpe/app/planet/planet_build.h"
 
 namespace app_test {
 namespace {

@@ -1,12 +1,12 @@
 // Looking around in panoramas, as a user does.
 #include <cmath>
 
-#include "panorama/gpano.h"
-#include "panorama/sidecar.h"
-#include "panorama/xmp_file.h"
+#include "panorama/metadata/gpano.h"
+#include "panorama/metadata/sidecar.h"
+#include "panorama/image/xmp_file.h"
 #include "tests/app/support/app_fixture.h"
 #include "tests/panorama/big_tiff_file.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace app_test {
 namespace {
@@ -15,15 +15,15 @@ namespace fs = std::filesystem;
 using panorama::PanoramaMap;
 
 // Red where it is more east than west, green where more north than south, blue above the horizon.
-mars::Rgb wheel(const panorama::Direction& d) {
+vpe::base::Rgb wheel(const panorama::Direction& d) {
   const double a = d.azimuth_deg * mars::kRadiansPerDegree;
   return {static_cast<std::uint8_t>(std::lround(127.5 + 127.5 * std::sin(a))),
           static_cast<std::uint8_t>(std::lround(127.5 + 127.5 * std::cos(a))),
           static_cast<std::uint8_t>(d.elevation_deg > 0 ? 255 : 0)};
 }
 
-std::vector<mars::Rgb> wheel_picture(const PanoramaMap& map) {
-  std::vector<mars::Rgb> pixels;
+std::vector<vpe::base::Rgb> wheel_picture(const PanoramaMap& map) {
+  std::vector<vpe::base::Rgb> pixels;
   for (std::int64_t y = 0; y < map.height_px; ++y) {
     for (std::int64_t x = 0; x < map.width_px; ++x)
       pixels.push_back(wheel(map.to_direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5)));
@@ -31,7 +31,7 @@ std::vector<mars::Rgb> wheel_picture(const PanoramaMap& map) {
   return pixels;
 }
 
-mars::Rgb middle(const vpe::core::RgbImage& image, double at = 0.5) {
+vpe::base::Rgb middle(const vpe::core::RgbImage& image, double at = 0.5) {
   return image.pixels[static_cast<std::size_t>(image.height / 2 + 2) * static_cast<std::size_t>(image.width) +
                       static_cast<std::size_t>(at * image.width)];
 }
@@ -131,8 +131,8 @@ TEST_F(Overlook, Pairs) {
   EXPECT_NEAR(middle(beside, 0.75).r, 255, 3);
   // The same out of one file, over and under, which its JSON says; and side by side, which the command line
   // says.
-  std::vector<mars::Rgb> both = wheel_picture(map_);
-  const std::vector<mars::Rgb> right = wheel_picture(other);
+  std::vector<vpe::base::Rgb> both = wheel_picture(map_);
+  const std::vector<vpe::base::Rgb> right = wheel_picture(other);
   both.insert(both.end(), right.begin(), right.end());
   vpe::core::write_image(dir_ / "ou.png", both, 720, 600);
   auto json = parse_json(panorama::to_json({"ou.png", map_, {}}));

@@ -2,11 +2,11 @@
 #include <glm/geometric.hpp>
 #include <tuple>
 
-#include "panorama/landmarks.h"
-#include "panorama/open_panorama.h"
+#include "panorama/horizon/landmarks.h"
+#include "panorama/metadata/open_panorama.h"
 #include "tests/app/support/app_fixture.h"
-#include "vpe/core/image.h"
-#include "vpe/core/overlays.h"
+#include "vpe/core/image/image.h"
+#include "vpe/core/appearance/overlays.h"
 
 namespace app_test {
 namespace {
@@ -45,7 +45,7 @@ class PanoramaOverlay : public AppTest {
   }
 };
 
-double brightness(const mars::Rgb& p) { return (p.r + p.g + p.b) / 3.0; }
+double brightness(const vpe::base::Rgb& p) { return (p.r + p.g + p.b) / 3.0; }
 
 TEST_F(PanoramaOverlay, NamesThatAreSeenStandAtTheirPixelsInEveryProjection) {
   // What vpe horizon says of the same places.

@@ -6,11 +6,11 @@
 #include <csignal>
 #include <random>
 
-#include "panorama/open_panorama.h"
+#include "panorama/metadata/open_panorama.h"
 #include "tests/app/support/app_fixture.h"
 #include "tests/paging/planet_fixture.h"
-#include "tests/panorama/two_eyes.h"
-#include "vpe/core/image.h"
+#include "tests/panorama/stereo_fixture.h"
+#include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
 
 namespace app_test {
@@ -250,7 +250,7 @@ TEST_F(StereoGround, DisparitiesAreThoseOfExactCasts) {
       const double share = x - 0.5 - left;
       const auto at = [&](double column) {
         const auto c = static_cast<std::int64_t>(std::fmod(column + 1500.0, 1500.0));
-        const mars::Rgb& p = image.pixels[static_cast<std::size_t>(row * image.width + c)];
+        const vpe::base::Rgb& p = image.pixels[static_cast<std::size_t>(row * image.width + c)];
         return 0.3 * p.r + 0.6 * p.g + 0.1 * p.b;
       };
       return (1 - share) * at(left) + share * at(left + 1);
@@ -283,7 +283,7 @@ TEST_F(StereoGround, DisparitiesAreThoseOfExactCasts) {
       worst_formula_px = std::max(worst_formula_px, std::abs(apart_px - formula_px));
       most_px = std::max(most_px, apart_px);
       ++hits;
-      const mars::Rgb& p = image.pixels[static_cast<std::size_t>(y * image.width + 1500 + x)];
+      const vpe::base::Rgb& p = image.pixels[static_cast<std::size_t>(y * image.width + 1500 + x)];
       const double wanted = 0.3 * p.r + 0.6 * p.g + 0.1 * p.b;
       for (int k = 0; k < kShifts; ++k) {
         const double off = light(left.x + (k - kShifts / 2) * kStep_px, left.y) - wanted;
@@ -312,8 +312,8 @@ TEST_F(StereoGround, TheSeamOfTheTurnIsClosed) {
   const auto step = [&](int a, int b) {
     double sum = 0;
     for (int y = 0; y < image.height; ++y) {
-      const mars::Rgb& p = image.pixels[static_cast<std::size_t>(y * image.width + a)];
-      const mars::Rgb& q = image.pixels[static_cast<std::size_t>(y * image.width + b)];
+      const vpe::base::Rgb& p = image.pixels[static_cast<std::size_t>(y * image.width + a)];
+      const vpe::base::Rgb& q = image.pixels[static_cast<std::size_t>(y * image.width + b)];
       sum += std::abs(p.r - q.r) + std::abs(p.g - q.g) + std::abs(p.b - q.b);
     }
     return sum;

@@ -3,13 +3,13 @@
 #include <csignal>
 #include <cstring>
 
-#include "mars/pose.h"
-#include "panorama/open_panorama.h"
-#include "panorama/plan.h"
+#include "mars/geodesy/pose.h"
+#include "panorama/metadata/open_panorama.h"
+#include "panorama/panorama_plan.h"
 #include "tests/app/support/app_fixture.h"
 #include "tests/app/support/tiff_numbers.h"
 #include "tests/paging/planet_fixture.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace app_test {
 namespace {
@@ -348,8 +348,8 @@ TEST_F(Panorama, OfManyStripsIsThatOfPieces) {
   int different = 0;
   for (int y = 0; y < arc.height; ++y) {
     for (int x = 0; x < arc.width; ++x) {
-      const mars::Rgb a = arc.pixels[static_cast<std::size_t>(y * arc.width + x)];
-      const mars::Rgb b = wide_picture.pixels[static_cast<std::size_t>(y * wide_picture.width + x + 10000)];
+      const vpe::base::Rgb a = arc.pixels[static_cast<std::size_t>(y * arc.width + x)];
+      const vpe::base::Rgb b = wide_picture.pixels[static_cast<std::size_t>(y * wide_picture.width + x + 10000)];
       different += std::abs(a.r - b.r) > 2 || std::abs(a.g - b.g) > 2 || std::abs(a.b - b.b) > 2;
     }
   }

@@ -201,8 +201,8 @@ std::string verdict(const std::string& path, const std::string& body) {
 TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   const std::string lod = "namespace lod {}\n";
   EXPECT_EQ(verdict("lod/a.cpp", "#include \"cull/frustum.h\"\n#include <vector>\n" + lod), "");
-  EXPECT_EQ(verdict("lod/a.cpp", "\n#include \"paging/planet_file.h\"\n" + lod),
-            "lod/a.cpp:2: lod must not use paging (paging/planet_file.h)\n");
+  EXPECT_EQ(verdict("lod/a.cpp", "\n#include \"paging/planet/planet_file.h\"\n" + lod),
+            "lod/a.cpp:2: lod must not use paging (paging/planet/planet_file.h)\n");
   EXPECT_NE(verdict("mars/a.cpp", "  #  include \"vpe/core/view.h\"\nnamespace mars {}"), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"posts.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"../mars/cube.h\"\n" + lod), "");

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "lod/select.h"
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 #include "tests/bench/culling_views.h"
 
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mars/pose.h"
-#include "paging/surface.h"
+#include "mars/geodesy/pose.h"
+#include "paging/surface/surface.h"
 #include "vpe/core/view.h"
 
 namespace bench {

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "lod/tile_key.h"
-#include "mars/sun.h"
-#include "paging/planet_file.h"
-#include "vpe/core/heap.h"
-#include "vpe/core/number.h"
+#include "lod/tree/tile_key.h"
+#include "mars/geodesy/sun.h"
+#include "paging/planet/planet_file.h"
+#include "vpe/base/heap.h"
+#include "vpe/base/number.h"
 #include "vpe/gl/polygon_renderer.h"
 
 namespace {
@@ -50,7 +50,7 @@ double finest_spacing_m(const paging::PlanetFile& planet) {
 }
 
 void run(const mars::Pose& pose, int width, int height, int rounds, char** files, int count) {
-  vpe::core::keep_heap_compact();  // as `vpe` does
+  vpe::base::keep_heap_compact();  // as `vpe` does
   const std::shared_ptr<vpe::gl::Context> context = vpe::gl::Context::create();
   std::printf("%s, %dx%d\n\n", context->info().renderer.c_str(), width, height);
   std::vector<Planet> planets;
@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
   mars::Pose pose;
   int width = 0, height = 0;
   char rest = 0;
-  const auto rounds = argc > 3 ? vpe::core::parse_integer(argv[3]) : std::nullopt;
+  const auto rounds = argc > 3 ? vpe::base::parse_integer(argv[3]) : std::nullopt;
   if (argc < 6 ||
       std::sscanf(argv[1], "%lf,%lf,%lf,%lf,%lf,%lf%c", &pose.lon_deg, &pose.lat_deg, &pose.alt_m,
                   &pose.yaw_deg, &pose.pitch_deg, &pose.roll_deg, &rest) != 6 ||

@@ -16,11 +16,11 @@
 #include <unordered_map>
 
 #include "lod/select.h"
-#include "paging/surface.h"
+#include "paging/surface/surface.h"
 #include "scripts/path.h"
 #include "tests/bench/flight.h"
-#include "vpe/core/number.h"
-#include "vpe/core/parallel.h"
+#include "vpe/base/number.h"
+#include "vpe/base/parallel.h"
 
 namespace {
 
@@ -274,7 +274,7 @@ void run(const char* planet_file, const char* flight_file, std::int64_t stride) 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto stride = argc == 4 ? vpe::core::parse_integer(argv[3]) : 1;
+  const auto stride = argc == 4 ? vpe::base::parse_integer(argv[3]) : 1;
   if (argc < 3 || argc > 4 || !stride || *stride < 1) {
     std::fprintf(stderr, "usage: film_triangles PLANET.vpe FLIGHT [STRIDE]\n");
     return 2;

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "paging/surface.h"
+#include "paging/surface/surface.h"
 #include "scripts/path.h"
 
 namespace bench {

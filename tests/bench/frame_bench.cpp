@@ -14,12 +14,12 @@
 #include <iterator>
 
 #include "lod/select.h"
-#include "mars/sun.h"
-#include "paging/surface.h"
+#include "mars/geodesy/sun.h"
+#include "paging/surface/surface.h"
 #include "scripts/path.h"
 #include "tests/bench/flight.h"
-#include "vpe/core/number.h"
-#include "vpe/gl/lens.h"
+#include "vpe/base/number.h"
+#include "vpe/gl/projection.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/gl/target.h"
 #include "vpe/gl/tile_geometry.h"
@@ -234,8 +234,8 @@ void run(const char* planet_file, const char* flight_file, std::int64_t count, s
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto frames = argc > 3 ? vpe::core::parse_integer(argv[3]) : 12;
-  const auto rounds = argc > 4 ? vpe::core::parse_integer(argv[4]) : 9;
+  const auto frames = argc > 3 ? vpe::base::parse_integer(argv[3]) : 12;
+  const auto rounds = argc > 4 ? vpe::base::parse_integer(argv[4]) : 9;
   if (argc < 3 || argc > 5 || !frames || *frames < 1 || !rounds || *rounds < 1) {
     std::fprintf(stderr, "usage: frame_bench PLANET.vpe FLIGHT [FRAMES] [ROUNDS]\n");
     return 2;

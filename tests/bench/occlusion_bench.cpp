@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "lod/occlusion.h"
-#include "paging/surface.h"
+#include "paging/surface/surface.h"
 #include "tests/bench/culling_views.h"
-#include "tests/paging/drawn_ground.h"
+#include "tests/paging/drawn_terrain.h"
 
 namespace {
 

@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "mars/sun.h"
-#include "paging/surface.h"
+#include "mars/geodesy/sun.h"
+#include "paging/surface/surface.h"
 #include "scripts/path.h"
 #include "tests/bench/flight.h"
-#include "vpe/core/heap.h"
-#include "vpe/core/number.h"
+#include "vpe/base/heap.h"
+#include "vpe/base/number.h"
 #include "vpe/gl/polygon_renderer.h"
 
 namespace {
@@ -150,7 +150,7 @@ int run(const char* planet_file, const char* flight_file, int width, int height,
   const auto planet = paging::PlanetFile::open(planet_file);
   const paging::Surface surface(planet, std::size_t{64} << 20);
   const Film film(bench::read_flight(flight_file), surface, width, height);
-  vpe::core::keep_heap_compact();  // as `vpe` does
+  vpe::base::keep_heap_compact();  // as `vpe` does
   const std::shared_ptr<vpe::gl::Context> context = vpe::gl::Context::create();
   std::printf("%s, %d frames of %dx%d, %d MB\n\n", context->info().renderer.c_str(), film.frames(), width,
               height, memory_mb);
@@ -189,8 +189,8 @@ int main(int argc, char** argv) {
   int width = 640, height = 360;
   char rest = 0;
   const bool sized = argc <= 3 || std::sscanf(argv[3], "%dx%d%c", &width, &height, &rest) == 2;
-  const auto rounds = argc > 4 ? vpe::core::parse_integer(argv[4]) : 5;
-  const auto memory_mb = argc > 5 ? vpe::core::parse_integer(argv[5]) : 1024;
+  const auto rounds = argc > 4 ? vpe::base::parse_integer(argv[4]) : 5;
+  const auto memory_mb = argc > 5 ? vpe::base::parse_integer(argv[5]) : 1024;
   if (argc < 2 || argc > 6 || !sized || width < 1 || height < 1 || !rounds || *rounds < 1 || !memory_mb ||
       *memory_mb < 64) {
     std::fprintf(stderr, "usage: paging_bench PLANET.vpe [FLIGHT] [WIDTHxHEIGHT] [ROUNDS] [MEMORY_MB]\n");

@@ -1,4 +1,4 @@
-// Time of painting a picture whose ranges are known (vpe/voxel/picture_painter.h) against asking
+// Time of painting a picture whose ranges are known (vpe/voxel/paint/image_painter.h) against asking
 // GroundPainter::colour_at, sky and haze pixel by pixel: section "Painting" of docs/rays.md.
 //
 //   painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]
@@ -14,10 +14,10 @@
 #include <ctime>
 #include <string>
 
-#include "mars/sun.h"
-#include "paging/surface.h"
+#include "mars/geodesy/sun.h"
+#include "paging/surface/surface.h"
 #include "tests/voxel/painted_by_point.h"
-#include "vpe/voxel/picture_painter.h"
+#include "vpe/voxel/paint/image_painter.h"
 
 namespace {
 
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   request.view.width = 1920;
   request.view.height = 1080;
   request.sun = mars::sun_direction({-67, -13}, 315, 35);
-  core::ThreadPool pool(kThreads);
+  vpe::base::ThreadPool pool(kThreads);
   const paging::Surface surface(planet, kMemory);
   const test_support::PaintedByPoint by_point(planet, kMemory);
   vpe::voxel::PicturePainter painter(planet, kMemory);
@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
       request.settings.colourise = look.colourise;
       request.settings.shading = look.shading;
       request.settings.haze_visibility_m = look.haze_m;
-      std::vector<mars::Rgb> a(pixels), b(pixels);
+      std::vector<vpe::base::Rgb> a(pixels), b(pixels);
       Times caches, ours, theirs;
       for (int n = 0; n <= rounds; ++n) {
         (n == 0 ? caches : ours).add([&] { painter.paint(request, range_m, a, {}, pool); });

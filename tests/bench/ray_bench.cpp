@@ -254,7 +254,7 @@ class Bench {
   }
 
   bench::RayBenchOptions options_;
-  vpe::core::ThreadPool pool_;
+  vpe::base::ThreadPool pool_;
   std::shared_ptr<const bench::RayScene> scene_;
   std::unique_ptr<bench::RangeCaster> caster_;
   std::unique_ptr<paging::Surface> surface_;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "paging/surface.h"
+#include "paging/surface/surface.h"
 #include "vpe/core/view.h"
 
 namespace bench {

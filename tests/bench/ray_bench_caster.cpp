@@ -1,16 +1,16 @@
 #include "tests/bench/ray_bench_caster.h"
 
-#include "vpe/voxel/range_caster.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace bench {
 
 struct RangeCaster::State {
   vpe::voxel::RangeCaster caster;
-  vpe::core::ThreadPool pool;
+  vpe::base::ThreadPool pool;
 };
 
 RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::size_t memory_bytes)
-    : state_(new State{{std::move(planet), memory_bytes}, vpe::core::ThreadPool(threads)}) {}
+    : state_(new State{{std::move(planet), memory_bytes}, vpe::base::ThreadPool(threads)}) {}
 
 RangeCaster::~RangeCaster() = default;
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 #include "vpe/core/view.h"
 
 namespace bench {

@@ -165,7 +165,7 @@ EmbreePicture::EmbreePicture(const vpe::core::View& view) {
   tables_.up_z = static_cast<float>(axes.up.z);
 }
 
-double EmbreePicture::cast(RTCScene scene, EmbreeMode mode, vpe::core::ThreadPool& pool,
+double EmbreePicture::cast(RTCScene scene, EmbreeMode mode, vpe::base::ThreadPool& pool,
                            std::span<float> range_m) const {
   const auto start = std::chrono::steady_clock::now();
   pool.run(static_cast<std::size_t>(padded(tables_.height) / kBlock), [&](std::size_t row) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tests/voxel/embree_scene.h"
-#include "vpe/core/parallel.h"
+#include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
 
 namespace bench {
@@ -40,7 +40,7 @@ class EmbreePicture {
 
   // Range of every pixel, row by row, infinity for sky; returns seconds. Without a scene (nullptr) everything
   // but Embree's own calls is done.
-  double cast(RTCScene scene, EmbreeMode mode, vpe::core::ThreadPool& pool, std::span<float> range_m) const;
+  double cast(RTCScene scene, EmbreeMode mode, vpe::base::ThreadPool& pool, std::span<float> range_m) const;
 
  private:
   RayTables tables_;

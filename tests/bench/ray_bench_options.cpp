@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace bench {
 
@@ -23,7 +23,7 @@ RayBenchOptions parse_options(int argc, char** argv) {
     if (n + 1 == argc) refuse(key + " needs a value");
     const std::string value = argv[n + 1];
     const auto number = [&](double least) {
-      const auto parsed = vpe::core::parse_number(value);
+      const auto parsed = vpe::base::parse_number(value);
       if (!parsed || *parsed < least) refuse(key + " " + value + ": not a number, or too small");
       return *parsed;
     };

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "paging/builder.h"
+#include "paging/build/builder.h"
 #include "tests/lod/mesh_terrain.h"
 #include "tests/support/fake_source.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 
 namespace bench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "paging/surface.h"
+#include "paging/surface/surface.h"
 
 namespace bench {
 

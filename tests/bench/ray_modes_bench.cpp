@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <map>
 
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 #include "tests/bench/ray_bench_scenes.h"
-#include "vpe/core/parallel.h"
-#include "vpe/voxel/range_caster.h"
+#include "vpe/base/parallel.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace {
 
@@ -41,7 +41,7 @@ struct Scene {
   }
 };
 
-double once(Scene& scene, const View& view, const RangeOptions& options, vpe::core::ThreadPool& pool) {
+double once(Scene& scene, const View& view, const RangeOptions& options, vpe::base::ThreadPool& pool) {
   std::vector<float> out(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   const auto start = std::chrono::steady_clock::now();
   scene.caster.cast(view, options, pool, out);
@@ -61,7 +61,7 @@ struct Run {
 };
 
 // Median of a, and of b / a in the same round, by turns; the first round loads and is left out.
-void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::core::ThreadPool& pool) {
+void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::base::ThreadPool& pool) {
   std::vector<double> times;
   std::vector<double> ratios;
   for (int r = 0; r <= rounds; ++r) {
@@ -77,7 +77,7 @@ void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::core
 }
 
 void run(const std::string& dir, int rounds) {
-  vpe::core::ThreadPool pool(2);
+  vpe::base::ThreadPool pool(2);
   std::map<std::string, Scene> scenes;
   for (const bench::PatchSpec& spec : bench::patch_specs()) {
     if (spec.name != "513") scenes.try_emplace(spec.name, bench::patch_scene(spec, dir, 2));

@@ -8,7 +8,7 @@
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
-#include "lod/greedy.h"
+#include "lod/mesh/greedy.h"
 #include "tests/bench/simplify_methods.h"
 
 namespace bench {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "lod/greedy.h"
+#include "lod/mesh/greedy.h"
 
 namespace bench {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 namespace bench {
 

@@ -1,5 +1,5 @@
 // Files that appear whole or not at all.
-#include "vpe/core/file.h"
+#include "vpe/base/file.h"
 
 #include <gtest/gtest.h>
 
@@ -16,18 +16,18 @@ class File : public ::testing::Test {
 // Also nothing, which has no place in memory (undefined behaviour was found there by a sanitizer).
 TEST_F(File, HoldsWhatWasWrittenOnceItIsCommitted) {
   const std::vector<std::uint8_t> bytes{1, 2, 3};
-  OutputFile file(dir_ / "x");
+  base::OutputFile file(dir_ / "x");
   file.write({});
   file.write(bytes);
   file.write({});
   EXPECT_FALSE(std::filesystem::exists(dir_ / "x"));
   file.commit();
-  EXPECT_EQ(read_file(dir_ / "x", 100), bytes);
+  EXPECT_EQ(base::read_file(dir_ / "x", 100), bytes);
 }
 
 TEST_F(File, IsNotThereUncommitted) {
   {
-    OutputFile file(dir_ / "x");
+    base::OutputFile file(dir_ / "x");
     file.write({});
   }
   EXPECT_TRUE(std::filesystem::is_empty(dir_.path()));

@@ -1,9 +1,9 @@
-#include "vpe/core/gazetteer.h"
+#include "vpe/core/appearance/gazetteer.h"
 
 #include <algorithm>
 
 #include "tests/support/support.h"
-#include "vpe/core/file.h"
+#include "vpe/base/file.h"
 
 namespace vpe::core {
 namespace {
@@ -92,10 +92,10 @@ TEST(Gazetteer, FilesThatCannotBeReadAreNamed) {
   EXPECT_EQ(gazetteer_problem(""), "");
   EXPECT_NE(gazetteer_problem((dir / "none.csv").string()).find("No such file"), std::string::npos);
   EXPECT_EQ(gazetteer_problem(dir.path().string()), "it is a folder");
-  write_file(dir / "some.csv", std::string_view("name,lon,lat\nA,1,2\n"));
+  base::write_file(dir / "some.csv", std::string_view("name,lon,lat\nA,1,2\n"));
   EXPECT_EQ(gazetteer_problem((dir / "some.csv").string()), "");
   EXPECT_EQ(read_gazetteer(dir / "some.csv").size(), 1U);
-  EXPECT_THROW(read_gazetteer(dir / "none.csv"), FileError);
+  EXPECT_THROW(read_gazetteer(dir / "none.csv"), base::FileError);
 }
 
 TEST(Gazetteer, ReadsTheGazetteerOfMars) {

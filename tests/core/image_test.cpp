@@ -1,4 +1,4 @@
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 #include <gdal_priv.h>
 #include <sys/resource.h>
@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Smooth, so that JPEG can keep it, with all three channels different.
-std::vector<mars::Rgb> smooth_picture(int width, int height) {
-  std::vector<mars::Rgb> pixels;
+std::vector<vpe::base::Rgb> smooth_picture(int width, int height) {
+  std::vector<vpe::base::Rgb> pixels;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       pixels.push_back({static_cast<std::uint8_t>(127 + 100 * std::sin(0.05 * x)),
@@ -31,15 +31,15 @@ std::vector<mars::Rgb> smooth_picture(int width, int height) {
   return pixels;
 }
 
-std::vector<mars::Rgb> noise_picture(int width, int height) {
+std::vector<vpe::base::Rgb> noise_picture(int width, int height) {
   test_support::Random random(1);
-  std::vector<mars::Rgb> pixels(static_cast<std::size_t>(width * height));
+  std::vector<vpe::base::Rgb> pixels(static_cast<std::size_t>(width * height));
   const auto byte = [&random] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
-  for (mars::Rgb& p : pixels) p = {byte(), byte(), byte()};
+  for (vpe::base::Rgb& p : pixels) p = {byte(), byte(), byte()};
   return pixels;
 }
 
-int worst_difference(const std::vector<mars::Rgb>& a, const std::vector<mars::Rgb>& b) {
+int worst_difference(const std::vector<vpe::base::Rgb>& a, const std::vector<vpe::base::Rgb>& b) {
   int worst = 0;
   for (std::size_t n = 0; n < a.size(); ++n) {
     worst = std::max({worst, std::abs(a[n].r - b[n].r), std::abs(a[n].g - b[n].g), std::abs(a[n].b - b[n].b)});
@@ -107,7 +107,7 @@ class FullDisk {
 TEST(Image, PngIsLosslessAsGdalReadsIt) {
   const test_support::TempDir folder;
   for (const int compression : {1, 3, 9}) {
-    const std::vector<mars::Rgb> pixels = noise_picture(61, 37);
+    const std::vector<vpe::base::Rgb> pixels = noise_picture(61, 37);
     write_image(folder / "a.PNG", pixels, 61, 37, {.png_compression = compression});
     for (int band = 1; band <= 3; ++band) {
       const auto values = gdal_band<std::uint8_t>(folder / "a.PNG", band, GDT_Byte, pixels.size(), 3);
@@ -129,7 +129,7 @@ TEST(Image, PngIsLosslessWhateverItsRowsAreLike) {
   for (int n = 0; n < 300; ++n) {
     const int width = random.integer(1, n % 10 == 0 ? 700 : 70);
     const int height = random.integer(1, 40);
-    std::vector<mars::Rgb> pixels = noise_picture(width, height);
+    std::vector<vpe::base::Rgb> pixels = noise_picture(width, height);
     const int kind = random.integer(0, 3);
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       const auto x = static_cast<int>(k % static_cast<std::size_t>(width));
@@ -147,7 +147,7 @@ TEST(Image, PngIsLosslessWhateverItsRowsAreLike) {
 
 TEST(Image, PngWithAlphaKeepsColourUnderTransparency) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> colours = noise_picture(20, 30);
+  const std::vector<vpe::base::Rgb> colours = noise_picture(20, 30);
   std::vector<Rgba> pixels;
   for (std::size_t n = 0; n < colours.size(); ++n) {
     pixels.push_back({colours[n].r, colours[n].g, colours[n].b, static_cast<std::uint8_t>(n)});
@@ -165,7 +165,7 @@ TEST(Image, PngWithAlphaKeepsColourUnderTransparency) {
 
 TEST(Image, JpegIsCloseAndGdalAgrees) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> pixels = smooth_picture(129, 129);
+  const std::vector<vpe::base::Rgb> pixels = smooth_picture(129, 129);
   int before = 256;
   for (const int quality : {40, 75, 90, 100}) {
     write_image(folder / "a.jpg", pixels, 129, 129, {.jpeg_quality = quality});
@@ -184,10 +184,10 @@ TEST(Image, JpegIsCloseAndGdalAgrees) {
 
 TEST(Image, JpegBytesAreTheFile) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> pixels = smooth_picture(64, 48);
+  const std::vector<vpe::base::Rgb> pixels = smooth_picture(64, 48);
   write_image(folder / "a.jpeg", pixels, 64, 48, {.jpeg_quality = 80});
   const std::vector<std::uint8_t> bytes = encode_jpeg(pixels, 64, 48, 80);
-  EXPECT_EQ(read_file(folder / "a.jpeg", 1 << 20), bytes);
+  EXPECT_EQ(base::read_file(folder / "a.jpeg", 1 << 20), bytes);
   EXPECT_EQ(decode_jpeg(bytes).pixels, read_image(folder / "a.jpeg").pixels);
   EXPECT_LT(bytes.size(), encode_jpeg(pixels, 64, 48, 95).size());
 }
@@ -224,7 +224,7 @@ TEST(Image, TiffKeepsEveryFloatToTheBit) {
 
 TEST(Image, OnePixel) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> pixel{{1, 2, 3}};
+  const std::vector<vpe::base::Rgb> pixel{{1, 2, 3}};
   write_image(folder / "a.png", pixel, 1, 1);
   EXPECT_EQ(read_image(folder / "a.png").pixels, pixel);
   EXPECT_LE(worst_difference(decode_jpeg(encode_jpeg(pixel, 1, 1, 100)).pixels, pixel), 2);
@@ -235,7 +235,7 @@ TEST(Image, OnePixel) {
 
 TEST(Image, SizesAreCheckedBeforeAnythingIsDone) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> pixels(12);
+  const std::vector<vpe::base::Rgb> pixels(12);
   const std::vector<float> values(12);
   for (const auto& size : {std::pair{0, 12}, {12, 0}, {-3, -4}, {100000, 100000}, {3, 3}, {12, 2}}) {
     const int width = size.first;
@@ -250,7 +250,7 @@ TEST(Image, SizesAreCheckedBeforeAnythingIsDone) {
 
 TEST(Image, ReadersRefuseMoreThanTheyAreAllowed) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> pixels(100 * 50);
+  const std::vector<vpe::base::Rgb> pixels(100 * 50);
   write_image(folder / "a.png", pixels, 100, 50);
   write_image(folder / "a.jpg", pixels, 100, 50);
   write_tiff(folder / "a.tif", std::vector<float>(100 * 50), 100, 50);
@@ -269,7 +269,7 @@ TEST(Image, ReadersRefuseMoreThanTheyAreAllowed) {
 }
 
 TEST(Image, CutShortIsAnErrorAtEveryLength) {
-  const std::vector<mars::Rgb> pixels = noise_picture(16, 16);
+  const std::vector<vpe::base::Rgb> pixels = noise_picture(16, 16);
   for (const auto& bytes : {encode_png(pixels, 16, 16), encode_jpeg(pixels, 16, 16, 90)}) {
     const bool is_png = bytes[0] == 0x89;
     // What follows the last pixel (IEND, EOI) may be missing.
@@ -282,11 +282,11 @@ TEST(Image, CutShortIsAnErrorAtEveryLength) {
 
 TEST(Image, FlippedBytesNeverCrash) {
   test_support::Random random(3);
-  const std::vector<mars::Rgb> pixels = noise_picture(24, 24);
+  const std::vector<vpe::base::Rgb> pixels = noise_picture(24, 24);
   const test_support::TempDir folder;
   write_tiff(folder / "a.tif", std::vector<float>(24 * 24, 1.0F), 24, 24);
   const std::vector<std::uint8_t> sources[] = {encode_png(pixels, 24, 24), encode_jpeg(pixels, 24, 24, 80),
-                                               read_file(folder / "a.tif", 1 << 20)};
+                                               base::read_file(folder / "a.tif", 1 << 20)};
   int refused = 0;
   for (int round = 0; round < 3000; ++round) {
     const auto kind = static_cast<std::size_t>(round % 3);
@@ -299,7 +299,7 @@ TEST(Image, FlippedBytesNeverCrash) {
       if (kind == 0) decode_png(bytes, 1 << 16);
       if (kind == 1) decode_jpeg(bytes, 1 << 16);
       if (kind == 2) {
-        write_file(folder / "b.tif", bytes);
+        base::write_file(folder / "b.tif", bytes);
         read_tiff(folder / "b.tif", 1 << 16);
       }
     } catch (const std::runtime_error& e) {
@@ -312,7 +312,7 @@ TEST(Image, FlippedBytesNeverCrash) {
 
 TEST(Image, ErrorsNameFileOperationWordsAndAdvice) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> pixels(4);
+  const std::vector<vpe::base::Rgb> pixels(4);
   expect_words(thrown([&] { write_image(folder / "a.bmp", pixels, 2, 2); }), {"cannot write", "a.bmp", ".png"});
   expect_words(thrown([&] { write_image(folder / "none/a.png", pixels, 2, 2); }),
                {"cannot write", "none/a.png", "No such file", "folder exists"});
@@ -325,7 +325,7 @@ TEST(Image, ErrorsNameFileOperationWordsAndAdvice) {
   expect_words(thrown([&] { read_image(folder / "absent.png"); }),
                {"cannot read", "absent.png", "No such file"});
   expect_words(thrown([&] { read_image(folder.path()); }), {"cannot read"});
-  write_file(folder / "text.png", std::string_view("hello"));
+  base::write_file(folder / "text.png", std::string_view("hello"));
   expect_words(thrown([&] { read_image(folder / "text.png"); }), {"text.png", "neither PNG nor JPEG"});
   expect_words(thrown([&] { read_tiff(folder / "text.png"); }), {"cannot read", "text.png", "damaged"});
   expect_words(thrown([&] { read_tiff(folder / "absent.tif"); }), {"absent.tif", "No such file"});
@@ -335,19 +335,19 @@ TEST(Image, ErrorsNameFileOperationWordsAndAdvice) {
 
 TEST(Image, AFullDiskLeavesTheOldFileAndNoHalfOne) {
   const test_support::TempDir folder;
-  const std::vector<mars::Rgb> pixels = noise_picture(200, 200);
+  const std::vector<vpe::base::Rgb> pixels = noise_picture(200, 200);
   std::vector<float> values;
   test_support::Random random(4);
   for (int n = 0; n < 400 * 400; ++n) values.push_back(static_cast<float>(random.uniform(1, 2)));
-  write_file(folder / "a.png", std::string_view("old"));
-  write_file(folder / "a.tif", std::string_view("old"));
+  base::write_file(folder / "a.png", std::string_view("old"));
+  base::write_file(folder / "a.tif", std::string_view("old"));
   for (const rlim_t limit : {rlim_t{0}, rlim_t{5000}, rlim_t{100000}}) {
     const FullDisk full(limit);
     expect_words(thrown([&] { write_image(folder / "a.png", pixels, 200, 200); }), {"a.png", "File too large"});
     expect_words(thrown([&] { write_tiff(folder / "a.tif", values, 400, 400); }), {"cannot write", "a.tif"});
   }
   for (const char* name : {"a.png", "a.tif"}) {
-    EXPECT_EQ(read_file(folder / name, 100), (std::vector<std::uint8_t>{'o', 'l', 'd'}));
+    EXPECT_EQ(base::read_file(folder / name, 100), (std::vector<std::uint8_t>{'o', 'l', 'd'}));
   }
   EXPECT_EQ(names_in(folder.path()).size(), 2U);
 }
@@ -359,26 +359,26 @@ TEST(Image, PathsAreBytesAndTheLocaleDoesNotMatter) {
     if (std::setlocale(LC_ALL, locale) == nullptr) continue;
     const fs::path path = folder / "Čertovy žluté 火星.PNG";
     EXPECT_TRUE(is_image_path(path));
-    write_image(path, std::vector<mars::Rgb>(4), 2, 2);
+    write_image(path, std::vector<vpe::base::Rgb>(4), 2, 2);
     EXPECT_EQ(read_image(path).width, 2);
   }
   std::setlocale(LC_ALL, old.c_str());
 }
 
-TEST(OutputFile, AppearsOnlyWithCommit) {
+TEST(base::OutputFile, AppearsOnlyWithCommit) {
   const test_support::TempDir folder;
   {
-    OutputFile file(folder / "a.txt");
+    base::OutputFile file(folder / "a.txt");
     file.write(std::vector<std::uint8_t>{1, 2, 3});
   }
   EXPECT_TRUE(names_in(folder.path()).empty());
-  OutputFile file(folder / "a.txt");
+  base::OutputFile file(folder / "a.txt");
   file.write(std::vector<std::uint8_t>{1, 2, 3});
   EXPECT_FALSE(fs::exists(folder / "a.txt"));
   file.commit();
   EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a.txt"});
-  EXPECT_EQ(read_file(folder / "a.txt", 3), (std::vector<std::uint8_t>{1, 2, 3}));
-  expect_words(thrown([&] { read_file(folder / "a.txt", 2); }), {"a.txt", "3 bytes", "the 2"});
+  EXPECT_EQ(base::read_file(folder / "a.txt", 3), (std::vector<std::uint8_t>{1, 2, 3}));
+  expect_words(thrown([&] { base::read_file(folder / "a.txt", 2); }), {"a.txt", "3 bytes", "the 2"});
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 
 #include "tests/app/support/process.h"
 #include "tests/support/support.h"
-#include "vpe/core/file.h"
-#include "vpe/core/image.h"
-#include "vpe/core/number.h"
-#include "vpe/core/palette.h"
+#include "vpe/base/file.h"
+#include "vpe/core/image/image.h"
+#include "vpe/base/number.h"
+#include "vpe/core/appearance/palette.h"
 
 namespace vpe::core {
 namespace {
@@ -128,14 +128,14 @@ TEST(PaletteFile, TroubleWithTheFileItselfIsTold) {
   EXPECT_NE(palette_problem(dir.path().string()).find("cannot read '"), std::string::npos);
   EXPECT_NE(palette_problem("/dev/zero"), "");
   const std::string file = (dir / "p.txt").string();
-  write_file(file, std::string(2 << 20, '\n'));
+  base::write_file(file, std::string(2 << 20, '\n'));
   EXPECT_NE(palette_problem(file).find("are more than"), std::string::npos) << palette_problem(file);
-  write_file(file, std::string_view("0 1 2 3\nx"));
+  base::write_file(file, std::string_view("0 1 2 3\nx"));
   EXPECT_NE(palette_problem(file).find("p.txt', line 2"), std::string::npos) << palette_problem(file);
   Appearance a;
   a.palette = file;
   EXPECT_THROW(ColourScale{a}, std::runtime_error);
-  write_file(file, std::string_view("-4000 1 2 3\n-3000 4 5 6"));
+  base::write_file(file, std::string_view("-4000 1 2 3\n-3000 4 5 6"));
   EXPECT_EQ(palette_problem(file), "");
   const ColourScale scale(a);
   EXPECT_EQ(scale.low(), -4000);
@@ -165,10 +165,10 @@ TEST(PaletteFile, AgreesWithGdaldem) {
       double value = std::round(random.uniform(-9500, 10500));
       if (value == 4000) value = 4001;
       values.push_back(value);
-      grid += format_number(value) + ((n + 1) % kSide == 0 ? "\n" : " ");
+      grid += base::format_number(value) + ((n + 1) % kSide == 0 ? "\n" : " ");
     }
-    write_file(dir / "z.asc", std::string_view(grid));
-    write_file(dir / "p.txt", std::string_view(c.text));
+    base::write_file(dir / "z.asc", std::string_view(grid));
+    base::write_file(dir / "p.txt", std::string_view(c.text));
     app_test::Command command;
     command.program = gdaldem;
     command.folder = dir.path();
@@ -186,7 +186,7 @@ TEST(PaletteFile, AgreesWithGdaldem) {
     const ColourScale scale(a);
     double most = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {
-      const mars::Rgb& p = image.pixels[n];
+      const vpe::base::Rgb& p = image.pixels[n];
       const glm::dvec3 ours = scale(values[n]);
       most = std::max({most, std::abs(ours.x - p.r), std::abs(ours.y - p.g), std::abs(ours.z - p.b)});
     }

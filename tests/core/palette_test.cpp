@@ -1,5 +1,5 @@
 // Palettes, the scale from values to colours, HSV.
-#include "vpe/core/palette.h"
+#include "vpe/core/appearance/palette.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vpe/core/parallel.h"
+#include "vpe/base/parallel.h"
 
 #include <condition_variable>
 #include <mutex>
@@ -25,7 +25,7 @@ TEST(Parallel, EveryItemOnceForAnyCountAndThreads) {
 
 TEST(Parallel, SeveralThreadsTakePart) {
   // Each item waits for the other: one thread alone would never end.
-  ThreadPool pool(2);
+  base::ThreadPool pool(2);
   ASSERT_EQ(pool.threads(), 2);
   std::atomic<int> arrived = 0;
   EXPECT_TRUE(pool.run(2, [&](std::size_t) {
@@ -71,7 +71,7 @@ TEST(Parallel, TheExceptionOfTheLowestItemComesOut) {
 }
 
 TEST(Parallel, ThePoolOutlivesAnException) {
-  ThreadPool pool(4);
+  base::ThreadPool pool(4);
   EXPECT_THROW(pool.run(1000, [](std::size_t) { throw 1; }), int);
   std::atomic<int> made = 0;
   EXPECT_TRUE(pool.run(1000, [&](std::size_t) { ++made; }));
@@ -101,14 +101,14 @@ TEST(Parallel, CancelStopsAndSaysSo) {
 }
 
 TEST(Parallel, NestedLoopsOnOnePoolEnd) {
-  ThreadPool pool(3);
+  base::ThreadPool pool(3);
   std::vector<std::vector<int>> made(50, std::vector<int>(50, 0));
   pool.run(50, [&](std::size_t i) { pool.run(50, [&](std::size_t j) { ++made[i][j]; }); });
   for (const auto& row : made) EXPECT_EQ(row, std::vector<int>(50, 1));
 }
 
 TEST(Parallel, ManyCallersShareOnePool) {
-  ThreadPool pool(3);
+  base::ThreadPool pool(3);
   std::vector<std::thread> callers;
   std::atomic<int> made = 0;
   for (int caller = 0; caller < 4; ++caller) {
@@ -121,11 +121,11 @@ TEST(Parallel, ManyCallersShareOnePool) {
 }
 
 TEST(Parallel, ThreadsAreLimited) {
-  EXPECT_GE(default_threads(), 1);
-  EXPECT_LE(default_threads(), kMaxThreads);
-  EXPECT_LE(ThreadPool(1 << 30).threads(), kMaxThreads);
-  EXPECT_EQ(ThreadPool(0).threads(), default_threads());
-  EXPECT_EQ(ThreadPool(1).threads(), 1);
+  EXPECT_GE(base::default_threads(), 1);
+  EXPECT_LE(base::default_threads(), base::kMaxThreads);
+  EXPECT_LE(base::ThreadPool(1 << 30).threads(), base::kMaxThreads);
+  EXPECT_EQ(base::ThreadPool(0).threads(), base::default_threads());
+  EXPECT_EQ(base::ThreadPool(1).threads(), 1);
 }
 
 // Of a worker and a caller, who are let go one after the other.
@@ -150,8 +150,8 @@ class Gate {
 };
 
 TEST(Parallel, LoopsBehindAreDoneByIdleThreads) {
-  ThreadPool pool(3);
-  ThreadPool behind(ThreadPool::Behind{pool});
+  base::ThreadPool pool(3);
+  base::ThreadPool behind(base::ThreadPool::Behind{pool});
   EXPECT_EQ(behind.threads(), 3);
   const std::thread::id caller = std::this_thread::get_id();
   for (const std::size_t count : {0U, 1U, 2U, 17U, 5000U}) {
@@ -165,8 +165,8 @@ TEST(Parallel, LoopsBehindAreDoneByIdleThreads) {
 }
 
 TEST(Parallel, LoopsBehindGiveWayAfterAnItem) {
-  ThreadPool pool(2);
-  ThreadPool behind(ThreadPool::Behind{pool});
+  base::ThreadPool pool(2);
+  base::ThreadPool behind(base::ThreadPool::Behind{pool});
   Gate begun, go_on;
   std::atomic<int> made = 0;
   std::atomic<int> made_when_front_ran = -1;
@@ -196,8 +196,8 @@ TEST(Parallel, LoopsBehindGiveWayAfterAnItem) {
 // Also where nobody else could ever do them.
 TEST(Parallel, LoopsBehindCanBeHurried) {
   for (const int threads : {1, 2, 4}) {
-    ThreadPool pool(threads);
-    ThreadPool behind(ThreadPool::Behind{pool});
+    base::ThreadPool pool(threads);
+    base::ThreadPool behind(base::ThreadPool::Behind{pool});
     std::vector<int> made(3000, 0);
     Gate begun;
     std::thread later([&] {
@@ -214,8 +214,8 @@ TEST(Parallel, LoopsBehindCanBeHurried) {
 
 TEST(Parallel, LoopsBehindCanBeStopped) {
   for (const int threads : {1, 2, 4}) {
-    ThreadPool pool(threads);
-    ThreadPool behind(ThreadPool::Behind{pool});
+    base::ThreadPool pool(threads);
+    base::ThreadPool behind(base::ThreadPool::Behind{pool});
     Gate begun;
     std::thread later([&] {
       begun.open();
@@ -232,8 +232,8 @@ TEST(Parallel, LoopsBehindCanBeStopped) {
 }
 
 TEST(Parallel, ExceptionsComeOutOfLoopsBehind) {
-  ThreadPool pool(3);
-  ThreadPool behind(ThreadPool::Behind{pool});
+  base::ThreadPool pool(3);
+  base::ThreadPool behind(base::ThreadPool::Behind{pool});
   for (int round = 0; round < 100; ++round) {
     EXPECT_THROW(behind.run(50,
                             [&](std::size_t n) {
@@ -247,8 +247,8 @@ TEST(Parallel, ExceptionsComeOutOfLoopsBehind) {
 TEST(Parallel, LoopsInFrontAndBehindEndWhateverHappens) {
   test_support::Random random(5);
   for (int round = 0; round < 200; ++round) {
-    ThreadPool pool(random.integer(1, 4));
-    ThreadPool behind(ThreadPool::Behind{pool});
+    base::ThreadPool pool(random.integer(1, 4));
+    base::ThreadPool behind(base::ThreadPool::Behind{pool});
     const auto count = static_cast<std::size_t>(random.integer(1, 200));
     std::vector<int> made(count, 0);
     bool whole = false;

@@ -1,15 +1,15 @@
 // Text in PNG files, and files that are not whole.
-#include "vpe/core/png_text.h"
+#include "vpe/core/image/png_text.h"
 
 #include "tests/support/support.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace {
 
 using vpe::core::PngText;
 
 std::vector<std::uint8_t> picture() {
-  std::vector<mars::Rgb> pixels(31 * 17);
+  std::vector<vpe::base::Rgb> pixels(31 * 17);
   for (std::size_t n = 0; n < pixels.size(); ++n) pixels[n] = {static_cast<std::uint8_t>(n * 7), 40, 200};
   return vpe::core::encode_png(pixels, 31, 17);
 }

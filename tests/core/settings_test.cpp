@@ -1,4 +1,4 @@
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/settings.h"
 
 #include <clocale>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "tests/support/support.h"
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace vpe::core {
 namespace {
@@ -28,34 +28,34 @@ TEST(Number, ReadsWhatItWritesToTheBit) {
   for (int i = 0; i < 20000; ++i) {
     const double sign = random.integer(0, 1) == 0 ? -1.0 : 1.0;
     const double value = sign * random.log_uniform(1e-300, 1e300);
-    const std::optional<double> read = parse_number(format_number(value));
-    ASSERT_TRUE(read.has_value()) << format_number(value);
+    const std::optional<double> read = base::parse_number(base::format_number(value));
+    ASSERT_TRUE(read.has_value()) << base::format_number(value);
     ASSERT_EQ(*read, value);
   }
   for (const double value : {0.0, -0.0, 1e-6, 1e16, 123456789.0, std::numeric_limits<double>::denorm_min(),
                              std::numeric_limits<double>::max()}) {
-    EXPECT_EQ(parse_number(format_number(value)), value);
+    EXPECT_EQ(base::parse_number(base::format_number(value)), value);
   }
 }
 
 TEST(Number, IsPlainWherePeopleRead) {
-  EXPECT_EQ(format_number(1000000), "1000000");
-  EXPECT_EQ(format_number(-74.25), "-74.25");
-  EXPECT_EQ(format_number(0.1), "0.1");
-  EXPECT_EQ(format_number(0), "0");
-  EXPECT_EQ(format_number(1e20), "1e+20");
+  EXPECT_EQ(base::format_number(1000000), "1000000");
+  EXPECT_EQ(base::format_number(-74.25), "-74.25");
+  EXPECT_EQ(base::format_number(0.1), "0.1");
+  EXPECT_EQ(base::format_number(0), "0");
+  EXPECT_EQ(base::format_number(1e20), "1e+20");
 }
 
 TEST(Number, TakesOnlyWholeFiniteDecimals) {
-  EXPECT_EQ(parse_number("+1.5"), 1.5);
-  EXPECT_EQ(parse_number("-.5e1"), -5.0);
+  EXPECT_EQ(base::parse_number("+1.5"), 1.5);
+  EXPECT_EQ(base::parse_number("-.5e1"), -5.0);
   for (const char* text : {"", "+", "-", "+-1", "-+1", "++1", "1 ", " 1", "1,5", "1.5m", "nan", "inf", "-inf",
                            "infinity", "0x10", "1e999", "1e", "--1", "1_000"}) {
-    EXPECT_FALSE(parse_number(text).has_value()) << text;
+    EXPECT_FALSE(base::parse_number(text).has_value()) << text;
   }
-  EXPECT_EQ(parse_integer("+3"), 3);
+  EXPECT_EQ(base::parse_integer("+3"), 3);
   for (const char* text : {"", "3.0", "1e3", "99999999999999999999", "0x1"}) {
-    EXPECT_FALSE(parse_integer(text).has_value()) << text;
+    EXPECT_FALSE(base::parse_integer(text).has_value()) << text;
   }
 }
 
@@ -87,7 +87,7 @@ TEST(Settings, EachKeyChangesItsOwnValueAlone) {
     } else if (info.type == SettingType::kText) {
       other = other_text(info.key);
     } else {
-      other = format_number(info.max);
+      other = base::format_number(info.max);
     }
     Settings settings;
     ASSERT_EQ(settings.set(info.key, other), "") << info.key;
@@ -211,17 +211,17 @@ TEST(Settings, RangesIncludeTheirEndsAndNothingBeyond) {
   for (const SettingInfo& info : Settings::list()) {
     if (info.type != SettingType::kNumber && info.type != SettingType::kInteger) continue;
     Settings settings;
-    EXPECT_EQ(settings.set(info.key, format_number(info.min)), "");
-    EXPECT_EQ(settings.set(info.key, format_number(info.max)), "");
+    EXPECT_EQ(settings.set(info.key, base::format_number(info.min)), "");
+    EXPECT_EQ(settings.set(info.key, base::format_number(info.max)), "");
     const Settings before = settings;
     const bool whole = info.type == SettingType::kInteger;
     const double below = whole ? info.min - 1 : std::nextafter(info.min, -1e300);
     const double above = whole ? info.max + 1 : std::nextafter(info.max, 1e300);
-    for (const std::string& text : {format_number(below), format_number(above), std::string("nan"),
+    for (const std::string& text : {base::format_number(below), base::format_number(above), std::string("nan"),
                                     std::string(""), std::string("1x"), std::string("inf")}) {
       const std::string problem = settings.set(info.key, text);
       EXPECT_TRUE(holds(problem, info.key)) << problem;
-      EXPECT_TRUE(holds(problem, format_number(info.max))) << problem;
+      EXPECT_TRUE(holds(problem, base::format_number(info.max))) << problem;
     }
     EXPECT_EQ(settings, before) << info.key;
   }

@@ -1,5 +1,5 @@
 // Light, air and gamma against their definitions.
-#include "vpe/core/shading.h"
+#include "vpe/core/appearance/shading.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace vpe::core {
@@ -210,8 +210,8 @@ TEST(Haze, IsLightByDayAndDarkByNight) {
   }
 }
 
-std::vector<mars::Rgb> every_byte() {
-  std::vector<mars::Rgb> out;
+std::vector<vpe::base::Rgb> every_byte() {
+  std::vector<vpe::base::Rgb> out;
   for (int n = 0; n < 256; ++n) {
     const auto byte = static_cast<std::uint8_t>(n);
     out.push_back({byte, static_cast<std::uint8_t>(255 - n), static_cast<std::uint8_t>(n ^ 0x55)});
@@ -220,7 +220,7 @@ std::vector<mars::Rgb> every_byte() {
 }
 
 TEST(Gamma, OneChangesNothing) {
-  std::vector<mars::Rgb> colours = every_byte();
+  std::vector<vpe::base::Rgb> colours = every_byte();
   apply_gamma(colours, 1);
   EXPECT_EQ(colours, every_byte());
   // Nor does the way through the table.
@@ -230,10 +230,10 @@ TEST(Gamma, OneChangesNothing) {
 
 TEST(Gamma, KeepsEndsAndOrder) {
   for (const double gamma : {0.1, 0.45, 0.9, 1.1, 1.8, 2.2, 10.0}) {
-    std::vector<mars::Rgb> colours = every_byte();
+    std::vector<vpe::base::Rgb> colours = every_byte();
     apply_gamma(colours, gamma);
-    EXPECT_EQ(colours.front(), (mars::Rgb{0, 255, colours[0].b}));
-    EXPECT_EQ(colours.back(), (mars::Rgb{255, 0, colours[255].b}));
+    EXPECT_EQ(colours.front(), (vpe::base::Rgb{0, 255, colours[0].b}));
+    EXPECT_EQ(colours.back(), (vpe::base::Rgb{255, 0, colours[255].b}));
     for (std::size_t n = 0; n < 256; ++n) {
       EXPECT_NEAR(colours[n].r, 255 * std::pow(static_cast<double>(n) / 255, 1 / gamma), 0.5 + 1e-9);
       EXPECT_GE(colours[n].r, colours[n == 0 ? 0 : n - 1].r);

@@ -1,5 +1,5 @@
 // Slope and aspect: by hand, at hostile places, and against gdaldem on a plane.
-#include "vpe/core/slope.h"
+#include "vpe/core/appearance/slope.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <glm/geometric.hpp>
 #include <sstream>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/app/support/process.h"
 #include "tests/support/support.h"
-#include "vpe/core/file.h"
-#include "vpe/core/number.h"
+#include "vpe/base/file.h"
+#include "vpe/base/number.h"
 
 namespace vpe::core {
 namespace {
@@ -120,7 +120,7 @@ class Gdaldem {
  public:
   Gdaldem(int side, double spacing_m, const Ground& ground) : side_(side) {
     std::string grid = "ncols " + std::to_string(side) + "\nnrows " + std::to_string(side) +
-                       "\nxllcorner 0\nyllcorner 0\ncellsize " + format_number(spacing_m) + "\n";
+                       "\nxllcorner 0\nyllcorner 0\ncellsize " + base::format_number(spacing_m) + "\n";
     for (int row = 0; row < side; ++row) {
       for (int column = 0; column < side; ++column) {
         heights_.push_back(ground.height_m(spacing_m * column, -spacing_m * row));
@@ -130,7 +130,7 @@ class Gdaldem {
       }
       grid += "\n";
     }
-    write_file(dir_ / "z.asc", std::string_view(grid));
+    base::write_file(dir_ / "z.asc", std::string_view(grid));
   }
 
   // Of inner posts, row after row.
@@ -143,12 +143,12 @@ class Gdaldem {
     command.arguments.insert(command.arguments.end(), {"z.asc", what[0] + ".asc"});
     const app_test::Result result = app_test::run(command);
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    const std::vector<std::uint8_t> bytes = read_file(dir_ / (what[0] + ".asc"), 1 << 26);
+    const std::vector<std::uint8_t> bytes = base::read_file(dir_ / (what[0] + ".asc"), 1 << 26);
     std::istringstream in(std::string(bytes.begin(), bytes.end()));
     std::string word;
     std::vector<double> all;
     while (in >> word) {
-      const auto value = parse_number(word);
+      const auto value = base::parse_number(word);
       if (value) {
         all.push_back(*value);
       } else {

@@ -24,7 +24,7 @@ RgbImage noise(int width, int height, std::uint64_t seed) {
   return image;
 }
 
-mars::Rgb at(const RgbImage& image, int x, int y) {
+vpe::base::Rgb at(const RgbImage& image, int x, int y) {
   return image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                       static_cast<std::size_t>(x)];
 }
@@ -50,7 +50,7 @@ TEST(Stereo, SideBySideAndOverUnder) {
 
 TEST(Stereo, EyesOfOtherSizeAreRefused) {
   EXPECT_THROW(combine_stereo(noise(5, 3, 1), noise(5, 4, 1), StereoLayout::kAnaglyph), vpe::core::ImageError);
-  const RgbImage wide{32768, 1, std::vector<mars::Rgb>(32768)};
+  const RgbImage wide{32768, 1, std::vector<vpe::base::Rgb>(32768)};
   EXPECT_THROW(combine_stereo(wide, wide, StereoLayout::kSideBySide), vpe::core::ImageError);
 }
 
@@ -82,11 +82,11 @@ TEST(Stereo, RedCyanIsThatOfFfmpeg) {
 TEST(Stereo, RedGlassSeesTheLeftEyeOnly) {
   const RgbImage white{1, 1, {{255, 255, 255}}};
   const RgbImage black{1, 1, {{0, 0, 0}}};
-  const mars::Rgb left = combine_stereo(white, black, StereoLayout::kAnaglyph).pixels[0];
+  const vpe::base::Rgb left = combine_stereo(white, black, StereoLayout::kAnaglyph).pixels[0];
   EXPECT_GT(left.r, 250);
   EXPECT_LT(left.g, 10);
   EXPECT_LT(left.b, 10);
-  const mars::Rgb right = combine_stereo(black, white, StereoLayout::kAnaglyph).pixels[0];
+  const vpe::base::Rgb right = combine_stereo(black, white, StereoLayout::kAnaglyph).pixels[0];
   EXPECT_LT(right.r, 10);
   EXPECT_GT(right.g, 250);
   EXPECT_GT(right.b, 250);

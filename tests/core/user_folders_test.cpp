@@ -1,4 +1,4 @@
-#include "vpe/core/user_folders.h"
+#include "vpe/base/user_folders.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace vpe::core {
 namespace {
 
-Environment environment(const std::map<std::string, std::string>& variables) {
+base::Environment environment(const std::map<std::string, std::string>& variables) {
   return [variables](const char* name) -> const char* {
     const auto found = variables.find(name);
     return found == variables.end() ? nullptr : found->second.c_str();
@@ -16,27 +16,27 @@ Environment environment(const std::map<std::string, std::string>& variables) {
 }
 
 TEST(UserFolders, VariablesGoBeforeHome) {
-  const Environment set = environment({{"HOME", "/h"},
+  const base::Environment set = environment({{"HOME", "/h"},
                                        {"XDG_CACHE_HOME", "/c"},
                                        {"XDG_CONFIG_HOME", "/f"},
                                        {"XDG_DATA_HOME", "/d"},
                                        {"XDG_STATE_HOME", "/s"}});
-  EXPECT_EQ(user_folder(UserFolder::kCache, set), "/c/vpe");
-  EXPECT_EQ(user_folder(UserFolder::kConfig, set), "/f/vpe");
-  EXPECT_EQ(user_folder(UserFolder::kData, set), "/d/vpe");
-  EXPECT_EQ(user_folder(UserFolder::kState, set), "/s/vpe");
-  const Environment home = environment({{"HOME", "/h"}, {"XDG_CACHE_HOME", ""}, {"XDG_DATA_HOME", "relative"}});
-  EXPECT_EQ(user_folder(UserFolder::kCache, home), "/h/.cache/vpe");
-  EXPECT_EQ(user_folder(UserFolder::kConfig, home), "/h/.config/vpe");
-  EXPECT_EQ(user_folder(UserFolder::kData, home), "/h/.local/share/vpe");
-  EXPECT_EQ(user_folder(UserFolder::kState, home), "/h/.local/state/vpe");
-  EXPECT_EQ(user_folder(UserFolder::kData, environment({{"HOME", "relative"}})), "");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kCache, set), "/c/vpe");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kConfig, set), "/f/vpe");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kData, set), "/d/vpe");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kState, set), "/s/vpe");
+  const base::Environment home = environment({{"HOME", "/h"}, {"XDG_CACHE_HOME", ""}, {"XDG_DATA_HOME", "relative"}});
+  EXPECT_EQ(base::user_folder(base::UserFolder::kCache, home), "/h/.cache/vpe");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kConfig, home), "/h/.config/vpe");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kData, home), "/h/.local/share/vpe");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kState, home), "/h/.local/state/vpe");
+  EXPECT_EQ(base::user_folder(base::UserFolder::kData, environment({{"HOME", "relative"}})), "");
 }
 
 TEST(UserFolders, SettingsAreLookedForInTheSystemsFoldersToo) {
   using Paths = std::vector<std::filesystem::path>;
-  EXPECT_EQ(config_folders(environment({})), (Paths{"/etc/xdg/vpe"}));
-  EXPECT_EQ(config_folders(environment({{"HOME", "/h"}, {"XDG_CONFIG_DIRS", "/a:relative::/b"}})),
+  EXPECT_EQ(base::config_folders(environment({})), (Paths{"/etc/xdg/vpe"}));
+  EXPECT_EQ(base::config_folders(environment({{"HOME", "/h"}, {"XDG_CONFIG_DIRS", "/a:relative::/b"}})),
             (Paths{"/h/.config/vpe", "/a/vpe", "/b/vpe"}));
 }
 

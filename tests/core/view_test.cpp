@@ -345,7 +345,7 @@ TEST_F(BadView, Offset) {
   expect("past the zenith");
 }
 
-TEST_F(BadView, Part) {
+TEST_F(BadView, base::Shard) {
   for (const SubRectangle& part :
        {SubRectangle{-1, 0, 10, 10}, SubRectangle{0, 0, 10, 0}, SubRectangle{0, 0, 0, 10},
         SubRectangle{1, 1, 0, 0}, SubRectangle{1271, 0, 10, 10}, SubRectangle{0, 711, 10, 10},

@@ -6,8 +6,8 @@
 
 #include "cull/frustum.h"
 #include "cull/horizon.h"
-#include "cull/shell.h"
-#include "mars/sphere.h"
+#include "cull/bounding_region.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 #include "vpe/core/view.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace {

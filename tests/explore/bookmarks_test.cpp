@@ -1,4 +1,4 @@
-#include "vpe/explore/bookmarks.h"
+#include "vpe/explore/files/bookmarks.h"
 
 #include <rapidcheck.h>
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "tests/support/support.h"
-#include "vpe/core/file.h"
+#include "vpe/base/file.h"
 
 namespace vpe::explore {
 namespace {
@@ -165,8 +165,8 @@ TEST(BookmarkFile, ALinkIsFollowedAndAFailureLeavesTheOldFile) {
   save_bookmarks(folder / "bookmarks", b);
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "bookmarks"));
   EXPECT_EQ(read_text(folder / "dotfiles/marks"), "1 0 0 0 0 0 0 60\n2 0 0 0 0 0 0 60\n");
-  EXPECT_THROW(save_bookmarks(folder / "dotfiles/marks/bookmarks", b), core::FileError);
-  EXPECT_THROW(load_bookmarks(folder / "dotfiles"), core::FileError);
+  EXPECT_THROW(save_bookmarks(folder / "dotfiles/marks/bookmarks", b), base::FileError);
+  EXPECT_THROW(load_bookmarks(folder / "dotfiles"), base::FileError);
   EXPECT_EQ(read_text(folder / "dotfiles/marks"), "1 0 0 0 0 0 0 60\n2 0 0 0 0 0 0 60\n");
 }
 

@@ -1,4 +1,4 @@
-#include "vpe/explore/controls.h"
+#include "vpe/explore/input/controls.h"
 
 #include <gtest/gtest.h>
 

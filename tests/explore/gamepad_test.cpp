@@ -1,4 +1,4 @@
-#include "vpe/explore/gamepad.h"
+#include "vpe/explore/input/gamepad.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "vpe/explore/stick.h"
+#include "vpe/explore/input/stick.h"
 
 namespace vpe::explore {
 namespace {

@@ -1,4 +1,4 @@
-#include "vpe/explore/head_tracker.h"
+#include "vpe/explore/input/head_tracker.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

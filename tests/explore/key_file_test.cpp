@@ -1,4 +1,4 @@
-#include "vpe/explore/key_file.h"
+#include "vpe/explore/files/key_file.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,4 +1,4 @@
-#include "vpe/explore/keyboard.h"
+#include "vpe/explore/input/keyboard.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

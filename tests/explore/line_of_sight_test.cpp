@@ -1,10 +1,10 @@
-#include "vpe/explore/line_of_sight.h"
+#include "vpe/explore/measure/line_of_sight.h"
 
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "tests/explore/ground_fixture.h"
+#include "tests/explore/terrain_fixture.h"
 
 namespace vpe::explore {
 namespace {

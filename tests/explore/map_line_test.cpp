@@ -1,4 +1,4 @@
-#include "vpe/explore/map_line.h"
+#include "vpe/explore/measure/map_line.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

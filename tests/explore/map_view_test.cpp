@@ -1,4 +1,4 @@
-#include "vpe/explore/map_view.h"
+#include "vpe/explore/measure/map_view.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "tests/explore/ground_support.h"
+#include "tests/explore/terrain_support.h"
 #include "vpe/explore/fly_to.h"
 #include "vpe/explore/steer.h"
 

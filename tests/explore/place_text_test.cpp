@@ -1,12 +1,12 @@
-#include "vpe/explore/place_text.h"
+#include "vpe/explore/measure/place_text.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
 
-#include "vpe/core/number.h"
-#include "vpe/explore/digits.h"
+#include "vpe/base/number.h"
+#include "vpe/explore/measure/digits.h"
 
 namespace vpe::explore {
 namespace {
@@ -123,20 +123,20 @@ std::string in_seconds(double degrees) {
 RC_GTEST_PROP(PlaceText, EveryPlaceComesBackFromEveryConvention, ()) {
   const mars::LonLat place = any_place();
   const double east = place.lon_deg < 0 ? place.lon_deg + 360 : place.lon_deg;
-  const std::string lon = core::format_number(place.lon_deg);
-  const std::string lat = core::format_number(place.lat_deg);
+  const std::string lon = base::format_number(place.lon_deg);
+  const std::string lat = base::format_number(place.lat_deg);
   const std::string letter_ns = place.lat_deg < 0 ? "S" : "N";
   const std::string letter_ew = place.lon_deg < 0 ? "W" : "E";
-  const std::string lat_size = core::format_number(std::abs(place.lat_deg));
+  const std::string lat_size = base::format_number(std::abs(place.lat_deg));
   std::string outside = place_words(place);
   if (const auto open = outside.find(" ("); open != std::string::npos)
     outside.erase(open, outside.find(')') - open + 1);
   const std::vector<std::pair<std::string, double>> texts{
       {lon + "," + lat, 1e-12},
       {lon + " " + lat, 1e-12},
-      {core::format_number(east) + ", " + lat, 1e-12},
+      {base::format_number(east) + ", " + lat, 1e-12},
       {"lat " + lat + " lon " + lon, 1e-12},
-      {lat_size + letter_ns + " " + core::format_number(std::fmod(360 - east, 360)) + "W", 1e-12},
+      {lat_size + letter_ns + " " + base::format_number(std::fmod(360 - east, 360)) + "W", 1e-12},
       {in_seconds(place.lon_deg) + letter_ew + " " + in_seconds(place.lat_deg) + letter_ns, 2e-8},
       {letter_ns + in_seconds(place.lat_deg) + letter_ew + in_seconds(place.lon_deg), 2e-8},
       {outside, 5.1e-7}};

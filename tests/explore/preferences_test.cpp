@@ -1,4 +1,4 @@
-#include "vpe/explore/preferences.h"
+#include "vpe/explore/files/preferences.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "tests/support/support.h"
-#include "vpe/core/file.h"
+#include "vpe/base/file.h"
 
 namespace vpe::explore {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using test_support::TempDir;
 
-core::Environment environment(const std::map<std::string, std::string>& variables) {
+base::Environment environment(const std::map<std::string, std::string>& variables) {
   return [variables](const char* name) {
     const auto found = variables.find(name);
     return found == variables.end() ? nullptr : found->second.c_str();
@@ -75,11 +75,11 @@ TEST(UserFiles, WhatIsNoFileIsSaid) {
   EXPECT_EQ(read_user_file(folder / "none"), std::nullopt);
   write(folder / "file", "x");
   EXPECT_EQ(read_user_file(folder / "file/below"), std::nullopt);
-  EXPECT_THROW((void)read_user_file(folder.path()), core::FileError);
-  EXPECT_THROW(write_user_file(folder.path(), ""), core::FileError);
-  EXPECT_THROW(write_user_file(folder / "file/below/f.toml", ""), core::FileError);
+  EXPECT_THROW((void)read_user_file(folder.path()), base::FileError);
+  EXPECT_THROW(write_user_file(folder.path(), ""), base::FileError);
+  EXPECT_THROW(write_user_file(folder / "file/below/f.toml", ""), base::FileError);
   write(folder / "large", std::string((1U << 20U) + 1, '#'));
-  EXPECT_THROW((void)read_user_file(folder / "large"), core::FileError);
+  EXPECT_THROW((void)read_user_file(folder / "large"), base::FileError);
 }
 
 TEST(Preferences, WithoutAFileTheyAreTheDefaults) {

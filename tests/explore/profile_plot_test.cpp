@@ -1,4 +1,4 @@
-#include "vpe/explore/profile_plot.h"
+#include "vpe/explore/measure/profile_plot.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "tests/explore/ground_fixture.h"
+#include "tests/explore/terrain_fixture.h"
 
 namespace vpe::explore {
 namespace {

@@ -1,11 +1,11 @@
-#include "vpe/explore/profile.h"
+#include "vpe/explore/measure/profile.h"
 
 #include <sstream>
 #include <stdexcept>
 
-#include "lod/posts.h"
-#include "tests/explore/ground_fixture.h"
-#include "vpe/core/number.h"
+#include "lod/tree/posts.h"
+#include "tests/explore/terrain_fixture.h"
+#include "vpe/base/number.h"
 
 namespace vpe::explore {
 namespace {

@@ -1,9 +1,9 @@
-#include "vpe/explore/read_out.h"
+#include "vpe/explore/measure/read_out.h"
 
 #include <algorithm>
 
-#include "mars/pose.h"
-#include "tests/explore/ground_fixture.h"
+#include "mars/geodesy/pose.h"
+#include "tests/explore/terrain_fixture.h"
 
 namespace vpe::explore {
 namespace {

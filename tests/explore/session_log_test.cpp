@@ -1,4 +1,4 @@
-#include "vpe/explore/session_log.h"
+#include "vpe/explore/files/session_log.h"
 
 #include <cmath>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "vpe/explore/space_mouse.h"
+#include "vpe/explore/input/space_mouse.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

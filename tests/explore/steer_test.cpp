@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/explore/ground_support.h"
+#include "tests/explore/terrain_support.h"
 
 namespace vpe::explore {
 namespace {

@@ -1,4 +1,4 @@
-#include "vpe/explore/udp_receiver.h"
+#include "vpe/explore/input/udp_receiver.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "vpe/explore/head_tracker.h"
+#include "vpe/explore/input/head_tracker.h"
 
 namespace vpe::explore {
 namespace {

@@ -1,4 +1,4 @@
-#include "vpe/explore/view_history.h"
+#include "vpe/explore/files/view_history.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "mars/gdal_raster.h"
-#include "mars/gdal_scope.h"
-#include "mars/pds_image.h"
-#include "mars/pds_map.h"
+#include "mars/raster/gdal_raster.h"
+#include "mars/raster/gdal_scope.h"
+#include "mars/raster/pds_image.h"
+#include "mars/raster/pds_map.h"
 #include "tests/fuzz/targets.h"
 
 namespace fuzz {

@@ -6,22 +6,22 @@
 #include <filesystem>
 #include <fstream>
 
-#include "panorama/big_tiff.h"
-#include "panorama/companions.h"
-#include "panorama/gpano.h"
-#include "panorama/label.h"
-#include "panorama/look.h"
-#include "panorama/metadata_error.h"
-#include "panorama/open_panorama.h"
-#include "panorama/picture.h"
-#include "panorama/raster_plane.h"
-#include "panorama/rows.h"
-#include "panorama/sidecar.h"
-#include "panorama/viewer.h"
-#include "panorama/xmp_file.h"
+#include "panorama/image/big_tiff.h"
+#include "panorama/metadata/auxiliary_files.h"
+#include "panorama/metadata/gpano.h"
+#include "panorama/metadata/label.h"
+#include "panorama/viewer/render_view.h"
+#include "panorama/image/metadata_error.h"
+#include "panorama/metadata/open_panorama.h"
+#include "panorama/image/tiled_image.h"
+#include "panorama/image/raster_plane.h"
+#include "panorama/image/row_source.h"
+#include "panorama/metadata/sidecar.h"
+#include "panorama/viewer/viewer.h"
+#include "panorama/image/xmp_file.h"
 #include "tests/fuzz/targets.h"
-#include "vpe/core/file.h"
-#include "vpe/core/image.h"
+#include "vpe/base/file.h"
+#include "vpe/core/image/image.h"
 
 namespace fuzz {
 namespace {
@@ -191,7 +191,7 @@ std::vector<Bytes> sidecar_seeds() {
 void describe(const fs::path& path) {
   try {
     check_map(panorama::describe(path).map);
-  } catch (const vpe::core::FileError& error) {
+  } catch (const vpe::base::FileError& error) {
     check_words(error);
   }
 }
@@ -210,7 +210,7 @@ void look_at(const fs::path& path, const panorama::PictureHeader& header) {
     panorama::LookOptions look;
     look.threads = 1;
     panorama::look(*picture, map, panorama::Viewer(map, 16, 8).view(), look);
-  } catch (const vpe::core::FileError& error) {
+  } catch (const vpe::base::FileError& error) {
     check_words(error);
   }
 }
@@ -221,16 +221,16 @@ void read_parts(const fs::path& path, const panorama::PictureHeader& header) {
   try {
     const auto rows = panorama::open_rows(path, header.format, std::size_t{1} << 22);
     if (rows->width_px() > kMaxPixels / rows->height_px()) return;
-    std::vector<mars::Rgb> row(static_cast<std::size_t>(rows->width_px()));
+    std::vector<vpe::base::Rgb> row(static_cast<std::size_t>(rows->width_px()));
     for (std::int64_t y = 0; y < rows->height_px(); ++y) rows->read(row);
-  } catch (const vpe::core::FileError& error) {
+  } catch (const vpe::base::FileError& error) {
     check_words(error);
   }
   try {
     if (header.format != panorama::PictureFormat::kTiff) return;
     const panorama::RasterPlane plane(path, header.width_px, header.height_px);
     require(!plane.at(header.width_px - 1, header.height_px - 1).empty(), "planes have bands");
-  } catch (const vpe::core::FileError& error) {
+  } catch (const vpe::base::FileError& error) {
     check_words(error);
   }
 }
@@ -256,7 +256,7 @@ void run_picture(std::span<const std::uint8_t> bytes) {
   panorama::PictureHeader header;
   try {
     header = panorama::read_picture_header(path);
-  } catch (const vpe::core::FileError& error) {
+  } catch (const vpe::base::FileError& error) {
     return check_words(error);
   }
   look_at(path, header);
@@ -266,7 +266,7 @@ void run_picture(std::span<const std::uint8_t> bytes) {
 std::vector<Bytes> picture_seeds() {
   constexpr int kWidth = 40;
   constexpr int kHeight = 24;
-  std::vector<mars::Rgb> pixels(std::size_t{kWidth} * kHeight);
+  std::vector<vpe::base::Rgb> pixels(std::size_t{kWidth} * kHeight);
   for (std::size_t n = 0; n < pixels.size(); ++n) pixels[n] = {static_cast<std::uint8_t>(n), 90, 200};
   const std::string packet =
       panorama::to_xmp(panorama::gpano_of(panorama::cylinder_map(kWidth, kHeight, kWidth, 10.0, 12.0)));
@@ -276,7 +276,7 @@ std::vector<Bytes> picture_seeds() {
   // TIFF: ours in tiles, and one in rows.
   const fs::path path = scratch() / "seed.tif";
   {
-    vpe::core::OutputFile file(path);
+    vpe::base::OutputFile file(path);
     panorama::BigTiffTags tags;
     tags.xmp = packet;
     panorama::BigTiffWriter writer(file, kWidth, kHeight, panorama::kRgb, tags);
@@ -286,9 +286,9 @@ std::vector<Bytes> picture_seeds() {
     writer.finish();
     file.commit();
   }
-  all.push_back(vpe::core::read_file(path, 1 << 24));
+  all.push_back(vpe::base::read_file(path, 1 << 24));
   vpe::core::write_tiff(path, std::vector<float>(pixels.size(), 1.5F), kWidth, kHeight, {});
-  all.push_back(vpe::core::read_file(path, 1 << 24));
+  all.push_back(vpe::base::read_file(path, 1 << 24));
   return all;
 }
 

@@ -8,12 +8,12 @@
 #include <fstream>
 #include <iterator>
 
-#include "paging/builder.h"
-#include "paging/codec.h"
-#include "paging/verify.h"
+#include "paging/build/builder.h"
+#include "paging/planet/codec.h"
+#include "paging/planet/verify.h"
 #include "scripts/flight.h"
 #include "tests/support/fake_source.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace fuzz {
 
@@ -113,7 +113,7 @@ std::vector<Bytes> payload_seeds() {
   paging::PackedMesh mesh{lod::mesh_full(8), quanta};
   std::vector<bool> mask(81);
   mask[7] = mask[80] = true;
-  const std::vector<mars::Rgb> pixels(64, {200, 100, 50});
+  const std::vector<vpe::base::Rgb> pixels(64, {200, 100, 50});
   const Bytes payloads[] = {paging::encode_heights(quanta, 9), paging::encode_mask(mask),
                             paging::encode_mesh(mesh), vpe::core::encode_jpeg(pixels, 8, 8, 90)};
   std::vector<Bytes> all;

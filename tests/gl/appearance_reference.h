@@ -1,12 +1,12 @@
-// What an appearance looks like at a place on the ground, from its definition (vpe/core/shading.h,
+// What an appearance looks like at a place on the ground, from its definition (vpe/core/appearance/shading.h,
 // docs/appearance.md) and the planet's posts alone: nothing of the renderer's way to its pictures is used.
 #pragma once
 
 #include <optional>
 
-#include "paging/surface.h"
-#include "vpe/core/palette.h"
-#include "vpe/core/shading.h"
+#include "paging/surface/surface.h"
+#include "vpe/core/appearance/palette.h"
+#include "vpe/core/appearance/shading.h"
 
 namespace test_support {
 
@@ -90,7 +90,7 @@ struct GroundReference {
       const auto clamped = [](double c) {
         return static_cast<std::size_t>(std::clamp(c, 0.0, double{paging::kImageIntervals}));
       };
-      const mars::Rgb c = image_tile_->texels[clamped(b) * (paging::kImageIntervals + 1) + clamped(a)];
+      const vpe::base::Rgb c = image_tile_->texels[clamped(b) * (paging::kImageIntervals + 1) + clamped(a)];
       return glm::dvec3(c.r, c.g, c.b);
     };
     const double i = std::floor(x), j = std::floor(y);

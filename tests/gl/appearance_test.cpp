@@ -8,7 +8,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
-#include "tests/gl/appearance_looks.h"
+#include "tests/gl/appearance_fixture.h"
 #include "tests/gl/gl_fixture.h"
 #include "vpe/gl/tile_needs.h"
 

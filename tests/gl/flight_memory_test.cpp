@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "tests/gl/gl_fixture.h"
-#include "vpe/core/heap.h"
+#include "vpe/base/heap.h"
 
 namespace {
 
@@ -101,7 +101,7 @@ class FlightMemory : public test_support::GlTest {
   // What the process takes with this context when it has drawn one frame of a tiny planet, in the mode and size
   // of the flight.
   double base_mb(const Flight& flight) {
-    vpe::core::keep_heap_compact();  // as `vpe` does
+    vpe::base::keep_heap_compact();  // as `vpe` does
     const auto tiny = build_fake(dir_ / "tiny.vpe", FakeElevation(bumpy_height), 500000);
     const auto draw = renderer(tiny);
     draw->draw(request({view_at(flight, std::vector<double>(10, 1e6), 0, tiny->radius_m())}));

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "lod/mesh.h"
-#include "lod/posts.h"
+#include "lod/mesh/mesh.h"
+#include "lod/tree/posts.h"
 #include "tests/lod/fake_tree.h"
 #include "tests/support/support.h"
 #include "vpe/core/frame.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/tile_geometry.h"
-#include "vpe/gl/tile_number.h"
+#include "vpe/gl/tile_id.h"
 
 namespace {
 

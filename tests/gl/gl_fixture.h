@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "mars/sun.h"
+#include "mars/geodesy/sun.h"
 #include "tests/paging/planet_fixture.h"
 #include "vpe/core/metrics.h"
 #include "vpe/gl/polygon_renderer.h"

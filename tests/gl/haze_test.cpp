@@ -1,5 +1,5 @@
-// Haze in pictures is the definition's (vpe/core/shading.h), pixel by pixel.
-#include "vpe/core/shading.h"
+// Haze in pictures is the definition's (vpe/core/appearance/shading.h), pixel by pixel.
+#include "vpe/core/appearance/shading.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
         for (int y = 0; y < kHeight; ++y) {
           for (int x = 0; x < kWidth; ++x) {
             const auto at = static_cast<std::size_t>(y * kWidth + x);
-            const auto rgb = [](const mars::Rgb& c) { return glm::dvec3(c.r, c.g, c.b); };
+            const auto rgb = [](const vpe::base::Rgb& c) { return glm::dvec3(c.r, c.g, c.b); };
             const glm::dvec3 before = rgb(clear.frame.colour[at]), got = rgb(hazy.frame.colour[at]);
             if (!std::isfinite(clear.frame.range_m[at])) {
               ++sky;

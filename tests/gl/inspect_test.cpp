@@ -1,6 +1,6 @@
 // The inspector shows how a picture is made and changes nothing else of it.
-#include "vpe/core/inspect.h"
-#include "vpe/core/shading.h"
+#include "vpe/core/appearance/inspect.h"
+#include "vpe/core/appearance/shading.h"
 
 #include <set>
 
@@ -35,7 +35,7 @@ TEST_F(Inspect, BordersAreLinesOverThePicture) {
   const core::DrawResult lined = gl->draw(request);
   EXPECT_EQ(plain.frame.range_m, lined.frame.range_m);
   EXPECT_EQ(plain.certificate.share_without_data, lined.certificate.share_without_data);
-  const mars::Rgb line{26, 255, 51};
+  const vpe::base::Rgb line{26, 255, 51};
   std::size_t changed = 0;
   for (std::size_t n = 0; n < plain.frame.colour.size(); ++n) {
     if (plain.frame.colour[n] == lined.frame.colour[n]) continue;
@@ -60,11 +60,11 @@ TEST_F(Inspect, LevelsHaveTheColoursOfThePalette) {
   std::set<int> seen;
   for (std::size_t n = 0; n < result.frame.colour.size(); ++n) {
     if (!(result.frame.range_m[n] < core::kSkyRange)) continue;
-    const mars::Rgb c = result.frame.colour[n];
+    const vpe::base::Rgb c = result.frame.colour[n];
     bool found = false;
     for (std::size_t level = 0; level < result.stats.tiles_by_level.size(); ++level) {
       if (result.stats.tiles_by_level[level] == 0) continue;
-      const mars::Rgb wanted = core::level_colour(static_cast<int>(level)).colour;
+      const vpe::base::Rgb wanted = core::level_colour(static_cast<int>(level)).colour;
       const auto near = [](double got, double flat, double tint) {
         return std::abs(got - 0.4 * flat - 0.6 * tint) < 2.0;
       };

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 
-#include "mars/mars_time.h"
-#include "tests/gl/lit_picture.h"
+#include "mars/geodesy/mars_time.h"
+#include "tests/gl/lit_image.h"
 
 namespace {
 
@@ -61,7 +61,7 @@ TEST_F(Sun, SubsolarPointAndTerminatorAreWhereTheDatePutsThem) {
 
       // The brightest byte is that of a cap; its middle, by area on the ground, is the brightest place.
       int brightest = 0;
-      for (const mars::Rgb& c : result.frame.colour) brightest = std::max(brightest, int{c.r});
+      for (const vpe::base::Rgb& c : result.frame.colour) brightest = std::max(brightest, int{c.r});
       EXPECT_NEAR(brightest, plain_byte(core::light(0.05, 1.235, 1)), 1);
       glm::dvec3 sum(0);
       int lit = 0, dark = 0, wrong = 0;

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "tests/gl/gl_fixture.h"
-#include "vpe/core/palette.h"
+#include "vpe/core/appearance/palette.h"
 
 namespace {
 
@@ -107,7 +107,7 @@ class Lines : public test_support::GlTest {
     return true;
   }
   static bool painted(const core::Frame& frame, int x, int y) {
-    const mars::Rgb c = frame.colour[static_cast<std::size_t>(y * kWidth + x)];
+    const vpe::base::Rgb c = frame.colour[static_cast<std::size_t>(y * kWidth + x)];
     return c.r + c.g + c.b > 0;
   }
   static bool inside(const glm::dvec2& p, double margin) {
@@ -233,7 +233,7 @@ TEST_F(Lines, MarkersAreTheVerticesThatCanBeSeenInTheirColours) {
             found[at] |= kNear;
             if (v.at.depth_m > kThrough * farthest_m(depths, x, y, static_cast<int>(half) + 1)) continue;
             found[at] |= kSeen;
-            const mars::Rgb c = frame.colour[at];
+            const vpe::base::Rgb c = frame.colour[at];
             const glm::dvec3 wrong = glm::abs(glm::dvec3(c.r, c.g, c.b) - colour);
             if (std::max({wrong.x, wrong.y, wrong.z}) <= 2) found[at] |= kColour;
           }
@@ -292,8 +292,8 @@ TEST_F(Lines, NoSkyShowsThroughTheGround) {
     const core::Frame frame = draw_->draw(request_).frame;
     int ground = 0, wrong = 0, sky = 0;
     for (std::size_t n = 0; n < frame.colour.size(); ++n) {
-      const mars::Rgb c = frame.colour[n];
-      const bool black = c == mars::Rgb{0, 0, 0}, line = c == mars::Rgb{242, 191, 140};
+      const vpe::base::Rgb c = frame.colour[n];
+      const bool black = c == vpe::base::Rgb{0, 0, 0}, line = c == vpe::base::Rgb{242, 191, 140};
       const bool is_ground = std::isfinite(frame.range_m[n]);
       ground += is_ground ? 1 : 0;
       wrong += is_ground && !black && !line ? 1 : 0;

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "mars/embedded.h"
-#include "paging/builder.h"
+#include "mars/embedded/embedded.h"
+#include "paging/build/builder.h"
 #include "tests/gl/certified.h"
 
 namespace {

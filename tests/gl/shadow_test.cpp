@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <glm/geometric.hpp>
 
-#include "tests/gl/lit_picture.h"
+#include "tests/gl/lit_image.h"
 
 namespace {
 
@@ -255,7 +255,7 @@ TEST_F(Shadows, AHighSunCastsNoneAndALowOneLeavesAmbientOnly) {
     // Slopes that face a sun under the horizon get none of it.
     EXPECT_NE(drawn(-10, false), drawn(-60, false));
     const double ambient = core::light(0.05, 1.235, 0);
-    for (const mars::Rgb& c : drawn(-10, true)) {
+    for (const vpe::base::Rgb& c : drawn(-10, true)) {
       ASSERT_NEAR(c.r, core::kPlainGround.r * ambient, 1);
       ASSERT_NEAR(c.g, core::kPlainGround.g * ambient, 1);
       ASSERT_NEAR(c.b, core::kPlainGround.b * ambient, 1);

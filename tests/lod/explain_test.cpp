@@ -6,7 +6,7 @@
 #include <set>
 
 #include "lod/options.h"
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/lod/fake_tree.h"
 #include "tests/support/support.h"
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "lod/tree.h"
-#include "mars/sphere.h"
+#include "lod/tree/tree.h"
+#include "mars/geodesy/sphere.h"
 
 namespace fake {
 

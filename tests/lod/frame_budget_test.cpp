@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lod/select.h"
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/lod/fake_tree.h"
 #include "tests/support/support.h"
 #include "tests/support/worst.h"

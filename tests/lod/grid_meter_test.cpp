@@ -1,4 +1,4 @@
-#include "lod/grid_meter.h"
+#include "lod/mesh/grid_meter.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 #include "tests/lod/mesh_terrain.h"
 #include "tests/support/support.h"
 

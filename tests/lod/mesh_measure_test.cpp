@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 #include "tests/lod/mesh_terrain.h"
 #include "tests/support/support.h"
 

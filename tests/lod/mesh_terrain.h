@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "lod/posts.h"
+#include "lod/tree/posts.h"
 
 namespace lod_test {
 

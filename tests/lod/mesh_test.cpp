@@ -1,5 +1,5 @@
 // Greedy meshes: valid, within tolerance, Delaunay, deterministic, the same from another half-edge structure.
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 #include <gtest/gtest.h>
 

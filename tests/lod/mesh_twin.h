@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "lod/greedy.h"
+#include "lod/mesh/greedy.h"
 
 namespace lod_test {
 

@@ -1,4 +1,4 @@
-#include "lod/posts.h"
+#include "lod/tree/posts.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "cull/horizon.h"
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/lod/fake_tree.h"
 #include "tests/support/support.h"
 

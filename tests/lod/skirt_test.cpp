@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "lod/select.h"
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/lod/fake_tree.h"
 #include "tests/support/support.h"
 

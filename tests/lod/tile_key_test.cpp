@@ -1,11 +1,11 @@
-#include "lod/tile_key.h"
+#include "lod/tree/tile_key.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <set>
 #include <vector>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace {

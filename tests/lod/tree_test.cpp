@@ -1,10 +1,10 @@
-#include "lod/tree.h"
+#include "lod/tree/tree.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/lod/fake_tree.h"
 #include "tests/support/support.h"
 

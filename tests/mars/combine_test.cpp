@@ -1,5 +1,5 @@
 // One datum, levelled insets, blunders: what becomes of rasters before a planet is built from them.
-#include "mars/combine.h"
+#include "mars/sources/combine.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "mars/adjusted.h"
-#include "mars/convert.h"
+#include "mars/sources/adjusted.h"
+#include "mars/sources/convert.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 

@@ -1,4 +1,4 @@
-#include "mars/cube.h"
+#include "mars/geodesy/cube.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "mars/datum.h"
+#include "mars/geodesy/datum.h"
 
 #include <gtest/gtest.h>
 #include <proj.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace {

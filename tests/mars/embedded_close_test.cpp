@@ -4,9 +4,9 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "mars/embedded.h"
-#include "mars/embedded_rocks.h"
-#include "mars/embedded_surface.h"
+#include "mars/embedded/embedded.h"
+#include "mars/embedded/rocks.h"
+#include "mars/embedded/surface.h"
 #include "tests/mars/patch.h"
 #include "tests/support/support.h"
 

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "mars/embedded.h"
-#include "mars/sphere.h"
+#include "mars/embedded/embedded.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace mars {

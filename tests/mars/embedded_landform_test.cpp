@@ -5,10 +5,10 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "mars/cube.h"
-#include "mars/embedded.h"
-#include "mars/embedded_craters.h"
-#include "mars/embedded_math.h"
+#include "mars/geodesy/cube.h"
+#include "mars/embedded/embedded.h"
+#include "mars/embedded/craters.h"
+#include "mars/embedded/math.h"
 #include "tests/support/support.h"
 
 namespace mars {
@@ -334,7 +334,7 @@ TEST(EmbeddedSources, PostsForTheResamplingErrorAreItsOwnValues) {
 TEST(EmbeddedImage, HasTheClassicalAlbedoFeatures) {
   const auto brightness = [](LonLat p, double radius_km) {
     const auto directions = disc(p, radius_km, radius_km / 10);
-    std::vector<Rgb> colours(directions.size());
+    std::vector<vpe::base::Rgb> colours(directions.size());
     std::vector<std::uint8_t> alpha(directions.size(), 0);
     embedded_image()->sample(directions, 2600.0, colours, alpha);
     double sum = 0.0;

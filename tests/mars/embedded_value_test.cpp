@@ -8,11 +8,11 @@
 #include <thread>
 #include <vector>
 
-#include "mars/cube.h"
-#include "mars/embedded.h"
-#include "mars/embedded_math.h"
-#include "mars/embedded_noise.h"
-#include "mars/embedded_surface.h"
+#include "mars/geodesy/cube.h"
+#include "mars/embedded/embedded.h"
+#include "mars/embedded/math.h"
+#include "mars/embedded/noise.h"
+#include "mars/embedded/surface.h"
 #include "tests/mars/patch.h"
 #include "tests/support/support.h"
 
@@ -167,10 +167,10 @@ TEST(EmbeddedValue, GoldenHashOfColours) {
       const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
       directions.emplace_back(v.x / length, v.y / length, v.z / length);
     }
-    std::vector<Rgb> colours(directions.size());
+    std::vector<vpe::base::Rgb> colours(directions.size());
     std::vector<std::uint8_t> alpha(directions.size());
     embedded_image()->sample(directions, 300.0, colours, alpha);
-    for (const Rgb& c : colours) {
+    for (const vpe::base::Rgb& c : colours) {
       for (const std::uint8_t byte : {c.r, c.g, c.b}) hash = (hash ^ byte) * 0x100000001b3ULL;
     }
   }

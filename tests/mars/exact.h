@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/worst.h"
 
 namespace mars::exact {

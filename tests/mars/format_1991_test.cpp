@@ -7,11 +7,11 @@
 #include <iomanip>
 #include <sstream>
 
-#include "mars/gdal_raster.h"
-#include "mars/pds_image.h"
-#include "mars/pds_map.h"
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/raster/gdal_raster.h"
+#include "mars/raster/pds_image.h"
+#include "mars/raster/pds_map.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/pds_files.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
@@ -133,7 +133,7 @@ TEST_P(MdimVersion, EveryPixelWhereTheEquationSays) {
   for (const glm::dvec2 pixel : {glm::dvec2(0, 0), {283, 0}, {141, 160}, {20, 319}}) {
     glm::dvec3 direction;
     raster.georeference().to_directions({&pixel, 1}, {&direction, 1});
-    mars::Rgb colour;
+    vpe::base::Rgb colour;
     std::uint8_t alpha = 0;
     image->sample({&direction, 1}, 925, {&colour, 1}, {&alpha, 1});
     EXPECT_EQ(alpha, 255);
@@ -350,7 +350,7 @@ TEST(RawImage, ThreeBandsInEveryOrder) {
     source_files::write_text(folder / "c.lbl", label.text());
     const auto image = mars::open_image((folder / "c.lbl").string());
     const glm::dvec3 direction = mars::direction({3.5, 7.5});
-    mars::Rgb colour;
+    vpe::base::Rgb colour;
     std::uint8_t alpha = 0;
     image->sample({&direction, 1}, 59000, {&colour, 1}, {&alpha, 1});
     EXPECT_EQ(int{colour.r}, 33) << order;

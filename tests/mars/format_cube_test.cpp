@@ -11,9 +11,9 @@
 #include <map>
 #include <sstream>
 
-#include "mars/gdal_raster.h"
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/raster/gdal_raster.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/pds_files.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
@@ -238,7 +238,7 @@ void expect_values(const char* type, const char* order, const std::vector<T>& sp
       EXPECT_NEAR(height_m, -250 + 0.5 * static_cast<double>(stored[i]), 2e-3);
     }
     if (sizeof(T) > 1) {
-      mars::Rgb colour;
+      vpe::base::Rgb colour;
       std::uint8_t alpha = 0;
       image->sample({&direction, 1}, 1000, {&colour, 1}, {&alpha, 1});
       EXPECT_EQ(alpha > 128, !hole) << type << " " << i << " " << +stored[i];

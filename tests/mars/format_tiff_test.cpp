@@ -11,9 +11,9 @@
 #include <set>
 #include <vector>
 
-#include "mars/gdal_raster.h"
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/raster/gdal_raster.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 
@@ -84,7 +84,7 @@ TEST(Tiff, CogWithOverviewsAndAMaskBand) {
         EXPECT_NEAR(height_m, value_of(column, row), 1e-4);
       }
       const glm::dvec3 direction = mars::direction(place);
-      mars::Rgb colour;
+      vpe::base::Rgb colour;
       std::uint8_t alpha = 0;
       image->sample({&direction, 1}, 100, {&colour, 1}, {&alpha, 1});
       EXPECT_EQ(alpha > 128, !is_hole(column, row));

@@ -1,5 +1,5 @@
 // The sun and the clock against the vectors that GISS publishes, and against geometry.
-#include "mars/mars_time.h"
+#include "mars/geodesy/mars_time.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "mars/sun.h"
+#include "mars/geodesy/sun.h"
 #include "tests/support/support.h"
 
 namespace mars {
@@ -50,7 +50,7 @@ TEST(MarsTime, GissVectorsToThePrintedDigits) {
     const SunPlace place = sun_place({0, 0}, sun);
     EXPECT_NEAR(90 - place.elevation_deg, v.zenith, kFive);
     EXPECT_NEAR(place.azimuth_deg, v.azimuth, kFive);
-    // And mars/sun.h puts the sun back where it came from.
+    // And mars/geodesy/sun.h puts the sun back where it came from.
     EXPECT_LT(glm::length(sun_direction(LonLat{0, 0}, place.azimuth_deg, place.elevation_deg) - sun), 1e-14);
   }
   EXPECT_NEAR(local_mean_time_h(mars_time(1073137591), -184.702), 0.85190, kFive);

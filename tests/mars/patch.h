@@ -3,7 +3,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 
 namespace mars {
 

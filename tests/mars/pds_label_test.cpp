@@ -1,4 +1,4 @@
-#include "mars/pds_label.h"
+#include "mars/raster/pds_label.h"
 
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 

@@ -1,4 +1,4 @@
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 
 #include <algorithm>
 #include <array>

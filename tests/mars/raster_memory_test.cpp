@@ -1,9 +1,9 @@
 // Decoded pieces of all rasters share one budget.
-#include "mars/raster_memory.h"
+#include "mars/raster/raster_memory.h"
 
 #include <gtest/gtest.h>
 
-#include "mars/gdal_tiles.h"
+#include "mars/raster/gdal_tiles.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "mars/gdal_remote.h"
-#include "mars/source.h"
+#include "mars/raster/gdal_remote.h"
+#include "mars/sources/source.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/http_server.h"
 #include "tests/support/support.h"

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <limits>
 
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 

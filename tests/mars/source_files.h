@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 
 namespace source_files {
 

@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <thread>
 
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 
@@ -15,7 +15,7 @@ using source_files::box;
 using source_files::Raster;
 
 struct Seen {
-  mars::Rgb colour;
+  vpe::base::Rgb colour;
   int alpha = 0;
 };
 
@@ -46,8 +46,8 @@ TEST(GdalImage, Colour) {
   raster.options = {"PHOTOMETRIC=RGB"};
   raster.value = [](int band, int column, int row) { return 10 * column + row + 60 * band; };
   const auto image = mars::open_image(source_files::write(folder / "c.tif", raster));
-  EXPECT_EQ(look(*image, {2.5, 2.5}, 1).colour, (mars::Rgb{81, 141, 201}));
-  EXPECT_EQ(look(*image, {3.0, 2.5}, 1).colour, (mars::Rgb{86, 146, 206}));
+  EXPECT_EQ(look(*image, {2.5, 2.5}, 1).colour, (vpe::base::Rgb{81, 141, 201}));
+  EXPECT_EQ(look(*image, {3.0, 2.5}, 1).colour, (vpe::base::Rgb{86, 146, 206}));
   EXPECT_EQ(look(*image, {2.5, 2.5}, 1).alpha, 255);
   EXPECT_EQ(look(*image, {5, 2.5}, 1).alpha, 0);
   EXPECT_NEAR(image->infos().at(0).resolution_m, one_degree_m(), 1);
@@ -61,7 +61,7 @@ TEST(GdalImage, BandsInAnotherOrder) {
   raster.colours = {GCI_BlueBand, GCI_GreenBand, GCI_RedBand};
   raster.value = [](int band, int, int) { return 50 * band; };
   const auto image = mars::open_image(source_files::write(folder / "b.tif", raster));
-  EXPECT_EQ(look(*image, {2, 2}, 1).colour, (mars::Rgb{150, 100, 50}));
+  EXPECT_EQ(look(*image, {2, 2}, 1).colour, (vpe::base::Rgb{150, 100, 50}));
 }
 
 TEST(GdalImage, GreyAndGreyWithAlpha) {
@@ -69,7 +69,7 @@ TEST(GdalImage, GreyAndGreyWithAlpha) {
   Raster raster = patch(1, GDT_Byte);
   raster.value = [](int, int column, int) { return 20 * column; };
   EXPECT_EQ(look(*mars::open_image(source_files::write(folder / "g.tif", raster)), {3.5, 1}, 1).colour,
-            (mars::Rgb{60, 60, 60}));
+            (vpe::base::Rgb{60, 60, 60}));
   raster = patch(2, GDT_Byte);
   raster.colours = {GCI_GrayIndex, GCI_AlphaBand};
   raster.value = [](int band, int column, int) { return band == 1 ? 20 * column : column < 2 ? 0 : 255; };
@@ -77,7 +77,7 @@ TEST(GdalImage, GreyAndGreyWithAlpha) {
   EXPECT_EQ(look(*image, {0.5, 1.5}, 1).alpha, 0);
   EXPECT_EQ(look(*image, {2.5, 1.5}, 1).alpha, 255);
   // Beside the edge only what is visible counts.
-  EXPECT_EQ(look(*image, {2.2, 1.5}, 1).colour, (mars::Rgb{40, 40, 40}));
+  EXPECT_EQ(look(*image, {2.2, 1.5}, 1).colour, (vpe::base::Rgb{40, 40, 40}));
 }
 
 TEST(GdalImage, Palette) {
@@ -86,10 +86,10 @@ TEST(GdalImage, Palette) {
   raster.palette = {{0, 0, 0, 255}, {200, 100, 50, 255}, {10, 20, 30, 255}};
   raster.value = [](int, int column, int) { return column < 2 ? 1 : 2; };
   const auto image = mars::open_image(source_files::write(folder / "p.tif", raster));
-  EXPECT_EQ(look(*image, {1, 2}, 1).colour, (mars::Rgb{200, 100, 50}));
-  EXPECT_EQ(look(*image, {3, 2}, 1).colour, (mars::Rgb{10, 20, 30}));
-  EXPECT_EQ(look(*image, {2, 2}, 1).colour, (mars::Rgb{105, 60, 40}));  // mixed as colours, not as numbers
-  EXPECT_EQ(look(*image, {2, 2}, 4 * one_degree_m()).colour, (mars::Rgb{105, 60, 40}));
+  EXPECT_EQ(look(*image, {1, 2}, 1).colour, (vpe::base::Rgb{200, 100, 50}));
+  EXPECT_EQ(look(*image, {3, 2}, 1).colour, (vpe::base::Rgb{10, 20, 30}));
+  EXPECT_EQ(look(*image, {2, 2}, 1).colour, (vpe::base::Rgb{105, 60, 40}));  // mixed as colours, not as numbers
+  EXPECT_EQ(look(*image, {2, 2}, 4 * one_degree_m()).colour, (vpe::base::Rgb{105, 60, 40}));
 }
 
 TEST(GdalImage, NoDataInAllBandsIsTransparent) {
@@ -101,7 +101,7 @@ TEST(GdalImage, NoDataInAllBandsIsTransparent) {
   const auto image = mars::open_image(source_files::write(folder / "n.tif", raster));
   EXPECT_EQ(look(*image, {0.5, 2.5}, 1).alpha, 0);
   EXPECT_EQ(look(*image, {2.5, 2.5}, 1).alpha, 255);
-  EXPECT_EQ(look(*image, {2.5, 2.5}, 1).colour, (mars::Rgb{0, 90, 90}));
+  EXPECT_EQ(look(*image, {2.5, 2.5}, 1).colour, (vpe::base::Rgb{0, 90, 90}));
 }
 
 TEST(GdalImage, WideValuesAreStretchedBetweenPercentiles) {
@@ -167,7 +167,7 @@ TEST(GdalImage, IsSeamlessAndRoundThePoleAtEveryLevel) {
       EXPECT_EQ(look(*image, {180, lat}, texels * pixel_m).colour,
                 look(*image, {-180, lat}, texels * pixel_m).colour);
     }
-    const mars::Rgb pole = look(*image, {0, 90}, texels * pixel_m).colour;
+    const vpe::base::Rgb pole = look(*image, {0, 90}, texels * pixel_m).colour;
     for (int lon = 0; lon < 360; lon += 45) {
       EXPECT_NEAR(look(*image, {static_cast<double>(lon), 90 - 1e-7}, texels * pixel_m).colour.r, pole.r, 1);
       EXPECT_EQ(look(*image, {static_cast<double>(lon), 90}, texels * pixel_m).alpha, 255);
@@ -216,10 +216,10 @@ TEST(GdalImage, ThreadsGetTheSameColours) {
   const auto one = mars::open_image(path);
   const auto many = mars::open_image(path);
   const double texel_m = 5 * one->infos().at(0).resolution_m;
-  std::vector<mars::Rgb> expected(directions.size());
+  std::vector<vpe::base::Rgb> expected(directions.size());
   std::vector<std::uint8_t> alpha(directions.size());
   one->sample(directions, texel_m, expected, alpha);
-  std::vector<std::vector<mars::Rgb>> results(8, std::vector<mars::Rgb>(directions.size()));
+  std::vector<std::vector<vpe::base::Rgb>> results(8, std::vector<vpe::base::Rgb>(directions.size()));
   std::vector<std::thread> threads;
   for (auto& result : results) {
     threads.emplace_back([&] {

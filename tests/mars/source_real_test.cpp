@@ -7,8 +7,8 @@
 #include <fstream>
 #include <thread>
 
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 
@@ -180,13 +180,13 @@ TEST(RealData, MdimIsRedAndItsCapsAreBright) {
   const auto image = mars::open_image(path.string());
   const auto look = [&](mars::LonLat p) {
     const glm::dvec3 d = mars::direction(p);
-    mars::Rgb colour;
+    vpe::base::Rgb colour;
     std::uint8_t alpha = 0;
     image->sample({&d, 1}, 60000, {&colour, 1}, {&alpha, 1});
     EXPECT_EQ(alpha, 255);
     return colour;
   };
-  const mars::Rgb arabia = look({20, 20});
+  const vpe::base::Rgb arabia = look({20, 20});
   EXPECT_GT(arabia.r, arabia.b + 40);
   EXPECT_GT(look({0, 88}).b, arabia.b);
   EXPECT_GT(arabia.r, look({68, 9}).r + 20);  // Syrtis Major is dark

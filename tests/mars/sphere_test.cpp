@@ -1,4 +1,4 @@
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 
 #include <geodesic.h>
 #include <proj.h>

@@ -4,8 +4,8 @@
 #include <limits>
 #include <thread>
 
-#include "mars/source.h"
-#include "mars/sphere.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 
@@ -279,16 +279,16 @@ TEST(Stack, ImagesFadeLikewise) {
   EXPECT_EQ(stack->infos().size(), 2U);
   const auto look = [&](mars::LonLat p) {
     const glm::dvec3 d = mars::direction(p);
-    mars::Rgb colour;
+    vpe::base::Rgb colour;
     std::uint8_t alpha = 0;
     stack->sample({&d, 1}, 1, {&colour, 1}, {&alpha, 1});
     EXPECT_EQ(alpha, 255);
     return colour;
   };
-  EXPECT_EQ(look({13, 13}), (mars::Rgb{60, 120, 180}));
-  EXPECT_EQ(look({40, -20}), (mars::Rgb{20, 20, 20}));
-  EXPECT_EQ(look({9.99, 13}), (mars::Rgb{20, 20, 20}));
-  EXPECT_EQ(look({10.8, 13}), (mars::Rgb{40, 70, 100}));  // 8 of 16 posts: half
+  EXPECT_EQ(look({13, 13}), (vpe::base::Rgb{60, 120, 180}));
+  EXPECT_EQ(look({40, -20}), (vpe::base::Rgb{20, 20, 20}));
+  EXPECT_EQ(look({9.99, 13}), (vpe::base::Rgb{20, 20, 20}));
+  EXPECT_EQ(look({10.8, 13}), (vpe::base::Rgb{40, 70, 100}));  // 8 of 16 posts: half
   EXPECT_LT(stack->spacing_in({mars::direction({13, 13}), 0}), 6000);
   EXPECT_GT(stack->spacing_in({mars::direction({93, 13}), 0}), 500000);
 }

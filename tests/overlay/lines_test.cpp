@@ -4,7 +4,7 @@
 
 #include "tests/overlay/ball.h"
 #include "vpe/overlay/isolines.h"
-#include "vpe/overlay/parts.h"
+#include "vpe/overlay/layer_functions.h"
 
 namespace overlay_test {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "tests/overlay/ball.h"
 #include "tests/support/support.h"
-#include "vpe/core/palette.h"
+#include "vpe/core/appearance/palette.h"
 #include "vpe/overlay/canvas.h"
-#include "vpe/overlay/figures.h"
+#include "vpe/overlay/number_format.h"
 
 namespace overlay_test {
 namespace {
@@ -62,9 +62,9 @@ TEST(Overlay, NothingSetCostsNothing) {
   scene.view.width = scene.view.height = 0;
   const Layer layer = vpe::overlay::draw({}, scene);
   EXPECT_EQ(layer.pixels.size(), 0U);
-  std::vector<mars::Rgb> picture(7, mars::Rgb{1, 2, 3});
+  std::vector<vpe::base::Rgb> picture(7, vpe::base::Rgb{1, 2, 3});
   composite(layer, picture);
-  EXPECT_EQ(picture, (std::vector<mars::Rgb>(7, mars::Rgb{1, 2, 3})));
+  EXPECT_EQ(picture, (std::vector<vpe::base::Rgb>(7, vpe::base::Rgb{1, 2, 3})));
 }
 
 TEST(Overlay, OnlyWhatLooksAtTheGroundNeedsRanges) {
@@ -95,11 +95,11 @@ TEST(Overlay, EachDrawsSomethingTheSameEveryTime) {
 
 TEST(Overlay, LayersAreStraightAndCompositeRoundsOnce) {
   const Layer layer = vpe::overlay::draw(all_of_them(), hill_scene());
-  std::vector<mars::Rgb> picture;
+  std::vector<vpe::base::Rgb> picture;
   test_support::Random random(5);
   const auto byte = [&] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
   for (std::size_t n = 0; n < layer.pixels.size(); ++n) picture.push_back({byte(), byte(), byte()});
-  std::vector<mars::Rgb> composed = picture;
+  std::vector<vpe::base::Rgb> composed = picture;
   composite(layer, composed);
   for (std::size_t n = 0; n < picture.size(); ++n) {
     const Rgba& o = layer.pixels[n];

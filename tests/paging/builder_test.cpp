@@ -1,4 +1,4 @@
-#include "paging/builder.h"
+#include "paging/build/builder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "paging/codec.h"
+#include "paging/planet/codec.h"
 
 #include <gtest/gtest.h>
 

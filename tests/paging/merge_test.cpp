@@ -1,5 +1,5 @@
 // Parts of a divided build join into the undivided planet, whatever is stopped on the way.
-#include "paging/merge.h"
+#include "paging/build/merge.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -10,8 +10,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "paging/estimate.h"
-#include "paging/sqlite.h"
+#include "paging/build/estimate.h"
+#include "paging/planet/sqlite.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "cull/horizon.h"
 #include "lod/occlusion.h"
-#include "tests/paging/drawn_ground.h"
+#include "tests/paging/drawn_terrain.h"
 #include "tests/paging/rough_planet.h"
 #include "vpe/core/view.h"
 

@@ -1,11 +1,11 @@
-#include "paging/plan.h"
+#include "paging/build/build_plan.h"
 
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace {

@@ -1,10 +1,10 @@
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "paging/sqlite.h"
+#include "paging/planet/sqlite.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "paging/builder.h"
-#include "paging/surface.h"
+#include "paging/build/builder.h"
+#include "paging/surface/surface.h"
 #include "tests/support/fake_source.h"
 #include "tests/support/support.h"
 
@@ -33,7 +33,7 @@ inline FakeElevation::Spacing fine_around(const glm::dvec3& centre, double reach
 class FakeImage : public mars::ImageSource {
  public:
   std::vector<mars::SourceInfo> infos() const override { return {FakeElevation(bumpy_height).infos().front()}; }
-  void sample(std::span<const glm::dvec3> directions, double, std::span<mars::Rgb> colours,
+  void sample(std::span<const glm::dvec3> directions, double, std::span<vpe::base::Rgb> colours,
               std::span<std::uint8_t> alpha) const override {
     for (std::size_t n = 0; n < directions.size(); ++n) {
       const auto byte = [](double x) { return static_cast<std::uint8_t>(127.0 * (x + 1)); };

@@ -1,8 +1,8 @@
 // The planet file of real MOLA data against the data themselves.
 #include <gtest/gtest.h>
 
-#include "paging/builder.h"
-#include "paging/surface.h"
+#include "paging/build/builder.h"
+#include "paging/surface/surface.h"
 #include "tests/support/support.h"
 
 namespace {

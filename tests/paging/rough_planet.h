@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace test_support {

@@ -1,10 +1,10 @@
-#include "paging/section.h"
+#include "paging/surface/section.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "paging/profile.h"
+#include "paging/surface/profile.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "paging/surface.h"
+#include "paging/surface/surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // vpe verify: nothing to say of a good file, and of each kind of lie what is wrong, also when checksums fit.
-#include "paging/verify.h"
+#include "paging/planet/verify.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "paging/sqlite.h"
+#include "paging/planet/sqlite.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Files that are written piece by piece, read back by the libraries of others.
-#include "panorama/big_tiff.h"
+#include "panorama/image/big_tiff.h"
 
 #include <gtest/gtest.h>
 #include <tiffio.h>
@@ -9,29 +9,29 @@
 #include <memory>
 #include <random>
 
-#include "panorama/gpano.h"
-#include "panorama/row_file.h"
-#include "panorama/strip_file.h"
-#include "panorama/xmp_file.h"
+#include "panorama/metadata/gpano.h"
+#include "panorama/image/row_file.h"
+#include "panorama/image/strip_file.h"
+#include "panorama/image/xmp_file.h"
 #include "tests/support/support.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace panorama {
 namespace {
 
-using vpe::core::OutputFile;
+using vpe::base::OutputFile;
 
 struct BigTiff : ::testing::Test {
   test_support::TempDir dir;
   std::filesystem::path path = dir / "x.tif";
-  vpe::core::ThreadPool pool{2};
+  vpe::base::ThreadPool pool{2};
 };
 
 using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
 Tiff open(const std::filesystem::path& path) { return {TIFFOpen(path.c_str(), "r"), TIFFClose}; }
 
 // Smooth with some noise, different in every channel.
-mars::Rgb colour_at(std::int64_t x, std::int64_t y) {
+vpe::base::Rgb colour_at(std::int64_t x, std::int64_t y) {
   const auto n = static_cast<unsigned>(x * 7919 + y * 104729);
   return {static_cast<std::uint8_t>(x / 3), static_cast<std::uint8_t>(y + (n % 5)),
           static_cast<std::uint8_t>((n * 2654435761U) >> 29)};
@@ -42,7 +42,7 @@ std::vector<std::uint8_t> tile_of(std::int64_t across, std::int64_t down, std::i
   std::vector<std::uint8_t> tile;
   for (std::int64_t j = 0; j < kTile_px; ++j) {
     for (std::int64_t i = 0; i < kTile_px; ++i) {
-      const mars::Rgb c =
+      const vpe::base::Rgb c =
           colour_at(std::min(across * kTile_px + i, width - 1), std::min(down * kTile_px + j, height - 1));
       tile.insert(tile.end(), {c.r, c.g, c.b});
     }
@@ -70,7 +70,7 @@ TEST_F(BigTiff, ColoursAndReducedPagesAreReadByLibtiff) {
   }
   const Tiff tiff = open(path);
   ASSERT_NE(tiff, nullptr);
-  std::vector<mars::Rgb> finer;
+  std::vector<vpe::base::Rgb> finer;
   std::int64_t width = kWidth;
   std::int64_t height = kHeight;
   int pages = 0;
@@ -86,14 +86,14 @@ TEST_F(BigTiff, ColoursAndReducedPagesAreReadByLibtiff) {
     EXPECT_EQ(reduced, pages == 0 ? 0U : 1U);
     std::vector<std::uint32_t> raster(std::size_t{w} * h);
     ASSERT_EQ(TIFFReadRGBAImageOriented(tiff.get(), w, h, raster.data(), ORIENTATION_TOPLEFT, 1), 1);
-    std::vector<mars::Rgb> now;
+    std::vector<vpe::base::Rgb> now;
     for (const std::uint32_t p : raster) {
       now.push_back({static_cast<std::uint8_t>(TIFFGetR(p)), static_cast<std::uint8_t>(TIFFGetG(p)),
                      static_cast<std::uint8_t>(TIFFGetB(p))});
     }
     for (std::int64_t y = 0; y < height; ++y) {
       for (std::int64_t x = 0; x < width; ++x) {
-        const mars::Rgb is = now[static_cast<std::size_t>(y * width + x)];
+        const vpe::base::Rgb is = now[static_cast<std::size_t>(y * width + x)];
         if (pages == 0) {
           ASSERT_EQ(is, colour_at(x, y)) << x << " " << y;
           continue;
@@ -169,8 +169,8 @@ TEST_F(BigTiff, ADamagedTileIsAnError) {
   EXPECT_THROW(unpack_tile({}, kRgb), std::runtime_error);
 }
 
-std::vector<mars::Rgb> rows_of(std::int64_t width, std::int64_t height) {
-  std::vector<mars::Rgb> rows;
+std::vector<vpe::base::Rgb> rows_of(std::int64_t width, std::int64_t height) {
+  std::vector<vpe::base::Rgb> rows;
   for (std::int64_t y = 0; y < height; ++y) {
     for (std::int64_t x = 0; x < width; ++x) rows.push_back(colour_at(x, y));
   }
@@ -180,11 +180,11 @@ std::vector<mars::Rgb> rows_of(std::int64_t width, std::int64_t height) {
 TEST_F(BigTiff, RowsMakeThePngThatOthersRead) {
   constexpr std::int64_t kWidth = 3001;
   constexpr std::int64_t kHeight = 300;  // several blocks
-  const std::vector<mars::Rgb> rows = rows_of(kWidth, kHeight);
+  const std::vector<vpe::base::Rgb> rows = rows_of(kWidth, kHeight);
   const std::string xmp = to_xmp(gpano_of(cylinder_map(kWidth, kHeight, kWidth, 0, 200)));
   std::vector<std::uint8_t> bytes[2];
   for (const int threads : {1, 3}) {
-    vpe::core::ThreadPool own(threads);
+    vpe::base::ThreadPool own(threads);
     OutputFile file(path);
     const auto writer = make_png_writer(file, kWidth, kHeight, xmp, own);
     EXPECT_THROW(writer->finish(), std::logic_error);
@@ -193,7 +193,7 @@ TEST_F(BigTiff, RowsMakeThePngThatOthersRead) {
     EXPECT_THROW(writer->write(std::span(rows).subspan(0, kWidth)), std::logic_error);
     writer->finish();
     file.commit();
-    bytes[threads > 1] = vpe::core::read_file(path, 1 << 30);
+    bytes[threads > 1] = vpe::base::read_file(path, 1 << 30);
   }
   EXPECT_EQ(bytes[0], bytes[1]);
   const vpe::core::RgbImage image = vpe::core::decode_png(bytes[0]);
@@ -207,7 +207,7 @@ TEST_F(BigTiff, RowsMakeThePngThatOthersRead) {
 TEST_F(BigTiff, RowsMakeTheJpegThatOthersRead) {
   constexpr std::int64_t kWidth = 601;
   constexpr std::int64_t kHeight = 130;
-  const std::vector<mars::Rgb> rows = rows_of(kWidth, kHeight);
+  const std::vector<vpe::base::Rgb> rows = rows_of(kWidth, kHeight);
   const std::string xmp = to_xmp(gpano_of(cylinder_map(kWidth, kHeight, kWidth, 0, 60)));
   {
     OutputFile file(path);
@@ -241,15 +241,15 @@ TEST_F(BigTiff, StripsAreTakenOnlyWhole) {
   EXPECT_FALSE(StripFile::open(path, "abd", 3));
   EXPECT_FALSE(StripFile::open(path, "abc", 2));
   EXPECT_FALSE(StripFile::open(dir / "none", "abc", 3));
-  const auto bytes = vpe::core::read_file(path, 1 << 20);
+  const auto bytes = vpe::base::read_file(path, 1 << 20);
   for (const std::size_t at : {std::size_t{0}, std::size_t{14}, std::size_t{20}, std::size_t{40},
                                bytes.size() - 1, bytes.size() - 9, bytes.size() - 20}) {
     auto bad = bytes;
     bad[at] ^= 1;
-    vpe::core::write_file(path, bad);
+    vpe::base::write_file(path, bad);
     EXPECT_FALSE(StripFile::open(path, "abc", 3)) << at;
     bad.resize(at);
-    vpe::core::write_file(path, bad);
+    vpe::base::write_file(path, bad);
     EXPECT_FALSE(StripFile::open(path, "abc", 3)) << at;
   }
 }

@@ -1,11 +1,11 @@
 // GPano fields, their XML, and what other programs make of both.
-#include "panorama/gpano.h"
+#include "panorama/metadata/gpano.h"
 
 #include <cmath>
 
-#include "panorama/xmp_file.h"
-#include "tests/panorama/pictures.h"
-#include "vpe/core/number.h"
+#include "panorama/image/xmp_file.h"
+#include "tests/panorama/test_images.h"
+#include "vpe/base/number.h"
 
 namespace {
 

@@ -1,9 +1,9 @@
 // Labels of rover mosaics.
-#include "panorama/label.h"
+#include "panorama/metadata/label.h"
 
 #include <cmath>
 
-#include "tests/panorama/pictures.h"
+#include "tests/panorama/test_images.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Named places seen over a sphere, and past it.
-#include "panorama/landmarks.h"
+#include "panorama/horizon/landmarks.h"
 
 #include <gtest/gtest.h>
 
@@ -7,14 +7,14 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "panorama/stellarium.h"
+#include "panorama/horizon/stellarium.h"
 
 namespace {
 
 using panorama::Landmark;
 using panorama::SkylineEye;
 using vpe::core::Place;
-using vpe::core::ThreadPool;
+using vpe::base::ThreadPool;
 
 constexpr double kR = mars::kMarsRadius_m;
 

@@ -1,13 +1,13 @@
 // What describes a picture, and what contradicts it.
-#include "panorama/open_panorama.h"
+#include "panorama/metadata/open_panorama.h"
 
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 
-#include "panorama/gpano.h"
-#include "tests/panorama/pictures.h"
-#include "vpe/core/file.h"
+#include "panorama/metadata/gpano.h"
+#include "tests/panorama/test_images.h"
+#include "vpe/base/file.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ fs::path picture_with_gpano(const test_support::TempDir& folder, const std::stri
   return path;
 }
 
-void write(const fs::path& path, const std::string& text) { vpe::core::write_file(path, text); }
+void write(const fs::path& path, const std::string& text) { vpe::base::write_file(path, text); }
 
 std::string said(const fs::path& path) {
   return message_of([&] { describe(path); });

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 #include "tests/support/support.h"
 
 namespace {

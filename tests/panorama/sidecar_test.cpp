@@ -1,9 +1,9 @@
 // JSON beside pictures.
-#include "panorama/sidecar.h"
+#include "panorama/metadata/sidecar.h"
 
 #include <cmath>
 
-#include "tests/panorama/pictures.h"
+#include "tests/panorama/test_images.h"
 
 namespace {
 

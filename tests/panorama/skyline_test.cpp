@@ -1,5 +1,5 @@
 // The skyline over ground with a known horizon, and over S.
-#include "panorama/skyline.h"
+#include "panorama/horizon/skyline.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -13,7 +13,7 @@ using panorama::Direction;
 using panorama::GroundPoint;
 using panorama::SkylineEye;
 using test_support::Random;
-using vpe::core::ThreadPool;
+using vpe::base::ThreadPool;
 
 constexpr double kR = mars::kMarsRadius_m;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

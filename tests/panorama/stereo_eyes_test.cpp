@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "panorama/planes.h"
-#include "tests/panorama/two_eyes.h"
+#include "tests/panorama/stereo_fixture.h"
 
 namespace panorama {
 namespace {

@@ -1,10 +1,10 @@
 // Who looks around: directions and screen positions, limits, turning and zooming.
-#include "panorama/viewer.h"
+#include "panorama/viewer/viewer.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 
 namespace {

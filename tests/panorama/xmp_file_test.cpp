@@ -1,5 +1,5 @@
 // XMP packets in PNG, JPEG and TIFF, and damaged files.
-#include "panorama/xmp_file.h"
+#include "panorama/image/xmp_file.h"
 
 #include <zlib.h>
 
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "tests/panorama/pictures.h"
-#include "vpe/core/file.h"
+#include "tests/panorama/test_images.h"
+#include "vpe/base/file.h"
 
 namespace {
 
@@ -52,16 +52,16 @@ TEST(XmpFile, IsReadBackAndChangesNothingElse) {
 
 TEST(XmpFile, IsWrittenIntoFiles) {
   const test_support::TempDir folder;
-  vpe::core::write_file(folder / "a.jpg", panorama_test::jpeg(31, 17));
+  vpe::base::write_file(folder / "a.jpg", panorama_test::jpeg(31, 17));
   panorama::write_xmp(folder / "a.jpg", kPacket);
-  EXPECT_EQ(vpe::core::read_file(folder / "a.jpg", 1 << 20),
+  EXPECT_EQ(vpe::base::read_file(folder / "a.jpg", 1 << 20),
             panorama::with_xmp(panorama_test::jpeg(31, 17), kPacket));
   EXPECT_EQ(read_picture_header(folder / "a.jpg").xmp, kPacket);
-  vpe::core::write_file(folder / "a.txt", "no picture");
+  vpe::base::write_file(folder / "a.txt", "no picture");
   EXPECT_EQ(read_picture_header(folder / "a.txt").format, PictureFormat::kOther);
   EXPECT_SAYS(message_of([&] { panorama::write_xmp(folder / "a.txt", kPacket); }), "a.txt",
               "neither PNG nor JPEG");
-  EXPECT_EQ(vpe::core::read_file(folder / "a.txt", 100).size(), 10U);
+  EXPECT_EQ(vpe::base::read_file(folder / "a.txt", 100).size(), 10U);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.txt.tmp"));
   EXPECT_SAYS(message_of([&] { read_picture_header(folder / "none.png"); }), "none.png", "cannot read");
   EXPECT_SAYS(message_of([&] { read_picture_header(folder.path()); }), "cannot read");
@@ -234,7 +234,7 @@ TEST(XmpFile, SizeOfAGigapixelBigTiffComesFromItsHeader) {
 TEST(XmpFile, AnyDamagedTiffIsAMessageOrAHeader) {
   const test_support::TempDir folder;
   vpe::core::write_tiff(folder / "a.tif", std::vector<float>(31 * 17, 1.0F), 31, 17);
-  const Bytes whole = vpe::core::read_file(folder / "a.tif", 1 << 20);
+  const Bytes whole = vpe::base::read_file(folder / "a.tif", 1 << 20);
   test_support::Random random(822);
   for (int n = 0; n < 1000; ++n) {
     Bytes bytes = whole;
@@ -242,7 +242,7 @@ TEST(XmpFile, AnyDamagedTiffIsAMessageOrAHeader) {
       const auto at = static_cast<std::size_t>(random.integer(0, static_cast<int>(bytes.size()) - 1));
       bytes[at] = static_cast<std::uint8_t>(random.integer(0, 255));
     }
-    vpe::core::write_file(folder / "b.tif", bytes);
+    vpe::base::write_file(folder / "b.tif", bytes);
     message_of([&] {
       const PictureHeader header = read_picture_header(folder / "b.tif");
       EXPECT_GE(header.width_px, header.format == PictureFormat::kOther ? 0 : 1);

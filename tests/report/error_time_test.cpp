@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 #include "vpe/report/error_time_page.h"
 
 namespace vpe::report {

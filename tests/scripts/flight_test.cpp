@@ -8,8 +8,8 @@
 
 #include "scripts/path.h"
 #include "tests/support/support.h"
-#include "vpe/core/overlays.h"
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/overlays.h"
+#include "vpe/core/appearance/settings.h"
 
 namespace scripts {
 namespace {

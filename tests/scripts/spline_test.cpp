@@ -1,6 +1,6 @@
 #include <glm/gtc/quaternion.hpp>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "scripts/monotone_spline.h"
 #include "scripts/spherical_spline.h"
 #include "tests/support/support.h"

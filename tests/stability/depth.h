@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/stability/grounds.h"
+#include "tests/stability/terrains.h"
 #include "vpe/core/view.h"
 
 namespace test_support {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "lod/mesh.h"
-#include "lod/posts.h"
-#include "mars/sphere.h"
+#include "lod/mesh/mesh.h"
+#include "lod/tree/posts.h"
+#include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 #include "tests/support/worst.h"
 

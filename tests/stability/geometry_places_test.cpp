@@ -4,8 +4,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "mars/pose.h"
-#include "tests/stability/grounds.h"
+#include "mars/geodesy/pose.h"
+#include "tests/stability/terrains.h"
 #include "tests/support/worst.h"
 #include "vpe/core/view.h"
 

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "tests/stability/grounds.h"
+#include "tests/stability/terrains.h"
 #include "tests/support/worst.h"
 
 namespace {

@@ -5,10 +5,10 @@
 
 #include <glm/geometric.hpp>
 
-#include "tests/stability/grounds.h"
+#include "tests/stability/terrains.h"
 #include "tests/support/worst.h"
-#include "vpe/core/parallel.h"
-#include "vpe/voxel/range_caster.h"
+#include "vpe/base/parallel.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace {
 
@@ -50,7 +50,7 @@ bool seen_beside(const paging::Surface& surface, const core::View& view, glm::dv
   return seen >= low * (1 - kSame) && seen <= high * (1 + kSame);
 }
 
-void check(RangeCaster& caster, core::ThreadPool& pool, const core::View& view, double exaggeration,
+void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& view, double exaggeration,
            Tally& tally) {
   const paging::PlanetMeta& meta = caster.surface().planet().meta();
   const bool wide = view.fov_deg > RangeCaster::kWide_deg ||
@@ -110,7 +110,7 @@ core::View random_view(Random& random, const paging::Surface& surface, double ex
 TEST(GeometryViews, PixelsAreTheCastsOfTheirRays) {
   test_support::TempDir dir;
   Random random(321);
-  core::ThreadPool pool(2);
+  vpe::base::ThreadPool pool(2);
   Tally smooth;
   Tally rough;
   int n = 0;
@@ -149,7 +149,7 @@ TEST(GeometryViews, PixelsAreTheCastsOfTheirRays) {
 // once.
 TEST(GeometryViews, FromOverTheMiddleOfAFaceTheWholeDiscIsThere) {
   test_support::TempDir dir;
-  core::ThreadPool pool(2);
+  vpe::base::ThreadPool pool(2);
   RangeCaster caster(build_ground(dir / "p", 3e6, {"flat", [](const glm::dvec3&) { return 0.0; }}), kBudget);
   Tally tally;
   for (const mars::LonLat at :

@@ -5,8 +5,8 @@
 
 #include "tests/stability/depth.h"
 #include "tests/support/worst.h"
-#include "vpe/core/parallel.h"
-#include "vpe/voxel/range_caster.h"
+#include "vpe/base/parallel.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace {
 
@@ -17,7 +17,7 @@ using vpe::voxel::RangeCaster;
 constexpr std::size_t kBudget = std::size_t{1} << 27;
 
 std::vector<float> cast(RangeCaster& caster, const core::View& view) {
-  core::ThreadPool pool(2);
+  vpe::base::ThreadPool pool(2);
   const glm::ivec2 size = core::drawn_size(view);
   std::vector<float> out(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), -1.0F);
   caster.cast(view, {}, pool, out);

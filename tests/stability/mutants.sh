@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Switches off one guard after the other (vpe/core/mutation.h) and runs the tests that stand for it: each has to fail,
+# Switches off one guard after the other (vpe/base/mutation.h) and runs the tests that stand for it: each has to fail,
 # and with all guards on each has to pass.
 #   cmake --preset mutations && cmake --build build/mutations --target lod_tests paging_tests scripts_tests \
 #     stability_tests stability_gl_tests

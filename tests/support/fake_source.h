@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "mars/source.h"
+#include "mars/sources/source.h"
 
 namespace test_support {
 

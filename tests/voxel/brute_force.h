@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 
 namespace test_support {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "vpe/core/parallel.h"
+#include "vpe/base/parallel.h"
 
 namespace test_support {
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 
 namespace test_support {
 
@@ -30,7 +30,7 @@ std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const
 std::int64_t triangle_count(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles);
 
 // Finest tiles as one Embree scene, a geometry each, in floats relative to the eye: rays start at 0. Cells are
-// split along the diagonal of lod/posts.h in both shapes. Any thread may cast into scene().
+// split along the diagonal of lod/tree/posts.h in both shapes. Any thread may cast into scene().
 class EmbreeScene {
  public:
   // Throws paging::PlanetError, and std::runtime_error with Embree's words.

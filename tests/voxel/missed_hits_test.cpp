@@ -11,8 +11,8 @@
 
 #include "tests/paging/planet_fixture.h"
 #include "tests/voxel/brute_force.h"
-#include "vpe/core/number.h"
-#include "vpe/core/parallel.h"
+#include "vpe/base/number.h"
+#include "vpe/base/parallel.h"
 
 namespace {
 
@@ -137,7 +137,7 @@ TEST(ZeroMissedHits, InGrazingRaysAtBorders) { expect_no_missed_hits(20000); }
 // $VPE_RAYS: fewer or more than a million.
 TEST(LongRaysZeroMissedHits, InAMillionRays) {
   const char* asked = std::getenv("VPE_RAYS");
-  const auto count = asked != nullptr ? vpe::core::parse_integer(asked) : std::nullopt;
+  const auto count = asked != nullptr ? vpe::base::parse_integer(asked) : std::nullopt;
   expect_no_missed_hits(count.value_or(1000000));
 }
 

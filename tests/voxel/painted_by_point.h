@@ -1,5 +1,5 @@
 // A picture of given ranges painted by its definition, one pixel after the other: GroundPainter::colour_at,
-// haze and sky. What vpe/voxel/picture_painter.h is compared with and timed against.
+// haze and sky. What vpe/voxel/paint/image_painter.h is compared with and timed against.
 #pragma once
 
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <memory>
 #include <vector>
 
-#include "paging/ground_paint.h"
+#include "paging/shading/terrain_shader.h"
 #include "vpe/core/frame.h"
-#include "vpe/core/parallel.h"
-#include "vpe/core/shading.h"
-#include "vpe/core/sky.h"
+#include "vpe/base/parallel.h"
+#include "vpe/core/appearance/shading.h"
+#include "vpe/core/appearance/sky.h"
 
 namespace test_support {
 
@@ -21,8 +21,8 @@ class PaintedByPoint {
   PaintedByPoint(std::shared_ptr<const paging::PlanetFile> planet, std::size_t memory_bytes)
       : planet_(std::move(planet)), painter_(planet_, memory_bytes) {}
 
-  std::vector<mars::Rgb> paint(const vpe::core::DrawRequest& request, const std::vector<float>& range_m,
-                               vpe::core::ThreadPool& pool) const {
+  std::vector<vpe::base::Rgb> paint(const vpe::core::DrawRequest& request, const std::vector<float>& range_m,
+                               vpe::base::ThreadPool& pool) const {
     namespace core = vpe::core;
     const core::Appearance& appearance = request.settings;
     const bool has_image = planet_->meta().finest_image_level >= 0;
@@ -33,7 +33,7 @@ class PaintedByPoint {
     const core::View& view = request.view;
     const core::SubRectangle part = core::drawn_part(view);
     const auto width = static_cast<std::size_t>(part.width);
-    std::vector<mars::Rgb> out(width * static_cast<std::size_t>(part.height));
+    std::vector<vpe::base::Rgb> out(width * static_cast<std::size_t>(part.height));
     pool.run(static_cast<std::size_t>(part.height), [&](std::size_t y) {
       paging::GroundPainter::Cursor cursor;
       for (std::size_t x = 0; x < width; ++x) {

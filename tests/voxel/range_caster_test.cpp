@@ -1,5 +1,5 @@
 // Ranges of columns against single exact casts, the analytic sphere, and each other.
-#include "vpe/voxel/range_caster.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -9,7 +9,7 @@
 
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/worst.h"
-#include "vpe/voxel/columns.h"
+#include "vpe/voxel/cast/columns.h"
 
 namespace {
 
@@ -22,7 +22,7 @@ constexpr std::size_t kBudget = std::size_t{1} << 28;
 
 std::vector<float> cast(RangeCaster& caster, const core::View& view, const RangeOptions& options = {},
                         int threads = 2) {
-  core::ThreadPool pool(threads);
+  vpe::base::ThreadPool pool(threads);
   const glm::ivec2 size = core::drawn_size(view);
   std::vector<float> out(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), -1.0F);
   caster.cast(view, options, pool, out);

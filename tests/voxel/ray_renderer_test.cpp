@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <functional>
 
-#include "mars/embedded.h"
-#include "tests/gl/appearance_looks.h"
+#include "mars/embedded/embedded.h"
+#include "tests/gl/appearance_fixture.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/paging/rough_planet.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace {
 
@@ -262,13 +262,13 @@ TEST_F(Rays, SamplesAverageThePixel) {
 // sky in one of them.
 void write_difference(const std::string& path, const core::DrawResult& a, const core::DrawResult& b,
                       std::span<const double> forward, std::span<const double> backward) {
-  std::vector<mars::Rgb> out;
+  std::vector<vpe::base::Rgb> out;
   for (std::size_t k = 0; k < forward.size(); ++k) {
-    const mars::Rgb c = a.frame.colour[k];
+    const vpe::base::Rgb c = a.frame.colour[k];
     const auto grey = static_cast<std::uint8_t>((c.r + c.g + c.b) / 6);
     const double shift =
         std::max(std::isnan(forward[k]) ? 0.0 : forward[k], std::isnan(backward[k]) ? 0.0 : backward[k]);
-    mars::Rgb colour{grey, grey, grey};
+    vpe::base::Rgb colour{grey, grey, grey};
     if (shift > 0.25) colour = {0, 160, 0};
     if (shift > 0.5) colour = {230, 230, 0};
     if (shift > 1) colour = {255, 0, 0};
@@ -321,7 +321,7 @@ core::PictureErrors expect_agreement(core::Renderer& polygons, core::Renderer& r
   for (std::size_t n = 0; n < a.frame.colour.size(); ++n) {
     if (std::isfinite(a.frame.range_m[n]) || std::isfinite(b.frame.range_m[n])) continue;
     ++sky;
-    const mars::Rgb p = a.frame.colour[n], q = b.frame.colour[n];
+    const vpe::base::Rgb p = a.frame.colour[n], q = b.frame.colour[n];
     differ += std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)}) > 2 ? 1 : 0;
   }
   EXPECT_EQ(differ, 0) << "of " << sky;

@@ -1,5 +1,5 @@
 // Colour scales in buckets against the scales themselves.
-#include "vpe/voxel/scale_table.h"
+#include "vpe/voxel/paint/scale_table.h"
 
 #include <gtest/gtest.h>
 

@@ -70,7 +70,7 @@ double pop_px(const RangePicture& before, const RangePicture& now, int x, int y)
 
 }  // namespace
 
-std::vector<float> pops_px(const RangePicture& before, const RangePicture& now, core::ThreadPool& pool) {
+std::vector<float> pops_px(const RangePicture& before, const RangePicture& now, vpe::base::ThreadPool& pool) {
   std::vector<float> out(now.range_m.size());
   const auto width = static_cast<std::size_t>(now.view.width);
   pool.run(static_cast<std::size_t>(now.view.height), [&](std::size_t y) {

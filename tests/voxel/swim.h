@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "vpe/core/parallel.h"
+#include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
 
 namespace test_support {
@@ -27,7 +27,7 @@ struct RangePicture {
 // interpolation makes of relief within a pixel. NaN where there is nothing to measure: sky; outside `before`;
 // the four pixels see more than one surface (their ranges differ by more than 1 % and the inverse ranges are
 // not even along either side); or the point lies more than 2 px from that triangle, hidden before.
-std::vector<float> pops_px(const RangePicture& before, const RangePicture& now, vpe::core::ThreadPool& pool);
+std::vector<float> pops_px(const RangePicture& before, const RangePicture& now, vpe::base::ThreadPool& pool);
 
 // Distribution of |pop|.
 class Pops {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "mars/sun.h"
+#include "mars/geodesy/sun.h"
 #include "tests/voxel/swim.h"
 #include "vpe/core/frame.h"
 #include "vpe/voxel/ray_renderer.h"
@@ -16,7 +16,7 @@ namespace {
 namespace core = vpe::core;
 using test_support::RangePicture;
 
-double grey(const mars::Rgb& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; }
+double grey(const vpe::base::Rgb& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; }
 
 // Straight between the four pixels about a place.
 double grey_at(const core::Frame& frame, const glm::dvec2& xy) {
@@ -76,7 +76,7 @@ class LongColourSwim : public testing::TestWithParam<core::RayMode> {
   ColourSwim measure(core::Mode mode, double alt_m, double pitch_deg, double metres_a_frame) const {
     constexpr int kFrames = 40;
     const auto renderer = vpe::voxel::make_ray_renderer(planet_);
-    core::ThreadPool pool(2);
+    vpe::base::ThreadPool pool(2);
     ColourSwim swim;
     core::DrawResult before;
     RangePicture before_range;
@@ -106,7 +106,7 @@ class LongColourSwim : public testing::TestWithParam<core::RayMode> {
 
  private:
   void add(ColourSwim& swim, const core::DrawResult& before, const RangePicture& before_range,
-           const core::DrawResult& now, const RangePicture& now_range, core::ThreadPool& pool) const {
+           const core::DrawResult& now, const RangePicture& now_range, vpe::base::ThreadPool& pool) const {
     const core::View& view = now_range.view;
     const double root = lod::nominal_side_m(0, planet_->radius_m()) / planet_->meta().tile.intervals();
     const auto level = [&](double range_m) { return std::log2(root * core::focal_px(view) / range_m); };

@@ -9,9 +9,9 @@
 #include <functional>
 
 #include "tests/paging/planet_fixture.h"
-#include "tests/voxel/drawn_ground.h"
-#include "vpe/core/image.h"
-#include "vpe/voxel/range_caster.h"
+#include "tests/voxel/drawn_terrain.h"
+#include "vpe/core/image/image.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace {
 
@@ -48,12 +48,12 @@ core::View view_of(const mars::Pose& pose, double radius_m, int width, int heigh
 // Grey, and pops in colour: green from 1/10 px, yellow from 1/4, red from 1/2, white from 1; blue: not
 // measured.
 void write_pops(const std::string& path, const RangePicture& picture, std::span<const float> pops) {
-  std::vector<mars::Rgb> out;
+  std::vector<vpe::base::Rgb> out;
   for (std::size_t k = 0; k < pops.size(); ++k) {
     const float pop = std::abs(pops[k]);
     const bool sky = std::isinf(picture.range_m[k]);
     const auto grey = static_cast<std::uint8_t>(sky ? 0.0F : 30 + 8 * std::log2(picture.range_m[k]));
-    mars::Rgb colour{grey, grey, grey};
+    vpe::base::Rgb colour{grey, grey, grey};
     if (std::isnan(pop) && !sky) colour = {0, 0, 90};
     if (pop >= 0.1F) colour = {0, 160, 0};
     if (pop >= 0.25F) colour = {230, 230, 0};
@@ -69,7 +69,7 @@ std::vector<Swim> fly(RangeCaster& caster, const Flight& flight, int frames, int
                       std::span<const double> cells, const std::string& name) {
   const char* pictures = std::getenv("VPE_PICTURES");
   const paging::Surface& surface = caster.surface();
-  core::ThreadPool pool(2);
+  vpe::base::ThreadPool pool(2);
   PostsOf posts(surface.planet());
   std::vector<Swim> swims(cells.size());
   std::vector<float> exact;
@@ -221,7 +221,7 @@ TEST_F(Swimming, GroundOfMultiresStandsStill) {
 TEST_F(Swimming, MeterFindsAKnownPop) {
   RangeCaster caster(rough_, std::size_t{1} << 28);
   const paging::Surface& surface = caster.surface();
-  core::ThreadPool pool(2);
+  vpe::base::ThreadPool pool(2);
   const auto picture = [&](int frame, double exaggeration) {
     RangePicture p{view_of(pose(frame), rough_->radius_m(), 160, 90), std::vector<float>(160 * 90)};
     caster.cast(p.view, {exaggeration, 0, vpe::voxel::RangeOptions::Method::kColumns}, pool, p.range_m);

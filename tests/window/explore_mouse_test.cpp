@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "tests/window/explore_window_fixture.h"
-#include "vpe/app/planet_argument.h"
+#include "vpe/app/planet/planet_argument.h"
 #include "vpe/explore/mouse.h"
 
 namespace vpe::window {

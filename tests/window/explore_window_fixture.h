@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "tests/paging/planet_fixture.h"
-#include "tests/window/hands_test.h"
-#include "vpe/app/picture_options.h"
+#include "tests/window/window_fixture.h"
+#include "vpe/app/picture/image_options.h"
 #include "vpe/app/window_painter.h"
 #include "vpe/window/explore_window.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "mars/sun.h"
+#include "mars/geodesy/sun.h"
 #include "tests/window/explore_window_fixture.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 #include "vpe/explore/steer.h"
 
 namespace vpe::window {

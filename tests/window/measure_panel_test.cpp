@@ -11,8 +11,8 @@
 #include <sstream>
 #include <thread>
 
-#include "tests/explore/ground_fixture.h"
-#include "vpe/explore/profile_plot.h"
+#include "tests/explore/terrain_fixture.h"
+#include "vpe/explore/measure/profile_plot.h"
 #include "vpe/window/profile_plot_view.h"
 
 namespace vpe::window {

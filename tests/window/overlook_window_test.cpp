@@ -12,13 +12,13 @@
 #include <cmath>
 #include <fstream>
 
-#include "panorama/look.h"
-#include "panorama/sidecar.h"
+#include "panorama/viewer/render_view.h"
+#include "panorama/metadata/sidecar.h"
 #include "tests/support/support.h"
-#include "tests/window/hands_test.h"
-#include "vpe/app/overlook_places.h"
-#include "vpe/app/panorama_painter.h"
-#include "vpe/core/file.h"
+#include "tests/window/window_fixture.h"
+#include "vpe/app/panorama/overlook_places.h"
+#include "vpe/app/panorama/panorama_painter.h"
+#include "vpe/base/file.h"
 
 namespace vpe::window {
 namespace {
@@ -30,14 +30,14 @@ using panorama::PanoramaMap;
 const PanoramaMap kCylinder = panorama::cylinder_map(1440, 480, 1440, 30.0, 240.0);
 const PanoramaMap kFacets = panorama::faceted_map(8, 180, 400, 22.5, 200.0);
 
-mars::Rgb colour_of(const Direction& d) {
+vpe::base::Rgb colour_of(const Direction& d) {
   const double a = d.azimuth_deg * mars::kRadiansPerDegree;
   const auto byte = [](double share) { return static_cast<std::uint8_t>(std::lround(255 * share)); };
   return {byte(0.5 + 0.5 * std::sin(a)), byte(0.5 + 0.5 * std::cos(a)), byte(0.5 + d.elevation_deg / 180)};
 }
 
-std::vector<mars::Rgb> pixels_of(const PanoramaMap& map, double turned_deg = 0) {
-  std::vector<mars::Rgb> pixels;
+std::vector<vpe::base::Rgb> pixels_of(const PanoramaMap& map, double turned_deg = 0) {
+  std::vector<vpe::base::Rgb> pixels;
   for (std::int64_t y = 0; y < map.height_px; ++y) {
     for (std::int64_t x = 0; x < map.width_px; ++x) {
       Direction d = map.to_direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
@@ -60,7 +60,7 @@ class OverlookWindowTest : public HandsTest<OverlookWindow> {
     core::write_image(folder_ / name, pixels_of(map), static_cast<int>(map.width_px),
                       static_cast<int>(map.height_px));
     const fs::path json = (folder_ / name).replace_extension(".json");
-    core::write_file(json, panorama::to_json({name, map, {}}));
+    base::write_file(json, panorama::to_json({name, map, {}}));
     return json;
   }
 
@@ -139,8 +139,8 @@ TEST_F(OverlookWindowTest, ShowsEachDirectionAtItsPixelAndThenDrawsNothing) {
     ASSERT_EQ(shown.height, 400);
     for (int y = 50; y < viewer().size().y; y += 17) {
       for (int x = 5; x < 640; x += 31) {
-        const mars::Rgb got = shown.pixels[static_cast<std::size_t>(y * 640 + x)];
-        const mars::Rgb right = colour_of(under(x + 0.5, y + 0.5));
+        const vpe::base::Rgb got = shown.pixels[static_cast<std::size_t>(y * 640 + x)];
+        const vpe::base::Rgb right = colour_of(under(x + 0.5, y + 0.5));
         EXPECT_NEAR(got.r, right.r, 3) << x << "," << y;
         EXPECT_NEAR(got.g, right.g, 3) << x << "," << y;
         EXPECT_NEAR(got.b, right.b, 3) << x << "," << y;
@@ -250,7 +250,7 @@ TEST_F(OverlookWindowTest, CompassMarksStandWhereTheViewHasThem) {
       int brightest = 0;
       int brightest_x = 0;
       for (int x = static_cast<int>(placed.at.x) - 6; x <= static_cast<int>(placed.at.x) + 6; ++x) {
-        const mars::Rgb& p = shown.pixels[static_cast<std::size_t>(640 + x)];
+        const vpe::base::Rgb& p = shown.pixels[static_cast<std::size_t>(640 + x)];
         if (p.r + p.g + p.b <= brightest) continue;
         brightest = p.r + p.g + p.b;
         brightest_x = x;
@@ -268,7 +268,7 @@ TEST_F(OverlookWindowTest, TheReadOutIsThatOfTheCommandLine) {
   core::write_tiff(folder_ / "a.range.tif", range, 1440, 480);
   auto json = nlohmann::json::parse(panorama::to_json({"a.png", kCylinder, {}}));
   json["planes"] = {{"range", "a.range.tif"}};
-  core::write_file(json_path, json.dump());
+  base::write_file(json_path, json.dump());
   open(json_path);
   int ground = 0;
   for (const glm::dvec2 at : {glm::dvec2{100, 250}, {320, 320}, {600, 200}, {350, 50}}) {
@@ -338,13 +338,13 @@ TEST_F(OverlookWindowTest, AGamepadTurnsIt) {
 }
 
 TEST_F(OverlookWindowTest, PairsInEveryLayout) {
-  std::vector<mars::Rgb> both = pixels_of(kCylinder);
-  const std::vector<mars::Rgb> right = pixels_of(kCylinder, 40);
+  std::vector<vpe::base::Rgb> both = pixels_of(kCylinder);
+  const std::vector<vpe::base::Rgb> right = pixels_of(kCylinder, 40);
   both.insert(both.end(), right.begin(), right.end());
   core::write_image(folder_ / "ou.png", both, 1440, 960);
   auto json = nlohmann::json::parse(panorama::to_json({"ou.png", kCylinder, {}}));
   json["stereo"] = "ou";
-  core::write_file(folder_ / "ou.json", json.dump());
+  base::write_file(folder_ / "ou.json", json.dump());
   Opening anaglyph;
   anaglyph.stereo = core::StereoLayout::kAnaglyph;
   open(folder_ / "ou.json", anaglyph);
@@ -462,7 +462,7 @@ TEST(PanoramaPainterTest, StopsCopyingWhenNobodyWantsIt) {
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
   const PanoramaMap map = panorama::cylinder_map(1440, 1440, 1440, 0, 720);
   core::write_image(folder / "a.png", pixels_of(map), 1440, 1440);
-  core::write_file(folder / "a.json", panorama::to_json({"a.png", map, {}}));
+  base::write_file(folder / "a.json", panorama::to_json({"a.png", map, {}}));
   OverlookSetup setup = app::overlook_setup({(folder / "a.json").string(), {}, {}},
                                             panorama::PictureOptions::kMinBudget_bytes, 1);
   PictureOrder order;

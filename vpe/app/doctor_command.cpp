@@ -1,3 +1,5 @@
+#include "vpe/app/commands.h"
+
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -8,13 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "mars/source.h"
-#include "vpe/app/child.h"
-#include "vpe/app/config_file.h"
-#include "vpe/app/planet_argument.h"
-#include "vpe/app/program.h"
-#include "vpe/app/report.h"
-#include "vpe/core/parallel.h"
+#include "mars/sources/source.h"
+#include "vpe/app/cli/subprocess.h"
+#include "vpe/app/cli/config_file.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/base/parallel.h"
 #include "vpe/gl/context.h"
 
 namespace vpe::app {
@@ -68,7 +70,7 @@ Finding find_configuration() {
 }
 
 Finding find_threads(const Common& common) {
-  const int machine = core::default_threads();
+  const int machine = base::default_threads();
   if (common.threads == 0) return {"threads", State::kGood, std::to_string(machine) + ", all of this machine"};
   return {"threads", common.threads > machine ? State::kNote : State::kGood,
           std::to_string(common.threads) + " of --threads; this machine runs " + std::to_string(machine)};

@@ -1,3 +1,5 @@
+#include "vpe/app/commands.h"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -5,18 +7,18 @@
 #include <memory>
 #include <string>
 
-#include "vpe/app/picture_options.h"
-#include "vpe/app/planet_argument.h"
-#include "vpe/app/program.h"
-#include "vpe/app/report.h"
-#include "vpe/core/number.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/base/number.h"
 #ifdef VPE_HAS_WINDOW
-#include "vpe/app/flight_file.h"
-#include "vpe/app/output.h"
-#include "vpe/app/panorama_painter.h"
+#include "vpe/app/film/flight_file.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/panorama/panorama_painter.h"
 #include "vpe/app/window_painter.h"
-#include "vpe/explore/preferences.h"
-#include "vpe/explore/spots.h"
+#include "vpe/explore/files/preferences.h"
+#include "vpe/explore/files/hotspots.h"
 #include "vpe/window/explore_window.h"
 #endif
 
@@ -97,7 +99,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.session.fov_deg = arguments.fov_deg;
   if (!sets(arguments.picture, "lod.frame_ms")) {
     const std::string trouble =
-        setup.session.settings.set("lod.frame_ms", core::format_number(preferences.draw_budget_ms));
+        setup.session.settings.set("lod.frame_ms", base::format_number(preferences.draw_budget_ms));
     if (!trouble.empty()) throw std::logic_error(trouble);
   }
   if (!arguments.pose.empty()) setup.session.start = parse_start(arguments.pose);

@@ -1,14 +1,16 @@
-#include "vpe/explore/profile.h"
+#include "vpe/app/commands.h"
+
+#include "vpe/explore/measure/profile.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 
-#include "vpe/app/places.h"
-#include "vpe/app/planet_argument.h"
-#include "vpe/app/program.h"
-#include "vpe/app/report.h"
+#include "vpe/app/planet/places.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/json_output.h"
 
 namespace vpe::app {
 

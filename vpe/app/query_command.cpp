@@ -1,3 +1,5 @@
+#include "vpe/app/commands.h"
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -5,13 +7,13 @@
 #include <iostream>
 #include <numeric>
 
-#include "paging/query.h"
-#include "vpe/app/places.h"
-#include "vpe/app/planet_argument.h"
-#include "vpe/app/program.h"
-#include "vpe/app/report.h"
-#include "vpe/core/number.h"
-#include "vpe/core/parallel.h"
+#include "paging/surface/query.h"
+#include "vpe/app/planet/places.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/base/number.h"
+#include "vpe/base/parallel.h"
 
 namespace vpe::app {
 
@@ -41,8 +43,8 @@ void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
     std::snprintf(text, sizeof text, "%.*f", digits, x);
     return std::string(text);
   };
-  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s\n", core::format_number(a.place.lon_deg).c_str(),
-              core::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
+  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s\n", base::format_number(a.place.lon_deg).c_str(),
+              base::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
               number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
               csv_field(a.source).c_str(), a.tile_error_m, datum.c_str());
 }
@@ -68,7 +70,7 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
                    [&](std::size_t a, std::size_t b) { return position[a] < position[b]; });
   std::vector<paging::PlaceAnswer> answers(places.size());
   constexpr std::size_t kChunk = 2048;
-  core::ThreadPool pool(common.threads);
+  base::ThreadPool pool(common.threads);
   pool.run((order.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     const std::size_t end = std::min(order.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i)

@@ -1,10 +1,12 @@
+#include "vpe/app/commands.h"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "vpe/app/program.h"
-#include "vpe/app/report.h"
-#include "vpe/core/number.h"
-#include "vpe/core/settings.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/base/number.h"
+#include "vpe/core/appearance/settings.h"
 
 namespace vpe::app {
 
@@ -13,7 +15,7 @@ namespace {
 std::string range_text(const core::SettingInfo& info) {
   if (info.type == core::SettingType::kTable || info.type == core::SettingType::kText) return info.grammar;
   if (info.type != core::SettingType::kChoice) {
-    return core::format_number(info.min) + " .. " + core::format_number(info.max);
+    return base::format_number(info.min) + " .. " + base::format_number(info.max);
   }
   std::string words;
   for (const std::string_view word : info.choices) words += (words.empty() ? "" : ", ") + std::string(word);

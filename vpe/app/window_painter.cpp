@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "vpe/app/picture_options.h"
-#include "vpe/app/stereo_render.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/stereo_render.h"
 
 namespace vpe::app {
 

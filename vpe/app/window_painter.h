@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "paging/planet_file.h"
-#include "vpe/app/frame_overlays.h"
-#include "vpe/app/program.h"
+#include "paging/planet/planet_file.h"
+#include "vpe/app/picture/frame_overlays.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/window/painter.h"
 
 namespace vpe::app {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "mars/source.h"
+#include "mars/sources/source.h"
 #include "vpe/core/certificate.h"
 #include "vpe/core/interest.h"
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
 
 namespace vpe::core {
@@ -22,7 +22,7 @@ inline constexpr float kSkyRange = std::numeric_limits<float>::infinity();
 struct Frame {
   int width = 0;
   int height = 0;
-  std::vector<mars::Rgb> colour;  // width * height
+  std::vector<base::Rgb> colour;  // width * height
   std::vector<float> range_m;     // width * height when asked for, else empty; eye to surface; kSkyRange = sky
 };
 
@@ -76,7 +76,7 @@ struct DrawRequest {
   // What this view cannot see is not there. Nothing: for `view`.
   std::optional<View> cull_view;
   std::vector<InterestRegion> interest;  // where regions overlap, their levels add up
-  // >= 1: what is given up for speed (lod/frame_budget.h, lod/look_and_wait.h). The tolerance counts times
+  // >= 1: what is given up for speed (lod/frame_budget.h, lod/progressive_refinement.h). The tolerance counts times
   // this, in rule hitchner every distance. 1 in single pictures and films.
   double coarsening = 1;
   PagingRequest paging;

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "vpe/core/parallel.h"
+#include "vpe/base/parallel.h"
 
 namespace vpe::core {
 

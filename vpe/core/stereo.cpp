@@ -14,7 +14,7 @@ constexpr std::array<std::array<int, 6>, 3> kDuboisRedCyan{{{29891, 32800, 11559
                                                             {-2627, -2479, -1033, 24804, 48080, -1209},
                                                             {-997, -1350, -358, -4729, -7403, 80373}}};
 
-std::uint8_t mix(const std::array<int, 6>& weights, const mars::Rgb& l, const mars::Rgb& r) {
+std::uint8_t mix(const std::array<int, 6>& weights, const base::Rgb& l, const base::Rgb& r) {
   const int sum = weights[0] * l.r + weights[1] * l.g + weights[2] * l.b + weights[3] * r.r + weights[4] * r.g +
                   weights[5] * r.b;
   return static_cast<std::uint8_t>(std::clamp(sum / 65536, 0, 255));
@@ -70,10 +70,10 @@ RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayou
   return both;
 }
 
-void mix_red_cyan(std::span<mars::Rgb> left, std::span<const mars::Rgb> right) {
+void mix_red_cyan(std::span<base::Rgb> left, std::span<const base::Rgb> right) {
   for (std::size_t n = 0; n < left.size(); ++n) {
-    const mars::Rgb l = left[n];
-    const mars::Rgb& r = right[n];
+    const base::Rgb l = left[n];
+    const base::Rgb& r = right[n];
     left[n] = {mix(kDuboisRedCyan[0], l, r), mix(kDuboisRedCyan[1], l, r), mix(kDuboisRedCyan[2], l, r)};
   }
 }

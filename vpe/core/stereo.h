@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 #include "vpe/core/view.h"
 
 namespace vpe::core {
@@ -27,7 +27,7 @@ const char* to_string(StereoLayout layout);
 RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayout layout);
 
 // Red-cyan in place of the left eye's pixels; both as long as each other.
-void mix_red_cyan(std::span<mars::Rgb> left, std::span<const mars::Rgb> right);
+void mix_red_cyan(std::span<base::Rgb> left, std::span<const base::Rgb> right);
 
 // The view of an eye that is aside_m to the right (negative: left) along the view's right axis, the axes
 // parallel. With a convergence distance the principal point moves so that what is at that distance in front

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace vpe::core {
 
@@ -48,7 +48,7 @@ std::string check_part(const View& view) {
 
 std::string check(const View& view) {
   if (!is_finite(view.eye.eye_m) || glm::length(view.eye.eye_m) > ViewLimits::kMaxEyeDistance_m) {
-    return "the eye's position is not finite or farther than " + format_number(ViewLimits::kMaxEyeDistance_m) +
+    return "the eye's position is not finite or farther than " + base::format_number(ViewLimits::kMaxEyeDistance_m) +
            " m from the planet's centre";
   }
   if (!is_orthonormal(view.eye.axes)) return "the eye's axes are not orthonormal; make them with mars::to_eye";
@@ -60,18 +60,18 @@ std::string check(const View& view) {
   const bool is_equirectangular = view.projection == Projection::kEquirectangular;
   const double max_fov_deg = is_equirectangular ? 180.0 : ViewLimits::kMaxFov_deg;
   if (!(view.fov_deg >= ViewLimits::kMinFov_deg && view.fov_deg <= max_fov_deg)) {
-    return "field of view " + format_number(view.fov_deg) + " degrees: must be " +
-           format_number(ViewLimits::kMinFov_deg) + " to " + format_number(max_fov_deg);
+    return "field of view " + base::format_number(view.fov_deg) + " degrees: must be " +
+           base::format_number(ViewLimits::kMinFov_deg) + " to " + base::format_number(max_fov_deg);
   }
   const glm::dvec2& offset = view.principal_offset_px;
   if (!(std::abs(offset.x) <= ViewLimits::kMaxOffset_px && std::abs(offset.y) <= ViewLimits::kMaxOffset_px)) {
-    return "principal-point offset (" + format_number(offset.x) + ", " + format_number(offset.y) +
-           "): each must be at most " + format_number(ViewLimits::kMaxOffset_px) + " pixels";
+    return "principal-point offset (" + base::format_number(offset.x) + ", " + base::format_number(offset.y) +
+           "): each must be at most " + base::format_number(ViewLimits::kMaxOffset_px) + " pixels";
   }
   const double farthest_deg = (0.5 * view.height + std::abs(offset.y)) * view.fov_deg / view.height;
   if (is_equirectangular && farthest_deg > 90.0 + 1e-9) {
-    return "an equirectangular picture of " + format_number(view.fov_deg) + " degrees with an offset of " +
-           format_number(offset.y) + " rows goes past the zenith or nadir";
+    return "an equirectangular picture of " + base::format_number(view.fov_deg) + " degrees with an offset of " +
+           base::format_number(offset.y) + " rows goes past the zenith or nadir";
   }
   return check_part(view);
 }

@@ -16,7 +16,7 @@
 #include <glm/vec3.hpp>
 #include <string>
 
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 
 namespace vpe::core {
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace vpe::explore {
 
-using core::format_number;
+using base::format_number;
 using scripts::Flight;
 using scripts::Waypoint;
 

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "scripts/flight.h"
 
 namespace vpe::explore {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "scripts/path.h"
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/settings.h"
 
 namespace vpe::explore {
 

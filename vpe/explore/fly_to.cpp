@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "vpe/explore/steer.h"
 
 namespace vpe::explore {

@@ -1,8 +1,8 @@
 // Flying to a place by itself: after a double click, a click on the map, a bookmark.
 #pragma once
 
-#include "mars/pose.h"
-#include "vpe/explore/ground.h"
+#include "mars/geodesy/pose.h"
+#include "vpe/explore/terrain_query.h"
 
 namespace vpe::explore {
 

@@ -9,9 +9,9 @@
 #include <glm/vec2.hpp>
 #include <optional>
 
-#include "mars/pose.h"
+#include "mars/geodesy/pose.h"
 #include "vpe/core/view.h"
-#include "vpe/explore/ground.h"
+#include "vpe/explore/terrain_query.h"
 
 namespace vpe::explore {
 

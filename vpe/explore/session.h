@@ -10,15 +10,15 @@
 #include <string_view>
 #include <vector>
 
-#include "mars/pose.h"
-#include "paging/surface.h"
+#include "mars/geodesy/pose.h"
+#include "paging/surface/surface.h"
 #include "vpe/core/interest.h"
-#include "vpe/core/settings.h"
+#include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
-#include "vpe/explore/controls.h"
-#include "vpe/explore/flight_desk.h"
+#include "vpe/explore/input/controls.h"
+#include "vpe/explore/flight_controller.h"
 #include "vpe/explore/fly_to.h"
-#include "vpe/explore/ground.h"
+#include "vpe/explore/terrain_query.h"
 #include "vpe/explore/mouse.h"
 
 namespace vpe::explore {

@@ -7,9 +7,9 @@
 
 #include <glm/vec3.hpp>
 
-#include "mars/pose.h"
-#include "vpe/explore/controls.h"
-#include "vpe/explore/ground.h"
+#include "mars/geodesy/pose.h"
+#include "vpe/explore/input/controls.h"
+#include "vpe/explore/terrain_query.h"
 
 namespace vpe::explore {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vpe/core/frame.h"
-#include "vpe/gl/tile_number.h"
+#include "vpe/gl/tile_id.h"
 
 namespace vpe::gl {
 

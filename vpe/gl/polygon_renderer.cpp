@@ -8,11 +8,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vpe/core/edge_filter.h"
-#include "vpe/core/inspect.h"
-#include "vpe/core/mutation.h"
-#include "vpe/core/parallel.h"
-#include "vpe/core/shading.h"
+#include "vpe/core/image/edge_filter.h"
+#include "vpe/core/appearance/inspect.h"
+#include "vpe/base/mutation.h"
+#include "vpe/base/parallel.h"
+#include "vpe/core/appearance/shading.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/shaders.h"
 #include "vpe/gl/target.h"
@@ -37,7 +37,7 @@ const glm::vec3 kBorderColour(0.1F, 1.0F, 0.2F);  // no ground is that green
 // The relief shows through.
 glm::vec4 level_tint(int level) {
   constexpr float kShare = 0.6F;
-  const mars::Rgb c = core::level_colour(level).colour;
+  const base::Rgb c = core::level_colour(level).colour;
   return {static_cast<float>(c.r) / 255.0F, static_cast<float>(c.g) / 255.0F, static_cast<float>(c.b) / 255.0F,
           kShare};
 }
@@ -52,7 +52,7 @@ class PolygonRenderer : public core::Renderer {
         scene_(planet_, options),
         tiles_(planet_->radius_m()),
         empty_array_(VertexArray::make()) {
-    const bool halved = core::mutated(core::Guard::kReversedDepth);
+    const bool halved = base::mutated(base::Guard::kReversedDepth);
     glClipControl(GL_LOWER_LEFT, halved ? GL_NEGATIVE_ONE_TO_ONE : GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_DITHER);  // colours may be numbers
@@ -74,7 +74,7 @@ class PolygonRenderer : public core::Renderer {
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
-  core::ThreadPool pool_;
+  base::ThreadPool pool_;
   TileScene scene_;
   TileDrawer tiles_;
   std::shared_ptr<const core::ColourScale> palette_;  // that tiles_ has; null: none
@@ -85,7 +85,7 @@ class PolygonRenderer : public core::Renderer {
   std::vector<TileDraw> draws_;
   std::vector<CertifiedTile> certified_;
   std::vector<float> depth_;
-  std::vector<mars::Rgb> colours_;
+  std::vector<base::Rgb> colours_;
   std::vector<std::uint32_t> numbers_;  // of the range image's pixels (tile_number.h)
 };
 
@@ -265,7 +265,7 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, Lens lens, co
   to.read_colour(colours_);
   numbers_.resize(colours_.size());
   std::transform(colours_.begin(), colours_.end(), numbers_.begin(),
-                 [](const mars::Rgb& c) { return number_of_colour(c.r, c.g, c.b); });
+                 [](const base::Rgb& c) { return number_of_colour(c.r, c.g, c.b); });
   const core::View& view = request.view;
   const double f = core::focal_px(view);
   const double cx = 0.5 * view.width + view.principal_offset_px.x - view.part.x;

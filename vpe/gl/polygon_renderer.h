@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
 #include "vpe/gl/context.h"
 

@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lod/tile_key.h"
-#include "lod/walls.h"
-#include "paging/ground_paint.h"
+#include "lod/tree/tile_key.h"
+#include "lod/occluder_profile.h"
+#include "paging/shading/terrain_shader.h"
 #include "vpe/gl/objects.h"
 #include "vpe/gl/tile_geometry.h"
 

@@ -4,7 +4,7 @@
 #include <compare>
 #include <string>
 
-#include "vpe/gl/tile_number.h"
+#include "vpe/gl/tile_id.h"
 
 namespace vpe::gl {
 

@@ -66,14 +66,14 @@ void Target::bind() {
   glViewport(0, 0, width_, height_);
 }
 
-void Target::read_colour(std::vector<mars::Rgb>& out) const {
+void Target::read_colour(std::vector<base::Rgb>& out) const {
   if (samples_ > 1) {
     glBlitNamedFramebuffer(draw_.name(), resolve_.name(), 0, 0, width_, height_, 0, 0, width_, height_,
                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
   }
   glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_ > 1 ? resolve_.name() : draw_.name());
   out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  static_assert(sizeof(mars::Rgb) == 3);
+  static_assert(sizeof(base::Rgb) == 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, out.data());
   check_gl("read the picture");

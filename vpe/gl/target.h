@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mars/source.h"
+#include "mars/sources/source.h"
 #include "vpe/gl/objects.h"
 
 namespace vpe::gl {
@@ -20,7 +20,7 @@ class Target {
   void bind();  // makes it the draw framebuffer and sets the viewport
 
   // Reads back, top row first. Depth only from a target with one sample.
-  void read_colour(std::vector<mars::Rgb>& out) const;
+  void read_colour(std::vector<base::Rgb>& out) const;
   double mean_alpha() const;  // of what read_colour() read last, 0 to 1
   void read_depth(std::vector<float>& out) const;
 

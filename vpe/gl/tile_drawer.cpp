@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "vpe/core/shading.h"
+#include "vpe/core/appearance/shading.h"
 #include "vpe/gl/shaders.h"
 
 namespace vpe::gl {

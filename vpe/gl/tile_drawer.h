@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
-#include "vpe/gl/lens.h"
+#include "vpe/gl/projection.h"
 #include "vpe/gl/residency.h"
 #include "vpe/gl/shaders.h"
-#include "vpe/gl/tile_number.h"
+#include "vpe/gl/tile_id.h"
 
 namespace vpe::gl {
 
@@ -38,7 +38,7 @@ struct Air {
 struct PaletteTable {
   double low = 0;
   double high = 1;
-  std::vector<mars::Rgb> colours;  // from low to high, even
+  std::vector<base::Rgb> colours;  // from low to high, even
 };
 
 // Two tiles store the same border relative to different centres, and rasterisers snap the two roundings of a

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "lod/mesh.h"
+#include "lod/mesh/mesh.h"
 
 namespace vpe::gl {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "vpe/core/mutation.h"
+#include "vpe/base/mutation.h"
 
 namespace vpe::gl {
 
@@ -14,7 +14,7 @@ constexpr int kLargestTexture = 1024;
 // The tile's centre, unless rounding relative to that would show: then the post nearest to the eye.
 int origin(const lod::SelectedTile& tile, const core::View& view, const paging::PlanetFile& planet) {
   constexpr double kShows_px = 0.01;
-  if (core::mutated(core::Guard::kNearOrigin)) return kTileCentre;
+  if (base::mutated(base::Guard::kNearOrigin)) return kTileCentre;
   const double side_m = lod::nominal_side_m(tile.key.level, planet.radius_m());
   if (side_m * core::focal_px(view) < kShows_px * (1 << 24) * tile.min_distance_m) return kTileCentre;
   if (glm::dot(mars::face_axes(tile.key.face).out, view.eye.eye_m) <= 0.0) return kTileCentre;

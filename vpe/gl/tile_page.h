@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
-#include "lod/walls.h"
-#include "paging/ground_paint.h"
-#include "paging/planet_file.h"
+#include "lod/occluder_profile.h"
+#include "paging/shading/terrain_shader.h"
+#include "paging/planet/planet_file.h"
 #include "vpe/gl/tile_geometry.h"
 
 namespace vpe::gl {

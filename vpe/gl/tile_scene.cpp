@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "lod/look_from.h"
+#include "lod/reevaluate.h"
 #include "lod/options.h"
-#include "vpe/core/parallel.h"
+#include "vpe/base/parallel.h"
 
 namespace vpe::gl {
 
@@ -66,7 +66,7 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
         return loader_.load(key);
       }),
       pager_(load_,
-             options.threads > 0 ? std::min(options.threads, core::kMaxThreads) : core::default_threads(),
+             options.threads > 0 ? std::min(options.threads, base::kMaxThreads) : base::default_threads(),
              share(kLoadedShare)) {}
 
 void TileScene::set_look(const core::DrawRequest& request) {

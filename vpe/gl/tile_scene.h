@@ -11,9 +11,9 @@
 #include <unordered_set>
 #include <vector>
 
-#include "cull/worth.h"
+#include "cull/adaptive_culling.h"
 #include "lod/occlusion.h"
-#include "lod/substitute.h"
+#include "lod/fallback.h"
 #include "paging/pager.h"
 #include "vpe/core/frame.h"
 #include "vpe/gl/polygon_renderer.h"

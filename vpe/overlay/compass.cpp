@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "vpe/overlay/figures.h"
+#include "vpe/overlay/number_format.h"
 
 namespace vpe::overlay {
 

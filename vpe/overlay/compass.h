@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mars/sphere.h"
+#include "mars/geodesy/sphere.h"
 #include "vpe/core/view.h"
 
 namespace vpe::overlay {

@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "vpe/overlay/ground.h"
+#include "vpe/overlay/visible_terrain.h"
 
 namespace vpe::overlay {
 

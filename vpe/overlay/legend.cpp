@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "vpe/core/palette.h"
-#include "vpe/overlay/figures.h"
-#include "vpe/overlay/parts.h"
+#include "vpe/core/appearance/palette.h"
+#include "vpe/overlay/number_format.h"
+#include "vpe/overlay/layer_functions.h"
 
 namespace vpe::overlay {
 

@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "vpe/overlay/figures.h"
+#include "vpe/overlay/number_format.h"
 #include "vpe/overlay/isolines.h"
-#include "vpe/overlay/parts.h"
+#include "vpe/overlay/layer_functions.h"
 
 namespace vpe::overlay {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "vpe/overlay/parts.h"
+#include "vpe/overlay/layer_functions.h"
 
 namespace vpe::overlay {
 
@@ -41,7 +41,7 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
   return canvas.layer();
 }
 
-mars::Rgb blend(const core::Rgba& over, mars::Rgb below) {
+base::Rgb blend(const core::Rgba& over, base::Rgb below) {
   const auto mix = [&over](std::uint8_t top, std::uint8_t under) {
     const unsigned sum = top * unsigned{over.a} + under * (255U - over.a);
     return static_cast<std::uint8_t>((sum + 127U) / 255U);
@@ -49,7 +49,7 @@ mars::Rgb blend(const core::Rgba& over, mars::Rgb below) {
   return {mix(over.r, below.r), mix(over.g, below.g), mix(over.b, below.b)};
 }
 
-void composite(const Layer& layer, std::vector<mars::Rgb>& picture) {
+void composite(const Layer& layer, std::vector<base::Rgb>& picture) {
   if (layer.pixels.empty()) return;
   if (layer.pixels.size() != picture.size()) {
     throw std::invalid_argument("a layer of " + std::to_string(layer.pixels.size()) +

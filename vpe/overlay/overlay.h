@@ -13,12 +13,12 @@
 #include <span>
 #include <vector>
 
-#include "mars/source.h"
-#include "mars/sphere.h"
-#include "vpe/core/appearance.h"
-#include "vpe/core/gazetteer.h"
-#include "vpe/core/image.h"
-#include "vpe/core/overlays.h"
+#include "mars/sources/source.h"
+#include "mars/geodesy/sphere.h"
+#include "vpe/core/appearance/appearance.h"
+#include "vpe/core/appearance/gazetteer.h"
+#include "vpe/core/image/image.h"
+#include "vpe/core/appearance/overlays.h"
 #include "vpe/core/view.h"
 
 namespace vpe::overlay {
@@ -76,10 +76,10 @@ inline constexpr double kHiddenShare = 0.01;
 Layer draw(const core::Overlays& overlays, const Scene& scene);
 
 // What shows of a pixel below another.
-mars::Rgb blend(const core::Rgba& over, mars::Rgb below);
+base::Rgb blend(const core::Rgba& over, base::Rgb below);
 
 // Lays it over a picture of the same number of pixels; an empty layer changes nothing. Throws
 // std::invalid_argument.
-void composite(const Layer& layer, std::vector<mars::Rgb>& picture);
+void composite(const Layer& layer, std::vector<base::Rgb>& picture);
 
 }  // namespace vpe::overlay

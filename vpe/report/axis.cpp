@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace vpe::report {
 namespace {
@@ -63,13 +63,13 @@ std::vector<Tick> Axis::ticks() const {
     if (!logarithmic_) {
       // Multiples of a step are rounded: 0.30000000000000004 is no tick.
       const double value = std::round(at / step_) * step_;
-      ticks.push_back({value, core::format_number(std::round(value * 1e12) / 1e12)});
+      ticks.push_back({value, base::format_number(std::round(value * 1e12) / 1e12)});
       continue;
     }
     const int decade = static_cast<int>(at);
     const double value = std::pow(10.0, decade);
     ticks.push_back(
-        {value, decade >= -3 && decade <= 4 ? core::format_number(value) : "1e" + std::to_string(decade)});
+        {value, decade >= -3 && decade <= 4 ? base::format_number(value) : "1e" + std::to_string(decade)});
   }
   return ticks;
 }

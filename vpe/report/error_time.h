@@ -16,8 +16,8 @@
 
 #include "vpe/core/frame.h"
 #include "vpe/core/metrics.h"
-#include "vpe/core/picture_metrics.h"
-#include "vpe/report/turns.h"
+#include "vpe/core/image_metrics.h"
+#include "vpe/report/interleaved_timing.h"
 
 namespace vpe::report {
 

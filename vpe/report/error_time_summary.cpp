@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "vpe/report/front.h"
+#include "vpe/report/pareto_front.h"
 
 namespace vpe::report {
 

@@ -1,6 +1,6 @@
 #include "vpe/report/features.h"
 
-#include "vpe/report/turns.h"
+#include "vpe/report/interleaved_timing.h"
 
 namespace vpe::report {
 namespace {

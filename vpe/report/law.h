@@ -10,7 +10,7 @@
 #include "vpe/report/growth.h"
 #include "vpe/report/plot.h"
 #include "vpe/report/table.h"
-#include "vpe/report/turns.h"
+#include "vpe/report/interleaved_timing.h"
 
 namespace vpe::report {
 

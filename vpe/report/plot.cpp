@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 #include "vpe/report/axis.h"
 #include "vpe/report/page.h"
 
@@ -151,8 +151,8 @@ class Drawing {
 
   std::string told(const Series& series, const Point& point) const {
     std::string text = series.name + (point.label.empty() ? "" : ", " + point.label) + ": " +
-                       core::format_number(point.x) + ", " + core::format_number(point.y);
-    if (point.bound) text += "; at most " + core::format_number(*point.bound) + " stated";
+                       base::format_number(point.x) + ", " + base::format_number(point.y);
+    if (point.bound) text += "; at most " + base::format_number(*point.bound) + " stated";
     if (y_.below(point.y) || x_.below(point.x)) text += " (on the border: no logarithm)";
     return text;
   }

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 
 namespace vpe::report {
 namespace {
@@ -32,7 +32,7 @@ void Table::add(std::vector<Cell> row) {
 std::string to_text(const Cell& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
   const auto* value = std::get_if<double>(&cell);
-  return value != nullptr && std::isfinite(*value) ? core::format_number(*value) : std::string();
+  return value != nullptr && std::isfinite(*value) ? base::format_number(*value) : std::string();
 }
 
 std::string to_csv(const Table& table) {

@@ -12,13 +12,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "vpe/core/edge_filter.h"
-#include "vpe/core/inspect.h"
-#include "vpe/core/parallel.h"
-#include "vpe/core/shading.h"
-#include "vpe/voxel/picture_ahead.h"
-#include "vpe/voxel/picture_painter.h"
-#include "vpe/voxel/range_caster.h"
+#include "vpe/core/image/edge_filter.h"
+#include "vpe/core/appearance/inspect.h"
+#include "vpe/base/parallel.h"
+#include "vpe/core/appearance/shading.h"
+#include "vpe/voxel/frame_prefetcher.h"
+#include "vpe/voxel/paint/image_painter.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace vpe::voxel {
 
@@ -60,7 +60,7 @@ class RayRenderer : public core::Renderer {
   std::shared_ptr<const paging::PlanetFile> planet_;
   RangeCaster caster_;
   PicturePainter painter_;
-  core::ThreadPool pool_;
+  base::ThreadPool pool_;
   PictureAhead ahead_;
   // Used again by the next picture, so that it need not ask for memory.
   std::vector<float> range_m_;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "paging/planet_file.h"
+#include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
 
 namespace vpe::voxel {
@@ -15,7 +15,7 @@ struct RayOptions {
   int threads = 0;                                     // 0: as many as the machine runs at once
 };
 
-// Draws every projection, at any pitch and roll (vpe/voxel/range_caster.h). With rays.mode=exact the picture
+// Draws every projection, at any pitch and roll (vpe/voxel/cast/range_caster.h). With rays.mode=exact the picture
 // has no tile error: what a pixel shows is on S as exaggerated, within RangeCaster::range_error(). With
 // multires, or where the request is for coarsening, tiles far away are coarser, and the certificate says by how
 // much at most. Colours are those of core::Appearance, with posts and images about as fine as a pixel; ground

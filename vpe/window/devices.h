@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "mars/pose.h"
-#include "vpe/explore/actions.h"
-#include "vpe/explore/controls.h"
-#include "vpe/explore/gamepad.h"
-#include "vpe/explore/head_tracker.h"
-#include "vpe/explore/keyboard.h"
-#include "vpe/explore/preferences.h"
-#include "vpe/explore/space_mouse.h"
-#include "vpe/explore/udp_receiver.h"
+#include "mars/geodesy/pose.h"
+#include "vpe/explore/input/actions.h"
+#include "vpe/explore/input/controls.h"
+#include "vpe/explore/input/gamepad.h"
+#include "vpe/explore/input/head_tracker.h"
+#include "vpe/explore/input/keyboard.h"
+#include "vpe/explore/files/preferences.h"
+#include "vpe/explore/input/space_mouse.h"
+#include "vpe/explore/input/udp_receiver.h"
 #include "vpe/window/display.h"
 
 namespace vpe::window {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 struct GLFWwindow;
 

@@ -5,10 +5,10 @@
 #include <ctime>
 #include <glm/geometric.hpp>
 
-#include "vpe/core/file.h"
-#include "vpe/core/image.h"
-#include "vpe/core/number.h"
-#include "vpe/explore/keyboard.h"
+#include "vpe/base/file.h"
+#include "vpe/core/image/image.h"
+#include "vpe/base/number.h"
+#include "vpe/explore/input/keyboard.h"
 #include "vpe/window/explore_window.h"
 
 namespace vpe::window {
@@ -124,7 +124,7 @@ std::string ExploreWindow::parting_words() {
   if (editor == nullptr || !editor->is_changed()) return {};
   const fs::path file = new_file("unsaved-", ".flight");
   try {
-    core::write_file(file, editor->to_text());
+    base::write_file(file, editor->to_text());
     return "the flight was not saved; it is kept in " + file.string();
   } catch (const std::exception& e) {
     return std::string("the flight that was not saved is lost: ") + e.what();
@@ -138,7 +138,7 @@ void ExploreWindow::log_picture(PictureOrder& order) {
     const std::string drawn = std::string("drawn by ") + to_string(order.backend) + ", " +
                               std::to_string(session_.screen().width) + "x" +
                               std::to_string(session_.screen().height) + ", field of view " +
-                              core::format_number(session_.screen().fov_deg) + " degrees" +
+                              base::format_number(session_.screen().fov_deg) + " degrees" +
                               (order.stereo ? ", " + std::string(core::to_string(*order.stereo)) : "");
     if (drawn != log_note_) log_->note(time_s, drawn);
     log_note_ = drawn;
@@ -188,7 +188,7 @@ void ExploreWindow::save_flight() {
   if (editor == nullptr) return say("there is no flight yet; place waypoints first", true);
   if (setup_.flight_file.empty()) setup_.flight_file = new_file("", ".flight").string();
   try {
-    core::write_file(setup_.flight_file, editor->to_text());
+    base::write_file(setup_.flight_file, editor->to_text());
     editor->mark_saved();
     say("flight: " + setup_.flight_file);
   } catch (const std::exception& e) {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "lod/posts.h"
-#include "vpe/core/inspect.h"
-#include "vpe/explore/keyboard.h"
+#include "lod/tree/posts.h"
+#include "vpe/core/appearance/inspect.h"
+#include "vpe/explore/input/keyboard.h"
 #include "vpe/explore/steer.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/panel_words.h"

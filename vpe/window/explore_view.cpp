@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "vpe/core/number.h"
+#include "vpe/base/number.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/panel_words.h"
 #include "vpe/window/screen_point.h"
@@ -16,7 +16,7 @@ void ExploreWindow::order_picture() {
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
   const std::string shown = std::string(to_string(state_.backend)) +
                             (state_.stereo ? core::to_string(*state_.stereo) : "") +
-                            core::format_number(state_.eye_base_m);
+                            base::format_number(state_.eye_base_m);
   const bool changed = session_.changes() != shown_changes_ || shown != shown_state_;
   const auto order = live_.next(session_.view(), changed, std::max(session_.height_m(), 0.5));
   if (!order) return;

@@ -11,20 +11,20 @@
 #include <string>
 #include <vector>
 
-#include "paging/planet_file.h"
-#include "vpe/explore/bookmarks.h"
-#include "vpe/explore/live_picture.h"
-#include "vpe/explore/preferences.h"
+#include "paging/planet/planet_file.h"
+#include "vpe/explore/files/bookmarks.h"
+#include "vpe/explore/live_image.h"
+#include "vpe/explore/files/preferences.h"
 #include "vpe/explore/session.h"
-#include "vpe/explore/session_log.h"
-#include "vpe/explore/view_history.h"
+#include "vpe/explore/files/session_log.h"
+#include "vpe/explore/files/view_history.h"
 #include "vpe/window/devices.h"
 #include "vpe/window/display.h"
 #include "vpe/window/map_panel.h"
 #include "vpe/window/measure_panel.h"
 #include "vpe/window/painter.h"
-#include "vpe/window/picture_maker.h"
-#include "vpe/window/spot_guide.h"
+#include "vpe/window/image_maker.h"
+#include "vpe/window/hotspot_guide.h"
 #include "vpe/window/view_area.h"
 #include "vpe/window/widgets.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "vpe/explore/read_out.h"
+#include "vpe/explore/measure/read_out.h"
 #include "vpe/window/explore_window.h"
 
 namespace vpe::window {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "paging/planet_meta.h"
-#include "vpe/explore/map_line.h"
+#include "paging/planet/planet_meta.h"
+#include "vpe/explore/measure/map_line.h"
 #include "vpe/window/screen_point.h"
 
 namespace vpe::window {
@@ -45,7 +45,7 @@ bool MapPanel::is_at_rest() const {
 
 void MapPanel::run() {
   std::unique_ptr<explore::MapPainter> painter;
-  std::unique_ptr<core::ThreadPool> pool;
+  std::unique_ptr<base::ThreadPool> pool;
   while (true) {
     Order order;
     {
@@ -59,7 +59,7 @@ void MapPanel::run() {
     try {
       if (painter == nullptr) {
         painter = std::make_unique<explore::MapPainter>(planet_, kBudget_bytes);
-        pool = std::make_unique<core::ThreadPool>(threads_);
+        pool = std::make_unique<base::ThreadPool>(threads_);
       }
       image = painter->paint(order.map, order.ground, *pool);
     } catch (const std::exception&) {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "vpe/core/interest.h"
-#include "vpe/explore/map_painter.h"
-#include "vpe/explore/map_view.h"
+#include "vpe/explore/measure/map_painter.h"
+#include "vpe/explore/measure/map_view.h"
 #include "vpe/explore/session.h"
-#include "vpe/explore/spots.h"
+#include "vpe/explore/files/hotspots.h"
 #include "vpe/window/display.h"
 #include "vpe/window/widgets.h"
 

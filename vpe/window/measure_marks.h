@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "vpe/explore/profile.h"
+#include "vpe/explore/measure/profile.h"
 #include "vpe/explore/session.h"
 
 namespace vpe::window {

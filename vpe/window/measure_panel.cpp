@@ -7,10 +7,10 @@
 #include <system_error>
 #include <utility>
 
-#include "paging/planet_meta.h"
-#include "vpe/core/file.h"
-#include "vpe/explore/digits.h"
-#include "vpe/explore/place_text.h"
+#include "paging/planet/planet_meta.h"
+#include "vpe/base/file.h"
+#include "vpe/explore/measure/digits.h"
+#include "vpe/explore/measure/place_text.h"
 #include "vpe/window/measure_marks.h"
 #include "vpe/window/panel_words.h"
 #include "vpe/window/profile_plot_view.h"
@@ -257,7 +257,7 @@ void MeasurePanel::save(MeasureWish& wish) const {
     const std::filesystem::path path = in_home(file_);
     std::error_code ignored;
     const bool was_there = std::filesystem::exists(path, ignored);
-    core::write_file(path, explore::to_csv(*measured_->profile));
+    base::write_file(path, explore::to_csv(*measured_->profile));
     const std::filesystem::path whole = std::filesystem::absolute(path, ignored);
     wish.message = (was_there ? "profile replaced: " : "profile saved: ") + (ignored ? path : whole).string();
     wish.message_is_trouble = false;

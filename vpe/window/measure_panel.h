@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "vpe/explore/read_out.h"
+#include "vpe/explore/measure/read_out.h"
 #include "vpe/explore/session.h"
 #include "vpe/window/measurer.h"
 #include "vpe/window/widgets.h"

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "vpe/explore/line_of_sight.h"
-#include "vpe/explore/profile.h"
+#include "vpe/explore/measure/line_of_sight.h"
+#include "vpe/explore/measure/profile.h"
 
 namespace vpe::window {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "mars/sphere.h"
-#include "vpe/core/image.h"
+#include "mars/geodesy/sphere.h"
+#include "vpe/core/image/image.h"
 #include "vpe/explore/steer.h"
 
 namespace vpe::window {

@@ -23,18 +23,18 @@
 #include <string>
 #include <vector>
 
-#include "mars/pose.h"
-#include "panorama/open_panorama.h"
-#include "panorama/place_reader.h"
-#include "panorama/viewer.h"
+#include "mars/geodesy/pose.h"
+#include "panorama/metadata/open_panorama.h"
+#include "panorama/viewer/pixel_probe.h"
+#include "panorama/viewer/viewer.h"
 #include "vpe/core/stereo.h"
-#include "vpe/explore/actions.h"
-#include "vpe/explore/controls.h"
-#include "vpe/explore/live_picture.h"
+#include "vpe/explore/input/actions.h"
+#include "vpe/explore/input/controls.h"
+#include "vpe/explore/live_image.h"
 #include "vpe/overlay/compass.h"
 #include "vpe/window/display.h"
 #include "vpe/window/painter.h"
-#include "vpe/window/picture_maker.h"
+#include "vpe/window/image_maker.h"
 #include "vpe/window/view_area.h"
 
 namespace vpe::window {
@@ -70,7 +70,7 @@ class OverlookView {
   static constexpr double kTurn_deg_s = 45;  // at full deflection and a field of view of 60 degrees
   static constexpr double kZoomStep = 1.2;   // of a notch of the wheel, of + and -
 
-  // Needs a Display. Throws vpe::core::FileError when a plane of the panorama cannot be used.
+  // Needs a Display. Throws vpe::base::FileError when a plane of the panorama cannot be used.
   explicit OverlookView(OverlookSetup setup);
   ~OverlookView();  // waits for the picture that is begun, which stops copying
   OverlookView(const OverlookView&) = delete;

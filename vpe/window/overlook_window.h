@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "vpe/explore/preferences.h"
+#include "vpe/explore/files/preferences.h"
 #include "vpe/window/devices.h"
 #include "vpe/window/display.h"
 #include "vpe/window/overlook_view.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "vpe/core/frame.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
 
 namespace vpe::window {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "vpe/explore/digits.h"
+#include "vpe/explore/measure/digits.h"
 #include "vpe/window/screen_point.h"
 
 namespace vpe::window {

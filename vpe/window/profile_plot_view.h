@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "vpe/explore/profile_plot.h"
+#include "vpe/explore/measure/profile_plot.h"
 #include "vpe/window/widgets.h"
 
 namespace vpe::window {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "lod/posts.h"
-#include "vpe/core/inspect.h"
-#include "vpe/core/number.h"
+#include "lod/tree/posts.h"
+#include "vpe/core/appearance/inspect.h"
+#include "vpe/base/number.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/words.h"
 
@@ -34,11 +34,11 @@ void ExploreWindow::setting(const core::SettingInfo& info) {
     changed = widgets_.choose(key.c_str(), index, names, meaning.c_str());
     if (changed) next = names[static_cast<std::size_t>(index)];
   } else if (info.type == core::SettingType::kNumber || info.type == core::SettingType::kInteger) {
-    double value = core::parse_number(text).value_or(0.0);
+    double value = base::parse_number(text).value_or(0.0);
     const double step = info.type == core::SettingType::kInteger ? 1.0 : std::abs(value) >= 10 ? 1.0 : 0.1;
     changed = widgets_.number(key.c_str(), value, info.min, info.max, step, "%.6g", meaning.c_str());
     if (changed)
-      next = core::format_number(info.type == core::SettingType::kInteger ? std::round(value) : value);
+      next = base::format_number(info.type == core::SettingType::kInteger ? std::round(value) : value);
   } else {
     changed = widgets_.text(key.c_str(), next, (meaning + ": " + info.grammar).c_str());
   }

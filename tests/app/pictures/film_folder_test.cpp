@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "tests/app/support/film_fixture.h"
-#include "vpe/app/film_folder.h"
-#include "vpe/core/image.h"
-#include "vpe/core/png_text.h"
+#include "vpe/app/film/film_folder.h"
+#include "vpe/core/image/image.h"
+#include "vpe/core/image/png_text.h"
 
 namespace app_test {
 namespace {

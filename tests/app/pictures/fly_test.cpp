@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "tests/app/support/app_fixture.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace app_test {
 namespace {

@@ -2,7 +2,7 @@
 #include <png.h>
 
 #include "tests/app/support/app_fixture.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 #include "vpe/overlay/overlay.h"
 
 namespace app_test {

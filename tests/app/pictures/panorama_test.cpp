@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "panorama/open_panorama.h"
-#include "panorama/plan.h"
+#include "panorama/metadata/open_panorama.h"
+#include "panorama/panorama_plan.h"
 #include "tests/app/support/app_fixture.h"
 #include "tests/app/support/tiff_numbers.h"
 #include "tests/paging/rough_planet.h"
 #include "vpe/core/frame.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 #include "vpe/core/metrics.h"
 
 namespace app_test {
@@ -51,8 +51,8 @@ double step_at(const vpe::core::RgbImage& image, int column) {
   double sum = 0;
   for (int y = 0; y < image.height; ++y) {
     const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
-    const mars::Rgb a = image.pixels[row + static_cast<std::size_t>(before)];
-    const mars::Rgb b = image.pixels[row + static_cast<std::size_t>(column % image.width)];
+    const vpe::base::Rgb a = image.pixels[row + static_cast<std::size_t>(before)];
+    const vpe::base::Rgb b = image.pixels[row + static_cast<std::size_t>(column % image.width)];
     sum += std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
   }
   return sum / (3.0 * image.height);

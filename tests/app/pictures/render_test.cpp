@@ -1,11 +1,11 @@
 // One picture, its ranges and its certificate.
 #include <cmath>
 
-#include "mars/mars_time.h"
+#include "mars/geodesy/mars_time.h"
 #include "tests/app/support/app_fixture.h"
 #include "vpe/core/frame.h"
-#include "vpe/core/image.h"
-#include "vpe/core/number.h"
+#include "vpe/core/image/image.h"
+#include "vpe/base/number.h"
 #include "vpe/gl/context.h"
 
 namespace app_test {
@@ -128,9 +128,9 @@ TEST_F(Render, TheSunOfADateOrASeason) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return vpe::core::read_image(dir_ / "s.png").pixels;
   };
-  const auto brightness = [](const std::vector<mars::Rgb>& pixels) {
+  const auto brightness = [](const std::vector<vpe::base::Rgb>& pixels) {
     double sum = 0;
-    for (const mars::Rgb& p : pixels) sum += p.r;
+    for (const vpe::base::Rgb& p : pixels) sum += p.r;
     return sum / static_cast<double>(pixels.size());
   };
   const auto noon = picture({"--sun", "Ls0,12:00"});
@@ -148,8 +148,8 @@ TEST_F(Render, TheSunOfADateOrASeason) {
   const mars::SunPlace at =
       mars::sun_place(below, mars::direction({time.subsolar_lon_deg, time.subsolar_lat_deg}));
   const auto dated = picture({"--sun", "2026-11-20T14:00+02:00"});
-  const auto put = picture({"--set", "sun.azimuth=" + vpe::core::format_number(at.azimuth_deg), "--set",
-                            "sun.elevation=" + vpe::core::format_number(at.elevation_deg)});
+  const auto put = picture({"--set", "sun.azimuth=" + vpe::base::format_number(at.azimuth_deg), "--set",
+                            "sun.elevation=" + vpe::base::format_number(at.elevation_deg)});
   ASSERT_EQ(dated.size(), put.size());
   for (std::size_t n = 0; n < put.size(); ++n) ASSERT_NEAR(dated[n].r, put[n].r, 1) << n;
   EXPECT_GT(brightness(dated), 1.3 * brightness(night));

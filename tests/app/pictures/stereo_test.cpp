@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tests/app/support/app_fixture.h"
-#include "vpe/core/image.h"
+#include "vpe/core/image/image.h"
 
 namespace app_test {
 namespace {

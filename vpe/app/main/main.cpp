@@ -1,3 +1,3 @@
-#include "vpe/app/program.h"
+#include "vpe/app/commands.h"
 
 int main(int argc, char** argv) { return vpe::app::run(argc, argv); }

@@ -1,0 +1,157 @@
+#include "lod/fallback.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace lod {
+
+namespace {
+
+constexpr int kLevelsDown = 2;
+
+struct Stand {
+  TileTree::Index index;
+  int variant;
+};
+
+class Substituter {
+ public:
+  Substituter(const TileTree& tree, const Readiness& ready) : tree_(tree), ready_(ready) {}
+
+  // What takes a tile's place without touching others; false when nothing does.
+  bool stand_in(const SelectedTile& tile, std::vector<Stand>& out) const {
+    const TileInfo& info = tree_[tile.index];
+    const int variants = static_cast<int>(info.variants.size());
+    for (int v = tile.variant + 1; v < variants; ++v) {
+      if (take(tile.index, v, out)) return true;
+    }
+    for (int v = tile.variant - 1; v >= 0; --v) {
+      if (take(tile.index, v, out)) return true;
+    }
+    return by_children(tile.index, kLevelsDown, out);
+  }
+
+  // Nearest ready tile above.
+  std::optional<TileTree::Index> ancestor(const TileKey& key) const {
+    std::optional<TileTree::Index> nearest;
+    TileTree::Index at = static_cast<TileTree::Index>(key.face);
+    for (int level = 0; level < key.level; ++level) {
+      if (ready_(tree_[at], 0)) nearest = at;
+      const int down = key.level - level - 1;
+      at = tree_.first_child(at) + static_cast<TileTree::Index>((key.i >> down & 1) + 2 * (key.j >> down & 1));
+    }
+    return nearest;
+  }
+
+ private:
+  bool take(TileTree::Index index, int variant, std::vector<Stand>& out) const {
+    if (!ready_(tree_[index], variant)) return false;
+    out.push_back({index, variant});
+    return true;
+  }
+
+  // All four children, each by any mesh or by its own children; `out` is as before when one fails.
+  bool by_children(TileTree::Index index, int levels, std::vector<Stand>& out) const {
+    if (levels == 0 || !tree_[index].has_children) return false;
+    const std::size_t before = out.size();
+    const TileTree::Index first = tree_.first_child(index);
+    for (TileTree::Index child = first; child < first + 4; ++child) {
+      bool found = false;
+      for (int v = 0; v < static_cast<int>(tree_[child].variants.size()) && !found; ++v)
+        found = take(child, v, out);
+      if (found || by_children(child, levels - 1, out)) continue;
+      out.resize(before);
+      return false;
+    }
+    return true;
+  }
+
+  const TileTree& tree_;
+  const Readiness& ready_;
+};
+
+// Tiles that replace all that was selected below them, none inside another, along the Z curve.
+void drop_nested(const TileTree& tree, std::vector<TileTree::Index>& tiles) {
+  std::sort(tiles.begin(), tiles.end(), [&](TileTree::Index a, TileTree::Index b) {
+    const std::int64_t za = z_position(tree[a].key);
+    const std::int64_t zb = z_position(tree[b].key);
+    return za != zb ? za < zb : tree[a].key.level < tree[b].key.level;
+  });
+  std::size_t kept = 0;
+  for (const TileTree::Index t : tiles) {
+    if (kept == 0 || !contains(tree[tiles[kept - 1]].key, tree[t].key)) tiles[kept++] = t;
+  }
+  tiles.resize(kept);
+}
+
+}  // namespace
+
+void substitute(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                const Selection& selection, const Readiness& ready, Substitution& result) {
+  result.missing.clear();
+  result.substituted = result.uncovered = 0;
+  const Substituter substituter(tree, ready);
+
+  // Ancestors first: they decide which of the others are drawn at all.
+  std::vector<TileTree::Index> ancestors;
+  std::vector<std::vector<Stand>> stands(selection.tiles.size());
+  for (std::size_t n = 0; n < selection.tiles.size(); ++n) {
+    const SelectedTile& tile = selection.tiles[n];
+    if (ready(tree[tile.index], tile.variant)) continue;
+    result.missing.push_back(n);
+    if (substituter.stand_in(tile, stands[n])) continue;
+    if (const auto above = substituter.ancestor(tile.key)) {
+      ancestors.push_back(*above);
+    } else {
+      ++result.uncovered;
+    }
+  }
+  if (result.missing.empty()) {
+    result.drawn = selection;
+    return;
+  }
+  drop_nested(tree, ancestors);
+
+  std::vector<SelectedTile> drawn;
+  const auto draw = [&](const Stand& stand) {
+    drawn.push_back(measure_tile(options, tree, view, stand.index, stand.variant));
+    ++result.substituted;
+  };
+  std::size_t next_missing = 0;
+  auto above = ancestors.begin();
+  bool above_is_drawn = false;
+  std::vector<std::size_t> missing;
+  for (std::size_t n = 0; n < selection.tiles.size(); ++n) {
+    const SelectedTile& tile = selection.tiles[n];
+    const bool is_missing = next_missing < result.missing.size() && result.missing[next_missing] == n;
+    if (is_missing) ++next_missing;
+    while (above != ancestors.end() &&
+           z_position(tree[*above].key) + z_extent(tree[*above].key.level) <= z_position(tile.key)) {
+      ++above;
+      above_is_drawn = false;
+    }
+    if (above != ancestors.end() && contains(tree[*above].key, tile.key)) {
+      if (!above_is_drawn) draw({*above, 0});
+      above_is_drawn = true;
+      missing.push_back(n);
+    } else if (is_missing) {
+      for (const Stand& stand : stands[n]) draw(stand);
+      missing.push_back(n);
+    } else {
+      drawn.push_back(tile);
+    }
+  }
+  result.missing = std::move(missing);
+  const Selection& s = selection;
+  Selection& d = result.drawn;
+  d.tiles = std::move(drawn);
+  d.exaggeration = s.exaggeration;
+  d.visited = s.visited;
+  d.culled_frustum = s.culled_frustum;
+  d.culled_horizon = s.culled_horizon;
+  d.refined = s.refined;
+  d.capped = s.capped;
+  tally(tree, d);
+}
+
+}  // namespace lod

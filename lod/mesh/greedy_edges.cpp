@@ -1,0 +1,86 @@
+// Errors along an edge of the mesh, where it crosses the lines of S between posts.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lod/mesh/greedy_scan.h"
+
+namespace lod {
+
+namespace {
+
+// A post of S's line p q at `fraction` from p, with the error there.
+struct Crossing {
+  std::size_t p, q;
+  double fraction;
+};
+
+}  // namespace
+
+WorstPost PostField::worst_crossing(const Corner& from, const Corner& to) const {
+  const Corner& a = from.post < to.post ? from : to;
+  const Corner& b = from.post < to.post ? to : from;
+  WorstPost worst;
+  if (a.i == b.i || a.j == b.j) return worst;  // along a line of the grid: its posts have been looked at
+  if (b.i == a.i + 1 && b.j == a.j + 1) return worst;  // S's own diagonal
+  const auto ax = static_cast<double>(a.x);
+  const auto ay = static_cast<double>(a.y);
+  const double dx = static_cast<double>(b.x) - ax;
+  const double dy = static_cast<double>(b.y) - ay;
+  const double wa = w_[a.post];
+  const double dw = w_[b.post] - wa;
+  const auto visit = [&](const Crossing& at, double t) {
+    const double surface = w_[at.p] + at.fraction * (w_[at.q] - w_[at.p]);
+    const double error = lowest_radius_m_ * std::abs(1.0 - (wa + t * dw) / surface);
+    if (error <= worst.error_m) return;
+    // The nearer end of the line, unless it is a vertex or on the border.
+    std::size_t post = at.fraction < 0.5 ? at.p : at.q;
+    if (weight_[post] == 0) post = post == at.p ? at.q : at.p;
+    if (weight_[post] == 0) return;
+    worst = {error, static_cast<std::uint32_t>(post)};
+  };
+  // Cell by cell from a to b: the diagonal inside each cell, then the side by which the edge leaves it.
+  const auto row = static_cast<std::size_t>(side_);
+  const bool east = dx > 0;
+  const bool north = dy > 0;
+  std::size_t i = east ? a.i : a.i - 1;
+  std::size_t j = north ? a.j : a.j - 1;
+  double t = 0;
+  while (t < 1) {
+    const std::size_t post = j * row + i;
+    const double t_column = (x_[east ? i + 1 : i] - ax) / dx;
+    const double t_row = (y_[north ? j + 1 : j] - ay) / dy;
+    const double end = std::min(std::min(t_column, t_row), 1.0);
+    const auto place = [&](double at) {
+      const double s = (ax + at * dx - x_[i]) / (x_[i + 1] - x_[i]);
+      return std::pair(s, s - (ay + at * dy - y_[j]) / (y_[j + 1] - y_[j]));
+    };
+    const auto [s0, g0] = place(t);
+    const auto [s1, g1] = place(end);
+    if (g0 * g1 < 0) {
+      const double part = g0 / (g0 - g1);
+      visit({post, post + row + 1, s0 + part * (s1 - s0)}, t + part * (end - t));
+    }
+    if (end >= 1) break;
+    if (t_column <= t_row) {
+      if (east)
+        ++i;
+      else
+        --i;
+      visit({j * row + i + (east ? 0 : 1), (j + 1) * row + i + (east ? 0 : 1),
+             (ay + end * dy - y_[j]) / (y_[j + 1] - y_[j])},
+            end);
+    } else {
+      if (north)
+        ++j;
+      else
+        --j;
+      const std::size_t line = north ? j : j + 1;
+      visit({line * row + i, line * row + i + 1, (ax + end * dx - x_[i]) / (x_[i + 1] - x_[i])}, end);
+    }
+    t = end;
+  }
+  return worst;
+}
+
+}  // namespace lod

@@ -1,0 +1,136 @@
+#include "lod/mesh/mesh_overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace lod {
+
+namespace {
+
+double length_at(double u, double v) { return std::sqrt(u * u + v * v + 1.0); }
+
+CoarseMesh::Triangle triangle_of(CoarseMesh::Vertex a, CoarseMesh::Vertex b, CoarseMesh::Vertex c) {
+  const auto above = [](const CoarseMesh::Vertex& p, const CoarseMesh::Vertex& q) {
+    return p.v > q.v || (p.v == q.v && p.u > q.u);
+  };
+  if (above(a, b)) std::swap(a, b);
+  if (above(b, c)) std::swap(b, c);
+  if (above(a, b)) std::swap(a, b);
+  const double bu = b.u - a.u;
+  const double bv = b.v - a.v;
+  const double cu = c.u - a.u;
+  const double cv = c.v - a.v;
+  const double turn = bu * cv - bv * cu;  // > 0: the middle corner lies right of the long edge
+  const auto slopes = [&](double fb, double fc) {
+    return std::pair((fb * cv - fc * bv) / turn, (fc * bu - fb * cu) / turn);
+  };
+  const auto [depth_du, depth_dv] = slopes(b.depth - a.depth, c.depth - a.depth);
+  const auto [length_du, length_dv] = slopes(b.length - a.length, c.length - a.length);
+  return {{a, b, c}, turn < 0.0, depth_du, depth_dv, length_du, length_dv};
+}
+
+}  // namespace
+
+LineTable::LineTable(std::vector<double> lines) : line_(std::move(lines)) {
+  double narrowest = line_.back() - line_.front();
+  for (std::size_t k = 1; k < line_.size(); ++k) {
+    const double width = line_[k] - line_[k - 1];
+    inverse_width_.push_back(1.0 / width);
+    narrowest = std::min(narrowest, width);
+    widest_ = std::max(widest_, width);
+  }
+  buckets_per_unit_ = 1.0 / narrowest;
+  const auto buckets = static_cast<std::size_t>((line_.back() - line_.front()) / narrowest) + 1;
+  std::size_t k = 0;
+  for (std::size_t b = 0; b < buckets; ++b) {
+    while (line_[k] < line_.front() + static_cast<double>(b) * narrowest) ++k;
+    first_in_bucket_.push_back(static_cast<int>(k));
+  }
+}
+
+FineGrid::FineGrid(const Posts& posts, double radius)
+    : key(posts.key),
+      intervals(posts.intervals),
+      radius_m(radius),
+      u(grid_lines(posts.key, posts.intervals).u),
+      v(grid_lines(posts.key, posts.intervals).v),
+      depth(posts.height_m.size()),
+      length(posts.height_m.size()) {
+  const auto side = static_cast<std::size_t>(posts.side());
+  double least = 0.0;
+  for (std::size_t j = 0; j < side; ++j) {
+    const double vv = v.data()[j] * v.data()[j];
+    const double* height = posts.height_m.data() + j * side;
+    double* n = length.data() + j * side;
+    double* w = depth.data() + j * side;
+    for (std::size_t i = 0; i < side; ++i) {
+      n[i] = std::sqrt(u.data()[i] * u.data()[i] + vv + 1.0);
+      w[i] = n[i] * radius_m / (radius_m + height[i]);
+    }
+    const double row_least = *std::min_element(w, w + side);
+    least = j == 0 ? row_least : std::min(least, row_least);
+  }
+  double steepest = 0.0;
+  for (std::size_t j = 0; j + 1 < side; ++j) {
+    const double* low = depth.data() + j * side;
+    const double* high = low + side;
+    for (std::size_t i = 0; i + 1 < side; ++i) {
+      const double most = std::max(std::max(low[i], low[i + 1]), std::max(high[i], high[i + 1]));
+      const double floor = std::min(std::min(low[i], low[i + 1]), std::min(high[i], high[i + 1]));
+      steepest = std::max(steepest, most - floor);
+    }
+  }
+  depth_variation = steepest / least;
+  // |grad log n| = |(u, v)| / n^2 <= 1/2.
+  length_variation = std::expm1(0.5 * std::hypot(u.widest(), v.widest()));
+}
+
+CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<const double> vertex_height_m,
+                       double radius)
+    : key(tile), intervals(mesh.intervals), radius_m(radius) {
+  if (vertex_height_m.size() != mesh.vertices.size()) {
+    throw std::invalid_argument("ErrorMeter: " + std::to_string(vertex_height_m.size()) + " heights for " +
+                                std::to_string(mesh.vertices.size()) + " vertices of tile " + to_string(key));
+  }
+  const GridLines lines = grid_lines(key, intervals);
+  std::vector<Vertex> all(mesh.vertices.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double u = lines.u[mesh.vertices[k].i];
+    const double v = lines.v[mesh.vertices[k].j];
+    const double n = length_at(u, v);
+    all[k] = {u, v, n * radius_m / (radius_m + vertex_height_m[k]), n};
+  }
+  const auto vertex = [&all](std::size_t k) -> const Vertex& { return all[k]; };
+  const auto box = [&](std::initializer_list<std::uint16_t> corners) {
+    Box b{0xffff, 0, 0xffff, 0};
+    for (const std::uint16_t k : corners) {
+      const MeshVertex& at = mesh.vertices[k];
+      b = {std::min(b.i0, at.i), std::max(b.i1, at.i), std::min(b.j0, at.j), std::max(b.j1, at.j)};
+    }
+    return b;
+  };
+  triangles.reserve(mesh.triangle_count());
+  triangle_boxes.reserve(mesh.triangle_count());
+  segments.reserve(mesh.triangle_count() * 3 / 2);
+  segment_boxes.reserve(mesh.triangle_count() * 3 / 2);
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    const std::uint16_t corner[] = {mesh.triangles[t], mesh.triangles[t + 1], mesh.triangles[t + 2]};
+    triangles.push_back(triangle_of(vertex(corner[0]), vertex(corner[1]), vertex(corner[2])));
+    triangle_boxes.push_back(box({corner[0], corner[1], corner[2]}));
+    for (int k = 0; k < 3; ++k) {
+      const std::uint16_t a = corner[k];
+      const std::uint16_t b = corner[(k + 1) % 3];
+      const Box ab = box({a, b});
+      const bool slanting = ab.i0 != ab.i1 && ab.j0 != ab.j1;
+      // Counter-clockwise: an inner edge is seen once in either direction.
+      if (slanting ? a < b : ab.i0 == intervals || ab.j0 == intervals) {
+        segments.push_back({vertex(a), vertex(b)});
+        segment_boxes.push_back(ab);
+      }
+    }
+  }
+}
+
+}  // namespace lod

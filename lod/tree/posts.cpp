@@ -1,0 +1,174 @@
+#include "lod/tree/posts.h"
+
+#include <algorithm>
+#include <bit>
+#include <glm/geometric.hpp>
+
+#include "vpe/base/mutation.h"
+
+namespace lod {
+
+using vpe::base::Guard;
+using vpe::base::mutated;
+
+namespace {
+
+// One vertex of a facet: R w = length - deficit, with the deficit |p| h / (R + h) small beside the length.
+struct Vertex {
+  double u, v;
+  double length;
+  double deficit;
+};
+
+Vertex vertex(double u, double v, double height_m, double radius_m) {
+  const double length = std::sqrt(u * u + v * v + 1.0);
+  return {u, v, length, length * (height_m / (radius_m + height_m))};
+}
+
+// |b| - |a| without cancellation.
+double length_difference(const Vertex& a, const Vertex& b) {
+  return ((b.u - a.u) * (b.u + a.u) + (b.v - a.v) * (b.v + a.v)) / (b.length + a.length);
+}
+
+// R w(b) - R w(a).
+double depth_difference(const Vertex& a, const Vertex& b) {
+  return length_difference(a, b) - (b.deficit - a.deficit);
+}
+
+// Height at (u, v) where R w has grown by `growth` since vertex a: R (|p| - R w) / (R w).
+double height_at(const Vertex& a, double u, double v, double growth, double radius_m) {
+  const Vertex here{u, v, std::sqrt(u * u + v * v + 1.0), 0.0};
+  const double above = length_difference(a, here) + a.deficit - growth;
+  return radius_m * above / (here.length - above);
+}
+
+// Index of the interval of ascending lines that holds x (clamped); x = last line belongs to the last one.
+int interval_of(const std::vector<double>& lines, double x) {
+  const int last = static_cast<int>(lines.size()) - 2;
+  const double t = (x - lines.front()) / (lines.back() - lines.front()) * (last + 1);
+  int i = std::clamp(static_cast<int>(t), 0, last);
+  const auto line = [&](int k) { return lines[static_cast<std::size_t>(k)]; };
+  while (i > 0 && x < line(i)) --i;
+  while (i < last && x >= line(i + 1)) ++i;
+  return i;
+}
+
+}  // namespace
+
+GridLines grid_lines(const TileKey& key, int intervals) {
+  const int grid_level = key.level + std::countr_zero(static_cast<unsigned>(intervals));
+  GridLines lines;
+  const auto side = static_cast<std::size_t>(intervals) + 1;
+  lines.u.resize(side);
+  lines.v.resize(side);
+  for (std::size_t k = 0; k < side; ++k) {
+    const auto step = static_cast<std::int64_t>(k);
+    lines.u[k] = mars::face_line(std::int64_t{key.i} * intervals + step, grid_level);
+    lines.v[k] = mars::face_line(std::int64_t{key.j} * intervals + step, grid_level);
+  }
+  return lines;
+}
+
+double post_spacing_m(int level, int intervals, double radius_m) {
+  const int grid_level = level + std::countr_zero(static_cast<unsigned>(intervals));
+  if (grid_level == 0) return nominal_side_m(0, radius_m);
+  return radius_m * std::atan(mars::face_line((std::int64_t{1} << (grid_level - 1)) + 1, grid_level));
+}
+
+double surface_height(const Posts& posts, const GridLines& lines, double u, double v, double radius_m,
+                      glm::dvec3* normal, double exaggeration) {
+  u = std::clamp(u, lines.u.front(), lines.u.back());
+  v = std::clamp(v, lines.v.front(), lines.v.back());
+  const int i = interval_of(lines.u, u);
+  const int j = interval_of(lines.v, v);
+  const auto post = [&](int column, int row) {
+    return vertex(lines.u[static_cast<std::size_t>(column)], lines.v[static_cast<std::size_t>(row)],
+                  exaggeration * posts.at(column, row), radius_m);
+  };
+  const Vertex a = post(i, j);
+  const Vertex c = post(i + 1, j + 1);
+  const double du = c.u - a.u;
+  const double dv = c.v - a.v;
+  const bool lower = (u - a.u) * dv >= (v - a.v) * du;
+  const Vertex b = lower ? post(i + 1, j) : post(i, j + 1);
+  const double slope_u = (lower ? depth_difference(a, b) : depth_difference(b, c)) / du;
+  const double slope_v = (lower ? depth_difference(b, c) : depth_difference(a, b)) / dv;
+  if (normal != nullptr) {
+    // R w = n . (u, v, 1) on the facet, that is n . P = R: n is its normal in the face's axes.
+    const double constant = a.length - a.deficit - slope_u * a.u - slope_v * a.v;
+    *normal = glm::normalize(mars::face_axes(posts.key.face).right * slope_u +
+                             mars::face_axes(posts.key.face).up * slope_v +
+                             mars::face_axes(posts.key.face).out * constant);
+  }
+  return height_at(a, u, v, slope_u * (u - a.u) + slope_v * (v - a.v), radius_m);
+}
+
+void constrain_edge(Posts& posts, const GridLines& lines, Edge edge, int step, double radius_m,
+                    double exaggeration) {
+  if (mutated(Guard::kBorderPosts)) return;
+  const int n = posts.intervals;
+  const bool vertical = edge == Edge::kWest || edge == Edge::kEast;
+  const int fixed = edge == Edge::kEast || edge == Edge::kNorth ? n : 0;
+  const auto index = [&](int k) {
+    const int i = vertical ? fixed : k;
+    const int j = vertical ? k : fixed;
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(posts.side()) + static_cast<std::size_t>(i);
+  };
+  const auto post = [&](int k) {
+    const double u = lines.u[static_cast<std::size_t>(vertical ? fixed : k)];
+    const double v = lines.v[static_cast<std::size_t>(vertical ? k : fixed)];
+    return vertex(u, v, exaggeration * posts.height_m[index(k)], radius_m);
+  };
+  const std::vector<double>& along = vertical ? lines.v : lines.u;
+  for (int start = 0; start < n; start += step) {
+    const Vertex a = post(start);
+    const Vertex b = post(start + step);
+    const double from = along[static_cast<std::size_t>(start)];
+    const double slope = depth_difference(a, b) / (along[static_cast<std::size_t>(start + step)] - from);
+    for (int k = start + 1; k < start + step; ++k) {
+      const double here = along[static_cast<std::size_t>(k)];
+      const double u = vertical ? a.u : here;
+      const double v = vertical ? here : a.v;
+      posts.height_m[index(k)] = height_at(a, u, v, slope * (here - from), radius_m) / exaggeration;
+    }
+  }
+}
+
+double steepest_slope(const Posts& posts, const GridLines& lines, double radius_m) {
+  const auto side = static_cast<std::size_t>(posts.intervals) + 1;
+  std::vector<glm::dvec3> low(side);
+  std::vector<glm::dvec3> high(side);
+  const auto fill = [&](std::size_t j, std::vector<glm::dvec3>& row) {
+    for (std::size_t i = 0; i < side; ++i) {
+      row[i] = mars::chart_direction(posts.key.face, lines.u[i], lines.v[j]) *
+               (radius_m + posts.height_m[j * side + i]);
+    }
+  };
+  double largest2 = 0;  // squared tangent at the corner that both facets of a cell share
+  double longest2 = 0;
+  const auto facet = [&](const glm::dvec3& shared, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 normal = glm::cross(b - shared, c - shared);
+    const double up = glm::dot(normal, shared);
+    const double tangent2 = glm::dot(normal, normal) * glm::dot(shared, shared) / (up * up) - 1.0;
+    largest2 = std::max(largest2, tangent2);
+  };
+  fill(0, low);
+  for (std::size_t j = 0; j + 1 < side; ++j) {
+    fill(j + 1, high);
+    for (std::size_t i = 0; i + 1 < side; ++i) {
+      facet(low[i], low[i + 1], high[i + 1]);
+      facet(low[i], high[i + 1], high[i]);
+      const glm::dvec3 diagonal = high[i + 1] - low[i];
+      const glm::dvec3 other = high[i] - low[i + 1];
+      longest2 = std::max({longest2, glm::dot(diagonal, diagonal), glm::dot(other, other)});
+    }
+    std::swap(low, high);
+  }
+  // The vertical turns over a facet by no more than the angle of its longest side.
+  const double turn =
+      std::sqrt(longest2) / (radius_m + *std::min_element(posts.height_m.begin(), posts.height_m.end()));
+  const double tangent = std::sqrt(largest2);
+  return turn * tangent < 0.9 ? (tangent + 1.1 * turn) / (1.0 - turn * tangent) : 1e6;
+}
+
+}  // namespace lod

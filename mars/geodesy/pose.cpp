@@ -1,0 +1,74 @@
+#include "mars/geodesy/pose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace mars {
+
+namespace {
+
+// Turns `from` towards `to` (both unit, perpendicular) by an angle given by sine and cosine.
+void turn(glm::dvec3& from, glm::dvec3& to, SinCos angle) {
+  const glm::dvec3 turned = from * angle.cos + to * angle.sin;
+  to = to * angle.cos - from * angle.sin;
+  from = turned;
+}
+
+void apply(Axes& axes, double yaw_deg, double pitch_deg, double roll_deg) {
+  turn(axes.forward, axes.right, sin_cos_deg(yaw_deg));
+  turn(axes.forward, axes.up, sin_cos_deg(pitch_deg));
+  turn(axes.up, axes.right, sin_cos_deg(roll_deg));
+}
+
+}  // namespace
+
+Axes oriented_axes(const LocalFrame& frame, double yaw_deg, double pitch_deg, double roll_deg) {
+  Axes axes{frame.east, frame.up, frame.north};
+  apply(axes, yaw_deg, pitch_deg, roll_deg);
+  return axes;
+}
+
+EyePose to_eye(const Pose& pose, double radius_m) { return to_eye(pose, HeadLook{}, radius_m); }
+
+EyePose to_eye(const Pose& pose, const HeadLook& look, double radius_m) {
+  const LocalFrame frame = local_frame({pose.lon_deg, pose.lat_deg});
+  EyePose eye{frame.up * (radius_m + pose.alt_m),
+              oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, pose.roll_deg)};
+  apply(eye.axes, look.yaw_deg, look.pitch_deg, look.roll_deg);
+  return eye;
+}
+
+Pose to_pose(const EyePose& eye, double radius_m) {
+  const LonLat place = lon_lat(eye.eye_m);
+  const LocalFrame frame = local_frame(place);
+  const glm::dvec3& forward = eye.axes.forward;
+  const double east = glm::dot(forward, frame.east);
+  const double north = glm::dot(forward, frame.north);
+  const double up = glm::dot(forward, frame.up);
+  const double level = std::hypot(east, north);
+
+  Pose pose;
+  pose.lon_deg = place.lon_deg;
+  pose.lat_deg = place.lat_deg;
+  pose.alt_m = glm::length(eye.eye_m) - radius_m;
+  pose.pitch_deg = std::atan2(up, level) / kRadiansPerDegree;
+  // At the zenith or nadir the heading of `forward` is noise; take it from the camera's up axis.
+  constexpr double kNoise = 2e-15;
+  if (level > kNoise) {
+    pose.yaw_deg = std::atan2(east, north) / kRadiansPerDegree;
+  } else {
+    const double sign = up > 0.0 ? -1.0 : 1.0;
+    pose.yaw_deg = std::atan2(sign * glm::dot(eye.axes.up, frame.east),
+                              sign * glm::dot(eye.axes.up, frame.north)) /
+                   kRadiansPerDegree;
+  }
+  const Axes unrolled = oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, 0.0);
+  pose.roll_deg = std::atan2(glm::dot(eye.axes.up, unrolled.right), glm::dot(eye.axes.up, unrolled.up)) /
+                  kRadiansPerDegree;
+  pose.yaw_deg = normalize_lon_deg(pose.yaw_deg);
+  pose.roll_deg = normalize_lon_deg(pose.roll_deg);
+  return pose;
+}
+
+}  // namespace mars

@@ -1,0 +1,396 @@
+#include <gdal_priv.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mars/sources/adjusted.h"
+#include "mars/raster/gdal_raster.h"
+#include "mars/raster/gdal_boundary.h"
+#include "mars/raster/gdal_tiles.h"
+#include "mars/raster/product_datum.h"
+#include "mars/sources/source.h"
+#include "mars/sources/stack.h"
+
+namespace mars {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kBatch = 1024;
+constexpr double kLargestHeight_m = 1e6;  // beyond it a value is a distance from the planet's centre
+
+struct BandFormat {
+  GDALDataType type = GDT_Unknown;
+  std::optional<double> no_data;
+  double scale = 1;   // metres in a unit of the stored values
+  double offset = 0;  // metres at stored value 0
+  bool fits_float = false;
+  Holes holes;          // stored values that are no data besides that one
+  bool masked = false;  // a mask or alpha band says where there is data
+};
+
+double metres_per_unit(const std::string& unit) {
+  CPLString lower(unit);
+  lower.tolower();
+  if (lower == "km" || lower == "kilometer" || lower == "kilometre" || lower == "kilometers") return 1000;
+  if (lower == "cm" || lower == "centimeter" || lower == "centimetre") return 0.01;
+  if (lower == "ft" || lower == "foot" || lower == "feet") return 0.3048;
+  return 1;
+}
+
+BandFormat band_format(const GdalRaster& raster) {
+  const GdalScope scope;
+  const auto dataset = raster.lend();
+  GDALRasterBand* band = dataset->GetRasterBand(1);
+  const GDALColorInterp colour = band->GetColorInterpretation();
+  if (band->GetColorTable() != nullptr || colour == GCI_RedBand) {
+    throw source_error(raster.path(), "is a colour image, not elevation", "", "give it as an image (--image)");
+  }
+  BandFormat format;
+  format.type = band->GetRasterDataType();
+  format.fits_float = format.type == GDT_Byte || format.type == GDT_Int16 || format.type == GDT_UInt16 ||
+                      format.type == GDT_Float32;
+  int has_no_data = 0;
+  if (format.type == GDT_Int64) {
+    const auto value = static_cast<double>(band->GetNoDataValueAsInt64(&has_no_data));
+    if (has_no_data != 0) format.no_data = value;
+  } else if (format.type == GDT_UInt64) {
+    const auto value = static_cast<double>(band->GetNoDataValueAsUInt64(&has_no_data));
+    if (has_no_data != 0) format.no_data = value;
+  } else {
+    const double value = band->GetNoDataValue(&has_no_data);
+    if (has_no_data != 0) format.no_data = value;
+  }
+  format.holes = raster.holes();
+  // The mask of a no-data value says nothing new.
+  const int mask = band->GetMaskFlags();
+  format.masked = (mask & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+  const double unit_m = metres_per_unit(band->GetUnitType());
+  format.scale = band->GetScale() * unit_m;
+  format.offset = band->GetOffset() * unit_m;
+  if (!std::isfinite(format.scale) || format.scale == 0 || !std::isfinite(format.offset)) {
+    throw source_error(raster.path(), "has a scale or offset that is not a usable number", "",
+                       "set it with gdal_edit.py -scale -offset");
+  }
+  return format;
+}
+
+template <class T>
+struct HeightTile {
+  std::vector<T> values;  // as stored; NaN = no data
+  std::size_t bytes() const { return sizeof(HeightTile) + values.size() * sizeof(T); }
+};
+
+template <class T>
+class GdalElevation final : public ElevationSource, public RimAware, public Maskable {
+ public:
+  GdalElevation(std::shared_ptr<const GdalRaster> raster, const BandFormat& format)
+      : raster_(std::move(raster)), grid_(raster_->grid()), format_(format), info_(raster_->info()) {
+    info_.quantum_m = GDALDataTypeIsFloating(format.type) != 0 ? 0.0 : std::abs(format.scale);
+    const double some_height_m = first_height();
+    {
+      const auto dataset = raster_->lend();
+      info_.datum = product_datum(raster_->path(), *dataset, raster_->label());
+      info_.body_radius_m = body_radius_m(*dataset);
+    }
+    if (std::abs(some_height_m) > kLargestHeight_m) info_.datum = VerticalDatum::radius();
+    find_poles();
+  }
+
+  GdalElevation(const GdalElevation& whole, PostMask mask, int margin, const std::string& treatment)
+      : raster_(whole.raster_),
+        grid_(whole.grid_),
+        format_(whole.format_),
+        info_(whole.info_),
+        mask_(std::move(mask)),
+        mask_margin_(margin) {
+    info_.treatment = add_treatment(info_.treatment, treatment);
+    find_poles();
+  }
+
+  std::shared_ptr<const ElevationSource> with_mask(PostMask mask, int margin,
+                                                   const std::string& treatment) const override {
+    return std::make_shared<const GdalElevation>(*this, std::move(mask), margin, treatment);
+  }
+
+  std::vector<SourceInfo> infos() const override { return {info_}; }
+
+  void sample(std::span<const glm::dvec3> directions, double /*spacing_m*/,
+              std::span<double> heights_m) const override {
+    auto cursor = make_cursor();
+    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
+      for (std::size_t i = 0; i < pixels.size(); ++i) heights_m[start + i] = height(cursor, pixels[i]);
+    });
+  }
+
+  void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
+    auto cursor = make_cursor();
+    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        source_index[start + i] = std::isnan(height(cursor, pixels[i])) ? -1 : 0;
+      }
+    });
+  }
+
+  double spacing_in(const Cap& cap) const override {
+    return raster_->footprint().touches(cap) ? info_.resolution_m : std::numeric_limits<double>::infinity();
+  }
+
+  void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
+    if (max_posts == 0) return;
+    const double posts = static_cast<double>(grid_.width) * grid_.height;
+    const int stride =
+        std::max(1, static_cast<int>(std::ceil(std::sqrt(posts / static_cast<double>(max_posts)))));
+    auto cursor = make_cursor();
+    std::vector<glm::dvec2> pixels;
+    std::vector<glm::dvec3> directions;
+    std::vector<glm::dvec3> kept;
+    std::vector<double> heights_m;
+    for (int row = std::min(stride, grid_.height) / 2; row < grid_.height; row += stride) {
+      pixels.clear();
+      kept.clear();
+      heights_m.clear();
+      for (int column = std::min(stride, grid_.width) / 2; column < grid_.width; column += stride) {
+        const double stored = cursor.at(column, row).values[cursor.offset(column, row)];
+        if (std::isnan(stored)) continue;
+        pixels.emplace_back(column, row);
+        heights_m.push_back(metres(stored));
+      }
+      directions.resize(pixels.size());
+      raster_->georeference().to_directions(pixels, directions);
+      for (std::size_t i = 0; i < directions.size(); ++i) {
+        if (!std::isfinite(directions[i].x)) continue;
+        heights_m[kept.size()] = heights_m[i];
+        kept.push_back(directions[i]);
+      }
+      if (!kept.empty()) visit(kept, std::span<const double>(heights_m).first(kept.size()));
+    }
+  }
+
+  void rim_distance(std::span<const glm::dvec3> directions, double limit_posts,
+                    std::span<double> posts) const override {
+    const int limit = static_cast<int>(std::ceil(std::min(limit_posts, kMaxFeather_posts)));
+    auto cursor = make_cursor();
+    const auto fetch = [&](const TileId& id) {
+      // The limit takes the place of the level in the key: tiles of several limits may live side by side.
+      return rims_.get({limit, id.column, id.row}, [&](const TileId& key) {
+        return std::make_shared<const RimTile>(
+            make_rim_tile(grid_, {0, key.column, key.row}, limit, [&](int column, int row) {
+              return !std::isnan(cursor.at(column, row).values[cursor.offset(column, row)]);
+            }));
+      });
+    };
+    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
+      rim_distances(grid_, pixels, limit_posts, fetch, posts.subspan(start, pixels.size()));
+    });
+  }
+
+ private:
+  using Tile = HeightTile<T>;
+
+  struct Fetch {
+    const GdalElevation* source;
+    std::shared_ptr<const Tile> operator()(const TileId& id) const {
+      return source->tiles_.get(id, [this](const TileId& key) { return source->load(key); });
+    }
+  };
+  using Cursor = TileCursor<Tile, Fetch>;
+  Cursor make_cursor() const { return Cursor(0, Fetch{this}); }
+
+  template <class Use>
+  void for_pixels(std::span<const glm::dvec3> directions, const Use& use) const {
+    std::array<glm::dvec2, kBatch> pixels;
+    for (std::size_t start = 0; start < directions.size(); start += kBatch) {
+      const std::size_t count = std::min(kBatch, directions.size() - start);
+      raster_->georeference().to_pixels(directions.subspan(start, count), std::span(pixels).first(count));
+      use(start, std::span<const glm::dvec2>(pixels).first(count));
+    }
+  }
+
+  std::shared_ptr<const Tile> load(const TileId& id) const {
+    auto tile = std::make_shared<Tile>();
+    tile->values.resize(static_cast<std::size_t>(kTileStride) * kTileStride);
+    const PixelWindow window = tile_window(grid_, id);
+    raster_->read(1, -1, window, kTileStride, tile->values.data());
+    std::vector<T> first_column;
+    if (grid_.wraps && window.columns < kTileStride) {
+      first_column.resize(static_cast<std::size_t>(window.rows));
+      raster_->read(1, -1, {0, window.row, 1, window.rows}, 1, first_column.data());
+    }
+    mask_out(window, kTileStride, tile->values);
+    if (!first_column.empty()) mask_out({0, window.row, 1, window.rows}, 1, first_column);
+    complete_tile(window, first_column.empty() ? nullptr : first_column.data(), tile->values.data());
+    mark_missing(tile->values);
+    if (mask_) drop_masked(id, tile->values);
+    return tile;
+  }
+
+  // The mask judges the pixels of the tile and of a margin around it, so that every tile drops the same ones.
+  void drop_masked(const TileId& id, std::span<T> values) const {
+    const int column = std::max(0, id.column * kTileSide - mask_margin_);
+    const int row = std::max(0, id.row * kTileSide - mask_margin_);
+    const PixelWindow window{column, row,
+                             std::min(grid_.width, (id.column + 1) * kTileSide + 1 + mask_margin_) - column,
+                             std::min(grid_.height, (id.row + 1) * kTileSide + 1 + mask_margin_) - row};
+    std::vector<T> stored(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows));
+    raster_->read(1, -1, window, window.columns, stored.data());
+    mask_out(window, window.columns, stored);
+    mark_missing(stored);
+    std::vector<glm::dvec2> pixels;
+    std::vector<double> heights_m;
+    for (int r = 0; r < window.rows; ++r) {
+      for (int c = 0; c < window.columns; ++c) {
+        const double value = stored[static_cast<std::size_t>(r) * static_cast<std::size_t>(window.columns) +
+                                    static_cast<std::size_t>(c)];
+        if (std::isnan(value)) continue;
+        pixels.emplace_back(window.column + c, window.row + r);
+        heights_m.push_back(metres(value));
+      }
+    }
+    std::vector<glm::dvec3> directions(pixels.size());
+    raster_->georeference().to_directions(pixels, directions);
+    mask_(directions, heights_m);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if (!std::isnan(heights_m[i])) continue;
+      drop_around(static_cast<int>(pixels[i].x) - id.column * kTileSide,
+                  static_cast<int>(pixels[i].y) - id.row * kTileSide, values);
+    }
+  }
+
+  void drop_around(int column, int row, std::span<T> values) const {
+    for (int r = std::max(0, row - mask_margin_); r <= std::min(kTileStride - 1, row + mask_margin_); ++r) {
+      for (int c = std::max(0, column - mask_margin_); c <= std::min(kTileStride - 1, column + mask_margin_);
+           ++c) {
+        values[static_cast<std::size_t>(r * kTileStride + c)] = static_cast<T>(kNaN);
+      }
+    }
+  }
+
+  void mark_missing(std::span<T> values) const {
+    const T no_data = format_.no_data ? static_cast<T>(*format_.no_data) : static_cast<T>(kNaN);
+    for (T& value : values) {
+      // Magnitudes that no height has: infinities, and the special pixels of ISIS beside its no-data value.
+      if (value == no_data || !(std::abs(value) < static_cast<T>(1e30))) value = static_cast<T>(kNaN);
+    }
+    if (!format_.holes.any()) return;
+    for (T& value : values) {
+      if (format_.holes.has(static_cast<double>(value))) value = static_cast<T>(kNaN);
+    }
+  }
+
+  // What the mask or alpha band hides, in values of a window whose rows are `stride` apart.
+  void mask_out(const PixelWindow& window, int stride, std::span<T> values) const {
+    if (!format_.masked) return;
+    std::vector<unsigned char> mask(static_cast<std::size_t>(window.columns) *
+                                    static_cast<std::size_t>(window.rows));
+    raster_->read_mask(1, -1, window, window.columns, mask.data());
+    for (int row = 0; row < window.rows; ++row) {
+      for (int column = 0; column < window.columns; ++column) {
+        const auto at = [&](int width) {
+          return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(column);
+        };
+        if (mask[at(window.columns)] == 0) values[at(stride)] = static_cast<T>(kNaN);
+      }
+    }
+  }
+
+  double metres(double stored) const { return format_.offset + format_.scale * stored; }
+
+  double height(Cursor& cursor, const glm::dvec2& pixel) const {
+    PixelPlace place;
+    if (!locate(grid_, pixel.x, pixel.y, place)) return kNaN;
+    const T* p = cursor.at(place.column, place.row).values.data() + Cursor::offset(place.column, place.row);
+    const double v00 = p[0], v10 = p[1], v01 = p[kTileStride], v11 = p[kTileStride + 1];
+    const double fx = place.fx, fy = place.fy;
+    if (place.pole != Pole::kNone) {
+      const double row = along_row(v00, v10, fx);
+      const double pole = pole_[place.pole == Pole::kFirst ? 0 : 1];
+      if (std::isnan(row) || std::isnan(pole)) return metres(place.pole_share < 0.5 ? row : pole);
+      return metres(row * (1 - place.pole_share) + pole * place.pole_share);
+    }
+    const double stored = (v00 * (1 - fx) + v10 * fx) * (1 - fy) + (v01 * (1 - fx) + v11 * fx) * fy;
+    if (!std::isnan(stored)) return metres(stored);
+    if (std::isnan(fy < 0.5 ? (fx < 0.5 ? v00 : v10) : (fx < 0.5 ? v01 : v11))) return kNaN;
+    double sum = 0;
+    double weights = 0;
+    const auto add = [&](double value, double weight) {
+      if (std::isnan(value)) return;
+      sum += value * weight;
+      weights += weight;
+    };
+    add(v00, (1 - fx) * (1 - fy));
+    add(v10, fx * (1 - fy));
+    add(v01, (1 - fx) * fy);
+    add(v11, fx * fy);
+    return metres(sum / weights);
+  }
+
+  static double along_row(double left, double right, double fx) {
+    const double value = left * (1 - fx) + right * fx;
+    return std::isnan(value) ? (fx < 0.5 ? left : right) : value;
+  }
+
+  void find_poles() {
+    for (const bool first : {true, false}) {
+      if (first ? grid_.has_first_pole() : grid_.has_last_pole()) {
+        pole_[first ? 0 : 1] = row_mean(first ? grid_.first_polar_row() : grid_.last_polar_row());
+      }
+    }
+  }
+
+  double row_mean(int row) const {
+    std::vector<T> values(static_cast<std::size_t>(grid_.width));
+    raster_->read(1, -1, {0, row, grid_.width, 1}, grid_.width, values.data());
+    mask_out({0, row, grid_.width, 1}, grid_.width, values);
+    mark_missing(values);
+    double sum = 0;
+    int count = 0;
+    for (const T value : values) {
+      if (std::isnan(value)) continue;
+      sum += value;
+      ++count;
+    }
+    return count == 0 ? kNaN : sum / count;
+  }
+
+  // Some valid height; a raster without any is refused. Reads no more than it needs.
+  double first_height() const {
+    auto cursor = make_cursor();
+    for (int row = 0; row < grid_.height; row += kTileSide) {
+      for (int column = 0; column < grid_.width; column += kTileSide) {
+        const Tile& tile = cursor.at(column, row);
+        const PixelWindow window = tile_window(grid_, {0, column / kTileSide, row / kTileSide});
+        for (int r = 0; r < window.rows; ++r) {
+          const T* line = tile.values.data() + std::ptrdiff_t{r} * kTileStride;
+          const T* found =
+              std::find_if(line, line + window.columns, [](T value) { return !std::isnan(value); });
+          if (found != line + window.columns) return metres(*found);
+        }
+      }
+    }
+    throw source_error(raster_->path(), "holds no elevation", "every pixel is no-data or not a number",
+                       "check its no-data value with gdalinfo -stats");
+  }
+
+  std::shared_ptr<const GdalRaster> raster_;
+  PixelGrid grid_;
+  BandFormat format_;
+  SourceInfo info_;
+  PostMask mask_;  // none: all posts are used
+  int mask_margin_ = 0;
+  mutable TileCache<Tile> tiles_;
+  mutable TileCache<RimTile> rims_;
+  std::array<double, 2> pole_{kNaN, kNaN};  // stored values at the first and the last pole
+};
+
+}  // namespace
+
+std::shared_ptr<const ElevationSource> open_elevation(const std::string& path) {
+  auto raster = std::make_unique<GdalRaster>(path);
+  const BandFormat format = band_format(*raster);
+  if (format.fits_float) return std::make_shared<GdalElevation<float>>(std::move(raster), format);
+  return std::make_shared<GdalElevation<double>>(std::move(raster), format);
+}
+
+}  // namespace mars

@@ -1,0 +1,142 @@
+#include "mars/raster/gdal_file.h"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <gdal_pam.h>
+#include <gdal_priv.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "mars/raster/gdal_remote.h"
+#include "mars/raster/pds_image.h"
+#include "mars/raster/pds_map.h"
+
+namespace mars {
+namespace {
+
+using Pointer = LeasePool<GDALDataset>::Pointer;
+
+constexpr std::size_t kLabelBytes = std::size_t{1} << 18;
+
+Pointer try_open(const std::string& name) {
+  Pointer dataset(
+      static_cast<GDALDataset*>(GDALOpenEx(
+          name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr)),
+      [](GDALDataset* d) {
+        const GdalScope scope;
+        GDALClose(d);
+      });
+  // Side files (.aux.xml) are read, for their georeference, but never written.
+  if (auto* pam = dynamic_cast<GDALPamDataset*>(dataset.get()))
+    pam->SetPamFlags(pam->GetPamFlags() | GPF_NOSAVE);
+  return dataset;
+}
+
+bool exists(const std::string& path) {
+  VSIStatBufL stat{};
+  return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
+}
+
+// A server that fails for a moment must not hide a label. Within a GdalScope, as first_bytes().
+bool is_there(const std::string& path) {
+  if (exists(path)) return true;
+  return is_remote(path) && attempt_with_retries(path, [&] { return try_open(path) != nullptr; });
+}
+
+std::string first_bytes(const std::string& path, std::size_t size) {
+  std::string text;
+  // The file is there: a label that a server failed to send must not be taken for none.
+  attempt_with_retries(path, [&] {
+    VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
+    if (file == nullptr) return false;
+    text.assign(size, '\0');
+    text.resize(VSIFReadL(text.data(), 1, size, file));
+    VSIFCloseL(file);
+    return !text.empty();
+  });
+  return text;
+}
+
+// The PDS label in a file, if it looks like one.
+std::optional<PdsLabel> label_in(const std::string& path) {
+  const std::string start = first_bytes(path, 1024);
+  bool is_label = false;
+  for (const char* word : {"PDS_VERSION_ID", "SFDU_LABEL", "RECORD_TYPE"}) {
+    is_label = is_label || start.find(word) != std::string::npos;
+  }
+  if (!is_label) return std::nullopt;
+  return parse_pds_label(first_bytes(path, kLabelBytes));
+}
+
+bool is_pds(const GDALDataset& dataset) {
+  GDALDriver* driver = const_cast<GDALDataset&>(dataset).GetDriver();
+  return driver != nullptr && std::strcmp(GDALGetDriverShortName(driver), "PDS") == 0;
+}
+
+// The raster of a label, if it is one of an image.
+std::optional<RasterFile> by_label(const std::string& path) {
+  auto label = label_in(path);
+  if (!label) return std::nullopt;
+  RasterFile file{path, path, {}, label, std::nullopt};
+  const Pointer dataset = try_open(path);
+  if (dataset && !is_pds(*dataset)) return std::nullopt;
+  if (!dataset && !has_pds_image(*label)) return std::nullopt;
+  if (!dataset || gdal_misreads(*label)) {
+    const PdsImage image = pds_image(path, *label);
+    file.gdal_name = pds_vrt(image);
+    file.files = {path};
+    if (image.data_path != path) file.files.push_back(image.data_path);
+  }
+  file.place = has_pds_catalog_map(*label) ? pds_catalog_map(path, *label) : pds_map(path, *label);
+  if (!file.place && dataset && file.gdal_name != path) {
+    // The pixels are ours, the place is GDAL's.
+    std::array<double, 6> to_map{};
+    LabelPlace place;
+    if (dataset->GetGeoTransform(to_map.data()) == CE_None) place.to_map = to_map;
+    if (const OGRSpatialReference* crs = dataset->GetSpatialRef()) {
+      char* wkt = nullptr;
+      const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+      if (crs->exportToWkt(&wkt, options) == OGRERR_NONE) place.crs = wkt;
+      CPLFree(wkt);
+    }
+    file.place = place;
+  }
+  return file;
+}
+
+}  // namespace
+
+RasterFile find_raster(const std::string& path) {
+  const GdalScope scope;
+  if (is_there(path)) {
+    if (auto file = by_label(path)) return *file;
+    if (!CPLString(CPLGetExtension(path.c_str())).tolower().compare("img") && !try_open(path)) {
+      for (const char* extension : {"lbl", "LBL"}) {
+        const std::string label = CPLResetExtension(path.c_str(), extension);
+        if (!exists(label)) continue;
+        if (auto file = by_label(label)) return *file;
+        if (try_open(label)) return {label, label, {}, std::nullopt, std::nullopt};
+      }
+    }
+  }
+  return {path, path, {}, std::nullopt, std::nullopt};
+}
+
+Pointer open_raster(const RasterFile& file) {
+  const GdalScope scope;
+  Pointer dataset;
+  if (attempt_with_retries(file.path, [&] { return (dataset = try_open(file.gdal_name)) != nullptr; }))
+    return dataset;
+  VSIStatBufL stat{};
+  errno = 0;
+  if (VSIStatExL(file.path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) != 0 &&
+      file.path.find(':') == std::string::npos) {
+    throw source_error(file.path, "cannot open", std::strerror(errno != 0 ? errno : ENOENT), "check the name");
+  }
+  throw source_error(file.path, "cannot open as a raster", scope.message(),
+                     advice_for(file.path, "give a raster that gdalinfo can show"));
+}
+
+}  // namespace mars

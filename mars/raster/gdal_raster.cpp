@@ -1,0 +1,142 @@
+#include "mars/raster/gdal_raster.h"
+
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
+#include <rawdataset.h>
+
+#include <algorithm>
+#include <type_traits>
+
+#include "mars/raster/gdal_labels.h"
+#include "mars/raster/gdal_remote.h"
+
+namespace mars {
+namespace {
+
+const char* const kWrongFile = "give a raster that gdalinfo can show";
+
+void check_bands(const std::string& path, GDALDataset& dataset) {
+  if (dataset.GetRasterCount() == 0) {
+    const char* const* parts = dataset.GetMetadata("SUBDATASETS");
+    const char* first = CSLFetchNameValue(parts, "SUBDATASET_1_NAME");
+    throw source_error(path, "has no raster bands", "",
+                       first != nullptr ? std::string("open one of its parts, e.g. ") + first : kWrongFile);
+  }
+  for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
+    if (GDALDataTypeIsComplex(dataset.GetRasterBand(i)->GetRasterDataType())) {
+      throw source_error(path, "holds complex numbers", "", "derive a real band first, e.g. with gdal_calc.py");
+    }
+  }
+}
+
+// GDAL reads zeros beyond the end of some raw files, as if they were sparse.
+void check_raw_size(const std::string& path, GDALDataset& dataset) {
+  for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
+    const auto* raw = dynamic_cast<RawRasterBand*>(dataset.GetRasterBand(i));
+    if (raw == nullptr || raw->GetFPL() == nullptr) continue;
+    const std::int64_t last_row = std::int64_t{raw->GetLineOffset()} * (dataset.GetRasterYSize() - 1);
+    const std::int64_t last_column = std::int64_t{raw->GetPixelOffset()} * (dataset.GetRasterXSize() - 1);
+    const std::int64_t needed = static_cast<std::int64_t>(raw->GetImgOffset()) +
+                                std::max<std::int64_t>(last_row, 0) + std::max<std::int64_t>(last_column, 0) +
+                                GDALGetDataTypeSizeBytes(dataset.GetRasterBand(i)->GetRasterDataType());
+    VSIFSeekL(raw->GetFPL(), 0, SEEK_END);
+    const auto size = static_cast<std::int64_t>(VSIFTellL(raw->GetFPL()));
+    if (size < needed) {
+      throw source_error(path, "is cut short",
+                         std::to_string(size) + " of " + std::to_string(needed) + " bytes", "fetch it again");
+    }
+  }
+}
+
+}  // namespace
+
+GdalRaster::GdalRaster(const std::string& path)
+    : file_(find_raster(raster_name(path))), handles_([this] { return open_raster(file_); }) {
+  const GdalScope scope;
+  const auto dataset = handles_.lend();
+  check_bands(file_.path, *dataset);
+  check_raw_size(file_.path, *dataset);
+  holes_ = holes_of(*dataset, file_.label);
+  const LabelPlace place = file_.place ? *file_.place : place_of(file_.path, *dataset);
+  georeference_.emplace(file_.path, *dataset, place);
+  footprint_.emplace(*georeference_);
+  if (footprint_->is_empty()) {
+    throw source_error(file_.path, "lies nowhere on the planet",
+                       "its pixels cannot be transformed to longitude and latitude",
+                       "check its coordinate system and geotransform with gdalinfo");
+  }
+}
+
+SourceInfo GdalRaster::info() const {
+  const GdalScope scope;
+  SourceInfo info;
+  info.name = file_.path;
+  info.resolution_m = georeference_->resolution_m();
+  std::vector<std::string> files = file_.files;
+  if (files.empty()) {
+    const CPLStringList known(lend()->GetFileList());
+    for (int i = 0; i < known.size(); ++i) files.emplace_back(known[i]);
+  }
+  for (const std::string& each : files) {
+    VSIStatBufL stat{};
+    if (VSIStatL(each.c_str(), &stat) != 0) continue;
+    info.size_bytes += static_cast<std::int64_t>(stat.st_size);
+    info.mtime_s = std::max(info.mtime_s, static_cast<std::int64_t>(stat.st_mtime));
+  }
+  return info;
+}
+
+namespace {
+
+template <class T>
+constexpr GDALDataType data_type() {
+  if constexpr (std::is_same_v<T, float>) return GDT_Float32;
+  if constexpr (std::is_same_v<T, double>) return GDT_Float64;
+  return GDT_Byte;
+}
+
+template <class T>
+void read_pixels(const std::string& path, GDALRasterBand* source, const PixelWindow& w, int stride, T* values,
+                 const GdalScope& scope) {
+  if (source != nullptr && attempt_with_retries(path, [&] {
+        return source->RasterIO(GF_Read, w.column, w.row, w.columns, w.rows, values, w.columns, w.rows,
+                                data_type<T>(), sizeof(T), static_cast<GSpacing>(sizeof(T)) * stride,
+                                nullptr) == CE_None;
+      })) {
+    return;
+  }
+  throw source_error(path,
+                     "cannot read rows " + std::to_string(w.row) + " to " + std::to_string(w.row + w.rows - 1),
+                     scope.message(), advice_for(path, "the file may be cut short or damaged: fetch it again"));
+}
+
+GDALRasterBand* band_of(GDALDataset& dataset, int band, int overview) {
+  GDALRasterBand* source = dataset.GetRasterBand(band);
+  return overview < 0 || source == nullptr ? source : source->GetOverview(overview);
+}
+
+}  // namespace
+
+template <class T>
+void GdalRaster::read(int band, int overview, const PixelWindow& window, int stride, T* values) const {
+  const GdalScope scope;
+  const auto dataset = lend();
+  read_pixels(file_.path, band_of(*dataset, band, overview), window, stride, values, scope);
+}
+
+void GdalRaster::read_mask(int band, int overview, const PixelWindow& window, int stride,
+                           unsigned char* values) const {
+  const GdalScope scope;
+  const auto dataset = lend();
+  GDALRasterBand* source = band_of(*dataset, band, overview);
+  read_pixels(file_.path, source == nullptr ? nullptr : source->GetMaskBand(), window, stride, values, scope);
+}
+
+template void GdalRaster::read(int, int, const PixelWindow&, int, float*) const;
+template void GdalRaster::read(int, int, const PixelWindow&, int, double*) const;
+template void GdalRaster::read(int, int, const PixelWindow&, int, unsigned char*) const;
+
+std::string raster_library() { return GDALVersionInfo("--version"); }
+
+}  // namespace mars

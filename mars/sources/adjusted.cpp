@@ -1,0 +1,99 @@
+#include "mars/sources/adjusted.h"
+
+#include <cmath>
+#include <vector>
+
+#include "mars/sources/stack.h"
+
+namespace mars {
+namespace {
+
+class AdjustedElevation final : public ElevationSource, public RimAware, public Maskable {
+ public:
+  AdjustedElevation(std::shared_ptr<const ElevationSource> source, Adjust adjust, const VerticalDatum& datum,
+                    const std::string& treatment)
+      : source_(std::move(source)), adjust_(std::move(adjust)), infos_(source_->infos()) {
+    for (SourceInfo& info : infos_) {
+      info.datum = datum;
+      info.treatment = add_treatment(info.treatment, treatment);
+    }
+  }
+  AdjustedElevation(std::shared_ptr<const ElevationSource> source, Adjust adjust, std::vector<SourceInfo> infos)
+      : source_(std::move(source)), adjust_(std::move(adjust)), infos_(std::move(infos)) {}
+
+  // The mask judges adjusted heights, but drops the inner source's own posts.
+  std::shared_ptr<const ElevationSource> with_mask(PostMask mask, int margin,
+                                                   const std::string& treatment) const override {
+    const auto* inner = dynamic_cast<const Maskable*>(source_.get());
+    if (inner == nullptr) return nullptr;
+    const PostMask judged = [mask = std::move(mask), adjust = adjust_](std::span<const glm::dvec3> directions,
+                                                                       std::span<double> heights_m) {
+      std::vector<double> own_m(heights_m.begin(), heights_m.end());
+      adjust(directions, own_m);
+      mask(directions, own_m);
+      for (std::size_t i = 0; i < own_m.size(); ++i) {
+        if (std::isnan(own_m[i])) heights_m[i] = own_m[i];
+      }
+    };
+    auto masked = inner->with_mask(judged, margin, "");
+    if (masked == nullptr) return nullptr;
+    std::vector<SourceInfo> infos = infos_;
+    for (SourceInfo& info : infos) info.treatment = add_treatment(info.treatment, treatment);
+    return std::make_shared<const AdjustedElevation>(std::move(masked), adjust_, std::move(infos));
+  }
+
+  std::vector<SourceInfo> infos() const override { return infos_; }
+
+  void sample(std::span<const glm::dvec3> directions, double spacing_m,
+              std::span<double> heights_m) const override {
+    source_->sample(directions, spacing_m, heights_m);
+    adjust_(directions, heights_m);
+  }
+
+  void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
+    source_->origin(directions, source_index);
+  }
+
+  double spacing_in(const Cap& cap) const override { return source_->spacing_in(cap); }
+
+  void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
+    std::vector<double> own_m;
+    source_->visit_posts(max_posts,
+                         [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
+                           own_m.assign(heights_m.begin(), heights_m.end());
+                           adjust_(directions, own_m);
+                           visit(directions, own_m);
+                         });
+  }
+
+  void rim_distance(std::span<const glm::dvec3> directions, double limit_posts,
+                    std::span<double> posts) const override {
+    if (const auto* rim = dynamic_cast<const RimAware*>(source_.get())) {
+      rim->rim_distance(directions, limit_posts, posts);
+      return;
+    }
+    // No rim to fade at.
+    std::vector<int> origin(directions.size());
+    source_->origin(directions, origin);
+    for (std::size_t i = 0; i < posts.size(); ++i) posts[i] = origin[i] < 0 ? 0.0 : limit_posts;
+  }
+
+ private:
+  std::shared_ptr<const ElevationSource> source_;
+  Adjust adjust_;
+  std::vector<SourceInfo> infos_;
+};
+
+}  // namespace
+
+std::string add_treatment(const std::string& before, const std::string& treatment) {
+  if (before.empty() || treatment.empty()) return before + treatment;
+  return before + "; " + treatment;
+}
+
+std::shared_ptr<const ElevationSource> adjusted(std::shared_ptr<const ElevationSource> source, Adjust adjust,
+                                                const VerticalDatum& datum, const std::string& treatment) {
+  return std::make_shared<AdjustedElevation>(std::move(source), std::move(adjust), datum, treatment);
+}
+
+}  // namespace mars

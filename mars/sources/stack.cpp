@@ -1,0 +1,148 @@
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "mars/sources/source.h"
+#include "mars/sources/stack_walk.h"
+
+namespace mars {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class ElevationStack final : public ElevationSource {
+ public:
+  ElevationStack(std::vector<std::shared_ptr<const ElevationSource>> sources, const StackOptions& options)
+      : sources_(by_resolution(std::move(sources), options)), options_(options) {
+    const SourceInfo* known = nullptr;
+    for (const auto& source : sources_) {
+      first_info_.push_back(infos_.size());
+      resolution_m_ = std::min(resolution_m_, resolution_m(*source));
+      for (SourceInfo& info : source->infos()) infos_.push_back(std::move(info));
+    }
+    for (const SourceInfo& info : infos_) {
+      if (!info.datum.is_known()) continue;
+      if (known != nullptr && !(known->datum == info.datum)) {
+        throw SourceError(known->name + " holds heights of datum '" + to_string(known->datum) + "' but " +
+                          info.name + " of '" + to_string(info.datum) + "'; convert one of them first");
+      }
+      known = &info;
+    }
+  }
+
+  std::vector<SourceInfo> infos() const override { return infos_; }
+
+  void sample(std::span<const glm::dvec3> directions, double spacing_m,
+              std::span<double> heights_m) const override {
+    std::vector<Blend> blends(directions.size());
+    blend(directions, spacing_m, blends);
+    for (std::size_t i = 0; i < blends.size(); ++i) heights_m[i] = blends[i].height_m();
+  }
+
+  void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
+    std::vector<Blend> blends(directions.size());
+    blend(directions, resolution_m_, blends);
+    std::vector<std::vector<std::size_t>> parts(sources_.size());
+    for (std::size_t i = 0; i < blends.size(); ++i) {
+      source_index[i] = -1;
+      if (blends[i].main >= 0) parts[static_cast<std::size_t>(blends[i].main)].push_back(i);
+    }
+    std::vector<glm::dvec3> places;
+    std::vector<int> own;
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+      places.clear();
+      for (const std::size_t i : parts[s]) places.push_back(directions[i]);
+      own.resize(places.size());
+      if (!places.empty()) sources_[s]->origin(places, own);
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        if (own[k] >= 0) source_index[parts[s][k]] = own[k] + static_cast<int>(first_info_[s]);
+      }
+    }
+  }
+
+  double spacing_in(const Cap& cap) const override {
+    double finest = std::numeric_limits<double>::infinity();
+    for (const auto& source : sources_) finest = std::min(finest, source->spacing_in(cap));
+    return finest;
+  }
+
+  void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
+    const std::size_t each = std::max<std::size_t>(max_posts / sources_.size(), max_posts > 0 ? 1 : 0);
+    std::vector<Blend> blends;
+    std::vector<glm::dvec3> kept;
+    std::vector<double> kept_m;
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      sources_[s]->visit_posts(each,
+                               [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
+                                 blends.assign(directions.size(), {});
+                                 blend(directions, resolution_m_, blends);
+                                 kept.clear();
+                                 kept_m.clear();
+                                 for (std::size_t i = 0; i < directions.size(); ++i) {
+                                   if (!blends[i].single || blends[i].main != static_cast<int>(s)) continue;
+                                   kept.push_back(directions[i]);
+                                   kept_m.push_back(heights_m[i]);
+                                 }
+                                 if (!kept.empty()) visit(kept, kept_m);
+                               });
+    }
+  }
+
+ private:
+  struct Blend {
+    double weighted_m = 0;
+    double weight = 0;
+    double finest_m = kNaN;  // the value where every share is zero
+    double largest = -1;     // share of `main`
+    int main = -1;
+    bool single = true;  // one source alone makes the value
+    double only_m = kNaN;
+
+    double height_m() const { return single ? finest_m : weighted_m / weight; }
+  };
+
+  void blend(std::span<const glm::dvec3> directions, double spacing_m, std::span<Blend> blends) const {
+    std::vector<double> heights_m;
+    walk_stack(
+        sources_, options_, directions,
+        [&](std::size_t s, std::span<const glm::dvec3> places, std::span<char> has) {
+          heights_m.resize(places.size());
+          sources_[s]->sample(places, spacing_m, heights_m);
+          for (std::size_t i = 0; i < has.size(); ++i) has[i] = std::isnan(heights_m[i]) ? 0 : 1;
+        },
+        [&](std::size_t s, std::span<const std::size_t> places, std::span<const char> has,
+            std::span<const double> shares) {
+          for (std::size_t i = 0; i < places.size(); ++i) {
+            if (has[i] == 0) continue;
+            Blend& b = blends[places[i]];
+            if (b.main < 0 || (b.weight <= 0 && shares[i] > 0)) {
+              b.finest_m = heights_m[i];
+              b.single = true;
+            } else if (shares[i] > 0) {
+              b.single = false;
+            }
+            if (shares[i] > b.largest) {
+              b.largest = shares[i];
+              b.main = static_cast<int>(s);
+            }
+            b.weighted_m += heights_m[i] * shares[i];
+            b.weight += shares[i];
+          }
+        });
+  }
+
+  std::vector<std::shared_ptr<const ElevationSource>> sources_;
+  StackOptions options_;
+  double resolution_m_ = std::numeric_limits<double>::infinity();
+  std::vector<SourceInfo> infos_;
+  std::vector<std::size_t> first_info_;  // index into infos_ of each source's first
+};
+
+}  // namespace
+
+std::shared_ptr<const ElevationSource> stack_elevation(
+    std::vector<std::shared_ptr<const ElevationSource>> sources, const StackOptions& options) {
+  return std::make_shared<ElevationStack>(std::move(sources), options);
+}
+
+}  // namespace mars

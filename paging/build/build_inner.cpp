@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <cmath>
+
+#include "paging/build/build_grid.h"
+
+namespace paging {
+
+namespace {
+
+// Copies a child's posts to their place in its parent's mesh grid.
+void put_child(lod::Posts& posts, int child, const lod::Posts& fine) {
+  const int n = fine.intervals;
+  const auto side = static_cast<std::size_t>(fine.side());
+  const auto wide = static_cast<std::size_t>(posts.side());
+  const auto x0 = static_cast<std::size_t>((child & 1) * n);
+  const auto y0 = static_cast<std::size_t>((child >> 1) * n);
+  for (std::size_t j = 0; j < side; ++j) {
+    std::copy_n(fine.height_m.begin() + static_cast<std::ptrdiff_t>(j * side), side,
+                posts.height_m.begin() + static_cast<std::ptrdiff_t>((y0 + j) * wide + x0));
+  }
+}
+
+// An inner tile's own posts, of those that it is meshed over.
+std::vector<double> every_second(const lod::Posts& posts) {
+  std::vector<double> own;
+  for (int j = 0; j < posts.side(); j += 2) {
+    for (int i = 0; i < posts.side(); i += 2) own.push_back(posts.at(i, j));
+  }
+  return own;
+}
+
+// Of the child's posts, every second one is a post of its parent: marks those without data.
+void put_child_mask(std::vector<bool>& missing, int child, const Bytes& packed, std::size_t side) {
+  if (packed.empty()) return;
+  const std::vector<bool> below = decode_mask(packed, side * side);
+  const std::size_t x0 = (child & 1) != 0 ? side / 2 : 0;
+  const std::size_t y0 = (child >> 1) != 0 ? side / 2 : 0;
+  for (std::size_t j = 0; j < side; j += 2) {
+    for (std::size_t i = 0; i < side; i += 2) {
+      if (below[j * side + i]) missing[(y0 + j / 2) * side + x0 + i / 2] = true;
+    }
+  }
+}
+
+// An inner tile's own posts as the finest tiles below it have them: they are posts of those that no border
+// moves.
+lod::Posts sample_inner(const BuildContext& context, const lod::TileKey& key) {
+  const PlanetMeta& meta = context.meta;
+  const int n = meta.tile.intervals();
+  const lod::GridLines lines = lod::grid_lines(key, n);
+  const std::vector<glm::dvec3> directions = post_directions(key, lines);
+  lod::Posts posts{key, n, std::vector<double>(directions.size())};
+  std::map<int, std::vector<std::size_t>> by_level;
+  for (std::size_t p = 0; p < directions.size(); ++p) {
+    by_level[context.plan.coarsest_level_at(key.face, lines.u[p % lines.u.size()], lines.v[p / lines.u.size()])]
+        .push_back(p);
+  }
+  for (const auto& [level, some] : by_level) {
+    std::vector<glm::dvec3> at;
+    for (const std::size_t p : some) at.push_back(directions[p]);
+    std::vector<double> heights(at.size());
+    context.elevation->sample(at, lod::post_spacing_m(level, n, meta.radius_m), heights);
+    for (std::size_t m = 0; m < some.size(); ++m)
+      posts.height_m[some[m]] = std::isfinite(heights[m]) ? heights[m] : meta.fill_m;
+  }
+  const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m, directions);
+  for (std::size_t p = 0; p < quanta.size(); ++p) posts.height_m[p] = quanta[p] * meta.quantum_m;
+  return posts;
+}
+
+}  // namespace
+
+AboveTile sample_above(const BuildContext& context, const lod::TileKey& key) {
+  const int n = 2 * context.meta.tile.intervals();
+  lod::Posts posts{key, n,
+                   std::vector<double>(static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(n + 1))};
+  for (int c = 0; c < 4; ++c) {
+    const lod::TileKey child = lod::child(key, c);
+    put_child(posts, c,
+              context.plan.is_inner(child) ? sample_inner(context, child) : sample_leaf(context, child).posts);
+  }
+  return {mesh_inner(context, posts), {key, n / 2, every_second(posts)}};
+}
+
+PackedMesh mesh_inner(const BuildContext& context, const lod::Posts& posts) {
+  // A finest tile beside this one has only every second of these border posts.
+  std::array<int, 4> border_step{1, 1, 1, 1};
+  for (const lod::Edge edge : lod::kEdges) {
+    if (!context.plan.is_inner(lod::neighbour(posts.key, edge).key))
+      border_step[static_cast<std::size_t>(edge)] = 2;
+  }
+  const MesherPool::Lease mesher = context.meshers.borrow();
+  const double tolerance = mesh_tolerance_m(context.options, posts.key.level);
+  const lod::GridLines lines = lod::grid_lines(posts.key, posts.intervals);
+  const lod::BorderPosts borders = borders_of(posts, lines, border_step, tolerance, context.meta.radius_m);
+  return pack_mesh(mesher->mesh(posts, borders, tolerance, context.meta.radius_m), posts,
+                   context.meta.quantum_m);
+}
+
+Node build_inner(const BuildContext& context, const lod::TileKey& key) {
+  const PlanetMeta& meta = context.meta;
+  const int n = meta.tile.intervals();
+  const auto wide = static_cast<std::size_t>(2 * n + 1);
+  Node node;
+  node.inner = true;
+  lod::Posts posts{key, 2 * n, std::vector<double>(wide * wide)};
+  std::vector<bool> missing(static_cast<std::size_t>(meta.tile.post_count()));
+  for (int c = 0; c < 4; ++c) {
+    const lod::TileKey child = lod::child(key, c);
+    const lod::Posts fine = read_posts(context, child);
+    put_child(posts, c, fine);
+    put_child_mask(missing, c, context.writer.missing(child), static_cast<std::size_t>(n + 1));
+    const Node& below = context.nodes.at(child);
+    node.sources.insert(below.sources.begin(), below.sources.end());
+    node.min_m = c == 0 ? below.min_m : std::min(node.min_m, below.min_m);
+    node.lowest_m = c == 0 ? below.lowest_m : std::min(node.lowest_m, below.lowest_m);
+    node.max_m = c == 0 ? below.max_m : std::max(node.max_m, below.max_m);
+    node.slope = std::max(node.slope, below.slope);
+  }
+  const std::vector<double> own = every_second(posts);
+  TilePayload payload;
+  payload.heights = encode_heights(to_quanta(own, meta.quantum_m), n + 1);
+  if (std::find(missing.begin(), missing.end(), true) != missing.end()) payload.missing = encode_mask(missing);
+
+  const PackedMesh mesh = mesh_inner(context, posts);
+  payload.meshes.push_back(encode_mesh(mesh));
+  node.variants.push_back({{}, static_cast<std::uint32_t>(mesh.mesh.triangle_count())});
+  context.writer.put_tile(to_row(key, node), payload);
+  return node;
+}
+
+}  // namespace paging

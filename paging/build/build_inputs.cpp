@@ -1,0 +1,139 @@
+#include "paging/build/build_inputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "vpe/base/number.h"
+
+#ifndef VPE_VERSION
+#define VPE_VERSION "0"
+#endif
+
+namespace paging {
+
+namespace {
+
+// Raised whenever equal sources and options give other tiles than before within a version of the program.
+constexpr int kBuilderRevision = 4;
+
+// A power of two well below what the sources resolve: heights between their posts are interpolated, and a
+// coarse step would show as terraces in slopes and shading.
+double choose_quantum(const std::vector<mars::SourceInfo>& sources, double finest_spacing_m) {
+  double step = 1.0;
+  for (const mars::SourceInfo& s : sources) {
+    step =
+        std::min(step, s.quantum_m > 0 ? s.quantum_m / 16 : std::max(s.resolution_m, finest_spacing_m) / 512);
+  }
+  return std::clamp(std::exp2(std::floor(std::log2(step))), 1.0 / 4096.0, 1.0);
+}
+
+double mean_height(const mars::ElevationSource& source) {
+  double sum = 0;
+  std::int64_t count = 0;
+  source.visit_posts(20000, [&](std::span<const glm::dvec3>, std::span<const double> heights) {
+    for (const double h : heights) {
+      if (!std::isfinite(h)) continue;
+      sum += h;
+      ++count;
+    }
+  });
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+bool is_wanted_fine(const BuildOptions& options, const mars::Cap& cap) {
+  return options.regions.empty() || std::any_of(options.regions.begin(), options.regions.end(),
+                                                [&](const Region& r) { return touches(r, cap); });
+}
+
+}  // namespace
+
+bool touches(const Region& region, const mars::Cap& cap) {
+  const mars::LonLat centre = mars::lon_lat(cap.centre);
+  const double reach_deg = cap.radius_rad / mars::kRadiansPerDegree;
+  if (centre.lat_deg + reach_deg < region.south_deg || centre.lat_deg - reach_deg > region.north_deg)
+    return false;
+  // Width of a cap in longitude grows with latitude; a cap that holds a pole has all longitudes.
+  const double lat = std::abs(centre.lat_deg) * mars::kRadiansPerDegree;
+  if (lat + cap.radius_rad >= mars::kPi / 2) return true;
+  const double half_width_deg = std::asin(std::sin(cap.radius_rad) / std::cos(lat)) / mars::kRadiansPerDegree;
+  double width = region.east_deg - region.west_deg;
+  if (width < 0) width += 360.0;
+  if (width + 2 * half_width_deg >= 360.0) return true;
+  double from_west = std::fmod(centre.lon_deg + half_width_deg - region.west_deg, 360.0);
+  if (from_west < 0) from_west += 360.0;
+  return from_west <= width + 2 * half_width_deg;
+}
+
+WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source) {
+  return [&options, &source](const lod::TileKey&, const mars::Cap& cap) {
+    if (!is_wanted_fine(options, cap)) return options.base_spacing_m;
+    return std::min(options.base_spacing_m, std::max(source.spacing_in(cap), options.finest_spacing_m));
+  };
+}
+
+std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::ImageSource& image) {
+  std::vector<lod::TileKey> tiles;
+  for (int f = 0; f < mars::kFaces; ++f) tiles.push_back({static_cast<mars::Face>(f), 0, 0, 0});
+  for (std::size_t at = 0; at < tiles.size(); ++at) {
+    const lod::TileKey key = tiles[at];
+    const double spacing = lod::post_spacing_m(key.level, kImageIntervals, options.radius_m);
+    const mars::Cap cap = lod::bounding_cap(key);
+    const double wanted =
+        std::max(image.spacing_in(cap), is_wanted_fine(options, cap)
+                                            ? options.finest_image_m
+                                            : std::max(options.finest_image_m, options.base_spacing_m));
+    // A texel up to a fifth coarser than asked for is not worth four times the tiles.
+    if (!(spacing > 1.2 * wanted) || key.level >= 20) continue;
+    for (int c = 0; c < 4; ++c) tiles.push_back(lod::child(key, c));
+  }
+  return tiles;
+}
+
+// Everything that a planet file's content is a function of, as text.
+std::string recipe_of(const BuildOptions& options, const PlanetMeta& meta) {
+  const auto rows = to_rows(meta);  // sources with size and time among them
+  std::ostringstream text;
+  text << std::hexfloat;
+  text << "vpe " << VPE_VERSION << " builder " << kBuilderRevision << "\n";
+  for (const auto& [key, value] : rows) {
+    if (key != "checksum") text << key << " = " << value << "\n";
+  }
+  text << "base " << options.base_spacing_m << " finest " << options.finest_spacing_m << " mesh "
+       << options.mesh_ratio << " image " << options.finest_image_m << " quality " << options.image_quality
+       << "\n";
+  for (const Region& r : options.regions) {
+    text << "region " << r.west_deg << " " << r.south_deg << " " << r.east_deg << " " << r.north_deg << "\n";
+  }
+  if (!options.part.is_all()) text << recipe_part(options.part);
+  return text.str();
+}
+
+std::string recipe_part(const vpe::base::Shard& part) {
+  return "part " + std::to_string(part.number) + " of " + std::to_string(part.of) + "\n";
+}
+
+PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
+                           const mars::ImageSource* image) {
+  PlanetMeta meta;
+  if (!(options.radius_m >= kMinRadius_m && options.radius_m < kMaxRadius_m)) {
+    throw PlanetError("a planet's radius of " + vpe::base::format_number(options.radius_m) + " m: must be " +
+                      vpe::base::format_number(kMinRadius_m) + " m or more and less than " +
+                      vpe::base::format_number(kMaxRadius_m) + " m");
+  }
+  meta.body = options.body;
+  meta.radius_m = options.radius_m;
+  meta.tile.k = options.tile_k;
+  meta.sources = elevation.infos();
+  if (meta.sources.empty()) throw PlanetError("no elevation source: give at least one DEM");
+  meta.datum = meta.sources.front().datum;
+  if (options.true_radii) meta.shape = "radius";
+  meta.quantum_m =
+      options.quantum_m > 0 ? options.quantum_m : choose_quantum(meta.sources, options.finest_spacing_m);
+  meta.fill_m = std::round(mean_height(elevation) / meta.quantum_m) * meta.quantum_m;
+  for (const mars::SourceInfo& s : meta.sources) meta.illustration = meta.illustration || s.illustration;
+  if (image != nullptr) meta.image_sources = image->infos();
+  return meta;
+}
+
+}  // namespace paging

@@ -1,0 +1,113 @@
+#include "paging/build/build_resampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vpe/base/parallel.h"
+
+namespace paging {
+
+namespace {
+
+// So many posts are looked up together: enough that neighbours along a source's rows share the reading of a
+// tile.
+constexpr std::size_t kBatch = std::size_t{1} << 18;
+
+constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
+
+struct SourcePost {
+  glm::dvec3 direction{};
+  double height_m = 0;
+  mars::ChartPoint point;
+  std::size_t leaf = kNowhere;  // index of the finest tile, when it is one of those asked for
+};
+
+class Meter {
+ public:
+  Meter(const BuildContext& context, std::span<const lod::TileKey> leaves, int threads,
+        const std::function<void()>& step)
+      : context_(context), leaves_(leaves), threads_(threads), step_(step) {}
+
+  void add(std::span<const glm::dvec3> directions, std::span<const double> heights) {
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+      if (!std::isfinite(heights[n])) continue;
+      posts_.push_back({directions[n], heights[n], {}, kNowhere});
+      if (posts_.size() >= kBatch) measure();
+    }
+  }
+
+  std::vector<ResamplingSum> finish() {
+    measure();
+    return sums_;
+  }
+
+ private:
+  // Neighbours mostly lie in one tile.
+  void locate(std::span<SourcePost> posts) const {
+    std::size_t last = kNowhere;
+    for (SourcePost& p : posts) {
+      p.point = mars::chart_point(p.direction);
+      if (last == kNowhere || leaves_[last] != lod::tile_at(p.point, leaves_[last].level)) {
+        const lod::TileKey key = lod::tile_at(p.point, context_.plan.leaf_level(p.point));
+        const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, curve_less);
+        last =
+            leaf == leaves_.end() || *leaf != key ? kNowhere : static_cast<std::size_t>(leaf - leaves_.begin());
+      }
+      p.leaf = last;
+    }
+  }
+
+  void measure() {
+    constexpr std::size_t kBlock = 4096;
+    vpe::core::parallel_for((posts_.size() + kBlock - 1) / kBlock, threads_, [&](std::size_t n) {
+      locate(std::span(posts_).subspan(n * kBlock, std::min(kBlock, posts_.size() - n * kBlock)));
+    });
+    std::erase_if(posts_, [](const SourcePost& p) { return p.leaf == kNowhere; });
+    std::sort(posts_.begin(), posts_.end(),
+              [](const SourcePost& a, const SourcePost& b) { return a.leaf < b.leaf; });
+    std::vector<std::size_t> runs;  // where each leaf's posts begin
+    for (std::size_t n = 0; n < posts_.size(); ++n) {
+      if (n == 0 || posts_[n].leaf != posts_[n - 1].leaf) runs.push_back(n);
+    }
+    std::mutex adding;
+    vpe::core::parallel_for(runs.size(), threads_, [&](std::size_t r) {
+      const std::size_t end = r + 1 < runs.size() ? runs[r + 1] : posts_.size();
+      const lod::TileKey& key = leaves_[posts_[runs[r]].leaf];
+      const lod::Posts posts = read_posts(context_, key);
+      const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
+      ResamplingSum sum;
+      for (std::size_t n = runs[r]; n < end; ++n) {
+        const SourcePost& p = posts_[n];
+        const double height_m = lod::surface_height(posts, lines, p.point.u, p.point.v, context_.meta.radius_m);
+        sum.add(std::abs(height_m - p.height_m));
+      }
+      const std::lock_guard lock(adding);
+      sums_.resize(std::max(sums_.size(), static_cast<std::size_t>(key.level) + 1));
+      sums_[static_cast<std::size_t>(key.level)].include(sum);
+    });
+    posts_.clear();
+    step_();
+  }
+
+  const BuildContext& context_;
+  std::span<const lod::TileKey> leaves_;
+  int threads_;
+  const std::function<void()>& step_;
+  std::vector<SourcePost> posts_;
+  std::vector<ResamplingSum> sums_;
+};
+
+}  // namespace
+
+std::vector<ResamplingSum> measure_resampling(const BuildContext& context, std::span<const lod::TileKey> leaves,
+                                              int threads, const std::function<void()>& step) {
+  Meter meter(context, leaves, threads, step);
+  context.elevation->visit_posts(context.options.resampling_posts,
+                                 [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
+                                   meter.add(directions, heights);
+                                 });
+  return meter.finish();
+}
+
+}  // namespace paging

@@ -1,0 +1,66 @@
+#include <sstream>
+
+#include "paging/build/build_steps.h"
+
+namespace paging {
+
+namespace {
+
+std::set<int> sources_of_row(const NodeRow& row) {
+  std::set<int> sources;
+  std::istringstream numbers(row.sources);
+  for (std::string number; std::getline(numbers, number, ',');) sources.insert(std::stoi(number));
+  return sources;
+}
+
+}  // namespace
+
+Node node_of(const NodeRow& row) {
+  Node node;
+  node.min_m = row.min_m;
+  node.max_m = row.max_m;
+  node.slope = row.slope;
+  node.inner = row.inner;
+  node.steps = row.steps;
+  node.sources = sources_of_row(row);
+  node.variants = row.variants;
+  if (row.posts_terms) node.posts_terms = *row.posts_terms;
+  return node;
+}
+
+NodeRow to_row(const lod::TileKey& key, const Node& node) {
+  NodeRow row;
+  row.key = lod::pack(key);
+  row.min_m = node.min_m;
+  row.max_m = node.max_m;
+  row.slope = node.slope;
+  row.inner = node.inner;
+  row.steps = node.steps;
+  for (const int s : node.sources) {
+    if (!row.sources.empty()) row.sources.push_back(',');
+    row.sources.append(std::to_string(s));
+  }
+  row.variants = node.variants;
+  if (node.inner) row.posts_terms = node.posts_terms;
+  return row;
+}
+
+Node recall_leaf(const BuildContext& context, const NodeRow& row) {
+  Node node = node_of(row);
+  const int level = lod::unpack(row.key)->level;
+  const double spacing = lod::post_spacing_m(level, context.meta.tile.intervals(), context.meta.radius_m);
+  node.lowest_m = node.min_m - facet_sag_m(spacing, context.meta.radius_m);
+  return node;
+}
+
+Node recall_inner(const BuildContext& context, const NodeRow& row) {
+  Node node = node_of(row);
+  node.posts_terms = node.variants.front().terms = {};  // measured anew, or taken from notes
+  for (int c = 0; c < 4; ++c) {
+    const double lowest = context.nodes.at(lod::child(*lod::unpack(row.key), c)).lowest_m;
+    node.lowest_m = c == 0 ? lowest : std::min(node.lowest_m, lowest);
+  }
+  return node;
+}
+
+}  // namespace paging

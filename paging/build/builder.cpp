@@ -1,0 +1,238 @@
+#include "paging/build/builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <mutex>
+#include <set>
+
+#include "paging/build/build_inputs.h"
+#include "paging/build/build_resampling.h"
+#include "paging/build/shard_plan.h"
+#include "paging/build/build_steps.h"
+#include "paging/planet/planet_file.h"
+#include "paging/build/planet_writer.h"
+#include "paging/build/stages.h"
+#include "vpe/base/parallel.h"
+
+namespace paging {
+
+namespace {
+
+// One build: the stages in their order, each leaving out what an earlier build has finished.
+class Build {
+ public:
+  Build(const BuildOptions& options, const mars::ElevationSource& elevation, const mars::ImageSource* image,
+        const PlanetMeta& meta, const ProgressFunction& progress)
+      : options_(options),
+        elevation_(elevation),
+        image_(image),
+        meta_(meta),
+        plan_(meta.tile, meta.radius_m, wanted_elevation(options, elevation)),
+        share_(share_of(plan_, options.part)),
+        writer_(options.output, recipe_of(options, meta), options.commit_s),
+        stages_(progress),
+        threads_(options.threads > 0 ? options.threads : vpe::base::default_threads()) {
+    stages_.replaced = writer_.start() == PartStart::kReplaced;
+  }
+
+  BuildSummary run() {
+    std::map<lod::TileKey, NodeRow> stored;
+    for (NodeRow& row : writer_.nodes()) stored.emplace(*lod::unpack(row.key), std::move(row));
+    build_leaves(stored);
+    build_inner_tiles(stored);
+    measure();
+    build_images();
+    return finish();
+  }
+
+ private:
+  // 1. Finest tiles: heights and meshes.
+  void build_leaves(const std::map<lod::TileKey, NodeRow>& stored) {
+    const std::span<const lod::TileKey> leaves = share_.leaves;
+    std::vector<lod::TileKey> open;
+    for (const lod::TileKey& key : leaves) {
+      const auto row = stored.find(key);
+      if (row == stored.end()) {
+        open.push_back(key);
+      } else {
+        context_.nodes.emplace(key, recall_leaf(context_, row->second));
+      }
+    }
+    begin("sampling", leaves.size(), open.size(), 0.62);
+    build_each(open, build_leaf);
+  }
+
+  // 2. Inner tiles, deepest first: posts and meshes over their children's posts.
+  void build_inner_tiles(const std::map<lod::TileKey, NodeRow>& stored) {
+    const std::vector<lod::TileKey>& inner = share_.inner;
+    const auto missing = std::count_if(inner.begin(), inner.end(),
+                                       [&](const lod::TileKey& key) { return !stored.contains(key); });
+    begin("meshing", inner.size(), static_cast<std::size_t>(missing), 0.15);
+    for (std::size_t at = 0; at < inner.size();) {
+      std::vector<lod::TileKey> open;
+      for (const int level = inner[at].level; at < inner.size() && inner[at].level == level; ++at) {
+        const auto row = stored.find(inner[at]);
+        if (row == stored.end()) {
+          open.push_back(inner[at]);
+        } else {
+          context_.nodes.emplace(inner[at], recall_inner(context_, row->second));
+        }
+      }
+      build_each(open, build_inner);
+    }
+  }
+
+  // 3. Every inner mesh and its posts against the finest posts and facets below it.
+  void measure() {
+    constexpr std::size_t kChunk = 32;
+    const std::span<const lod::TileKey> leaves = share_.leaves;
+    const std::size_t chunks = (leaves.size() + kChunk - 1) / kChunk;
+    const std::map<std::int64_t, Bytes> notes = writer_.notes();
+    std::vector<std::size_t> open;
+    for (std::size_t c = 0; c < chunks; ++c) {
+      const auto note = notes.find(static_cast<std::int64_t>(c));
+      if (note == notes.end()) {
+        open.push_back(c);
+      } else {
+        include(unpack_terms(note->second));
+      }
+    }
+    stages_.begin("measuring", static_cast<std::int64_t>(chunks), 0.15,
+                  static_cast<std::int64_t>(chunks - open.size()));
+    mesh_above();
+    std::mutex merge;
+    vpe::core::parallel_for(open.size(), threads_, [&](std::size_t n) {
+      const std::size_t first = open[n] * kChunk;
+      const auto found =
+          measure_chunk(context_, leaves.subspan(first, std::min(kChunk, leaves.size() - first)));
+      writer_.put_note(static_cast<std::int64_t>(open[n]), pack_terms(found));
+      {
+        const std::lock_guard lock(merge);
+        include(found);
+      }
+      stages_.advance();
+    });
+    nest_errors(context_, share_.inner);
+  }
+
+  void include(const std::map<lod::TileKey, InnerTerms>& found) {
+    for (const auto& [key, terms] : found) {
+      const auto node = context_.nodes.find(key);
+      if (node == context_.nodes.end()) {
+        above_[key].terms.include(terms);
+        continue;
+      }
+      node->second.variants.front().terms.include(terms.mesh);
+      node->second.posts_terms.include(terms.posts);
+    }
+  }
+
+  // Meshes and posts of tiles that lie above other parts too.
+  void mesh_above() {
+    std::vector<AboveTile> tiles(share_.above.size());
+    vpe::core::parallel_for(tiles.size(), threads_,
+                            [&](std::size_t n) { tiles[n] = sample_above(context_, share_.above[n]); });
+    for (std::size_t n = 0; n < tiles.size(); ++n) {
+      const lod::TileKey& key = share_.above[n];
+      above_[key].mesh_checksum = checksum(lod::pack(key), encode_mesh(tiles[n].mesh));
+      context_.above.emplace(key, std::move(tiles[n]));
+    }
+  }
+
+  // 4. The image's own pyramid.
+  void build_images() {
+    std::vector<lod::TileKey> images =
+        image_ != nullptr ? plan_images(options_, *image_) : std::vector<lod::TileKey>();
+    const auto count = static_cast<std::int64_t>(images.size());
+    images.erase(images.begin() + options_.part.end(count), images.end());
+    images.erase(images.begin(), images.begin() + options_.part.begin(count));
+    const std::set<std::int64_t> stored = writer_.image_keys();
+    std::vector<lod::TileKey> open;
+    std::copy_if(images.begin(), images.end(), std::back_inserter(open),
+                 [&](const lod::TileKey& key) { return !stored.contains(lod::pack(key)); });
+    begin("image", images.size(), open.size(), 0.06);
+    vpe::core::parallel_for(open.size(), threads_, [&](std::size_t n) {
+      build_image(context_, *image_, open[n]);
+      stages_.advance();
+    });
+    for (const lod::TileKey& key : images)
+      meta_.finest_image_level = std::max(meta_.finest_image_level, key.level);
+    meta_.image_tiles = static_cast<std::int64_t>(images.size());
+  }
+
+  BuildSummary finish() {
+    BuildSummary summary;
+    std::vector<NodeRow> measured;
+    meta_.tiles = static_cast<std::int64_t>(context_.nodes.size());
+    meta_.leaf_tiles = static_cast<std::int64_t>(share_.leaves.size());
+    meta_.lowest_radius_m = meta_.highest_radius_m = meta_.radius_m + context_.nodes.begin()->second.lowest_m;
+    for (const auto& [key, node] : context_.nodes) {
+      meta_.lowest_radius_m = std::min(meta_.lowest_radius_m, meta_.radius_m + node.lowest_m);
+      meta_.highest_radius_m = std::max(meta_.highest_radius_m, meta_.radius_m + node.max_m);
+      meta_.finest_level = std::max(meta_.finest_level, key.level);
+      for (const lod::MeshVariant& v : node.variants) summary.mesh_triangles += v.triangles;
+      if (node.inner) measured.push_back(to_row(key, node));
+    }
+    writer_.replace_nodes(measured);
+
+    // 5. S against the sources' own posts.
+    stages_.begin("checking", 1, 0.02);
+    auto sums = measure_resampling(context_, share_.leaves, threads_, [this] { stages_.look(); });
+    meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
+    set_resampling(meta_, sums);
+    if (!options_.part.is_all()) {
+      meta_.share = ShareMeta{options_.part, options_.mesh_ratio, std::move(sums)};
+      writer_.put_note(kAboveNote, pack_above(above_));
+    }
+    writer_.seal(meta_);
+    if (!meta_.share) PlanetFile::open(writer_.part_path());  // as everybody will
+    stages_.advance();                                        // the last chance to be interrupted
+    writer_.publish(meta_);
+
+    summary.posts = meta_.leaf_tiles * meta_.tile.post_count();
+    summary.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options_.output));
+    summary.kept = stages_.kept();
+    summary.meta = meta_;
+    return summary;
+  }
+
+  void begin(const char* name, std::size_t total, std::size_t open, double share) {
+    stages_.add_kept(static_cast<std::int64_t>(total - open));
+    stages_.begin(name, static_cast<std::int64_t>(total), share, static_cast<std::int64_t>(total - open));
+  }
+
+  // Builds tiles that do not need each other.
+  void build_each(const std::vector<lod::TileKey>& keys,
+                  Node (*build)(const BuildContext&, const lod::TileKey&)) {
+    std::vector<Node> made(keys.size());
+    vpe::core::parallel_for(keys.size(), threads_, [&](std::size_t n) {
+      made[n] = build(context_, keys[n]);
+      stages_.advance();
+    });
+    for (std::size_t n = 0; n < keys.size(); ++n) context_.nodes.emplace(keys[n], std::move(made[n]));
+  }
+
+  const BuildOptions& options_;
+  const mars::ElevationSource& elevation_;
+  const mars::ImageSource* image_;
+  PlanetMeta meta_;
+  Plan plan_;
+  Share share_;
+  PlanetWriter writer_;
+  Stages stages_;
+  int threads_;
+  MesherPool meshers_;
+  std::map<lod::TileKey, AboveNote> above_;
+  BuildContext context_{options_, meta_, plan_, &elevation_, writer_, meshers_, {}, {}};
+};
+
+}  // namespace
+
+BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
+                          const mars::ImageSource* image, const ProgressFunction& progress) {
+  return Build(options, elevation, image, describe_planet(options, elevation, image), progress).run();
+}
+
+}  // namespace paging

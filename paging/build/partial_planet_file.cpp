@@ -1,0 +1,119 @@
+#include "paging/build/partial_planet_file.h"
+
+#include <filesystem>
+#include <vector>
+
+#include "paging/planet/codec.h"
+#include "paging/planet/planet_meta.h"
+
+namespace paging {
+
+namespace fs = std::filesystem;
+
+const char* const kDropPartTables = "DROP TABLE IF EXISTS recipe; DROP TABLE IF EXISTS note";
+const char* const kKeepShareTables = "DELETE FROM note WHERE number >= 0";
+
+namespace {
+
+constexpr const char* kPartTables =
+    "CREATE TABLE recipe(text TEXT NOT NULL);"
+    "CREATE TABLE note(number INTEGER PRIMARY KEY, checksum INTEGER NOT NULL, data BLOB NOT NULL)";
+
+std::unique_ptr<Database> open_exclusively(const std::string& path) {
+  auto db = std::make_unique<Database>(path, Database::Mode::kCreate);
+  db->execute("PRAGMA page_size = 8192");
+  // New pages need no going back: the journal costs little here, and a killed build leaves whole transactions.
+  db->execute("PRAGMA journal_mode = TRUNCATE");
+  db->execute("PRAGMA synchronous = NORMAL");
+  db->execute("PRAGMA locking_mode = EXCLUSIVE");
+  db->execute("BEGIN EXCLUSIVE");
+  return db;
+}
+
+bool fits(Database& db, const std::string& recipe) {
+  if (db.integer("PRAGMA application_id") != kApplicationId) return false;
+  Statement text(db, "SELECT text FROM recipe");
+  return text.step() && text.text(0) == recipe;
+}
+
+// Whether all rows fit their checksums. `sql` gives a key, what is added to it as a seed, checksum, data.
+bool sound(const Database& db, const char* sql) {
+  Statement rows(db, sql);
+  while (rows.step()) {
+    if (checksum(rows.integer(0) + rows.integer(1), rows.blob(3)) != rows.integer(2)) return false;
+  }
+  return true;
+}
+
+// Whether every row is as it was written, and every tile has all of its rows. Damage is not mended: a killed
+// build leaves none, nor does a machine that ends suddenly; a disk that changes bits is not to be built upon.
+bool sound(Database& db) {
+  Statement check(db, "PRAGMA integrity_check(1)");
+  if (!check.step() || check.text(0) != "ok") return false;
+  for (const char* sql :
+       {"SELECT key, 0, checksum, data FROM heights", "SELECT key, 0, checksum, data FROM missing",
+        "SELECT key, variant, checksum, data FROM mesh", "SELECT key, 0, checksum, data FROM image",
+        "SELECT number, 0, checksum, data FROM note"}) {
+    if (!sound(db, sql)) return false;
+  }
+  std::vector<NodeRow> nodes;
+  if (read_nodes(db, nodes)) return false;
+  // A finest tile's last variant is its full grid, without a mesh.
+  std::int64_t meshes = 0;
+  std::int64_t variants = 0;
+  for (const NodeRow& node : nodes) {
+    variants += static_cast<std::int64_t>(node.variants.size());
+    meshes += static_cast<std::int64_t>(node.variants.size()) - (node.inner ? 0 : 1);
+  }
+  return db.integer("SELECT count(*) FROM heights JOIN node USING (key)") ==
+             static_cast<std::int64_t>(nodes.size()) &&
+         db.integer("SELECT count(*) FROM heights") == static_cast<std::int64_t>(nodes.size()) &&
+         db.integer("SELECT count(*) FROM mesh JOIN node USING (key)") == meshes &&
+         db.integer("SELECT count(*) FROM mesh") == meshes &&
+         db.integer("SELECT count(*) FROM variant") == variants;
+}
+
+// The part at `path`, continued; without a database when it is to be made anew.
+Part continue_part(const std::string& path, const std::string& recipe) {
+  try {
+    auto db = open_exclusively(path);
+    // A build that ended before its first commit leaves what SQLite goes back to: an empty file.
+    if (db->integer("SELECT count(*) FROM sqlite_schema") == 0) return {};
+    if (!fits(*db, recipe) || !sound(*db)) return {nullptr, PartStart::kReplaced, false};
+    db->execute("DELETE FROM meta");
+    const bool holds_tiles = db->integer("SELECT count(*) FROM node") > 0;
+    return {std::move(db), PartStart::kContinued, holds_tiles};
+  } catch (const DatabaseError& e) {
+    if (e.busy()) {
+      throw DatabaseError(path + ": another build is writing it; wait for it, or give another output name",
+                          e.code());
+    }
+    return {nullptr, PartStart::kReplaced, false};  // not a database, or too damaged to read
+  }
+}
+
+}  // namespace
+
+Part open_part(const std::string& path, const std::string& recipe) {
+  Part part;
+  if (fs::exists(path)) {
+    part = continue_part(path, recipe);
+    if (part.db) return part;
+  }
+  remove_part(path);
+  part.db = open_exclusively(path);
+  part.db->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
+  part.db->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
+  part.db->execute(kSchema);
+  part.db->execute(kPartTables);
+  Statement(*part.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(recipe)).step();
+  return part;
+}
+
+void remove_part(const std::string& path) {
+  std::error_code ignored;
+  // The last two only in parts of older versions.
+  for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(path + suffix, ignored);
+}
+
+}  // namespace paging

@@ -1,0 +1,278 @@
+#include "paging/build/planet_writer.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#ifndef VPE_VERSION
+#define VPE_VERSION "0"
+#endif
+
+namespace paging {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void sync_to_disk(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return;
+  ::fsync(fd);
+  ::close(fd);
+}
+
+void write_meta(const Database& db, const PlanetMeta& meta) {
+  Statement insert(db, "INSERT INTO meta VALUES(?, ?)");
+  for (const auto& [key, value] : to_rows(meta)) {
+    insert.bind(1, std::string_view(key)).bind(2, std::string_view(value));
+    insert.step();
+  }
+}
+
+}  // namespace
+
+struct PlanetWriter::Statements {
+  explicit Statements(const Database& db)
+      : heights(db, "INSERT INTO heights VALUES(?, ?, ?)"),
+        missing(db, "INSERT INTO missing VALUES(?, ?, ?)"),
+        image(db, "INSERT INTO image VALUES(?, ?, ?)"),
+        note(db, "INSERT OR REPLACE INTO note VALUES(?, ?, ?)"),
+        mesh(db, "INSERT INTO mesh VALUES(NULL, ?, ?, ?, ?)"),
+        node(db, "INSERT OR REPLACE INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        variant(db, "INSERT OR REPLACE INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
+        posts_error(db, "INSERT OR REPLACE INTO posts_error VALUES(?, ?, ?, ?, ?)"),
+        read_heights(db, "SELECT checksum, data FROM heights WHERE key = ?"),
+        read_missing(db, "SELECT checksum, data FROM missing WHERE key = ?"),
+        read_mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?") {}
+  Statement heights;
+  Statement missing;
+  Statement image;
+  Statement note;
+  Statement mesh;
+  Statement node;
+  Statement variant;
+  Statement posts_error;
+  Statement read_heights;
+  Statement read_missing;
+  Statement read_mesh;
+};
+
+PlanetWriter::PlanetWriter(const std::string& path, const std::string& recipe, double commit_s)
+    : path_(path), part_path_(path + ".part"), commit_every_(commit_s), part_(open_part(part_path_, recipe)) {
+  sql_ = std::make_unique<Statements>(*part_.db);
+}
+
+PlanetWriter::~PlanetWriter() {
+  if (finished_) return;
+  sql_.reset();
+  if (part_.db && uncommitted_ && !broken_) {
+    try {
+      part_.db->execute("COMMIT");
+      part_.holds_tiles = true;
+    } catch (const DatabaseError&) {
+      // As on a full disk: SQLite has gone back to the last commit, or will when the file is opened again.
+    }
+  }
+  part_.db.reset();
+  if (!part_.holds_tiles) remove_part(part_path_);
+}
+
+// An error may have undone the whole transaction (SQLite, "Response to errors within a transaction"), so
+// nothing may follow it: a later row would be committed without those before it.
+template <typename Puts>
+void PlanetWriter::write(const Puts& puts) {
+  const std::lock_guard lock(mutex_);
+  if (broken_) throw DatabaseError(*broken_);
+  try {
+    puts();
+    uncommitted_ = true;
+    commit_when_due();
+  } catch (const DatabaseError& e) {
+    broken_ = std::make_unique<DatabaseError>(e);
+    throw;
+  }
+}
+
+void PlanetWriter::commit_when_due() {
+  if (std::chrono::steady_clock::now() - last_commit_ < commit_every_) return;
+  part_.db->execute("COMMIT");
+  part_.holds_tiles = true;
+  uncommitted_ = false;
+  part_.db->execute("BEGIN EXCLUSIVE");
+  last_commit_ = std::chrono::steady_clock::now();
+}
+
+void PlanetWriter::put(Statement& statement, std::int64_t row, std::span<const std::uint8_t> packed) {
+  statement.bind(1, row).bind(2, checksum(row, packed)).bind(3, packed);
+  statement.step();
+}
+
+void PlanetWriter::put_tile(const NodeRow& row, const TilePayload& payload) {
+  write([&] {
+    put(sql_->heights, row.key, payload.heights);
+    if (!payload.missing.empty()) put(sql_->missing, row.key, payload.missing);
+    std::int64_t variant = 0;
+    for (const Bytes& packed : payload.meshes) {
+      sql_->mesh.bind(1, row.key).bind(2, variant).bind(3, checksum(row.key + variant, packed)).bind(4, packed);
+      sql_->mesh.step();
+      ++variant;
+    }
+    put_node(row);
+  });
+}
+
+void PlanetWriter::put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed) {
+  write([&] { put(sql_->image, lod::pack(key), packed); });
+}
+
+void PlanetWriter::put_note(std::int64_t number, std::span<const std::uint8_t> packed) {
+  write([&] { put(sql_->note, number, packed); });
+}
+
+void PlanetWriter::put_node(const NodeRow& row) {
+  const auto key = lod::unpack(row.key);
+  sql_->node.bind(1, row.key)
+      .bind(2, static_cast<std::int64_t>(key->face))
+      .bind(3, std::int64_t{key->level})
+      .bind(4, std::int64_t{key->i})
+      .bind(5, std::int64_t{key->j})
+      .bind(6, row.min_m)
+      .bind(7, row.max_m)
+      .bind(8, row.slope)
+      .bind(9, std::int64_t{row.inner})
+      .bind(10, std::int64_t{row.steps})
+      .bind(11, std::string_view(row.sources))
+      .bind(12, checksum(row));
+  sql_->node.step();
+  std::int64_t number = 0;
+  for (const lod::MeshVariant& v : row.variants) {
+    sql_->variant.bind(1, row.key)
+        .bind(2, number++)
+        .bind(3, v.terms.relief_m)
+        .bind(4, v.terms.sag_m)
+        .bind(5, v.terms.total_m)
+        .bind(6, std::int64_t{v.triangles});
+    sql_->variant.step();
+  }
+  if (!row.posts_terms) return;
+  sql_->posts_error.bind(1, row.key)
+      .bind(2, row.posts_terms->relief_m)
+      .bind(3, row.posts_terms->sag_m)
+      .bind(4, row.posts_terms->total_m)
+      .bind(5, posts_checksum(row));
+  sql_->posts_error.step();
+}
+
+void PlanetWriter::replace_nodes(std::span<const NodeRow> rows) {
+  write([&] {
+    for (const NodeRow& row : rows) put_node(row);
+  });
+}
+
+std::vector<NodeRow> PlanetWriter::nodes() {
+  const std::lock_guard lock(mutex_);
+  std::vector<NodeRow> rows;
+  const auto bad = read_nodes(*part_.db, rows);
+  if (bad) {
+    throw DatabaseError(part_path_ + ": the tile index is damaged at row " + std::to_string(*bad) +
+                        "; remove this file, then build again");
+  }
+  return rows;
+}
+
+std::set<std::int64_t> PlanetWriter::image_keys() {
+  const std::lock_guard lock(mutex_);
+  std::set<std::int64_t> keys;
+  Statement rows(*part_.db, "SELECT key FROM image");
+  while (rows.step()) keys.insert(rows.integer(0));
+  return keys;
+}
+
+std::vector<LevelSummary> PlanetWriter::levels(std::size_t posts) {
+  const std::lock_guard lock(mutex_);
+  return summarise_levels(*part_.db, posts);
+}
+
+std::map<std::int64_t, Bytes> PlanetWriter::notes() {
+  const std::lock_guard lock(mutex_);
+  std::map<std::int64_t, Bytes> out;
+  Statement rows(*part_.db, "SELECT number, data FROM note");
+  while (rows.step()) {
+    const auto data = rows.blob(1);
+    out.emplace(rows.integer(0), Bytes(data.begin(), data.end()));
+  }
+  return out;
+}
+
+std::optional<Bytes> PlanetWriter::find(Statement& statement, const lod::TileKey& key, std::int64_t seed) {
+  if (!statement.step()) {
+    statement.reset();
+    return std::nullopt;
+  }
+  const auto data = statement.blob(1);
+  Bytes out(data.begin(), data.end());
+  const bool intact = checksum(seed, out) == statement.integer(0);
+  statement.reset();
+  if (!intact) {
+    throw DatabaseError(part_path_ + ": tile " + lod::to_string(key) +
+                        " is damaged (wrong checksum); remove this file, then build again");
+  }
+  return out;
+}
+
+Bytes PlanetWriter::read(Statement& statement, const lod::TileKey& key, std::int64_t seed) {
+  auto found = find(statement, key, seed);
+  if (!found) part_.db->fail("read back tile " + lod::to_string(key));
+  return std::move(*found);
+}
+
+Bytes PlanetWriter::heights(const lod::TileKey& key) {
+  const std::lock_guard lock(mutex_);
+  sql_->read_heights.bind(1, lod::pack(key));
+  return read(sql_->read_heights, key, lod::pack(key));
+}
+
+Bytes PlanetWriter::missing(const lod::TileKey& key) {
+  const std::lock_guard lock(mutex_);
+  sql_->read_missing.bind(1, lod::pack(key));
+  return find(sql_->read_missing, key, lod::pack(key)).value_or(Bytes());
+}
+
+Bytes PlanetWriter::mesh(const lod::TileKey& key, int variant) {
+  const std::lock_guard lock(mutex_);
+  sql_->read_mesh.bind(1, lod::pack(key)).bind(2, std::int64_t{variant});
+  return read(sql_->read_mesh, key, lod::pack(key) + variant);
+}
+
+void PlanetWriter::seal(PlanetMeta& meta) {
+  const std::lock_guard lock(mutex_);
+  if (broken_) throw DatabaseError(*broken_);
+  meta.identity = content_identity(*part_.db);
+  meta.program = VPE_VERSION;
+  write_meta(*part_.db, meta);
+  part_.db->execute("COMMIT");
+  sql_.reset();
+  part_.db.reset();
+}
+
+void PlanetWriter::publish(const PlanetMeta& meta) {
+  {
+    Database db(part_path_, Database::Mode::kCreate);
+    db.execute("BEGIN");
+    db.execute(meta.share ? kKeepShareTables : kDropPartTables);
+    db.execute("DELETE FROM meta");
+    write_meta(db, meta);
+    db.execute("COMMIT");
+  }
+  sync_to_disk(part_path_);
+  std::error_code error;
+  fs::rename(part_path_, path_, error);
+  if (error) {
+    throw DatabaseError(path_ + ": cannot rename the finished " + part_path_ + ": " + error.message());
+  }
+  finished_ = true;
+}
+
+}  // namespace paging

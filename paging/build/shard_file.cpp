@@ -1,0 +1,111 @@
+#include "paging/build/shard_file.h"
+
+#include <filesystem>
+
+#include "paging/build/build_inputs.h"
+
+namespace paging {
+
+ShareFile::ShareFile(const std::string& path) : path_(path) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) {
+    throw PlanetError(path + ": no such file; make it with 'vpe build ... --part k/n'");
+  }
+  try {
+    db_ = std::make_unique<Database>(path, Database::Mode::kReadOnly);
+    if (db_->integer("PRAGMA application_id") != kApplicationId) {
+      throw PlanetError(path + ": an SQLite file, but not of vpe");
+    }
+    std::map<std::string, std::string> rows;
+    Statement all(*db_, "SELECT key, value FROM meta");
+    while (all.step()) rows[all.text(0)] = all.text(1);
+    if (rows.empty()) {
+      throw PlanetError(path + ": a build that has not ended; run it again, it continues");
+    }
+    meta_ = from_rows(rows, path);
+    if (!meta_.share) throw PlanetError(path + ": a whole planet, not a part of one; leave it out");
+    Statement recipe(*db_, "SELECT text FROM recipe");
+    if (recipe.step()) recipe_ = recipe.text(0);
+    const std::string line = recipe_part(part());
+    if (!recipe_.ends_with(line)) damaged("its recipe is of another part");
+    recipe_.resize(recipe_.size() - line.size());
+    heights_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM heights WHERE key = ?");
+    missing_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM missing WHERE key = ?");
+    mesh_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?");
+    image_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM image WHERE key = ?");
+    if (content_identity(*db_) != meta_.identity) damaged("its rows are not those that were written");
+  } catch (const DatabaseError& e) {
+    throw PlanetError(std::string(e.what()) + "; not a part of a planet, or damaged: build it again");
+  }
+}
+
+void ShareFile::damaged(const std::string& what) const {
+  throw PlanetError(path_ + ": damaged: " + what + "; remove it and build this part again");
+}
+
+std::vector<NodeRow> ShareFile::nodes() const {
+  std::vector<NodeRow> rows;
+  try {
+    if (const auto bad = read_nodes(*db_, rows))
+      damaged("the tile index is wrong at row " + std::to_string(*bad));
+  } catch (const DatabaseError& e) {
+    damaged(e.what());
+  }
+  return rows;
+}
+
+std::map<lod::TileKey, AboveNote> ShareFile::above() const {
+  try {
+    Statement note(*db_, "SELECT checksum, data FROM note WHERE number = ?");
+    return unpack_above(verified(note.bind(1, kAboveNote), kAboveNote, kAboveNote, "the note of tiles above"));
+  } catch (const CodecError& e) {
+    damaged(e.what());
+  } catch (const DatabaseError& e) {
+    damaged(e.what());
+  }
+}
+
+Bytes ShareFile::verified(Statement& statement, std::int64_t key, std::int64_t seed, const char* what) const {
+  const auto name = [&] {
+    const auto tile = lod::unpack(key);
+    return std::string(what) + (tile ? " of tile " + lod::to_string(*tile) : "");
+  };
+  try {
+    if (!statement.step()) damaged("no " + name());
+    const auto data = statement.blob(1);
+    Bytes out(data.begin(), data.end());
+    const bool intact = checksum(seed, out) == statement.integer(0);
+    statement.reset();
+    if (!intact) damaged("wrong checksum: " + name());
+    return out;
+  } catch (const DatabaseError& e) {
+    damaged(name() + ": " + e.what());
+  }
+}
+
+TilePayload ShareFile::payload(const NodeRow& row) {
+  TilePayload payload;
+  payload.heights = verified(heights_->bind(1, row.key), row.key, row.key, "heights");
+  missing_->bind(1, row.key);
+  if (missing_->step()) {
+    missing_->reset();
+    payload.missing = verified(missing_->bind(1, row.key), row.key, row.key, "missing mask");
+  }
+  // A finest tile's last variant is its full grid, without a mesh.
+  const auto meshes = static_cast<std::int64_t>(row.variants.size()) - (row.inner ? 0 : 1);
+  for (std::int64_t v = 0; v < meshes; ++v) {
+    payload.meshes.push_back(verified(mesh_->bind(1, row.key).bind(2, v), row.key, row.key + v, "mesh"));
+  }
+  return payload;
+}
+
+std::vector<std::int64_t> ShareFile::image_keys() const {
+  std::vector<std::int64_t> keys;
+  Statement rows(*db_, "SELECT key FROM image ORDER BY key");
+  while (rows.step()) keys.push_back(rows.integer(0));
+  return keys;
+}
+
+Bytes ShareFile::image(std::int64_t key) { return verified(image_->bind(1, key), key, key, "image"); }
+
+}  // namespace paging

@@ -1,0 +1,58 @@
+// Progress of a build as one rising fraction.
+#pragma once
+
+#include <mutex>
+
+#include "paging/build/builder.h"
+
+namespace paging {
+
+// advance() may be called from any thread.
+class Stages {
+ public:
+  explicit Stages(const ProgressFunction& report) : report_(report) {}
+
+  bool replaced = false;
+  std::int64_t kept() const { return kept_; }
+  void add_kept(std::int64_t count) { kept_ += count; }
+
+  // `share` of the whole build; `done` of `total` are there already.
+  void begin(const char* name, std::int64_t total, double share, std::int64_t done = 0) {
+    done_share_ += share_;
+    share_ = share;
+    name_ = name;
+    total_ = total;
+    done_ = done;
+    tell();
+  }
+
+  void advance() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    tell();
+  }
+
+  // A chance to be interrupted.
+  void look() {
+    const std::lock_guard lock(mutex_);
+    tell();
+  }
+
+ private:
+  void tell() {
+    if (!report_) return;
+    const double part = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1.0;
+    report_({name_, done_, total_, done_share_ + share_ * part, kept_, replaced});
+  }
+
+  const ProgressFunction& report_;
+  std::mutex mutex_;
+  std::int64_t kept_ = 0;
+  const char* name_ = "";
+  std::int64_t done_ = 0;
+  std::int64_t total_ = 0;
+  double share_ = 0;
+  double done_share_ = 0;
+};
+
+}  // namespace paging

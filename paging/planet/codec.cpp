@@ -1,0 +1,238 @@
+#include "paging/planet/codec.h"
+
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace paging {
+
+namespace {
+
+constexpr int kHeightsLevel = 2;
+constexpr int kMeshLevel = 3;
+constexpr std::size_t kMaxPayload = std::size_t{1} << 26;
+
+std::uint32_t zigzag(std::int32_t x) {
+  return (static_cast<std::uint32_t>(x) << 1) ^ static_cast<std::uint32_t>(x >> 31);
+}
+
+std::int32_t unzigzag(std::uint32_t x) { return static_cast<std::int32_t>((x >> 1) ^ (0U - (x & 1U))); }
+
+// Differences wrap modulo 2^32, so every int32 survives prediction.
+std::int32_t wrap_sub(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+
+std::int32_t wrap_add(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+
+std::int32_t predict(std::span<const std::int32_t> h, std::size_t i, std::size_t j, std::size_t side) {
+  const std::size_t at = j * side + i;
+  if (i == 0) return j == 0 ? 0 : h[at - side];
+  if (j == 0) return h[at - 1];
+  return wrap_add(h[at - 1], wrap_sub(h[at - side], h[at - side - 1]));
+}
+
+void put_varint(Bytes& out, std::uint32_t x) {
+  while (x >= 0x80U) {
+    out.push_back(static_cast<std::uint8_t>(x | 0x80U));
+    x >>= 7;
+  }
+  out.push_back(static_cast<std::uint8_t>(x));
+}
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  std::uint32_t varint() {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      if (at_ == bytes_.size()) throw CodecError("mesh: data ends early");
+      const std::uint8_t byte = bytes_[at_++];
+      value |= std::uint64_t{byte & 0x7fU} << shift;
+      if ((byte & 0x80U) == 0) {
+        if (value > 0xffffffffULL) break;
+        return static_cast<std::uint32_t>(value);
+      }
+    }
+    throw CodecError("mesh: a number is too long");
+  }
+
+  bool at_end() const { return at_ == bytes_.size(); }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+};
+
+using Triangle = std::array<std::uint16_t, 3>;
+
+std::vector<Triangle> normalised(const std::vector<std::uint16_t>& indices) {
+  std::vector<Triangle> triangles(indices.size() / 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    Triangle& tri = triangles[t];
+    std::copy_n(indices.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, tri.begin());
+    std::rotate(tri.begin(), std::min_element(tri.begin(), tri.end()), tri.end());
+  }
+  if (!std::is_sorted(triangles.begin(), triangles.end())) std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+}  // namespace
+
+Bytes compress(std::span<const std::uint8_t> raw, int level) {
+  Bytes out(ZSTD_compressBound(raw.size()));
+  const std::size_t size = ZSTD_compress(out.data(), out.size(), raw.data(), raw.size(), level);
+  if (ZSTD_isError(size) != 0U) throw CodecError(std::string("zstd: ") + ZSTD_getErrorName(size));
+  out.resize(size);
+  return out;
+}
+
+Bytes decompress(std::span<const std::uint8_t> packed, std::size_t limit) {
+  const unsigned long long size = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > limit) {
+    throw CodecError("zstd: not a frame of the expected size");
+  }
+  Bytes out(static_cast<std::size_t>(size));
+  const std::size_t got = ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size());
+  if (ZSTD_isError(got) != 0U) throw CodecError(std::string("zstd: ") + ZSTD_getErrorName(got));
+  if (got != out.size()) throw CodecError("zstd: frame is shorter than it says");
+  return out;
+}
+
+Bytes encode_heights(std::span<const std::int32_t> quanta, int side) {
+  const auto n = static_cast<std::size_t>(side);
+  const std::size_t count = n * n;
+  if (quanta.size() != count) throw CodecError("heights: wrong number of posts");
+  Bytes planes(4 * count);
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t at = j * n + i;
+      const std::uint32_t rest = zigzag(wrap_sub(quanta[at], predict(quanta, i, j, n)));
+      for (std::size_t plane = 0; plane < 4; ++plane) {
+        planes[plane * count + at] = static_cast<std::uint8_t>(rest >> (8 * plane));
+      }
+    }
+  }
+  return compress(planes, kHeightsLevel);
+}
+
+std::vector<std::int32_t> decode_heights(std::span<const std::uint8_t> packed, int side) {
+  const auto n = static_cast<std::size_t>(side);
+  const std::size_t count = n * n;
+  const Bytes planes = decompress(packed, 4 * count);
+  if (planes.size() != 4 * count) throw CodecError("heights: wrong number of posts");
+  std::vector<std::int32_t> quanta(count);
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t at = j * n + i;
+      const std::uint32_t rest = std::uint32_t{planes[at]} | std::uint32_t{planes[count + at]} << 8 |
+                                 std::uint32_t{planes[2 * count + at]} << 16 |
+                                 std::uint32_t{planes[3 * count + at]} << 24;
+      quanta[at] = wrap_add(predict(quanta, i, j, n), unzigzag(rest));
+    }
+  }
+  return quanta;
+}
+
+Bytes encode_mask(const std::vector<bool>& missing) {
+  Bytes bits((missing.size() + 7) / 8);
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    if (missing[i]) bits[i / 8] = static_cast<std::uint8_t>(bits[i / 8] | 1U << (i % 8));
+  }
+  return compress(bits, kMeshLevel);
+}
+
+std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t count) {
+  const Bytes bits = decompress(packed, (count + 7) / 8);
+  if (bits.size() != (count + 7) / 8) throw CodecError("missing mask: wrong number of posts");
+  std::vector<bool> missing(count);
+  for (std::size_t i = 0; i < count; ++i) missing[i] = (bits[i / 8] >> (i % 8) & 1U) != 0;
+  return missing;
+}
+
+Bytes encode_mesh(const PackedMesh& packed) {
+  const lod::TileMesh& mesh = packed.mesh;
+  if (packed.height_q.size() != mesh.vertices.size()) throw CodecError("mesh: one height a vertex is needed");
+  Bytes raw;
+  put_varint(raw, static_cast<std::uint32_t>(mesh.intervals));
+  put_varint(raw, static_cast<std::uint32_t>(mesh.vertices.size()));
+  put_varint(raw, static_cast<std::uint32_t>(mesh.triangle_count()));
+  std::uint32_t last = 0;
+  const auto side = static_cast<std::uint32_t>(mesh.intervals) + 1;
+  for (const lod::MeshVertex& v : mesh.vertices) {
+    const std::uint32_t at = v.j * side + v.i;
+    put_varint(raw, at - last);
+    last = at;
+  }
+  std::int32_t height = 0;
+  for (const std::int32_t h : packed.height_q) {
+    put_varint(raw, zigzag(wrap_sub(h, height)));
+    height = h;
+  }
+  std::uint32_t first = 0;
+  for (const Triangle& t : normalised(mesh.triangles)) {
+    put_varint(raw, t[0] - first);
+    put_varint(raw, static_cast<std::uint32_t>(t[1] - t[0]));
+    put_varint(raw, static_cast<std::uint32_t>(t[2] - t[0]));
+    first = t[0];
+  }
+  return compress(raw, kMeshLevel);
+}
+
+PackedMesh decode_mesh(std::span<const std::uint8_t> packed) {
+  const Bytes raw = decompress(packed, kMaxPayload);
+  Reader in(raw);
+  PackedMesh out;
+  const std::uint32_t intervals = in.varint();
+  const std::uint32_t vertices = in.varint();
+  const std::uint32_t triangles = in.varint();
+  if (intervals == 0 || intervals > 1024 || vertices < 3 || vertices > 65536 || triangles > 2 * vertices) {
+    throw CodecError("mesh: sizes out of range");
+  }
+  out.mesh.intervals = static_cast<int>(intervals);
+  out.mesh.vertices.reserve(vertices);
+  const std::uint32_t side = intervals + 1;
+  std::uint64_t at = 0;
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    const std::uint32_t step = in.varint();
+    if (v > 0 && step == 0) throw CodecError("mesh: vertices repeat");
+    at += step;
+    if (at >= std::uint64_t{side} * side) throw CodecError("mesh: a vertex lies outside the grid");
+    out.mesh.vertices.push_back({static_cast<std::uint16_t>(at % side), static_cast<std::uint16_t>(at / side)});
+  }
+  out.height_q.reserve(vertices);
+  std::int32_t height = 0;
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    height = wrap_add(height, unzigzag(in.varint()));
+    out.height_q.push_back(height);
+  }
+  out.mesh.triangles.reserve(3 * std::size_t{triangles});
+  std::uint64_t first = 0;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    first += in.varint();
+    const std::uint64_t second = first + in.varint();
+    const std::uint64_t third = first + in.varint();
+    if (first >= vertices || second >= vertices || third >= vertices) {
+      throw CodecError("mesh: a triangle names a vertex that is not there");
+    }
+    for (const std::uint64_t index : {first, second, third}) {
+      out.mesh.triangles.push_back(static_cast<std::uint16_t>(index));
+    }
+  }
+  if (!in.at_end()) throw CodecError("mesh: bytes left over");
+  return out;
+}
+
+std::int64_t checksum(std::int64_t key, std::span<const std::uint8_t> payload) {
+  const XXH64_hash_t hash =
+      XXH3_64bits_withSeed(payload.data(), payload.size(), static_cast<XXH64_hash_t>(key));
+  return static_cast<std::int64_t>(hash & 0x7fffffffffffffffULL);
+}
+
+}  // namespace paging

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "paging/planet/codec.h"
+#include "paging/planet/planet_meta.h"
+#include "paging/planet/sqlite.h"
+
+namespace paging {
+
+std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows) {
+  Statement nodes(db,
+                  "SELECT key, min_m, max_m, inner, steps, sources, checksum, slope, face, level, i, j "
+                  "FROM node ORDER BY key");
+  Statement variants(db, "SELECT key, relief_m, sag_m, total_m, triangles FROM variant ORDER BY key, variant");
+  bool more = variants.step();
+  // Files before format 1.2 do not have it.
+  Statement known(db, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'posts_error'");
+  std::optional<Statement> posts;
+  if (known.step())
+    posts.emplace(db, "SELECT key, relief_m, sag_m, total_m, checksum FROM posts_error ORDER BY key");
+  bool more_posts = posts && posts->step();
+  while (nodes.step()) {
+    NodeRow row;
+    row.key = nodes.integer(0);
+    row.min_m = nodes.real(1);
+    row.max_m = nodes.real(2);
+    row.inner = nodes.integer(3) != 0;
+    row.steps = static_cast<int>(nodes.integer(4));
+    row.sources = nodes.text(5);
+    row.slope = nodes.real(7);
+    while (more && variants.integer(0) < row.key) more = variants.step();
+    while (more && variants.integer(0) == row.key) {
+      row.variants.push_back(lod::MeshVariant{{variants.real(1), variants.real(2), variants.real(3)},
+                                              static_cast<std::uint32_t>(variants.integer(4))});
+      more = variants.step();
+    }
+    while (more_posts && posts->integer(0) < row.key) more_posts = posts->step();
+    if (more_posts && posts->integer(0) == row.key) {
+      row.posts_terms = lod::ErrorTerms{posts->real(1), posts->real(2), posts->real(3)};
+      if (posts_checksum(row) != posts->integer(4)) return row.key;
+      more_posts = posts->step();
+    }
+    const std::optional<lod::TileKey> key = lod::unpack(row.key);
+    if (!key || checksum(row) != nodes.integer(6)) return row.key;
+    // The columns for people with SQL say the same as the key.
+    if (nodes.integer(8) != static_cast<std::int64_t>(key->face) || nodes.integer(9) != key->level ||
+        nodes.integer(10) != std::int64_t{key->i} || nodes.integer(11) != std::int64_t{key->j}) {
+      return row.key;
+    }
+    rows.push_back(std::move(row));
+  }
+  return std::nullopt;
+}
+
+std::vector<LevelSummary> summarise_levels(const Database& db, std::size_t posts) {
+  std::map<std::int64_t, LevelSummary> levels;
+  Statement tiles(db, "SELECT level, count(*), sum(NOT inner) FROM node GROUP BY level");
+  while (tiles.step()) {
+    LevelSummary& level = levels[tiles.integer(0)];
+    level.tiles = tiles.integer(1);
+    level.leaf_tiles = tiles.integer(2);
+  }
+  for (const std::string table : {"heights", "missing", "mesh", "image"}) {
+    Statement rows(db, "SELECT key >> 54 & 31, count(*), sum(length(data)) FROM " + table + " GROUP BY 1");
+    while (rows.step()) {
+      LevelSummary& level = levels[rows.integer(0)];
+      level.bytes += rows.integer(2);
+      if (table == "image") level.image_tiles = rows.integer(1);
+    }
+  }
+  Statement masks(db, "SELECT key >> 54 & 31, data FROM missing JOIN node USING (key) WHERE NOT inner");
+  while (masks.step()) {
+    const std::vector<bool> mask = decode_mask(masks.blob(1), posts);
+    levels[masks.integer(0)].holes += std::count(mask.begin(), mask.end(), true);
+  }
+  std::vector<LevelSummary> out;
+  for (auto& [level, summary] : levels) {
+    summary.level = static_cast<int>(level);
+    out.push_back(summary);
+  }
+  return out;
+}
+
+std::string content_identity(const Database& db) {
+  // In key order, so that the order in which threads finished does not show.
+  Bytes all;
+  for (const char* table : {"node", "heights", "missing", "image"}) {
+    Statement rows(db, std::string("SELECT checksum FROM ") + table + " ORDER BY key");
+    while (rows.step()) {
+      const auto sum = static_cast<std::uint64_t>(rows.integer(0));
+      for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
+    }
+  }
+  Statement rows(db, "SELECT checksum FROM mesh ORDER BY key, variant");
+  while (rows.step()) {
+    const auto sum = static_cast<std::uint64_t>(rows.integer(0));
+    for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(checksum(kApplicationId, all)));
+  return text;
+}
+
+}  // namespace paging

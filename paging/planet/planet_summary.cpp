@@ -1,0 +1,118 @@
+#include "paging/planet/planet_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "paging/planet/planet_meta.h"
+
+namespace paging {
+
+using nlohmann::json;
+
+namespace {
+
+__extension__ using Wide = unsigned __int128;
+
+constexpr double kUnit_m = 0x1p-20;
+constexpr double kLargest_m = 0x1p22;
+
+Wide wide(const ResamplingSum& sum) { return Wide{sum.high} << 64 | Wide{sum.low}; }
+
+void set(ResamplingSum& sum, Wide squares) {
+  sum.high = static_cast<std::uint64_t>(squares >> 64);
+  sum.low = static_cast<std::uint64_t>(squares);
+}
+
+}  // namespace
+
+void ResamplingSum::add(double error_m) {
+  max_m = std::max(max_m, error_m);
+  ++posts;
+  const auto units = static_cast<std::uint64_t>(std::llround(std::min(error_m, kLargest_m) / kUnit_m));
+  set(*this, wide(*this) + Wide{units} * units);
+}
+
+void ResamplingSum::include(const ResamplingSum& other) {
+  max_m = std::max(max_m, other.max_m);
+  posts += other.posts;
+  set(*this, wide(*this) + wide(other));
+}
+
+ResamplingError ResamplingSum::error() const {
+  if (posts == 0) return {};
+  const double squares = std::ldexp(static_cast<double>(high), 64) + static_cast<double>(low);
+  return {max_m, kUnit_m * std::sqrt(squares / static_cast<double>(posts)), posts};
+}
+
+bool ShareMeta::operator==(const ShareMeta& o) const {
+  return part.number == o.part.number && part.of == o.part.of && mesh_ratio == o.mesh_ratio &&
+         resampling == o.resampling;
+}
+
+void set_resampling(PlanetMeta& meta, const std::vector<ResamplingSum>& by_level) {
+  ResamplingSum all;
+  for (const ResamplingSum& sum : by_level) all.include(sum);
+  meta.resampling = all.error();
+  for (LevelSummary& level : meta.levels) {
+    if (static_cast<std::size_t>(level.level) < by_level.size())
+      level.resampling = by_level[static_cast<std::size_t>(level.level)].error();
+  }
+}
+
+std::string to_text(const std::vector<LevelSummary>& levels) {
+  json list = json::array();
+  for (const LevelSummary& l : levels) {
+    list.push_back({{"level", l.level},
+                    {"tiles", l.tiles},
+                    {"leaf_tiles", l.leaf_tiles},
+                    {"image_tiles", l.image_tiles},
+                    {"bytes", l.bytes},
+                    {"holes", l.holes},
+                    {"resampling_max_m", l.resampling.max_m},
+                    {"resampling_rms_m", l.resampling.rms_m},
+                    {"resampling_posts", l.resampling.posts}});
+  }
+  return list.dump();
+}
+
+std::vector<LevelSummary> levels_from_text(const std::string& text) {
+  std::vector<LevelSummary> levels;
+  for (const json& j : json::parse(text)) {
+    LevelSummary l;
+    l.level = j.at("level").get<int>();
+    l.tiles = j.at("tiles").get<std::int64_t>();
+    l.leaf_tiles = j.at("leaf_tiles").get<std::int64_t>();
+    l.image_tiles = j.at("image_tiles").get<std::int64_t>();
+    l.bytes = j.at("bytes").get<std::int64_t>();
+    l.holes = j.at("holes").get<std::int64_t>();
+    l.resampling = {j.at("resampling_max_m").get<double>(), j.at("resampling_rms_m").get<double>(),
+                    j.at("resampling_posts").get<std::int64_t>()};
+    levels.push_back(l);
+  }
+  return levels;
+}
+
+std::string to_text(const ShareMeta& share) {
+  json sums = json::array();
+  for (const ResamplingSum& s : share.resampling) sums.push_back({s.max_m, s.posts, s.high, s.low});
+  return json{{"number", share.part.number},
+              {"of", share.part.of},
+              {"mesh_ratio", share.mesh_ratio},
+              {"resampling", std::move(sums)}}
+      .dump();
+}
+
+ShareMeta share_from_text(const std::string& text) {
+  const json j = json::parse(text);
+  ShareMeta share;
+  share.part = {j.at("number").get<std::int64_t>(), j.at("of").get<std::int64_t>()};
+  share.mesh_ratio = j.at("mesh_ratio").get<double>();
+  for (const json& s : j.at("resampling")) {
+    share.resampling.push_back({s.at(0).get<double>(), s.at(1).get<std::int64_t>(),
+                                s.at(2).get<std::uint64_t>(), s.at(3).get<std::uint64_t>()});
+  }
+  return share;
+}
+
+}  // namespace paging

@@ -1,0 +1,93 @@
+#include "paging/planet/verify.h"
+
+#include <mutex>
+
+#include "paging/planet/sqlite.h"
+#include "paging/planet/verify_tile.h"
+#include "vpe/base/parallel.h"
+
+namespace paging {
+
+namespace {
+
+void check_database(const PlanetFile& planet, VerifyReport& report) {
+  try {
+    Database db(planet.path(), Database::Mode::kReadOnly);
+    Statement check(db, "PRAGMA integrity_check(5)");
+    while (check.step()) {
+      if (check.text(0) != "ok") report.problems.push_back({"database", check.text(0)});
+    }
+    if (content_identity(db) != planet.meta().identity) {
+      report.problems.push_back({"meta", "the identity is not that of the content"});
+    }
+    std::int64_t meshes = 0;
+    std::int64_t variants = 0;
+    for (const lod::TileInfo& tile : planet.tree().tiles()) {
+      variants += static_cast<std::int64_t>(tile.variants.size());
+      meshes += static_cast<std::int64_t>(tile.variants.size()) - (tile.has_children ? 0 : 1);
+    }
+    const auto expect_rows = [&](const char* table, std::int64_t count) {
+      const std::int64_t found = db.integer(std::string("SELECT count(*) FROM ") + table);
+      if (found == count) return;
+      report.problems.push_back({table, std::to_string(found) + " rows instead of " + std::to_string(count)});
+    };
+    expect_rows("node", planet.meta().tiles);
+    expect_rows("heights", planet.meta().tiles);
+    expect_rows("variant", variants);
+    expect_rows("mesh", meshes);
+    expect_rows("image", planet.meta().image_tiles);
+  } catch (const DatabaseError& e) {
+    report.problems.push_back({"database", e.what()});
+  }
+}
+
+void add(const TileFindings& tile, VerifyReport& all) {
+  all.problems.insert(all.problems.end(), tile.report.problems.begin(), tile.report.problems.end());
+  all.tiles += tile.report.tiles;
+  all.meshes += tile.report.meshes;
+  all.borders += tile.report.borders;
+  all.images += tile.report.images;
+  all.measured += tile.report.measured;
+  all.largest_share = std::max(all.largest_share, tile.report.largest_share);
+}
+
+}  // namespace
+
+VerifyReport verify(const PlanetFile& planet, const VerifyOptions& options, const VerifyProgress& progress) {
+  VerifyReport report;
+  check_database(planet, report);
+
+  const auto tiles = planet.tree().tiles();
+  const std::vector<lod::TileKey> images = planet.image_keys();
+  std::vector<const lod::TileInfo*> deep;
+  {
+    std::vector<const lod::TileInfo*> leaves;
+    for (const lod::TileInfo& tile : tiles) {
+      if (!tile.has_children) leaves.push_back(&tile);
+    }
+    const std::size_t count = std::min(options.deep_tiles, leaves.size());
+    for (std::size_t n = 0; n < count; ++n) deep.push_back(leaves[n * leaves.size() / count]);
+  }
+
+  const std::size_t total = tiles.size() + images.size() + deep.size();
+  std::vector<TileFindings> found(total);
+  std::mutex mutex;
+  std::size_t done = 0;
+  vpe::core::parallel_for(total, options.threads > 0 ? options.threads : vpe::base::default_threads(),
+                          [&](std::size_t n) {
+                            if (n < tiles.size()) {
+                              found[n] = check_tile(planet, tiles[n]);
+                            } else if (n - tiles.size() < images.size()) {
+                              found[n] = check_image(planet, images[n - tiles.size()]);
+                            } else {
+                              found[n] = measure_tile(planet, *deep[n - tiles.size() - images.size()]);
+                            }
+                            if (!progress) return;
+                            const std::lock_guard lock(mutex);
+                            progress(static_cast<double>(++done) / static_cast<double>(total));
+                          });
+  for (const TileFindings& tile : found) add(tile, report);
+  return report;
+}
+
+}  // namespace paging

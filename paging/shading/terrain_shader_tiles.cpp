@@ -1,0 +1,193 @@
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "paging/shading/terrain_grid.h"
+#include "paging/shading/terrain_shader.h"
+#include "vpe/core/appearance/shading.h"
+
+namespace paging {
+
+namespace {
+
+bool needs_vertical(Surfacing s) { return s == Surfacing::kSlope || s == Surfacing::kAspect; }
+
+// Below level 5 a tile spans several knots of the warp: moves texels from post lines to lines even in u and v,
+// so that texture coordinates are a projective function of the position on every flat triangle.
+void make_even(const lod::TileKey& key, ShadedTile& tile) {
+  const auto side = static_cast<std::size_t>(tile.intervals) + 1;
+  const mars::ChartRect rect = lod::chart_rect(key);
+  const double tiles = std::ldexp(1.0, key.level);
+  const auto positions = [&](double from, double to, std::int32_t index) {
+    std::vector<GridPosition> at(side);
+    for (std::size_t x = 0; x < side; ++x) {
+      const double u = from + (to - from) * static_cast<double>(x) / tile.intervals;
+      const double s = (mars::face_parameter(u) * tiles - index) * tile.intervals;
+      const auto cell = static_cast<std::size_t>(std::clamp(s, 0.0, tile.intervals - 1.0));
+      at[x] = {cell, static_cast<float>(std::clamp(s - static_cast<double>(cell), 0.0, 1.0))};
+    }
+    return at;
+  };
+  const auto columns = positions(rect.u0, rect.u1, key.i);
+  const auto rows = positions(rect.v0, rect.v1, key.j);
+  const auto channels = static_cast<std::size_t>(tile.channels);
+  std::vector<std::uint8_t> even(tile.texels.size());
+  for (std::size_t y = 0; y < side; ++y) {
+    for (std::size_t x = 0; x < side; ++x) {
+      std::uint8_t* texel = &even[channels * (y * side + x)];
+      for (std::size_t c = 0; c < channels; ++c) {
+        texel[c] = to_byte(bilinear<float>(columns[x], rows[y], side, [&](std::size_t at) {
+          return static_cast<float>(tile.texels[channels * at + c]);
+        }));
+      }
+      if (channels == 4) texel[3] = texel[3] < 128 ? 0 : 255;
+    }
+  }
+  tile.texels = std::move(even);
+}
+
+}  // namespace
+
+void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
+                                ShadedTile& out) const {
+  const int n = planet_->meta().tile.intervals();
+  const lod::TileKey stored = deepest(block);
+  const std::shared_ptr<const NormalTile> ground = normals(stored, params);
+  const Picture picture = this->picture(block, params);
+  // Where this block lies inside what is stored, in steps of the block's own texels.
+  const auto offset = [&](std::int32_t index, const lod::TileKey& outer) {
+    const int levels = block.level - outer.level;
+    return (index - ((index >> levels) << levels)) * n;
+  };
+  const int ground_steps = n << (block.level - stored.level);
+  const int gx = offset(block.i, stored);
+  const int gy = offset(block.j, stored);
+  const int picture_steps = picture.tile ? n << (block.level - picture.key.level) : 1;
+  const int px = picture.tile ? offset(block.i, picture.key) : 0;
+  const int py = picture.tile ? offset(block.j, picture.key) : 0;
+  const bool direct = stored == block;
+  const bool needs_up = needs_vertical(params.surfacing) || needs_vertical(params.hue);
+  const lod::GridLines lines = needs_up ? lod::grid_lines(block, n) : lod::GridLines{};
+
+  const auto ground_side = static_cast<std::size_t>(ground->side);
+  const auto channels = static_cast<std::size_t>(out.channels);
+  Ground at;
+  for (int y = 0; y <= n; ++y) {
+    const GridPosition gyp = grid_position(gy, y, ground_steps, ground->side - 1);
+    const GridPosition pyp = grid_position(py, y, picture_steps, kImageIntervals);
+    std::uint8_t* texel =
+        &out.texels[channels * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
+                                static_cast<std::size_t>(x0))];
+    for (int x = 0; x <= n; ++x, texel += channels) {
+      const GridPosition gxp = grid_position(gx, x, ground_steps, ground->side - 1);
+      at.height_m =
+          bilinear<float>(gxp, gyp, ground_side, [&](std::size_t k) { return ground->posts[k].height_m; });
+      at.normal =
+          direct ? ground->posts[static_cast<std::size_t>(y) * ground_side + static_cast<std::size_t>(x)].normal
+                 : bilinear<glm::vec3>(gxp, gyp, ground_side,
+                                       [&](std::size_t k) { return ground->posts[k].normal; });
+      if (!ground->sees_sun.empty())
+        at.sun = bilinear<float>(gxp, gyp, ground_side,
+                                 [&](std::size_t k) { return static_cast<float>(ground->sees_sun[k]); });
+      if (needs_up)
+        at.up = mars::chart_direction(block.face, lines.u[static_cast<std::size_t>(x)],
+                                      lines.v[static_cast<std::size_t>(y)]);
+      if (picture.tile) {
+        const GridPosition pxp = grid_position(px, x, picture_steps, kImageIntervals);
+        at.image = bilinear<glm::vec3>(pxp, pyp, kImageSide,
+                                       [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
+      }
+      if (channels == 1) {
+        texel[0] = to_byte(
+            static_cast<float>(255.0 / out.brightest *
+                               vpe::core::light(params.ambient, params.diffuse,
+                                                at.sun * glm::dot(glm::normalize(at.normal), params.sun))));
+        continue;
+      }
+      const glm::vec3 c(colour(at, params));
+      texel[0] = to_byte(c.x);
+      texel[1] = to_byte(c.y);
+      texel[2] = to_byte(c.z);
+      texel[3] = 255;
+      if (!ground->missing.empty() && ground->missing[nearest(gyp) * ground_side + nearest(gxp)]) {
+        texel[3] = 0;
+        out.gaps = true;
+      }
+    }
+  }
+}
+
+ShadedTile GroundPainter::shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh,
+                                       std::span<const double> height_m, const ShadeParams& params) const {
+  const double radius = planet_->radius_m();
+  const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
+  const double spacing_m = lod::nominal_side_m(key.level, radius) / mesh.intervals;
+  const Picture picture = this->picture(key, params);
+  const std::shared_ptr<const TileHeights> posts = planet_->has_missing(key) ? heights(deepest(key)) : nullptr;
+  const bool gaps = posts && !posts->missing.empty();
+  std::vector<glm::dvec3> places;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    places.push_back(mars::chart_direction(key.face, lines.u[mesh.vertices[v].i], lines.v[mesh.vertices[v].j]) *
+                     (radius + params.exaggeration * height_m[v]));
+  }
+  ShadedTile out;
+  Ground at;
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    const std::array<std::uint32_t, 3> v{mesh.triangles[t], mesh.triangles[t + 1], mesh.triangles[t + 2]};
+    at.normal = glm::normalize(glm::cross(places[v[1]] - places[v[0]], places[v[2]] - places[v[0]]));
+    const glm::dvec3 middle = (places[v[0]] + places[v[1]] + places[v[2]]) / 3.0;
+    at.up = glm::normalize(middle);
+    if (glm::dot(at.normal, at.up) < 0.0) at.normal = -at.normal;
+    at.height_m = (height_m[v[0]] + height_m[v[1]] + height_m[v[2]]) / 3.0;
+    at.sun = 1.0;
+    if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
+      at.sun = sees_sun(middle, spacing_m, params) ? 1.0 : 0.0;
+    if (picture.tile) {
+      const mars::ChartPoint place = mars::chart_on(key.face, middle);
+      at.image = bilinear<glm::vec3>(between_lines(place.u, picture.key.level, picture.key.i, kImageIntervals),
+                                     between_lines(place.v, picture.key.level, picture.key.j, kImageIntervals),
+                                     kImageSide, [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
+    }
+    const glm::vec3 c(colour(at, params));
+    bool missing = false;
+    for (const std::uint32_t corner : v) {
+      if (!gaps) break;
+      // A parent's mesh is over the posts of its children.
+      const int finer = mesh.intervals / posts->posts.intervals;
+      const auto side = static_cast<std::size_t>(posts->posts.intervals) + 1;
+      const auto post = [&](int of_mesh) { return static_cast<std::size_t>((of_mesh + finer / 2) / finer); };
+      missing = missing || posts->missing[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
+    }
+    out.gaps = out.gaps || missing;
+    for (const std::uint8_t byte : {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(missing ? 0 : 255)})
+      out.texels.push_back(byte);
+  }
+  return out;
+}
+
+ShadedTile GroundPainter::shade(const lod::TileKey& key, int intervals, const ShadeParams& params) const {
+  const int n = planet_->meta().tile.intervals();
+  int levels = 0;
+  while (n << levels < intervals) ++levels;
+  ShadedTile out;
+  out.intervals = n << levels;
+  const int side = out.intervals + 1;
+  // Light alone takes a quarter; alpha would tell what has no data.
+  if (params.surfacing == Surfacing::kPlain && params.lit && !planet_->has_missing(key)) {
+    out.channels = 1;
+    out.brightest = vpe::core::light(params.ambient, params.diffuse, 1.0);
+  }
+  out.texels.resize(static_cast<std::size_t>(out.channels) * static_cast<std::size_t>(side) *
+                    static_cast<std::size_t>(side));
+  const int blocks = 1 << levels;
+  for (int by = 0; by < blocks; ++by) {
+    for (int bx = 0; bx < blocks; ++bx) {
+      const lod::TileKey block{key.face, key.level + levels, (key.i << levels) + bx, (key.j << levels) + by};
+      shade_block(block, bx * n, by * n, side, params, out);
+    }
+  }
+  if (key.level < 5) make_even(key, out);
+  return out;
+}
+
+}  // namespace paging

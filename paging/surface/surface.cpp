@@ -1,0 +1,150 @@
+#include "paging/surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace paging {
+
+std::size_t SurfaceTile::bytes() const {
+  std::size_t total = sizeof(SurfaceTile) + data.posts.height_m.capacity() * sizeof(double) +
+                      data.missing.capacity() / 8 + (lines.u.capacity() + lines.v.capacity()) * sizeof(double);
+  for (const auto& block : block_max) total += block.capacity() * sizeof(float);
+  return total;
+}
+
+SurfaceTile prepare_tile(TileHeights heights) {
+  SurfaceTile tile;
+  tile.data = std::move(heights);
+  const lod::Posts& posts = tile.data.posts;
+  tile.lines = lod::grid_lines(posts.key, posts.intervals);
+  const auto [low, high] = std::minmax_element(posts.height_m.begin(), posts.height_m.end());
+  tile.min_height_m = *low;
+  tile.max_height_m = *high;
+  // Rounded up to float so that a block's maximum is never below its posts.
+  const auto up = [](double h) {
+    return std::nextafter(static_cast<float>(h), std::numeric_limits<float>::infinity());
+  };
+  int side = posts.intervals / 2;
+  std::vector<float> level(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      double largest = -std::numeric_limits<double>::infinity();
+      for (int y = 2 * j; y <= 2 * j + 2; ++y) {
+        for (int x = 2 * i; x <= 2 * i + 2; ++x) largest = std::max(largest, posts.at(x, y));
+      }
+      level[static_cast<std::size_t>(j * side + i)] = up(largest);
+    }
+  }
+  tile.block_max.push_back(std::move(level));
+  while (side > 1) {
+    const std::vector<float>& fine = tile.block_max.back();
+    const int half = side / 2;
+    std::vector<float> coarse(static_cast<std::size_t>(half) * static_cast<std::size_t>(half));
+    for (int j = 0; j < half; ++j) {
+      for (int i = 0; i < half; ++i) {
+        const auto at = [&](int x, int y) { return fine[static_cast<std::size_t>(y * side + x)]; };
+        coarse[static_cast<std::size_t>(j * half + i)] =
+            std::max({at(2 * i, 2 * j), at(2 * i + 1, 2 * j), at(2 * i, 2 * j + 1), at(2 * i + 1, 2 * j + 1)});
+      }
+    }
+    tile.block_max.push_back(std::move(coarse));
+    side = half;
+  }
+  return tile;
+}
+
+namespace {
+
+// Few tiles lie beside coarser ones.
+constexpr double kExaggeratedShare = 0.1;
+
+std::size_t part(std::size_t bytes, double share) {
+  return static_cast<std::size_t>(share * static_cast<double>(bytes));
+}
+
+}  // namespace
+
+Surface::Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
+    : planet_(std::move(planet)), cache_(part(budget_bytes, 1 - kExaggeratedShare)),
+      exaggerated_(part(budget_bytes, kExaggeratedShare)) {
+  constexpr int kTableLevels = 11;
+  for (int level = 0; level < kTableLevels; ++level) {
+    std::vector<double>& lines = middles_.emplace_back();
+    for (std::int32_t k = 0; k < 1 << level; ++k)
+      lines.push_back(mars::face_line(2 * std::int64_t{k} + 1, level + 1));
+  }
+}
+
+double Surface::middle_line(int level, std::int32_t index) const {
+  const auto at = static_cast<std::size_t>(level);
+  return at < middles_.size() ? middles_[at][static_cast<std::size_t>(index)]
+                              : mars::face_line(2 * std::int64_t{index} + 1, level + 1);
+}
+
+std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key, double exaggeration) const {
+  auto tile = cache_.get(key, [&] {
+    auto made = std::make_shared<const SurfaceTile>(prepare_tile(planet_->heights(key)));
+    const std::size_t bytes = made->bytes();
+    return std::pair(std::move(made), bytes);
+  });
+  if (exaggeration == 1.0 || tile->data.steps == 0) return tile;
+  return exaggerated_.get({key, exaggeration}, [&] {
+    TileHeights heights = tile->data;
+    put_on_coarser_edges(heights, planet_radius_m(), exaggeration);
+    auto made = std::make_shared<const SurfaceTile>(prepare_tile(std::move(heights)));
+    const std::size_t bytes = made->bytes();
+    return std::pair(std::move(made), bytes);
+  });
+}
+
+namespace {
+
+lod::TileKey finest_tile(const lod::TileTree& tree, const mars::ChartPoint& point) {
+  lod::TileKey key = lod::tile_at(point, 0);
+  for (const lod::TileInfo* info = tree.find(key); info != nullptr && info->has_children;
+       info = tree.find(key)) {
+    key = lod::tile_at(point, key.level + 1);
+  }
+  return key;
+}
+
+}  // namespace
+
+SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const {
+  const mars::ChartPoint point = mars::chart_point(direction);
+  SurfacePoint out;
+  out.tile = finest_tile(planet_->tree(), point);
+  const auto tile = this->tile(out.tile, exaggeration);
+  out.height_m = lod::surface_height(tile->data.posts, tile->lines, point.u, point.v, planet_radius_m(),
+                                     &out.normal, exaggeration);
+  out.radius_m = planet_radius_m() + out.height_m;
+  if (!tile->data.missing.empty()) {
+    const auto nearest = [](const std::vector<double>& lines, double x) {
+      const auto above = std::lower_bound(lines.begin(), lines.end(), x);
+      if (above == lines.begin()) return std::size_t{0};
+      if (above == lines.end()) return lines.size() - 1;
+      const auto at = static_cast<std::size_t>(above - lines.begin());
+      return lines[at] - x < x - lines[at - 1] ? at : at - 1;
+    };
+    const std::size_t i = nearest(tile->lines.u, point.u);
+    const std::size_t j = nearest(tile->lines.v, point.v);
+    out.missing = tile->data.missing[j * static_cast<std::size_t>(tile->data.posts.side()) + i];
+  }
+  return out;
+}
+
+void Surface::radius(std::span<const glm::dvec3> directions, std::span<double> radius_m,
+                     double exaggeration) const {
+  std::shared_ptr<const SurfaceTile> held;
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    const mars::ChartPoint point = mars::chart_point(directions[n]);
+    const bool same = held && held->data.posts.key.face == point.face &&
+                      lod::tile_at(point, held->data.posts.key.level) == held->data.posts.key;
+    if (!same) held = tile(finest_tile(planet_->tree(), point), exaggeration);
+    radius_m[n] = planet_radius_m() +
+                  lod::surface_height(held->data.posts, held->lines, point.u, point.v, planet_radius_m(), nullptr,
+                                      exaggeration);
+  }
+}
+
+}  // namespace paging

@@ -1,0 +1,41 @@
+// Pictures half as large, row by row.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "mars/sources/source.h"
+
+namespace panorama {
+
+// Size of the next smaller level: half, rounded up.
+inline std::int64_t half_px(std::int64_t side_px) { return (side_px + 1) / 2; }
+
+// Takes the rows of a picture from above, gives those of one of half_px() of both sides. Each pixel is the mean
+// over its area, so that odd sizes shift nothing: places keep to the ratio of the sizes. Means are of the
+// stored values, rounded to the nearest. The same bytes everywhere.
+class Halver {
+ public:
+  using Row = std::span<const vpe::base::Rgb>;
+  Halver(std::int64_t width_px, std::int64_t height_px, std::function<void(Row)> give);
+
+  std::int64_t width_px() const { return static_cast<std::int64_t>(out_.size()); }
+  void take(Row row);
+
+ private:
+  void give_row();
+
+  std::int64_t width_px_;
+  std::int64_t height_px_;
+  std::int64_t out_height_px_;
+  std::int64_t row_ = 0;      // next to be taken
+  std::int64_t out_row_ = 0;  // next to be given
+  std::function<void(Row)> give_;
+  std::vector<std::uint64_t> sums_;  // of the given row so far, three a pixel
+  std::vector<std::uint64_t> across_;
+  std::vector<vpe::base::Rgb> out_;
+};
+
+}  // namespace panorama

@@ -1,0 +1,38 @@
+// What a panorama's picture shows, from whatever describes it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "panorama/metadata/auxiliary_files.h"
+#include "panorama/projection.h"
+#include "panorama/metadata/sidecar.h"
+#include "panorama/image/xmp_file.h"
+
+namespace panorama {
+
+struct PanoramaDescription {
+  std::filesystem::path picture;
+  PictureFormat format = PictureFormat::kOther;
+  PanoramaMap map;  // of the picture's size; of one eye's when it holds a pair
+  std::vector<std::string>
+      sources;  // what described it, the one that counts first: "'x.json'", "GPano in 'x.jpg'"
+  bool heading_is_known =
+      true;  // false: GPano without a heading, azimuths are counted from the full picture's middle
+  std::optional<Station> station;
+  PairLayout pair = PairLayout::kNone;
+  std::vector<PlaneName> planes;  // beside the picture; of the map's size
+};
+
+// `path` is a picture, or the JSON that names one. Looked for, and the first found counts:
+//   1. NAME.json, or pano.json in the same folder when its "image" is this picture (sidecar.h)
+//   2. a label: NAME.lbl or NAME.xml (in either case), or at the start of the file (label.h)
+//   3. GPano inside of PNG, JPEG or TIFF (gpano.h)
+// Sizes are read without unpacking pixels. Throws vpe::base::FileError: nothing found; a description that
+// cannot be used; two that differ by more than a pixel, or one that does not fit the picture, naming both.
+// `pair` says which eyes the picture holds, whatever its JSON says.
+PanoramaDescription describe(const std::filesystem::path& path, std::optional<PairLayout> pair = std::nullopt);
+
+}  // namespace panorama

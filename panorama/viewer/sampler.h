@@ -1,0 +1,51 @@
+// Colours of a picture at places between its pixels and levels. Private to panorama.
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "panorama/viewer/render_view.h"
+
+namespace panorama {
+
+// For one thread. Keeps the tiles that it used last.
+class Sampler {
+ public:
+  Sampler(const Picture& picture, const PanoramaMap& map, const PictureOrigin& origin);
+
+  // Mean over the parallelogram of `across` and `down` about `at`, all in pixels of the map's picture; each
+  // channel 0 to 255.
+  glm::vec3 mean(const glm::dvec2& at, const glm::dvec2& across, const glm::dvec2& down);
+
+ private:
+  struct Level {
+    PictureLevel size;
+    glm::dvec2 scale;   // pixels of this level to one of the picture
+    double reduction;   // pixels of the picture to one of this level, the larger of both sides
+    std::int64_t turn;  // columns; 0 when the picture is no full turn
+    std::int64_t left;  // the part that the map describes, both ends included
+    std::int64_t right;
+    std::int64_t top;
+    std::int64_t bottom;
+  };
+  struct Slot {
+    int level = -1;
+    std::int64_t column = 0;
+    std::int64_t row = 0;
+    std::shared_ptr<const Tile> tile;
+  };
+
+  const Tile& tile(int level, std::int64_t column, std::int64_t row);
+  glm::vec3 pixel(int level, std::int64_t x, std::int64_t y);
+  glm::vec3 between_pixels(int level, const glm::dvec2& at);
+  glm::vec3 between_levels(double footprint_px, const glm::dvec2& at);
+  std::int64_t wrapped(const Level& level, std::int64_t x) const;
+
+  const Picture& picture_;
+  glm::dvec2 origin_px_;
+  std::vector<Level> levels_;
+  std::array<Slot, 16> slots_;
+};
+
+}  // namespace panorama

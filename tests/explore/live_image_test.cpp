@@ -1,0 +1,84 @@
+#include "vpe/explore/live_image.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace vpe::explore {
+namespace {
+
+core::View at(double lon_deg) {
+  core::View view;
+  view.eye = mars::to_eye({lon_deg, 0, 10'000, 0, -30, 0}, mars::kMarsRadius_m);
+  return view;
+}
+
+// Pictures whose time falls with what is given up.
+double cost_ms(double full_ms, double multiplier) { return full_ms / std::pow(multiplier, 1.2); }
+
+TEST(LivePicture, AtRestItEndsWithTheFullPictureAndThenNothing) {
+  LivePicture live;
+  int pictures = 0;
+  double last = 0;
+  while (const auto order = live.next(at(0), false, 10'000)) {
+    last = order->multiplier;
+    live.made(400, true);
+    ASSERT_LT(++pictures, 20);
+  }
+  EXPECT_GE(pictures, 1);
+  EXPECT_EQ(last, 1.0);
+  EXPECT_EQ(live.state(), lod::LookState::kWaiting);
+  EXPECT_FALSE(live.next(at(0), false, 10'000).has_value());
+  const auto again = live.next(at(0), true, 10'000);  // a setting changed
+  ASSERT_TRUE(again.has_value());
+  EXPECT_TRUE(again->is_full);
+}
+
+TEST(LivePicture, WhileTilesComeItIsDrawnAgain) {
+  LivePicture live;
+  for (int n = 0; n < 30; ++n) {
+    ASSERT_TRUE(live.next(at(0), false, 10'000).has_value());
+    live.made(20, false);
+  }
+  ASSERT_TRUE(live.next(at(0), false, 10'000).has_value());
+  live.made(20, true);
+  EXPECT_FALSE(live.next(at(0), false, 10'000).has_value());
+}
+
+TEST(LivePicture, MovingItMeetsItsBudgetByPixelsAndTolerance) {
+  LivePicture live({.budget_ms = 50});
+  double ms = 0;
+  for (int n = 0; n < 60; ++n) {
+    const auto order = live.next(at(0.01 * n), false, 10'000);
+    ASSERT_TRUE(order.has_value());
+    EXPECT_EQ(order->is_full, order->multiplier == 1.0);
+    ms = cost_ms(200, order->multiplier);
+    live.made(ms, true);
+    if (n > 30) {
+      EXPECT_LT(order->view.width, 1280);
+      EXPECT_NEAR(order->view.width / 1280.0, order->view.height / 720.0, 0.01);
+      EXPECT_EQ(order->view.fov_deg, 60);
+    }
+  }
+  EXPECT_LT(ms, 60);
+  EXPECT_GT(ms, 35);
+}
+
+TEST(LivePicture, WithoutABudgetNothingIsGivenUp) {
+  LivePicture live({.budget_ms = 0});
+  for (int n = 0; n < 20; ++n) {
+    const auto order = live.next(at(0.5 * n), false, 10'000);
+    ASSERT_TRUE(order.has_value());
+    EXPECT_TRUE(order->is_full);
+    EXPECT_EQ(order->view.width, 1280);
+    live.made(1000, true);
+  }
+}
+
+TEST(LivePicture, OptionsOutOfRangeAreRefused) {
+  EXPECT_THROW(LivePicture({.budget_ms = -1}), std::invalid_argument);
+  EXPECT_THROW(LivePicture({.budget_ms = 10, .smallest_side = 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace vpe::explore

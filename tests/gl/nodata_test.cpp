@@ -1,0 +1,192 @@
+// Ground without data is striped, in every mode and from every distance, and nothing else is.
+#include <gtest/gtest.h>
+
+#include "tests/gl/gl_fixture.h"
+
+namespace {
+
+using test_support::build_fake;
+using test_support::bumpy_height;
+using test_support::FakeElevation;
+using vpe::core::DrawRequest;
+using vpe::core::DrawResult;
+using vpe::core::Mode;
+
+// The stripes of vpe/gl/shaders.cpp.
+constexpr int kBright = 150;
+constexpr int kDark = 60;
+
+bool grey(const vpe::base::Rgb& c) { return c.r == c.g && c.g == c.b && c.r >= kDark && c.r <= kBright; }
+
+class Gaps : public test_support::GlTest {
+ protected:
+  static constexpr double kSpacing_m = 60000;
+  const glm::dvec3 middle_ = mars::direction({10, 20});
+
+  std::shared_ptr<const paging::PlanetFile> holed() {
+    return build_fake(dir_ / "holed.vpe", FakeElevation([m = middle_](const glm::dvec3& d) {
+                        return glm::length(d - m) < 0.25 ? std::nan("") : bumpy_height(d);
+                      }),
+                      kSpacing_m);
+  }
+
+  // All finest tiles, so that the stripes end where query says.
+  DrawRequest request(const mars::Pose& pose, double radius_m) const {
+    DrawRequest out = test_support::request_for(pose, radius_m, 160, 120);
+    out.settings.lod_tolerance_px = 0;
+    out.settings.smooth_edges = false;
+    return out;
+  }
+};
+
+TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
+  const auto planet = holed();
+  const paging::Surface surface(planet, std::size_t{64} << 20);
+  const auto draw = renderer(planet);
+  const std::vector<std::pair<const char*, mars::Pose>> poses{{"far", {10, 20, 4e6, 0, -90, 0}},
+                                                              {"rim", {10, 6, 600e3, 0, -60, 0}},
+                                                              {"grazing", {10, 2, 80e3, 0, -14, 0}},
+                                                              {"near", {10, 20, 30e3, 40, -30, 0}},
+                                                              {"at the ground", {10, 20, 20e3, 40, -70, 10}}};
+  for (const auto& [name, pose] : poses) {
+    DrawRequest request = this->request(pose, planet->radius_m());
+    for (const Mode mode : {Mode::kUnlit, Mode::kLit, Mode::kColoured, Mode::kTextured}) {
+      request.settings.mode = mode;
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(static_cast<int>(mode)));
+      const DrawResult result = draw->draw(request);
+      const int w = result.frame.width;
+      const int h = result.frame.height;
+      // 1: no data, 0: data, -1: sky, as query has it.
+      std::vector<int> missing(result.frame.range_m.size(), -1);
+      std::vector<bool> near_rim(missing.size());
+      for (std::size_t n = 0; n < missing.size(); ++n) {
+        const float range = result.frame.range_m[n];
+        if (!std::isfinite(range)) continue;
+        const int x = static_cast<int>(n) % w;
+        const int y = static_cast<int>(n) / w;
+        const glm::dvec3 p = request.view.eye.eye_m + double{range} * glm::normalize(vpe::core::pixel_ray(
+                                                                          request.view, x + 0.5, y + 0.5));
+        const glm::dvec3 d = glm::normalize(p);
+        missing[n] = surface.at(d).missing ? 1 : 0;
+        // Below level 5 the rim is right to a texel, here a quarter of a post.
+        const double reach = 0.25 * kSpacing_m / planet->radius_m();
+        for (const glm::dvec3& aside : {glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}}) {
+          for (const double to : {-reach, reach}) {
+            if (surface.at(glm::normalize(d + to * aside)).missing != (missing[n] == 1)) near_rim[n] = true;
+          }
+        }
+      }
+      int striped = 0;
+      int bright = 0;
+      int dark = 0;
+      int wrong = 0;
+      int all = 0;
+      for (int y = 1; y + 1 < h; ++y) {
+        for (int x = 1; x + 1 < w; ++x) {
+          const auto at = static_cast<std::size_t>(y * w + x);
+          all += missing[at] == 1;
+          bool inside = !near_rim[at];  // and all pixels around are alike
+          for (const int step : {-w - 1, -w, -w + 1, -1, 1, w - 1, w, w + 1}) {
+            inside = inside && missing[at] == missing[static_cast<std::size_t>(static_cast<int>(at) + step)];
+          }
+          const vpe::base::Rgb& c = result.frame.colour[at];
+          if (!inside) continue;
+          if (missing[at] != 1) {
+            wrong += grey(c);
+            continue;
+          }
+          ++striped;
+          wrong += !grey(c);
+          bright += c.r == kBright;
+          dark += c.r == kDark;
+        }
+      }
+      ASSERT_GT(striped, 500);
+      EXPECT_EQ(wrong, 0);
+      // Between the two colours are only the edges of the stripes.
+      EXPECT_GT(bright, striped / 4);
+      EXPECT_GT(dark, striped / 4);
+      EXPECT_GT(bright + dark, striped * 2 / 3);
+      ASSERT_TRUE(result.certificate.share_without_data.has_value());
+      EXPECT_NEAR(*result.certificate.share_without_data, static_cast<double>(all) / (w * h), 0.04);
+    }
+  }
+}
+
+TEST_F(Gaps, StayOnTheGroundWhileTheEyeMoves) {
+  const auto planet = holed();
+  const auto draw = renderer(planet);
+  test_support::Random random(5);
+  for (const double altitude_m : {20e3, 300e3, 3e6}) {
+    const double step_deg = altitude_m / 3e6;
+    const DrawRequest a = request({10, 20, altitude_m, 0, -90, 0}, planet->radius_m());
+    const DrawRequest b =
+        request({10 + step_deg, 20 + 0.7 * step_deg, altitude_m, 30, -85, 0}, planet->radius_m());
+    const DrawResult first = draw->draw(a);
+    const DrawResult second = draw->draw(b);
+    int same = 0;
+    int other = 0;
+    for (int n = 0; n < 4000; ++n) {
+      const double reach = std::min(0.4 * altitude_m / planet->radius_m(), 0.2);
+      const glm::dvec3 d = glm::normalize(
+          middle_ + reach * glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+      const glm::dvec3 p = d * (planet->radius_m() + planet->meta().fill_m);
+      const auto colour = [&](const DrawRequest& request, const DrawResult& result) {
+        const auto xy = vpe::core::project(request.view, p).xy;
+        if (!(xy.x >= 0 && xy.x < 160 && xy.y >= 0 && xy.y < 120)) return 0;
+        return int{
+            result.frame.colour[static_cast<std::size_t>(static_cast<int>(xy.y) * 160 + static_cast<int>(xy.x))]
+                .r};
+      };
+      const int one = colour(a, first);
+      const int two = colour(b, second);
+      if ((one != kBright && one != kDark) || (two != kBright && two != kDark)) continue;
+      ++(one == two ? same : other);
+    }
+    ASSERT_GT(same + other, 500);
+    EXPECT_LT(other, (same + other) / 20) << altitude_m;
+  }
+}
+
+TEST_F(Gaps, CostNothingElsewhere) {
+  const auto planet = holed();
+  const auto whole = build_fake(dir_ / "whole.vpe", FakeElevation(bumpy_height), kSpacing_m);
+  const auto with = renderer(planet);
+  const auto without = renderer(whole);
+  // A renderer that has drawn stripes before.
+  with->draw(request({10, 20, 300e3, 0, -90, 0}, planet->radius_m()));
+  DrawRequest request = this->request({-140, -40, 300e3, 0, -50, 0}, planet->radius_m());
+  for (const Mode mode : {Mode::kWireframe, Mode::kUnlit, Mode::kLit, Mode::kColoured}) {
+    request.settings.mode = mode;
+    const DrawResult a = with->draw(request);
+    const DrawResult b = without->draw(request);
+    EXPECT_EQ(a.frame.colour, b.frame.colour);
+    EXPECT_EQ(a.frame.range_m, b.frame.range_m);
+    EXPECT_EQ(a.certificate.share_without_data, 0.0);
+    EXPECT_EQ(b.certificate.share_without_data, 0.0);
+  }
+  EXPECT_FALSE(whole->has_missing({mars::Face{}, 0, 0, 0}));
+}
+
+TEST_F(Gaps, WireframesShowNone) {
+  const auto planet = holed();
+  DrawRequest request = this->request({10, 20, 300e3, 0, -90, 0}, planet->radius_m());
+  request.settings.mode = Mode::kWireframe;
+  const DrawResult result = renderer(planet)->draw(request);
+  EXPECT_FALSE(result.certificate.share_without_data.has_value());
+  for (const vpe::base::Rgb& c : result.frame.colour) ASSERT_FALSE(grey(c));
+}
+
+// Samples count in parts.
+TEST_F(Gaps, ShareOfAMultisampledPicture) {
+  const auto planet = holed();
+  const auto draw = renderer(planet);
+  DrawRequest request = this->request({10, 6, 600e3, 0, -60, 0}, planet->radius_m());
+  const double one = draw->draw(request).certificate.share_without_data.value_or(-1);
+  request.settings.samples = 4;
+  EXPECT_NEAR(draw->draw(request).certificate.share_without_data.value_or(-1), one, 0.01);
+  EXPECT_GT(one, 0.05);
+  EXPECT_LT(one, 0.95);
+}
+
+}  // namespace

@@ -1,0 +1,211 @@
+#include "lod/fallback.h"
+
+#include <set>
+
+#include "mars/geodesy/sphere.h"
+#include "paging/pager.h"
+#include "tests/lod/fake_tree.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using lod::Selection;
+using lod::TileInfo;
+using lod::TileKey;
+using lod::TileTree;
+using test_support::Random;
+namespace core = vpe::core;
+
+const TileTree& tree() {
+  static const TileTree tree = fake::tree(fake::rough(3, 8));
+  return tree;
+}
+
+core::View random_view(Random& random) {
+  core::View view;
+  view.eye = mars::to_eye(mars::Pose{random.uniform(-180, 180), random.uniform(-90, 90),
+                                     random.log_uniform(8000, 3 * fake::kRadius_m), random.uniform(-180, 180),
+                                     random.uniform(-90, 10), random.uniform(-180, 180)},
+                          fake::kRadius_m);
+  view.fov_deg = random.uniform(20, 100);
+  return view;
+}
+
+using Page = std::pair<TileKey, int>;
+struct PageHash {
+  std::size_t operator()(const Page& page) const {
+    return lod::TileKeyHash()(page.first) + static_cast<std::size_t>(page.second);
+  }
+};
+using Ready = std::set<Page>;
+
+lod::Readiness readiness(const Ready& ready) {
+  return {[](const void* set, const TileInfo& tile, int variant) {
+            return static_cast<const Ready*>(set)->count({tile.key, variant}) != 0;
+          },
+          &ready};
+}
+
+Selection selected(const core::View& view) {
+  lod::SelectScratch scratch;
+  Selection selection;
+  lod::select({}, tree(), lod::select_view(view), scratch, selection);
+  return selection;
+}
+
+lod::Substitution substituted(const core::View& view, const Selection& selection, const Ready& ready) {
+  lod::Substitution out;
+  lod::substitute({}, tree(), lod::select_view(view), selection, readiness(ready), out);
+  return out;
+}
+
+// Drawn tiles are ready, disjoint, ascend, and fill every selected tile wholly: in one piece from above, or by pieces.
+void expect_cover(const Selection& selection, const lod::Substitution& s, const Ready& ready) {
+  const auto& drawn = s.drawn.tiles;
+  std::int64_t end = 0;
+  std::int64_t triangles = 0;
+  for (const lod::SelectedTile& t : drawn) {
+    ASSERT_EQ(ready.count({t.key, t.variant}), 1U) << to_string(t.key);
+    ASSERT_GE(lod::z_position(t.key), end) << to_string(t.key) << " overlaps";
+    end = lod::z_position(t.key) + lod::z_extent(t.key.level);
+    triangles += tree()[t.index].variants[static_cast<std::size_t>(t.variant)].triangles;
+    ASSERT_EQ(tree()[t.index].key, t.key);
+  }
+  EXPECT_EQ(triangles, s.drawn.triangles);
+  std::size_t as_selected = 0;
+  for (const lod::SelectedTile& t : selection.tiles) {
+    const std::int64_t begin = lod::z_position(t.key);
+    std::int64_t filled = 0;
+    for (const lod::SelectedTile& d : drawn) {
+      if (lod::contains(d.key, t.key)) filled = lod::z_extent(t.key.level);
+      if (d.key != t.key && lod::contains(t.key, d.key)) filled += lod::z_extent(d.key.level);
+      if (d.key == t.key && d.variant == t.variant) {
+        ++as_selected;
+        EXPECT_EQ(d.error_m, t.error_m);
+        EXPECT_EQ(d.error_px, t.error_px);
+        EXPECT_EQ(d.min_distance_m, t.min_distance_m);
+      }
+    }
+    ASSERT_EQ(filled, lod::z_extent(t.key.level)) << to_string(t.key) << " at " << begin;
+  }
+  EXPECT_EQ(selection.tiles.size() - as_selected, s.missing.size());
+  EXPECT_EQ(drawn.size() - as_selected, static_cast<std::size_t>(s.substituted));
+}
+
+Ready roots() {
+  Ready ready;
+  for (TileTree::Index root = 0; root < mars::kFaces; ++root) ready.insert({tree()[root].key, 0});
+  return ready;
+}
+
+TEST(Substitute, AllReadyIsTheSelectionItself) {
+  Random random(1);
+  for (int n = 0; n < 20; ++n) {
+    const core::View view = random_view(random);
+    const Selection selection = selected(view);
+    Ready ready;
+    for (const lod::SelectedTile& t : selection.tiles) ready.insert({t.key, t.variant});
+    const lod::Substitution s = substituted(view, selection, ready);
+    EXPECT_TRUE(s.missing.empty());
+    EXPECT_EQ(s.substituted, 0);
+    ASSERT_EQ(s.drawn.tiles.size(), selection.tiles.size());
+    expect_cover(selection, s, ready);
+  }
+}
+
+TEST(Substitute, OnlyRootsReadyDrawsRoots) {
+  Random random(2);
+  const core::View view = random_view(random);
+  const Selection selection = selected(view);
+  const lod::Substitution s = substituted(view, selection, roots());
+  for (const lod::SelectedTile& t : s.drawn.tiles) EXPECT_EQ(t.key.level, 0);
+  expect_cover(selection, s, roots());
+}
+
+TEST(Substitute, NothingReadyIsSaid) {
+  Random random(3);
+  const core::View view = random_view(random);
+  const Selection selection = selected(view);
+  const lod::Substitution s = substituted(view, selection, {});
+  EXPECT_TRUE(s.drawn.tiles.empty());
+  EXPECT_EQ(static_cast<std::size_t>(s.uncovered), selection.tiles.size());
+}
+
+TEST(Substitute, CoversWhateverIsReady) {
+  Random random(4);
+  for (int n = 0; n < 150; ++n) {
+    const core::View view = random_view(random);
+    const Selection selection = selected(view);
+    Ready ready = roots();
+    const double share = random.uniform(0, 1);
+    for (const TileInfo& tile : tree().tiles()) {
+      for (int v = 0; v < static_cast<int>(tile.variants.size()); ++v) {
+        if (random.uniform(0, 1) < share) ready.insert({tile.key, v});
+      }
+    }
+    for (const lod::SelectedTile& t : selection.tiles) {
+      if (random.uniform(0, 1) < 0.7) ready.insert({t.key, t.variant});
+    }
+    expect_cover(selection, substituted(view, selection, ready), ready);
+    if (testing::Test::HasFatalFailure()) FAIL() << "view " << n;
+  }
+}
+
+// Zooming out: the tile wanted is not there, what was drawn before is.
+TEST(Substitute, ChildrenStandInForTheirParent) {
+  core::View view;
+  view.eye = mars::to_eye(mars::Pose{10, 20, 3e6, 0, -90, 0}, fake::kRadius_m);
+  const Selection selection = selected(view);
+  const auto wanted = std::find_if(selection.tiles.begin(), selection.tiles.end(),
+                                   [](const auto& t) { return tree()[t.index].has_children && t.key.level > 0; });
+  ASSERT_NE(wanted, selection.tiles.end());
+  Ready ready = roots();
+  for (const lod::SelectedTile& t : selection.tiles) {
+    if (t.key != wanted->key) ready.insert({t.key, t.variant});
+  }
+  for (int c = 0; c < 4; ++c) ready.insert({lod::child(wanted->key, c), 0});
+  const lod::Substitution s = substituted(view, selection, ready);
+  expect_cover(selection, s, ready);
+  EXPECT_EQ(s.substituted, 4);
+  // One child less: the root takes the place of all.
+  ready.erase({lod::child(wanted->key, 2), 0});
+  const lod::Substitution without = substituted(view, selection, ready);
+  expect_cover(selection, without, ready);
+  EXPECT_EQ(without.substituted, 1);
+}
+
+// Counted frames with a source that loads one page now and then, pages that are lost again, a camera that jumps: every
+// frame is in full cover, and a rest ends in the selection.
+TEST(Substitute, FramesAreNeverWithoutCover) {
+  Random random(5);
+  using Pager = paging::Pager<Page, int, PageHash>;
+  Pager pager([](const Page&) { return std::pair(0, std::size_t{1}); }, 0, 1000);
+  Ready ready = roots();
+  core::View view = random_view(random);
+  const auto frame = [&](int loads) {
+    for (int k = 0; k < loads; ++k) {
+      for (const Pager::Loaded& page : pager.take(10)) ready.insert(page.key);
+    }
+    const Selection selection = selected(view);
+    const lod::Substitution s = substituted(view, selection, ready);
+    expect_cover(selection, s, ready);
+    std::vector<Pager::Want> wants;
+    for (const std::size_t n : s.missing) {
+      wants.push_back({{selection.tiles[n].key, selection.tiles[n].variant}, random.uniform(0, 1)});
+    }
+    pager.want(std::move(wants));
+    return s.missing.size();
+  };
+  for (int n = 0; n < 200 && !testing::Test::HasFatalFailure(); ++n) {
+    if (random.integer(0, 3) == 0) view = random_view(random);
+    frame(random.integer(0, 20));
+    if (random.integer(0, 20) == 0) {
+      std::erase_if(ready, [&](const Page& p) { return p.first.level > 0 && random.integer(0, 2) == 0; });
+    }
+  }
+  std::size_t missing = 1;
+  for (int n = 0; n < 2000 && missing > 0; ++n) missing = frame(5);
+  EXPECT_EQ(missing, 0U);
+}
+
+}  // namespace

@@ -1,0 +1,67 @@
+#include "lod/reevaluate.h"
+
+#include "mars/geodesy/sphere.h"
+#include "tests/lod/fake_tree.h"
+#include "tests/support/support.h"
+
+namespace {
+
+vpe::core::View view_at(double lon, double lat, double alt_m, double yaw, double pitch) {
+  vpe::core::View view;
+  view.eye = mars::to_eye(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
+  return view;
+}
+
+TEST(LookFrom, TheSameViewSeesWhatSelectionSays) {
+  const lod::TileTree tree = fake::tree(fake::rough(3, 8));
+  test_support::Random random(31);
+  for (int trial = 0; trial < 100; ++trial) {
+    const vpe::core::View view =
+        view_at(random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(9000, 1e7),
+                random.uniform(0, 360), random.uniform(-90, 0));
+    lod::SelectScratch scratch;
+    lod::Selection selection;
+    lod::select({}, tree, lod::select_view(view), scratch, selection);
+    lod::Selection again = selection;
+    lod::look_from(lod::select_view(view), tree, again);
+    for (std::size_t n = 0; n < selection.tiles.size(); ++n) {
+      const lod::SelectedTile& a = selection.tiles[n];
+      const lod::SelectedTile& b = again.tiles[n];
+      ASSERT_EQ(a.key, b.key);
+      ASSERT_EQ(a.min_distance_m, b.min_distance_m);
+      // Another bound: selection leaves out what cannot stand against the sky, and keeps that of a coarser
+      // mesh.
+      ASSERT_GE(b.stretch, 1.0);
+      ASSERT_DOUBLE_EQ(b.error_px * a.stretch, a.error_px * b.stretch);
+    }
+  }
+}
+
+TEST(LookFrom, DistancesBoundThoseFromTheOtherEye) {
+  const lod::TileTree tree = fake::tree(fake::rough(3, 8));
+  test_support::Random random(32);
+  for (int trial = 0; trial < 50; ++trial) {
+    const double lon = random.uniform(-180, 180);
+    const vpe::core::View from = view_at(lon, random.uniform(-80, 80), random.log_uniform(1000, 1e6), 0, -20);
+    const vpe::core::View to = view_at(lon + 2, random.uniform(-80, 80), random.log_uniform(1000, 1e7), 0, -60);
+    lod::SelectScratch scratch;
+    lod::Selection selection;
+    lod::select({}, tree, lod::select_view(from), scratch, selection);
+    lod::look_from(lod::select_view(to), tree, selection);
+    double worst = 0;
+    for (const lod::SelectedTile& tile : selection.tiles) {
+      const cull::Shell shell = tree.shell(tile.index, 1.0, tile.error_m);
+      for (int sample = 0; sample < 5; ++sample) {
+        const glm::dvec3 point =
+            mars::chart_direction(shell.rect.face, random.uniform(shell.rect.u0, shell.rect.u1),
+                                  random.uniform(shell.rect.v0, shell.rect.v1)) *
+            random.uniform(shell.min_radius_m, shell.max_radius_m);
+        ASSERT_LE(tile.min_distance_m, glm::length(point - to.eye.eye_m));
+      }
+      worst = std::max(worst, tile.error_px);
+    }
+    ASSERT_EQ(selection.max_error_px, worst);
+  }
+}
+
+}  // namespace

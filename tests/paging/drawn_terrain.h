@@ -1,0 +1,63 @@
+// What is drawn for a view, as triangles, and rays against all of them: the brute force that culling is tested
+// with.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lod/select.h"
+#include "lod/occluder_profile.h"
+#include "paging/planet/planet_file.h"
+
+namespace test_support {
+
+// One mesh in 3-D, with its walls.
+struct DrawnMesh {
+  std::vector<glm::dvec3> vertices;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // each once
+  std::vector<std::uint16_t> triangles;
+  lod::TileWalls walls;
+};
+
+// Meshes by tile, variant and exaggeration, kept once made.
+class MeshStore {
+ public:
+  explicit MeshStore(std::shared_ptr<const paging::PlanetFile> planet) : planet_(std::move(planet)) {}
+  const paging::PlanetFile& planet() const { return *planet_; }
+  const DrawnMesh& mesh(const lod::SelectedTile& tile, double exaggeration);
+
+ private:
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  double exaggeration_ = 1.0;
+  std::map<std::pair<std::uint32_t, int>, DrawnMesh> meshes_;
+};
+
+class DrawnGround {
+ public:
+  DrawnGround(MeshStore& store, const lod::Selection& selection, const glm::dvec3& eye_m);
+
+  std::size_t size() const { return tiles_.size(); }
+  const DrawnMesh& mesh(std::size_t tile) const { return *tiles_[tile].mesh; }
+
+  // Nothing where no tile is drawn under the eye.
+  std::optional<bool> eye_is_above() const;
+
+  // Whether the ray from the eye to a point passes below a drawn edge that is nearer. The drawn ground has one
+  // radius for each direction, and along the ray's own vertical plane it is straight between the edges it
+  // crosses.
+  bool blocked(const glm::dvec3& point) const;
+
+ private:
+  struct Tile {
+    mars::ChartRect rect;
+    std::array<glm::dvec3, 4> corners;
+    const DrawnMesh* mesh;
+  };
+  std::vector<Tile> tiles_;
+  glm::dvec3 eye_m_;
+  glm::dvec3 up_;
+};
+
+}  // namespace test_support

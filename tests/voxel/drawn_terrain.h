@@ -1,0 +1,75 @@
+// The ground that mode multires draws for an eye, told from the posts of its tiles.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <map>
+#include <mutex>
+
+#include "lod/tree/posts.h"
+#include "mars/geodesy/cube.h"
+#include "paging/surface/surface.h"
+#include "vpe/core/view.h"
+#include "vpe/voxel/cast/column_walk.h"
+
+namespace test_support {
+
+// The ground that a view draws, by the posts of its tiles: pops without interpolation, but blind to how rays
+// find them.
+class DrawnGround {
+ public:
+  DrawnGround(const paging::Surface& surface, const vpe::core::View& view, double cell_px)
+      : walk_(surface, eye(surface, view.eye.eye_m), 1, {cell_px, vpe::core::focal_px(view)}) {}
+
+  lod::TileTree::Index tile(const glm::dvec3& direction) const {
+    const mars::ChartPoint at = mars::chart_point(direction);
+    const lod::TileTree& tree = walk_.tree();
+    auto tile = static_cast<lod::TileTree::Index>(at.face);
+    while (!walk_.ends_at(tile)) {
+      const lod::TileKey& key = tree[tile].key;
+      tile = tree.first_child(tile) + (at.u >= walk_.middle_line(key.level, key.i) ? 1U : 0U) +
+             (at.v >= walk_.middle_line(key.level, key.j) ? 2U : 0U);
+    }
+    return tile;
+  }
+
+ private:
+  static vpe::voxel::ColumnEye eye(const paging::Surface& surface, const glm::dvec3& eye_m) {
+    const double distance = glm::length(eye_m);
+    return {eye_m / distance, distance, surface.planet_radius_m(), surface.at(eye_m).radius_m};
+  }
+
+  vpe::voxel::ColumnWalk walk_;
+};
+
+// Posts of tiles, for all threads.
+class PostsOf {
+ public:
+  explicit PostsOf(const paging::PlanetFile& planet) : planet_(planet) {}
+
+  double radius_m(lod::TileTree::Index tile, const glm::dvec3& direction) {
+    const Tile& t = get(tile);
+    const mars::ChartPoint at = mars::chart_on(t.posts.key.face, direction);
+    return planet_.radius_m() + lod::surface_height(t.posts, t.lines, at.u, at.v, planet_.radius_m());
+  }
+
+ private:
+  struct Tile {
+    lod::Posts posts;
+    lod::GridLines lines;
+  };
+  const Tile& get(lod::TileTree::Index tile) {
+    const std::lock_guard lock(mutex_);
+    auto [at, is_new] = tiles_.try_emplace(tile);
+    if (is_new) {
+      at->second.posts = planet_.heights(planet_.tree()[tile].key).posts;
+      at->second.lines = lod::grid_lines(at->second.posts.key, at->second.posts.intervals);
+    }
+    return at->second;
+  }
+
+  const paging::PlanetFile& planet_;
+  std::mutex mutex_;
+  std::map<lod::TileTree::Index, Tile> tiles_;
+};
+
+}  // namespace test_support

@@ -1,0 +1,29 @@
+#include "vpe/app/cli/interrupt.h"
+
+#include <atomic>
+#include <csignal>
+
+namespace vpe::app {
+
+namespace {
+
+std::atomic<int> g_signal{0};  // signal handlers can reach nothing but a global
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void note(int signal) { g_signal.store(signal); }
+
+}  // namespace
+
+InterruptGuard::InterruptGuard()
+    : interrupt_(std::signal(SIGINT, note)), terminate_(std::signal(SIGTERM, note)) {}
+
+InterruptGuard::~InterruptGuard() {
+  std::signal(SIGINT, interrupt_);
+  std::signal(SIGTERM, terminate_);
+}
+
+void InterruptGuard::check() {
+  if (const int signal = g_signal.load(); signal != 0) throw Interrupted(signal);
+}
+
+}  // namespace vpe::app

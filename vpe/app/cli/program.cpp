@@ -1,0 +1,119 @@
+#include "vpe/app/cli/program.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <clocale>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+#include "vpe/app/cli/config_file.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/parsing.h"
+#include "vpe/base/number.h"
+
+#ifndef VPE_VERSION
+#define VPE_VERSION "0"
+#endif
+
+namespace vpe::app {
+
+namespace {
+
+// The arguments but the program's own name, last first, as CLI11 wants them.
+std::vector<std::string> reversed_arguments(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  for (std::string& word : arguments) {
+    // CLI11 lets numbers like -5 be values, but takes -.5 for an option.
+    if (word.starts_with("-.") && parse_numbers(word)) word.insert(1, "0");
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  return arguments;
+}
+
+void check_command_name(const CLI::App& program, const std::vector<std::string>& reversed) {
+  if (reversed.empty() || reversed.back().starts_with('-')) return;
+  std::string names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == reversed.back()) return;
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  throw UsageError("unknown command '" + reversed.back() + "'; there are " + names);
+}
+
+// A full disk shows only when the results leave the buffer.
+int flush_results() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return kSuccess;
+  // Whoever closed the pipe, like head(1), knows.
+  if (errno != EPIPE) std::fprintf(stderr, "vpe: cannot write to standard output: %s\n", std::strerror(errno));
+  return kFailure;
+}
+
+}  // namespace
+
+CLI::Validator number_within(double low, double high) {
+  const std::string range = base::format_number(low) + " .. " + base::format_number(high);
+  return {[low, high, range](const std::string& text) {
+            const auto number = base::parse_number(text);
+            return number && *number >= low && *number <= high
+                       ? ""
+                       : "'" + text + "' is not a number within " + range;
+          },
+          range};
+}
+
+CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& about, Common& common,
+                      bool with_json) {
+  CLI::App* command = program.add_subcommand(name, about);
+  command->add_option("--memory", common.memory_mb, "Memory for data, MB")
+      ->check(CLI::Range(64, 1 << 20))
+      ->capture_default_str();
+  command->add_option("--threads", common.threads, "Worker threads, 0 = all cores")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_flag("--quiet,-q", common.quiet, "No progress, only errors");
+  add_config_option(*command);
+  if (with_json) command->add_flag("--json", common.json, "Print figures as JSON on stdout");
+  return command;
+}
+
+const char* version() { return VPE_VERSION; }
+
+int run_program(int argc, char** argv, std::span<const AddCommand> commands) {
+  // The C locale throughout: a number means the same on every machine.
+  std::setlocale(LC_ALL, "C");
+  std::signal(SIGPIPE, SIG_IGN);
+  CLI::App program("vpe explores planets: build planet files, ask them, draw them, fly over them.", "vpe");
+  program.set_version_flag("--version", std::string("vpe ") + version());
+  program.require_subcommand(1);
+  program.footer(
+      "'vpe COMMAND --help' explains a command. Without a PLANET the embedded Mars (an illustration) is used.");
+  Common common;
+  common.words.assign(argv + std::min(argc, 1), argv + argc);
+  for (const AddCommand add : commands) add(program, common);
+  try {
+    std::vector<std::string> arguments = reversed_arguments(argc, argv);
+    check_command_name(program, arguments);
+    program.parse(std::move(arguments));
+    return flush_results();
+  } catch (const CLI::ParseError& e) {
+    const int code = program.exit(e);
+    return code == 0 ? kSuccess : kUsage;
+  } catch (const UsageError& e) {
+    std::fprintf(stderr, "vpe: %s\n", e.what());
+    return kUsage;
+  } catch (const Interrupted& e) {
+    std::fprintf(stderr, "vpe: %s\n", e.what());
+    return kSignalBase + e.signal();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "vpe: out of memory; lower --memory, --size or --threads\n");
+    return kFailure;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "vpe: %s\n", e.what());
+    return kFailure;
+  }
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,22 @@
+// All commands of the program.
+#pragma once
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace vpe::app {
+
+struct Common;
+
+// Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
+void add_query(CLI::App& program, Common& common);
+void add_profile(CLI::App& program, Common& common);
+void add_explore(CLI::App& program, Common& common);
+void add_settings(CLI::App& program, Common& common);
+void add_doctor(CLI::App& program, Common& common);
+
+// Runs one command line; returns the exit code. Messages go to stderr, results to stdout.
+int run(int argc, char** argv);
+
+}  // namespace vpe::app

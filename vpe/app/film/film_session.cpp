@@ -1,0 +1,74 @@
+#include "vpe/app/film/film_session.h"
+
+#include <algorithm>
+#include <new>
+
+#include "vpe/app/film/film_folder.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/output.h"
+
+namespace vpe::app {
+
+namespace fs = std::filesystem;
+
+FilmSession::FilmSession(FilmRequest request) : request_(std::move(request)) {
+  if (!request_.is_video) {
+    target_ = std::make_unique<FilmFolder>(request_.output, request_.remake);
+    return;
+  }
+  auto video = std::make_unique<FilmVideo>(request_.output, manifest_of_video(request_.output, {}, {}),
+                                           request_.format, request_.remake);
+  video_ = video.get();
+  target_ = std::move(video);
+}
+
+void FilmSession::look(const FilmPlan& plan, int threads) {
+  const std::int64_t all = request_.range.count();
+  const std::int64_t size = target_->group_size();
+  const std::int64_t groups = (all + size - 1) / size;
+  first_ = std::min(all, request_.part.begin(groups) * size);
+  frames_ = plan.frames(request_.range, first_, std::min(all, request_.part.end(groups) * size));
+  base::ThreadPool pool(threads);
+  target_->keep(frames_, {first_, all}, pool);
+}
+
+void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const PictureOptions& options,
+                       const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet) {
+  try {
+    ProgressLine line(quiet);
+    FilmMaker(plan, *target_, frames_, first_, options, make_renderer, overlays).run(reports, line);
+  } catch (const Interrupted& e) {
+    throw Interrupted(e.signal(), std::string(e.what()) + ": " + what_is_there(kind(), frames_));
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw std::runtime_error(std::string(e.what()) + "; " + what_is_there(kind(), frames_));
+  }
+}
+
+void FilmSession::finish(const FilmHead& head) {
+  const FilmCount n = count(frames_);
+  const bool is_whole = request_.part.of == 1 && n.there() == n.all;
+  if (video_ == nullptr) {
+    make_folder(request_.output);
+    manifest_ = manifest_of_folder(request_.output, request_.frames, request_.part);
+    write_manifest(manifest_, head, target_->describe(), frames_);
+    return;
+  }
+  if (is_whole) {
+    const bool was_complete = video_->is_complete();
+    video_->finish(frames_);
+    manifest_ = manifest_of_video(request_.output, {}, {});
+    if (!was_complete) write_manifest(manifest_, head, target_->describe(), frames_);
+    video_->remove_parts();
+    return;
+  }
+  if (video_->is_complete()) return;  // a part of a film that is there
+  // The film's own manifest stays as long as the film is the old one.
+  const fs::path parts = parts_folder(request_.output);
+  make_folder(parts);
+  manifest_ = manifest_of_folder(parts, "", request_.part);
+  write_manifest(manifest_, head, target_->describe(), frames_);
+}
+
+}  // namespace vpe::app

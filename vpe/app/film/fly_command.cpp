@@ -1,0 +1,226 @@
+#include "vpe/app/film/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "paging/surface/surface.h"
+#include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/film/film_session.h"
+#include "vpe/app/film/flight_file.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/gl/context.h"
+
+namespace vpe::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct FlyArguments {
+  std::string flight;
+  std::string planet;
+  std::string output;
+  std::string frames;
+  std::string part;
+  std::string size;
+  std::string log;
+  std::string stats;
+  bool force = false;
+  PictureOptions picture;
+};
+
+scripts::Flight flight_of(const FlyArguments& arguments) {
+  scripts::Flight flight = read_flight(arguments.flight);
+  if (!arguments.size.empty()) {
+    const Size size = parse_size(arguments.size);
+    flight.view.width = size.width;
+    flight.view.height = size.height;
+  }
+  return flight;
+}
+
+FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& flight) {
+  const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
+  if (count == 0) throw std::runtime_error(arguments.flight + ": the flight is shorter than one frame");
+  FilmRequest request;
+  request.output = arguments.output;
+  request.format = {flight.view.width, flight.view.height, flight.view.fps};
+  request.frames = arguments.frames;
+  request.range = parse_frames(arguments.frames, count);
+  request.part = parse_part(arguments.part);
+  request.remake = arguments.force;
+  request.is_video = check_film_output(arguments.output);
+  if (!arguments.log.empty()) check_output(arguments.log);
+  if (!arguments.stats.empty()) check_stats_output(arguments.stats);
+  return request;
+}
+
+void warn_of_terrain(const std::string& flight, const FilmPlan& plan, const scripts::TerrainHeight& terrain) {
+  try {
+    const auto lowest = scripts::lowest_clearance(plan.path(), plan.view().fps, terrain);
+    if (!lowest || lowest->height_m >= 0) return;
+    std::fprintf(stderr, "vpe: warning: %s passes %.0f m under the terrain at %.2f s\n", flight.c_str(),
+                 -lowest->height_m, lowest->time_s);
+  } catch (const paging::PlanetError& e) {
+    // Frames that need the damaged place will say so themselves.
+    std::fprintf(stderr, "vpe: warning: not known whether %s keeps above the terrain: %s\n", flight.c_str(),
+                 e.what());
+  }
+}
+
+// What is wrong with a gazetteer is told before the first frame.
+void load_names(FrameOverlays& overlays, core::Settings settings, const scripts::Flight& flight) {
+  overlays.load(settings.values());
+  for (const scripts::SetCommand& set : flight.sets) {
+    if (settings.set(set.key, set.text).empty()) overlays.load(settings.values());
+  }
+}
+
+void report(const FlyArguments& arguments, const Common& common, const FilmSession& session, double seconds,
+            bool illustration) {
+  const std::vector<FilmFrame>& frames = session.frames();
+  if (common.json) {
+    nlohmann::json json = film_json(frames, seconds);
+    json["output"] = arguments.output;
+    json["backend"] = arguments.picture.backend;
+    json["illustration"] = illustration;
+    json["manifest"] =
+        session.manifest().empty() ? nlohmann::json() : nlohmann::json(session.manifest().string());
+    print_json(json);
+  }
+  if (count(frames).failed > 0) throw std::runtime_error(what_failed(session.kind(), arguments.output, frames));
+  if (common.json || common.quiet) return;
+  std::printf("%s: %s\n", arguments.output.c_str(), film_line(frames, seconds).c_str());
+  if (session.is_left_unjoined()) {
+    std::printf("When all parts are there, the same command without --part joins them.\n");
+  }
+}
+
+struct PlannedFilm {
+  std::string backend;
+  FilmPlan plan;
+};
+
+// All frames by one backend: as --backend says, or as suits the most of them, and then the other. Parts of a
+// film may be made on machines of different kinds, and must be alike: triangles come first there.
+std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& common,
+                                   const scripts::Flight& flight, const core::Settings& base,
+                                   const paging::PlanetFile& planet, const scripts::TerrainHeight& terrain) {
+  const auto plan_of = [&](const BackendChoice& chosen) {
+    return PlannedFilm{
+        chosen.backend,
+        FilmPlan({version(), planet.meta().identity, chosen.backend, common.memory_mb}, flight.view,
+                 scripts::Path(flight, planet.radius_m(), terrain, base.values().exaggeration), chosen.settings,
+                 parse_interest(arguments.picture))};
+  };
+  const PictureOptions& picture = arguments.picture;
+  std::vector<PlannedFilm> films{plan_of({kPolygonBackend, base})};
+  if (picture.backend != kAutoBackend) return {plan_of({picture.backend, base})};
+  // Whatever the flight sets, however shortly: looking at some of the frames would miss it.
+  if (!flight.interests.empty()) return films;
+  core::DrawRequest set_so = films.front().plan.at(0).request;
+  for (const scripts::SetCommand& set : flight.sets) {
+    core::Settings settings = base;
+    films.front().plan.path().apply_settings(set.time_s, settings);
+    set_so.settings = settings.values();
+    if (set.key == "lod.tolerance" || !suits_rays(set_so)) return films;
+  }
+  constexpr std::int64_t kMostLooked = 100;
+  const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
+  const std::int64_t looked = std::min(count, kMostLooked);
+  std::vector<core::DrawRequest> pictures;
+  for (std::int64_t k = 0; k < looked; ++k)
+    pictures.push_back(films.front().plan.at(k * count / looked).request);
+  const BackendChoice rays = choose_backend(picture, base, pictures, planet.radius_m(), false);
+  if (rays.backend != kRayBackend) return films;
+  films.push_back(plan_of(rays));
+  if (arguments.part.empty() && !gl::has_gpu()) std::swap(films[0], films[1]);
+  return films;
+}
+
+// Looks for what is there of a film: who began it goes on with it.
+const PlannedFilm& look_for(FilmSession& session, const std::vector<PlannedFilm>& films, int threads) {
+  for (const PlannedFilm& film : films) {
+    session.look(film.plan, threads);
+    if (count(session.frames()).kept > 0) return film;
+  }
+  if (films.size() > 1) session.look(films.front().plan, threads);
+  return films.front();
+}
+
+void fly(FlyArguments& arguments, const Common& common) {
+  parse_interest(arguments.picture);
+  const scripts::Flight flight = flight_of(arguments);
+  const core::Settings base = make_settings(arguments.picture);
+  const FilmRequest request = film_request(arguments, flight);
+
+  // A planet may be minutes of work: what can be wrong before is told before.
+  const InterruptGuard guard;
+  FilmSession session(request);
+  const auto planet = open_planet(arguments.planet, common);
+  const paging::PlanetMeta& meta = planet->meta();
+  note_illustration(meta, common.quiet);
+  const auto terrain = [surface = std::make_shared<paging::Surface>(planet, std::size_t{16} << 20)](
+                           mars::LonLat place, double exaggeration) {
+    return surface->at(mars::direction(place), exaggeration).height_m;
+  };
+  const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, *planet, terrain);
+  const PlannedFilm& film = look_for(session, films, common.threads);
+  const FilmPlan& plan = film.plan;
+  arguments.picture.backend = film.backend;
+  if (!common.quiet) warn_of_terrain(arguments.flight, plan, terrain);
+
+  FrameOverlays overlays(planet);
+  load_names(overlays, base, flight);
+  FilmReports reports;
+  if (!arguments.stats.empty()) reports.stats.emplace(arguments.stats);
+  if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view);
+  auto start = std::chrono::steady_clock::now();
+  const auto renderer = [&] {
+    auto made = make_renderer(arguments.picture, common, planet);
+    start = std::chrono::steady_clock::now();  // the rate is that of drawing and encoding
+    return made;
+  };
+  session.make(plan, reports, arguments.picture, renderer, overlays, common.quiet);
+  if (!common.quiet) warn_of(reports.failures);
+  if (reports.log) reports.log->end(scripts::duration_s(flight));
+  if (reports.stats) reports.stats->close();
+  session.finish({version(), meta.identity, meta.illustration, fs::path(arguments.flight).filename().string(),
+                  flight.view.fps, flight.view.width, flight.view.height, arguments.frames, request.part});
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report(arguments, common, session, seconds, meta.illustration);
+}
+
+}  // namespace
+
+void add_fly(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<FlyArguments>();
+  CLI::App* command = add_command(
+      program, "fly", "Draw a scripted flight as a video or as frames; what is there already is kept", common,
+      true);
+  command->add_option("FLIGHT", arguments->flight, "Flight file")->required();
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  command->add_option("-o,--output", arguments->output, "Video (.mp4) or folder for PNG frames")->required();
+  command->add_option("--frames", arguments->frames, "A-B or A-BxN: only these frames");
+  command->add_option("--part", arguments->part,
+                      "k/n: only the k-th of n parts; auto: from SLURM's or MPI's variables");
+  command->add_flag("--force", arguments->force, "Make every frame again, also those that are there");
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT instead of the flight's own");
+  command->add_option("--log", arguments->log, "Write what was flown as a flight");
+  command->add_option("--stats", arguments->stats, "Write one row of figures a frame (.csv, .jsonl)");
+  add_picture_options(*command, arguments->picture);
+  command->callback([arguments, &common] { fly(*arguments, common); });
+}
+
+}  // namespace vpe::app

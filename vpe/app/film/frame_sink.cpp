@@ -1,0 +1,61 @@
+#include "vpe/app/film/frame_sink.h"
+
+namespace vpe::app {
+
+FrameSink::FrameSink(std::size_t depth) : depth_(depth), thread_([this] { run(); }) {}
+
+FrameSink::~FrameSink() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    waiting_.clear();
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void FrameSink::push(Job job) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return waiting_.size() < depth_ || error_; });
+  throw_if_failed();
+  waiting_.push_back(std::move(job));
+  changed_.notify_all();
+}
+
+void FrameSink::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+  throw_if_failed();
+}
+
+void FrameSink::throw_if_failed() {
+  if (error_) std::rethrow_exception(error_);
+}
+
+void FrameSink::run() {
+  for (;;) {
+    Job job;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return !waiting_.empty() || closed_; });
+      if (waiting_.empty()) return;
+      job = std::move(waiting_.front());
+      waiting_.pop_front();
+    }
+    changed_.notify_all();
+    try {
+      job();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      error_ = std::current_exception();
+      changed_.notify_all();
+      return;
+    }
+  }
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,189 @@
+#include "vpe/app/film/video.h"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "vpe/app/cli/temporary.h"
+
+namespace vpe::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+Words& append(Words& words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+// ffmpeg takes a leading '-' for an option and a ':' for a protocol.
+std::string file_word(const fs::path& path) { return "file:" + path.string(); }
+
+// Ticks of the film's clock: a whole number a frame, and, as ffmpeg's muxer wants it, more than 10 000 a
+// second.
+struct Clock {
+  std::int64_t ticks_per_s;
+  std::int64_t ticks_per_frame;
+};
+Clock clock_of(const scripts::FrameRate& rate) {
+  Clock clock{rate.numerator, rate.denominator};
+  while (clock.ticks_per_s <= 10'000) clock = {2 * clock.ticks_per_s, 2 * clock.ticks_per_frame};
+  return clock;
+}
+
+Words timescale(const VideoFormat& format) {
+  return {"-video_track_timescale", std::to_string(clock_of(format.rate).ticks_per_s)};
+}
+
+Words input_words(const VideoFormat& format) {
+  return {"-f",         "rawvideo",
+          "-pix_fmt",   "rgb24",
+          "-s",         std::to_string(format.width) + "x" + std::to_string(format.height),
+          "-framerate", scripts::to_text(format.rate)};
+}
+
+Words encoder_words(const VideoFormat& format) {
+  Words words{"-c:v",     "libx264", "-preset",  "veryfast", "-crf",         "18",
+              "-pix_fmt", "yuv420p", "-threads", "4",        "-x264-params", "open-gop=0"};
+  return append(words, timescale(format));
+}
+
+Words ffmpeg() { return {"ffmpeg", "-y", "-nostdin", "-loglevel", "error"}; }
+
+Words segment_words(const VideoFormat& format, const fs::path& to) {
+  Words words = ffmpeg();
+  append(words, input_words(format));
+  append(words, {"-i", "-"});
+  append(words, encoder_words(format));
+  return append(words, {"-f", "mp4", file_word(to)});
+}
+
+Child start_ffmpeg(const Words& words, const fs::path& film) try {
+  return Child(words);
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(film.string() + ": " + e.what() +
+                           "; install ffmpeg, or give a folder to get PNG frames");
+}
+
+std::string microseconds(double us) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.6f", us * 1e-6);
+  return text;
+}
+
+// For ffmpeg's concat demuxer. Beginnings are rounded to its microseconds one by one, so that nothing adds up.
+std::string join_list(std::span<const VideoSegment> segments, const scripts::FrameRate& rate) {
+  std::string text = "ffconcat version 1.0\n";
+  double begin_us = 0;
+  std::int64_t frames = 0;
+  for (const VideoSegment& s : segments) {
+    frames += s.frames;
+    const double end_us = std::round(1e6 * scripts::frame_time(rate, frames));
+    text.append("file ")
+        .append(s.name)
+        .append("\nduration ")
+        .append(microseconds(end_us - begin_us))
+        .append("\n");
+    begin_us = end_us;
+  }
+  return text;
+}
+
+// Puts every time stamp back on its frame: what the concat demuxer says is within a microsecond of it.
+std::string exact_times(const scripts::FrameRate& rate) {
+  const std::string tick = std::to_string(clock_of(rate).ticks_per_frame);
+  return "setts=dts=STARTDTS+N*" + tick + ":pts=round(PTS/" + tick + ")*" + tick + ":duration=" + tick;
+}
+
+struct Removed {  // in the end
+  fs::path path;
+  ~Removed() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+};
+
+std::string with_words(const std::string& what, const std::string& words) {
+  return words.empty() ? what : what + ": ffmpeg says: " + words;
+}
+
+}  // namespace
+
+void check_video_format(const fs::path& film, const VideoFormat& format) {
+  if (format.width % 2 == 0 && format.height % 2 == 0) return;
+  throw std::runtime_error(film.string() + ": a video needs an even width and height, not " +
+                           std::to_string(format.width) + "x" + std::to_string(format.height));
+}
+
+std::string encoder_settings(const VideoFormat& format) {
+  std::string text;
+  for (const Words& words : {input_words(format), encoder_words(format)}) {
+    for (const std::string& word : words) text += word + " ";
+  }
+  return text;
+}
+
+std::string encoder_version(const fs::path& film) {
+  Child child = start_ffmpeg({"ffmpeg", "-version"}, film);
+  if (!child.finish()) {
+    throw std::runtime_error(with_words(film.string() + ": ffmpeg does not run", child.said()) +
+                             "; mend it, or give a folder to get PNG frames");
+  }
+  const std::string said = child.output();
+  return said.substr(0, said.find('\n'));
+}
+
+VideoWriter::VideoWriter(fs::path path, const VideoFormat& format)
+    : path_(std::move(path)),
+      temporary_(temporary_name(path_)),
+      ffmpeg_(start_ffmpeg(segment_words(format, temporary_), path_)) {}
+
+VideoWriter::~VideoWriter() {
+  static_cast<void>(ffmpeg_.finish());
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void VideoWriter::fail(const std::string& what) {
+  static_cast<void>(ffmpeg_.finish());
+  throw std::runtime_error(with_words(path_.string() + ": " + what, ffmpeg_.said()));
+}
+
+void VideoWriter::add(const core::Frame& frame) {
+  const auto* data = reinterpret_cast<const std::uint8_t*>(frame.colour.data());
+  if (!ffmpeg_.write({data, frame.colour.size() * sizeof(base::Rgb)})) fail("cannot write the video");
+}
+
+void VideoWriter::close() {
+  if (!ffmpeg_.finish()) fail("ffmpeg failed");
+  std::error_code error;
+  fs::rename(temporary_, path_, error);
+  if (error)
+    throw std::runtime_error(path_.string() + ": cannot rename the finished video: " + error.message());
+}
+
+void join_video(const fs::path& folder, std::span<const VideoSegment> segments, const VideoFormat& format,
+                const fs::path& film) {
+  const Removed list{temporary_name(folder / "join.txt")};
+  write_whole(list.path, join_list(segments, format.rate));
+  const Removed joined{temporary_name(film)};
+  Words words = ffmpeg();
+  append(words, {"-f", "concat", "-safe", "0", "-i", file_word(list.path), "-c", "copy"});
+  append(words, {"-bsf:v", exact_times(format.rate)});
+  append(words, timescale(format));
+  append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(joined.path)});
+  Child child = start_ffmpeg(words, film);
+  if (!child.finish()) {
+    throw std::runtime_error(
+        with_words(film.string() + ": cannot join the video", child.said()) +
+        "; check the free space there; its segments are kept, and the same command joins them");
+  }
+  std::error_code error;
+  fs::rename(joined.path, film, error);
+  if (error) throw std::runtime_error(film.string() + ": cannot rename the finished video: " + error.message());
+}
+
+}  // namespace vpe::app

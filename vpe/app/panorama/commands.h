@@ -1,0 +1,17 @@
+// Commands that make panoramas, view them, and compute skylines.
+#pragma once
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace vpe::app {
+
+struct Common;
+
+// Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
+void add_panorama(CLI::App& program, Common& common);
+void add_overlook(CLI::App& program, Common& common);
+void add_horizon(CLI::App& program, Common& common);
+
+}  // namespace vpe::app

@@ -1,0 +1,300 @@
+#include "vpe/app/panorama/commands.h"
+
+// vpe horizon.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "vpe/app/panorama/horizon_files.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/progress.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/base/file.h"
+#include "vpe/core/appearance/gazetteer.h"
+#include "vpe/base/number.h"
+#include "vpe/voxel/cast/range_caster.h"
+
+namespace vpe::app {
+
+namespace {
+
+struct HorizonArguments {
+  std::string planet;
+  std::string at;
+  std::optional<double> height_m;
+  std::optional<double> altitude_m;
+  double from_deg = 0;
+  double to_deg = 360;
+  double step_deg = 0.1;
+  std::string output;
+  std::string names;
+  std::string features;
+  double within_m = 0;  // 0: as far as ground can be seen at all
+  std::string landscape;
+};
+
+constexpr double kLeastStep_deg = 0.0001;
+// Well above rounding.
+constexpr double kLeastHeight_m = 0.001;
+// The picture that finds where to look: as wide as there are azimuths, within these.
+constexpr double kLeastColumns = 720;
+constexpr double kMostColumns = 14400;
+constexpr int kRows = 1800;            // a tenth of a degree each
+constexpr double kPictureShare = 0.3;  // of the work, about
+
+bool is_full_turn(const HorizonArguments& a) { return a.to_deg - a.from_deg >= 360.0; }
+
+std::vector<double> azimuths_of(const HorizonArguments& a) {
+  const double span = is_full_turn(a) ? 360.0 : a.to_deg - a.from_deg;
+  // What is a step short of the end by no more than rounding is the end.
+  auto count = static_cast<std::size_t>(std::floor(span / a.step_deg * (1 + 1e-12))) + 1;
+  if (is_full_turn(a) && span - static_cast<double>(count - 1) * a.step_deg < 1e-9 * a.step_deg * 360) --count;
+  std::vector<double> out(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double azimuth = a.from_deg + static_cast<double>(k) * a.step_deg;
+    // Decimal steps give the decimal numbers they mean.
+    out[k] = std::round(1e9 * (azimuth - 360.0 * std::floor(azimuth / 360.0))) / 1e9;
+    if (out[k] >= 360.0) out[k] = 0;
+  }
+  return out;
+}
+
+mars::LonLat place_of(const HorizonArguments& a) {
+  const auto place = parse_place(a.at);
+  if (!place) throw UsageError("--at '" + a.at + "': expected LON,LAT in degrees");
+  if (!mars::is_valid(*place)) throw UsageError("--at '" + a.at + "': latitude must be within -90..90");
+  return *place;
+}
+
+void check(const HorizonArguments& a) {
+  place_of(a);
+  if (a.height_m.has_value() == a.altitude_m.has_value())
+    throw UsageError("give either --height (metres above the ground) or --altitude (metres above the sphere)");
+  if (!(a.to_deg > a.from_deg))
+    throw UsageError("--to must be larger than --from; across north: --from -20 --to 20");
+  if (!a.landscape.empty() && !is_full_turn(a))
+    throw UsageError("--landscape takes the whole turn; leave out --from and --to");
+  if (!a.features.empty() && a.names.empty())
+    throw UsageError("--features tells of named features; name their file with --names");
+  if (a.output.empty() && a.features.empty() && a.landscape.empty())
+    throw UsageError("nothing to write; give -o SKYLINE.csv");
+  if (!a.output.empty()) check_output(a.output);
+  if (!a.features.empty()) check_output(a.features);
+  if (!a.landscape.empty()) make_landscape_folder(a.landscape);
+}
+
+// Ranges of the arc, or a bit more of it.
+struct Picture {
+  core::View view;
+  std::vector<float> range_m;
+};
+
+Picture cast_picture(const voxel::RangeCaster& caster, const HorizonArguments& a, const mars::Pose& pose,
+                     base::ThreadPool& pool) {
+  Picture out;
+  core::View& view = out.view;
+  view.projection = core::Projection::kEquirectangular;
+  view.fov_deg = 180;
+  view.width = static_cast<int>(std::clamp(std::ceil(360.0 / a.step_deg), kLeastColumns, kMostColumns));
+  view.height = kRows;
+  mars::Pose middle = pose;
+  middle.yaw_deg = 0.5 * (a.from_deg + a.to_deg);
+  view.eye = mars::to_eye(middle, caster.surface().planet_radius_m());
+  if (!is_full_turn(a)) {
+    const double columns = view.width * (a.to_deg - a.from_deg) / 360.0;
+    const int half = std::min(view.width / 2, static_cast<int>(std::ceil(0.5 * columns)) + 1);
+    view.part = {view.width / 2 - half, 0, 2 * half, kRows};
+  }
+  const glm::ivec2 size = core::drawn_size(view);
+  out.range_m.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+  voxel::FanCaster fans;
+  caster.cast(view, {}, pool, out.range_m, fans);
+  return out;
+}
+
+std::vector<panorama::GroundPoint> trace(const panorama::SkylineEye& eye, const std::vector<double>& azimuths,
+                                         const panorama::RangePicture& picture,
+                                         const panorama::GroundRange& range, base::ThreadPool& pool,
+                                         ProgressLine& progress) {
+  constexpr std::size_t kPieces = 50;
+  const std::size_t piece = std::max<std::size_t>(64, azimuths.size() / kPieces);
+  const auto first = panorama::first_brackets(picture, azimuths);
+  std::vector<panorama::GroundPoint> out;
+  for (std::size_t begin = 0; begin < azimuths.size(); begin += piece) {
+    InterruptGuard::check();
+    const double done = static_cast<double>(begin) / static_cast<double>(azimuths.size());
+    progress.show("skyline", kPictureShare + (1 - kPictureShare) * done);
+    const std::size_t count = std::min(piece, azimuths.size() - begin);
+    const auto points = panorama::skyline(eye, std::span(azimuths).subspan(begin, count), range, pool,
+                                          std::span(first).subspan(begin, count));
+    out.insert(out.end(), points.begin(), points.end());
+  }
+  return out;
+}
+
+// A number for people: a metre or a centimetre is enough.
+std::string short_number(double value, double unit) {
+  return base::format_number(std::round(value / unit) * unit);
+}
+
+std::string describe(const panorama::GroundPoint& p) {
+  char text[160];
+  std::snprintf(text, sizeof text, "azimuth %.2f, elevation %.2f, at %.2f km (%.5f, %.5f, %.0f m)",
+                p.direction.azimuth_deg, p.direction.elevation_deg, p.range_m / 1000, p.place.lon_deg,
+                p.place.lat_deg, p.elevation_m);
+  return text;
+}
+
+struct Eye {
+  mars::Pose pose;
+  double height_m = 0;  // above the ground
+};
+
+Eye eye_of(const HorizonArguments& a, const paging::Surface& surface) {
+  const mars::LonLat place = place_of(a);
+  const double ground_m = surface.at(mars::direction(place)).height_m;
+  Eye eye{{place.lon_deg, place.lat_deg, 0, 0, 0, 0}, a.height_m ? *a.height_m : *a.altitude_m - ground_m};
+  eye.pose.alt_m = a.altitude_m ? *a.altitude_m : ground_m + eye.height_m;
+  if (eye.height_m < kLeastHeight_m) {
+    throw std::runtime_error(
+        "the eye at " + a.at + " is " + short_number(eye.height_m, 0.01) + " m above the ground, which lies " +
+        short_number(ground_m, 0.01) + " m above the sphere there; put it at least " +
+        base::format_number(kLeastHeight_m) + " m above the ground (--height, --altitude)");
+  }
+  return eye;
+}
+
+void horizon(const HorizonArguments& a, const Common& common) {
+  const InterruptGuard guard;
+  check(a);
+  std::vector<core::Place> names;
+  if (!a.names.empty()) names = core::read_gazetteer(a.names);
+  const auto planet = open_planet(a.planet, common);
+  const paging::PlanetMeta& meta = planet->meta();
+  note_illustration(meta, common.quiet);
+  const voxel::RangeCaster caster(planet, memory_bytes(common));
+  const paging::Surface& surface = caster.surface();
+  const auto [pose, height_m] = eye_of(a, surface);
+  const mars::LonLat place{pose.lon_deg, pose.lat_deg};
+  const panorama::SkylineEye eye = panorama::skyline_eye(place, pose.alt_m, planet->radius_m());
+  const panorama::GroundRange range = [&](const glm::dvec3& ray) { return surface.cast(eye.eye_m, ray); };
+  base::ThreadPool pool(common.threads);
+
+  std::vector<panorama::GroundPoint> points;
+  std::vector<panorama::Landmark> seen;
+  panorama::GroundPoint farthest;
+  {
+    ProgressLine progress(common.quiet);
+    progress.show("ranges", 0);
+    const Picture picture = cast_picture(caster, a, pose, pool);
+    const panorama::RangePicture ranges{panorama::map_of(picture.view), picture.range_m};
+    points = trace(eye, azimuths_of(a), ranges, range, pool, progress);
+    InterruptGuard::check();
+    farthest = panorama::farthest_ground(eye, ranges, points, range, pool);
+    InterruptGuard::check();
+    if (!names.empty()) {
+      const double within_m = a.within_m > 0 ? a.within_m
+                                             : panorama::farthest_sight_m(planet->radius_m() + pose.alt_m,
+                                                                          planet->tree().lowest_radius_m(1.0),
+                                                                          meta.highest_radius_m);
+      seen = panorama::landmarks(
+          eye, names, within_m, [&](const glm::dvec3& d) { return surface.at(d).radius_m; }, range, pool);
+      InterruptGuard::check();
+    }
+    progress.show("skyline", 1);
+  }
+
+  if (!a.output.empty()) base::write_file(a.output, skyline_csv(points));
+  if (!a.features.empty()) base::write_file(a.features, landmarks_csv(seen));
+  if (!a.landscape.empty()) {
+    const std::string name = base::format_number(place.lon_deg) + ", " + base::format_number(place.lat_deg);
+    write_landscape(a.landscape, {"Horizon at " + name, meta.body, place, pose.alt_m}, points);
+  }
+
+  const auto by_elevation = [](const auto& p, const auto& q) {
+    return p.direction.elevation_deg < q.direction.elevation_deg;
+  };
+  const auto [lowest, highest] = std::minmax_element(points.begin(), points.end(), by_elevation);
+  const auto visible = std::count_if(seen.begin(), seen.end(), [](const auto& l) { return !l.hidden_by; });
+  if (common.json) {
+    const auto without_data = std::count_if(points.begin(), points.end(), [&](const auto& p) {
+      return surface.at(mars::direction(p.place)).missing;
+    });
+    nlohmann::json json{{"eye",
+                         {{"lon_deg", mars::normalize_lon_deg(place.lon_deg)},
+                          {"lat_deg", place.lat_deg},
+                          {"alt_m", pose.alt_m},
+                          {"height_m", height_m}}},
+                        {"datum", to_string(meta.datum)},
+                        {"radius_m", meta.radius_m},
+                        {"illustration", meta.illustration},
+                        {"azimuths", points.size()},
+                        {"azimuths_over_ground_without_data", without_data},
+                        {"highest", point_json(*highest)},
+                        {"lowest", point_json(*lowest)},
+                        {"farthest", point_json(farthest)}};
+    if (!a.names.empty()) {
+      nlohmann::json list = nlohmann::json::array();
+      for (const panorama::Landmark& l : seen) list.push_back(landmark_json(l));
+      json["features_visible"] = visible;
+      json["features_hidden"] = static_cast<std::int64_t>(seen.size()) - visible;
+      json["features"] = std::move(list);
+    }
+    print_json(json);
+  } else if (!common.quiet) {
+    std::printf("%zu azimuths from %s m above the ground\n", points.size(),
+                short_number(height_m, 0.01).c_str());
+    std::printf("highest   %s\n", describe(*highest).c_str());
+    std::printf("lowest    %s\n", describe(*lowest).c_str());
+    std::printf("farthest  %s\n", describe(farthest).c_str());
+    if (!a.names.empty())
+      std::printf("features  %td visible, %td hidden\n", visible,
+                  static_cast<std::ptrdiff_t>(seen.size()) - visible);
+  }
+}
+
+}  // namespace
+
+void add_horizon(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<HorizonArguments>();
+  CLI::App* command =
+      add_command(program, "horizon", "Skyline, farthest ground and hidden features of a place", common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  command->add_option("--at", arguments->at, "LON,LAT of the eye, degrees")->required();
+  command->add_option("--height", arguments->height_m, "Of the eye above the ground, metres")
+      ->check(number_within(0, 1e10));
+  command->add_option("--altitude", arguments->altitude_m, "Of the eye above the sphere, metres")
+      ->check(number_within(-1e6, 1e10));
+  command->add_option(
+      "-o,--output", arguments->output,
+      "Skyline to write (.csv): azimuth, elevation, range, longitude, latitude, elevation of the "
+      "ground");
+  command->add_option("--from", arguments->from_deg, "First azimuth, degrees clockwise from north")
+      ->check(number_within(-360, 720))
+      ->capture_default_str();
+  command->add_option("--to", arguments->to_deg, "Last azimuth, degrees; a whole turn ends before it")
+      ->check(number_within(-360, 720))
+      ->capture_default_str();
+  command->add_option("--step", arguments->step_deg, "Between azimuths, degrees")
+      ->check(number_within(kLeastStep_deg, 90))
+      ->capture_default_str();
+  command->add_option("--names", arguments->names,
+                      "Named features (.csv: name, lon, lat, diameter_km), seen or hidden by what");
+  command->add_option("--features", arguments->features, "Write what is seen of --names (.csv)");
+  command
+      ->add_option("--within", arguments->within_m,
+                   "Take features at most this far away, metres (default: as far as ground can be seen)")
+      ->check(number_within(1, 1e11));
+  command->add_option("--landscape", arguments->landscape,
+                      "Folder to make: the skyline as a landscape of Stellarium");
+  command->callback([arguments, &common] { horizon(*arguments, common); });
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,57 @@
+#include "vpe/app/panorama/open_stereo.h"
+
+#include "panorama/viewer/render_view.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/planet/planet_argument.h"
+
+namespace vpe::app {
+
+OpenEyes::OpenEyes(const EyesFiles& files, std::size_t budget_bytes, int threads)
+    : left_{panorama::describe(files.panorama, files.layout), nullptr},
+      budget_bytes_(budget_bytes / (files.right.empty() ? 1 : 2)),
+      threads_(threads) {
+  if (!files.right.empty()) right_ = Panorama{panorama::describe(files.right, files.layout), nullptr};
+}
+
+core::RgbImage OpenEyes::draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
+                              const CopyProgress& progress,
+                              const std::function<void(core::RgbImage&)>& finish) {
+  const auto eye = [&](Panorama& panorama, bool is_second) {
+    core::RgbImage image = look(panorama, is_second, view, progress);
+    if (finish) finish(image);
+    return image;
+  };
+  core::RgbImage left = eye(left_, false);
+  if (!stereo) return left;
+  const core::RgbImage right = right_ ? eye(*right_, false) : eye(left_, true);
+  return core::combine_stereo(left, right, *stereo);
+}
+
+core::RgbImage OpenEyes::look(Panorama& panorama, bool is_second, const core::View& view,
+                              const CopyProgress& progress) {
+  const panorama::PanoramaDescription& description = panorama.description;
+  if (panorama.picture == nullptr) {
+    panorama::PictureOptions options;
+    options.budget_bytes = budget_bytes_;
+    options.cache_folder = [] {
+      const std::filesystem::path folder = cache_folder() / "pictures";
+      make_folder(folder);
+      return folder;
+    };
+    if (progress) {
+      options.progress = [&](double fraction) {
+        progress("copying " + description.picture.filename().string() + " once, in tiles", fraction);
+      };
+    }
+    panorama.picture = panorama::open_picture(description.picture, description.format, options);
+  }
+  panorama::LookOptions options;
+  options.threads = threads_;
+  if (is_second && description.pair == panorama::PairLayout::kSideBySide)
+    options.origin.x_px = description.map.width_px;
+  if (is_second && description.pair == panorama::PairLayout::kOverUnder)
+    options.origin.y_px = description.map.height_px;
+  return panorama::look(*panorama.picture, description.map, view, options);
+}
+
+}  // namespace vpe::app

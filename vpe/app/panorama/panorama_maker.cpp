@@ -1,0 +1,394 @@
+#include "vpe/app/panorama/panorama_maker.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "panorama/image/tile_codec.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/cli/temporary.h"
+
+namespace vpe::app {
+
+namespace fs = std::filesystem;
+using panorama::Piece;
+using panorama::Strip;
+
+namespace {
+
+// As far as smoothing of edges looks, and more.
+constexpr int kSmoothingMargin_px = 8;
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+std::string text_of(const PanoramaFigures& figures) {
+  return nlohmann::json{{"tile_error_m", figures.tile_error_m},
+                        {"shift_bound_px", figures.shift_bound_px},
+                        {"tiles_substituted", figures.tiles_substituted},
+                        {"tiles_missing", figures.tiles_missing}}
+      .dump();
+}
+
+std::optional<PanoramaFigures> figures_from(const std::vector<std::uint8_t>& text) {
+  try {
+    const auto json = nlohmann::json::parse(text);
+    // JSON has null for what nothing bounds.
+    const auto bound = [&json](const char* key) {
+      const auto& value = json.at(key);
+      return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+    };
+    return PanoramaFigures{bound("tile_error_m"), bound("shift_bound_px"), json.at("tiles_substituted"),
+                           json.at("tiles_missing")};
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+// Strips with ground that could not be drawn are made again by the next run.
+constexpr const char* kIncomplete = "-incomplete";
+
+bool is_strip_name(const std::string& name) { return name.starts_with("strip_"); }
+
+}  // namespace
+
+void PanoramaFigures::add(const PanoramaFigures& other) {
+  tile_error_m = std::max(tile_error_m, other.tile_error_m);
+  shift_bound_px = std::max(shift_bound_px, other.shift_bound_px);
+  tiles_substituted += other.tiles_substituted;
+  tiles_missing += other.tiles_missing;
+}
+
+namespace {
+
+// What is held of the picture comes out of the same memory: a strip, and a piece with its samples.
+int free_memory_mb(const PanoramaJob& job, int memory_mb) {
+  constexpr std::size_t kPieceBytes = 24;
+  constexpr int kLeast_mb = 64;
+  const std::size_t pixel_bytes =
+      sizeof(base::Rgb) * (job.is_red_cyan ? 2 : 1) + (job.planes.empty() ? 0 : sizeof(float));
+  const std::size_t held =
+      static_cast<std::size_t>(job.strips.front().width * job.size.height_px) * pixel_bytes +
+      static_cast<std::size_t>(panorama::PlanLimits::kPiecePixels) * kPieceBytes;
+  return std::max(kLeast_mb, memory_mb - static_cast<int>(held >> 20));
+}
+
+}  // namespace
+
+int planes_memory_mb(const PanoramaJob& job, int memory_mb) {
+  return job.planes.empty() ? 0 : free_memory_mb(job, memory_mb) / 4;
+}
+
+int renderer_memory_mb(const PanoramaJob& job, int memory_mb) {
+  return free_memory_mb(job, memory_mb) - planes_memory_mb(job, memory_mb);
+}
+
+// One strip while it is drawn: colours, and ranges where planes are wanted.
+struct PanoramaMaker::Canvas {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  std::int64_t x = 0;  // of its left edge in the picture
+  std::vector<base::Rgb> colour;
+  std::vector<float> range_m;
+  std::vector<Piece> pieces;
+  PanoramaFigures figures;
+
+  std::size_t index(std::int64_t column, std::int64_t row) const {
+    return static_cast<std::size_t>(row * width + column);
+  }
+};
+
+PanoramaMaker::PanoramaMaker(const PanoramaJob& job, const PanoramaRecipe& recipe,
+                             const core::DrawRequest& request, std::string fingerprint,
+                             std::shared_ptr<const paging::PlanetFile> planet, MakeRenderer make_renderer,
+                             PanoramaOverlays& overlays, base::ThreadPool& pool, int memory_mb)
+    : job_(job),
+      recipe_(recipe),
+      request_(request),
+      fingerprint_(std::move(fingerprint)),
+      planet_(std::move(planet)),
+      make_renderer_(std::move(make_renderer)),
+      overlays_(overlays),
+      pool_(pool),
+      memory_mb_(memory_mb),
+      margin_px_(recipe.settings.values().smooth_edges ? kSmoothingMargin_px : 0) {}
+
+fs::path PanoramaMaker::strip_path(std::size_t n) const {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "strip_%06zu", n);
+  return strips_folder(job_.output) / name.data();
+}
+
+std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
+  const StripLayout layout = layout_of(job_.format, job_.size.height_px, job_.strips[n], job_.planes.size());
+  auto strip = panorama::StripFile::open(strip_path(n), fingerprint_, layout.blocks());
+  if (!strip) return std::nullopt;
+  const auto figures = figures_from(strip->block(0));
+  if (!figures) return std::nullopt;
+  figures_.add(*figures);
+  ++kept_;
+  return strip;
+}
+
+std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, PanoramaTimes& times) {
+  make_folder(strips_folder(job_.output));
+  remove_stale_temporaries(strips_folder(job_.output), is_strip_name);
+  std::vector<panorama::StripFile> strips;
+  for (std::size_t n = 0; n < job_.strips.size(); ++n) {
+    try {
+      InterruptGuard::check();
+      auto kept = keep(n);
+      strips.push_back(kept ? std::move(*kept) : make(n, line, times));
+    } catch (const Interrupted& e) {
+      throw Interrupted(e.signal(), std::string(e.what()) + ": " + std::to_string(strips.size()) + " of " +
+                                        std::to_string(job_.strips.size()) + " strips of " +
+                                        job_.output.string() + " are kept; the same command goes on");
+    }
+  }
+  renderer_.reset();
+  surface_.reset();
+  return strips;
+}
+
+panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, PanoramaTimes& times) {
+  const Strip& strip = job_.strips[n];
+  const StripLayout layout = layout_of(job_.format, job_.size.height_px, strip, job_.planes.size());
+  Canvas canvas;
+  canvas.x = strip.x;
+  canvas.width = strip.width;
+  canvas.height = job_.size.height_px;
+  const std::size_t pixels = static_cast<std::size_t>(canvas.width * canvas.height);
+  if (!renderer_) {
+    const Stopwatch watch(times.start);
+    overlays_.prepare();
+    const int surface_mb = planes_memory_mb(job_, memory_mb_);
+    if (surface_mb > 0) surface_ = std::make_unique<paging::Surface>(planet_, std::size_t(surface_mb) << 20);
+    renderer_ = make_renderer_(renderer_memory_mb(job_, memory_mb_));
+  }
+  canvas.colour.swap(colour_);
+  canvas.colour.resize(pixels);
+  if (!job_.planes.empty()) canvas.range_m.resize(pixels);
+  const auto show = [&](double part) {
+    InterruptGuard::check();
+    line.show("drawing", 0.95 * (static_cast<double>(n) + part) / static_cast<double>(job_.strips.size()));
+  };
+  if (recipe_.stereo) {
+    draw_eyes(strip, canvas, show, times);
+  } else {
+    canvas.pieces = panorama::pieces_of(job_.map, standpoint(), strip, margin_px_);
+    for (std::size_t k = 0; k < canvas.pieces.size(); ++k) {
+      show(static_cast<double>(k) / static_cast<double>(canvas.pieces.size()));
+      draw(canvas.pieces[k], strip, canvas, times);
+    }
+  }
+  lay_overlays(canvas);
+  const fs::path path = strip_path(n);
+  base::OutputFile file(path, temporary_name(path));
+  const std::string fingerprint = fingerprint_ + (canvas.figures.tiles_missing > 0 ? kIncomplete : "");
+  panorama::StripWriter writer(file, fingerprint);
+  {
+    const Stopwatch watch(times.encoding);
+    writer.add(bytes_of(text_of(canvas.figures)));
+    add_picture(writer, layout, canvas);
+  }
+  {
+    const Stopwatch watch(times.planes);
+    for (const panorama::Plane plane : job_.planes) add_plane(writer, layout, canvas, plane);
+  }
+  const Stopwatch watch(times.encoding);
+  writer.finish();
+  file.commit();
+  colour_.swap(canvas.colour);
+  auto made = panorama::StripFile::open(path, fingerprint, layout.blocks());
+  if (!made) throw base::file_error("read back", path, "it is not what was written", "check the disk");
+  figures_.add(canvas.figures);
+  ++made_;
+  return std::move(*made);
+}
+
+// Over both eyes of a pair the same, as if infinitely far.
+void PanoramaMaker::lay_overlays(Canvas& canvas) {
+  const bool is_pair = recipe_.stereo && !job_.is_red_cyan;
+  if (!is_pair) return overlays_.lay({canvas.x, 0, canvas.width, canvas.height, canvas.colour});
+  std::vector<base::Rgb> part;
+  for (std::int64_t y = 0; y < job_.size.height_px; y += job_.map.height_px) {
+    for (std::int64_t x = 0; x < job_.size.width_px; x += job_.map.width_px) {
+      const std::int64_t begin = std::max(x, canvas.x);
+      const std::int64_t width = std::min(x + job_.map.width_px, canvas.x + canvas.width) - begin;
+      if (width <= 0) continue;
+      part.clear();
+      const auto row_of = [&](std::int64_t row) {
+        return std::span(canvas.colour)
+            .subspan(canvas.index(begin - canvas.x, y + row), static_cast<std::size_t>(width));
+      };
+      for (std::int64_t row = 0; row < job_.map.height_px; ++row) {
+        const auto pixels = row_of(row);
+        part.insert(part.end(), pixels.begin(), pixels.end());
+      }
+      overlays_.lay({begin - x, 0, width, job_.map.height_px, part});
+      for (std::int64_t row = 0; row < job_.map.height_px; ++row)
+        std::copy_n(part.begin() + row * width, width, row_of(row).begin());
+    }
+  }
+}
+
+panorama::Standpoint PanoramaMaker::standpoint() const { return {recipe_.eye, planet_->radius_m()}; }
+
+// In columns of a tile, as cutting them all at once could take more memory than the picture.
+void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
+                              PanoramaTimes& times) {
+  const bool is_mixed = job_.is_red_cyan;
+  std::vector<base::Rgb> left;
+  for (int begin = 0; begin < strip.width; begin += panorama::kTile_px) {
+    const int width = std::min(static_cast<int>(panorama::kTile_px), strip.width - begin);
+    const std::vector<Piece> pieces =
+        panorama::pair_pieces_of(job_.map, standpoint(), *recipe_.stereo, {strip.x + begin, width});
+    const std::size_t of_left = is_mixed ? pieces.size() / 2 : pieces.size();
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(pieces.size());
+      show((begin + width * part) / strip.width);
+      if (k == of_left) left = canvas.colour;
+      draw(pieces[k], strip, canvas, times);
+    }
+    for (std::int64_t row = 0; row < canvas.height && is_mixed; ++row) {
+      const auto columns = [&](std::vector<base::Rgb>& pixels) {
+        return std::span<base::Rgb>(pixels).subspan(canvas.index(begin, row), static_cast<std::size_t>(width));
+      };
+      core::mix_red_cyan(columns(left), columns(canvas.colour));
+      std::ranges::copy(columns(left), columns(canvas.colour).begin());
+    }
+  }
+}
+
+void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas, PanoramaTimes& times) {
+  core::DrawRequest request = request_;
+  request.view = piece.view;
+  request.want_range = !job_.planes.empty();
+  PictureOptions options;
+  options.allow_incomplete = recipe_.allow_incomplete;
+  options.wait_s = request_.paging.timeout_s;
+  const core::DrawResult result = renderer_->draw(request);
+  failures_.insert(failures_.end(), result.failures.begin(), result.failures.end());
+  require_complete(options, result);
+  constexpr double kMs = 1e-3;
+  const core::FrameStats& stats = result.stats;
+  if (recipe_.backend == "voxel") {
+    times.casting += kMs * stats.select_ms;
+    times.shading += kMs * (stats.draw_ms - stats.select_ms);
+  } else {
+    times.paging += kMs * stats.load_ms;
+    times.casting += kMs * (stats.select_ms + stats.draw_ms);
+    times.shading += kMs * stats.read_ms;
+  }
+  canvas.figures.add({result.certificate.tile_error_m,
+                      result.certificate.picture_bound_px.value_or(result.certificate.shift_bound_px),
+                      stats.tiles_substituted, static_cast<std::int64_t>(result.missing.size())});
+  const core::Frame& frame = result.frame;
+  for (int row = 0; row < piece.height; ++row) {
+    const auto from = static_cast<std::size_t>(row + piece.margin_px) * static_cast<std::size_t>(frame.width) +
+                      static_cast<std::size_t>(piece.margin_px);
+    const std::size_t to = canvas.index(piece.x - strip.x, piece.y + row);
+    std::copy_n(frame.colour.data() + from, piece.width, canvas.colour.data() + to);
+    if (request.want_range) std::copy_n(frame.range_m.data() + from, piece.width, canvas.range_m.data() + to);
+  }
+}
+
+void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
+                              const panorama::SampleFormat& format, const FillRow& fill) const {
+  constexpr std::int64_t kSide = panorama::kTile_px;
+  const std::size_t pixel_bytes = format.pixel_bytes();
+  const std::size_t row_bytes = pixel_bytes * kSide;
+  // What lies beyond the picture repeats its edge.
+  const auto fill_tile = [&](std::int64_t column, std::int64_t row, std::uint8_t* tile) {
+    const std::int64_t columns = std::min(kSide, canvas.width - column);
+    const std::int64_t rows = std::min(kSide, canvas.height - row);
+    for (std::int64_t j = 0; j < rows; ++j) {
+      std::uint8_t* out = tile + static_cast<std::size_t>(j) * row_bytes;
+      fill(column, row + j, columns, out);
+      for (std::int64_t i = columns; i < kSide; ++i)
+        std::memcpy(out + static_cast<std::size_t>(i) * pixel_bytes,
+                    out + static_cast<std::size_t>(columns - 1) * pixel_bytes, pixel_bytes);
+    }
+    for (std::int64_t j = rows; j < kSide; ++j)
+      std::memcpy(tile + static_cast<std::size_t>(j) * row_bytes,
+                  tile + static_cast<std::size_t>(rows - 1) * row_bytes, row_bytes);
+  };
+  const std::size_t batch = 4 * static_cast<std::size_t>(pool_.threads());
+  std::vector<std::vector<std::uint8_t>> packed(batch);
+  for (std::size_t begin = 0; begin < layout.tiles(); begin += batch) {
+    InterruptGuard::check();
+    const std::size_t count = std::min(batch, layout.tiles() - begin);
+    pool_.run(count, [&](std::size_t n) {
+      thread_local std::vector<std::uint8_t> tile;  // as the packer keeps its own
+      tile.resize(format.tile_bytes());
+      const auto index = static_cast<std::int64_t>(begin + n);
+      fill_tile(index % layout.tiles_across * kSide, index / layout.tiles_across * kSide, tile.data());
+      packed[n] = panorama::pack_tile(tile, format);
+    });
+    for (std::size_t n = 0; n < count; ++n) writer.add(packed[n]);
+  }
+}
+
+void PanoramaMaker::add_picture(panorama::StripWriter& writer, const StripLayout& layout,
+                                const Canvas& canvas) const {
+  if (!layout.in_tiles) {
+    for (std::int64_t band = 0; band < layout.bands; ++band) {
+      const std::size_t begin = canvas.index(0, band * StripLayout::kBandRows);
+      const std::size_t end =
+          std::min(canvas.index(0, (band + 1) * StripLayout::kBandRows), canvas.colour.size());
+      writer.add({reinterpret_cast<const std::uint8_t*>(canvas.colour.data() + begin),
+                  (end - begin) * sizeof(base::Rgb)});
+    }
+    return;
+  }
+  add_tiles(writer, layout, canvas, panorama::kRgb,
+            [&](std::int64_t column, std::int64_t row, std::int64_t count, std::uint8_t* out) {
+              std::memcpy(out, &canvas.colour[canvas.index(column, row)],
+                          static_cast<std::size_t>(count) * sizeof(base::Rgb));
+            });
+}
+
+void PanoramaMaker::add_plane(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
+                              panorama::Plane plane) const {
+  const panorama::SampleFormat& format = panorama::info_of(plane).format;
+  const double exaggeration = recipe_.settings.values().exaggeration;
+  const auto holds = [](const Piece& p, std::int64_t x, std::int64_t y) {
+    return x >= p.x && x < p.x + p.width && y >= p.y && y < p.y + p.height;
+  };
+  const auto fill = [&](std::int64_t column, std::int64_t row, std::int64_t count, std::uint8_t* out) {
+    const Piece* piece = canvas.pieces.data();
+    for (std::int64_t x = canvas.x + column; x < canvas.x + column + count; ++x) {
+      if (!holds(*piece, x, row)) {
+        piece = &*std::find_if(canvas.pieces.begin(), canvas.pieces.end(),
+                               [&](const Piece& p) { return holds(p, x, row); });
+      }
+      panorama::measure(plane, *surface_, exaggeration, piece->view.eye.eye_m,
+                        panorama::line_of_sight(*piece, x, row),
+                        canvas.range_m[canvas.index(x - canvas.x, row)], out);
+      out += format.pixel_bytes();
+    }
+  };
+  add_tiles(writer, layout, canvas, format, fill);
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,111 @@
+#include "vpe/app/panorama/panorama_overlays.h"
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "paging/surface/surface.h"
+#include "panorama/horizon/landmarks.h"
+#include "vpe/app/cli/digest.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/overlay/overlay.h"
+#include "vpe/overlay/panorama_overlay.h"
+
+namespace vpe::app {
+
+namespace {
+
+// Names that nothing hides, where the eye sees them.
+std::vector<overlay::WideName> seen_names(const PanoramaRecipe& recipe, const std::vector<core::Place>& places,
+                                          const std::shared_ptr<const paging::PlanetFile>& planet,
+                                          std::size_t memory_bytes, base::ThreadPool& pool) {
+  const paging::Surface surface(planet, memory_bytes);
+  const double exaggeration = recipe.settings.values().exaggeration;
+  const double radius_m = planet->radius_m();
+  const mars::Pose& pose = recipe.eye;
+  const panorama::SkylineEye eye = panorama::skyline_eye({pose.lon_deg, pose.lat_deg}, pose.alt_m, radius_m);
+  const double highest_m = radius_m + exaggeration * (planet->meta().highest_radius_m - radius_m);
+  const double within_m = panorama::farthest_sight_m(radius_m + pose.alt_m,
+                                                     planet->tree().lowest_radius_m(exaggeration), highest_m);
+  const auto landmarks = panorama::landmarks(
+      eye, places, within_m, [&](const glm::dvec3& up) { return surface.at(up, exaggeration).radius_m; },
+      [&](const glm::dvec3& ray) { return surface.cast(eye.eye_m, ray, exaggeration); }, pool);
+  std::vector<overlay::WideName> names;
+  for (const panorama::Landmark& l : landmarks) {
+    if (l.hidden_by) continue;
+    names.push_back({l.feature.name, l.centre.direction.azimuth_deg, l.centre.direction.elevation_deg,
+                     l.centre.range_m, l.feature.diameter_m});
+  }
+  return names;
+}
+
+}  // namespace
+
+void settle_overlays(PanoramaRecipe& recipe) {
+  const core::SettingsValues& values = recipe.settings.values();
+  if (const std::string reason = overlay::not_for_panoramas(values); !reason.empty())
+    throw UsageError("--set " + reason + "; leave it out");
+  if (values.names.empty()) return;
+  const std::string file = std::filesystem::absolute(values.names).lexically_normal().string();
+  if (const std::string trouble = recipe.settings.set("overlay.names", file); !trouble.empty())
+    throw UsageError("--set overlay.names: " + trouble);
+  (void)core::read_gazetteer(file);  // for what may be wrong with it
+  const std::string checksum = checksum_of(std::filesystem::path(file));
+  if (!recipe.names_checksum.empty() && recipe.names_checksum != checksum) {
+    throw std::runtime_error(file +
+                             ": was changed since the picture was made, so its names are others; put the old "
+                             "file there, or make a new picture with --set overlay.names=" +
+                             file);
+  }
+  recipe.names_checksum = checksum;
+}
+
+PanoramaOverlays::PanoramaOverlays(const PanoramaRecipe& recipe, const panorama::PanoramaMap& map,
+                                   std::shared_ptr<const paging::PlanetFile> planet, base::ThreadPool& pool,
+                                   std::size_t memory_bytes)
+    : recipe_(recipe), map_(map), planet_(std::move(planet)), pool_(pool), memory_bytes_(memory_bytes) {
+  const std::string& file = recipe.settings.values().names;
+  if (!file.empty()) places_ = core::read_gazetteer(file);
+}
+
+overlay::Decals PanoramaOverlays::lay_out() const {
+  const core::SettingsValues& values = recipe_.settings.values();
+  overlay::WideScene scene;
+  scene.width_px = map_.width_px;
+  scene.height_px = map_.height_px;
+  scene.turn_px = std::llround(map_.turn_px);
+  scene.left_azimuth_deg = map_.to_direction(0, map_.horizon_px).azimuth_deg;
+  const double right_deg = map_.to_direction(static_cast<double>(map_.width_px), map_.horizon_px).azimuth_deg;
+  const double span_deg = right_deg - scene.left_azimuth_deg;
+  scene.span_deg = span_deg > 0 ? span_deg : span_deg + 360;
+  if (map_.width_px == scene.turn_px) scene.span_deg = 360;
+  // A facet has the fewest in its middle.
+  scene.px_per_deg =
+      map_.kind == panorama::MapKind::kFacets ? map_.focal_px * mars::kRadiansPerDegree : map_.turn_px / 360.0;
+  scene.horizon_px = map_.horizon_px;
+  scene.place = [this](double azimuth_deg, double elevation_deg) -> std::optional<glm::dvec2> {
+    glm::dvec2 at = map_.place({azimuth_deg, elevation_deg});
+    // Its own edges belong to the picture.
+    constexpr double kEdge_px = 1e-6;
+    if (at.x < -kEdge_px) at.x += map_.turn_px;
+    if (at.x > map_.turn_px - kEdge_px) at.x -= map_.turn_px;
+    if (at.x > static_cast<double>(map_.width_px) + kEdge_px) return std::nullopt;
+    return at;
+  };
+  scene.appearance = values;
+  scene.has_imagery = !planet_->image_keys().empty();
+  if (!places_.empty()) scene.names = seen_names(recipe_, places_, planet_, memory_bytes_, pool_);
+  return overlay::lay_out_wide(values, scene);
+}
+
+void PanoramaOverlays::prepare() {
+  if (!decals_ && overlay::any(recipe_.settings.values())) decals_ = lay_out();
+}
+
+void PanoramaOverlays::lay(const overlay::PicturePart& part) {
+  prepare();
+  if (decals_) decals_->lay(part);
+}
+
+}  // namespace vpe::app

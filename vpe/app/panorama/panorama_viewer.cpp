@@ -1,0 +1,70 @@
+#include "vpe/app/panorama/panorama_viewer.h"
+
+#include <stdexcept>
+#ifdef VPE_HAS_WINDOW
+#include <filesystem>
+#include <utility>
+
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/panorama/panorama_painter.h"
+#include "vpe/window/overlook_window.h"
+#endif
+
+namespace vpe::app {
+
+#ifdef VPE_HAS_WINDOW
+
+namespace {
+
+constexpr double kIdle_s = 0.5;
+
+window::DisplayOptions display_options() {
+  window::DisplayOptions options;
+  options.instead =
+      "set DISPLAY to an X server, or work without a window: --view YAW,PITCH -o VIEW.png draws a view, --at "
+      "AZIMUTH,ELEVATION says what is there, and 'xvfb-run vpe overlook PANO' runs this one out of sight";
+  return options;
+}
+
+}  // namespace
+
+void check_window() { window::check_display(display_options()); }
+
+panorama::Viewer look_around(const LookAround& request, const Common& common) {
+  window::OverlookWindowSetup setup;
+  setup.preferences = explore::read_preferences(explore::explore_files().preferences);
+  // The rest of the memory is for views and for the window itself.
+  setup.view = overlook_setup(request.files, memory_bytes(common) / 4 * 3, common.threads);
+  setup.view.look = request.look;
+  setup.view.fov_deg = request.fov_deg;
+  setup.view.stereo = request.stereo;
+  setup.view.pictures = std::filesystem::current_path();
+  setup.display = display_options();
+  setup.display.title = "vpe - " + setup.view.panorama.picture.filename().string();
+  setup.display.width = request.size.width;
+  setup.display.height = request.size.height;
+  setup.display.scale = request.scale;
+  // Ctrl+C ends the copying of a large picture with nothing left over.
+  const InterruptGuard guard;
+  window::OverlookWindow window(std::move(setup));
+  while (window.step(kIdle_s)) InterruptGuard::check();
+  return window.view().viewer();
+}
+
+#else
+
+void check_window() {
+  throw std::runtime_error(
+      "this program was built without windows; install libglfw3-dev and libimgui-dev and build it again, or "
+      "work "
+      "without one: --view YAW,PITCH -o VIEW.png draws a view, --at AZIMUTH,ELEVATION says what is there");
+}
+
+panorama::Viewer look_around(const LookAround&, const Common&) {
+  check_window();
+  throw std::logic_error("check_window() throws");
+}
+
+#endif
+
+}  // namespace vpe::app

@@ -1,0 +1,50 @@
+#include "vpe/app/picture/backend_choice.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+
+#include "vpe/base/number.h"
+#include "vpe/voxel/ray_renderer.h"
+
+namespace vpe::app {
+
+namespace {
+
+void set(core::Settings& settings, const char* key, const std::string& text) {
+  if (const std::string trouble = settings.set(key, text); !trouble.empty()) throw std::logic_error(trouble);
+}
+
+core::Settings within_tolerance(core::Settings settings, const PictureOptions& options) {
+  const bool is_named = std::any_of(options.set.begin(), options.set.end(),
+                                    [](const std::string& text) { return text.starts_with("rays."); });
+  const double tolerance_px = settings.values().lod_tolerance_px;
+  if (is_named || tolerance_px < core::RayLimits::kLeastCell_px) return settings;
+  set(settings, "rays.mode", "multires");
+  set(settings, "rays.cell", base::format_number(std::min(tolerance_px, core::RayLimits::kMostCell_px)));
+  return settings;
+}
+
+}  // namespace
+
+bool suits_rays(const core::DrawRequest& request) {
+  const core::SettingsValues& values = request.settings;
+  const core::SettingsValues defaults;
+  return voxel::why_not(request).empty() && request.interest.empty() && values.lod_rule == defaults.lod_rule &&
+         values.lod_triangles == 0 && values.shading == defaults.shading && values.lod_centre_weight == 0;
+}
+
+BackendChoice choose_backend(const PictureOptions& options, const core::Settings& settings,
+                             std::span<const core::DrawRequest> pictures, double radius_m, bool has_gpu) {
+  if (options.backend != kAutoBackend) return {options.backend, settings};
+  const auto for_rays = std::count_if(pictures.begin(), pictures.end(), [&](const core::DrawRequest& request) {
+    return glm::length(request.view.eye.eye_m) < (1 + kFar) * radius_m &&
+           core::reaches_horizon(request.view, radius_m);
+  });
+  const bool is_rays = !has_gpu && 2 * static_cast<std::size_t>(for_rays) >= pictures.size() &&
+                       std::all_of(pictures.begin(), pictures.end(), suits_rays);
+  if (!is_rays) return {kPolygonBackend, settings};
+  return {kRayBackend, within_tolerance(settings, options)};
+}
+
+}  // namespace vpe::app

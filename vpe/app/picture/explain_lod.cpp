@@ -1,0 +1,65 @@
+#include "vpe/app/picture/explain_lod.h"
+
+#include "lod/explain.h"
+#include "lod/options.h"
+#include "mars/geodesy/sphere.h"
+#include "vpe/gl/polygon_renderer.h"
+
+namespace vpe::app {
+
+namespace {
+
+nlohmann::json term_json(const char* x_name, const lod::ControlTerm& term) {
+  nlohmann::json json{{"levels", term.levels}, {"weight", term.weight}, {"weighted", term.weighted()}};
+  if (x_name != nullptr) json[x_name] = term.x;
+  return json;
+}
+
+nlohmann::json tile_json(const lod::TileExplanation& e, bool hitchner) {
+  nlohmann::json json{{"tile", lod::to_string(e.key)},
+                      {"lod", e.lod},
+                      {"post_spacing_m", e.post_spacing_m},
+                      {"mesh", e.variant + 1},
+                      {"meshes", e.variants},
+                      {"min_distance_m", e.min_distance_m},
+                      {"angle_from_centre_deg", e.terms.centre_angle_rad / mars::kRadiansPerDegree},
+                      {"error_m", e.error_m},
+                      {"error_px", e.error_px},
+                      {"centre", term_json("half_heights", e.terms.centre)},
+                      {"interest", term_json(nullptr, e.terms.interest)},
+                      {"sum", e.terms.sum},
+                      {"reason", lod::to_string(e.reason)}};
+  if (hitchner) {
+    json["distance"] = term_json("m", e.terms.distance);
+    json["wanted_lod"] = e.wanted;
+  } else {
+    json["shift_levels"] = e.shift;
+  }
+  return json;
+}
+
+}  // namespace
+
+nlohmann::json explain_lod(const core::DrawRequest& request, const paging::PlanetFile& planet,
+                           std::size_t memory_bytes) {
+  const lod::SelectOptions options =
+      lod::select_options(request, planet.radius_m(), gl::most_triangles(memory_bytes));
+  const lod::SelectView view = lod::select_view(request.view);
+  lod::SelectScratch scratch;
+  lod::Selection selection;
+  lod::select(options, planet.tree(), view, scratch, selection);
+  const bool hitchner = options.control.rule == core::LodRule::kHitchner;
+  nlohmann::json tiles = nlohmann::json::array();
+  for (const lod::TileExplanation& e : lod::explain(options, planet.tree(), view, selection)) {
+    tiles.push_back(tile_json(e, hitchner));
+  }
+  nlohmann::json json{{"rule", hitchner ? "hitchner" : "error"},
+                      {"max_triangles", options.max_triangles},
+                      {"triangles", selection.triangles},
+                      {"budget_spent", selection.capped},
+                      {"tiles", tiles}};
+  if (!hitchner) json["tolerance_px"] = options.tolerance_px;
+  return json;
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,57 @@
+#include "vpe/app/picture/fingerprint.h"
+
+#include <cstdint>
+#include <filesystem>
+
+#include "vpe/app/cli/digest.h"
+#include "vpe/core/appearance/palette.h"
+
+namespace vpe::app {
+
+namespace {
+
+// Raised whenever the encoding below changes its meaning.
+constexpr std::int64_t kEncoding = 3;
+
+void add(Digest& digest, const glm::dvec3& v) { digest.add(v.x).add(v.y).add(v.z); }
+
+// What a palette's file holds: its name stays when it is edited.
+void add(Digest& digest, const core::Palette& palette) {
+  digest.add(static_cast<std::int64_t>(palette.scale()));
+  for (const core::PaletteStop& stop : palette.stops()) add(digest.add(stop.at), stop.rgb);
+}
+
+}  // namespace
+
+std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& request,
+                           const core::Settings& settings, double time_s) {
+  const core::View& view = request.view;
+  Digest digest;
+  digest.add(kEncoding).add(basis.program).add(basis.planet).add(basis.backend);
+  digest.add(std::int64_t{basis.memory_mb});
+  digest.add(static_cast<std::int64_t>(view.projection)).add(view.fov_deg);
+  digest.add(std::int64_t{view.width}).add(std::int64_t{view.height});
+  digest.add(view.principal_offset_px.x).add(view.principal_offset_px.y);
+  for (const int n : {view.part.x, view.part.y, view.part.width, view.part.height}) digest.add(std::int64_t{n});
+  add(digest, view.eye.eye_m);
+  add(digest, view.eye.axes.right);
+  add(digest, view.eye.axes.up);
+  add(digest, view.eye.axes.forward);
+  add(digest, request.sun);
+  digest.add(static_cast<std::int64_t>(request.interest.size()));
+  for (const core::InterestRegion& r : request.interest) {
+    digest.add(r.lon_deg).add(r.lat_deg).add(r.radius_m).add(std::int64_t{r.levels});
+  }
+  digest.add(request.coarsening);
+  // The registry's own text of a value gives back its bits.
+  for (const core::SettingInfo& info : core::Settings::list()) {
+    digest.add(info.key).add(settings.get(info.key).value_or(""));
+  }
+  if (const auto file = core::palette_file(settings.values().palette)) add(digest, core::read_palette(*file));
+  const core::SettingsValues& values = settings.values();
+  if (values.time_code) digest.add("time").add(time_s);
+  if (!values.names.empty()) digest.add("names").add(checksum_of(std::filesystem::path(values.names)));
+  return digest.hex();
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,49 @@
+#include "vpe/app/picture/frame_overlays.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace vpe::app {
+
+FrameOverlays::FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet)
+    : planet_(std::move(planet)),
+      surface_(planet_, std::size_t{16} << 20),
+      has_imagery_(planet_->meta().finest_image_level >= 0) {}
+
+void FrameOverlays::load(const core::Overlays& overlays) {
+  if (overlays.names.empty() || names_.contains(overlays.names)) return;
+  Names names;
+  names.places = core::read_gazetteer(overlays.names);
+  names.height_m.assign(names.places.size(), std::numeric_limits<double>::quiet_NaN());
+  names_.emplace(overlays.names, std::move(names));
+}
+
+overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core::Frame& frame,
+                                    const core::Certificate& certificate, double time_s) {
+  const core::SettingsValues& settings = request.settings;
+  if (!overlay::any(settings)) return {};
+  load(settings);
+  overlay::Scene scene;
+  scene.view = request.view;
+  scene.range_m = frame.range_m;
+  scene.radius_m = planet_->radius_m();
+  scene.appearance = settings;
+  scene.shift_px = certificate.picture_bound_px.value_or(certificate.shift_bound_px);
+  scene.has_imagery = has_imagery_;
+  scene.time_s = time_s;
+  if (!settings.names.empty()) {
+    Names& names = names_.at(settings.names);
+    scene.places = names.places;
+    scene.height_m = [this, &names](const core::Place& place) {
+      double& height_m = names.height_m.at(static_cast<std::size_t>(&place - names.places.data()));
+      if (std::isnan(height_m)) {
+        height_m = surface_.at(mars::direction({place.lon_deg, place.lat_deg})).height_m;
+      }
+      return height_m;
+    };
+  }
+  return overlay::draw(settings, scene);
+}
+
+}  // namespace vpe::app

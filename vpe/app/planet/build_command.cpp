@@ -1,0 +1,120 @@
+#include "mars/embedded/embedded.h"
+#include "vpe/app/planet/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "vpe/app/planet/build_sources.h"
+#include "vpe/app/planet/shard_option.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/planet/planet_build.h"
+#include "vpe/app/cli/program.h"
+
+namespace vpe::app {
+
+namespace {
+
+struct BuildArguments {
+  std::vector<std::string> dems;
+  std::vector<std::string> images;
+  std::vector<std::string> regions;
+  SourceArguments sources;
+  std::string part;
+  bool estimate = false;
+  paging::BuildOptions options;
+};
+
+paging::Region parse_region(const std::string& text) {
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 4) {
+    throw UsageError("--region '" + text + "': expected WEST,SOUTH,EAST,NORTH in degrees");
+  }
+  const paging::Region region{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
+  if (region.south_deg >= region.north_deg || region.south_deg < -90 || region.north_deg > 90) {
+    throw UsageError("--region '" + text + "': south must lie below north, both within -90..90");
+  }
+  return region;
+}
+
+// `embedded` stands for the embedded Mars, unless a file is called so.
+bool is_embedded(const std::string& path) {
+  std::error_code none;
+  return path == "embedded" && !std::filesystem::exists(path, none);
+}
+
+// It is defined at every spacing: within regions it can be had as fine as asked for, else as it is built for
+// the cache.
+double embedded_finest_m(const paging::BuildOptions& options) {
+  return options.regions.empty() ? 0.0 : options.finest_spacing_m;
+}
+
+void build(BuildArguments& arguments, const Common& common) {
+  paging::BuildOptions& options = arguments.options;
+  for (const std::string& text : arguments.regions) options.regions.push_back(parse_region(text));
+  options.threads = common.threads;
+  options.part = parse_part(arguments.part);
+  options.output = part_file_name(options.output, options.part);
+  std::vector<std::string> inputs = arguments.dems;
+  inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
+  check_planet_file(options.output, inputs);
+  std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
+  for (const std::string& path : arguments.dems) {
+    dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))
+                                     : mars::open_elevation(path));
+  }
+  const mars::Combined combined = combine_sources(std::move(dems), arguments.sources, options);
+  if (!common.quiet) say_findings(combined);
+  std::vector<std::shared_ptr<const mars::ImageSource>> images;
+  for (const std::string& path : arguments.images) {
+    images.push_back(is_embedded(path) ? mars::embedded_image(embedded_finest_m(options))
+                                       : mars::open_image(path));
+  }
+  std::shared_ptr<const mars::ImageSource> image;
+  if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
+
+  const paging::BuildEstimate estimate = paging::estimate_build(options, *combined.source, image.get());
+  if (arguments.estimate) {
+    report_estimate(estimate, common);
+    return;
+  }
+  say_estimate(estimate, common);
+  const paging::BuildSummary summary = run_build(options, *combined.source, image.get(), common);
+  report_build(summary, options.output, common, &combined);
+}
+
+}  // namespace
+
+void add_build(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<BuildArguments>();
+  CLI::App* command =
+      add_command(program, "build", "Make a planet file from elevation and image rasters", common, true);
+  paging::BuildOptions& o = arguments->options;
+  command
+      ->add_option("DEM", arguments->dems,
+                   "Elevation rasters (anything GDAL reads), or 'embedded'; the finest decides at each place")
+      ->required();
+  command->add_option("--image", arguments->images, "Image rasters, or 'embedded'")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("-o,--output", o.output, "Planet file to write")->required();
+  command
+      ->add_option("--region", arguments->regions,
+                   "WEST,SOUTH,EAST,NORTH: full resolution only there (repeatable)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--spacing", o.finest_spacing_m, "Finest post spacing, metres (default: as the sources)")
+      ->check(number_within(0.01, 1e6));
+  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")
+      ->check(number_within(100.0, 1e6))
+      ->capture_default_str();
+  add_source_options(*command, arguments->sources);
+  command->add_option(
+      "--part", arguments->part,
+      "k/n: make the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: from SLURM's or "
+      "MPI's variables");
+  command->add_flag("--estimate", arguments->estimate,
+                    "Only say what the build would take: tiles, bytes, time");
+  command->callback([arguments, &common] { build(*arguments, common); });
+}
+
+}  // namespace vpe::app

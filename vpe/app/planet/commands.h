@@ -1,0 +1,18 @@
+// Commands that make, join and describe planet files.
+#pragma once
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace vpe::app {
+
+struct Common;
+
+// Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
+void add_build(CLI::App& program, Common& common);
+void add_merge(CLI::App& program, Common& common);
+void add_info(CLI::App& program, Common& common);
+void add_verify(CLI::App& program, Common& common);
+
+}  // namespace vpe::app

@@ -1,0 +1,194 @@
+#include "vpe/app/planet/planet_build.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "mars/raster/raster_memory.h"
+#include "vpe/app/planet/build_sources.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/progress.h"
+#include "vpe/app/cli/json_output.h"
+
+namespace vpe::app {
+
+namespace {
+
+void say_what_is_kept(const std::string& output, const paging::BuildProgress& p) {
+  const std::string part = output + ".part";
+  if (p.replaced) {
+    std::fprintf(stderr, "vpe: %s was of other sources or options, or damaged; starting anew\n", part.c_str());
+  } else if (p.kept > 0) {
+    std::fprintf(stderr, "Continuing %s\n", part.c_str());
+  }
+}
+
+// work(progress function) with a line of progress, ended by signals.
+template <typename Work>
+paging::BuildSummary run(const std::string& output, const char* verb, const Common& common, const Work& work) {
+  const InterruptGuard guard;
+  try {
+    ProgressLine line(common.quiet);
+    bool first = true;
+    return work([&](const paging::BuildProgress& p) {
+      InterruptGuard::check();
+      if (first && !common.quiet) say_what_is_kept(output, p);
+      first = false;
+      line.show(std::string(verb) + " (" + p.stage + ")", p.fraction);
+    });
+  } catch (const std::exception&) {
+    std::error_code none;
+    if (std::filesystem::exists(output + ".part", none)) {
+      std::fprintf(stderr, "vpe: what is built stays in %s.part; the same command continues it\n",
+                   output.c_str());
+    }
+    throw;
+  }
+}
+
+std::string duration(double seconds) {
+  char text[32];
+  if (seconds < 90) {
+    std::snprintf(text, sizeof text, "%.0f s", seconds);
+  } else if (seconds < 5400) {
+    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+  }
+  return text;
+}
+
+std::string in_words(const paging::BuildEstimate& e) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%lld tiles (%lld finest), %lld image tiles, %.1f million posts, about %.4g MB, about %s",
+                static_cast<long long>(e.leaf_tiles + e.inner_tiles), static_cast<long long>(e.leaf_tiles),
+                static_cast<long long>(e.image_tiles), 1e-6 * static_cast<double>(e.posts),
+                1e-6 * static_cast<double>(e.bytes), duration(e.wall_s).c_str());
+  return text;
+}
+
+void print_levels(const paging::PlanetMeta& meta) {
+  std::printf("%-6s %9s %9s %9s %10s %12s %11s %11s\n", "level", "posts, m", "tiles", "finest", "MB", "holes",
+              "RMS, m", "maximum, m");
+  for (const paging::LevelSummary& l : meta.levels) {
+    std::printf("%-6d %9.4g %9lld %9lld %10.1f %12lld", l.level + 1,
+                lod::post_spacing_m(l.level, meta.tile.intervals(), meta.radius_m),
+                static_cast<long long>(l.tiles), static_cast<long long>(l.leaf_tiles),
+                1e-6 * static_cast<double>(l.bytes), static_cast<long long>(l.holes));
+    if (l.resampling.posts > 0) {
+      std::printf(" %11.3g %11.3g\n", l.resampling.rms_m, l.resampling.max_m);
+    } else {
+      std::printf(" %11s %11s\n", "-", "-");
+    }
+  }
+}
+
+}  // namespace
+
+paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
+                               const mars::ImageSource* image, const Common& common) {
+  // An analytic source is sampled one place at a time for the resampling error: enough for a figure that is
+  // stable to a few per cent.
+  // The allocator keeps about a third more than what rasters hold; the rest is for the tile index and scratch.
+  mars::set_raster_memory(static_cast<std::size_t>(common.memory_mb) << 19);
+  const auto infos = elevation.infos();
+  if (!infos.empty() && infos.front().illustration) options.resampling_posts = 100'000;
+  return run(options.output, "building", common, [&](const paging::ProgressFunction& progress) {
+    return paging::build_planet(options, elevation, image, progress);
+  });
+}
+
+void say_estimate(const paging::BuildEstimate& estimate, const Common& common) {
+  if (common.quiet) return;
+  std::fprintf(stderr, "To build: %s\n", in_words(estimate).c_str());
+  const double memory = 1048576.0 * common.memory_mb;
+  if (static_cast<double>(estimate.memory_bytes) > memory / 4) {
+    std::fprintf(
+        stderr,
+        "vpe: warning: the index of so many tiles takes %.0f MB beside what --memory gives to rasters; "
+        "divide the build with --part\n",
+        1e-6 * static_cast<double>(estimate.memory_bytes));
+  }
+}
+
+void report_estimate(const paging::BuildEstimate& e, const Common& common) {
+  if (!common.json) {
+    std::printf("%s\n", in_words(e).c_str());
+    return;
+  }
+  print_json({{"tiles", e.leaf_tiles + e.inner_tiles},
+              {"finest_tiles", e.leaf_tiles},
+              {"image_tiles", e.image_tiles},
+              {"posts", e.posts},
+              {"bytes", e.bytes},
+              {"processor_s", e.processor_s},
+              {"wall_s", e.wall_s},
+              {"index_bytes", e.memory_bytes}});
+}
+
+paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common& common) {
+  return run(options.output, "merging", common,
+             [&](const paging::ProgressFunction& progress) { return paging::merge_parts(options, progress); });
+}
+
+void check_planet_file(const std::string& output, const std::vector<std::string>& inputs) {
+  check_output(output);
+  std::error_code none;
+  for (const std::string& input : inputs) {
+    if (std::filesystem::equivalent(input, output, none)) {
+      throw UsageError("-o " + output + ": is also an input; give the planet file another name");
+    }
+  }
+  if (std::filesystem::file_size(output, none) > 0 && !none && !is_sqlite(output)) {
+    throw std::runtime_error(output +
+                             ": is there and not a planet file; give another name, or remove it first");
+  }
+}
+
+std::string part_file_name(const std::string& output, const base::Shard& part) {
+  if (part.is_all()) return output;
+  const std::string of = std::to_string(part.of);
+  std::string number = std::to_string(part.number);
+  number.insert(0, of.size() - number.size(), '0');
+  std::filesystem::path path(output);
+  const std::string extension = path.extension().string();
+  path.replace_extension();
+  return path.string() + "." + number + "-of-" + of + extension;
+}
+
+void report_build(const paging::BuildSummary& summary, const std::string& output, const Common& common,
+                  const mars::Combined* combined) {
+  const paging::PlanetMeta& meta = summary.meta;
+  std::int64_t holes = 0;
+  for (const paging::LevelSummary& level : meta.levels) holes += level.holes;
+  if (common.json) {
+    nlohmann::json json = planet_json(meta);
+    json["path"] = output;
+    json["bytes"] = summary.bytes;
+    json["tiles_kept"] = summary.kept;
+    if (combined != nullptr) {
+      json["findings"] = findings_json(*combined);
+      json["notes"] = combined->notes;
+    }
+    if (meta.share) json["part"] = {{"number", meta.share->part.number}, {"of", meta.share->part.of}};
+    print_json(json);
+    return;
+  }
+  if (common.quiet) return;
+  std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %.1f MB\n", output.c_str(),
+              static_cast<long long>(meta.tiles), static_cast<long long>(meta.leaf_tiles),
+              1e-6 * static_cast<double>(summary.posts), 1e-6 * static_cast<double>(summary.bytes));
+  std::printf("resampling error against %lld source posts: RMS %.3g m, maximum %.3g m\n",
+              static_cast<long long>(meta.resampling.posts), meta.resampling.rms_m, meta.resampling.max_m);
+  std::printf("posts without data: %lld (%.3g %%)\n", static_cast<long long>(holes),
+              100.0 * static_cast<double>(holes) / static_cast<double>(summary.posts));
+  print_levels(meta);
+  if (meta.share) {
+    std::printf("Part %lld of %lld. When all are there, 'vpe merge PART... -o PLANET.vpe' joins them.\n",
+                static_cast<long long>(meta.share->part.number), static_cast<long long>(meta.share->part.of));
+  }
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,86 @@
+#include "vpe/app/planet/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "paging/planet/verify.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/progress.h"
+#include "vpe/app/cli/json_output.h"
+
+namespace vpe::app {
+
+namespace {
+
+constexpr std::size_t kShownProblems = 20;
+
+struct VerifyArguments {
+  std::string planet;
+  bool deep = false;
+  std::size_t sample = 200;
+};
+
+nlohmann::json to_json(const paging::VerifyReport& report, const std::string& path) {
+  nlohmann::json problems = nlohmann::json::array();
+  for (const paging::Problem& p : report.problems) problems.push_back({{"where", p.where}, {"what", p.what}});
+  return {{"path", path},
+          {"sound", report.problems.empty()},
+          {"problems", problems},
+          {"tiles", report.tiles},
+          {"meshes", report.meshes},
+          {"borders", report.borders},
+          {"image_tiles", report.images},
+          {"errors_measured_again", report.measured},
+          {"largest_share_of_a_stated_error", report.largest_share}};
+}
+
+void verify(const VerifyArguments& arguments, const Common& common) {
+  const InterruptGuard guard;
+  const auto planet = paging::PlanetFile::open(arguments.planet);
+  paging::VerifyOptions options;
+  options.threads = common.threads;
+  options.deep_tiles = arguments.deep ? arguments.sample : 0;
+  paging::VerifyReport report;
+  {
+    ProgressLine line(common.quiet);
+    report = paging::verify(*planet, options, [&](double fraction) {
+      InterruptGuard::check();
+      line.show("verifying", fraction);
+    });
+  }
+  if (common.json) {
+    print_json(to_json(report, planet->path()));
+  } else if (!common.quiet && report.problems.empty()) {
+    std::printf("%s: sound: %lld tiles, %lld meshes, %lld borders, %lld image tiles", planet->path().c_str(),
+                static_cast<long long>(report.tiles), static_cast<long long>(report.meshes),
+                static_cast<long long>(report.borders), static_cast<long long>(report.images));
+    if (arguments.deep) std::printf("; %lld errors measured again", static_cast<long long>(report.measured));
+    std::printf("\n");
+  }
+  if (report.problems.empty()) return;
+  std::string text = planet->path() + ": " + std::to_string(report.problems.size()) +
+                     " problems; build the planet file again:";
+  for (std::size_t n = 0; n < std::min(kShownProblems, report.problems.size()); ++n) {
+    text += "\n     " + report.problems[n].where + ": " + report.problems[n].what;
+  }
+  if (report.problems.size() > kShownProblems) text += "\n     ... (--json lists all)";
+  throw std::runtime_error(text);
+}
+
+}  // namespace
+
+void add_verify(CLI::App& program, Common& common) {
+  auto arguments = std::make_shared<VerifyArguments>();
+  CLI::App* command = add_command(program, "verify", "Check everything that a planet file holds", common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file")->required();
+  command->add_flag("--deep", arguments->deep,
+                    "Also measure errors of meshes again, on some of the finest tiles");
+  command->add_option("--sample", arguments->sample, "How many finest tiles --deep takes")
+      ->check(number_within(1, 1e9))
+      ->capture_default_str();
+  command->callback([arguments, &common] { verify(*arguments, common); });
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,228 @@
+// vpe report error-time.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "vpe/app/report/embree_ranges.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/progress.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/app/report/report_error_time_configurations.h"
+#include "vpe/app/report/report_folder.h"
+#include "vpe/app/report/report_commands.h"
+#include "vpe/app/cli/temporary.h"
+#include "vpe/base/number.h"
+#include "vpe/base/parallel.h"
+#include "vpe/gl/polygon_renderer.h"
+#include "vpe/report/error_time_page.h"
+#include "vpe/voxel/ray_renderer.h"
+
+namespace vpe::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExactBaseline = "exact";
+constexpr const char* kEmbreeBaseline = "embree";
+
+struct ErrorTimeArguments {
+  std::string planet;
+  std::string output;
+  bool is_short = false;
+  std::string size;  // empty: as suits
+  int rounds = 0;    // 0: as suits
+  std::vector<std::string> views;
+  std::string baseline = kExactBaseline;
+};
+
+constexpr const char* kShortViews[] = {"high oblique", "canyon floor"};
+
+std::vector<NamedView> chosen_views(const ErrorTimeArguments& arguments, std::vector<NamedView> all) {
+  std::vector<std::string> wanted = arguments.views;
+  if (wanted.empty() && arguments.is_short) wanted.assign(std::begin(kShortViews), std::end(kShortViews));
+  if (wanted.empty()) return all;
+  std::string names;
+  for (const NamedView& view : all) names += (names.empty() ? "" : ", ") + view.name;
+  std::vector<NamedView> chosen;
+  for (const std::string& name : wanted) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const NamedView& v) { return v.name == name; });
+    if (found == all.end()) throw UsageError("--view '" + name + "': the views are " + names);
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+class Renderers {
+ public:
+  Renderers(std::shared_ptr<const paging::PlanetFile> planet, const Common& common)
+      : planet_(std::move(planet)), common_(common), context_(gl::Context::create()) {}
+
+  std::unique_ptr<core::Renderer> make(const std::string& name, double share) const {
+    const auto bytes = static_cast<std::size_t>(share * static_cast<double>(memory_bytes(common_)));
+    if (name == kRayPictures) return voxel::make_ray_renderer(planet_, {bytes, common_.threads});
+    if (name == kEmbreeRanges) return make_embree_renderer(planet_, common_.threads);
+    gl::RendererOptions options;
+    options.memory_bytes = bytes;
+    options.threads = common_.threads;
+    return gl::make_polygon_renderer(context_, planet_, options);
+  }
+  const gl::ContextInfo& info() const { return context_->info(); }
+
+ private:
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  const Common& common_;
+  std::shared_ptr<gl::Context> context_;
+};
+
+std::vector<std::string> about(const ErrorTimeArguments& arguments, const RunFacts& facts,
+                               const paging::PlanetMeta& meta, const Size& size, int rounds) {
+  std::vector<std::string> lines = to_paragraphs(facts);
+  lines.push_back((arguments.planet.empty() ? std::string("The embedded Mars") : arguments.planet) +
+                  ", pictures of " + std::to_string(size.width) + "x" + std::to_string(size.height) +
+                  ", 60 degrees high. Times are medians of " + std::to_string(rounds) +
+                  " rounds in turns, everything loaded, from the request to colours in memory.");
+  lines.emplace_back(
+      "Errors are measured against rays in mode exact, and their shifts against the exact surface S "
+      "(docs/numbers.md); docs/error-and-time.md says what each figure means.");
+  if (meta.illustration)
+    lines.emplace_back("This planet is an illustration; its numbers are not data about Mars.");
+  return lines;
+}
+
+void write_files(const fs::path& folder, const report::ErrorTimeReport& report, const report::Page& page) {
+  write_whole(folder / "error-time.csv", report::to_csv(report::points_table(report.results)));
+  write_whole(folder / "error-time.json", report::error_time_json(report).dump(1) + "\n");
+  write_whole(folder / "error-time.svg", report::to_svg_file(report::summary_plot(report.results)));
+  write_whole(folder / "error-time.html", report::to_html(page));
+}
+
+void print_summary(const fs::path& folder, const report::ErrorTimeReport& report) {
+  for (const report::SubjectResult& result : report.results) {
+    for (const report::DefaultPlace& p : report::place_defaults(result)) {
+      std::printf("%-13s %s%-24s %-16s %8.4g  %8.4g ms  %.2f of the front, %.2f of its own\n", p.view.c_str(),
+                  p.is_chosen ? "* " : "  ", p.sweep.c_str(), p.knob.c_str(), p.error, p.time_ms, p.over_front,
+                  p.over_own_front);
+    }
+  }
+  std::printf("%s\n", (folder / "error-time.html").c_str());
+}
+
+void warn_of_false_statements(const std::vector<report::SubjectResult>& results) {
+  for (const report::SubjectResult& result : results) {
+    for (std::size_t k = 0; k < result.measured.size(); ++k) {
+      const report::Measured& m = result.measured[k];
+      if (m.within_stated()) continue;
+      std::fprintf(stderr, "vpe: warning: %s, %s, %s: a shift of %s px, but the certificate states %s px\n",
+                   result.subject.view.c_str(), result.subject.ways[k].sweep.c_str(),
+                   result.subject.ways[k].knob.c_str(), base::format_number(m.shift.forward.max_px).c_str(),
+                   base::format_number(*m.stated_px).c_str());
+    }
+  }
+}
+
+report::Page error_time(const ErrorTimeArguments& arguments, const Common& common) {
+  const Size size = parse_size(!arguments.size.empty() ? arguments.size
+                               : arguments.is_short    ? "320x180"
+                                                       : "640x360");
+  constexpr int kLeastSide = 32;  // halves of it have windows of structural similarity
+  if (size.width < kLeastSide || size.height < kLeastSide)
+    throw UsageError("--size " + arguments.size + ": each side must be at least " + std::to_string(kLeastSide));
+  if (arguments.baseline == kEmbreeBaseline && !has_embree())
+    throw UsageError("--baseline embree: not built in; configure with -DVPE_EMBREE=ON (libembree-dev)");
+  const int rounds = arguments.rounds > 0 ? arguments.rounds : arguments.is_short ? 3 : 5;
+  const fs::path folder = arguments.output;
+  make_folder(folder);
+  check_output(folder / "error-time.html");
+  remove_stale_temporaries(folder, [](const std::string& name) { return name.starts_with("error-time."); });
+
+  const auto planet = open_planet(arguments.planet, common);
+  note_illustration(planet->meta(), common.quiet);
+  const paging::Surface surface(planet, memory_bytes(common) / 8);
+  const std::vector<NamedView> views =
+      chosen_views(arguments, arguments.planet.empty() ? embedded_views(surface) : views_of(surface));
+  RunFacts facts = read_run_facts(common);
+  const Renderers renderers(planet, common);
+  facts.opengl = renderers.info().renderer + ", " + renderers.info().version;
+
+  report::ErrorTimeReport report{"Error against time", {}, {}};
+  {
+    const InterruptGuard guard;
+    ProgressLine progress(common.quiet);
+    report::ErrorTimeOptions options;
+    options.make = [&](const std::string& name, double share) { return renderers.make(name, share); };
+    options.surface = [&](std::span<const glm::dvec3> directions, std::span<double> radius_m) {
+      surface.radius(directions, radius_m);
+    };
+    options.rounds = rounds;
+    options.threads = common.threads > 0 ? common.threads : base::default_threads();
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      options.progress = [&](const std::string& what, double fraction) {
+        InterruptGuard::check();
+        progress.show(what, (static_cast<double>(k) + fraction) / static_cast<double>(views.size()));
+      };
+      WayOptions ways;
+      ways.width = size.width;
+      ways.height = size.height;
+      ways.is_short = arguments.is_short;
+      ways.has_gpu = gl::has_gpu();
+      ways.with_embree = arguments.baseline == kEmbreeBaseline;
+      report.results.push_back(report::measure(subject_of(views[k], *planet, ways), options));
+    }
+    InterruptGuard::check();
+  }
+  report.about = about(arguments, facts, planet->meta(), size, rounds);
+  report::Page page = report::error_time_page(report);
+  write_files(folder, report, page);
+  warn_of_false_statements(report.results);
+  if (common.json) {
+    print_json(report::error_time_json(report));
+  } else if (!common.quiet) {
+    print_summary(folder, report);
+  }
+  return page;
+}
+
+}  // namespace
+
+report::Page error_time_report(const ReportOrder& order, const Common& common) {
+  ErrorTimeArguments arguments;
+  arguments.output = order.folder.string();
+  arguments.planet = order.planet;
+  arguments.is_short = order.is_short;
+  return error_time(arguments, common);
+}
+
+void add_report_error_time(CLI::App& report, Common& common) {
+  auto arguments = std::make_shared<ErrorTimeArguments>();
+  CLI::App* command = add_command(report, "error-time",
+                                  "Error against run time of every backend and mode, with plots", common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  command->add_option("-o,--output", arguments->output, "Folder for error-time.html, .svg, .csv and .json")
+      ->required();
+  command->add_flag("--short", arguments->is_short, "Two views, small pictures, few values of each knob");
+  command
+      ->add_option(
+          "--view", arguments->views,
+          "Only this view (repeatable): orbit, high oblique, canyon floor, rim, crater, plain, grazing, "
+          "polar")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (640x360; with --short 320x180)");
+  command->add_option("--rounds", arguments->rounds, "Of timing, in turns; 0: 5, with --short 3")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--baseline", arguments->baseline,
+          "What times are ratios to: rays in mode exact, or ranges alone by Embree, where it is built in")
+      ->check(CLI::IsMember({kExactBaseline, kEmbreeBaseline}))
+      ->capture_default_str();
+  command->callback([arguments, &common] { error_time(*arguments, common); });
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,238 @@
+#include "vpe/app/report/report_error_time_configurations.h"
+
+#include <stdexcept>
+
+#include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/report/report_error_time_images.h"
+#include "vpe/base/number.h"
+#include "vpe/gl/polygon_renderer.h"
+
+namespace vpe::app {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+// Kinds of pictures that show the same; names of plots.
+constexpr const char* kGeometry = "geometry";
+constexpr const char* kTexture = "textures and levels";
+constexpr const char* kSamples = "samples";
+constexpr const char* kPanorama = "panorama";
+
+core::DrawRequest with(core::DrawRequest request, const Words& assignments, const mars::Pose& pose) {
+  core::Settings settings;
+  for (const std::string& assignment : assignments) {
+    if (const std::string trouble = settings.assign(assignment); !trouble.empty())
+      throw std::logic_error(trouble);
+  }
+  request.settings = settings.values();
+  request.sun = sun_for(request.settings, pose);
+  return request;
+}
+
+std::string join(const Words& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+class Planner {
+ public:
+  Planner(const NamedView& view, const paging::PlanetFile& planet, const WayOptions& options)
+      : view_(view), planet_(planet), options_(options) {
+    base_.view.eye = mars::to_eye(view.pose, planet.radius_m());
+    base_.view.width = options.width;
+    base_.view.height = options.height;
+    subject_.view = view.name;
+    subject_.about = view.about;
+    chosen_ = choose_backend({}, {}, {&base_, 1}, planet.radius_m(), options.has_gpu).backend;
+  }
+
+  report::Subject plan() {
+    add_reference();
+    add_rays();
+    add_tolerances();
+    add_levels();
+    add_samples();
+    if (view_.panorama) add_panoramas();
+    if (options_.with_embree) add_embree();
+    return std::move(subject_);
+  }
+
+ private:
+  report::Way& add(const std::string& sweep, const std::string& knob, const char* renderer,
+                   std::vector<core::DrawRequest> requests) {
+    report::Way way;
+    way.sweep = sweep;
+    way.knob = knob;
+    way.renderer = renderer;
+    way.requests = std::move(requests);
+    if (renderer != std::string(kRayPictures)) way.range_error = gl::kRangeError;
+    subject_.ways.push_back(std::move(way));
+    return subject_.ways.back();
+  }
+
+  // A picture of the view itself, by these settings.
+  report::Way& add_picture(const std::string& sweep, const char* renderer, const Words& settings,
+                           const std::string& knob = "") {
+    report::Way& way =
+        add(sweep, knob.empty() ? join(settings) : knob, renderer, {with(base_, settings, view_.pose)});
+    way.rivals = way.plot = kGeometry;
+    return way;
+  }
+
+  std::vector<double> values(double first, double last, double step_short) const {
+    std::vector<double> all;
+    for (double value = first; value >= last; value /= options_.is_short ? step_short : 2) all.push_back(value);
+    return all;
+  }
+
+  void add_reference() {
+    subject_.references.push_back({base_.view, kRayPictures, {with(base_, {}, view_.pose)}, {}, true});
+  }
+
+  void add_rays() {
+    add_picture("rays, exact", kRayPictures, {}, "rays.mode=exact").is_default = true;
+    if (!options_.is_short) add_picture("rays, plain", kRayPictures, {"rays.mode=plain"}).most_rounds = 1;
+    for (const double cell : values(core::RayLimits::kMostCell_px, core::RayLimits::kLeastCell_px, 8)) {
+      report::Way& way = add_picture("rays by cell", kRayPictures,
+                                     {"rays.mode=multires", "rays.cell=" + base::format_number(cell)},
+                                     "rays.cell=" + base::format_number(cell));
+      way.is_chosen = chosen_ == kRayBackend && cell == core::SettingsValues().lod_tolerance_px;
+    }
+  }
+
+  void add_tolerances() {
+    for (const double tolerance : values(64, 0.0625, 8)) {
+      report::Way& way = add_picture("triangles by tolerance", kTriangles,
+                                     {"lod.tolerance=" + base::format_number(tolerance)});
+      way.colour_plot = kTexture;
+      way.is_default = tolerance == core::SettingsValues().lod_tolerance_px;
+      way.is_chosen = way.is_default && chosen_ == kPolygonBackend;
+    }
+  }
+
+  // Levels by distance as in 1992: a level fewer for each doubling, so that triangles are about as large in all
+  // of the picture; at the finest level they are a pixel.
+  void add_levels() {
+    const int finest = planet_.meta().finest_level + 1;
+    const double spacing_m =
+        lod::post_spacing_m(finest - 1, planet_.meta().tile.intervals(), planet_.radius_m());
+    const double pixel_m = core::focal_px(base_.view) * spacing_m;
+    const bool has_images = planet_.meta().image_tiles > 0;
+    for (const bool textured : {true, false}) {
+      if (!textured && !has_images) continue;
+      for (int level = std::max(1, finest - 5); level <= finest + 3; level += options_.is_short ? 2 : 1) {
+        std::string table = "0:" + std::to_string(level);
+        for (int down = 1; down < level; ++down) {
+          table += "," + base::format_number(pixel_m * (1 << (down - 1))) + ":" + std::to_string(level - down);
+        }
+        Words settings{"lod.rule=hitchner", "lod.distance.table=" + table};
+        if (!textured) settings.insert(settings.end(), {"mode=coloured", "colour=image", "shading=flat"});
+        report::Way& way = add_picture(
+            textured ? "textured, by level" : "untextured, by level", textured ? kTriangles : kPlainTriangles,
+            settings,
+            "level " + std::to_string(level) + " within " + base::format_number(std::round(pixel_m)) + " m");
+        way.colour_plot = kTexture;
+        if (!textured) way.plot = way.rivals = "";
+      }
+    }
+  }
+
+  // Smaller pictures, as the reference has a thousand samples a pixel.
+  void add_samples() {
+    core::DrawRequest small = base_;
+    small.view.width = options_.width / 2;
+    small.view.height = options_.height / 2;
+    const std::size_t reference = subject_.references.size();
+    const core::DrawRequest hard = with(small, {"edges=hard"}, view_.pose);
+    const int many = options_.is_short ? 16 : 32;
+    subject_.references.push_back(
+        {small.view, kRayPictures, enlarged(hard, many), average(small.view, many), false});
+    const auto describe = [&](report::Way& way) {
+      way.kind = report::ErrorKind::kColour;
+      way.plot = way.rivals = kSamples;
+      way.reference = reference;
+      way.has_ranges = false;
+    };
+    const std::string tolerance = base::format_number(core::SettingsValues().lod_tolerance_px);
+    for (const char* renderer : {kRayPictures, kTriangles}) {
+      const bool is_rays = renderer == std::string(kRayPictures);
+      // As they are drawn when nothing is named.
+      const auto settings = [&](const std::string& one) {
+        return is_rays ? Words{"rays.mode=multires", "rays.cell=" + tolerance, one} : Words{one};
+      };
+      const core::DrawRequest plain = with(small, settings("edges=hard"), view_.pose);
+      const std::string sweep = std::string(renderer) + " by resolution";
+      const int step = options_.is_short ? 4 : 2;
+      for (int times = options_.is_short ? 16 : 32; times > 1; times /= step) {
+        report::Way& way = add(sweep, "1/" + std::to_string(times), renderer, {reduced(plain, times)});
+        way.compose = stretch(small.view, times);
+        describe(way);
+      }
+      for (int times = 1; times <= many / 2; times *= step) {
+        report::Way& way = add(sweep, std::to_string(times), renderer, enlarged(plain, times));
+        way.compose = average(small.view, times);
+        describe(way);
+      }
+      // Three values are no sweep.
+      for (const int samples : {1, 2, 4}) {
+        const std::string setting = "samples=" + std::to_string(samples);
+        report::Way& way = add(std::string(renderer) + ", " + setting, setting, renderer,
+                               {with(small, settings(setting), view_.pose)});
+        describe(way);
+        way.is_chosen = samples == 1 && is_rays == (chosen_ == kRayBackend);
+      }
+    }
+  }
+
+  void add_panoramas() {
+    const Standing standing{view_.pose, planet_.radius_m(), with(base_, {"edges=hard"}, view_.pose)};
+    // No power of two: its pixel middles are those of no other.
+    const panorama::PanoramaMap exact = cylinder_of(500);
+    const std::size_t reference = subject_.references.size();
+    subject_.references.push_back({panorama::round_view(exact, {view_.pose, planet_.radius_m()}),
+                                   kRayPictures,
+                                   requests_of(exact, standing),
+                                   {},
+                                   true});
+    std::vector<int> facets{0, 4, 8, 16};
+    if (options_.is_short) facets = {0, 8};
+    std::vector<std::int64_t> widths{128, 256, 512, 1024, 2048, 4096, 8192, 16384};
+    if (options_.is_short) widths = {64, 256, 1024, 8192};
+    for (const int many : facets) {
+      const std::string sweep = many == 0 ? "cylinder by columns" : std::to_string(many) + " facets by columns";
+      for (const std::int64_t width : widths) {
+        const panorama::PanoramaMap map = many == 0 ? cylinder_of(width) : facets_of(many, width);
+        report::Way& way =
+            add(sweep, std::to_string(width) + " columns", kRayPictures, requests_of(map, standing));
+        way.compose = resample(map, exact);
+        way.plot = way.rivals = kPanorama;
+        way.reference = reference;
+      }
+    }
+  }
+
+  void add_embree() {
+    report::Way& way = add_picture("Embree, ranges alone", kEmbreeRanges, {}, "exact");
+    way.rivals = "";
+    way.has_colours = false;
+    subject_.baseline = subject_.ways.size() - 1;
+  }
+
+  const NamedView& view_;
+  const paging::PlanetFile& planet_;
+  WayOptions options_;
+  core::DrawRequest base_;
+  std::string chosen_;  // backend, when none is named
+  report::Subject subject_;
+};
+
+}  // namespace
+
+report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet, const WayOptions& options) {
+  return Planner(view, planet, options).plan();
+}
+
+}  // namespace vpe::app

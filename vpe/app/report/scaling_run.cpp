@@ -1,0 +1,229 @@
+#include "vpe/app/report/scaling_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mars/geodesy/sun.h"
+#include "paging/surface/surface.h"
+#include "vpe/app/cli/processor_time.h"
+#include "vpe/base/parallel.h"
+#include "vpe/gl/polygon_renderer.h"
+#include "vpe/report/interleaved_timing.h"
+#include "vpe/voxel/ray_renderer.h"
+
+namespace vpe::app {
+namespace {
+
+std::vector<int> doublings_to(int most) {
+  std::vector<int> all;
+  for (int n = 1; n < most; n *= 2) all.push_back(n);
+  all.push_back(most);
+  return all;
+}
+
+// Pictures of one way, one for each x.
+class Pictures {
+ public:
+  explicit Pictures(const ScalingBench& bench) : bench_(bench) {}
+
+  void add(double x, std::unique_ptr<core::Renderer> renderer, const core::DrawRequest& request) {
+    shots_.push_back({x, std::move(renderer), request, {}, {}});
+  }
+
+  // Times of frames, processor times of frames under the same law, and what was counted in each frame.
+  std::vector<report::Law> measure(report::Law time, report::Law count,
+                                   const std::function<double(const core::DrawResult&)>& counted) {
+    std::vector<std::function<void()>> contestants;
+    std::vector<double> x;
+    for (Shot& shot : shots_) {
+      x.push_back(shot.x);
+      contestants.emplace_back([this, &shot, &counted] {
+        bench_.step();
+        const double begin_s = processor_s();
+        shot.count = counted(shot.renderer->draw(shot.request));
+        shot.processor_s.push_back(processor_s() - begin_s);
+      });
+    }
+    report::Law processor = time;
+    processor.y_name = "processor_s";
+    time.samples = report::timed_samples(x, report::time_in_turns(contestants, bench_.plan.rounds));
+    for (Shot& shot : shots_) {
+      shot.processor_s.erase(shot.processor_s.begin());  // the round that does not count
+      processor.samples.push_back({shot.x, shot.processor_s});
+      count.samples.push_back({shot.x, {shot.count}});
+    }
+    return {std::move(time), std::move(processor), std::move(count)};
+  }
+
+ private:
+  struct Shot {
+    double x;
+    std::unique_ptr<core::Renderer> renderer;
+    core::DrawRequest request;
+    double count;
+    std::vector<double> processor_s;  // a round each
+  };
+  const ScalingBench& bench_;
+  std::vector<Shot> shots_;
+};
+
+double triangles(const core::DrawResult& result) { return static_cast<double>(result.stats.triangles); }
+double rays(const core::DrawResult& result) { return static_cast<double>(result.frame.colour.size()); }
+double tiles(const core::DrawResult& result) { return static_cast<double>(result.stats.tiles_drawn); }
+
+std::vector<report::Law> measure_way(Pictures& pictures, const Way& way, const std::string& axis,
+                                     const std::string& what, const std::string& x_name,
+                                     std::optional<double> least, std::optional<double> most) {
+  const report::Law time{axis, what, x_name, "frame_s", least, most, {}};
+  report::Law count = time;
+  count.least_exponent.reset();
+  count.most_exponent.reset();
+  // Only of larger pictures are there more rays.
+  const bool counts_rays = !way.polygons && axis == "image";
+  count.y_name = way.polygons ? "triangles" : counts_rays ? "rays" : "tiles";
+  return pictures.measure(time, count, way.polygons ? triangles : counts_rays ? rays : tiles);
+}
+
+void append(std::vector<report::Law>& laws, std::vector<report::Law> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(laws));
+}
+
+}  // namespace
+
+ScalingPlan usual_scaling() {
+  ScalingPlan plan;
+  plan.grid_sides = {257, 513, 1025, 2049, 4097};
+  plan.depth_sides = {513, 1025, 2049, 4097, 8193};
+  plan.sizes = {{160, 90}, {320, 180}, {640, 360}, {1280, 720}, {1920, 1080}};
+  plan.threads = doublings_to(base::default_threads());
+  plan.speeds_m_s = {125, 250, 500, 1000, 2000, 4000, 8000};
+  return plan;
+}
+
+ScalingPlan full_scaling() {
+  ScalingPlan plan = usual_scaling();
+  plan.grid_sides = {257, 513, 1025, 2049, 4097, 8193, 16385};
+  plan.depth_sides = {513, 1025, 2049, 4097, 8193, 16385};
+  plan.sizes.push_back({3840, 2160});
+  return plan;
+}
+
+ScalingPlan short_scaling() {
+  ScalingPlan plan;
+  plan.grid_sides = {257, 513};
+  plan.depth_sides = {257, 513};
+  plan.sizes = {{80, 45}, {160, 90}, {320, 180}};
+  plan.threads = doublings_to(std::min(2, base::default_threads()));
+  plan.speeds_m_s = {1000, 4000};
+  plan.size = {160, 90};
+  plan.thread_size = {320, 180};
+  plan.rounds = 2;
+  plan.build_rounds = 1;
+  plan.flight_s = 0.5;
+  return plan;
+}
+
+std::unique_ptr<core::Renderer> make_way(const ScalingBench& bench, const Way& way, const PatchSpec& spec,
+                                         int threads) {
+  const auto planet = bench.planets.planet(spec);
+  if (!way.polygons) return voxel::make_ray_renderer(planet, {bench.plan.memory_bytes, threads});
+  gl::RendererOptions options;
+  options.memory_bytes = bench.plan.memory_bytes;
+  options.threads = threads;
+  return gl::make_polygon_renderer(bench.context, planet, options);
+}
+
+core::DrawRequest way_request(const Way& way, const core::View& view) {
+  core::DrawRequest request;
+  request.view = view;
+  request.settings.ray_mode = way.rays;
+  request.sun = mars::sun_direction(mars::lon_lat(view.eye.eye_m), request.settings.sun_azimuth_deg,
+                                    request.settings.sun_elevation_deg);
+  return request;
+}
+
+core::View look_at(std::shared_ptr<const paging::PlanetFile> planet, const PatchSpec& spec, const Look& look,
+                   Size size) {
+  const double radius_m = planet->radius_m();
+  const mars::ChartRect rect = lod::chart_rect(spec.patch);
+  const glm::dvec3 middle =
+      mars::chart_direction(spec.patch.face, (rect.u0 + rect.u1) / 2, (rect.v0 + rect.v1) / 2);
+  const double ground_m = paging::Surface(std::move(planet), std::size_t{8} << 20).at(middle).height_m;
+  const mars::LonLat place = mars::lon_lat(middle);
+  core::View view;
+  view.eye =
+      mars::to_eye({place.lon_deg, place.lat_deg, ground_m + look.height_m, 22.5, look.pitch_deg, 0}, radius_m);
+  view.width = size.width;
+  view.height = size.height;
+  return view;
+}
+
+std::vector<report::Law> measure_grid(const ScalingBench& bench) {
+  std::vector<report::Law> laws;
+  for (const Way& way : {kPolygons, kExactRays, kMultiresRays}) {
+    Pictures pictures(bench);
+    for (const int side : bench.plan.grid_sides) {
+      const PatchSpec spec = grid_patch(side);
+      const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.size);
+      pictures.add(side, make_way(bench, way, spec), way_request(way, view));
+    }
+    append(laws, measure_way(pictures, way, "grid", way.name, "posts a side, all 10 m apart", {}, {}));
+  }
+  return laws;
+}
+
+std::vector<report::Law> measure_depth(const ScalingBench& bench) {
+  constexpr double kMostGrowth = 0.1;
+  std::vector<report::Law> laws;
+  const PatchSpec deepest = depth_patch(bench.plan.depth_sides.back());
+  for (const Look& look : {kNear, kFar}) {
+    const core::View view = look_at(bench.planets.planet(deepest), deepest, look, bench.plan.size);
+    for (const Way& way : {kPolygons, kMultiresRays, kExactRays}) {
+      Pictures pictures(bench);
+      for (const int side : bench.plan.depth_sides)
+        pictures.add(side, make_way(bench, way, depth_patch(side)), way_request(way, view));
+      const bool asked = way.polygons || way.rays == core::RayMode::kMultires;
+      append(laws, measure_way(pictures, way, "depth", way.name + " " + look.name,
+                               "posts a side, all of one patch of 42 km", {},
+                               asked ? std::optional(kMostGrowth) : std::nullopt));
+    }
+  }
+  return laws;
+}
+
+std::vector<report::Law> measure_image(const ScalingBench& bench) {
+  std::vector<report::Law> laws;
+  const PatchSpec spec = depth_patch(bench.plan.depth_sides.back());
+  for (const Way& way : {kPolygons, kExactRays, kMultiresRays}) {
+    Pictures pictures(bench);
+    for (const Size& size : bench.plan.sizes) {
+      const core::View view = look_at(bench.planets.planet(spec), spec, kNear, size);
+      pictures.add(static_cast<double>(size.width) * size.height, make_way(bench, way, spec),
+                   way_request(way, view));
+    }
+    append(laws, measure_way(pictures, way, "image", way.name, "pixels", {}, {}));
+  }
+  return laws;
+}
+
+std::vector<report::Law> measure_threads(const ScalingBench& bench) {
+  // Within a tenth of threads^-1 on twice as many.
+  const double least = -1 + std::log2(0.9);
+  const double most = -1 + std::log2(1.1);
+  std::vector<report::Law> laws;
+  const PatchSpec spec = depth_patch(bench.plan.depth_sides.back());
+  const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.thread_size);
+  for (const Way& way : {kExactRays, kMultiresRays}) {
+    Pictures pictures(bench);
+    for (const int threads : bench.plan.threads)
+      pictures.add(threads, make_way(bench, way, spec, threads), way_request(way, view));
+    for (report::Law& law : measure_way(pictures, way, "threads", way.name, "threads", least, most)) {
+      // All threads together are asked for no less.
+      if (law.y_name == "processor_s") law.least_exponent = law.most_exponent = {};
+      laws.push_back(std::move(law));
+    }
+  }
+  return laws;
+}
+
+}  // namespace vpe::app

@@ -1,0 +1,100 @@
+#include "vpe/base/file.h"
+
+#include <cerrno>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace vpe::base {
+
+namespace {
+
+constexpr std::string_view kDiskAdvice = "check the free space and the permissions there";
+
+std::string system_words(int error) { return std::generic_category().message(error); }
+
+}  // namespace
+
+FileError file_error(std::string_view operation, const std::filesystem::path& path, std::string_view words,
+                     std::string_view advice) {
+  std::string message = "cannot ";
+  message.append(operation).append(" '").append(path.string()).append("': ").append(words);
+  return FileError(message.append("; ").append(advice));
+}
+
+OutputFile::OutputFile(std::filesystem::path path) : OutputFile(path, path.string() + ".tmp") {}
+
+OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path_, ignored)) {
+    throw file_error("write", path_, system_words(EISDIR), "give the name of a file");
+  }
+  stream_ = std::fopen(temporary_.c_str(), "w+b");
+  if (stream_ == nullptr) {
+    throw file_error("write", path_, system_words(errno), "check that the folder exists and may be written to");
+  }
+}
+
+OutputFile::~OutputFile() {
+  if (stream_ == nullptr) return;
+  std::fclose(stream_);
+  std::remove(temporary_.c_str());
+}
+
+void OutputFile::write(std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return;  // fwrite wants a place also for nothing
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) {
+    throw file_error("write", path_, system_words(errno), kDiskAdvice);
+  }
+}
+
+void OutputFile::commit() {
+  // What fwrite buffered reaches the disk here at the latest, so a full disk may show only now.
+  const bool was_flushed = std::fflush(stream_) == 0 && std::ferror(stream_) == 0;
+  const int flush_error = errno;
+  const bool was_closed = std::fclose(std::exchange(stream_, nullptr)) == 0;
+  const int close_error = errno;
+  std::error_code failure;
+  if (!was_flushed || !was_closed) {
+    failure.assign(was_flushed ? close_error : flush_error, std::generic_category());
+  } else {
+    std::filesystem::rename(temporary_, path_, failure);
+  }
+  if (!failure) return;
+  std::remove(temporary_.c_str());
+  throw file_error("write", path_, failure.message(), kDiskAdvice);
+}
+
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+  OutputFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+std::vector<std::uint8_t> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+  constexpr std::string_view kAdvice = "check the name and the permissions";
+  std::error_code failure;
+  const std::uintmax_t size = std::filesystem::file_size(path, failure);
+  if (failure) throw file_error("read", path, failure.message(), kAdvice);
+  if (size > max_bytes) {
+    throw file_error("read", path,
+                     std::to_string(size) + " bytes are more than the " + std::to_string(max_bytes) +
+                         " that are accepted here",
+                     "choose a smaller file");
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (stream == nullptr) throw file_error("read", path, system_words(errno), kAdvice);
+  std::vector<std::uint8_t> bytes(size);
+  if (std::fread(bytes.data(), 1, bytes.size(), stream.get()) != bytes.size()) {
+    const bool has_failed = std::ferror(stream.get()) != 0;
+    throw file_error("read", path, has_failed ? system_words(errno) : "it ends early", kAdvice);
+  }
+  return bytes;
+}
+
+}  // namespace vpe::base

@@ -1,0 +1,16 @@
+#include "vpe/base/heap.h"
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+namespace vpe::base {
+
+void keep_heap_compact() {
+#if defined(__GLIBC__)
+  // Said once, the threshold no longer rises with the blocks that are freed.
+  mallopt(M_MMAP_THRESHOLD, static_cast<int>(kOwnBlockBytes));
+#endif
+}
+
+}  // namespace vpe::base

@@ -1,0 +1,72 @@
+#include "vpe/explore/input/actions.h"
+
+#include <algorithm>
+#include <array>
+
+#include "vpe/base/number.h"
+
+namespace vpe::explore {
+
+namespace {
+
+using K = ActionKind;
+
+constexpr std::array kActions{
+    ActionInfo{K::kNorthUp, "north-up", "turn to the north"},
+    ActionInfo{K::kLookDown, "look-down", "look straight down on what is in the middle"},
+    ActionInfo{K::kLevel, "level", "level the horizon: no roll"},
+    ActionInfo{K::kReset, "reset", "north up and straight down"},
+    ActionInfo{K::kWholePlanet, "whole-planet", "the whole planet"},
+    ActionInfo{K::kViewBack, "view-back", "the view before"},
+    ActionInfo{K::kViewForward, "view-forward", "the view after"},
+    ActionInfo{K::kGoToBookmark, "go-to-bookmark", "go to a bookmark", true},
+    ActionInfo{K::kSetBookmark, "set-bookmark", "set a bookmark here", true},
+    ActionInfo{K::kZoomIn, "zoom-in", "narrower field of view", false, true},
+    ActionInfo{K::kZoomOut, "zoom-out", "wider field of view", false, true},
+    ActionInfo{K::kZoomReset, "zoom-reset", "field of view as at the start"},
+    ActionInfo{K::kPlayPause, "play-pause", "play the flight, or pause"},
+    ActionInfo{K::kRecord, "record", "begin or end recording a flight"},
+    ActionInfo{K::kPlaceWaypoint, "place-waypoint", "place a waypoint here"},
+    ActionInfo{K::kMeasure, "measure", "place a point to measure from under the cursor"},
+    ActionInfo{K::kEnterOverlook, "enter-overlook", "step into the overlook that is marked here"},
+    ActionInfo{K::kLeave, "leave", "step out of the overlook, or stop what was begun"},
+    ActionInfo{K::kRecentreHead, "recentre-head", "head tracker: this is straight ahead"},
+    ActionInfo{K::kMap, "map", "show or hide the map"},
+    ActionInfo{K::kHidePanels, "hide-panels", "hide or show all panels"},
+    ActionInfo{K::kFullScreen, "full-screen", "full screen, or window"},
+    ActionInfo{K::kScreenshot, "screenshot", "save a picture of the view"},
+    ActionInfo{K::kHelp, "help", "show or hide this help"},
+};
+
+}  // namespace
+
+std::span<const ActionInfo> actions() { return kActions; }
+
+const ActionInfo& info(ActionKind kind) {
+  return *std::find_if(kActions.begin(), kActions.end(),
+                       [kind](const ActionInfo& a) { return a.kind == kind; });
+}
+
+std::string name(const Action& action) {
+  std::string text(info(action.kind).name);
+  if (info(action.kind).is_numbered) text += " " + std::to_string(action.number);
+  return text;
+}
+
+std::optional<Action> parse_action(std::string_view name) {
+  for (const ActionInfo& known : kActions) {
+    if (!name.starts_with(known.name)) continue;
+    const std::string_view rest = name.substr(known.name.size());
+    if (!known.is_numbered) {
+      if (rest.empty()) return Action{known.kind};
+      continue;
+    }
+    if (!rest.starts_with(' ')) continue;
+    const auto number = base::parse_integer(rest.substr(1));
+    if (number && *number >= 1 && *number <= Action::kMaxBookmark)
+      return Action{known.kind, static_cast<int>(*number)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace vpe::explore

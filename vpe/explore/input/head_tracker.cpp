@@ -1,0 +1,163 @@
+#include "vpe/explore/input/head_tracker.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace vpe::explore {
+
+namespace {
+
+constexpr std::size_t kPitch = 1;
+constexpr double kStill_deg = 1e-3;
+
+double read_double(std::span<const std::uint8_t> bytes) {
+  std::uint64_t bits = 0;
+  for (std::size_t n = 8; n-- > 0;) bits = bits << 8U | bytes[n];
+  return std::bit_cast<double>(bits);
+}
+
+double short_way(double angle_deg) { return std::remainder(angle_deg, 360.0); }
+
+// Yaw and roll go round; pitch does not.
+double difference(std::size_t angle, double to, double from) {
+  return angle == kPitch ? to - from : short_way(to - from);
+}
+
+// From 1 to 0, with no speed at both ends.
+double fading(double share) {
+  const double t = std::clamp(share, 0.0, 1.0);
+  return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
+double within(double value, double low, double high, double otherwise) {
+  return std::isfinite(value) ? std::clamp(value, low, high) : otherwise;
+}
+
+HeadTrackerOptions checked(HeadTrackerOptions options) {
+  using O = HeadTrackerOptions;
+  options.scale = within(options.scale, O::kMinScale, O::kMaxScale, O{}.scale);
+  options.smoothing_s = within(options.smoothing_s, 0, O::kMaxSmoothing_s, O{}.smoothing_s);
+  return options;
+}
+
+}  // namespace
+
+std::optional<HeadDatagram> parse_head_datagram(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() != HeadDatagram::kBytes) return std::nullopt;
+  std::array<double, 6> numbers{};
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    numbers[n] = read_double(bytes.subspan(8 * n, 8));
+    if (!std::isfinite(numbers[n])) return std::nullopt;
+    if (n >= 3 && std::abs(numbers[n]) > HeadDatagram::kMaxAngle_deg) return std::nullopt;
+  }
+  return HeadDatagram{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+}
+
+HeadTracker::HeadTracker(const HeadTrackerOptions& options) : options_(checked(options)) {}
+
+double HeadTracker::not_before(double time_s) const { return time_s > now_s_ ? time_s : now_s_; }
+
+// A scaled angle stops at half a turn, where left and right meet, so a head that goes on round meets no jump
+// there.
+HeadTracker::Angles HeadTracker::target() const {
+  const std::array<bool, 3> inverted{options_.invert_yaw, options_.invert_pitch, options_.invert_roll};
+  Angles all{};
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const double limit = n == kPitch ? 90.0 : 180.0;
+    const double turned = short_way(raw_[n] - centre_[n]) * (inverted[n] ? -1.0 : 1.0);
+    all[n] = std::clamp(options_.scale * turned, -limit, limit);
+  }
+  return all;
+}
+
+HeadTracker::Angles HeadTracker::followed(double time_s) const {
+  const double late = options_.smoothing_s > 0 ? std::exp(-(time_s - *last_s_) / options_.smoothing_s) : 0.0;
+  Angles all{};
+  for (std::size_t n = 0; n < all.size(); ++n) all[n] = to_[n] - difference(n, to_[n], from_[n]) * late;
+  return all;
+}
+
+// What is followed and what is left of an earlier change of mind; after the time-out what was shown then fades.
+HeadTracker::Angles HeadTracker::angles(double time_s) const {
+  Angles all{};
+  if (!last_s_) return all;
+  const double end_s = *last_s_ + kTimeout_s;
+  if (time_s > end_s) {
+    all = angles(end_s);
+    for (double& angle : all) angle *= fading((time_s - end_s) / kEase_s);
+    return all;
+  }
+  all = followed(time_s);
+  const double share = fading((time_s - eased_s_) / kEase_s);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    all[n] += left_[n] * share;
+    all[n] = n == kPitch ? std::clamp(all[n], -90.0, 90.0) : short_way(all[n]);
+  }
+  return all;
+}
+
+void HeadTracker::ease_from(const Angles& shown, double time_s) {
+  to_ = from_ = target();
+  for (std::size_t n = 0; n < left_.size(); ++n) left_[n] = difference(n, shown[n], to_[n]);
+  eased_s_ = time_s;
+}
+
+void HeadTracker::set_options(const HeadTrackerOptions& options, double time_s) {
+  now_s_ = not_before(time_s);
+  const bool live = is_live(now_s_);
+  const Angles shown = angles(now_s_);
+  options_ = checked(options);
+  if (live) ease_from(shown, now_s_);
+}
+
+bool HeadTracker::receive(std::span<const std::uint8_t> bytes, double time_s) {
+  const std::optional<HeadDatagram> datagram = parse_head_datagram(bytes);
+  if (!datagram) {
+    ++ignored_;
+    return false;
+  }
+  ++received_;
+  now_s_ = not_before(time_s);
+  const bool was_live = is_live(now_s_);
+  const Angles shown = angles(now_s_);
+  if (was_live) from_ = followed(now_s_);
+  last_s_ = now_s_;
+  raw_ = {datagram->yaw_deg, datagram->pitch_deg, datagram->roll_deg};
+  if (was_live) {
+    to_ = target();
+  } else {
+    ease_from(shown, now_s_);
+  }
+  return true;
+}
+
+void HeadTracker::recentre(double time_s) {
+  now_s_ = not_before(time_s);
+  if (!is_live(now_s_)) return;
+  const Angles shown = angles(now_s_);
+  centre_ = raw_;
+  ease_from(shown, now_s_);
+}
+
+mars::HeadLook HeadTracker::look(double time_s) const {
+  const Angles all = angles(not_before(time_s));
+  return {all[0], all[1], all[2]};
+}
+
+bool HeadTracker::is_live(double time_s) const {
+  return last_s_ && not_before(time_s) <= *last_s_ + kTimeout_s;
+}
+
+bool HeadTracker::is_moving(double time_s) const {
+  const double now = not_before(time_s);
+  if (!last_s_) return false;
+  const Angles shown = angles(now);
+  const Angles rest = is_live(now) ? target() : Angles{};
+  for (std::size_t n = 0; n < shown.size(); ++n) {
+    if (std::abs(difference(n, shown[n], rest[n])) > kStill_deg) return true;
+  }
+  return false;
+}
+
+}  // namespace vpe::explore

@@ -1,0 +1,80 @@
+#include "vpe/explore/live_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace vpe::explore {
+
+namespace {
+
+lod::LookAndWaitOptions look_options() {
+  lod::LookAndWaitOptions options;
+  options.max_multiplier = 1;  // only what the budget asks for is given up
+  options.refine_factor = 2;
+  return options;
+}
+
+}  // namespace
+
+core::View reduced(const core::View& view, double side) {
+  static constexpr int kLeast_px = 16;
+  core::View small = view;
+  const auto fewer = [side](int n) {
+    return std::max(std::min(n, kLeast_px), static_cast<int>(std::lround(n * side)));
+  };
+  small.width = fewer(view.width);
+  small.height = fewer(view.height);
+  // The field of view is vertical: the horizontal one follows the ratio of the sides, which rounding bends by
+  // less than a pixel.
+  small.principal_offset_px = {view.principal_offset_px.x * small.width / view.width,
+                               view.principal_offset_px.y * small.height / view.height};
+  return small;
+}
+
+LivePicture::LivePicture(const LivePictureOptions& options) : options_(options), look_(look_options()) {
+  if (!(options.budget_ms >= 0.0) || !std::isfinite(options.budget_ms))
+    throw std::invalid_argument("the budget of a picture must be 0 (none) or more milliseconds");
+  if (!(options.smallest_side > 0.0 && options.smallest_side <= 1.0))
+    throw std::invalid_argument("the smallest side must be within 0..1 of the picture's");
+}
+
+void LivePicture::set_budget_ms(double budget_ms) {
+  if (!(budget_ms >= 0.0) || !std::isfinite(budget_ms) || budget_ms == options_.budget_ms) return;
+  options_.budget_ms = budget_ms;
+  budget_ = {};
+}
+
+std::optional<LivePicture::Order> LivePicture::next(const core::View& wanted, bool changed, double nearest_m) {
+  lod::LookInput input;
+  input.motion_px =
+      last_ ? lod::picture_motion_px(*last_, wanted, nearest_m) : std::numeric_limits<double>::infinity();
+  input.changed = changed || lost_;
+  // A picture in which something was given up is not the final one, whatever was loaded.
+  input.settled = settled_ && last_multiplier_ == 1.0;
+  input.budget_multiplier = options_.budget_ms > 0.0 ? budget_.multiplier : 1.0;
+  const lod::LookOutput output = look_.next(input);
+  state_ = output.state;
+  if (!output.draw) return std::nullopt;
+  Order order;
+  order.multiplier = output.multiplier;
+  order.is_full = output.multiplier == 1.0;
+  order.view = reduced(wanted, std::max(options_.smallest_side, 1.0 / std::sqrt(output.multiplier)));
+  last_ = wanted;
+  last_multiplier_ = output.multiplier;
+  lost_ = false;
+  return order;
+}
+
+void LivePicture::made(double ms, bool settled) {
+  settled_ = settled;
+  // Pictures at rest are full whatever they take; they tell the controller about its line all the same.
+  if (options_.budget_ms > 0.0) {
+    lod::FrameBudgetOptions budget;
+    budget.budget_ms = options_.budget_ms;
+    lod::next_multiplier(budget, {last_multiplier_, ms}, budget_);
+  }
+}
+
+}  // namespace vpe::explore

@@ -1,0 +1,202 @@
+#include "vpe/explore/measure/line_of_sight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "paging/surface/section.h"
+#include "vpe/base/number.h"
+
+namespace vpe::explore {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostHalvings = 40;
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+// The vertical plane: up at the beginning and ahead, the planet's centre at 0.
+struct Plane {
+  glm::dvec3 up;
+  glm::dvec3 ahead;
+
+  glm::dvec2 of(const glm::dvec3& p) const { return {glm::dot(p, ahead), glm::dot(p, up)}; }
+};
+
+// A straight line as its distance from the centre at a direction.
+struct Line {
+  glm::dvec2 begin;
+  glm::dvec2 along;
+
+  double radius(const glm::dvec2& direction) const { return cross(begin, along) / cross(direction, along); }
+};
+
+// Smallest height of the line of sight above pieces of the section. Over an angle d the line's distance from
+// the centre r(angle) is below its chord by d^2 / 8 times its largest second derivative at most, r (2 (r / p)^2
+// - 1) with p its nearest distance to the centre, and a facet's is never above its chord; so halving finds the
+// least within kClearance_m.
+class Clearance {
+ public:
+  explicit Clearance(const Line& sight)
+      : sight_(sight), nearest_m_(std::abs(cross(sight.begin, sight.along)) / glm::length(sight.along)) {}
+
+  // Its ends alone, for a first bound: with it refining passes over most facets.
+  void sample_ends(const Line& facet, const glm::dvec2& begin, const glm::dvec2& end) {
+    sample(facet, begin);
+    sample(facet, end);
+  }
+
+  void refine(const Line& facet, const glm::dvec2& begin, const glm::dvec2& end) {
+    halve(facet, sample(facet, begin), sample(facet, end), 0);
+  }
+
+  void include(const glm::dvec2& direction, double clearance_m) { keep({direction, clearance_m, 0.0}); }
+
+  double least_m() const { return least_m_; }
+  double error_m() const { return kClearance_m + slack_m_ + rounding_m_; }
+  const glm::dvec2& direction() const { return direction_; }
+
+ private:
+  struct Sample {
+    glm::dvec2 direction;  // unit
+    double clearance_m = 0;
+    double radius_m = 0;  // of the line of sight
+  };
+
+  Sample sample(const Line& facet, const glm::dvec2& direction) {
+    Sample s{direction, 0.0, sight_.radius(direction)};
+    s.clearance_m = s.radius_m - facet.radius(direction);
+    // A steep line's distance answers to a rounded direction with its slope.
+    const double steep = s.radius_m / std::max(nearest_m_, 1e-9 * s.radius_m);
+    s.radius_m = std::abs(s.radius_m);
+    if (keep(s)) rounding_m_ = 4e-15 * s.radius_m * steep;
+    return s;
+  }
+
+  bool keep(const Sample& s) {
+    if (!(s.clearance_m < least_m_)) return false;
+    least_m_ = s.clearance_m;
+    direction_ = s.direction;
+    return true;
+  }
+
+  void halve(const Line& facet, const Sample& a, const Sample& b, int depth) {
+    const double angle =
+        std::atan2(std::abs(cross(a.direction, b.direction)), glm::dot(a.direction, b.direction));
+    const double r = std::max(a.radius_m, b.radius_m);
+    const double ratio = r / nearest_m_;
+    const double below_m = angle * angle / 8 * r * (2 * ratio * ratio - 1);
+    const double lower_m = std::min(a.clearance_m, b.clearance_m) - below_m;
+    if (lower_m >= least_m_ - kClearance_m) return;
+    if (depth == kMostHalvings) {
+      slack_m_ = std::max(slack_m_, least_m_ - lower_m);
+      return;
+    }
+    const Sample middle = sample(facet, glm::normalize(a.direction + b.direction));
+    halve(facet, a, middle, depth + 1);
+    halve(facet, middle, b, depth + 1);
+  }
+
+  Line sight_;
+  double nearest_m_;
+  double least_m_ = kInfinity;
+  double slack_m_ = 0;
+  double rounding_m_ = 0;
+  glm::dvec2 direction_{0, 1};
+};
+
+void check(const SightPoint& point, const char* which) {
+  if (!mars::is_valid(point.place) || !(point.height_m >= 0) || !std::isfinite(point.height_m)) {
+    throw std::invalid_argument(
+        std::string("a line of sight's ") + which +
+        " point must be a place with a height of 0 m or more, not " + base::format_number(point.place.lon_deg) +
+        "," + base::format_number(point.place.lat_deg) + " with height " + base::format_number(point.height_m));
+  }
+}
+
+// Straight up and down: nothing but S below is there.
+LineOfSight upright(const paging::Surface& surface, const SightPoint& from, const SightPoint& to) {
+  LineOfSight sight;
+  sight.visible = true;
+  sight.distance_m = std::abs(to.height_m - from.height_m);
+  sight.clearance_m = std::min(from.height_m, to.height_m);
+  sight.clearance_error_m = 4e-15 * surface.planet_radius_m();
+  sight.clearance_place = from.place;
+  sight.clearance_distance_m = from.height_m <= to.height_m ? 0 : sight.distance_m;
+  return sight;
+}
+
+}  // namespace
+
+LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from, const SightPoint& to) {
+  check(from, "first");
+  check(to, "second");
+  const glm::dvec3 up = mars::direction(from.place);
+  const glm::dvec3 up_there = mars::direction(to.place);
+  if (up == up_there) return upright(surface, from, to);
+  const double ground_there_m = surface.at(up_there).radius_m;
+  const glm::dvec3 eye = (surface.at(up).radius_m + from.height_m) * up;
+  const glm::dvec3 target = (ground_there_m + to.height_m) * up_there;
+  const glm::dvec3 way = target - eye;
+
+  LineOfSight sight;
+  sight.distance_m = glm::length(way);
+  sight.arc_m = mars::angle_between_rad(up, up_there) * surface.planet_radius_m();
+  const double end_m = kSightEnd_m + 1e-8 * sight.distance_m;
+  const glm::dvec3 ray = way / sight.distance_m;
+  if (sight.distance_m > 2 * end_m) {
+    const double hit_m = surface.cast(eye, ray, 1.0, {end_m, sight.distance_m - end_m});
+    if (std::isfinite(hit_m)) {
+      const glm::dvec3 point = eye + hit_m * ray;
+      sight.obstruction = Obstruction{mars::lon_lat(point), hit_m, surface.at(point).height_m};
+    }
+  }
+  sight.visible = !sight.obstruction;
+
+  const glm::dvec3 ahead = up_there - glm::dot(up, up_there) * up;
+  const Plane plane{up, glm::normalize(ahead)};
+  const Line line{plane.of(eye), plane.of(target) - plane.of(eye)};
+  const glm::dvec2 there = plane.of(up_there);
+  Clearance clearance(line);
+  clearance.include(plane.of(up), from.height_m);
+  clearance.include(there, to.height_m);
+  glm::dvec2 steepest{0, 0};  // of the directions to the ground on the way, the highest
+  bool ground_there_seen = true;
+  paging::section(surface, up, up_there, [&](const paging::SectionPiece& piece) {
+    const glm::dvec2 begin = plane.of(piece.begin_m);
+    const glm::dvec2 end = plane.of(piece.end_m);
+    if (begin == end) return;
+    clearance.sample_ends({begin, end - begin}, glm::normalize(begin), glm::normalize(end));
+    // A facet's highest direction is that of one of its ends; the beginning is the end of the one before.
+    const glm::dvec2 seen = end - line.begin;
+    if (glm::length(seen) <= end_m) return;
+    ground_there_seen = steepest == glm::dvec2(0, 0) || cross(steepest, seen) >= 0;
+    if (ground_there_seen) steepest = seen;
+  });
+  paging::section(surface, up, up_there, [&](const paging::SectionPiece& piece) {
+    const glm::dvec2 begin = plane.of(piece.begin_m);
+    const glm::dvec2 end = plane.of(piece.end_m);
+    if (begin != end) clearance.refine({begin, end - begin}, glm::normalize(begin), glm::normalize(end));
+  });
+  sight.clearance_m = clearance.least_m();
+  sight.clearance_error_m = clearance.error_m() + 4e-15 * surface.planet_radius_m();
+  const glm::dvec2 least = clearance.direction();
+  sight.clearance_place = mars::lon_lat(least.x * plane.ahead + least.y * plane.up);
+  const double radius_m = line.radius(least);
+  sight.clearance_distance_m = std::clamp(glm::length(least * radius_m - line.begin), 0.0, sight.distance_m);
+
+  if (ground_there_seen) return sight;
+  // The line over the highest ground, up to the vertical of the second point.
+  const double reach = cross(there, steepest);
+  const double over_m = reach != 0 ? cross(line.begin, steepest) / reach : 0;
+  const bool meets = over_m > 0 && glm::dot(over_m * there - line.begin, steepest) > 0;
+  sight.needed_height_m = meets ? std::max(0.0, over_m - ground_there_m) : kInfinity;
+  return sight;
+}
+
+}  // namespace vpe::explore

@@ -1,0 +1,30 @@
+// Colours of a flat map: shaded relief in the colours of elevation, or imagery.
+#pragma once
+
+#include <memory>
+
+#include "paging/shading/terrain_shader.h"
+#include "vpe/core/image/image.h"
+#include "vpe/base/parallel.h"
+#include "vpe/explore/measure/map_view.h"
+
+namespace vpe::explore {
+
+enum class MapGround { kRelief, kImage };
+
+// One thread at a time.
+class MapPainter {
+ public:
+  MapPainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
+
+  // Light from the north-west at 45 degrees everywhere. Beyond the poles grey; ground without data black.
+  // Pixels do not depend on the pool. Throws paging::PlanetError.
+  core::RgbImage paint(const MapView& map, MapGround ground, base::ThreadPool& pool);
+
+ private:
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  paging::GroundPainter painter_;
+  std::shared_ptr<const core::ColourScale> scale_;
+};
+
+}  // namespace vpe::explore

@@ -1,0 +1,73 @@
+#include "vpe/explore/measure/read_out.h"
+
+#include <cmath>
+
+#include "vpe/explore/measure/digits.h"
+
+namespace vpe::explore {
+
+namespace {
+
+double east_of(double lon_deg) {
+  const double east = lon_deg < 0 ? lon_deg + 360.0 : lon_deg;
+  return east < 360.0 ? east : 0.0;  // the sum may round up
+}
+
+}  // namespace
+
+ReadOut read_out_at(const paging::Surface& surface, mars::LonLat place, double exaggeration) {
+  ReadOut out;
+  out.at = paging::query(surface, place);
+  out.lon_east_deg = east_of(out.at.place.lon_deg);
+  const paging::PlanetMeta& meta = surface.planet().meta();
+  out.datum = paging::describe_datum(meta);
+  out.illustration = meta.illustration;
+  const glm::dvec3 direction = mars::direction(place);
+  out.point_m = surface.at(direction, exaggeration).radius_m * direction;
+  return out;
+}
+
+std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3& eye_m,
+                                const glm::dvec3& direction, double exaggeration) {
+  const double range_m = surface.cast(eye_m, direction, exaggeration);
+  if (!std::isfinite(range_m)) return std::nullopt;
+  const glm::dvec3 point_m = eye_m + range_m * direction;
+  ReadOut out = read_out_at(surface, mars::lon_lat(point_m), exaggeration);
+  if (range_m > 0) out.point_m = point_m;
+  out.range_m = range_m;
+  return out;
+}
+
+std::string length_text(double length_m) {
+  const double size = std::abs(length_m);
+  if (size < 9.995) return fixed_text(length_m, 2) + " m";
+  if (size < 99.95) return fixed_text(length_m, 1) + " m";
+  if (size < 9999.5) return fixed_text(length_m, 0) + " m";
+  if (size < 99950) return fixed_text(length_m / 1000, 2) + " km";
+  if (size < 999500) return fixed_text(length_m / 1000, 1) + " km";
+  return fixed_text(length_m / 1000, 0) + " km";
+}
+
+std::vector<ReadOutLine> read_out_lines(const ReadOut& r) {
+  const paging::PlaceAnswer& a = r.at;
+  std::vector<ReadOutLine> lines;
+  const auto add = [&](const char* label, std::string text) { lines.push_back({label, std::move(text)}); };
+  add("Longitude", fixed_text(a.place.lon_deg, 5) + " (" + fixed_text(r.lon_east_deg, 5) + " E)");
+  add("Latitude", fixed_text(a.place.lat_deg, 5));
+  if (a.missing) {
+    add("Elevation", "no data");
+  } else {
+    add("Elevation", fixed_text(a.elevation_m, 1) + " m (" + r.datum + ")");
+    add("Slope", fixed_text(a.slope_deg, 1) + " deg, down to " + fixed_text(a.aspect_deg, 0) + " deg");
+  }
+  if (r.range_m) add("Range", length_text(*r.range_m));
+  add("Level", std::to_string(a.level) + ", posts " + length_text(a.spacing_m));
+  if (!a.source.empty()) add("Source", a.source + (r.illustration ? ", not data" : ""));
+  const paging::ResamplingError& error = a.resampling_here.posts > 0 ? a.resampling_here : a.resampling;
+  if (error.posts > 0) {
+    add("Resampling error", length_text(error.rms_m) + " rms, " + length_text(error.max_m) + " most");
+  }
+  return lines;
+}
+
+}  // namespace vpe::explore

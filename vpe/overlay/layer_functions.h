@@ -1,0 +1,30 @@
+// The overlays one by one. Each takes the room it uses on the sheet; what finds none is left out.
+#pragma once
+
+#include "vpe/overlay/visible_terrain.h"
+#include "vpe/overlay/label_layout.h"
+
+namespace vpe::overlay {
+
+// Lines over the ground, and the labels that they get once everything else has its place.
+struct LineLabel {
+  std::string text;
+  glm::dvec2 at;
+  double angle_rad;
+  Lettering style;
+};
+std::vector<LineLabel> draw_graticule(Sheet& sheet, const Ground& ground, double step_deg);
+std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double step_m);
+// In gaps of the lines. Labels of the same text keep a distance.
+void draw_labels(Sheet& sheet, const std::vector<LineLabel>& labels);
+
+void draw_title(Sheet& sheet, const std::string& title);
+void draw_time(Sheet& sheet, double time_s);
+void draw_legend(Sheet& sheet, const Scene& scene);
+void draw_scale_bar(Sheet& sheet, const Ground& ground);
+void draw_north_arrow(Sheet& sheet, const Ground& ground);
+// Takes the edge for itself. With `distances` a name has its distance beside it (name_text()).
+void draw_compass(Sheet& sheet, const Scene& scene, core::CompassStrip where);
+void draw_names(Sheet& sheet, const Ground& ground, bool distances);
+
+}  // namespace vpe::overlay

@@ -1,0 +1,291 @@
+#include "vpe/overlay/panorama_overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "vpe/overlay/compass_style.h"
+#include "vpe/overlay/number_format.h"
+#include "vpe/overlay/overlay.h"
+#include "vpe/overlay/layer_functions.h"
+
+namespace vpe::overlay {
+
+namespace {
+
+using core::CompassStrip;
+
+struct Mark {
+  CompassMark mark;
+  glm::dvec2 at;
+};
+
+class Layout {
+ public:
+  Layout(const core::Overlays& overlays, const WideScene& scene)
+      : overlays_(overlays),
+        scene_(scene),
+        unit_(wide_unit(scene)),
+        ruler_(1, 1),
+        size_(static_cast<double>(scene.width_px), static_cast<double>(scene.height_px)),
+        decals_(scene.width_px, scene.height_px, scene.width_px == scene.turn_px ? scene.turn_px : 0),
+        bottom_px_(size_.y) {}
+
+  Decals run() {
+    if (overlays_.compass != CompassStrip::kOff) compass();
+    if (!overlays_.title.empty()) title();
+    if (overlays_.legend) legend();
+    names();
+    // Last, where there is still room.
+    for (const Mark& m : figures_) label(m);
+    return std::move(decals_);
+  }
+
+ private:
+  double px(double at_720) const { return unit_ * at_720; }
+  double line_px(double at_720) const { return std::max(px(at_720), 0.75 * at_720); }
+  Font font(double at_720, bool bold = false) const { return {std::max(px(at_720), 0.7 * at_720), bold}; }
+
+  std::vector<Mark> marks(double y) const {
+    const double label_px = look_.label_px(ruler_, scene_.px_per_deg);
+    const bool is_turn = scene_.width_px == scene_.turn_px;
+    std::vector<Mark> placed;
+    for (CompassMark& mark :
+         compass_marks(scene_.left_azimuth_deg, scene_.span_deg, compass_steps(scene_.px_per_deg, label_px))) {
+      // The end of a whole turn is its beginning.
+      constexpr double kSame_deg = 1e-9;
+      if (is_turn && mark.azimuth_deg > scene_.left_azimuth_deg + 360 - kSame_deg) continue;
+      const auto at = scene_.place(mark.azimuth_deg, 0);
+      if (!at) continue;
+      placed.push_back({std::move(mark), {at->x, y}});
+    }
+    return placed;
+  }
+
+  void compass() {
+    look_.unit = unit_;
+    const double height_px = std::ceil(look_.height_px());
+    if (2 * height_px > size_.y) return;
+    CompassStrip where = overlays_.compass;
+    if (where == CompassStrip::kHorizon && (scene_.horizon_px < 0 || scene_.horizon_px + height_px > size_.y))
+      where = CompassStrip::kBottom;
+    look_.is_up = where == CompassStrip::kTop;
+    double line_y = scene_.horizon_px;
+    if (where != CompassStrip::kHorizon) {
+      line_y = look_.is_up ? height_px : size_.y - height_px;
+      const Box band{0, look_.is_up ? 0 : line_y, size_.x, look_.is_up ? line_y : size_.y};
+      decals_.fill(band, {0, 0, 0, static_cast<std::uint8_t>(std::lround(255 * kCompassBand.a))});
+      if (look_.is_up) top_px_ = line_y;
+      if (!look_.is_up) bottom_px_ = line_y;
+    } else {
+      // Whole pixels, thin enough to see the ground by.
+      const double width_px = std::max(1.0, std::round(look_.line_px()));
+      const double y = std::round(line_y - 0.5 * width_px);
+      constexpr core::Rgba kDark{0, 0, 0, 110};
+      constexpr core::Rgba kBright{255, 255, 255, 190};
+      decals_.fill({0, y - 1, size_.x, y + width_px + 1}, kDark);
+      decals_.fill({0, y, size_.x, y + width_px}, kBright);
+    }
+    for (Mark& m : marks(line_y)) {
+      const Box tick = look_.tick_box(m.at, m.mark).grown(2 * look_.line_px());
+      decals_.add(tick, [look = look_, m](Canvas& canvas, glm::dvec2 corner) {
+        look.draw_tick(canvas, m.at - corner, m.mark);
+      });
+      if (m.mark.rank == CompassRank::kWind) label(m);
+      if (m.mark.rank == CompassRank::kFigure) figures_.push_back(std::move(m));
+    }
+    if (where == CompassStrip::kHorizon) {
+      for (const Mark& m : figures_) figure_boxes_.push_back(look_.label_box(ruler_, m.at, m.mark));
+      return;
+    }
+    for (const Mark& m : figures_) label(m);
+    figures_.clear();
+    decals_.take({0, look_.is_up ? 0 : line_y, size_.x, look_.is_up ? line_y : size_.y});
+  }
+
+  void label(const Mark& m) {
+    const Box box = look_.label_box(ruler_, m.at, m.mark);
+    if (!decals_.is_free(box)) return;
+    decals_.take(box.grown(px(3)));
+    decals_.add(halo(box), [look = look_, m](Canvas& canvas, glm::dvec2 corner) {
+      look.draw_label(canvas, m.at - corner, m.mark);
+    });
+  }
+
+  // With what an outline and slanting letters add.
+  Box halo(const Box& box) const { return box.grown(2 + 0.2 * (box.bottom - box.top)); }
+
+  // Furniture is drawn as in a picture of the size of its own corner.
+  void furniture(const Box& box, const std::function<void(Sheet&)>& draw) {
+    const auto width = static_cast<int>(box.right - box.left);
+    const auto height = static_cast<int>(box.bottom - box.top);
+    Canvas canvas(width, height);
+    Sheet sheet(canvas, unit_);
+    draw(sheet);
+    if (sheet.taken().empty()) return;
+    const Box& b = sheet.taken().front();
+    const Box taken{b.left + box.left, b.top + box.top, b.right + box.left, b.bottom + box.top};
+    if (!decals_.is_free({std::max(taken.left, 0.0), std::max(taken.top, 0.0), std::min(taken.right, size_.x),
+                          std::min(taken.bottom, size_.y)}))
+      return;
+    decals_.take(taken);
+    decals_.add(box, [unit = unit_, draw](Canvas& part, glm::dvec2) {
+      Sheet again(part, unit);
+      draw(again);
+    });
+  }
+
+  void title() {
+    // Wider ones are cut.
+    constexpr double kMost_px = 12000;
+    const Font letters = font(24, true);
+    const double margin_px = px(16);
+    const double width_px =
+        std::min({size_.x, kMost_px, ruler_.measure(overlays_.title, letters).width + 2 * margin_px + 8});
+    const double height_px = 2 * letters.size_px + 2 * margin_px;
+    const double left = std::floor(0.5 * (size_.x - width_px));
+    const Box box{left, top_px_, left + std::ceil(width_px),
+                  std::min(bottom_px_, top_px_ + std::ceil(height_px))};
+    if (box.bottom - box.top < 1) return;
+    furniture(box, [text = overlays_.title](Sheet& sheet) { draw_title(sheet, text); });
+  }
+
+  void legend() {
+    Scene scene;
+    scene.appearance = scene_.appearance;
+    scene.has_imagery = scene_.has_imagery;
+    const double left = std::max(0.0, size_.x - std::ceil(std::max(px(240), 168.0)));
+    const double top = std::max(top_px_, bottom_px_ - std::ceil(std::max(px(320), 224.0)));
+    furniture({left, top, size_.x, bottom_px_}, [scene](Sheet& sheet) { draw_legend(sheet, scene); });
+  }
+
+  void names() {
+    constexpr double kSmallest_px = 4;
+    constexpr std::size_t kMost = 1000;
+    std::vector<const WideName*> order;
+    for (const WideName& name : scene_.names) order.push_back(&name);
+    const auto apparent = [](const WideName& name) {
+      return name.diameter_m / std::max(name.distance_m, 1e-3);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](const WideName* a, const WideName* b) {
+      const double x = apparent(*a);
+      const double y = apparent(*b);
+      return x != y ? x > y : a->distance_m < b->distance_m;
+    });
+    const double px_per_rad = scene_.px_per_deg / mars::kRadiansPerDegree;
+    std::size_t count = 0;
+    for (const WideName* name : order) {
+      if (name->diameter_m > 0 && apparent(*name) * px_per_rad < px(kSmallest_px)) continue;
+      const auto at = scene_.place(name->azimuth_deg, name->elevation_deg);
+      if (at && draw_name(*name, *at) && ++count == kMost) return;
+    }
+  }
+
+  bool draw_name(const WideName& name, glm::dvec2 at) {
+    constexpr std::array<int, 10> kRows{0, 1, 2, 3, 4, 5, 6, 7, -1, -2};
+    const Font letters = font(14);
+    const double dot_px = line_px(2.4);
+    const std::string text = overlays_.distances ? name_text(name.name, name.distance_m) : name.name;
+    const TextSize size = ruler_.measure(text, letters);
+    const Box dot = Box::about(at, {2 * dot_px, 2 * dot_px});
+    if (!decals_.is_free(dot)) return false;
+    glm::dvec2 centre = at;
+    if (scene_.width_px != scene_.turn_px) {
+      const double half_px = 0.5 * size.width + px(2);
+      if (2 * half_px > size_.x) return false;
+      centre.x = std::clamp(centre.x, half_px, size_.x - half_px);
+    }
+    // Where a figure of the compass would have to go only when there is no other room.
+    for (const bool spares_figures : {true, false}) {
+      for (const int row : kRows) {
+        const double way = row < 0 ? 1 : -1;
+        const double away_px = 1.4 * letters.size_px + 1.5 * letters.size_px * (row < 0 ? -1 - row : row);
+        centre.y = at.y + way * (away_px + 0.5 * size.height);
+        const Box box = Box::about(centre, size);
+        const double half_px = 1.5 * line_px(1);
+        const Box leader{at.x - half_px, way < 0 ? box.bottom : dot.bottom, at.x + half_px,
+                         way < 0 ? dot.top : box.top};
+        if (!decals_.is_free(box) || !decals_.is_free(leader)) continue;
+        if (spares_figures && (meets_figure(box.grown(px(4))) || meets_figure(leader))) continue;
+        decals_.take(dot.grown(px(2)));
+        decals_.take(box.grown(px(4)));
+        decals_.take(leader);
+        add_leader(at, leader, dot_px);
+        decals_.add(halo(box), [text, letters, centre](Canvas& canvas, glm::dvec2 corner) {
+          canvas.text(text, centre - corner, 0, {letters, kWhite, kShade});
+        });
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool meets_figure(const Box& box) const {
+    const double turn = scene_.width_px == scene_.turn_px ? size_.x : 0;
+    return std::any_of(figure_boxes_.begin(), figure_boxes_.end(), [&](const Box& other) {
+      const auto meets = [&](double shift) {
+        return box.meets({other.left + shift, other.top, other.right + shift, other.bottom});
+      };
+      return meets(0) || meets(turn) || meets(-turn);
+    });
+  }
+
+  void add_leader(glm::dvec2 at, const Box& leader, double dot_px) {
+    const double line = line_px(1);
+    const double rim = dot_px + line;
+    const Box box{at.x - rim, std::min(leader.top, at.y - rim), at.x + rim,
+                  std::max(leader.bottom, at.y + rim)};
+    decals_.add(box.grown(1), [at, leader, line, dot_px](Canvas& canvas, glm::dvec2 corner) {
+      const std::array<glm::dvec2, 2> ends{glm::dvec2{at.x, leader.top} - corner,
+                                           glm::dvec2{at.x, leader.bottom} - corner};
+      canvas.line(ends, false, 3 * line, kShade);
+      canvas.line(ends, false, line, kWhite);
+      const auto disc = [&](double radius_px, const Ink& ink) {
+        std::vector<glm::dvec2> rim_points;
+        for (int n = 0; n < 16; ++n) {
+          const mars::SinCos a = mars::sin_cos_deg(n * 22.5);
+          rim_points.push_back(at - corner + glm::dvec2(a.cos, a.sin) * radius_px);
+        }
+        canvas.polygon(rim_points, ink);
+      };
+      disc(dot_px + line, kShade);
+      disc(dot_px, kWhite);
+    });
+  }
+
+  const core::Overlays& overlays_;
+  const WideScene& scene_;
+  double unit_;
+  Canvas ruler_;
+  glm::dvec2 size_;
+  Decals decals_;
+  CompassLook look_;
+  std::vector<Mark> figures_;  // whose labels are still to be placed
+  std::vector<Box> figure_boxes_;
+  double top_px_ = 0;
+  double bottom_px_;
+};
+
+}  // namespace
+
+double wide_unit(const WideScene& scene) {
+  const double side_px = static_cast<double>(std::min(scene.width_px, scene.height_px));
+  return std::min({side_px / 720.0, static_cast<double>(scene.turn_px) / 3200.0, kMostWideUnit});
+}
+
+std::string not_for_panoramas(const core::Overlays& overlays) {
+  if (overlays.graticule) return "overlay.graticule: lines on the ground are not drawn over panoramas";
+  if (overlays.contours) return "overlay.contours: lines on the ground are not drawn over panoramas";
+  if (overlays.scale_bar)
+    return "overlay.scale: a panorama has no centre with one scale; see overlay.distances";
+  if (overlays.north_arrow) return "overlay.north: a panorama looks everywhere; see overlay.compass";
+  if (overlays.time_code) return "overlay.time: a panorama is no frame of a flight";
+  return {};
+}
+
+Decals lay_out_wide(const core::Overlays& overlays, const WideScene& scene) {
+  return Layout(overlays, scene).run();
+}
+
+}  // namespace vpe::overlay

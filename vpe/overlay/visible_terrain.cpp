@@ -1,0 +1,154 @@
+#include "vpe/overlay/visible_terrain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <stdexcept>
+
+namespace vpe::overlay {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+Ground::Ground(const Scene& scene)
+    : scene_(scene),
+      part_(core::drawn_part(scene.view)),
+      size_(core::drawn_size(scene.view)),
+      is_flat_(scene.view.projection == core::Projection::kPerspective) {
+  if (is_flat_) {
+    // As core::pixel_ray(), with what is the same for all pixels worked out once.
+    const mars::Axes& axes = scene.view.eye.axes;
+    const glm::dvec2 first = glm::dvec2(part_.x + 0.5, part_.y + 0.5) -
+                             glm::dvec2(scene.view.width, scene.view.height) * 0.5 -
+                             scene.view.principal_offset_px;
+    right_ = axes.right;
+    down_ = -axes.up;
+    corner_ = axes.forward * core::focal_px(scene.view) + right_ * first.x + down_ * first.y;
+  }
+  if (scene.range_m.size() == static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y)) {
+    const auto nearest = std::min_element(scene.range_m.begin(), scene.range_m.end());
+    nearest_m_ = nearest == scene.range_m.end() ? 1 : std::max(static_cast<double>(*nearest), 1e-3);
+    return;
+  }
+  throw std::invalid_argument("the range image has " + std::to_string(scene.range_m.size()) +
+                              " pixels, the picture " + std::to_string(size_.x) + "x" +
+                              std::to_string(size_.y));
+}
+
+bool Ground::is_ground(std::size_t pixel) const {
+  const float range_m = scene_.range_m[pixel];
+  return range_m > 0.0F && std::isfinite(range_m);
+}
+
+double Ground::error_m(std::size_t pixel) const {
+  return scene_.shift_px * static_cast<double>(scene_.range_m[pixel]) / core::focal_px(scene_.view);
+}
+
+double Ground::noise_m(std::size_t pixel) const {
+  // A tenth of what vpe/gl bounds it by: what is usual, not what is possible.
+  constexpr double kShare = 5e-8;
+  constexpr double kRounding = 1.2e-7;
+  const auto range_m = static_cast<double>(scene_.range_m[pixel]);
+  return range_m * (kRounding + kShare * range_m / nearest_m_);
+}
+
+glm::dvec3 Ground::point(int x, int y) const {
+  const auto range_m = static_cast<double>(scene_.range_m[index(x, y)]);
+  if (is_flat_) {
+    const glm::dvec3 along = corner_ + right_ * static_cast<double>(x) + down_ * static_cast<double>(y);
+    return scene_.view.eye.eye_m + along * (range_m / glm::length(along));
+  }
+  return scene_.view.eye.eye_m + core::pixel_ray(scene_.view, part_.x + x + 0.5, part_.y + y + 0.5) * range_m;
+}
+
+std::optional<glm::dvec2> Ground::to_picture(const glm::dvec3& point_m) const {
+  const core::Projected p = core::project(scene_.view, point_m);
+  if (p.behind) return std::nullopt;
+  return p.xy - glm::dvec2(part_.x, part_.y);
+}
+
+// Whether ground ends between a pixel and the next one, to the right (side = width) or below. One over the
+// range is nearly linear along a plane however it is tilted, so that a step much larger than those beside it is
+// an edge.
+bool Ground::breaks(std::size_t pixel, int x, int side, std::size_t step) const {
+  constexpr double kTimesTheNeighbours = 4;
+  constexpr double kUnnoticed = 0.003;
+  constexpr double kAlone = 0.1;
+  const auto near_at = [this](std::size_t p) { return 1.0 / static_cast<double>(scene_.range_m[p]); };
+  const double a = near_at(pixel);
+  const double b = near_at(pixel + step);
+  const double here = std::abs(b - a);
+  double beside = -1;
+  if (x > 0 && is_ground(pixel - step)) beside = std::abs(a - near_at(pixel - step));
+  if (x + 2 < side && is_ground(pixel + 2 * step)) {
+    beside = std::max(beside, std::abs(b - near_at(pixel + 2 * step)));
+  }
+  const double most = std::max(a, b);
+  if (beside < 0) return here > kAlone * most;
+  return here > kTimesTheNeighbours * beside + kUnnoticed * most;
+}
+
+bool Ground::is_whole(int x, int y) const {
+  const std::size_t p = index(x, y);
+  const std::size_t below = p + static_cast<std::size_t>(size_.x);
+  if (!is_ground(p) || !is_ground(p + 1) || !is_ground(below) || !is_ground(below + 1)) return false;
+  const auto down = static_cast<std::size_t>(size_.x);
+  return !breaks(p, x, size_.x, 1) && !breaks(below, x, size_.x, 1) && !breaks(p, y, size_.y, down) &&
+         !breaks(p + 1, y, size_.y, down);
+}
+
+template <class Value>
+std::vector<double> Ground::values(const Value& value) const {
+  std::vector<double> out(scene_.range_m.size(), kNaN);
+  for (int y = 0; y < size_.y; ++y) {
+    for (int x = 0; x < size_.x; ++x) {
+      const std::size_t p = index(x, y);
+      if (is_ground(p)) out[p] = value(point(x, y));
+    }
+  }
+  return out;
+}
+
+std::vector<double> Ground::longitudes_deg() const {
+  return values([](const glm::dvec3& p) { return std::atan2(p.y, p.x) / mars::kRadiansPerDegree; });
+}
+
+std::vector<double> Ground::latitudes_deg() const {
+  return values([](const glm::dvec3& p) {
+    return std::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y)) / mars::kRadiansPerDegree;
+  });
+}
+
+std::vector<double> Ground::elevations_m() const {
+  const double radius_m = scene_.radius_m;
+  const double factor = 1.0 / scene_.appearance.exaggeration;
+  return values([=](const glm::dvec3& p) { return (glm::length(p) - radius_m) * factor; });
+}
+
+std::optional<Spread> spread_of(const std::vector<double>& values, double period) {
+  constexpr std::size_t kSamples = 20000;
+  constexpr double kLeftOut = 0.05;
+  std::vector<double> some;
+  const std::size_t stride = std::max<std::size_t>(1, values.size() / kSamples);
+  for (std::size_t n = 0; n < values.size(); n += stride) {
+    if (!std::isnan(values[n])) some.push_back(values[n]);
+  }
+  if (some.empty()) return std::nullopt;
+  double middle = 0;
+  if (period > 0) {
+    glm::dvec2 sum{0, 0};
+    const double turn = 2 * mars::kPi / period;
+    for (const double v : some) sum += glm::dvec2(std::cos(v * turn), std::sin(v * turn));
+    middle = std::atan2(sum.y, sum.x) / turn;
+    for (double& v : some) v = middle + std::remainder(v - middle, period);
+  }
+  const auto left_out = static_cast<std::size_t>(kLeftOut * static_cast<double>(some.size()));
+  std::sort(some.begin(), some.end());
+  return Spread{some[left_out], some[some.size() - 1 - left_out]};
+}
+
+}  // namespace vpe::overlay

@@ -1,0 +1,59 @@
+#include "vpe/report/interleaved_timing.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <stdexcept>
+
+namespace vpe::report {
+
+Clock wall_clock() {
+  return
+      [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+double Timing::median_s() const { return median(round_s); }
+
+std::vector<Timing> time_in_turns(std::span<const Contestant> contestants, int rounds, const Clock& clock) {
+  if (rounds < 1) throw std::invalid_argument("time_in_turns: at least one round");
+  std::vector<Timing> timings(contestants.size());
+  std::vector<double> last_s(contestants.size(), std::numeric_limits<double>::quiet_NaN());
+  for (int round = -1; round < rounds; ++round) {
+    for (std::size_t k = 0; k < contestants.size(); ++k) {
+      const Contestant& contestant = contestants[k];
+      const bool is_rare = contestant.most_rounds < rounds;
+      if (is_rare && (round < 0 || round >= contestant.most_rounds)) continue;
+      if (contestant.prepare) contestant.prepare(last_s[k]);
+      const double begin_s = clock();
+      contestant.run();
+      const double end_s = clock();
+      last_s[k] = end_s - begin_s;
+      if (round >= 0) timings[k].round_s.push_back(end_s - begin_s);
+    }
+  }
+  return timings;
+}
+
+std::vector<Timing> time_in_turns(std::span<const std::function<void()>> contestants, int rounds,
+                                  const Clock& clock) {
+  std::vector<Contestant> all;
+  for (const std::function<void()>& run : contestants) all.push_back({run, {}});
+  return time_in_turns(all, rounds, clock);
+}
+
+double ratio(const Timing& timing, const Timing& baseline) {
+  const std::size_t rounds = std::min(timing.round_s.size(), baseline.round_s.size());
+  if (rounds == 0) throw std::invalid_argument("ratio: one of both was not timed");
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < rounds; ++k) ratios.push_back(timing.round_s[k] / baseline.round_s[k]);
+  return median(std::move(ratios));
+}
+
+}  // namespace vpe::report

@@ -1,0 +1,121 @@
+#include "vpe/voxel/cast/column_batch.h"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+
+namespace vpe::voxel {
+
+namespace {
+
+// Neighbouring columns that one thread casts in turn: whole cache lines of a row. Narrow vectors take fewer.
+constexpr int kTaskColumns = 96;
+constexpr int kMostGroups = 12;
+// Rows that are expanded before they are copied: few, so that neighbouring groups write to the same pages of
+// memory.
+constexpr int kBlockRows = 32;
+
+struct alignas(64) LaneFloats {
+  float lane[kMaxLanes];
+};
+
+}  // namespace
+
+struct Desk {
+  Desk(const LatticeStore& store, double exaggeration) : shelf(store, exaggeration) {}
+
+  // Buffers for so many rows of each of `group_count` groups, the same number every time.
+  void prepare(int rows, int group_count) {
+    const auto count = static_cast<std::size_t>(rows);
+    if (count <= prepared) return;
+    prepared = count;
+    const auto used = static_cast<std::size_t>(group_count);
+    buffers.assign(2 * used * count, LaneFloats{});
+    for (std::size_t g = 0; g < used; ++g) {
+      groups[g].start = buffers[2 * g * count].lane;
+      groups[g].gain = buffers[(2 * g + 1) * count].lane;
+    }
+  }
+
+  LatticeShelf shelf;
+  std::size_t prepared = 0;
+  std::vector<LaneFloats> buffers;  // zero between tasks
+  std::array<ColumnGroup, kMostGroups> groups{};
+  std::array<LaneFloats, static_cast<std::size_t>(kTaskColumns / kMaxLanes) * kBlockRows>
+      block{};  // of expanded rows
+};
+
+Desks::Desks(const LatticeStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
+Desks::~Desks() = default;
+
+Desks::Use::Use(Desks& desks) : desks_(desks), thrown_(std::uncaught_exceptions()) {
+  const std::lock_guard lock(desks_.mutex_);
+  if (desks_.free_.empty()) {
+    desk_ = std::make_unique<Desk>(desks_.store_, desks_.exaggeration_);
+  } else {
+    desk_ = std::move(desks_.free_.back());
+    desks_.free_.pop_back();
+  }
+}
+
+Desks::Use::~Use() {
+  if (std::uncaught_exceptions() != thrown_) return;
+  const std::lock_guard lock(desks_.mutex_);
+  desks_.free_.push_back(std::move(desk_));
+}
+
+LatticeShelf& Desks::Use::shelf() const { return desk_->shelf; }
+
+void cast_sheets(std::span<const Sheet> sheets, const ColumnWalk& walk, Desks& desks, base::ThreadPool& pool) {
+  const int lanes = column_lanes();
+  const int task_columns = std::min(kTaskColumns, lanes * kMostGroups);
+  struct Task {
+    const Sheet* sheet;
+    int begin;
+  };
+  std::vector<Task> tasks;
+  int most_rows = 0;
+  for (const Sheet& sheet : sheets) {
+    most_rows = std::max(most_rows, sheet.rows.count);
+    for (int begin = 0; begin < sheet.columns; begin += task_columns) tasks.push_back({&sheet, begin});
+  }
+  pool.run(tasks.size(), [&](std::size_t t) {
+    const Desks::Use use(desks);
+    Desk* const desk = &use.desk();
+    desk->prepare(most_rows, task_columns / lanes);
+    const Sheet& sheet = *tasks[t].sheet;
+    const int begin = tasks[t].begin;
+    const int columns = std::min(task_columns, sheet.columns - begin);
+    int groups = 0;
+    float lowest = static_cast<float>(sheet.rows.count);
+    float highest = 0;
+    for (int first = 0; first < columns; first += lanes, ++groups) {
+      ColumnGroup& group = desk->groups[static_cast<std::size_t>(groups)];
+      group.columns = std::min(lanes, columns - first);
+      std::array<glm::dvec3, kMaxLanes> azimuth{};
+      for (int lane = 0; lane < kMaxLanes; ++lane) {
+        group.row[lane] = 0;
+        group.row_end[lane] = 0;
+        group.run_start[lane] = 1;
+        group.run_gain[lane] = 0;
+        group.run_slope[lane] = 0;
+        if (lane >= group.columns) continue;
+        sheet.set_column(begin + first + lane, group, lane, azimuth[static_cast<std::size_t>(lane)]);
+        lowest = std::min(lowest, group.row[lane]);
+        highest = std::max(highest, group.row_end[lane]);
+      }
+      walk.cast(azimuth.data(), sheet.rows, desk->shelf, group);
+    }
+    const int end = static_cast<int>(highest);
+    for (int row = static_cast<int>(lowest); row < end; row += kBlockRows) {
+      const int rows = std::min(kBlockRows, end - row);
+      for (int g = 0; g < groups; ++g)
+        expand_rows(sheet.rows, desk->groups[static_cast<std::size_t>(g)], row, row + rows,
+                    desk->block[0].lane + g * lanes, task_columns);
+      copy_rows(desk->block[0].lane, task_columns, sheet.out + row * sheet.stride + begin, sheet.stride,
+                columns, rows, sheet.stream);
+    }
+  });
+}
+
+}  // namespace vpe::voxel

@@ -1,0 +1,132 @@
+// From runs of rows to ranges.
+#if defined(VPE_VOXEL_COLUMN_EXPAND_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VPE_VOXEL_COLUMN_EXPAND_INL_H_
+#undef VPE_VOXEL_COLUMN_EXPAND_INL_H_
+#else
+#define VPE_VOXEL_COLUMN_EXPAND_INL_H_
+#endif
+
+// clang-format off
+#include <hwy/highway.h>
+#include <hwy/cache_control.h>
+// clang-format on
+
+#include <algorithm>
+#include <limits>
+
+#include "vpe/voxel/cast/column_rows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using RowTag = hn::CappedTag<float, kMaxLanes>;
+template <RowKind kKind>
+void least_as(const Rows& rows, ColumnGroup& group) {
+  const RowTag d;
+  const RowModel<RowTag, kKind> model(rows, group, 0);
+  const auto row = hn::Load(d, group.row);
+  const auto alive = hn::Lt(row, hn::Load(d, group.row_end));
+  const auto far = hn::Set(d, std::numeric_limits<float>::infinity());
+  group.least_slope =
+      static_cast<double>(hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(alive, model.slope(row), far))));
+}
+
+void UpdateLeastSlope(const Rows& rows, ColumnGroup& group) {
+  switch (rows.kind) {
+    case RowKind::kEven: return least_as<RowKind::kEven>(rows, group);
+    case RowKind::kTable: return least_as<RowKind::kTable>(rows, group);
+    case RowKind::kFan: return least_as<RowKind::kFan>(rows, group);
+  }
+}
+
+template <RowKind kKind>
+void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride) {
+  const bool whole = group.columns == static_cast<int>(hn::Lanes(RowTag()));
+  const RowTag d;
+  using V = hn::Vec<RowTag>;
+  const RowModel<RowTag, kKind> model(rows, group, 0);
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0F);
+  const V sky = hn::Set(d, std::numeric_limits<float>::infinity());
+  const V resolved = hn::Load(d, group.row);
+  const float most = hn::GetLane(hn::MaxOfLanes(d, resolved));
+  V start = hn::Load(d, group.run_start);
+  V gain = hn::Load(d, group.run_gain);
+  V from = hn::Load(d, group.run_slope);
+  const auto put = [&](int r, V seen) {
+    float* const to = out + static_cast<std::ptrdiff_t>(r - first) * stride;
+    if (whole) {
+      hn::StoreU(seen, d, to);
+    } else {
+      alignas(64) float some[kMaxLanes];
+      hn::Store(seen, d, some);
+      std::copy_n(some, group.columns, to);
+    }
+  };
+  const int ground = std::clamp(static_cast<int>(most), first, last);
+  for (int r = first; r < ground; ++r) {
+    float* const starts = group.start + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
+    float* const gains = group.gain + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
+    const V row = hn::Set(d, static_cast<float>(r));
+    const V slope = model.slope(row);
+    const V now = hn::Load(d, starts);
+    const auto begins = hn::Ne(now, zero);
+    if (!hn::AllFalse(d, begins)) {
+      start = hn::IfThenElse(begins, now, start);
+      gain = hn::IfThenElse(begins, hn::Load(d, gains), gain);
+      from = hn::IfThenElse(begins, slope, from);
+      hn::Store(zero, d, starts);
+      hn::Store(zero, d, gains);
+    }
+    const V per = hn::MulAdd(gain, hn::Sub(slope, from), start);
+    V length;
+    if constexpr (kKind == RowKind::kFan) {
+      length = hn::Sqrt(hn::MulAdd(slope, slope, one));
+    } else {
+      length = hn::Set(d, rows.length[r]);
+    }
+    put(r, hn::IfThenElse(hn::Lt(row, resolved), hn::Div(length, per), sky));
+  }
+  for (int r = ground; r < last; ++r) put(r, sky);
+  hn::Store(start, d, group.run_start);
+  hn::Store(gain, d, group.run_gain);
+  hn::Store(from, d, group.run_slope);
+}
+
+void ExpandRows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride) {
+  switch (rows.kind) {
+    case RowKind::kEven: return expand_as<RowKind::kEven>(rows, group, first, last, out, stride);
+    case RowKind::kTable: return expand_as<RowKind::kTable>(rows, group, first, last, out, stride);
+    case RowKind::kFan: return expand_as<RowKind::kFan>(rows, group, first, last, out, stride);
+  }
+}
+
+void CopyRows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
+              int rows, bool stream) {
+  const RowTag d;
+  const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  const auto bytes = static_cast<std::uintptr_t>(lanes) * sizeof(float);
+  for (int r = 0; r < rows; ++r, from += from_stride, to += to_stride) {
+    std::ptrdiff_t x = 0;
+    if (stream) {
+      // Up to the first whole vector.
+      while (x < columns && reinterpret_cast<std::uintptr_t>(to + x) % bytes != 0) {
+        to[x] = from[x];
+        ++x;
+      }
+      for (; x + lanes <= columns; x += lanes) hn::Stream(hn::LoadU(d, from + x), d, to + x);
+    }
+    for (; x + lanes <= columns; x += lanes) hn::StoreU(hn::LoadU(d, from + x), d, to + x);
+    for (; x < columns; ++x) to[x] = from[x];
+  }
+  if (stream) hwy::FlushStream();
+}
+
+}  // namespace
+}  // namespace vpe::voxel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vpe/voxel/cast/columns.h"
+
+// One binary for every x86-64: this file is compiled once for each of these (the last is the baseline).
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vpe/voxel/cast/column_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+// clang-format on
+
+#include "vpe/voxel/cast/column_expand-inl.h"
+#include "vpe/voxel/cast/column_steps-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::CappedTag<float, kMaxLanes>;
+using DoubleTag = hn::CappedTag<double, kMaxLanes / 2>;
+
+template <RowKind kKind>
+void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
+             const Rows& rows, ColumnGroup& group) {
+  Paths paths;
+  find_paths(f, eye, group, paths);
+  Foot foot;
+  if (up.z > 0) {
+    foot.inside = true;
+    foot.depth = 1.0 / (up.z * eye.ground_m);
+    foot.x = (up.x / up.z - f.u0) / f.du;
+    foot.y = (up.y / up.z - f.v0) / f.dv;
+  }
+  unsigned kinds = 0;
+  for (double kind : paths.kind) {
+    if (kind >= 0) kinds |= 1U << static_cast<int>(kind);
+  }
+  for (int kind = 0; kind < 2 * kFamilies; ++kind) {
+    if (((kinds >> kind) & 1U) == 0) continue;
+    const auto family = static_cast<Family>(kind / 2);
+    const bool outward_up = (kind & 1) != 0;
+    double from = kHuge;
+    double to = -kHuge;
+    for (int lane = 0; lane < kMaxLanes; ++lane) {
+      if (paths.kind[lane] != kind) continue;
+      from = std::min(from, paths.from[lane]);
+      to = std::max(to, paths.to[lane]);
+    }
+    const int least = family == Family::kDiagonals ? -f.intervals : 0;
+    // One line more on either side, so that rounding of the ends leaves out no event.
+    const int low = std::clamp(static_cast<int>(std::floor(from - 1e-3)), least, f.intervals);
+    const int high = std::clamp(static_cast<int>(std::ceil(to + 1e-3)), least, f.intervals);
+    int first = outward_up ? low : high;
+    const int last = outward_up ? high : low;
+    if (foot.inside) {
+      const double at = foot.on(family);
+      // Outward all lines lie on one side of the foot's.
+      const double nearest = outward_up ? first - at : at - first;
+      if (nearest < kExactLines && needs_exact(f, eye)) {
+        const double reach = outward_up ? at + kExactLines : at - kExactLines;
+        int until = static_cast<int>(outward_up ? std::ceil(reach) : std::floor(reach));
+        until = outward_up ? std::min(until, last) : std::max(until, last);
+        if (until != first) {
+          const LatticeLines<double>& lines = source.exact_lines(family);
+          const DepthPlane& plane = lines.reference;
+          find_bases(f, plane, eye, up, paths);
+          const double height = foot.height(plane, eye);
+          for (int lane0 = 0; lane0 < static_cast<int>(hn::Lanes(FloatTag()));
+               lane0 += static_cast<int>(hn::Lanes(DoubleTag()))) {
+            Walk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, eye, rows, group);
+            if (!walk.any()) continue;
+            walk.start_at_foot(at, height, paths);
+            walk.run(first, until);
+            walk.store();
+          }
+          first = until;
+        }
+      }
+    }
+    if (first == last) continue;
+    const LatticeLines<float>& lines = source.lines(family);
+    find_bases(f, lines.reference, eye, up, paths);
+    const bool begins = foot.inside && first == (outward_up ? low : high);
+    Walk<FloatTag, kKind> walk(lines, family, f.intervals, paths, kind, 0, eye, rows, group);
+    if (!walk.any()) continue;
+    if (begins)
+      walk.start_at_foot(static_cast<float>(foot.on(family)),
+                         static_cast<float>(foot.height(lines.reference, eye)), paths);
+    walk.run(first, last);
+    walk.store();
+  }
+}
+
+void WalkLattice(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
+                 const Rows& rows, ColumnGroup& group) {
+  switch (rows.kind) {
+    case RowKind::kEven: return walk_as<RowKind::kEven>(f, source, eye, up, rows, group);
+    case RowKind::kTable: return walk_as<RowKind::kTable>(f, source, eye, up, rows, group);
+    case RowKind::kFan: return walk_as<RowKind::kFan>(f, source, eye, up, rows, group);
+  }
+}
+
+int ColumnLanes() { return static_cast<int>(hn::Lanes(FloatTag())); }
+const char* ColumnTarget() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace
+}  // namespace vpe::voxel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vpe::voxel {
+
+bool needs_exact(const LatticeFrame& frame, const ColumnEye& eye) {
+  return eye.distance_m - eye.ground_m < kExactLines * std::max(frame.du, frame.dv) * eye.radius_m;
+}
+
+HWY_EXPORT(WalkLattice);
+HWY_EXPORT(UpdateLeastSlope);
+HWY_EXPORT(ExpandRows);
+HWY_EXPORT(CopyRows);
+HWY_EXPORT(ColumnLanes);
+HWY_EXPORT(ColumnTarget);
+
+void walk_lattice(const LatticeFrame& frame, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
+                  const Rows& rows, ColumnGroup& group) {
+  HWY_DYNAMIC_DISPATCH(WalkLattice)(frame, source, eye, up, rows, group);
+}
+void update_least_slope(const Rows& rows, ColumnGroup& group) {
+  HWY_DYNAMIC_DISPATCH(UpdateLeastSlope)(rows, group);
+}
+void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride) {
+  HWY_DYNAMIC_DISPATCH(ExpandRows)(rows, group, first, last, out, stride);
+}
+void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
+               int rows, bool stream) {
+  HWY_DYNAMIC_DISPATCH(CopyRows)(from, from_stride, to, to_stride, columns, rows, stream);
+}
+int column_lanes() { return HWY_DYNAMIC_DISPATCH(ColumnLanes)(); }
+const char* column_target() { return HWY_DYNAMIC_DISPATCH(ColumnTarget)(); }
+
+}  // namespace vpe::voxel
+#endif

@@ -1,0 +1,192 @@
+// Reading posts, and the edges between them, along straight paths.
+#if defined(VPE_VOXEL_COLUMN_LINES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VPE_VOXEL_COLUMN_LINES_INL_H_
+#undef VPE_VOXEL_COLUMN_LINES_INL_H_
+#else
+#define VPE_VOXEL_COLUMN_LINES_INL_H_
+#endif
+
+// clang-format off
+#include <hwy/highway.h>
+// clang-format on
+
+#include <algorithm>
+
+#include "vpe/voxel/cast/columns.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// How the posts of all lanes that matter are read: from a window of two or four vectors, or each by itself.
+enum class Reach { kNear, kWide, kAny };
+
+// Posts along the paths of lanes that go through one lattice the same way.
+template <class D>
+class PathReader {
+ public:
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using DI = hn::RebindToSigned<D>;
+  using VI = hn::Vec<DI>;
+
+  // position, turn: of the first lane.
+  PathReader(const LatticeLines<T>& lines, Family family, int intervals, V position, V turn)
+      : lines_(lines), family_(family), n_(intervals), position_(position), turn_(turn) {
+    const D d;
+    // A limit keeps 0 times it from becoming NaN.
+    const V limit = hn::Set(d, T(1e30));
+    per_turn_ = hn::Min(hn::Div(hn::Set(d, T(1)), turn_), limit);
+    per_rest_ = hn::Min(hn::Div(hn::Set(d, T(1)), hn::Sub(hn::Set(d, T(1)), turn_)), limit);
+  }
+
+  int intervals() const { return n_; }
+  const T* maxima(int block) const { return lines_.maxima(block); }
+
+  V position_at(int k) const { return hn::MulAdd(turn_, hn::Set(D(), static_cast<T>(k)), position_); }
+  T first_position(int k) const {
+    return family_ == Family::kDiagonals ? static_cast<T>(std::max(0, k)) : T(0);
+  }
+  T last_position(int k) const {
+    return static_cast<T>(family_ == Family::kDiagonals ? n_ + std::min(0, k) : n_);
+  }
+
+  // What is read of one line at each lane's position.
+  struct Line {
+    V whole;
+    V part;
+    V low;
+    V high;
+  };
+
+  // Any position: reads are kept within the lattice's rows.
+  Line gather(int k) const {
+    const D d;
+    const DI di;
+    Line line;
+    const V y = position_at(k);
+    line.whole = hn::Floor(y);
+    line.part = hn::Sub(y, line.whole);
+    const V safe = hn::Min(hn::Max(line.whole, hn::Set(d, T(-1))), hn::Set(d, static_cast<T>(n_)));
+    const VI index = hn::ConvertTo(di, safe);
+    const T* at = lines_.line(k);
+    line.low = hn::GatherIndex(d, at, index);
+    line.high = hn::GatherIndex(d, at + 1, index);
+    return line;
+  }
+
+  // Positions of all lanes that matter are in [from, from + width]; others read anything. A window begins one
+  // post before `from`, and the last lane's upper neighbour is in it.
+#if HWY_TARGET == HWY_AVX2
+  static constexpr int kNearWidth = 5;
+  static constexpr int kWideWidth = 13;
+#else
+  static constexpr int kNearWidth = 28;
+  static constexpr int kWideWidth = 60;
+#endif
+  template <Reach kReach>
+  Line window(int k, T from) const {
+    const D d;
+    const DI di;
+    Line line;
+    const V y = position_at(k);
+    line.whole = hn::Floor(y);
+    line.part = hn::Sub(y, line.whole);
+    const int base = std::max(static_cast<int>(from) - 1, -1);
+    const T* at = lines_.line(k) + base;
+#if HWY_TARGET <= HWY_AVX3
+    if constexpr (sizeof(T) == 4) {
+      const __m512 a = _mm512_loadu_ps(at);
+      const __m512 b = _mm512_loadu_ps(at + 16);
+      const __m512i low = _mm512_sub_epi32(_mm512_cvttps_epi32(line.whole.raw), _mm512_set1_epi32(base));
+      const __m512i high = _mm512_add_epi32(low, _mm512_set1_epi32(1));
+      line.low = V{_mm512_permutex2var_ps(a, low, b)};
+      line.high = V{_mm512_permutex2var_ps(a, high, b)};
+      if constexpr (kReach == Reach::kWide) {
+        const __m512 c = _mm512_loadu_ps(at + 32);
+        const __m512 e = _mm512_loadu_ps(at + 48);
+        const __m512i half = _mm512_set1_epi32(32);
+        const __mmask16 low_far = _mm512_test_epi32_mask(low, half);
+        const __mmask16 high_far = _mm512_test_epi32_mask(high, half);
+        line.low = V{_mm512_mask_blend_ps(low_far, line.low.raw, _mm512_permutex2var_ps(c, low, e))};
+        line.high = V{_mm512_mask_blend_ps(high_far, line.high.raw, _mm512_permutex2var_ps(c, high, e))};
+      }
+      return line;
+    }
+#endif
+#if HWY_TARGET == HWY_AVX2
+    if constexpr (sizeof(T) == 4) {
+      const __m256i at_low = _mm256_sub_epi32(_mm256_cvttps_epi32(line.whole.raw), _mm256_set1_epi32(base));
+      line.low = V{_mm256_permutevar8x32_ps(_mm256_loadu_ps(at), at_low)};
+      line.high = V{_mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 1), at_low)};
+      if constexpr (kReach == Reach::kWide) {
+        // Bit 3 of the index says which half.
+        const __m256 far = _mm256_castsi256_ps(_mm256_slli_epi32(at_low, 28));
+        const __m256 low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 8), at_low);
+        const __m256 high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 9), at_low);
+        line.low = V{_mm256_blendv_ps(line.low.raw, low, far)};
+        line.high = V{_mm256_blendv_ps(line.high.raw, high, far)};
+      }
+      return line;
+    }
+#endif
+    const VI index = hn::ConvertTo(di, hn::Sub(line.whole, hn::Set(d, static_cast<T>(base))));
+    const VI safe = hn::Min(hn::Max(index, hn::Zero(di)), hn::Set(di, kReadAhead - 2));
+    line.low = hn::GatherIndex(d, at, safe);
+    line.high = hn::GatherIndex(d, at + 1, safe);
+    return line;
+  }
+
+  template <Reach kReach>
+  Line read(int k, T from) const {
+    if constexpr (kReach == Reach::kAny) {
+      return gather(k);
+    } else {
+      return window<kReach>(k, from);
+    }
+  }
+
+  // The one edge between two lines, `lower` having the smaller number.
+  struct Crossing {
+    V x;
+    V height;
+    M other;  // an edge along the lines' normal, not a diagonal of the family's cells
+  };
+  Crossing between(int k, const Line& lower, const Line& upper) const {
+    const D d;
+    const V one = hn::Set(d, T(1));
+    Crossing c;
+    c.other = hn::Ne(lower.whole, upper.whole);
+    const V numerator = hn::IfThenElse(c.other, hn::Sub(one, lower.part), lower.part);
+    const V factor = hn::IfThenElse(c.other, per_turn_, per_rest_);
+    const V s = hn::Min(hn::Max(hn::Mul(numerator, factor), hn::Zero(d)), one);
+    const V a = hn::IfThenElse(c.other, lower.high, lower.low);
+    const V b = hn::IfThenElse(c.other, upper.low, upper.high);
+    c.height = hn::MulAdd(s, hn::Sub(b, a), a);
+    c.x = hn::Add(hn::Set(d, static_cast<T>(k)), s);
+    return c;
+  }
+
+  static V height_on(const Line& line) { return hn::MulAdd(line.part, hn::Sub(line.high, line.low), line.low); }
+
+  M on_line(int k, const Line& line) const {
+    const D d;
+    return hn::And(hn::Ge(line.whole, hn::Set(d, first_position(k))),
+                   hn::Lt(line.whole, hn::Set(d, last_position(k))));
+  }
+
+ private:
+  const LatticeLines<T>& lines_;
+  Family family_;
+  int n_;
+  V position_, turn_, per_turn_, per_rest_;
+};
+
+}  // namespace
+}  // namespace vpe::voxel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,150 @@
+// Where columns go through a lattice.
+#if defined(VPE_VOXEL_COLUMN_PATHS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VPE_VOXEL_COLUMN_PATHS_INL_H_
+#undef VPE_VOXEL_COLUMN_PATHS_INL_H_
+#else
+#define VPE_VOXEL_COLUMN_PATHS_INL_H_
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include "vpe/voxel/cast/columns.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Path of each lane through a lattice: position, sigma, z and w R^2 / |E| are affine in the line number k.
+struct Paths {
+  alignas(64) double position[kMaxLanes];
+  alignas(64) double turn[kMaxLanes];  // positions a line, in [0, 1]
+  alignas(64) double sigma0[kMaxLanes];
+  alignas(64) double sigma1[kMaxLanes];
+  alignas(64) double base0[kMaxLanes];
+  alignas(64) double base1[kMaxLanes];
+  alignas(64) double depth0[kMaxLanes];
+  alignas(64) double depth1[kMaxLanes];
+  alignas(64) double x0[kMaxLanes];  // (x, y) = (x0 + xk k, y0 + yk k)
+  alignas(64) double xk[kMaxLanes];
+  alignas(64) double y0[kMaxLanes];
+  alignas(64) double yk[kMaxLanes];
+  alignas(64) double from[kMaxLanes];  // lines that the path is inside the lattice at
+  alignas(64) double to[kMaxLanes];
+  alignas(64) double kind[kMaxLanes];  // 2 * family + (1 where k grows outward); -1: not in the lattice
+};
+
+// Smallest magnitude that is divided by.
+constexpr double kTiny = 1e-290;
+constexpr double kHuge = 1e30;
+
+double away_from_zero(double x) { return std::abs(x) < kTiny ? (x < 0 ? -kTiny : kTiny) : x; }
+
+// Cuts [from, to] to where 0 <= p + q k <= n.
+void cut(double p, double q, double n, double& from, double& to) {
+  const double inverse = 1.0 / away_from_zero(q);
+  const double a = -p * inverse;
+  const double b = (n - p) * inverse;
+  from = std::max(from, std::min(a, b));
+  to = std::min(to, std::max(a, b));
+}
+
+void find_paths(const LatticeFrame& f, const ColumnEye& eye, const ColumnGroup& group, Paths& out) {
+  const double scale = eye.radius_m * eye.radius_m / eye.distance_m;
+  const double n = f.intervals;
+  for (int lane = 0; lane < kMaxLanes; ++lane) {
+    const double ax = group.azimuth[0][lane];
+    const double ay = group.azimuth[1][lane];
+    const double az = group.azimuth[2][lane];
+    const double nx = group.normal[0][lane] * f.du;
+    const double ny = group.normal[1][lane] * f.dv;
+    const double nc = group.normal[0][lane] * f.u0 + group.normal[1][lane] * f.v0 + group.normal[2][lane];
+    // x = x0 + xk k, y = y0 + yk k; outward is where the cross product p' x p points along the normal.
+    const bool diagonal = nx * ny >= 0;
+    const bool columns = std::abs(nx) <= std::abs(ny);
+    const double below = away_from_zero(diagonal ? nx + ny : (columns ? ny : nx));
+    const double first = -nc / below;
+    const double m = diagonal ? ny / below : (columns ? -nx / below : -ny / below);
+    const double x0 = !diagonal && columns ? 0.0 : first;
+    const double xk = !diagonal && columns ? 1.0 : m;
+    const double y0 = !diagonal && !columns ? 0.0 : first;
+    const double yk = diagonal ? m - 1.0 : (columns ? m : 1.0);
+    const bool grows = diagonal || columns ? below < 0 : below > 0;
+    const double u = f.u0 + f.du * x0;
+    const double v = f.v0 + f.dv * y0;
+    const double du = f.du * xk;
+    const double dv = f.dv * yk;
+    const double s0 = ax * u + ay * v + az;
+    const double s1 = ax * du + ay * dv;
+    double from = -kHuge;
+    double to = kHuge;
+    cut(x0, xk, n, from, to);
+    cut(y0, yk, n, from, to);
+    // In front of the eye is where sigma is positive. It stays the same along paths that point straight up: those
+    // of other faces under an eye exactly over a face's middle.
+    if (s1 > 0) {
+      from = std::max(from, -s0 / away_from_zero(s1));
+    } else if (s1 < 0) {
+      to = std::min(to, -s0 / away_from_zero(s1));
+    } else if (!(s0 > 0)) {
+      to = from;
+    }
+    const bool inside = from < to && group.row[lane] < group.row_end[lane];
+    out.position[lane] = diagonal ? x0 : (columns ? y0 : x0);
+    out.turn[lane] = m;
+    out.sigma0[lane] = s0 * scale;
+    out.sigma1[lane] = s1 * scale;
+    out.x0[lane] = x0;
+    out.xk[lane] = xk;
+    out.y0[lane] = y0;
+    out.yk[lane] = yk;
+    out.from[lane] = from;
+    out.to[lane] = to;
+    const double family = diagonal ? 2.0 : (columns ? 0.0 : 1.0);
+    out.kind[lane] = inside ? 2.0 * family + (grows ? 1.0 : 0.0) : -1.0;
+  }
+}
+
+// Heights along the paths, against the reference of their posts.
+void find_bases(const LatticeFrame& f, const DepthPlane& plane, const ColumnEye& eye, const glm::dvec3& up,
+                Paths& out) {
+  const double scale = eye.radius_m * eye.radius_m / eye.distance_m;
+  for (int lane = 0; lane < kMaxLanes; ++lane) {
+    const double x0 = out.x0[lane];
+    const double xk = out.xk[lane];
+    const double y0 = out.y0[lane];
+    const double yk = out.yk[lane];
+    const double w = plane.w0 + plane.wx * x0 + plane.wy * y0;
+    const double wk = plane.wx * xk + plane.wy * yk;
+    const double along = up.x * (f.u0 + f.du * x0) + up.y * (f.v0 + f.dv * y0) + up.z;
+    out.base0[lane] = (along - eye.distance_m * w) * scale;
+    out.base1[lane] = (up.x * f.du * xk + up.y * f.dv * yk - eye.distance_m * wk) * scale;
+    out.depth0[lane] = w * scale;
+    out.depth1[lane] = wk * scale;
+  }
+}
+
+struct Foot {
+  bool inside = false;  // the eye's foot is seen from this face
+  double x = 0;
+  double y = 0;
+  double depth = 0;  // w of S there
+
+  double on(Family family) const {
+    return family == Family::kColumns ? x : (family == Family::kRows ? y : x - y);
+  }
+  // As the posts of a lattice have it.
+  double height(const DepthPlane& plane, const ColumnEye& eye) const {
+    return (plane.w0 + plane.wx * x + plane.wy * y - depth) * eye.radius_m * eye.radius_m;
+  }
+};
+
+}  // namespace
+}  // namespace vpe::voxel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

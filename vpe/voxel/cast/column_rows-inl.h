@@ -1,0 +1,125 @@
+// Rows of a picture as vectors see them.
+#if defined(VPE_VOXEL_COLUMN_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VPE_VOXEL_COLUMN_ROWS_INL_H_
+#undef VPE_VOXEL_COLUMN_ROWS_INL_H_
+#else
+#define VPE_VOXEL_COLUMN_ROWS_INL_H_
+#endif
+
+// clang-format off
+#include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+// clang-format on
+
+#include "vpe/voxel/cast/columns.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// 1 / x to the last bit or two; x finite and not tiny.
+template <class D>
+hn::Vec<D> reciprocal(D d, hn::Vec<D> x) {
+  if constexpr (sizeof(hn::TFromD<D>) == 4) {
+    const auto guess = hn::ApproximateReciprocal(x);
+    // One step of Newton's method doubles its bits.
+    const auto error = hn::NegMulAdd(x, guess, hn::Set(d, 1.0F));
+    const auto better = hn::MulAdd(guess, error, guess);
+#if HWY_TARGET <= HWY_AVX3
+    return better;
+#else
+    return hn::MulAdd(better, hn::NegMulAdd(x, better, hn::Set(d, 1.0F)), better);
+#endif
+  } else {
+    return hn::Div(hn::Set(d, 1.0), x);
+  }
+}
+
+// Rows as vectors of D see them.
+template <class D, RowKind kKind>
+class RowModel {
+ public:
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  RowModel(const Rows& rows, const ColumnGroup& group, int lane0)
+      : rows_(rows), count_(hn::Set(D(), static_cast<T>(rows.count))) {
+    if constexpr (kKind == RowKind::kEven) {
+      centre_ = hn::Set(D(), static_cast<T>(rows.centre));
+      step_ = hn::Set(D(), static_cast<T>(rows.step));
+      per_step_ = hn::Set(D(), static_cast<T>(1.0 / rows.step));
+    }
+    if constexpr (kKind == RowKind::kFan) {
+      a0_ = load(group.fan_a0 + lane0);
+      a1_ = load(group.fan_a1 + lane0);
+      b0_ = load(group.fan_b0 + lane0);
+      b1_ = load(group.fan_b1 + lane0);
+    }
+  }
+
+  // row: whole numbers in [0, count].
+  V slope(V row) const {
+    const D d;
+    if constexpr (kKind == RowKind::kEven) return hn::Mul(hn::Sub(row, centre_), step_);
+    if constexpr (kKind == RowKind::kTable) return table(row);
+    if constexpr (kKind == RowKind::kFan) {
+      // Beyond the last row the direction may point anywhere.
+      const V last = hn::Min(row, hn::Sub(count_, hn::Set(d, T(1))));
+      return hn::Div(hn::MulAdd(a1_, last, a0_), hn::MulAdd(b1_, last, b0_));
+    }
+  }
+
+  // Rows whose slope is at most this one.
+  V count_up_to(V slope_now) const {
+    const D d;
+    const V one = hn::Set(d, T(1));
+    V n;
+    if constexpr (kKind == RowKind::kEven) {
+      n = hn::Add(hn::Floor(hn::MulAdd(slope_now, per_step_, centre_)), one);
+    } else if constexpr (kKind == RowKind::kFan) {
+      const V above = hn::NegMulAdd(slope_now, b1_, a1_);
+      const V row = hn::Div(hn::MulSub(slope_now, b0_, a0_), above);
+      n = hn::Add(hn::Floor(row), one);
+      n = hn::IfThenElse(hn::Le(above, hn::Zero(d)), count_, n);
+    } else {
+      const V first = hn::Set(d, static_cast<T>(rows_.first_elevation));
+      const V per = hn::Set(d, static_cast<T>(1.0 / rows_.elevation_step));
+      n = hn::Floor(hn::Mul(hn::Sub(hn::Atan(d, slope_now), first), per));
+      n = hn::Min(hn::Max(n, hn::Zero(d)), count_);
+      // The guess is within one row.
+      n = hn::IfThenElse(hn::Le(table(n), slope_now), hn::Add(n, one), n);
+      n = hn::Min(n, count_);
+      const V before = hn::Max(hn::Sub(n, one), hn::Zero(d));
+      n = hn::IfThenElse(hn::Gt(table(before), slope_now), before, n);
+    }
+    return hn::Min(n, count_);
+  }
+
+ private:
+  static V load(const double* from) {
+    T values[kMaxLanes];
+    for (std::size_t k = 0; k < hn::Lanes(D()); ++k) values[k] = static_cast<T>(from[k]);
+    return hn::LoadU(D(), values);
+  }
+  V table(V row) const {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    if constexpr (sizeof(T) == 4) {
+      return hn::GatherIndex(d, rows_.slope, hn::ConvertTo(di, row));
+    } else {
+      return hn::GatherIndex(d, rows_.slope_exact, hn::ConvertTo(di, row));
+    }
+  }
+
+  const Rows& rows_;
+  V count_;
+  V centre_, step_, per_step_;
+  V a0_, a1_, b0_, b1_;
+};
+
+}  // namespace
+}  // namespace vpe::voxel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,307 @@
+#include "vpe/voxel/cast/column_walk.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "mars/geodesy/cube.h"
+
+namespace vpe::voxel {
+
+namespace {
+
+// Of ends_.
+constexpr std::uint8_t kKnown = 1;
+constexpr std::uint8_t kYes = 2;
+constexpr std::uint8_t kUsed = 4;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// A cell of the quadtree in its face's chart.
+struct Cell {
+  double u0;
+  double u1;
+  double v0;
+  double v1;
+};
+
+// Steepest slope from the eye to anything within `radius_m` of the centre at central angles [near, far].
+double steepest(double radius_m, double distance_m, double near, double far) {
+  const auto slope = [&](double angle) {
+    const double sine = std::sin(angle);
+    const double rise = radius_m * std::cos(angle) - distance_m;
+    if (sine <= 0.0) return rise >= 0.0 ? kInfinite : -kInfinite;
+    return rise / (radius_m * sine);
+  };
+  if (radius_m >= distance_m) return slope(std::max(0.0, near));
+  const double limb = std::acos(radius_m / distance_m);
+  return slope(std::clamp(limb, std::max(0.0, near), std::min(far, std::acos(-1.0))));
+}
+
+}  // namespace
+
+ColumnWalk::ColumnWalk(const paging::Surface& surface, const ColumnEye& eye, double exaggeration,
+                       const CellRule& rule)
+    : surface_(surface),
+      tree_(surface.planet().tree()),
+      eye_(eye),
+      exaggeration_(exaggeration),
+      highest_m_(eye.radius_m + exaggeration * (surface.planet().meta().highest_radius_m - eye.radius_m)),
+      rule_(rule),
+      bounds_(tree_.size()),
+      ends_(tree_.size()) {
+  for (std::atomic<float>& bound : bounds_)
+    bound.store(std::numeric_limits<float>::quiet_NaN(), std::memory_order_relaxed);
+}
+
+ColumnWalk::Angles ColumnWalk::angles(lod::TileTree::Index tile) const {
+  const lod::TileKey& key = tree_[tile].key;
+  const auto line = [&](std::int32_t k) { return mars::face_line(k, key.level); };
+  const double u[2] = {line(key.i), line(key.i + 1)};
+  const double v[2] = {line(key.j), line(key.j + 1)};
+  // A cone about the tile.
+  const glm::dvec3 axis = mars::chart_direction(key.face, 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]));
+  double cosine = 1;
+  for (double x : u) {
+    for (double y : v) cosine = std::min(cosine, glm::dot(axis, mars::chart_direction(key.face, x, y)));
+  }
+  constexpr double kSlack = 1e-9;
+  const double opening = std::acos(std::clamp(cosine, -1.0, 1.0)) + kSlack;
+  const double angle = std::atan2(glm::length(glm::cross(eye_.up, axis)), glm::dot(eye_.up, axis));
+  return {std::max(0.0, angle - opening), angle + opening};
+}
+
+float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
+  const float known = bounds_[tile].load(std::memory_order_relaxed);
+  if (!std::isnan(known)) return known;
+  const Angles at = angles(tile);
+  const double top = (eye_.radius_m + exaggeration_ * tree_[tile].max_height_m) * (1 + 1e-12);
+  const double bound = steepest(top, eye_.distance_m, at.near, at.far);
+  // Upward to float.
+  const float rounded = std::nextafter(static_cast<float>(bound), std::numeric_limits<float>::infinity());
+  bounds_[tile].store(rounded, std::memory_order_relaxed);
+  return rounded;
+}
+
+// To the shell that the tile's posts lie in.
+double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
+  const lod::TileInfo& info = tree_[tile];
+  const double low = eye_.radius_m + exaggeration_ * info.min_height_m;
+  const double high = eye_.radius_m + exaggeration_ * info.max_height_m;
+  const double along = eye_.distance_m * std::cos(angles(tile).near);
+  const double radius = std::clamp(along, low, high);
+  return std::sqrt(std::max(0.0, eye_.distance_m * eye_.distance_m + radius * radius - 2 * radius * along));
+}
+
+double ColumnWalk::measured_error_m(lod::TileTree::Index tile) const {
+  const lod::TileInfo& info = tree_[tile];
+  if (!info.posts_terms.known()) return kInfinite;
+  return tree_.error_m(info, info.posts_terms.terms(), exaggeration_);
+}
+
+double ColumnWalk::in_picture_px(double error_m, lod::TileTree::Index tile) const {
+  return error_m * rule_.focal_px / least_distance_m(tile);
+}
+
+bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
+  const lod::TileInfo& info = tree_[tile];
+  if (!info.has_children) return true;
+  if (!(rule_.cell_px > 0)) return false;
+  const unsigned known = ends_[tile].load(std::memory_order_relaxed);
+  if ((known & kKnown) != 0) return (known & kYes) != 0;
+  const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
+  const bool fine = info.posts_terms.known()
+                        ? in_picture_px(measured_error_m(tile), tile) <= rule_.cell_px
+                        : spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
+  ends_[tile].fetch_or(static_cast<std::uint8_t>(fine ? kKnown | kYes : kKnown), std::memory_order_relaxed);
+  return fine;
+}
+
+void ColumnWalk::mark_used(lod::TileTree::Index tile) const {
+  if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0)
+    ends_[tile].fetch_or(kUsed, std::memory_order_relaxed);
+}
+
+ColumnWalk::Used ColumnWalk::used() const {
+  Used used;
+  for (lod::TileTree::Index tile = 0; tile < tree_.size(); ++tile) {
+    if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
+    const lod::TileInfo& info = tree_[tile];
+    const auto level = static_cast<std::size_t>(info.key.level);
+    if (used.tiles_by_level.size() <= level) used.tiles_by_level.resize(level + 1);
+    ++used.tiles_by_level[level];
+    if (!info.has_children) continue;
+    double error_m = measured_error_m(tile);
+    if (!std::isfinite(error_m)) {
+      // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
+      // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
+      // are up to sqrt(2) times the nominal spacing apart.
+      const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
+      const double reach = std::sqrt(2.0) * spacing;
+      const double sag = reach * reach / (4 * eye_.radius_m);
+      error_m = 2 * exaggeration_ * info.steepest_slope * reach + sag + tree_.edge_shift_m(info, exaggeration_);
+    }
+    used.error_m = std::max(used.error_m, error_m);
+    used.error_px = std::max(used.error_px, in_picture_px(error_m, tile));
+  }
+  return used;
+}
+
+void ColumnWalk::Used::add(const Used& other) {
+  tiles_by_level.resize(std::max(tiles_by_level.size(), other.tiles_by_level.size()));
+  for (std::size_t level = 0; level < other.tiles_by_level.size(); ++level)
+    tiles_by_level[level] = std::max(tiles_by_level[level], other.tiles_by_level[level]);
+  error_px = std::max(error_px, other.error_px);
+  error_m = std::max(error_m, other.error_m);
+}
+
+// One group on one face after the other.
+class GroupWalk : public LatticeSource {
+ public:
+  GroupWalk(const ColumnWalk& walk, const Rows& rows, LatticeShelf& shelf, ColumnGroup& group)
+      : walk_(walk), tree_(walk.tree_), rows_(rows), shelf_(shelf), group_(group) {}
+
+  void go(const glm::dvec3* azimuth) {
+    update_least_slope(rows_, group_);
+    // The face that the eye is above comes first, then as they are turned away (docs/rays.md).
+    std::array<int, mars::kFaces> order{};
+    for (int f = 0; f < mars::kFaces; ++f) order[static_cast<std::size_t>(f)] = f;
+    const auto turned = [&](int f) {
+      return glm::dot(walk_.eye_.up, mars::face_axes(static_cast<mars::Face>(f)).out);
+    };
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return turned(a) > turned(b); });
+    for (int f : order) {
+      const auto root = static_cast<lod::TileTree::Index>(f);
+      if (done() || hidden(root)) continue;
+      set_face(azimuth, static_cast<mars::Face>(f));
+      visit(root, {-1, 1, -1, 1});
+    }
+  }
+
+  const LatticeLines<float>& lines(Family family) override {
+    return shelf_.lattices(tile_, family).lines(part_i_, part_j_);
+  }
+  const LatticeLines<double>& exact_lines(Family family) override {
+    return shelf_.exact_lattices(tile_, family).lines(part_i_, part_j_);
+  }
+
+ private:
+  bool done() const { return !(group_.least_slope < kInfinite); }
+  bool hidden(lod::TileTree::Index tile) const {
+    return static_cast<double>(walk_.slope_bound(tile)) < group_.least_slope;
+  }
+
+  void set_face(const glm::dvec3* azimuth, mars::Face face) {
+    const mars::FaceAxes& axes = mars::face_axes(face);
+    const auto in_face = [&](const glm::dvec3& x) {
+      return glm::dvec3(glm::dot(x, axes.right), glm::dot(x, axes.up), glm::dot(x, axes.out));
+    };
+    up_ = in_face(walk_.eye_.up);
+    for (int lane = 0; lane < kMaxLanes; ++lane) {
+      const glm::dvec3 a = in_face(azimuth[std::min(lane, group_.columns - 1)]);
+      const glm::dvec3 n = glm::cross(a, up_);
+      for (int k = 0; k < 3; ++k) {
+        group_.azimuth[k][lane] = a[k];
+        group_.normal[k][lane] = n[k];
+      }
+    }
+    // The wedge between the first and the last column; none where it is no wedge.
+    const glm::dvec3 first = in_face(azimuth[0]);
+    const glm::dvec3 last = in_face(azimuth[group_.columns - 1]);
+    const glm::dvec3 middle = in_face(azimuth[group_.columns / 2]);
+    side_[0] = glm::cross(first, up_);
+    side_[1] = -glm::cross(last, up_);
+    if (glm::dot(side_[0], last) < 0) {
+      side_[0] = -side_[0];
+      side_[1] = -side_[1];
+    }
+    wedge_ = glm::dot(first, last) > 0.5 && glm::dot(first, middle) > 0.5;
+  }
+
+  bool outside(const Cell& cell) const {
+    if (!wedge_) return false;
+    const double u = 0.5 * (cell.u0 + cell.u1);
+    const double v = 0.5 * (cell.v0 + cell.v1);
+    const double du = cell.u1 - u;
+    const double dv = cell.v1 - v;
+    constexpr double kSlack = 1e-12;
+    for (const glm::dvec3& n : side_) {
+      if (n.x * u + n.y * v + n.z + std::abs(n.x) * du + std::abs(n.y) * dv < -kSlack) return true;
+    }
+    return false;
+  }
+
+  // The quarters of a cell from near to far: at each of its middle lines the side of the eye's foot is nearer.
+  template <typename Visit>
+  void quarters(const Cell& cell, double um, double vm, Visit&& visit_quarter) {
+    const bool east_first = up_.x - um * up_.z >= 0;
+    const bool north_first = up_.y - vm * up_.z >= 0;
+    for (int q = 0; q < 4; ++q) {
+      const bool east = ((q & 1) != 0) != east_first;
+      const bool north = ((q & 2) != 0) != north_first;
+      visit_quarter(east, north,
+                    Cell{east ? um : cell.u0, east ? cell.u1 : um, north ? vm : cell.v0, north ? cell.v1 : vm});
+    }
+  }
+
+  void visit(lod::TileTree::Index tile, const Cell& cell) {
+    if (done() || hidden(tile) || outside(cell)) return;
+    const lod::TileInfo& info = tree_[tile];
+    if (walk_.ends_at(tile)) {
+      tile_ = tile;
+      walk_.mark_used(tile);
+      const int per_side = lattices_per_side(info.key.level, tree_.shape().intervals());
+      visit_parts(cell, 0, 0, per_side, per_side);
+      return;
+    }
+    const lod::TileTree::Index first = tree_.first_child(tile);
+    const double um = walk_.middle_line(info.key.level, info.key.i);
+    const double vm = walk_.middle_line(info.key.level, info.key.j);
+    quarters(cell, um, vm, [&](bool east, bool north, const Cell& part) {
+      visit(first + (east ? 1U : 0U) + (north ? 2U : 0U), part);
+    });
+  }
+
+  // Lattices [i, i + size) x [j, j + size) of the tile at hand.
+  void visit_parts(const Cell& cell, int i, int j, int size, int per_side) {
+    if (done() || hidden(tile_) || outside(cell)) return;
+    if (size == 1) {
+      part_i_ = i;
+      part_j_ = j;
+      const int n = tree_.shape().intervals() / per_side;
+      const LatticeFrame frame{n, cell.u0, (cell.u1 - cell.u0) / n, cell.v0, (cell.v1 - cell.v0) / n};
+      walk_lattice(frame, *this, walk_.eye_, up_, rows_, group_);
+      update_least_slope(rows_, group_);
+      return;
+    }
+    const lod::TileKey& key = tree_[tile_].key;
+    const int half = size / 2;
+    const int parts_level = key.level + static_cast<int>(std::lround(std::log2(per_side)));
+    const double um = mars::face_line(std::int64_t{key.i} * per_side + i + half, parts_level);
+    const double vm = mars::face_line(std::int64_t{key.j} * per_side + j + half, parts_level);
+    quarters(cell, um, vm, [&](bool east, bool north, const Cell& part) {
+      visit_parts(part, east ? i + half : i, north ? j + half : j, half, per_side);
+    });
+  }
+
+  const ColumnWalk& walk_;
+  const lod::TileTree& tree_;
+  const Rows& rows_;
+  LatticeShelf& shelf_;
+  ColumnGroup& group_;
+  glm::dvec3 up_{0, 0, 1};
+  glm::dvec3 side_[2]{};
+  bool wedge_ = false;
+  lod::TileTree::Index tile_ = 0;
+  int part_i_ = 0;
+  int part_j_ = 0;
+};
+
+void ColumnWalk::cast(const glm::dvec3* azimuth, const Rows& rows, LatticeShelf& shelf,
+                      ColumnGroup& group) const {
+  GroupWalk(*this, rows, shelf, group).go(azimuth);
+}
+
+}  // namespace vpe::voxel

@@ -1,0 +1,77 @@
+#include "vpe/voxel/cast/facet_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "mars/geodesy/cube.h"
+
+namespace vpe::voxel {
+
+namespace {
+
+bool near(double x, int intervals) { return x > -kExactLines && x < intervals + kExactLines; }
+
+}  // namespace
+
+const Facets& FacetFinder::at(const glm::dvec3& place_m) {
+  const lod::TileTree& tree = walk_.tree();
+  const mars::ChartPoint place = mars::chart_point(place_m);
+  if (found_ && place.face == facets_.face) {
+    const LatticeFrame& f = facets_.frame;
+    const double x = (place.u - f.u0) / f.du;
+    const double y = (place.v - f.v0) / f.dv;
+    if (x >= 0 && x <= f.intervals && y >= 0 && y <= f.intervals) return facets_;
+  }
+  auto tile = static_cast<lod::TileTree::Index>(place.face);
+  // The cell at hand: (i, j) of 2^level a side.
+  double u0 = -1;
+  double u1 = 1;
+  double v0 = -1;
+  double v1 = 1;
+  int level = 0;
+  std::int32_t i = 0;
+  std::int32_t j = 0;
+  const auto halve = [&] {
+    const double u = walk_.middle_line(level, i);
+    const double v = walk_.middle_line(level, j);
+    const bool east = place.u >= u;
+    const bool north = place.v >= v;
+    (east ? u0 : u1) = u;
+    (north ? v0 : v1) = v;
+    i = 2 * i + (east ? 1 : 0);
+    j = 2 * j + (north ? 1 : 0);
+    ++level;
+    return (east ? 1U : 0U) + (north ? 2U : 0U);
+  };
+  while (!walk_.ends_at(tile)) tile = tree.first_child(tile) + halve();
+  const lod::TileKey& key = tree[tile].key;
+  const int per_side = lattices_per_side(key.level, tree.shape().intervals());
+  for (int k = 1; k < per_side; k *= 2) halve();
+  i -= key.i * per_side;
+  j -= key.j * per_side;
+  facets_.id = (std::uint64_t{tile} << 16) + static_cast<std::uint64_t>(j * per_side + i);
+  facets_.face = place.face;
+  LatticeFrame& f = facets_.frame;
+  f.intervals = tree.shape().intervals() / per_side;
+  f.u0 = u0;
+  f.du = (u1 - u0) / f.intervals;
+  f.v0 = v0;
+  f.dv = (v1 - v0) / f.intervals;
+  const mars::FaceAxes& axes = mars::face_axes(place.face);
+  const double z = glm::dot(walk_.eye().up, axes.out);
+  const bool exact = z > 0 && needs_exact(f, walk_.eye()) &&
+                     near((glm::dot(walk_.eye().up, axes.right) / z - f.u0) / f.du, f.intervals) &&
+                     near((glm::dot(walk_.eye().up, axes.up) / z - f.v0) / f.dv, f.intervals);
+  facets_.exact_lines = nullptr;
+  if (exact) {
+    facets_.family = Family::kColumns;
+    facets_.exact_lines = &shelf_.exact_lattices(tile, facets_.family).lines(i, j);
+  } else {
+    facets_.lines = &shelf_.any_lattices(tile, facets_.family).lines(i, j);
+  }
+  found_ = true;
+  return facets_;
+}
+
+}  // namespace vpe::voxel

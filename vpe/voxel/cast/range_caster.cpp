@@ -1,0 +1,153 @@
+#include "vpe/voxel/cast/range_caster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <vector>
+
+#include "vpe/voxel/cast/column_walk.h"
+#include "vpe/voxel/cast/fixed_step_marcher.h"
+#include "vpe/voxel/cast/column_batch.h"
+
+namespace vpe::voxel {
+
+namespace {
+
+constexpr double kSurfaceShare = 0.25;
+
+std::size_t share_of(std::size_t bytes, double share) {
+  return static_cast<std::size_t>(share * static_cast<double>(bytes));
+}
+
+// Tilt up to which a round picture's columns count as vertical: below a thousandth of a pixel.
+constexpr double kLevel = 1e-8;
+
+// Whether the picture's columns are vertical half-planes.
+bool upright(const core::View& view, const glm::dvec3& up) {
+  if (view.projection == core::Projection::kPerspective || glm::length(view.eye.axes.up - up) > kLevel)
+    return false;
+  if (view.projection == core::Projection::kCylinder) return true;
+  // Rows beyond the zenith or the nadir look backward.
+  const core::SubRectangle part = core::drawn_part(view);
+  const double middle = 0.5 * view.height + view.principal_offset_px.y;
+  const double highest = (middle - part.y - 0.5) / core::focal_px(view);
+  const double lowest = (middle - part.y - part.height + 0.5) / core::focal_px(view);
+  constexpr double kQuarter = 1.5707963267948966;
+  return highest < kQuarter && lowest > -kQuarter;
+}
+
+// Larger pictures are written past the caches.
+constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
+
+// Rows of a round picture from its lowest one, with their tables.
+struct PictureRows {
+  Rows rows;
+  std::vector<double> exact;
+  std::vector<float> rounded;
+  std::vector<float> length;
+};
+
+PictureRows picture_rows(const core::View& view, const core::SubRectangle& part) {
+  PictureRows p;
+  p.rows.count = part.height;
+  const auto finish = [&] {
+    for (int r = 0; r < part.height; ++r) {
+      const double slope =
+          p.exact.empty() ? (r - p.rows.centre) * p.rows.step : p.exact[static_cast<std::size_t>(r)];
+      p.length.push_back(static_cast<float>(std::hypot(1.0, slope)));
+    }
+    p.rows.length = p.length.data();
+  };
+  const double centre_y = 0.5 * view.height + view.principal_offset_px.y;
+  const double lowest = centre_y - (part.y + part.height - 0.5);  // of row 0, upward from the principal row
+  const double focal = core::focal_px(view);
+  if (view.projection == core::Projection::kCylinder) {
+    p.rows.kind = RowKind::kEven;
+    p.rows.centre = -lowest;
+    p.rows.step = 1.0 / focal;
+    finish();
+    return p;
+  }
+  p.rows.kind = RowKind::kTable;
+  p.rows.first_elevation = lowest / focal;
+  p.rows.elevation_step = 1.0 / focal;
+  // A row that looks straight up or down still has a slope.
+  constexpr double kSteepest = 1e12;
+  for (int r = 0; r < part.height; ++r)
+    p.exact.push_back(std::clamp(std::tan((lowest + r) / focal), -kSteepest, kSteepest));
+  p.exact.push_back(std::numeric_limits<double>::infinity());
+  p.rounded.assign(p.exact.begin(), p.exact.end());
+  p.rows.slope = p.rounded.data();
+  p.rows.slope_exact = p.exact.data();
+  finish();
+  return p;
+}
+
+}  // namespace
+
+RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
+    : surface_(planet, share_of(budget_bytes, kSurfaceShare)),
+      store_(planet, share_of(budget_bytes, 1.0 - kSurfaceShare)) {}
+
+ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
+                                   std::span<float> range_m, FanCaster& fans) const {
+  const double distance = glm::length(view.eye.eye_m);
+  if (distance > 0 && options.method != RangeOptions::Method::kEach) {
+    const glm::dvec3 up = view.eye.eye_m / distance;
+    const ColumnEye eye{up, distance, surface_.planet_radius_m(),
+                        surface_.at(up, options.exaggeration).radius_m};
+    const bool round = upright(view, up);
+    const bool plain = options.method == RangeOptions::Method::kPlain;
+    if (eye.distance_m > eye.ground_m &&
+        (plain || round || view.projection == core::Projection::kPerspective)) {
+      const ColumnWalk walk(surface_, eye, options.exaggeration, {options.cell_px, core::focal_px(view)});
+      Desks desks(store_, options.exaggeration);
+      if (plain) {
+        cast_plain(view, walk, desks, pool, range_m);
+      } else if (round) {
+        cast_upright(view, walk, desks, pool, range_m);
+      } else {
+        fans.cast(view, walk, desks, surface_, options.exaggeration, options.cell_px == 0, pool, range_m);
+      }
+      return walk.used();
+    }
+  }
+  cast_each(view, options.exaggeration, pool, range_m);
+  return {};
+}
+
+void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, Desks& desks,
+                               base::ThreadPool& pool, std::span<float> range_m) const {
+  const core::SubRectangle part = core::drawn_part(view);
+  const PictureRows picture = picture_rows(view, part);
+  const double level_y = 0.5 * view.height + view.principal_offset_px.y;
+  const glm::dvec3& up = walk.eye().up;
+  Sheet sheet;
+  sheet.rows = picture.rows;
+  sheet.columns = part.width;
+  sheet.stride = -static_cast<std::ptrdiff_t>(part.width);
+  sheet.out = range_m.data() - sheet.stride * (part.height - 1);
+  sheet.stream = range_m.size_bytes() > kCachedBytes;
+  sheet.set_column = [&](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+    const glm::dvec3 ray = core::pixel_ray(view, part.x + column + 0.5, level_y);
+    azimuth = glm::normalize(ray - glm::dot(ray, up) * up);
+    group.row_end[lane] = static_cast<float>(part.height);
+  };
+  cast_sheets({&sheet, 1}, walk, desks, pool);
+}
+
+void RangeCaster::cast_each(const core::View& view, double exaggeration, base::ThreadPool& pool,
+                            std::span<float> range_m) const {
+  const core::SubRectangle part = core::drawn_part(view);
+  pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
+    const auto width = static_cast<std::size_t>(part.width);
+    for (std::size_t x = 0; x < width; ++x) {
+      const glm::dvec3 ray =
+          core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);
+      range_m[row * width + x] = static_cast<float>(surface_.cast(view.eye.eye_m, ray, exaggeration));
+    }
+  });
+}
+
+}  // namespace vpe::voxel

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+
+#include "vpe/voxel/cast/refine.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vpe/voxel/cast/refine_kernel.cpp"
+// clang-format off
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+// clang-format on
+
+#include "vpe/voxel/cast/refine_facets-inl.h"
+#include "vpe/voxel/cast/refine_hints-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Hints farther apart than this share of the nearer one are not taken for one surface.
+constexpr double kApart = 0.04;
+
+using FloatTag = hn::CappedTag<float, 16>;
+using DoubleTag = hn::CappedTag<double, 8>;
+
+// Both kinds of lattices for a vector of floats.
+class PixelRefiner {
+ public:
+  using V = hn::Vec<FloatTag>;
+  using M = hn::Mask<FloatTag>;
+
+  PixelRefiner(const RayRow& row, FacetSource& source, FacetSource& exact_source)
+      : floats_(row, source), doubles_(row, exact_source) {}
+
+  void set_rays(int k) {
+    first_ = k;
+    floats_.set_rays(k);
+  }
+
+  M refine(M todo, V low, V high, V& t) {
+    const FloatTag d;
+    const M found = floats_.refine(todo, low, high, t);
+    const M left = floats_.not_here();
+    if (HWY_LIKELY(hn::AllFalse(d, left))) return found;
+    const DoubleTag dd;
+    alignas(64) float marks[16];
+    alignas(64) float lows[16];
+    alignas(64) float highs[16];
+    alignas(64) float ts[16];
+    const V one = hn::Set(d, 1.0F);
+    const V zero = hn::Zero(d);
+    hn::Store(hn::IfThenElse(left, one, zero), d, marks);
+    hn::Store(low, d, lows);
+    hn::Store(high, d, highs);
+    hn::Store(t, d, ts);
+    const std::size_t step = hn::Lanes(dd);
+    alignas(64) double part[4][8];
+    for (std::size_t lane = 0; lane < hn::Lanes(d); lane += step) {
+      for (std::size_t k = 0; k < step; ++k) {
+        part[0][k] = static_cast<double>(marks[lane + k]);
+        part[1][k] = static_cast<double>(lows[lane + k]);
+        part[2][k] = static_cast<double>(highs[lane + k]);
+        part[3][k] = static_cast<double>(ts[lane + k]);
+      }
+      const auto wanted = hn::Gt(hn::Load(dd, part[0]), hn::Zero(dd));
+      if (hn::AllFalse(dd, wanted)) continue;
+      doubles_.set_rays(first_ + static_cast<int>(lane));
+      auto at = hn::Load(dd, part[3]);
+      const auto met = doubles_.refine(wanted, hn::Load(dd, part[1]), hn::Load(dd, part[2]), at);
+      hn::Store(at, dd, part[3]);
+      hn::Store(hn::IfThenElse(met, hn::Set(dd, 2.0), hn::Load(dd, part[0])), dd, part[0]);
+      for (std::size_t k = 0; k < step; ++k) {
+        marks[lane + k] = static_cast<float>(part[0][k]);
+        if (marks[lane + k] == 2.0F) ts[lane + k] = static_cast<float>(part[3][k]);
+      }
+    }
+    t = hn::Load(d, ts);
+    return hn::Or(found, hn::Eq(hn::Load(d, marks), hn::Set(d, 2.0F)));
+  }
+
+ private:
+  int first_ = 0;
+  RowRefiner<FloatTag> floats_;
+  RowRefiner<DoubleTag> doubles_;
+};
+
+void RefineRow(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
+               FacetSource& exact_source, float* range, std::vector<int>& open) {
+  const FloatTag d;
+  using V = hn::Vec<FloatTag>;
+  using M = hn::Mask<FloatTag>;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  PixelRefiner refiner(row, source, exact_source);
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0F);
+  const V inf = hn::Set(d, std::numeric_limits<float>::infinity());
+  const V apart = hn::Set(d, static_cast<float>(kApart));
+  alignas(64) float some[3][16];
+  for (int k = 0; k < row.count; k += lanes) {
+    const int used = std::min(lanes, row.count - k);
+    const auto load = [&](const float* from, float* room, float rest) {
+      if (used == lanes) return hn::LoadU(d, from + k);
+      std::fill_n(room, lanes, rest);
+      std::copy_n(from + k, used, room);
+      return hn::Load(d, room);
+    };
+    const V ha = load(a, some[0], std::numeric_limits<float>::infinity());
+    const V hb = load(b, some[1], std::numeric_limits<float>::infinity());
+    const V part = load(share, some[2], 0.0F);
+    const V near = hn::Min(ha, hb);
+    const V far = hn::Max(ha, hb);
+    const M sky = hn::Eq(near, inf);
+    if (hn::AllTrue(d, sky)) {
+      std::fill_n(range + k, used, std::numeric_limits<float>::infinity());
+      continue;
+    }
+    refiner.set_rays(k);
+    const V reach = hn::Mul(near, apart);
+    const M close = hn::Le(hn::Sub(far, near), reach);
+    // On one facet the inverse range is all but even from sample to sample.
+    const V inverse = hn::MulAdd(part, hn::Sub(hn::Div(one, hb), hn::Div(one, ha)), hn::Div(one, ha));
+    // Between two surfaces the nearer one comes first.
+    V t = hn::IfThenElse(close, hn::Div(one, inverse), near);
+    const V high = hn::IfThenElse(close, hn::Add(far, reach), hn::Add(near, reach));
+    M found = refiner.refine(hn::Not(sky), hn::Sub(near, reach), high, t);
+    // Rough ground may lead astray from between two samples; a sample's own facet faces the eye.
+    for (const V& start : {near, far}) {
+      const M again = hn::And(close, hn::Not(hn::Or(found, sky)));
+      if (hn::AllFalse(d, again)) break;
+      V other = start;
+      const M met = refiner.refine(again, hn::Sub(near, reach), high, other);
+      t = hn::IfThenElse(met, other, t);
+      found = hn::Or(found, met);
+    }
+    // A ray that misses it meets the farther one, if that is not the sky.
+    const M missed = hn::Not(hn::Or(found, hn::Or(sky, close)));
+    V seen = hn::IfThenElse(found, t, near);
+    M done = hn::Or(found, sky);
+    if (!hn::AllFalse(d, missed)) {
+      const M open_sky = hn::And(missed, hn::Eq(far, inf));
+      const M beyond = hn::AndNot(open_sky, missed);
+      V behind = far;
+      const V slack = hn::Mul(far, apart);
+      const M met = refiner.refine(beyond, hn::Sub(far, slack), hn::Add(far, slack), behind);
+      seen = hn::IfThenElse(met, behind, hn::IfThenElse(open_sky, inf, seen));
+      done = hn::Or(done, hn::Or(met, open_sky));
+    }
+    if (used == lanes) {
+      hn::StoreU(seen, d, range + k);
+    } else {
+      hn::Store(seen, d, some[0]);
+      std::copy_n(some[0], used, range + k);
+    }
+    if (!hn::AllTrue(d, done)) {
+      hn::Store(hn::IfThenElse(done, zero, one), d, some[0]);
+      for (int lane = 0; lane < used; ++lane) {
+        if (some[0][lane] != 0) open.push_back(k + lane);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vpe::voxel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vpe::voxel {
+
+HWY_EXPORT(RefineRow);
+HWY_EXPORT(HintsFromRow);
+HWY_EXPORT(HintsFromColumns);
+
+void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
+                FacetSource& exact_source, float* range, std::vector<int>& open) {
+  HWY_DYNAMIC_DISPATCH(RefineRow)(row, a, b, share, source, exact_source, range, open);
+}
+void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
+                    float* b, float* share) {
+  HWY_DYNAMIC_DISPATCH(HintsFromRow)(samples, sample_count, first, step, count, a, b, share);
+}
+void hints_from_columns(const float* samples, int lines, const float* stretch, const float* shift, float y,
+                        int count, float* a, float* b, float* share) {
+  HWY_DYNAMIC_DISPATCH(HintsFromColumns)(samples, lines, stretch, shift, y, count, a, b, share);
+}
+
+}  // namespace vpe::voxel
+#endif

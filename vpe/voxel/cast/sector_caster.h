@@ -1,0 +1,33 @@
+// Range pictures of perspective views.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "paging/surface/surface.h"
+#include "vpe/base/parallel.h"
+#include "vpe/core/view.h"
+#include "vpe/voxel/cast/view_sector.h"
+#include "vpe/voxel/cast/column_batch.h"
+
+namespace vpe::voxel {
+
+// Casts fans of columns, then meets each pixel's own ray with the facet at its nearest samples. Where these
+// belong to different surfaces (ridges, the skyline) the ray is cast by itself: against S, if `exact`, else in
+// steps over the walk's lattices. One caller at a time.
+class FanCaster {
+ public:
+  void cast(const core::View& view, const ColumnWalk& walk, Desks& desks, const paging::Surface& surface,
+            double exaggeration, bool exact, base::ThreadPool& pool, std::span<float> range_m);
+
+  std::size_t bytes() const;
+
+ private:
+  void cast_fans(const FanPlan& plan, const ColumnWalk& walk, Desks& desks, base::ThreadPool& pool);
+  void find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, int first_pixel, int last_pixel,
+                  float* a, float* b, float* share) const;
+
+  std::vector<std::vector<float>> samples_;  // of the last picture's fans, by step
+};
+
+}  // namespace vpe::voxel

@@ -1,0 +1,56 @@
+#include "vpe/voxel/downsampled_view.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/ext/scalar_constants.hpp>
+
+namespace vpe::voxel {
+
+core::View thin_view(const core::View& view, int times) {
+  const auto fewer = [&](int pixels) { return (pixels + times - 1) / times; };
+  core::View thin = view;
+  thin.width = fewer(view.width);
+  thin.height = fewer(view.height);
+  // The principal point stays where it is in the picture, and so does what a pixel is worth.
+  const glm::dvec2 principal = glm::dvec2(view.width, view.height) * 0.5 + view.principal_offset_px;
+  thin.principal_offset_px = principal / static_cast<double>(times) - 0.5 * glm::dvec2(thin.width, thin.height);
+  if (view.projection == core::Projection::kEquirectangular) {
+    thin.fov_deg = std::min(180.0, view.fov_deg * thin.height * times / view.height);
+  } else {
+    const double half = std::tan(view.fov_deg * glm::pi<double>() / 360.0);
+    thin.fov_deg = std::min(core::ViewLimits::kMaxFov_deg,
+                            std::atan(half * thin.height * times / view.height) * 360.0 / glm::pi<double>());
+  }
+  if (view.part.width > 0) {
+    thin.part.x = view.part.x / times;
+    thin.part.y = view.part.y / times;
+    thin.part.width = std::min(fewer(view.part.x + view.part.width), thin.width) - thin.part.x;
+    thin.part.height = std::min(fewer(view.part.y + view.part.height), thin.height) - thin.part.y;
+  }
+  return thin;
+}
+
+bool same_view(const core::View& a, const core::View& b) {
+  const auto numbers = [](const core::View& v) {
+    const mars::EyePose& e = v.eye;
+    std::array<double, 15> all{};
+    std::size_t n = 0;
+    for (const glm::dvec3& x : {e.eye_m, e.axes.right, e.axes.up, e.axes.forward}) {
+      for (int k = 0; k < 3; ++k) all[n++] = x[k];
+    }
+    all[n++] = v.fov_deg;
+    all[n++] = v.principal_offset_px.x;
+    all[n++] = v.principal_offset_px.y;
+    return std::bit_cast<std::array<std::uint64_t, 15>>(all);
+  };
+  const auto whole = [](const core::View& v) {
+    return std::array<int, 7>{
+        static_cast<int>(v.projection), v.width, v.height, v.part.x, v.part.y, v.part.width, v.part.height};
+  };
+  return whole(a) == whole(b) && numbers(a) == numbers(b);
+}
+
+}  // namespace vpe::voxel

@@ -1,0 +1,181 @@
+#include "vpe/voxel/paint/image_painter.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <mutex>
+#include <unordered_set>
+#include <vector>
+
+#include "vpe/voxel/paint/paint_job.h"
+
+namespace vpe::voxel {
+
+namespace {
+
+// Of the budget: what threads hold on to while they paint. The caches have the rest, and in it mostly what
+// every picture takes again: heights are looked at only when tiles are new.
+constexpr double kHeldShare = 0.15;
+constexpr paging::PaintShares kShares{.surface = 0.1, .heights = 0.2, .normals = 0.45, .images = 0.25};
+
+// Rows a thread takes at a time.
+constexpr int kBand = 16;
+
+std::size_t share(double part, std::size_t budget) {
+  return static_cast<std::size_t>(part * static_cast<double>(budget));
+}
+
+// Squares at hand, given to whoever paints a band and taken back after it.
+class TilesOfThreads {
+ public:
+  template <typename Make>
+  std::unique_ptr<PaintTiles> take(Make&& make) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        auto tiles = std::move(idle_.back());
+        idle_.pop_back();
+        return tiles;
+      }
+    }
+    return make();
+  }
+  void give(std::unique_ptr<PaintTiles> tiles) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(tiles));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<PaintTiles>> idle_;
+};
+
+// Tiles up to so many bytes.
+class HeldTiles {
+ public:
+  explicit HeldTiles(std::size_t limit_bytes) : limit_(limit_bytes) {}
+  // False when it is one too many.
+  bool add(const void* tile, std::size_t bytes) {
+    if (held_.insert(tile).second) bytes_ += bytes;
+    return bytes_ <= limit_;
+  }
+
+ private:
+  std::size_t limit_;
+  std::size_t bytes_ = 0;
+  std::unordered_set<const void*> held_;
+};
+
+bool by_point(const paging::ShadeParams& look) {
+  return look.flat || look.surfacing == paging::Surfacing::kImageAtPosts;
+}
+
+bool is_one_colour(const paging::ShadeParams& look, const paging::PlanetFile& planet) {
+  const PaintNeeds needs = paint_needs(look);
+  if (by_point(look) || needs.posts || needs.image) return false;
+  for (int face = 0; face < mars::kFaces; ++face) {
+    if (planet.has_missing({static_cast<mars::Face>(face), 0, 0, 0})) return false;
+  }
+  return true;
+}
+
+// Several rays a pixel are coloured as finely as they lie apart.
+double rays_per_radian(const core::DrawRequest& request) {
+  return core::focal_px(request.view) * std::sqrt(static_cast<double>(request.settings.samples));
+}
+
+// Where rays are as far apart as the posts of level 0.
+double root_range(const paging::PlanetFile& planet, const core::DrawRequest& request) {
+  return lod::nominal_side_m(0, planet.radius_m()) / planet.meta().tile.intervals() * rays_per_radian(request);
+}
+
+}  // namespace
+
+PicturePainter::PicturePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
+    : planet_(std::move(planet)),
+      budget_(budget_bytes),
+      painter_(planet_, share(1 - kHeldShare, budget_bytes), kShares) {}
+
+void PicturePainter::set_look(const core::DrawRequest& request) {
+  const core::Appearance& appearance = request.settings;
+  const bool has_image = planet_->meta().finest_image_level >= 0;
+  if (!paging::needs_scale(appearance, has_image)) {
+    scale_ = nullptr;
+  } else if (!scale_ || scale_of_ != appearance) {
+    scale_ = std::make_shared<const core::ColourScale>(appearance);
+    table_ = scale_table(*scale_);
+    scale_of_ = appearance;
+  }
+  look_ = paging::shade_params(appearance, request.sun, has_image, scale_);
+}
+
+std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
+                                   std::span<base::Rgb> colour, std::span<float> inverse_depth,
+                                   base::ThreadPool& pool) {
+  set_look(request);
+  const glm::ivec2 size = core::drawn_size(request.view);
+  PaintJob job;
+  job.request = &request;
+  job.painter = &painter_;
+  job.look = &look_;
+  job.scale = look_.scale ? &table_ : nullptr;
+  job.rays = ray_rows(request.view);
+  job.radius_m = planet_->radius_m();
+  job.focal_px = rays_per_radian(request);
+  job.root_range_m = root_range(*planet_, request);
+  job.posts_side = planet_->meta().tile.posts();
+  job.by_point = by_point(look_);
+  job.one_colour = is_one_colour(look_, *planet_);
+  job.eye_radius_m = glm::length(request.view.eye.eye_m);
+  if (job.eye_radius_m > 0.0) job.up = request.view.eye.eye_m / job.eye_radius_m;
+  job.width = size.x;
+  job.height = size.y;
+  job.range_m = range_m.data();
+  job.colour = colour.data();
+  job.inverse_depth = inverse_depth.empty() ? nullptr : inverse_depth.data();
+
+  const auto bands = static_cast<std::size_t>((size.y + kBand - 1) / kBand);
+  std::atomic<std::int64_t> without_data{0};
+  TilesOfThreads tiles_of_threads;
+  pool.run(bands, [&](std::size_t band) {
+    auto tiles = tiles_of_threads.take([&] {
+      return std::make_unique<PaintTiles>(*planet_, painter_, look_,
+                                          share(kHeldShare / pool.threads(), budget_));
+    });
+    const int begin = static_cast<int>(band) * kBand;
+    without_data += paint_rows(job, *tiles, begin, std::min(begin + kBand, size.y));
+    tiles_of_threads.give(std::move(tiles));
+  });
+  return without_data;
+}
+
+void PicturePainter::read_ahead(const core::DrawRequest& request, const core::View& thin,
+                                std::span<const float> range_m, const base::ThreadPool& pool) const {
+  const bool has_image = planet_->meta().finest_image_level >= 0;
+  // No tile depends on the scale of colours.
+  const paging::ShadeParams look = paging::shade_params(request.settings, request.sun, has_image, nullptr);
+  if (by_point(look)) return;
+  constexpr double kPart = 0.5 * (1 - kHeldShare);
+  PaintTiles tiles(*planet_, painter_, look, budget_);
+  HeldTiles ground(share(kPart * kShares.normals, budget_));
+  HeldTiles images(share(kPart * kShares.images, budget_));
+  const double root_range_m = root_range(*planet_, request);
+  const core::SubRectangle part = core::drawn_part(thin);
+  std::size_t at = 0;
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x, ++at) {
+      const auto range = static_cast<double>(range_m[at]);
+      if (!std::isfinite(range) || !(range > 0.0)) continue;
+      if (pool.is_stopped()) return;
+      const glm::dvec3 ray = core::pixel_ray(thin, part.x + x + 0.5, part.y + y + 0.5);
+      const int level = static_cast<int>(std::ceil(std::log2(root_range_m / range)));
+      const PaintTile& tile = tiles.find(thin.eye.eye_m + range * ray, std::clamp(level, 0, tiles.max_level()));
+      if (tile.ground && !ground.add(tile.ground.get(), tile.ground->bytes())) return;
+      if (tile.image && !images.add(tile.image.get(), tile.image->texels.capacity() * sizeof(base::Rgb)))
+        return;
+    }
+  }
+}
+
+}  // namespace vpe::voxel

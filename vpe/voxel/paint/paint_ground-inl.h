@@ -1,0 +1,238 @@
+// Colours of the ground of a block: posts and texels of its tiles, and the look over them.
+#if defined(VPE_VOXEL_PAINT_GROUND_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VPE_VOXEL_PAINT_GROUND_INL_H_
+#undef VPE_VOXEL_PAINT_GROUND_INL_H_
+#else
+#define VPE_VOXEL_PAINT_GROUND_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstring>
+
+#include "vpe/voxel/paint/paint_block-inl.h"
+#include "vpe/voxel/paint/paint_shading-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel {
+namespace HWY_NAMESPACE {
+
+// Four floats of a post or texel at once: vector gathers are slower on many machines.
+using Fours = hn::CappedTag<float, 4>;
+
+struct alignas(64) Chart {
+  double u[kBlock], v[kBlock];
+};
+
+constexpr int kTexels = paging::kImageIntervals + 1;
+
+struct alignas(64) Shares {
+  float x[kBlock], y[kBlock];  // of a square's sides
+};
+
+// Chart coordinates on the tile's face; beyond any square's where the place is on the other side.
+inline HWY_NOINLINE void set_chart(const PaintTile& tile, const Block& block, Chart& chart) {
+  const Doubles d;
+  const double* const p[3] = {block.place[tile.axis[0]], block.place[tile.axis[1]], block.place[tile.axis[2]]};
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+    const auto out = hn::Mul(hn::Load(d, p[2] + i), hn::Set(d, tile.sign[2]));
+    const auto before = hn::Gt(out, hn::Zero(d));
+    const auto per = inverse(d, hn::IfThenElse(before, out, hn::Set(d, 1.0)));
+    const auto far = hn::Set(d, 1e6);
+    const auto u = hn::Mul(hn::Mul(hn::Load(d, p[0] + i), hn::Set(d, tile.sign[0])), per);
+    const auto v = hn::Mul(hn::Mul(hn::Load(d, p[1] + i), hn::Set(d, tile.sign[1])), per);
+    hn::Store(hn::IfThenElse(before, u, far), d, chart.u + i);
+    hn::Store(hn::IfThenElse(before, v, far), d, chart.v + i);
+  }
+}
+
+// Bits of the pixels whose places and levels are the square's.
+inline HWY_NOINLINE std::uint32_t inside(const PaintTile& tile, const Block& block, const Chart& chart,
+                                         Shares& at) {
+  const Doubles dd;
+  const Halves dh;
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
+    const auto u = hn::Mul(hn::Sub(hn::Load(dd, chart.u + i), hn::Set(dd, tile.u0)), hn::Set(dd, tile.per_u));
+    const auto v = hn::Mul(hn::Sub(hn::Load(dd, chart.v + i), hn::Set(dd, tile.v0)), hn::Set(dd, tile.per_v));
+    hn::Store(hn::DemoteTo(dh, u), dh, at.x + i);
+    hn::Store(hn::DemoteTo(dh, v), dh, at.y + i);
+  }
+  const Floats d;
+  const Ints di;
+  const auto one = hn::Set(d, 1.0F);
+  std::uint32_t bits = 0;
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+    const auto x = hn::Load(d, at.x + i);
+    const auto y = hn::Load(d, at.y + i);
+    const auto low = hn::And(hn::Ge(x, hn::Zero(d)), hn::Ge(y, hn::Zero(d)));
+    const auto high = hn::And(hn::Lt(x, one), hn::Lt(y, one));
+    const auto level = hn::Eq(hn::Load(di, block.level + i), hn::Set(di, tile.level));
+    bits |= bits_of(d, hn::And(hn::And(low, high), hn::RebindMask(d, level)), i);
+  }
+  return bits;
+}
+
+// Where some pixels lie in a grid of `side` lines with `step` values a corner. Asks the memory for it: by the
+// time that the block is painted it is there.
+template <class T>
+inline HWY_NOINLINE void find_sources(const Shares& at, const WindowAxis& across, const WindowAxis& up,
+                                      const T* grid, int side, std::size_t step, std::uint32_t pixels,
+                                      Sources<T>& out) {
+  const Floats d;
+  const Ints di;
+  const auto zero = hn::Zero(d);
+  const auto last = hn::Set(d, static_cast<float>(side - 1));
+  const auto before_last = hn::Set(d, static_cast<float>(side - 2));
+  alignas(64) std::int32_t index[kBlock];
+  alignas(64) float x_in[kBlock];
+  alignas(64) float y_in[kBlock];
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+    const auto x_line =
+        hn::Add(hn::Set(d, across.first), hn::Mul(hn::Load(d, at.x + i), hn::Set(d, across.span)));
+    const auto y_line = hn::Add(hn::Set(d, up.first), hn::Mul(hn::Load(d, at.y + i), hn::Set(d, up.span)));
+    // Cut to the grid, so that pixels of other squares do no harm.
+    const auto x = hn::Min(hn::Max(x_line, zero), last);
+    const auto y = hn::Min(hn::Max(y_line, zero), last);
+    const auto column = hn::Min(hn::Trunc(x), before_last);
+    const auto row = hn::Min(hn::Trunc(y), before_last);
+    hn::Store(hn::Sub(x, column), d, x_in + i);
+    hn::Store(hn::Sub(y, row), d, y_in + i);
+    const auto corner = hn::Add(hn::Mul(row, hn::Set(d, static_cast<float>(side))), column);
+    hn::Store(hn::ConvertTo(di, corner), di, index + i);
+  }
+  const std::size_t up_one = step * static_cast<std::size_t>(side);
+  for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const T* const corner = grid + step * static_cast<std::size_t>(index[i]);
+    __builtin_prefetch(corner);
+    __builtin_prefetch(corner + up_one);
+    out.at[i] = corner;
+    out.x[i] = x_in[i];
+    out.y[i] = y_in[i];
+  }
+}
+
+// Straight between four corners.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V between(D d, V south_west, V south_east, V north_west, V north_east, float x, float y) {
+  const V across = hn::Set(d, x);
+  const V south = hn::Add(south_west, hn::Mul(across, hn::Sub(south_east, south_west)));
+  const V north = hn::Add(north_west, hn::Mul(across, hn::Sub(north_east, north_west)));
+  return hn::Add(south, hn::Mul(hn::Set(d, y), hn::Sub(north, south)));
+}
+
+inline HWY_NOINLINE void take_posts(std::size_t side, Block& block) {
+  const Fours d;
+  for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const float* const south = block.posts.at[i];
+    const float* const north = south + 4 * side;
+    for (std::size_t c = 0; c < 4; c += hn::Lanes(d))
+      hn::Store(between(d, hn::LoadU(d, south + c), hn::LoadU(d, south + 4 + c), hn::LoadU(d, north + c),
+                        hn::LoadU(d, north + 4 + c), block.posts.x[i], block.posts.y[i]),
+                d, block.post[i] + c);
+  }
+}
+
+inline HWY_NOINLINE void take_texels(Block& block) {
+  static_assert(std::endian::native == std::endian::little);
+  const Fours d;
+  const hn::Rebind<std::int32_t, Fours> di;
+  const hn::Rebind<std::uint8_t, Fours> du;
+  const auto texel = [&](const std::uint8_t* at, std::size_t c)
+                         HWY_ATTR { return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(du, at + c))); };
+  for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const std::uint8_t* const south = block.texels.at[i];
+    const std::uint8_t* const north = south + 3 * kTexels;
+    // Four bytes are loaded, and after the last texel there is none: the fourth is the one before.
+    std::uint32_t last;
+    std::memcpy(&last, north + 2, sizeof last);
+    last >>= 8;
+    std::uint8_t north_east[4];
+    std::memcpy(north_east, &last, sizeof last);
+    for (std::size_t c = 0; c < 4; c += hn::Lanes(d))
+      hn::Store(between(d, texel(south, c), texel(south + 3, c), texel(north, c), texel(north_east, c),
+                        block.texels.x[i], block.texels.y[i]),
+                d, block.texel[i] + c);
+  }
+}
+
+// Pixels whose nearest post has no data; shares of the sun that is seen.
+inline HWY_NOINLINE void take_rest(const paging::NormalTile& tile, std::uint32_t pixels, Block& block) {
+  const auto side = static_cast<std::size_t>(tile.side);
+  for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const auto at = static_cast<std::size_t>(block.posts.at[i] - &tile.posts.data()->normal.x) / 4;
+    const float x = block.posts.x[i], y = block.posts.y[i];
+    if (!tile.missing.empty()) {
+      const std::size_t nearest = at + (x >= 0.5F ? 1 : 0) + (y >= 0.5F ? side : 0);
+      if (tile.missing[nearest]) block.missing |= std::uint32_t{1} << i;
+    }
+    if (!tile.sees_sun.empty()) {
+      const auto seen = [&](std::size_t k) { return static_cast<float>(tile.sees_sun[at + k]); };
+      const float south = seen(0) * (1 - x) + seen(1) * x;
+      const float north = seen(side) * (1 - x) + seen(side + 1) * x;
+      block.sun[i] = south * (1 - y) + north * y;
+    }
+  }
+}
+
+// Finds where the block's colours come from. `tile` is what was used last, or null.
+inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block& block) {
+  Chart chart;
+  int charted = tile == nullptr ? -1 : static_cast<int>(tile->face);
+  if (tile != nullptr) set_chart(*tile, block, chart);
+  Shares at;
+  for (std::uint32_t left = block.ground; left != 0;) {
+    std::uint32_t here = tile == nullptr ? 0 : inside(*tile, block, chart, at) & left;
+    if (here == 0) {
+      const int i = __builtin_ctz(left);
+      tile = &tiles.find({block.place[0][i], block.place[1][i], block.place[2][i]}, block.level[i]);
+      if (charted != static_cast<int>(tile->face)) set_chart(*tile, block, chart);
+      charted = static_cast<int>(tile->face);
+      // Its own pixel belongs to it even where rounding has it just outside.
+      here = (inside(*tile, block, chart, at) & left) | (std::uint32_t{1} << i);
+    }
+    left &= ~here;
+    if (tile->ground) {
+      const paging::NormalTile& ground = *tile->ground;
+      find_sources(at, tile->ground_x, tile->ground_y, &ground.posts.data()->normal.x, ground.side, 4, here,
+                   block.posts);
+      if (!ground.missing.empty() || !ground.sees_sun.empty()) take_rest(ground, here, block);
+    }
+    if (tile->image)
+      find_sources(at, tile->image_x, tile->image_y, &tile->image->texels.data()->r, kTexels, 3, here,
+                   block.texels);
+  }
+}
+
+// Colours the block's ground, after locate().
+inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
+  const PaintNeeds needs = paint_needs(*job.look);
+  if (needs.posts) take_posts(static_cast<std::size_t>(job.posts_side), block);
+  if (needs.image) take_texels(block);
+  paint_look(job, block);
+}
+
+// The same by GroundPainter::colour_at, pixel by pixel.
+inline void paint_by_point(const PaintJob& job, PaintTiles& tiles, Block& block) {
+  for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const glm::dvec3 place{block.place[0][i], block.place[1][i], block.place[2][i]};
+    const auto colour = job.painter->colour_at(
+        glm::normalize(place), static_cast<double>(block.range[i]) / job.focal_px, *job.look, tiles.cursor);
+    if (!colour) block.missing |= std::uint32_t{1} << i;
+    const glm::vec3 rgb = colour ? glm::vec3(*colour) : glm::vec3(0);
+    block.red[i] = rgb.x;
+    block.green[i] = rgb.y;
+    block.blue[i] = rgb.z;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vpe::voxel
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "vpe/voxel/paint/paint_job.h"
+
+// Built once for each instruction set; the best one that the machine has is taken at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vpe/voxel/paint/paint_kernel.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "vpe/voxel/paint/paint_air-inl.h"
+#include "vpe/voxel/paint/paint_ground-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vpe::voxel {
+namespace HWY_NAMESPACE {
+
+// Ground without data, the mean of the polygon backend's stripes.
+constexpr float kGap = 105;
+
+inline HWY_NOINLINE void store_colours(const Block& block, base::Rgb* out, int count) {
+  const Floats d;
+  const hn::RebindToSigned<Floats> di;
+  const hn::Rebind<std::uint8_t, Floats> du;
+  static_assert(sizeof(base::Rgb) == 3);
+  std::uint8_t part[3 * kBlock];
+  std::uint8_t* const bytes = count == kBlock ? &out->r : part;
+  const auto byte = [&](const float* x) HWY_ATTR {
+    return hn::DemoteTo(du, hn::ConvertTo(di, hn::Add(clamp(d, hn::Load(d, x), 0, 255), hn::Set(d, 0.5F))));
+  };
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d)))
+    hn::StoreInterleaved3(byte(block.red + i), byte(block.green + i), byte(block.blue + i), du, bytes + 3 * i);
+  if (count < kBlock) std::copy_n(part, 3 * count, &out->r);
+}
+
+HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, const PaintTile*& tile, int x, int y,
+                      Block& block) {
+  begin_block(job, tiles.max_level(), x, y, std::min(kBlock, job.width - x), block);
+  if (block.ground != 0 && !job.by_point && !job.one_colour) locate(tiles, tile, block);
+}
+
+// Returns the number of pixels without data.
+HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
+  const core::SettingsValues& settings = job.request->settings;
+  if (block.ground != 0) {
+    if (job.by_point) {
+      paint_by_point(job, tiles, block);
+    } else {
+      paint_ground(job, block);
+    }
+  }
+  for (std::uint32_t left = block.missing; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    block.red[i] = block.green[i] = block.blue[i] = kGap;
+  }
+  const bool hazy = settings.haze_visibility_m > 0.0 && block.ground != 0;
+  const bool sky = settings.background == core::Background::kSky && block.sky != 0;
+  if (hazy || sky) ray_angles(job, block);
+  if (hazy) paint_haze(job, settings.haze_visibility_m, block);
+  if (sky) {
+    paint_sky(job, block);
+  } else if (block.sky != 0) {
+    const float behind = settings.background == core::Background::kWhite ? 255.0F : 0.0F;
+    for (int i = 0; i < kBlock; ++i) {
+      if (block.is_sky[i] > 0.0F) block.red[i] = block.green[i] = block.blue[i] = behind;
+    }
+  }
+  store_colours(block, job.colour + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x, block.count);
+  return __builtin_popcount(block.missing);
+}
+
+std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int end_row) {
+  std::int64_t without_data = 0;
+  const PaintTile* tile = nullptr;
+  // Two blocks are under way, so that memory has time to bring what the younger one needs.
+  Block blocks[2];
+  for (int y = first_row; y < end_row; ++y) {
+    if (tiles.trim()) tile = nullptr;
+    int n = 0;
+    for (int x = 0; x < job.width; x += kBlock, ++n) {
+      begin(job, tiles, tile, x, y, blocks[n & 1]);
+      if (n > 0) without_data += finish(job, tiles, blocks[(n - 1) & 1]);
+    }
+    without_data += finish(job, tiles, blocks[(n - 1) & 1]);
+  }
+  return without_data;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vpe::voxel
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vpe::voxel {
+
+HWY_EXPORT(paint);
+
+std::int64_t paint_rows(const PaintJob& job, PaintTiles& tiles, int begin, int end) {
+  return HWY_DYNAMIC_DISPATCH(paint)(job, tiles, begin, end);
+}
+
+}  // namespace vpe::voxel
+#endif
