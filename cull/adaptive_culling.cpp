@@ -5,13 +5,13 @@
 
 namespace cull {
 
-void CullerWorth::begin(State state) {
+void AdaptiveCulling::begin(State state) {
   state_ = state;
   frames_ = 0;
   if (state == State::kTrial) spent_ms_ = saved_ms_ = 0.0;
 }
 
-void CullerWorth::used(const CullerFrame& frame) {
+void AdaptiveCulling::record_frame(const CullingFrame& frame) {
   const bool counts = std::isfinite(frame.spent_ms) && frame.spent_ms >= 0.0 && std::isfinite(frame.tile_ms) &&
                       frame.tile_ms >= 0.0 && frame.tested > 0;
   if (state_ == State::kOff || !counts) return;
@@ -33,7 +33,7 @@ void CullerWorth::used(const CullerFrame& frame) {
   }
 }
 
-void CullerWorth::not_used() {
+void AdaptiveCulling::skip_frame() {
   if (state_ != State::kOff || ++frames_ < wait_) return;
   wait_ = std::min(2 * wait_, limits_.longest_wait_frames);
   begin(State::kTrial);

@@ -1,9 +1,9 @@
-// Whether a culler earns its time. What is culled is invisible, so pictures do not depend on the answer.
+// Whether a culler earns its time. What is culled is invisible, so images do not depend on the answer.
 #pragma once
 
 namespace cull {
 
-struct WorthLimits {
+struct AdaptiveCullingLimits {
   int memory_frames = 8;    // what is weighed is a mean over about this many frames of use
   double keep_ratio = 0.8;  // goes off when the time saved falls below this times the time spent,
   double accept_ratio =
@@ -14,7 +14,7 @@ struct WorthLimits {
 };
 
 // What a culler did in one frame in which it was used.
-struct CullerFrame {
+struct CullingFrame {
   double spent_ms = 0;
   int tested = 0;
   int culled = 0;
@@ -22,23 +22,23 @@ struct CullerFrame {
 };
 
 // Counts frames, knows no clock. Frames in which nothing was tested say nothing and do not count as use.
-class CullerWorth {
+class AdaptiveCulling {
  public:
-  explicit CullerWorth(const WorthLimits& limits = {}) : limits_(limits), wait_(limits.wait_frames) {}
+  explicit AdaptiveCulling(const AdaptiveCullingLimits& limits = {}) : limits_(limits), wait_(limits.wait_frames) {}
 
   // Whether to use the culler in the next frame.
   bool use() const { return state_ != State::kOff; }
 
   // After every frame: what it did, if it was used. Times must be finite and not negative; others are not
   // counted.
-  void used(const CullerFrame& frame);
-  void not_used();
+  void record_frame(const CullingFrame& frame);
+  void skip_frame();
 
  private:
   enum class State { kTrial, kOn, kOff };
   void begin(State state);
 
-  WorthLimits limits_;
+  AdaptiveCullingLimits limits_;
   State state_ = State::kTrial;
   int frames_ = 0;  // in this state
   int wait_;

@@ -45,27 +45,27 @@ double arc_chord2(double x, double y, double z, double line, double low, double 
 
 }  // namespace
 
-TileVolume make_volume(const Shell& shell) {
-  const mars::ChartRect& rect = shell.rect;
+BoundingHexahedron bounding_hexahedron(const BoundingRegion& region) {
+  const mars::ChartRect& rect = region.rect;
   const std::array<glm::dvec3, 4> rays{
       mars::chart_direction(rect.face, rect.u0, rect.v0), mars::chart_direction(rect.face, rect.u1, rect.v0),
       mars::chart_direction(rect.face, rect.u0, rect.v1), mars::chart_direction(rect.face, rect.u1, rect.v1)};
-  TileVolume volume;
+  BoundingHexahedron volume;
   volume.centre = glm::normalize(rays[0] + rays[1] + rays[2] + rays[3]);
   std::array<double, 4> cosines;
   for (std::size_t k = 0; k < 4; ++k) cosines[k] = glm::dot(volume.centre, rays[k]);
   // The directions of the rectangle are at least as close to its centre as its farthest corner is.
-  const double inner_m = shell.min_radius_m * *std::min_element(cosines.begin(), cosines.end());
+  const double inner_m = region.min_radius_m * *std::min_element(cosines.begin(), cosines.end());
   for (std::size_t k = 0; k < 4; ++k) {
     volume.corners_m[k] = rays[k] * (inner_m / cosines[k]);
-    volume.corners_m[k + 4] = rays[k] * (shell.max_radius_m / cosines[k]);
+    volume.corners_m[k + 4] = rays[k] * (region.max_radius_m / cosines[k]);
   }
   return volume;
 }
 
-Eye make_eye(const glm::dvec3& eye_m) {
-  const double radius = glm::length(eye_m);
-  return radius > 0.0 ? Eye{eye_m / radius, radius} : Eye{{1, 0, 0}, 0.0};
+Camera make_camera(const glm::dvec3& camera_m) {
+  const double radius = glm::length(camera_m);
+  return radius > 0.0 ? Camera{camera_m / radius, radius} : Camera{{1, 0, 0}, 0.0};
 }
 
 double nearest_chord2(const mars::ChartRect& rect, const glm::dvec3& direction) {
@@ -94,21 +94,21 @@ double farthest_chord2(const mars::ChartRect& rect, const glm::dvec3& direction)
   return *std::max_element(corners.begin(), corners.end());
 }
 
-double min_distance_m(const Eye& eye, double chord2, double min_radius_m, double max_radius_m) {
-  const double radius = std::clamp(eye.radius_m * (1.0 - 0.5 * chord2), min_radius_m, max_radius_m);
-  const double radial = eye.radius_m - radius;
-  const double distance = std::sqrt(radial * radial + eye.radius_m * radius * chord2);
-  return std::max(0.0, distance - 2.0 * kChordError * (eye.radius_m + max_radius_m));
+double min_distance_m(const Camera& camera, double chord2, double min_radius_m, double max_radius_m) {
+  const double radius = std::clamp(camera.radius_m * (1.0 - 0.5 * chord2), min_radius_m, max_radius_m);
+  const double radial = camera.radius_m - radius;
+  const double distance = std::sqrt(radial * radial + camera.radius_m * radius * chord2);
+  return std::max(0.0, distance - 2.0 * kChordError * (camera.radius_m + max_radius_m));
 }
 
-double max_distance_m(const Eye& eye, double chord2, double min_radius_m, double max_radius_m) {
+double max_distance_m(const Camera& camera, double chord2, double min_radius_m, double max_radius_m) {
   // Convex in the radius: one of the ends is farthest.
   const auto squared = [&](double radius) {
-    const double radial = eye.radius_m - radius;
-    return radial * radial + eye.radius_m * radius * chord2;
+    const double radial = camera.radius_m - radius;
+    return radial * radial + camera.radius_m * radius * chord2;
   };
   const double distance = std::sqrt(std::max(squared(min_radius_m), squared(max_radius_m)));
-  return distance + 2.0 * kChordError * (eye.radius_m + max_radius_m);
+  return distance + 2.0 * kChordError * (camera.radius_m + max_radius_m);
 }
 
 }  // namespace cull

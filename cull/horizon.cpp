@@ -16,9 +16,9 @@ double half_tangent(double occluder_m, double radius_m) {
 
 }  // namespace
 
-Horizon make_horizon(const Eye& eye, double occluder_radius_m) {
-  if (!(occluder_radius_m > 0.0) || !(eye.radius_m > occluder_radius_m)) return {};
-  return {occluder_radius_m, half_tangent(occluder_radius_m, eye.radius_m), true};
+Horizon make_horizon(const Camera& camera, double occluder_radius_m) {
+  if (!(occluder_radius_m > 0.0) || !(camera.radius_m > occluder_radius_m)) return {};
+  return {occluder_radius_m, half_tangent(occluder_radius_m, camera.radius_m), true};
 }
 
 bool hidden(const Horizon& horizon, double chord2, double max_radius_m) {
@@ -35,14 +35,14 @@ bool hidden(const Horizon& horizon, double chord2, double max_radius_m) {
 
 // The angle from the nadir to a point grows with its radius, and with its chord up to where the ray touches the
 // sphere of its radius. So the highest and farthest point decides.
-bool against_sky(const Eye& eye, const Horizon& horizon, double chord2, double max_radius_m) {
+bool against_sky(const Camera& camera, const Horizon& horizon, double chord2, double max_radius_m) {
   if (!horizon.hides) return true;
   const double cosine = 1.0 - 0.5 * chord2;
-  if (!(eye.radius_m > max_radius_m) || cosine * eye.radius_m <= max_radius_m) return true;
+  if (!(camera.radius_m > max_radius_m) || cosine * camera.radius_m <= max_radius_m) return true;
   const double sine2 = chord2 * (1.0 - 0.25 * chord2);
-  const double below = eye.radius_m - max_radius_m;
-  const double range2 = below * below + eye.radius_m * max_radius_m * chord2;
-  const double passes2 = eye.radius_m * eye.radius_m * max_radius_m * max_radius_m * sine2 / range2;
+  const double below = camera.radius_m - max_radius_m;
+  const double range2 = below * below + camera.radius_m * max_radius_m * chord2;
+  const double passes2 = camera.radius_m * camera.radius_m * max_radius_m * max_radius_m * sine2 / range2;
   return passes2 >= horizon.occluder_m * horizon.occluder_m * (1.0 - 1e-12);
 }
 

@@ -18,15 +18,15 @@ constexpr double kBinsInHalf = TerrainHorizon::kBins / 2;
 constexpr double kSame = 1e-8 * TerrainHorizon::kBinsPerSide;
 
 // Slopes of rays to points at one ground angle t > 0 with c = cot t > 0: rise over run to radius r is
-// (r cos t - eye) / (r sin t) = (r - eye) / r * sqrt(1 + c^2) - (sqrt(1 + c^2) - c), without that difference.
+// (r cos t - camera) / (r sin t) = (r - camera) / r * sqrt(1 + c^2) - (sqrt(1 + c^2) - c), without that difference.
 struct SlopesAt {
   double per_rise;
   double fall;
   explicit SlopesAt(double c) : per_rise(std::sqrt(1.0 + c * c)), fall(1.0 / (per_rise + c)) {}
   double operator()(double rise) const { return rise * per_rise - fall; }
 };
-double rise_of(double r, double eye) { return (r - eye) / r; }
-double slope_at(double c, double r, double eye) { return SlopesAt(c)(rise_of(r, eye)); }
+double rise_of(double r, double camera) { return (r - camera) / r; }
+double slope_at(double c, double r, double camera) { return SlopesAt(c)(rise_of(r, camera)); }
 
 // Difference of two azimuths, in [-kBins / 2, kBins / 2).
 double wrapped(double d) {
@@ -54,11 +54,11 @@ TerrainHorizon::TerrainHorizon() {
   begin({{0, 0, 1}, 1.0});
 }
 
-void TerrainHorizon::begin(const Eye& eye, double margin_rad) {
-  eye_ = eye;
+void TerrainHorizon::begin(const Camera& camera, double margin_rad) {
+  camera_ = camera;
   margin_rad_ = std::max(margin_rad, kRounding_rad);
-  a_ = mars::any_perpendicular(eye.direction);
-  b_ = glm::cross(eye.direction, a_);
+  a_ = mars::any_perpendicular(camera.direction);
+  b_ = glm::cross(camera.direction, a_);
   std::fill(slope_.begin(), slope_.end(), kNone);
   for (auto* side : {&low_, &high_}) {
     for (Parts& parts : *side) parts.count = 0;
@@ -117,27 +117,27 @@ void TerrainHorizon::add_part(int bin, bool from_low_end, const Part& part) {
   own.count = static_cast<std::uint8_t>(kept);
 }
 
-void TerrainHorizon::add(const WallLine& wall) {
-  const std::size_t pieces = wall.radius_m.size();
-  if (pieces == 0 || pieces > WallLine::kMostPieces) return;
-  const mars::FaceAxes& face = mars::face_axes(wall.face);
-  // Normal of the line's plane; the plane passes the eye's vertical at `beside`.
-  const glm::dvec3 normal = (wall.column ? face.right : face.up) - wall.line * face.out;
-  const double beside = glm::dot(normal, eye_.direction);
-  if (std::abs(beside) < kNearest_rad * (1.0 + std::abs(wall.line))) return;
+void TerrainHorizon::add(const OccluderSegment& occluder) {
+  const std::size_t pieces = occluder.radius_m.size();
+  if (pieces == 0 || pieces > OccluderSegment::kMostPieces) return;
+  const mars::FaceAxes& face = mars::face_axes(occluder.face);
+  // Normal of the line's plane; the plane passes the camera's vertical at `beside`.
+  const glm::dvec3 normal = (occluder.column ? face.right : face.up) - occluder.line * face.out;
+  const double beside = glm::dot(normal, camera_.direction);
+  if (std::abs(beside) < kNearest_rad * (1.0 + std::abs(occluder.line))) return;
   // cot of the ground angle along the line, as a function of azimuth: the scalar product with this.
   const glm::dvec2 cot(-glm::dot(normal, a_) / beside, -glm::dot(normal, b_) / beside);
 
   // In the order of azimuths, from `first` on without a step back.
-  std::array<double, WallLine::kMostPieces + 1> at;
-  std::array<double, WallLine::kMostPieces> rise;
+  std::array<double, OccluderSegment::kMostPieces + 1> at;
+  std::array<double, OccluderSegment::kMostPieces> rise;
   for (std::size_t n = 0; n <= pieces; ++n) {
-    at[n] = azimuth(wall.column ? mars::cube_point(wall.face, wall.line, wall.ends[n])
-                                : mars::cube_point(wall.face, wall.ends[n], wall.line));
+    at[n] = azimuth(occluder.column ? mars::cube_point(occluder.face, occluder.line, occluder.ends[n])
+                                : mars::cube_point(occluder.face, occluder.ends[n], occluder.line));
   }
   for (std::size_t n = 0; n < pieces; ++n) {
-    if (!(wall.radius_m[n] > 0.0)) return;
-    rise[n] = rise_of(wall.radius_m[n], eye_.radius_m);
+    if (!(occluder.radius_m[n] > 0.0)) return;
+    rise[n] = rise_of(occluder.radius_m[n], camera_.radius_m);
   }
   if (wrapped(at[pieces] - at[0]) < 0.0) {
     std::reverse(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(pieces) + 1);
@@ -147,7 +147,7 @@ void TerrainHorizon::add(const WallLine& wall) {
   const double end = at[pieces];
   for (std::size_t n = 1; n <= pieces; ++n) {
     if (at[n] < first) at[n] += kBins;
-    if (!(at[n] >= at[n - 1])) return;  // as good as straight away from the eye
+    if (!(at[n] >= at[n - 1])) return;  // as good as straight away from the camera
   }
   const double last = at[pieces];
   if (last - first >= kBinsInHalf) return;
@@ -171,7 +171,7 @@ void TerrainHorizon::add(const WallLine& wall) {
     double lowest = rise[piece];
     for (std::size_t n = piece + 1; n < pieces && at[n] <= bin + 1; ++n) lowest = std::min(lowest, rise[n]);
     // Along an arc the slope has one maximum and no minimum but at its ends: those of the bin, and where the
-    // arc is nearest to the eye and turns.
+    // arc is nearest to the camera and turns.
     if (c0 > 0.0 && c1 > 0.0) {
       const int index = bin % kBins;
       double slope = std::min(slopes0(lowest), slopes1(lowest));
@@ -208,37 +208,37 @@ TerrainHorizon::Span TerrainHorizon::span(const mars::ChartRect& rect) const {
 }
 
 double TerrainHorizon::bins_spanned(const mars::ChartRect& rect) const {
-  if (nearest_chord2(rect, eye_.direction) < kNearest_rad * kNearest_rad) return kBins;
+  if (nearest_chord2(rect, camera_.direction) < kNearest_rad * kNearest_rad) return kBins;
   const Span s = span(rect);
   return s.valid ? s.high - s.low : kBins;
 }
 
-bool TerrainHorizon::hidden(const Shell& shell) const {
-  const double near2 = nearest_chord2(shell.rect, eye_.direction);
-  const double far2 = farthest_chord2(shell.rect, eye_.direction);
-  if (near2 < kNearest_rad * kNearest_rad || far2 > 1.99 || !(shell.max_radius_m > 0.0)) return false;
+bool TerrainHorizon::hidden(const BoundingRegion& region) const {
+  const double near2 = nearest_chord2(region.rect, camera_.direction);
+  const double far2 = farthest_chord2(region.rect, camera_.direction);
+  if (near2 < kNearest_rad * kNearest_rad || far2 > 1.99 || !(region.max_radius_m > 0.0)) return false;
   const auto cot = [](double chord2) {
     return (1.0 - 0.5 * chord2) / std::sqrt(chord2 * (1.0 - 0.25 * chord2));
   };
   const double c_near = cot(near2);
   const double c_far = cot(far2);
-  const double top = shell.max_radius_m;
-  double highest = std::max(slope_at(c_near, top, eye_.radius_m), slope_at(c_far, top, eye_.radius_m));
-  // Seen from above, a sphere's slope is greatest where rays touch it: cot = top / sqrt(eye^2 - top^2).
-  if (eye_.radius_m > top) {
-    const double c = top / std::sqrt((eye_.radius_m - top) * (eye_.radius_m + top));
-    if (c < c_near && c > c_far) highest = std::max(highest, slope_at(c, top, eye_.radius_m));
+  const double top = region.max_radius_m;
+  double highest = std::max(slope_at(c_near, top, camera_.radius_m), slope_at(c_far, top, camera_.radius_m));
+  // Seen from above, a sphere's slope is greatest where rays touch it: cot = top / sqrt(camera^2 - top^2).
+  if (camera_.radius_m > top) {
+    const double c = top / std::sqrt((camera_.radius_m - top) * (camera_.radius_m + top));
+    if (c < c_near && c > c_far) highest = std::max(highest, slope_at(c, top, camera_.radius_m));
   }
   // An angle at slope s turns the azimuth by it times sqrt(1 + s^2), and the slope by its tangent.
-  const double lowest = shell.min_radius_m > 0.0 ? std::min(slope_at(c_near, shell.min_radius_m, eye_.radius_m),
-                                                            slope_at(c_far, shell.min_radius_m, eye_.radius_m))
+  const double lowest = region.min_radius_m > 0.0 ? std::min(slope_at(c_near, region.min_radius_m, camera_.radius_m),
+                                                            slope_at(c_far, region.min_radius_m, camera_.radius_m))
                                                  : kNone;
   const double steep2 = 1.0 + std::max(highest * highest, lowest * lowest);
   const double aside = margin_rad_ * std::sqrt(steep2);
   const double rest = 1.0 - highest * margin_rad_;
   if (!(aside < 0.1) || !(rest > 0.1)) return false;
   const double limit = highest + 1.01 * margin_rad_ * (1.0 + highest * highest) / rest;
-  const Span s = span(shell.rect);
+  const Span s = span(region.rect);
   if (!s.valid) return false;
   // A radian of azimuth is at most kBinsPerSide bins.
   const double more = 1.1 * aside * kBinsPerSide + kSame;

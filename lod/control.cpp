@@ -18,11 +18,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Whether the ray ahead meets the volume: the part of it inside all six planes.
-bool meets(const CentreOfView& ray, const cull::TileVolume& v) {
+bool meets(const CentreOfView& ray, const cull::BoundingHexahedron& v) {
   double from = 0.0;
   double to = kInfinity;
   const auto keep = [&](const glm::dvec3& inward, double offset) {
-    const double at = glm::dot(inward, ray.eye_m) - offset;
+    const double at = glm::dot(inward, ray.camera_m) - offset;
     const double slope = glm::dot(inward, ray.forward);
     if (slope > 0.0) {
       from = std::max(from, -at / slope);
@@ -92,17 +92,17 @@ int interest_levels(std::span<const ControlRegion> regions, const mars::ChartRec
 CentreOfView centre_of_view(const core::View& view) {
   const double half_rad = 0.5 * view.fov_deg * mars::kRadiansPerDegree;
   const bool flat = view.projection == core::Projection::kPerspective;
-  return {view.eye.eye_m, view.eye.axes.forward, flat, flat ? std::tan(half_rad) : half_rad};
+  return {view.camera.position_m, view.camera.axes.forward, flat, flat ? std::tan(half_rad) : half_rad};
 }
 
-double least_angle_rad(const CentreOfView& centre, const cull::TileVolume& volume) {
+double least_angle_rad(const CentreOfView& centre, const cull::BoundingHexahedron& volume) {
   if (meets(centre, volume)) return 0.0;
   // Else the nearest direction is on the outline, and that is made of edges.
   constexpr std::array<std::array<std::size_t, 2>, 12> kHullEdges{
       {{0, 1}, {1, 3}, {3, 2}, {2, 0}, {4, 5}, {5, 7}, {7, 6}, {6, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
   std::array<glm::dvec3, 8> corners;
   for (std::size_t k = 0; k < 8; ++k) {
-    corners[k] = volume.corners_m[k] - centre.eye_m;
+    corners[k] = volume.corners_m[k] - centre.camera_m;
     if (corners[k] == glm::dvec3(0.0)) return 0.0;
   }
   double least = kInfinity;
@@ -118,7 +118,7 @@ double centre_distance(const CentreOfView& centre, double angle_rad) {
 ControlTerms control_terms(const LevelControl& control, const CentreOfView& centre, const ControlPlace& place,
                            bool evaluate_all) {
   ControlTerms terms;
-  const bool hitchner = control.rule == core::LodRule::kHitchner;
+  const bool by_distance = control.rule == core::LodMetric::kDistance;
   terms.distance = term(control.distance, place.min_distance_m);
   terms.centre.weight = control.centre.weight;
   if (evaluate_all || control.centre.weight > 0.0) {
@@ -128,12 +128,12 @@ ControlTerms control_terms(const LevelControl& control, const CentreOfView& cent
   terms.interest.weight = control.interest_weight;
   if (control.interest_weight > 0.0) terms.interest.levels = interest_levels(control.regions, place.rect);
   terms.sum =
-      (hitchner ? terms.distance.weighted() : 0.0) + terms.centre.weighted() + terms.interest.weighted();
+      (by_distance ? terms.distance.weighted() : 0.0) + terms.centre.weighted() + terms.interest.weighted();
   return terms;
 }
 
 bool is_neutral(const LevelControl& control) {
-  return control.rule == core::LodRule::kError && control.centre.weight == 0.0 &&
+  return control.rule == core::LodMetric::kError && control.centre.weight == 0.0 &&
          (control.regions.empty() || control.interest_weight == 0.0);
 }
 

@@ -1,8 +1,8 @@
 // Composite level control (Hitchner 1992, section 3.3): how many levels of detail a tile should have, as the
 // weighted sum of three functions. Pure functions.
 //
-//   distance   scale / x + offset, x = metres from the eye to the nearest point of the tile's terrain
-//   centre     scale / x + offset, x = distance from the picture's centre in halves of the picture's height
+//   distance   scale / x + offset, x = metres from the camera to the nearest point of the tile's terrain
+//   centre     scale / x + offset, x = distance from the image's centre in halves of the image's height
 //   interest   the sum of the levels of the regions that the tile is in
 //
 // The first two may be lookup tables instead (vpe::core::LevelTable). Rule hitchner draws a tile whose number
@@ -10,7 +10,7 @@
 // interest, taken once, of the sum. Rule error counts a tile's projected error 2^(weight * centre + weight *
 // interest) times; distance is in the projection already and does not count again.
 //
-// A tile is no point. It is taken at its best place: nearest to the eye, nearest to the centre, in each finer
+// A tile is no point. It is taken at its best place: nearest to the camera, nearest to the centre, in each finer
 // region that it touches, in a coarser region only when it lies in it as a whole. So no place gets less than
 // the functions give it, and parts of a tile that deserve less get it when it is refined.
 #pragma once
@@ -51,29 +51,29 @@ int interest_levels(std::span<const ControlRegion> regions, const mars::ChartRec
 
 // Without any effect by default: rule error, and weights and regions that do nothing.
 struct LevelControl {
-  vpe::core::LodRule rule = vpe::core::LodRule::kError;
+  vpe::core::LodMetric rule = vpe::core::LodMetric::kError;
   ControlFunction distance;
   ControlFunction centre;
   double interest_weight = 1;
   std::vector<ControlRegion> regions;
 };
 
-// Where the centre of the field of view is: the direction straight ahead of the full picture, so that the parts
-// of a picture agree; not the middle of a shifted one. In flat pictures the distance from it is that in the
-// picture, infinite 90 degrees off; in panoramas the angle over half the vertical field of view.
+// Where the centre of the field of view is: the direction straight ahead of the full image, so that the parts
+// of an image agree; not the middle of a shifted one. In flat images the distance from it is that in the
+// image, infinite 90 degrees off; in panoramas the angle over half the vertical field of view.
 struct CentreOfView {
-  glm::dvec3 eye_m{0, 0, 0};
+  glm::dvec3 camera_m{0, 0, 0};
   glm::dvec3 forward{1, 0, 0};  // unit
   bool flat = true;
   double half_height = 1;  // tangent of half the vertical field of view; in panoramas that half, radians
 };
 CentreOfView centre_of_view(const vpe::core::View& view);
 
-// Least angle between forward and the directions from the eye to the points of a volume, radians, right within
-// 1e-7; 0 for an eye inside and where forward meets the volume.
-double least_angle_rad(const CentreOfView& centre, const cull::TileVolume& volume);
+// Least angle between forward and the directions from the camera to the points of a volume, radians, right within
+// 1e-7; 0 for a camera inside and where forward meets the volume.
+double least_angle_rad(const CentreOfView& centre, const cull::BoundingHexahedron& volume);
 
-// Distance from the centre at an angle, in halves of the picture's height.
+// Distance from the centre at an angle, in halves of the image's height.
 double centre_distance(const CentreOfView& centre, double angle_rad);
 
 // What control found for a tile.
@@ -91,7 +91,7 @@ struct ControlTerms {
   double sum = 0;  // of what the rule counts; may be infinite
 };
 struct ControlPlace {
-  cull::TileVolume volume;
+  cull::BoundingHexahedron volume;
   mars::ChartRect rect;
   double min_distance_m = 0;
 };

@@ -8,11 +8,11 @@ namespace {
 
 LevelReason reason_of(const SelectOptions& options, const TileInfo& info, const SelectedTile& tile) {
   if (is_full_grid(info, tile.variant)) return LevelReason::kFinestThere;
-  if (options.control.rule == vpe::core::LodRule::kHitchner) {
+  if (options.control.rule == vpe::core::LodMetric::kDistance) {
     const double number = lod_number(tile.key, tile.variant, static_cast<int>(info.variants.size()));
     return number >= tile.control ? LevelReason::kLevelReached : LevelReason::kBudgetSpent;
   }
-  return tile.error_px * std::exp2(tile.control) <= options.tolerance_px ? LevelReason::kWithinTolerance
+  return tile.screen_space_error_px * std::exp2(tile.control) <= options.tolerance_px ? LevelReason::kWithinTolerance
                                                                          : LevelReason::kBudgetSpent;
 }
 
@@ -30,7 +30,7 @@ const char* to_string(LevelReason reason) {
 
 std::vector<TileExplanation> explain(const SelectOptions& options, const TileTree& tree, const SelectView& view,
                                      const Selection& selection) {
-  const cull::Eye eye = cull::make_eye(view.eye_m);
+  const cull::Camera camera = cull::make_camera(view.camera_m);
   std::vector<TileExplanation> all;
   all.reserve(selection.tiles.size());
   for (const SelectedTile& tile : selection.tiles) {
@@ -42,16 +42,16 @@ std::vector<TileExplanation> explain(const SelectOptions& options, const TileTre
     e.variant = tile.variant;
     e.variants = static_cast<int>(info.variants.size());
     e.min_distance_m = tile.min_distance_m;
-    e.error_m = tile.error_m;
-    e.error_px = tile.error_px;
+    e.geometric_error_m = tile.geometric_error_m;
+    e.screen_space_error_px = tile.screen_space_error_px;
     const double coarsest_m =
-        is_full_grid(info, 0) ? 0.0 : tree.error_m(info, info.variants[0].terms, options.exaggeration);
-    const cull::Shell shell = tree.shell(tile.index, options.exaggeration, coarsest_m);
-    const double distance_m = cull::min_distance_m(eye, cull::nearest_chord2(shell.rect, eye.direction),
-                                                   shell.min_radius_m, shell.max_radius_m);
+        is_full_grid(info, 0) ? 0.0 : tree.geometric_error_m(info, info.variants[0].terms, options.exaggeration);
+    const cull::BoundingRegion region = tree.region(tile.index, options.exaggeration, coarsest_m);
+    const double distance_m = cull::min_distance_m(camera, cull::nearest_chord2(region.rect, camera.direction),
+                                                   region.min_radius_m, region.max_radius_m);
     e.terms =
-        control_terms(options.control, view.centre, {cull::make_volume(shell), shell.rect, distance_m}, true);
-    if (options.control.rule == vpe::core::LodRule::kHitchner) {
+        control_terms(options.control, view.centre, {cull::bounding_hexahedron(region), region.rect, distance_m}, true);
+    if (options.control.rule == vpe::core::LodMetric::kDistance) {
       e.wanted = static_cast<int>(tile.control);
     } else {
       e.shift = tile.control;

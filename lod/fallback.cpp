@@ -16,7 +16,7 @@ struct Stand {
 
 class Substituter {
  public:
-  Substituter(const TileTree& tree, const Readiness& ready) : tree_(tree), ready_(ready) {}
+  Substituter(const TileTree& tree, const IsResident& ready) : tree_(tree), ready_(ready) {}
 
   // What takes a tile's place without touching others; false when nothing does.
   bool stand_in(const SelectedTile& tile, std::vector<Stand>& out) const {
@@ -67,7 +67,7 @@ class Substituter {
   }
 
   const TileTree& tree_;
-  const Readiness& ready_;
+  const IsResident& ready_;
 };
 
 // Tiles that replace all that was selected below them, none inside another, along the Z curve.
@@ -86,8 +86,8 @@ void drop_nested(const TileTree& tree, std::vector<TileTree::Index>& tiles) {
 
 }  // namespace
 
-void substitute(const SelectOptions& options, const TileTree& tree, const SelectView& view,
-                const Selection& selection, const Readiness& ready, Substitution& result) {
+void select_fallbacks(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                const Selection& selection, const IsResident& ready, FallbackSelection& result) {
   result.missing.clear();
   result.substituted = result.uncovered = 0;
   const Substituter substituter(tree, ready);
@@ -151,7 +151,7 @@ void substitute(const SelectOptions& options, const TileTree& tree, const Select
   d.culled_horizon = s.culled_horizon;
   d.refined = s.refined;
   d.capped = s.capped;
-  tally(tree, d);
+  update_totals(tree, d);
 }
 
 }  // namespace lod

@@ -8,13 +8,13 @@
 namespace lod {
 
 // Whether a tile can be drawn with a variant now. Pure while substitute() runs.
-struct Readiness {
+struct IsResident {
   bool (*is_ready)(const void* context, const TileInfo& tile, int variant) = nullptr;
   const void* context = nullptr;
   bool operator()(const TileInfo& tile, int variant) const { return is_ready(context, tile, variant); }
 };
 
-struct Substitution {
+struct FallbackSelection {
   // What to draw: all ready, disjoint, along the Z curve. Covers every place that the selection covers, except
   // below roots that are not ready.
   Selection drawn;
@@ -28,7 +28,7 @@ struct Substitution {
 // ancestor; an ancestor takes the place of everything selected below it, so that never one child is drawn
 // without its siblings. Errors and distances of what is drawn are its own. The same arguments give the same
 // result.
-void substitute(const SelectOptions& options, const TileTree& tree, const SelectView& view,
-                const Selection& selection, const Readiness& ready, Substitution& result);
+void select_fallbacks(const SelectOptions& options, const TileTree& tree, const SelectView& view,
+                const Selection& selection, const IsResident& ready, FallbackSelection& result);
 
 }  // namespace lod

@@ -1,4 +1,4 @@
-// The order in which the eye meets tiles.
+// The order in which the camera meets tiles.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace lod {
 
 // Indices of disjoint tiles such that along every half great circle that starts at the unit direction `nadir`
-// (the point under the eye) nearer tiles come first. An order by distance would not do: a wide tile may reach
+// (the point under the camera) nearer tiles come first. An order by distance would not do: a wide tile may reach
 // behind one that is farther away.
 //
 // Faces: out . d - out' . d = A cos t + B sin t along the half circle, with A >= 0 for the face with the larger

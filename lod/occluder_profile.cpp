@@ -38,9 +38,9 @@ double distance_to_centre(const PlanePoint& a, const PlanePoint& b) {
 class Family {
  public:
   Family(int intervals, const std::vector<double>& across, const std::vector<double>& along)
-      : step_(intervals / kWallStrips), across_(across) {
-    for (int n = 0; n <= kWallPieces; ++n)
-      ends_[static_cast<std::size_t>(n)] = along[static_cast<std::size_t>(n * (intervals / kWallPieces))];
+      : step_(intervals / kOccluderStrips), across_(across) {
+    for (int n = 0; n <= kOccluderPieces; ++n)
+      ends_[static_cast<std::size_t>(n)] = along[static_cast<std::size_t>(n * (intervals / kOccluderPieces))];
     for (auto& line : lowest_m_) line.fill(std::numeric_limits<double>::infinity());
   }
 
@@ -49,19 +49,19 @@ class Family {
     for (int line = (low + step_ - 1) / step_; line * step_ <= high; ++line) cut(corner, line);
   }
 
-  std::array<TileWalls::Line, kWallStrips + 1> lowered(double radius_m, double lower_m) const {
-    std::array<TileWalls::Line, kWallStrips + 1> walls{};
-    for (std::size_t line = 0; line < walls.size(); ++line) {
-      for (std::size_t piece = 0; piece < kWallPieces; ++piece) {
+  std::array<OccluderProfile::Line, kOccluderStrips + 1> lowered(double radius_m, double lower_m) const {
+    std::array<OccluderProfile::Line, kOccluderStrips + 1> occluders{};
+    for (std::size_t line = 0; line < occluders.size(); ++line) {
+      for (std::size_t piece = 0; piece < kOccluderPieces; ++piece) {
         const double radius = lowest_m_[line][piece];
         const double height = radius * (1.0 - 2e-15) - radius_m - lower_m;
         float down = static_cast<float>(height);
         if (static_cast<double>(down) > height)
           down = std::nextafter(down, -std::numeric_limits<float>::infinity());
-        walls[line][piece] = down;
+        occluders[line][piece] = down;
       }
     }
-    return walls;
+    return occluders;
   }
 
  private:
@@ -89,7 +89,7 @@ class Family {
     }
     const auto first = static_cast<std::size_t>(
         std::max<std::ptrdiff_t>(0, std::upper_bound(ends_.begin(), ends_.end(), from) - ends_.begin() - 1));
-    for (std::size_t piece = first > 0 && from == ends_[first] ? first - 1 : first; piece < kWallPieces;
+    for (std::size_t piece = first > 0 && from == ends_[first] ? first - 1 : first; piece < kOccluderPieces;
          ++piece) {
       if (ends_[piece] > to) break;
       const auto clipped = [&](double along) {
@@ -107,18 +107,18 @@ class Family {
 
   int step_;
   const std::vector<double>& across_;
-  std::array<double, kWallPieces + 1> ends_{};
-  std::array<std::array<double, kWallPieces>, kWallStrips + 1> lowest_m_{};
+  std::array<double, kOccluderPieces + 1> ends_{};
+  std::array<std::array<double, kOccluderPieces>, kOccluderStrips + 1> lowest_m_{};
 };
 
 }  // namespace
 
-TileWalls make_walls(const TileKey& key, const TileMesh& mesh, std::span<const double> height_m,
+OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh, std::span<const double> height_m,
                      double exaggeration, double radius_m, double lower_m) {
-  if (mesh.intervals <= 0 || mesh.intervals % kWallPieces != 0) {
+  if (mesh.intervals <= 0 || mesh.intervals % kOccluderPieces != 0) {
     throw std::invalid_argument("walls of tile " + to_string(key) + ": its grid of " +
                                 std::to_string(mesh.intervals) + " intervals does not divide into " +
-                                std::to_string(kWallPieces) + " pieces");
+                                std::to_string(kOccluderPieces) + " pieces");
   }
   if (height_m.size() != mesh.vertices.size()) {
     throw std::invalid_argument("walls of tile " + to_string(key) + ": " + std::to_string(height_m.size()) +

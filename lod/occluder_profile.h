@@ -9,24 +9,24 @@
 
 namespace lod {
 
-inline constexpr int kWallStrips = 4;  // between lines
-inline constexpr int kWallPieces = 8;  // of a line
+inline constexpr int kOccluderStrips = 4;  // between lines
+inline constexpr int kOccluderPieces = 8;  // of a line
 
 // Line n is the tile's chart line at n / kWallStrips of its width (columns: fixed u, west to east) or height
 // (rows: fixed v, south to north), borders included; its piece p runs from p / kWallPieces on, with v (columns)
 // or u (rows). An entry is a height above the sphere, metres: nowhere along the piece are the mesh's flat
 // triangles, sag included, lower. Rounded down to float.
-struct TileWalls {
-  using Line = std::array<float, kWallPieces>;
-  std::array<Line, kWallStrips + 1> columns{};
-  std::array<Line, kWallStrips + 1> rows{};
+struct OccluderProfile {
+  using Line = std::array<float, kOccluderPieces>;
+  std::array<Line, kOccluderStrips + 1> columns{};
+  std::array<Line, kOccluderStrips + 1> rows{};
 };
 
 // height_m: one a vertex, above the sphere; drawn `exaggeration` times as high. lower_m (>= 0) is taken off:
 // how far the surface as drawn may lie below the mesh, such as by rounding of its vertices. Exact up to
 // rounding, 1e-15 of the radius, which is taken off too. The mesh's intervals must be a multiple of
 // kWallPieces, the heights as many as the vertices, and the drawn radii positive, else std::invalid_argument.
-TileWalls make_walls(const TileKey& key, const TileMesh& mesh, std::span<const double> height_m,
+OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh, std::span<const double> height_m,
                      double exaggeration, double radius_m, double lower_m = 0.0);
 
 }  // namespace lod

@@ -16,23 +16,23 @@ namespace lod {
 // that are there need not be. A tile that is not added hides nothing.
 //
 // What must be so for hidden tiles to be invisible, to the pixel:
-// - the tiles given cover all that the eye sees; those not hidden are all drawn, with the meshes that the walls
+// - the tiles given cover all that the camera sees; those not hidden are all drawn, with the meshes that the walls
 // were
 //   made of and with the skirts that the whole selection needs (skirt_depths before this pass: a crack beside a
 //   hidden tile is closed by its neighbour's skirt);
 // - nothing of them is cut off by the near plane;
-// - what is drawn is within margin_rad, as the eye sees it, of the meshes: rounded vertices, and pixels'
+// - what is drawn is within margin_rad, as the camera sees it, of the meshes: rounded vertices, and pixels'
 // corners. Thread rule: one at a time. Keeps its memory from frame to frame; results depend on nothing but the
 // frame's calls.
 class OcclusionPass {
  public:
-  // eye_is_above_ground: above what is drawn of the tile under it. Else nothing is hidden.
-  void begin(const glm::dvec3& eye_m, bool eye_is_above_ground, double margin_rad);
+  // camera_is_above_ground: above what is drawn of the tile under it. Else nothing is hidden.
+  void begin(const glm::dvec3& camera_m, bool camera_is_above_ground, double margin_rad);
 
   // shell: TileTree::shell() with the error of the mesh that would be drawn.
-  bool hidden(const cull::Shell& shell) const;
+  bool hidden(const cull::BoundingRegion& region) const;
 
-  void add(const TileKey& key, const TileWalls& walls, double radius_m);
+  void add(const TileKey& key, const OccluderProfile& occluders, double radius_m);
 
  private:
   cull::TerrainHorizon horizon_;
@@ -42,11 +42,11 @@ class OcclusionPass {
 // The whole of it for tiles whose walls are all at hand.
 struct OccludingTile {
   TileKey key;
-  cull::Shell shell;
-  const TileWalls* walls = nullptr;  // null: not known
+  cull::BoundingRegion region;
+  const OccluderProfile* occluders = nullptr;  // null: not known
 };
 // tiles ascend along the Z curve; hidden[n] = 1 for those that need not be drawn.
-void occlude(std::span<const OccludingTile> tiles, const glm::dvec3& eye_m, bool eye_is_above_ground,
+void occlude(std::span<const OccludingTile> tiles, const glm::dvec3& camera_m, bool camera_is_above_ground,
              double margin_rad, double radius_m, OcclusionPass& pass, std::vector<std::uint8_t>& hidden);
 
 }  // namespace lod

@@ -8,34 +8,34 @@
 
 namespace lod {
 
-PicturePlane picture_plane(const vpe::core::View& view) {
-  PicturePlane plane;
+ImagePlane image_plane(const vpe::core::View& view) {
+  ImagePlane plane;
   plane.flat = view.projection == vpe::core::Projection::kPerspective;
   if (!plane.flat) return plane;
   const double f = vpe::core::focal_px(view);
   const glm::ivec2 size = vpe::core::drawn_size(view);
   const double left = view.part.x - 0.5 * view.width - view.principal_offset_px.x;
   const double top = 0.5 * view.height + view.principal_offset_px.y - view.part.y;
-  plane.eye_m = view.eye.eye_m;
-  plane.right = view.eye.axes.right;
-  plane.up = view.eye.axes.up;
-  plane.forward = view.eye.axes.forward;
+  plane.camera_m = view.camera.position_m;
+  plane.right = view.camera.axes.right;
+  plane.up = view.camera.axes.up;
+  plane.forward = view.camera.axes.forward;
   plane.low = {left / f, (top - size.y) / f};
   plane.high = {(left + size.x) / f, top / f};
   return plane;
 }
 
-// At picture tangents t and depth z a displacement e n moves the point by e / z (n.xy - t n.z), with n in the
-// picture's axes. That is convex in t, so over a rectangle it is largest in a corner, and it changes by at most
+// At image tangents t and depth z a displacement e n moves the point by e / z (n.xy - t n.z), with n in the
+// image's axes. That is convex in t, so over a rectangle it is largest in a corner, and it changes by at most
 // sec(t) times the angle that n turns.
-double stretch(const PicturePlane& plane, const cull::TileVolume& volume) {
+double off_axis_magnification(const ImagePlane& plane, const cull::BoundingHexahedron& volume) {
   if (!plane.flat) return 1.0;
-  // The rectangle of the picture that the volume can be in.
+  // The rectangle of the image that the volume can be in.
   constexpr double kFar = std::numeric_limits<double>::infinity();
   glm::dvec2 low(kFar);
   glm::dvec2 high(-kFar);
   for (const glm::dvec3& corner : volume.corners_m) {
-    const glm::dvec3 p = corner - plane.eye_m;
+    const glm::dvec3 p = corner - plane.camera_m;
     const double z = glm::dot(p, plane.forward);
     if (!(z > 1e-3 * glm::length(p))) {
       low = glm::dvec2(-kFar);

@@ -1,9 +1,9 @@
-// How much longer than at the picture's centre a radial displacement is where a tile is drawn.
+// How much longer than at the image's centre a radial displacement is where a tile is drawn.
 //
-// A displacement of e metres at range r covers e f / r pixels about the principal point of a flat picture and
+// A displacement of e metres at range r covers e f / r pixels about the principal point of a flat image and
 // up to 1 / cos^2 times that at an angle off its axis: at range r it lies at depth r cos, and what of it points
 // along the view axis is drawn too. Selection multiplies by the bound below where a tile may stand against the
-// sky, so that in the corners of wide pictures too no outline is off by more pixels than the tolerance. Pure
+// sky, so that in the corners of wide images too no outline is off by more pixels than the tolerance. Pure
 // functions.
 #pragma once
 
@@ -15,25 +15,25 @@
 
 namespace lod {
 
-// The axes of a flat picture, body-fixed, and the tangents at the sides of its drawn part, up and right
+// The axes of a flat image, body-fixed, and the tangents at the sides of its drawn part, up and right
 // positive. Panoramas are not flat.
-struct PicturePlane {
+struct ImagePlane {
   bool flat = false;
-  glm::dvec3 eye_m{0, 0, 0};
+  glm::dvec3 camera_m{0, 0, 0};
   glm::dvec3 right{1, 0, 0};
   glm::dvec3 up{0, 1, 0};
   glm::dvec3 forward{0, 0, 1};
   glm::dvec2 low{0, 0};
   glm::dvec2 high{0, 0};
 };
-PicturePlane picture_plane(const vpe::core::View& view);
+ImagePlane image_plane(const vpe::core::View& view);
 
-// Upper bound, over the points of the volume that are in the picture and over both ends of the displacement to
+// Upper bound, over the points of the volume that are in the image and over both ends of the displacement to
 // first order, of
-//   length in the picture of a radial displacement / (displacement * focal length / range),
-// and never below 1, which is the measure of a pixel's shift (vpe/core/metrics.h). 1 for pictures that are not
-// flat. At most 1 / cos^2 of the angle to the farthest corner of the picture or of the volume; for volumes of a
-// third of a degree that are in the picture as a whole on average within 5 % of the least such bound (tested).
-double stretch(const PicturePlane& plane, const cull::TileVolume& volume);
+//   length in the image of a radial displacement / (displacement * focal length / range),
+// and never below 1, which is the measure of a pixel's shift (vpe/core/metrics.h). 1 for images that are not
+// flat. At most 1 / cos^2 of the angle to the farthest corner of the image or of the volume; for volumes of a
+// third of a degree that are in the image as a whole on average within 5 % of the least such bound (tested).
+double off_axis_magnification(const ImagePlane& plane, const cull::BoundingHexahedron& volume);
 
 }  // namespace lod

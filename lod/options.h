@@ -1,4 +1,4 @@
-// From what is asked of a picture to what select() is asked: in one place, so that who explains a picture and
+// From what is asked of an image to what select() is asked: in one place, so that who explains an image and
 // who draws it cannot differ. Pure.
 #pragma once
 

@@ -8,6 +8,6 @@ namespace lod {
 // Distances, stretch and projected errors of a selection's tiles, as select() gives them for the view that it
 // selects for, made anew for a view that looks at the same tiles: each bounds what is drawn there. Tiles stay
 // as they are, also those outside of the view.
-void look_from(const SelectView& view, const TileTree& tree, Selection& selection);
+void reevaluate_for_view(const SelectView& view, const TileTree& tree, Selection& selection);
 
 }  // namespace lod

@@ -17,7 +17,7 @@ using vpe::base::mutated;
 namespace {
 
 void check(const SelectOptions& options, const SelectView& view) {
-  if (!std::isfinite(view.eye_m.x) || !std::isfinite(view.eye_m.y) || !std::isfinite(view.eye_m.z)) {
+  if (!std::isfinite(view.camera_m.x) || !std::isfinite(view.camera_m.y) || !std::isfinite(view.camera_m.z)) {
     throw std::invalid_argument("select: the eye's position is not finite");
   }
   if (!std::isfinite(view.focal_px) || view.focal_px <= 0.0) {
@@ -33,9 +33,9 @@ void check(const SelectOptions& options, const SelectView& view) {
   check(options.control);
 }
 
-double projected(double error_m, double focal_px, double distance_m, double stretch) {
-  if (error_m == 0.0) return 0.0;
-  return distance_m > 0.0 ? stretch * (error_m * focal_px / distance_m)
+double projected(double geometric_error_m, double focal_px, double distance_m, double off_axis_magnification) {
+  if (geometric_error_m == 0.0) return 0.0;
+  return distance_m > 0.0 ? off_axis_magnification * (geometric_error_m * focal_px / distance_m)
                           : std::numeric_limits<double>::infinity();
 }
 
@@ -43,8 +43,8 @@ double projected(double error_m, double focal_px, double distance_m, double stre
 
 SelectView select_view(const vpe::core::View& view) {
   const bool perspective = view.projection == vpe::core::Projection::kPerspective;
-  return {view.eye.eye_m, perspective ? vpe::core::focal_px(view) : view.width / (2.0 * std::numbers::pi),
-          cull::make_frustum(view), picture_plane(view), centre_of_view(view)};
+  return {view.camera.position_m, perspective ? vpe::core::focal_px(view) : view.width / (2.0 * std::numbers::pi),
+          cull::make_frustum(view), image_plane(view), centre_of_view(view)};
 }
 
 class Selector {
@@ -54,15 +54,15 @@ class Selector {
       : options_(options),
         tree_(tree),
         view_(view),
-        eye_(cull::make_eye(view.eye_m)),
-        horizon_(cull::make_horizon(eye_, mutated(Guard::kLowestOccluder)
+        camera_(cull::make_camera(view.camera_m)),
+        horizon_(cull::make_horizon(camera_, mutated(Guard::kLowestOccluder)
                                               ? tree.radius_m()
                                               : tree.lowest_radius_m(options.exaggeration))),
         heap_(scratch.heap_),
         out_(out),
-        hitchner_(options.control.rule == vpe::core::LodRule::kHitchner),
+        by_distance_(options.control.rule == vpe::core::LodMetric::kDistance),
         controlled_(!is_neutral(options.control)),
-        enough_(hitchner_ ? 0.0 : options.tolerance_px) {}
+        enough_(by_distance_ ? 0.0 : options.tolerance_px) {}
 
   void run() {
     heap_.clear();
@@ -81,11 +81,11 @@ class Selector {
     Candidate c{};
     c.index = index;
     c.variant = variant;
-    c.error_m = error_m(tree_[index], variant);
-    const cull::Shell shell = tree_.shell(index, options_.exaggeration, c.error_m);
-    c.chord2 = cull::nearest_chord2(shell.rect, eye_.direction);
-    c.stretch = sky_stretch(shell, cull::make_volume(shell));
-    measure(c, shell);
+    c.geometric_error_m = geometric_error_m(tree_[index], variant);
+    const cull::BoundingRegion region = tree_.region(index, options_.exaggeration, c.geometric_error_m);
+    c.chord2 = cull::nearest_chord2(region.rect, camera_.direction);
+    c.off_axis_magnification = sky_stretch(region, cull::bounding_hexahedron(region));
+    measure(c, region);
     return tile_of(c);
   }
 
@@ -104,7 +104,7 @@ class Selector {
 
   static bool less_urgent(const Candidate& a, const Candidate& b) {
     if (a.urgency != b.urgency) return a.urgency < b.urgency;
-    return a.error_px != b.error_px ? a.error_px < b.error_px : a.index > b.index;
+    return a.screen_space_error_px != b.screen_space_error_px ? a.screen_space_error_px < b.screen_space_error_px : a.index > b.index;
   }
 
   void reset() {
@@ -113,7 +113,7 @@ class Selector {
     out_.exaggeration = options_.exaggeration;
     out_.visited = out_.culled_frustum = out_.culled_horizon = out_.refined = 0;
     out_.triangles = 0;
-    out_.max_error_m = out_.max_error_px = 0.0;
+    out_.max_geometric_error_m = out_.max_screen_space_error_px = 0.0;
     out_.capped = false;
   }
 
@@ -121,30 +121,30 @@ class Selector {
     return tree_[c.index].variants[static_cast<std::size_t>(c.variant)].triangles;
   }
 
-  double error_m(const TileInfo& tile, int variant) const {
+  double geometric_error_m(const TileInfo& tile, int variant) const {
     if (is_full_grid(tile, variant)) return 0.0;
-    return tree_.error_m(tile, tile.variants[static_cast<std::size_t>(variant)].terms, options_.exaggeration);
+    return tree_.geometric_error_m(tile, tile.variants[static_cast<std::size_t>(variant)].terms, options_.exaggeration);
   }
 
   // Rule hitchner: the levels that the tile lacks.
   double urgency(const Candidate& c) const {
-    if (!controlled_) return c.error_px;
-    if (!hitchner_) return c.error_px * std::exp2(c.control);
+    if (!controlled_) return c.screen_space_error_px;
+    if (!by_distance_) return c.screen_space_error_px * std::exp2(c.control);
     const TileInfo& tile = tree_[c.index];
     return c.control - lod_number(tile.key, c.variant, static_cast<int>(tile.variants.size()));
   }
 
-  void measure(Candidate& c, const cull::Shell& shell) const {
-    c.min_distance_m = cull::min_distance_m(eye_, c.chord2, shell.min_radius_m, shell.max_radius_m);
-    c.error_px = projected(c.error_m, view_.focal_px, c.min_distance_m, c.stretch);
+  void measure(Candidate& c, const cull::BoundingRegion& region) const {
+    c.min_distance_m = cull::min_distance_m(camera_, c.chord2, region.min_radius_m, region.max_radius_m);
+    c.screen_space_error_px = projected(c.geometric_error_m, view_.focal_px, c.min_distance_m, c.off_axis_magnification);
     c.urgency = urgency(c);
   }
 
-  double sky_stretch(const cull::Shell& shell, const cull::TileVolume& volume) const {
+  double sky_stretch(const cull::BoundingRegion& region, const cull::BoundingHexahedron& volume) const {
     const bool stands_out =
-        view_.plane.flat && cull::against_sky(eye_, horizon_, cull::farthest_chord2(shell.rect, eye_.direction),
-                                              shell.max_radius_m);
-    return stands_out ? stretch(view_.plane, volume) : 1.0;
+        view_.plane.flat && cull::against_sky(camera_, horizon_, cull::farthest_chord2(region.rect, camera_.direction),
+                                              region.max_radius_m);
+    return stands_out ? off_axis_magnification(view_.plane, volume) : 1.0;
   }
 
   // mask and stretch: what the parent is known to keep to, and so its children.
@@ -152,15 +152,15 @@ class Selector {
     const TileInfo& tile = tree_[index];
     Candidate c{};
     c.index = index;
-    c.error_m = error_m(tile, 0);
-    const cull::Shell shell = tree_.shell(index, options_.exaggeration, c.error_m);
+    c.geometric_error_m = geometric_error_m(tile, 0);
+    const cull::BoundingRegion region = tree_.region(index, options_.exaggeration, c.geometric_error_m);
     ++family.visited;
-    c.chord2 = cull::nearest_chord2(shell.rect, eye_.direction);
-    if (options_.cull_horizon && cull::hidden(horizon_, c.chord2, shell.max_radius_m)) {
+    c.chord2 = cull::nearest_chord2(region.rect, camera_.direction);
+    if (options_.cull_horizon && cull::hidden(horizon_, c.chord2, region.max_radius_m)) {
       ++family.culled_horizon;
       return;
     }
-    const cull::TileVolume volume = cull::make_volume(shell);
+    const cull::BoundingHexahedron volume = cull::bounding_hexahedron(region);
     if (mask != 0) {
       const auto crossed = cull::planes_crossed(view_.frustum, volume, mask);
       if (!crossed) {
@@ -170,12 +170,12 @@ class Selector {
       mask = *crossed;
     }
     c.mask = mask;
-    c.stretch = std::min(most_stretch, sky_stretch(shell, volume));
-    measure(c, shell);
+    c.off_axis_magnification = std::min(most_stretch, sky_stretch(region, volume));
+    measure(c, region);
     if (controlled_) {
       const double sum =
-          control_terms(options_.control, view_.centre, {volume, shell.rect, c.min_distance_m}).sum;
-      c.control = hitchner_ ? wanted_lod(sum) : lod::level_shift(sum);
+          control_terms(options_.control, view_.centre, {volume, region.rect, c.min_distance_m}).sum;
+      c.control = by_distance_ ? wanted_lod(sum) : lod::level_shift(sum);
       c.urgency = urgency(c);
     }
     family.triangles += triangles(c);
@@ -204,13 +204,13 @@ class Selector {
     Family family;
     if (tile.has_children) {
       const TileTree::Index first = tree_.first_child(worst.index);
-      for (TileTree::Index c = first; c < first + 4; ++c) visit(c, worst.mask, worst.stretch, family);
+      for (TileTree::Index c = first; c < first + 4; ++c) visit(c, worst.mask, worst.off_axis_magnification, family);
     } else {
       Candidate& next = family.members[family.size++];
       next = worst;
       ++next.variant;
-      next.error_m = error_m(tile, next.variant);
-      measure(next, tree_.shell(worst.index, options_.exaggeration, next.error_m));
+      next.geometric_error_m = geometric_error_m(tile, next.variant);
+      measure(next, tree_.region(worst.index, options_.exaggeration, next.geometric_error_m));
       family.triangles = triangles(next);
     }
     family.triangles -= triangles(worst);
@@ -226,25 +226,25 @@ class Selector {
   }
 
   SelectedTile tile_of(const Candidate& c) const {
-    return {tree_[c.index].key, c.index,          c.variant, c.error_m,
-            c.error_px,         c.min_distance_m, c.stretch, c.control};
+    return {tree_[c.index].key, c.index,          c.variant, c.geometric_error_m,
+            c.screen_space_error_px,         c.min_distance_m, c.off_axis_magnification, c.control};
   }
   void draw(const Candidate& c) { out_.tiles.push_back(tile_of(c)); }
 
   void finish() {
     std::sort(out_.tiles.begin(), out_.tiles.end(),
               [](const auto& a, const auto& b) { return z_position(a.key) < z_position(b.key); });
-    tally(tree_, out_);
+    update_totals(tree_, out_);
   }
 
   const SelectOptions& options_;
   const TileTree& tree_;
   const SelectView& view_;
-  cull::Eye eye_;
+  cull::Camera camera_;
   cull::Horizon horizon_;
   std::vector<Candidate>& heap_;
   Selection& out_;
-  bool hitchner_;
+  bool by_distance_;
   bool controlled_;
   double enough_;  // urgency up to which a tile is drawn
 };
@@ -262,14 +262,14 @@ SelectedTile measure_tile(const SelectOptions& options, const TileTree& tree, co
   return Selector(options, tree, view, scratch, unused).measured(index, variant);
 }
 
-void tally(const TileTree& tree, Selection& selection) {
+void update_totals(const TileTree& tree, Selection& selection) {
   selection.triangles = 0;
-  selection.max_error_m = selection.max_error_px = 0.0;
+  selection.max_geometric_error_m = selection.max_screen_space_error_px = 0.0;
   selection.tiles_by_level.clear();
   for (const SelectedTile& tile : selection.tiles) {
     selection.triangles += tree[tile.index].variants[static_cast<std::size_t>(tile.variant)].triangles;
-    selection.max_error_m = std::max(selection.max_error_m, tile.error_m);
-    selection.max_error_px = std::max(selection.max_error_px, tile.error_px);
+    selection.max_geometric_error_m = std::max(selection.max_geometric_error_m, tile.geometric_error_m);
+    selection.max_screen_space_error_px = std::max(selection.max_screen_space_error_px, tile.screen_space_error_px);
     const auto level = static_cast<std::size_t>(tile.key.level);
     if (selection.tiles_by_level.size() <= level) selection.tiles_by_level.resize(level + 1);
     ++selection.tiles_by_level[level];

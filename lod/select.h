@@ -3,9 +3,9 @@
 // Starting from the six roots, whatever cannot be seen is dropped (horizon, frustum) and the tile with the
 // worst projected error is refined, until the worst is within the tolerance or the triangles are spent. A tile
 // with children is replaced by them, a finest tile by its next mesh. The projected error of a tile is
-//   error bound (m) * focal length (px) / least distance from the eye to where the tile's surface can be (m)
-//   * stretch of the tile's place in the picture (lod/off_axis_magnification.h), where the tile may stand against the sky,
-// an upper bound of the shift of every pixel that the tile covers, and of how far off in the picture its
+//   error bound (m) * focal length (px) / least distance from the camera to where the tile's surface can be (m)
+//   * stretch of the tile's place in the image (lod/off_axis_magnification.h), where the tile may stand against the sky,
+// an upper bound of the shift of every pixel that the tile covers, and of how far off in the image its
 // outline lies against the sky.
 //
 // Level control (lod/control.h) shifts that: in rule error a tile's projected error counts 2^levels times when
@@ -37,10 +37,10 @@ struct SelectOptions {
 };
 
 struct SelectView {
-  glm::dvec3 eye_m{0, 0, 0};
-  double focal_px = 1.0;  // pixels of picture for a tangent of 1
+  glm::dvec3 camera_m{0, 0, 0};
+  double focal_px = 1.0;  // pixels of image for a tangent of 1
   cull::Frustum frustum;
-  PicturePlane plane;
+  ImagePlane plane;
   CentreOfView centre;
 };
 
@@ -51,10 +51,10 @@ struct SelectedTile {
   TileKey key;
   TileTree::Index index = 0;
   int variant = 0;
-  double error_m = 0;         // bound at the exaggeration selected for
-  double error_px = 0;        // projected; infinite where the eye is within the error of the ground
+  double geometric_error_m = 0;         // bound at the exaggeration selected for
+  double screen_space_error_px = 0;        // projected; infinite where the camera is within the error of the ground
   double min_distance_m = 0;  // lower bound
-  double stretch = 1;         // upper bound, >= 1; 1 for what cannot stand against the sky
+  double off_axis_magnification = 1;         // upper bound, >= 1; 1 for what cannot stand against the sky
   double control = 0;         // rule error: levels that its error counted more; hitchner: the LOD number wanted
 };
 
@@ -63,12 +63,12 @@ struct Selection {
   double exaggeration = 1;
   // Every visited tile was culled, drawn, or replaced by its children.
   int visited = 0;
-  int culled_frustum = 0;  // seen over the horizon, but outside the picture
+  int culled_frustum = 0;  // seen over the horizon, but outside the image
   int culled_horizon = 0;
   int refined = 0;
   std::int64_t triangles = 0;
-  double max_error_m = 0;
-  double max_error_px = 0;
+  double max_geometric_error_m = 0;
+  double max_screen_space_error_px = 0;
   bool capped = false;              // the triangles were spent before the rule was met
   std::vector<int> tiles_by_level;  // drawn; index 0 = level 0, as long as the deepest level drawn
 };
@@ -79,10 +79,10 @@ class SelectScratch {
   friend class Selector;
   struct Candidate {
     double urgency;
-    double error_m;
-    double error_px;
+    double geometric_error_m;
+    double screen_space_error_px;
     double min_distance_m;
-    double stretch;
+    double off_axis_magnification;
     double chord2;
     double control;
     TileTree::Index index;
@@ -93,8 +93,8 @@ class SelectScratch {
 };
 
 // The result depends on the first three arguments alone; ties are broken by the order of the tree. A tile is
-// drawn only if it is in none of the others, and every place of S that is in the picture and above the horizon
-// of the lowest sphere is in one. Throws std::invalid_argument for an eye, focal length or option out of range.
+// drawn only if it is in none of the others, and every place of S that is in the image and above the horizon
+// of the lowest sphere is in one. Throws std::invalid_argument for a camera, focal length or option out of range.
 // Thread rule: one scratch a thread.
 void select(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,
             Selection& selection);
@@ -103,8 +103,8 @@ void select(const SelectOptions& options, const TileTree& tree, const SelectView
 SelectedTile measure_tile(const SelectOptions& options, const TileTree& tree, const SelectView& view,
                           TileTree::Index index, int variant);
 
-// Sets triangles, max_error_m, max_error_px and tiles_by_level from the tiles.
-void tally(const TileTree& tree, Selection& selection);
+// Sets triangles, max_geometric_error_m, max_screen_space_error_px and tiles_by_level from the tiles.
+void update_totals(const TileTree& tree, Selection& selection);
 
 // For every tile of a selection and each of its edges (by Edge) how far a skirt must reach down, radially from
 // the vertices of the border, to leave no gap to what is drawn across: 0 where both meet exactly or nothing is

@@ -41,8 +41,8 @@ double gap_m(const Selection& selection, const TileTree& tree, const SelectedTil
   const std::int64_t end = begin + z_extent(next.key.level);
   const auto gap_to = [&](const SelectedTile& other) {
     return meet_exactly(tree, tile, other)   ? 0.0
-           : mutated(Guard::kSkirtNeighbour) ? tile.error_m
-                                             : tile.error_m + other.error_m;
+           : mutated(Guard::kSkirtNeighbour) ? tile.geometric_error_m
+                                             : tile.geometric_error_m + other.geometric_error_m;
   };
   // Of disjoint tiles along the curve the last that begins at or before a place is the one that may hold it.
   const auto after = std::partition_point(selection.tiles.begin(), selection.tiles.end(),
@@ -65,16 +65,16 @@ void skirt_depths(const Selection& selection, const TileTree& tree,
   depths_m.assign(selection.tiles.size(), {});
   for (std::size_t n = 0; n < selection.tiles.size(); ++n) {
     const SelectedTile& tile = selection.tiles[n];
-    const cull::Shell shell = tree.shell(tile.index, selection.exaggeration, tile.error_m);
+    const cull::BoundingRegion region = tree.region(tile.index, selection.exaggeration, tile.geometric_error_m);
     for (const Edge edge : kEdges) {
       const double gap = gap_m(selection, tree, tile, edge);
       if (gap == 0.0) continue;
       // With its vertices lowered by d an edge's radius r shrinks to r / (1 + d / max radius) at most, so d has
       // to be this for a gap anywhere below r >= min radius.
-      const double room = shell.min_radius_m - gap;
-      const double depth = room > 0.0 ? gap * shell.max_radius_m / room : shell.min_radius_m;
+      const double room = region.min_radius_m - gap;
+      const double depth = room > 0.0 ? gap * region.max_radius_m / room : region.min_radius_m;
       depths_m[n][static_cast<std::size_t>(edge)] = std::nextafter(
-          static_cast<float>(std::min(depth, shell.min_radius_m)), std::numeric_limits<float>::max());
+          static_cast<float>(std::min(depth, region.min_radius_m)), std::numeric_limits<float>::max());
     }
   }
 }

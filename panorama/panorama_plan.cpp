@@ -121,12 +121,12 @@ void note(std::vector<std::string>& notes, const char* what, double is, double w
 
 }  // namespace
 
-Plan plan_panorama(const PlanOptions& options) {
+PanoramaPlan plan_panorama(const PlanOptions& options) {
   check_facets(options);
   const Elevations elevations = elevations_of(options);
   const Azimuths azimuths = azimuths_of(options);
   const double wanted_px = wanted_turn_px(options, azimuths.span_deg);
-  Plan plan;
+  PanoramaPlan plan;
   PanoramaMap& map = plan.map;
   if (options.kind == MapKind::kFacets) {
     const auto facet_px = static_cast<std::int64_t>(std::max(1.0, std::round(wanted_px / options.facets)));
@@ -169,12 +169,12 @@ Plan plan_panorama(const PlanOptions& options) {
 
 namespace {
 
-View facet_view(const PanoramaMap& map, const Standpoint& standpoint, std::int64_t facet, int margin_px) {
+View facet_view(const PanoramaMap& map, const PoseOnSphere& stand, std::int64_t facet, int margin_px) {
   View view;
-  mars::Pose pose = standpoint.pose;
+  mars::Pose pose = stand.pose;
   pose.yaw_deg = map.turn_azimuth_deg + 360.0 * (static_cast<double>(facet) + 0.5) / map.facets;
   pose.pitch_deg = pose.roll_deg = 0.0;
-  view.eye = mars::to_eye(pose, standpoint.radius_m);
+  view.camera = mars::to_camera(pose, stand.radius_m);
   view.width = static_cast<int>(map.facet_px()) + 2 * margin_px;
   view.height = static_cast<int>(map.height_px) + 2 * margin_px;
   view.principal_offset_px.y = map.horizon_px + margin_px - 0.5 * view.height;
@@ -191,12 +191,12 @@ std::int64_t piece_columns(std::int64_t rows) {
 
 }  // namespace
 
-View round_view(const PanoramaMap& map, const Standpoint& standpoint) {
+View round_view(const PanoramaMap& map, const PoseOnSphere& stand) {
   View view;
-  mars::Pose pose = standpoint.pose;
+  mars::Pose pose = stand.pose;
   pose.yaw_deg = map.turn_azimuth_deg + 180.0;
   pose.pitch_deg = pose.roll_deg = 0.0;
-  view.eye = mars::to_eye(pose, standpoint.radius_m);
+  view.camera = mars::to_camera(pose, stand.radius_m);
   view.width = static_cast<int>(map.turn_px);
   view.height = static_cast<int>(map.height_px);
   view.principal_offset_px.y = map.horizon_px - 0.5 * view.height;
@@ -212,20 +212,20 @@ View round_view(const PanoramaMap& map, const Standpoint& standpoint) {
 
 std::vector<Strip> strips_of(const PanoramaMap& map) { return strips_of(map.width_px, map.height_px); }
 
-std::vector<Strip> strips_of(std::int64_t picture_width_px, std::int64_t height_px) {
+std::vector<Strip> strips_of(std::int64_t image_width_px, std::int64_t height_px) {
   const std::int64_t tiles =
       std::max<std::int64_t>(1, PlanLimits::kStripPixels / height_px / PlanLimits::kTile_px);
-  // Wide and low pictures have strips of a bounded width, too.
+  // Wide and low images have strips of a bounded width, too.
   const std::int64_t width_px =
       std::min<std::int64_t>(tiles * PlanLimits::kTile_px, PlanLimits::kMaxPieceSide_px);
   std::vector<Strip> strips;
-  for (std::int64_t x = 0; x < picture_width_px; x += width_px) {
-    strips.push_back({x, static_cast<int>(std::min(width_px, picture_width_px - x))});
+  for (std::int64_t x = 0; x < image_width_px; x += width_px) {
+    strips.push_back({x, static_cast<int>(std::min(width_px, image_width_px - x))});
   }
   return strips;
 }
 
-std::vector<Piece> pieces_of(const PanoramaMap& map, const Standpoint& standpoint, const Strip& strip,
+std::vector<Piece> pieces_of(const PanoramaMap& map, const PoseOnSphere& stand, const Strip& strip,
                              int margin_px) {
   const bool has_facets = map.kind == MapKind::kFacets;
   const auto crop_px = static_cast<std::int64_t>(map.crop_left_px);
@@ -245,7 +245,7 @@ std::vector<Piece> pieces_of(const PanoramaMap& map, const Standpoint& standpoin
     piece.x = x;
     piece.width = static_cast<int>(width);
     piece.margin_px = has_facets ? margin_px : 0;
-    piece.view = has_facets ? facet_view(map, standpoint, unit, margin_px) : round_view(map, standpoint);
+    piece.view = has_facets ? facet_view(map, stand, unit, margin_px) : round_view(map, stand);
     for (std::int64_t y = 0; y < map.height_px; y += rows) {
       piece.y = y;
       piece.height = static_cast<int>(std::min(rows, map.height_px - y));

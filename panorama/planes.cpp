@@ -66,11 +66,11 @@ glm::dvec3 line_of_sight(const Piece& piece, std::int64_t x, std::int64_t y) {
                               static_cast<double>(part.y + piece.margin_px + (y - piece.y)) + 0.5);
 }
 
-void measure(Plane plane, const paging::Surface& surface, double exaggeration, const glm::dvec3& eye_m,
+void measure(Plane plane, const paging::Surface& surface, double exaggeration, const glm::dvec3& camera_m,
              const glm::dvec3& sight, float range_m, std::uint8_t* out) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const bool is_ground = std::isfinite(range_m);
-  const glm::dvec3 at = is_ground ? eye_m + sight * static_cast<double>(range_m) : eye_m;
+  const glm::dvec3 at = is_ground ? camera_m + sight * static_cast<double>(range_m) : camera_m;
   switch (plane) {
     case Plane::kRange: store(is_ground ? static_cast<double>(range_m) : kNan, out); return;
     case Plane::kLonLat: {
@@ -81,12 +81,12 @@ void measure(Plane plane, const paging::Surface& surface, double exaggeration, c
     }
     case Plane::kElevation: {
       const auto point = is_ground ? surface.at(at) : paging::SurfacePoint{};
-      store(is_ground && !point.missing ? point.height_m : kNan, out);
+      store(is_ground && !point.nodata ? point.height_m : kNan, out);
       return;
     }
     case Plane::kSlope: {
       const auto point = is_ground ? surface.at(at) : paging::SurfacePoint{};
-      store(is_ground && !point.missing ? vpe::core::slope_deg(point.normal, at) : kNan, out);
+      store(is_ground && !point.nodata ? vpe::core::slope_deg(point.normal, at) : kNan, out);
       return;
     }
     case Plane::kIncidence: {

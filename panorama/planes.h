@@ -1,4 +1,4 @@
-// Measurements registered to a panorama's picture: what stands behind each pixel's centre.
+// Measurements registered to a panorama's image: what stands behind each pixel's centre.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace panorama {
 
-// kRange       distance from the eye to S as it is drawn, metres, float32; within 1e-6 / sin(incidence),
+// kRange       distance from the camera to S as it is drawn, metres, float32; within 1e-6 / sin(incidence),
 // relative kLonLat      place: longitude east (-180, 180] and planetocentric latitude, degrees, two float64; as
 // far off as
 //              the range is, along the line of sight
@@ -39,12 +39,12 @@ const PlaneInfo& info_of(Plane plane);
 // "range,lonlat"; each once, in the order of the enumeration. Throws PlanError naming what is unknown.
 std::vector<Plane> parse_planes(std::string_view text);
 
-// Where a pixel's line of sight goes: unit, body-fixed. x, y in the picture, inside the piece.
+// Where a pixel's line of sight goes: unit, body-fixed. x, y in the image, inside the piece.
 glm::dvec3 line_of_sight(const Piece& piece, std::int64_t x, std::int64_t y);
 
 // One pixel of a plane: format.samples numbers, as the format has them, into `out`. Any thread. Throws
 // paging::PlanetError.
-void measure(Plane plane, const paging::Surface& surface, double exaggeration, const glm::dvec3& eye_m,
+void measure(Plane plane, const paging::Surface& surface, double exaggeration, const glm::dvec3& camera_m,
              const glm::dvec3& sight, float range_m, std::uint8_t* out);
 
 }  // namespace panorama

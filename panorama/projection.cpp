@@ -188,7 +188,7 @@ PanoramaMap map_of(const vpe::core::View& view) {
   if (view.projection == vpe::core::Projection::kPerspective) {
     throw std::invalid_argument("a perspective view is no panorama");
   }
-  const mars::Pose pose = mars::to_pose(view.eye, mars::kMarsRadius_m);
+  const mars::Pose pose = mars::to_pose(view.camera, mars::kMarsRadius_m);
   constexpr double kLevel_deg = 1e-9;
   if (std::abs(pose.pitch_deg) > kLevel_deg || std::abs(pose.roll_deg) > kLevel_deg) {
     throw std::invalid_argument("a panorama's eye must be level, not pitched or rolled");

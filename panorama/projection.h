@@ -1,7 +1,7 @@
 // Which direction each place of a panorama shows.
 //
-// Places are in pixels: x right, y down, (0, 0) the picture's upper left corner, pixel centres at +0.5.
-// Azimuth is clockwise from north, elevation up from the horizontal; the picture's horizon is level. With
+// Places are in pixels: x right, y down, (0, 0) the image's upper left corner, pixel centres at +0.5.
+// Azimuth is clockwise from north, elevation up from the horizontal; the image's horizon is level. With
 // column t = x + crop_left_px, counted from the start of a turn, and rise v = horizon_px - y:
 //   kCylinder         azimuth = turn_azimuth + 360 deg t / turn_px,  tan(elevation) = v / focal_px
 //   kEquirectangular  the same azimuth,                              elevation = v / focal_px (radians)
@@ -33,7 +33,7 @@ struct PanoramaLimits {
   static constexpr int kMaxFacets = 64;
   static constexpr double kMaxTurn_px = 1e9;      // also of focal_px and |horizon_px|
   static constexpr double kMaxAzimuth_deg = 1e6;  // of |turn_azimuth_deg|
-  static constexpr double kMaxTurns = 2;          // that a picture may be wide
+  static constexpr double kMaxTurns = 2;          // that an image may be wide
 };
 
 struct Direction {
@@ -43,26 +43,26 @@ struct Direction {
 
 struct PanoramaMap {
   MapKind kind = MapKind::kCylinder;
-  std::int64_t width_px = 0;  // of the picture, which may be a part of a turn or more than one
+  std::int64_t width_px = 0;  // of the image, which may be a part of a turn or more than one
   std::int64_t height_px = 0;
   double turn_px = 0;           // columns of 360 degrees; need not be whole except with facets
   double turn_azimuth_deg = 0;  // at t = 0; facet 0 looks 180 / N degrees to the right of it
-  double crop_left_px = 0;      // t of the picture's left edge, 0 to turn_px
-  double horizon_px = 0;        // y of elevation 0, inside the picture or not
+  double crop_left_px = 0;      // t of the image's left edge, 0 to turn_px
+  double horizon_px = 0;        // y of elevation 0, inside the image or not
   // kCylinder, kFacets: rows per unit of tangent; kEquirectangular: rows per radian.
   double focal_px = 0;
   int facets = 0;  // kFacets only
 
-  // Azimuth in [0, 360). x and y may lie outside of the picture; an elevation beyond +-90 is cut there.
+  // Azimuth in [0, 360). x and y may lie outside of the image; an elevation beyond +-90 is cut there.
   Direction to_direction(double x, double y) const;
 
-  // Where the picture shows a direction; nothing where it does not, or for numbers that are not finite.
-  // Azimuths may be any number of turns away. Of several columns (pictures wider than a turn) the leftmost.
-  // to_pixel(to_direction(p)) = p within kRoundTrip_px for pictures up to 100 000 px wide and elevations up to
+  // Where the image shows a direction; nothing where it does not, or for numbers that are not finite.
+  // Azimuths may be any number of turns away. Of several columns (images wider than a turn) the leftmost.
+  // to_pixel(to_direction(p)) = p within kRoundTrip_px for images up to 100 000 px wide and elevations up to
   // 85 degrees; on a seam of 360 degrees it is the left of the two edges.
   std::optional<glm::dvec2> to_pixel(const Direction& direction) const;
 
-  // The same on a picture without edges, x in [-crop_left_px, turn_px - crop_left_px). Rows of the
+  // The same on an image without edges, x in [-crop_left_px, turn_px - crop_left_px). Rows of the
   // cylinder are huge towards +-90 degrees.
   glm::dvec2 place(const Direction& direction) const;
 
@@ -86,12 +86,12 @@ PanoramaMap equirectangular_map(std::int64_t width_px, std::int64_t height_px, d
 PanoramaMap faceted_map(int facets, std::int64_t facet_px, std::int64_t height_px, double start_yaw_deg,
                         double horizon_px);
 
-// The drawn part of a round view whose eye is level. Throws std::invalid_argument for a perspective view and
-// for an eye that is pitched or rolled by more than 1e-9 degrees.
+// The drawn part of a round view whose camera is level. Throws std::invalid_argument for a perspective view and
+// for a camera that is pitched or rolled by more than 1e-9 degrees.
 PanoramaMap map_of(const vpe::core::View& view);
 
 // The largest distance in pixels between where a and b show the same directions, over a grid of 9 x 9 places
-// that spans a's picture; infinite when the pictures differ in size. Tells whether two descriptions agree.
+// that spans a's image; infinite when the images differ in size. Tells whether two descriptions agree.
 double largest_difference_px(const PanoramaMap& a, const PanoramaMap& b);
 
 }  // namespace panorama

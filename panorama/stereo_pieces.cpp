@@ -51,18 +51,18 @@ int columns_at(const PanoramaMap& map, const EyePair& eyes, double elevation_rad
   return columns;
 }
 
-// An eye's place, and the round picture from there.
+// An eye's place, and the round image from there.
 View eye_view(const View& middle, const PanoramaMap& map, Eye eye, double base_m, double azimuth_deg,
               double steepest) {
   View view = middle;
-  const mars::Axes& axes = middle.eye.axes;
-  // The picture's axes look along its middle.
+  const mars::Axes& axes = middle.camera.axes;
+  // The image's axes look along its middle.
   const mars::SinCos turn = mars::sin_cos_deg(azimuth_deg - (map.turn_azimuth_deg + 180.0));
   const glm::dvec3 forward = turn.cos * axes.forward + turn.sin * axes.right;
   const glm::dvec3 right = turn.cos * axes.right - turn.sin * axes.forward;
   const double aside_m = (eye == Eye::kRight ? 0.5 : -0.5) * base_m;
-  view.eye.eye_m += aside_m * right;
-  const double height_m = glm::length(middle.eye.eye_m);
+  view.camera.position_m += aside_m * right;
+  const double height_m = glm::length(middle.camera.position_m);
   if (map.turn_px / (2.0 * kPi) * steepest * std::abs(aside_m) / height_m > kStereoTilt_px) return view;
   // Turned about the line of sight until up is away from the planet's centre.
   const double length = std::hypot(height_m, aside_m);
@@ -71,7 +71,7 @@ View eye_view(const View& middle, const PanoramaMap& map, Eye eye, double base_m
   const auto turned = [&](const glm::dvec3& v) {
     return v * cosine + glm::cross(forward, v) * sine + forward * (glm::dot(forward, v) * (1.0 - cosine));
   };
-  view.eye.axes = {turned(axes.right), turned(axes.up), turned(axes.forward)};
+  view.camera.axes = {turned(axes.right), turned(axes.up), turned(axes.forward)};
   return view;
 }
 
@@ -104,7 +104,7 @@ std::string check(const EyePair& eyes) {
          three_digits(*eyes.nearest_m / vpe::core::kNearestToBase) + " m is comfortable";
 }
 
-PictureSize size_of_pair(const PanoramaMap& map, StereoLayout layout) {
+ImageSize size_of_pair(const PanoramaMap& map, StereoLayout layout) {
   return {map.width_px * (layout == StereoLayout::kSideBySide ? 2 : 1),
           map.height_px * (layout == StereoLayout::kOverUnder ? 2 : 1)};
 }
@@ -150,9 +150,9 @@ std::vector<StereoBand> stereo_bands(const PanoramaMap& map, const EyePair& eyes
   return bands;
 }
 
-std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const Standpoint& standpoint,
+std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const PoseOnSphere& stand,
                                  const std::vector<StereoBand>& bands, Eye eye, const Strip& strip) {
-  const View middle = round_view(map, standpoint);
+  const View middle = round_view(map, stand);
   const auto crop_px = static_cast<std::int64_t>(map.crop_left_px);
   const auto turn_px = static_cast<std::int64_t>(map.turn_px);
   const std::int64_t end = strip.x + strip.width;
@@ -163,7 +163,7 @@ std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const Standpoint& stand
                  std::abs(std::tan(elevation_rad(map, static_cast<double>(band.y + band.height) - 0.5))));
     for (std::int64_t x = strip.x; x < end;) {
       const std::int64_t column = (x + crop_px) % turn_px;
-      // The cell, from the picture's edge or the start of the turn on, decides the eye; the strip may have a
+      // The cell, from the image's edge or the start of the turn on, decides the eye; the strip may have a
       // part of it.
       const std::int64_t cell = x - std::min(x % band.columns, column);
       const std::int64_t cell_end =
@@ -185,7 +185,7 @@ std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const Standpoint& stand
   return pieces;
 }
 
-std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const Standpoint& standpoint, const EyePair& eyes,
+std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const PoseOnSphere& stand, const EyePair& eyes,
                                   const Strip& strip) {
   const std::vector<StereoBand> bands = stereo_bands(map, eyes);
   std::vector<Piece> pieces;
@@ -197,7 +197,7 @@ std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const Standpoint& stan
     const std::int64_t end = std::min(map.width_px, strip.x + strip.width - right);
     if (begin >= end) continue;
     std::vector<Piece> of_eye =
-        eye_pieces_of(map, standpoint, bands, eye, {begin, static_cast<int>(end - begin)});
+        eye_pieces_of(map, stand, bands, eye, {begin, static_cast<int>(end - begin)});
     shift(of_eye, right, down);
     pieces.insert(pieces.end(), of_eye.begin(), of_eye.end());
   }

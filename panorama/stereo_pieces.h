@@ -2,7 +2,7 @@
 //
 // By definition (stereo_eyes.h) every column has its own eyes, base_m apart across its azimuth, and the base
 // fades beyond 45 degrees of elevation. A View has one eye, so a piece has the eye of its middle column and of
-// a base between those of its rows. What that moves in the picture bounds the size of a piece:
+// a base between those of its rows. What that moves in the image bounds the size of a piece:
 //
 //   Columns. At angle a from the middle column the eye is d = base sin(a / 2) from where it belongs, nearly all
 //   of it along the line of sight, and (base / 2)(1 - cos a) to the side. For ground at range r, r cos(e) of it
@@ -11,7 +11,7 @@
 //     equirectangular  f sin|e| d / (r - d)
 //   and columns by f (base / 2)(1 - cos a) / (r cos e - d); f in pixels a radian (cylinder: a unit of tangent).
 //   With a = width / (2 f), the first is about base width tan|e| / (4 r cos e): it does not depend on f, and a
-//   piece has as many columns whatever the size of the picture.
+//   piece has as many columns whatever the size of the image.
 //   Rows. A base off by b moves columns by f (b / 2) / (r cos e).
 //
 // A piece is as large as leaves each of the three within its bound, for ground at the range of the nearest less
@@ -51,18 +51,18 @@ inline constexpr double kMostBase = 0.2;
 struct EyePair {
   vpe::core::StereoLayout layout = vpe::core::StereoLayout::kSideBySide;
   double base_m = 0;                // > 0, at most kMostBase nearest_m
-  std::optional<double> nearest_m;  // range of the nearest ground in the picture; nothing: sky alone
+  std::optional<double> nearest_m;  // range of the nearest ground in the image; nothing: sky alone
 };
 
 // Empty when the pair can be drawn, else what is wrong with it and what is allowed.
 std::string check(const EyePair& eyes);
 
-// Pixels of the file: two pictures of the map's size beside or above each other, or one in red-cyan.
-struct PictureSize {
+// Pixels of the file: two images of the map's size beside or above each other, or one in red-cyan.
+struct ImageSize {
   std::int64_t width_px = 0;
   std::int64_t height_px = 0;
 };
-PictureSize size_of_pair(const PanoramaMap& map, vpe::core::StereoLayout layout);
+ImageSize size_of_pair(const PanoramaMap& map, vpe::core::StereoLayout layout);
 
 // Rows that are cut alike.
 struct StereoBand {
@@ -74,14 +74,14 @@ struct StereoBand {
 // From the top, without gaps. Of a round map.
 std::vector<StereoBand> stereo_bands(const PanoramaMap& map, const EyePair& eyes);
 
-// The pieces of columns [strip.x, strip.x + strip.width) of an eye's picture, in that picture's pixels; without
+// The pieces of columns [strip.x, strip.x + strip.width) of an eye's image, in that image's pixels; without
 // gaps or overlaps. `bands` are those of map and eyes.
-std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const Standpoint& standpoint,
+std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const PoseOnSphere& stand,
                                  const std::vector<StereoBand>& bands, Eye eye, const Strip& strip);
 
 // The same of a strip of the file, in the file's pixels. Of red-cyan, both eyes' pieces lie over each other:
 // first all of the left eye, then as many of the right.
-std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const Standpoint& standpoint, const EyePair& eyes,
+std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const PoseOnSphere& stand, const EyePair& eyes,
                                   const Strip& strip);
 
 }  // namespace panorama

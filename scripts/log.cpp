@@ -33,7 +33,7 @@ FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view) 
   file_.write(version_line() + to_line(view));
 }
 
-void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadLook& look,
+void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& look,
                       const vpe::core::Settings& settings,
                       std::span<const vpe::core::InterestRegion> interest) {
   const Look turned{time_s, look.yaw_deg, look.pitch_deg, look.roll_deg};

@@ -41,7 +41,7 @@ class FlightLog {
   // Times ascend. Writes the pose; the head and the settings only where they changed since the last frame.
   // `interest` are all regions so far: those beyond the last frame's are written. (A flight cannot take a
   // region back.)
-  void frame(double time_s, const mars::Pose& pose, const mars::HeadLook& look,
+  void frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& look,
              const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest = {});
 
   // A comment line, for people and for programs that know how to read it; playback passes over it. Line ends

@@ -179,7 +179,7 @@ FlightState Path::at(double time_s) const {
     state.look = {mars::normalize_lon_deg(look_yaw_deg_.at(t)), look_pitch_deg_.at(t),
                   mars::normalize_lon_deg(look_roll_deg_.at(t))};
   }
-  state.eye = mars::to_eye(state.pose, state.look, radius_m_);
+  state.camera = mars::to_camera(state.pose, state.look, radius_m_);
   return state;
 }
 

@@ -29,8 +29,8 @@ using TerrainHeight = std::function<double(mars::LonLat place, double exaggerati
 
 struct FlightState {
   mars::Pose pose;  // of the platform
-  mars::HeadLook look;
-  mars::EyePose eye;  // both together: mars::to_eye(pose, look, radius)
+  mars::HeadAngles look;
+  mars::CameraPose camera;  // both together: mars::to_camera(pose, look, radius)
 };
 
 // Immutable; every const member may be called from any number of threads at once.
@@ -38,7 +38,7 @@ class Path {
  public:
   // Calls terrain_height_m once for every pose given by its height; it may be empty when there is none. The terrain
   // counts with the exaggeration at the pose's time: the flight's, before its first `set` the given one.
-  // Throws std::runtime_error, naming the time, when a terrain height is not known, when an eye is not above
+  // Throws std::runtime_error, naming the time, when a terrain height is not known, when a camera is not above
   // the planet's centre, and when two successive poses are opposite, so that no great circle is defined.
   Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration = 1);
 

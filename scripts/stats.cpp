@@ -49,8 +49,8 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
   field("load_ms", stats.load_ms);
   field("draw_ms", stats.draw_ms);
   field("read_ms", stats.read_ms);
-  field("tile_error_m", certificate.tile_error_m);
-  field("tile_error_px", certificate.tile_error_px);
+  field("tile_error_m", certificate.geometric_error_m);
+  field("tile_error_px", certificate.screen_space_error_px);
   field("shift_bound_px", certificate.shift_bound_px);
   field("tiles_substituted", certificate.tiles_substituted);
 }

@@ -11,7 +11,7 @@
 namespace scripts {
 
 // Columns (CSV, RFC 4180 with a header) or keys (one JSON object a line): frame, t_s, the fields of
-// core::FrameStats, then tile_error_m, tile_error_px, shift_bound_px and tiles_substituted of the certificate.
+// core::FrameStats, then geometric_error_m, screen_space_error_px, shift_bound_px and tiles_substituted of the certificate.
 // tiles_by_level is "3;5;0" in CSV and an array in JSON. What is not finite, and a negative bytes_resident or
 // number of pages (not known), is an empty field or null.
 // Numbers are the same in every locale. Rows are flushed; errors as LineFile.

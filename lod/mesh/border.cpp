@@ -16,7 +16,7 @@ std::vector<int> choose_border(std::span<const double> height_m, std::span<const
     w[k] = length[k] / (radius_m + height_m[k]);
   }
   // Symmetric under exchange of the ends to the last bit.
-  const auto error_m = [&](std::size_t a, std::size_t b, std::size_t k) {
+  const auto geometric_error_m = [&](std::size_t a, std::size_t b, std::size_t k) {
     const double blend = w[a] * (line[b] - line[k]) + w[b] * (line[k] - line[a]);
     return std::abs(length[k] * (line[b] - line[a]) / blend - (radius_m + height_m[k]));
   };
@@ -33,7 +33,7 @@ std::vector<int> choose_border(std::span<const double> height_m, std::span<const
     std::size_t first = b;  // first and last of the posts that are equally bad and equally near the middle
     std::size_t last = b;
     for (std::size_t k = a + 1; k < b; ++k) {
-      const double e = error_m(a, b, k);
+      const double e = geometric_error_m(a, b, k);
       if (e < worst || (e == worst && first == b)) continue;
       const double nearer = first == b ? 0.0 : off_middle(a, b, first) - off_middle(a, b, k);
       if (e > worst || nearer > 0.0) {

@@ -105,7 +105,7 @@ class GreedyMesher {
         const int beyond = other < 0 ? -1 : topology_.face(other);
         if (beyond >= 0 && beyond < f && is_unchecked_[static_cast<std::size_t>(beyond)] != 0) continue;
         const WorstPost worst = field_.worst_crossing(vertex(topology_.from(h)), vertex(topology_.to(h)));
-        if (worst.error_m > tolerance_m_) wanted_.push_back({worst.post, f});
+        if (worst.geometric_error_m > tolerance_m_) wanted_.push_back({worst.post, f});
       }
     }
     forget_unchecked();

@@ -32,7 +32,7 @@ WorstPost PostField::worst_crossing(const Corner& from, const Corner& to) const 
   const auto visit = [&](const Crossing& at, double t) {
     const double surface = w_[at.p] + at.fraction * (w_[at.q] - w_[at.p]);
     const double error = lowest_radius_m_ * std::abs(1.0 - (wa + t * dw) / surface);
-    if (error <= worst.error_m) return;
+    if (error <= worst.geometric_error_m) return;
     // The nearer end of the line, unless it is a vertex or on the border.
     std::size_t post = at.fraction < 0.5 ? at.p : at.q;
     if (weight_[post] == 0) post = post == at.p ? at.q : at.p;

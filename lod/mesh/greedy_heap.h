@@ -9,12 +9,12 @@ namespace lod {
 
 // A post and how far it lies from the triangle over it; error 0 = none.
 struct WorstPost {
-  double error_m = 0;
+  double geometric_error_m = 0;
   std::uint32_t post = 0;
 };
 
 struct QueuedPost {
-  double error_m = 0;
+  double geometric_error_m = 0;
   std::uint32_t post = 0;
   int face = 0;
 };
@@ -34,8 +34,8 @@ class PostQueue {
     const auto f = static_cast<std::size_t>(face);
     if (f >= place_.size()) place_.resize(f + 1, kNone);
     std::size_t at = place_[f];
-    if (worst.error_m > tolerance_m) {
-      const QueuedPost entry{worst.error_m, worst.post, face};
+    if (worst.geometric_error_m > tolerance_m) {
+      const QueuedPost entry{worst.geometric_error_m, worst.post, face};
       if (at == kNone) {
         at = heap_.size();
         heap_.push_back(entry);
@@ -53,7 +53,7 @@ class PostQueue {
   static constexpr std::size_t kNone = ~std::size_t{0};
 
   static bool before(const QueuedPost& a, const QueuedPost& b) {
-    return a.error_m > b.error_m || (a.error_m == b.error_m && a.post < b.post);
+    return a.geometric_error_m > b.geometric_error_m || (a.geometric_error_m == b.geometric_error_m && a.post < b.post);
   }
 
   void put(std::size_t at, const QueuedPost& entry) {

@@ -13,8 +13,8 @@ namespace {
 // Largest distances at posts so far.
 struct Largest {
   double total = 0;
-  double sag = 0;
-  double relief = 0;
+  double sagitta = 0;
+  double height_error = 0;
 };
 
 }  // namespace
@@ -140,8 +140,8 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
           const double w_row = facet.depth.at + facet.depth.dv * dv;
           const double n_row = facet.length.at + facet.length.dv * dv;
           double total_most = most.total;
-          double sag_most = most.sag;
-          double relief_most = most.relief;
+          double sagitta_most = most.sagitta;
+          double height_error_most = most.height_error;
           for (std::size_t i = from; i < to; ++i) {
             const double du = fine.u.data()[i] - u0;
             const double w = w_row + facet.depth.du * du;
@@ -149,12 +149,12 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
             // As Overlay::add, where the direction's length is that of S's post.
             const double scale = fine.radius_m / (w * depth[i] * l);
             const double total = (depth[i] - w) * (l * length[i]) * scale;
-            const double sag = (length[i] - l) * (w * depth[i]) * scale;
+            const double sagitta = (length[i] - l) * (w * depth[i]) * scale;
             total_most = std::max(total_most, std::abs(total));
-            sag_most = std::max(sag_most, std::abs(sag));
-            relief_most = std::max(relief_most, std::abs(total - sag));
+            sagitta_most = std::max(sagitta_most, std::abs(sagitta));
+            height_error_most = std::max(height_error_most, std::abs(total - sagitta));
           }
-          most = {total_most, sag_most, relief_most};
+          most = {total_most, sagitta_most, height_error_most};
         };
         const double* u = fine.u.data();
         const auto low_from = static_cast<std::size_t>(
@@ -174,9 +174,9 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
                        (1.0 + std::min(coarse_depth, coarse.depth_variation));
   const double flat = (1.0 + fine.length_variation) * (1.0 + fine.length_variation) * (1.0 + coarse_length);
   ErrorTerms terms;
-  terms.relief_m = most.relief + (kappa - 1.0) * most.total + (flat - 1.0) * most.sag;
-  terms.sag_m = flat * most.sag;
-  terms.total_m = std::min(kappa * most.total, terms.relief_m + terms.sag_m);
+  terms.height_error_m = most.height_error + (kappa - 1.0) * most.total + (flat - 1.0) * most.sagitta;
+  terms.sagitta_m = flat * most.sagitta;
+  terms.total_m = std::min(kappa * most.total, terms.height_error_m + terms.sagitta_m);
   return terms;
 }
 

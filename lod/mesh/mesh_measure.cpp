@@ -135,11 +135,11 @@ class Overlay {
     const double flat =
         (1.0 + fine_.length_variation) * (1.0 + fine_.length_variation) * (1.0 + length_variation_);
     const double total = largest(total_);
-    const double sag = largest(sag_);
+    const double sagitta = largest(sagitta_);
     ErrorTerms terms;
-    terms.relief_m = largest(relief_) + (kappa - 1.0) * total + (flat - 1.0) * sag;
-    terms.sag_m = flat * sag;
-    terms.total_m = std::min(kappa * total, terms.relief_m + terms.sag_m);
+    terms.height_error_m = largest(height_error_) + (kappa - 1.0) * total + (flat - 1.0) * sagitta;
+    terms.sagitta_m = flat * sagitta;
+    terms.total_m = std::min(kappa * total, terms.height_error_m + terms.sagitta_m);
     return terms;
   }
 
@@ -152,25 +152,25 @@ class Overlay {
 
   // Distance total and sag of depths W (mesh) and W (S), lengths n (mesh) and n (S) in a direction of length n.
   template <class T>
-  void add(T n, T mesh_depth, T depth, T mesh_length, T length, T& total_most, T& sag_most,
-           T& relief_most) const {
+  void add(T n, T mesh_depth, T depth, T mesh_length, T length, T& total_most, T& sagitta_most,
+           T& height_error_most) const {
     const T depths = mesh_depth * depth;
     const T lengths = mesh_length * length;
     const T scale = n * mesh_.radius_m / (depths * lengths);
     const T total = (depth - mesh_depth) * lengths * scale;
-    const T sag = (length - mesh_length) * depths * scale;
+    const T sagitta = (length - mesh_length) * depths * scale;
     raise(total_most, total);
-    raise(sag_most, sag);
-    raise(relief_most, total - sag);
+    raise(sagitta_most, sagitta);
+    raise(height_error_most, total - sagitta);
   }
   void add(double n, double mesh_depth, double depth, double mesh_length, double length) {
     double total = total_[0];
-    double sag = sag_[0];
-    double relief = relief_[0];
-    add(n, mesh_depth, depth, mesh_length, length, total, sag, relief);
+    double sagitta = sagitta_[0];
+    double height_error = height_error_[0];
+    add(n, mesh_depth, depth, mesh_length, length, total, sagitta, height_error);
     total_[0] = total;
-    sag_[0] = sag;
-    relief_[0] = relief;
+    sagitta_[0] = sagitta;
+    height_error_[0] = height_error;
   }
 
   void add_row(const CoarseMesh::Triangle& t, int j, int first, int end) {
@@ -185,8 +185,8 @@ class Overlay {
     for (; i + 1 < end; i += 2) {
       const Pair off = load(u + i) - low.u;
       const Pair n = load(length + i);
-      add(n, depth_row + t.depth_du * off, load(depth + i), length_row + t.length_du * off, n, total_, sag_,
-          relief_);
+      add(n, depth_row + t.depth_du * off, load(depth + i), length_row + t.length_du * off, n, total_, sagitta_,
+          height_error_);
     }
     if (i < end) {
       const double off = u[i] - low.u;
@@ -227,8 +227,8 @@ class Overlay {
   const FineGrid& fine_;
   int side_;
   Pair total_{0.0, 0.0};
-  Pair sag_{0.0, 0.0};
-  Pair relief_{0.0, 0.0};
+  Pair sagitta_{0.0, 0.0};
+  Pair height_error_{0.0, 0.0};
   double depth_variation_ = 0;
   double length_variation_ = 0;
 };

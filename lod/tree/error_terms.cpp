@@ -12,8 +12,8 @@ using vpe::base::Guard;
 using vpe::base::mutated;
 
 void ErrorTerms::include(const ErrorTerms& other) {
-  relief_m = std::max(relief_m, other.relief_m);
-  sag_m = std::max(sag_m, other.sag_m);
+  height_error_m = std::max(height_error_m, other.height_error_m);
+  sagitta_m = std::max(sagitta_m, other.sagitta_m);
   total_m = std::max(total_m, other.total_m);
 }
 
@@ -32,7 +32,7 @@ double second_order_bound(double exaggeration, double range_m, double min_height
 double error_bound(const ErrorTerms& terms, double exaggeration, double min_height_m, double max_height_m,
                    double radius_m) {
   if (exaggeration == 1.0) return terms.total_m;
-  return std::abs(exaggeration) * terms.relief_m + terms.sag_m +
+  return std::abs(exaggeration) * terms.height_error_m + terms.sagitta_m +
          second_order_bound(exaggeration, max_height_m - min_height_m, min_height_m, max_height_m, radius_m);
 }
 

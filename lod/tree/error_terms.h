@@ -7,8 +7,8 @@ namespace lod {
 // (mesh - S) = relief part + sag part, where sag is what is left with all heights 0 (the chords under the
 // sphere).
 struct ErrorTerms {
-  double relief_m = 0;
-  double sag_m = 0;
+  double height_error_m = 0;
+  double sagitta_m = 0;
   double total_m = 0;  // of the sum, at exaggeration 1; <= relief + sag
 
   void include(const ErrorTerms& other);  // the larger of each

@@ -19,7 +19,7 @@ namespace {
 
 bool grows(const ErrorTerms& from, const ErrorTerms& to) {
   if (mutated(Guard::kErrorsNest)) return false;
-  return !(to.relief_m <= from.relief_m && to.sag_m <= from.sag_m && to.total_m <= from.total_m);
+  return !(to.height_error_m <= from.height_error_m && to.sagitta_m <= from.sagitta_m && to.total_m <= from.total_m);
 }
 
 void check(const TileInfo& tile, double radius_m) {
@@ -32,7 +32,7 @@ void check(const TileInfo& tile, double radius_m) {
   if (tile.variants.empty()) refuse(tile.key, "no mesh");
   if (tile.has_children && tile.variants.size() != 1) refuse(tile.key, "more than one mesh above children");
   for (const MeshVariant& variant : tile.variants) {
-    for (const double term : {variant.terms.relief_m, variant.terms.sag_m, variant.terms.total_m}) {
+    for (const double term : {variant.terms.height_error_m, variant.terms.sagitta_m, variant.terms.total_m}) {
       if (!std::isfinite(term) || term < 0.0) refuse(tile.key, "error not finite or negative");
     }
   }
@@ -70,7 +70,7 @@ bool before(const TileKey& a, const TileKey& b) {
 // A flat facet over posts of radius >= r stays above r times this: the cosine of the half-width of the widest
 // cell of a level, from below.
 double facet_factor(int level, const TileShape& shape) {
-  if (mutated(Guard::kFacetSag)) return 1.0;
+  if (mutated(Guard::kFacetSagitta)) return 1.0;
   const double half_width = kCapPerSide * nominal_side_m(level + shape.k, 1.0);
   return 1.0 - 0.5 * half_width * half_width;
 }
@@ -140,13 +140,13 @@ const TileInfo* TileTree::find(const TileKey& key) const {
 
 const TileInfo& TileTree::deepest(const TileKey& key) const { return tiles_[descend(key)]; }
 
-cull::Shell TileTree::shell(Index tile, double exaggeration, double error_m) const {
+cull::BoundingRegion TileTree::region(Index tile, double exaggeration, double geometric_error_m) const {
   const TileInfo& info = tiles_[tile];
   const double facets = facet_factor(info.has_children ? info.key.level + 1 : info.key.level, shape_);
   // At another exaggeration posts on a coarser neighbour's edge stay on it: below its ends by that edge's sag.
   const auto finer = exaggeration == 1.0 ? std::nullopt : coarsest_beside_coarser(info);
   const double edges = finer ? facet_factor(*finer - 1, shape_) : 1.0;
-  const double lowest = (radius_m_ + exaggeration * info.min_height_m) * edges * facets - error_m;
+  const double lowest = (radius_m_ + exaggeration * info.min_height_m) * edges * facets - geometric_error_m;
   return {chart_rect(info.key), std::max(0.0, lowest),
           std::max(0.0, radius_m_ + exaggeration * info.max_height_m)};
 }
@@ -164,7 +164,7 @@ std::optional<int> TileTree::coarsest_beside_coarser(const TileInfo& tile) const
   return level;
 }
 
-double TileTree::error_m(const TileInfo& tile, const ErrorTerms& terms, double exaggeration) const {
+double TileTree::geometric_error_m(const TileInfo& tile, const ErrorTerms& terms, double exaggeration) const {
   return error_bound(terms, exaggeration, tile.min_height_m, tile.max_height_m, radius_m_) +
          edge_shift_m(tile, exaggeration);
 }
@@ -178,11 +178,11 @@ double TileTree::edge_shift_m(const TileInfo& tile, double exaggeration) const {
   const std::optional<int> level = coarsest_beside_coarser(tile);
   if (!level) return 0.0;
   const double factor = facet_factor(*level - 1, shape_);
-  const double sag_m = radius_m_ * (1.0 - factor);
+  const double sagitta_m = radius_m_ * (1.0 - factor);
   const double edge_m = 2 * kCapPerSide * nominal_side_m(*level - 1 + shape_.k, 1.0) * (radius_m_ + tile.max_height_m);
   const double range_m = std::min(tile.max_height_m - tile.min_height_m, tile.steepest_slope * edge_m);
   const double post_m =
-      std::abs(exaggeration - 1.0) * sag_m +
+      std::abs(exaggeration - 1.0) * sagitta_m +
       second_order_bound(exaggeration, range_m, tile.min_height_m, tile.max_height_m, radius_m_);
   const double lowest = std::min(radius_m_ + tile.min_height_m, radius_m_ + exaggeration * tile.min_height_m);
   if (!(lowest > 0.0)) return std::numeric_limits<double>::infinity();

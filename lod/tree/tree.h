@@ -27,11 +27,11 @@ class StatedTerms {
  public:
   StatedTerms() = default;
   StatedTerms(const ErrorTerms& terms)  // NOLINT(google-explicit-constructor): what is stated of them
-      : relief_m_(up(terms.relief_m)), sag_m_(up(terms.sag_m)), total_m_(up(terms.total_m)) {}
+      : height_error_m_(up(terms.height_error_m)), sagitta_m_(up(terms.sagitta_m)), total_m_(up(terms.total_m)) {}
 
   bool known() const { return total_m_ == total_m_; }
   ErrorTerms terms() const {
-    return {static_cast<double>(relief_m_), static_cast<double>(sag_m_), static_cast<double>(total_m_)};
+    return {static_cast<double>(height_error_m_), static_cast<double>(sagitta_m_), static_cast<double>(total_m_)};
   }
 
  private:
@@ -40,9 +40,9 @@ class StatedTerms {
     return static_cast<double>(rounded) >= x ? rounded
                                              : std::nextafter(rounded, std::numeric_limits<float>::infinity());
   }
-  float relief_m_ = std::numeric_limits<float>::quiet_NaN();
-  float sag_m_ = relief_m_;
-  float total_m_ = relief_m_;
+  float height_error_m_ = std::numeric_limits<float>::quiet_NaN();
+  float sagitta_m_ = height_error_m_;
+  float total_m_ = height_error_m_;
 };
 
 struct TileInfo {
@@ -90,14 +90,14 @@ class TileTree {
   // The finest tile that is the key's or contains it.
   const TileInfo& deepest(const TileKey& key) const;
 
-  // Where S lies over a tile at an exaggeration > 0, and everything that is within error_m of it and nowhere
-  // above its highest post: all meshes of the tile and of those below it when error_m bounds the tile's own.
-  cull::Shell shell(Index tile, double exaggeration, double error_m) const;
+  // Where S lies over a tile at an exaggeration > 0, and everything that is within geometric_error_m of it and nowhere
+  // above its highest post: all meshes of the tile and of those below it when geometric_error_m bounds the tile's own.
+  cull::BoundingRegion region(Index tile, double exaggeration, double geometric_error_m) const;
 
   // Upper bound in metres of the radial distance between a mesh of the tile that has these terms and S, both
   // exaggerated: lod::error_bound, and where S is not what each post exaggerated by itself would make, as posts
   // on the edges of coarser neighbours stay on these edges. Never grows from a tile to its children.
-  double error_m(const TileInfo& tile, const ErrorTerms& terms, double exaggeration) const;
+  double geometric_error_m(const TileInfo& tile, const ErrorTerms& terms, double exaggeration) const;
 
   // That second part alone: 0 at exaggeration 1, and where all finest tiles are of one level.
   double edge_shift_m(const TileInfo& tile, double exaggeration) const;

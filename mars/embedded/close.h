@@ -1,4 +1,4 @@
-// The ground as it looks from eye level: gravel, ledges of bedrock, patterned ground, clefts in lava.
+// The ground as it looks from camera level: gravel, ledges of bedrock, patterned ground, clefts in lava.
 #pragma once
 
 #include "mars/embedded/rocks.h"

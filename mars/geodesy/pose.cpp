@@ -29,20 +29,20 @@ Axes oriented_axes(const LocalFrame& frame, double yaw_deg, double pitch_deg, do
   return axes;
 }
 
-EyePose to_eye(const Pose& pose, double radius_m) { return to_eye(pose, HeadLook{}, radius_m); }
+CameraPose to_camera(const Pose& pose, double radius_m) { return to_camera(pose, HeadAngles{}, radius_m); }
 
-EyePose to_eye(const Pose& pose, const HeadLook& look, double radius_m) {
+CameraPose to_camera(const Pose& pose, const HeadAngles& look, double radius_m) {
   const LocalFrame frame = local_frame({pose.lon_deg, pose.lat_deg});
-  EyePose eye{frame.up * (radius_m + pose.alt_m),
+  CameraPose camera{frame.up * (radius_m + pose.alt_m),
               oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, pose.roll_deg)};
-  apply(eye.axes, look.yaw_deg, look.pitch_deg, look.roll_deg);
-  return eye;
+  apply(camera.axes, look.yaw_deg, look.pitch_deg, look.roll_deg);
+  return camera;
 }
 
-Pose to_pose(const EyePose& eye, double radius_m) {
-  const LonLat place = lon_lat(eye.eye_m);
+Pose to_pose(const CameraPose& camera, double radius_m) {
+  const LonLat place = lon_lat(camera.position_m);
   const LocalFrame frame = local_frame(place);
-  const glm::dvec3& forward = eye.axes.forward;
+  const glm::dvec3& forward = camera.axes.forward;
   const double east = glm::dot(forward, frame.east);
   const double north = glm::dot(forward, frame.north);
   const double up = glm::dot(forward, frame.up);
@@ -51,7 +51,7 @@ Pose to_pose(const EyePose& eye, double radius_m) {
   Pose pose;
   pose.lon_deg = place.lon_deg;
   pose.lat_deg = place.lat_deg;
-  pose.alt_m = glm::length(eye.eye_m) - radius_m;
+  pose.alt_m = glm::length(camera.position_m) - radius_m;
   pose.pitch_deg = std::atan2(up, level) / kRadiansPerDegree;
   // At the zenith or nadir the heading of `forward` is noise; take it from the camera's up axis.
   constexpr double kNoise = 2e-15;
@@ -59,12 +59,12 @@ Pose to_pose(const EyePose& eye, double radius_m) {
     pose.yaw_deg = std::atan2(east, north) / kRadiansPerDegree;
   } else {
     const double sign = up > 0.0 ? -1.0 : 1.0;
-    pose.yaw_deg = std::atan2(sign * glm::dot(eye.axes.up, frame.east),
-                              sign * glm::dot(eye.axes.up, frame.north)) /
+    pose.yaw_deg = std::atan2(sign * glm::dot(camera.axes.up, frame.east),
+                              sign * glm::dot(camera.axes.up, frame.north)) /
                    kRadiansPerDegree;
   }
   const Axes unrolled = oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, 0.0);
-  pose.roll_deg = std::atan2(glm::dot(eye.axes.up, unrolled.right), glm::dot(eye.axes.up, unrolled.up)) /
+  pose.roll_deg = std::atan2(glm::dot(camera.axes.up, unrolled.right), glm::dot(camera.axes.up, unrolled.up)) /
                   kRadiansPerDegree;
   pose.yaw_deg = normalize_lon_deg(pose.yaw_deg);
   pose.roll_deg = normalize_lon_deg(pose.roll_deg);

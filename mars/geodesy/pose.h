@@ -20,7 +20,7 @@ struct Pose {
 };
 
 // A head turned on its platform: yaw right, pitch up, roll right, applied in the platform's own frame.
-struct HeadLook {
+struct HeadAngles {
   double yaw_deg = 0;
   double pitch_deg = 0;
   double roll_deg = 0;
@@ -33,30 +33,30 @@ struct Axes {
   glm::dvec3 forward;
 };
 
-// Eye in metres from the planet's centre, and its axes, in the body-fixed frame.
-struct EyePose {
-  glm::dvec3 eye_m;
+// Camera in metres from the planet's centre, and its axes, in the body-fixed frame.
+struct CameraPose {
+  glm::dvec3 position_m;
   Axes axes;
 };
 
 // Axes of yaw, pitch, roll relative to a local frame. Their directions, lengths and products are right within
-// kAxesError; the same for to_eye().
+// kAxesError; the same for to_camera().
 inline constexpr double kAxesError = 2e-15;
 Axes oriented_axes(const LocalFrame& frame, double yaw_deg, double pitch_deg, double roll_deg);
 
 // Error of the position <= kEyePositionError * |radius_m + alt_m|.
-inline constexpr double kEyePositionError = 1e-15;
-EyePose to_eye(const Pose& pose, double radius_m);
+inline constexpr double kCameraPositionError = 1e-15;
+CameraPose to_camera(const Pose& pose, double radius_m);
 
 // The same with the head turned on its platform.
-EyePose to_eye(const Pose& pose, const HeadLook& look, double radius_m);
+CameraPose to_camera(const Pose& pose, const HeadAngles& look, double radius_m);
 
-// Inverse of to_eye: angles in (-180, 180], pitch in [-90, 90]. Looking straight up or down, where yaw and
-// roll turn about the same axis, roll = 0 is chosen. to_eye(to_pose(e)) agrees with e within
+// Inverse of to_camera: angles in (-180, 180], pitch in [-90, 90]. Looking straight up or down, where yaw and
+// roll turn about the same axis, roll = 0 is chosen. to_camera(to_pose(e)) agrees with e within
 // kToPoseAxesError_rad in every axis and kToPosePositionError * (radius + alt) in position. Undefined for an
-// eye at the planet's centre.
+// camera at the planet's centre.
 inline constexpr double kToPoseAxesError_rad = 1e-14;
 inline constexpr double kToPosePositionError = 2e-15;
-Pose to_pose(const EyePose& eye, double radius_m);
+Pose to_pose(const CameraPose& camera, double radius_m);
 
 }  // namespace mars

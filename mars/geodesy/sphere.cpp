@@ -93,7 +93,7 @@ glm::dvec3 slerp(const glm::dvec3& a, const glm::dvec3& b, double t) {
 
 double horizon_dip_rad(double alt_m, double radius_m) {
   if (alt_m <= 0.0) return 0.0;
-  // atan(distance / R) instead of acos(R / (R + h)): no cancellation for an eye centimetres up.
+  // atan(distance / R) instead of acos(R / (R + h)): no cancellation for a camera centimetres up.
   return std::atan(horizon_distance_m(alt_m, radius_m) / radius_m);
 }
 

@@ -79,7 +79,7 @@ glm::dvec3 any_perpendicular(const glm::dvec3& v);
 
 // Angle below the local horizontal of the horizon of a sphere, seen from `alt_m` above it; 0 at or below it.
 double horizon_dip_rad(double alt_m, double radius_m);
-// Straight distance from the eye to that horizon: sqrt(2 R h + h^2). Relative error of both <= kHorizonError.
+// Straight distance from the camera to that horizon: sqrt(2 R h + h^2). Relative error of both <= kHorizonError.
 inline constexpr double kHorizonError = 6e-16;
 double horizon_distance_m(double alt_m, double radius_m);
 

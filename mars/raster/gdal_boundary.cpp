@@ -4,14 +4,14 @@
 
 namespace mars {
 
-RimTile make_rim_tile(const PixelGrid& grid, const TileId& id, int limit,
+BoundaryTile make_boundary_tile(const PixelGrid& grid, const TileId& id, int limit,
                       const std::function<bool(int column, int row)>& has_data) {
   const int side = kTileStride + 2 * limit;
   const auto index = [side](int column, int row) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(side) + static_cast<std::size_t>(column);
   };
   // Beyond the border there are no holes: the border's own distance is exact already.
-  std::vector<unsigned char> hole(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0);
+  std::vector<unsigned char> nodata(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0);
   bool any = false;
   for (int r = 0; r < side; ++r) {
     const int row = id.row * kTileSide + r - limit;
@@ -20,20 +20,20 @@ RimTile make_rim_tile(const PixelGrid& grid, const TileId& id, int limit,
       int column = id.column * kTileSide + c - limit;
       if (grid.wraps) column = ((column % grid.width) + grid.width) % grid.width;
       if (column < 0 || column >= grid.width || has_data(column, row)) continue;
-      hole[index(c, r)] = 1;
+      nodata[index(c, r)] = 1;
       any = true;
     }
   }
-  RimTile tile;
+  BoundaryTile tile;
   if (!any) return tile;
 
   // Distance to the nearest hole of the same column, then the nearest over columns: exact Euclidean distance.
   const int far = limit + 1;
-  std::vector<int> along(hole.size(), far);
+  std::vector<int> along(nodata.size(), far);
   for (int c = 0; c < side; ++c) {
     int distance = far;
     for (int r = 0; r < side; ++r) {
-      distance = hole[index(c, r)] != 0 ? 0 : std::min(distance + 1, far);
+      distance = nodata[index(c, r)] != 0 ? 0 : std::min(distance + 1, far);
       along[index(c, r)] = distance;
     }
     distance = far;

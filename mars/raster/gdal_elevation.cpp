@@ -25,7 +25,7 @@ struct BandFormat {
   double scale = 1;   // metres in a unit of the stored values
   double offset = 0;  // metres at stored value 0
   bool fits_float = false;
-  Holes holes;          // stored values that are no data besides that one
+  NodataValues nodata;          // stored values that are no data besides that one
   bool masked = false;  // a mask or alpha band says where there is data
 };
 
@@ -61,7 +61,7 @@ BandFormat band_format(const GdalRaster& raster) {
     const double value = band->GetNoDataValue(&has_no_data);
     if (has_no_data != 0) format.no_data = value;
   }
-  format.holes = raster.holes();
+  format.nodata = raster.nodata();
   // The mask of a no-data value says nothing new.
   const int mask = band->GetMaskFlags();
   format.masked = (mask & (GMF_ALL_VALID | GMF_NODATA)) == 0;
@@ -82,7 +82,7 @@ struct HeightTile {
 };
 
 template <class T>
-class GdalElevation final : public ElevationSource, public RimAware, public Maskable {
+class GdalElevation final : public ElevationSource, public BoundaryAware, public Maskable {
  public:
   GdalElevation(std::shared_ptr<const GdalRaster> raster, const BandFormat& format)
       : raster_(std::move(raster)), grid_(raster_->grid()), format_(format), info_(raster_->info()) {
@@ -167,21 +167,21 @@ class GdalElevation final : public ElevationSource, public RimAware, public Mask
     }
   }
 
-  void rim_distance(std::span<const glm::dvec3> directions, double limit_posts,
+  void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                     std::span<double> posts) const override {
     const int limit = static_cast<int>(std::ceil(std::min(limit_posts, kMaxFeather_posts)));
     auto cursor = make_cursor();
     const auto fetch = [&](const TileId& id) {
       // The limit takes the place of the level in the key: tiles of several limits may live side by side.
-      return rims_.get({limit, id.column, id.row}, [&](const TileId& key) {
-        return std::make_shared<const RimTile>(
-            make_rim_tile(grid_, {0, key.column, key.row}, limit, [&](int column, int row) {
+      return boundaries_.get({limit, id.column, id.row}, [&](const TileId& key) {
+        return std::make_shared<const BoundaryTile>(
+            make_boundary_tile(grid_, {0, key.column, key.row}, limit, [&](int column, int row) {
               return !std::isnan(cursor.at(column, row).values[cursor.offset(column, row)]);
             }));
       });
     };
     for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
-      rim_distances(grid_, pixels, limit_posts, fetch, posts.subspan(start, pixels.size()));
+      boundary_distances(grid_, pixels, limit_posts, fetch, posts.subspan(start, pixels.size()));
     });
   }
 
@@ -272,9 +272,9 @@ class GdalElevation final : public ElevationSource, public RimAware, public Mask
       // Magnitudes that no height has: infinities, and the special pixels of ISIS beside its no-data value.
       if (value == no_data || !(std::abs(value) < static_cast<T>(1e30))) value = static_cast<T>(kNaN);
     }
-    if (!format_.holes.any()) return;
+    if (!format_.nodata.any()) return;
     for (T& value : values) {
-      if (format_.holes.has(static_cast<double>(value))) value = static_cast<T>(kNaN);
+      if (format_.nodata.has(static_cast<double>(value))) value = static_cast<T>(kNaN);
     }
   }
 
@@ -380,7 +380,7 @@ class GdalElevation final : public ElevationSource, public RimAware, public Mask
   PostMask mask_;  // none: all posts are used
   int mask_margin_ = 0;
   mutable TileCache<Tile> tiles_;
-  mutable TileCache<RimTile> rims_;
+  mutable TileCache<BoundaryTile> boundaries_;
   std::array<double, 2> pole_{kNaN, kNaN};  // stored values at the first and the last pole
 };
 

@@ -21,7 +21,7 @@ struct ImageTile {
   std::size_t bytes() const { return sizeof(ImageTile) + pixels.size() * sizeof(Pixel); }
 };
 
-class GdalImage final : public ImageSource, public RimAware {
+class GdalImage final : public ImageSource, public BoundaryAware {
  public:
   GdalImage(std::unique_ptr<GdalRaster> raster, ImageFormat format)
       : raster_(std::move(raster)), format_(std::move(format)), info_(raster_->info()) {
@@ -66,20 +66,20 @@ class GdalImage final : public ImageSource, public RimAware {
     return raster_->footprint().touches(cap) ? info_.resolution_m : std::numeric_limits<double>::infinity();
   }
 
-  void rim_distance(std::span<const glm::dvec3> directions, double limit_posts,
+  void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                     std::span<double> posts) const override {
     const int limit = static_cast<int>(std::ceil(std::min(limit_posts, kMaxFeather_posts)));
     auto cursor = make_cursor(0);
     const auto fetch = [&](const TileId& id) {
-      return rims_.get({limit, id.column, id.row}, [&](const TileId& key) {
-        return std::make_shared<const RimTile>(
-            make_rim_tile(grids_[0], {0, key.column, key.row}, limit, [&](int column, int row) {
+      return boundaries_.get({limit, id.column, id.row}, [&](const TileId& key) {
+        return std::make_shared<const BoundaryTile>(
+            make_boundary_tile(grids_[0], {0, key.column, key.row}, limit, [&](int column, int row) {
               return cursor.at(column, row).pixels[cursor.offset(column, row)].alpha >= 128;
             }));
       });
     };
     for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
-      rim_distances(grids_[0], pixels, limit_posts, fetch, posts.subspan(start, pixels.size()));
+      boundary_distances(grids_[0], pixels, limit_posts, fetch, posts.subspan(start, pixels.size()));
     });
   }
 
@@ -211,7 +211,7 @@ class GdalImage final : public ImageSource, public RimAware {
   SourceInfo info_;
   std::vector<PixelGrid> grids_;  // by level
   mutable TileCache<ImageTile> tiles_;
-  mutable TileCache<RimTile> rims_;
+  mutable TileCache<BoundaryTile> boundaries_;
   mutable std::mutex poles_mutex_;
   mutable std::vector<std::array<std::optional<Pixel>, 2>> poles_;
 };

@@ -75,7 +75,7 @@ void find_stretch(const GdalRaster& raster, ImageFormat& format) {
       if (format.masked) raster.read_mask(band, -1, {0, row, grid.width, 1}, grid.width, mask.data());
       for (int c = 0; c < columns; ++c) {
         const auto column = static_cast<std::size_t>((2L * c + 1) * grid.width / (2L * columns));
-        if (mask[column] != 0 && std::abs(line[column]) < 1e30 && !format.holes.has(line[column]))
+        if (mask[column] != 0 && std::abs(line[column]) < 1e30 && !format.nodata.has(line[column]))
           values.push_back(line[column]);
       }
     }
@@ -96,7 +96,7 @@ void find_stretch(const GdalRaster& raster, ImageFormat& format) {
 ImageFormat image_format(const GdalRaster& raster) {
   ImageFormat format = read_format(raster);
   // Special pixels of 8 bits are black and white: saturated ones look right as they are.
-  if (!format.bytes) format.holes = raster.holes();
+  if (!format.bytes) format.nodata = raster.nodata();
   if (!format.bytes) find_stretch(raster, format);
   return format;
 }
@@ -138,7 +138,7 @@ void decode(const GdalRaster& raster, const ImageFormat& format, int overview, c
         const double t = (values[i] - format.low) / (format.high - format.low);
         set(i, std::isnan(t) ? std::uint8_t{0}
                              : static_cast<std::uint8_t>(std::lround(255 * std::clamp(t, 0.0, 1.0))));
-        if (!(std::abs(values[i]) < 1e30) || format.holes.has(values[i])) at(i).alpha = 0;
+        if (!(std::abs(values[i]) < 1e30) || format.nodata.has(values[i])) at(i).alpha = 0;
       }
     }
   }

@@ -138,31 +138,31 @@ Counting counting_of(const std::string& path, GDALDataset& dataset) {
 
 }  // namespace
 
-bool Holes::has(double stored) const {
+bool NodataValues::has(double stored) const {
   return stored <= at_most || stored >= at_least ||
          std::find(values.begin(), values.end(), stored) != values.end();
 }
 
-Holes holes_of(GDALDataset& dataset, const std::optional<PdsLabel>& label) {
-  Holes holes;
-  if (label) holes.values = pds_missing(*label);
+NodataValues nodata_values(GDALDataset& dataset, const std::optional<PdsLabel>& label) {
+  NodataValues nodata;
+  if (label) nodata.values = pds_nodata(*label);
   const std::string driver = driver_of(dataset);
-  if (driver != "ISIS3" && driver != "ISIS2") return holes;
+  if (driver != "ISIS3" && driver != "ISIS2") return nodata;
   switch (dataset.GetRasterBand(1)->GetRasterDataType()) {
-    case GDT_Byte: holes.values = {0, 255}; break;
-    case GDT_Int16: holes.at_most = -32764; break;
+    case GDT_Byte: nodata.values = {0, 255}; break;
+    case GDT_Int16: nodata.at_most = -32764; break;
     case GDT_UInt16:
-      holes.at_most = 2;
-      holes.at_least = 65534;
+      nodata.at_most = 2;
+      nodata.at_least = 65534;
       break;
     case GDT_UInt32:
-      holes.at_most = 2;
-      holes.at_least = 4294967294.0;
+      nodata.at_most = 2;
+      nodata.at_least = 4294967294.0;
       break;
-    case GDT_Int32: holes.values = {-8388614, -8388613, -8388612, -8388611, -8388610}; break;
+    case GDT_Int32: nodata.values = {-8388614, -8388613, -8388612, -8388611, -8388610}; break;
     default: break;  // floating point: magnitudes that no height has
   }
-  return holes;
+  return nodata;
 }
 
 LabelPlace place_of(const std::string& path, GDALDataset& dataset) {

@@ -14,7 +14,7 @@ class GDALDataset;
 namespace mars {
 
 // Stored values that are no data, besides GDAL's one no-data value.
-struct Holes {
+struct NodataValues {
   std::vector<double> values;
   double at_most = -std::numeric_limits<double>::infinity();  // this and below
   double at_least = std::numeric_limits<double>::infinity();  // this and above
@@ -24,7 +24,7 @@ struct Holes {
 
 // ISIS cubes: NULL, LRS, LIS, HIS and HRS of the type they are stored in (8 bits: 0 and 255); GDAL names NULL
 // only. PDS labels: all that they call missing.
-Holes holes_of(GDALDataset& dataset, const std::optional<PdsLabel>& label);
+NodataValues nodata_values(GDALDataset& dataset, const std::optional<PdsLabel>& label);
 
 // Corrections of the place that GDAL reads from a label:
 //   - ISIS3: see isis_map().

@@ -57,7 +57,7 @@ GdalRaster::GdalRaster(const std::string& path)
   const auto dataset = handles_.lend();
   check_bands(file_.path, *dataset);
   check_raw_size(file_.path, *dataset);
-  holes_ = holes_of(*dataset, file_.label);
+  nodata_ = nodata_values(*dataset, file_.label);
   const LabelPlace place = file_.place ? *file_.place : place_of(file_.path, *dataset);
   georeference_.emplace(file_.path, *dataset, place);
   footprint_.emplace(*georeference_);

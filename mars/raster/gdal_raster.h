@@ -28,7 +28,7 @@ class GdalRaster {
   const PixelGrid& grid() const { return georeference_->grid(); }
   const Footprint& footprint() const { return *footprint_; }
   const std::optional<PdsLabel>& label() const { return file_.label; }
-  const Holes& holes() const { return holes_; }
+  const NodataValues& nodata() const { return nodata_; }
 
   // Name, size and time of all its files, resolution.
   SourceInfo info() const;
@@ -45,7 +45,7 @@ class GdalRaster {
  private:
   RasterFile file_;
   mutable LeasePool<GDALDataset> handles_;
-  Holes holes_;
+  NodataValues nodata_;
   std::optional<Georeference> georeference_;
   std::optional<Footprint> footprint_;
 };

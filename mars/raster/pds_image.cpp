@@ -201,18 +201,18 @@ PdsImage pds_image(const std::string& path, const PdsLabel& label) {
   image.scale = label.number("IMAGE.SCALING_FACTOR").value_or(1.0);
   image.shift = label.number("IMAGE.OFFSET").value_or(0.0);
   image.unit = label.text("IMAGE.UNIT");
-  const std::vector<double> missing = pds_missing(label);
-  if (!missing.empty()) {
-    image.missing = missing.front();
+  const std::vector<double> nodata = pds_nodata(label);
+  if (!nodata.empty()) {
+    image.nodata = nodata.front();
   } else if (image.type == "Byte") {
-    image.missing = 0;
+    image.nodata = 0;
   } else if (image.type == "Int16") {
-    image.missing = -32768;
+    image.nodata = -32768;
   }
   return image;
 }
 
-std::vector<double> pds_missing(const PdsLabel& label) {
+std::vector<double> pds_nodata(const PdsLabel& label) {
   std::vector<double> values;
   for (const char* key :
        {"IMAGE.MISSING_CONSTANT", "IMAGE.MISSING", "IMAGE.INVALID_CONSTANT", "MEX:DTM.MEX:DTM_MISSING_DN"}) {
@@ -234,7 +234,7 @@ std::string pds_vrt(const PdsImage& image) {
   for (int band = 0; band < image.bands; ++band) {
     xml << "<VRTRasterBand dataType=\"" << image.type << "\" band=\"" << band + 1
         << "\" subClass=\"VRTRawRasterBand\">";
-    if (image.missing) xml << "<NoDataValue>" << *image.missing << "</NoDataValue>";
+    if (image.nodata) xml << "<NoDataValue>" << *image.nodata << "</NoDataValue>";
     if (!image.unit.empty()) xml << "<UnitType>" << escape(image.unit) << "</UnitType>";
     xml << "<Offset>" << image.shift << "</Offset><Scale>" << image.scale
         << "</Scale><SourceFilename relativeToVRT=\"0\">" << escape(image.data_path)

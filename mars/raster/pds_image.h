@@ -25,7 +25,7 @@ struct PdsImage {
   double scale = 1;
   double shift = 0;  // value = shift + scale * stored
   std::string unit;
-  std::optional<double> missing;  // stored
+  std::optional<double> nodata;  // stored
 };
 
 // True for a label (its own or a detached one) of a plain, uncompressed IMAGE.
@@ -47,6 +47,6 @@ PdsImage pds_image(const std::string& path, const PdsLabel& label);
 std::string pds_vrt(const PdsImage& image);
 
 // Stored values that stand for missing samples, by the label: MISSING_CONSTANT, MISSING, the DTM group of HRSC.
-std::vector<double> pds_missing(const PdsLabel& label);
+std::vector<double> pds_nodata(const PdsLabel& label);
 
 }  // namespace mars

@@ -8,7 +8,7 @@
 namespace mars {
 namespace {
 
-class AdjustedElevation final : public ElevationSource, public RimAware, public Maskable {
+class AdjustedElevation final : public ElevationSource, public BoundaryAware, public Maskable {
  public:
   AdjustedElevation(std::shared_ptr<const ElevationSource> source, Adjust adjust, const VerticalDatum& datum,
                     const std::string& treatment)
@@ -66,10 +66,10 @@ class AdjustedElevation final : public ElevationSource, public RimAware, public 
                          });
   }
 
-  void rim_distance(std::span<const glm::dvec3> directions, double limit_posts,
+  void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                     std::span<double> posts) const override {
-    if (const auto* rim = dynamic_cast<const RimAware*>(source_.get())) {
-      rim->rim_distance(directions, limit_posts, posts);
+    if (const auto* boundary = dynamic_cast<const BoundaryAware*>(source_.get())) {
+      boundary->boundary_distance(directions, limit_posts, posts);
       return;
     }
     // No rim to fade at.

@@ -6,11 +6,11 @@
 
 namespace mars {
 
-std::vector<RimPost> rim_posts(const ElevationSource& inset, const ElevationSource& base, double within_posts,
+std::vector<BoundaryPost> boundary_posts(const ElevationSource& inset, const ElevationSource& base, double within_posts,
                                std::size_t max_posts) {
-  std::vector<RimPost> posts;
-  const auto* rim = dynamic_cast<const RimAware*>(&inset);
-  if (rim == nullptr) return posts;
+  std::vector<BoundaryPost> posts;
+  const auto* boundary = dynamic_cast<const BoundaryAware*>(&inset);
+  if (boundary == nullptr) return posts;
   const double spacing_m = resolution_m(inset);
   std::vector<double> distance;
   std::vector<glm::dvec3> places;
@@ -18,7 +18,7 @@ std::vector<RimPost> rim_posts(const ElevationSource& inset, const ElevationSour
   std::vector<double> base_m;
   inset.visit_posts(max_posts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
     distance.resize(directions.size());
-    rim->rim_distance(directions, within_posts + 1, distance);
+    boundary->boundary_distance(directions, within_posts + 1, distance);
     places.clear();
     own_m.clear();
     for (std::size_t i = 0; i < directions.size(); ++i) {

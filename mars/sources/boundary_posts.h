@@ -8,14 +8,14 @@
 
 namespace mars {
 
-struct RimPost {
+struct BoundaryPost {
   glm::dvec3 direction;
   double off_m = 0;  // inset less base
 };
 
 // The inset's own posts, of at most about max_posts of them, within `within_posts` of its rim where both have
-// data. None of an inset that knows of no rim (not RimAware). Throws SourceError on read errors.
-std::vector<RimPost> rim_posts(const ElevationSource& inset, const ElevationSource& base, double within_posts,
+// data. None of an inset that knows of no rim (not BoundaryAware). Throws SourceError on read errors.
+std::vector<BoundaryPost> boundary_posts(const ElevationSource& inset, const ElevationSource& base, double within_posts,
                                std::size_t max_posts);
 
 }  // namespace mars

@@ -86,7 +86,7 @@ Conversion conversion_of(const SourceInfo& info, const VerticalDatum& datum, con
 }
 
 // "150 m", without needless digits.
-std::string masked_words(const BlunderOptions& options) {
+std::string masked_words(const OutlierOptions& options) {
   char text[160];
   std::snprintf(
       text, sizeof text,
@@ -106,21 +106,21 @@ Source as_datum(const Source& source, const Conversion& conversion, const Vertic
 Source inspect(Source inset, const Source& base, const CombineOptions& options, CombineFinding& finding,
                std::vector<std::string>& notes) {
   const VerticalDatum datum = inset->infos().front().datum;
-  if (options.level == CombineOptions::Level::kFit) {
-    finding.level = fit_level(*inset, *base, options.radius_m, options.stack.feather_posts);
+  if (options.level == CombineOptions::VerticalAlignment::kPlane) {
+    finding.level = fit_alignment(*inset, *base, options.radius_m, options.stack.feather_posts);
     if (finding.level) {
-      inset = adjusted(inset, levelling(*finding.level), datum, to_string(*finding.level));
+      inset = adjusted(inset, aligning(*finding.level), datum, to_string(*finding.level));
     } else {
       notes.push_back(finding.name + " is not levelled: too few posts of its rim have data below them");
     }
   }
-  if (!options.check_blunders && !options.mask_blunders) return inset;
-  finding.blunders = find_blunders(*inset, *base, options.radius_m, options.blunders);
-  if (!options.mask_blunders || finding.blunders->implausible == 0) return inset;
+  if (!options.check_outliers && !options.reject_outliers) return inset;
+  finding.outliers = find_blunders(*inset, *base, options.radius_m, options.outliers);
+  if (!options.reject_outliers || finding.outliers->implausible == 0) return inset;
   const auto* maskable = dynamic_cast<const Maskable*>(inset.get());
   if (maskable == nullptr) return inset;
-  Source masked = maskable->with_mask(blunder_mask(base, options.radius_m, options.blunders), kMaskMargin,
-                                      masked_words(options.blunders));
+  Source masked = maskable->with_mask(blunder_mask(base, options.radius_m, options.outliers), kMaskMargin,
+                                      masked_words(options.outliers));
   if (masked == nullptr) return inset;
   finding.masked = true;
   return masked;
@@ -148,10 +148,10 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
     if (!below.empty()) {
       Source base = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
       layer = inspect(std::move(layer), base, options, finding, combined.notes);
-      if (options.level == CombineOptions::Level::kBend) {
-        finding.bend = fit_bend(*layer, *base, options.radius_m);
+      if (options.level == CombineOptions::VerticalAlignment::kEdges) {
+        finding.bend = fit_edge_matching(*layer, *base, options.radius_m);
         if (finding.bend) {
-          base = adjusted(std::move(base), bending(*finding.bend), combined.datum,
+          base = adjusted(std::move(base), matching_edges(*finding.bend), combined.datum,
                           to_string(*finding.bend, finding.name));
           below = {base};
         } else {

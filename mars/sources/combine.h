@@ -21,24 +21,24 @@ struct CombineOptions {
   VerticalDatum datum;              // to convert to; unknown = that of the coarsest source that says its own
   std::shared_ptr<const ElevationSource> areoid;  // see converted()
   // What gives way where an inset and what lies below it disagree at its rim.
-  enum class Level {
+  enum class VerticalAlignment {
     kNone,  // neither: the fade alone
-    kFit,   // the inset, by an offset and a tilt: fit_level()
-    kBend,  // what lies below, around the inset: fit_bend()
+    kPlane,   // the inset, by an offset and a tilt: fit_alignment()
+    kEdges,  // what lies below, around the inset: fit_edge_matching()
   };
-  Level level = Level::kNone;
-  bool check_blunders = true;
-  bool mask_blunders = false;
-  BlunderOptions blunders;
+  VerticalAlignment level = VerticalAlignment::kNone;
+  bool check_outliers = true;
+  bool reject_outliers = false;
+  OutlierOptions outliers;
   StackOptions stack{.feather_base_posts = 2};
 };
 
 // What was found out of one source.
 struct CombineFinding {
   std::string name;
-  std::optional<Level> level;
-  std::optional<Bend> bend;  // of what lies below it
-  std::optional<BlunderReport> blunders;
+  std::optional<VerticalAlignment> level;
+  std::optional<EdgeMatching> bend;  // of what lies below it
+  std::optional<OutlierReport> outliers;
   bool masked = false;
 };
 

@@ -11,8 +11,8 @@
 
 namespace mars {
 
-struct Bend {
-  std::vector<glm::dvec3> rim;  // unit directions, of at most kBendPoints places along the rim
+struct EdgeMatching {
+  std::vector<glm::dvec3> boundary;  // unit directions, of at most kBendPoints places along the rim
   std::vector<double> off_m;    // inset less base there
   double cell_m = 0;            // size of the cells that off_m are medians of
   double reach_m = 0;           // from the rim, where the bend has faded out
@@ -23,20 +23,20 @@ struct Bend {
   std::int64_t posts = 0;       // of the rim that were looked at
 };
 
-inline constexpr std::size_t kBendPoints = 512;
+inline constexpr std::size_t kEdgePoints = 512;
 
 // Looks at the inset's posts within two posts of its rim, of at most about max_posts posts of it, and takes the
 // median of inset - base in each of up to kBendPoints cells along the rim. The reach is the larger of eight
 // posts of the base and fifty times the 90th percentile of |inset - base|, so that the bend adds slopes of some
 // per cent. Nothing when no post of the rim has data below it. Throws SourceError on read errors.
-std::optional<Bend> fit_bend(const ElevationSource& inset, const ElevationSource& base, double radius_m,
+std::optional<EdgeMatching> fit_edge_matching(const ElevationSource& inset, const ElevationSource& base, double radius_m,
                              std::size_t max_posts = 4'000'000);
 
 // Adds the bend to heights of the base: the mean of off_m with weights 1 / (distance^2 + cell_m^2)^2, faded out
 // with the distance from the rim. Smooth along the rim, where it follows off_m but for what changes within a
 // cell or two; that is left to the fade. (Shepard's weights, without the cell, meet every off_m and leave a rim
 // of beads: tried 2026-11-21.)
-Adjust bending(const Bend& bend);
-std::string to_string(const Bend& bend, const std::string& inset);
+Adjust matching_edges(const EdgeMatching& bend);
+std::string to_string(const EdgeMatching& bend, const std::string& inset);
 
 }  // namespace mars

@@ -15,7 +15,7 @@ namespace {
 // cannot be told.
 class Judge {
  public:
-  Judge(const ElevationSource& base, double radius_m, const BlunderOptions& options)
+  Judge(const ElevationSource& base, double radius_m, const OutlierOptions& options)
       : base_(base), radius_m_(radius_m), options_(options) {}
 
   // base heights come out too.
@@ -72,15 +72,15 @@ class Judge {
 
   const ElevationSource& base_;
   double radius_m_;
-  BlunderOptions options_;
+  OutlierOptions options_;
 };
 
 }  // namespace
 
-BlunderReport find_blunders(const ElevationSource& inset, const ElevationSource& base, double radius_m,
-                            const BlunderOptions& options, std::size_t max_posts) {
+OutlierReport find_blunders(const ElevationSource& inset, const ElevationSource& base, double radius_m,
+                            const OutlierOptions& options, std::size_t max_posts) {
   const Judge judge(base, radius_m, options);
-  BlunderReport report;
+  OutlierReport report;
   std::vector<double> excess_m;
   std::vector<double> base_m;
   inset.visit_posts(max_posts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
@@ -101,7 +101,7 @@ BlunderReport find_blunders(const ElevationSource& inset, const ElevationSource&
 }
 
 PostMask blunder_mask(std::shared_ptr<const ElevationSource> base, double radius_m,
-                      const BlunderOptions& options) {
+                      const OutlierOptions& options) {
   return [base = std::move(base), radius_m, options](std::span<const glm::dvec3> directions,
                                                      std::span<double> heights_m) {
     std::vector<double> excess_m;

@@ -6,14 +6,14 @@
 
 namespace mars {
 
-class RimAware {
+class BoundaryAware {
  public:
-  virtual ~RimAware() = default;
+  virtual ~BoundaryAware() = default;
 
   // Distance of each place from the rim of the source's data (its border, and places without data inside), in
   // its own posts, at most `limit_posts`; 0 where it has no data. Continuous but for steps below half a post
   // at corners of holes; a function of the place alone. Throws SourceError on a read error.
-  virtual void rim_distance(std::span<const glm::dvec3> directions, double limit_posts,
+  virtual void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                             std::span<double> posts) const = 0;
 };
 

@@ -91,11 +91,11 @@ struct StackRest {
 // The source's own share of each place where it has data. What is left of a place for the lowest source goes to
 // it whole unless it must fade beside one above, so its rim is asked for only there.
 template <class Source>
-void rim_shares(const Source& source, double feather_posts, const StackRest& rest, std::span<const char> has,
+void boundary_shares(const Source& source, double feather_posts, const StackRest& rest, std::span<const char> has,
                 bool lowest, std::vector<double>& shares) {
   shares.assign(rest.places.size(), 1.0);
-  const auto* rim = dynamic_cast<const RimAware*>(&source);
-  if (rim == nullptr || feather_posts <= 0) return;
+  const auto* boundary = dynamic_cast<const BoundaryAware*>(&source);
+  if (boundary == nullptr || feather_posts <= 0) return;
   std::vector<glm::dvec3> asked;
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < rest.places.size(); ++i) {
@@ -105,7 +105,7 @@ void rim_shares(const Source& source, double feather_posts, const StackRest& res
   }
   if (asked.empty()) return;
   std::vector<double> distances(asked.size());
-  rim->rim_distance(asked, feather_posts, distances);
+  boundary->boundary_distance(asked, feather_posts, distances);
   for (std::size_t k = 0; k < asked.size(); ++k) shares[numbers[k]] = smooth_step(distances[k] / feather_posts);
 }
 
@@ -135,7 +135,7 @@ void walk_stack(const std::vector<std::shared_ptr<const Source>>& sources, const
     has.assign(rest.places.size(), 0);
     sample(s, rest.directions, has);
     const bool lowest = s + 1 == sources.size();
-    rim_shares(*sources[s], feather_posts(sources, s, options), rest, has, lowest, shares);
+    boundary_shares(*sources[s], feather_posts(sources, s, options), rest, has, lowest, shares);
     for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = has[i] != 0 ? shares[i] * rest.share[i] : 0.0;
     visit(s, rest.places, has, shares);
     for (std::size_t i = 0; i < shares.size(); ++i) rest.share[i] -= shares[i];

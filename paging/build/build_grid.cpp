@@ -106,11 +106,11 @@ lod::Posts read_posts(const BuildContext& context, const lod::TileKey& key) {
   lod::Posts posts{key, context.meta.tile.intervals(), std::vector<double>(quanta.size())};
   std::transform(quanta.begin(), quanta.end(), posts.height_m.begin(),
                  [q = context.meta.quantum_m](std::int32_t n) { return n * q; });
-  const int steps = context.nodes.at(key).steps;
-  if (steps != 0) {
+  const int coarser_neighbour_mask = context.nodes.at(key).coarser_neighbour_mask;
+  if (coarser_neighbour_mask != 0) {
     const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
     for (const lod::Edge edge : lod::kEdges) {
-      if ((steps >> static_cast<int>(edge) & 1) != 0)
+      if ((coarser_neighbour_mask >> static_cast<int>(edge) & 1) != 0)
         lod::constrain_edge(posts, lines, edge, 2, context.meta.radius_m);
     }
   }

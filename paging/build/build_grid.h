@@ -28,9 +28,9 @@ PackedMesh pack_mesh(lod::TileMesh mesh, const lod::Posts& posts, double quantum
 struct SampledLeaf {
   lod::Posts posts;                  // multiples of the quantum, borders constrained
   std::vector<std::int32_t> quanta;  // as stored, not constrained
-  std::vector<bool> missing;
-  bool any_missing = false;
-  int steps = 0;  // NodeRow::steps
+  std::vector<bool> nodata;
+  bool any_nodata = false;
+  int coarser_neighbour_mask = 0;  // NodeRow::steps
   std::array<int, 4> border_step{1, 1, 1, 1};
   lod::GridLines lines;
   std::vector<glm::dvec3> directions;

@@ -30,14 +30,14 @@ std::vector<double> every_second(const lod::Posts& posts) {
 }
 
 // Of the child's posts, every second one is a post of its parent: marks those without data.
-void put_child_mask(std::vector<bool>& missing, int child, const Bytes& packed, std::size_t side) {
+void put_child_mask(std::vector<bool>& nodata, int child, const Bytes& packed, std::size_t side) {
   if (packed.empty()) return;
   const std::vector<bool> below = decode_mask(packed, side * side);
   const std::size_t x0 = (child & 1) != 0 ? side / 2 : 0;
   const std::size_t y0 = (child >> 1) != 0 ? side / 2 : 0;
   for (std::size_t j = 0; j < side; j += 2) {
     for (std::size_t i = 0; i < side; i += 2) {
-      if (below[j * side + i]) missing[(y0 + j / 2) * side + x0 + i / 2] = true;
+      if (below[j * side + i]) nodata[(y0 + j / 2) * side + x0 + i / 2] = true;
     }
   }
 }
@@ -70,7 +70,7 @@ lod::Posts sample_inner(const BuildContext& context, const lod::TileKey& key) {
 
 }  // namespace
 
-AboveTile sample_above(const BuildContext& context, const lod::TileKey& key) {
+SharedAncestor sample_above(const BuildContext& context, const lod::TileKey& key) {
   const int n = 2 * context.meta.tile.intervals();
   lod::Posts posts{key, n,
                    std::vector<double>(static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(n + 1))};
@@ -104,12 +104,12 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   Node node;
   node.inner = true;
   lod::Posts posts{key, 2 * n, std::vector<double>(wide * wide)};
-  std::vector<bool> missing(static_cast<std::size_t>(meta.tile.post_count()));
+  std::vector<bool> nodata(static_cast<std::size_t>(meta.tile.post_count()));
   for (int c = 0; c < 4; ++c) {
     const lod::TileKey child = lod::child(key, c);
     const lod::Posts fine = read_posts(context, child);
     put_child(posts, c, fine);
-    put_child_mask(missing, c, context.writer.missing(child), static_cast<std::size_t>(n + 1));
+    put_child_mask(nodata, c, context.writer.nodata(child), static_cast<std::size_t>(n + 1));
     const Node& below = context.nodes.at(child);
     node.sources.insert(below.sources.begin(), below.sources.end());
     node.min_m = c == 0 ? below.min_m : std::min(node.min_m, below.min_m);
@@ -120,7 +120,7 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   const std::vector<double> own = every_second(posts);
   TilePayload payload;
   payload.heights = encode_heights(to_quanta(own, meta.quantum_m), n + 1);
-  if (std::find(missing.begin(), missing.end(), true) != missing.end()) payload.missing = encode_mask(missing);
+  if (std::find(nodata.begin(), nodata.end(), true) != nodata.end()) payload.nodata = encode_mask(nodata);
 
   const PackedMesh mesh = mesh_inner(context, posts);
   payload.meshes.push_back(encode_mesh(mesh));

@@ -18,13 +18,13 @@ constexpr double kVariantStep = 0.25;
 constexpr int kMaxMeshVariants = 12;
 
 // Border posts take the spacing of the coarsest tile that has them, so that both sides sample the same.
-void resample_borders(const BuildContext& context, const lod::TileKey& key, int steps,
+void resample_borders(const BuildContext& context, const lod::TileKey& key, int coarser_neighbour_mask,
                       const std::vector<glm::dvec3>& directions, std::vector<double>& heights) {
   const int n = context.meta.tile.intervals();
   const int side = n + 1;
   const auto spacing = [&](int level) { return lod::post_spacing_m(level, n, context.meta.radius_m); };
   for (const lod::Edge edge : lod::kEdges) {
-    if ((steps >> static_cast<int>(edge) & 1) == 0) continue;
+    if ((coarser_neighbour_mask >> static_cast<int>(edge) & 1) == 0) continue;
     std::vector<glm::dvec3> at;
     for (int a = 0; a <= n; a += 2) at.push_back(directions[edge_post(edge, a, side)]);
     std::vector<double> values(at.size());
@@ -60,25 +60,25 @@ SampledLeaf sample_leaf(const BuildContext& context, const lod::TileKey& key) {
   const int n = meta.tile.intervals();
   SampledLeaf leaf;
   for (const lod::Edge edge : lod::kEdges) {
-    if (context.plan.edge_step(key, edge) != 0) leaf.steps |= 1 << static_cast<int>(edge);
+    if (context.plan.edge_step(key, edge) != 0) leaf.coarser_neighbour_mask |= 1 << static_cast<int>(edge);
   }
   leaf.lines = lod::grid_lines(key, n);
   leaf.directions = post_directions(key, leaf.lines);
   leaf.posts = {key, n, std::vector<double>(leaf.directions.size())};
   std::vector<double>& heights = leaf.posts.height_m;
   context.elevation->sample(leaf.directions, lod::post_spacing_m(key.level, n, meta.radius_m), heights);
-  resample_borders(context, key, leaf.steps, leaf.directions, heights);
+  resample_borders(context, key, leaf.coarser_neighbour_mask, leaf.directions, heights);
 
-  leaf.missing.resize(heights.size());
+  leaf.nodata.resize(heights.size());
   for (std::size_t p = 0; p < heights.size(); ++p) {
     if (std::isfinite(heights[p]) || mutated(Guard::kMissingHeights)) continue;
-    leaf.missing[p] = leaf.any_missing = true;
+    leaf.nodata[p] = leaf.any_nodata = true;
     heights[p] = meta.fill_m;
   }
   leaf.quanta = to_quanta(heights, meta.quantum_m, leaf.directions);
   for (std::size_t p = 0; p < heights.size(); ++p) heights[p] = leaf.quanta[p] * meta.quantum_m;
   for (const lod::Edge edge : lod::kEdges) {
-    if ((leaf.steps >> static_cast<int>(edge) & 1) == 0) continue;
+    if ((leaf.coarser_neighbour_mask >> static_cast<int>(edge) & 1) == 0) continue;
     lod::constrain_edge(leaf.posts, leaf.lines, edge, 2, meta.radius_m);
     leaf.border_step[static_cast<std::size_t>(edge)] = 2;
   }
@@ -91,11 +91,11 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
   const SampledLeaf leaf = sample_leaf(context, key);
   const lod::Posts& posts = leaf.posts;
   Node node;
-  node.steps = leaf.steps;
+  node.coarser_neighbour_mask = leaf.coarser_neighbour_mask;
   node.sources = sources_of(context, leaf.directions);
   TilePayload payload;
   payload.heights = encode_heights(leaf.quanta, n + 1);
-  if (leaf.any_missing) payload.missing = encode_mask(leaf.missing);
+  if (leaf.any_nodata) payload.nodata = encode_mask(leaf.nodata);
   const auto [low, high] = std::minmax_element(posts.height_m.begin(), posts.height_m.end());
   node.min_m = *low;
   node.lowest_m = *low - facet_sag_m(lod::post_spacing_m(key.level, n, meta.radius_m), meta.radius_m);

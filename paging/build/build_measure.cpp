@@ -60,8 +60,8 @@ Bytes pack_terms(const std::map<lod::TileKey, InnerTerms>& terms) {
   for (const auto& [key, t] : terms) {
     put(lod::pack(key));
     for (const lod::ErrorTerms& e : {t.mesh, t.posts}) {
-      put(e.relief_m);
-      put(e.sag_m);
+      put(e.height_error_m);
+      put(e.sagitta_m);
       put(e.total_m);
     }
   }

@@ -34,7 +34,7 @@ bool curve_less(const lod::TileKey& a, const lod::TileKey& b) {
   return pa != pb ? pa < pb : a.level < b.level;
 }
 
-Plan::Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
+BuildPlan::BuildPlan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
            const PlanLimits& limits) {
   std::vector<lod::TileKey> open;
   for (int f = 0; f < mars::kFaces; ++f) open.push_back({static_cast<mars::Face>(f), 0, 0, 0});
@@ -67,7 +67,7 @@ Plan::Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wa
   sort();
 }
 
-Plan::Plan(std::vector<lod::TileKey> leaves) : leaves_(std::move(leaves)) {
+BuildPlan::BuildPlan(std::vector<lod::TileKey> leaves) : leaves_(std::move(leaves)) {
   for (const lod::TileKey& leaf : leaves_) {
     for (lod::TileKey key = leaf; key.level > 0;) {
       key = lod::parent(key);
@@ -90,7 +90,7 @@ Plan::Plan(std::vector<lod::TileKey> leaves) : leaves_(std::move(leaves)) {
   }
 }
 
-void Plan::sort() {
+void BuildPlan::sort() {
   for (const lod::TileKey& key : leaves_) finest_level_ = std::max(finest_level_, key.level);
   std::sort(leaves_.begin(), leaves_.end(), curve_less);
   std::sort(inner_.begin(), inner_.end(), [](const lod::TileKey& a, const lod::TileKey& b) {
@@ -98,13 +98,13 @@ void Plan::sort() {
   });
 }
 
-void Plan::split(const lod::TileKey& key) {
+void BuildPlan::split(const lod::TileKey& key) {
   if (!inner_set_.insert(key).second) return;
   pending_.push_back(key);
   if (key.level > 0) split(lod::parent(key));
 }
 
-void Plan::balance() {
+void BuildPlan::balance() {
   // The children of an inner tile may only meet finest tiles of its own level or deeper: its neighbours
   // of its own level must exist.
   while (!pending_.empty()) {
@@ -115,25 +115,25 @@ void Plan::balance() {
   }
 }
 
-int Plan::leaf_level(const mars::ChartPoint& point) const {
+int BuildPlan::leaf_level(const mars::ChartPoint& point) const {
   int level = 0;
   while (is_inner(lod::tile_at(point, level))) ++level;
   return level;
 }
 
-int Plan::coarsest_level_at_corner(const lod::TileKey& key, bool east, bool north) const {
+int BuildPlan::coarsest_level_at_corner(const lod::TileKey& key, bool east, bool north) const {
   const mars::ChartRect rect = lod::chart_rect(key);
   // A thousandth of a tile to each side lies well inside whatever touches the corner.
   return coarsest_level_about(rect.face, east ? rect.u1 : rect.u0, north ? rect.v1 : rect.v0,
                               (rect.u1 - rect.u0) * 1e-3, (rect.v1 - rect.v0) * 1e-3);
 }
 
-int Plan::coarsest_level_at(mars::Face face, double u, double v) const {
+int BuildPlan::coarsest_level_at(mars::Face face, double u, double v) const {
   const double aside = std::ldexp(1e-3, -finest_level_);
   return coarsest_level_about(face, u, v, aside, aside);
 }
 
-int Plan::coarsest_level_about(mars::Face face, double u, double v, double du, double dv) const {
+int BuildPlan::coarsest_level_about(mars::Face face, double u, double v, double du, double dv) const {
   int level = lod::kMaxLevel;
   for (const auto& [su, sv] : {std::array{-1.0, -1.0}, {1.0, -1.0}, {-1.0, 1.0}, {1.0, 1.0}}) {
     const mars::ChartPoint near = mars::chart_point(mars::cube_point(face, u + su * du, v + sv * dv));
@@ -142,7 +142,7 @@ int Plan::coarsest_level_about(mars::Face face, double u, double v, double du, d
   return level;
 }
 
-int Plan::edge_step(const lod::TileKey& leaf, lod::Edge edge) const {
+int BuildPlan::edge_step(const lod::TileKey& leaf, lod::Edge edge) const {
   if (leaf.level == 0) return 0;
   return exists(lod::neighbour(leaf, edge).key) ? 0 : 1;
 }

@@ -20,15 +20,15 @@ struct PlanLimits {
 
 // A restricted quadtree: every inner tile has its four children, and finest tiles that share an edge differ by
 // at most one level, so that S changes its spacing by steps of two.
-class Plan {
+class BuildPlan {
  public:
   // Throws std::runtime_error when the tree would pass the limits; names the spacing that asks for it.
-  Plan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
+  BuildPlan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
        const PlanLimits& limits = {});
 
   // The tree that has these finest tiles, in any order. Throws std::runtime_error when they do not cover the
   // planet, each place once.
-  explicit Plan(std::vector<lod::TileKey> leaves);
+  explicit BuildPlan(std::vector<lod::TileKey> leaves);
 
   const std::vector<lod::TileKey>& leaves() const { return leaves_; }  // along the Morton curve, face by face
   const std::vector<lod::TileKey>& inner() const { return inner_; }    // deepest first, else as leaves()

@@ -60,7 +60,7 @@ class Meter {
 
   void measure() {
     constexpr std::size_t kBlock = 4096;
-    vpe::core::parallel_for((posts_.size() + kBlock - 1) / kBlock, threads_, [&](std::size_t n) {
+    vpe::base::parallel_for((posts_.size() + kBlock - 1) / kBlock, threads_, [&](std::size_t n) {
       locate(std::span(posts_).subspan(n * kBlock, std::min(kBlock, posts_.size() - n * kBlock)));
     });
     std::erase_if(posts_, [](const SourcePost& p) { return p.leaf == kNowhere; });
@@ -71,7 +71,7 @@ class Meter {
       if (n == 0 || posts_[n].leaf != posts_[n - 1].leaf) runs.push_back(n);
     }
     std::mutex adding;
-    vpe::core::parallel_for(runs.size(), threads_, [&](std::size_t r) {
+    vpe::base::parallel_for(runs.size(), threads_, [&](std::size_t r) {
       const std::size_t end = r + 1 < runs.size() ? runs[r + 1] : posts_.size();
       const lod::TileKey& key = leaves_[posts_[runs[r]].leaf];
       const lod::Posts posts = read_posts(context_, key);

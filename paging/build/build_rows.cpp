@@ -21,7 +21,7 @@ Node node_of(const NodeRow& row) {
   node.max_m = row.max_m;
   node.slope = row.slope;
   node.inner = row.inner;
-  node.steps = row.steps;
+  node.coarser_neighbour_mask = row.coarser_neighbour_mask;
   node.sources = sources_of_row(row);
   node.variants = row.variants;
   if (row.posts_terms) node.posts_terms = *row.posts_terms;
@@ -35,7 +35,7 @@ NodeRow to_row(const lod::TileKey& key, const Node& node) {
   row.max_m = node.max_m;
   row.slope = node.slope;
   row.inner = node.inner;
-  row.steps = node.steps;
+  row.coarser_neighbour_mask = node.coarser_neighbour_mask;
   for (const int s : node.sources) {
     if (!row.sources.empty()) row.sources.push_back(',');
     row.sources.append(std::to_string(s));

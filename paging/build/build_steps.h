@@ -22,7 +22,7 @@ struct Node {
   double lowest_m = 0;  // of S: facets sag below their posts
   double slope = 0;     // lod::steepest_slope
   bool inner = false;
-  int steps = 0;  // NodeRow::steps
+  int coarser_neighbour_mask = 0;  // NodeRow::steps
   std::set<int> sources;
   std::vector<lod::MeshVariant> variants;
   lod::ErrorTerms posts_terms;  // of an inner tile, as lod::TileInfo
@@ -39,7 +39,7 @@ struct InnerTerms {
 };
 
 // Of an inner tile that other builds store.
-struct AboveTile {
+struct SharedAncestor {
   PackedMesh mesh;
   lod::Posts posts;
 };
@@ -79,11 +79,11 @@ class MesherPool {
 struct BuildContext {
   const BuildOptions& options;
   const PlanetMeta& meta;
-  const Plan& plan;
+  const BuildPlan& plan;
   const mars::ElevationSource* elevation;  // null where nothing is sampled any more
   PlanetWriter& writer;
   MesherPool& meshers;
-  std::map<lod::TileKey, AboveTile> above;  // tiles that this build measures, but others store
+  std::map<lod::TileKey, SharedAncestor> above;  // tiles that this build measures, but others store
   std::map<lod::TileKey, Node> nodes;  // ordered, so that nothing depends on hashing; read-only during a step
 };
 
@@ -96,7 +96,7 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key);
 
 // Mesh and posts that build_inner would make, from the sources instead of the children: for a tile that lies
 // above more than one part of a divided build.
-AboveTile sample_above(const BuildContext& context, const lod::TileKey& key);
+SharedAncestor sample_above(const BuildContext& context, const lod::TileKey& key);
 
 // The tile's Node from what is stored of it, instead of building it: equal to what building it returns. An
 // inner tile's children must be in context.nodes.

@@ -30,11 +30,11 @@ class Build {
         image_(image),
         meta_(meta),
         plan_(meta.tile, meta.radius_m, wanted_elevation(options, elevation)),
-        share_(share_of(plan_, options.part)),
+        share_(shard_plan(plan_, options.part)),
         writer_(options.output, recipe_of(options, meta), options.commit_s),
         stages_(progress),
         threads_(options.threads > 0 ? options.threads : vpe::base::default_threads()) {
-    stages_.replaced = writer_.start() == PartStart::kReplaced;
+    stages_.replaced = writer_.start() == PartialFileStart::kReplaced;
   }
 
   BuildSummary run() {
@@ -89,25 +89,25 @@ class Build {
     constexpr std::size_t kChunk = 32;
     const std::span<const lod::TileKey> leaves = share_.leaves;
     const std::size_t chunks = (leaves.size() + kChunk - 1) / kChunk;
-    const std::map<std::int64_t, Bytes> notes = writer_.notes();
+    const std::map<std::int64_t, Bytes> checkpoints = writer_.checkpoints();
     std::vector<std::size_t> open;
     for (std::size_t c = 0; c < chunks; ++c) {
-      const auto note = notes.find(static_cast<std::int64_t>(c));
-      if (note == notes.end()) {
+      const auto checkpoint = checkpoints.find(static_cast<std::int64_t>(c));
+      if (checkpoint == checkpoints.end()) {
         open.push_back(c);
       } else {
-        include(unpack_terms(note->second));
+        include(unpack_terms(checkpoint->second));
       }
     }
     stages_.begin("measuring", static_cast<std::int64_t>(chunks), 0.15,
                   static_cast<std::int64_t>(chunks - open.size()));
     mesh_above();
     std::mutex merge;
-    vpe::core::parallel_for(open.size(), threads_, [&](std::size_t n) {
+    vpe::base::parallel_for(open.size(), threads_, [&](std::size_t n) {
       const std::size_t first = open[n] * kChunk;
       const auto found =
           measure_chunk(context_, leaves.subspan(first, std::min(kChunk, leaves.size() - first)));
-      writer_.put_note(static_cast<std::int64_t>(open[n]), pack_terms(found));
+      writer_.put_checkpoint(static_cast<std::int64_t>(open[n]), pack_terms(found));
       {
         const std::lock_guard lock(merge);
         include(found);
@@ -131,8 +131,8 @@ class Build {
 
   // Meshes and posts of tiles that lie above other parts too.
   void mesh_above() {
-    std::vector<AboveTile> tiles(share_.above.size());
-    vpe::core::parallel_for(tiles.size(), threads_,
+    std::vector<SharedAncestor> tiles(share_.above.size());
+    vpe::base::parallel_for(tiles.size(), threads_,
                             [&](std::size_t n) { tiles[n] = sample_above(context_, share_.above[n]); });
     for (std::size_t n = 0; n < tiles.size(); ++n) {
       const lod::TileKey& key = share_.above[n];
@@ -153,7 +153,7 @@ class Build {
     std::copy_if(images.begin(), images.end(), std::back_inserter(open),
                  [&](const lod::TileKey& key) { return !stored.contains(lod::pack(key)); });
     begin("image", images.size(), open.size(), 0.06);
-    vpe::core::parallel_for(open.size(), threads_, [&](std::size_t n) {
+    vpe::base::parallel_for(open.size(), threads_, [&](std::size_t n) {
       build_image(context_, *image_, open[n]);
       stages_.advance();
     });
@@ -183,8 +183,8 @@ class Build {
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
     set_resampling(meta_, sums);
     if (!options_.part.is_all()) {
-      meta_.share = ShareMeta{options_.part, options_.mesh_ratio, std::move(sums)};
-      writer_.put_note(kAboveNote, pack_above(above_));
+      meta_.share = ShardMeta{options_.part, options_.mesh_ratio, std::move(sums)};
+      writer_.put_checkpoint(kSharedAncestorsCheckpoint, pack_shared_ancestors(above_));
     }
     writer_.seal(meta_);
     if (!meta_.share) PlanetFile::open(writer_.part_path());  // as everybody will
@@ -207,7 +207,7 @@ class Build {
   void build_each(const std::vector<lod::TileKey>& keys,
                   Node (*build)(const BuildContext&, const lod::TileKey&)) {
     std::vector<Node> made(keys.size());
-    vpe::core::parallel_for(keys.size(), threads_, [&](std::size_t n) {
+    vpe::base::parallel_for(keys.size(), threads_, [&](std::size_t n) {
       made[n] = build(context_, keys[n]);
       stages_.advance();
     });
@@ -218,13 +218,13 @@ class Build {
   const mars::ElevationSource& elevation_;
   const mars::ImageSource* image_;
   PlanetMeta meta_;
-  Plan plan_;
-  Share share_;
+  BuildPlan plan_;
+  ShardPlan share_;
   PlanetWriter writer_;
   Stages stages_;
   int threads_;
   MesherPool meshers_;
-  std::map<lod::TileKey, AboveNote> above_;
+  std::map<lod::TileKey, SharedAncestorTerms> above_;
   BuildContext context_{options_, meta_, plan_, &elevation_, writer_, meshers_, {}, {}};
 };
 

@@ -29,8 +29,8 @@ std::int64_t rounded(double x) { return static_cast<std::int64_t>(x + 0.5); }
 BuildEstimate estimate_build(const BuildOptions& options, const mars::ElevationSource& elevation,
                              const mars::ImageSource* image) {
   const lod::TileShape tile{options.tile_k};
-  const Plan plan(tile, options.radius_m, wanted_elevation(options, elevation));
-  const Share share = share_of(plan, options.part);
+  const BuildPlan plan(tile, options.radius_m, wanted_elevation(options, elevation));
+  const ShardPlan share = shard_plan(plan, options.part);
   BuildEstimate out;
   out.leaf_tiles = static_cast<std::int64_t>(share.leaves.size());
   out.inner_tiles = static_cast<std::int64_t>(share.inner.size());

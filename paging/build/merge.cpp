@@ -17,17 +17,17 @@ std::string part_name(const vpe::base::Shard& part) {
 }
 
 // The parts in their order, if they are all and of one build.
-std::vector<std::unique_ptr<ShareFile>> open_parts(const std::vector<std::string>& paths) {
-  std::map<std::int64_t, std::unique_ptr<ShareFile>> by_number;
-  const ShareFile* first = nullptr;
+std::vector<std::unique_ptr<ShardFile>> open_parts(const std::vector<std::string>& paths) {
+  std::map<std::int64_t, std::unique_ptr<ShardFile>> by_number;
+  const ShardFile* first = nullptr;
   for (const std::string& path : paths) {
-    auto file = std::make_unique<ShareFile>(path);
+    auto file = std::make_unique<ShardFile>(path);
     if (first == nullptr) first = file.get();
     if (file->part().of != first->part().of) {
       throw PlanetError(path + ": " + part_name(file->part()) + ", but " + first->path() + " is " +
                         part_name(first->part()) + "; give the parts of one build");
     }
-    if (file->recipe() != first->recipe()) {
+    if (file->fingerprint() != first->fingerprint()) {
       throw PlanetError(path + ": made of other sources, with other options or by another version than " +
                         first->path() + "; give the parts of one build");
     }
@@ -51,14 +51,14 @@ std::vector<std::unique_ptr<ShareFile>> open_parts(const std::vector<std::string
                       " are missing: " + missing + (count > named ? ", ..." : "") +
                       "; make them with 'vpe build ... --part', and give all to 'vpe merge'");
   }
-  std::vector<std::unique_ptr<ShareFile>> out;
+  std::vector<std::unique_ptr<ShardFile>> out;
   for (auto& [number, file] : by_number) out.push_back(std::move(file));
   return out;
 }
 
 // What the merged file is a function of.
-std::string recipe_of_merge(const std::vector<std::unique_ptr<ShareFile>>& parts) {
-  std::string text = "merge of\n" + parts.front()->recipe();
+std::string fingerprint_of_merge(const std::vector<std::unique_ptr<ShardFile>>& parts) {
+  std::string text = "merge of\n" + parts.front()->fingerprint();
   for (const auto& part : parts) text += part->meta().identity + "\n";
   return text;
 }
@@ -68,10 +68,10 @@ class Merge {
   Merge(const MergeOptions& options, const ProgressFunction& progress)
       : options_(options),
         parts_(open_parts(options.parts)),
-        writer_(options.output, recipe_of_merge(parts_), options.commit_s),
+        writer_(options.output, fingerprint_of_merge(parts_), options.commit_s),
         stages_(progress),
         threads_(options.threads > 0 ? options.threads : vpe::base::default_threads()) {
-    stages_.replaced = writer_.start() == PartStart::kReplaced;
+    stages_.replaced = writer_.start() == PartialFileStart::kReplaced;
     meta_ = parts_.front()->meta();
     meta_.share.reset();
     build_.mesh_ratio = parts_.front()->meta().share->mesh_ratio;
@@ -96,11 +96,11 @@ class Merge {
     stages_.begin("tiles", total, 0.8);
     std::vector<lod::TileKey> leaves;
     for (const auto& part : parts_) {
-      for (const auto& [key, note] : part->above()) {
-        const auto [at, is_new] = above_.emplace(key, note);
+      for (const auto& [key, checkpoint] : part->above()) {
+        const auto [at, is_new] = above_.emplace(key, checkpoint);
         if (is_new) continue;
-        at->second.terms.include(note.terms);
-        if (at->second.mesh_checksum != note.mesh_checksum) refuse(*part, key);
+        at->second.terms.include(checkpoint.terms);
+        if (at->second.mesh_checksum != checkpoint.mesh_checksum) refuse(*part, key);
       }
     }
     for (const auto& part : parts_) {
@@ -116,13 +116,13 @@ class Merge {
     std::erase_if(stored, [&](const auto& entry) { return !above_.contains(entry.first); });
     stored_above_ = std::move(stored);
     try {
-      plan_ = std::make_unique<Plan>(std::move(leaves));
+      plan_ = std::make_unique<BuildPlan>(std::move(leaves));
     } catch (const std::runtime_error& e) {
       throw PlanetError(options_.output + ": " + e.what() + ": the parts do not fit; build them again");
     }
   }
 
-  [[noreturn]] static void refuse(const ShareFile& part, const lod::TileKey& key) {
+  [[noreturn]] static void refuse(const ShardFile& part, const lod::TileKey& key) {
     throw PlanetError(
         part.path() + ": tile " + lod::to_string(key) +
         " above it is another than in other parts: a source has changed under its name; build the "
@@ -155,7 +155,7 @@ class Merge {
       const std::size_t begin = at;
       while (at < keys.size() && keys[at].level == keys[begin].level) ++at;
       std::vector<Node> made(at - begin);
-      vpe::core::parallel_for(made.size(), threads_, [&](std::size_t n) {
+      vpe::base::parallel_for(made.size(), threads_, [&](std::size_t n) {
         const lod::TileKey& key = keys[begin + n];
         const auto stored = stored_above_.find(key);
         made[n] = stored != stored_above_.end() ? node_of(stored->second) : build_inner(context, key);
@@ -213,15 +213,15 @@ class Merge {
   }
 
   const MergeOptions& options_;
-  std::vector<std::unique_ptr<ShareFile>> parts_;
+  std::vector<std::unique_ptr<ShardFile>> parts_;
   PlanetWriter writer_;
   Stages stages_;
   int threads_;
   PlanetMeta meta_;
   BuildOptions build_;  // what is left of them: the mesh ratio and the radius
   MesherPool meshers_;
-  std::unique_ptr<Plan> plan_;
-  std::map<lod::TileKey, AboveNote> above_;
+  std::unique_ptr<BuildPlan> plan_;
+  std::map<lod::TileKey, SharedAncestorTerms> above_;
   std::map<lod::TileKey, Node> nodes_;            // children of tiles above
   std::map<lod::TileKey, NodeRow> stored_above_;  // that an earlier, stopped merge made
   std::int64_t mesh_triangles_ = 0;

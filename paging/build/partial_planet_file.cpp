@@ -10,8 +10,8 @@ namespace paging {
 
 namespace fs = std::filesystem;
 
-const char* const kDropPartTables = "DROP TABLE IF EXISTS recipe; DROP TABLE IF EXISTS note";
-const char* const kKeepShareTables = "DELETE FROM note WHERE number >= 0";
+const char* const kDropPartialTables = "DROP TABLE IF EXISTS recipe; DROP TABLE IF EXISTS note";
+const char* const kKeepShardTables = "DELETE FROM note WHERE number >= 0";
 
 namespace {
 
@@ -30,10 +30,10 @@ std::unique_ptr<Database> open_exclusively(const std::string& path) {
   return db;
 }
 
-bool fits(Database& db, const std::string& recipe) {
+bool fits(Database& db, const std::string& fingerprint) {
   if (db.integer("PRAGMA application_id") != kApplicationId) return false;
   Statement text(db, "SELECT text FROM recipe");
-  return text.step() && text.text(0) == recipe;
+  return text.step() && text.text(0) == fingerprint;
 }
 
 // Whether all rows fit their checksums. `sql` gives a key, what is added to it as a seed, checksum, data.
@@ -74,43 +74,43 @@ bool sound(Database& db) {
 }
 
 // The part at `path`, continued; without a database when it is to be made anew.
-Part continue_part(const std::string& path, const std::string& recipe) {
+PartialPlanetFile continue_part(const std::string& path, const std::string& fingerprint) {
   try {
     auto db = open_exclusively(path);
     // A build that ended before its first commit leaves what SQLite goes back to: an empty file.
     if (db->integer("SELECT count(*) FROM sqlite_schema") == 0) return {};
-    if (!fits(*db, recipe) || !sound(*db)) return {nullptr, PartStart::kReplaced, false};
+    if (!fits(*db, fingerprint) || !sound(*db)) return {nullptr, PartialFileStart::kReplaced, false};
     db->execute("DELETE FROM meta");
     const bool holds_tiles = db->integer("SELECT count(*) FROM node") > 0;
-    return {std::move(db), PartStart::kContinued, holds_tiles};
+    return {std::move(db), PartialFileStart::kContinued, holds_tiles};
   } catch (const DatabaseError& e) {
     if (e.busy()) {
       throw DatabaseError(path + ": another build is writing it; wait for it, or give another output name",
                           e.code());
     }
-    return {nullptr, PartStart::kReplaced, false};  // not a database, or too damaged to read
+    return {nullptr, PartialFileStart::kReplaced, false};  // not a database, or too damaged to read
   }
 }
 
 }  // namespace
 
-Part open_part(const std::string& path, const std::string& recipe) {
-  Part part;
+PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint) {
+  PartialPlanetFile part;
   if (fs::exists(path)) {
-    part = continue_part(path, recipe);
+    part = continue_part(path, fingerprint);
     if (part.db) return part;
   }
-  remove_part(path);
+  remove_partial_file(path);
   part.db = open_exclusively(path);
   part.db->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
   part.db->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
   part.db->execute(kSchema);
   part.db->execute(kPartTables);
-  Statement(*part.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(recipe)).step();
+  Statement(*part.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(fingerprint)).step();
   return part;
 }
 
-void remove_part(const std::string& path) {
+void remove_partial_file(const std::string& path) {
   std::error_code ignored;
   // The last two only in parts of older versions.
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(path + suffix, ignored);

@@ -36,31 +36,31 @@ void write_meta(const Database& db, const PlanetMeta& meta) {
 struct PlanetWriter::Statements {
   explicit Statements(const Database& db)
       : heights(db, "INSERT INTO heights VALUES(?, ?, ?)"),
-        missing(db, "INSERT INTO missing VALUES(?, ?, ?)"),
+        nodata(db, "INSERT INTO missing VALUES(?, ?, ?)"),
         image(db, "INSERT INTO image VALUES(?, ?, ?)"),
-        note(db, "INSERT OR REPLACE INTO note VALUES(?, ?, ?)"),
+        checkpoint(db, "INSERT OR REPLACE INTO note VALUES(?, ?, ?)"),
         mesh(db, "INSERT INTO mesh VALUES(NULL, ?, ?, ?, ?)"),
         node(db, "INSERT OR REPLACE INTO node VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         variant(db, "INSERT OR REPLACE INTO variant VALUES(?, ?, ?, ?, ?, ?)"),
         posts_error(db, "INSERT OR REPLACE INTO posts_error VALUES(?, ?, ?, ?, ?)"),
         read_heights(db, "SELECT checksum, data FROM heights WHERE key = ?"),
-        read_missing(db, "SELECT checksum, data FROM missing WHERE key = ?"),
+        read_nodata(db, "SELECT checksum, data FROM missing WHERE key = ?"),
         read_mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?") {}
   Statement heights;
-  Statement missing;
+  Statement nodata;
   Statement image;
-  Statement note;
+  Statement checkpoint;
   Statement mesh;
   Statement node;
   Statement variant;
   Statement posts_error;
   Statement read_heights;
-  Statement read_missing;
+  Statement read_nodata;
   Statement read_mesh;
 };
 
-PlanetWriter::PlanetWriter(const std::string& path, const std::string& recipe, double commit_s)
-    : path_(path), part_path_(path + ".part"), commit_every_(commit_s), part_(open_part(part_path_, recipe)) {
+PlanetWriter::PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s)
+    : path_(path), part_path_(path + ".part"), commit_every_(commit_s), part_(open_partial_file(part_path_, fingerprint)) {
   sql_ = std::make_unique<Statements>(*part_.db);
 }
 
@@ -76,7 +76,7 @@ PlanetWriter::~PlanetWriter() {
     }
   }
   part_.db.reset();
-  if (!part_.holds_tiles) remove_part(part_path_);
+  if (!part_.holds_tiles) remove_partial_file(part_path_);
 }
 
 // An error may have undone the whole transaction (SQLite, "Response to errors within a transaction"), so
@@ -112,7 +112,7 @@ void PlanetWriter::put(Statement& statement, std::int64_t row, std::span<const s
 void PlanetWriter::put_tile(const NodeRow& row, const TilePayload& payload) {
   write([&] {
     put(sql_->heights, row.key, payload.heights);
-    if (!payload.missing.empty()) put(sql_->missing, row.key, payload.missing);
+    if (!payload.nodata.empty()) put(sql_->nodata, row.key, payload.nodata);
     std::int64_t variant = 0;
     for (const Bytes& packed : payload.meshes) {
       sql_->mesh.bind(1, row.key).bind(2, variant).bind(3, checksum(row.key + variant, packed)).bind(4, packed);
@@ -127,8 +127,8 @@ void PlanetWriter::put_image(const lod::TileKey& key, std::span<const std::uint8
   write([&] { put(sql_->image, lod::pack(key), packed); });
 }
 
-void PlanetWriter::put_note(std::int64_t number, std::span<const std::uint8_t> packed) {
-  write([&] { put(sql_->note, number, packed); });
+void PlanetWriter::put_checkpoint(std::int64_t number, std::span<const std::uint8_t> packed) {
+  write([&] { put(sql_->checkpoint, number, packed); });
 }
 
 void PlanetWriter::put_node(const NodeRow& row) {
@@ -142,7 +142,7 @@ void PlanetWriter::put_node(const NodeRow& row) {
       .bind(7, row.max_m)
       .bind(8, row.slope)
       .bind(9, std::int64_t{row.inner})
-      .bind(10, std::int64_t{row.steps})
+      .bind(10, std::int64_t{row.coarser_neighbour_mask})
       .bind(11, std::string_view(row.sources))
       .bind(12, checksum(row));
   sql_->node.step();
@@ -150,16 +150,16 @@ void PlanetWriter::put_node(const NodeRow& row) {
   for (const lod::MeshVariant& v : row.variants) {
     sql_->variant.bind(1, row.key)
         .bind(2, number++)
-        .bind(3, v.terms.relief_m)
-        .bind(4, v.terms.sag_m)
+        .bind(3, v.terms.height_error_m)
+        .bind(4, v.terms.sagitta_m)
         .bind(5, v.terms.total_m)
         .bind(6, std::int64_t{v.triangles});
     sql_->variant.step();
   }
   if (!row.posts_terms) return;
   sql_->posts_error.bind(1, row.key)
-      .bind(2, row.posts_terms->relief_m)
-      .bind(3, row.posts_terms->sag_m)
+      .bind(2, row.posts_terms->height_error_m)
+      .bind(3, row.posts_terms->sagitta_m)
       .bind(4, row.posts_terms->total_m)
       .bind(5, posts_checksum(row));
   sql_->posts_error.step();
@@ -192,10 +192,10 @@ std::set<std::int64_t> PlanetWriter::image_keys() {
 
 std::vector<LevelSummary> PlanetWriter::levels(std::size_t posts) {
   const std::lock_guard lock(mutex_);
-  return summarise_levels(*part_.db, posts);
+  return summarize_levels(*part_.db, posts);
 }
 
-std::map<std::int64_t, Bytes> PlanetWriter::notes() {
+std::map<std::int64_t, Bytes> PlanetWriter::checkpoints() {
   const std::lock_guard lock(mutex_);
   std::map<std::int64_t, Bytes> out;
   Statement rows(*part_.db, "SELECT number, data FROM note");
@@ -234,10 +234,10 @@ Bytes PlanetWriter::heights(const lod::TileKey& key) {
   return read(sql_->read_heights, key, lod::pack(key));
 }
 
-Bytes PlanetWriter::missing(const lod::TileKey& key) {
+Bytes PlanetWriter::nodata(const lod::TileKey& key) {
   const std::lock_guard lock(mutex_);
-  sql_->read_missing.bind(1, lod::pack(key));
-  return find(sql_->read_missing, key, lod::pack(key)).value_or(Bytes());
+  sql_->read_nodata.bind(1, lod::pack(key));
+  return find(sql_->read_nodata, key, lod::pack(key)).value_or(Bytes());
 }
 
 Bytes PlanetWriter::mesh(const lod::TileKey& key, int variant) {
@@ -261,7 +261,7 @@ void PlanetWriter::publish(const PlanetMeta& meta) {
   {
     Database db(part_path_, Database::Mode::kCreate);
     db.execute("BEGIN");
-    db.execute(meta.share ? kKeepShareTables : kDropPartTables);
+    db.execute(meta.share ? kKeepShardTables : kDropPartialTables);
     db.execute("DELETE FROM meta");
     write_meta(db, meta);
     db.execute("COMMIT");

@@ -22,7 +22,7 @@ namespace paging {
 // All that the file holds of a tile.
 struct TilePayload {
   Bytes heights;
-  Bytes missing;              // empty: no post is missing
+  Bytes nodata;              // empty: no post is missing
   std::vector<Bytes> meshes;  // by variant
 };
 
@@ -33,31 +33,31 @@ class PlanetWriter {
  public:
   // recipe: everything that the content is a function of, as text; two builds with equal recipes make equal
   // tiles. commit_s: how often finished tiles are made safe.
-  PlanetWriter(const std::string& path, const std::string& recipe, double commit_s = 1.0);
+  PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s = 1.0);
   ~PlanetWriter();  // unless publish() was reached, keeps the .part file; removes it when it holds no work
   PlanetWriter(const PlanetWriter&) = delete;
   PlanetWriter& operator=(const PlanetWriter&) = delete;
 
-  PartStart start() const { return part_.start; }
+  PartialFileStart start() const { return part_.start; }
 
   // What earlier builds left, at the time of asking.
   std::vector<NodeRow> nodes();
   std::set<std::int64_t> image_keys();
-  std::map<std::int64_t, Bytes> notes();
-  std::vector<LevelSummary> levels(std::size_t posts);  // summarise_levels
+  std::map<std::int64_t, Bytes> checkpoints();
+  std::vector<LevelSummary> levels(std::size_t posts);  // summarize_levels
 
   // Each is stored whole or not at all.
   void put_tile(const NodeRow& row, const TilePayload& payload);
   void put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed);
   // A result on the way to the finished file, by number; replaces an earlier one. Dropped by publish(), but
   // that with a number below 0 stays in a file with PlanetMeta::share.
-  void put_note(std::int64_t number, std::span<const std::uint8_t> packed);
+  void put_checkpoint(std::int64_t number, std::span<const std::uint8_t> packed);
   // Replaces rows of the tile index, all or none.
   void replace_nodes(std::span<const NodeRow> rows);
 
   // What put_tile stored. Throws DatabaseError also when it is damaged.
   Bytes heights(const lod::TileKey& key);
-  Bytes missing(const lod::TileKey& key);  // empty: no post is missing
+  Bytes nodata(const lod::TileKey& key);  // empty: no post is missing
   Bytes mesh(const lod::TileKey& key, int variant);
 
   // Writes meta (identity and program are filled in) and closes the .part file: it can be opened for reading,
@@ -84,7 +84,7 @@ class PlanetWriter {
   std::string part_path_;
   std::chrono::duration<double> commit_every_;
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
-  Part part_;
+  PartialPlanetFile part_;
   bool uncommitted_ = false;               // there is work since the last commit
   std::unique_ptr<DatabaseError> broken_;  // the first error of writing
   bool finished_ = false;

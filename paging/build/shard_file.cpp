@@ -6,7 +6,7 @@
 
 namespace paging {
 
-ShareFile::ShareFile(const std::string& path) : path_(path) {
+ShardFile::ShardFile(const std::string& path) : path_(path) {
   std::error_code none;
   if (!std::filesystem::exists(path, none)) {
     throw PlanetError(path + ": no such file; make it with 'vpe build ... --part k/n'");
@@ -24,13 +24,13 @@ ShareFile::ShareFile(const std::string& path) : path_(path) {
     }
     meta_ = from_rows(rows, path);
     if (!meta_.share) throw PlanetError(path + ": a whole planet, not a part of one; leave it out");
-    Statement recipe(*db_, "SELECT text FROM recipe");
-    if (recipe.step()) recipe_ = recipe.text(0);
+    Statement fingerprint(*db_, "SELECT text FROM recipe");
+    if (fingerprint.step()) fingerprint_ = fingerprint.text(0);
     const std::string line = recipe_part(part());
-    if (!recipe_.ends_with(line)) damaged("its recipe is of another part");
-    recipe_.resize(recipe_.size() - line.size());
+    if (!fingerprint_.ends_with(line)) damaged("its recipe is of another part");
+    fingerprint_.resize(fingerprint_.size() - line.size());
     heights_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM heights WHERE key = ?");
-    missing_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM missing WHERE key = ?");
+    nodata_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM missing WHERE key = ?");
     mesh_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?");
     image_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM image WHERE key = ?");
     if (content_identity(*db_) != meta_.identity) damaged("its rows are not those that were written");
@@ -39,11 +39,11 @@ ShareFile::ShareFile(const std::string& path) : path_(path) {
   }
 }
 
-void ShareFile::damaged(const std::string& what) const {
+void ShardFile::damaged(const std::string& what) const {
   throw PlanetError(path_ + ": damaged: " + what + "; remove it and build this part again");
 }
 
-std::vector<NodeRow> ShareFile::nodes() const {
+std::vector<NodeRow> ShardFile::nodes() const {
   std::vector<NodeRow> rows;
   try {
     if (const auto bad = read_nodes(*db_, rows))
@@ -54,10 +54,10 @@ std::vector<NodeRow> ShareFile::nodes() const {
   return rows;
 }
 
-std::map<lod::TileKey, AboveNote> ShareFile::above() const {
+std::map<lod::TileKey, SharedAncestorTerms> ShardFile::above() const {
   try {
-    Statement note(*db_, "SELECT checksum, data FROM note WHERE number = ?");
-    return unpack_above(verified(note.bind(1, kAboveNote), kAboveNote, kAboveNote, "the note of tiles above"));
+    Statement checkpoint(*db_, "SELECT checksum, data FROM note WHERE number = ?");
+    return unpack_shared_ancestors(verified(checkpoint.bind(1, kSharedAncestorsCheckpoint), kSharedAncestorsCheckpoint, kSharedAncestorsCheckpoint, "the note of tiles above"));
   } catch (const CodecError& e) {
     damaged(e.what());
   } catch (const DatabaseError& e) {
@@ -65,7 +65,7 @@ std::map<lod::TileKey, AboveNote> ShareFile::above() const {
   }
 }
 
-Bytes ShareFile::verified(Statement& statement, std::int64_t key, std::int64_t seed, const char* what) const {
+Bytes ShardFile::verified(Statement& statement, std::int64_t key, std::int64_t seed, const char* what) const {
   const auto name = [&] {
     const auto tile = lod::unpack(key);
     return std::string(what) + (tile ? " of tile " + lod::to_string(*tile) : "");
@@ -83,13 +83,13 @@ Bytes ShareFile::verified(Statement& statement, std::int64_t key, std::int64_t s
   }
 }
 
-TilePayload ShareFile::payload(const NodeRow& row) {
+TilePayload ShardFile::payload(const NodeRow& row) {
   TilePayload payload;
   payload.heights = verified(heights_->bind(1, row.key), row.key, row.key, "heights");
-  missing_->bind(1, row.key);
-  if (missing_->step()) {
-    missing_->reset();
-    payload.missing = verified(missing_->bind(1, row.key), row.key, row.key, "missing mask");
+  nodata_->bind(1, row.key);
+  if (nodata_->step()) {
+    nodata_->reset();
+    payload.nodata = verified(nodata_->bind(1, row.key), row.key, row.key, "missing mask");
   }
   // A finest tile's last variant is its full grid, without a mesh.
   const auto meshes = static_cast<std::int64_t>(row.variants.size()) - (row.inner ? 0 : 1);
@@ -99,13 +99,13 @@ TilePayload ShareFile::payload(const NodeRow& row) {
   return payload;
 }
 
-std::vector<std::int64_t> ShareFile::image_keys() const {
+std::vector<std::int64_t> ShardFile::image_keys() const {
   std::vector<std::int64_t> keys;
   Statement rows(*db_, "SELECT key FROM image ORDER BY key");
   while (rows.step()) keys.push_back(rows.integer(0));
   return keys;
 }
 
-Bytes ShareFile::image(std::int64_t key) { return verified(image_->bind(1, key), key, key, "image"); }
+Bytes ShardFile::image(std::int64_t key) { return verified(image_->bind(1, key), key, key, "image"); }
 
 }  // namespace paging

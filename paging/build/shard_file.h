@@ -14,18 +14,18 @@
 namespace paging {
 
 // Used by one thread at a time. Members throw PlanetError when something is damaged, naming file and tile.
-class ShareFile {
+class ShardFile {
  public:
   // Throws PlanetError for a missing file, another kind of file, a whole planet, a damaged part.
-  explicit ShareFile(const std::string& path);
+  explicit ShardFile(const std::string& path);
 
   const std::string& path() const { return path_; }
   const PlanetMeta& meta() const { return meta_; }  // with share
   const vpe::base::Shard& part() const { return meta_.share->part; }
-  const std::string& recipe() const { return recipe_; }  // without the line that says which part it is
+  const std::string& fingerprint() const { return fingerprint_; }  // without the line that says which part it is
 
   std::vector<NodeRow> nodes() const;
-  std::map<lod::TileKey, AboveNote> above() const;
+  std::map<lod::TileKey, SharedAncestorTerms> above() const;
   TilePayload payload(const NodeRow& row);
   std::vector<std::int64_t> image_keys() const;
   Bytes image(std::int64_t key);
@@ -37,9 +37,9 @@ class ShareFile {
   std::string path_;
   std::unique_ptr<Database> db_;
   PlanetMeta meta_;
-  std::string recipe_;
+  std::string fingerprint_;
   std::unique_ptr<Statement> heights_;
-  std::unique_ptr<Statement> missing_;
+  std::unique_ptr<Statement> nodata_;
   std::unique_ptr<Statement> mesh_;
   std::unique_ptr<Statement> image_;
 };

@@ -5,14 +5,14 @@
 
 namespace paging {
 
-Share share_of(const Plan& plan, const vpe::base::Shard& part) {
+ShardPlan shard_plan(const BuildPlan& plan, const vpe::base::Shard& part) {
   const std::vector<lod::TileKey>& all = plan.leaves();
   const auto count = static_cast<std::int64_t>(all.size());
   if (part.of > count) {
     throw PlanetError("part " + std::to_string(part.number) + " of " + std::to_string(part.of) +
                       ": the planet has only " + std::to_string(count) + " finest tiles; ask for fewer parts");
   }
-  Share share;
+  ShardPlan share;
   const auto begin = static_cast<std::size_t>(part.begin(count));
   share.leaves = std::span(all).subspan(begin, static_cast<std::size_t>(part.end(count)) - begin);
   const std::int64_t first = lod::z_position(share.leaves.front());
@@ -35,27 +35,27 @@ constexpr std::size_t kRow = 64;
 
 }  // namespace
 
-Bytes pack_above(const std::map<lod::TileKey, AboveNote>& notes) {
+Bytes pack_shared_ancestors(const std::map<lod::TileKey, SharedAncestorTerms>& checkpoints) {
   Bytes out;
   const auto put = [&out](auto value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     for (int shift = 0; shift < 64; shift += 8) out.push_back(static_cast<std::uint8_t>(bits >> shift));
   };
-  for (const auto& [key, note] : notes) {
+  for (const auto& [key, checkpoint] : checkpoints) {
     put(lod::pack(key));
-    for (const lod::ErrorTerms& e : {note.terms.mesh, note.terms.posts}) {
-      put(e.relief_m);
-      put(e.sag_m);
+    for (const lod::ErrorTerms& e : {checkpoint.terms.mesh, checkpoint.terms.posts}) {
+      put(e.height_error_m);
+      put(e.sagitta_m);
       put(e.total_m);
     }
-    put(note.mesh_checksum);
+    put(checkpoint.mesh_checksum);
   }
   return out;
 }
 
-std::map<lod::TileKey, AboveNote> unpack_above(std::span<const std::uint8_t> packed) {
+std::map<lod::TileKey, SharedAncestorTerms> unpack_shared_ancestors(std::span<const std::uint8_t> packed) {
   if (packed.size() % kRow != 0) throw CodecError("notes of tiles above, of a wrong size");
-  std::map<lod::TileKey, AboveNote> out;
+  std::map<lod::TileKey, SharedAncestorTerms> out;
   for (std::size_t at = 0; at < packed.size(); at += kRow) {
     std::array<std::uint64_t, 8> bits{};
     for (std::size_t b = 0; b < kRow; ++b) bits[b / 8] |= std::uint64_t{packed[at + b]} << (8 * (b % 8));

@@ -10,24 +10,24 @@
 
 namespace paging {
 
-struct Share {
+struct ShardPlan {
   std::span<const lod::TileKey> leaves;  // a block along the curve
   std::vector<lod::TileKey> inner;       // wholly above them, deepest first
   std::vector<lod::TileKey> above;       // above them and other parts' too, deepest first: made by merge_parts
 };
 
 // `plan` must outlive it. Throws PlanetError when the planet has fewer finest tiles than parts.
-Share share_of(const Plan& plan, const vpe::base::Shard& part);
+ShardPlan shard_plan(const BuildPlan& plan, const vpe::base::Shard& part);
 
 // What a part knows of a tile in Share::above: the errors over its own leaves, of which mesh.
-struct AboveNote {
+struct SharedAncestorTerms {
   InnerTerms terms;
   std::int64_t mesh_checksum = 0;  // checksum(packed key, encode_mesh)
 };
-inline constexpr std::int64_t kAboveNote = -1;  // its number in the table `note`
+inline constexpr std::int64_t kSharedAncestorsCheckpoint = -1;  // its number in the table `note`
 
 // As bytes and back; unpack throws CodecError.
-Bytes pack_above(const std::map<lod::TileKey, AboveNote>& notes);
-std::map<lod::TileKey, AboveNote> unpack_above(std::span<const std::uint8_t> packed);
+Bytes pack_shared_ancestors(const std::map<lod::TileKey, SharedAncestorTerms>& checkpoints);
+std::map<lod::TileKey, SharedAncestorTerms> unpack_shared_ancestors(std::span<const std::uint8_t> packed);
 
 }  // namespace paging

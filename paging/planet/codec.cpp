@@ -140,10 +140,10 @@ std::vector<std::int32_t> decode_heights(std::span<const std::uint8_t> packed, i
   return quanta;
 }
 
-Bytes encode_mask(const std::vector<bool>& missing) {
-  Bytes bits((missing.size() + 7) / 8);
-  for (std::size_t i = 0; i < missing.size(); ++i) {
-    if (missing[i]) bits[i / 8] = static_cast<std::uint8_t>(bits[i / 8] | 1U << (i % 8));
+Bytes encode_mask(const std::vector<bool>& nodata) {
+  Bytes bits((nodata.size() + 7) / 8);
+  for (std::size_t i = 0; i < nodata.size(); ++i) {
+    if (nodata[i]) bits[i / 8] = static_cast<std::uint8_t>(bits[i / 8] | 1U << (i % 8));
   }
   return compress(bits, kMeshLevel);
 }
@@ -151,9 +151,9 @@ Bytes encode_mask(const std::vector<bool>& missing) {
 std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t count) {
   const Bytes bits = decompress(packed, (count + 7) / 8);
   if (bits.size() != (count + 7) / 8) throw CodecError("missing mask: wrong number of posts");
-  std::vector<bool> missing(count);
-  for (std::size_t i = 0; i < count; ++i) missing[i] = (bits[i / 8] >> (i % 8) & 1U) != 0;
-  return missing;
+  std::vector<bool> nodata(count);
+  for (std::size_t i = 0; i < count; ++i) nodata[i] = (bits[i / 8] >> (i % 8) & 1U) != 0;
+  return nodata;
 }
 
 Bytes encode_mesh(const PackedMesh& packed) {

@@ -29,7 +29,7 @@ Bytes encode_heights(std::span<const std::int32_t> quanta, int side);
 std::vector<std::int32_t> decode_heights(std::span<const std::uint8_t> packed, int side);
 
 // One flag a post (true = no source had data there).
-Bytes encode_mask(const std::vector<bool>& missing);
+Bytes encode_mask(const std::vector<bool>& nodata);
 std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t count);
 
 // A mesh with the heights (in quanta) of its vertices. Vertices must be sorted by (j, i) and distinct;

@@ -33,14 +33,14 @@ struct PlanetFile::Connection {
   explicit Connection(const std::string& path)
       : db(path, Database::Mode::kReadOnly),
         heights(db, "SELECT checksum, data FROM heights WHERE key = ?"),
-        missing(db, "SELECT checksum, data FROM missing WHERE key = ?"),
+        nodata(db, "SELECT checksum, data FROM missing WHERE key = ?"),
         node(db, "SELECT steps, sources FROM node WHERE key = ?"),
         mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?"),
         image(db, "SELECT checksum, data FROM image WHERE key = ?") {}
 
   Database db;
   Statement heights;
-  Statement missing;
+  Statement nodata;
   Statement node;
   Statement mesh;
   Statement image;
@@ -61,7 +61,7 @@ class PlanetFile::Borrowed {
   }
   ~Borrowed() {
     if (!connection_) return;
-    for (Statement* s : {&connection_->heights, &connection_->missing, &connection_->node, &connection_->mesh,
+    for (Statement* s : {&connection_->heights, &connection_->nodata, &connection_->node, &connection_->mesh,
                          &connection_->image}) {
       s->reset();
     }
@@ -160,22 +160,22 @@ void PlanetFile::read_index(Connection& connection) {
     if (!key)
       throw PlanetError(path_ +
                         ": damaged: a mask of missing posts is of no tile; build the planet file again");
-    missing_keys_.push_back(masks.integer(0));
-    for (lod::TileKey at = *key; at.level > 0;) missing_keys_.push_back(lod::pack(at = lod::parent(at)));
+    nodata_keys_.push_back(masks.integer(0));
+    for (lod::TileKey at = *key; at.level > 0;) nodata_keys_.push_back(lod::pack(at = lod::parent(at)));
   }
-  std::sort(missing_keys_.begin(), missing_keys_.end());
-  missing_keys_.erase(std::unique(missing_keys_.begin(), missing_keys_.end()), missing_keys_.end());
+  std::sort(nodata_keys_.begin(), nodata_keys_.end());
+  nodata_keys_.erase(std::unique(nodata_keys_.begin(), nodata_keys_.end()), nodata_keys_.end());
 }
 
-bool PlanetFile::has_missing(const lod::TileKey& key) const {
-  return std::binary_search(missing_keys_.begin(), missing_keys_.end(), lod::pack(key));
+bool PlanetFile::has_nodata(const lod::TileKey& key) const {
+  return std::binary_search(nodata_keys_.begin(), nodata_keys_.end(), lod::pack(key));
 }
 
 void put_on_coarser_edges(TileHeights& heights, double radius_m, double exaggeration) {
-  if (heights.steps == 0) return;
+  if (heights.coarser_neighbour_mask == 0) return;
   const lod::GridLines lines = lod::grid_lines(heights.posts.key, heights.posts.intervals);
   for (const lod::Edge edge : lod::kEdges) {
-    if ((heights.steps >> static_cast<int>(edge) & 1) != 0)
+    if ((heights.coarser_neighbour_mask >> static_cast<int>(edge) & 1) != 0)
       lod::constrain_edge(heights.posts, lines, edge, 2, radius_m, exaggeration);
   }
 }
@@ -189,14 +189,14 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
     const Borrowed connection(*this);
     connection->node.bind(1, row);
     if (!connection->node.step()) throw PlanetError(damaged(path_, key, "not in the index"));
-    out.steps = static_cast<int>(connection->node.integer(0));
+    out.coarser_neighbour_mask = static_cast<int>(connection->node.integer(0));
     out.source = parse_sources(connection->node.text(1));
     connection->heights.bind(1, row);
     auto found = verified(connection->heights, row, path_, key, "heights");
     if (!found) throw PlanetError(damaged(path_, key, "heights are missing"));
     packed = std::move(*found);
-    connection->missing.bind(1, row);
-    mask = verified(connection->missing, row, path_, key, "missing mask");
+    connection->nodata.bind(1, row);
+    mask = verified(connection->nodata, row, path_, key, "missing mask");
   } catch (const DatabaseError& e) {
     throw PlanetError(damaged(path_, key, e.what()));
   }
@@ -207,7 +207,7 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
     out.posts.height_m.resize(quanta.size());
     std::transform(quanta.begin(), quanta.end(), out.posts.height_m.begin(),
                    [q = meta_.quantum_m](std::int32_t n) { return n * q; });
-    if (mask) out.missing = decode_mask(*mask, quanta.size());
+    if (mask) out.nodata = decode_mask(*mask, quanta.size());
   } catch (const CodecError& e) {
     throw PlanetError(damaged(path_, key, e.what()));
   }
@@ -253,11 +253,11 @@ ImageTile PlanetFile::image(const lod::TileKey& key) const {
     connection->image.bind(1, row);
     const auto packed = verified(connection->image, row, path_, key, "image");
     if (!packed) throw PlanetError(damaged(path_, key, "image is missing"));
-    vpe::core::RgbImage picture = vpe::core::decode_jpeg(*packed);
-    if (picture.width != kImageSide || picture.height != kImageSide) {
+    vpe::core::RgbImage decoded = vpe::core::decode_jpeg(*packed);
+    if (decoded.width != kImageSide || decoded.height != kImageSide) {
       throw PlanetError(damaged(path_, key, "image of the wrong size"));
     }
-    return {std::move(picture.pixels)};
+    return {std::move(decoded.pixels)};
   } catch (const PlanetError&) {
     throw;
   } catch (const std::runtime_error& e) {

@@ -16,8 +16,8 @@ namespace paging {
 // Everything of a finest or inner tile but its meshes.
 struct TileHeights {
   lod::Posts posts;           // borders constrained to coarser neighbours
-  int steps = 0;              // bit of each Edge across which a finest tile one level coarser lies
-  std::vector<bool> missing;  // empty when no post is missing
+  int coarser_neighbour_mask = 0;              // bit of each Edge across which a finest tile one level coarser lies
+  std::vector<bool> nodata;  // empty when no post is missing
   std::vector<int> source;    // indices into PlanetMeta::sources that the tile draws on
 };
 
@@ -48,7 +48,7 @@ class PlanetFile {
   PackedMesh mesh(const lod::TileKey& key, int variant) const;
 
   // Whether no source has data at some post of the tile or of one below it. Known without reading the tile.
-  bool has_missing(const lod::TileKey& key) const;
+  bool has_nodata(const lod::TileKey& key) const;
 
   // The deepest stored image tile at or above `key`; nothing when the planet has no image.
   std::optional<lod::TileKey> image_key(const lod::TileKey& key) const;
@@ -65,7 +65,7 @@ class PlanetFile {
   PlanetMeta meta_;
   std::unique_ptr<lod::TileTree> tree_;
   std::vector<std::int64_t> image_keys_;    // sorted
-  std::vector<std::int64_t> missing_keys_;  // of tiles with posts without data and of all above them, sorted
+  std::vector<std::int64_t> nodata_keys_;  // of tiles with posts without data and of all above them, sorted
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Connection>> idle_;
 };

@@ -26,7 +26,7 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
     row.min_m = nodes.real(1);
     row.max_m = nodes.real(2);
     row.inner = nodes.integer(3) != 0;
-    row.steps = static_cast<int>(nodes.integer(4));
+    row.coarser_neighbour_mask = static_cast<int>(nodes.integer(4));
     row.sources = nodes.text(5);
     row.slope = nodes.real(7);
     while (more && variants.integer(0) < row.key) more = variants.step();
@@ -53,7 +53,7 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
   return std::nullopt;
 }
 
-std::vector<LevelSummary> summarise_levels(const Database& db, std::size_t posts) {
+std::vector<LevelSummary> summarize_levels(const Database& db, std::size_t posts) {
   std::map<std::int64_t, LevelSummary> levels;
   Statement tiles(db, "SELECT level, count(*), sum(NOT inner) FROM node GROUP BY level");
   while (tiles.step()) {
@@ -72,7 +72,7 @@ std::vector<LevelSummary> summarise_levels(const Database& db, std::size_t posts
   Statement masks(db, "SELECT key >> 54 & 31, data FROM missing JOIN node USING (key) WHERE NOT inner");
   while (masks.step()) {
     const std::vector<bool> mask = decode_mask(masks.blob(1), posts);
-    levels[masks.integer(0)].holes += std::count(mask.begin(), mask.end(), true);
+    levels[masks.integer(0)].nodata_posts += std::count(mask.begin(), mask.end(), true);
   }
   std::vector<LevelSummary> out;
   for (auto& [level, summary] : levels) {

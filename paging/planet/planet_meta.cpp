@@ -205,7 +205,7 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     current = "levels";
     if (rows.contains("levels")) m.levels = levels_from_text(text("levels"));
     current = "part";
-    if (rows.contains("part")) m.share = share_from_text(text("part"));
+    if (rows.contains("part")) m.share = shard_from_text(text("part"));
   } catch (const json::exception& e) {
     throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
   }
@@ -230,11 +230,11 @@ std::int64_t checksum(const NodeRow& row) {
   put(row.max_m);
   put(row.slope);
   put(row.inner ? 1.0 : 0.0);
-  put(row.steps);
+  put(row.coarser_neighbour_mask);
   for (const char c : row.sources) bytes.push_back(static_cast<std::uint8_t>(c));
   for (const lod::MeshVariant& v : row.variants) {
-    put(v.terms.relief_m);
-    put(v.terms.sag_m);
+    put(v.terms.height_error_m);
+    put(v.terms.sagitta_m);
     put(v.terms.total_m);
     put(v.triangles);
   }
@@ -244,7 +244,7 @@ std::int64_t checksum(const NodeRow& row) {
 std::int64_t posts_checksum(const NodeRow& row) {
   const lod::ErrorTerms& terms = row.posts_terms.value();
   Bytes bytes;
-  for (const double value : {terms.relief_m, terms.sag_m, terms.total_m}) put(bytes, value);
+  for (const double value : {terms.height_error_m, terms.sagitta_m, terms.total_m}) put(bytes, value);
   return checksum(row.key, bytes);
 }
 

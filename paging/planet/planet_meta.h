@@ -52,7 +52,7 @@ struct PlanetMeta {
   std::string identity;              // hexadecimal hash over all checksums: equal content, equal identity
   bool illustration = false;         // some source is made up
   std::vector<LevelSummary> levels;  // by level, coarsest first; empty in files of format 1.0
-  std::optional<ShareMeta> share;    // the file holds this part of the tiles only
+  std::optional<ShardMeta> share;    // the file holds this part of the tiles only
 
   bool operator==(const PlanetMeta&) const;
 };
@@ -71,7 +71,7 @@ struct NodeRow {
   double min_m = 0;
   double max_m = 0;
   bool inner = false;
-  int steps = 0;        // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
+  int coarser_neighbour_mask = 0;        // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
   double slope = 0;     // TileInfo::steepest_slope
   std::string sources;  // indices into meta.sources, comma-separated
   std::vector<lod::MeshVariant> variants;
@@ -86,7 +86,7 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
 
 // What the tables hold of each level, but for the resampling error; tiles of `posts` posts. Throws
 // DatabaseError, CodecError.
-std::vector<LevelSummary> summarise_levels(const Database& db, std::size_t posts);
+std::vector<LevelSummary> summarize_levels(const Database& db, std::size_t posts);
 
 // PlanetMeta::identity of what the tables hold. Throws DatabaseError.
 std::string content_identity(const Database& db);

@@ -26,10 +26,10 @@ void set(ResamplingSum& sum, Wide squares) {
 
 }  // namespace
 
-void ResamplingSum::add(double error_m) {
-  max_m = std::max(max_m, error_m);
+void ResamplingSum::add(double deviation_m) {
+  max_m = std::max(max_m, deviation_m);
   ++posts;
-  const auto units = static_cast<std::uint64_t>(std::llround(std::min(error_m, kLargest_m) / kUnit_m));
+  const auto units = static_cast<std::uint64_t>(std::llround(std::min(deviation_m, kLargest_m) / kUnit_m));
   set(*this, wide(*this) + Wide{units} * units);
 }
 
@@ -45,7 +45,7 @@ ResamplingError ResamplingSum::error() const {
   return {max_m, kUnit_m * std::sqrt(squares / static_cast<double>(posts)), posts};
 }
 
-bool ShareMeta::operator==(const ShareMeta& o) const {
+bool ShardMeta::operator==(const ShardMeta& o) const {
   return part.number == o.part.number && part.of == o.part.of && mesh_ratio == o.mesh_ratio &&
          resampling == o.resampling;
 }
@@ -68,7 +68,7 @@ std::string to_text(const std::vector<LevelSummary>& levels) {
                     {"leaf_tiles", l.leaf_tiles},
                     {"image_tiles", l.image_tiles},
                     {"bytes", l.bytes},
-                    {"holes", l.holes},
+                    {"holes", l.nodata_posts},
                     {"resampling_max_m", l.resampling.max_m},
                     {"resampling_rms_m", l.resampling.rms_m},
                     {"resampling_posts", l.resampling.posts}});
@@ -85,7 +85,7 @@ std::vector<LevelSummary> levels_from_text(const std::string& text) {
     l.leaf_tiles = j.at("leaf_tiles").get<std::int64_t>();
     l.image_tiles = j.at("image_tiles").get<std::int64_t>();
     l.bytes = j.at("bytes").get<std::int64_t>();
-    l.holes = j.at("holes").get<std::int64_t>();
+    l.nodata_posts = j.at("holes").get<std::int64_t>();
     l.resampling = {j.at("resampling_max_m").get<double>(), j.at("resampling_rms_m").get<double>(),
                     j.at("resampling_posts").get<std::int64_t>()};
     levels.push_back(l);
@@ -93,7 +93,7 @@ std::vector<LevelSummary> levels_from_text(const std::string& text) {
   return levels;
 }
 
-std::string to_text(const ShareMeta& share) {
+std::string to_text(const ShardMeta& share) {
   json sums = json::array();
   for (const ResamplingSum& s : share.resampling) sums.push_back({s.max_m, s.posts, s.high, s.low});
   return json{{"number", share.part.number},
@@ -103,9 +103,9 @@ std::string to_text(const ShareMeta& share) {
       .dump();
 }
 
-ShareMeta share_from_text(const std::string& text) {
+ShardMeta shard_from_text(const std::string& text) {
   const json j = json::parse(text);
-  ShareMeta share;
+  ShardMeta share;
   share.part = {j.at("number").get<std::int64_t>(), j.at("of").get<std::int64_t>()};
   share.mesh_ratio = j.at("mesh_ratio").get<double>();
   for (const json& s : j.at("resampling")) {

@@ -25,7 +25,7 @@ struct ResamplingSum {
   std::uint64_t high = 0;  // sum of squares = (high 2^64 + low) 2^-40 m^2
   std::uint64_t low = 0;
 
-  void add(double error_m);  // 0 <= error_m; one beyond 2^22 m counts as that in the mean
+  void add(double deviation_m);  // 0 <= deviation_m; one beyond 2^22 m counts as that in the mean
   void include(const ResamplingSum& other);
   ResamplingError error() const;
   bool operator==(const ResamplingSum&) const = default;
@@ -37,19 +37,19 @@ struct LevelSummary {
   std::int64_t leaf_tiles = 0;
   std::int64_t image_tiles = 0;
   std::int64_t bytes = 0;      // of heights, missing masks, meshes and images, compressed
-  std::int64_t holes = 0;      // posts of finest tiles that no source has; a shared border counts in each tile
+  std::int64_t nodata_posts = 0;      // posts of finest tiles that no source has; a shared border counts in each tile
   ResamplingError resampling;  // over the source posts that lie in this level's finest tiles
 
   bool operator==(const LevelSummary&) const = default;
 };
 
 // What a file says that holds one part of a divided build.
-struct ShareMeta {
+struct ShardMeta {
   vpe::base::Shard part;
   double mesh_ratio = 0;                  // BuildOptions::mesh_ratio, for the tiles that joining makes
   std::vector<ResamplingSum> resampling;  // by level, from 0 on
 
-  bool operator==(const ShareMeta&) const;
+  bool operator==(const ShardMeta&) const;
 };
 
 struct PlanetMeta;
@@ -59,8 +59,8 @@ void set_resampling(PlanetMeta& meta, const std::vector<ResamplingSum>& by_level
 
 // As text of JSON, and back; from_text throws nlohmann::json::exception.
 std::string to_text(const std::vector<LevelSummary>& levels);
-std::string to_text(const ShareMeta& share);
+std::string to_text(const ShardMeta& share);
 std::vector<LevelSummary> levels_from_text(const std::string& text);
-ShareMeta share_from_text(const std::string& text);
+ShardMeta shard_from_text(const std::string& text);
 
 }  // namespace paging

@@ -73,7 +73,7 @@ VerifyReport verify(const PlanetFile& planet, const VerifyOptions& options, cons
   std::vector<TileFindings> found(total);
   std::mutex mutex;
   std::size_t done = 0;
-  vpe::core::parallel_for(total, options.threads > 0 ? options.threads : vpe::base::default_threads(),
+  vpe::base::parallel_for(total, options.threads > 0 ? options.threads : vpe::base::default_threads(),
                           [&](std::size_t n) {
                             if (n < tiles.size()) {
                               found[n] = check_tile(planet, tiles[n]);

@@ -1,4 +1,4 @@
-// Places between the lines of grids, and colours as bytes: what the sources of GroundPainter share.
+// Places between the lines of grids, and colours as bytes: what the sources of TerrainShader share.
 #pragma once
 
 #include <algorithm>

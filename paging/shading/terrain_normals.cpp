@@ -29,11 +29,11 @@ double bilinear_height(const lod::Posts& posts, const lod::GridLines& lines, dou
 
 std::size_t NormalTile::bytes() const {
   return sizeof(NormalTile) + posts.capacity() * sizeof(Post) + sees_sun.capacity() * sizeof(std::uint8_t) +
-         missing.capacity() / 8;
+         nodata.capacity() / 8;
 }
 
 // Heights of the row of posts just across an edge, in this tile's order along it, and where those posts are.
-std::vector<double> GroundPainter::heights_across(const lod::TileKey& key, lod::Edge edge,
+std::vector<double> TerrainShader::heights_across(const lod::TileKey& key, lod::Edge edge,
                                                   std::vector<glm::dvec3>& points) const {
   const int n = planet_->meta().tile.intervals();
   const lod::Neighbour across = lod::neighbour(key, edge);
@@ -62,10 +62,10 @@ std::vector<double> GroundPainter::heights_across(const lod::TileKey& key, lod::
   return out;
 }
 
-NormalTile GroundPainter::make_normals(const lod::TileKey& key, const ShadeParams& params) const {
+NormalTile TerrainShader::make_normals(const lod::TileKey& key, const ShadingParams& params) const {
   const double exaggeration = params.exaggeration;
   auto source = heights(key);
-  if (exaggeration != 1.0 && source->steps != 0) {
+  if (exaggeration != 1.0 && source->coarser_neighbour_mask != 0) {
     auto drawn = std::make_shared<TileHeights>(*source);
     put_on_coarser_edges(*drawn, planet_->radius_m(), exaggeration);
     source = std::move(drawn);
@@ -104,7 +104,7 @@ NormalTile GroundPainter::make_normals(const lod::TileKey& key, const ShadeParam
     }
   }
 
-  NormalTile out{key, static_cast<int>(side), {}, {}, source->missing};
+  NormalTile out{key, static_cast<int>(side), {}, {}, source->nodata};
   out.posts.reserve(side * side);
   for (std::size_t j = 1; j <= side; ++j) {
     const glm::vec3* row = &points[j * wide];
@@ -127,11 +127,11 @@ NormalTile GroundPainter::make_normals(const lod::TileKey& key, const ShadeParam
 }
 
 // From a little above the ground, since the ray's own facets meet it there.
-bool GroundPainter::sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadeParams& params) const {
+bool TerrainShader::sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadingParams& params) const {
   constexpr double kLift = 1e-3;
   const double radius = glm::length(place_m);
-  const glm::dvec3 eye = place_m * ((radius + kLift * spacing_m) / radius);
-  return std::isinf(surface_.cast(eye, params.sun, params.exaggeration));
+  const glm::dvec3 camera = place_m * ((radius + kLift * spacing_m) / radius);
+  return std::isinf(surface_.cast(camera, params.sun, params.exaggeration));
 }
 
 }  // namespace paging

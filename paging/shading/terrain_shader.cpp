@@ -23,28 +23,28 @@ std::size_t part(double share, std::size_t budget) {
 
 }  // namespace
 
-GroundPainter::GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
-                             const PaintShares& shares)
+TerrainShader::TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
+                             const ShaderBudgetShares& shares)
     : planet_(std::move(planet)),
       surface_(planet_, part(shares.surface, budget_bytes)),
       heights_(part(shares.heights, budget_bytes)),
       normals_(part(shares.normals, budget_bytes)),
       images_(part(shares.images, budget_bytes)) {}
 
-std::size_t GroundPainter::bytes_resident() const {
+std::size_t TerrainShader::bytes_resident() const {
   return surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
 }
 
-std::shared_ptr<const TileHeights> GroundPainter::heights(const lod::TileKey& key) const {
+std::shared_ptr<const TileHeights> TerrainShader::heights(const lod::TileKey& key) const {
   return heights_.get(key, [&] {
     auto made = std::make_shared<const TileHeights>(planet_->heights(key));
     const std::size_t bytes =
-        sizeof(*made) + made->posts.height_m.capacity() * sizeof(double) + made->missing.capacity() / 8;
+        sizeof(*made) + made->posts.height_m.capacity() * sizeof(double) + made->nodata.capacity() / 8;
     return std::pair(std::move(made), bytes);
   });
 }
 
-std::shared_ptr<const ImageTile> GroundPainter::image(const lod::TileKey& key) const {
+std::shared_ptr<const ImageTile> TerrainShader::image(const lod::TileKey& key) const {
   return images_.get(key, [&] {
     auto made = std::make_shared<const ImageTile>(planet_->image(key));
     const std::size_t bytes = sizeof(*made) + made->texels.capacity() * sizeof(vpe::base::Rgb);
@@ -52,8 +52,8 @@ std::shared_ptr<const ImageTile> GroundPainter::image(const lod::TileKey& key) c
   });
 }
 
-std::shared_ptr<const NormalTile> GroundPainter::normals(const lod::TileKey& key,
-                                                         const ShadeParams& params) const {
+std::shared_ptr<const NormalTile> TerrainShader::normals(const lod::TileKey& key,
+                                                         const ShadingParams& params) const {
   const glm::dvec3 sun = params.lit && params.shadows ? params.sun : glm::dvec3(0);
   return normals_.get({key, params.exaggeration, sun}, [&] {
     auto made = std::make_shared<const NormalTile>(make_normals(key, params));
@@ -62,9 +62,9 @@ std::shared_ptr<const NormalTile> GroundPainter::normals(const lod::TileKey& key
   });
 }
 
-lod::TileKey GroundPainter::deepest(const lod::TileKey& key) const { return planet_->tree().deepest(key).key; }
+lod::TileKey TerrainShader::deepest(const lod::TileKey& key) const { return planet_->tree().deepest(key).key; }
 
-int GroundPainter::levels_below(const lod::TileKey& key, int limit) const {
+int TerrainShader::levels_below(const lod::TileKey& key, int limit) const {
   const lod::TileInfo* info = planet_->tree().find(key);
   if (info == nullptr || !info->has_children || limit == 0) return 0;
   int most = 0;
@@ -72,11 +72,11 @@ int GroundPainter::levels_below(const lod::TileKey& key, int limit) const {
   return most + 1;
 }
 
-int GroundPainter::useful_intervals(const lod::TileKey& key, Surfacing surfacing) const {
+int TerrainShader::useful_intervals(const lod::TileKey& key, ColourSource colour_source) const {
   constexpr int kMost = 3;
   const int posts = planet_->meta().tile.intervals();
   int levels = levels_below(key, kMost);
-  if (surfacing == Surfacing::kImage) {
+  if (colour_source == ColourSource::kImage) {
     const int image_levels = planet_->meta().finest_image_level - key.level;
     int intervals = kImageIntervals;
     for (int l = 0; l < std::min(image_levels, kMost); ++l) intervals *= 2;
@@ -86,29 +86,29 @@ int GroundPainter::useful_intervals(const lod::TileKey& key, Surfacing surfacing
 }
 
 // What a surfacing shows of a place on the ground.
-glm::dvec3 GroundPainter::shown(Surfacing what, const Ground& at, const ShadeParams& params) const {
+glm::dvec3 TerrainShader::shown(ColourSource what, const Ground& at, const ShadingParams& params) const {
   switch (what) {
-    case Surfacing::kElevation: return (*params.scale)(at.height_m);
-    case Surfacing::kSlope: return (*params.scale)(vpe::core::slope_deg(at.normal, at.up));
-    case Surfacing::kAspect: return (*params.scale)(downhill_deg(at.normal, at.up));
-    case Surfacing::kImage:
-    case Surfacing::kImageAtPosts: return at.image;
-    case Surfacing::kPlain: break;
+    case ColourSource::kElevation: return (*params.scale)(at.height_m);
+    case ColourSource::kSlope: return (*params.scale)(vpe::core::slope_deg(at.normal, at.up));
+    case ColourSource::kAspect: return (*params.scale)(downhill_deg(at.normal, at.up));
+    case ColourSource::kImage:
+    case ColourSource::kImageAtPosts: return at.image;
+    case ColourSource::kPlain: break;
   }
   return vpe::core::kPlainGround;
 }
 
-glm::dvec3 GroundPainter::colour(const Ground& at, const ShadeParams& params) const {
-  glm::dvec3 out = shown(params.surfacing, at, params);
-  if (params.hue != Surfacing::kPlain) out = vpe::core::colourised(out, shown(params.hue, at, params));
+glm::dvec3 TerrainShader::colour(const Ground& at, const ShadingParams& params) const {
+  glm::dvec3 out = shown(params.colour_source, at, params);
+  if (params.hue != ColourSource::kPlain) out = vpe::core::colourised(out, shown(params.hue, at, params));
   return params.lit ? out * vpe::core::light(params.ambient, params.diffuse,
                                              at.sun * glm::dot(glm::normalize(at.normal), params.sun))
                     : out;
 }
 
 // The image's texels over a block or a part of it, or none.
-GroundPainter::Picture GroundPainter::picture(const lod::TileKey& block, const ShadeParams& params) const {
-  if (!shows_image(params.surfacing)) return {};
+TerrainShader::ImageBlock TerrainShader::image_block(const lod::TileKey& block, const ShadingParams& params) const {
+  if (!shows_image(params.colour_source)) return {};
   const auto found = planet_->image_key(block);
   if (!found) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
   return {image(*found), *found};

@@ -2,7 +2,7 @@
 // elevation, slope, aspect or image (vpe/core/appearance/shading.h has the definition). Pure functions over shared caches;
 // no OpenGL.
 //
-// With Gouraud shading light is computed from posts as fine as the picture needs, not from the mesh that
+// With Gouraud shading light is computed from posts as fine as the image needs, not from the mesh that
 // happens to be drawn, so that shading does not change when the mesh does. It is baked into one texture a tile,
 // because a single bilinear lookup is what software OpenGL affords (docs/rendering.md). With flat shading every
 // drawn triangle has one colour.
@@ -23,7 +23,7 @@
 namespace paging {
 
 // Where colours come from.
-enum class Surfacing {
+enum class ColourSource {
   kPlain,  // vpe::core::kPlainGround
   kElevation,
   kSlope,
@@ -32,11 +32,11 @@ enum class Surfacing {
   kImageAtPosts,
 };
 
-constexpr bool shows_image(Surfacing s) { return s == Surfacing::kImage || s == Surfacing::kImageAtPosts; }
+constexpr bool shows_image(ColourSource s) { return s == ColourSource::kImage || s == ColourSource::kImageAtPosts; }
 
-struct ShadeParams {
-  Surfacing surfacing = Surfacing::kElevation;
-  Surfacing hue = Surfacing::kPlain;  // of an image: not plain = colourised by this
+struct ShadingParams {
+  ColourSource colour_source = ColourSource::kElevation;
+  ColourSource hue = ColourSource::kPlain;  // of an image: not plain = colourised by this
   bool lit = true;
   bool shadows = false;
   bool flat = false;        // for triangles, not for grids
@@ -46,11 +46,11 @@ struct ShadeParams {
   double exaggeration = 1;
   std::shared_ptr<const vpe::core::ColourScale> scale;  // where elevation, slope or aspect is shown
   // Two scales are one when they are one object.
-  bool operator==(const ShadeParams&) const = default;
+  bool operator==(const ShadingParams&) const = default;
 };
 
 // What an appearance asks of ground. scale: of the appearance; null where it shows none.
-ShadeParams shade_params(const vpe::core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
+ShadingParams shading_params(const vpe::core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
                          std::shared_ptr<const vpe::core::ColourScale> scale);
 bool needs_scale(const vpe::core::Appearance& appearance, bool has_image);
 
@@ -65,7 +65,7 @@ struct NormalTile {
   int side = 0;
   std::vector<Post> posts;
   std::vector<std::uint8_t> sees_sun;  // 1 or 0; empty without shadows
-  std::vector<bool> missing;           // empty when every post has data
+  std::vector<bool> nodata;           // empty when every post has data
   std::size_t bytes() const;
 };
 
@@ -75,14 +75,14 @@ struct NormalTile {
 struct ShadedTile {
   int intervals = 0;
   int channels = 4;
-  bool gaps = false;  // some alpha is 0; never with one channel
+  bool nodata = false;  // some alpha is 0; never with one channel
   double brightest = 1;
   std::vector<std::uint8_t> texels;
   std::size_t bytes() const { return texels.capacity(); }
 };
 
 // What parts of a painter's budget may hold; together at most 1.
-struct PaintShares {
+struct ShaderBudgetShares {
   double surface = 0.15;  // S, for shadows and flat shading
   double heights = 0.35;  // to make normals from: a tile's neighbours are needed too
   double normals = 0.35;
@@ -90,25 +90,25 @@ struct PaintShares {
 };
 
 // Any thread may call any member. Keeps within the budget, but for the newest tile of each kind.
-class GroundPainter {
+class TerrainShader {
  public:
-  GroundPainter(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
-                const PaintShares& shares = {});
+  TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
+                const ShaderBudgetShares& shares = {});
 
   // Number of texture intervals over a tile beyond which the data has nothing more to show.
-  int useful_intervals(const lod::TileKey& key, Surfacing surfacing) const;
+  int useful_intervals(const lod::TileKey& key, ColourSource colour_source) const;
 
   // intervals: 2^k times a power of two (>= 1).
-  ShadedTile shade(const lod::TileKey& key, int intervals, const ShadeParams& params) const;
+  ShadedTile shade(const lod::TileKey& key, int intervals, const ShadingParams& params) const;
 
   // One colour for each triangle of a tile's mesh: of its normal, the mean height of its corners, and of the
   // image below its middle. height_m: of the mesh's vertices, above the sphere.
   ShadedTile shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
-                          const ShadeParams& params) const;
+                          const ShadingParams& params) const;
 
   // What colour_at() looked at last; one a thread, and for one painter alone.
   class Cursor {
-    friend class GroundPainter;
+    friend class TerrainShader;
     std::shared_ptr<const NormalTile> ground;
     lod::TileKey ground_key;
     std::shared_ptr<const ImageTile> image;
@@ -119,10 +119,10 @@ class GroundPainter {
   // Posts and images are about footprint_m apart, or as fine as they are; facets are those of S. Nothing where
   // the nearest post has no data.
   std::optional<glm::dvec3> colour_at(const glm::dvec3& direction, double footprint_m,
-                                      const ShadeParams& params, Cursor& cursor) const;
+                                      const ShadingParams& params, Cursor& cursor) const;
 
   // What colours are made from: posts of a tile that the planet has, texels of one that image_key() returned.
-  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadeParams& params) const;
+  std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadingParams& params) const;
   std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
 
   std::size_t bytes_resident() const;
@@ -136,7 +136,7 @@ class GroundPainter {
     double sun = 1;  // share of the sun that is seen
     glm::dvec3 image{0, 0, 0};
   };
-  struct Picture {
+  struct ImageBlock {
     std::shared_ptr<const ImageTile> tile;
     lod::TileKey key;
   };
@@ -155,16 +155,16 @@ class GroundPainter {
   lod::TileKey deepest(const lod::TileKey& key) const;
   int levels_below(const lod::TileKey& key, int limit) const;
   std::shared_ptr<const TileHeights> heights(const lod::TileKey& key) const;
-  NormalTile make_normals(const lod::TileKey& key, const ShadeParams& params) const;
-  Picture picture(const lod::TileKey& block, const ShadeParams& params) const;
-  glm::dvec3 shown(Surfacing what, const Ground& at, const ShadeParams& params) const;
-  glm::dvec3 colour(const Ground& at, const ShadeParams& params) const;
+  NormalTile make_normals(const lod::TileKey& key, const ShadingParams& params) const;
+  ImageBlock image_block(const lod::TileKey& block, const ShadingParams& params) const;
+  glm::dvec3 shown(ColourSource what, const Ground& at, const ShadingParams& params) const;
+  glm::dvec3 colour(const Ground& at, const ShadingParams& params) const;
   glm::dvec3 image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const;
   std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge,
                                      std::vector<glm::dvec3>& points) const;
-  void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
+  void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadingParams& params,
                    ShadedTile& out) const;
-  bool sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadeParams& params) const;
+  bool sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadingParams& params) const;
 
   std::shared_ptr<const PlanetFile> planet_;
   Surface surface_;  // casts shadows

@@ -17,7 +17,7 @@ int level_for(double footprint_m, int intervals, double radius_m) {
 
 }  // namespace
 
-glm::dvec3 GroundPainter::image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const {
+glm::dvec3 TerrainShader::image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const {
   const mars::ChartPoint place = mars::chart_point(direction);
   const int level = level_for(footprint_m, kImageIntervals, planet_->radius_m());
   const auto key = planet_->image_key(lod::tile_at(place, level));
@@ -31,8 +31,8 @@ glm::dvec3 GroundPainter::image_at(const glm::dvec3& direction, double footprint
                              [&](std::size_t k) { return rgb(cursor.image->texels[k]); });
 }
 
-std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, double footprint_m,
-                                                   const ShadeParams& params, Cursor& cursor) const {
+std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, double footprint_m,
+                                                   const ShadingParams& params, Cursor& cursor) const {
   const int n = planet_->meta().tile.intervals();
   const double radius = planet_->radius_m();
   const mars::ChartPoint place = mars::chart_point(direction);
@@ -46,7 +46,7 @@ std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, 
   const auto side = static_cast<std::size_t>(ground.side);
   const GridPosition x = between_lines(place.u, key.level, key.i, n);
   const GridPosition y = between_lines(place.v, key.level, key.j, n);
-  if (!ground.missing.empty() && ground.missing[nearest(y) * side + nearest(x)]) return std::nullopt;
+  if (!ground.nodata.empty() && ground.nodata[nearest(y) * side + nearest(x)]) return std::nullopt;
   Ground at;
   at.up = direction;
   const int grid_level = key.level + planet_->meta().tile.k;
@@ -74,15 +74,15 @@ std::optional<glm::dvec3> GroundPainter::colour_at(const glm::dvec3& direction, 
     if (glm::dot(at.normal, at.up) < 0.0) at.normal = -at.normal;
     if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
       at.sun = sees_sun(middle, lod::nominal_side_m(key.level, radius) / n, params) ? 1.0 : 0.0;
-    if (shows_image(params.surfacing)) at.image = image_at(at.up, footprint_m, cursor);
+    if (shows_image(params.colour_source)) at.image = image_at(at.up, footprint_m, cursor);
     return colour(at, params);
   }
   at.height_m = bilinear<float>(x, y, side, [&](std::size_t k) { return ground.posts[k].height_m; });
   at.normal = bilinear<glm::vec3>(x, y, side, [&](std::size_t k) { return ground.posts[k].normal; });
   if (!ground.sees_sun.empty())
     at.sun = bilinear<float>(x, y, side, [&](std::size_t k) { return static_cast<float>(ground.sees_sun[k]); });
-  if (params.surfacing == Surfacing::kImage) at.image = image_at(direction, footprint_m, cursor);
-  if (params.surfacing == Surfacing::kImageAtPosts) {
+  if (params.colour_source == ColourSource::kImage) at.image = image_at(direction, footprint_m, cursor);
+  if (params.colour_source == ColourSource::kImageAtPosts) {
     for (std::size_t b = 0; b < 2; ++b) {
       for (std::size_t a = 0; a < 2; ++a) {
         const float share = (a == 1 ? x.rest : 1.0F - x.rest) * (b == 1 ? y.rest : 1.0F - y.rest);

@@ -10,7 +10,7 @@ namespace paging {
 
 namespace {
 
-bool needs_vertical(Surfacing s) { return s == Surfacing::kSlope || s == Surfacing::kAspect; }
+bool needs_vertical(ColourSource s) { return s == ColourSource::kSlope || s == ColourSource::kAspect; }
 
 // Below level 5 a tile spans several knots of the warp: moves texels from post lines to lines even in u and v,
 // so that texture coordinates are a projective function of the position on every flat triangle.
@@ -48,12 +48,12 @@ void make_even(const lod::TileKey& key, ShadedTile& tile) {
 
 }  // namespace
 
-void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadeParams& params,
+void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadingParams& params,
                                 ShadedTile& out) const {
   const int n = planet_->meta().tile.intervals();
   const lod::TileKey stored = deepest(block);
   const std::shared_ptr<const NormalTile> ground = normals(stored, params);
-  const Picture picture = this->picture(block, params);
+  const ImageBlock image_block = this->image_block(block, params);
   // Where this block lies inside what is stored, in steps of the block's own texels.
   const auto offset = [&](std::int32_t index, const lod::TileKey& outer) {
     const int levels = block.level - outer.level;
@@ -62,11 +62,11 @@ void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int s
   const int ground_steps = n << (block.level - stored.level);
   const int gx = offset(block.i, stored);
   const int gy = offset(block.j, stored);
-  const int picture_steps = picture.tile ? n << (block.level - picture.key.level) : 1;
-  const int px = picture.tile ? offset(block.i, picture.key) : 0;
-  const int py = picture.tile ? offset(block.j, picture.key) : 0;
+  const int image_steps = image_block.tile ? n << (block.level - image_block.key.level) : 1;
+  const int px = image_block.tile ? offset(block.i, image_block.key) : 0;
+  const int py = image_block.tile ? offset(block.j, image_block.key) : 0;
   const bool direct = stored == block;
-  const bool needs_up = needs_vertical(params.surfacing) || needs_vertical(params.hue);
+  const bool needs_up = needs_vertical(params.colour_source) || needs_vertical(params.hue);
   const lod::GridLines lines = needs_up ? lod::grid_lines(block, n) : lod::GridLines{};
 
   const auto ground_side = static_cast<std::size_t>(ground->side);
@@ -74,7 +74,7 @@ void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int s
   Ground at;
   for (int y = 0; y <= n; ++y) {
     const GridPosition gyp = grid_position(gy, y, ground_steps, ground->side - 1);
-    const GridPosition pyp = grid_position(py, y, picture_steps, kImageIntervals);
+    const GridPosition pyp = grid_position(py, y, image_steps, kImageIntervals);
     std::uint8_t* texel =
         &out.texels[channels * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(side) +
                                 static_cast<std::size_t>(x0))];
@@ -92,10 +92,10 @@ void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int s
       if (needs_up)
         at.up = mars::chart_direction(block.face, lines.u[static_cast<std::size_t>(x)],
                                       lines.v[static_cast<std::size_t>(y)]);
-      if (picture.tile) {
-        const GridPosition pxp = grid_position(px, x, picture_steps, kImageIntervals);
+      if (image_block.tile) {
+        const GridPosition pxp = grid_position(px, x, image_steps, kImageIntervals);
         at.image = bilinear<glm::vec3>(pxp, pyp, kImageSide,
-                                       [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
+                                       [&](std::size_t k) { return rgb(image_block.tile->texels[k]); });
       }
       if (channels == 1) {
         texel[0] = to_byte(
@@ -109,22 +109,22 @@ void GroundPainter::shade_block(const lod::TileKey& block, int x0, int y0, int s
       texel[1] = to_byte(c.y);
       texel[2] = to_byte(c.z);
       texel[3] = 255;
-      if (!ground->missing.empty() && ground->missing[nearest(gyp) * ground_side + nearest(gxp)]) {
+      if (!ground->nodata.empty() && ground->nodata[nearest(gyp) * ground_side + nearest(gxp)]) {
         texel[3] = 0;
-        out.gaps = true;
+        out.nodata = true;
       }
     }
   }
 }
 
-ShadedTile GroundPainter::shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh,
-                                       std::span<const double> height_m, const ShadeParams& params) const {
+ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh,
+                                       std::span<const double> height_m, const ShadingParams& params) const {
   const double radius = planet_->radius_m();
   const lod::GridLines lines = lod::grid_lines(key, mesh.intervals);
   const double spacing_m = lod::nominal_side_m(key.level, radius) / mesh.intervals;
-  const Picture picture = this->picture(key, params);
-  const std::shared_ptr<const TileHeights> posts = planet_->has_missing(key) ? heights(deepest(key)) : nullptr;
-  const bool gaps = posts && !posts->missing.empty();
+  const ImageBlock image_block = this->image_block(key, params);
+  const std::shared_ptr<const TileHeights> posts = planet_->has_nodata(key) ? heights(deepest(key)) : nullptr;
+  const bool may_be_nodata = posts && !posts->nodata.empty();
   std::vector<glm::dvec3> places;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     places.push_back(mars::chart_direction(key.face, lines.u[mesh.vertices[v].i], lines.v[mesh.vertices[v].j]) *
@@ -142,30 +142,31 @@ ShadedTile GroundPainter::shade_facets(const lod::TileKey& key, const lod::TileM
     at.sun = 1.0;
     if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
       at.sun = sees_sun(middle, spacing_m, params) ? 1.0 : 0.0;
-    if (picture.tile) {
+    if (image_block.tile) {
       const mars::ChartPoint place = mars::chart_on(key.face, middle);
-      at.image = bilinear<glm::vec3>(between_lines(place.u, picture.key.level, picture.key.i, kImageIntervals),
-                                     between_lines(place.v, picture.key.level, picture.key.j, kImageIntervals),
-                                     kImageSide, [&](std::size_t k) { return rgb(picture.tile->texels[k]); });
+      at.image = bilinear<glm::vec3>(between_lines(place.u, image_block.key.level, image_block.key.i, kImageIntervals),
+                                     between_lines(place.v, image_block.key.level, image_block.key.j, kImageIntervals),
+                                     kImageSide, [&](std::size_t k) { return rgb(image_block.tile->texels[k]); });
     }
     const glm::vec3 c(colour(at, params));
-    bool missing = false;
+    bool corner_is_nodata = false;
     for (const std::uint32_t corner : v) {
-      if (!gaps) break;
+      if (!may_be_nodata) break;
       // A parent's mesh is over the posts of its children.
       const int finer = mesh.intervals / posts->posts.intervals;
       const auto side = static_cast<std::size_t>(posts->posts.intervals) + 1;
       const auto post = [&](int of_mesh) { return static_cast<std::size_t>((of_mesh + finer / 2) / finer); };
-      missing = missing || posts->missing[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
+      corner_is_nodata =
+          corner_is_nodata || posts->nodata[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
     }
-    out.gaps = out.gaps || missing;
-    for (const std::uint8_t byte : {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(missing ? 0 : 255)})
+    out.nodata = out.nodata || corner_is_nodata;
+    for (const std::uint8_t byte : {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(corner_is_nodata ? 0 : 255)})
       out.texels.push_back(byte);
   }
   return out;
 }
 
-ShadedTile GroundPainter::shade(const lod::TileKey& key, int intervals, const ShadeParams& params) const {
+ShadedTile TerrainShader::shade(const lod::TileKey& key, int intervals, const ShadingParams& params) const {
   const int n = planet_->meta().tile.intervals();
   int levels = 0;
   while (n << levels < intervals) ++levels;
@@ -173,7 +174,7 @@ ShadedTile GroundPainter::shade(const lod::TileKey& key, int intervals, const Sh
   out.intervals = n << levels;
   const int side = out.intervals + 1;
   // Light alone takes a quarter; alpha would tell what has no data.
-  if (params.surfacing == Surfacing::kPlain && params.lit && !planet_->has_missing(key)) {
+  if (params.colour_source == ColourSource::kPlain && params.lit && !planet_->has_nodata(key)) {
     out.channels = 1;
     out.brightest = vpe::core::light(params.ambient, params.diffuse, 1.0);
   }

@@ -4,50 +4,50 @@ namespace paging {
 
 namespace {
 
-Surfacing surfacing_of(vpe::core::Colour colour, bool has_image) {
+ColourSource colour_source_of(vpe::core::Colour colour, bool has_image) {
   switch (colour) {
-    case vpe::core::Colour::kElevation: return Surfacing::kElevation;
-    case vpe::core::Colour::kSlope: return Surfacing::kSlope;
-    case vpe::core::Colour::kAspect: return Surfacing::kAspect;
-    case vpe::core::Colour::kImage: return has_image ? Surfacing::kImageAtPosts : Surfacing::kPlain;
+    case vpe::core::Colour::kElevation: return ColourSource::kElevation;
+    case vpe::core::Colour::kSlope: return ColourSource::kSlope;
+    case vpe::core::Colour::kAspect: return ColourSource::kAspect;
+    case vpe::core::Colour::kImage: return has_image ? ColourSource::kImageAtPosts : ColourSource::kPlain;
     case vpe::core::Colour::kNone: break;
   }
-  return Surfacing::kPlain;
+  return ColourSource::kPlain;
 }
 
-bool shows_scale(Surfacing s) {
-  return s == Surfacing::kElevation || s == Surfacing::kSlope || s == Surfacing::kAspect;
+bool shows_scale(ColourSource s) {
+  return s == ColourSource::kElevation || s == ColourSource::kSlope || s == ColourSource::kAspect;
 }
 
 }  // namespace
 
-ShadeParams shade_params(const vpe::core::Appearance& a, const glm::dvec3& sun, bool has_image,
+ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& sun, bool has_image,
                          std::shared_ptr<const vpe::core::ColourScale> scale) {
   using vpe::core::Mode;
-  ShadeParams look;
-  const Surfacing shown = surfacing_of(a.colour, has_image);
+  ShadingParams shading;
+  const ColourSource shown = colour_source_of(a.colour, has_image);
   const bool of_vertices = a.mode == Mode::kWireframe || a.mode == Mode::kMarkers;
-  look.exaggeration = a.exaggeration;
-  look.flat = a.shading == vpe::core::Shading::kFlat && !of_vertices;
-  look.lit = !of_vertices && a.mode != Mode::kUnlit;
-  look.surfacing = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? Surfacing::kPlain
-                   : a.mode == Mode::kTextured && has_image           ? Surfacing::kImage
+  shading.exaggeration = a.exaggeration;
+  shading.flat = a.shading == vpe::core::Shading::kFlat && !of_vertices;
+  shading.lit = !of_vertices && a.mode != Mode::kUnlit;
+  shading.colour_source = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? ColourSource::kPlain
+                   : a.mode == Mode::kTextured && has_image           ? ColourSource::kImage
                                                                       : shown;
-  if (look.surfacing == Surfacing::kImage && a.colourise) look.hue = shown;
+  if (shading.colour_source == ColourSource::kImage && a.colourise) shading.hue = shown;
   // What is not used is not set, so that it cannot change a look.
-  if (look.lit) {
-    look.sun = sun;
-    look.ambient = a.sun_ambient;
-    look.diffuse = a.sun_diffuse;
-    look.shadows = a.shadows;
+  if (shading.lit) {
+    shading.sun = sun;
+    shading.ambient = a.sun_ambient;
+    shading.diffuse = a.sun_diffuse;
+    shading.shadows = a.shadows;
   }
-  if (shows_scale(look.surfacing) || shows_scale(look.hue)) look.scale = std::move(scale);
-  return look;
+  if (shows_scale(shading.colour_source) || shows_scale(shading.hue)) shading.scale = std::move(scale);
+  return shading;
 }
 
 bool needs_scale(const vpe::core::Appearance& appearance, bool has_image) {
-  const ShadeParams look = shade_params(appearance, {1, 0, 0}, has_image, nullptr);
-  return shows_scale(look.surfacing) || shows_scale(look.hue);
+  const ShadingParams shading = shading_params(appearance, {1, 0, 0}, has_image, nullptr);
+  return shows_scale(shading.colour_source) || shows_scale(shading.hue);
 }
 
 }  // namespace paging

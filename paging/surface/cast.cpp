@@ -21,16 +21,16 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 class FaceCaster {
  public:
-  FaceCaster(const Surface& surface, mars::Face face, const glm::dvec3& eye, const glm::dvec3& direction,
+  FaceCaster(const Surface& surface, mars::Face face, const glm::dvec3& camera, const glm::dvec3& direction,
              double exaggeration)
       : surface_(surface),
         tree_(surface.planet().tree()),
         radius_(surface.planet_radius_m()),
         exaggeration_(exaggeration),
         face_(face),
-        line_(face, eye, direction),
-        eye2_(glm::dot(eye, eye)),
-        half_(glm::dot(eye, direction)) {}
+        line_(face, camera, direction),
+        camera2_(glm::dot(camera, camera)),
+        half_(glm::dot(camera, direction)) {}
 
   // Part of the ray inside the face's pyramid.
   Interval reach() const { return line_.in_face({0.0, kNone}); }
@@ -41,7 +41,7 @@ class FaceCaster {
   // Least squared distance from the planet's centre over part of the ray.
   double least_radius2(Interval part) const {
     const double t = std::clamp(-half_, part.begin, part.end);
-    return eye2_ + t * (2.0 * half_ + t);
+    return camera2_ + t * (2.0 * half_ + t);
   }
 
   bool above(Interval part, double height) const {
@@ -112,23 +112,23 @@ class FaceCaster {
   double exaggeration_;
   mars::Face face_;
   ChartLine line_;
-  double eye2_;
+  double camera2_;
   double half_;
 };
 
 }  // namespace
 
-double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration,
+double Surface::cast(const glm::dvec3& camera_m, const glm::dvec3& direction, double exaggeration,
                      const RayPart& wanted) const {
   // Only the part inside the sphere of the highest terrain can hit.
   const double radius = planet_->radius_m();
   const double top = radius + exaggeration * (planet_->meta().highest_radius_m - radius);
-  const double half = glm::dot(eye_m, direction);
-  const double rest = half * half - (glm::dot(eye_m, eye_m) - top * top);
+  const double half = glm::dot(camera_m, direction);
+  const double rest = half * half - (glm::dot(camera_m, camera_m) - top * top);
   if (!(rest >= 0.0)) return kNone;
-  const Interval shell{std::max(wanted.begin_m, -half - std::sqrt(rest)),
+  const Interval region{std::max(wanted.begin_m, -half - std::sqrt(rest)),
                        std::min(wanted.end_m, -half + std::sqrt(rest))};
-  if (shell.empty()) return kNone;
+  if (region.empty()) return kNone;
 
   struct Candidate {
     double begin;
@@ -137,8 +137,8 @@ double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction, doubl
   };
   std::vector<Candidate> candidates;
   for (int f = 0; f < mars::kFaces; ++f) {
-    Interval part = FaceCaster(*this, static_cast<mars::Face>(f), eye_m, direction, exaggeration).reach();
-    part = {std::max(part.begin, shell.begin), std::min(part.end, shell.end)};
+    Interval part = FaceCaster(*this, static_cast<mars::Face>(f), camera_m, direction, exaggeration).reach();
+    part = {std::max(part.begin, region.begin), std::min(part.end, region.end)};
     if (!part.empty()) candidates.push_back({part.begin, part.end, f});
   }
   if (!mutated(Guard::kFaceOrder)) {
@@ -146,7 +146,7 @@ double Surface::cast(const glm::dvec3& eye_m, const glm::dvec3& direction, doubl
               [](const Candidate& a, const Candidate& b) { return a.begin < b.begin; });
   }
   for (const Candidate& candidate : candidates) {
-    const FaceCaster caster(*this, static_cast<mars::Face>(candidate.face), eye_m, direction, exaggeration);
+    const FaceCaster caster(*this, static_cast<mars::Face>(candidate.face), camera_m, direction, exaggeration);
     const double hit = caster.cast({candidate.begin, candidate.end});
     if (hit < kNone) return hit;
   }

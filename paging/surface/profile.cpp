@@ -18,7 +18,7 @@ ProfilePoint point_at(const Surface& surface, const glm::dvec3& direction) {
   ProfilePoint p;
   p.place = mars::lon_lat(direction);
   p.height_m = s.height_m;
-  p.missing = s.missing;
+  p.nodata = s.nodata;
   const double up = glm::dot(s.normal, direction);
   p.cross_slope_deg = std::atan2(glm::length(s.normal - up * direction), up) / mars::kRadiansPerDegree;
   return p;

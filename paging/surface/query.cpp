@@ -12,7 +12,7 @@ PlaceAnswer query(const Surface& surface, mars::LonLat place) {
   a.place = {mars::normalize_lon_deg(place.lon_deg), place.lat_deg};
   const SurfacePoint point = surface.at(mars::direction(place));
   const PlanetMeta& meta = surface.planet().meta();
-  a.missing = point.missing;
+  a.nodata = point.nodata;
   a.elevation_m = point.height_m;
   const mars::LocalFrame frame = mars::local_frame(place);
   const double up = glm::dot(point.normal, frame.up);
@@ -29,7 +29,7 @@ PlaceAnswer query(const Surface& surface, mars::LonLat place) {
       a.source += (a.source.empty() ? "" : ";") + meta.sources[static_cast<std::size_t>(s)].name;
     }
   }
-  a.tile_error_m = surface.planet().tree().find(point.tile)->variants.back().terms.total_m;
+  a.geometric_error_m = surface.planet().tree().find(point.tile)->variants.back().terms.total_m;
   a.resampling = meta.resampling;
   for (const LevelSummary& level : meta.levels) {
     if (level.level == point.tile.level) a.resampling_here = level.resampling;

@@ -87,20 +87,20 @@ class FaceWalk {
 
 void walk_chord(const Surface& surface, const glm::dvec3& a, const glm::dvec3& b,
                 const std::function<void(const SectionPiece&)>& visit) {
-  struct Part {
+  struct PartialPlanetFile {
     Interval part;
     mars::Face face;
   };
-  std::vector<Part> parts;
+  std::vector<PartialPlanetFile> parts;
   for (int f = 0; f < mars::kFaces; ++f) {
     const auto face = static_cast<mars::Face>(f);
     const Interval part = FaceWalk(surface, face, a, b - a, visit).reach();
     if (!part.empty()) parts.push_back({part, face});
   }
   std::sort(parts.begin(), parts.end(),
-            [](const Part& p, const Part& q) { return p.part.begin < q.part.begin; });
+            [](const PartialPlanetFile& p, const PartialPlanetFile& q) { return p.part.begin < q.part.begin; });
   double done = 0.0;  // a chord along the border of two faces lies in both
-  for (const Part& p : parts) {
+  for (const PartialPlanetFile& p : parts) {
     const Interval rest{std::max(p.part.begin, done), p.part.end};
     if (rest.empty()) continue;
     FaceWalk(surface, p.face, a, b - a, visit).walk(rest);

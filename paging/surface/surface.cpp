@@ -7,7 +7,7 @@ namespace paging {
 
 std::size_t SurfaceTile::bytes() const {
   std::size_t total = sizeof(SurfaceTile) + data.posts.height_m.capacity() * sizeof(double) +
-                      data.missing.capacity() / 8 + (lines.u.capacity() + lines.v.capacity()) * sizeof(double);
+                      data.nodata.capacity() / 8 + (lines.u.capacity() + lines.v.capacity()) * sizeof(double);
   for (const auto& block : block_max) total += block.capacity() * sizeof(float);
   return total;
 }
@@ -87,7 +87,7 @@ std::shared_ptr<const SurfaceTile> Surface::tile(const lod::TileKey& key, double
     const std::size_t bytes = made->bytes();
     return std::pair(std::move(made), bytes);
   });
-  if (exaggeration == 1.0 || tile->data.steps == 0) return tile;
+  if (exaggeration == 1.0 || tile->data.coarser_neighbour_mask == 0) return tile;
   return exaggerated_.get({key, exaggeration}, [&] {
     TileHeights heights = tile->data;
     put_on_coarser_edges(heights, planet_radius_m(), exaggeration);
@@ -118,7 +118,7 @@ SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const
   out.height_m = lod::surface_height(tile->data.posts, tile->lines, point.u, point.v, planet_radius_m(),
                                      &out.normal, exaggeration);
   out.radius_m = planet_radius_m() + out.height_m;
-  if (!tile->data.missing.empty()) {
+  if (!tile->data.nodata.empty()) {
     const auto nearest = [](const std::vector<double>& lines, double x) {
       const auto above = std::lower_bound(lines.begin(), lines.end(), x);
       if (above == lines.begin()) return std::size_t{0};
@@ -128,7 +128,7 @@ SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const
     };
     const std::size_t i = nearest(tile->lines.u, point.u);
     const std::size_t j = nearest(tile->lines.v, point.v);
-    out.missing = tile->data.missing[j * static_cast<std::size_t>(tile->data.posts.side()) + i];
+    out.nodata = tile->data.nodata[j * static_cast<std::size_t>(tile->data.posts.side()) + i];
   }
   return out;
 }

@@ -29,7 +29,7 @@ struct SurfacePoint {
   double radius_m = 0;         // from the planet's centre
   glm::dvec3 normal{0, 0, 1};  // of the facet, outward, body-fixed
   lod::TileKey tile;           // the finest tile there
-  bool missing = false;        // the nearest post has no source data
+  bool nodata = false;        // the nearest post has no source data
 };
 
 // Any thread may call any member. Results do not depend on the cache's state.
@@ -48,19 +48,19 @@ class Surface {
   // Radius of S at many directions; neighbours in the batch should be neighbours on the ground.
   void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m, double exaggeration = 1.0) const;
 
-  // Distance along the unit `direction` from `eye_m` (metres from the planet's centre) to the first point of
+  // Distance along the unit `direction` from `camera_m` (metres from the planet's centre) to the first point of
   // S; infinity when there is none. Exact on the flat triangles of S up to rounding (about 1e-9 relative plus
   // what a grazing facet makes of it); watertight: neighbouring facets are tested against the same lines.
-  // An eye below S gives 0. With an exaggeration: of S as it is drawn. `part`: of the ray, metres along it;
+  // A camera below S gives 0. With an exaggeration: of S as it is drawn. `part`: of the ray, metres along it;
   // where it begins below S that is the answer.
   struct RayPart {
     double begin_m = 0;
     double end_m = std::numeric_limits<double>::infinity();
   };
-  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration,
+  double cast(const glm::dvec3& camera_m, const glm::dvec3& direction, double exaggeration,
               const RayPart& part) const;
-  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction, double exaggeration = 1.0) const {
-    return cast(eye_m, direction, exaggeration, RayPart());
+  double cast(const glm::dvec3& camera_m, const glm::dvec3& direction, double exaggeration = 1.0) const {
+    return cast(camera_m, direction, exaggeration, RayPart());
   }
 
   // Of a finest tile, or a coarser one's own posts. Throws PlanetError. With an exaggeration: S's posts as it is

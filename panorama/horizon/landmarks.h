@@ -15,7 +15,7 @@ namespace panorama {
 // Of a feature only its centre, on the ground, is looked at: a crater's floor may be hidden and its rim not.
 struct Landmark {
   vpe::core::Place feature;
-  GroundPoint centre;                    // its range and direction are those of the straight line from the eye
+  GroundPoint centre;                    // its range and direction are those of the straight line from the camera
   std::optional<GroundPoint> hidden_by;  // the first ground on that line; nothing: the centre is visible
   std::string hidden_by_name;            // the smallest feature whose circle holds that ground; may be empty
 };
@@ -27,7 +27,7 @@ using GroundRadius = std::function<double(const glm::dvec3& direction)>;
 // meets nearer than kLandmarkReach of its length before the centre hides it; where the line only grazes the
 // ground about the centre, rounding is less than that.
 inline constexpr double kLandmarkReach = 1e-6;
-std::vector<Landmark> landmarks(const SkylineEye& eye, std::span<const vpe::core::Place> features,
+std::vector<Landmark> landmarks(const SkylineCamera& camera, std::span<const vpe::core::Place> features,
                                 double within_m, const GroundRadius& radius, const GroundRange& range,
                                 vpe::base::ThreadPool& pool);
 
@@ -35,8 +35,8 @@ std::vector<Landmark> landmarks(const SkylineEye& eye, std::span<const vpe::core
 const vpe::core::Place* smallest_feature_around(std::span<const vpe::core::Place> features, mars::LonLat place,
                                                 double radius_m);
 
-// How far an eye at `eye_radius_m` can ever see ground between two radii, straight: past the sphere of the
+// How far a camera at `camera_radius_m` can ever see ground between two radii, straight: past the sphere of the
 // lowest to a top of the highest beyond its horizon.
-double farthest_sight_m(double eye_radius_m, double lowest_radius_m, double highest_radius_m);
+double farthest_sight_m(double camera_radius_m, double lowest_radius_m, double highest_radius_m);
 
 }  // namespace panorama

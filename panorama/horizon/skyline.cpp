@@ -7,26 +7,26 @@
 
 namespace panorama {
 
-SkylineEye skyline_eye(mars::LonLat place, double alt_m, double radius_m) {
+SkylineCamera skyline_camera(mars::LonLat place, double alt_m, double radius_m) {
   const mars::LocalFrame frame = mars::local_frame(place);
   return {(radius_m + alt_m) * frame.up, frame, radius_m};
 }
 
-glm::dvec3 ray_of(const SkylineEye& eye, const Direction& direction) {
+glm::dvec3 ray_of(const SkylineCamera& camera, const Direction& direction) {
   const mars::SinCos azimuth = mars::sin_cos_deg(direction.azimuth_deg);
   const mars::SinCos elevation = mars::sin_cos_deg(direction.elevation_deg);
-  const glm::dvec3 level = azimuth.sin * eye.frame.east + azimuth.cos * eye.frame.north;
-  return glm::normalize(elevation.cos * level + elevation.sin * eye.frame.up);
+  const glm::dvec3 level = azimuth.sin * camera.frame.east + azimuth.cos * camera.frame.north;
+  return glm::normalize(elevation.cos * level + elevation.sin * camera.frame.up);
 }
 
-GroundPoint ground_point(const SkylineEye& eye, const Direction& direction, double range_m) {
-  const glm::dvec3 point = eye.eye_m + range_m * ray_of(eye, direction);
-  return {direction, range_m, mars::lon_lat(point), glm::length(point) - eye.radius_m};
+GroundPoint ground_point(const SkylineCamera& camera, const Direction& direction, double range_m) {
+  const glm::dvec3 point = camera.position_m + range_m * ray_of(camera, direction);
+  return {direction, range_m, mars::lon_lat(point), glm::length(point) - camera.radius_m};
 }
 
-GroundPoint skyline_at(const SkylineEye& eye, double azimuth_deg, const GroundRange& range,
+GroundPoint skyline_at(const SkylineCamera& camera, double azimuth_deg, const GroundRange& range,
                        const ElevationBracket& first) {
-  const auto cast = [&](double elevation_deg) { return range(ray_of(eye, {azimuth_deg, elevation_deg})); };
+  const auto cast = [&](double elevation_deg) { return range(ray_of(camera, {azimuth_deg, elevation_deg})); };
   double low = std::clamp(first.low_deg, -90.0, 90.0);
   double high = std::clamp(first.high_deg, low, 90.0);
   double step = std::max(high - low, 1e-3);
@@ -40,7 +40,7 @@ GroundPoint skyline_at(const SkylineEye& eye, double azimuth_deg, const GroundRa
       range_m = cast(low);
     }
   } else {
-    // Straight up is sky for every eye above the ground.
+    // Straight up is sky for every camera above the ground.
     while (high < 90.0) {
       const double higher_m = cast(high);
       if (std::isinf(higher_m)) break;
@@ -60,30 +60,30 @@ GroundPoint skyline_at(const SkylineEye& eye, double azimuth_deg, const GroundRa
       range_m = middle_m;
     }
   }
-  return ground_point(eye, {azimuth_deg, low}, range_m);
+  return ground_point(camera, {azimuth_deg, low}, range_m);
 }
 
-std::vector<GroundPoint> skyline(const SkylineEye& eye, std::span<const double> azimuths_deg,
+std::vector<GroundPoint> skyline(const SkylineCamera& camera, std::span<const double> azimuths_deg,
                                  const GroundRange& range, vpe::base::ThreadPool& pool,
                                  std::span<const ElevationBracket> first) {
   std::vector<GroundPoint> out(azimuths_deg.size());
   pool.run(out.size(), [&](std::size_t n) {
-    out[n] = skyline_at(eye, azimuths_deg[n], range, first.empty() ? ElevationBracket() : first[n]);
+    out[n] = skyline_at(camera, azimuths_deg[n], range, first.empty() ? ElevationBracket() : first[n]);
   });
   return out;
 }
 
 namespace {
 
-float range_in(const RangePicture& picture, std::int64_t column, std::int64_t row) {
-  return picture.range_m[static_cast<std::size_t>(row * picture.map.width_px + column)];
+float range_in(const RangeImage& image, std::int64_t column, std::int64_t row) {
+  return image.range_m[static_cast<std::size_t>(row * image.map.width_px + column)];
 }
 
 }  // namespace
 
-std::vector<ElevationBracket> first_brackets(const RangePicture& picture,
+std::vector<ElevationBracket> first_brackets(const RangeImage& image,
                                              std::span<const double> azimuths_deg) {
-  const PanoramaMap& map = picture.map;
+  const PanoramaMap& map = image.map;
   std::vector<ElevationBracket> out(azimuths_deg.size());
   for (std::size_t n = 0; n < out.size(); ++n) {
     const double x = map.place({azimuths_deg[n], 0}).x;
@@ -93,7 +93,7 @@ std::vector<ElevationBracket> first_brackets(const RangePicture& picture,
     std::int64_t ground = map.height_px;
     while (ground - sky > 1) {
       const std::int64_t middle = sky + (ground - sky) / 2;
-      (std::isinf(range_in(picture, column, middle)) ? sky : ground) = middle;
+      (std::isinf(range_in(image, column, middle)) ? sky : ground) = middle;
     }
     const auto row = static_cast<double>(ground) + 0.5;
     out[n] = {map.to_direction(x, row + 1).elevation_deg, map.to_direction(x, row - 2).elevation_deg};
@@ -101,16 +101,16 @@ std::vector<ElevationBracket> first_brackets(const RangePicture& picture,
   return out;
 }
 
-GroundPoint farthest_ground(const SkylineEye& eye, const RangePicture& picture,
+GroundPoint farthest_ground(const SkylineCamera& camera, const RangeImage& image,
                             std::span<const GroundPoint> skyline, const GroundRange& range,
                             vpe::base::ThreadPool& pool) {
-  const PanoramaMap& map = picture.map;
+  const PanoramaMap& map = image.map;
   std::vector<GroundPoint> candidates(skyline.begin(), skyline.end());
   for (std::int64_t column = 0; column < map.width_px; ++column) {
     double farthest_m = 0;
     std::int64_t at = 0;
     for (std::int64_t row = 0; row < map.height_px; ++row) {
-      const double r = static_cast<double>(range_in(picture, column, row));
+      const double r = static_cast<double>(range_in(image, column, row));
       if (std::isinf(r) || r <= farthest_m) continue;
       farthest_m = r;
       at = row;
@@ -118,7 +118,7 @@ GroundPoint farthest_ground(const SkylineEye& eye, const RangePicture& picture,
     if (farthest_m == 0) continue;
     GroundPoint point;
     point.direction = map.to_direction(static_cast<double>(column) + 0.5, static_cast<double>(at) + 0.5);
-    point.range_m = range(ray_of(eye, point.direction));
+    point.range_m = range(ray_of(camera, point.direction));
     if (std::isfinite(point.range_m)) candidates.push_back(point);
   }
   if (candidates.empty()) throw std::invalid_argument("no ground is seen");
@@ -139,11 +139,11 @@ GroundPoint farthest_ground(const SkylineEye& eye, const RangePicture& picture,
     }
   }
   GroundPoint best = candidates.front();
-  for (const GroundPoint& p : panorama::skyline(eye, azimuths, range, pool, first)) {
+  for (const GroundPoint& p : panorama::skyline(camera, azimuths, range, pool, first)) {
     if (p.range_m > best.range_m) best = p;
   }
   best.direction.azimuth_deg -= 360.0 * std::floor(best.direction.azimuth_deg / 360.0);
-  return ground_point(eye, best.direction, best.range_m);
+  return ground_point(camera, best.direction, best.range_m);
 }
 
 }  // namespace panorama

@@ -1,11 +1,11 @@
 // The skyline: where ground ends and sky begins, as seen from one eye.
 //
 // Ground has one radius for each direction from the planet's centre, so of two rays of one vertical plane from
-// an eye above it the lower meets ground when the higher does, and no farther along the ground. At each azimuth
+// a camera above it the lower meets ground when the higher does, and no farther along the ground. At each azimuth
 // there is therefore one elevation up to which rays meet ground and above which none does: the skyline.
 //
-// Azimuth is clockwise from north (at a pole: from the meridian of the eye's longitude), elevation up from the
-// horizontal at the eye, both straight lines in vacuum. All functions may be called from any thread.
+// Azimuth is clockwise from north (at a pole: from the meridian of the camera's longitude), elevation up from the
+// horizontal at the camera, both straight lines in vacuum. All functions may be called from any thread.
 #pragma once
 
 #include <functional>
@@ -18,17 +18,17 @@
 
 namespace panorama {
 
-struct SkylineEye {
-  glm::dvec3 eye_m;  // body-fixed, from the planet's centre; above the ground
+struct SkylineCamera {
+  glm::dvec3 position_m;  // body-fixed, from the planet's centre; above the ground
   mars::LocalFrame frame;
   double radius_m = 0;  // of the sphere that elevations are counted from
 };
-SkylineEye skyline_eye(mars::LonLat place, double alt_m, double radius_m);
+SkylineCamera skyline_camera(mars::LonLat place, double alt_m, double radius_m);
 
 // Unit, body-fixed.
-glm::dvec3 ray_of(const SkylineEye& eye, const Direction& direction);
+glm::dvec3 ray_of(const SkylineCamera& camera, const Direction& direction);
 
-// Distance from the eye along a unit direction to the ground, metres; infinity where there is none. Called from
+// Distance from the camera along a unit direction to the ground, metres; infinity where there is none. Called from
 // several threads at once.
 using GroundRange = std::function<double(const glm::dvec3& ray)>;
 
@@ -39,7 +39,7 @@ struct GroundPoint {
   mars::LonLat place;
   double elevation_m = 0;  // above the sphere
 };
-GroundPoint ground_point(const SkylineEye& eye, const Direction& direction, double range_m);
+GroundPoint ground_point(const SkylineCamera& camera, const Direction& direction, double range_m);
 
 // Where the skyline is looked for first. Any values do: wrong ones cost a few casts more.
 struct ElevationBracket {
@@ -52,29 +52,29 @@ struct ElevationBracket {
 // most sqrt(2 R d kSkyline_deg) (angle in radians): 0.02 % at 2 m above Mars.
 // Throws std::invalid_argument where no ray from straight down on meets ground.
 inline constexpr double kSkyline_deg = 1e-9;
-GroundPoint skyline_at(const SkylineEye& eye, double azimuth_deg, const GroundRange& range,
+GroundPoint skyline_at(const SkylineCamera& camera, double azimuth_deg, const GroundRange& range,
                        const ElevationBracket& first = {});
 
 // The same at many azimuths; `first` is empty or has one for each.
-std::vector<GroundPoint> skyline(const SkylineEye& eye, std::span<const double> azimuths_deg,
+std::vector<GroundPoint> skyline(const SkylineCamera& camera, std::span<const double> azimuths_deg,
                                  const GroundRange& range, vpe::base::ThreadPool& pool,
                                  std::span<const ElevationBracket> first = {});
 
-// Ranges over a round picture, row by row from the top, metres, infinity for the sky.
-struct RangePicture {
+// Ranges over a round image, row by row from the top, metres, infinity for the sky.
+struct RangeImage {
   PanoramaMap map;
   std::span<const float> range_m;
 };
 
 // A row above and a row below the highest ground of the column next to each azimuth.
-std::vector<ElevationBracket> first_brackets(const RangePicture& picture, std::span<const double> azimuths_deg);
+std::vector<ElevationBracket> first_brackets(const RangeImage& image, std::span<const double> azimuths_deg);
 
-// The farthest ground seen: no pixel of the picture, of whatever elevation, and no given point of the skyline
-// is farther (but for the picture's rounding), and about the farthest ones the skyline is searched in steps of
+// The farthest ground seen: no pixel of the image, of whatever elevation, and no given point of the skyline
+// is farther (but for the image's rounding), and about the farthest ones the skyline is searched in steps of
 // a kFarthestSteps-th of a column. Ground seen through a gap narrower than that may be missed. Throws
 // std::invalid_argument where nothing is seen.
 inline constexpr int kFarthestSteps = 32;
-GroundPoint farthest_ground(const SkylineEye& eye, const RangePicture& picture,
+GroundPoint farthest_ground(const SkylineCamera& camera, const RangeImage& image,
                             std::span<const GroundPoint> skyline, const GroundRange& range,
                             vpe::base::ThreadPool& pool);
 

@@ -109,8 +109,8 @@ std::vector<std::uint8_t> BigTiffWriter::read(const Page& page, std::size_t tile
   return unpack_tile(packed, format_);
 }
 
-// Tiles repeat the picture's edge, so every 2 x 2 block is whole; a block of nothing but repetition lies beyond
-// the reduced picture's edge and repeats it, too.
+// Tiles repeat the image's edge, so every 2 x 2 block is whole; a block of nothing but repetition lies beyond
+// the reduced image's edge and repeats it, too.
 std::vector<std::uint8_t> BigTiffWriter::reduced(const Page& fine, std::int64_t across,
                                                  std::int64_t down) const {
   constexpr std::size_t kSide = kTile_px;

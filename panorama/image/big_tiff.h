@@ -1,7 +1,7 @@
 // Tiled BigTIFF files, written tile by tile in any order, of any size in little memory.
 //
 // Sources: the BigTIFF description of Aware Systems and TIFF 6. Tiles of kTile_px, Deflate with predictor; the
-// directories stand at the end of the file. Reduced pages follow the full picture, each half as large.
+// directories stand at the end of the file. Reduced pages follow the full image, each half as large.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class BigTiffWriter {
   std::int64_t tiles_across() const { return pages_.front().across; }
   std::int64_t tiles_down() const { return pages_.front().down; }
 
-  // One tile of the full picture, packed. What lies beyond the picture's edge repeats the edge. Throws
+  // One tile of the full image, packed. What lies beyond the image's edge repeats the edge. Throws
   // vpe::base::FileError.
   void put(std::int64_t across, std::int64_t down, std::span<const std::uint8_t> packed);
 

@@ -20,7 +20,7 @@ Parts parts_of(std::int64_t side_px) {
 
 }  // namespace
 
-Halver::Halver(std::int64_t width_px, std::int64_t height_px, std::function<void(Row)> give)
+BoxDownsampler::BoxDownsampler(std::int64_t width_px, std::int64_t height_px, std::function<void(Row)> give)
     : width_px_(width_px),
       height_px_(height_px),
       out_height_px_(half_px(height_px)),
@@ -29,7 +29,7 @@ Halver::Halver(std::int64_t width_px, std::int64_t height_px, std::function<void
       across_(sums_.size()),
       out_(static_cast<std::size_t>(half_px(width_px))) {}
 
-void Halver::take(Row row) {
+void BoxDownsampler::take(Row row) {
   const Parts parts = parts_of(width_px_);
   for (std::int64_t out = 0; out < width_px(); ++out) {
     const std::int64_t begin = out * parts.given;
@@ -64,7 +64,7 @@ void Halver::take(Row row) {
   ++row_;
 }
 
-void Halver::give_row() {
+void BoxDownsampler::give_row() {
   const auto total = static_cast<std::uint64_t>(parts_of(width_px_).given) *
                      static_cast<std::uint64_t>(parts_of(height_px_).given);
   const auto mean = [total](std::uint64_t sum) { return static_cast<std::uint8_t>((sum + total / 2) / total); };

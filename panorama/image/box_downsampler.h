@@ -1,4 +1,4 @@
-// Pictures half as large, row by row.
+// Images half as large, row by row.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace panorama {
 // Size of the next smaller level: half, rounded up.
 inline std::int64_t half_px(std::int64_t side_px) { return (side_px + 1) / 2; }
 
-// Takes the rows of a picture from above, gives those of one of half_px() of both sides. Each pixel is the mean
+// Takes the rows of an image from above, gives those of one of half_px() of both sides. Each pixel is the mean
 // over its area, so that odd sizes shift nothing: places keep to the ratio of the sizes. Means are of the
 // stored values, rounded to the nearest. The same bytes everywhere.
-class Halver {
+class BoxDownsampler {
  public:
   using Row = std::span<const vpe::base::Rgb>;
-  Halver(std::int64_t width_px, std::int64_t height_px, std::function<void(Row)> give);
+  BoxDownsampler(std::int64_t width_px, std::int64_t height_px, std::function<void(Row)> give);
 
   std::int64_t width_px() const { return static_cast<std::int64_t>(out_.size()); }
   void take(Row row);

@@ -18,14 +18,14 @@ using vpe::base::file_error;
 constexpr int kCopyGeneration = 1;
 // Tiles of this size and more would make looking slow.
 constexpr std::size_t kMaxTileBytes = std::size_t{4} << 20;
-// The smallest level that may be drawn from when all of a picture is looked at.
+// The smallest level that may be drawn from when all of an image is looked at.
 constexpr std::int64_t kMaxCoarsestPixels = std::int64_t{1} << 23;
 // While unpacking PNG: the file, RGBA and RGB at once, then the smaller copies.
 constexpr std::int64_t kUnpackBytesAPixel = 9;
 
-std::int64_t pixels_of(const PictureLevel& level) { return level.width_px * level.height_px; }
+std::int64_t pixels_of(const ImageLevel& level) { return level.width_px * level.height_px; }
 
-// Rows of a picture that lies in memory.
+// Rows of an image that lies in memory.
 class ImageRows : public RowSource {
  public:
   explicit ImageRows(vpe::core::RgbImage image) : image_(std::move(image)) {}
@@ -54,7 +54,7 @@ std::string name_of_copies(const fs::path& path) {
 }
 
 // Whether copies begin with the level that they should and each is half of the one before.
-bool are_whole(const std::vector<TiffPage>& pages, const PictureLevel& size, int first_level) {
+bool are_whole(const std::vector<TiffPage>& pages, const ImageLevel& size, int first_level) {
   std::int64_t width_px = first_level > 0 ? half_px(size.width_px) : size.width_px;
   std::int64_t height_px = first_level > 0 ? half_px(size.height_px) : size.height_px;
   for (const TiffPage& page : pages) {
@@ -77,8 +77,8 @@ void remove_old_drafts(const fs::path& folder) {
 }
 
 // The pages of the copies, which are made when they are not there.
-std::vector<TiffPage> copies(const fs::path& path, PictureFormat format, const PictureLevel& size,
-                             int first_level, const PictureOptions& options) {
+std::vector<TiffPage> copies(const fs::path& path, ImageFileFormat format, const ImageLevel& size,
+                             int first_level, const TiledImageOptions& options) {
   if (!options.cache_folder) {
     throw file_error("read", path, "it does not fit into memory, and there is no folder for copies of it",
                      "give more --memory");
@@ -107,7 +107,7 @@ std::vector<TiffPage> copies(const fs::path& path, PictureFormat format, const P
   return pyramid_pages(folder);
 }
 
-// The picture and its reduced copies, as far as they can be drawn from as they are.
+// The image and its reduced copies, as far as they can be drawn from as they are.
 bool has_usable_levels(const std::vector<TiffPage>& pages) {
   return pixels_of(pages.back().level) <= kMaxCoarsestPixels &&
          std::all_of(pages.begin(), pages.end(), [](const TiffPage& page) {
@@ -115,25 +115,25 @@ bool has_usable_levels(const std::vector<TiffPage>& pages) {
          });
 }
 
-std::unique_ptr<TileSource> open_tiff(const fs::path& path, const PictureOptions& options) {
+std::unique_ptr<TileSource> open_tiff(const fs::path& path, const TiledImageOptions& options) {
   std::vector<TiffPage> pages = list_pages(path);
   if (pages.size() > 1 && has_usable_levels(pages)) return std::make_unique<TiffTiles>(pages);
   const TiffPage full = pages.front();
   const std::int64_t unpacked_bytes = pixels_of(full.level) * kUnpackBytesAPixel;
   if (unpacked_bytes <= static_cast<std::int64_t>(options.budget_bytes)) {
-    const auto rows = open_rows(path, PictureFormat::kTiff, options.budget_bytes);
+    const auto rows = open_rows(path, ImageFileFormat::kTiff, options.budget_bytes);
     return memory_pyramid(*rows);
   }
   const bool keep_full = full.is_tiled && tile_bytes(full.level) <= kMaxTileBytes;
-  std::vector<TiffPage> smaller = copies(path, PictureFormat::kTiff, full.level, keep_full ? 1 : 0, options);
+  std::vector<TiffPage> smaller = copies(path, ImageFileFormat::kTiff, full.level, keep_full ? 1 : 0, options);
   if (keep_full) smaller.insert(smaller.begin(), full);
   return std::make_unique<TiffTiles>(std::move(smaller));
 }
 
-std::unique_ptr<TileSource> open_coded(const fs::path& path, PictureFormat format,
-                                       const PictureOptions& options) {
-  const PictureHeader header = read_picture_header(path);
-  PictureLevel size;
+std::unique_ptr<TileSource> open_coded(const fs::path& path, ImageFileFormat format,
+                                       const TiledImageOptions& options) {
+  const ImageFileHeader header = read_image_header(path);
+  ImageLevel size;
   size.width_px = header.width_px;
   size.height_px = header.height_px;
   const std::int64_t most_pixels = static_cast<std::int64_t>(options.budget_bytes) / kUnpackBytesAPixel;
@@ -147,13 +147,13 @@ std::unique_ptr<TileSource> open_coded(const fs::path& path, PictureFormat forma
 
 }  // namespace
 
-std::unique_ptr<Picture> open_picture(const fs::path& path, PictureFormat format,
-                                      const PictureOptions& options) {
-  PictureOptions limited = options;
-  limited.budget_bytes = std::max(options.budget_bytes, PictureOptions::kMinBudget_bytes);
-  auto source = format == PictureFormat::kTiff ? open_tiff(path, limited) : open_coded(path, format, limited);
+std::unique_ptr<TiledImage> open_tiled_image(const fs::path& path, ImageFileFormat format,
+                                      const TiledImageOptions& options) {
+  TiledImageOptions limited = options;
+  limited.budget_bytes = std::max(options.budget_bytes, TiledImageOptions::kMinBudget_bytes);
+  auto source = format == ImageFileFormat::kTiff ? open_tiff(path, limited) : open_coded(path, format, limited);
   // Threads hold some tiles more.
-  return std::make_unique<Picture>(std::move(source), limited.budget_bytes / 2);
+  return std::make_unique<TiledImage>(std::move(source), limited.budget_bytes / 2);
 }
 
 }  // namespace panorama

@@ -41,38 +41,38 @@ class MemoryTiles : public TileSource {
     for (const auto& tile : tiles_)
       levels_.push_back({tile->width_px, tile->height_px, tile->width_px, tile->height_px});
   }
-  const std::vector<PictureLevel>& levels() const override { return levels_; }
+  const std::vector<ImageLevel>& levels() const override { return levels_; }
   std::shared_ptr<const Tile> read(int level, std::int64_t /*column*/, std::int64_t /*row*/) const override {
     return tiles_[static_cast<std::size_t>(level)];
   }
 
  private:
   std::vector<std::shared_ptr<const Tile>> tiles_;
-  std::vector<PictureLevel> levels_;
+  std::vector<ImageLevel> levels_;
 };
 
 }  // namespace
 
-LevelChain::LevelChain(std::int64_t width_px, std::int64_t height_px, const MakeSink& make) {
+PyramidBuilder::PyramidBuilder(std::int64_t width_px, std::int64_t height_px, const MakeSink& make) {
   for (int level = 0;; ++level) {
     sinks_.push_back(make(level, width_px, height_px));
     if (std::max(width_px, height_px) <= kCoarsestSide_px) return;
     const std::size_t next = sinks_.size();
-    halvers_.push_back(std::make_unique<Halver>(
+    downsamplers_.push_back(std::make_unique<BoxDownsampler>(
         width_px, height_px, [this, next](std::span<const vpe::base::Rgb> row) { pass(next, row); }));
     width_px = half_px(width_px);
     height_px = half_px(height_px);
   }
 }
 
-void LevelChain::pass(std::size_t level, std::span<const vpe::base::Rgb> row) {
+void PyramidBuilder::pass(std::size_t level, std::span<const vpe::base::Rgb> row) {
   if (sinks_[level]) sinks_[level](row);
-  if (level < halvers_.size()) halvers_[level]->take(row);
+  if (level < downsamplers_.size()) downsamplers_[level]->take(row);
 }
 
 std::unique_ptr<TileSource> memory_pyramid(RowSource& rows) {
   std::vector<std::shared_ptr<Tile>> tiles;
-  LevelChain chain(
+  PyramidBuilder chain(
       rows.width_px(), rows.height_px(),
       [&tiles](int /*level*/, std::int64_t width_px, std::int64_t height_px) {
         auto tile = std::make_shared<Tile>();
@@ -93,7 +93,7 @@ std::unique_ptr<TileSource> memory_pyramid(RowSource& rows) {
 }
 
 void write_pyramid(const fs::path& folder, RowSource& rows, int first_level, std::size_t max_bytes,
-                   const PictureProgress& progress) {
+                   const TiledImageProgress& progress) {
   // Each level keeps a row of its tiles; all smaller ones together as much as the first.
   const auto row_bytes = sizeof(vpe::base::Rgb) * static_cast<std::size_t>(rows.width_px() >> first_level);
   int tile_height_px = 256;
@@ -101,12 +101,12 @@ void write_pyramid(const fs::path& folder, RowSource& rows, int first_level, std
     tile_height_px /= 2;
   const DraftFolder draft(folder.string() + "." + std::to_string(::getpid()) + ".tmp");
   std::vector<std::unique_ptr<TileWriter>> writers;
-  LevelChain chain(
+  PyramidBuilder chain(
       rows.width_px(), rows.height_px(),
-      [&](int level, std::int64_t width_px, std::int64_t height_px) -> LevelChain::Sink {
+      [&](int level, std::int64_t width_px, std::int64_t height_px) -> PyramidBuilder::Sink {
         if (level < first_level) return {};
         writers.push_back(std::make_unique<TileWriter>(draft.path() / level_name(level),
-                                                       PictureLevel{width_px, height_px, 256, tile_height_px}));
+                                                       ImageLevel{width_px, height_px, 256, tile_height_px}));
         return [writer = writers.back().get()](std::span<const vpe::base::Rgb> row) { writer->take(row); };
       });
   std::vector<vpe::base::Rgb> row(static_cast<std::size_t>(rows.width_px()));

@@ -1,4 +1,4 @@
-// Rasters that are registered to a panorama's picture: range, place, elevation of what each pixel shows.
+// Rasters that are registered to a panorama's image: range, place, elevation of what each pixel shows.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class RasterPlane {
   // Reads the header. Throws vpe::base::FileError: damaged, another kind, or not of this size.
   RasterPlane(std::filesystem::path path, std::int64_t width_px, std::int64_t height_px);
 
-  // The bands' values at a pixel of the picture. Reads one tile or strip. Throws vpe::base::FileError.
+  // The bands' values at a pixel of the image. Reads one tile or strip. Throws vpe::base::FileError.
   std::vector<double> at(std::int64_t column, std::int64_t row) const;
 
  private:

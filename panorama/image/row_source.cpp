@@ -40,20 +40,20 @@ class TiffRows : public RowSource {
 
  private:
   TiffTiles tiles_;
-  PictureLevel level_;
+  ImageLevel level_;
   std::vector<std::shared_ptr<const Tile>> row_of_tiles_;
   std::int64_t next_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<RowSource> open_rows(const std::filesystem::path& path, PictureFormat format,
+std::unique_ptr<RowSource> open_rows(const std::filesystem::path& path, ImageFileFormat format,
                                      std::size_t max_bytes) {
   switch (format) {
-    case PictureFormat::kPng: return open_png_rows(path);
-    case PictureFormat::kJpeg: return open_jpeg_rows(path);
-    case PictureFormat::kTiff: return std::make_unique<TiffRows>(list_pages(path).front(), max_bytes);
-    case PictureFormat::kOther: break;
+    case ImageFileFormat::kPng: return open_png_rows(path);
+    case ImageFileFormat::kJpeg: return open_jpeg_rows(path);
+    case ImageFileFormat::kTiff: return std::make_unique<TiffRows>(list_pages(path).front(), max_bytes);
+    case ImageFileFormat::kOther: break;
   }
   throw vpe::base::file_error("read", path, "it is neither PNG, JPEG nor TIFF", "convert it to one of them");
 }

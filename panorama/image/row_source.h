@@ -1,4 +1,4 @@
-// A picture's rows from the top, for pictures that do not fit into memory. Private to panorama.
+// An image's rows from the top, for images that do not fit into memory. Private to panorama.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ class RowSource {
 // Memory of a row or two (PNG, JPEG), of a row of tiles (TIFF, at most max_bytes). Throws
 // vpe::base::FileError: damaged, or a kind that cannot be read row by row (interlaced PNG, progressive JPEG),
 // with what to do.
-std::unique_ptr<RowSource> open_rows(const std::filesystem::path& path, PictureFormat format,
+std::unique_ptr<RowSource> open_rows(const std::filesystem::path& path, ImageFileFormat format,
                                      std::size_t max_bytes);
 
 std::unique_ptr<RowSource> open_png_rows(const std::filesystem::path& path);

@@ -60,7 +60,7 @@ TiffPage page_of(const TiffFile& file) {
 }
 
 // Reduced by the same factor both ways, as far as rounding lets one see.
-bool is_reduced(const PictureLevel& full, const PictureLevel& level) {
+bool is_reduced(const ImageLevel& full, const ImageLevel& level) {
   if (level.width_px >= full.width_px || level.height_px > full.height_px) return false;
   const double factor = static_cast<double>(full.width_px) / static_cast<double>(level.width_px);
   const double rows = static_cast<double>(full.height_px) / factor;
@@ -88,7 +88,7 @@ vpe::base::Rgb pixel_at(const std::uint8_t* bytes, int samples, int bytes_a_samp
 
 }  // namespace
 
-std::size_t tile_bytes(const PictureLevel& level) {
+std::size_t tile_bytes(const ImageLevel& level) {
   return sizeof(vpe::base::Rgb) * static_cast<std::size_t>(level.tile_width_px) *
          static_cast<std::size_t>(level.tile_height_px);
 }
@@ -142,7 +142,7 @@ void TiffTiles::put_back(std::size_t page, std::unique_ptr<Handle> handle) const
 
 std::shared_ptr<const Tile> TiffTiles::read(int level, std::int64_t column, std::int64_t row) const {
   const auto index = static_cast<std::size_t>(level);
-  const PictureLevel& size = levels_[index];
+  const ImageLevel& size = levels_[index];
   auto handle = take(index);
   TIFF* tiff = handle->file.get();
   const auto number = static_cast<std::uint32_t>(row * size.tile_columns() + column);

@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "the predictors below 
 
 namespace {
 
-// Level 1 packs pictures of ground almost as well as the others, several times as fast.
+// Level 1 packs images of ground almost as well as the others, several times as fast.
 constexpr int kLevel = 1;
 
 // Each byte less the one a pixel before it, from the end.

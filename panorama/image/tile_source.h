@@ -1,6 +1,6 @@
-// Pixels of a picture and of smaller copies of it, by tiles.
+// Pixels of an image and of smaller copies of it, by tiles.
 //
-// Level 0 is the picture. Every level shows all of it: column x of level 0 is x * width(k) / width(0) of level
+// Level 0 is the image. Every level shows all of it: column x of level 0 is x * width(k) / width(0) of level
 // k, likewise rows, whatever the sizes. Tile (column, row) begins at pixel (column * tile_width, row *
 // tile_height) of its level; the last of a row or column may reach beyond the level, where its pixels are
 // undefined.
@@ -14,7 +14,7 @@
 
 namespace panorama {
 
-struct PictureLevel {
+struct ImageLevel {
   std::int64_t width_px = 0;
   std::int64_t height_px = 0;
   int tile_width_px = 0;
@@ -34,7 +34,7 @@ struct Tile {
 class TileSource {
  public:
   virtual ~TileSource() = default;
-  virtual const std::vector<PictureLevel>& levels() const = 0;
+  virtual const std::vector<ImageLevel>& levels() const = 0;
   // Throws vpe::base::FileError. Never null.
   virtual std::shared_ptr<const Tile> read(int level, std::int64_t column, std::int64_t row) const = 0;
 };

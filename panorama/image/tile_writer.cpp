@@ -5,7 +5,7 @@
 
 namespace panorama {
 
-TileWriter::TileWriter(std::filesystem::path path, const PictureLevel& level)
+TileWriter::TileWriter(std::filesystem::path path, const ImageLevel& level)
     : path_(std::move(path)), level_(level), tiff_(path_, "w8") {
   TIFF* tiff = tiff_.get();
   // Speed counts more than size: the copies are made once and can be made again.

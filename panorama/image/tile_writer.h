@@ -1,4 +1,4 @@
-// One picture as a tiled BigTIFF, written row by row. Private to panorama.
+// One image as a tiled BigTIFF, written row by row. Private to panorama.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace panorama {
 class TileWriter {
  public:
   // Sides of tiles: multiples of 16.
-  TileWriter(std::filesystem::path path, const PictureLevel& level);
+  TileWriter(std::filesystem::path path, const ImageLevel& level);
   void take(std::span<const vpe::base::Rgb> row);
   // After the last row.
   void finish();
@@ -26,7 +26,7 @@ class TileWriter {
   void write_tiles();
 
   std::filesystem::path path_;
-  PictureLevel level_;
+  ImageLevel level_;
   vpe::core::TiffHandle tiff_;
   std::vector<vpe::base::Rgb> rows_;  // of one row of tiles
   std::vector<vpe::base::Rgb> tile_;

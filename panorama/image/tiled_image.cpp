@@ -17,10 +17,10 @@ std::size_t bytes_of(const Tile& tile) { return tile.pixels.size() * sizeof(vpe:
 
 }  // namespace
 
-Picture::Picture(std::unique_ptr<TileSource> source, std::size_t budget_bytes)
+TiledImage::TiledImage(std::unique_ptr<TileSource> source, std::size_t budget_bytes)
     : source_(std::move(source)), budget_bytes_(budget_bytes) {}
 
-std::shared_ptr<const Tile> Picture::tile(int level, std::int64_t column, std::int64_t row) const {
+std::shared_ptr<const Tile> TiledImage::tile(int level, std::int64_t column, std::int64_t row) const {
   const std::uint64_t key = key_of(level, column, row);
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -58,12 +58,12 @@ std::shared_ptr<const Tile> Picture::tile(int level, std::int64_t column, std::i
   return tile;
 }
 
-std::size_t Picture::bytes() const {
+std::size_t TiledImage::bytes() const {
   const std::lock_guard lock(mutex_);
   return bytes_;
 }
 
-std::int64_t Picture::reads() const {
+std::int64_t TiledImage::reads() const {
   const std::lock_guard lock(mutex_);
   return reads_;
 }

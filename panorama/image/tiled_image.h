@@ -18,11 +18,11 @@ namespace panorama {
 
 // The tiles of a source, the last used of them kept within a budget. All const members may be called from any
 // number of threads.
-class Picture {
+class TiledImage {
  public:
-  Picture(std::unique_ptr<TileSource> source, std::size_t budget_bytes);
+  TiledImage(std::unique_ptr<TileSource> source, std::size_t budget_bytes);
 
-  const std::vector<PictureLevel>& levels() const { return source_->levels(); }
+  const std::vector<ImageLevel>& levels() const { return source_->levels(); }
   // Reads it at most once while it is kept; several threads that ask for one tile wait for one reading. Throws
   // what the source throws, and reads again when asked again.
   std::shared_ptr<const Tile> tile(int level, std::int64_t column, std::int64_t row) const;
@@ -46,24 +46,24 @@ class Picture {
   mutable std::int64_t reads_ = 0;
 };
 
-struct PictureOptions {
+struct TiledImageOptions {
   static constexpr std::size_t kMinBudget_bytes = std::size_t{16} << 20;
-  std::size_t budget_bytes = std::size_t{512} << 20;  // for everything that is kept of the picture
-  // Where smaller copies of large pictures are kept between runs; asked for only when one is needed.
+  std::size_t budget_bytes = std::size_t{512} << 20;  // for everything that is kept of the image
+  // Where smaller copies of large images are kept between runs; asked for only when one is needed.
   std::function<std::filesystem::path()> cache_folder;
   std::function<void(double fraction)> progress;  // of making them; may throw to stop
 };
 
-// A picture of any size within the budget:
+// An image of any size within the budget:
 //   fits unpacked            in memory
 //   tiled TIFF with reduced  tiles are read where they are needed, nothing else
 //   copies
 //   tiled TIFF without       the same, smaller copies are made once in the cache folder
-//   PNG, JPEG, TIFF in rows  the whole picture is copied once, row by row, tiled, into the cache folder
+//   PNG, JPEG, TIFF in rows  the whole image is copied once, row by row, tiled, into the cache folder
 // Copies belong to path, size and time of the file; whoever removes them only makes the next opening slower.
 // Throws vpe::base::FileError: damaged, not readable, no room for the copies, or too large to be unpacked where
 // that is needed (interlaced PNG, progressive JPEG).
-std::unique_ptr<Picture> open_picture(const std::filesystem::path& path, PictureFormat format,
-                                      const PictureOptions& options);
+std::unique_ptr<TiledImage> open_tiled_image(const std::filesystem::path& path, ImageFileFormat format,
+                                      const TiledImageOptions& options);
 
 }  // namespace panorama

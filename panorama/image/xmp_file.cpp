@@ -43,26 +43,26 @@ bool starts_with(const Input& input, std::span<const std::uint8_t> signature) {
   return std::equal(signature.begin(), signature.end(), start.begin());
 }
 
-PictureHeader read_picture_header(const std::filesystem::path& path) {
+ImageFileHeader read_image_header(const std::filesystem::path& path) {
   try {
     const Input input(path);
     if (is_png(input)) return read_png_header(input);
     if (is_jpeg(input)) return read_jpeg_header(input);
-    return is_tiff(input) ? read_tiff_header(path) : PictureHeader{};
+    return is_tiff(input) ? read_tiff_header(path) : ImageFileHeader{};
   } catch (const MetadataError& e) {
     throw with_path("read", path, e);
   }
 }
 
-PictureHeader read_picture_header(std::span<const std::uint8_t> bytes) {
+ImageFileHeader read_image_header(std::span<const std::uint8_t> bytes) {
   const Input input(bytes);
   if (is_png(input)) return read_png_header(input);
-  return is_jpeg(input) ? read_jpeg_header(input) : PictureHeader{};
+  return is_jpeg(input) ? read_jpeg_header(input) : ImageFileHeader{};
 }
 
-std::vector<std::uint8_t> with_xmp(std::span<const std::uint8_t> picture, std::string_view packet) {
+std::vector<std::uint8_t> with_xmp(std::span<const std::uint8_t> image, std::string_view packet) {
   std::vector<std::uint8_t> out;
-  copy_with_xmp(Input(picture), packet, [&out](std::span<const std::uint8_t> bytes) {
+  copy_with_xmp(Input(image), packet, [&out](std::span<const std::uint8_t> bytes) {
     out.insert(out.end(), bytes.begin(), bytes.end());
   });
   return out;

@@ -14,16 +14,16 @@ namespace panorama {
 using Sink = std::function<void(std::span<const std::uint8_t>)>;
 
 bool is_png(const Input& input);
-PictureHeader read_png_header(const Input& input);
+ImageFileHeader read_png_header(const Input& input);
 void copy_png_with_xmp(const Input& input, std::string_view packet, const Sink& sink);
 
 bool is_jpeg(const Input& input);
-PictureHeader read_jpeg_header(const Input& input);
+ImageFileHeader read_jpeg_header(const Input& input);
 void copy_jpeg_with_xmp(const Input& input, std::string_view packet, const Sink& sink);
 
 bool is_tiff(const Input& input);
 // Through libtiff, which reads the file by itself. Throws MetadataError.
-PictureHeader read_tiff_header(const std::filesystem::path& path);
+ImageFileHeader read_tiff_header(const std::filesystem::path& path);
 
 // Bytes [from, to) of the input to the sink, a piece at a time.
 void copy_range(const Input& input, std::uint64_t from, std::uint64_t to, const Sink& sink);

@@ -82,9 +82,9 @@ bool is_jpeg(const Input& input) {
   return starts_with(input, kSignature);
 }
 
-PictureHeader read_jpeg_header(const Input& input) {
-  PictureHeader header;
-  header.format = PictureFormat::kJpeg;
+ImageFileHeader read_jpeg_header(const Input& input) {
+  ImageFileHeader header;
+  header.format = ImageFileFormat::kJpeg;
   visit_segments(input, [&](const Segment& segment) {
     if (is_frame_header(segment.marker) && segment.end - segment.data >= 5) {
       header.height_px = read_u16(input, segment.data + 1);

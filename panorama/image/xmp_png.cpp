@@ -139,9 +139,9 @@ std::string xmp_chunk(std::string_view packet) {
 
 bool is_png(const Input& input) { return starts_with(input, kSignature); }
 
-PictureHeader read_png_header(const Input& input) {
-  PictureHeader header;
-  header.format = PictureFormat::kPng;
+ImageFileHeader read_png_header(const Input& input) {
+  ImageFileHeader header;
+  header.format = ImageFileFormat::kPng;
   visit_chunks(input, [&](const Chunk& chunk) {
     if (chunk.type == "IHDR") {
       checked_text(input, chunk);

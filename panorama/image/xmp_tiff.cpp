@@ -15,7 +15,7 @@ bool is_tiff(const Input& input) {
   return false;
 }
 
-PictureHeader read_tiff_header(const std::filesystem::path& path) {
+ImageFileHeader read_tiff_header(const std::filesystem::path& path) {
   // m: no memory map; O: tables of strips and tiles only when asked for.
   const vpe::core::TiffHandle tiff(path, "rmO", vpe::core::TiffHandle::kMaxTableBytes);
   if (tiff.get() == nullptr) throw MetadataError(std::string(tiff.words()) + "; the file is damaged");
@@ -24,7 +24,7 @@ PictureHeader read_tiff_header(const std::filesystem::path& path) {
   TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width_px);
   TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height_px);
   if (width_px < 1 || height_px < 1) throw MetadataError("TIFF without a size; the file is damaged");
-  PictureHeader header{PictureFormat::kTiff, width_px, height_px, std::nullopt};
+  ImageFileHeader header{ImageFileFormat::kTiff, width_px, height_px, std::nullopt};
   std::uint32_t bytes = 0;
   const char* packet = nullptr;
   if (TIFFGetField(tiff.get(), TIFFTAG_XMLPACKET, &bytes, &packet) == 1 && packet != nullptr) {

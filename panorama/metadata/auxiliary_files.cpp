@@ -37,25 +37,25 @@ std::optional<PairLayout> parse_pair_layout(std::string_view name) {
   return std::nullopt;
 }
 
-Companions read_companions(std::string_view text) {
-  Companions companions;
+AuxiliaryFiles read_auxiliary_files(std::string_view text) {
+  AuxiliaryFiles auxiliary_files;
   try {
     const json root = json::parse(text);
     if (!root.is_object()) throw MetadataError("JSON without an object {...} of keys");
     if (const auto stereo = root.find("stereo"); stereo != root.end() && !stereo->is_null()) {
       const auto pair = parse_pair_layout(stereo->is_string() ? stereo->get<std::string>() : "");
       if (!pair) throw MetadataError("stereo is " + shown(*stereo) + R"(; give "sbs", "ou" or "none")");
-      companions.pair = *pair;
+      auxiliary_files.pair = *pair;
     }
     if (const auto planes = root.find("planes"); planes != root.end() && !planes->is_null()) {
       if (!planes->is_object()) throw MetadataError("planes is not an object {...} of names and files");
       for (const auto& [name, value] : planes->items())
-        companions.planes.push_back({name, file_of(name, value)});
+        auxiliary_files.planes.push_back({name, file_of(name, value)});
     }
   } catch (const json::exception& e) {
     throw MetadataError("not well-formed JSON: " + excerpt(e.what(), 300));
   }
-  return companions;
+  return auxiliary_files;
 }
 
 }  // namespace panorama

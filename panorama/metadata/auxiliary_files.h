@@ -1,12 +1,12 @@
-// What a panorama's JSON says besides its projection: which eyes the picture holds, and which rasters belong to
+// What a panorama's JSON says besides its projection: which eyes the image holds, and which rasters belong to
 // it.
 //
 // Keys:
 //   stereo   "sbs" (left eye on the left half) or "ou" (left eye on the upper half); width, height and all
 //   other
-//            keys of the JSON may be those of one eye or of the whole picture
-//   planes   {"range": "NAME.tif", ...}: rasters with a value or more for every pixel of the picture (of one
-//            eye), in the same folder; the file's name may also be given as {"file": "NAME.tif"}
+//            keys of the JSON may be those of one eye or of the whole image
+//   planes   {"range": "NAME.tif", ...}: rasters with a value or more for every pixel of the image (of one
+//            camera), in the same folder; the file's name may also be given as {"file": "NAME.tif"}
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace panorama {
 
-// How the eyes of a pair lie in one picture.
+// How the eyes of a pair lie in one image.
 enum class PairLayout : std::uint8_t { kNone, kSideBySide, kOverUnder };
 
 // "none", "sbs", "ou"; nothing for other words.
@@ -31,12 +31,12 @@ struct PlaneName {
   std::string file;  // without a folder
 };
 
-struct Companions {
+struct AuxiliaryFiles {
   PairLayout pair = PairLayout::kNone;
   std::vector<PlaneName> planes;  // in the order of their names
 };
 
 // Throws MetadataError: no JSON, or a key with a value that is not one of those above.
-Companions read_companions(std::string_view json);
+AuxiliaryFiles read_auxiliary_files(std::string_view json);
 
 }  // namespace panorama

@@ -117,7 +117,7 @@ bool is_true_cylinder(const PanoramaMap& map) {
   return std::abs(map.focal_px - true_focal_px) <= 1e-6 * true_focal_px;
 }
 
-// From the start of the turn if that leaves whole columns inside a turn, else from the picture's left edge.
+// From the start of the turn if that leaves whole columns inside a turn, else from the image's left edge.
 void set_columns(GPano& gpano, const PanoramaMap& map) {
   const auto left_px = std::llround(map.crop_left_px);
   double start_deg = map.turn_azimuth_deg;

@@ -1,9 +1,9 @@
-// GPano: Google's XMP fields for panoramas, of cylinders and equirectangular pictures.
+// GPano: Google's XMP fields for panoramas, of cylinders and equirectangular images.
 //
-// Source: the namespace's public description. Lengths are whole pixels. The full picture has 360 degrees
-// across; the file is the part of it at cropped_left, cropped_top. For equirectangular pictures cropped_top is
-// counted from the zenith (the full picture is 180 degrees high); for cylinders from the horizon, negative
-// above it. The heading is that of the full picture's middle.
+// Source: the namespace's public description. Lengths are whole pixels. The full image has 360 degrees
+// across; the file is the part of it at cropped_left, cropped_top. For equirectangular images cropped_top is
+// counted from the zenith (the full image is 180 degrees high); for cylinders from the horizon, negative
+// above it. The heading is that of the full image's middle.
 #pragma once
 
 #include <cstdint>
@@ -59,10 +59,10 @@ std::optional<GPano> read_gpano(std::string_view xmp);
 
 // The fields in whole pixels nearest to a map. Throws MetadataError for facets (which GPano cannot express),
 // cylinders that are not true ones (focal_px = turn_px / 2 pi), and where rounding to whole pixels would move a
-// place of the picture by more than max_shift_px.
+// place of the image by more than max_shift_px.
 GPano gpano_of(const PanoramaMap& map, double max_shift_px = 1.0);
 
-// Throws MetadataError for other projections, a pitched or rolled picture, and fields that make no map.
+// Throws MetadataError for other projections, a pitched or rolled image, and fields that make no map.
 PanoramaMap map_of(const GPano& gpano);
 
 }  // namespace panorama

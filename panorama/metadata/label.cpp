@@ -137,16 +137,16 @@ bool is_level_frame(std::string_view frame) {
   return name.empty() || name.starts_with("site") || name.starts_with("locallevel");
 }
 
-// Half a degree: stated limits are rounded and cut in many ways, but other pictures' are farther off.
+// Half a degree: stated limits are rounded and cut in many ways, but other images' are farther off.
 constexpr double kSlack_deg = 0.5;
 
 double slack_px(double pixels_per_degree) { return std::max(4.0, kSlack_deg * pixels_per_degree); }
 
-void check_span(const char* what, double stated_px, double picture_px, double pixels_per_degree) {
-  if (std::abs(stated_px - picture_px) <= slack_px(pixels_per_degree)) return;
+void check_span(const char* what, double stated_px, double image_px, double pixels_per_degree) {
+  if (std::abs(stated_px - image_px) <= slack_px(pixels_per_degree)) return;
   throw MetadataError(std::string("the label contradicts the picture: by ") + what + " it would have " +
                       format_number(std::round(stated_px)) + " pixels, but it has " +
-                      format_number(picture_px) + "; give the label of this very picture");
+                      format_number(image_px) + "; give the label of this very picture");
 }
 
 // The number that the label gives to the centre of the first line.

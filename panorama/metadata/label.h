@@ -1,7 +1,7 @@
 // Labels of rover mosaics: which azimuth and elevation their lines and samples show.
 //
 // Read: the group SURFACE_PROJECTION_PARMS of JPL's PDS3 and VICAR labels (detached, or at the start of the
-// picture's file), and cart:Cylindrical of PDS4. JPL's CYLINDRICAL is even in angle both ways: lines are of
+// image's file), and cart:Cylindrical of PDS4. JPL's CYLINDRICAL is even in angle both ways: lines are of
 // constant elevation, so its map is kEquirectangular. By the label's own equations
 //   azimuth = START_AZIMUTH + sample / columns_per_degree,  elevation = (ZERO_ELEVATION_LINE - line) /
 //   rows_per_degree
@@ -27,7 +27,7 @@ struct RoverLabel {
   std::optional<double> stop_azimuth_deg;
   std::optional<double> maximum_elevation_deg;
   std::optional<double> minimum_elevation_deg;
-  std::optional<std::int64_t> lines;  // of the label's own picture
+  std::optional<std::int64_t> lines;  // of the label's own image
   std::optional<std::int64_t> samples;
   std::string frame;  // REFERENCE_COORD_SYSTEM_NAME, empty when the label does not name it
 };
@@ -41,7 +41,7 @@ bool is_label_start(std::string_view text);
 std::optional<RoverLabel> read_text_label(std::string_view text);
 std::optional<RoverLabel> read_pds4_label(std::string_view xml);
 
-// The map of a picture of the label's size. Throws MetadataError when label and size contradict each other
+// The map of an image of the label's size. Throws MetadataError when label and size contradict each other
 // or the label contradicts itself.
 PanoramaMap map_of(const RoverLabel& label, std::int64_t width_px, std::int64_t height_px);
 

@@ -29,8 +29,8 @@ struct Found {
   std::string source;
   PanoramaMap map;
   bool heading_is_known = true;
-  std::optional<Station> station;
-  Companions companions;
+  std::optional<Viewpoint> viewpoint;
+  AuxiliaryFiles auxiliary_files;
 };
 
 std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
@@ -59,18 +59,18 @@ std::string size_text(std::int64_t width_px, std::int64_t height_px) {
   return std::to_string(width_px) + "x" + std::to_string(height_px);
 }
 
-// One eye of a pair, when the description is of both.
-void take_one_eye(Found& found, const PictureHeader& header, PairLayout pair) {
+// One camera of a pair, when the description is of both.
+void take_one_eye(Found& found, const ImageFileHeader& header, PairLayout pair) {
   if (found.map.width_px != header.width_px || found.map.height_px != header.height_px) return;
   if (pair == PairLayout::kSideBySide) found.map.width_px /= 2;
   if (pair == PairLayout::kOverUnder) found.map.height_px /= 2;
 }
 
-void require_size(const Found& found, const fs::path& picture, const PictureHeader& header, PairLayout pair) {
+void require_size(const Found& found, const fs::path& image, const ImageFileHeader& header, PairLayout pair) {
   const std::int64_t across = pair == PairLayout::kSideBySide ? 2 : 1;
   const std::int64_t down = pair == PairLayout::kOverUnder ? 2 : 1;
   if (across * found.map.width_px == header.width_px && down * found.map.height_px == header.height_px) return;
-  throw FileError("cannot use " + quoted(picture) + ": it has " + size_text(header.width_px, header.height_px) +
+  throw FileError("cannot use " + quoted(image) + ": it has " + size_text(header.width_px, header.height_px) +
                   " pixels, but " + found.source + " describes " +
                   size_text(found.map.width_px, found.map.height_px) +
                   "; give the description of this very picture, or remove the wrong one");
@@ -83,26 +83,26 @@ void require_agreement(const Found& a, const Found& b) {
                   vpe::base::format_number(difference_px) + " pixels; remove the wrong one");
 }
 
-std::optional<Found> find_sidecar(const fs::path& picture) {
-  const fs::path beside = fs::path(picture).replace_extension(".json");
-  const fs::path of_folder = picture.parent_path() / "pano.json";
+std::optional<Found> find_sidecar(const fs::path& image) {
+  const fs::path beside = fs::path(image).replace_extension(".json");
+  const fs::path of_folder = image.parent_path() / "pano.json";
   for (const fs::path& path : {beside, of_folder}) {
     if (!is_file(path)) continue;
     const std::string text = text_of(path);
     const Sidecar sidecar = reading(quoted(path), [&] { return read_sidecar(text); });
-    const bool is_of_this = sidecar.image.empty() || sidecar.image == picture.filename();
+    const bool is_of_this = sidecar.image.empty() || sidecar.image == image.filename();
     if (path == beside && !is_of_this) {
-      throw file_error("use", path, "it describes the picture '" + sidecar.image + "', not " + quoted(picture),
+      throw file_error("use", path, "it describes the picture '" + sidecar.image + "', not " + quoted(image),
                        "correct its \"image\" or rename it");
     }
     if (path == of_folder && path != beside && (!is_of_this || sidecar.image.empty())) continue;
-    return Found{quoted(path), sidecar.map, true, sidecar.station,
-                 reading(quoted(path), [&] { return read_companions(text); })};
+    return Found{quoted(path), sidecar.map, true, sidecar.viewpoint,
+                 reading(quoted(path), [&] { return read_auxiliary_files(text); })};
   }
   return std::nullopt;
 }
 
-// The start of the picture's file if that is a label, with what it says of its length.
+// The start of the image's file if that is a label, with what it says of its length.
 std::optional<std::string> attached_label(const Input& input) {
   const std::string start =
       input.read_text(0, static_cast<std::size_t>(std::min<std::uint64_t>(64, input.size())));
@@ -110,10 +110,10 @@ std::optional<std::string> attached_label(const Input& input) {
   return input.read_text(0, static_cast<std::size_t>(std::min(kMaxLabelBytes, input.size())));
 }
 
-std::optional<std::pair<std::string, RoverLabel>> find_label(const fs::path& picture) {
+std::optional<std::pair<std::string, RoverLabel>> find_label(const fs::path& image) {
   for (const char* extension : {".lbl", ".LBL", ".xml", ".XML"}) {
-    const fs::path path = fs::path(picture).replace_extension(extension);
-    if (path == picture || !is_file(path)) continue;
+    const fs::path path = fs::path(image).replace_extension(extension);
+    if (path == image || !is_file(path)) continue;
     const bool is_xml = lower_case(extension) == ".xml";
     const auto label = reading(quoted(path), [&] {
       const std::string text = text_of(path);
@@ -121,17 +121,17 @@ std::optional<std::pair<std::string, RoverLabel>> find_label(const fs::path& pic
     });
     if (label) return std::pair("label " + quoted(path), *label);
   }
-  const std::string inside = "the label in " + quoted(picture);
+  const std::string inside = "the label in " + quoted(image);
   const auto label = reading(inside, [&]() -> std::optional<RoverLabel> {
-    const auto text = attached_label(Input(picture));
+    const auto text = attached_label(Input(image));
     return text ? read_text_label(*text) : std::nullopt;
   });
   return label ? std::optional(std::pair(inside, *label)) : std::nullopt;
 }
 
-std::optional<Found> find_gpano(const fs::path& picture, const PictureHeader& header) {
+std::optional<Found> find_gpano(const fs::path& image, const ImageFileHeader& header) {
   if (!header.xmp) return std::nullopt;
-  const std::string source = "GPano in " + quoted(picture);
+  const std::string source = "GPano in " + quoted(image);
   return reading(source, [&]() -> std::optional<Found> {
     const std::optional<GPano> gpano = read_gpano(*header.xmp);
     if (!gpano) return std::nullopt;
@@ -139,8 +139,8 @@ std::optional<Found> find_gpano(const fs::path& picture, const PictureHeader& he
   });
 }
 
-// A description's own picture, when `path` is JSON.
-fs::path picture_of(const fs::path& path) {
+// A description's own image, when `path` is JSON.
+fs::path image_of(const fs::path& path) {
   if (lower_case(path.extension().string()) != ".json") return path;
   const Sidecar sidecar = reading(quoted(path), [&] { return read_sidecar(text_of(path)); });
   if (sidecar.image.empty()) {
@@ -152,14 +152,14 @@ fs::path picture_of(const fs::path& path) {
 }  // namespace
 
 PanoramaDescription describe(const fs::path& path, std::optional<PairLayout> pair) {
-  const fs::path picture = picture_of(path);
-  PictureHeader header = read_picture_header(picture);
+  const fs::path image = image_of(path);
+  ImageFileHeader header = read_image_header(image);
   std::vector<Found> all;
-  if (const auto found = find_sidecar(picture)) all.push_back(*found);
-  if (const auto found = find_label(picture)) {
+  if (const auto found = find_sidecar(image)) all.push_back(*found);
+  if (const auto found = find_label(image)) {
     const auto& [source, label] = *found;
     // A raw raster has the size that its label says.
-    if (header.format == PictureFormat::kOther && label.lines && label.samples) {
+    if (header.format == ImageFileFormat::kOther && label.lines && label.samples) {
       header.width_px = *label.samples;
       header.height_px = *label.lines;
     }
@@ -173,30 +173,30 @@ PanoramaDescription describe(const fs::path& path, std::optional<PairLayout> pai
     }
   }
   if (header.width_px < 1) {
-    throw file_error("read", picture, "it is neither PNG, JPEG nor TIFF, and no label gives its size",
+    throw file_error("read", image, "it is neither PNG, JPEG nor TIFF, and no label gives its size",
                      "convert the picture to one of them");
   }
-  if (const auto found = find_gpano(picture, header)) all.push_back(*found);
+  if (const auto found = find_gpano(image, header)) all.push_back(*found);
   if (all.empty()) {
     throw file_error(
-        "use", picture, "nothing says which directions it shows: no JSON or label beside it, no GPano inside",
-        "write " + quoted(fs::path(picture).replace_extension(".json")) +
+        "use", image, "nothing says which directions it shows: no JSON or label beside it, no GPano inside",
+        "write " + quoted(fs::path(image).replace_extension(".json")) +
             " with projection, width, height, azimuth_deg_at_left, degrees_per_pixel and horizon_row");
   }
-  PanoramaDescription description{picture,
+  PanoramaDescription description{image,
                                   header.format,
                                   all.front().map,
                                   {},
                                   all.front().heading_is_known,
                                   {},
-                                  pair.value_or(all.front().companions.pair),
-                                  all.front().companions.planes};
+                                  pair.value_or(all.front().auxiliary_files.pair),
+                                  all.front().auxiliary_files.planes};
   for (Found& found : all) {
     take_one_eye(found, header, description.pair);
-    require_size(found, picture, header, description.pair);
+    require_size(found, image, header, description.pair);
     require_agreement(all.front(), found);
     description.sources.push_back(found.source);
-    if (!description.station) description.station = found.station;
+    if (!description.viewpoint) description.viewpoint = found.viewpoint;
   }
   description.map = all.front().map;
   return description;

@@ -226,33 +226,33 @@ mars::VerticalDatum datum_of(const Keys& keys) {
   return *datum;
 }
 
-std::optional<Station> station_of(const Keys& keys) {
+std::optional<Viewpoint> viewpoint_of(const Keys& keys) {
   const json* pose = keys.object("pose");
   const json* rover = keys.object("rover");
   if (pose == nullptr && rover == nullptr) return std::nullopt;
   const Keys place(pose != nullptr ? *pose : *rover);
-  Station station;
-  station.lon_deg = needed(place.number("lon_deg", "lon_deg_east"), "lon_deg of the pose");
-  station.lat_deg = needed(place.number("lat_deg"), "lat_deg of the pose");
-  if (!mars::is_valid({station.lon_deg, station.lat_deg})) {
-    throw MetadataError("pose at lon " + format_number(station.lon_deg) + ", lat " +
-                        format_number(station.lat_deg) + ": latitudes are -90 to 90");
+  Viewpoint viewpoint;
+  viewpoint.lon_deg = needed(place.number("lon_deg", "lon_deg_east"), "lon_deg of the pose");
+  viewpoint.lat_deg = needed(place.number("lat_deg"), "lat_deg of the pose");
+  if (!mars::is_valid({viewpoint.lon_deg, viewpoint.lat_deg})) {
+    throw MetadataError("pose at lon " + format_number(viewpoint.lon_deg) + ", lat " +
+                        format_number(viewpoint.lat_deg) + ": latitudes are -90 to 90");
   }
-  station.lon_deg = mars::normalize_lon_deg(station.lon_deg);
+  viewpoint.lon_deg = mars::normalize_lon_deg(viewpoint.lon_deg);
   for (const char* angle : {"pitch_deg", "roll_deg"}) {
     if (pose != nullptr && place.number(angle).value_or(0.0) != 0.0) {
       throw MetadataError(std::string(angle) + " of the pose is not 0; only level panoramas are read");
     }
   }
-  station.alt_m = place.number("alt_m");
-  station.height_m = place.number("height_m", "camera_height_above_ground_m_approx");
-  station.datum = datum_of(place);
-  station.ground_m = place.number("ground_m");
-  if (const auto areoid_m = place.number("elevation_m_areoid"); areoid_m && !station.ground_m) {
-    station.ground_m = areoid_m;
-    station.datum = mars::VerticalDatum::areoid();
+  viewpoint.alt_m = place.number("alt_m");
+  viewpoint.height_m = place.number("height_m", "camera_height_above_ground_m_approx");
+  viewpoint.datum = datum_of(place);
+  viewpoint.ground_m = place.number("ground_m");
+  if (const auto areoid_m = place.number("elevation_m_areoid"); areoid_m && !viewpoint.ground_m) {
+    viewpoint.ground_m = areoid_m;
+    viewpoint.datum = mars::VerticalDatum::areoid();
   }
-  return station;
+  return viewpoint;
 }
 
 }  // namespace
@@ -266,7 +266,7 @@ Sidecar read_sidecar(std::string_view text) {
   }
   if (!root.is_object()) throw MetadataError("JSON without an object {...} of keys");
   const Keys keys(root);
-  return {keys.text("image"), map_of(keys), station_of(keys)};
+  return {keys.text("image"), map_of(keys), viewpoint_of(keys)};
 }
 
 std::string to_json(const Sidecar& sidecar) {
@@ -286,15 +286,15 @@ std::string to_json(const Sidecar& sidecar) {
   }
   root["horizon_row"] = map.horizon_px;
   root["focal_px"] = map.focal_px;
-  if (sidecar.station) {
-    const Station& station = *sidecar.station;
+  if (sidecar.viewpoint) {
+    const Viewpoint& viewpoint = *sidecar.viewpoint;
     nlohmann::ordered_json pose;
-    pose["lon_deg"] = station.lon_deg;
-    pose["lat_deg"] = station.lat_deg;
-    if (station.alt_m) pose["alt_m"] = *station.alt_m;
-    if (station.height_m) pose["height_m"] = *station.height_m;
-    if (station.ground_m) pose["ground_m"] = *station.ground_m;
-    if (station.datum.is_known()) pose["datum"] = mars::to_string(station.datum);
+    pose["lon_deg"] = viewpoint.lon_deg;
+    pose["lat_deg"] = viewpoint.lat_deg;
+    if (viewpoint.alt_m) pose["alt_m"] = *viewpoint.alt_m;
+    if (viewpoint.height_m) pose["height_m"] = *viewpoint.height_m;
+    if (viewpoint.ground_m) pose["ground_m"] = *viewpoint.ground_m;
+    if (viewpoint.datum.is_known()) pose["datum"] = mars::to_string(viewpoint.datum);
     root["pose"] = pose;
   }
   return root.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

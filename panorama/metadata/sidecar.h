@@ -1,21 +1,21 @@
-// NAME.json beside a panorama's picture: its projection, and from where it was seen.
+// NAME.json beside a panorama's image: its projection, and from where it was seen.
 //
-// Keys (docs/panoramas.md has examples); others are left alone, so that who writes pictures may add more:
-//   image                              the picture's file name
+// Keys (docs/panoramas.md has examples); others are left alone, so that who writes images may add more:
+//   image                              the image's file name
 //   projection                         "cylinder" (rows even in tangent), "equirectangular" (rows even in
 //   angle),
 //                                      "facets"
-//   width, height                      pixels of the picture
-//   azimuth_deg_at_left                of the picture's left edge; or start_yaw_deg, of facet 0's middle, and
+//   width, height                      pixels of the image
+//   azimuth_deg_at_left                of the image's left edge; or start_yaw_deg, of facet 0's middle, and
 //                                      crop_left_px with facets
 //   columns_per_turn | degrees_per_pixel | azimuth_deg_at_right
-//   horizon_row | elevation_deg_at_top row of elevation 0, counted from the picture's upper edge
+//   horizon_row | elevation_deg_at_top row of elevation 0, counted from the image's upper edge
 //   focal_px | degrees_per_row | elevation_deg_at_bottom
 //                                      scale of rows where it is not that of the columns
 //   facets                             how many to the turn
 //   pose                               lon_deg, lat_deg, alt_m (above the sphere), height_m (above the ground),
 //                                      ground_m (elevation of the ground), datum (mars/geodesy/datum.h) of ground_m
-// and the words of pictures that others have described: azimuth_deg_at_sample_0 and elevation_deg_at_line_0 (of
+// and the words of images that others have described: azimuth_deg_at_sample_0 and elevation_deg_at_line_0 (of
 // the first pixel's centre), elevation_deg_per_line, rover {lon_deg_east, lat_deg, elevation_m_areoid,
 // camera_height_above_ground_m_approx}.
 #pragma once
@@ -31,21 +31,21 @@
 namespace panorama {
 
 // From where a panorama is seen, as far as it is known.
-struct Station {
+struct Viewpoint {
   double lon_deg = 0;              // east
   double lat_deg = 0;              // planetocentric
-  std::optional<double> alt_m;     // of the eye above the sphere
-  std::optional<double> height_m;  // of the eye above the ground
+  std::optional<double> alt_m;     // of the camera above the sphere
+  std::optional<double> height_m;  // of the camera above the ground
   std::optional<double> ground_m;  // elevation of the ground in `datum`
   mars::VerticalDatum datum;
 
-  bool operator==(const Station&) const = default;
+  bool operator==(const Viewpoint&) const = default;
 };
 
 struct Sidecar {
   std::string image;  // empty when it does not say
   PanoramaMap map;
-  std::optional<Station> station;
+  std::optional<Viewpoint> viewpoint;
 };
 
 // Throws MetadataError: no JSON, keys missing, of the wrong type, or in contradiction by more than a pixel.

@@ -23,29 +23,29 @@ std::vector<std::string> band_names(const std::string& plane, std::size_t bands)
 
 }  // namespace
 
-PlaceReader::PlaceReader(const PanoramaDescription& description) : map_(description.map) {
+PixelProbe::PixelProbe(const PanoramaDescription& description) : map_(description.map) {
   for (const PlaneName& name : description.planes) {
     planes_.push_back(
-        {name.name, RasterPlane(description.picture.parent_path() / name.file, map_.width_px, map_.height_px)});
+        {name.name, RasterPlane(description.image.parent_path() / name.file, map_.width_px, map_.height_px)});
   }
 }
 
-std::optional<PlaceRead> PlaceReader::at_pixel(double x, double y) const {
+std::optional<ProbeResult> PixelProbe::at_pixel(double x, double y) const {
   const bool inside = x >= 0.0 && y >= 0.0 && x <= static_cast<double>(map_.width_px) &&
                       y <= static_cast<double>(map_.height_px);
   if (!inside) return std::nullopt;
   return read(x, y);
 }
 
-std::optional<PlaceRead> PlaceReader::at(const Direction& direction) const {
+std::optional<ProbeResult> PixelProbe::at(const Direction& direction) const {
   const auto shown = shown_place(map_, direction);
   if (!shown) return std::nullopt;
-  // Of a picture that is a part of a pixel narrower than a turn the last column is the nearest.
+  // Of an image that is a part of a pixel narrower than a turn the last column is the nearest.
   return read(std::min(shown->x, static_cast<double>(map_.width_px)), shown->y);
 }
 
-PlaceRead PlaceReader::read(double x, double y) const {
-  PlaceRead place{x, y, map_.to_direction(x, y), {}};
+ProbeResult PixelProbe::read(double x, double y) const {
+  ProbeResult place{x, y, map_.to_direction(x, y), {}};
   const auto column = std::clamp<std::int64_t>(static_cast<std::int64_t>(x), 0, map_.width_px - 1);
   const auto row = std::clamp<std::int64_t>(static_cast<std::int64_t>(y), 0, map_.height_px - 1);
   for (const Plane& plane : planes_) {

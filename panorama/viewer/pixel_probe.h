@@ -1,4 +1,4 @@
-// What a panorama shows at a place of its picture or in a direction, with the values of its planes there.
+// What a panorama shows at a place of its image or in a direction, with the values of its planes there.
 #pragma once
 
 #include <optional>
@@ -17,29 +17,29 @@ struct PlaneValue {
   std::optional<double> value;  // nothing where the plane has none, as for the sky
 };
 
-struct PlaceRead {
-  double x = 0;  // of the picture (of one eye's in a pair), pixel centres at +0.5
+struct ProbeResult {
+  double x = 0;  // of the image (of one eye's in a pair), pixel centres at +0.5
   double y = 0;
   Direction direction;
   std::vector<PlaneValue> values;  // in the order of the planes
 };
 
 // All const members may be called from any number of threads.
-class PlaceReader {
+class PixelProbe {
  public:
   // Opens the planes. Throws vpe::base::FileError when one cannot be used.
-  explicit PlaceReader(const PanoramaDescription& description);
+  explicit PixelProbe(const PanoramaDescription& description);
 
-  // Nothing where the picture shows nothing. Read a tile of each plane and throw vpe::base::FileError.
-  std::optional<PlaceRead> at(const Direction& direction) const;
-  std::optional<PlaceRead> at_pixel(double x, double y) const;
+  // Nothing where the image shows nothing. Read a tile of each plane and throw vpe::base::FileError.
+  std::optional<ProbeResult> at(const Direction& direction) const;
+  std::optional<ProbeResult> at_pixel(double x, double y) const;
 
  private:
   struct Plane {
     std::string name;
     RasterPlane raster;
   };
-  PlaceRead read(double x, double y) const;
+  ProbeResult read(double x, double y) const;
 
   PanoramaMap map_;
   std::vector<Plane> planes_;

@@ -18,13 +18,13 @@ glm::vec3 colour(const vpe::base::Rgb& p) {
 
 }  // namespace
 
-Sampler::Sampler(const Picture& picture, const PanoramaMap& map, const PictureOrigin& origin)
-    : picture_(picture), origin_px_(static_cast<double>(origin.x_px), static_cast<double>(origin.y_px)) {
-  const PictureLevel& full = picture.levels().front();
+Sampler::Sampler(const TiledImage& image, const PanoramaMap& map, const ImageOrigin& origin)
+    : image_(image), origin_px_(static_cast<double>(origin.x_px), static_cast<double>(origin.y_px)) {
+  const ImageLevel& full = image.levels().front();
   const auto width_px = static_cast<double>(map.width_px);
   const auto height_px = static_cast<double>(map.height_px);
   const bool is_closed = width_px > map.turn_px - 1.0;
-  for (const PictureLevel& size : picture.levels()) {
+  for (const ImageLevel& size : image.levels()) {
     Level level;
     level.size = size;
     level.scale = {static_cast<double>(size.width_px) / static_cast<double>(full.width_px),
@@ -44,7 +44,7 @@ const Tile& Sampler::tile(int level, std::int64_t column, std::int64_t row) {
   // Neighbouring tiles of neighbouring levels fall into different slots.
   Slot& slot = slots_[static_cast<std::size_t>((column & 1) | (row & 1) << 1 | (level & 3) << 2)];
   if (slot.level != level || slot.column != column || slot.row != row || slot.tile == nullptr) {
-    slot.tile = picture_.tile(level, column, row);
+    slot.tile = image_.tile(level, column, row);
     slot.level = level;
     slot.column = column;
     slot.row = row;

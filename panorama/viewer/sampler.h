@@ -1,4 +1,4 @@
-// Colours of a picture at places between its pixels and levels. Private to panorama.
+// Colours of an image at places between its pixels and levels. Private to panorama.
 #pragma once
 
 #include <array>
@@ -12,18 +12,18 @@ namespace panorama {
 // For one thread. Keeps the tiles that it used last.
 class Sampler {
  public:
-  Sampler(const Picture& picture, const PanoramaMap& map, const PictureOrigin& origin);
+  Sampler(const TiledImage& image, const PanoramaMap& map, const ImageOrigin& origin);
 
-  // Mean over the parallelogram of `across` and `down` about `at`, all in pixels of the map's picture; each
+  // Mean over the parallelogram of `across` and `down` about `at`, all in pixels of the map's image; each
   // channel 0 to 255.
   glm::vec3 mean(const glm::dvec2& at, const glm::dvec2& across, const glm::dvec2& down);
 
  private:
   struct Level {
-    PictureLevel size;
-    glm::dvec2 scale;   // pixels of this level to one of the picture
-    double reduction;   // pixels of the picture to one of this level, the larger of both sides
-    std::int64_t turn;  // columns; 0 when the picture is no full turn
+    ImageLevel size;
+    glm::dvec2 scale;   // pixels of this level to one of the image
+    double reduction;   // pixels of the image to one of this level, the larger of both sides
+    std::int64_t turn;  // columns; 0 when the image is no full turn
     std::int64_t left;  // the part that the map describes, both ends included
     std::int64_t right;
     std::int64_t top;
@@ -42,7 +42,7 @@ class Sampler {
   glm::vec3 between_levels(double footprint_px, const glm::dvec2& at);
   std::int64_t wrapped(const Level& level, std::int64_t x) const;
 
-  const Picture& picture_;
+  const TiledImage& image_;
   glm::dvec2 origin_px_;
   std::vector<Level> levels_;
   std::array<Slot, 16> slots_;

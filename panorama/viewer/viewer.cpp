@@ -14,7 +14,7 @@ namespace {
 using mars::kPi;
 using mars::kRadiansPerDegree;
 
-// Above this a picture counts as closed at the zenith: mosaics state their rows at pixel centres.
+// Above this an image counts as closed at the zenith: mosaics state their rows at pixel centres.
 constexpr double kClosed_deg = 89.9;
 
 double tangent_of_half(double fov_deg) { return std::tan(0.5 * fov_deg * kRadiansPerDegree); }
@@ -51,7 +51,7 @@ Direction to_direction(const glm::dvec3& vector) {
 
 vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int width_px, int height_px) {
   vpe::core::View view;
-  view.eye = {{0, 0, 0}, mars::oriented_axes(kViewerFrame, std::fmod(yaw_deg, 360.0), pitch_deg, 0.0)};
+  view.camera = {{0, 0, 0}, mars::oriented_axes(kViewerFrame, std::fmod(yaw_deg, 360.0), pitch_deg, 0.0)};
   view.fov_deg = fov_deg;
   view.width = width_px;
   view.height = height_px;
@@ -59,7 +59,7 @@ vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int wi
 }
 
 Viewer::Viewer(const PanoramaMap& map, int width_px, int height_px) : map_(map), size_(width_px, height_px) {
-  // Written so that pictures wider than a turn start inside of their first one.
+  // Written so that images wider than a turn start inside of their first one.
   const double middle_px = 0.5 * std::min(static_cast<double>(map.width_px), map.turn_px);
   yaw_deg_ = map.to_direction(middle_px, map.horizon_px).azimuth_deg;
   set_fov(fov_deg_);

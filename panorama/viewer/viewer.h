@@ -3,7 +3,7 @@
 // Directions are those of the panorama: azimuth clockwise from north, elevation up. Screen positions are in
 // pixels, (0, 0) the upper left corner, pixel centres at +0.5. The screen's columns of the horizon at pitch 0
 // are azimuth = yaw + atan((x - width / 2) / f), f = (height / 2) / tan(fov / 2).
-// Pure: nothing here reads pictures. One thread at a time changes a Viewer.
+// Pure: nothing here reads images. One thread at a time changes a Viewer.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -19,11 +19,11 @@ struct ViewerLimits {
   static constexpr double kMinFov_deg = 0.001;
   static constexpr double kMaxFov_deg = 120;
   static constexpr double kDefaultFov_deg = 60;
-  // Screen pixels that a pixel of the picture may be wide; narrower fields of view are widened to that.
+  // Screen pixels that a pixel of the image may be wide; narrower fields of view are widened to that.
   static constexpr double kMaxMagnification = 16;
 };
 
-// Elevations that a picture shows at every azimuth of it.
+// Elevations that an image shows at every azimuth of it.
 struct ElevationRange {
   double low_deg = -90;
   double high_deg = 90;
@@ -32,14 +32,14 @@ ElevationRange elevations_of(const PanoramaMap& map);
 
 class Viewer {
  public:
-  // Looks at the middle of the map's elevations that is nearest to the horizon, yaw at the picture's middle.
+  // Looks at the middle of the map's elevations that is nearest to the horizon, yaw at the image's middle.
   // The map must pass check(); sides are 1 to ViewLimits::kMaxSide_px.
   Viewer(const PanoramaMap& map, int width_px, int height_px);
 
   // Azimuth of the screen's middle, any number of turns: what was turned is kept.
   double yaw_deg() const { return yaw_deg_; }
-  // So that the middle column ends at the picture's edges, or in the middle of a picture that is lower than the
-  // field of view. A picture that reaches the zenith or nadir may be looked at straight up or down.
+  // So that the middle column ends at the image's edges, or in the middle of an image that is lower than the
+  // field of view. An image that reaches the zenith or nadir may be looked at straight up or down.
   double pitch_deg() const { return pitch_deg_; }
   double fov_deg() const { return fov_deg_; }  // vertical
   glm::ivec2 size() const { return size_; }
@@ -56,7 +56,7 @@ class Viewer {
   // Divides the tangent of half the field of view by a factor > 0; what is at (x, y) stays there unless a limit
   // of the pitch is reached.
   void zoom(double factor, double x, double y);
-  // Turns, without roll, so that a direction is at (x, y): to drag the picture. As near to it as can be.
+  // Turns, without roll, so that a direction is at (x, y): to drag the image. As near to it as can be.
   void hold(const Direction& direction, double x, double y);
 
   // The view, its axes in the panorama's frame: x east, y north, z up.

@@ -8,13 +8,13 @@ namespace {
 
 core::DrawRequest looking(double pitch_deg, double alt_m = 20000) {
   core::DrawRequest request;
-  request.view.eye = mars::to_eye({30, 10, alt_m, 70, pitch_deg, 0}, mars::kMarsRadius_m);
+  request.view.camera = mars::to_camera({30, 10, alt_m, 70, pitch_deg, 0}, mars::kMarsRadius_m);
   return request;
 }
 
-BackendChoice choice(const std::vector<core::DrawRequest>& pictures, const PictureOptions& options = {},
+BackendChoice choice(const std::vector<core::DrawRequest>& images, const TiledImageOptions& options = {},
                      bool has_gpu = false) {
-  return choose_backend(options, make_settings(options), pictures, mars::kMarsRadius_m, has_gpu);
+  return choose_backend(options, make_settings(options), images, mars::kMarsRadius_m, has_gpu);
 }
 
 TEST(BackendChoice, RaysToTheHorizonFromNearbyWithoutAGpu) {
@@ -31,7 +31,7 @@ TEST(BackendChoice, RaysToTheHorizonFromNearbyWithoutAGpu) {
 
 TEST(BackendChoice, ANamedBackendIsTaken) {
   for (const std::string backend : {"voxel", "polygon"}) {
-    PictureOptions options;
+    TiledImageOptions options;
     options.backend = backend;
     for (const double pitch_deg : {-10.0, -70.0}) {
       const BackendChoice chosen = choice({looking(pitch_deg)}, options);
@@ -47,14 +47,14 @@ TEST(BackendChoice, WhatIsAboutTrianglesIsDrawnByThem) {
     EXPECT_TRUE(suits_rays(request));
     change(request);
     EXPECT_FALSE(suits_rays(request));
-    // One picture of many is enough.
+    // One image of many is enough.
     EXPECT_EQ(choice({looking(-10), request, looking(-10)}).backend, "polygon");
   };
   expect_triangles([](auto& r) { r.settings.mode = core::Mode::kWireframe; });
   expect_triangles([](auto& r) { r.settings.mode = core::Mode::kMarkers; });
   expect_triangles([](auto& r) { r.settings.shading = core::Shading::kFlat; });
   expect_triangles([](auto& r) { r.settings.inspect = core::Inspect::kLevels; });
-  expect_triangles([](auto& r) { r.settings.lod_rule = core::LodRule::kHitchner; });
+  expect_triangles([](auto& r) { r.settings.lod_metric = core::LodMetric::kDistance; });
   expect_triangles([](auto& r) { r.settings.lod_triangles = 1000; });
   expect_triangles([](auto& r) { r.settings.lod_centre_weight = 1; });
   expect_triangles([](auto& r) { r.interest.push_back({0, 0, 1000, 1}); });
@@ -63,7 +63,7 @@ TEST(BackendChoice, WhatIsAboutTrianglesIsDrawnByThem) {
 
 TEST(BackendChoice, RaysKeepToTheTolerance) {
   const auto settings = [](const std::vector<std::string>& set, double tolerance_px = -1) {
-    PictureOptions options;
+    TiledImageOptions options;
     options.set = set;
     options.tolerance_px = tolerance_px;
     const BackendChoice chosen = choice({looking(-10)}, options);

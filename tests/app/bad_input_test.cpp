@@ -140,7 +140,7 @@ TEST_F(BadInput, Outputs) {
   EXPECT_EQ(read_text(dir_ / "precious.txt"), "years of work");
 }
 
-TEST_F(BadInput, OutputsOfPicturesAreCheckedBeforeTheWork) {
+TEST_F(BadInput, OutputsOfImagesAreCheckedBeforeTheWork) {
   write_text(dir_ / "f.flight", small_flight());
   const auto render = [&](const Words& more, const Words& parts) {
     Words words{"render", "missing.vpe", "--pose", "0,0,300000"};

@@ -25,7 +25,7 @@ struct Inputs {
   std::string fingerprint() const { return fingerprint_of(basis, request, settings); }
 };
 
-TEST(FilmFrame, EverythingThatAPictureDependsOnIsInItsFingerprint) {
+TEST(FilmFrame, EverythingThatAImageDependsOnIsInItsFingerprint) {
   const std::string base = Inputs{}.fingerprint();
   EXPECT_EQ(base.size(), 32U);
   EXPECT_EQ(base, Inputs{}.fingerprint());
@@ -45,10 +45,10 @@ TEST(FilmFrame, EverythingThatAPictureDependsOnIsInItsFingerprint) {
   });
   auto& next = std::nextafter<double, double>;
   for (int n = 0; n < 3; ++n) {
-    change("eye", [&](Inputs& i) { i.request.view.eye.eye_m[n] = next(i.request.view.eye.eye_m[n], 9); });
-    change("right", [&](Inputs& i) { i.request.view.eye.axes.right[n] += 0.5; });
-    change("up", [&](Inputs& i) { i.request.view.eye.axes.up[n] += 0.5; });
-    change("forward", [&](Inputs& i) { i.request.view.eye.axes.forward[n] += 0.5; });
+    change("eye", [&](Inputs& i) { i.request.view.camera.position_m[n] = next(i.request.view.camera.position_m[n], 9); });
+    change("right", [&](Inputs& i) { i.request.view.camera.axes.right[n] += 0.5; });
+    change("up", [&](Inputs& i) { i.request.view.camera.axes.up[n] += 0.5; });
+    change("forward", [&](Inputs& i) { i.request.view.camera.axes.forward[n] += 0.5; });
     change("sun", [&](Inputs& i) { i.request.sun[n] = next(i.request.sun[n], 9); });
   }
   change("width", [](Inputs& i) { ++i.request.view.width; });
@@ -147,14 +147,14 @@ TEST(FilmFigures, ComeBackFromJson) {
   figures.stats.triangles = std::int64_t{1} << 40;
   figures.stats.tiles_by_level = {0, 5, 7};
   figures.certificate.shift_bound_px = 0.1 + 0.2;
-  figures.certificate.tile_error_px = INFINITY;
+  figures.certificate.screen_space_error_px = INFINITY;
   const auto back = vpe::app::figures_from(nlohmann::json::parse(to_json(figures).dump()));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->stats.tiles_drawn, 12);
   EXPECT_EQ(back->stats.triangles, std::int64_t{1} << 40);
   EXPECT_EQ(back->stats.tiles_by_level, figures.stats.tiles_by_level);
   EXPECT_EQ(back->certificate.shift_bound_px, 0.1 + 0.2);
-  EXPECT_FALSE(std::isfinite(back->certificate.tile_error_px));
+  EXPECT_FALSE(std::isfinite(back->certificate.screen_space_error_px));
   EXPECT_TRUE(std::isnan(back->stats.draw_ms));
   EXPECT_LT(back->stats.bytes_resident, 0);
   for (const char* bad : {"null", "[]", "{}", "{\"tiles_visited\": \"x\"}"}) {

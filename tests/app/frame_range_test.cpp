@@ -15,7 +15,7 @@ using vpe::app::UsageError;
 using Variables = std::map<std::string, std::string>;
 
 Part part(const std::string& text, const Variables& variables = {}) {
-  return vpe::app::parse_part(text, [&](const char* name) -> const char* {
+  return vpe::app::parse_shard(text, [&](const char* name) -> const char* {
     const auto found = variables.find(name);
     return found == variables.end() ? nullptr : found->second.c_str();
   });

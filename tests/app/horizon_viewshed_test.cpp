@@ -20,7 +20,7 @@ constexpr int kEvery = 4;
 constexpr double kCell_m = 25;
 constexpr double kWest_m = 600000;  // 10 degrees east, on the equator, where this projection keeps lengths
 constexpr double kNorth_m = 0.5 * kSide * kCell_m;
-constexpr double kEyeHeight_m = 10;
+constexpr double kCameraHeight_m = 10;
 
 double hills(double x, double y) {
   return 120 * std::sin(x / 1100) * std::cos(y / 1500) + 60 * std::sin((x + 2 * y) / 800 + 1) + 0.01 * y;
@@ -64,12 +64,12 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& path) {
 
 // How far the straight line to a post stays above the ground, by looking at the ground below every two metres
 // of it; negative where it goes through.
-double clearance_m(const paging::Surface& surface, const glm::dvec3& eye, const glm::dvec3& post) {
-  const double length = glm::distance(eye, post);
+double clearance_m(const paging::Surface& surface, const glm::dvec3& camera, const glm::dvec3& post) {
+  const double length = glm::distance(camera, post);
   double least = 1e9;
   const int steps = static_cast<int>(length / 2);
   for (int n = 1; n < steps; ++n) {
-    const glm::dvec3 p = eye + (post - eye) * (static_cast<double>(n) / steps);
+    const glm::dvec3 p = camera + (post - camera) * (static_cast<double>(n) / steps);
     least = std::min(least, glm::length(p) - surface.at(p).radius_m);
   }
   return least;
@@ -95,7 +95,7 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
   gdal.folder = dir_.path();
   gdal.arguments = {"-ox",     number(x_of(kColumn)),
                     "-oy",     number(y_of(kRow)),
-                    "-oz",     number(kEyeHeight_m),
+                    "-oz",     number(kCameraHeight_m),
                     "-tz",     "0",
                     "-cc",     "1.0",
                     "-q",      "hills.tif",
@@ -112,7 +112,7 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
   }
   write_text(dir_ / "posts.csv", names);
   const std::string at = number(degrees(x_of(kColumn))) + "," + number(degrees(y_of(kRow)));
-  const Result result = vpe({"horizon", "hills.vpe", "--at", at, "--height", number(kEyeHeight_m), "-o",
+  const Result result = vpe({"horizon", "hills.vpe", "--at", at, "--height", number(kCameraHeight_m), "-o",
                              "s.csv", "--step", "10", "--names", "posts.csv", "--within", "1e5", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json list = parse_json(result.out)["features"];
@@ -120,7 +120,7 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
 
   const paging::Surface surface(paging::PlanetFile::open((dir_ / "hills.vpe").string()), std::size_t{64} << 20);
   const glm::dvec3 up = mars::direction({degrees(x_of(kColumn)), degrees(y_of(kRow))});
-  const glm::dvec3 eye = (surface.at(up).radius_m + kEyeHeight_m) * up;
+  const glm::dvec3 camera = (surface.at(up).radius_m + kCameraHeight_m) * up;
   int agree = 0;
   int seen = 0;
   int checked = 0;
@@ -135,7 +135,7 @@ TEST_F(Viewshed, GdalSeesTheSamePosts) {
     if (same && n % 97 != 0) continue;
     ++checked;
     const glm::dvec3 direction = mars::direction({f["lon_deg"].get<double>(), f["lat_deg"].get<double>()});
-    const double clearance = clearance_m(surface, eye, surface.at(direction).radius_m * direction);
+    const double clearance = clearance_m(surface, camera, surface.at(direction).radius_m * direction);
     // Two metres of a slope of 1 : 5 are what a step may miss.
     if (visible ? clearance < -1e-3 : clearance > 0.5) {
       ++ours_wrong;

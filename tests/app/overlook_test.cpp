@@ -22,7 +22,7 @@ vpe::base::Rgb wheel(const panorama::Direction& d) {
           static_cast<std::uint8_t>(d.elevation_deg > 0 ? 255 : 0)};
 }
 
-std::vector<vpe::base::Rgb> wheel_picture(const PanoramaMap& map) {
+std::vector<vpe::base::Rgb> wheel_image(const PanoramaMap& map) {
   std::vector<vpe::base::Rgb> pixels;
   for (std::int64_t y = 0; y < map.height_px; ++y) {
     for (std::int64_t x = 0; x < map.width_px; ++x)
@@ -41,7 +41,7 @@ class Overlook : public AppTest {
   const PanoramaMap map_ = panorama::cylinder_map(720, 300, 720, 0.0, 150.0);
 
   void write_wheel(const std::string& name) const {
-    vpe::core::write_image(dir_ / name, wheel_picture(map_), 720, 300);
+    vpe::core::write_image(dir_ / name, wheel_image(map_), 720, 300);
     write_text((dir_ / name).replace_extension(".json"), panorama::to_json({name, map_, {}}));
   }
   vpe::core::RgbImage view(const Words& more) const {
@@ -73,7 +73,7 @@ TEST_F(Overlook, GPanoOfBothKinds) {
   const PanoramaMap sphere = panorama::equirectangular_map(720, 360, 720, 0.0, 180.0);
   for (const PanoramaMap& map : {map_, sphere}) {
     for (const char* name : {"g.png", "g.jpg"}) {
-      vpe::core::write_image(dir_ / name, wheel_picture(map), 720, static_cast<int>(map.height_px));
+      vpe::core::write_image(dir_ / name, wheel_image(map), 720, static_cast<int>(map.height_px));
       panorama::write_xmp(dir_ / name, panorama::to_xmp(panorama::gpano_of(map)));
       const Result result =
           vpe({"overlook", name, "--view", "0,0", "-o", "v.png", "--size", "160x90", "--json"});
@@ -83,7 +83,7 @@ TEST_F(Overlook, GPanoOfBothKinds) {
       EXPECT_EQ(json["view"]["fov_deg"], 60);
       const vpe::core::RgbImage image = vpe::core::read_image(dir_ / "v.png");
       EXPECT_NEAR(middle(image, 0.9).r, 128 + 127 * std::sin(0.69), 12) << name;
-      // Across 360 degrees, where the picture's edges meet, colours go on as elsewhere.
+      // Across 360 degrees, where the image's edges meet, colours go on as elsewhere.
       for (int x = 60; x < 100; ++x) {
         const std::size_t at = static_cast<std::size_t>(47 * 160 + x);
         EXPECT_LT(std::abs(image.pixels[at + 1].r - image.pixels[at].r), 8) << name << x;
@@ -119,10 +119,10 @@ TEST_F(Overlook, SaysWhatIsThere) {
 }
 
 TEST_F(Overlook, Pairs) {
-  // The right eye's picture is turned by 90 degrees, to tell them apart.
+  // The right eye's image is turned by 90 degrees, to tell them apart.
   write_wheel("a.png");
   const PanoramaMap other = panorama::cylinder_map(720, 300, 720, 90.0, 150.0);
-  vpe::core::write_image(dir_ / "r.png", wheel_picture(other), 720, 300);
+  vpe::core::write_image(dir_ / "r.png", wheel_image(other), 720, 300);
   write_text(dir_ / "r.json", panorama::to_json({"r.png", map_, {}}));
   const vpe::core::RgbImage left = view({"--view", "0,0"});
   const vpe::core::RgbImage beside = view({"--view", "0,0", "--right", "r.png", "--stereo", "sbs"});
@@ -131,8 +131,8 @@ TEST_F(Overlook, Pairs) {
   EXPECT_NEAR(middle(beside, 0.75).r, 255, 3);
   // The same out of one file, over and under, which its JSON says; and side by side, which the command line
   // says.
-  std::vector<vpe::base::Rgb> both = wheel_picture(map_);
-  const std::vector<vpe::base::Rgb> right = wheel_picture(other);
+  std::vector<vpe::base::Rgb> both = wheel_image(map_);
+  const std::vector<vpe::base::Rgb> right = wheel_image(other);
   both.insert(both.end(), right.begin(), right.end());
   vpe::core::write_image(dir_ / "ou.png", both, 720, 600);
   auto json = parse_json(panorama::to_json({"ou.png", map_, {}}));
@@ -196,7 +196,7 @@ TEST_F(Overlook, WithoutADisplayItSaysWhatToDo) {
 }
 
 TEST_F(Overlook, BadPanoramas) {
-  vpe::core::write_image(dir_ / "plain.png", wheel_picture(map_), 720, 300);
+  vpe::core::write_image(dir_ / "plain.png", wheel_image(map_), 720, 300);
   expect_failure({"overlook", "plain.png", "-o", "v.png"}, 1, {"plain.png", "directions", "plain.json"});
   write_wheel("a.png");
   expect_failure({"overlook", "a.png", "--at", "0,80"}, 1,
@@ -219,7 +219,7 @@ TEST_F(Overlook, BadPanoramas) {
 }
 
 // 6 GB unpacked.
-TEST_F(Overlook, LargePicturesWithinTheirMemory) {
+TEST_F(Overlook, LargeImagesWithinTheirMemory) {
   panorama_test::SharedTiles::write(dir_ / "big.tif", 100'000, 20'000);
   write_text(
       dir_ / "big.json",

@@ -28,9 +28,9 @@ class PanoramaOverlay : public AppTest {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return result;
   }
-  RgbImage picture(const std::string& name) const { return vpe::core::read_image(dir_ / name); }
+  RgbImage panorama_image(const std::string& name) const { return vpe::core::read_image(dir_ / name); }
 
-  // Around the eye: some 60 to 240 km away, and one behind the planet.
+  // Around the camera: some 60 to 240 km away, and one behind the planet.
   static constexpr const char* kPlaces =
       "name,lon,lat,diameter_km\nNorth,10,6,0\nEast,11.5,5,0\nSouth,10,3,0\nSouth-west,7,2,0\nAntipode,190,-5,"
       "0\n";
@@ -59,8 +59,8 @@ TEST_F(PanoramaOverlay, NamesThatAreSeenStandAtTheirPixelsInEveryProjection) {
     const Words more = with(kind, {"--width", "1600", "--elevation=-20,20", "--yaw", "33"});
     make("plain.png", more);
     make("named.png", with(more, {"--set", "overlay.names=places.csv"}));
-    const RgbImage plain = picture("plain.png");
-    const RgbImage named = picture("named.png");
+    const RgbImage plain = panorama_image("plain.png");
+    const RgbImage named = panorama_image("named.png");
     const panorama::PanoramaMap map = panorama::describe(dir_ / "named.png").map;
     std::size_t painted = 0;
     for (std::size_t n = 0; n < plain.pixels.size(); ++n) painted += plain.pixels[n] != named.pixels[n];
@@ -94,7 +94,7 @@ TEST_F(PanoramaOverlay, MemoryThreadsAndStripsChangeNoByte) {
   make("a.png", more);
   make("b.png", with(more, {"--memory", "64", "--threads", "3"}));
   EXPECT_TRUE(read_text(dir_ / "a.png") == read_text(dir_ / "b.png"));
-  // An eye that is stopped goes on with the same layout.
+  // A camera that is stopped goes on with the same layout.
   fs::remove(dir_ / "a.json");
   const std::string bytes = read_text(dir_ / "a.png");
   fs::remove(dir_ / "a.png");
@@ -154,8 +154,8 @@ TEST_F(PanoramaOverlay, TheCompassOfAViewIsThatOfItsPanorama) {
     if (output == "marked.png") words.push_back("--compass");
     ASSERT_EQ(vpe(words).exit_code, 0);
   }
-  const RgbImage plain = picture("plain.png");
-  const RgbImage marked = picture("marked.png");
+  const RgbImage plain = panorama_image("plain.png");
+  const RgbImage marked = panorama_image("marked.png");
   std::size_t above = 0;
   std::size_t below = 0;
   for (std::size_t n = 0; n < plain.pixels.size(); ++n)

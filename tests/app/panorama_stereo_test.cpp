@@ -170,13 +170,13 @@ TEST_F(StereoPanorama, BadInputIsTold) {
   refuse(1, {"--stereo", "sbs", "--eye-base", "2500"}, {"--eye-base", "at most"});
   refuse(1, {"--stereo", "sbs", "--elevation=40,60"}, {"sky alone", "--eye-base"});
   refuse(1, {"--stereo", "sbs", "--width", "40000", "--elevation=-2,2"}, {"80000x", "65500"}, "x.jpg");
-  // An eye in a slope that the picture does not show.
+  // An eye in a slope that the image does not show.
   const Result low =
       vpe({"panorama", planet().string(), "--at", "100,0", "--height", "0.02", "-o", "x.png", "--width", "500",
            "--elevation=40,60", "--stereo", "sbs", "--eye-base", "2000", "-q"});
   EXPECT_EQ(low.exit_code, 1);
   EXPECT_TRUE(says(low.err, {"--stereo", "above the ground", "smaller --eye-base"}));
-  // Of sky alone, with a base, there is a picture.
+  // Of sky alone, with a base, there is an image.
   make("sky.png", {"--stereo", "sbs", "--elevation=40,60", "--eye-base", "10"});
 
   make("p.png", {"--stereo", "sbs"});
@@ -239,7 +239,7 @@ TEST_F(StereoGround, DisparitiesAreThoseOfExactCasts) {
     const double base_m = report["eye_base_m"];
     const auto description = panorama::describe(dir_ / "p.png");
     const panorama::PanoramaMap& map = description.map;
-    const mars::Pose middle{kLon_deg, kLat_deg, *description.station->alt_m, 0, 0, 0};
+    const mars::Pose middle{kLon_deg, kLat_deg, *description.viewpoint->alt_m, 0, 0, 0};
     const test_support::TwoEyes eyes(middle, mars::kMarsRadius_m, base_m);
     const RgbImage image = vpe::core::read_image(dir_ / "p.png");
 
@@ -267,14 +267,14 @@ TEST_F(StereoGround, DisparitiesAreThoseOfExactCasts) {
       const auto y = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(map.height_px));
       const auto d = map.to_direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
       const auto ray = eyes.ray(Eye::kRight, d);
-      const double range_m = surface.cast(ray.eye_m, ray.direction);
+      const double range_m = surface.cast(ray.camera_m, ray.direction);
       if (!std::isfinite(range_m)) continue;
-      const glm::dvec3 hit_m = ray.eye_m + range_m * ray.direction;
+      const glm::dvec3 hit_m = ray.camera_m + range_m * ray.direction;
       const auto from = eyes.ray(Eye::kLeft, eyes.seen(Eye::kLeft, hit_m));
-      if (surface.cast(from.eye_m, from.direction) < glm::length(hit_m - from.eye_m) * (1 - 1e-5))
+      if (surface.cast(from.camera_m, from.direction) < glm::length(hit_m - from.camera_m) * (1 - 1e-5))
         continue;  // hidden
       const glm::dvec2 left = map.place(eyes.seen(Eye::kLeft, hit_m));
-      // Rows of the left picture near that of the right one; slopes of light down the picture add little.
+      // Rows of the left image near that of the right one; slopes of light down the image add little.
       if (std::abs(left.y - (static_cast<double>(y) + 0.5)) > 0.3) continue;
       const double apart_px = std::remainder(left.x - (static_cast<double>(x) + 0.5), map.turn_px);
       const double e = d.elevation_deg * mars::kRadiansPerDegree;

@@ -32,7 +32,7 @@ class Panorama : public AppTest {
   static Words wide() { return {"--width", "18000", "--elevation=-3.2,-1.8"}; }
 };
 
-TEST_F(Panorama, EveryFormatHasTheSamePictureAndItsDescription) {
+TEST_F(Panorama, EveryFormatHasTheSameImageAndItsDescription) {
   const Words more{"--width", "700", "--elevation=-30,20", "--yaw", "30"};
   make("p.png", more);
   make("q.tif", more);
@@ -48,9 +48,9 @@ TEST_F(Panorama, EveryFormatHasTheSamePictureAndItsDescription) {
     EXPECT_EQ(described.map.kind, panorama::MapKind::kCylinder);
     EXPECT_EQ(described.map.width_px, 700);
     EXPECT_NEAR(described.map.to_direction(0, 0).azimuth_deg, 30, 1e-9);
-    ASSERT_TRUE(described.station);
-    EXPECT_NEAR(*described.station->height_m, 4000, 1e-9);
-    EXPECT_NEAR(*described.station->ground_m + 4000, *described.station->alt_m, 1e-6);
+    ASSERT_TRUE(described.viewpoint);
+    EXPECT_NEAR(*described.viewpoint->height_m, 4000, 1e-9);
+    EXPECT_NEAR(*described.viewpoint->ground_m + 4000, *described.viewpoint->alt_m, 1e-6);
   }
   EXPECT_EQ(leftovers(), Words{});
   EXPECT_FALSE(exists("p.png.parts"));
@@ -104,7 +104,7 @@ TEST_F(Panorama, ResumedAfterASignalItIsTheSame) {
     Words more = wide();
     more.insert(more.end(), {"--planes", "range,elevation"});
     make(name, more);
-    const std::string picture = read_text(dir_ / name);
+    const std::string panorama_image = read_text(dir_ / name);
     const std::string range = read_text(dir_ / "p.range.tif");
     const std::string sidecar = read_text(dir_ / "p.json");
     for (const char* file : {"p.range.tif", "p.elevation.tif", "p.json"}) fs::remove(dir_ / file);
@@ -133,7 +133,7 @@ TEST_F(Panorama, ResumedAfterASignalItIsTheSame) {
     const auto report = parse_json(make(name, more).out);
     EXPECT_GE(report["strips_kept"], 1);
     EXPECT_EQ(report["strips_kept"].get<int>() + report["strips_made"].get<int>(), 3);
-    EXPECT_EQ(read_text(dir_ / name), picture);
+    EXPECT_EQ(read_text(dir_ / name), panorama_image);
     EXPECT_EQ(read_text(dir_ / "p.range.tif"), range);
     EXPECT_FALSE(exists(name + ".parts"));
     auto is = parse_json(read_text(dir_ / "p.json"));
@@ -270,7 +270,7 @@ TEST_F(Panorama, BadInputIsToldBeforeAnyWork) {
   if (::access((dir_ / "locked").c_str(), W_OK) != 0) refuse(1, {}, {"locked", "permissions"}, "locked/x.png");
 }
 
-// A planet of constant height with posts 20 m apart about the eye: S is the sphere within 2e-5 m there.
+// A planet of constant height with posts 20 m apart about the camera: S is the sphere within 2e-5 m there.
 class PanoramaSphere : public Panorama {};
 
 TEST_F(PanoramaSphere, PlanesAreThoseOfTheSphere) {
@@ -295,7 +295,7 @@ TEST_F(PanoramaSphere, PlanesAreThoseOfTheSphere) {
     ASSERT_EQ(range.size(), static_cast<std::size_t>(map.width_px * map.height_px));
     const double radius_m = mars::kMarsRadius_m;
     const mars::LocalFrame frame = mars::local_frame({kLon_deg, kLat_deg});
-    const glm::dvec3 eye_m = below * (radius_m + kHeight_m);
+    const glm::dvec3 camera_m = below * (radius_m + kHeight_m);
     constexpr double kSagitta_m = 2e-5;
     double worst = 0;
     for (std::size_t n = 0; n < range.size(); n += 7) {
@@ -303,11 +303,11 @@ TEST_F(PanoramaSphere, PlanesAreThoseOfTheSphere) {
       const mars::SinCos a = mars::sin_cos_deg(d.azimuth_deg);
       const mars::SinCos e = mars::sin_cos_deg(d.elevation_deg);
       const glm::dvec3 ray = frame.east * (e.cos * a.sin) + frame.north * (e.cos * a.cos) + frame.up * e.sin;
-      // |eye + t ray| = radius, without cancellation.
-      const double b = glm::dot(eye_m, ray);
+      // |camera + t ray| = radius, without cancellation.
+      const double b = glm::dot(camera_m, ray);
       const double c = kHeight_m * (2 * radius_m + kHeight_m);
       const double t = c / (-b + std::sqrt(b * b - c));
-      const glm::dvec3 hit = eye_m + ray * t;
+      const glm::dvec3 hit = camera_m + ray * t;
       const double sine = -glm::dot(glm::normalize(hit), ray);
       const double off = std::abs(range[n] - t) / (1e-6 / sine * t + kSagitta_m / sine);
       worst = std::max(worst, off);
@@ -341,15 +341,15 @@ TEST_F(Panorama, OfManyStripsIsThatOfPieces) {
   // The same directions from a View of its own.
   make("w.png", wide());
   make("a.png", {"--degrees-per-pixel", "0.02", "--from", "200", "--to", "220", "--elevation=-3.2,-1.8"});
-  const vpe::core::RgbImage wide_picture = vpe::core::read_image(dir_ / "w.png");
+  const vpe::core::RgbImage wide_image = vpe::core::read_image(dir_ / "w.png");
   const vpe::core::RgbImage arc = vpe::core::read_image(dir_ / "a.png");
   ASSERT_EQ(arc.width, 1000);
-  ASSERT_EQ(arc.height, wide_picture.height);
+  ASSERT_EQ(arc.height, wide_image.height);
   int different = 0;
   for (int y = 0; y < arc.height; ++y) {
     for (int x = 0; x < arc.width; ++x) {
       const vpe::base::Rgb a = arc.pixels[static_cast<std::size_t>(y * arc.width + x)];
-      const vpe::base::Rgb b = wide_picture.pixels[static_cast<std::size_t>(y * wide_picture.width + x + 10000)];
+      const vpe::base::Rgb b = wide_image.pixels[static_cast<std::size_t>(y * wide_image.width + x + 10000)];
       different += std::abs(a.r - b.r) > 2 || std::abs(a.g - b.g) > 2 || std::abs(a.b - b.b) > 2;
     }
   }

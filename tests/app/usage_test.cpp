@@ -52,7 +52,7 @@ TEST_F(Usage, Places) {
   expect_failure({"query", "0,91"}, 2, {"latitude"});
 }
 
-class PictureUsage : public Usage {
+class ImageUsage : public Usage {
  protected:
   // Wrong usage is told although the planet is not even there: nothing was done before.
   void expect_usage(const Words& more, const Words& parts, const std::string& pose = "0,0,300000") const {
@@ -63,7 +63,7 @@ class PictureUsage : public Usage {
   }
 };
 
-TEST_F(PictureUsage, Pose) {
+TEST_F(ImageUsage, Pose) {
   expect_usage({}, {"--pose 'nan,0,1'", "LON,LAT,ALT"}, "nan,0,1");
   expect_usage({}, {"--pose '0,0,inf'", "LON,LAT,ALT"}, "0,0,inf");
   expect_usage({}, {"--pose '0,91,1'", "latitude", "-90..90"}, "0,91,1");
@@ -74,7 +74,7 @@ TEST_F(PictureUsage, Pose) {
   expect_usage({"--height", "nan"}, {"--height", "'nan'"});
 }
 
-TEST_F(PictureUsage, InterestAndLevelControl) {
+TEST_F(ImageUsage, InterestAndLevelControl) {
   for (const char* bad :
        {"", "1", "1,2,3", "1,2,3,4,5", "nan,0,1,1", "361,0,1,1", "0,91,1,1", "0,0,-1,1", "0,0,1e9,1",
         "0,0,inf,1", "0,0,1,31", "0,0,1,-31", "0,0,1,0.5", "0,0,1,+", "0;0;1;1"}) {
@@ -89,14 +89,14 @@ TEST_F(PictureUsage, InterestAndLevelControl) {
   expect_usage({"--set", "lod.center.scale=1"}, {"did you mean", "lod.centre.scale"});
 }
 
-TEST_F(PictureUsage, CullFrom) {
+TEST_F(ImageUsage, CullFrom) {
   for (const char* pose : {"", "0,0", "0,91,1", "nan,0,1", "0,0,1,2,3,4,5"}) {
     expect_usage({"--cull-from", pose}, {"--cull-from '" + std::string(pose) + "'", "LON,LAT,ALT"});
   }
   expect_usage({"--cull-from", "0,0,1e17"}, {"eye", "1000000000000000 m"});
 }
 
-TEST_F(PictureUsage, SizeAndFieldOfView) {
+TEST_F(ImageUsage, SizeAndFieldOfView) {
   for (const char* size : {"0x0", "640x0", "100000x100000", "axb", "640", "-1x5", "6.5x3"}) {
     expect_usage({"--size", size}, {"--size '" + std::string(size) + "'", "WIDTHxHEIGHT", "1..32768"});
   }
@@ -105,7 +105,7 @@ TEST_F(PictureUsage, SizeAndFieldOfView) {
   }
 }
 
-TEST_F(PictureUsage, Settings) {
+TEST_F(ImageUsage, Settings) {
   expect_usage({"--set", "lod.tolerence=3"},
                {"--set lod.tolerence=3", "unknown", "did you mean lod.tolerance?"});
   expect_usage({"--set", "mode"}, {"--set mode", "="});

@@ -151,7 +151,7 @@ RC_GTEST_PROP(NiceTicksProperty, AreTwoOrMore, ()) {
   const int most = *rc::gen::inRange(1, 20);
   const Values values = nice_ticks_two_or_more(range.low, range.high, most);
   RC_ASSERT(values.size() >= 2U);
-  RC_ASSERT(values.size() <= static_cast<std::size_t>(std::max(2, most + 1)));
+  RC_ASSERT(values.size() <= static_cast<std::size_t>(std::max(5, most + 1)));
   RC_ASSERT(values.front() >= range.low - 1e-6 * width && values.back() <= range.high + 1e-6 * width);
 }
 

@@ -295,14 +295,15 @@ RC_GTEST_PROP(ObjectPoolProperty, IsAStack, ()) {
   int made = 0;
   ObjectPool<Counted> pool([&] { return std::make_unique<Counted>(alive, made++); },
                            {.discard_on_exception = true, .max_idle = max_idle});
-  std::vector<std::optional<ObjectPool<Counted>::Lease>> used;
+  using Lease = ObjectPool<Counted>::Lease;
+  std::vector<std::unique_ptr<Lease>> used;
   std::vector<int> idle;
   const auto steps = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 1000));
   for (const int step : steps) {
     if (step % 2 == 0 || used.empty()) {
       const int expected = idle.empty() ? made : idle.back();
       if (!idle.empty()) idle.pop_back();
-      used.emplace_back(pool.acquire());
+      used.push_back(std::make_unique<Lease>(pool.acquire()));
       RC_ASSERT((*used.back())->number == expected);
     } else {
       std::swap(used[static_cast<std::size_t>(step) % used.size()], used.back());
@@ -310,7 +311,7 @@ RC_GTEST_PROP(ObjectPoolProperty, IsAStack, ()) {
       const int way = step % 5;
       if (way == 0) used.back()->discard();
       try {
-        const auto last = std::move(*used.back());
+        const Lease last = std::move(*used.back());
         used.pop_back();
         if (way == 1) throw std::runtime_error("stop");
       } catch (const std::runtime_error&) {

@@ -62,7 +62,7 @@ void run(const mars::Pose& pose, int width, int height, int rounds, char** files
     p.spacing_m = finest_spacing_m(*p.planet);
   }
   vpe::core::DrawRequest request;
-  request.view.eye = mars::to_eye(pose, planets[0].planet->radius_m());
+  request.view.camera = mars::to_camera(pose, planets[0].planet->radius_m());
   request.view.width = width;
   request.view.height = height;
   request.sun = mars::sun_direction({pose.lon_deg, pose.lat_deg}, 315, 35);

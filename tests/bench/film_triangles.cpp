@@ -125,7 +125,7 @@ RegularTiles measure(const paging::Surface& surface) {
             [](const auto& a, const auto& b) { return lod::z_position(a) < lod::z_position(b); });
   constexpr std::size_t kChunk = 64;
   std::vector<RegularTiles> found((leaves.size() + kChunk - 1) / kChunk);
-  vpe::core::parallel_for(found.size(), 0, [&](std::size_t chunk) {
+  vpe::base::parallel_for(found.size(), 0, [&](std::size_t chunk) {
     RegularMeter meter(surface);
     const std::size_t end = std::min(leaves.size(), (chunk + 1) * kChunk);
     for (std::size_t n = chunk * kChunk; n < end; ++n) meter.add(leaves[n]);
@@ -175,7 +175,7 @@ Film film_of(const char* file, std::int64_t stride, const paging::Surface& surfa
   for (std::int64_t k = 0; k < count; k += stride) {
     const double t = scripts::frame_time(flight.view.fps, k);
     vpe::core::View view;
-    view.eye = path.at(t).eye;
+    view.camera = path.at(t).camera;
     view.fov_deg = flight.view.fov_deg;
     view.width = flight.view.width;
     view.height = flight.view.height;

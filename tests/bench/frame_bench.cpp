@@ -3,7 +3,7 @@
 //
 //   frame_bench PLANET.vpe FLIGHT [FRAMES] [ROUNDS]
 //
-// The peer draws all triangles of the frame's meshes, relative to the eye, with one call, one vertex buffer and
+// The peer draws all triangles of the frame's meshes, relative to the camera, with one call, one vertex buffer and
 // one texture, into the same kind of target: what OpenGL takes for that many triangles and pixels. Frames are
 // resident on both sides; rounds alternate; figures are medians.
 #include <algorithm>
@@ -63,7 +63,7 @@ std::vector<DrawRequest> film(const char* file, std::int64_t count, const paging
   for (std::int64_t n = 0; n < count; ++n) {
     const double t = scripts::duration_s(flight) * (static_cast<double>(n) + 0.5) / static_cast<double>(count);
     DrawRequest request;
-    request.view.eye = path.at(t).eye;
+    request.view.camera = path.at(t).camera;
     request.view.fov_deg = flight.view.fov_deg;
     request.view.width = flight.view.width;
     request.view.height = flight.view.height;
@@ -97,7 +97,7 @@ class Plain {
     for (const lod::SelectedTile& tile : selection.tiles) {
       const vpe::gl::TileGeometry g = geometry(planet, tile, options.exaggeration);
       const auto base = static_cast<std::uint32_t>(vertices.size());
-      const glm::dvec3 offset = g.centre_m - request.view.eye.eye_m;
+      const glm::dvec3 offset = g.centre_m - request.view.camera.position_m;
       for (std::uint32_t v = 0; v < g.surface_vertices; ++v) {
         vertices.push_back({glm::vec3(glm::dvec3(g.positions_m[v]) + offset), g.charts[v]});
       }
@@ -120,8 +120,8 @@ class Plain {
     glVertexArrayAttribBinding(array, 1, 0);
     glVertexArrayVertexBuffer(array, 0, vertices_.name(), 0, sizeof(Vertex));
     glVertexArrayElementBuffer(array, indices_.name());
-    lens_ = vpe::gl::make_lens(request.view, std::max(1.0, 0.3 * nearest_m));
-    rotation_ = vpe::gl::body_to_eye(request.view.eye.axes);
+    projection_ = vpe::gl::clip_projection(request.view, std::max(1.0, 0.3 * nearest_m));
+    rotation_ = vpe::gl::body_to_camera(request.view.camera.axes);
   }
 
   std::int64_t triangles() const { return count_ / 3; }
@@ -135,8 +135,8 @@ class Plain {
     glDepthFunc(GL_GREATER);
     glUseProgram(program.name());
     glUniformMatrix3fv(2, 1, GL_FALSE, &rotation_[0][0]);
-    glUniform4fv(3, 1, &lens_.scale_shift[0]);
-    glUniform1f(4, lens_.near_m);
+    glUniform4fv(3, 1, &projection_.scale_shift[0]);
+    glUniform1f(4, projection_.near_m);
     glBindVertexArray(array_.name());
     glDrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
     glFinish();
@@ -162,7 +162,7 @@ class Plain {
   vpe::gl::Buffer vertices_;
   vpe::gl::Buffer indices_;
   GLsizei count_ = 0;
-  vpe::gl::Lens lens_;
+  vpe::gl::ClipProjection projection_;
   glm::mat3 rotation_{};
 };
 

@@ -1,6 +1,6 @@
-// Draws how the frame-time controller answers a step of the load: docs/pictures/frame-budget.svg.
+// Draws how the frame-time controller answers a step of the load: docs/images/frame-budget.svg.
 //
-//   frame_budget_plot > docs/pictures/frame-budget.svg
+//   frame_budget_plot > docs/images/frame-budget.svg
 //
 // Also prints, to stderr, the frames that steps take to settle, and at which ratio of true to estimated slope
 // the loop begins to oscillate when the estimate is held: the gain margin by simulation.

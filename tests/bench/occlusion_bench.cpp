@@ -32,15 +32,15 @@ void measure(test_support::MeshStore& store, const paging::Surface& surface, con
     lod::Selection selection;
     select_ms +=
         bench::median_ms([&] { lod::select({}, planet.tree(), lod::select_view(view), scratch, selection); });
-    const test_support::DrawnGround drawn(store, selection, view.eye.eye_m);
+    const test_support::DrawnGround drawn(store, selection, view.camera.position_m);
     std::vector<lod::OccludingTile> given;
     for (const lod::SelectedTile& t : selection.tiles) {
-      given.push_back({t.key, planet.tree().shell(t.index, 1.0, t.error_m), &store.mesh(t, 1.0).walls});
+      given.push_back({t.key, planet.tree().region(t.index, 1.0, t.geometric_error_m), &store.mesh(t, 1.0).occluders});
     }
     std::vector<std::uint8_t> out;
     const double margin_rad = margin_px / core::focal_px(view);
     pass_ms += bench::median_ms(
-        [&] { lod::occlude(given, view.eye.eye_m, true, margin_rad, planet.radius_m(), pass, out); });
+        [&] { lod::occlude(given, view.camera.position_m, true, margin_rad, planet.radius_m(), pass, out); });
     tiles += static_cast<int>(out.size());
     for (std::size_t tile = 0; tile < out.size(); ++tile) {
       const test_support::DrawnMesh& mesh = drawn.mesh(tile);

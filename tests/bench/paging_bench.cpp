@@ -60,7 +60,7 @@ class Film {
  private:
   vpe::core::View view(double t) const {
     vpe::core::View out;
-    out.eye = path_.at(t).eye;
+    out.camera = path_.at(t).camera;
     out.fov_deg = view_.fov_deg;
     out.width = width_;
     out.height = height_;

@@ -1,5 +1,5 @@
-// Time of painting a picture whose ranges are known (vpe/voxel/paint/image_painter.h) against asking
-// GroundPainter::colour_at, sky and haze pixel by pixel: section "Painting" of docs/rays.md.
+// Time of painting an image whose ranges are known (vpe/voxel/paint/image_painter.h) against asking
+// TerrainShader::colour_at, sky and haze pixel by pixel: section "Painting" of docs/rays.md.
 //
 //   painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]
 //
@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   vpe::base::ThreadPool pool(kThreads);
   const paging::Surface surface(planet, kMemory);
   const test_support::PaintedByPoint by_point(planet, kMemory);
-  vpe::voxel::PicturePainter painter(planet, kMemory);
+  vpe::voxel::ImagePainter painter(planet, kMemory);
   struct Eye {
     const char* name;
     mars::Pose pose;
@@ -99,18 +99,18 @@ int main(int argc, char** argv) {
   const auto wanted = [&](const char* name, int argument) {
     return argc <= argument || std::strstr(name, argv[argument]) != nullptr;
   };
-  for (const Eye& eye : eyes) {
-    if (!wanted(eye.name, 3)) continue;
-    request.view.eye = mars::to_eye(eye.pose, planet->radius_m());
+  for (const Eye& camera : eyes) {
+    if (!wanted(camera.name, 3)) continue;
+    request.view.camera = mars::to_camera(camera.pose, planet->radius_m());
     std::vector<float> range_m(pixels);
     pool.run(static_cast<std::size_t>(request.view.height), [&](std::size_t y) {
       for (int x = 0; x < request.view.width; ++x)
         range_m[y * static_cast<std::size_t>(request.view.width) + static_cast<std::size_t>(x)] =
             static_cast<float>(surface.cast(
-                request.view.eye.eye_m, core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
+                request.view.camera.position_m, core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
     });
     const auto sky = static_cast<double>(std::count(range_m.begin(), range_m.end(), core::kSkyRange));
-    std::printf("%s (%.0f %% sky)\n", eye.name, 100 * sky / static_cast<double>(pixels));
+    std::printf("%s (%.0f %% sky)\n", camera.name, 100 * sky / static_cast<double>(pixels));
     for (const Look& look : looks) {
       if (!wanted(look.name, 4)) continue;
       request.settings.mode = look.mode;

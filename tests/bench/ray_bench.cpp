@@ -1,4 +1,4 @@
-// Range pictures by the ray backend against Embree over the same triangles: docs/rays.md has the figures.
+// Range images by the ray backend against Embree over the same triangles: docs/rays.md has the figures.
 //
 //   ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale 1] [--threads 2] [--rounds 5]
 //             [--cell PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX]
@@ -105,8 +105,8 @@ class Bench {
   }
 
  private:
-  // Structures of a scene and an eye; the cases of one eye follow each other.
-  void prepare(const std::shared_ptr<const bench::RayScene>& scene, const glm::dvec3& eye_m) {
+  // Structures of a scene and a camera; the cases of one eye follow each other.
+  void prepare(const std::shared_ptr<const bench::RayScene>& scene, const glm::dvec3& camera_m) {
     if (scene_ != scene) {
       mesh_.reset();
       grid_.reset();
@@ -114,22 +114,22 @@ class Bench {
       const auto bytes = static_cast<std::size_t>(options_.memory_mib * 1048576.0);
       caster_ = std::make_unique<bench::RangeCaster>(scene->planet, pool_.threads(), bytes);
       surface_ = std::make_unique<paging::Surface>(scene->planet, std::size_t{512} << 20);
-    } else if (eye_m == eye_m_) {
+    } else if (camera_m == camera_m_) {
       return;
     }
-    eye_m_ = eye_m;
+    camera_m_ = camera_m;
     mesh_.reset();
     grid_.reset();
-    const auto tiles = test_support::tiles_in_sight(*scene->planet, eye_m);
+    const auto tiles = test_support::tiles_in_sight(*scene->planet, camera_m);
     if (static_cast<double>(test_support::triangle_count(*scene->planet, tiles)) <= options_.mesh_limit)
-      make(mesh_, EmbreeShape::kTriangles, tiles, eye_m);
-    make(grid_, EmbreeShape::kGrid, tiles, eye_m);
+      make(mesh_, EmbreeShape::kTriangles, tiles, camera_m);
+    make(grid_, EmbreeShape::kGrid, tiles, camera_m);
   }
 
   void make(std::unique_ptr<EmbreeScene>& out, EmbreeShape shape, const std::vector<lod::TileKey>& tiles,
-            const glm::dvec3& eye_m) {
+            const glm::dvec3& camera_m) {
     out = std::make_unique<EmbreeScene>(
-        *scene_->planet, tiles, eye_m,
+        *scene_->planet, tiles, camera_m,
         test_support::EmbreeOptions{shape, RTC_BUILD_QUALITY_HIGH, false, pool_.threads()});
     std::fprintf(stderr, "%s: Embree %s of %.1f M triangles in %zu tiles: built in %.2f s, %.0f MiB\n",
                  scene_->name.c_str(), shape == EmbreeShape::kGrid ? "grid" : "mesh",
@@ -138,14 +138,14 @@ class Bench {
   }
 
   // The fastest mode, each tried twice after a first time that warms up.
-  void choose_mode(Peer& peer, const bench::EmbreePicture& picture, std::span<float> range_m) {
+  void choose_mode(Peer& peer, const bench::EmbreeImage& image, std::span<float> range_m) {
     double best = std::numeric_limits<double>::infinity();
-    picture.cast(peer.scene->scene(), peer.mode, pool_, range_m);
+    image.cast(peer.scene->scene(), peer.mode, pool_, range_m);
     for (const bench::EmbreeMode mode : bench::kEmbreeModes) {
-      double setup_s = picture.cast(nullptr, mode, pool_, range_m);
+      double setup_s = image.cast(nullptr, mode, pool_, range_m);
       for (int n = 0; n < 2; ++n) {
-        setup_s = std::min(setup_s, picture.cast(nullptr, mode, pool_, range_m));
-        const double seconds = picture.cast(peer.scene->scene(), mode, pool_, range_m);
+        setup_s = std::min(setup_s, image.cast(nullptr, mode, pool_, range_m));
+        const double seconds = image.cast(peer.scene->scene(), mode, pool_, range_m);
         if (seconds - setup_s >= best) continue;
         best = seconds - setup_s;
         peer.mode = mode;
@@ -165,16 +165,16 @@ class Bench {
 
   void measure(benchmark::State& state, const std::shared_ptr<const bench::RayScene>& scene,
                const bench::RayCase& c) {
-    prepare(scene, c.view.eye.eye_m);
+    prepare(scene, c.view.camera.position_m);
     const auto pixels = static_cast<std::size_t>(c.view.width) * static_cast<std::size_t>(c.view.height);
     std::vector<float> ours_m(pixels), theirs_m(pixels);
     caster_->cast_ranges(c.view, options_.cell_px, ours_m);  // loads tiles
 
-    const bench::EmbreePicture picture(c.view);
+    const bench::EmbreeImage image(c.view);
     std::vector<Peer> peers;
     if (mesh_) peers.push_back({mesh_.get(), "mesh", {}, 0, {}});
     peers.push_back({grid_.get(), "grid", {}, 0, {}});
-    for (Peer& peer : peers) choose_mode(peer, picture, theirs_m);
+    for (Peer& peer : peers) choose_mode(peer, image, theirs_m);
 
     std::vector<double> ours_s, ratio;
     for (auto _ : state) {
@@ -184,7 +184,7 @@ class Bench {
       state.SetIterationTime(ours_s.back());
       double best = std::numeric_limits<double>::infinity();
       for (Peer& peer : peers) {
-        peer.seconds.push_back(picture.cast(peer.scene->scene(), peer.mode, pool_, theirs_m) - peer.setup_s);
+        peer.seconds.push_back(image.cast(peer.scene->scene(), peer.mode, pool_, theirs_m) - peer.setup_s);
         best = std::min(best, peer.seconds.back());
       }
       ratio.push_back(best / ours_s.back());
@@ -236,13 +236,13 @@ class Bench {
     rows_.push_back(std::move(row));
   }
 
-  // How far ours is off in the picture, against S and against Embree's exact picture.
+  // How far ours is off in the image, against S and against Embree's exact image.
   std::string shifts(const vpe::core::View& view, std::span<const float> ours_m,
                      std::span<const float> theirs_m, benchmark::State& state) const {
     const vpe::core::SurfaceRadius radius = [&](std::span<const glm::dvec3> at, std::span<double> radius_m) {
       for (std::size_t k = 0; k < at.size(); ++k) radius_m[k] = surface_->at(at[k]).radius_m;
     };
-    const vpe::core::PictureErrors errors =
+    const vpe::core::ImageErrors errors =
         vpe::core::compare_to_reference(view, ours_m, theirs_m, radius, {1, pool_.threads()});
     state.counters["forward_p999_px"] = errors.forward.p999_px;
     state.counters["backward_p999_px"] = errors.backward.p999_px;
@@ -258,7 +258,7 @@ class Bench {
   std::shared_ptr<const bench::RayScene> scene_;
   std::unique_ptr<bench::RangeCaster> caster_;
   std::unique_ptr<paging::Surface> surface_;
-  glm::dvec3 eye_m_{0};
+  glm::dvec3 camera_m_{0};
   std::unique_ptr<EmbreeScene> mesh_;
   std::unique_ptr<EmbreeScene> grid_;
   std::vector<Row> rows_;

@@ -55,7 +55,7 @@ Agreement compare(const vpe::core::View& view, std::span<const float> ours_m, st
         differing[static_cast<std::size_t>(k) * differing.size() / static_cast<std::size_t>(a.judged)];
     const auto width = static_cast<std::size_t>(view.width);
     const double exact_m = surface.cast(
-        view.eye.eye_m,
+        view.camera.position_m,
         vpe::core::pixel_ray(view, static_cast<double>(n % width) + 0.5, static_cast<double>(n / width) + 0.5));
     const bool ours = difference(static_cast<double>(ours_m[n]), exact_m) <= kAgree;
     const bool theirs = difference(static_cast<double>(theirs_m[n]), exact_m) <= kAgree;

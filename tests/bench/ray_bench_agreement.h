@@ -1,4 +1,4 @@
-// How far two range pictures of a view agree, and who is right where they do not.
+// How far two range images of a view agree, and who is right where they do not.
 #pragma once
 
 #include <cstdint>

@@ -136,7 +136,7 @@ const char* name(EmbreeMode mode) {
   return "";
 }
 
-EmbreePicture::EmbreePicture(const vpe::core::View& view) {
+EmbreeImage::EmbreeImage(const vpe::core::View& view) {
   using vpe::core::Projection;
   if (view.projection == Projection::kEquirectangular || view.part.width != 0)
     throw std::invalid_argument("EmbreePicture: only whole perspective and cylindrical pictures");
@@ -144,7 +144,7 @@ EmbreePicture::EmbreePicture(const vpe::core::View& view) {
   tables_.height = view.height;
   const double focal = vpe::core::focal_px(view);
   const glm::dvec2 centre = 0.5 * glm::dvec2(view.width, view.height) + view.principal_offset_px;
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   for (int column = 0; column < padded(view.width); ++column) {
     const double x = std::min(column, view.width - 1) + 0.5 - centre.x;
     const bool round = view.projection == Projection::kCylinder;
@@ -165,7 +165,7 @@ EmbreePicture::EmbreePicture(const vpe::core::View& view) {
   tables_.up_z = static_cast<float>(axes.up.z);
 }
 
-double EmbreePicture::cast(RTCScene scene, EmbreeMode mode, vpe::base::ThreadPool& pool,
+double EmbreeImage::cast(RTCScene scene, EmbreeMode mode, vpe::base::ThreadPool& pool,
                            std::span<float> range_m) const {
   const auto start = std::chrono::steady_clock::now();
   pool.run(static_cast<std::size_t>(padded(tables_.height) / kBlock), [&](std::size_t row) {

@@ -1,4 +1,4 @@
-// Range pictures by Embree, as fast as it goes.
+// Range images by Embree, as fast as it goes.
 #pragma once
 
 #include <array>
@@ -34,9 +34,9 @@ struct RayTables {
 // A perspective or cylindrical view of which all is drawn. Rays are made of tables, three products each; all
 // are coherent (RTC_INTERSECT_CONTEXT_FLAG_COHERENT), rows of 8x8 pixels are handed out to the pool's threads,
 // denormals are off as Embree asks.
-class EmbreePicture {
+class EmbreeImage {
  public:
-  explicit EmbreePicture(const vpe::core::View& view);
+  explicit EmbreeImage(const vpe::core::View& view);
 
   // Range of every pixel, row by row, infinity for sky; returns seconds. Without a scene (nullptr) everything
   // but Embree's own calls is done.

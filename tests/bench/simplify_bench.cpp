@@ -69,7 +69,7 @@ Terrain cratered(std::uint64_t seed, const lod::TileKey& key) {
 struct Fit {
   lod::TileMesh mesh;
   double tolerance_m = 0;
-  double error_m = 0;
+  double geometric_error_m = 0;
 };
 Fit fit(const lod::Posts& posts, double target_m, const auto& make) {
   const lod::FinePosts fine(posts, kRadius);
@@ -92,14 +92,14 @@ Fit fit(const lod::Posts& posts, double target_m, const auto& make) {
   return best;
 }
 
-void print(const char* method, const lod::TileMesh& mesh, double error_m, std::size_t reference,
+void print(const char* method, const lod::TileMesh& mesh, double geometric_error_m, std::size_t reference,
            double time_s) {
   if (mesh.triangle_count() == 0) {
     std::printf("| %s | - | - | - | - |\n", method);
     return;
   }
   std::printf("| %s | %zu | %.2f | %.1f | %.2f |\n", method, mesh.triangle_count(),
-              static_cast<double>(mesh.triangle_count()) / static_cast<double>(reference), error_m,
+              static_cast<double>(mesh.triangle_count()) / static_cast<double>(reference), geometric_error_m,
               time_s * 1e3);
 }
 
@@ -128,14 +128,14 @@ void compare_methods(const Ground& ground, double target_m) {
     ratio.push_back(open_mesh.back() / array.back());
   }
   const std::size_t reference = greedy.mesh.triangle_count();
-  print("greedy insertion, OpenMesh", greedy.mesh, greedy.error_m, reference, median(open_mesh));
-  print("greedy insertion, arrays", twin.mesh(posts, kept, greedy.tolerance_m, kRadius), greedy.error_m,
+  print("greedy insertion, OpenMesh", greedy.mesh, greedy.geometric_error_m, reference, median(open_mesh));
+  print("greedy insertion, arrays", twin.mesh(posts, kept, greedy.tolerance_m, kRadius), greedy.geometric_error_m,
         reference, median(array));
 
   std::unique_ptr<bench::Rtin> rtin;
   const double prepare = seconds([&] { rtin = std::make_unique<bench::Rtin>(posts, kRadius); });
   const Fit right = fit(posts, target_m, [&](double tolerance) { return rtin->mesh(tolerance); });
-  print("RTIN, true triangle error", right.mesh, right.error_m, reference, prepare);
+  print("RTIN, true triangle error", right.mesh, right.geometric_error_m, reference, prepare);
 
   const lod::FinePosts fine(posts, kRadius);
   const auto measure = [&](const lod::TileMesh& mesh) {
@@ -222,22 +222,22 @@ struct Drawn {
   double tiles = 0;
   double triangles = 0;
 };
-Drawn draw(int level, int finest, double x, double y, double side, const std::vector<double>& error_m,
-           const std::vector<double>& triangles, double eye_height) {
+Drawn draw(int level, int finest, double x, double y, double side, const std::vector<double>& geometric_error_m,
+           const std::vector<double>& triangles, double camera_height) {
   const double reach_x = std::max(0.0, std::abs(x) - side / 2);
   const double reach_y = std::max(0.0, std::abs(y) - side / 2);
   // Outside the wedge |angle| <= 30 degrees about +x, up to the tile's circle.
   const double circle = side * 0.7072;
   const double sine = std::sqrt(0.75);
   if (y * sine - x * 0.5 > circle || -y * sine - x * 0.5 > circle) return {};
-  const double distance = std::sqrt(reach_x * reach_x + reach_y * reach_y + eye_height * eye_height);
+  const double distance = std::sqrt(reach_x * reach_x + reach_y * reach_y + camera_height * camera_height);
   constexpr double kFocalPx = 1663;  // 1920 pixels over 60 degrees
   const auto at = static_cast<std::size_t>(level);
-  if (level == finest || error_m[at] * kFocalPx <= distance) return {1, triangles[at]};
+  if (level == finest || geometric_error_m[at] * kFocalPx <= distance) return {1, triangles[at]};
   Drawn sum;
   for (int c = 0; c < 4; ++c) {
     const Drawn d = draw(level + 1, finest, x + (c % 2 - 0.5) * side / 2, y + (c / 2 - 0.5) * side / 2,
-                         side / 2, error_m, triangles, eye_height);
+                         side / 2, geometric_error_m, triangles, camera_height);
     sum.tiles += d.tiles;
     sum.triangles += d.triangles;
   }

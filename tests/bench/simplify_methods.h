@@ -23,11 +23,11 @@ class Rtin {
   };
   template <class Visit>
   void at_depth(Post a, Post b, Post c, int depth, Visit&& visit) const;
-  double& error(Post p) { return error_m_[static_cast<std::size_t>(p.j * side_ + p.i)]; }
-  double error(Post p) const { return error_m_[static_cast<std::size_t>(p.j * side_ + p.i)]; }
+  double& error(Post p) { return geometric_error_m_[static_cast<std::size_t>(p.j * side_ + p.i)]; }
+  double error(Post p) const { return geometric_error_m_[static_cast<std::size_t>(p.j * side_ + p.i)]; }
 
   int side_;
-  std::vector<double> error_m_;
+  std::vector<double> geometric_error_m_;
 };
 
 // OpenMesh's decimater with ModQuadric; borders collapse only along themselves and no triangle may turn over in

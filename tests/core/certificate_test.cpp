@@ -10,18 +10,18 @@ namespace {
 
 TEST(Certificate, EveryFieldUnderItsOwnName) {
   Certificate c;
-  c.tile_error_m = 1.25;
-  c.tile_error_px = 0.5;
+  c.geometric_error_m = 1.25;
+  c.screen_space_error_px = 0.5;
   c.quantisation_m = 0.001;
   c.quantisation_px = 0.0001;
   c.shift_bound_px = 0.5001;
-  c.picture_bound_px = 0.375;
+  c.image_bound_px = 0.375;
   c.tolerance_px = 1;
   c.tiles_drawn = 12;
   c.tiles_missing = 3;
   c.tiles_substituted = 4;
   c.share_at_data_limit = 0.25;
-  c.share_without_data = 0.125;
+  c.nodata_share = 0.125;
   c.resampling_max_m = 7.5;
   c.resampling_rms_m = 0.75;
   c.source_accuracy_m = 3;
@@ -54,8 +54,8 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
 
 TEST(Certificate, AbsentAndNotFiniteAreNull) {
   Certificate c;
-  c.tile_error_m = std::numeric_limits<double>::infinity();
-  c.tile_error_px = std::numeric_limits<double>::quiet_NaN();
+  c.geometric_error_m = std::numeric_limits<double>::infinity();
+  c.screen_space_error_px = std::numeric_limits<double>::quiet_NaN();
   const nlohmann::json json = nlohmann::json::parse(to_json(c));
   EXPECT_TRUE(json.at("source_accuracy_m").is_null());
   EXPECT_TRUE(json.at("share_without_data").is_null());
@@ -70,10 +70,10 @@ TEST(Certificate, AbsentAndNotFiniteAreNull) {
 
 TEST(Certificate, NumbersSurviveToTheBit) {
   Certificate c;
-  c.tile_error_m = 0.1 + 0.2;
+  c.geometric_error_m = 0.1 + 0.2;
   c.shift_bound_px = 5e-324;
   const nlohmann::json json = nlohmann::json::parse(to_json(c));
-  EXPECT_EQ(json.at("tile_error_m").get<double>(), c.tile_error_m);
+  EXPECT_EQ(json.at("tile_error_m").get<double>(), c.geometric_error_m);
   EXPECT_EQ(json.at("shift_bound_px").get<double>(), c.shift_bound_px);
 }
 

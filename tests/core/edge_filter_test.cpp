@@ -36,7 +36,7 @@ TEST(EdgeFilter, LeavesTexturesOfPlanesAlone) {
   const std::vector<vpe::base::Rgb> before = colour;
   base::ThreadPool pool(2);
   smooth_edges(colour, depth, kWidth, kHeight, pool);
-  // At the picture's rim a neighbour is missing and the slope itself counts as a bend.
+  // At the image's rim a neighbour is missing and the slope itself counts as a bend.
   for (int y = 1; y + 1 < kHeight; ++y) {
     for (int x = 1; x + 1 < kWidth; ++x) ASSERT_EQ(colour[at(x, y)], before[at(x, y)]) << x << " " << y;
   }

@@ -19,7 +19,7 @@ constexpr int kSide = 48;
 std::vector<vpe::base::Rgb> grey(std::size_t pixels, std::uint8_t value) { return {pixels, {value, value, value}}; }
 
 // Waves of many lengths, so that every window has structure.
-std::vector<vpe::base::Rgb> picture() {
+std::vector<vpe::base::Rgb> image() {
   std::vector<vpe::base::Rgb> pixels;
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -43,7 +43,7 @@ std::vector<vpe::base::Rgb> with_noise(std::vector<vpe::base::Rgb> pixels, int m
 }
 
 TEST(ColourError, RmsIsOverPixelsAndChannels) {
-  EXPECT_EQ(colour_rms(picture(), picture()), 0);
+  EXPECT_EQ(colour_rms(image(), image()), 0);
   EXPECT_EQ(colour_rms(grey(100, 20), grey(100, 27)), 7);
   // One channel of one pixel in ten off by 30: sqrt(900 / 30).
   std::vector<vpe::base::Rgb> one = grey(10, 100);
@@ -59,11 +59,11 @@ TEST(ColourError, RmsFindsInjectedNoise) {
   EXPECT_NEAR(colour_rms(with_noise(middle, 9), middle), std::sqrt(30.0), 0.02);
 }
 
-TEST(StructuralSimilarity, IsOneForEqualPicturesAndFallsWithNoise) {
-  EXPECT_NEAR(structural_similarity(picture(), picture(), kSide, kSide), 1, 1e-12);
+TEST(StructuralSimilarity, IsOneForEqualImagesAndFallsWithNoise) {
+  EXPECT_NEAR(structural_similarity(image(), image(), kSide, kSide), 1, 1e-12);
   double before = 1;
   for (const int most : {2, 8, 32, 96}) {
-    const double similarity = structural_similarity(picture(), with_noise(picture(), most), kSide, kSide);
+    const double similarity = structural_similarity(image(), with_noise(image(), most), kSide, kSide);
     EXPECT_LT(similarity, before) << most;
     before = similarity;
   }
@@ -71,7 +71,7 @@ TEST(StructuralSimilarity, IsOneForEqualPicturesAndFallsWithNoise) {
 }
 
 // Without structure only the term of luminance is left: (2 a b + C1) / (a^2 + b^2 + C1).
-TEST(StructuralSimilarity, OfPlainPicturesIsTheirLuminance) {
+TEST(StructuralSimilarity, OfPlainImagesIsTheirLuminance) {
   const double c1 = 6.5025;
   const double expected = (2.0 * 50 * 100 + c1) / (50.0 * 50 + 100.0 * 100 + c1);
   EXPECT_NEAR(structural_similarity(grey(11 * 11, 50), grey(11 * 11, 100), 11, 11), expected, 1e-9);

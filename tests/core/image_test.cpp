@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Smooth, so that JPEG can keep it, with all three channels different.
-std::vector<vpe::base::Rgb> smooth_picture(int width, int height) {
+std::vector<vpe::base::Rgb> smooth_image(int width, int height) {
   std::vector<vpe::base::Rgb> pixels;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -31,7 +31,7 @@ std::vector<vpe::base::Rgb> smooth_picture(int width, int height) {
   return pixels;
 }
 
-std::vector<vpe::base::Rgb> noise_picture(int width, int height) {
+std::vector<vpe::base::Rgb> noise_image(int width, int height) {
   test_support::Random random(1);
   std::vector<vpe::base::Rgb> pixels(static_cast<std::size_t>(width * height));
   const auto byte = [&random] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
@@ -107,7 +107,7 @@ class FullDisk {
 TEST(Image, PngIsLosslessAsGdalReadsIt) {
   const test_support::TempDir folder;
   for (const int compression : {1, 3, 9}) {
-    const std::vector<vpe::base::Rgb> pixels = noise_picture(61, 37);
+    const std::vector<vpe::base::Rgb> pixels = noise_image(61, 37);
     write_image(folder / "a.PNG", pixels, 61, 37, {.png_compression = compression});
     for (int band = 1; band <= 3; ++band) {
       const auto values = gdal_band<std::uint8_t>(folder / "a.PNG", band, GDT_Byte, pixels.size(), 3);
@@ -129,7 +129,7 @@ TEST(Image, PngIsLosslessWhateverItsRowsAreLike) {
   for (int n = 0; n < 300; ++n) {
     const int width = random.integer(1, n % 10 == 0 ? 700 : 70);
     const int height = random.integer(1, 40);
-    std::vector<vpe::base::Rgb> pixels = noise_picture(width, height);
+    std::vector<vpe::base::Rgb> pixels = noise_image(width, height);
     const int kind = random.integer(0, 3);
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       const auto x = static_cast<int>(k % static_cast<std::size_t>(width));
@@ -147,7 +147,7 @@ TEST(Image, PngIsLosslessWhateverItsRowsAreLike) {
 
 TEST(Image, PngWithAlphaKeepsColourUnderTransparency) {
   const test_support::TempDir folder;
-  const std::vector<vpe::base::Rgb> colours = noise_picture(20, 30);
+  const std::vector<vpe::base::Rgb> colours = noise_image(20, 30);
   std::vector<Rgba> pixels;
   for (std::size_t n = 0; n < colours.size(); ++n) {
     pixels.push_back({colours[n].r, colours[n].g, colours[n].b, static_cast<std::uint8_t>(n)});
@@ -165,7 +165,7 @@ TEST(Image, PngWithAlphaKeepsColourUnderTransparency) {
 
 TEST(Image, JpegIsCloseAndGdalAgrees) {
   const test_support::TempDir folder;
-  const std::vector<vpe::base::Rgb> pixels = smooth_picture(129, 129);
+  const std::vector<vpe::base::Rgb> pixels = smooth_image(129, 129);
   int before = 256;
   for (const int quality : {40, 75, 90, 100}) {
     write_image(folder / "a.jpg", pixels, 129, 129, {.jpeg_quality = quality});
@@ -184,7 +184,7 @@ TEST(Image, JpegIsCloseAndGdalAgrees) {
 
 TEST(Image, JpegBytesAreTheFile) {
   const test_support::TempDir folder;
-  const std::vector<vpe::base::Rgb> pixels = smooth_picture(64, 48);
+  const std::vector<vpe::base::Rgb> pixels = smooth_image(64, 48);
   write_image(folder / "a.jpeg", pixels, 64, 48, {.jpeg_quality = 80});
   const std::vector<std::uint8_t> bytes = encode_jpeg(pixels, 64, 48, 80);
   EXPECT_EQ(base::read_file(folder / "a.jpeg", 1 << 20), bytes);
@@ -269,7 +269,7 @@ TEST(Image, ReadersRefuseMoreThanTheyAreAllowed) {
 }
 
 TEST(Image, CutShortIsAnErrorAtEveryLength) {
-  const std::vector<vpe::base::Rgb> pixels = noise_picture(16, 16);
+  const std::vector<vpe::base::Rgb> pixels = noise_image(16, 16);
   for (const auto& bytes : {encode_png(pixels, 16, 16), encode_jpeg(pixels, 16, 16, 90)}) {
     const bool is_png = bytes[0] == 0x89;
     // What follows the last pixel (IEND, EOI) may be missing.
@@ -282,7 +282,7 @@ TEST(Image, CutShortIsAnErrorAtEveryLength) {
 
 TEST(Image, FlippedBytesNeverCrash) {
   test_support::Random random(3);
-  const std::vector<vpe::base::Rgb> pixels = noise_picture(24, 24);
+  const std::vector<vpe::base::Rgb> pixels = noise_image(24, 24);
   const test_support::TempDir folder;
   write_tiff(folder / "a.tif", std::vector<float>(24 * 24, 1.0F), 24, 24);
   const std::vector<std::uint8_t> sources[] = {encode_png(pixels, 24, 24), encode_jpeg(pixels, 24, 24, 80),
@@ -335,7 +335,7 @@ TEST(Image, ErrorsNameFileOperationWordsAndAdvice) {
 
 TEST(Image, AFullDiskLeavesTheOldFileAndNoHalfOne) {
   const test_support::TempDir folder;
-  const std::vector<vpe::base::Rgb> pixels = noise_picture(200, 200);
+  const std::vector<vpe::base::Rgb> pixels = noise_image(200, 200);
   std::vector<float> values;
   test_support::Random random(4);
   for (int n = 0; n < 400 * 400; ++n) values.push_back(static_cast<float>(random.uniform(1, 2)));

@@ -30,18 +30,18 @@ double hills(const glm::dvec3& d) {
   return kRadius_m + 400 * std::sin(p.y / 4000) * std::sin(p.z / 4000) + 100 * std::sin(p.y / 900 + p.z / 1300);
 }
 
-// Distance to the sphere of a radius, infinity where the ray misses; the eye is outside.
-double cast_sphere(const glm::dvec3& eye, const glm::dvec3& ray, double radius_m) {
-  const double along = -glm::dot(eye, ray);
-  const double aside2 = glm::dot(eye, eye) - along * along;
+// Distance to the sphere of a radius, infinity where the ray misses; the camera is outside.
+double cast_sphere(const glm::dvec3& camera, const glm::dvec3& ray, double radius_m) {
+  const double along = -glm::dot(camera, ray);
+  const double aside2 = glm::dot(camera, camera) - along * along;
   if (along <= 0 || aside2 > radius_m * radius_m) return kSky;
   return along - std::sqrt(radius_m * radius_m - aside2);
 }
 
 // First crossing of a surface with slopes below 1.7: the height above it, divided by 2, is always a safe step.
-double cast(const glm::dvec3& eye, const glm::dvec3& ray, const Radius& radius) {
+double cast(const glm::dvec3& camera, const glm::dvec3& ray, const Radius& radius) {
   for (double t = 0; t < 150e3;) {
-    const glm::dvec3 p = eye + ray * t;
+    const glm::dvec3 p = camera + ray * t;
     const double r = glm::length(p);
     if (r > kRadius_m + 2000 && glm::dot(p, ray) > 0) break;
     const double height_m = r - radius(p / r);
@@ -63,12 +63,12 @@ std::vector<float> draw(const View& view, const std::function<double(const glm::
 }
 
 std::vector<float> draw_surface(const View& view, const Radius& radius) {
-  return draw(view, [&](const glm::dvec3& ray) { return cast(view.eye.eye_m, ray, radius); });
+  return draw(view, [&](const glm::dvec3& ray) { return cast(view.camera.position_m, ray, radius); });
 }
 
 View make_view(double alt_m, double pitch_deg, int width, int height, double roll_deg = 0) {
   View view;
-  view.eye = mars::to_eye({0.3, 0.2, alt_m, 30, pitch_deg, roll_deg}, kRadius_m);
+  view.camera = mars::to_camera({0.3, 0.2, alt_m, 30, pitch_deg, roll_deg}, kRadius_m);
   view.width = width;
   view.height = height;
   return view;
@@ -79,7 +79,7 @@ class OnHills : public ::testing::Test {
   static void SetUpTestSuite() { exact_ = draw_surface(view_, hills); }
 
   std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * view_.width + x); }
-  PictureErrors measure(const std::vector<float>& drawn) const {
+  ImageErrors measure(const std::vector<float>& drawn) const {
     return compare_to_reference(view_, drawn, exact_, surface_);
   }
 
@@ -97,21 +97,21 @@ class OnHills : public ::testing::Test {
   static inline std::vector<float> exact_;
 };
 
-TEST_F(OnHills, ThePictureShowsGroundAndSky) {
+TEST_F(OnHills, TheImageShowsGroundAndSky) {
   const auto sky = std::count(exact_.begin(), exact_.end(), kSky);
   EXPECT_GT(sky, 1000);
   EXPECT_LT(sky, 8000);
 }
 
-TEST_F(OnHills, APerfectPictureMeasuresOnlyFloatRounding) {
-  const PictureErrors errors = measure(exact_);
+TEST_F(OnHills, APerfectImageMeasuresOnlyFloatRounding) {
+  const ImageErrors errors = measure(exact_);
   EXPECT_GT(errors.forward.pixels, 2000);
   // The stated rounding, for slopes up to 0.4.
   EXPECT_LE(errors.forward.max_px, 6e-8 * focal_px(view_) * 1.4 + 1e-9);
   EXPECT_GT(errors.forward.max_px, 0);
   EXPECT_EQ(errors.backward.pixels, 118 * 88);
   EXPECT_EQ(errors.backward.max_px, 0);
-  EXPECT_EQ(errors.holes + errors.false_surface + errors.invalid, 0);
+  EXPECT_EQ(errors.sky_for_ground + errors.false_surface + errors.invalid, 0);
   EXPECT_EQ(errors.forward.share_over_1px, 0);
 }
 
@@ -124,22 +124,22 @@ TEST_F(OnHills, RoundingOfRangesStaysWithinItsStatedBackwardBound) {
 }
 
 TEST_F(OnHills, ARaisedSurfaceShiftsByErrorTimesFocalOverRange) {
-  for (const double error_m : {-5.0, 0.5, 20.0}) {
+  for (const double deviation_m : {-5.0, 0.5, 20.0}) {
     const std::vector<float> drawn =
-        draw_surface(view_, [error_m](const glm::dvec3& d) { return hills(d) + error_m; });
+        draw_surface(view_, [deviation_m](const glm::dvec3& d) { return hills(d) + deviation_m; });
     const std::vector<double> shift_px = forward_shift_px(view_, drawn, surface_);
     for (std::size_t n = 0; n < drawn.size(); ++n) {
       if (!std::isfinite(drawn[n])) {
         EXPECT_TRUE(std::isnan(shift_px[n]));
         continue;
       }
-      const double expected_px = std::abs(error_m) * focal_px(view_) / drawn[n];
+      const double expected_px = std::abs(deviation_m) * focal_px(view_) / drawn[n];
       ASSERT_NEAR(shift_px[n], expected_px, 0.01 * expected_px);
     }
     // Backward: never more than the same displacement at the nearest ground, once the net's 8 % are off.
-    const PictureErrors errors = measure(drawn);
+    const ImageErrors errors = measure(drawn);
     const double nearest_m = *std::min_element(drawn.begin(), drawn.end());
-    EXPECT_LE(errors.backward.p999_px, std::max(1.0, 1.09 * std::abs(error_m) * focal_px(view_) / nearest_m));
+    EXPECT_LE(errors.backward.p999_px, std::max(1.0, 1.09 * std::abs(deviation_m) * focal_px(view_) / nearest_m));
     EXPECT_GT(errors.backward.median_px, 0);
   }
 }
@@ -147,13 +147,13 @@ TEST_F(OnHills, ARaisedSurfaceShiftsByErrorTimesFocalOverRange) {
 // Straight down, range is all that shows an error.
 TEST(Metrics, ARaisedSphereSeenFromAboveShiftsBackwardsByTheSame) {
   const View view = make_view(10000, -90, 60, 60);
-  const double error_m = 30;
+  const double deviation_m = 30;
   const auto at_radius = [&](double radius_m) {
-    return draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.eye.eye_m, ray, radius_m); });
+    return draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, radius_m); });
   };
   const std::vector<float> exact = at_radius(kRadius_m);
-  const std::vector<double> shift_px = backward_shift_px(view, at_radius(kRadius_m + error_m), exact);
-  const double expected_px = error_m * focal_px(view) / 10000;
+  const std::vector<double> shift_px = backward_shift_px(view, at_radius(kRadius_m + deviation_m), exact);
+  const double expected_px = deviation_m * focal_px(view) / 10000;
   EXPECT_NEAR(shift_px[30 * 60 + 30], expected_px, 0.01 * expected_px);
 }
 
@@ -162,13 +162,13 @@ TEST(Metrics, ObliqueBackwardShiftIsThePerpendicularDistance) {
   for (const double roll_deg : {0.0, 22.5, 45.0, 70.0}) {
     const View view = make_view(10000, -45, 80, 80, roll_deg);
     const auto at_radius = [&](double radius_m) {
-      return draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.eye.eye_m, ray, radius_m); });
+      return draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, radius_m); });
     };
     const std::vector<float> exact = at_radius(kRadius_m);
-    const double error_m = 60;
-    const std::vector<double> shift_px = backward_shift_px(view, at_radius(kRadius_m + error_m), exact);
+    const double deviation_m = 60;
+    const std::vector<double> shift_px = backward_shift_px(view, at_radius(kRadius_m + deviation_m), exact);
     const std::size_t middle = 40 * 80 + 40;
-    const double expected_px = error_m * focal_px(view) / exact[middle];
+    const double expected_px = deviation_m * focal_px(view) / exact[middle];
     EXPECT_GE(shift_px[middle], 0.99 * expected_px) << roll_deg;
     EXPECT_LE(shift_px[middle], 1.09 * expected_px) << roll_deg;
   }
@@ -183,7 +183,7 @@ TEST_F(OnHills, OnePixelAsideMeasuresOnePixel) {
   const std::vector<float> one = move_down(1);
   EXPECT_NEAR(measure(one).backward.max_px, 1, 1e-3);
   EXPECT_GT(backward_on_ground(one).median_px, 0.85);
-  EXPECT_EQ(measure(one).holes, 0);
+  EXPECT_EQ(measure(one).sky_for_ground, 0);
   EXPECT_EQ(measure(one).false_surface, 0);
 
   const std::vector<float> three = move_down(3);
@@ -197,18 +197,18 @@ TEST_F(OnHills, OnePixelAsideMeasuresOnePixel) {
 }
 
 TEST_F(OnHills, AMissingRidgeIsFoundBackwardsAndOnlyThere) {
-  // A wall of 300 m, 1 km thick, 12 km from the eye.
-  const glm::dvec3 ahead = glm::normalize(view_.eye.axes.forward -
+  // A wall of 300 m, 1 km thick, 12 km from the camera.
+  const glm::dvec3 ahead = glm::normalize(view_.camera.axes.forward -
                                           mars::direction({0.3, 0.2}) *
-                                              glm::dot(view_.eye.axes.forward, mars::direction({0.3, 0.2})));
+                                              glm::dot(view_.camera.axes.forward, mars::direction({0.3, 0.2})));
   const Radius with_ridge = [ahead](const glm::dvec3& d) {
     const double along_m = glm::dot(d, ahead) * kRadius_m;
     const double across = (along_m - glm::dot(mars::direction({0.3, 0.2}), ahead) * kRadius_m - 12000) / 500;
     return hills(d) + 800 * std::exp(-across * across);
   };
   const std::vector<float> reference = draw_surface(view_, with_ridge);
-  // The drawn picture lacks the ridge where it hides the far ground: ranges are S, but of what lies behind.
-  const PictureErrors errors =
+  // The drawn image lacks the ridge where it hides the far ground: ranges are S, but of what lies behind.
+  const ImageErrors errors =
       compare_to_reference(view_, draw_surface(view_, hills), reference, batched(with_ridge));
   EXPECT_GT(errors.backward.max_px, 10);
   EXPECT_GT(errors.backward.share_over_1px, 0.03);
@@ -229,8 +229,8 @@ TEST_F(OnHills, HolesAndFalseSurfaceAreCounted) {
   drawn[at(0, 89)] = kSky;  // corners: what lies beside them is not known
   drawn[at(60, 5)] = 5000;
   drawn[at(0, 0)] = 5000;
-  const PictureErrors errors = measure(drawn);
-  EXPECT_EQ(errors.holes, 4);
+  const ImageErrors errors = measure(drawn);
+  EXPECT_EQ(errors.sky_for_ground, 4);
   EXPECT_EQ(errors.false_surface, 1);
   EXPECT_EQ(errors.invalid, 0);
   EXPECT_GT(errors.forward.max_px, 10);  // the false surface hangs in the air
@@ -249,8 +249,8 @@ TEST_F(OnHills, SkyThatMovesAlongTheSkylineIsNoHole) {
     }
   }
   ASSERT_EQ(changed, view_.width);
-  const PictureErrors errors = measure(drawn);
-  EXPECT_EQ(errors.holes, 0);
+  const ImageErrors errors = measure(drawn);
+  EXPECT_EQ(errors.sky_for_ground, 0);
   EXPECT_LE(errors.backward.max_px, 1);
   EXPECT_GT(errors.backward.max_px, 0);
 }
@@ -261,7 +261,7 @@ TEST_F(OnHills, InvalidRangesAreCountedAndHurt) {
   drawn[at(51, 80)] = 0;
   drawn[at(52, 80)] = -3;
   drawn[at(53, 80)] = -kSky;
-  const PictureErrors errors = measure(drawn);
+  const ImageErrors errors = measure(drawn);
   EXPECT_EQ(errors.invalid, 4);
   EXPECT_EQ(errors.forward.pixels,
             std::count_if(exact_.begin(), exact_.end(), [](float r) { return std::isfinite(r); }) - 4);
@@ -302,14 +302,14 @@ TEST_F(OnHills, WrongSizesAreRefused) {
   EXPECT_THROW(check_horizon(view_, small, kRadius_m, kRadius_m), std::invalid_argument);
 }
 
-// The same picture through other projections: the measure knows their focal length.
+// The same image through other projections: the measure knows their focal length.
 TEST(Metrics, RoundProjections) {
   for (const Projection projection : {Projection::kCylinder, Projection::kEquirectangular}) {
     View view = make_view(1500, 0, 360, 57);
     view.projection = projection;
     view.fov_deg = projection == Projection::kCylinder ? 53.0 : 57.0;
     const std::vector<float> drawn =
-        draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.eye.eye_m, ray, kRadius_m + 10); });
+        draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, kRadius_m + 10); });
     const std::vector<double> shift_px =
         forward_shift_px(view, drawn, batched([](const glm::dvec3&) { return kRadius_m; }));
     int measured = 0;
@@ -344,10 +344,10 @@ TEST(Metrics, SummaryOfKnownShifts) {
 }
 
 TEST(Metrics, JsonHasEveryFigure) {
-  PictureErrors errors;
+  ImageErrors errors;
   errors.forward.max_px = 0.5;
   errors.backward.worst_x = 7;
-  errors.holes = 3;
+  errors.sky_for_ground = 3;
   const nlohmann::json json = nlohmann::json::parse(to_json(errors));
   EXPECT_EQ(json.at("forward").at("max_px"), 0.5);
   EXPECT_EQ(json.at("backward").at("worst_x"), 7);
@@ -363,7 +363,7 @@ TEST_P(Horizon, ASphereDrawnExactlyHasNone) {
     const double dip_deg = mars::horizon_dip_rad(alt_m, kRadius_m) / mars::kRadiansPerDegree;
     const View view = make_view(alt_m, -dip_deg, 64, 64, roll_deg);
     std::vector<float> range =
-        draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.eye.eye_m, ray, kRadius_m); });
+        draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, kRadius_m); });
     const HorizonErrors none = check_horizon(view, range, kRadius_m, kRadius_m);
     EXPECT_EQ(none.sky_below, 0);
     EXPECT_EQ(none.surface_above, 0);

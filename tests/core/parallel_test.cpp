@@ -17,7 +17,7 @@ TEST(Parallel, EveryItemOnceForAnyCountAndThreads) {
   for (const int threads : {-1, 0, 1, 2, 3, 8, 1000000}) {
     for (const std::size_t count : {0U, 1U, 2U, 3U, 17U, 1000U, 100003U}) {
       std::vector<int> made(count, 0);  // written without locks: an item made twice is a race
-      EXPECT_TRUE(parallel_for(count, threads, [&](std::size_t n) { ++made[n]; }));
+      EXPECT_TRUE(base::parallel_for(count, threads, [&](std::size_t n) { ++made[n]; }));
       EXPECT_EQ(std::count(made.begin(), made.end(), 1), static_cast<std::ptrdiff_t>(count));
     }
   }
@@ -37,7 +37,7 @@ TEST(Parallel, SeveralThreadsTakePart) {
 TEST(Parallel, OneThreadIsTheCallerInOrder) {
   std::vector<std::size_t> order;
   const std::thread::id caller = std::this_thread::get_id();
-  parallel_for(100, 1, [&](std::size_t n) {
+  base::parallel_for(100, 1, [&](std::size_t n) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
     order.push_back(n);
   });
@@ -57,7 +57,7 @@ TEST(Parallel, TheExceptionOfTheLowestItemComesOut) {
     const auto lowest = static_cast<std::size_t>(std::find(throws.begin(), throws.end(), 1) - throws.begin());
     std::vector<char> made(count, 0);
     try {
-      parallel_for(count, random.integer(1, 8), [&](std::size_t n) {
+      base::parallel_for(count, random.integer(1, 8), [&](std::size_t n) {
         made[n] = 1;
         if (throws[n] != 0) throw std::runtime_error(std::to_string(n));
       });
@@ -81,7 +81,7 @@ TEST(Parallel, ThePoolOutlivesAnException) {
 TEST(Parallel, CancelStopsAndSaysSo) {
   std::atomic<bool> cancel = false;
   std::atomic<int> made = 0;
-  EXPECT_FALSE(parallel_for(
+  EXPECT_FALSE(base::parallel_for(
       1000000, 4,
       [&](std::size_t) {
         if (++made == 10) cancel = true;
@@ -91,12 +91,12 @@ TEST(Parallel, CancelStopsAndSaysSo) {
   EXPECT_LT(made, 1000000);
 
   made = 0;
-  EXPECT_FALSE(parallel_for(
+  EXPECT_FALSE(base::parallel_for(
       10, 2, [&](std::size_t) { ++made; }, &cancel));
   EXPECT_EQ(made, 0);
 
   cancel = false;
-  EXPECT_TRUE(parallel_for(
+  EXPECT_TRUE(base::parallel_for(
       10, 2, [](std::size_t) {}, &cancel));
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 using vpe::core::PngText;
 
-std::vector<std::uint8_t> picture() {
+std::vector<std::uint8_t> image() {
   std::vector<vpe::base::Rgb> pixels(31 * 17);
   for (std::size_t n = 0; n < pixels.size(); ++n) pixels[n] = {static_cast<std::uint8_t>(n * 7), 40, 200};
   return vpe::core::encode_png(pixels, 31, 17);
@@ -16,14 +16,14 @@ std::vector<std::uint8_t> picture() {
 
 TEST(PngText, IsReadBackAndLeavesThePixels) {
   const std::vector<PngText> texts{{"vpe:a", "{\"x\":1}"}, {"Software", ""}, {"b", std::string(5000, 'z')}};
-  const auto bytes = vpe::core::with_png_text(picture(), texts);
+  const auto bytes = vpe::core::with_png_text(image(), texts);
   EXPECT_EQ(vpe::core::read_png_text(bytes), texts);
-  EXPECT_EQ(vpe::core::decode_png(bytes).pixels, vpe::core::decode_png(picture()).pixels);
-  EXPECT_EQ(vpe::core::read_png_text(picture()), std::vector<PngText>{});
+  EXPECT_EQ(vpe::core::decode_png(bytes).pixels, vpe::core::decode_png(image()).pixels);
+  EXPECT_EQ(vpe::core::read_png_text(image()), std::vector<PngText>{});
 }
 
 TEST(PngText, AnyFlippedBitAndAnyCutIsSeen) {
-  const auto whole = vpe::core::with_png_text(picture(), std::vector<PngText>{{"key", "value"}});
+  const auto whole = vpe::core::with_png_text(image(), std::vector<PngText>{{"key", "value"}});
   for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
     auto bytes = whole;
     bytes[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));

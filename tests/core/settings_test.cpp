@@ -161,7 +161,7 @@ TEST(Settings, MapsKeysToTheirMembers) {
   wanted.sun_ambient = 0.5;
   wanted.lod_tolerance_px = 0;
   wanted.lod_triangles = 100000;
-  wanted.lod_rule = LodRule::kHitchner;
+  wanted.lod_metric = LodMetric::kDistance;
   wanted.lod_distance_scale_m = 5e5;
   wanted.lod_distance_offset = 2;
   wanted.lod_distance_weight = 0.5;

@@ -36,8 +36,8 @@ TEST(Light, IsTheRootOfAmbientAndDiffuse) {
 // The integral of air_m()'s definition, by adaptive Simpson's rule along the straight line itself.
 class AirOracle {
  public:
-  AirOracle(double eye_height_m, double up_sine)
-      : r_(static_cast<long double>(kRadius_m) + eye_height_m),
+  AirOracle(double camera_height_m, double up_sine)
+      : r_(static_cast<long double>(kRadius_m) + camera_height_m),
         up_(up_sine),
         along_(std::sqrt(std::max(0.0L, 1.0L - up_ * up_))) {}
 
@@ -95,21 +95,21 @@ class AirOracle {
 
 // Heights of eyes from the deepest ground to ten radii; lines that stay above that ground, wherever they point.
 struct Line {
-  double eye_height_m, up_sine, distance_m;
+  double camera_height_m, up_sine, distance_m;
 };
 constexpr double kDeepest_m = -8000;
 Line random_line(Random& random, int trial) {
   Line out{};
   switch (trial % 3) {
-    case 0: out.eye_height_m = random.uniform(kDeepest_m, kAirTop_m); break;
-    case 1: out.eye_height_m = random.log_uniform(0.1, 10 * kRadius_m); break;
-    default: out.eye_height_m = random.uniform(0, 10 * kRadius_m); break;
+    case 0: out.camera_height_m = random.uniform(kDeepest_m, kAirTop_m); break;
+    case 1: out.camera_height_m = random.log_uniform(0.1, 10 * kRadius_m); break;
+    default: out.camera_height_m = random.uniform(0, 10 * kRadius_m); break;
   }
-  const double r = kRadius_m + out.eye_height_m, deepest = kRadius_m + kDeepest_m;
+  const double r = kRadius_m + out.camera_height_m, deepest = kRadius_m + kDeepest_m;
   // Half of the lines pass near the limb, where the air is longest.
   const double graze = std::clamp((deepest + random.uniform(0, 1.1 * (kAirTop_m - kDeepest_m))) / r, 0.0, 1.0);
   out.up_sine = trial % 2 == 0 ? random.uniform(-1, 1) : -std::sqrt(1 - graze * graze);
-  const AirOracle line(out.eye_height_m, out.up_sine);
+  const AirOracle line(out.camera_height_m, out.up_sine);
   // Up to the deepest ground, or behind the limb to beyond the air.
   double farthest = 3 * r;
   if (line.height_m(line.lowest_at()) < static_cast<long double>(kDeepest_m)) {
@@ -126,11 +126,11 @@ TEST(Air, IsTheIntegralOfItsDensity) {
   int in_air = 0, over_limbs = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     const Line at = random_line(random, trial);
-    const AirOracle line(at.eye_height_m, at.up_sine);
+    const AirOracle line(at.camera_height_m, at.up_sine);
     const auto exact = static_cast<double>(line(at.distance_m));
-    const double got = air_m(kRadius_m, at.eye_height_m, at.up_sine, at.distance_m);
+    const double got = air_m(kRadius_m, at.camera_height_m, at.up_sine, at.distance_m);
     const double off_m = std::abs(got - exact);
-    SCOPED_TRACE(testing::Message() << "eye at " << at.eye_height_m << ", sine " << at.up_sine << ", "
+    SCOPED_TRACE(testing::Message() << "eye at " << at.camera_height_m << ", sine " << at.up_sine << ", "
                                     << at.distance_m << " m: " << got << " for " << exact);
     const bool limb = line.lowest_at() > 0 && line.lowest_at() < static_cast<long double>(at.distance_m);
     ASSERT_LE(off_m, (limb ? kAirLimbError : kAirError) * exact + 1e-6);
@@ -152,16 +152,16 @@ TEST(Air, AWayIsTheSumOfItsParts) {
   Random random(2);
   for (int trial = 0; trial < 20000; ++trial) {
     const Line at = random_line(random, trial);
-    const AirOracle line(at.eye_height_m, at.up_sine);
+    const AirOracle line(at.camera_height_m, at.up_sine);
     const double first_m = random.uniform(0, 1) * at.distance_m;
     const auto height_m = static_cast<double>(line.height_m(first_m));
-    const double whole = air_m(kRadius_m, at.eye_height_m, at.up_sine, at.distance_m);
-    const double first = air_m(kRadius_m, at.eye_height_m, at.up_sine, first_m);
+    const double whole = air_m(kRadius_m, at.camera_height_m, at.up_sine, at.distance_m);
+    const double first = air_m(kRadius_m, at.camera_height_m, at.up_sine, first_m);
     const double rest = air_m(kRadius_m, height_m, line.up_sine_at(first_m), at.distance_m - first_m);
     // A direction far out is rounded to metres beside the limb.
     const bool limb = line.lowest_at() > 0 && line.lowest_at() < static_cast<long double>(at.distance_m);
     EXPECT_NEAR(first + rest, whole, 2 * (limb ? kAirLimbError : kAirError) * whole + 0.01)
-        << at.eye_height_m << " " << at.up_sine << " " << at.distance_m << " in " << first_m;
+        << at.camera_height_m << " " << at.up_sine << " " << at.distance_m << " in " << first_m;
     EXPECT_GE(first, 0);
     EXPECT_GE(whole, first * (1 - 2 * kAirLimbError) - 1e-6);
   }

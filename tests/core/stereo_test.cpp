@@ -1,4 +1,4 @@
-// Two eyes in one picture.
+// Two eyes in one image.
 #include "vpe/core/stereo.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST(Stereo, RedCyanIsThatOfFfmpeg) {
   }
 }
 
-TEST(Stereo, RedGlassSeesTheLeftEyeOnly) {
+TEST(Stereo, RedGlassSeesTheLeftCameraOnly) {
   const RgbImage white{1, 1, {{255, 255, 255}}};
   const RgbImage black{1, 1, {{0, 0, 0}}};
   const vpe::base::Rgb left = combine_stereo(white, black, StereoLayout::kAnaglyph).pixels[0];
@@ -94,12 +94,12 @@ TEST(Stereo, RedGlassSeesTheLeftEyeOnly) {
 
 TEST(Stereo, EyesAreParallelOrMeetAtADistance) {
   vpe::core::View view;
-  view.eye = mars::to_eye({30, 20, 1000, 40, -10, 5}, mars::kMarsRadius_m);
+  view.camera = mars::to_camera({30, 20, 1000, 40, -10, 5}, mars::kMarsRadius_m);
   view.width = 1000;
   view.height = 800;
   const double base_m = 0.5;
   const auto x_of = [&](const vpe::core::View& eye, double distance_m) {
-    const auto projected = vpe::core::project(eye, view.eye.eye_m + distance_m * view.eye.axes.forward);
+    const auto projected = vpe::core::project(eye, view.camera.position_m + distance_m * view.camera.axes.forward);
     EXPECT_NEAR(projected.xy.y, 400.0, 1e-4);
     return projected.xy.x;
   };

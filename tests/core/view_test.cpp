@@ -15,15 +15,15 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-mars::EyePose pose(double lon_deg, double lat_deg, double alt_m, double yaw_deg, double pitch_deg,
+mars::CameraPose pose(double lon_deg, double lat_deg, double alt_m, double yaw_deg, double pitch_deg,
                    double roll_deg) {
-  return mars::to_eye({lon_deg, lat_deg, alt_m, yaw_deg, pitch_deg, roll_deg}, mars::kMarsRadius_m);
+  return mars::to_camera({lon_deg, lat_deg, alt_m, yaw_deg, pitch_deg, roll_deg}, mars::kMarsRadius_m);
 }
 
 View random_view(test_support::Random& random, Projection projection) {
   View view;
   view.projection = projection;
-  view.eye = pose(random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(0.1, 3e7),
+  view.camera = pose(random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(0.1, 3e7),
                   random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180));
   view.fov_deg = random.log_uniform(0.01, projection == Projection::kEquirectangular ? 120.0 : 170.0);
   view.width = random.integer(1, 4000);
@@ -32,7 +32,7 @@ View random_view(test_support::Random& random, Projection projection) {
   return view;
 }
 
-// Picture position to eye axes in long double, straight from the definition in view.h.
+// Image position to camera axes in long double, straight from the definition in view.h.
 struct LongVec {
   long double right, up, forward;
 };
@@ -54,7 +54,7 @@ LongVec expected_axes(const View& view, double x, double y) {
 
 long double angle_to_expected(const View& view, double x, double y) {
   const LongVec e = expected_axes(view, x, y);
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   const glm::dvec3 ray = pixel_ray(view, x, y);
   long double want[3];
   long double length2 = 0;
@@ -103,7 +103,7 @@ TEST(View, ProjectInvertsPixelRayWithinItsBound) {
       const double x = random.uniform(0, view.width);
       const double y = random.uniform(0, view.height);
       const double distance_m = random.log_uniform(1, 1e8);
-      const Projected p = project(view, view.eye.eye_m + pixel_ray(view, x, y) * distance_m);
+      const Projected p = project(view, view.camera.position_m + pixel_ray(view, x, y) * distance_m);
       ASSERT_FALSE(p.behind);
       const glm::dvec2 principal = glm::dvec2(view.width, view.height) * 0.5 + view.principal_offset_px;
       const double f = focal_px(view);
@@ -111,7 +111,7 @@ TEST(View, ProjectInvertsPixelRayWithinItsBound) {
       if (projection == Projection::kPerspective) t = glm::length(glm::dvec2(x, y) - principal) / f;
       if (projection == Projection::kCylinder) t = (y - principal.y) / f;
       const double scale = std::max({f, double(view.width), double(view.height)});
-      const double bound = 8e-16 * (glm::length(view.eye.eye_m) / distance_m + 4) * (1 + t * t) * scale;
+      const double bound = 8e-16 * (glm::length(view.camera.position_m) / distance_m + 4) * (1 + t * t) * scale;
       double dx = std::abs(p.xy.x - x);
       if (projection != Projection::kPerspective) dx = std::min(dx, view.width - dx);
       if (projection == Projection::kEquirectangular) {
@@ -136,8 +136,8 @@ TEST(View, PerspectiveAgreesWithGlm) {
     view.width = random.integer(100, 4000);
     view.height = random.integer(100, 4000);
     view.fov_deg = random.uniform(1, 150);
-    view.eye.eye_m = {0, 0, 0};  // glm's matrices would cancel
-    const mars::Axes& axes = view.eye.axes;
+    view.camera.position_m = {0, 0, 0};  // glm's matrices would cancel
+    const mars::Axes& axes = view.camera.axes;
     const glm::dmat4 look = glm::lookAt(glm::dvec3(0), axes.forward, axes.up);
     const glm::dmat4 lens =
         glm::perspective(view.fov_deg * mars::kRadiansPerDegree, double(view.width) / view.height, 1.0, 1e6);
@@ -163,9 +163,9 @@ TEST(View, FocalLengthInPixels) {
   EXPECT_NEAR(focal_px(view), 720 / (mars::kPi / 2), 1e-12);
 }
 
-TEST(View, AxesPointRightDownAndIntoThePicture) {
+TEST(View, AxesPointRightDownAndIntoTheImage) {
   View view;
-  view.eye = pose(0, 0, 1000, 0, 0, 0);  // looking north from the equator: east is right, up is +X
+  view.camera = pose(0, 0, 1000, 0, 0, 0);  // looking north from the equator: east is right, up is +X
   const glm::dvec3 middle = pixel_ray(view, 640, 360);
   EXPECT_NEAR(glm::length(middle - glm::dvec3(0, 0, 1)), 0, 1e-15);
   EXPECT_GT(pixel_ray(view, 641, 360).y, 0);
@@ -177,7 +177,7 @@ TEST(View, AxesPointRightDownAndIntoThePicture) {
 
 TEST(View, CylinderRowsAreEvenInTangentAndColumnsInAzimuth) {
   View view;
-  view.eye = pose(0, 0, 1000, 0, 0, 0);
+  view.camera = pose(0, 0, 1000, 0, 0, 0);
   view.projection = Projection::kCylinder;
   view.width = 3600;
   view.height = 1000;
@@ -192,27 +192,27 @@ TEST(View, CylinderRowsAreEvenInTangentAndColumnsInAzimuth) {
   }
   // Quarter turns are exact.
   EXPECT_EQ(pixel_ray(view, 2700, 500), glm::dvec3(0, 1, 0));
-  EXPECT_TRUE(project(view, view.eye.eye_m * 2.0).behind);  // the zenith is on no row
+  EXPECT_TRUE(project(view, view.camera.position_m * 2.0).behind);  // the zenith is on no row
 }
 
 TEST(View, EquirectangularReachesZenithAndNadir) {
   View view;
-  view.eye = pose(10, 20, 1000, 30, 0, 0);
+  view.camera = pose(10, 20, 1000, 30, 0, 0);
   view.projection = Projection::kEquirectangular;
   view.width = 4000;
   view.height = 2000;
   view.fov_deg = 180;
   EXPECT_EQ(check(view), "");
   for (const double x : {0.0, 1000.0, 3999.5}) {
-    EXPECT_NEAR(glm::length(pixel_ray(view, x, 0) - view.eye.axes.up), 0, 1e-15);
-    EXPECT_NEAR(glm::length(pixel_ray(view, x, 2000) + view.eye.axes.up), 0, 1e-15);
+    EXPECT_NEAR(glm::length(pixel_ray(view, x, 0) - view.camera.axes.up), 0, 1e-15);
+    EXPECT_NEAR(glm::length(pixel_ray(view, x, 2000) + view.camera.axes.up), 0, 1e-15);
   }
-  const Projected zenith = project(view, view.eye.eye_m * 2.0);
+  const Projected zenith = project(view, view.camera.position_m * 2.0);
   EXPECT_FALSE(zenith.behind);
   EXPECT_NEAR(zenith.xy.y, 0, 1e-9);
 }
 
-TEST(View, OffsetMovesThePictureByThatManyPixels) {
+TEST(View, OffsetMovesTheImageByThatManyPixels) {
   test_support::Random random(4);
   for (const Projection projection : kProjections) {
     for (int n = 0; n < 500; ++n) {
@@ -229,7 +229,7 @@ TEST(View, OffsetMovesThePictureByThatManyPixels) {
 
 TEST(View, PartDoesNotChangeRays) {
   View view;
-  view.eye = pose(0, 0, 1000, 0, 0, 0);
+  view.camera = pose(0, 0, 1000, 0, 0, 0);
   const glm::dvec3 before = pixel_ray(view, 100.5, 200.5);
   view.part = {100, 200, 300, 50};
   EXPECT_EQ(pixel_ray(view, 100.5, 200.5), before);
@@ -249,7 +249,7 @@ TEST(View, SidePlanesBoundExactlyWhatProjectsIntoThePart) {
     ASSERT_EQ(check(view), "");
     const double x = random.uniform(view.part.x - view.part.width, view.part.x + 2 * view.part.width);
     const double y = random.uniform(view.part.y - view.part.height, view.part.y + 2 * view.part.height);
-    const glm::dvec3 point = view.eye.eye_m + pixel_ray(view, x, y) * random.log_uniform(1e3, 1e7);
+    const glm::dvec3 point = view.camera.position_m + pixel_ray(view, x, y) * random.log_uniform(1e3, 1e7);
     const double x1 = view.part.x + view.part.width;
     const double y1 = view.part.y + view.part.height;
     const double gaps[4] = {x - view.part.x, x1 - x, y1 - y, y - view.part.y};
@@ -262,8 +262,8 @@ TEST(View, SidePlanesBoundExactlyWhatProjectsIntoThePart) {
       const Plane plane = side_planes(view)[side];
       ASSERT_NEAR(glm::length(plane.normal), 1, 1e-15);
       const double depth = glm::dot(plane.normal, point) - plane.offset_m;
-      const double eye_depth = glm::dot(plane.normal, view.eye.eye_m) - plane.offset_m;
-      ASSERT_NEAR(eye_depth, 0, 1e-15 * glm::length(view.eye.eye_m));
+      const double camera_depth = glm::dot(plane.normal, view.camera.position_m) - plane.offset_m;
+      ASSERT_NEAR(camera_depth, 0, 1e-15 * glm::length(view.camera.position_m));
       if (std::abs(depth) > 1e-6 && std::abs(gaps[side]) > 1e-6) {
         ASSERT_EQ(depth > 0, gaps[side] > 0) << side;
       }
@@ -274,7 +274,7 @@ TEST(View, SidePlanesBoundExactlyWhatProjectsIntoThePart) {
   EXPECT_GT(inside_count, 1000);
 }
 
-TEST(View, SidePlanesAreRefusedForRoundPictures) {
+TEST(View, SidePlanesAreRefusedForRoundImages) {
   View view;
   view.projection = Projection::kCylinder;
   EXPECT_THROW(side_planes(view), std::invalid_argument);
@@ -282,16 +282,16 @@ TEST(View, SidePlanesAreRefusedForRoundPictures) {
 
 TEST(View, BehindThePerspectiveEye) {
   View view;
-  view.eye = pose(0, 0, 1000, 0, 0, 0);
-  EXPECT_TRUE(project(view, view.eye.eye_m - view.eye.axes.forward).behind);
-  EXPECT_TRUE(project(view, view.eye.eye_m + view.eye.axes.right).behind);
-  EXPECT_TRUE(project(view, view.eye.eye_m).behind);
-  EXPECT_FALSE(project(view, view.eye.eye_m + view.eye.axes.forward).behind);
+  view.camera = pose(0, 0, 1000, 0, 0, 0);
+  EXPECT_TRUE(project(view, view.camera.position_m - view.camera.axes.forward).behind);
+  EXPECT_TRUE(project(view, view.camera.position_m + view.camera.axes.right).behind);
+  EXPECT_TRUE(project(view, view.camera.position_m).behind);
+  EXPECT_FALSE(project(view, view.camera.position_m + view.camera.axes.forward).behind);
 }
 
 class BadView : public ::testing::Test {
  protected:
-  BadView() { view_.eye = pose(0, 0, 1000, 0, 0, 0); }
+  BadView() { view_.camera = pose(0, 0, 1000, 0, 0, 0); }
   void expect(const std::string& words) const {
     const std::string problem = check(view_);
     EXPECT_NE(problem.find(words), std::string::npos) << "said: '" << problem << "', wanted: " << words;
@@ -323,14 +323,14 @@ TEST_F(BadView, FieldOfView) {
 }
 
 TEST_F(BadView, Eye) {
-  view_.eye.eye_m.y = kNan;
+  view_.camera.position_m.y = kNan;
   expect("eye's position is not finite");
-  view_.eye.eye_m.y = 1e300;
+  view_.camera.position_m.y = 1e300;
   expect("farther than");
-  view_.eye = pose(0, 0, 1000, kNan, 0, 0);
+  view_.camera = pose(0, 0, 1000, kNan, 0, 0);
   expect("axes are not orthonormal");
-  view_.eye = pose(0, 0, 1000, 0, 0, 0);
-  view_.eye.axes.right = -view_.eye.axes.right;  // left-handed
+  view_.camera = pose(0, 0, 1000, 0, 0, 0);
+  view_.camera.axes.right = -view_.camera.axes.right;  // left-handed
   expect("axes are not orthonormal");
 }
 
@@ -356,9 +356,9 @@ TEST_F(BadView, base::Shard) {
   }
 }
 
-TEST(View, PartOfAPictureLargerThanCanBeDrawn) {
+TEST(View, PartOfAImageLargerThanCanBeDrawn) {
   View view;
-  view.eye = pose(0, 0, 1000, 0, 0, 0);
+  view.camera = pose(0, 0, 1000, 0, 0, 0);
   view.width = 100000;
   view.height = 20000;
   EXPECT_NE(check(view), "");
@@ -371,7 +371,7 @@ TEST(View, PartOfAPictureLargerThanCanBeDrawn) {
   EXPECT_NE(check(view), "");
 }
 
-// Against every pixel's corner, by the angle to the horizon; where the picture ends within rounding of it
+// Against every pixel's corner, by the angle to the horizon; where the image ends within rounding of it
 // either answer will do.
 TEST(View, ReachesTheHorizonWhereAPixelDoes) {
   test_support::Random random(20261122);
@@ -387,14 +387,14 @@ TEST(View, ReachesTheHorizonWhereAPixelDoes) {
       view.part = {x, y, random.integer(1, view.width - x), random.integer(1, view.height - y)};
     }
     const double radius_m = mars::kMarsRadius_m - random.log_uniform(1e-3, 8e3);
-    const double distance_m = glm::length(view.eye.eye_m);
+    const double distance_m = glm::length(view.camera.position_m);
     const double horizon_rad = std::asin(radius_m / distance_m);
     const SubRectangle part = drawn_part(view);
     double most_rad = 0;
     for (int y = part.y; y <= part.y + part.height; ++y) {
       for (int x = part.x; x <= part.x + part.width; ++x) {
         const glm::dvec3 ray = pixel_ray(view, x, y);
-        const glm::dvec3 down = -view.eye.eye_m / distance_m;
+        const glm::dvec3 down = -view.camera.position_m / distance_m;
         most_rad = std::max(most_rad, std::atan2(glm::length(glm::cross(ray, down)), glm::dot(ray, down)));
       }
     }
@@ -408,11 +408,11 @@ TEST(View, ReachesTheHorizonWhereAPixelDoes) {
   EXPECT_GT(tried, 3500);
   View round;
   round.projection = Projection::kCylinder;
-  round.eye = pose(0, 0, 1000, 0, 0, 0);
+  round.camera = pose(0, 0, 1000, 0, 0, 0);
   EXPECT_TRUE(reaches_horizon(round, mars::kMarsRadius_m));
   View inside = round;
   inside.projection = Projection::kPerspective;
-  inside.eye = pose(0, 0, -1000, 0, -90, 0);
+  inside.camera = pose(0, 0, -1000, 0, -90, 0);
   EXPECT_TRUE(reaches_horizon(inside, mars::kMarsRadius_m));
 }
 

@@ -10,105 +10,105 @@
 
 namespace {
 
-using cull::CullerFrame;
-using cull::CullerWorth;
-using cull::WorthLimits;
+using cull::CullingFrame;
+using cull::AdaptiveCulling;
+using cull::AdaptiveCullingLimits;
 
 // Runs frames in which the culler takes spent_ms and culls `culled` tiles of 1 ms; how many it was used in.
-int run(CullerWorth& worth, int frames, double spent_ms, int culled) {
-  int used = 0;
+int run(AdaptiveCulling& culling, int frames, double spent_ms, int culled) {
+  int record_frame = 0;
   for (int n = 0; n < frames; ++n) {
-    if (worth.use()) {
-      worth.used({spent_ms, 100, culled, 1.0});
-      ++used;
+    if (culling.use()) {
+      culling.record_frame({spent_ms, 100, culled, 1.0});
+      ++record_frame;
     } else {
-      worth.not_used();
+      culling.skip_frame();
     }
   }
-  return used;
+  return record_frame;
 }
 
-TEST(CullerWorth, OneThatPaysIsAlwaysUsed) {
-  CullerWorth worth;
-  EXPECT_EQ(run(worth, 5000, 1.0, 3), 5000);
+TEST(AdaptiveCulling, OneThatPaysIsAlwaysUsed) {
+  AdaptiveCulling culling;
+  EXPECT_EQ(run(culling, 5000, 1.0, 3), 5000);
 }
 
-TEST(CullerWorth, OneThatDoesNotIsTriedEverMoreRarely) {
-  const WorthLimits limits;
-  CullerWorth worth(limits);
-  EXPECT_EQ(run(worth, limits.trial_frames, 2.0, 1), limits.trial_frames);
-  EXPECT_FALSE(worth.use());
-  EXPECT_EQ(run(worth, limits.wait_frames, 2.0, 1), 0);
-  EXPECT_TRUE(worth.use());
-  EXPECT_EQ(run(worth, limits.trial_frames, 2.0, 1), limits.trial_frames);
-  EXPECT_EQ(run(worth, 2 * limits.wait_frames, 2.0, 1), 0);
-  EXPECT_TRUE(worth.use());
+TEST(AdaptiveCulling, OneThatDoesNotIsTriedEverMoreRarely) {
+  const AdaptiveCullingLimits limits;
+  AdaptiveCulling culling(limits);
+  EXPECT_EQ(run(culling, limits.trial_frames, 2.0, 1), limits.trial_frames);
+  EXPECT_FALSE(culling.use());
+  EXPECT_EQ(run(culling, limits.wait_frames, 2.0, 1), 0);
+  EXPECT_TRUE(culling.use());
+  EXPECT_EQ(run(culling, limits.trial_frames, 2.0, 1), limits.trial_frames);
+  EXPECT_EQ(run(culling, 2 * limits.wait_frames, 2.0, 1), 0);
+  EXPECT_TRUE(culling.use());
   // In the long run less than one frame in 200.
-  run(worth, 5000, 2.0, 1);
-  EXPECT_LT(run(worth, 20000, 2.0, 1), 100);
-  EXPECT_GT(run(worth, 2 * limits.longest_wait_frames, 2.0, 1), 0) << "it is never given up";
+  run(culling, 5000, 2.0, 1);
+  EXPECT_LT(run(culling, 20000, 2.0, 1), 100);
+  EXPECT_GT(run(culling, 2 * limits.longest_wait_frames, 2.0, 1), 0) << "it is never given up";
 }
 
-TEST(CullerWorth, FollowsTheScene) {
-  const WorthLimits limits;
-  CullerWorth worth(limits);
-  run(worth, 100, 1.0, 10);  // a canyon
-  EXPECT_TRUE(worth.use());
-  const int on = run(worth, 100, 1.0, 0);  // over a plain
+TEST(AdaptiveCulling, FollowsTheScene) {
+  const AdaptiveCullingLimits limits;
+  AdaptiveCulling culling(limits);
+  run(culling, 100, 1.0, 10);  // a canyon
+  EXPECT_TRUE(culling.use());
+  const int on = run(culling, 100, 1.0, 0);  // over a plain
   EXPECT_GT(on, 1);
   EXPECT_LT(on, 40);
-  EXPECT_FALSE(worth.use());
-  run(worth, limits.longest_wait_frames + limits.trial_frames, 1.0, 10);  // back
-  EXPECT_EQ(run(worth, 100, 1.0, 10), 100);
+  EXPECT_FALSE(culling.use());
+  run(culling, limits.longest_wait_frames + limits.trial_frames, 1.0, 10);  // back
+  EXPECT_EQ(run(culling, 100, 1.0, 10), 100);
   // Its waits are short again.
-  run(worth, 30, 1.0, 0);
-  ASSERT_FALSE(worth.use());
-  run(worth, limits.wait_frames, 1.0, 10);
-  EXPECT_TRUE(worth.use());
+  run(culling, 30, 1.0, 0);
+  ASSERT_FALSE(culling.use());
+  run(culling, limits.wait_frames, 1.0, 10);
+  EXPECT_TRUE(culling.use());
 }
 
 // Between both ratios whatever is, stays: no switching to and fro at the edge.
-TEST(CullerWorth, DoesNotFlicker) {
-  CullerWorth on;
+TEST(AdaptiveCulling, DoesNotFlicker) {
+  AdaptiveCulling on;
   run(on, 50, 1.0, 2);
   EXPECT_EQ(run(on, 2000, 1.0, 1), 2000) << "saves as much as it costs: stays on";
-  CullerWorth off;
+  AdaptiveCulling off;
   run(off, 50, 3.0, 1);
   ASSERT_FALSE(off.use());
   EXPECT_LT(run(off, 2000, 1.0, 1), 60) << "saves as much as it costs: stays off";
   // Noise of +-60 % about a culler that pays twice its cost.
   test_support::Random random(5);
-  CullerWorth noisy;
-  int used = 0;
+  AdaptiveCulling noisy;
+  int record_frame = 0;
   for (int n = 0; n < 5000; ++n) {
     if (noisy.use()) {
-      noisy.used({random.uniform(0.4, 1.6), 100, random.integer(0, 4), 1.0});
-      ++used;
+      noisy.record_frame({random.uniform(0.4, 1.6), 100, random.integer(0, 4), 1.0});
+      ++record_frame;
     } else {
-      noisy.not_used();
+      noisy.skip_frame();
     }
   }
-  EXPECT_GT(used, 4500);
+  EXPECT_GT(record_frame, 4500);
 }
 
-TEST(CullerWorth, OneBadFrameIsForgiven) {
-  CullerWorth worth;
-  run(worth, 50, 1.0, 5);
-  worth.used({10.0, 100, 0, 1.0});
-  EXPECT_TRUE(worth.use());
-  EXPECT_EQ(run(worth, 100, 1.0, 5), 100);
+TEST(AdaptiveCulling, OneBadFrameIsForgiven) {
+  AdaptiveCulling culling;
+  run(culling, 50, 1.0, 5);
+  culling.record_frame({10.0, 100, 0, 1.0});
+  EXPECT_TRUE(culling.use());
+  EXPECT_EQ(run(culling, 100, 1.0, 5), 100);
 }
 
-TEST(CullerWorth, WhatSaysNothingChangesNothing) {
-  CullerWorth worth;
+TEST(AdaptiveCulling, WhatSaysNothingChangesNothing) {
+  AdaptiveCulling culling;
   for (int n = 0; n < 100; ++n) {
-    worth.used({1.0, 0, 0, 1.0});  // nothing was tested
-    worth.used({std::numeric_limits<double>::quiet_NaN(), 5, 0, 1.0});
-    worth.used({-1.0, 5, 0, 1.0});
+    culling.record_frame({1.0, 0, 0, 1.0});  // nothing was tested
+    culling.record_frame({std::numeric_limits<double>::quiet_NaN(), 5, 0, 1.0});
+    culling.record_frame({-1.0, 5, 0, 1.0});
   }
-  EXPECT_TRUE(worth.use());
-  worth.not_used();
-  EXPECT_TRUE(worth.use());
+  EXPECT_TRUE(culling.use());
+  culling.skip_frame();
+  EXPECT_TRUE(culling.use());
 }
 
 }  // namespace

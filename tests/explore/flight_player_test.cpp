@@ -29,8 +29,8 @@ FlightPlayer player_of(const char* text = kFlight) { return {path_of(text), mars
 void expect_state(const FlightPlayer& player, double time_s) {
   const scripts::FlightState is = player.state();
   const scripts::FlightState wanted = path_of(kFlight).at(time_s);
-  EXPECT_EQ(is.eye.eye_m, wanted.eye.eye_m) << time_s;
-  EXPECT_EQ(is.eye.axes.forward, wanted.eye.axes.forward) << time_s;
+  EXPECT_EQ(is.camera.position_m, wanted.camera.position_m) << time_s;
+  EXPECT_EQ(is.camera.axes.forward, wanted.camera.axes.forward) << time_s;
   EXPECT_EQ(is.look.yaw_deg, wanted.look.yaw_deg) << time_s;
 }
 
@@ -149,8 +149,8 @@ TEST(FlightPlayer, LookingAroundLeavesTheFlightAlone) {
     EXPECT_EQ(alone.time_s(), turned.time_s());
     EXPECT_EQ(a.pose.lon_deg, b.pose.lon_deg);
     EXPECT_EQ(a.pose.yaw_deg, b.pose.yaw_deg);
-    EXPECT_EQ(a.eye.eye_m, b.eye.eye_m);
-    EXPECT_NE(a.eye.axes.forward, b.eye.axes.forward);
+    EXPECT_EQ(a.camera.position_m, b.camera.position_m);
+    EXPECT_NE(a.camera.axes.forward, b.camera.axes.forward);
   }
   turned.look_ahead();
   expect_state(turned, turned.time_s());
@@ -159,20 +159,20 @@ TEST(FlightPlayer, LookingAroundLeavesTheFlightAlone) {
 TEST(FlightPlayer, TheUsersLookIsAddedToTheFlights) {
   FlightPlayer player = player_of();
   player.scrub(3);
-  player.look_around({20, 10, -5});
+  player.view_panorama({20, 10, -5});
   const scripts::FlightState state = player.state();
   EXPECT_EQ(state.look.yaw_deg, 60);
   EXPECT_EQ(state.look.pitch_deg, 15);
   EXPECT_EQ(state.look.roll_deg, -5);
-  const mars::EyePose eye = mars::to_eye(state.pose, {60, 15, -5}, mars::kMarsRadius_m);
-  EXPECT_EQ(state.eye.axes.forward, eye.axes.forward);
-  EXPECT_EQ(state.eye.axes.up, eye.axes.up);
+  const mars::CameraPose camera = mars::to_camera(state.pose, {60, 15, -5}, mars::kMarsRadius_m);
+  EXPECT_EQ(state.camera.axes.forward, camera.axes.forward);
+  EXPECT_EQ(state.camera.axes.up, camera.axes.up);
   player.turn_look(400, 500);
   EXPECT_EQ(player.state().look.pitch_deg, 90);
   EXPECT_EQ(player.state().look.yaw_deg, 100);
   player.turn_look(0, -1);  // felt at once
   EXPECT_EQ(player.state().look.pitch_deg, 89);
-  player.look_around({std::nan(""), std::numeric_limits<double>::infinity(), 0});
+  player.view_panorama({std::nan(""), std::numeric_limits<double>::infinity(), 0});
   expect_state(player, 3);
 }
 

@@ -27,12 +27,12 @@ Bytes datagram(double yaw, double pitch, double roll) {
 
 double apart(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
 
-double apart(const mars::HeadLook& a, const mars::HeadLook& b) {
+double apart(const mars::HeadAngles& a, const mars::HeadAngles& b) {
   return std::max(
       {apart(a.yaw_deg, b.yaw_deg), std::abs(a.pitch_deg - b.pitch_deg), apart(a.roll_deg, b.roll_deg)});
 }
 
-void expect_look(const mars::HeadLook& look, double yaw, double pitch, double roll, double within = 1e-6) {
+void expect_look(const mars::HeadAngles& look, double yaw, double pitch, double roll, double within = 1e-6) {
   EXPECT_NEAR(look.yaw_deg, yaw, within);
   EXPECT_NEAR(look.pitch_deg, pitch, within);
   EXPECT_NEAR(look.roll_deg, roll, within);
@@ -120,7 +120,7 @@ TEST(HeadTracker, GoesToZeroAfterTheTimeOutAndNotBefore) {
   EXPECT_TRUE(tracker.is_live(1.5));
   EXPECT_FALSE(tracker.is_live(1.51));
   EXPECT_TRUE(tracker.is_moving(1.51));
-  const mars::HeadLook half = tracker.look(1 + HeadTracker::kTimeout_s + HeadTracker::kEase_s / 2);
+  const mars::HeadAngles half = tracker.look(1 + HeadTracker::kTimeout_s + HeadTracker::kEase_s / 2);
   expect_look(half, 40, -15, 5, 1e-3);
   expect_look(tracker.look(1 + HeadTracker::kTimeout_s + HeadTracker::kEase_s), 0, 0, 0, 1e-9);
   expect_look(tracker.look(100), 0, 0, 0, 0);
@@ -132,7 +132,7 @@ TEST(HeadTracker, ComesBackWithoutAJump) {
   hold(tracker, datagram(80, -30, 10), 0, 1);
   for (const double back_s : {1.6, 1.75, 30.0}) {
     HeadTracker other = tracker;
-    const mars::HeadLook before = other.look(back_s);
+    const mars::HeadAngles before = other.look(back_s);
     other.receive(datagram(-70, 60, 90), back_s);
     EXPECT_LT(apart(other.look(back_s), before), 1e-9);
     EXPECT_TRUE(other.is_moving(back_s));
@@ -177,7 +177,7 @@ RC_GTEST_PROP(HeadTrackerProperty, AnyBytesAreHarmless, (const std::vector<Bytes
   for (Bytes packet : packets) {
     if (packet.size() > 20) packet.resize(HeadDatagram::kBytes);
     tracker.receive(packet, time_s += 0.01);
-    const mars::HeadLook look = tracker.look(time_s + 0.003);
+    const mars::HeadAngles look = tracker.look(time_s + 0.003);
     RC_ASSERT(std::abs(look.yaw_deg) <= 180 && std::abs(look.pitch_deg) <= 90 &&
               std::abs(look.roll_deg) <= 180);
   }
@@ -194,7 +194,7 @@ RC_GTEST_PROP(HeadTrackerProperty, TheLookIsContinuous, ()) {
   // A difference of half a turn followed, and another one eased at its steepest (1.5 / kEase_s).
   const double most_deg = 180 * kStep_s * 2 * (1 / options.smoothing_s + 1.5 / HeadTracker::kEase_s) + 1e-9;
   std::int64_t tick = 0;
-  mars::HeadLook before = tracker.look(0);
+  mars::HeadAngles before = tracker.look(0);
   const int count = *rc::gen::inRange(1, 30);
   for (int n = 0; n < count; ++n) {
     const auto angle = [] { return static_cast<double>(*rc::gen::inRange(-180, 181)); };
@@ -207,7 +207,7 @@ RC_GTEST_PROP(HeadTrackerProperty, TheLookIsContinuous, ()) {
     }
     const int gap = *rc::gen::element(1, 4, 16, 100, 480, 505, 700, 1200);
     for (int k = 0; k < gap; ++k, ++tick) {
-      const mars::HeadLook now = tracker.look(kStep_s * static_cast<double>(tick));
+      const mars::HeadAngles now = tracker.look(kStep_s * static_cast<double>(tick));
       RC_ASSERT(apart(now, before) <= most_deg);
       RC_ASSERT(std::abs(now.pitch_deg) <= 90);
       before = now;

@@ -13,16 +13,16 @@ namespace vpe::explore {
 namespace {
 
 std::string fault_of(const std::string& text, int line) {
-  const ParsedSpots parsed = parse_spots(text, "/a/S");
-  EXPECT_TRUE(parsed.spots.empty()) << text;
+  const ParsedHotspots parsed = parse_hotspots(text, "/a/S");
+  EXPECT_TRUE(parsed.hotspots.empty()) << text;
   EXPECT_EQ(parsed.errors.size(), 1U) << text;
   if (parsed.errors.empty()) return "";
   EXPECT_EQ(parsed.errors[0].line, line) << text;
   return to_string(parsed.errors[0]);
 }
 
-TEST(Spots, AreReadWithPathsRelativeToTheFile) {
-  const ParsedSpots parsed = parse_spots(
+TEST(Hotspots, AreReadWithPathsRelativeToTheFile) {
+  const ParsedHotspots parsed = parse_hotspots(
       "\xef\xbb\xbf# spots\r\n"
       "spot \"Glen Torridon\" 137.39 -4.72 2 ../panoramas/torridon.json  # with planes\r\n"
       "\n"
@@ -30,20 +30,20 @@ TEST(Spots, AreReadWithPathsRelativeToTheFile) {
       "spot Rim 360 -90 0 rim.tif",
       "/home/u/mars/spots");
   ASSERT_TRUE(parsed.errors.empty()) << to_string(parsed.errors[0]);
-  ASSERT_EQ(parsed.spots.size(), 3U);
-  EXPECT_EQ(parsed.spots[0].name, "Glen Torridon");
-  EXPECT_EQ(parsed.spots[0].place.lon_deg, 137.39);
-  EXPECT_EQ(parsed.spots[0].place.lat_deg, -4.72);
-  EXPECT_EQ(parsed.spots[0].height_m, 2);
-  EXPECT_EQ(parsed.spots[0].panorama, "/home/u/panoramas/torridon.json");
-  EXPECT_EQ(parsed.spots[1].name, "A \"rim\" #1");
-  EXPECT_EQ(parsed.spots[1].panorama, "/abs/my pano.png");
-  EXPECT_EQ(parsed.spots[2].panorama, "/home/u/mars/rim.tif");
-  EXPECT_TRUE(parse_spots("", "S").spots.empty());
-  EXPECT_EQ(parse_spots("spot a 1 2 3 p.png", "S").spots[0].panorama, "p.png");
+  ASSERT_EQ(parsed.hotspots.size(), 3U);
+  EXPECT_EQ(parsed.hotspots[0].name, "Glen Torridon");
+  EXPECT_EQ(parsed.hotspots[0].place.lon_deg, 137.39);
+  EXPECT_EQ(parsed.hotspots[0].place.lat_deg, -4.72);
+  EXPECT_EQ(parsed.hotspots[0].height_m, 2);
+  EXPECT_EQ(parsed.hotspots[0].panorama, "/home/u/panoramas/torridon.json");
+  EXPECT_EQ(parsed.hotspots[1].name, "A \"rim\" #1");
+  EXPECT_EQ(parsed.hotspots[1].panorama, "/abs/my pano.png");
+  EXPECT_EQ(parsed.hotspots[2].panorama, "/home/u/mars/rim.tif");
+  EXPECT_TRUE(parse_hotspots("", "S").hotspots.empty());
+  EXPECT_EQ(parse_hotspots("spot a 1 2 3 p.png", "S").hotspots[0].panorama, "p.png");
 }
 
-TEST(Spots, BadLinesAreToldByNumber) {
+TEST(Hotspots, BadLinesAreToldByNumber) {
   EXPECT_EQ(fault_of("\nsport a 1 2 3 p\n", 2), "/a/S:2: expected a spot, found \"sport\"");
   EXPECT_NE(fault_of("spot Glen Torridon 1 2 3 p\n", 1).find("found 7 words; a name or path with blanks"),
             std::string::npos);
@@ -61,81 +61,81 @@ TEST(Spots, BadLinesAreToldByNumber) {
   EXPECT_NE(fault_of(std::string("spot \0\xff 1 2 3 p\n", 16), 1).find("a name"), std::string::npos);
 }
 
-TEST(Spots, LinesReadBackAsTheyWere) {
+TEST(Hotspots, LinesReadBackAsTheyWere) {
   rc::check([] {
     const auto word = rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange<char>(' ', '~')));
-    Spot spot{*word, {-12.345678901234567, 1.0 / 3}, 2.1, "/" + *word};
-    const ParsedSpots parsed = parse_spots(to_line(spot), "/x/S");
+    Hotspot hotspot{*word, {-12.345678901234567, 1.0 / 3}, 2.1, "/" + *word};
+    const ParsedHotspots parsed = parse_hotspots(to_line(hotspot), "/x/S");
     RC_ASSERT(parsed.errors.empty());
-    RC_ASSERT(parsed.spots.size() == 1U);
-    RC_ASSERT(parsed.spots[0].name == spot.name);
-    RC_ASSERT(parsed.spots[0].place.lon_deg == spot.place.lon_deg);
-    RC_ASSERT(parsed.spots[0].panorama == spot.panorama.lexically_normal());
+    RC_ASSERT(parsed.hotspots.size() == 1U);
+    RC_ASSERT(parsed.hotspots[0].name == hotspot.name);
+    RC_ASSERT(parsed.hotspots[0].place.lon_deg == hotspot.place.lon_deg);
+    RC_ASSERT(parsed.hotspots[0].panorama == hotspot.panorama.lexically_normal());
   });
 }
 
-TEST(Spots, AFileThatIsNotThereIsSaid) {
+TEST(Hotspots, AFileThatIsNotThereIsSaid) {
   const test_support::TempDir folder;
-  EXPECT_THROW(load_spots(folder / "spots"), base::FileError);
+  EXPECT_THROW(load_hotspots(folder / "spots"), base::FileError);
   std::ofstream(folder / "spots") << "spot a 1 2 3 p.png\n";
-  EXPECT_EQ(load_spots(folder / "spots").spots.at(0).panorama, folder / "p.png");
+  EXPECT_EQ(load_hotspots(folder / "spots").hotspots.at(0).panorama, folder / "p.png");
 }
 
 // Spots along the equator, 1 km apart, 2 m above ground at 100 m.
-std::vector<glm::dvec3> row_of_spots(int count) {
-  std::vector<Spot> spots;
+std::vector<glm::dvec3> row_of_hotspots(int count) {
+  std::vector<Hotspot> hotspots;
   for (int n = 0; n < count; ++n) {
-    spots.push_back(
+    hotspots.push_back(
         {"s" + std::to_string(n), {n * 1000.0 / mars::kMarsRadius_m / mars::kRadiansPerDegree, 0}, 2, "p"});
   }
-  return spot_eyes(spots, mars::kMarsRadius_m,
+  return hotspot_eyes(hotspots, mars::kMarsRadius_m,
                    [](mars::LonLat, double exaggeration) { return 100 * exaggeration; });
 }
 
-glm::dvec3 eye_at(double east_m, double alt_m = 102) {
+glm::dvec3 camera_at(double east_m, double alt_m = 102) {
   return (mars::kMarsRadius_m + alt_m) *
          mars::direction({east_m / mars::kMarsRadius_m / mars::kRadiansPerDegree, 0});
 }
 
-TEST(Spots, TheNearestWithinADistance) {
-  const auto eyes = row_of_spots(5);
+TEST(Hotspots, TheNearestWithinADistance) {
+  const auto eyes = row_of_hotspots(5);
   EXPECT_NEAR(glm::length(eyes[0]), mars::kMarsRadius_m + 102, 1e-6);
-  const auto near = nearest_spot(eyes, eye_at(2100), 500);
+  const auto near = nearest_hotspot(eyes, camera_at(2100), 500);
   ASSERT_TRUE(near.has_value());
   EXPECT_EQ(near->index, 2U);
   EXPECT_NEAR(near->distance_m, 100, 0.1);
-  EXPECT_FALSE(nearest_spot(eyes, eye_at(2400), 300).has_value());
-  EXPECT_FALSE(nearest_spot(eyes, eye_at(2000, 5000), 3000).has_value());  // far above counts as far
-  EXPECT_FALSE(nearest_spot({}, eye_at(0), 1e9).has_value());
-  const Spot spot{"a", {0, 0}, 2, "p"};
-  const auto unknown = spot_eyes(std::span(&spot, 1), mars::kMarsRadius_m, {});
-  EXPECT_FALSE(nearest_spot(unknown, eye_at(0), 1e9).has_value());
+  EXPECT_FALSE(nearest_hotspot(eyes, camera_at(2400), 300).has_value());
+  EXPECT_FALSE(nearest_hotspot(eyes, camera_at(2000, 5000), 3000).has_value());  // far above counts as far
+  EXPECT_FALSE(nearest_hotspot({}, camera_at(0), 1e9).has_value());
+  const Hotspot hotspot{"a", {0, 0}, 2, "p"};
+  const auto unknown = hotspot_eyes(std::span(&hotspot, 1), mars::kMarsRadius_m, {});
+  EXPECT_FALSE(nearest_hotspot(unknown, camera_at(0), 1e9).has_value());
 }
 
-TEST(SpotTrackers, StagesBeginAndEndAtDifferentDistances) {
-  SpotTracker tracker(row_of_spots(1), {.approach_m = 1000, .reach_m = 100, .leave = 1.5});
-  const auto stage = [&](double east_m) { return tracker.update(eye_at(east_m)).stage; };
-  EXPECT_EQ(stage(1100), SpotStage::kFar);
-  EXPECT_EQ(stage(990), SpotStage::kApproaching);
-  EXPECT_EQ(stage(1400), SpotStage::kApproaching);
-  EXPECT_EQ(stage(1600), SpotStage::kFar);
-  EXPECT_EQ(stage(1400), SpotStage::kFar);
-  EXPECT_EQ(stage(90), SpotStage::kWithinReach);
-  EXPECT_EQ(stage(140), SpotStage::kWithinReach);
-  EXPECT_EQ(stage(160), SpotStage::kApproaching);
-  EXPECT_EQ(stage(140), SpotStage::kApproaching);
-  EXPECT_EQ(tracker.state().spot.index, 0U);
-  EXPECT_NEAR(tracker.state().spot.distance_m, 140, 0.1);
+TEST(HotspotTrackers, StagesBeginAndEndAtDifferentDistances) {
+  HotspotTracker tracker(row_of_hotspots(1), {.approach_m = 1000, .reach_m = 100, .leave = 1.5});
+  const auto stage = [&](double east_m) { return tracker.update(camera_at(east_m)).stage; };
+  EXPECT_EQ(stage(1100), HotspotStage::kFar);
+  EXPECT_EQ(stage(990), HotspotStage::kApproaching);
+  EXPECT_EQ(stage(1400), HotspotStage::kApproaching);
+  EXPECT_EQ(stage(1600), HotspotStage::kFar);
+  EXPECT_EQ(stage(1400), HotspotStage::kFar);
+  EXPECT_EQ(stage(90), HotspotStage::kWithinReach);
+  EXPECT_EQ(stage(140), HotspotStage::kWithinReach);
+  EXPECT_EQ(stage(160), HotspotStage::kApproaching);
+  EXPECT_EQ(stage(140), HotspotStage::kApproaching);
+  EXPECT_EQ(tracker.state().hotspot.index, 0U);
+  EXPECT_NEAR(tracker.state().hotspot.distance_m, 140, 0.1);
 }
 
 // Walking to and fro between two spots, and trembling at every border: few changes.
-TEST(SpotTrackers, NothingFlickers) {
-  SpotTracker tracker(row_of_spots(3), {.approach_m = 700, .reach_m = 100});
+TEST(HotspotTrackers, NothingFlickers) {
+  HotspotTracker tracker(row_of_hotspots(3), {.approach_m = 700, .reach_m = 100});
   int changes = 0;
   auto last = tracker.state();
   for (double east_m = -2000; east_m < 4000; east_m += 5) {
     for (const double trembling : {0.0, 8.0, -8.0}) {
-      const auto now = tracker.update(eye_at(east_m + trembling));
+      const auto now = tracker.update(camera_at(east_m + trembling));
       changes += now == last ? 0 : 1;
       last = now;
     }
@@ -144,13 +144,13 @@ TEST(SpotTrackers, NothingFlickers) {
   EXPECT_EQ(changes, 10);
 }
 
-TEST(SpotTrackers, AJumpToAnotherSpotIsSeenAtOnce) {
-  SpotTracker tracker(row_of_spots(50), {});
-  EXPECT_EQ(tracker.update(eye_at(3000)).spot.index, 3U);
-  const auto state = tracker.update(eye_at(40000));
-  EXPECT_EQ(state.stage, SpotStage::kWithinReach);
-  EXPECT_EQ(state.spot.index, 40U);
-  EXPECT_EQ(SpotTracker({}, {}).update(eye_at(0)).stage, SpotStage::kFar);
+TEST(HotspotTrackers, AJumpToAnotherSpotIsSeenAtOnce) {
+  HotspotTracker tracker(row_of_hotspots(50), {});
+  EXPECT_EQ(tracker.update(camera_at(3000)).hotspot.index, 3U);
+  const auto state = tracker.update(camera_at(40000));
+  EXPECT_EQ(state.stage, HotspotStage::kWithinReach);
+  EXPECT_EQ(state.hotspot.index, 40U);
+  EXPECT_EQ(HotspotTracker({}, {}).update(camera_at(0)).stage, HotspotStage::kFar);
 }
 
 }  // namespace

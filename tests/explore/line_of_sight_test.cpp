@@ -36,7 +36,7 @@ TEST_F(SphereSight, ClearanceIsTheSpheresAndSightEndsAtTheHorizon) {
   int hidden = 0;
   for (int n = 0; n < 300; ++n) {
     const bool near = n % 2 == 0;
-    const double sag_m = near ? 0.3 : 900;
+    const double sagitta_m = near ? 0.3 : 900;
     const SightPoint a{
         near ? mars::lon_lat(kPatch + 0.004 * random.direction()) : mars::lon_lat(random.direction()),
         random.log_uniform(near ? 5 : 2000, near ? 100 : 400000)};
@@ -46,7 +46,7 @@ TEST_F(SphereSight, ClearanceIsTheSpheresAndSightEndsAtTheHorizon) {
     const LineOfSight sight = line_of_sight(surface(), a, b);
     const double sphere_m = over_sphere_m(point_of(surface(), a), point_of(surface(), b), mars::kMarsRadius_m);
     EXPECT_GE(sight.clearance_m, sphere_m - sight.clearance_error_m);
-    EXPECT_LE(sight.clearance_m, sphere_m + sag_m);
+    EXPECT_LE(sight.clearance_m, sphere_m + sagitta_m);
     EXPECT_LT(sight.clearance_error_m, 1e-5);
     if (std::abs(sight.clearance_m) > 1e-5) {
       EXPECT_EQ(sight.visible, sight.clearance_m > 0);
@@ -98,22 +98,22 @@ TEST_F(RidgeSight, HidesWhatLiesBehindUnlessItIsTall) {
 
 void expect_as_sampled(const paging::Surface& surface, const SightPoint& a, const SightPoint& b) {
   const LineOfSight sight = line_of_sight(surface, a, b);
-  const glm::dvec3 eye = point_of(surface, a);
+  const glm::dvec3 camera = point_of(surface, a);
   const glm::dvec3 target = point_of(surface, b);
   double least_m = 1e300;
   constexpr int kSamples = 3000;
   for (int i = 0; i <= kSamples; ++i) {
-    const glm::dvec3 p = glm::mix(eye, target, static_cast<double>(i) / kSamples);
+    const glm::dvec3 p = glm::mix(camera, target, static_cast<double>(i) / kSamples);
     least_m = std::min(least_m, glm::length(p) - surface.at(p).radius_m);
   }
   EXPECT_LE(sight.clearance_m, least_m + sight.clearance_error_m + 1e-6);
   // What samples miss: between two of them the ground rises by no more than a steep slope lets it.
   EXPECT_GE(sight.clearance_m, least_m - 0.5 * sight.distance_m / kSamples);
-  const glm::dvec3 at = glm::mix(eye, target, sight.clearance_distance_m / sight.distance_m);
+  const glm::dvec3 at = glm::mix(camera, target, sight.clearance_distance_m / sight.distance_m);
   EXPECT_NEAR(glm::length(at) - surface.at(at).radius_m, sight.clearance_m, 1e-3);
   EXPECT_LT(mars::distance_rad(mars::lon_lat(at), sight.clearance_place), 1e-9);
   if (sight.obstruction) {
-    const glm::dvec3 hit = glm::mix(eye, target, sight.obstruction->distance_m / sight.distance_m);
+    const glm::dvec3 hit = glm::mix(camera, target, sight.obstruction->distance_m / sight.distance_m);
     EXPECT_NEAR(glm::length(hit), surface.at(hit).radius_m, 1e-4);
     EXPECT_LT(mars::distance_rad(mars::lon_lat(hit), sight.obstruction->place), 1e-9);
   }

@@ -9,33 +9,33 @@ namespace {
 
 core::View at(double lon_deg) {
   core::View view;
-  view.eye = mars::to_eye({lon_deg, 0, 10'000, 0, -30, 0}, mars::kMarsRadius_m);
+  view.camera = mars::to_camera({lon_deg, 0, 10'000, 0, -30, 0}, mars::kMarsRadius_m);
   return view;
 }
 
-// Pictures whose time falls with what is given up.
+// Images whose time falls with what is given up.
 double cost_ms(double full_ms, double multiplier) { return full_ms / std::pow(multiplier, 1.2); }
 
-TEST(LivePicture, AtRestItEndsWithTheFullPictureAndThenNothing) {
-  LivePicture live;
-  int pictures = 0;
+TEST(LiveImage, AtRestItEndsWithTheFullImageAndThenNothing) {
+  LiveImage live;
+  int images = 0;
   double last = 0;
   while (const auto order = live.next(at(0), false, 10'000)) {
     last = order->multiplier;
     live.made(400, true);
-    ASSERT_LT(++pictures, 20);
+    ASSERT_LT(++images, 20);
   }
-  EXPECT_GE(pictures, 1);
+  EXPECT_GE(images, 1);
   EXPECT_EQ(last, 1.0);
-  EXPECT_EQ(live.state(), lod::LookState::kWaiting);
+  EXPECT_EQ(live.state(), lod::RefinementState::kWaiting);
   EXPECT_FALSE(live.next(at(0), false, 10'000).has_value());
   const auto again = live.next(at(0), true, 10'000);  // a setting changed
   ASSERT_TRUE(again.has_value());
   EXPECT_TRUE(again->is_full);
 }
 
-TEST(LivePicture, WhileTilesComeItIsDrawnAgain) {
-  LivePicture live;
+TEST(LiveImage, WhileTilesComeItIsDrawnAgain) {
+  LiveImage live;
   for (int n = 0; n < 30; ++n) {
     ASSERT_TRUE(live.next(at(0), false, 10'000).has_value());
     live.made(20, false);
@@ -45,8 +45,8 @@ TEST(LivePicture, WhileTilesComeItIsDrawnAgain) {
   EXPECT_FALSE(live.next(at(0), false, 10'000).has_value());
 }
 
-TEST(LivePicture, MovingItMeetsItsBudgetByPixelsAndTolerance) {
-  LivePicture live({.budget_ms = 50});
+TEST(LiveImage, MovingItMeetsItsBudgetByPixelsAndTolerance) {
+  LiveImage live({.budget_ms = 50});
   double ms = 0;
   for (int n = 0; n < 60; ++n) {
     const auto order = live.next(at(0.01 * n), false, 10'000);
@@ -64,8 +64,8 @@ TEST(LivePicture, MovingItMeetsItsBudgetByPixelsAndTolerance) {
   EXPECT_GT(ms, 35);
 }
 
-TEST(LivePicture, WithoutABudgetNothingIsGivenUp) {
-  LivePicture live({.budget_ms = 0});
+TEST(LiveImage, WithoutABudgetNothingIsGivenUp) {
+  LiveImage live({.budget_ms = 0});
   for (int n = 0; n < 20; ++n) {
     const auto order = live.next(at(0.5 * n), false, 10'000);
     ASSERT_TRUE(order.has_value());
@@ -75,9 +75,9 @@ TEST(LivePicture, WithoutABudgetNothingIsGivenUp) {
   }
 }
 
-TEST(LivePicture, OptionsOutOfRangeAreRefused) {
-  EXPECT_THROW(LivePicture({.budget_ms = -1}), std::invalid_argument);
-  EXPECT_THROW(LivePicture({.budget_ms = 10, .smallest_side = 0}), std::invalid_argument);
+TEST(LiveImage, OptionsOutOfRangeAreRefused) {
+  EXPECT_THROW(LiveImage({.budget_ms = -1}), std::invalid_argument);
+  EXPECT_THROW(LiveImage({.budget_ms = 10, .smallest_side = 0}), std::invalid_argument);
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(MapView, FootprintsAreWhatTheViewSees) {
   EXPECT_NEAR((north - 10) * mars::kRadiansPerDegree * r, 100'000, 4000);
   // A view of the whole planet ends at its horizon.
   const core::View far = view_of(overview({20, 10}, screen, r), screen, r);
-  const double cap_deg = std::acos(r / glm::length(far.eye.eye_m)) / mars::kRadiansPerDegree;
+  const double cap_deg = std::acos(r / glm::length(far.camera.position_m)) / mars::kRadiansPerDegree;
   for (const mars::LonLat p : footprint(far, r))
     EXPECT_NEAR(mars::distance_rad(p, {20, 10}) / mars::kRadiansPerDegree, cap_deg, 1e-9);
 }

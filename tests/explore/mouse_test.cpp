@@ -35,7 +35,7 @@ const Case kCases[] = {
 };
 
 TEST(Mouse, WhatIsDraggedStaysUnderTheCursor) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   for (const Case& c : kCases) {
     SCOPED_TRACE(c.name);
     const auto held = ground_at(c.pose, kScreen, {640, 400}, ground);
@@ -54,7 +54,7 @@ TEST(Mouse, WhatIsDraggedStaysUnderTheCursor) {
 }
 
 TEST(Mouse, DragEastShowsWhatIsWest) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   const Pose pose{20, 0, 500'000, 0, -90, 0};
   const auto held = ground_at(pose, kScreen, {640, 360}, ground);
   const Pose end = dragged(pose, kScreen, *held, {840, 360}, ground);
@@ -64,7 +64,7 @@ TEST(Mouse, DragEastShowsWhatIsWest) {
 }
 
 TEST(Mouse, ADragBeyondTheEdgeHoldsTheEdge) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   const Pose pose{20, 0, 9e6, 0, -90, 0};
   const auto held = ground_at(pose, kScreen, {640, 360}, ground);
   const Pose end = dragged(pose, kScreen, *held, {1270, 360}, ground);
@@ -73,7 +73,7 @@ TEST(Mouse, ADragBeyondTheEdgeHoldsTheEdge) {
 }
 
 TEST(Mouse, ZoomKeepsWhatIsUnderTheCursor) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   for (const Case& c : kCases) {
     SCOPED_TRACE(c.name);
     for (const double factor : {0.8, 0.5, 1.25}) {
@@ -83,15 +83,15 @@ TEST(Mouse, ZoomKeepsWhatIsUnderTheCursor) {
       const Pose end = zoomed(c.pose, kScreen, xy, factor, ground);
       if (end.alt_m > SteerLimits::kHighest_radii * kR * 0.99) continue;
       EXPECT_LT(off_px(end, *point, xy), 1e-5);
-      const double before = glm::length(mars::to_eye(c.pose, kR).eye_m - *point);
-      const double after = glm::length(mars::to_eye(end, kR).eye_m - *point);
+      const double before = glm::length(mars::to_camera(c.pose, kR).camera_m - *point);
+      const double after = glm::length(mars::to_camera(end, kR).camera_m - *point);
       EXPECT_NEAR(after / before, factor, c.pose.alt_m > 1e6 ? 0.25 : 0.02);
     }
   }
 }
 
 TEST(Mouse, ZoomingInEndsAboveTheGround) {
-  const Ground ground = hills();
+  const TerrainQuery ground = hills();
   Pose pose{5, 5, 400'000, 0, -70, 0};
   for (int n = 0; n < 200; ++n) pose = zoomed(pose, kScreen, {640, 360}, 0.8, ground);
   EXPECT_GE(height_above_ground_m(pose, ground), SteerLimits::kClearance_m * 0.999);
@@ -102,17 +102,17 @@ TEST(Mouse, ZoomingInEndsAboveTheGround) {
 }
 
 TEST(Mouse, TiltTurnsAboutTheMiddle) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   for (const Case& c : kCases) {
     if (c.pose.roll_deg != 0) continue;
     SCOPED_TRACE(c.name);
     const auto pivot = ground_at(c.pose, kScreen, {640, 360}, ground);
     ASSERT_TRUE(pivot.has_value());
-    const double distance = glm::length(mars::to_eye(c.pose, kR).eye_m - *pivot);
+    const double distance = glm::length(mars::to_camera(c.pose, kR).camera_m - *pivot);
     for (const glm::dvec2 turn : {glm::dvec2{20, 0}, {-35, 5}, {0, -10}}) {
       const Pose end = tilted(c.pose, kScreen, turn.x, turn.y, ground);
       EXPECT_LT(off_px(end, *pivot, {640, 360}), 1e-5);
-      EXPECT_NEAR(glm::length(mars::to_eye(end, kR).eye_m - *pivot) / distance, 1, 1e-9);
+      EXPECT_NEAR(glm::length(mars::to_camera(end, kR).camera_m - *pivot) / distance, 1, 1e-9);
       EXPECT_NEAR(end.roll_deg, 0, 1e-5);
     }
   }
@@ -134,16 +134,16 @@ TEST(Mouse, OverviewShowsTheWholePlanet) {
 }
 
 TEST(Mouse, LookingAtAPlaceHasItInTheMiddle) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   const Pose pose{0, 0, 5000, 70, -10, 0};
   const glm::dvec3 point = mars::direction({3, 4}) * kR;
   const Pose end = looking_at(pose, point, 20'000, ground);
   EXPECT_LT(off_px(end, point, {640, 360}), 1e-5);
-  EXPECT_NEAR(glm::length(mars::to_eye(end, kR).eye_m - point), 20'000, 1e-3);
+  EXPECT_NEAR(glm::length(mars::to_camera(end, kR).camera_m - point), 20'000, 1e-3);
 }
 
 TEST(FlyTo, BeginsAndEndsWhereItIsTold) {
-  const Ground ground = hills();
+  const TerrainQuery ground = hills();
   const Pose from = kept_clear({10, 20, 4000, 350, -20, 10}, ground);
   const Pose to = kept_clear({-170, -40, 90'000, 20, -80, -10}, ground);
   const FlyTo way(from, to, ground);

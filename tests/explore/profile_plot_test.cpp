@@ -64,12 +64,12 @@ TEST_F(PlotOfRidge, NoPeakIsLostInAnyNumberOfColumns) {
 TEST_F(PlotOfRidge, WhatIsMissingIsSaid) {
   Profile profile = make_profile(surface(), std::vector<mars::LonLat>{{-36, 20}, {-34, 20}}, {.step_m = 2000});
   ASSERT_GT(profile.points.size(), 20U);
-  profile.points[10].missing = true;
+  profile.points[10].nodata = true;
   const int count = static_cast<int>(profile.points.size()) - 1;
-  int missing = 0;
-  for (const PlotColumn& c : plot_columns(profile, count * 4)) missing += c.missing ? 1 : 0;
-  EXPECT_GE(missing, 8);  // both steps that end there
-  EXPECT_LE(missing, 10);
+  int nodata = 0;
+  for (const PlotColumn& c : plot_columns(profile, count * 4)) nodata += c.nodata ? 1 : 0;
+  EXPECT_GE(nodata, 8);  // both steps that end there
+  EXPECT_LE(nodata, 10);
 }
 
 TEST_F(PlotOfRidge, AGivenDistanceFindsItsPoint) {

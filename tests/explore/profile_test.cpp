@@ -76,9 +76,9 @@ TEST_F(Profiles, CsvHasAPointALine) {
     EXPECT_NEAR(std::stod(line), p.points[n].distance_m, 6e-4);
   }
   EXPECT_EQ(n, p.points.size());
-  paging::ProfilePoint missing = p.points[0];
-  missing.missing = true;
-  EXPECT_EQ(profile_csv_line(missing), "0.000,0.000,10,0,,,,1\n");
+  paging::ProfilePoint nodata = p.points[0];
+  nodata.nodata = true;
+  EXPECT_EQ(profile_csv_line(nodata), "0.000,0.000,10,0,,,,1\n");
 }
 
 TEST_F(Profiles, WhatIsNoWayIsRefused) {

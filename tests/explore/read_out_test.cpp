@@ -19,7 +19,7 @@ std::string text_of(const ReadOut& r, const std::string& label) {
   return found == lines.end() ? "" : found->text;
 }
 
-// A point of S is taken, an eye is put somewhere above it, and the ray back must read that point out, unless
+// A point of S is taken, a camera is put somewhere above it, and the ray back must read that point out, unless
 // other ground is nearer.
 TEST_F(ReadOuts, AreThoseOfQueryWhereTheRayMeetsTheGround) {
   Random random(3);
@@ -28,10 +28,10 @@ TEST_F(ReadOuts, AreThoseOfQueryWhereTheRayMeetsTheGround) {
     const mars::LonLat place =
         mars::lon_lat(n % 2 == 0 ? random.direction() : test_support::kPatch + 0.01 * random.direction());
     const glm::dvec3 ground = surface().at(mars::direction(place)).radius_m * mars::direction(place);
-    const glm::dvec3 eye = ground + random.log_uniform(10, 1e6) *
+    const glm::dvec3 camera = ground + random.log_uniform(10, 1e6) *
                                         glm::normalize(mars::direction(place) + 0.9 * random.direction());
-    const double range_m = glm::length(ground - eye);
-    const auto r = read_out(surface(), eye, (ground - eye) / range_m);
+    const double range_m = glm::length(ground - camera);
+    const auto r = read_out(surface(), camera, (ground - camera) / range_m);
     ASSERT_TRUE(r.has_value());
     ASSERT_LE(*r->range_m, range_m + 1e-3);
     EXPECT_NEAR(glm::length(r->point_m), surface().at(r->point_m).radius_m, 1e-6);
@@ -70,7 +70,7 @@ TEST_F(ReadOuts, SaysWhatTheGroundComesFromAndHowFarItIsRight) {
   EXPECT_NE(text_of(r, "Elevation").find("m (sphere:3396190)"), std::string::npos);
   EXPECT_LE(r.at.spacing_m, 2000);
   EXPECT_GT(r.at.level, read_out_at(surface(), {90, 0}).at.level);
-  EXPECT_EQ(r.at.tile_error_m, 0);
+  EXPECT_EQ(r.at.geometric_error_m, 0);
   EXPECT_GT(r.at.resampling.max_m, 0);
   EXPECT_NE(text_of(r, "Resampling error"), "");
 }
@@ -84,7 +84,7 @@ TEST_F(ReadOuts, TheSkyIsNothingAndUndergroundIsHere) {
   EXPECT_NEAR(below->at.place.lon_deg, 10, 1e-9);
 }
 
-TEST_F(ReadOuts, AnExaggeratedPictureReadsTheSameElevations) {
+TEST_F(ReadOuts, AnExaggeratedImageReadsTheSameElevations) {
   const mars::LonLat place = mars::lon_lat(test_support::kPatch);
   const glm::dvec3 up = mars::direction(place);
   const auto plain = read_out(surface(), up * 4e6, -up);

@@ -70,7 +70,7 @@ TEST_F(SessionLogs, ReplayToTheBit) {
     if (n % 60 == 9) {
       ASSERT_EQ(settings.set("mode", n % 120 == 9 ? "wireframe" : "textured"), "");
     }
-    if (n == 200) log_.step_in(frame.time_s, "a \"spot\"", "/p/a b.json");
+    if (n == 200) log_.enter(frame.time_s, "a \"spot\"", "/p/a b.json");
     if (n == 250) log_.step_out(frame.time_s);
     const auto time_s = log_.frame(frame, settings);
     ASSERT_EQ(time_s, frame.time_s);
@@ -92,14 +92,14 @@ TEST_F(SessionLogs, ReplayToTheBit) {
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_TRUE(steps[0].in);
   EXPECT_EQ(steps[0].time_s, seen[200].frame.time_s);
-  EXPECT_EQ(steps[0].spot, "a \"spot\"");
+  EXPECT_EQ(steps[0].hotspot, "a \"spot\"");
   EXPECT_EQ(steps[0].panorama, "/p/a b.json");
   EXPECT_FALSE(steps[1].in);
   EXPECT_EQ(steps[1].time_s, seen[250].frame.time_s);
 }
 
 // The window drew nothing for a minute: then nothing moved.
-TEST_F(SessionLogs, TheEyeStandsStillInAPause) {
+TEST_F(SessionLogs, TheCameraStandsStillInAPause) {
   const mars::Pose here{10, 20, 5000, 0, -10, 0};
   const mars::Pose there{11, 20, 6000, 40, -10, 0};
   log_.frame({0, here, {}}, {});
@@ -165,7 +165,7 @@ TEST_F(SessionLogs, TheFileIsAFlightWhateverHappens) {
   EXPECT_FALSE(log_.frame({2e6, pose, {}}, {}).has_value());
   EXPECT_EQ(log_.frame({3, {370, 20, 5000, 725, 0, 0}, {}}, {}), 3);
   log_.note(3, "two\nlines\rhere");
-  log_.step_in(3, "", "a\nb");
+  log_.enter(3, "", "a\nb");
   log_.end(0);
   const scripts::Flight f = flight();
   EXPECT_NEAR(f.waypoints.back().lon_deg, 10, 1e-12);

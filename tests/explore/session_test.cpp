@@ -31,9 +31,9 @@ Session session_at(const mars::Pose& pose) {
 glm::dvec3 seen_at(const Session& session, glm::dvec2 xy) {
   const core::View view = session.view();
   const glm::dvec3 ray = core::pixel_ray(view, xy.x, xy.y);
-  const double range_m = session.ground().cast_m(view.eye.eye_m, ray);
+  const double range_m = session.ground().cast_m(view.camera.position_m, ray);
   EXPECT_TRUE(std::isfinite(range_m));
-  return view.eye.eye_m + ray * range_m;
+  return view.camera.position_m + ray * range_m;
 }
 
 glm::dvec2 place_of(const Session& session, const glm::dvec3& at_m) {
@@ -44,10 +44,10 @@ glm::dvec2 place_of(const Session& session, const glm::dvec3& at_m) {
 
 const mars::Pose kOver{20, 10, 150'000, 40, -35, 3};
 // A head that looks aside, straight ahead as a check.
-const std::vector<mars::HeadLook> kHeads{{0, 0, 0}, {30, -20, 8}, {-25, 10, 0}};
+const std::vector<mars::HeadAngles> kHeads{{0, 0, 0}, {30, -20, 8}, {-25, 10, 0}};
 
 TEST(Session, TheMouseHoldsWhatIsSeenWhereverTheHeadLooks) {
-  for (const mars::HeadLook& head : kHeads) {
+  for (const mars::HeadAngles& head : kHeads) {
     Session session = session_at(kOver);
     session.advance(0, {}, head);
     const glm::dvec2 from{500, 420};
@@ -60,20 +60,20 @@ TEST(Session, TheMouseHoldsWhatIsSeenWhereverTheHeadLooks) {
 }
 
 TEST(Session, TheWheelComesNearerToWhatIsSeenWhereverTheHeadLooks) {
-  for (const mars::HeadLook& head : kHeads) {
+  for (const mars::HeadAngles& head : kHeads) {
     Session session = session_at(kOver);
     session.advance(0, {}, head);
     const glm::dvec2 xy{800, 450};
     const glm::dvec3 under = seen_at(session, xy);
-    const double before_m = glm::length(session.view().eye.eye_m - under);
+    const double before_m = glm::length(session.view().camera.position_m - under);
     session.wheel(xy, 2);
     EXPECT_LT(glm::length(place_of(session, under) - xy), 0.5) << head.yaw_deg;
-    EXPECT_NEAR(glm::length(session.view().eye.eye_m - under), 0.64 * before_m, 0.06 * before_m);
+    EXPECT_NEAR(glm::length(session.view().camera.position_m - under), 0.64 * before_m, 0.06 * before_m);
   }
 }
 
 TEST(Session, ADoubleClickEndsWithThePlaceInTheMiddleWhereverTheHeadLooks) {
-  for (const mars::HeadLook& head : kHeads) {
+  for (const mars::HeadAngles& head : kHeads) {
     Session session = session_at(kOver);
     session.advance(0, {}, head);
     const glm::dvec3 wanted = seen_at(session, {900, 500});

@@ -30,14 +30,14 @@ Pose some_pose() {
 }
 
 TEST(Steer, AheadIsAGreatCircleAndItsLengthIsThat) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   const Pose start{10, 40, 5000, 30, -20, 5};
   const Pose end = moved(start, 0, 0, 200'000, ground);
   const mars::LonLat expected = mars::destination({10, 40}, 30, 200'000 / (kR + 5000));
   EXPECT_NEAR(end.lon_deg, expected.lon_deg, 1e-10);
   EXPECT_NEAR(end.lat_deg, expected.lat_deg, 1e-10);
   EXPECT_NEAR(end.alt_m, 5000, 1e-6);
-  // The eye turns with the circle: looking back, the start is straight behind.
+  // The camera turns with the circle: looking back, the start is straight behind.
   EXPECT_NEAR(std::remainder(mars::initial_bearing_deg(expected, {10, 40}) - 180.0 - end.yaw_deg, 360.0), 0,
               1e-9);
   EXPECT_EQ(end.pitch_deg, -20);
@@ -45,7 +45,7 @@ TEST(Steer, AheadIsAGreatCircleAndItsLengthIsThat) {
 }
 
 TEST(Steer, OverThePoleAndOn) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   const Pose end =
       moved({20, 89.9, 1000, 0, -10, 0}, 0, 0, 0.2 * mars::kRadiansPerDegree * (kR + 1000), ground);
   EXPECT_NEAR(end.lat_deg, 89.9, 1e-9);
@@ -54,7 +54,7 @@ TEST(Steer, OverThePoleAndOn) {
 }
 
 TEST(Steer, ControlsMoveAlongTheEyesAxes) {
-  const Ground ground = ball(kR);
+  const TerrainQuery ground = ball(kR);
   const Pose start{0, 0, 1000, 90, 0, 0};
   const double full = full_speed_m_s(start, ground);
   EXPECT_NEAR(full, 700, 1e-9);
@@ -79,7 +79,7 @@ TEST(Steer, PitchEndsAtTheZenith) {
 }
 
 RC_GTEST_PROP(Steer, NeverBelowTheGround, ()) {
-  const Ground ground = hills();
+  const TerrainQuery ground = hills();
   Pose pose = kept_clear(some_pose(), ground);
   for (int n = 0; n < 20; ++n) {
     Controls controls;
@@ -97,7 +97,7 @@ RC_GTEST_PROP(Steer, NeverBelowTheGround, ()) {
 
 TEST(Steer, RidesOverWhatStandsInTheWay) {
   // A wall of 2 km, 100 m thick, 5 km ahead; in one long step from 50 m above the plain.
-  Ground ground = ball(kR);
+  TerrainQuery ground = ball(kR);
   const double wall_rad = 5000 / kR;
   double highest_seen = 0;
   ground.height_m = [&](const glm::dvec3& d) {

@@ -9,7 +9,7 @@ SavedView view_at(double lon_deg, double yaw_deg = 0, double fov_deg = 60) {
   return {{lon_deg, 10, 5000, yaw_deg, -10, 0}, fov_deg};
 }
 
-// A user: time goes on, the eye is moved and rests.
+// A user: time goes on, the camera is moved and rests.
 class History : public ::testing::Test {
  protected:
   void pass(const SavedView& view) { history_.observe(now_s_ += 0.03, view, 5000); }

@@ -1,4 +1,4 @@
-// Everything that may describe a panorama, and the pictures themselves.
+// Everything that may describe a panorama, and the images themselves.
 #include <unistd.h>
 
 #include <cmath>
@@ -150,7 +150,7 @@ std::vector<Bytes> gpano_seeds() {
 void run_sidecar(std::span<const std::uint8_t> bytes) {
   const std::string text = text_of(bytes);
   try {
-    panorama::read_companions(text);
+    panorama::read_auxiliary_files(text);
   } catch (const panorama::MetadataError& error) {
     check_words(error);
   }
@@ -158,7 +158,7 @@ void run_sidecar(std::span<const std::uint8_t> bytes) {
     const panorama::Sidecar sidecar = panorama::read_sidecar(text);
     check_map(sidecar.map);
     const panorama::Sidecar again = panorama::read_sidecar(panorama::to_json(sidecar));
-    require(again.image == sidecar.image && again.station == sidecar.station, "stations survive being written");
+    require(again.image == sidecar.image && again.viewpoint == sidecar.viewpoint, "stations survive being written");
     check_same(sidecar.map, again.map);
   } catch (const panorama::MetadataError& error) {
     check_words(error);
@@ -196,27 +196,27 @@ void describe(const fs::path& path) {
   }
 }
 
-void look_at(const fs::path& path, const panorama::PictureHeader& header) {
+void look_at(const fs::path& path, const panorama::ImageFileHeader& header) {
   try {
-    panorama::PictureOptions options;
+    panorama::TiledImageOptions options;
     options.budget_bytes = std::size_t{8} << 20;
-    const auto picture = panorama::open_picture(path, header.format, options);
-    const panorama::PictureLevel size = picture->levels().front();
+    const auto tiled_image = panorama::open_tiled_image(path, header.format, options);
+    const panorama::ImageLevel size = tiled_image->levels().front();
     require(size.width_px == header.width_px && size.height_px == header.height_px, "one size");
     const panorama::PanoramaMap map =
         panorama::cylinder_map(size.width_px, size.height_px, static_cast<double>(size.width_px), 0.0,
                                0.5 * static_cast<double>(size.height_px));
     if (!panorama::check(map).empty()) return;
-    panorama::LookOptions look;
+    panorama::RenderViewOptions look;
     look.threads = 1;
-    panorama::look(*picture, map, panorama::Viewer(map, 16, 8).view(), look);
+    panorama::look(*tiled_image, map, panorama::Viewer(map, 16, 8).view(), look);
   } catch (const vpe::base::FileError& error) {
     check_words(error);
   }
 }
 
-// As larger pictures than memory are read, and as planes are.
-void read_parts(const fs::path& path, const panorama::PictureHeader& header) {
+// As larger images than memory are read, and as planes are.
+void read_parts(const fs::path& path, const panorama::ImageFileHeader& header) {
   constexpr std::int64_t kMaxPixels = 1 << 20;
   try {
     const auto rows = panorama::open_rows(path, header.format, std::size_t{1} << 22);
@@ -227,7 +227,7 @@ void read_parts(const fs::path& path, const panorama::PictureHeader& header) {
     check_words(error);
   }
   try {
-    if (header.format != panorama::PictureFormat::kTiff) return;
+    if (header.format != panorama::ImageFileFormat::kTiff) return;
     const panorama::RasterPlane plane(path, header.width_px, header.height_px);
     require(!plane.at(header.width_px - 1, header.height_px - 1).empty(), "planes have bands");
   } catch (const vpe::base::FileError& error) {
@@ -237,9 +237,9 @@ void read_parts(const fs::path& path, const panorama::PictureHeader& header) {
 
 void put_packet(std::span<const std::uint8_t> bytes) {
   try {
-    const panorama::PictureHeader header = panorama::read_picture_header(bytes);
+    const panorama::ImageFileHeader header = panorama::read_image_header(bytes);
     const Bytes with_packet = panorama::with_xmp(bytes, "<a>packet</a>");
-    const panorama::PictureHeader again = panorama::read_picture_header(with_packet);
+    const panorama::ImageFileHeader again = panorama::read_image_header(with_packet);
     require(again.xmp == "<a>packet</a>" && again.width_px == header.width_px &&
                 again.height_px == header.height_px,
             "packets are read back");
@@ -248,14 +248,14 @@ void put_packet(std::span<const std::uint8_t> bytes) {
   }
 }
 
-void run_picture(std::span<const std::uint8_t> bytes) {
+void run_image(std::span<const std::uint8_t> bytes) {
   const fs::path path = scratch() / "p.img";
   std::ofstream(path, std::ios::binary | std::ios::trunc) << text_of(bytes);
   describe(path);
   put_packet(bytes);
-  panorama::PictureHeader header;
+  panorama::ImageFileHeader header;
   try {
-    header = panorama::read_picture_header(path);
+    header = panorama::read_image_header(path);
   } catch (const vpe::base::FileError& error) {
     return check_words(error);
   }
@@ -263,7 +263,7 @@ void run_picture(std::span<const std::uint8_t> bytes) {
   read_parts(path, header);
 }
 
-std::vector<Bytes> picture_seeds() {
+std::vector<Bytes> image_seeds() {
   constexpr int kWidth = 40;
   constexpr int kHeight = 24;
   std::vector<vpe::base::Rgb> pixels(std::size_t{kWidth} * kHeight);
@@ -297,6 +297,6 @@ std::vector<Bytes> picture_seeds() {
 const Target kRover{"rover", run_rover, rover_seeds};
 const Target kGpano{"gpano", run_gpano, gpano_seeds};
 const Target kSidecar{"sidecar", run_sidecar, sidecar_seeds};
-const Target kPicture{"picture", run_picture, picture_seeds};
+const Target kImage{"picture", run_image, image_seeds};
 
 }  // namespace fuzz

@@ -31,13 +31,13 @@ extern const Target kPlanet;
 extern const Target kLabel;
 
 // What describes a panorama: labels of rover mosaics (the first byte chooses PDS3 and VICAR, or PDS4), GPano's
-// XMP, the JSON beside a picture. What is read can be used, and survives being written.
+// XMP, the JSON beside an image. What is read can be used, and survives being written.
 extern const Target kRover;
 extern const Target kGpano;
 extern const Target kSidecar;
 
 // PNG, JPEG and TIFF as panoramas and planes: describing, looking, reading by rows, putting a packet in.
-extern const Target kPicture;
+extern const Target kImage;
 
 // Ends the process with the words when `promise` does not hold.
 void require(bool promise, const char* words);

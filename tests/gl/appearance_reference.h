@@ -1,5 +1,5 @@
 // What an appearance looks like at a place on the ground, from its definition (vpe/core/appearance/shading.h,
-// docs/appearance.md) and the planet's posts alone: nothing of the renderer's way to its pictures is used.
+// docs/appearance.md) and the planet's posts alone: nothing of the renderer's way to its images is used.
 #pragma once
 
 #include <optional>

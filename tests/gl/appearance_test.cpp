@@ -104,20 +104,20 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
   const lod::TileInfo& tile = file->tree()[0];
   const auto needs = [&](const core::Appearance& a) {
     const auto scale = paging::needs_scale(a, true) ? std::make_shared<const core::ColourScale>(a) : nullptr;
-    return vpe::gl::painting(a, {1, 0, 0}, true, scale);
+    return vpe::gl::material(a, {1, 0, 0}, true, scale);
   };
   const auto vertex_bytes = [&](const core::Appearance& a) {
     const bool charts = vpe::gl::needs_charts(tile.key, *file, needs(a));
     return sizeof(vpe::gl::VertexPosition) + (charts ? sizeof(vpe::gl::VertexChart) : 0);
   };
   for (const core::Appearance& a : appearances()) {
-    const vpe::gl::Painting p = needs(a);
+    const vpe::gl::TileMaterial p = needs(a);
     EXPECT_LE(vertex_bytes(a), 20U);
     const bool textured = vpe::gl::is_textured(tile.key, *file, p);
-    if (p.by != vpe::gl::PaintBy::kPalette) {
-      EXPECT_EQ(textured, p.by == vpe::gl::PaintBy::kTexture);
+    if (p.by != vpe::gl::PaintMethod::kPalette) {
+      EXPECT_EQ(textured, p.by == vpe::gl::PaintMethod::kTexture);
     }
-    EXPECT_EQ(vertex_bytes(a) == 16U, p.by == vpe::gl::PaintBy::kTexture && !p.look.flat);
+    EXPECT_EQ(vertex_bytes(a) == 16U, p.by == vpe::gl::PaintMethod::kTexture && !p.look.flat);
     EXPECT_EQ(p.look.scale != nullptr, paging::needs_scale(a, true));
     if (a.mode == core::Mode::kWireframe) {
       EXPECT_FALSE(textured);
@@ -127,7 +127,7 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
   core::Appearance unlit;
   unlit.mode = core::Mode::kUnlit;
   EXPECT_EQ(vertex_bytes(unlit), 12U);
-  EXPECT_EQ(needs(unlit).by, vpe::gl::PaintBy::kPalette);
+  EXPECT_EQ(needs(unlit).by, vpe::gl::PaintMethod::kPalette);
 }
 
 // Elevation from afar: meshes are coarse there, and off by kilometres; their colours must not be.
@@ -143,15 +143,15 @@ TEST_F(Appearance, UnlitElevationIsThatOfTheGroundFromOrbitToo) {
   r.settings.palette = "grey";
   r.settings.smooth_edges = false;
   const auto fine = draw->draw(r);
-  ASSERT_GT(fine.certificate.tile_error_m, 500);
+  ASSERT_GT(fine.certificate.geometric_error_m, 500);
   const paging::Surface surface(file, std::size_t{1} << 26);
   int known = 0, good = 0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const auto at = static_cast<std::size_t>(y * kWidth + x);
-      const double range = surface.cast(r.view.eye.eye_m, core::pixel_ray(r.view, x + 0.5, y + 0.5));
+      const double range = surface.cast(r.view.camera.position_m, core::pixel_ray(r.view, x + 0.5, y + 0.5));
       if (!std::isfinite(range) || !std::isfinite(fine.frame.range_m[at])) continue;
-      const glm::dvec3 hit = r.view.eye.eye_m + range * core::pixel_ray(r.view, x + 0.5, y + 0.5);
+      const glm::dvec3 hit = r.view.camera.position_m + range * core::pixel_ray(r.view, x + 0.5, y + 0.5);
       const double wanted = 255 * std::clamp((surface.at(hit).height_m + 4000) / 8000, 0.0, 1.0);
       ++known;
       good += std::abs(fine.frame.colour[at].r - wanted) < 12 ? 1 : 0;

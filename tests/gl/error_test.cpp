@@ -1,4 +1,4 @@
-// The picture against exact ray casts of S: what the certificate promises.
+// The image against exact ray casts of S: what the certificate promises.
 #include <gtest/gtest.h>
 
 #include "tests/gl/certified.h"
@@ -51,15 +51,15 @@ TEST_F(PolygonError, ShiftsStayWithinTheCertificate) {
 }
 
 TEST_F(PolygonError, RandomViews) {
-  const glm::dvec3 spot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
+  const glm::dvec3 hotspot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
   const auto planet =
-      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(spot, 0.05, 10000)), 60000);
+      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(hotspot, 0.05, 10000)), 60000);
   const paging::Surface surface(planet, std::size_t{1} << 28);
   const auto draw = renderer(planet);
   Random random(62);
   for (int n = 0; n < 20; ++n) {
     const mars::LonLat place =
-        mars::lon_lat(n % 2 == 0 ? random.direction() : glm::normalize(spot + 0.05 * random.direction()));
+        mars::lon_lat(n % 2 == 0 ? random.direction() : glm::normalize(hotspot + 0.05 * random.direction()));
     const double ground = surface.at(mars::direction(place)).height_m;
     const mars::Pose pose{place.lon_deg,          place.lat_deg,          ground + random.log_uniform(2, 2e6),
                           random.uniform(0, 360), random.uniform(-60, 5), random.uniform(-180, 180)};
@@ -72,9 +72,9 @@ TEST_F(PolygonError, RandomViews) {
 // Skirts are planes through the planet's centre: from exactly over a border they are seen edge-on, along it
 // end-on.
 TEST_F(PolygonError, BordersSeenEdgeOn) {
-  const glm::dvec3 spot = mars::direction({45, 0});
+  const glm::dvec3 hotspot = mars::direction({45, 0});
   const auto planet =
-      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(spot, 0.02, 8000)), 60000);
+      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(hotspot, 0.02, 8000)), 60000);
   const paging::Surface surface(planet, std::size_t{1} << 28);
   const auto draw = renderer(planet);
   for (const mars::LonLat place :
@@ -93,17 +93,17 @@ TEST_F(PolygonError, BordersSeenEdgeOn) {
   }
 }
 
-// Where rounding relative to a tile's centre would be metres of picture.
+// Where rounding relative to a tile's centre would be metres of image.
 TEST_F(PolygonError, AHandAboveTheGround) {
-  const glm::dvec3 spot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
+  const glm::dvec3 hotspot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
   const auto planet =
-      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(spot, 0.02, 2000)), 60000);
+      build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(hotspot, 0.02, 2000)), 60000);
   const paging::Surface surface(planet, std::size_t{1} << 28);
   const auto draw = renderer(planet);
   Random random(63);
   for (const double height : {0.1, 0.5, 2.0, 10.0}) {
     for (int n = 0; n < 4; ++n) {
-      const mars::LonLat place = mars::lon_lat(glm::normalize(spot + 0.01 * random.direction()));
+      const mars::LonLat place = mars::lon_lat(glm::normalize(hotspot + 0.01 * random.direction()));
       const double ground = surface.at(mars::direction(place)).height_m;
       const mars::Pose pose{place.lon_deg, place.lat_deg, ground + height, random.uniform(0, 360), -30, 5};
       const DrawRequest request =
@@ -151,7 +151,7 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
     const DrawRequest request = test_support::request_for({33, -21, alt, 120, -dip, 17}, radius, 200, 150, 40);
     const DrawResult result = draw->draw(request);
     // Cells near a knot of the warp are up to 5 % wider than the mean.
-    const double sag = result.certificate.tile_error_m + 2.0 * 1.11 * spacing * spacing / (8 * radius);
+    const double sagitta = result.certificate.geometric_error_m + 2.0 * 1.11 * spacing * spacing / (8 * radius);
     const float nearest = *std::min_element(result.frame.range_m.begin(), result.frame.range_m.end());
     // Storage and rasterising move what is drawn by so much across the ray, for a metre of distance.
     const double moved = result.certificate.quantisation_px / vpe::core::focal_px(request.view);
@@ -160,14 +160,14 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
     for (int y = 0; y < 150; ++y) {
       for (int x = 0; x < 200; ++x) {
         const glm::dvec3 d = vpe::core::pixel_ray(request.view, x + 0.5, y + 0.5);
-        const double half = glm::dot(request.view.eye.eye_m, d);
-        const double lowest = std::sqrt(glm::dot(request.view.eye.eye_m, request.view.eye.eye_m) - half * half);
+        const double half = glm::dot(request.view.camera.position_m, d);
+        const double lowest = std::sqrt(glm::dot(request.view.camera.position_m, request.view.camera.position_m) - half * half);
         const float range = result.frame.range_m[static_cast<std::size_t>(y * 200 + x)];
         // How far the ray passes below the sphere decides; facets may be lower than it by sag.
         const double outer = radius + moved * std::abs(half);
         if (half > 0 || lowest > outer) {
           ASSERT_TRUE(std::isinf(range)) << alt << " " << x << " " << y;
-        } else if (const double inner = radius - sag - moved * std::abs(half); lowest < inner - 1e-6 * alt) {
+        } else if (const double inner = radius - sagitta - moved * std::abs(half); lowest < inner - 1e-6 * alt) {
           ASSERT_TRUE(std::isfinite(range)) << alt << " " << x << " " << y;
           ++surface_pixels;
           // The hit lies between the two spheres.
@@ -191,7 +191,7 @@ TEST_F(PolygonError, ToleranceZeroDrawsSItself) {
   DrawRequest request = test_support::request_for({-40, 12, 300000, 200, -40, 0}, planet->radius_m(), 160, 96);
   request.settings.lod_tolerance_px = 0;
   const DrawResult result = renderer(planet)->draw(request);
-  EXPECT_EQ(result.certificate.tile_error_m, 0);
+  EXPECT_EQ(result.certificate.geometric_error_m, 0);
   const auto shift = vpe::core::summarize(
       vpe::core::forward_shift_px(request.view, result.frame.range_m, test_support::radius_of(surface)), 160);
   EXPECT_LE(shift.max_px, result.certificate.shift_bound_px + 1e-3);

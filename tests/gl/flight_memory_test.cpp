@@ -62,7 +62,7 @@ std::vector<double> altitudes(const Flight& flight, const paging::Surface& surfa
   return out;
 }
 
-// The eye looks ahead and a little down, sways to both sides and climbs and sinks by up to four times its least
+// The camera looks ahead and a little down, sways to both sides and climbs and sinks by up to four times its least
 // height.
 vpe::core::View view_at(const Flight& flight, const std::vector<double>& altitude_m, double t,
                         double radius_m) {

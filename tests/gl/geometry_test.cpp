@@ -54,14 +54,14 @@ TEST(TileGeometryTest, VerticesAreWithinTheStatedRoundingOfTheirPlaces) {
       const double error = glm::length(stored - exact);
       worst = std::max(worst, error);
       ASSERT_LE(error, g.quantisation_m + 1e-9);
-      // The bound that certify() takes near the eye.
+      // The bound that certify() takes near the camera.
       ASSERT_LE(error, std::ldexp(glm::length(exact - g.centre_m), -24) + 1e-9);
     }
     EXPECT_GE(worst, 0.99 * g.quantisation_m - 1e-9);
   }
 }
 
-TEST(TileGeometryTest, AnOriginNearTheEyeIsExactThere) {
+TEST(TileGeometryTest, AnOriginNearTheCameraIsExactThere) {
   const std::vector<double> heights = heights_of([](int i, int j) { return 13.7 * i - 4.1 * j; });
   const lod::TileMesh mesh = lod::mesh_full(kIntervals);
   const int origin = 7 * (kIntervals + 1) + 3;
@@ -100,16 +100,16 @@ TEST(TileGeometryTest, BordersHaveALineAndASkirtForEachPiece) {
   }
 }
 
-// A point of a triangle, its corners rounded as storage and the subtraction of the eye round them, stays within
+// A point of a triangle, its corners rounded as storage and the subtraction of the camera round them, stays within
 // what is certified; and the figure is no more than some tens of times that.
 TEST(Certify, BoundsWhatStorageMoves) {
   Random random(32);
   const lod::TileTree tree = fake::tree(fake::rough(3, 5));
   double tightest = 1e9;
   for (int trial = 0; trial < 20000; ++trial) {
-    const glm::dvec3 eye = random.direction() * (kRadius_m + random.log_uniform(1, 1e5));
+    const glm::dvec3 camera = random.direction() * (kRadius_m + random.log_uniform(1, 1e5));
     const double distance_m = random.log_uniform(0.1, 1e6);
-    const glm::dvec3 point = eye + distance_m * random.direction();
+    const glm::dvec3 point = camera + distance_m * random.direction();
     const double edge_m = random.log_uniform(1, 1e5);
     const glm::dvec3 centre = point + random.log_uniform(0.01, 1e5) * random.direction();
     std::array<glm::dvec3, 3> corners;
@@ -119,17 +119,17 @@ TEST(Certify, BoundsWhatStorageMoves) {
     glm::dvec3 exact(0);
     glm::dvec3 drawn(0);
     double quantisation_m = 0;
-    const glm::vec3 to_eye(centre - eye);
+    const glm::vec3 to_camera(centre - camera);
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::vec3 stored(corners[k] - centre);
       quantisation_m = std::max(quantisation_m, glm::length(glm::dvec3(stored) - (corners[k] - centre)));
-      exact += weights[k] / sum * (corners[k] - eye);
-      drawn += weights[k] / sum * glm::dvec3(stored + to_eye);
+      exact += weights[k] / sum * (corners[k] - camera);
+      drawn += weights[k] / sum * glm::dvec3(stored + to_camera);
     }
     lod::SelectedTile tile;
     tile.key = tree[0].key;
     tile.min_distance_m = glm::length(exact);
-    const vpe::gl::CertifiedTile certified{&tile, quantisation_m, edge_m, glm::length(centre - eye), 0};
+    const vpe::gl::CertifiedTile certified{&tile, quantisation_m, edge_m, glm::length(centre - camera), 0};
     constexpr double kFocal_px = 600;
     const auto c = vpe::gl::certify({&certified, 1}, tree, 32, {kFocal_px, 0.001, 0, 1});
     const double moved_px = glm::length(drawn - exact) * kFocal_px / glm::length(exact);
@@ -149,21 +149,21 @@ TEST(Certify, AddsTheTermsOfTheWorstTile) {
   const lod::TileTree tree(infos, {2}, kRadius_m);
   lod::SelectedTile near;
   near.key = tree[0].key;
-  near.error_m = 3;
-  near.error_px = 0.9;
+  near.geometric_error_m = 3;
+  near.screen_space_error_px = 0.9;
   near.min_distance_m = 2000;
   lod::SelectedTile far = near;
   far.index = 1;
   far.key = tree[1].key;
-  far.error_m = 50;
-  far.error_px = 0.2;
+  far.geometric_error_m = 50;
+  far.screen_space_error_px = 0.2;
   far.min_distance_m = 2e5;
   const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&near, 1e-9, 100, 0, 0}, {&far, 1e-9, 100, 0, 0}}};
   const auto c = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02, 1});
   EXPECT_EQ(c.tiles_drawn, 2);
-  EXPECT_EQ(c.tile_error_m, 50);
-  EXPECT_EQ(c.tile_error_px, 0.9);
-  // The grid step's share for the steepest ground of the picture, over the nearer tile's error.
+  EXPECT_EQ(c.geometric_error_m, 50);
+  EXPECT_EQ(c.screen_space_error_px, 0.9);
+  // The grid step's share for the steepest ground of the image, over the nearer tile's error.
   EXPECT_NEAR(c.shift_bound_px, 0.9 + 0.02 * 4, 1e-3);
   EXPECT_GT(c.shift_bound_px, 0.98);
   const auto twice = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02, 2});
@@ -176,16 +176,16 @@ TEST(Certify, BoundsPartsWhereTheyAppear) {
   for (int f = 0; f < 6; ++f)
     infos.push_back({{static_cast<mars::Face>(f), 0, 0, 0}, 0, 0, false, {}, {{{}, 32}}, std::sqrt(15.0)});
   const lod::TileTree tree(infos, {2}, kRadius_m);
-  lod::SelectedTile hidden;  // worst of all, and nowhere in the picture
+  lod::SelectedTile hidden;  // worst of all, and nowhere in the image
   hidden.key = tree[0].key;
-  hidden.error_m = 500;
-  hidden.error_px = 50;
+  hidden.geometric_error_m = 500;
+  hidden.screen_space_error_px = 50;
   hidden.min_distance_m = 10000;
   lod::SelectedTile seen = hidden;
   seen.index = 1;
   seen.key = tree[1].key;
-  seen.error_m = 2;
-  seen.error_px = 20;
+  seen.geometric_error_m = 2;
+  seen.screen_space_error_px = 20;
   seen.min_distance_m = 100;  // of what it never shows
   const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&hidden, 1e-9, 100, 0, 0}, {&seen, 1e-9, 100, 0, 6}}};
   using vpe::gl::TilePart;
@@ -193,7 +193,7 @@ TEST(Certify, BoundsPartsWhereTheyAppear) {
     const std::array<std::uint32_t, 3> numbers{vpe::gl::kNoTile, vpe::gl::pack({1, part}),
                                                vpe::gl::pack({1, TilePart::kSurface})};
     const std::array<float, 3> ranges{vpe::core::kSkyRange, near_m, far_m};
-    return vpe::gl::bound_in_picture(tiles, tree, {numbers, ranges, 1e-6}, {1000, 0.5, 0.02, 1});
+    return vpe::gl::bound_in_image(tiles, tree, {numbers, ranges, 1e-6}, {1000, 0.5, 0.02, 1});
   };
   EXPECT_NEAR(bound(TilePart::kSurface, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
   EXPECT_NEAR(bound(TilePart::kRibbon, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
@@ -201,10 +201,10 @@ TEST(Certify, BoundsPartsWhereTheyAppear) {
   EXPECT_NEAR(bound(TilePart::kSkirt, 32000, 4000), 2.0 / 4 + 0.02 * 4, 1e-3);
   // Ranges are known no better than they say.
   EXPECT_GT(bound(TilePart::kSurface, 4000, 4e9F), bound(TilePart::kSurface, 4000, 8000) - 1e-12);
-  EXPECT_EQ(vpe::gl::bound_in_picture(tiles, tree, {}, {1000, 0.5, 0.02, 1}), 0);
+  EXPECT_EQ(vpe::gl::bound_in_image(tiles, tree, {}, {1000, 0.5, 0.02, 1}), 0);
 }
 
-TEST(TileNumber, SurvivesColours) {
+TEST(TileId, SurvivesColours) {
   std::uint32_t before = vpe::gl::kNoTile;
   for (const std::size_t tile : {0U, 1U, 84U, 85U, 86U, 4095U, 70000U, (1U << 22U) - 1U}) {
     for (const auto part :

@@ -28,7 +28,7 @@ inline std::shared_ptr<vpe::gl::Context> GlTest::context_;
 inline vpe::core::DrawRequest request_for(const mars::Pose& pose, double radius_m, int width, int height,
                                           double fov_deg = 60) {
   vpe::core::DrawRequest request;
-  request.view.eye = mars::to_eye(pose, radius_m);
+  request.view.camera = mars::to_camera(pose, radius_m);
   request.view.width = width;
   request.view.height = height;
   request.view.fov_deg = fov_deg;
@@ -39,7 +39,7 @@ inline vpe::core::DrawRequest request_for(const mars::Pose& pose, double radius_
   return request;
 }
 
-// The picture that an exact cast of S gives.
+// The image that an exact cast of S gives.
 inline std::vector<float> reference_ranges(const paging::Surface& surface, const vpe::core::View& view) {
   const glm::ivec2 size = vpe::core::drawn_size(view);
   std::vector<float> out;
@@ -47,7 +47,7 @@ inline std::vector<float> reference_ranges(const paging::Surface& surface, const
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
       out.push_back(static_cast<float>(surface.cast(
-          view.eye.eye_m, vpe::core::pixel_ray(view, view.part.x + x + 0.5, view.part.y + y + 0.5))));
+          view.camera.position_m, vpe::core::pixel_ray(view, view.part.x + x + 0.5, view.part.y + y + 0.5))));
     }
   }
   return out;

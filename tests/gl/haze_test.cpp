@@ -1,4 +1,4 @@
-// Haze in pictures is the definition's (vpe/core/appearance/shading.h), pixel by pixel.
+// Haze in images is the definition's (vpe/core/appearance/shading.h), pixel by pixel.
 #include "vpe/core/appearance/shading.h"
 
 #include <algorithm>
@@ -27,14 +27,14 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
   const double ground_m = test_support::bumpy_height(mars::direction(kPlace));
   const auto draw = renderer(file);
   const paging::Surface surface(file, std::size_t{1} << 26);
-  struct Eye {
+  struct Camera {
     double alt_m, pitch_deg, fov_deg;
   };
-  for (const Eye& eye : {Eye{ground_m + 1500, -3, 50}, Eye{80000, -25, 60}, Eye{8e6, -88, 40}}) {
+  for (const Camera& camera : {Camera{ground_m + 1500, -3, 50}, Camera{80000, -25, 60}, Camera{8e6, -88, 40}}) {
     for (const auto& [sun_deg, tolerance_px] : {std::pair{35.0, 0.0}, {3.0, 0.0}, {35.0, 1.0}}) {
       core::DrawRequest r =
-          test_support::request_for({kPlace.lon_deg, kPlace.lat_deg, eye.alt_m, 70, eye.pitch_deg, 15},
-                                    radius_m, kWidth, kHeight, eye.fov_deg);
+          test_support::request_for({kPlace.lon_deg, kPlace.lat_deg, camera.alt_m, 70, camera.pitch_deg, 15},
+                                    radius_m, kWidth, kHeight, camera.fov_deg);
       r.settings.background = core::Background::kBlack;
       r.settings.smooth_edges = false;
       r.settings.lod_tolerance_px = tolerance_px;
@@ -48,7 +48,7 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
         const core::DrawResult hazy = draw->draw(r);
         r.settings.haze_visibility_m = 0;
         ASSERT_EQ(hazy.frame.range_m, clear.frame.range_m);
-        const double eye_m = glm::length(r.view.eye.eye_m);
+        const double camera_m = glm::length(r.view.camera.position_m);
         int ground = 0, good = 0, sky = 0, same_sky = 0, changed = 0;
         double worst = 0;
         for (int y = 0; y < kHeight; ++y) {
@@ -64,10 +64,10 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
             if (!std::isfinite(ranges_m[at])) continue;
             const double range_m = ranges_m[at];
             const glm::dvec3 ray = core::pixel_ray(r.view, x + 0.5, y + 0.5);
-            const glm::dvec3 up = r.view.eye.eye_m / eye_m;
+            const glm::dvec3 up = r.view.camera.position_m / camera_m;
             const double left = core::transmittance(
-                core::air_m(radius_m, eye_m - radius_m, glm::dot(ray, up), range_m), visibility_m);
-            const glm::dvec3 hit = r.view.eye.eye_m + range_m * ray;
+                core::air_m(radius_m, camera_m - radius_m, glm::dot(ray, up), range_m), visibility_m);
+            const glm::dvec3 hit = r.view.camera.position_m + range_m * ray;
             const glm::dvec3 wanted =
                 glm::mix(core::haze_colour(glm::dot(glm::normalize(hit), r.sun)), before, left);
             const glm::dvec3 off = glm::abs(got - wanted);
@@ -81,7 +81,7 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
         std::printf(
             "eye at %.0f m, sun at %.0f, tolerance %.0f, visibility %.0f km: %d of %d pixels of ground within "
             "2, worst %.1f, %d changed\n",
-            eye.alt_m, sun_deg, tolerance_px, visibility_m / 1000, good, ground, worst, changed);
+            camera.alt_m, sun_deg, tolerance_px, visibility_m / 1000, good, ground, worst, changed);
         if (tolerance_px > 0) {
           // A pixel is up to 80 km here, and heights are coarse like the rest.
           EXPECT_LE(worst, 20);

@@ -12,17 +12,17 @@ using test_support::Random;
 using vpe::core::DrawRequest;
 using vpe::core::DrawResult;
 
-class Picture : public test_support::GlTest {};
+class Image : public test_support::GlTest {};
 
 int brightness(const vpe::base::Rgb& c) { return c.r + c.g + c.b; }
 
-TEST_F(Picture, ContextNeedsNoDisplay) {
+TEST_F(Image, ContextNeedsNoDisplay) {
   EXPECT_NE(context_->info().version.find("4."), std::string::npos);
   EXPECT_FALSE(context_->info().renderer.empty());
 }
 
-// A mountain to the east of an eye that looks north stands on the right; up is up.
-TEST_F(Picture, EastIsRightAndUpIsUp) {
+// A mountain to the east of a camera that looks north stands on the right; up is up.
+TEST_F(Image, EastIsRightAndUpIsUp) {
   const glm::dvec3 peak = mars::direction({1, 1.5});
   const auto planet = build_fake(dir_ / "p.vpe",
                                  FakeElevation(
@@ -55,7 +55,7 @@ TEST_F(Picture, EastIsRightAndUpIsUp) {
   EXPECT_GT(x_sum / count, 110);
 }
 
-TEST_F(Picture, RollOfTheRightWingDownShowsMoreGroundOnTheRight) {
+TEST_F(Image, RollOfTheRightWingDownShowsMoreGroundOnTheRight) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation([](const glm::dvec3&) { return 0.0; }), 200000);
   DrawRequest request = test_support::request_for({10, 10, 20000, 70, -6, 30}, planet->radius_m(), 100, 100);
   const DrawResult result = renderer(planet)->draw(request);
@@ -67,7 +67,7 @@ TEST_F(Picture, RollOfTheRightWingDownShowsMoreGroundOnTheRight) {
   EXPECT_GT(sky_in_column(5), sky_in_column(95) + 20);
 }
 
-TEST_F(Picture, DoesNotDependOnHistory) {
+TEST_F(Image, DoesNotDependOnHistory) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 60000);
   const DrawRequest a = test_support::request_for({5, 40, 100000, 30, -25, 0}, planet->radius_m(), 160, 100);
   const DrawRequest b =
@@ -85,7 +85,7 @@ TEST_F(Picture, DoesNotDependOnHistory) {
   EXPECT_EQ(first.frame.range_m, used->draw(a).frame.range_m);
 }
 
-TEST_F(Picture, PartsOfAPictureAreThePicture) {
+TEST_F(Image, PartsOfAImageAreTheImage) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 60000);
   DrawRequest request = test_support::request_for({5, 40, 100000, 30, -25, 10}, planet->radius_m(), 160, 100);
   request.settings.lod_tolerance_px = 0;  // the same meshes for both
@@ -105,23 +105,23 @@ TEST_F(Picture, PartsOfAPictureAreThePicture) {
   EXPECT_LE(differ, 4);
 }
 
-TEST_F(Picture, ModesDrawWhatTheySay) {
+TEST_F(Image, ModesDrawWhatTheySay) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 100000);
   DrawRequest request = test_support::request_for({5, 40, 400000, 30, -60, 0}, planet->radius_m(), 64, 48);
   const auto draw = renderer(planet);
-  std::vector<std::vector<vpe::base::Rgb>> pictures;
+  std::vector<std::vector<vpe::base::Rgb>> images;
   for (const auto mode : {vpe::core::Mode::kWireframe, vpe::core::Mode::kUnlit, vpe::core::Mode::kLit,
                           vpe::core::Mode::kColoured}) {
     request.settings.mode = mode;
-    pictures.push_back(draw->draw(request).frame.colour);
-    for (std::size_t n = 0; n + 1 < pictures.size(); ++n) EXPECT_NE(pictures[n], pictures.back());
+    images.push_back(draw->draw(request).frame.colour);
+    for (std::size_t n = 0; n + 1 < images.size(); ++n) EXPECT_NE(images[n], images.back());
   }
   // Without an image, textured falls back to the colours.
   request.settings.mode = vpe::core::Mode::kTextured;
-  EXPECT_EQ(draw->draw(request).frame.colour, pictures.back());
+  EXPECT_EQ(draw->draw(request).frame.colour, images.back());
 }
 
-TEST_F(Picture, NightIsDark) {
+TEST_F(Image, NightIsDark) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation([](const glm::dvec3&) { return 0.0; }), 200000);
   DrawRequest request = test_support::request_for({0, 0, 2e6, 0, -90, 0}, planet->radius_m(), 32, 32, 20);
   const auto draw = renderer(planet);
@@ -133,10 +133,10 @@ TEST_F(Picture, NightIsDark) {
 }
 
 // Texels on shared borders are equal from both sides, over cube edges and corners too: no seams.
-TEST_F(Picture, ShadingMeetsAtBorders) {
+TEST_F(Image, ShadingMeetsAtBorders) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 100000);
-  const paging::GroundPainter shader(planet, std::size_t{64} << 20);
-  paging::ShadeParams params;
+  const paging::TerrainShader shader(planet, std::size_t{64} << 20);
+  paging::ShadingParams params;
   params.sun = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
   params.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
   const int level = planet->meta().finest_level;
@@ -167,7 +167,7 @@ TEST_F(Picture, ShadingMeetsAtBorders) {
   }
 }
 
-TEST_F(Picture, RefusesWhatItCannotDraw) {
+TEST_F(Image, RefusesWhatItCannotDraw) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 400000);
   const auto draw = renderer(planet);
   DrawRequest request = test_support::request_for({0, 0, 1e6, 0, -90, 0}, planet->radius_m(), 64, 64);
@@ -177,7 +177,7 @@ TEST_F(Picture, RefusesWhatItCannotDraw) {
   request.view.projection = vpe::core::Projection::kCylinder;
   EXPECT_THROW(draw->draw(request), std::runtime_error);
   request.view.projection = vpe::core::Projection::kPerspective;
-  request.view.eye.eye_m.x = std::nan("");
+  request.view.camera.position_m.x = std::nan("");
   EXPECT_THROW(draw->draw(request), std::runtime_error);
 }
 

@@ -1,4 +1,4 @@
-// The inspector shows how a picture is made and changes nothing else of it.
+// The inspector shows how an image is made and changes nothing else of it.
 #include "vpe/core/appearance/inspect.h"
 #include "vpe/core/appearance/shading.h"
 
@@ -27,14 +27,14 @@ class Inspect : public GlTest {
   }
 };
 
-TEST_F(Inspect, BordersAreLinesOverThePicture) {
+TEST_F(Inspect, BordersAreLinesOverTheImage) {
   auto gl = renderer(planet());
   core::DrawRequest request = oblique();
   const core::DrawResult plain = gl->draw(request);
   request.settings.inspect = core::Inspect::kBorders;
   const core::DrawResult lined = gl->draw(request);
   EXPECT_EQ(plain.frame.range_m, lined.frame.range_m);
-  EXPECT_EQ(plain.certificate.share_without_data, lined.certificate.share_without_data);
+  EXPECT_EQ(plain.certificate.nodata_share, lined.certificate.nodata_share);
   const vpe::base::Rgb line{26, 255, 51};
   std::size_t changed = 0;
   for (std::size_t n = 0; n < plain.frame.colour.size(); ++n) {
@@ -79,7 +79,7 @@ TEST_F(Inspect, LevelsHaveTheColoursOfThePalette) {
   EXPECT_GE(seen.size(), 2u);
 }
 
-TEST_F(Inspect, FrozenCullingIsThePictureFromItsOwnEye) {
+TEST_F(Inspect, FrozenCullingIsTheImageFromItsOwnEye) {
   auto gl = renderer(planet());
   core::DrawRequest request = oblique();
   const core::DrawResult plain = gl->draw(request);

@@ -20,11 +20,11 @@ constexpr double kRadius_m = mars::kMarsRadius_m;
 using Sun = test_support::GlTest;
 
 // Where a ray meets the sphere; length 0 beside it.
-glm::dvec3 on_sphere(const glm::dvec3& eye, const glm::dvec3& ray) {
-  const double half = -glm::dot(eye, ray);
-  const double under = half * half - glm::dot(eye, eye) + kRadius_m * kRadius_m;
+glm::dvec3 on_sphere(const glm::dvec3& camera, const glm::dvec3& ray) {
+  const double half = -glm::dot(camera, ray);
+  const double under = half * half - glm::dot(camera, camera) + kRadius_m * kRadius_m;
   if (half < 0 || under < 0) return glm::dvec3(0);
-  return glm::normalize(eye + (half - std::sqrt(under)) * ray);
+  return glm::normalize(camera + (half - std::sqrt(under)) * ray);
 }
 
 // The dates of both published test cases, and where the sun is in the zenith then by their tables: longitude is
@@ -68,13 +68,13 @@ TEST_F(Sun, SubsolarPointAndTerminatorAreWhereTheDatePutsThem) {
       for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
           const auto hit = [&](double dx, double dy) {
-            return on_sphere(r.view.eye.eye_m, core::pixel_ray(r.view, x + 0.5 + dx, y + 0.5 + dy));
+            return on_sphere(r.view.camera.position_m, core::pixel_ray(r.view, x + 0.5 + dx, y + 0.5 + dy));
           };
           const glm::dvec3 here = hit(0, 0);
           if (here == glm::dvec3(0)) continue;
           const int byte = red(result, x, y);
           if (byte == brightest) {
-            const glm::dvec3 way = here * kRadius_m - r.view.eye.eye_m;
+            const glm::dvec3 way = here * kRadius_m - r.view.camera.position_m;
             sum += here * (-std::pow(glm::length(way), 3) / glm::dot(way, here));
           }
           // Farther than a pixel from the great circle, and from the limb, the pixel is on one side for

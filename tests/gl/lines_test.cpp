@@ -69,14 +69,14 @@ class Lines : public test_support::GlTest {
     }
   }
 
-  // Of the ground at each pixel, along the eye's axis: what hides by OpenGL's rule.
+  // Of the ground at each pixel, along the camera's axis: what hides by OpenGL's rule.
   std::vector<double> depths_m(const core::Frame& frame) const {
     std::vector<double> out;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         const double range_m = frame.range_m[out.size()];
         out.push_back(range_m * glm::dot(core::pixel_ray(request_.view, x + 0.5, y + 0.5),
-                                         request_.view.eye.axes.forward));
+                                         request_.view.camera.axes.forward));
       }
     }
     return out;
@@ -91,9 +91,9 @@ class Lines : public test_support::GlTest {
   }
   // By a ray to the place itself.
   bool can_be_seen(const glm::dvec3& place_m) const {
-    const glm::dvec3 way = place_m - request_.view.eye.eye_m;
+    const glm::dvec3 way = place_m - request_.view.camera.position_m;
     const double distance_m = glm::length(way);
-    return surface_->cast(request_.view.eye.eye_m, way / distance_m) > distance_m * (1 - 1e-6);
+    return surface_->cast(request_.view.camera.position_m, way / distance_m) > distance_m * (1 - 1e-6);
   }
   // No crest and no ground seen on its edge is so near that pixels may be the one or the other.
   static bool is_clear(const std::vector<double>& depths, const core::Projected& at, int reach) {

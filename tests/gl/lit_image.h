@@ -1,4 +1,4 @@
-// Pictures of one colour, lit: what tests of the sun and its shadows share.
+// Images of one colour, lit: what tests of the sun and its shadows share.
 #pragma once
 
 #include <algorithm>

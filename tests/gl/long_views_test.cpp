@@ -113,14 +113,14 @@ TEST_F(LongViews, MolaKeepsItsCertificates) {
 
 TEST_F(LongViews, EmbeddedMarsKeepsItsCertificates) { check(embedded()); }
 
-// Bounds that nobody believes are of no use. A picture of nothing but S has no error to measure, only the grid
+// Bounds that nobody believes are of no use. An image of nothing but S has no error to measure, only the grid
 // of the rasteriser and floats: there the bound itself is small.
 TEST_F(LongViews, CertificatesAreNotLazy) {
   const auto planet = embedded();
   const paging::Surface surface(planet, std::size_t{1} << 29);
   const auto draw = renderer(planet, std::size_t{1} << 29);
   Random random(83);
-  std::vector<double> ratios;  // stated to measured, the largest of each picture with coarser tiles
+  std::vector<double> ratios;  // stated to measured, the largest of each image with coarser tiles
   std::array<std::vector<double>, 8> ratios_from;  // the same by decade of height above ground
   std::vector<double> exact_px;                    // stated where every tile is S
   constexpr int kViews = 1000;
@@ -131,15 +131,15 @@ TEST_F(LongViews, CertificatesAreNotLazy) {
     const auto errors = vpe::core::compare_to_reference(request.view, result.frame.range_m, reference,
                                                         test_support::radius_of(surface), {2, 2});
     const double range_px = test_support::range_error_px(request.view, result.frame.range_m);
-    const double bound_px = result.certificate.picture_bound_px.value();
+    const double bound_px = result.certificate.image_bound_px.value();
     ASSERT_LE(errors.forward.max_px, bound_px + range_px)
         << "view " << n << " " << vpe::core::to_json(errors) << vpe::core::to_json(result.certificate);
     if (errors.forward.pixels < 4000) continue;  // nearly all sky
-    if (result.certificate.tile_error_px == 0) {
+    if (result.certificate.screen_space_error_px == 0) {
       exact_px.push_back(bound_px);
       continue;
     }
-    const double height_m = glm::length(request.view.eye.eye_m) - surface.at(request.view.eye.eye_m).radius_m;
+    const double height_m = glm::length(request.view.camera.position_m) - surface.at(request.view.camera.position_m).radius_m;
     const auto decade = static_cast<std::size_t>(std::clamp(std::log10(height_m), 0.0, 7.0));
     ratios.push_back(bound_px / std::max(errors.forward.max_px, 1e-9));
     ratios_from[decade].push_back(ratios.back());
@@ -158,7 +158,7 @@ TEST_F(LongViews, CertificatesAreNotLazy) {
 
 using LongHairlines = test_support::GlTest;
 
-// Equal borders are stored relative to two centres. Many large pictures of nothing but ground: no pixel between
+// Equal borders are stored relative to two centres. Many large images of nothing but ground: no pixel between
 // tiles may show what lies behind, the far side of the planet from within or the sky. Without ribbons 1 to 6 of
 // these do.
 TEST_F(LongHairlines, AreClosedByRibbons) {

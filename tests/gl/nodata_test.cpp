@@ -64,7 +64,7 @@ TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
         if (!std::isfinite(range)) continue;
         const int x = static_cast<int>(n) % w;
         const int y = static_cast<int>(n) / w;
-        const glm::dvec3 p = request.view.eye.eye_m + double{range} * glm::normalize(vpe::core::pixel_ray(
+        const glm::dvec3 p = request.view.camera.position_m + double{range} * glm::normalize(vpe::core::pixel_ray(
                                                                           request.view, x + 0.5, y + 0.5));
         const glm::dvec3 d = glm::normalize(p);
         missing[n] = surface.at(d).missing ? 1 : 0;
@@ -107,13 +107,13 @@ TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
       EXPECT_GT(bright, striped / 4);
       EXPECT_GT(dark, striped / 4);
       EXPECT_GT(bright + dark, striped * 2 / 3);
-      ASSERT_TRUE(result.certificate.share_without_data.has_value());
-      EXPECT_NEAR(*result.certificate.share_without_data, static_cast<double>(all) / (w * h), 0.04);
+      ASSERT_TRUE(result.certificate.nodata_share.has_value());
+      EXPECT_NEAR(*result.certificate.nodata_share, static_cast<double>(all) / (w * h), 0.04);
     }
   }
 }
 
-TEST_F(Gaps, StayOnTheGroundWhileTheEyeMoves) {
+TEST_F(Gaps, StayOnTheGroundWhileTheCameraMoves) {
   const auto planet = holed();
   const auto draw = renderer(planet);
   test_support::Random random(5);
@@ -162,10 +162,10 @@ TEST_F(Gaps, CostNothingElsewhere) {
     const DrawResult b = without->draw(request);
     EXPECT_EQ(a.frame.colour, b.frame.colour);
     EXPECT_EQ(a.frame.range_m, b.frame.range_m);
-    EXPECT_EQ(a.certificate.share_without_data, 0.0);
-    EXPECT_EQ(b.certificate.share_without_data, 0.0);
+    EXPECT_EQ(a.certificate.nodata_share, 0.0);
+    EXPECT_EQ(b.certificate.nodata_share, 0.0);
   }
-  EXPECT_FALSE(whole->has_missing({mars::Face{}, 0, 0, 0}));
+  EXPECT_FALSE(whole->has_nodata({mars::Face{}, 0, 0, 0}));
 }
 
 TEST_F(Gaps, WireframesShowNone) {
@@ -173,18 +173,18 @@ TEST_F(Gaps, WireframesShowNone) {
   DrawRequest request = this->request({10, 20, 300e3, 0, -90, 0}, planet->radius_m());
   request.settings.mode = Mode::kWireframe;
   const DrawResult result = renderer(planet)->draw(request);
-  EXPECT_FALSE(result.certificate.share_without_data.has_value());
+  EXPECT_FALSE(result.certificate.nodata_share.has_value());
   for (const vpe::base::Rgb& c : result.frame.colour) ASSERT_FALSE(grey(c));
 }
 
 // Samples count in parts.
-TEST_F(Gaps, ShareOfAMultisampledPicture) {
+TEST_F(Gaps, ShareOfAMultisampledImage) {
   const auto planet = holed();
   const auto draw = renderer(planet);
   DrawRequest request = this->request({10, 6, 600e3, 0, -60, 0}, planet->radius_m());
-  const double one = draw->draw(request).certificate.share_without_data.value_or(-1);
+  const double one = draw->draw(request).certificate.nodata_share.value_or(-1);
   request.settings.samples = 4;
-  EXPECT_NEAR(draw->draw(request).certificate.share_without_data.value_or(-1), one, 0.01);
+  EXPECT_NEAR(draw->draw(request).certificate.nodata_share.value_or(-1), one, 0.01);
   EXPECT_GT(one, 0.05);
   EXPECT_LT(one, 0.95);
 }

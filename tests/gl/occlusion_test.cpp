@@ -1,4 +1,4 @@
-// Leaving out what nearer ground hides changes no pixel: of complete pictures, and of those with tiles missing.
+// Leaving out what nearer ground hides changes no pixel: of complete images, and of those with tiles missing.
 #include <gtest/gtest.h>
 
 #include <condition_variable>
@@ -51,7 +51,7 @@ class OcclusionBase : public test_support::GlTest {
     return request;
   }
 
-  void expect_same_pictures(int views, unsigned seed, double least_share) {
+  void expect_same_images(int views, unsigned seed, double least_share) {
     const auto on = renderer(planet_);
     const auto off = renderer(planet_);
     Random random(seed);
@@ -80,8 +80,8 @@ class OcclusionBase : public test_support::GlTest {
 using Occluded = OcclusionBase;
 using LongOccluded = OcclusionBase;
 
-TEST_F(Occluded, PicturesAreTheSameWithAndWithout) { expect_same_pictures(40, 71, 0.2); }
-TEST_F(LongOccluded, PicturesAreTheSameWithAndWithout) { expect_same_pictures(600, 72, 0.2); }
+TEST_F(Occluded, ImagesAreTheSameWithAndWithout) { expect_same_images(40, 71, 0.2); }
+TEST_F(LongOccluded, ImagesAreTheSameWithAndWithout) { expect_same_images(600, 72, 0.2); }
 
 // Lets a number of loads pass, and holds the others back.
 class Gate {
@@ -104,7 +104,7 @@ class Gate {
 };
 
 // Whatever is there, and whatever stands in for the rest.
-TEST_F(Occluded, UnfinishedPicturesAreTheSameToo) {
+TEST_F(Occluded, UnfinishedImagesAreTheSameToo) {
   Random random(73);
   int unfinished = 0;
   for (int n = 0; n < 6; ++n) {
@@ -134,7 +134,7 @@ TEST_F(Occluded, UnfinishedPicturesAreTheSameToo) {
   EXPECT_GT(unfinished, 10);
 }
 
-TEST_F(Occluded, SettledPicturesDoNotDependOnHistory) {
+TEST_F(Occluded, SettledImagesDoNotDependOnHistory) {
   Random random(74);
   const auto draw = renderer(planet_);
   for (int n = 0; n < 10; ++n) {

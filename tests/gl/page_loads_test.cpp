@@ -16,12 +16,12 @@ using vpe::gl::PageKey;
 using vpe::gl::PageKeyHash;
 using vpe::gl::PageKind;
 using vpe::gl::PageLoader;
-using paging::ShadeParams;
+using paging::ShadingParams;
 using TilePager = paging::Pager<PageKey, Page, PageKeyHash>;
 
 // Any page that the planet has: meshes of all variants, textures in two looks, posts.
 PageKey random_page(const paging::PlanetFile& planet, Random& random,
-                    const std::vector<std::shared_ptr<const ShadeParams>>& looks) {
+                    const std::vector<std::shared_ptr<const ShadingParams>>& looks) {
   const lod::TileTree& tree = planet.tree();
   const lod::TileInfo& tile =
       tree[static_cast<lod::TileTree::Index>(random.integer(0, static_cast<int>(tree.size()) - 1))];
@@ -30,7 +30,7 @@ PageKey random_page(const paging::PlanetFile& planet, Random& random,
   switch (random.integer(0, tile.has_children ? 1 : 2)) {
     case 0:
       page.detail = random.integer(0, static_cast<int>(tile.variants.size()) - 1);
-      page.walls = page.detail % 2 == 0;
+      page.occluders = page.detail % 2 == 0;
       break;
     case 1:
       page.kind = PageKind::kTexture;
@@ -60,21 +60,21 @@ std::shared_ptr<const paging::PlanetFile> build_bumpy(const std::filesystem::pat
 TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
   const test_support::TempDir dir;
   const auto planet = build_bumpy(dir / "p.vpe");
-  std::vector<std::shared_ptr<const ShadeParams>> looks;
-  for (const auto surfacing : {paging::Surfacing::kElevation, paging::Surfacing::kImage}) {
-    ShadeParams look;
-    look.surfacing = surfacing;
+  std::vector<std::shared_ptr<const ShadingParams>> looks;
+  for (const auto colour_source : {paging::ColourSource::kElevation, paging::ColourSource::kImage}) {
+    ShadingParams look;
+    look.colour_source = colour_source;
     look.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
-    looks.push_back(std::make_shared<const ShadeParams>(look));
+    looks.push_back(std::make_shared<const ShadingParams>(look));
     look.flat = true;
     look.shadows = true;
-    looks.push_back(std::make_shared<const ShadeParams>(look));
+    looks.push_back(std::make_shared<const ShadingParams>(look));
   }
   Random random(17);
   std::size_t taken = 0;
   constexpr int kRounds = 12;
   for (int round = 0; round < kRounds; ++round) {
-    const auto shader = std::make_shared<const paging::GroundPainter>(planet, std::size_t{50000});
+    const auto shader = std::make_shared<const paging::TerrainShader>(planet, std::size_t{50000});
     const PageLoader loader(planet, shader);
     TilePager pager([&](const PageKey& key) { return loader.load(key); }, random.integer(1, 4), 200000);
     for (int step = 0; step < 25; ++step) {
@@ -106,12 +106,12 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
 TEST(PageLoads, WallsAreMadeForThoseWhoAsk) {
   const test_support::TempDir dir;
   const auto planet = build_bumpy(dir / "p.vpe");
-  const PageLoader loader(planet, std::make_shared<const paging::GroundPainter>(planet, std::size_t{50000}));
+  const PageLoader loader(planet, std::make_shared<const paging::TerrainShader>(planet, std::size_t{50000}));
   PageKey page;
   page.tile = planet->tree()[0].key;
-  EXPECT_EQ(loader.load(page).first.walls, nullptr);
-  page.walls = true;
-  EXPECT_NE(loader.load(page).first.walls, nullptr);
+  EXPECT_EQ(loader.load(page).first.occluders, nullptr);
+  page.occluders = true;
+  EXPECT_NE(loader.load(page).first.occluders, nullptr);
 }
 
 }  // namespace

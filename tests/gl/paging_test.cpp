@@ -1,4 +1,4 @@
-// Frames that do not wait: full cover, true certificates, and the same picture in the end.
+// Frames that do not wait: full cover, true certificates, and the same image in the end.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -102,7 +102,7 @@ TEST_F(Paging, NoFrameHasAHole) {
   }
 }
 
-TEST_F(Paging, SettledPicturesDoNotDependOnHistory) {
+TEST_F(Paging, SettledImagesDoNotDependOnHistory) {
   const DrawRequest last = flight_at(0.4);
   const DrawResult alone = renderer(planet_)->draw(last);
   EXPECT_TRUE(alone.settled);
@@ -198,7 +198,7 @@ TEST_F(Paging, ATileThatCannotBeReadIsDrawnCoarserAndToldOnce) {
   EXPECT_TRUE(again.failures.empty());
   EXPECT_EQ(again.missing.size(), result.missing.size());
   EXPECT_EQ(again.frame.colour, result.frame.colour);
-  // Frames that do not wait end in the same picture.
+  // Frames that do not wait end in the same image.
   EXPECT_EQ(settle(*draw, without_waiting(request)).frame.colour, result.frame.colour);
 }
 

@@ -61,7 +61,7 @@ TEST_F(Shadows, OfAScarpAreAsLongAsTheSunIsLow) {
           const double px_m = posts_per_px * kPost_m;
           const double length_rad = shadow_rad(exaggeration * kScarp_m, elevation_deg);
           const double length_m = length_rad * kRadius_m;
-          // The far end is in the middle of the picture.
+          // The far end is in the middle of the image.
           core::DrawRequest r = shadowed_from_above({length_rad / mars::kRadiansPerDegree, 0}, px_m, 64, 24);
           r.settings.shading = shading;
           r.settings.exaggeration = exaggeration;
@@ -124,10 +124,10 @@ struct Crater {
     }
     return glm::normalize(out);
   }
-  glm::dvec3 below(const glm::dvec3& eye, const glm::dvec3& ray, double exaggeration) const {
-    double t = glm::length(eye) - kRadius_m;
-    for (int n = 0; n < 40; ++n) t += 0.7 * over(eye + t * ray, exaggeration);
-    return eye + t * ray;
+  glm::dvec3 below(const glm::dvec3& camera, const glm::dvec3& ray, double exaggeration) const {
+    double t = glm::length(camera) - kRadius_m;
+    for (int n = 0; n < 40; ++n) t += 0.7 * over(camera + t * ray, exaggeration);
+    return camera + t * ray;
   }
   bool sees(const glm::dvec3& p, const glm::dvec3& sun, double exaggeration) const {
     const double top_m = exaggeration * kRim_m;
@@ -167,7 +167,7 @@ void expect_shadows_of(const Crater& crater, core::Renderer& draw) {
     for (int y = -kMore; y < kSide + kMore; ++y) {
       for (int x = -kMore; x < kSide + kMore; ++x) {
         const glm::dvec3 p =
-            crater.below(r.view.eye.eye_m, core::pixel_ray(r.view, x + 0.5, y + 0.5), c.exaggeration);
+            crater.below(r.view.camera.position_m, core::pixel_ray(r.view, x + 0.5, y + 0.5), c.exaggeration);
         const double incidence = glm::dot(crater.normal(p, c.exaggeration), r.sun);
         const bool sees = incidence > 0 && crater.sees(p, r.sun, c.exaggeration);
         hidden += incidence > 0 && !sees ? 1 : 0;

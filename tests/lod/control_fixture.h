@@ -18,7 +18,7 @@ namespace core = vpe::core;
 
 inline core::View view_at(double lon, double lat, double alt_m, double yaw, double pitch) {
   core::View view;
-  view.eye = mars::to_eye(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
+  view.camera = mars::to_camera(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
   return view;
 }
 
@@ -42,9 +42,9 @@ inline Selection selected(const SelectOptions& options, const TileTree& tree, co
   return selection;
 }
 
-inline SelectOptions hitchner(const ControlFunction& distance, const ControlFunction& centre = {}) {
+inline SelectOptions by_distance(const ControlFunction& distance, const ControlFunction& centre = {}) {
   SelectOptions options;
-  options.control.rule = core::LodRule::kHitchner;
+  options.control.rule = core::LodMetric::kDistance;
   options.control.distance = distance;
   options.control.centre = centre;
   return options;
@@ -54,12 +54,12 @@ inline SelectOptions hitchner(const ControlFunction& distance, const ControlFunc
 inline lod::ControlTerms terms_of(const SelectOptions& options, const TileTree& tree, const core::View& view,
                                   const lod::TileKey& key) {
   const auto index = static_cast<TileTree::Index>(tree.find(key) - &tree[0]);
-  const cull::Shell shell = tree.shell(index, 1.0, tree[index].variants[0].terms.total_m);
-  const cull::Eye eye = cull::make_eye(view.eye.eye_m);
-  const double distance = cull::min_distance_m(eye, cull::nearest_chord2(shell.rect, eye.direction),
-                                               shell.min_radius_m, shell.max_radius_m);
+  const cull::BoundingRegion region = tree.region(index, 1.0, tree[index].variants[0].terms.total_m);
+  const cull::Camera camera = cull::make_camera(view.camera.position_m);
+  const double distance = cull::min_distance_m(camera, cull::nearest_chord2(region.rect, camera.direction),
+                                               region.min_radius_m, region.max_radius_m);
   return lod::control_terms(options.control, lod::centre_of_view(view),
-                            {cull::make_volume(shell), shell.rect, distance}, true);
+                            {cull::bounding_hexahedron(region), region.rect, distance}, true);
 }
 
 }  // namespace control_fixture

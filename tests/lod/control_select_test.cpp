@@ -64,7 +64,7 @@ TEST(ControlSelection, ByDefaultNothingChanges) {
     for (std::size_t n = 0; n < a.tiles.size(); ++n) {
       RC_ASSERT(a.tiles[n].key == b.tiles[n].key);
       RC_ASSERT(a.tiles[n].variant == b.tiles[n].variant);
-      RC_ASSERT(a.tiles[n].error_px == b.tiles[n].error_px);
+      RC_ASSERT(a.tiles[n].screen_space_error_px == b.tiles[n].screen_space_error_px);
       RC_ASSERT(b.tiles[n].control == 0.0);
     }
   });
@@ -76,7 +76,7 @@ TEST(ControlSelection, HitchnersRuleHoldsAtEveryTile) {
   int reached = 0;
   for (int trial = 0; trial < 600; ++trial) {
     const core::View view = random_view(random);
-    SelectOptions options = hitchner({random.log_uniform(1e4, 1e7), random.uniform(-2, 6), 1, {}},
+    SelectOptions options = by_distance({random.log_uniform(1e4, 1e7), random.uniform(-2, 6), 1, {}},
                                      {random.uniform(0, 1), random.uniform(-2, 1), random.uniform(0, 2), {}});
     if (trial % 3 == 0) options.control.distance.table = {{0, 12}, {1e5, 8}, {1e6, 5}, {2e6, 3}};
     options.control.regions = {lod::control_region({0, 0, 1e6, random.integer(-3, 3)}, fake::kRadius_m)};
@@ -106,19 +106,19 @@ TEST(ControlSelection, HitchnersRuleHoldsAtEveryTile) {
   EXPECT_GT(reached, 100);
 }
 
-TEST(ControlSelection, FromAFarEyeTheNumbersAreThoseOfTheFormula) {
+TEST(ControlSelection, FromAFarCameraTheNumbersAreThoseOfTheFormula) {
   // 10 radii up over the middle of +X all tiles are 34 000 to 38 000 km away: 1e8 / x is 2.6 to 2.9, so that
   // LOD 2 + 2 = 4 is wanted everywhere, level 3 in our numbers.
   const TileTree ball = fake::tree(fake::uniform(5));
   const core::View view = view_at(0, 0, 10 * fake::kRadius_m, 0, -90);
-  const Selection s = selected(hitchner({1e8, 2, 1, {}}), ball, view);
+  const Selection s = selected(by_distance({1e8, 2, 1, {}}), ball, view);
   ASSERT_FALSE(s.tiles.empty());
   EXPECT_EQ(s.tiles_by_level, (std::vector<int>{0, 0, 0, static_cast<int>(s.tiles.size())}));
   for (const lod::SelectedTile& t : s.tiles) EXPECT_EQ(t.control, 4);
   // Half the weight: int(0.5 * (2.6 .. 2.9 + 2)) = 2.
-  EXPECT_EQ(selected(hitchner({1e8, 2, 0.5, {}}), ball, view).tiles_by_level.size(), 2U);
+  EXPECT_EQ(selected(by_distance({1e8, 2, 0.5, {}}), ball, view).tiles_by_level.size(), 2U);
   // One more in a region: there alone.
-  SelectOptions options = hitchner({1e8, 2, 1, {}});
+  SelectOptions options = by_distance({1e8, 2, 1, {}});
   options.control.regions = {lod::control_region({0, 0, 1e5, 1}, fake::kRadius_m)};
   const Selection with = selected(options, ball, view);
   EXPECT_EQ(holder(with, {1, 0, 0})->key.level, 4);
@@ -130,8 +130,8 @@ TEST(ControlSelection, TheCapIsHardInBothRules) {
   int capped = 0;
   for (int trial = 0; trial < 120; ++trial) {
     const core::View view = random_view(random);
-    SelectOptions options = hitchner({1e6, 3, 1, {}}, {0.25, -1, random.integer(0, 1) * 1.0, {}});
-    if (trial % 2 == 0) options.control.rule = core::LodRule::kError;
+    SelectOptions options = by_distance({1e6, 3, 1, {}}, {0.25, -1, random.integer(0, 1) * 1.0, {}});
+    if (trial % 2 == 0) options.control.rule = core::LodMetric::kError;
     options.control.regions = {lod::control_region({0, 0, 2e6, random.integer(-2, 2)}, fake::kRadius_m)};
     const Selection free = selected(options, rough_tree(), view);
     std::int64_t before = 0;
@@ -154,7 +154,7 @@ TEST(ControlSelection, TheCapIsHardInBothRules) {
         continue;
       }
       ++capped;
-      if (options.control.rule == core::LodRule::kHitchner) {
+      if (options.control.rule == core::LodMetric::kDistance) {
         // Coarsest first: whatever was refined lacked as many levels as all that is left, or more.
         double most = 0;
         for (const auto& t : s.tiles) {
@@ -180,17 +180,17 @@ TEST(ControlSelection, MoreWeightOnTheCentreNeverCoarsensTheCentre) {
   rc::check([&finer] {
     Random random(*rc::gen::arbitrary<std::uint32_t>());
     core::View view = random_view(random);
-    view.eye = mars::to_eye(
+    view.camera = mars::to_camera(
         mars::Pose{random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(1e4, 2e6),
                    random.uniform(0, 360), random.uniform(-90, -50), 0},
         fake::kRadius_m);
     // Where the ray ahead meets the ground, nearly.
-    const double b = glm::dot(view.eye.eye_m, view.eye.axes.forward);
-    const double root = b * b - glm::dot(view.eye.eye_m, view.eye.eye_m) + fake::kRadius_m * fake::kRadius_m;
+    const double b = glm::dot(view.camera.position_m, view.camera.axes.forward);
+    const double root = b * b - glm::dot(view.camera.position_m, view.camera.position_m) + fake::kRadius_m * fake::kRadius_m;
     RC_PRE(root > 0);
-    const glm::dvec3 place = view.eye.eye_m + (-b - std::sqrt(root)) * view.eye.axes.forward;
-    SelectOptions options = hitchner({1e6, 1, 1, {}}, {0.25, -1, 0, {}});
-    if (random.integer(0, 1) == 0) options.control.rule = core::LodRule::kError;
+    const glm::dvec3 place = view.camera.position_m + (-b - std::sqrt(root)) * view.camera.axes.forward;
+    SelectOptions options = by_distance({1e6, 1, 1, {}}, {0.25, -1, 0, {}});
+    if (random.integer(0, 1) == 0) options.control.rule = core::LodMetric::kError;
     static const TileTree ball = fake::tree(fake::uniform(7));
     int level = 0;
     int variant = 0;
@@ -213,9 +213,9 @@ TEST(ControlSelection, MoreInterestNeverCoarsens) {
   rc::check([&finer] {
     Random random(*rc::gen::arbitrary<std::uint32_t>());
     const core::View view = random_view(random);
-    SelectOptions options = hitchner({1e6, 2, 1, {}});
-    if (random.integer(0, 1) == 0) options.control.rule = core::LodRule::kError;
-    const mars::LonLat at = mars::lon_lat(view.eye.eye_m);
+    SelectOptions options = by_distance({1e6, 2, 1, {}});
+    if (random.integer(0, 1) == 0) options.control.rule = core::LodMetric::kError;
+    const mars::LonLat at = mars::lon_lat(view.camera.position_m);
     for (int n = random.integer(0, 2); n > 0; --n) {
       options.control.regions.push_back(
           lod::control_region({at.lon_deg + random.uniform(-5, 5), random.uniform(-90, 90),
@@ -253,7 +253,7 @@ TEST(ControlSelection, CoarseningCountsOnTheToleranceOrOnDistances) {
       return selected(lod::select_options(r, fake::kRadius_m, 1'000'000'000), rough_tree(), r.view);
     };
     ASSERT_EQ(drawn(request).triangles, drawn(same).triangles);
-    request.settings.lod_rule = core::LodRule::kHitchner;
+    request.settings.lod_metric = core::LodMetric::kDistance;
     request.settings.lod_tolerance_px = 0;  // has no say
     same = request;
     same.coarsening = 1;
@@ -272,12 +272,12 @@ TEST(ControlSelection, TheErrorThatIsReportedIsTheTrueOne) {
   SelectOptions options;
   options.control.regions = {lod::control_region({0, 0, 1e8, -3}, fake::kRadius_m)};
   const Selection coarse = selected(options, rough_tree(), view);
-  EXPECT_GT(coarse.max_error_px, 1.0);
-  EXPECT_LE(coarse.max_error_px, 8.0);
-  EXPECT_EQ(coarse.max_error_px, [&] {
+  EXPECT_GT(coarse.max_screen_space_error_px, 1.0);
+  EXPECT_LE(coarse.max_screen_space_error_px, 8.0);
+  EXPECT_EQ(coarse.max_screen_space_error_px, [&] {
     SelectOptions eight;
     eight.tolerance_px = 8;
-    return selected(eight, rough_tree(), view).max_error_px;
+    return selected(eight, rough_tree(), view).max_screen_space_error_px;
   }());
 }
 

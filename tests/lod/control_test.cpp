@@ -50,7 +50,7 @@ TEST(ControlFunctions, ByLookupTable) {
 }
 
 TEST(ControlFunctions, ByDistanceFromTheCentre) {
-  // 90 degrees high: half the picture's height is a tangent of 1.
+  // 90 degrees high: half the image's height is a tangent of 1.
   core::View view = view_at(0, 0, 1e5, 0, -90);
   view.fov_deg = 90;
   const lod::CentreOfView centre = lod::centre_of_view(view);
@@ -63,14 +63,14 @@ TEST(ControlFunctions, ByDistanceFromTheCentre) {
   EXPECT_EQ(lod::levels(f, 0.25), 0.0);
   EXPECT_EQ(lod::levels(f, 1), -0.75);
   EXPECT_EQ(lod::levels(f, kInfinity), -1.0);
-  // The same in a picture of another size and field of view.
+  // The same in an image of another size and field of view.
   view.fov_deg = 20;
   view.width = view.height = 99;
   EXPECT_NEAR(lod::centre_distance(lod::centre_of_view(view), 10 * mars::kRadiansPerDegree), 1.0, 1e-15);
-  // Parts, and pictures that are shifted for stereo, have the centre of the whole.
+  // Parts, and images that are shifted for stereo, have the centre of the whole.
   view.part = {3, 4, 5, 6};
   view.principal_offset_px = {7, 8};
-  EXPECT_EQ(lod::centre_of_view(view).forward, view.eye.axes.forward);
+  EXPECT_EQ(lod::centre_of_view(view).forward, view.camera.axes.forward);
   view.projection = core::Projection::kEquirectangular;
   view.fov_deg = 180;
   EXPECT_NEAR(lod::centre_distance(lod::centre_of_view(view), mars::kPi / 4), 0.5, 1e-15);
@@ -103,7 +103,7 @@ TEST(ControlFunctions, TheSumIsWeightedAndCutToAWholeNumberOnce) {
   // Straight down from 400 km at the middle of a flat tile's corner: distance 400 km, centre 0 is avoided by a
   // look aside, so that all three terms are finite.
   const TileTree ball = fake::tree(fake::uniform(5));
-  SelectOptions options = hitchner({1e6, 3, 1, {}}, {0.25, -1, 2, {}});
+  SelectOptions options = by_distance({1e6, 3, 1, {}}, {0.25, -1, 2, {}});
   options.control.interest_weight = 0.5;
   options.control.regions = {lod::control_region({0, 0, 1e6, 3}, fake::kRadius_m)};
   core::View view = view_at(0, 0, 4e5, 0, 0);
@@ -122,7 +122,7 @@ TEST(ControlFunctions, TheSumIsWeightedAndCutToAWholeNumberOnce) {
   EXPECT_EQ(t.sum, t.distance.levels + 2 * t.centre.levels + 0.5 * 3);
   EXPECT_EQ(lod::wanted_lod(t.sum), static_cast<int>(t.sum));
   // The error-bounded rule counts the last two.
-  options.control.rule = core::LodRule::kError;
+  options.control.rule = core::LodMetric::kError;
   EXPECT_EQ(terms_of(options, ball, view, {mars::Face::kPlusX, 5, 16, 16}).sum, 2 * t.centre.levels + 1.5);
 }
 
@@ -136,11 +136,11 @@ TEST(ControlFunctions, TheNearestPointToTheCentreIsFound) {
     const lod::CentreOfView centre = lod::centre_of_view(view);
     const int level = random.integer(0, 9);
     const glm::dvec3 near =
-        glm::normalize(view.eye.eye_m / fake::kRadius_m + random.uniform(0, 1) * random.direction());
+        glm::normalize(view.camera.position_m / fake::kRadius_m + random.uniform(0, 1) * random.direction());
     const lod::TileKey key = lod::tile_at(mars::chart_point(near), level);
-    const cull::Shell shell{lod::chart_rect(key), fake::kRadius_m - random.uniform(0, 5000),
+    const cull::BoundingRegion region{lod::chart_rect(key), fake::kRadius_m - random.uniform(0, 5000),
                             fake::kRadius_m + 3000};
-    const cull::TileVolume v = cull::make_volume(shell);
+    const cull::BoundingHexahedron v = cull::bounding_hexahedron(region);
     const double angle = lod::least_angle_rad(centre, v);
     double least = kInfinity;
     double steps = 0;
@@ -155,7 +155,7 @@ TEST(ControlFunctions, TheNearestPointToTheCentreIsFound) {
             return (1 - y) * ((1 - x) * v.corners_m[k] + x * v.corners_m[k + 1]) +
                    y * ((1 - x) * v.corners_m[k + 2] + x * v.corners_m[k + 3]);
           };
-          const glm::dvec3 d = (1 - h / 4.0) * at(0) + h / 4.0 * at(4) - centre.eye_m;
+          const glm::dvec3 d = (1 - h / 4.0) * at(0) + h / 4.0 * at(4) - centre.camera_m;
           least = std::min(least, mars::angle_between_rad(d, centre.forward));
           if (b > 0 && h == 4) steps = std::max(steps, mars::angle_between_rad(d, last));
           if (h == 4) last = d;

@@ -26,7 +26,7 @@ const lod::TileTree& rough_tree() {
 
 core::View view_at(double lon, double lat, double alt_m, double yaw, double pitch) {
   core::View view;
-  view.eye = mars::to_eye(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
+  view.camera = mars::to_camera(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
   return view;
 }
 
@@ -52,7 +52,7 @@ TEST(Explain, EveryReasonIsTheRulesOwn) {
     core::SettingsValues& s = request.settings;
     request.view = view_at(random.uniform(-180, 180), random.uniform(-90, 90),
                            8500 + random.log_uniform(10, 3e6), random.uniform(0, 360), random.uniform(-90, 0));
-    s.lod_rule = random.integer(0, 1) == 0 ? core::LodRule::kError : core::LodRule::kHitchner;
+    s.lod_metric = random.integer(0, 1) == 0 ? core::LodMetric::kError : core::LodMetric::kDistance;
     s.lod_tolerance_px = random.log_uniform(0.2, 10);
     s.lod_centre_weight = random.integer(0, 1) * random.uniform(0, 2);
     s.exaggeration = random.integer(0, 1) == 0 ? 1 : random.log_uniform(0.2, 5);
@@ -68,10 +68,10 @@ TEST(Explain, EveryReasonIsTheRulesOwn) {
       const lod::TileInfo& info = rough_tree()[t.index];
       ASSERT_EQ(e.key, t.key);
       ASSERT_EQ(e.lod, t.key.level + 1);
-      ASSERT_EQ(e.error_px, t.error_px);
+      ASSERT_EQ(e.screen_space_error_px, t.screen_space_error_px);
       ASSERT_EQ(e.variants, static_cast<int>(info.variants.size()));
       // The terms, worked out again, are those that the selection went by, to the bit.
-      if (s.lod_rule == core::LodRule::kHitchner) {
+      if (s.lod_metric == core::LodMetric::kDistance) {
         ASSERT_EQ(lod::wanted_lod(e.terms.sum), e.wanted);
         ASSERT_EQ(e.wanted, t.control);
         ASSERT_EQ(e.terms.sum,
@@ -82,13 +82,13 @@ TEST(Explain, EveryReasonIsTheRulesOwn) {
         ASSERT_EQ(e.terms.sum, e.terms.centre.weighted() + e.terms.interest.weighted());
       }
       switch (e.reason) {
-        case LevelReason::kFinestThere: ASSERT_EQ(e.error_m, 0.0); break;
+        case LevelReason::kFinestThere: ASSERT_EQ(e.geometric_error_m, 0.0); break;
         case LevelReason::kWithinTolerance:
-          ASSERT_EQ(s.lod_rule, core::LodRule::kError);
-          ASSERT_LE(e.error_px * std::exp2(e.shift), options.tolerance_px);
+          ASSERT_EQ(s.lod_metric, core::LodMetric::kError);
+          ASSERT_LE(e.screen_space_error_px * std::exp2(e.shift), options.tolerance_px);
           break;
         case LevelReason::kLevelReached:
-          ASSERT_EQ(s.lod_rule, core::LodRule::kHitchner);
+          ASSERT_EQ(s.lod_metric, core::LodMetric::kDistance);
           ASSERT_LE(e.wanted, e.lod);
           break;
         case LevelReason::kBudgetSpent: spent = true; break;

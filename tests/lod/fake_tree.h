@@ -24,9 +24,9 @@ struct Planet {
 
 inline lod::ErrorTerms terms(const Planet& planet, int level) {
   const double side = lod::nominal_side_m(level, kRadius_m);
-  const double relief = side / planet.error_ratio;
-  const double sag = side * side / (8.0 * kRadius_m) / 64.0;
-  return {relief, sag, relief + sag};
+  const double height_error = side / planet.error_ratio;
+  const double sagitta = side * side / (8.0 * kRadius_m) / 64.0;
+  return {height_error, sagitta, height_error + sagitta};
 }
 
 inline lod::TileInfo add(const Planet& planet, const lod::TileKey& key, std::vector<lod::TileInfo>& tiles) {
@@ -47,7 +47,7 @@ inline lod::TileInfo add(const Planet& planet, const lod::TileKey& key, std::vec
     const int variants = planet.finest_variants + (planet.mixed_variants ? (key.i + key.j) & 1 : 0);
     for (int v = 0; v < variants; ++v) {
       info.variants.push_back({error, 1000U << v});
-      error = {error.relief_m / 2, error.sag_m / 2, error.total_m / 2};
+      error = {error.height_error_m / 2, error.sagitta_m / 2, error.total_m / 2};
     }
     info.variants.push_back({{}, 2 * 128 * 128});
   }

@@ -23,7 +23,7 @@ const TileTree& tree() {
 
 core::View random_view(Random& random) {
   core::View view;
-  view.eye = mars::to_eye(mars::Pose{random.uniform(-180, 180), random.uniform(-90, 90),
+  view.camera = mars::to_camera(mars::Pose{random.uniform(-180, 180), random.uniform(-90, 90),
                                      random.log_uniform(8000, 3 * fake::kRadius_m), random.uniform(-180, 180),
                                      random.uniform(-90, 10), random.uniform(-180, 180)},
                           fake::kRadius_m);
@@ -39,7 +39,7 @@ struct PageHash {
 };
 using Ready = std::set<Page>;
 
-lod::Readiness readiness(const Ready& ready) {
+lod::IsResident readiness(const Ready& ready) {
   return {[](const void* set, const TileInfo& tile, int variant) {
             return static_cast<const Ready*>(set)->count({tile.key, variant}) != 0;
           },
@@ -53,14 +53,14 @@ Selection selected(const core::View& view) {
   return selection;
 }
 
-lod::Substitution substituted(const core::View& view, const Selection& selection, const Ready& ready) {
-  lod::Substitution out;
-  lod::substitute({}, tree(), lod::select_view(view), selection, readiness(ready), out);
+lod::FallbackSelection substituted(const core::View& view, const Selection& selection, const Ready& ready) {
+  lod::FallbackSelection out;
+  lod::select_fallbacks({}, tree(), lod::select_view(view), selection, readiness(ready), out);
   return out;
 }
 
 // Drawn tiles are ready, disjoint, ascend, and fill every selected tile wholly: in one piece from above, or by pieces.
-void expect_cover(const Selection& selection, const lod::Substitution& s, const Ready& ready) {
+void expect_cover(const Selection& selection, const lod::FallbackSelection& s, const Ready& ready) {
   const auto& drawn = s.drawn.tiles;
   std::int64_t end = 0;
   std::int64_t triangles = 0;
@@ -81,8 +81,8 @@ void expect_cover(const Selection& selection, const lod::Substitution& s, const 
       if (d.key != t.key && lod::contains(t.key, d.key)) filled += lod::z_extent(d.key.level);
       if (d.key == t.key && d.variant == t.variant) {
         ++as_selected;
-        EXPECT_EQ(d.error_m, t.error_m);
-        EXPECT_EQ(d.error_px, t.error_px);
+        EXPECT_EQ(d.geometric_error_m, t.geometric_error_m);
+        EXPECT_EQ(d.screen_space_error_px, t.screen_space_error_px);
         EXPECT_EQ(d.min_distance_m, t.min_distance_m);
       }
     }
@@ -105,7 +105,7 @@ TEST(Substitute, AllReadyIsTheSelectionItself) {
     const Selection selection = selected(view);
     Ready ready;
     for (const lod::SelectedTile& t : selection.tiles) ready.insert({t.key, t.variant});
-    const lod::Substitution s = substituted(view, selection, ready);
+    const lod::FallbackSelection s = substituted(view, selection, ready);
     EXPECT_TRUE(s.missing.empty());
     EXPECT_EQ(s.substituted, 0);
     ASSERT_EQ(s.drawn.tiles.size(), selection.tiles.size());
@@ -117,7 +117,7 @@ TEST(Substitute, OnlyRootsReadyDrawsRoots) {
   Random random(2);
   const core::View view = random_view(random);
   const Selection selection = selected(view);
-  const lod::Substitution s = substituted(view, selection, roots());
+  const lod::FallbackSelection s = substituted(view, selection, roots());
   for (const lod::SelectedTile& t : s.drawn.tiles) EXPECT_EQ(t.key.level, 0);
   expect_cover(selection, s, roots());
 }
@@ -126,7 +126,7 @@ TEST(Substitute, NothingReadyIsSaid) {
   Random random(3);
   const core::View view = random_view(random);
   const Selection selection = selected(view);
-  const lod::Substitution s = substituted(view, selection, {});
+  const lod::FallbackSelection s = substituted(view, selection, {});
   EXPECT_TRUE(s.drawn.tiles.empty());
   EXPECT_EQ(static_cast<std::size_t>(s.uncovered), selection.tiles.size());
 }
@@ -154,7 +154,7 @@ TEST(Substitute, CoversWhateverIsReady) {
 // Zooming out: the tile wanted is not there, what was drawn before is.
 TEST(Substitute, ChildrenStandInForTheirParent) {
   core::View view;
-  view.eye = mars::to_eye(mars::Pose{10, 20, 3e6, 0, -90, 0}, fake::kRadius_m);
+  view.camera = mars::to_camera(mars::Pose{10, 20, 3e6, 0, -90, 0}, fake::kRadius_m);
   const Selection selection = selected(view);
   const auto wanted = std::find_if(selection.tiles.begin(), selection.tiles.end(),
                                    [](const auto& t) { return tree()[t.index].has_children && t.key.level > 0; });
@@ -164,12 +164,12 @@ TEST(Substitute, ChildrenStandInForTheirParent) {
     if (t.key != wanted->key) ready.insert({t.key, t.variant});
   }
   for (int c = 0; c < 4; ++c) ready.insert({lod::child(wanted->key, c), 0});
-  const lod::Substitution s = substituted(view, selection, ready);
+  const lod::FallbackSelection s = substituted(view, selection, ready);
   expect_cover(selection, s, ready);
   EXPECT_EQ(s.substituted, 4);
   // One child less: the root takes the place of all.
   ready.erase({lod::child(wanted->key, 2), 0});
-  const lod::Substitution without = substituted(view, selection, ready);
+  const lod::FallbackSelection without = substituted(view, selection, ready);
   expect_cover(selection, without, ready);
   EXPECT_EQ(without.substituted, 1);
 }
@@ -187,7 +187,7 @@ TEST(Substitute, FramesAreNeverWithoutCover) {
       for (const Pager::Loaded& page : pager.take(10)) ready.insert(page.key);
     }
     const Selection selection = selected(view);
-    const lod::Substitution s = substituted(view, selection, ready);
+    const lod::FallbackSelection s = substituted(view, selection, ready);
     expect_cover(selection, s, ready);
     std::vector<Pager::Want> wants;
     for (const std::size_t n : s.missing) {

@@ -298,7 +298,7 @@ TEST(FrameBudget, HoldsTheTrianglesOfARecordedFlight) {
     vpe::core::View view;
     const double s = t / 400.0;
     const double alt_m = 9000 + 3e6 * std::pow(1 - std::min(1.0, 1.6 * s), 3);
-    view.eye = mars::to_eye(mars::Pose{-20 + 40 * s, 5 * std::sin(3 * s), alt_m, 90, -60 + 50 * s, 0},
+    view.camera = mars::to_camera(mars::Pose{-20 + 40 * s, 5 * std::sin(3 * s), alt_m, 90, -60 + 50 * s, 0},
                             fake::kRadius_m);
     return lod::select_view(view);
   };

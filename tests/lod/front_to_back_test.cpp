@@ -1,4 +1,4 @@
-// Along every half circle from the point under the eye, nearer tiles come first.
+// Along every half circle from the point under the camera, nearer tiles come first.
 #include "lod/front_to_back.h"
 
 #include <algorithm>

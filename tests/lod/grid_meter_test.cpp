@@ -51,8 +51,8 @@ TEST(GridMeter, StatesWhatTheOverlayOfTheFullGridHas) {
       if (true_m > 1e-3) loosest = std::max(loosest, stated / true_m);
     };
     check(got.total_m, want.total_m, "total");
-    check(got.relief_m, want.relief_m, "relief");
-    check(got.sag_m, want.sag_m, "sag");
+    check(got.height_error_m, want.height_error_m, "relief");
+    check(got.sagitta_m, want.sagitta_m, "sag");
   }
   EXPECT_LE(loosest, 1.1);
   RecordProperty("loosest", std::to_string(loosest));
@@ -66,7 +66,7 @@ TEST(GridMeter, FindsARidgeBetweenPosts) {
   for (int c = 0; c < 4; ++c) {
     const Posts ridge =
         lod_test::make_posts(child(key, c), 64, [](int i, int) { return i == 33 ? 250.0 : 0.0; });
-    EXPECT_NEAR(meter.measure(FinePosts(ridge, kRadius)).relief_m, 250.0, 2.0);
+    EXPECT_NEAR(meter.measure(FinePosts(ridge, kRadius)).height_error_m, 250.0, 2.0);
   }
 }
 
@@ -75,9 +75,9 @@ TEST(GridMeter, ItsOwnPostsHaveNoError) {
     const TileKey key{mars::Face::kMinusZ, level, (1 << level) / 2, 0};
     const Posts posts = ground(key, 32, 2, 1.0);
     const ErrorTerms terms = GridMeter(posts, kRadius).measure(FinePosts(posts, kRadius));
-    EXPECT_LE(terms.sag_m, 2e-8);
+    EXPECT_LE(terms.sagitta_m, 2e-8);
     EXPECT_LE(terms.total_m, 2e-8);
-    EXPECT_LE(terms.relief_m, 4e-8);
+    EXPECT_LE(terms.height_error_m, 4e-8);
   }
 }
 

@@ -93,7 +93,7 @@ TEST(MeshMeasure, BoundsEveryDirectionAndIsNotLazy) {
     const ErrorTerms terms = measure_error(c.key, c.mesh, vertex_heights(c.mesh, c.posts), c.fine, kRadius);
     const double truth = brute_m(c, 1.0, 40);
     ASSERT_LE(truth, terms.total_m + 2e-8) << to_string(c.key) << " round " << round;
-    ASSERT_LE(terms.total_m, terms.relief_m + terms.sag_m);
+    ASSERT_LE(terms.total_m, terms.height_error_m + terms.sagitta_m);
     if (truth > 1e-3) ratios.push_back(truth / terms.total_m);
   }
   ASSERT_GT(ratios.size(), 30U);
@@ -166,7 +166,7 @@ TEST(MeshMeasure, SecondOrderIsNeeded) {
   const ErrorTerms terms = measure_error(key, c.mesh, vertex_heights(c.mesh, c.posts), c.fine, kRadius);
   const auto [low, high] = std::minmax_element(c.posts.height_m.begin(), c.posts.height_m.end());
   const double truth = brute_m(c, 8.0, 64);
-  EXPECT_GT(truth, 8.0 * terms.relief_m + terms.sag_m);
+  EXPECT_GT(truth, 8.0 * terms.height_error_m + terms.sagitta_m);
   const double bound = error_bound(terms, 8.0, *low, *high, kRadius);
   EXPECT_LE(truth, bound);
   EXPECT_GT(truth, 0.2 * bound);
@@ -195,9 +195,9 @@ TEST(MeshMeasure, SmoothSphereHasTheClosedFormOfAChord) {
     const double cell = std::numbers::pi / 2 / (64 << level) * 2.0;
     const double below = kRadius * (1.0 - std::cos(cell / 2)) + 1e-8;
     const ErrorTerms terms = measure_error(key, mesh, std::vector<double>(4, 0.0), fine, kRadius);
-    EXPECT_GE(terms.sag_m, kRadius * want - below);
-    EXPECT_LE(terms.sag_m, kRadius * want * (1.0 + 3.0 * cell) + 1e-8);
-    EXPECT_LE(terms.relief_m, terms.sag_m * 6.0 * cell + 1e-8);
+    EXPECT_GE(terms.sagitta_m, kRadius * want - below);
+    EXPECT_LE(terms.sagitta_m, kRadius * want * (1.0 + 3.0 * cell) + 1e-8);
+    EXPECT_LE(terms.height_error_m, terms.sagitta_m * 6.0 * cell + 1e-8);
   }
 }
 
@@ -208,8 +208,8 @@ TEST(MeshMeasure, FullGridHasNoError) {
     const TileMesh mesh = mesh_full(32);
     const ErrorTerms terms = measure_error(key, mesh, vertex_heights(mesh, posts), posts, kRadius);
     EXPECT_LE(terms.total_m, 2e-8);
-    EXPECT_LE(terms.sag_m, 2e-8);
-    EXPECT_LE(terms.relief_m, 4e-8);
+    EXPECT_LE(terms.sagitta_m, 2e-8);
+    EXPECT_LE(terms.height_error_m, 4e-8);
   }
 }
 
@@ -251,8 +251,8 @@ TEST(MeshMeasure, TermsOverATileIncludeThoseOverItsParts) {
   }
   const ErrorTerms whole = meter.measure(coarse);
   EXPECT_NEAR(parts.total_m, whole.total_m, 1e-3 * whole.total_m);
-  EXPECT_NEAR(parts.relief_m, whole.relief_m, 1e-3 * whole.relief_m);
-  EXPECT_NEAR(parts.sag_m, whole.sag_m, 1e-3 * whole.sag_m);
+  EXPECT_NEAR(parts.height_error_m, whole.height_error_m, 1e-3 * whole.height_error_m);
+  EXPECT_NEAR(parts.sagitta_m, whole.sagitta_m, 1e-3 * whole.sagitta_m);
 }
 
 TEST(MeshMeasure, RefusesWhatDoesNotFit) {

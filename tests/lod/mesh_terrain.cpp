@@ -36,8 +36,8 @@ double noise(const glm::dvec3& p, std::uint64_t seed) {
 
 }  // namespace
 
-Terrain::Terrain(std::uint64_t seed, double relief_m, double longest_m, double hurst)
-    : seed_(seed), relief_m_(relief_m), longest_m_(longest_m), hurst_(hurst) {}
+Terrain::Terrain(std::uint64_t seed, double height_error_m, double longest_m, double hurst)
+    : seed_(seed), height_error_m_(height_error_m), longest_m_(longest_m), hurst_(hurst) {}
 
 void Terrain::add_craters(const glm::dvec3& about, double cap_angle, int count, double smallest_m,
                           double largest_m) {
@@ -59,7 +59,7 @@ double Terrain::height_m(const glm::dvec3& direction, double spacing_m) const {
   for (double wave = longest_m_; wave >= 2.0 * spacing_m; wave *= 0.5) {
     height += std::pow(wave / longest_m_, hurst_) * noise(direction * (kRadius / wave), seed++);
   }
-  height *= relief_m_;
+  height *= height_error_m_;
   for (const Crater& crater : craters_) {
     const glm::dvec3 d = direction - crater.centre;
     const double x = std::sqrt(glm::dot(d, d)) * kRadius / crater.radius_m;

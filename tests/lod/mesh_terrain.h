@@ -15,7 +15,7 @@ class Terrain {
  public:
   // Noise from `longest_m` down to 2 m, amplitude proportional to wavelength^hurst; craters in a cap about
   // `about`.
-  Terrain(std::uint64_t seed, double relief_m, double longest_m, double hurst = 0.9);
+  Terrain(std::uint64_t seed, double height_error_m, double longest_m, double hurst = 0.9);
   void add_craters(const glm::dvec3& about, double cap_angle, int count, double smallest_m, double largest_m);
 
   // Detail finer than 2 spacings is left out.
@@ -28,7 +28,7 @@ class Terrain {
     double radius_m;
   };
   std::uint64_t seed_;
-  double relief_m_, longest_m_, hurst_;
+  double height_error_m_, longest_m_, hurst_;
   std::vector<Crater> craters_;
 };
 

@@ -54,11 +54,11 @@ double drawn_height(const Drawn& tile, double exaggeration, double u, double v) 
 
 // slack: by how much walls could be higher, in post spacings.
 void expect_below(const Drawn& tile, double exaggeration, int samples, std::vector<double>& slack) {
-  const lod::TileWalls walls = lod::make_walls(tile.key, tile.mesh, tile.height_m, exaggeration, kRadius);
-  const lod::GridLines lines = lod::grid_lines(tile.key, lod::kWallPieces);
+  const lod::OccluderProfile occluders = lod::make_occluder_profile(tile.key, tile.mesh, tile.height_m, exaggeration, kRadius);
+  const lod::GridLines lines = lod::grid_lines(tile.key, lod::kOccluderPieces);
   const double spacing_m = lod::post_spacing_m(tile.key.level, tile.mesh.intervals, kRadius);
-  for (std::size_t line = 0; line <= lod::kWallStrips; ++line) {
-    for (std::size_t piece = 0; piece < lod::kWallPieces; ++piece) {
+  for (std::size_t line = 0; line <= lod::kOccluderStrips; ++line) {
+    for (std::size_t piece = 0; piece < lod::kOccluderPieces; ++piece) {
       double column = std::numeric_limits<double>::infinity();
       double row = column;
       for (int s = 0; s <= samples; ++s) {
@@ -68,8 +68,8 @@ void expect_below(const Drawn& tile, double exaggeration, int samples, std::vect
         column = std::min(column, drawn_height(tile, exaggeration, lines.u[2 * line], v));
         row = std::min(row, drawn_height(tile, exaggeration, u, lines.v[2 * line]));
       }
-      const auto wall_c = static_cast<double>(walls.columns[line][piece]);
-      const auto wall_r = static_cast<double>(walls.rows[line][piece]);
+      const auto wall_c = static_cast<double>(occluders.columns[line][piece]);
+      const auto wall_r = static_cast<double>(occluders.rows[line][piece]);
       ASSERT_TRUE(std::isfinite(column) && std::isfinite(row));
       // The samples are that exact.
       ASSERT_LE(wall_c, column + 1e-6) << lod::to_string(tile.key) << " column " << line << " piece " << piece;
@@ -80,7 +80,7 @@ void expect_below(const Drawn& tile, double exaggeration, int samples, std::vect
   }
 }
 
-TEST(Walls, StandBelowTheDrawnTrianglesAndNotFar) {
+TEST(OccluderProfile, StandBelowTheDrawnTrianglesAndNotFar) {
   const lod_test::Terrain terrain(7, 3000, 200000);
   test_support::Random random(71);
   std::vector<double> slack;
@@ -96,7 +96,7 @@ TEST(Walls, StandBelowTheDrawnTrianglesAndNotFar) {
 }
 
 // Few triangles, so that one wall is under a long flat edge: the sag must be in it.
-TEST(Walls, HoldTheSagOfWideTriangles) {
+TEST(OccluderProfile, HoldTheSagOfWideTriangles) {
   const lod::TileKey key{mars::Face::kPlusY, 1, 1, 0};
   const lod::Posts posts = lod_test::make_posts(key, 8, [](int, int) { return 100.0; });
   lod::TileMesh mesh;
@@ -107,18 +107,18 @@ TEST(Walls, HoldTheSagOfWideTriangles) {
   std::vector<double> slack;
   expect_below(tile, 1.0, 64, slack);
   EXPECT_LT(*std::max_element(slack.begin(), slack.end()), 1e-4);
-  const lod::TileWalls walls = lod::make_walls(key, mesh, tile.height_m, 1.0, kRadius);
-  EXPECT_LT(walls.columns[0][3], -1e5F);
+  const lod::OccluderProfile occluders = lod::make_occluder_profile(key, mesh, tile.height_m, 1.0, kRadius);
+  EXPECT_LT(occluders.columns[0][3], -1e5F);
 }
 
-TEST(Walls, TheFullGridGivesTheLowestPostsOfALine) {
+TEST(OccluderProfile, TheFullGridGivesTheLowestPostsOfALine) {
   const lod::TileKey key{mars::Face::kMinusX, 9, 100, 371};
   const lod_test::Terrain terrain(3, 500, 5000);
   const lod::Posts posts = terrain.posts(key, 32);
   const lod::TileMesh mesh = lod::mesh_full(32);
-  const lod::TileWalls walls = lod::make_walls(key, mesh, lod::vertex_heights(mesh, posts), 2.0, kRadius, 0.25);
-  for (int line = 0; line <= lod::kWallStrips; ++line) {
-    for (int piece = 0; piece < lod::kWallPieces; ++piece) {
+  const lod::OccluderProfile occluders = lod::make_occluder_profile(key, mesh, lod::vertex_heights(mesh, posts), 2.0, kRadius, 0.25);
+  for (int line = 0; line <= lod::kOccluderStrips; ++line) {
+    for (int piece = 0; piece < lod::kOccluderPieces; ++piece) {
       double column = posts.at(8 * line, 4 * piece);
       double row = posts.at(4 * piece, 8 * line);
       for (int n = 1; n <= 4; ++n) {
@@ -127,23 +127,23 @@ TEST(Walls, TheFullGridGivesTheLowestPostsOfALine) {
       }
       const auto l = static_cast<std::size_t>(line);
       const auto p = static_cast<std::size_t>(piece);
-      ASSERT_LE(walls.columns[l][p], 2.0 * column - 0.25);
-      ASSERT_LE(walls.rows[l][p], 2.0 * row - 0.25);
+      ASSERT_LE(occluders.columns[l][p], 2.0 * column - 0.25);
+      ASSERT_LE(occluders.rows[l][p], 2.0 * row - 0.25);
       // Sag of 320 m chords: 4 mm.
-      ASSERT_GE(walls.columns[l][p], 2.0 * column - 0.26);
-      ASSERT_GE(walls.rows[l][p], 2.0 * row - 0.26);
+      ASSERT_GE(occluders.columns[l][p], 2.0 * column - 0.26);
+      ASSERT_GE(occluders.rows[l][p], 2.0 * row - 0.26);
     }
   }
 }
 
-TEST(Walls, RefuseWhatTheyCannotBeMadeOf) {
+TEST(OccluderProfile, RefuseWhatTheyCannotBeMadeOf) {
   const lod::TileKey key{mars::Face::kPlusX, 2, 1, 1};
   const lod::TileMesh mesh = lod::mesh_full(8);
   const std::vector<double> heights(81, 0.0);
-  EXPECT_THROW(lod::make_walls(key, lod::mesh_full(4), std::vector<double>(25, 0.0), 1, kRadius),
+  EXPECT_THROW(lod::make_occluder_profile(key, lod::mesh_full(4), std::vector<double>(25, 0.0), 1, kRadius),
                std::invalid_argument);
-  EXPECT_THROW(lod::make_walls(key, mesh, std::span(heights).first(80), 1, kRadius), std::invalid_argument);
-  EXPECT_THROW(lod::make_walls(key, mesh, std::vector<double>(81, -1e5), 100, kRadius), std::invalid_argument);
+  EXPECT_THROW(lod::make_occluder_profile(key, mesh, std::span(heights).first(80), 1, kRadius), std::invalid_argument);
+  EXPECT_THROW(lod::make_occluder_profile(key, mesh, std::vector<double>(81, -1e5), 100, kRadius), std::invalid_argument);
 }
 
 }  // namespace

@@ -16,15 +16,15 @@ constexpr double kRadius_m = 3396190.0;
 
 core::View view_of(const mars::Pose& pose, double fov_deg) {
   core::View view;
-  view.eye = mars::to_eye(pose, kRadius_m);
+  view.camera = mars::to_camera(pose, kRadius_m);
   view.fov_deg = fov_deg;
   return view;
 }
 
-// Length in the picture of a small radial step at a point, by a central difference, in units of step * f /
+// Length in the image of a small radial step at a point, by a central difference, in units of step * f /
 // range.
 double drawn_stretch(const core::View& view, const glm::dvec3& point) {
-  const double range = glm::length(point - view.eye.eye_m);
+  const double range = glm::length(point - view.camera.position_m);
   const double step = 1e-4 * range;
   const glm::dvec3 up = glm::normalize(point);
   const core::Projected a = core::project(view, point + 0.5 * step * up);
@@ -33,14 +33,14 @@ double drawn_stretch(const core::View& view, const glm::dvec3& point) {
   return std::hypot(moved.x, moved.y) / (step * core::focal_px(view) / range);
 }
 
-cull::Shell shell_of(const lod::TileKey& key) {
+cull::BoundingRegion bounding_region(const lod::TileKey& key) {
   return {lod::chart_rect(key), kRadius_m - 6000.0, kRadius_m + 8000.0};
 }
 
-glm::dvec3 point_in(const cull::Shell& shell, Random& random) {
-  const mars::ChartRect& r = shell.rect;
+glm::dvec3 point_in(const cull::BoundingRegion& region, Random& random) {
+  const mars::ChartRect& r = region.rect;
   return mars::chart_direction(r.face, random.uniform(r.u0, r.u1), random.uniform(r.v0, r.v1)) *
-         random.uniform(shell.min_radius_m, shell.max_radius_m);
+         random.uniform(region.min_radius_m, region.max_radius_m);
 }
 
 TEST(Stretch, BoundsWhatIsDrawn) {
@@ -61,18 +61,18 @@ TEST(Stretch, BoundsWhatIsDrawn) {
         view.part.width > 0 ? view.part : core::SubRectangle{0, 0, view.width, view.height};
     const glm::dvec3 ray = core::pixel_ray(view, shown.x + random.uniform(0, shown.width),
                                            shown.y + random.uniform(0, shown.height));
-    const double middle = -glm::dot(view.eye.eye_m, ray);
-    const double lowest2 = glm::dot(view.eye.eye_m, view.eye.eye_m) - middle * middle;
+    const double middle = -glm::dot(view.camera.position_m, ray);
+    const double lowest2 = glm::dot(view.camera.position_m, view.camera.position_m) - middle * middle;
     if (middle <= 0 || lowest2 >= kRadius_m * kRadius_m) continue;
-    const glm::dvec3 hit = view.eye.eye_m + ray * (middle - std::sqrt(kRadius_m * kRadius_m - lowest2));
+    const glm::dvec3 hit = view.camera.position_m + ray * (middle - std::sqrt(kRadius_m * kRadius_m - lowest2));
     const lod::TileKey key = lod::tile_at(mars::chart_point(hit), random.integer(0, 9));
-    const cull::Shell shell = shell_of(key);
-    const double bound = lod::stretch(lod::picture_plane(view), cull::make_volume(shell));
+    const cull::BoundingRegion region = bounding_region(key);
+    const double bound = lod::off_axis_magnification(lod::image_plane(view), cull::bounding_hexahedron(region));
     ASSERT_GE(bound, 1.0);
     double worst = 0;
     bool whole = true;
     for (int n = 0; n < 30; ++n) {
-      const glm::dvec3 point = n == 0 ? hit : point_in(shell, random);
+      const glm::dvec3 point = n == 0 ? hit : point_in(region, random);
       const core::Projected p = core::project(view, point);
       const bool inside = !p.behind && p.xy.x >= shown.x && p.xy.x <= shown.x + shown.width &&
                           p.xy.y >= shown.y && p.xy.y <= shown.y + shown.height;
@@ -94,24 +94,24 @@ TEST(Stretch, BoundsWhatIsDrawn) {
 }
 
 TEST(Stretch, IsOneAboutTheAxisAndForPanoramas) {
-  const cull::TileVolume below =
-      cull::make_volume(shell_of(lod::tile_at(mars::chart_point(mars::direction({10, 20})), 9)));
+  const cull::BoundingHexahedron below =
+      cull::bounding_hexahedron(bounding_region(lod::tile_at(mars::chart_point(mars::direction({10, 20})), 9)));
   core::View view = view_of({10, 20, 5e5, 0, -90, 0}, 60);
-  EXPECT_EQ(lod::stretch(lod::picture_plane(view), below), 1.0);
+  EXPECT_EQ(lod::off_axis_magnification(lod::image_plane(view), below), 1.0);
   view.projection = core::Projection::kEquirectangular;
-  EXPECT_FALSE(lod::picture_plane(view).flat);
-  EXPECT_EQ(lod::stretch(lod::picture_plane(view), below), 1.0);
+  EXPECT_FALSE(lod::image_plane(view).flat);
+  EXPECT_EQ(lod::off_axis_magnification(lod::image_plane(view), below), 1.0);
 }
 
 // A limb far off axis: upright there, so the secant of the angle is all there is.
 TEST(Stretch, IsTheSecantAtTheSidesOfALevelView) {
   core::View view = view_of({0, 0, 20000, 90, 0, 0}, 60);
   const glm::dvec3 aside = core::pixel_ray(view, view.width - 0.5, 0.5 * view.height + 60);
-  const double middle = -glm::dot(view.eye.eye_m, aside);
-  const glm::dvec3 point = view.eye.eye_m + aside * middle;
+  const double middle = -glm::dot(view.camera.position_m, aside);
+  const glm::dvec3 point = view.camera.position_m + aside * middle;
   const lod::TileKey key = lod::tile_at(mars::chart_point(point), 9);
   const double t = (0.5 * view.width - 0.5) / core::focal_px(view);
-  EXPECT_NEAR(lod::stretch(lod::picture_plane(view), cull::make_volume(shell_of(key))), std::hypot(1.0, t),
+  EXPECT_NEAR(lod::off_axis_magnification(lod::image_plane(view), cull::bounding_hexahedron(bounding_region(key))), std::hypot(1.0, t),
               0.12);
 }
 

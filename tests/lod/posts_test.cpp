@@ -55,10 +55,10 @@ Wide plane_radius(double u, double v, const std::array<Vec, 3>& t, Vec* normal =
   return dot(n, t[0]) / dot(n, ray);
 }
 
-Posts random_posts(test_support::Random& random, const TileKey& key, int intervals, double relief_m) {
+Posts random_posts(test_support::Random& random, const TileKey& key, int intervals, double height_error_m) {
   Posts posts{key, intervals, {}};
   posts.height_m.resize(static_cast<std::size_t>(posts.side()) * static_cast<std::size_t>(posts.side()));
-  for (double& h : posts.height_m) h = random.uniform(-relief_m, relief_m);
+  for (double& h : posts.height_m) h = random.uniform(-height_error_m, height_error_m);
   return posts;
 }
 
@@ -99,15 +99,15 @@ TEST(Posts, SpacingIsThatOfTheMiddle) {
 TEST(Posts, HeightAtAPostIsThePostsHeight) {
   test_support::Random random(12);
   for (int trial = 0; trial < 300; ++trial) {
-    const double relief = random.log_uniform(1.0, 1e6);
+    const double height_error = random.log_uniform(1.0, 1e6);
     const TileKey key = random_tile(random, 20);
-    const Posts posts = random_posts(random, key, 16, relief);
+    const Posts posts = random_posts(random, key, 16, height_error);
     const lod::GridLines lines = lod::grid_lines(key, 16);
     for (int j = 0; j <= 16; ++j) {
       for (int i = 0; i <= 16; ++i) {
         const double h = lod::surface_height(posts, lines, lines.u[static_cast<std::size_t>(i)],
                                              lines.v[static_cast<std::size_t>(j)], mars::kMarsRadius_m);
-        ASSERT_NEAR(h, posts.at(i, j), 1e-9 + 1e-15 * relief) << i << " " << j << " " << lod::to_string(key);
+        ASSERT_NEAR(h, posts.at(i, j), 1e-9 + 1e-15 * height_error) << i << " " << j << " " << lod::to_string(key);
       }
     }
   }
@@ -120,8 +120,8 @@ TEST(Posts, HeightAndNormalAgreeWithRaysThroughTriangles) {
   const double radius = mars::kMarsRadius_m;
   for (int trial = 0; trial < 1000; ++trial) {
     const TileKey key = random_tile(random, 20);
-    const double relief = random.log_uniform(1e-2, 1e5);
-    const Posts posts = random_posts(random, key, 8, relief);
+    const double height_error = random.log_uniform(1e-2, 1e5);
+    const Posts posts = random_posts(random, key, 8, height_error);
     const lod::GridLines lines = lod::grid_lines(key, 8);
     for (int sample = 0; sample < 20; ++sample) {
       const int i = random.integer(0, 7);
@@ -145,12 +145,12 @@ TEST(Posts, HeightAndNormalAgreeWithRaysThroughTriangles) {
       glm::dvec3 normal;
       const double h = lod::surface_height(posts, lines, u, v, radius, &normal);
       const double side = std::min(du, dv);
-      const double height_bound = radius * std::max(du, dv) + relief;
+      const double height_bound = radius * std::max(du, dv) + height_error;
       worst_height = std::max(worst_height, std::abs(static_cast<double>(h - truth)) / height_bound);
       const mars::FaceAxes& axes = mars::face_axes(key.face);
       const Vec got{glm::dot(normal, axes.right), glm::dot(normal, axes.up), glm::dot(normal, axes.out)};
       const double angle = static_cast<double>(length(got - expected));
-      worst_normal = std::max(worst_normal, angle / (1.0 + relief / (radius * side)));
+      worst_normal = std::max(worst_normal, angle / (1.0 + height_error / (radius * side)));
     }
   }
   EXPECT_LE(worst_height, lod::kHeightError);
@@ -192,8 +192,8 @@ TEST(Posts, ConstrainedEdgeLiesOnTheCoarseEdge) {
   constexpr int kIntervals = 16;
   for (int trial = 0; trial < 2000; ++trial) {
     const TileKey key = random_tile(random, 16);
-    const double relief = random.log_uniform(1.0, 2e4);
-    Posts posts = random_posts(random, key, kIntervals, relief);
+    const double height_error = random.log_uniform(1.0, 2e4);
+    Posts posts = random_posts(random, key, kIntervals, height_error);
     const Posts before = posts;
     const lod::GridLines lines = lod::grid_lines(key, kIntervals);
     const Edge edge = lod::kEdges[static_cast<std::size_t>(random.integer(0, 3))];
@@ -224,7 +224,7 @@ TEST(Posts, ConstrainedEdgeLiesOnTheCoarseEdge) {
       const double distance = static_cast<double>(length(cross(p - a, b - a)) / length(b - a));
       ASSERT_LE(distance, lod::kHeightError * (radius * (std::abs(chart(start + step)[0] - chart(start)[0]) +
                                                          std::abs(chart(start + step)[1] - chart(start)[1])) +
-                                               relief))
+                                               height_error))
           << u << " " << v;
       ASSERT_LE(distance, 2e-9);
     }
@@ -291,9 +291,9 @@ TEST(SurfaceHeight, SagIsNotExaggerated) {
   const lod::GridLines lines = lod::grid_lines(posts.key, 4);
   const double u = 0.4 * lines.u[1] + 0.6 * lines.u[2];
   const double v = 0.7 * lines.v[2] + 0.3 * lines.v[3];
-  const double sag = lod::surface_height(posts, lines, u, v, kR);
-  EXPECT_LT(sag, -50.0);
-  EXPECT_EQ(lod::surface_height(posts, lines, u, v, kR, nullptr, 5.0), sag);
+  const double sagitta = lod::surface_height(posts, lines, u, v, kR);
+  EXPECT_LT(sagitta, -50.0);
+  EXPECT_EQ(lod::surface_height(posts, lines, u, v, kR, nullptr, 5.0), sagitta);
   for (double& h : posts.height_m) h = 1000.0;
   lod::Posts high = posts;
   for (double& h : high.height_m) h = 3000.0;

@@ -8,11 +8,11 @@ namespace {
 
 vpe::core::View view_at(double lon, double lat, double alt_m, double yaw, double pitch) {
   vpe::core::View view;
-  view.eye = mars::to_eye(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
+  view.camera = mars::to_camera(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
   return view;
 }
 
-TEST(LookFrom, TheSameViewSeesWhatSelectionSays) {
+TEST(Reevaluate, TheSameViewSeesWhatSelectionSays) {
   const lod::TileTree tree = fake::tree(fake::rough(3, 8));
   test_support::Random random(31);
   for (int trial = 0; trial < 100; ++trial) {
@@ -23,7 +23,7 @@ TEST(LookFrom, TheSameViewSeesWhatSelectionSays) {
     lod::Selection selection;
     lod::select({}, tree, lod::select_view(view), scratch, selection);
     lod::Selection again = selection;
-    lod::look_from(lod::select_view(view), tree, again);
+    lod::reevaluate_for_view(lod::select_view(view), tree, again);
     for (std::size_t n = 0; n < selection.tiles.size(); ++n) {
       const lod::SelectedTile& a = selection.tiles[n];
       const lod::SelectedTile& b = again.tiles[n];
@@ -31,13 +31,13 @@ TEST(LookFrom, TheSameViewSeesWhatSelectionSays) {
       ASSERT_EQ(a.min_distance_m, b.min_distance_m);
       // Another bound: selection leaves out what cannot stand against the sky, and keeps that of a coarser
       // mesh.
-      ASSERT_GE(b.stretch, 1.0);
-      ASSERT_DOUBLE_EQ(b.error_px * a.stretch, a.error_px * b.stretch);
+      ASSERT_GE(b.off_axis_magnification, 1.0);
+      ASSERT_DOUBLE_EQ(b.screen_space_error_px * a.off_axis_magnification, a.screen_space_error_px * b.off_axis_magnification);
     }
   }
 }
 
-TEST(LookFrom, DistancesBoundThoseFromTheOtherEye) {
+TEST(Reevaluate, DistancesBoundThoseFromTheOtherEye) {
   const lod::TileTree tree = fake::tree(fake::rough(3, 8));
   test_support::Random random(32);
   for (int trial = 0; trial < 50; ++trial) {
@@ -47,20 +47,20 @@ TEST(LookFrom, DistancesBoundThoseFromTheOtherEye) {
     lod::SelectScratch scratch;
     lod::Selection selection;
     lod::select({}, tree, lod::select_view(from), scratch, selection);
-    lod::look_from(lod::select_view(to), tree, selection);
+    lod::reevaluate_for_view(lod::select_view(to), tree, selection);
     double worst = 0;
     for (const lod::SelectedTile& tile : selection.tiles) {
-      const cull::Shell shell = tree.shell(tile.index, 1.0, tile.error_m);
+      const cull::BoundingRegion region = tree.region(tile.index, 1.0, tile.geometric_error_m);
       for (int sample = 0; sample < 5; ++sample) {
         const glm::dvec3 point =
-            mars::chart_direction(shell.rect.face, random.uniform(shell.rect.u0, shell.rect.u1),
-                                  random.uniform(shell.rect.v0, shell.rect.v1)) *
-            random.uniform(shell.min_radius_m, shell.max_radius_m);
-        ASSERT_LE(tile.min_distance_m, glm::length(point - to.eye.eye_m));
+            mars::chart_direction(region.rect.face, random.uniform(region.rect.u0, region.rect.u1),
+                                  random.uniform(region.rect.v0, region.rect.v1)) *
+            random.uniform(region.min_radius_m, region.max_radius_m);
+        ASSERT_LE(tile.min_distance_m, glm::length(point - to.camera.position_m));
       }
-      worst = std::max(worst, tile.error_px);
+      worst = std::max(worst, tile.screen_space_error_px);
     }
-    ASSERT_EQ(selection.max_error_px, worst);
+    ASSERT_EQ(selection.max_screen_space_error_px, worst);
   }
 }
 

@@ -22,7 +22,7 @@ namespace core = vpe::core;
 
 core::View view_at(double lon, double lat, double alt_m, double yaw, double pitch) {
   core::View view;
-  view.eye = mars::to_eye(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
+  view.camera = mars::to_camera(mars::Pose{lon, lat, alt_m, yaw, pitch, 0}, fake::kRadius_m);
   return view;
 }
 
@@ -71,7 +71,7 @@ core::View hostile_view(Random& random, double exaggeration) {
     case 1: alt = exaggeration * random.uniform(-8200, below.max_height_m); break;
     default: alt += random.log_uniform(1, 10 * fake::kRadius_m); break;
   }
-  view.eye = mars::to_eye(
+  view.camera = mars::to_camera(
       mars::Pose{lon, lat, alt, random.uniform(-180, 180), random.uniform(-90, 60), random.uniform(-180, 180)},
       fake::kRadius_m);
   view.fov_deg = random.integer(0, 2) == 0 ? random.log_uniform(0.1, 170) : 60.0;
@@ -79,10 +79,10 @@ core::View hostile_view(Random& random, double exaggeration) {
   return view;
 }
 
-double projected(double error_m, double focal_px, double distance_m, double stretch) {
-  if (error_m == 0.0) return 0.0;
+double projected(double geometric_error_m, double focal_px, double distance_m, double off_axis_magnification) {
+  if (geometric_error_m == 0.0) return 0.0;
   return distance_m == 0.0 ? std::numeric_limits<double>::infinity()
-                           : stretch * (error_m * focal_px / distance_m);
+                           : off_axis_magnification * (geometric_error_m * focal_px / distance_m);
 }
 
 void expect_sound(const Selection& s, const TileTree& tree, const SelectOptions& options,
@@ -101,21 +101,21 @@ void expect_sound(const Selection& s, const TileTree& tree, const SelectOptions&
     const lod::MeshVariant& mesh = tree[t.index].variants.at(static_cast<std::size_t>(t.variant));
     triangles += mesh.triangles;
     if (options.exaggeration == 1.0) {
-      ASSERT_EQ(t.error_m, mesh.terms.total_m);
+      ASSERT_EQ(t.geometric_error_m, mesh.terms.total_m);
     }
-    ASSERT_EQ(t.error_px, projected(t.error_m, focal, t.min_distance_m, t.stretch));
-    worst_m = std::max(worst_m, t.error_m);
-    worst_px = std::max(worst_px, t.error_px);
+    ASSERT_EQ(t.screen_space_error_px, projected(t.geometric_error_m, focal, t.min_distance_m, t.off_axis_magnification));
+    worst_m = std::max(worst_m, t.geometric_error_m);
+    worst_px = std::max(worst_px, t.screen_space_error_px);
     ++levels[static_cast<std::size_t>(t.key.level)];
   }
   ASSERT_EQ(s.triangles, triangles);
-  ASSERT_EQ(s.max_error_m, worst_m);
-  ASSERT_EQ(s.max_error_px, worst_px);
+  ASSERT_EQ(s.max_geometric_error_m, worst_m);
+  ASSERT_EQ(s.max_screen_space_error_px, worst_px);
   for (std::size_t level = 0; level < levels.size(); ++level) {
     ASSERT_EQ(level < s.tiles_by_level.size() ? s.tiles_by_level[level] : 0, levels[level]);
   }
   if (!s.capped) {
-    ASSERT_LE(s.max_error_px, options.tolerance_px);
+    ASSERT_LE(s.max_screen_space_error_px, options.tolerance_px);
   }
 }
 
@@ -143,13 +143,13 @@ TEST(SelectCounts, FromTenRadiiFiveRootsAreSeen) {
 }
 
 TEST(SelectCounts, HalfAMetreUpOverFourTilesCornersFourAreDrawn) {
-  // The horizon is 1.8 km away, a finest tile 167 km wide; the eye stands over the middle of +X. Hidden: five
-  // roots but the eye's, 12 of the 16 tiles at each of the levels 2 to 5.
+  // The horizon is 1.8 km away, a finest tile 167 km wide; the camera stands over the middle of +X. Hidden: five
+  // roots but the camera's, 12 of the 16 tiles at each of the levels 2 to 5.
   const TileTree ball = fake::tree(fake::uniform(5));
   const Selection s = selected(tolerance(1), ball, view_at(0, 0, 0.5, 90, -1));
   EXPECT_EQ(counts(s), (Counts{74, 5 + 4 * 12, 0, 17, 4}));
   EXPECT_EQ(s.tiles_by_level, (std::vector<int>{0, 0, 0, 0, 0, 4}));
-  EXPECT_EQ(s.max_error_px, 0.0);  // the eye is within the errors of the coarser meshes
+  EXPECT_EQ(s.max_screen_space_error_px, 0.0);  // the camera is within the errors of the coarser meshes
 }
 
 TEST(SelectCounts, AtTheEastPoleOfThreeFacesThreeTilesAreDrawn) {
@@ -182,19 +182,19 @@ TEST(SelectCounts, WithoutAFrustumAtToleranceZeroAllFinestTilesAboveTheHorizonAr
     for (const TileInfo& tile : ball.tiles()) {
       if (tile.has_children) continue;
       const mars::ChartRect r = lod::chart_rect(tile.key);
-      double nearest = lod::tile_at(mars::chart_point(view.eye.eye_m), 4) == tile.key ? 0.0 : 4.0;
+      double nearest = lod::tile_at(mars::chart_point(view.camera.position_m), 4) == tile.key ? 0.0 : 4.0;
       for (int k = 0; k <= 400; ++k) {
         const double u = r.u0 + (r.u1 - r.u0) * k / 400.0;
         const double v = r.v0 + (r.v1 - r.v0) * k / 400.0;
         for (const auto& [x, y] : {std::pair{u, r.v0}, {u, r.v1}, {r.u0, v}, {r.u1, v}}) {
           nearest =
-              std::min(nearest, mars::angle_between_rad(mars::chart_direction(r.face, x, y), view.eye.eye_m));
+              std::min(nearest, mars::angle_between_rad(mars::chart_direction(r.face, x, y), view.camera.position_m));
         }
       }
       expected += nearest <= limit ? 1 : 0;
     }
     EXPECT_EQ(static_cast<int>(s.tiles.size()), expected) << alt;
-    EXPECT_EQ(s.max_error_m, 0.0);
+    EXPECT_EQ(s.max_geometric_error_m, 0.0);
   }
 }
 
@@ -208,7 +208,7 @@ TEST(Select, DrawsEveryVisiblePlaceExactlyOnce) {
     SelectOptions options = tolerance(random.integer(0, 9) == 0 ? 0.0 : random.log_uniform(0.1, 100));
     options.exaggeration = random.integer(0, 2) == 0 ? random.log_uniform(0.1, 20) : 1.0;
     const core::View view = hostile_view(random, options.exaggeration);
-    const glm::dvec3 eye = view.eye.eye_m;
+    const glm::dvec3 camera = view.camera.position_m;
     lod::select(options, tree, lod::select_view(view), scratch, s);
     expect_sound(s, tree, options, view);
     if (HasFatalFailure()) return;
@@ -220,21 +220,21 @@ TEST(Select, DrawsEveryVisiblePlaceExactlyOnce) {
         const glm::dvec3 ray =
             core::pixel_ray(view, random.uniform(0, view.width), random.uniform(0, view.height));
         const double r = fake::kRadius_m + options.exaggeration * random.uniform(-8000, 8000);
-        const double b = glm::dot(ray, eye);
-        const double root = b * b - glm::dot(eye, eye) + r * r;
+        const double b = glm::dot(ray, camera);
+        const double root = b * b - glm::dot(camera, camera) + r * r;
         if (root < 0) continue;
         const double t = -b - std::sqrt(root) > 0 ? -b - std::sqrt(root) : -b + std::sqrt(root);
         if (t <= 0) continue;
-        point = eye + t * ray;
+        point = camera + t * ray;
       }
       const TileKey key = lod::tile_at(mars::chart_point(point), lod::kMaxLevel);
       const TileInfo& finest = tree.deepest(key);
       const double low = fake::kRadius_m + options.exaggeration * finest.min_height_m;
       const double high = fake::kRadius_m + options.exaggeration * finest.max_height_m;
       point = glm::normalize(point) * std::clamp(glm::length(point), low, high);
-      const glm::dvec3 step = point - eye;
-      const double t = std::clamp(-glm::dot(eye, step) / glm::dot(step, step), 0.0, 1.0);
-      if (glm::length(eye + t * step) < lowest + 1e-6) continue;
+      const glm::dvec3 step = point - camera;
+      const double t = std::clamp(-glm::dot(camera, step) / glm::dot(step, step), 0.0, 1.0);
+      if (glm::length(camera + t * step) < lowest + 1e-6) continue;
       if (view.projection == core::Projection::kPerspective) {
         const core::Projected p = core::project(view, point);
         if (p.behind || p.xy.x < 0 || p.xy.x > view.width || p.xy.y < 0 || p.xy.y > view.height) continue;
@@ -245,8 +245,8 @@ TEST(Select, DrawsEveryVisiblePlaceExactlyOnce) {
         if (!lod::contains(tile.key, key)) continue;
         ++holders;
         ASSERT_LE(tile.min_distance_m, glm::length(step) + 1e-8);
-        ASSERT_GE(tile.error_px * (1 + 1e-12),
-                  tile.error_m == 0 ? 0 : tile.error_m * lod::select_view(view).focal_px / glm::length(step));
+        ASSERT_GE(tile.screen_space_error_px * (1 + 1e-12),
+                  tile.geometric_error_m == 0 ? 0 : tile.geometric_error_m * lod::select_view(view).focal_px / glm::length(step));
       }
       ASSERT_EQ(holders, 1) << "trial " << trial << " " << lod::to_string(key);
     }
@@ -264,14 +264,14 @@ TEST(Select, FinerToleranceOnlyRefines) {
     for (const double px : {1e9, 30.0, 10.0, 3.0, 1.0, 0.3, 0.1, 0.0}) {
       const Selection finer = selected(tolerance(px), rough_tree(), view);
       ASSERT_GE(finer.visited, coarser.visited) << px;
-      ASSERT_LE(finer.max_error_px, px);
+      ASSERT_LE(finer.max_screen_space_error_px, px);
       std::int64_t least = 0;  // triangles of the coarser tiles that something is left of
       auto outer = coarser.tiles.begin();
       const lod::SelectedTile* counted = nullptr;
       for (const lod::SelectedTile& tile : finer.tiles) {
         while (outer != coarser.tiles.end() && !lod::contains(outer->key, tile.key)) ++outer;
         ASSERT_NE(outer, coarser.tiles.end()) << lod::to_string(tile.key);
-        ASSERT_LE(tile.error_m, outer->error_m);
+        ASSERT_LE(tile.geometric_error_m, outer->geometric_error_m);
         if (outer->key == tile.key) {
           ASSERT_GE(tile.variant, outer->variant);
         }
@@ -291,7 +291,7 @@ TEST(Select, AtToleranceZeroNothingHasAnError) {
   for (int trial = 0; trial < 200; ++trial) {
     for (const lod::SelectedTile& tile :
          selected(tolerance(0), rough_tree(), hostile_view(random, 1.0)).tiles) {
-      ASSERT_EQ(tile.error_m, 0.0);
+      ASSERT_EQ(tile.geometric_error_m, 0.0);
       ASSERT_FALSE(rough_tree()[tile.index].has_children);
       ASSERT_EQ(static_cast<std::size_t>(tile.variant) + 1, rough_tree()[tile.index].variants.size());
     }
@@ -314,31 +314,31 @@ TEST(Select, TheCapIsHardAndSpentOnTheWorstFirst) {
       expect_sound(s, rough_tree(), options, view);
       if (HasFatalFailure()) return;
       ASSERT_LE(s.triangles, std::max(cap, roots));
-      ASSERT_LE(s.max_error_px, worst_px);
-      worst_px = s.max_error_px;
+      ASSERT_LE(s.max_screen_space_error_px, worst_px);
+      worst_px = s.max_screen_space_error_px;
       // Whatever was refined was at least as bad as all that was left.
-      const cull::Eye eye = cull::make_eye(view.eye.eye_m);
+      const cull::Camera camera = cull::make_camera(view.camera.position_m);
       for (const lod::SelectedTile& tile : s.tiles) {
         if (tile.key.level == 0) continue;
         const auto parent =
             static_cast<TileTree::Index>(rough_tree().find(lod::parent(tile.key)) - &rough_tree()[0]);
-        const double error_m = rough_tree()[parent].variants[0].terms.total_m;
-        const cull::Shell shell = rough_tree().shell(parent, 1.0, error_m);
-        const double distance_m = cull::min_distance_m(eye, cull::nearest_chord2(shell.rect, eye.direction),
-                                                       shell.min_radius_m, shell.max_radius_m);
-        double stretch = std::numeric_limits<double>::infinity();
+        const double geometric_error_m = rough_tree()[parent].variants[0].terms.total_m;
+        const cull::BoundingRegion region = rough_tree().region(parent, 1.0, geometric_error_m);
+        const double distance_m = cull::min_distance_m(camera, cull::nearest_chord2(region.rect, camera.direction),
+                                                       region.min_radius_m, region.max_radius_m);
+        double off_axis_magnification = std::numeric_limits<double>::infinity();
         for (int level = 0; level < tile.key.level; ++level) {
           const auto outer = static_cast<TileTree::Index>(rough_tree().find(lod::ancestor(tile.key, level)) -
                                                           &rough_tree()[0]);
-          const cull::Shell around =
-              rough_tree().shell(outer, 1.0, rough_tree()[outer].variants[0].terms.total_m);
+          const cull::BoundingRegion around =
+              rough_tree().region(outer, 1.0, rough_tree()[outer].variants[0].terms.total_m);
           const bool sky =
-              cull::against_sky(eye, cull::make_horizon(eye, rough_tree().lowest_radius_m(1.0)),
-                                cull::farthest_chord2(around.rect, eye.direction), around.max_radius_m);
-          stretch =
-              sky ? std::min(stretch, lod::stretch(lod::picture_plane(view), cull::make_volume(around))) : 1.0;
+              cull::against_sky(camera, cull::make_horizon(camera, rough_tree().lowest_radius_m(1.0)),
+                                cull::farthest_chord2(around.rect, camera.direction), around.max_radius_m);
+          off_axis_magnification =
+              sky ? std::min(off_axis_magnification, lod::off_axis_magnification(lod::image_plane(view), cull::bounding_hexahedron(around))) : 1.0;
         }
-        ASSERT_GE(projected(error_m, lod::select_view(view).focal_px, distance_m, stretch), s.max_error_px);
+        ASSERT_GE(projected(geometric_error_m, lod::select_view(view).focal_px, distance_m, off_axis_magnification), s.max_screen_space_error_px);
       }
       capped += s.capped ? 1 : 0;
       if (!s.capped) {
@@ -374,13 +374,13 @@ TEST(Select, InheritedPlanesCullAsMuchAsAllPlanes) {
                               random.uniform(0, 360), random.uniform(-90, -30));
     view.fov_deg = random.uniform(5, 90);
     const cull::Frustum frustum = cull::make_frustum(view);
-    const cull::Eye eye = cull::make_eye(view.eye.eye_m);
-    const cull::Horizon horizon = cull::make_horizon(eye, ball.lowest_radius_m(1.0));
+    const cull::Camera camera = cull::make_camera(view.camera.position_m);
+    const cull::Horizon horizon = cull::make_horizon(camera, ball.lowest_radius_m(1.0));
     const auto kept = [&](const TileKey& key) {
       const auto index = static_cast<TileTree::Index>(ball.find(key) - &ball[0]);
-      const cull::Shell shell = ball.shell(index, 1.0, ball[index].variants[0].terms.total_m);
-      return !cull::hidden(horizon, cull::nearest_chord2(shell.rect, eye.direction), shell.max_radius_m) &&
-             cull::planes_crossed(frustum, cull::make_volume(shell), cull::all_planes(frustum)).has_value();
+      const cull::BoundingRegion region = ball.region(index, 1.0, ball[index].variants[0].terms.total_m);
+      return !cull::hidden(horizon, cull::nearest_chord2(region.rect, camera.direction), region.max_radius_m) &&
+             cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum)).has_value();
     };
     std::vector<TileKey> expected;
     for (const TileInfo& tile : ball.tiles()) {
@@ -400,8 +400,8 @@ TEST(Select, InheritedPlanesCullAsMuchAsAllPlanes) {
 }
 
 bool operator==(const lod::SelectedTile& a, const lod::SelectedTile& b) {
-  return a.key == b.key && a.index == b.index && a.variant == b.variant && a.error_m == b.error_m &&
-         a.error_px == b.error_px && a.min_distance_m == b.min_distance_m;
+  return a.key == b.key && a.index == b.index && a.variant == b.variant && a.geometric_error_m == b.geometric_error_m &&
+         a.screen_space_error_px == b.screen_space_error_px && a.min_distance_m == b.min_distance_m;
 }
 
 TEST(Select, IsTheSameWhateverWasSelectedBefore) {
@@ -432,13 +432,13 @@ TEST(Select, ALevelsShiftIsAFactorTwoOfTheTolerance) {
       const Selection shifted = selected(options, rough_tree(), view);
       const Selection plain = selected(tolerance(std::exp2(-levels)), rough_tree(), view);
       ASSERT_EQ(counts(shifted), counts(plain));
-      ASSERT_EQ(shifted.max_error_px, plain.max_error_px);
+      ASSERT_EQ(shifted.max_screen_space_error_px, plain.max_screen_space_error_px);
     }
   }
 }
 
 TEST(Select, ExaggerationMovesTheGroundAndItsError) {
-  // A plateau of +7 km: at x = 10 an eye 20 km up is below it, and looks at its inside from within.
+  // A plateau of +7 km: at x = 10 a camera 20 km up is below it, and looks at its inside from within.
   fake::Planet plateau = fake::uniform(4);
   plateau.height_m = [](const TileKey&) { return 7000.0; };
   const TileTree tree = fake::tree(plateau);
@@ -471,8 +471,8 @@ TEST(Select, RefusesWhatIsNoNumberOrOutOfRange) {
   };
   const double nan = std::nan("");
   const double inf = std::numeric_limits<double>::infinity();
-  refuses([&](auto&, auto& v) { v.eye_m.y = nan; });
-  refuses([&](auto&, auto& v) { v.eye_m.z = inf; });
+  refuses([&](auto&, auto& v) { v.camera_m.y = nan; });
+  refuses([&](auto&, auto& v) { v.camera_m.z = inf; });
   refuses([&](auto&, auto& v) { v.focal_px = 0; });
   refuses([&](auto&, auto& v) { v.focal_px = nan; });
   refuses([&](auto& o, auto&) { o.tolerance_px = -1; });
@@ -482,7 +482,7 @@ TEST(Select, RefusesWhatIsNoNumberOrOutOfRange) {
   refuses([&](auto& o, auto&) { o.max_triangles = -1; });
   SelectOptions options;
   lod::SelectView centre = good;
-  centre.eye_m = {0, 0, 0};
+  centre.camera_m = {0, 0, 0};
   lod::select(options, ball, centre, scratch, s);
   EXPECT_EQ(s.culled_horizon, 0);
 }

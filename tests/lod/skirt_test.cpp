@@ -52,7 +52,7 @@ Selection random_selection(Random& random, const TileTree& tree, double exaggera
   vpe::core::View view;
   const glm::dvec3 place = random.integer(0, 3) == 0 ? glm::dvec3(1, 1, -1) : random.direction();
   const mars::LonLat at = mars::lon_lat(place);
-  view.eye = mars::to_eye(mars::Pose{at.lon_deg, at.lat_deg, random.log_uniform(1e4, 1e7), 30, -70, 0},
+  view.camera = mars::to_camera(mars::Pose{at.lon_deg, at.lat_deg, random.log_uniform(1e4, 1e7), 30, -70, 0},
                           fake::kRadius_m);
   if (random.integer(0, 1) == 0) view.projection = vpe::core::Projection::kEquirectangular;
   lod::SelectOptions options;
@@ -84,7 +84,7 @@ TEST(Skirt, CoversWhatIsDrawnAcrossEveryEdgeAndNoMore) {
         for (int k = 0; k < 64; ++k) {
           const SelectedTile* other = drawn_at(s, across(tile.key, edge, (k + 0.5) / 64));
           if (other == nullptr || exact(tree, tile, *other)) continue;
-          gap = std::max(gap, tile.error_m + other->error_m);
+          gap = std::max(gap, tile.geometric_error_m + other->geometric_error_m);
         }
         const double depth = static_cast<double>(depths[n][static_cast<std::size_t>(edge)]);
         if (gap == 0) {
@@ -92,9 +92,9 @@ TEST(Skirt, CoversWhatIsDrawnAcrossEveryEdgeAndNoMore) {
           ++none;
         } else {
           ASSERT_GE(depth, gap) << lod::to_string(tile.key);
-          const cull::Shell shell = tree.shell(tile.index, exaggeration, tile.error_m);
-          if (gap < 0.5 * shell.min_radius_m) {
-            ASSERT_LE(depth, gap * shell.max_radius_m / (shell.min_radius_m - gap) * (1 + 1e-6));
+          const cull::BoundingRegion region = tree.region(tile.index, exaggeration, tile.geometric_error_m);
+          if (gap < 0.5 * region.min_radius_m) {
+            ASSERT_LE(depth, gap * region.max_radius_m / (region.min_radius_m - gap) * (1 + 1e-6));
           }
           ++some;
         }
@@ -117,25 +117,25 @@ TEST(Skirt, TheFootOfAStraightEdgeReachesBelowTheGapEverywhere) {
     lod::skirt_depths(s, tree, depths);
     for (std::size_t n = 0; n < s.tiles.size(); ++n) {
       const SelectedTile& tile = s.tiles[n];
-      const cull::Shell shell = tree.shell(tile.index, exaggeration, 0.0);
+      const cull::BoundingRegion region = tree.region(tile.index, exaggeration, 0.0);
       const double depth = static_cast<double>(depths[n][1]);
       if (depth == 0.0) continue;
       // The least that the depth was made for.
       double gap = 0;
       for (int k = 0; k < 64; ++k) {
         const SelectedTile* other = drawn_at(s, across(tile.key, Edge::kEast, (k + 0.5) / 64));
-        if (other != nullptr && !exact(tree, tile, *other)) gap = std::max(gap, tile.error_m + other->error_m);
+        if (other != nullptr && !exact(tree, tile, *other)) gap = std::max(gap, tile.geometric_error_m + other->geometric_error_m);
       }
       // One straight piece of the eastern border, as long as the error allows it to sag.
-      const double v0 = shell.rect.v0;
-      const double v1 = v0 + (shell.rect.v1 - v0) * std::pow(0.5, random.integer(0, 5));
-      const double r0 = random.uniform(shell.min_radius_m, shell.max_radius_m);
-      const double r1 = random.uniform(shell.min_radius_m, shell.max_radius_m);
-      const glm::dvec3 d0 = mars::chart_direction(shell.rect.face, shell.rect.u1, v0);
-      const glm::dvec3 d1 = mars::chart_direction(shell.rect.face, shell.rect.u1, v1);
+      const double v0 = region.rect.v0;
+      const double v1 = v0 + (region.rect.v1 - v0) * std::pow(0.5, random.integer(0, 5));
+      const double r0 = random.uniform(region.min_radius_m, region.max_radius_m);
+      const double r1 = random.uniform(region.min_radius_m, region.max_radius_m);
+      const glm::dvec3 d0 = mars::chart_direction(region.rect.face, region.rect.u1, v0);
+      const glm::dvec3 d1 = mars::chart_direction(region.rect.face, region.rect.u1, v1);
       for (int k = 0; k <= 16; ++k) {
         const glm::dvec3 top = d0 * r0 + (d1 * r1 - d0 * r0) * (k / 16.0);
-        if (glm::length(top) < shell.min_radius_m - tile.error_m) continue;  // no such mesh
+        if (glm::length(top) < region.min_radius_m - tile.geometric_error_m) continue;  // no such mesh
         // The foot under it: on the line between the lowered ends, in the same direction.
         const glm::dvec3 normal = glm::cross(glm::normalize(top), glm::cross(d0, d1));
         const double a = glm::dot(normal, d0 * (r0 - depth));
@@ -156,7 +156,7 @@ TEST(Skirt, AlikeTilesNeedNone) {
   // A ball of which all is drawn at one level.
   const TileTree ball = fake::tree(fake::uniform(3));
   vpe::core::View view;
-  view.eye = mars::to_eye(mars::Pose{10, 20, 3e7, 0, -90, 0}, fake::kRadius_m);
+  view.camera = mars::to_camera(mars::Pose{10, 20, 3e7, 0, -90, 0}, fake::kRadius_m);
   lod::SelectOptions options;
   lod::SelectScratch scratch;
   Selection s;

@@ -102,9 +102,9 @@ TEST(Tree, RefusesGapsAndStraysByName) {
 }
 
 TEST(Tree, RefusesErrorsAndHeightsThatDoNotNest) {
-  EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).variants[0].terms.relief_m = 1e6; }),
+  EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).variants[0].terms.height_error_m = 1e6; }),
             "tile +y/2/1/3: error larger than its parent's");
-  EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).variants[0].terms.sag_m = 1e6; }),
+  EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).variants[0].terms.sagitta_m = 1e6; }),
             "tile +y/2/1/3: error larger than its parent's");
   EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).variants[0].terms.total_m = 0; }), "accepted");
   EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).variants[1].terms.total_m = 1; }),
@@ -117,9 +117,9 @@ TEST(Tree, RefusesErrorsAndHeightsThatDoNotNest) {
   EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).variants.clear(); }), "tile +y/2/1/3: no mesh");
   EXPECT_EQ(refusal([](auto& t) { at(t, kInner).variants.push_back(at(t, kInner).variants[0]); }),
             "tile +y/1/0/1: more than one mesh above children");
-  EXPECT_EQ(refusal([](auto& t) { at(t, kInner).variants[0].terms.relief_m = std::nan(""); }),
+  EXPECT_EQ(refusal([](auto& t) { at(t, kInner).variants[0].terms.height_error_m = std::nan(""); }),
             "tile +y/1/0/1: error not finite or negative");
-  EXPECT_EQ(refusal([](auto& t) { at(t, kInner).variants[0].terms.sag_m = -1; }),
+  EXPECT_EQ(refusal([](auto& t) { at(t, kInner).variants[0].terms.sagitta_m = -1; }),
             "tile +y/1/0/1: error not finite or negative");
   EXPECT_EQ(refusal([](auto& t) { at(t, kFinest).max_height_m = 1; }),
             "tile +y/2/1/3: heights beyond its parent's");
@@ -178,13 +178,13 @@ TEST(Tree, ShellsAndTheLowestRadiusHoldTheFacets) {
         for (int level = tile.key.level; level >= 0; --level) {
           const TileKey key = lod::ancestor(tile.key, level);
           const auto index = static_cast<TileTree::Index>(tree.find(key) - &tree[0]);
-          const cull::Shell shell = tree.shell(index, exaggeration, 0.0);
-          ASSERT_GE(radius, shell.min_radius_m);
+          const cull::BoundingRegion region = tree.region(index, exaggeration, 0.0);
+          ASSERT_GE(radius, region.min_radius_m);
           if (top <= tile.max_height_m) {
-            ASSERT_LE(radius, shell.max_radius_m + 1e-8);
+            ASSERT_LE(radius, region.max_radius_m + 1e-8);
           }
-          ASSERT_LE(shell.rect.u0, u);
-          ASSERT_GE(shell.rect.v1, v);
+          ASSERT_LE(region.rect.u0, u);
+          ASSERT_GE(region.rect.v1, v);
         }
       }
     }
@@ -192,9 +192,9 @@ TEST(Tree, ShellsAndTheLowestRadiusHoldTheFacets) {
   // Not lazily low: a uniform ball of cells 1/32 of a right angle sags by that chord, times at most 2.8.
   const TileTree ball(fake::tiles(fake::uniform(3)), kShape, 1.0e6);
   const double half_diagonal = mars::kPi / 2 / 32 * std::sqrt(0.5);
-  const double sag = 1.0e6 * (1 - std::cos(half_diagonal));
-  EXPECT_LE(ball.lowest_radius_m(1.0), 1.0e6 - sag);
-  EXPECT_GE(ball.lowest_radius_m(1.0), 1.0e6 - 2.8 * sag);
+  const double sagitta = 1.0e6 * (1 - std::cos(half_diagonal));
+  EXPECT_LE(ball.lowest_radius_m(1.0), 1.0e6 - sagitta);
+  EXPECT_GE(ball.lowest_radius_m(1.0), 1.0e6 - 2.8 * sagitta);
 }
 
 TEST(Tree, ABetterKnownLowestRadiusIsTakenAtExaggerationOne) {
@@ -207,8 +207,8 @@ TEST(Tree, ABetterKnownLowestRadiusIsTakenAtExaggerationOne) {
 TEST(Tree, GroundThroughTheCentreLeavesNoNegativeRadius) {
   const TileTree tree = fake::tree(fake::rough(1, 2));
   EXPECT_EQ(tree.lowest_radius_m(1e6), 0.0);
-  EXPECT_EQ(tree.shell(0, 1e6, 0.0).min_radius_m, 0.0);
-  EXPECT_EQ(tree.shell(0, 1.0, 1e9).min_radius_m, 0.0);
+  EXPECT_EQ(tree.region(0, 1e6, 0.0).min_radius_m, 0.0);
+  EXPECT_EQ(tree.region(0, 1.0, 1e9).min_radius_m, 0.0);
 }
 
 TEST(Tree, ATileCostsAboutAHundredBytes) {

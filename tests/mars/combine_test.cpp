@@ -169,12 +169,12 @@ TEST_F(Combine, OffsetAndTiltAreRecovered) {
   const Source base = raster("base", kBase, hills);
   const Source inset = raster("inset", kInset, [&](LonLat p) { return hills(p) + off(p); });
   CombineOptions options;
-  options.level = CombineOptions::Level::kFit;
+  options.level = CombineOptions::VerticalAlignment::kPlane;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   ASSERT_EQ(combined.findings.size(), 2U);
   EXPECT_FALSE(combined.findings[0].level);
   ASSERT_TRUE(combined.findings[1].level);
-  const mars::Level& level = *combined.findings[1].level;
+  const mars::VerticalAlignment& level = *combined.findings[1].level;
   EXPECT_NEAR(level.offset_m, off(level.centre), 0.01 * 30);
   EXPECT_NEAR(std::hypot(level.tilt_east, level.tilt_north), 0.001, 1e-5);
   EXPECT_NEAR(std::atan2(level.tilt_east, level.tilt_north), azimuth, 0.01);
@@ -209,7 +209,7 @@ TEST_F(Combine, BendsWhatLiesBelow) {
   };
   // Over the fade, 6 km, the step of about 10 m is a slope of up to 1 m a post.
   const double before = worst_step(mars::combine_elevation({base, inset}, options).source);
-  options.level = CombineOptions::Level::kBend;
+  options.level = CombineOptions::VerticalAlignment::kEdges;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   ASSERT_TRUE(combined.findings[1].bend);
   EXPECT_NEAR(combined.findings[1].bend->rms_m, 22, 5);
@@ -228,7 +228,7 @@ TEST_F(Combine, LevelStandsUpToBlunders) {
   const Source inset =
       raster("inset", kInset, [](LonLat p) { return hills(p) + 12 - (p.lat_deg < -0.3 ? 1000 : 0); });
   CombineOptions options;
-  options.level = CombineOptions::Level::kFit;
+  options.level = CombineOptions::VerticalAlignment::kPlane;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   ASSERT_TRUE(combined.findings[1].level);
   EXPECT_NEAR(combined.findings[1].level->offset_m, 12, 0.5);
@@ -240,7 +240,7 @@ TEST_F(Combine, RimsWithoutGroundBelowAreNotLevelled) {
   const Source base = raster("base", {10, 20, 20, 10, 200, 200}, hills);
   const Source inset = raster("inset", kInset, hills);
   CombineOptions options;
-  options.level = CombineOptions::Level::kFit;
+  options.level = CombineOptions::VerticalAlignment::kPlane;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   EXPECT_FALSE(combined.findings[1].level);
   ASSERT_EQ(combined.notes.size(), 1U);
@@ -260,8 +260,8 @@ TEST_F(Combine, BlundersAreFoundAndDropped) {
   });
   CombineOptions options;
   Combined combined = mars::combine_elevation({base, inset}, options);
-  ASSERT_TRUE(combined.findings[1].blunders);
-  const mars::BlunderReport& report = *combined.findings[1].blunders;
+  ASSERT_TRUE(combined.findings[1].outliers);
+  const mars::OutlierReport& report = *combined.findings[1].outliers;
   const double share = static_cast<double>(report.implausible) / static_cast<double>(report.posts);
   EXPECT_NEAR(share, 0.3 * 0.4 / 9.0, 2e-3);
   EXPECT_NEAR(report.worst_m, 2500, 60);
@@ -269,8 +269,8 @@ TEST_F(Combine, BlundersAreFoundAndDropped) {
   EXPECT_FALSE(combined.findings[1].masked);
   EXPECT_NEAR(height_at(*combined.source, {0.35, 0.2}), hills({0.35, 0.2}) - 1000, 1);
 
-  options.mask_blunders = true;
-  options.level = CombineOptions::Level::kFit;  // the mask judges levelled heights
+  options.reject_outliers = true;
+  options.level = CombineOptions::VerticalAlignment::kPlane;  // the mask judges levelled heights
   combined = mars::combine_elevation({base, inset}, options);
   EXPECT_TRUE(combined.findings[1].masked);
   double worst = 0;
@@ -290,8 +290,8 @@ TEST_F(Combine, SteepGroundIsNoBlunder) {
   const Source base = raster("base", kBase, cliff);
   const Source inset = raster("inset", kInset, cliff);
   const Combined combined = mars::combine_elevation({base, inset}, {});
-  ASSERT_TRUE(combined.findings[1].blunders);
-  EXPECT_EQ(combined.findings[1].blunders->implausible, 0);
+  ASSERT_TRUE(combined.findings[1].outliers);
+  EXPECT_EQ(combined.findings[1].outliers->implausible, 0);
 }
 
 TEST_F(Combine, FeatherInMetres) {

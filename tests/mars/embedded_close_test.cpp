@@ -99,7 +99,7 @@ TEST(EmbeddedClose, ValleysIntoCratersAreCutAndNotBuilt) {
   }
 }
 
-TEST(EmbeddedClose, GroundsDifferFromEyeLevel) {
+TEST(EmbeddedClose, GroundsDifferFromCameraLevel) {
   // Mean bend between neighbouring posts a quarter of a metre apart, and how lopsided it is: rocks stick out,
   // ripples have sharp crests, ice has neither.
   struct Look {

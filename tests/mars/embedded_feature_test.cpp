@@ -167,7 +167,7 @@ TEST(EmbeddedFeatures, VallesMarinerisIsAsLongAsPublished) {
 // from them. So the middles of contours are compared.
 struct Contour {
   const char* name;
-  LonLat look_from;
+  LonLat reevaluate_for_view;
   double radius_km, contour_m;
   bool above;
   LonLat mola;  // measured on MOLA, 8 posts a degree
@@ -181,7 +181,7 @@ constexpr Contour kContours[] = {
 
 TEST(EmbeddedFeatures, BasinsAndTheNorthernIceLieWhereMolaHasThem) {
   for (const Contour& c : kContours) {
-    const Area a = area(c.look_from, c.radius_km, c.contour_m, c.above, embedded_heights);
+    const Area a = area(c.reevaluate_for_view, c.radius_km, c.contour_m, c.above, embedded_heights);
     EXPECT_LT(off_deg(a.middle, c.mola), 0.2) << c.name << " " << a.middle.lon_deg << " " << a.middle.lat_deg;
   }
   const Area alba = area({250.40, 40.47}, 300, 6450, true, embedded_heights);
@@ -206,7 +206,7 @@ TEST(EmbeddedFeatures, TheMeasureItselfHoldsOnMola) {
     return out;
   };
   for (const Contour& c : kContours) {
-    const Area a = area(c.look_from, c.radius_km, c.contour_m, c.above, mola);
+    const Area a = area(c.reevaluate_for_view, c.radius_km, c.contour_m, c.above, mola);
     EXPECT_LT(off_deg(a.middle, c.mola), 0.1) << c.name;
   }
   EXPECT_NEAR(area({147.21, 25.02}, 350, 1500, true, mola).diameter_km, 401, 20);

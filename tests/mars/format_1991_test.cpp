@@ -128,7 +128,7 @@ TEST_P(MdimVersion, EveryPixelWhereTheEquationSays) {
   for (const auto& entry : fs::directory_iterator(folder.path()))
     bytes += static_cast<std::int64_t>(entry.file_size());
   EXPECT_EQ(source->infos().at(0).size_bytes, bytes);
-  // As a picture, east to the right.
+  // As an image, east to the right.
   const auto image = mars::open_image(path);
   for (const glm::dvec2 pixel : {glm::dvec2(0, 0), {283, 0}, {141, 160}, {20, 319}}) {
     glm::dvec3 direction;

@@ -232,16 +232,16 @@ void expect_values(const char* type, const char* order, const std::vector<T>& sp
     glm::dvec3 direction;
     raster.georeference().to_directions({&pixel, 1}, {&direction, 1});
     const double height_m = height_at(*source, mars::lon_lat(direction));
-    const bool hole = std::find(special.begin(), special.end(), stored[i]) != special.end();
-    ASSERT_EQ(std::isnan(height_m), hole) << type << " " << i << " " << +stored[i];
-    if (!hole) {
+    const bool nodata = std::find(special.begin(), special.end(), stored[i]) != special.end();
+    ASSERT_EQ(std::isnan(height_m), nodata) << type << " " << i << " " << +stored[i];
+    if (!nodata) {
       EXPECT_NEAR(height_m, -250 + 0.5 * static_cast<double>(stored[i]), 2e-3);
     }
     if (sizeof(T) > 1) {
       vpe::base::Rgb colour;
       std::uint8_t alpha = 0;
       image->sample({&direction, 1}, 1000, {&colour, 1}, {&alpha, 1});
-      EXPECT_EQ(alpha > 128, !hole) << type << " " << i << " " << +stored[i];
+      EXPECT_EQ(alpha > 128, !nodata) << type << " " << i << " " << +stored[i];
     }
   }
 }

@@ -25,7 +25,7 @@ using source_files::Proj;
 constexpr double kRadian = mars::kRadiansPerDegree;
 
 // Without symmetry that could hide a mirrored planet; second derivatives along great circles below kBend.
-constexpr double kBend = 20000;
+constexpr double kEdges = 20000;
 double relief(const glm::dvec3& d) {
   return 3000 * d.z + 2000 * d.x - 1000 * d.y + 1500 * d.x * d.y + 800 * d.z * d.y + 2500 * d.x * d.x * d.z;
 }
@@ -176,7 +176,7 @@ class SamePlanet : public ::testing::TestWithParam<Way> {
       const double h = std::max(glm::distance(at_pixel(pixel.x, pixel.y), at_pixel(pixel.x + 1, pixel.y + 1)),
                                 glm::distance(at_pixel(pixel.x + 1, pixel.y), at_pixel(pixel.x, pixel.y + 1)));
       const glm::dvec3 d = mars::direction(place);
-      EXPECT_NEAR(source_files::height_at(*source, place), relief(d), kBend * h * h / 4 + 1e-4) << region.name;
+      EXPECT_NEAR(source_files::height_at(*source, place), relief(d), kEdges * h * h / 4 + 1e-4) << region.name;
     }
   }
 

@@ -26,7 +26,7 @@ using source_files::Raster;
 constexpr int kSide = 600;  // more than two tiles
 
 int value_of(int column, int row) { return 5 * column - 3 * row; }
-bool is_hole(int column, int row) { return (column / 37 + row / 23) % 3 == 0; }
+bool is_nodata(int column, int row) { return (column / 37 + row / 23) % 3 == 0; }
 
 std::unique_ptr<GDALDataset> open_to_change(const std::string& path) {
   return std::unique_ptr<GDALDataset>(GDALDataset::FromHandle(GDALOpen(path.c_str(), GA_Update)));
@@ -47,7 +47,7 @@ std::string masked_cog(const test_support::TempDir& folder) {
     std::vector<unsigned char> line(kSide);
     for (int row = 0; row < kSide; ++row) {
       for (int column = 0; column < kSide; ++column) {
-        line[static_cast<std::size_t>(column)] = is_hole(column, row) ? 0 : 255;
+        line[static_cast<std::size_t>(column)] = is_nodata(column, row) ? 0 : 255;
       }
       EXPECT_EQ(dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, row, kSide, 1, line.data(),
                                                                    kSide, 1, GDT_Byte, 0, 0, nullptr),
@@ -74,24 +74,24 @@ TEST(Tiff, CogWithOverviewsAndAMaskBand) {
   }
   const auto source = mars::open_elevation(path);
   const auto image = mars::open_image(path);
-  int holes = 0;
+  int nodata = 0;
   for (int row = 3; row < kSide; row += 7) {
     for (int column = 1; column < kSide; column += 11) {
       const mars::LonLat place{20 + (column + 0.5) / 10, 40 - (row + 0.5) / 10};
       const double height_m = height_at(*source, place);
-      ASSERT_EQ(std::isnan(height_m), is_hole(column, row)) << column << " " << row;
-      if (!is_hole(column, row)) {
+      ASSERT_EQ(std::isnan(height_m), is_nodata(column, row)) << column << " " << row;
+      if (!is_nodata(column, row)) {
         EXPECT_NEAR(height_m, value_of(column, row), 1e-4);
       }
       const glm::dvec3 direction = mars::direction(place);
       vpe::base::Rgb colour;
       std::uint8_t alpha = 0;
       image->sample({&direction, 1}, 100, {&colour, 1}, {&alpha, 1});
-      EXPECT_EQ(alpha > 128, !is_hole(column, row));
-      if (is_hole(column, row)) ++holes;
+      EXPECT_EQ(alpha > 128, !is_nodata(column, row));
+      if (is_nodata(column, row)) ++nodata;
     }
   }
-  EXPECT_GT(holes, 1000);
+  EXPECT_GT(nodata, 1000);
 }
 
 TEST(Tiff, AlphaBandOfElevation) {
@@ -174,7 +174,7 @@ TEST(RealFiles, EveryOneOpensOrSaysWhatToDo) {
     }
   }
   EXPECT_GE(opened, 20);
-  // Pictures that have no georeference, of which two come with a VRT that has it.
+  // Images that have no georeference, of which two come with a VRT that has it.
   for (const std::string& name : refused) EXPECT_EQ(std::filesystem::path(name).extension(), ".jpg") << name;
 }
 

@@ -35,7 +35,7 @@ void apply(ExactAxes& a, double yaw_deg, double pitch_deg, double roll_deg) {
   turn(a.up, a.right, roll_deg);
 }
 
-ExactAxes exact_axes(const Pose& pose, const HeadLook& look) {
+ExactAxes exact_axes(const Pose& pose, const HeadAngles& look) {
   const exact::Vec up = exact::direction({pose.lon_deg, pose.lat_deg});
   const exact::Vec east{-exact::sin_deg(pose.lon_deg), exact::cos_deg(pose.lon_deg), 0};
   ExactAxes axes{east, up, exact::cross(up, east)};
@@ -73,25 +73,25 @@ void expect_orthonormal(const Axes& axes, Bound& bound) {
   EXPECT_LE(exact::length(exact::cross(a[0], a[1]) + a[2]), 2 * kAxesError);
 }
 
-TEST(Pose, EyeIsWithinItsBounds) {
+TEST(Pose, CameraIsWithinItsBounds) {
   test_support::Random random(1);
   Bound position("to_eye: position");
   Bound orthonormal("to_eye: orthonormal");
   Bound direction_bound("to_eye: axes");
   for (int n = 0; n < 40000; ++n) {
     const Pose pose = random_pose(random);
-    const HeadLook look{hostile_angle(random), hostile_angle(random), hostile_angle(random)};
+    const HeadAngles look{hostile_angle(random), hostile_angle(random), hostile_angle(random)};
     const double radius_m = random.log_uniform(1e3, 1e8);
-    const EyePose eye = to_eye(pose, look, radius_m);
+    const CameraPose camera = to_camera(pose, look, radius_m);
     const ExactAxes want = exact_axes(pose, look);
-    expect_orthonormal(eye.axes, orthonormal);
+    expect_orthonormal(camera.axes, orthonormal);
     for (const auto& [got, twin] :
-         {std::pair{eye.axes.right, want.right}, {eye.axes.up, want.up}, {eye.axes.forward, want.forward}}) {
+         {std::pair{camera.axes.right, want.right}, {camera.axes.up, want.up}, {camera.axes.forward, want.forward}}) {
       direction_bound.add(exact::angle(vec(got), twin), kAxesError);
     }
     const Real distance = static_cast<Real>(radius_m) + pose.alt_m;
     const exact::Vec place = exact::direction({pose.lon_deg, pose.lat_deg}) * distance;
-    position.add(exact::length(vec(eye.eye_m) - place), kEyePositionError * std::abs(distance));
+    position.add(exact::length(vec(camera.position_m) - place), kCameraPositionError * std::abs(distance));
   }
 }
 
@@ -99,9 +99,9 @@ TEST(Pose, NoLookIsTheLookAhead) {
   test_support::Random random(2);
   for (int n = 0; n < 1000; ++n) {
     const Pose pose = random_pose(random);
-    const EyePose a = to_eye(pose, kMarsRadius_m);
-    const EyePose b = to_eye(pose, HeadLook{}, kMarsRadius_m);
-    EXPECT_EQ(a.eye_m, b.eye_m);
+    const CameraPose a = to_camera(pose, kMarsRadius_m);
+    const CameraPose b = to_camera(pose, HeadAngles{}, kMarsRadius_m);
+    EXPECT_EQ(a.camera_m, b.camera_m);
     EXPECT_EQ(a.axes.forward, b.axes.forward);
     EXPECT_EQ(a.axes.up, b.axes.up);
   }
@@ -110,7 +110,7 @@ TEST(Pose, NoLookIsTheLookAhead) {
 // The signs, by hand: on the equator at longitude 0, east is +Y, north +Z, up +X.
 TEST(Pose, YawIsClockwisePitchUpRollRightWingDown) {
   const auto axes = [](double yaw, double pitch, double roll) {
-    return to_eye({0, 0, 0, yaw, pitch, roll}, 1.0).axes;
+    return to_camera({0, 0, 0, yaw, pitch, roll}, 1.0).axes;
   };
   EXPECT_EQ(axes(0, 0, 0).forward, glm::dvec3(0, 0, 1));
   EXPECT_EQ(axes(0, 0, 0).right, glm::dvec3(0, 1, 0));
@@ -120,8 +120,8 @@ TEST(Pose, YawIsClockwisePitchUpRollRightWingDown) {
   EXPECT_EQ(axes(0, 0, 90).right, glm::dvec3(-1, 0, 0));  // the right wing points down
   EXPECT_EQ(axes(0, 0, 90).up, glm::dvec3(0, 1, 0));
   // A head turned right on a platform flying north looks east; on one in a right bank of 90, looks down.
-  EXPECT_EQ(to_eye({0, 0, 0, 0, 0, 0}, HeadLook{90, 0, 0}, 1.0).axes.forward, glm::dvec3(0, 1, 0));
-  EXPECT_EQ(to_eye({0, 0, 0, 0, 0, 90}, HeadLook{90, 0, 0}, 1.0).axes.forward, glm::dvec3(-1, 0, 0));
+  EXPECT_EQ(to_camera({0, 0, 0, 0, 0, 0}, HeadAngles{90, 0, 0}, 1.0).axes.forward, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(to_camera({0, 0, 0, 0, 0, 90}, HeadAngles{90, 0, 0}, 1.0).axes.forward, glm::dvec3(-1, 0, 0));
 }
 
 TEST(Pose, AxesAgreeWithGlmQuaternions) {
@@ -145,25 +145,25 @@ TEST(Pose, AxesAgreeWithGlmQuaternions) {
   }
 }
 
-TEST(Pose, ToPoseInvertsToEyeWithinItsBounds) {
+TEST(Pose, ToPoseInvertsToCameraWithinItsBounds) {
   test_support::Random random(4);
   Bound axes_bound("to_pose: axes");
   Bound position("to_pose: position");
   for (int n = 0; n < 40000; ++n) {
     const Pose pose = random_pose(random);
     const double radius_m = random.log_uniform(1e5, 1e8);
-    const EyePose eye = to_eye(pose, radius_m);
-    const Pose back = to_pose(eye, radius_m);
+    const CameraPose camera = to_camera(pose, radius_m);
+    const Pose back = to_pose(camera, radius_m);
     EXPECT_GT(back.yaw_deg, -180.0);
     EXPECT_LE(back.yaw_deg, 180.0);
     EXPECT_GT(back.roll_deg, -180.0);
     EXPECT_LE(back.roll_deg, 180.0);
     EXPECT_LE(std::abs(back.pitch_deg), 90.0);
-    const EyePose again = to_eye(back, radius_m);
-    axes_bound.add(exact::angle(vec(again.axes.right), vec(eye.axes.right)), kToPoseAxesError_rad);
-    axes_bound.add(exact::angle(vec(again.axes.up), vec(eye.axes.up)), kToPoseAxesError_rad);
-    axes_bound.add(exact::angle(vec(again.axes.forward), vec(eye.axes.forward)), kToPoseAxesError_rad);
-    position.add(exact::length(vec(again.eye_m) - vec(eye.eye_m)),
+    const CameraPose again = to_camera(back, radius_m);
+    axes_bound.add(exact::angle(vec(again.axes.right), vec(camera.axes.right)), kToPoseAxesError_rad);
+    axes_bound.add(exact::angle(vec(again.axes.up), vec(camera.axes.up)), kToPoseAxesError_rad);
+    axes_bound.add(exact::angle(vec(again.axes.forward), vec(camera.axes.forward)), kToPoseAxesError_rad);
+    position.add(exact::length(vec(again.camera_m) - vec(camera.position_m)),
                  kToPosePositionError * (radius_m + pose.alt_m));
   }
 }
@@ -173,7 +173,7 @@ TEST(Pose, AnglesOfOrdinaryPosesComeBack) {
   for (int n = 0; n < 10000; ++n) {
     const Pose pose{random.uniform(-179, 179), random.uniform(-89, 89), random.uniform(-5000, 1e6),
                     random.uniform(-179, 179), random.uniform(-89, 89), random.uniform(-179, 179)};
-    const Pose back = to_pose(to_eye(pose, kMarsRadius_m), kMarsRadius_m);
+    const Pose back = to_pose(to_camera(pose, kMarsRadius_m), kMarsRadius_m);
     ASSERT_NEAR(back.lon_deg, pose.lon_deg, 1e-11);
     ASSERT_NEAR(back.lat_deg, pose.lat_deg, 1e-12);
     ASSERT_NEAR(back.alt_m, pose.alt_m, 1e-8);
@@ -187,7 +187,7 @@ TEST(Pose, StraightUpAndDownHaveNoRoll) {
   for (const double pitch : {90.0, -90.0}) {
     for (const double yaw : {0.0, 33.0, -120.0, 180.0}) {
       for (const double roll : {0.0, 20.0, -170.0}) {
-        const Pose back = to_pose(to_eye({10, 20, 500, yaw, pitch, roll}, kMarsRadius_m), kMarsRadius_m);
+        const Pose back = to_pose(to_camera({10, 20, 500, yaw, pitch, roll}, kMarsRadius_m), kMarsRadius_m);
         EXPECT_NEAR(back.pitch_deg, pitch, 1e-12);
         EXPECT_NEAR(back.roll_deg, 0, 1e-12);
       }
@@ -197,9 +197,9 @@ TEST(Pose, StraightUpAndDownHaveNoRoll) {
 
 TEST(Pose, NoNumberIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(to_eye({nan, 0, 0, 0, 0, 0}, 1).eye_m.x));
-  EXPECT_TRUE(std::isnan(to_eye({0, 0, 0, nan, 0, 0}, 1).axes.forward.x));
-  EXPECT_TRUE(std::isnan(to_eye({0, 0, nan, 0, 0, 0}, 1).eye_m.x));
+  EXPECT_TRUE(std::isnan(to_camera({nan, 0, 0, 0, 0, 0}, 1).camera_m.x));
+  EXPECT_TRUE(std::isnan(to_camera({0, 0, 0, nan, 0, 0}, 1).axes.forward.x));
+  EXPECT_TRUE(std::isnan(to_camera({0, 0, nan, 0, 0, 0}, 1).camera_m.x));
 }
 
 }  // namespace

@@ -219,23 +219,23 @@ TEST(GdalElevation, TurnedAndSouthUpRasters) {
 
 TEST(GdalElevation, NoDataNaNAndInfinityLeaveTheValidNeighbours) {
   const test_support::TempDir folder;
-  for (const double hole : {-9999.0, kNaN, std::numeric_limits<double>::infinity(), -3.4028226e38}) {
+  for (const double nodata : {-9999.0, kNaN, std::numeric_limits<double>::infinity(), -3.4028226e38}) {
     Raster raster;
     raster.width = 4;
     raster.height = 4;
     raster.geotransform = box(0, 4, 4, 0, 4, 4);
     raster.no_data = -9999;
     raster.value = [&](int, int column, int row) {
-      return column == 1 && row == 1 ? hole : 10.0 * column + row;
+      return column == 1 && row == 1 ? nodata : 10.0 * column + row;
     };
     const auto source = mars::open_elevation(source_files::write(folder / "h.tif", raster));
-    EXPECT_TRUE(std::isnan(height_at(*source, {1.5, 2.5}))) << hole;
-    EXPECT_TRUE(std::isnan(height_at(*source, {1.9, 2.4}))) << hole;
-    EXPECT_NEAR(height_at(*source, {0.5, 3.5}), 0, 1e-9) << hole;
+    EXPECT_TRUE(std::isnan(height_at(*source, {1.5, 2.5}))) << nodata;
+    EXPECT_TRUE(std::isnan(height_at(*source, {1.9, 2.4}))) << nodata;
+    EXPECT_NEAR(height_at(*source, {0.5, 3.5}), 0, 1e-9) << nodata;
     // A quarter of a pixel from (2, 1) towards the hole: the hole's quarter is left out.
-    EXPECT_NEAR(height_at(*source, {2.25, 2.5}), 21, 1e-9) << hole;
+    EXPECT_NEAR(height_at(*source, {2.25, 2.5}), 21, 1e-9) << nodata;
     // Amid (0, 0), (1, 0), (0, 1) and the hole, nearest to the first.
-    EXPECT_NEAR(height_at(*source, {0.9, 3.1}), (0.36 * 0 + 0.24 * 10 + 0.24 * 1) / 0.84, 1e-9) << hole;
+    EXPECT_NEAR(height_at(*source, {0.9, 3.1}), (0.36 * 0 + 0.24 * 10 + 0.24 * 1) / 0.84, 1e-9) << nodata;
     std::vector<glm::dvec3> places{mars::direction({1.5, 2.5}), mars::direction({0.5, 3.5}),
                                    mars::direction({90, 0})};
     std::vector<int> origin(3);

@@ -17,7 +17,7 @@ using source_files::Raster;
 
 // Smooth, without symmetry that could hide a swapped axis or a mirrored planet. Its second derivative along any
 // great circle is at most kBend.
-constexpr double kBend = 20000;
+constexpr double kEdges = 20000;
 double relief(const glm::dvec3& d) {
   return 3000 * d.z + 2000 * d.x - 1000 * d.y + 1500 * d.x * d.y + 800 * d.z * d.y + 2500 * d.x * d.x * d.z;
 }
@@ -105,7 +105,7 @@ TEST_P(Projection, SamplesAgreeWithTheFunction) {
     // Half a pixel of misplacement would be thirty times this on the steep parts.
     const double pixel_rad = std::max(dx, -dy) / 3396190;
     directions.push_back(d);
-    tolerance_m.push_back(kBend * pixel_rad * pixel_rad / 8 * 4);
+    tolerance_m.push_back(kEdges * pixel_rad * pixel_rad / 8 * 4);
   }
   std::vector<double> heights_m(directions.size());
   source->sample(directions, 1, heights_m);

@@ -32,16 +32,16 @@ struct Ball {
   }
 
   // Distance along a unit ray; infinity when it misses.
-  double cast(const glm::dvec3& eye, const glm::dvec3& ray) const {
+  double cast(const glm::dvec3& camera, const glm::dvec3& ray) const {
     const double outer = kRadius_m + std::max(0.0, cone_m * exaggeration) + 1;
-    const double along = -glm::dot(eye, ray);
-    const double off2 = glm::dot(eye, eye) - along * along;
+    const double along = -glm::dot(camera, ray);
+    const double off2 = glm::dot(camera, camera) - along * along;
     if (off2 > outer * outer) return std::numeric_limits<double>::infinity();
     const double half = std::sqrt(outer * outer - off2);
     const glm::dvec3 top_direction = mars::direction(top);
     double t = std::max(0.0, along - half);
     while (t <= along + half) {
-      const glm::dvec3 p = eye + ray * t;
+      const glm::dvec3 p = camera + ray * t;
       const double above = glm::length(p) - kRadius_m - exaggeration * height_m(p, top_direction);
       if (above < 1e-4) return t;
       t += 0.75 * above;  // slopes stay under 40 degrees
@@ -55,7 +55,7 @@ struct Ball {
     for (int y = 0; y < part.height; ++y) {
       for (int x = 0; x < part.width; ++x) {
         out.push_back(static_cast<float>(
-            cast(view.eye.eye_m, vpe::core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5))));
+            cast(view.camera.position_m, vpe::core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5))));
       }
     }
     return out;
@@ -64,7 +64,7 @@ struct Ball {
 
 inline View view_at(const mars::Pose& pose, int width = 320, int height = 180, double fov_deg = 60) {
   View view;
-  view.eye = mars::to_eye(pose, kRadius_m);
+  view.camera = mars::to_camera(pose, kRadius_m);
   view.width = width;
   view.height = height;
   view.fov_deg = fov_deg;

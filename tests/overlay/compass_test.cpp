@@ -30,7 +30,7 @@ std::map<double, std::string> labels(const std::vector<CompassMark>& marks) {
   return out;
 }
 
-TEST(Compass, StepsFitThePicture) {
+TEST(Compass, StepsFitTheImage) {
   for (double px_per_deg = 0.2; px_per_deg < 1e5; px_per_deg *= 1.3) {
     const CompassSteps steps = compass_steps(px_per_deg, 40);
     EXPECT_TRUE(steps.figure_deg == 90 || steps.figure_deg * px_per_deg >= 80) << px_per_deg;
@@ -136,7 +136,7 @@ TEST(Compass, RoundViewsAndThoseWithoutOrder) {
   EXPECT_GE(compass_row(view, frame, 50).size(), 10U);
   ASSERT_FALSE(compass_horizon(view, frame, 50).empty());
   EXPECT_NEAR(compass_horizon(view, frame, 50).front().at.y, 150, 1e-9);
-  view.eye = mars::to_eye({50, 30, 1000, 75, 3, 0}, kRadius_m);
+  view.camera = mars::to_camera({50, 30, 1000, 75, 3, 0}, kRadius_m);
   EXPECT_TRUE(compass_row(view, frame, 50).empty());
   // Straight up and down.
   for (const double pitch_deg : {90.0, -89.0})

@@ -12,20 +12,20 @@ namespace {
 using vpe::overlay::Canvas;
 using vpe::overlay::draw_contours;
 using vpe::overlay::draw_graticule;
-using vpe::overlay::Ground;
+using vpe::overlay::VisibleTerrain;
 using vpe::overlay::Isoline;
 using vpe::overlay::IsolineOptions;
 using vpe::overlay::isolines;
-using vpe::overlay::Sheet;
+using vpe::overlay::LabelLayout;
 
 // The lines alone: labels are what draw_*() returns.
 template <class Draw>
 Layer lines_of(const Sight& sight, const Draw& draw, std::vector<vpe::overlay::LineLabel>* labels = nullptr) {
   const Scene scene = sight.scene();
-  const Ground ground(scene);
+  const VisibleTerrain ground(scene);
   Canvas canvas(sight.view.width, sight.view.height);
-  Sheet sheet(canvas);
-  const auto all = draw(sheet, ground);
+  LabelLayout layout(canvas);
+  const auto all = draw(layout, ground);
   if (labels != nullptr) *labels = all;
   return canvas.layer();
 }
@@ -76,12 +76,12 @@ TEST(Graticule, PixelsLieWithinAPixelOfTheLines) {
        {mars::Pose{-70, -13, 9e5, 30, -70, 10}, mars::Pose{179.5, 40, 4e5, 0, -90, 0}}) {
     const Sight sight({}, view_at(pose, 200, 120));
     const Layer layer =
-        lines_of(sight, [](Sheet& sheet, const Ground& ground) { return draw_graticule(sheet, ground, 2); });
+        lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_graticule(layout, ground, 2); });
     const auto place = [&](double x, double y) {
       const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, x, y);
-      const double range_m = sight.ball.cast(sight.view.eye.eye_m, ray);
+      const double range_m = sight.ball.cast(sight.view.camera.position_m, ray);
       if (std::isinf(range_m)) return mars::LonLat{std::nan(""), std::nan("")};
-      return mars::lon_lat(sight.view.eye.eye_m + ray * range_m);
+      return mars::lon_lat(sight.view.camera.position_m + ray * range_m);
     };
     using Value = std::function<double(double, double)>;
     const std::vector<Value> values{
@@ -97,10 +97,10 @@ TEST(Contours, PixelsLieWithinAPixelOfTheirElevation) {
     const Ball ball{{20, 10}, 20000, 0.08, exaggeration};
     const Sight sight(ball, view_at({20, 9, 6e5, 0, -80, 0}, 200, 150));
     const Layer layer =
-        lines_of(sight, [](Sheet& sheet, const Ground& ground) { return draw_contours(sheet, ground, 5000); });
+        lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_contours(layout, ground, 5000); });
     const auto elevation = [&](double x, double y) {
       const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, x, y);
-      const glm::dvec3 p = sight.view.eye.eye_m + ray * ball.cast(sight.view.eye.eye_m, ray);
+      const glm::dvec3 p = sight.view.camera.position_m + ray * ball.cast(sight.view.camera.position_m, ray);
       const double h = (glm::length(p) - kRadius_m) / exaggeration;
       // Neither the flat ground nor the kinks at top and foot have contours that can be checked so.
       return h > 300 && h < 19700 ? h : std::nan("");
@@ -115,12 +115,12 @@ TEST(Contours, EveryFifthIsHeavierAndLabelledWithItsElevation) {
   const Sight sight(ball, view_at({20, 10, 5e5, 0, -90, 0}, 640, 480));
   std::vector<vpe::overlay::LineLabel> labels;
   const Layer layer = lines_of(
-      sight, [](Sheet& sheet, const Ground& ground) { return draw_contours(sheet, ground, 1000); }, &labels);
+      sight, [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_contours(layout, ground, 1000); }, &labels);
   std::set<std::string> texts;
   for (const auto& label : labels) {
     texts.insert(label.text);
     const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, label.at.x, label.at.y);
-    const glm::dvec3 p = sight.view.eye.eye_m + ray * ball.cast(sight.view.eye.eye_m, ray);
+    const glm::dvec3 p = sight.view.camera.position_m + ray * ball.cast(sight.view.camera.position_m, ray);
     EXPECT_NEAR(glm::length(p) - kRadius_m, std::stod(label.text), 60);
     EXPECT_LE(std::abs(label.angle_rad), 0.5 * mars::kPi + 1e-9);  // never upside down
   }
@@ -130,7 +130,7 @@ TEST(Contours, EveryFifthIsHeavierAndLabelledWithItsElevation) {
   const int y = layer.height / 2;
   for (int x = 0; x < layer.width / 2; ++x) {
     const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, x + 0.5, y + 0.5);
-    const glm::dvec3 p = sight.view.eye.eye_m + ray * ball.cast(sight.view.eye.eye_m, ray);
+    const glm::dvec3 p = sight.view.camera.position_m + ray * ball.cast(sight.view.camera.position_m, ray);
     const double h = glm::length(p) - kRadius_m;
     if (h > 500) weight[static_cast<int>(std::lround(h / 1000))] += at(layer, x, y).a;
   }
@@ -139,7 +139,7 @@ TEST(Contours, EveryFifthIsHeavierAndLabelledWithItsElevation) {
 }
 
 // Multiples of the step, each with the number of its lines.
-std::map<std::int64_t, int> census(const Ground& ground, const std::vector<double>& values, double step,
+std::map<std::int64_t, int> census(const VisibleTerrain& ground, const std::vector<double>& values, double step,
                                    double period) {
   IsolineOptions options;
   options.step = step;
@@ -152,13 +152,13 @@ std::map<std::int64_t, int> census(const Ground& ground, const std::vector<doubl
 TEST(Isolines, RunUnbrokenOverTheAntimeridian) {
   const Sight sight({}, view_at({180, 0, 6e5, 0, -90, 0}));
   const Scene scene = sight.scene();
-  const Ground ground(scene);
+  const VisibleTerrain ground(scene);
   const auto count = census(ground, ground.longitudes_deg(), 2, 360);
   ASSERT_TRUE(count.contains(90));
   EXPECT_FALSE(count.contains(-90));  // the same line
   EXPECT_TRUE(count.contains(89));
   EXPECT_TRUE(count.contains(-89));
-  // Farther out the picture's border cuts them.
+  // Farther out the image's border cuts them.
   for (const auto& [multiple, lines] : count) EXPECT_TRUE(lines == 1 || std::abs(multiple) < 86) << multiple;
   // A step that does not divide the turn: multiples count from 0 on both sides, none beyond 180.
   for (const auto& [multiple, lines] : census(ground, ground.longitudes_deg(), 7, 360)) {
@@ -170,7 +170,7 @@ TEST(Isolines, CloseRoundThePoles) {
   for (const double lat : {90.0, -90.0}) {
     const Sight sight({}, view_at({0, lat, 4e5, 0, -90, 0}, 240, 240));
     const Scene scene = sight.scene();
-    const Ground ground(scene);
+    const VisibleTerrain ground(scene);
     IsolineOptions options;
     options.step = 1;
     int closed = 0;
@@ -180,7 +180,7 @@ TEST(Isolines, CloseRoundThePoles) {
       if (!line.closed) continue;
       for (const glm::dvec2& p : line.points) {
         const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, p.x, p.y);
-        const glm::dvec3 ground_m = sight.view.eye.eye_m + ray * sight.ball.cast(sight.view.eye.eye_m, ray);
+        const glm::dvec3 ground_m = sight.view.camera.position_m + ray * sight.ball.cast(sight.view.camera.position_m, ray);
         // The grid's pixels are 0.03 degrees; straight between them.
         EXPECT_NEAR(mars::lon_lat(ground_m).lat_deg, static_cast<double>(line.multiple), 2e-3);
       }
@@ -192,18 +192,18 @@ TEST(Isolines, CloseRoundThePoles) {
   }
 }
 
-TEST(Ground, PointsAreThoseOfTheViewsRays) {
+TEST(VisibleTerrain, PointsAreThoseOfTheViewsRays) {
   View view = view_at({20, 9, 3e4, 10, -60, 33}, 300, 200);
   view.principal_offset_px = {17, -9};
   view.part = {40, 30, 200, 120};
   const Sight sight({}, view);
   const Scene scene = sight.scene();
-  const Ground ground(scene);
+  const VisibleTerrain ground(scene);
   for (const glm::ivec2 p : {glm::ivec2{0, 0}, {199, 0}, {0, 119}, {120, 60}}) {
     const glm::dvec3 ray = vpe::core::pixel_ray(view, 40 + p.x + 0.5, 30 + p.y + 0.5);
-    const glm::dvec3 wanted = view.eye.eye_m + ray * static_cast<double>(sight.range_m[ground.index(p.x, p.y)]);
+    const glm::dvec3 wanted = view.camera.position_m + ray * static_cast<double>(sight.range_m[ground.index(p.x, p.y)]);
     EXPECT_LT(glm::length(ground.point(p.x, p.y) - wanted), 1e-6);
-    EXPECT_LT(glm::length(ground.to_picture(wanted).value() - glm::dvec2(p) - 0.5), 1e-6);
+    EXPECT_LT(glm::length(ground.to_image(wanted).value() - glm::dvec2(p) - 0.5), 1e-6);
   }
 }
 
@@ -212,7 +212,7 @@ TEST(Isolines, EndAtEdgesWhereNearGroundHidesFarGround) {
   const Ball ball{{0, 1.5}, 25000, 0.01, 1};
   const Sight sight(ball, view_at({0, 0, 40000, 0, -25, 0}));
   const Scene scene = sight.scene();
-  const Ground ground(scene);
+  const VisibleTerrain ground(scene);
   int edges = 0;
   int whole = 0;
   for (int y = 0; y + 1 < ground.height(); ++y) {
@@ -245,7 +245,7 @@ TEST(Isolines, EndAtEdgesWhereNearGroundHidesFarGround) {
 TEST(Isolines, APlainIsWholeUpToItsHorizon) {
   const Sight sight({}, view_at({0, 0, 2000, 40, 0, 0}));
   const Scene scene = sight.scene();
-  const Ground ground(scene);
+  const VisibleTerrain ground(scene);
   int cells = 0;
   int whole = 0;
   for (int y = 0; y + 1 < ground.height(); ++y) {
@@ -264,8 +264,8 @@ TEST(Isolines, APlainIsWholeUpToItsHorizon) {
 TEST(Isolines, FlatGroundHasNoContours) {
   // All of it is at 0 m, a multiple of every step, but for rounding.
   const Sight sight({}, view_at({0, 0, 3e5, 0, -60, 0}));
-  EXPECT_EQ(painted(lines_of(sight, [](Sheet& s, const Ground& g) { return draw_contours(s, g, 0); })), 0U);
-  EXPECT_EQ(painted(lines_of(sight, [](Sheet& s, const Ground& g) { return draw_contours(s, g, 10); })), 0U);
+  EXPECT_EQ(painted(lines_of(sight, [](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, 0); })), 0U);
+  EXPECT_EQ(painted(lines_of(sight, [](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, 10); })), 0U);
 }
 
 TEST(Contours, FadeWhereTheDrawnGroundIsTooFarOff) {
@@ -274,10 +274,10 @@ TEST(Contours, FadeWhereTheDrawnGroundIsTooFarOff) {
   const auto with = [&](double shift_px, double step_m) {
     Scene scene = sight.scene();
     scene.shift_px = shift_px;
-    const Ground ground(scene);
+    const VisibleTerrain ground(scene);
     Canvas canvas(sight.view.width, sight.view.height);
-    Sheet sheet(canvas);
-    draw_contours(sheet, ground, step_m);
+    LabelLayout layout(canvas);
+    draw_contours(layout, ground, step_m);
     return painted(canvas.layer());
   };
   // A pixel is about 4500 m there.
@@ -291,7 +291,7 @@ TEST(Contours, FadeWhereTheDrawnGroundIsTooFarOff) {
   EXPECT_GT(with(0.5, 0), 100U);
 }
 
-TEST(Graticule, AutomaticStepsPutSomeLinesIntoAnyPicture) {
+TEST(Graticule, AutomaticStepsPutSomeLinesIntoAnyImage) {
   for (const mars::Pose& pose : {mars::Pose{10, 20, 2e7, 0, -90, 0}, mars::Pose{10, 20, 1e6, 0, -90, 0},
                                  mars::Pose{10, 20, 1e4, 0, -90, 0}, mars::Pose{10, 20, 300, 0, -90, 0},
                                  mars::Pose{10, 20, 5e4, 70, -20, 0}, mars::Pose{180, 0, 1e5, 0, -50, 0},
@@ -299,7 +299,7 @@ TEST(Graticule, AutomaticStepsPutSomeLinesIntoAnyPicture) {
     const Sight sight({}, view_at(pose));
     std::vector<vpe::overlay::LineLabel> labels;
     lines_of(
-        sight, [](Sheet& s, const Ground& g) { return draw_graticule(s, g, 0); }, &labels);
+        sight, [](LabelLayout& s, const VisibleTerrain& g) { return draw_graticule(s, g, 0); }, &labels);
     std::set<std::string> meridians;
     std::set<std::string> parallels;
     for (const auto& label : labels) {
@@ -315,10 +315,10 @@ TEST(Graticule, AutomaticStepsPutSomeLinesIntoAnyPicture) {
 TEST(Graticule, AbsurdStepsDrawNothingAndEndSoon) {
   const Sight sight({}, view_at({10, 20, 1e6, 0, -60, 0}));
   for (const double step : {1e-300, 1e-12, 1e-6}) {
-    EXPECT_EQ(painted(lines_of(sight, [&](Sheet& s, const Ground& g) { return draw_graticule(s, g, step); })),
+    EXPECT_EQ(painted(lines_of(sight, [&](LabelLayout& s, const VisibleTerrain& g) { return draw_graticule(s, g, step); })),
               0U);
     const Sight cone(Ball{{10, 22}, 9000, 0.05, 1}, sight.view);
-    EXPECT_EQ(painted(lines_of(cone, [&](Sheet& s, const Ground& g) { return draw_contours(s, g, step); })),
+    EXPECT_EQ(painted(lines_of(cone, [&](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, step); })),
               0U);
   }
 }

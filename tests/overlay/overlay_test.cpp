@@ -62,9 +62,9 @@ TEST(Overlay, NothingSetCostsNothing) {
   scene.view.width = scene.view.height = 0;
   const Layer layer = vpe::overlay::draw({}, scene);
   EXPECT_EQ(layer.pixels.size(), 0U);
-  std::vector<vpe::base::Rgb> picture(7, vpe::base::Rgb{1, 2, 3});
-  composite(layer, picture);
-  EXPECT_EQ(picture, (std::vector<vpe::base::Rgb>(7, vpe::base::Rgb{1, 2, 3})));
+  std::vector<vpe::base::Rgb> image(7, vpe::base::Rgb{1, 2, 3});
+  composite(layer, image);
+  EXPECT_EQ(image, (std::vector<vpe::base::Rgb>(7, vpe::base::Rgb{1, 2, 3})));
 }
 
 TEST(Overlay, OnlyWhatLooksAtTheGroundNeedsRanges) {
@@ -95,28 +95,28 @@ TEST(Overlay, EachDrawsSomethingTheSameEveryTime) {
 
 TEST(Overlay, LayersAreStraightAndCompositeRoundsOnce) {
   const Layer layer = vpe::overlay::draw(all_of_them(), hill_scene());
-  std::vector<vpe::base::Rgb> picture;
+  std::vector<vpe::base::Rgb> image;
   test_support::Random random(5);
   const auto byte = [&] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
-  for (std::size_t n = 0; n < layer.pixels.size(); ++n) picture.push_back({byte(), byte(), byte()});
-  std::vector<vpe::base::Rgb> composed = picture;
+  for (std::size_t n = 0; n < layer.pixels.size(); ++n) image.push_back({byte(), byte(), byte()});
+  std::vector<vpe::base::Rgb> composed = image;
   composite(layer, composed);
-  for (std::size_t n = 0; n < picture.size(); ++n) {
+  for (std::size_t n = 0; n < image.size(); ++n) {
     const Rgba& o = layer.pixels[n];
     if (o.a == 0) {
       ASSERT_EQ(o, (Rgba{0, 0, 0, 0}));
-      ASSERT_EQ(composed[n], picture[n]);
+      ASSERT_EQ(composed[n], image[n]);
     }
     const double share = o.a / 255.0;
-    ASSERT_NEAR(composed[n].r, share * o.r + (1 - share) * picture[n].r, 0.5001);
-    ASSERT_NEAR(composed[n].g, share * o.g + (1 - share) * picture[n].g, 0.5001);
-    ASSERT_NEAR(composed[n].b, share * o.b + (1 - share) * picture[n].b, 0.5001);
+    ASSERT_NEAR(composed[n].r, share * o.r + (1 - share) * image[n].r, 0.5001);
+    ASSERT_NEAR(composed[n].g, share * o.g + (1 - share) * image[n].g, 0.5001);
+    ASSERT_NEAR(composed[n].b, share * o.b + (1 - share) * image[n].b, 0.5001);
   }
-  picture.pop_back();
-  EXPECT_THROW(composite(layer, picture), std::invalid_argument);
+  image.pop_back();
+  EXPECT_THROW(composite(layer, image), std::invalid_argument);
 }
 
-TEST(Overlay, DrawsOverPicturesOfAnySizeViewAndProjection) {
+TEST(Overlay, DrawsOverImagesOfAnySizeViewAndProjection) {
   Overlays all = all_of_them();
   for (const glm::ivec2 size : {glm::ivec2{1, 1}, {2, 1}, {1, 3}, {16, 9}, {9, 160}, {400, 12}, {200, 300}}) {
     for (const double pitch : {-90.0, 0.0, 90.0}) {
@@ -167,7 +167,7 @@ TEST(Overlay, HostileTextIsShownOrLeftOut) {
   EXPECT_EQ(vpe::overlay::printable_utf8("\xed\xa0\x80"), "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(vpe::overlay::printable_utf8("\xf0\x9f\x9a\x80\xf4\x90\x80\x80").substr(0, 7),
             "\xf0\x9f\x9a\x80\xef\xbf\xbd");
-  // Too long for the picture: cut within its width.
+  // Too long for the image: cut within its width.
   overlays.title = std::string(500, 'W');
   const Layer layer = vpe::overlay::draw(overlays, scene);
   for (int y = 0; y < layer.height; ++y) {
@@ -285,7 +285,7 @@ TEST(NorthArrow, TurnsWithTheView) {
   EXPECT_LT(east({20, 6, 1e5, 180, -90, 0}).x, -0.3);
   EXPECT_GT(east({20, 6, 1e5, 270, -90, 0}).y, 0.3);
   EXPECT_GT(east({20, 6, 1e5, 0, -40, 0}).x, 0.3);
-  // Roll to the right turns the picture to the left.
+  // Roll to the right turns the image to the left.
   EXPECT_LT(east({20, 6, 1e5, 0, -60, 90}).y, -0.3);
   EXPECT_EQ(painted(Sight({}, view_at({0, 90, 1e5, 0, -90, 0}, 33, 33)).draw(overlays)), 0U);
 }
@@ -301,7 +301,7 @@ bool is_named(const Sight& sight, const Place& place) {
 }
 
 TEST(Names, AreHiddenBehindGroundBeyondTheHorizonAndOutside) {
-  // The eye looks north over a cone of 8 km at 10 N.
+  // The camera looks north over a cone of 8 km at 10 N.
   const Ball ball{{20, 10}, 8000, 0.01, 1};
   const Sight sight(ball, view_at({20, 9, 5000, 0, -2, 0}, 640, 360));
   EXPECT_TRUE(is_named(sight, {"in front", 20, 9.3, 0}));

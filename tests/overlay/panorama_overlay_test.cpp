@@ -12,16 +12,16 @@ namespace {
 
 using vpe::base::Rgb;
 using vpe::core::CompassStrip;
-using vpe::overlay::Decals;
-using vpe::overlay::lay_out_wide;
-using vpe::overlay::WideName;
-using vpe::overlay::WideScene;
+using vpe::overlay::SpriteLayer;
+using vpe::overlay::lay_out_panorama;
+using vpe::overlay::PanoramaName;
+using vpe::overlay::PanoramaScene;
 
 constexpr vpe::base::Rgb kGround{40, 60, 80};
 
 // A cylinder.
-WideScene scene_of(std::int64_t width, std::int64_t height, double left_deg = 0, double span_deg = 360) {
-  WideScene scene;
+PanoramaScene scene_of(std::int64_t width, std::int64_t height, double left_deg = 0, double span_deg = 360) {
+  PanoramaScene scene;
   scene.width_px = width;
   scene.height_px = height;
   scene.turn_px = std::llround(static_cast<double>(width) * 360 / span_deg);
@@ -40,7 +40,7 @@ WideScene scene_of(std::int64_t width, std::int64_t height, double left_deg = 0,
   return scene;
 }
 
-struct Picture {
+struct Image {
   std::int64_t width;
   std::int64_t height;
   std::vector<vpe::base::Rgb> pixels;
@@ -51,28 +51,28 @@ struct Picture {
   bool is_painted(std::int64_t x, std::int64_t y) const { return at(x, y) != kGround; }
 };
 
-Picture whole(const Decals& decals, const WideScene& scene) {
-  Picture picture{scene.width_px, scene.height_px, {}};
-  picture.pixels.assign(static_cast<std::size_t>(scene.width_px * scene.height_px), kGround);
-  decals.lay({0, 0, scene.width_px, scene.height_px, picture.pixels});
-  return picture;
+Image whole(const SpriteLayer& sprites, const PanoramaScene& scene) {
+  Image image{scene.width_px, scene.height_px, {}};
+  image.pixels.assign(static_cast<std::size_t>(scene.width_px * scene.height_px), kGround);
+  sprites.lay({0, 0, scene.width_px, scene.height_px, image.pixels});
+  return image;
 }
 
 // In parts of some size, each by itself.
-Picture in_parts(const Decals& decals, const WideScene& scene, std::int64_t width, std::int64_t height) {
-  Picture picture = whole(Decals(scene.width_px, scene.height_px, 0), scene);
+Image in_parts(const SpriteLayer& sprites, const PanoramaScene& scene, std::int64_t width, std::int64_t height) {
+  Image image = whole(SpriteLayer(scene.width_px, scene.height_px, 0), scene);
   for (std::int64_t y = 0; y < scene.height_px; y += height) {
     for (std::int64_t x = 0; x < scene.width_px; x += width) {
       const std::int64_t w = std::min(width, scene.width_px - x);
       const std::int64_t h = std::min(height, scene.height_px - y);
       std::vector<vpe::base::Rgb> part(static_cast<std::size_t>(w * h), kGround);
-      decals.lay({x, y, w, h, part});
+      sprites.lay({x, y, w, h, part});
       for (std::int64_t row = 0; row < h; ++row) {
-        std::copy_n(part.begin() + row * w, w, picture.pixels.begin() + (y + row) * scene.width_px + x);
+        std::copy_n(part.begin() + row * w, w, image.pixels.begin() + (y + row) * scene.width_px + x);
       }
     }
   }
-  return picture;
+  return image;
 }
 
 vpe::core::Overlays all_of_them() {
@@ -85,8 +85,8 @@ vpe::core::Overlays all_of_them() {
   return overlays;
 }
 
-WideScene crowded(std::int64_t width, std::int64_t height, double left_deg = 0, double span_deg = 360) {
-  WideScene scene = scene_of(width, height, left_deg, span_deg);
+PanoramaScene crowded(std::int64_t width, std::int64_t height, double left_deg = 0, double span_deg = 360) {
+  PanoramaScene scene = scene_of(width, height, left_deg, span_deg);
   for (int n = 0; n < 60; ++n)
     scene.names.push_back({"Place " + std::to_string(n), n * 37.7, 3.0 * std::sin(n), 1000.0 * (n + 1), 0});
   scene.appearance.mode = vpe::core::Mode::kColoured;
@@ -94,43 +94,43 @@ WideScene crowded(std::int64_t width, std::int64_t height, double left_deg = 0, 
 }
 
 TEST(Wide, NothingSetPaintsNothing) {
-  const WideScene scene = scene_of(900, 300);
-  EXPECT_TRUE(lay_out_wide({}, scene).empty());
+  const PanoramaScene scene = scene_of(900, 300);
+  EXPECT_TRUE(lay_out_panorama({}, scene).empty());
 }
 
 TEST(Wide, PartsAreThoseOfTheWhole) {
   for (const double span_deg : {360.0, 70.0}) {
-    const WideScene scene = crowded(1400, 420, 200, span_deg);
+    const PanoramaScene scene = crowded(1400, 420, 200, span_deg);
     for (const CompassStrip where : {CompassStrip::kBottom, CompassStrip::kTop, CompassStrip::kHorizon}) {
       vpe::core::Overlays overlays = all_of_them();
       overlays.compass = where;
-      const Decals decals = lay_out_wide(overlays, scene);
-      const Picture picture = whole(decals, scene);
-      EXPECT_EQ(in_parts(decals, scene, 256, 420).pixels, picture.pixels);
-      EXPECT_EQ(in_parts(decals, scene, 61, 420).pixels, picture.pixels);
-      EXPECT_EQ(in_parts(decals, scene, 333, 101).pixels, picture.pixels);
+      const SpriteLayer sprites = lay_out_panorama(overlays, scene);
+      const Image image = whole(sprites, scene);
+      EXPECT_EQ(in_parts(sprites, scene, 256, 420).pixels, image.pixels);
+      EXPECT_EQ(in_parts(sprites, scene, 61, 420).pixels, image.pixels);
+      EXPECT_EQ(in_parts(sprites, scene, 333, 101).pixels, image.pixels);
       // And everything has its place again.
-      EXPECT_EQ(whole(lay_out_wide(overlays, scene), scene).pixels, picture.pixels);
+      EXPECT_EQ(whole(lay_out_panorama(overlays, scene), scene).pixels, image.pixels);
     }
   }
 }
 
 TEST(Wide, TicksAreInTheColumnsOfTheirAzimuths) {
   for (const CompassStrip where : {CompassStrip::kBottom, CompassStrip::kTop, CompassStrip::kHorizon}) {
-    WideScene scene = scene_of(3600, 500, 100);
+    PanoramaScene scene = scene_of(3600, 500, 100);
     vpe::core::Overlays overlays;
     overlays.compass = where;
-    const Picture picture = whole(lay_out_wide(overlays, scene), scene);
+    const Image image = whole(lay_out_panorama(overlays, scene), scene);
     // White columns at the line: every 2 or 1 degrees of 10 pixels.
-    const double unit = vpe::overlay::wide_unit(scene);
+    const double unit = vpe::overlay::panorama_unit(scene);
     const auto height = static_cast<std::int64_t>(std::ceil(2 * std::max(14 * unit, 9.8)));
     const std::int64_t row = where == CompassStrip::kBottom ? 500 - height + 2
                              : where == CompassStrip::kTop  ? height - 3
                                                             : 250 + 2;
     std::set<std::int64_t> found;
     for (std::int64_t x = 1; x + 1 < 3600; ++x) {
-      const int here = picture.at(x, row).r + picture.at(x + 1, row).r;
-      if (here > 230 && picture.at(x, row).r >= picture.at(x - 1, row).r) found.insert(x + 1);
+      const int here = image.at(x, row).r + image.at(x + 1, row).r;
+      if (here > 230 && image.at(x, row).r >= image.at(x - 1, row).r) found.insert(x + 1);
     }
     for (int azimuth_deg = 110; azimuth_deg < 460; azimuth_deg += 10) {
       const std::int64_t x = (azimuth_deg - 100) * 10;
@@ -149,12 +149,12 @@ TEST(Wide, AtTheSeamBothEdgesShowTheirHalf) {
   overlays.compass = CompassStrip::kHorizon;
   overlays.names = "places";
   const auto draw = [&](double left_deg) {
-    WideScene scene = scene_of(1440, 400, left_deg);
+    PanoramaScene scene = scene_of(1440, 400, left_deg);
     scene.names = {{"On the seam", 0, 5, 3000, 0}, {"Elsewhere", 180, 5, 9000, 0}};
-    return whole(lay_out_wide(overlays, scene), scene);
+    return whole(lay_out_panorama(overlays, scene), scene);
   };
-  const Picture seam = draw(0);
-  const Picture middle = draw(180);
+  const Image seam = draw(0);
+  const Image middle = draw(180);
   for (std::int64_t y = 0; y < 400; ++y) {
     for (std::int64_t x = 0; x < 1440; ++x)
       ASSERT_EQ(seam.at(x, y), middle.at((x + 720) % 1440, y)) << x << " " << y;
@@ -166,9 +166,9 @@ TEST(Wide, AtTheSeamBothEdgesShowTheirHalf) {
 TEST(Wide, NamesStandAtTheirPlacesAndNoTextOverAnother) {
   vpe::core::Overlays overlays;
   overlays.names = "places";
-  WideScene scene = scene_of(1440, 400, 0, 120);
+  PanoramaScene scene = scene_of(1440, 400, 0, 120);
   scene.names = {{"Here", 30, 4, 3000, 0}};
-  const Picture one = whole(lay_out_wide(overlays, scene), scene);
+  const Image one = whole(lay_out_panorama(overlays, scene), scene);
   // 12 px a degree: (360, 200 - 48).
   EXPECT_EQ(one.at(360, 152), (vpe::base::Rgb{255, 255, 255}));
   // A leader up to it, and nothing to the sides.
@@ -177,7 +177,7 @@ TEST(Wide, NamesStandAtTheirPlacesAndNoTextOverAnother) {
   EXPECT_FALSE(one.is_painted(340, 152));
   // A leader may not cross a text: the second name goes below, and changes nothing above.
   scene.names.push_back({"There", 31, 4, 3000, 0});
-  const Picture two = whole(lay_out_wide(overlays, scene), scene);
+  const Image two = whole(lay_out_panorama(overlays, scene), scene);
   std::int64_t below = 0;
   for (std::int64_t x = 0; x < 1440; ++x) {
     for (std::int64_t y = 0; y < 145; ++y) ASSERT_EQ(two.at(x, y), one.at(x, y)) << x << " " << y;
@@ -187,33 +187,33 @@ TEST(Wide, NamesStandAtTheirPlacesAndNoTextOverAnother) {
   // Forty at one place: the dots would lie on one another.
   scene.names.clear();
   for (int n = 0; n < 40; ++n) scene.names.push_back({"Place", 60, -3 + 0.01 * n, 3000, 0});
-  const auto crowded_once = whole(lay_out_wide(overlays, scene), scene);
+  const auto crowded_once = whole(lay_out_panorama(overlays, scene), scene);
   scene.names.resize(1);
-  const auto alone = whole(lay_out_wide(overlays, scene), scene);
+  const auto alone = whole(lay_out_panorama(overlays, scene), scene);
   EXPECT_EQ(crowded_once.pixels, alone.pixels);
   // At the end of an arc the text moves inwards: all of it is there.
-  const auto painted = [](const Picture& p) {
+  const auto painted = [](const Image& p) {
     return std::count_if(p.pixels.begin(), p.pixels.end(), [](const vpe::base::Rgb& c) { return c != kGround; });
   };
   scene.names = {{"A long name, at the very end", 119.5, 0, 3000, 0}};
-  const auto at_end = painted(whole(lay_out_wide(overlays, scene), scene));
+  const auto at_end = painted(whole(lay_out_panorama(overlays, scene), scene));
   scene.names = {{"A long name, at the very end", 60, 0, 3000, 0}};
   EXPECT_NEAR(static_cast<double>(at_end),
-              static_cast<double>(painted(whole(lay_out_wide(overlays, scene), scene))),
+              static_cast<double>(painted(whole(lay_out_panorama(overlays, scene), scene))),
               0.03 * static_cast<double>(at_end));
 }
 
 TEST(Wide, SmallPlacesAndThoseOutsideAreLeftOut) {
   vpe::core::Overlays overlays;
   overlays.names = "places";
-  WideScene scene = scene_of(720, 720, 0, 60);
+  PanoramaScene scene = scene_of(720, 720, 0, 60);
   scene.names = {{"Small", 30, 4, 1e6, 100}, {"Outside", 90, 0, 100, 0}, {"Above", 10, 89, 100, 0}};
-  EXPECT_TRUE(lay_out_wide(overlays, scene).empty());
+  EXPECT_TRUE(lay_out_panorama(overlays, scene).empty());
   scene.names[0].diameter_m = 1e5;
-  EXPECT_FALSE(lay_out_wide(overlays, scene).empty());
+  EXPECT_FALSE(lay_out_panorama(overlays, scene).empty());
 }
 
-TEST(Wide, LettersHaveASensibleSizeInPicturesOfAnySize) {
+TEST(Wide, LettersHaveASensibleSizeInImagesOfAnySize) {
   for (const auto& [width, height, span_deg] :
        std::vector<std::tuple<std::int64_t, std::int64_t, double>>{{100, 20, 360},
                                                                    {2048, 652, 360},
@@ -221,29 +221,29 @@ TEST(Wide, LettersHaveASensibleSizeInPicturesOfAnySize) {
                                                                    {60000, 17000, 360},
                                                                    {1000000, 60000, 360},
                                                                    {2000, 700, 5}}) {
-    const double unit = vpe::overlay::wide_unit(scene_of(width, height, 0, span_deg));
+    const double unit = vpe::overlay::panorama_unit(scene_of(width, height, 0, span_deg));
     EXPECT_GT(unit, 0);
     EXPECT_LE(unit, 6);
     EXPECT_LE(unit, static_cast<double>(height) / 720);
   }
-  EXPECT_EQ(vpe::overlay::wide_unit(scene_of(60000, 17000)), 6);
+  EXPECT_EQ(vpe::overlay::panorama_unit(scene_of(60000, 17000)), 6);
 }
 
 // Only what falls into a part is held: its pixels are made before, and small.
-TEST(Wide, HugePicturesAreLaidOutAndDrawnInParts) {
-  const WideScene scene = crowded(1'000'000, 60'000);
-  const Decals decals = lay_out_wide(all_of_them(), scene);
+TEST(Wide, HugeImagesAreLaidOutAndDrawnInParts) {
+  const PanoramaScene scene = crowded(1'000'000, 60'000);
+  const SpriteLayer sprites = lay_out_panorama(all_of_them(), scene);
   std::vector<vpe::base::Rgb> part(std::size_t{64} * 60'000, kGround);
-  decals.lay({0, 0, 64, 60'000, part});
+  sprites.lay({0, 0, 64, 60'000, part});
   EXPECT_NE(part[std::size_t{64} * 59'900 + 1], kGround);  // the band
-  EXPECT_THROW(decals.lay({0, 0, 65, 60'000, part}), std::invalid_argument);
+  EXPECT_THROW(sprites.lay({0, 0, 65, 60'000, part}), std::invalid_argument);
 }
 
-TEST(Wide, TinyPicturesAreSurvived) {
+TEST(Wide, TinyImagesAreSurvived) {
   for (const std::int64_t side : {1, 2, 9, 30}) {
-    const WideScene scene = crowded(2 * side, side);
-    const Picture picture = whole(lay_out_wide(all_of_them(), scene), scene);
-    EXPECT_EQ(picture.pixels.size(), static_cast<std::size_t>(2 * side * side));
+    const PanoramaScene scene = crowded(2 * side, side);
+    const Image image = whole(lay_out_panorama(all_of_them(), scene), scene);
+    EXPECT_EQ(image.pixels.size(), static_cast<std::size_t>(2 * side * side));
   }
 }
 

@@ -159,9 +159,9 @@ TEST(Builder, MissingPlacesAreKnown) {
   const FakeElevation source([](const glm::dvec3& d) { return d.z > 0.5 ? std::nan("") : 1000.0; });
   const auto planet = build_fake(dir / "p.vpe", source, 200000);
   const paging::Surface surface(planet, 1 << 26);
-  EXPECT_TRUE(surface.at({0, 0, 1}).missing);
-  EXPECT_FALSE(surface.at({0, 0, -1}).missing);
-  EXPECT_NEAR(surface.at({0, 0, 1}).height_m, 1000.0, 0.1);  // filled, so that pictures have no pit
+  EXPECT_TRUE(surface.at({0, 0, 1}).nodata);
+  EXPECT_FALSE(surface.at({0, 0, -1}).nodata);
+  EXPECT_NEAR(surface.at({0, 0, 1}).height_m, 1000.0, 0.1);  // filled, so that images have no pit
 
   // Of every level, inner tiles too: as the source has it at each post.
   std::set<int> levels;
@@ -174,17 +174,17 @@ TEST(Builder, MissingPlacesAreKnown) {
     for (std::size_t j = 0; j < side; ++j) {
       for (std::size_t i = 0; i < side; ++i) {
         const glm::dvec3 p = mars::cube_point(key.face, lines.u[i], lines.v[j]);
-        const bool missing = !tile.missing.empty() && tile.missing[j * side + i];
-        EXPECT_EQ(missing, p.z / glm::length(p) > 0.5) << lod::to_string(key) << " " << i << " " << j;
-        any = any || missing;
+        const bool nodata = !tile.nodata.empty() && tile.nodata[j * side + i];
+        EXPECT_EQ(nodata, p.z / glm::length(p) > 0.5) << lod::to_string(key) << " " << i << " " << j;
+        any = any || nodata;
       }
     }
     if (any) levels.insert(key.level);
-    EXPECT_EQ(any, !tile.missing.empty());
+    EXPECT_EQ(any, !tile.nodata.empty());
     if (info->has_children) {
       for (int c = 0; c < 4; ++c) any = self(self, lod::child(key, c)) || any;
     }
-    EXPECT_EQ(planet->has_missing(key), any) << lod::to_string(key);
+    EXPECT_EQ(planet->has_nodata(key), any) << lod::to_string(key);
     return any;
   };
   for (int f = 0; f < mars::kFaces; ++f) check(check, {static_cast<mars::Face>(f), 0, 0, 0});

@@ -26,7 +26,7 @@ const DrawnMesh& MeshStore::mesh(const lod::SelectedTile& tile, double exaggerat
     mesh = packed.mesh;
     for (const std::int32_t q : packed.height_q) heights.push_back(q * planet_->meta().quantum_m);
   }
-  out.walls = lod::make_walls(tile.key, mesh, heights, exaggeration, planet_->radius_m());
+  out.occluders = lod::make_occluder_profile(tile.key, mesh, heights, exaggeration, planet_->radius_m());
   const lod::GridLines lines = lod::grid_lines(tile.key, mesh.intervals);
   for (std::size_t n = 0; n < heights.size(); ++n) {
     out.vertices.push_back(
@@ -46,8 +46,8 @@ const DrawnMesh& MeshStore::mesh(const lod::SelectedTile& tile, double exaggerat
   return out;
 }
 
-DrawnGround::DrawnGround(MeshStore& store, const lod::Selection& selection, const glm::dvec3& eye_m)
-    : eye_m_(eye_m), up_(glm::normalize(eye_m)) {
+DrawnGround::DrawnGround(MeshStore& store, const lod::Selection& selection, const glm::dvec3& camera_m)
+    : camera_m_(camera_m), up_(glm::normalize(camera_m)) {
   for (const lod::SelectedTile& tile : selection.tiles) {
     const mars::ChartRect r = lod::chart_rect(tile.key);
     tiles_.push_back({r,
@@ -57,7 +57,7 @@ DrawnGround::DrawnGround(MeshStore& store, const lod::Selection& selection, cons
   }
 }
 
-std::optional<bool> DrawnGround::eye_is_above() const {
+std::optional<bool> DrawnGround::camera_is_above() const {
   for (const Tile& tile : tiles_) {
     if (glm::dot(mars::face_axes(tile.rect.face).out, up_) <= 0.0) continue;
     const mars::ChartPoint p = mars::chart_on(tile.rect.face, up_);
@@ -73,18 +73,18 @@ std::optional<bool> DrawnGround::eye_is_above() const {
       const double s = glm::dot(-a, along) / whole;
       const double r = glm::dot(up_, glm::cross(-a, ab)) / whole;
       if (s < -1e-9 || r < -1e-9 || s + r > 1.0 + 1e-9) continue;
-      return glm::length(a + s * ab + r * ac) < glm::length(eye_m_);
+      return glm::length(a + s * ab + r * ac) < glm::length(camera_m_);
     }
   }
   return std::nullopt;
 }
 
 bool DrawnGround::blocked(const glm::dvec3& point) const {
-  const glm::dvec3 to = point - eye_m_;
+  const glm::dvec3 to = point - camera_m_;
   glm::dvec3 side = glm::normalize(glm::cross(up_, to));
   side = glm::normalize(side - glm::dot(side, up_) * up_);
   const glm::dvec3 ahead = glm::cross(side, up_);
-  const double reach = glm::length(eye_m_);
+  const double reach = glm::length(camera_m_);
   const double slope = glm::dot(to, up_) / glm::dot(to, ahead);
   const double angle = glm::dot(point, ahead) / glm::dot(point, up_);  // its tangent
   for (const Tile& tile : tiles_) {

@@ -18,7 +18,7 @@ struct DrawnMesh {
   std::vector<glm::dvec3> vertices;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // each once
   std::vector<std::uint16_t> triangles;
-  lod::TileWalls walls;
+  lod::OccluderProfile occluders;
 };
 
 // Meshes by tile, variant and exaggeration, kept once made.
@@ -36,15 +36,15 @@ class MeshStore {
 
 class DrawnGround {
  public:
-  DrawnGround(MeshStore& store, const lod::Selection& selection, const glm::dvec3& eye_m);
+  DrawnGround(MeshStore& store, const lod::Selection& selection, const glm::dvec3& camera_m);
 
   std::size_t size() const { return tiles_.size(); }
   const DrawnMesh& mesh(std::size_t tile) const { return *tiles_[tile].mesh; }
 
-  // Nothing where no tile is drawn under the eye.
-  std::optional<bool> eye_is_above() const;
+  // Nothing where no tile is drawn under the camera.
+  std::optional<bool> camera_is_above() const;
 
-  // Whether the ray from the eye to a point passes below a drawn edge that is nearer. The drawn ground has one
+  // Whether the ray from the camera to a point passes below a drawn edge that is nearer. The drawn ground has one
   // radius for each direction, and along the ray's own vertical plane it is straight between the edges it
   // crosses.
   bool blocked(const glm::dvec3& point) const;
@@ -56,7 +56,7 @@ class DrawnGround {
     const DrawnMesh* mesh;
   };
   std::vector<Tile> tiles_;
-  glm::dvec3 eye_m_;
+  glm::dvec3 camera_m_;
   glm::dvec3 up_;
 };
 

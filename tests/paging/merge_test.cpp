@@ -149,7 +149,7 @@ TEST_F(Merge, TheSummaryCountsEverything) {
   std::int64_t leaves = 0;
   std::int64_t images = 0;
   std::int64_t bytes = 0;
-  std::int64_t holes = 0;
+  std::int64_t nodata_posts = 0;
   std::int64_t posts = 0;
   double worst = 0;
   for (const paging::LevelSummary& level : meta.levels) {
@@ -157,7 +157,7 @@ TEST_F(Merge, TheSummaryCountsEverything) {
     leaves += level.leaf_tiles;
     images += level.image_tiles;
     bytes += level.bytes;
-    holes += level.holes;
+    nodata_posts += level.nodata_posts;
     posts += level.resampling.posts;
     worst = std::max(worst, level.resampling.max_m);
   }
@@ -168,14 +168,14 @@ TEST_F(Merge, TheSummaryCountsEverything) {
   EXPECT_EQ(worst, meta.resampling.max_m);
   EXPECT_GT(bytes, 0);
   EXPECT_LT(bytes, static_cast<std::int64_t>(std::filesystem::file_size(planet->path())));
-  std::int64_t missing = 0;
+  std::int64_t nodata = 0;
   for (const lod::TileInfo& tile : planet->tree().tiles()) {
     if (tile.has_children) continue;
     const paging::TileHeights heights = planet->heights(tile.key);
-    missing += std::count(heights.missing.begin(), heights.missing.end(), true);
+    nodata += std::count(heights.nodata.begin(), heights.nodata.end(), true);
   }
-  EXPECT_EQ(holes, missing);
-  EXPECT_GT(holes, 0);
+  EXPECT_EQ(nodata_posts, nodata);
+  EXPECT_GT(nodata_posts, 0);
 }
 
 TEST_F(Merge, TheEstimateCountsWhatIsBuilt) {

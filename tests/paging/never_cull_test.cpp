@@ -41,12 +41,12 @@ Ground& ground() {
   return made;
 }
 
-core::View look(Random& random, const glm::dvec3& eye_m, double pitch) {
+core::View look(Random& random, const glm::dvec3& camera_m, double pitch) {
   core::View view;
-  const glm::dvec3 up = glm::normalize(eye_m);
+  const glm::dvec3 up = glm::normalize(camera_m);
   const glm::dvec3 east = mars::any_perpendicular(up);
-  view.eye.eye_m = eye_m;
-  view.eye.axes = mars::oriented_axes({east, glm::cross(up, east), up}, random.uniform(-180, 180), pitch,
+  view.camera.position_m = camera_m;
+  view.camera.axes = mars::oriented_axes({east, glm::cross(up, east), up}, random.uniform(-180, 180), pitch,
                                       random.uniform(-30, 30));
   view.width = 640;
   view.height = 400;
@@ -56,7 +56,7 @@ core::View look(Random& random, const glm::dvec3& eye_m, double pitch) {
 }
 
 // Near one of the places with detail, anywhere, or over a pole; from half a metre above ground to ten radii.
-glm::dvec3 hostile_eye(Random& random) {
+glm::dvec3 hostile_camera(Random& random) {
   glm::dvec3 d = random.direction();
   const double near = random.log_uniform(1e-5, 0.05);
   switch (random.integer(0, 7)) {
@@ -101,24 +101,24 @@ struct Occlusion {
 };
 
 // unknown: walls of every so many tiles are not at hand, as while they are loaded; 0 = all are.
-Occlusion occlude(const lod::Selection& selection, const glm::dvec3& eye_m, bool above, double margin_rad,
+Occlusion occlude(const lod::Selection& selection, const glm::dvec3& camera_m, bool above, double margin_rad,
                   lod::OcclusionPass& pass, std::size_t unknown = 0) {
   std::vector<lod::OccludingTile> tiles;
   for (const lod::SelectedTile& t : selection.tiles) {
-    tiles.push_back({t.key, ground().tree().shell(t.index, selection.exaggeration, t.error_m),
-                     &ground().store().mesh(t, selection.exaggeration).walls});
-    if (unknown > 0 && tiles.size() % unknown == 0) tiles.back().walls = nullptr;
+    tiles.push_back({t.key, ground().tree().region(t.index, selection.exaggeration, t.geometric_error_m),
+                     &ground().store().mesh(t, selection.exaggeration).occluders});
+    if (unknown > 0 && tiles.size() % unknown == 0) tiles.back().occluders = nullptr;
   }
   Occlusion out;
   const auto start = std::chrono::steady_clock::now();
-  lod::occlude(tiles, eye_m, above, margin_rad, ground().radius_m(), pass, out.hidden);
+  lod::occlude(tiles, camera_m, above, margin_rad, ground().radius_m(), pass, out.hidden);
   out.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return out;
 }
 
-// A point of a mesh: most often a vertex, and of a few the one that rises highest in the eye's view.
-glm::dvec3 hostile_point(Random& random, const DrawnMesh& mesh, const glm::dvec3& eye_m) {
-  const glm::dvec3 up = glm::normalize(eye_m);
+// A point of a mesh: most often a vertex, and of a few the one that rises highest in the camera's view.
+glm::dvec3 hostile_point(Random& random, const DrawnMesh& mesh, const glm::dvec3& camera_m) {
+  const glm::dvec3 up = glm::normalize(camera_m);
   const auto vertex = [&] {
     return mesh
         .vertices[static_cast<std::size_t>(random.integer(0, static_cast<int>(mesh.vertices.size()) - 1))];
@@ -132,10 +132,10 @@ glm::dvec3 hostile_point(Random& random, const DrawnMesh& mesh, const glm::dvec3
            (1 - a - b) * mesh.vertices[mesh.triangles[t + 2]];
   }
   glm::dvec3 best = vertex();
-  double highest = glm::dot(glm::normalize(best - eye_m), up);
+  double highest = glm::dot(glm::normalize(best - camera_m), up);
   for (int n = 0; n < 30; ++n) {
     const glm::dvec3 other = vertex();
-    const double rise = glm::dot(glm::normalize(other - eye_m), up);
+    const double rise = glm::dot(glm::normalize(other - camera_m), up);
     if (rise > highest) best = other, highest = rise;
   }
   return best;
@@ -156,11 +156,11 @@ struct Tally {
       points = 0, rays = 0, hits = 0, limb = 0;
 };
 
-// Of what S shows in a pixel, on the picture's border or where the horizon is, nothing may be missing from the
+// Of what S shows in a pixel, on the image's border or where the horizon is, nothing may be missing from the
 // tiles.
 void check_frustum_and_horizon(Random& random, const core::View& view, const lod::Selection& selection,
-                               Tally& tally) {
-  const glm::dvec3& eye = view.eye.eye_m;
+                               Tally& update_totals) {
+  const glm::dvec3& camera = view.camera.position_m;
   for (int ray = 0; ray < 3; ++ray) {
     double x = random.uniform(0, view.width);
     double y = random.uniform(0, view.height);
@@ -169,82 +169,82 @@ void check_frustum_and_horizon(Random& random, const core::View& view, const lod
     glm::dvec3 d = core::pixel_ray(view, x, y);
     if (ray == 2 && view.projection == core::Projection::kEquirectangular) {
       // Just below where rays pass over the planet.
-      const double down = mars::horizon_dip_rad(glm::length(eye) - ground().radius_m(), ground().radius_m()) -
+      const double down = mars::horizon_dip_rad(glm::length(camera) - ground().radius_m(), ground().radius_m()) -
                           random.uniform(-0.02, 0.01);
-      const glm::dvec3 up = glm::normalize(eye);
+      const glm::dvec3 up = glm::normalize(camera);
       const glm::dvec3 ahead = glm::normalize(d - glm::dot(d, up) * up);
       d = std::cos(down) * ahead - std::sin(down) * up;
-      ++tally.limb;
+      ++update_totals.limb;
     }
-    const double distance = ground().surface().cast(eye, glm::normalize(d));
-    ++tally.rays;
+    const double distance = ground().surface().cast(camera, glm::normalize(d));
+    ++update_totals.rays;
     if (!std::isfinite(distance) || distance == 0.0) continue;
-    ++tally.hits;
-    const glm::dvec3 hit = eye + distance * glm::normalize(d);
+    ++update_totals.hits;
+    const glm::dvec3 hit = camera + distance * glm::normalize(d);
     // Off by rounding it may lie in the next tile.
-    const glm::dvec3 back = eye + distance * (1 - 1e-9) * glm::normalize(d);
+    const glm::dvec3 back = camera + distance * (1 - 1e-9) * glm::normalize(d);
     ASSERT_TRUE(drawn_at(selection, hit) || drawn_at(selection, back))
-        << "eye " << tally.eyes << " at " << glm::length(eye) - ground().radius_m() << " m, hit at " << distance
+        << "eye " << update_totals.eyes << " at " << glm::length(camera) - ground().radius_m() << " m, hit at " << distance
         << " m";
   }
 }
 
 void check_occlusion(Random& random, const core::View& view, const lod::Selection& selection,
-                     lod::OcclusionPass& pass, Tally& tally) {
-  const glm::dvec3& eye = view.eye.eye_m;
-  const DrawnGround drawn(ground().store(), selection, eye);
-  // Where the ground under the eye is not in the picture, S stands for it, with room for the error.
-  const bool above = drawn.eye_is_above().value_or(
-      glm::length(eye) > ground().radius_m() + selection.exaggeration * (ground().surface().at(eye).height_m) +
-                             selection.max_error_m);
-  tally.above += above ? 1 : 0;
+                     lod::OcclusionPass& pass, Tally& update_totals) {
+  const glm::dvec3& camera = view.camera.position_m;
+  const DrawnGround drawn(ground().store(), selection, camera);
+  // Where the ground under the camera is not in the image, S stands for it, with room for the error.
+  const bool above = drawn.camera_is_above().value_or(
+      glm::length(camera) > ground().radius_m() + selection.exaggeration * (ground().surface().at(camera).height_m) +
+                             selection.max_geometric_error_m);
+  update_totals.above += above ? 1 : 0;
   const Occlusion found =
-      occlude(selection, eye, above, 0.0, pass, static_cast<std::size_t>(std::max(0, random.integer(-6, 3))));
+      occlude(selection, camera, above, 0.0, pass, static_cast<std::size_t>(std::max(0, random.integer(-6, 3))));
   std::vector<std::size_t> hidden;
   for (std::size_t n = 0; n < found.hidden.size(); ++n) {
     if (found.hidden[n] != 0) hidden.push_back(n);
   }
-  tally.tiles += static_cast<int>(selection.tiles.size());
-  tally.hidden += static_cast<int>(hidden.size());
+  update_totals.tiles += static_cast<int>(selection.tiles.size());
+  update_totals.hidden += static_cast<int>(hidden.size());
   ASSERT_TRUE(above || hidden.empty());
   for (int n = 0; n < 3 && !hidden.empty(); ++n) {
     const std::size_t tile =
         hidden[static_cast<std::size_t>(random.integer(0, static_cast<int>(hidden.size()) - 1))];
-    ++tally.points;
-    ASSERT_TRUE(drawn.blocked(hostile_point(random, drawn.mesh(tile), eye)))
-        << "eye " << tally.eyes << ", tile " << lod::to_string(selection.tiles[tile].key);
+    ++update_totals.points;
+    ASSERT_TRUE(drawn.blocked(hostile_point(random, drawn.mesh(tile), camera)))
+        << "eye " << update_totals.eyes << ", tile " << lod::to_string(selection.tiles[tile].key);
   }
 }
 
 void expect_never_culled(std::uint64_t seed, int eyes) {
   Random random(seed);
   lod::OcclusionPass pass;
-  Tally tally;
-  for (; tally.eyes < eyes && !testing::Test::HasFatalFailure(); ++tally.eyes) {
-    const glm::dvec3 eye = hostile_eye(random);
-    tally.below_datum += glm::length(eye) < ground().radius_m() ? 1 : 0;
-    const double height = glm::length(eye) - ground().surface().at(eye).radius_m;
-    tally.half_metre += height < 0.51 ? 1 : 0;
-    tally.ten_radii += height > 9.99 * ground().radius_m() ? 1 : 0;
-    tally.poles += eye.x == 0.0 && eye.y == 0.0 ? 1 : 0;
-    const core::View view = look(random, eye, random.uniform(-90, 45));
+  Tally update_totals;
+  for (; update_totals.eyes < eyes && !testing::Test::HasFatalFailure(); ++update_totals.eyes) {
+    const glm::dvec3 camera = hostile_camera(random);
+    update_totals.below_datum += glm::length(camera) < ground().radius_m() ? 1 : 0;
+    const double height = glm::length(camera) - ground().surface().at(camera).radius_m;
+    update_totals.half_metre += height < 0.51 ? 1 : 0;
+    update_totals.ten_radii += height > 9.99 * ground().radius_m() ? 1 : 0;
+    update_totals.poles += camera.x == 0.0 && camera.y == 0.0 ? 1 : 0;
+    const core::View view = look(random, camera, random.uniform(-90, 45));
     const lod::Selection selection = select(view, random.log_uniform(0.5, 20), 1.0);
-    check_frustum_and_horizon(random, view, selection, tally);
-    check_occlusion(random, view, selection, pass, tally);
+    check_frustum_and_horizon(random, view, selection, update_totals);
+    check_occlusion(random, view, selection, pass, update_totals);
   }
   std::printf(
       "eyes %d (0.5 m up %d, 10 radii %d, poles %d, above ground %d, below the datum %d), rays %d, hits %d, at "
       "the limb %d, tiles %d, hidden %d, "
       "points %d\n",
-      tally.eyes, tally.half_metre, tally.ten_radii, tally.poles, tally.above, tally.below_datum, tally.rays,
-      tally.hits, tally.limb, tally.tiles, tally.hidden, tally.points);
-  EXPECT_GT(tally.above, eyes * 9 / 10);
-  EXPECT_GT(tally.below_datum, eyes / 10);
-  EXPECT_GT(tally.half_metre, eyes / 8);
-  EXPECT_GT(tally.ten_radii, eyes / 100);
-  EXPECT_GT(tally.poles, eyes / 100);
-  EXPECT_GT(tally.hits, eyes);
-  EXPECT_GT(tally.points, eyes);
+      update_totals.eyes, update_totals.half_metre, update_totals.ten_radii, update_totals.poles, update_totals.above, update_totals.below_datum, update_totals.rays,
+      update_totals.hits, update_totals.limb, update_totals.tiles, update_totals.hidden, update_totals.points);
+  EXPECT_GT(update_totals.above, eyes * 9 / 10);
+  EXPECT_GT(update_totals.below_datum, eyes / 10);
+  EXPECT_GT(update_totals.half_metre, eyes / 8);
+  EXPECT_GT(update_totals.ten_radii, eyes / 100);
+  EXPECT_GT(update_totals.poles, eyes / 100);
+  EXPECT_GT(update_totals.hits, eyes);
+  EXPECT_GT(update_totals.points, eyes);
 }
 
 TEST(NeverCull, WhatIsSeenIsDrawn) { expect_never_culled(61, 400); }
@@ -259,30 +259,30 @@ TEST(NeverCull, ExaggeratedGroundHidesOnlyWhatItHides) {
   Random random(63);
   lod::OcclusionPass pass;
   for (const double exaggeration : {0.3, 4.0}) {
-    Tally tally;
-    for (; tally.eyes < 100; ++tally.eyes) {
+    Tally update_totals;
+    for (; update_totals.eyes < 100; ++update_totals.eyes) {
       const glm::dvec3 d =
           glm::normalize(test_support::kCanyon + random.log_uniform(1e-5, 0.05) * random.direction());
       const double height = ground().surface().at(d).height_m;
       const core::View view =
           look(random, d * (ground().radius_m() + exaggeration * height + random.log_uniform(10, 1e4)),
                random.uniform(-30, 10));
-      check_occlusion(random, view, select(view, 4.0, exaggeration), pass, tally);
+      check_occlusion(random, view, select(view, 4.0, exaggeration), pass, update_totals);
       if (HasFatalFailure()) return;
     }
-    EXPECT_GT(tally.points, 60);
+    EXPECT_GT(update_totals.points, 60);
   }
 }
 
 // Tiles none of whose points are seen, of up to `most` a tile; and how many of them the pass found.
-struct Share {
+struct ShardPlan {
   int tiles = 0, hidden = 0, found = 0;
   double ms = 0;
 };
 
-Share share_found(Random& random, const glm::dvec3& place, double spread_rad, int views, int most) {
+ShardPlan share_found(Random& random, const glm::dvec3& place, double spread_rad, int views, int most) {
   lod::OcclusionPass pass;
-  Share share;
+  ShardPlan share;
   for (int n = 0; n < views; ++n) {
     const glm::dvec3 d = glm::normalize(place + spread_rad * random.uniform(0, 1) * random.direction());
     core::View view = look(random, d * (ground().surface().at(d).radius_m + random.log_uniform(2, 200)),
@@ -292,8 +292,8 @@ Share share_found(Random& random, const glm::dvec3& place, double spread_rad, in
     view.width = 1280;
     view.height = 720;
     const lod::Selection selection = select(view, 1.0, 1.0);
-    const DrawnGround drawn(ground().store(), selection, view.eye.eye_m);
-    const Occlusion found = occlude(selection, view.eye.eye_m, true, 0.0, pass);
+    const DrawnGround drawn(ground().store(), selection, view.camera.position_m);
+    const Occlusion found = occlude(selection, view.camera.position_m, true, 0.0, pass);
     share.ms += found.ms;
     share.tiles += static_cast<int>(selection.tiles.size());
     for (std::size_t tile = 0; tile < selection.tiles.size(); ++tile) {
@@ -316,7 +316,7 @@ Share share_found(Random& random, const glm::dvec3& place, double spread_rad, in
 TEST(NeverCull, FindsHalfOfWhatIsHiddenInACanyonAndACrater) {
   Random random(64);
   for (const glm::dvec3& place : {test_support::kCanyon, test_support::kCrater}) {
-    const Share share = share_found(random, place, 0.001, 4, 40);
+    const ShardPlan share = share_found(random, place, 0.001, 4, 40);
     EXPECT_GT(share.hidden, 20);
     EXPECT_GE(2 * share.found, share.hidden);
   }
@@ -325,7 +325,7 @@ TEST(NeverCull, FindsHalfOfWhatIsHiddenInACanyonAndACrater) {
 TEST(LongNeverCullShare, FindsHalfOfWhatIsHiddenInACanyonAndACrater) {
   Random random(65);
   for (const glm::dvec3& place : {test_support::kCanyon, test_support::kCrater}) {
-    const Share share = share_found(random, place, 0.002, 60, 200);
+    const ShardPlan share = share_found(random, place, 0.002, 60, 200);
     EXPECT_GE(2 * share.found, share.hidden);
   }
 }

@@ -15,14 +15,14 @@ constexpr double kRadius = 3396190;
 double everywhere(const lod::TileKey&, const mars::Cap&) { return 3700; }
 
 // 40 m around one direction, 3700 m elsewhere.
-paging::WantedSpacing spot(const glm::dvec3& centre, double reach_rad) {
+paging::WantedSpacing hotspot(const glm::dvec3& centre, double reach_rad) {
   return [=](const lod::TileKey&, const mars::Cap& cap) {
     return mars::angle_between_rad(cap.centre, centre) < cap.radius_rad + reach_rad ? 40.0 : 3700.0;
   };
 }
 
-TEST(Plan, UniformPlanetHasOneLevel) {
-  const paging::Plan plan({7}, kRadius, everywhere);
+TEST(BuildPlan, UniformPlanetHasOneLevel) {
+  const paging::BuildPlan plan({7}, kRadius, everywhere);
   EXPECT_EQ(plan.leaves().size(), 6U * 256U);
   EXPECT_EQ(plan.inner().size(), 6U * 85U);
   for (const lod::TileKey& key : plan.leaves()) {
@@ -31,10 +31,10 @@ TEST(Plan, UniformPlanetHasOneLevel) {
   }
 }
 
-TEST(Plan, InsetsAreReachedByStepsOfTwo) {
+TEST(BuildPlan, InsetsAreReachedByStepsOfTwo) {
   const glm::dvec3 corner = glm::normalize(glm::dvec3(1, 1, 1));
   for (const glm::dvec3& centre : {glm::dvec3(1, 0, 0), corner, glm::normalize(glm::dvec3(1, 0.3, -0.99))}) {
-    const paging::Plan plan({7}, kRadius, spot(centre, 0.002));
+    const paging::BuildPlan plan({7}, kRadius, hotspot(centre, 0.002));
     int finest = 0;
     double area = 0;
     for (const lod::TileKey& key : plan.leaves()) {
@@ -65,8 +65,8 @@ TEST(Plan, InsetsAreReachedByStepsOfTwo) {
   }
 }
 
-TEST(Plan, CornersKnowTheCoarsestTileAround) {
-  const paging::Plan plan({7}, kRadius, spot({1, 0, 0}, 0.002));
+TEST(BuildPlan, CornersKnowTheCoarsestTileAround) {
+  const paging::BuildPlan plan({7}, kRadius, hotspot({1, 0, 0}, 0.002));
   for (const lod::TileKey& key : plan.leaves()) {
     if (key.level < 7) continue;
     for (int corner = 0; corner < 4; ++corner) {
@@ -83,8 +83,8 @@ TEST(Plan, CornersKnowTheCoarsestTileAround) {
   }
 }
 
-TEST(Plan, OrdersAreStable) {
-  const paging::Plan plan({7}, kRadius, spot({0, 0, 1}, 0.01));
+TEST(BuildPlan, OrdersAreStable) {
+  const paging::BuildPlan plan({7}, kRadius, hotspot({0, 0, 1}, 0.01));
   EXPECT_TRUE(std::is_sorted(plan.leaves().begin(), plan.leaves().end(), paging::curve_less));
   std::set<lod::TileKey> done(plan.leaves().begin(), plan.leaves().end());
   for (const lod::TileKey& key : plan.inner()) {
@@ -93,12 +93,12 @@ TEST(Plan, OrdersAreStable) {
   }
 }
 
-TEST(Plan, RefusesTreesBeyondTheLimit) {
+TEST(BuildPlan, RefusesTreesBeyondTheLimit) {
   const auto finer_than_sense = [](const lod::TileKey&, const mars::Cap&) { return 0.5; };
   paging::PlanLimits limits;
   limits.max_leaves = 10000;
   try {
-    const paging::Plan plan({7}, kRadius, finer_than_sense, limits);
+    const paging::BuildPlan plan({7}, kRadius, finer_than_sense, limits);
     FAIL() << "no error";
   } catch (const std::runtime_error& e) {
     EXPECT_NE(std::string(e.what()).find("--spacing"), std::string::npos) << e.what();

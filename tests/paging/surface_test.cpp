@@ -44,13 +44,13 @@ std::vector<Facet> all_facets(const paging::PlanetFile& planet) {
   return out;
 }
 
-double moller(const Facet& f, const glm::dvec3& eye, const glm::dvec3& d) {
+double moller(const Facet& f, const glm::dvec3& camera, const glm::dvec3& d) {
   const glm::dvec3 e1 = f.b - f.a;
   const glm::dvec3 e2 = f.c - f.a;
   const glm::dvec3 p = glm::cross(d, e2);
   const double det = glm::dot(e1, p);
   if (det == 0) return std::numeric_limits<double>::infinity();
-  const glm::dvec3 s = eye - f.a;
+  const glm::dvec3 s = camera - f.a;
   const double u = glm::dot(s, p) / det;
   const glm::dvec3 q = glm::cross(s, e1);
   const double v = glm::dot(d, q) / det;
@@ -74,15 +74,15 @@ TEST(Surface, CastAgreesWithEveryFacet) {
     glm::dvec3 up = random.direction();
     if (n % 3 == 0) up = glm::normalize(kCorner + 0.02 * random.direction());
     const double height = random.log_uniform(10, 3.4e7);
-    const glm::dvec3 eye = up * (surface.at(up).radius_m + height);
+    const glm::dvec3 camera = up * (surface.at(up).radius_m + height);
     // Between the nadir and a little above the horizon.
     const double dip = mars::horizon_dip_rad(height, planet->radius_m());
     const double pitch = random.uniform(-dip * 3 - 0.1, 0.02);
     const glm::dvec3 side = glm::normalize(glm::cross(up, random.direction()));
     const glm::dvec3 d = side * std::cos(pitch) + up * std::sin(pitch);
     double truth = std::numeric_limits<double>::infinity();
-    for (const Facet& f : facets) truth = std::min(truth, moller(f, eye, d));
-    const double cast = surface.cast(eye, d);
+    for (const Facet& f : facets) truth = std::min(truth, moller(f, camera, d));
+    const double cast = surface.cast(camera, d);
     ASSERT_EQ(std::isinf(cast), std::isinf(truth)) << n;
     if (std::isinf(truth)) {
       ++misses;
@@ -111,10 +111,10 @@ TEST(Surface, NoRayGetsThrough) {
       up = glm::normalize(glm::dvec3(1, mars::face_line(random.integer(0, 8), 3), random.uniform(-1, 1)));
       target = glm::dvec3(0);
     }
-    const glm::dvec3 eye = up * (planet->radius_m() + random.log_uniform(20000, 1e8));
-    const double t = surface.cast(eye, glm::normalize(target - eye));
+    const glm::dvec3 camera = up * (planet->radius_m() + random.log_uniform(20000, 1e8));
+    const double t = surface.cast(camera, glm::normalize(target - camera));
     ASSERT_TRUE(std::isfinite(t)) << n;
-    const glm::dvec3 hit = eye + t * glm::normalize(target - eye);
+    const glm::dvec3 hit = camera + t * glm::normalize(target - camera);
     ASSERT_NEAR(glm::length(hit), surface.at(hit).radius_m, 1e-4) << n;
   }
 }
@@ -179,12 +179,12 @@ TEST(Surface, NoRayGetsThroughExaggeratedGround) {
   for (const double x : {0.1, 7.0, 40.0}) {
     for (int n = 0; n < 8000; ++n) {
       const glm::dvec3 up = glm::normalize(kCorner + 0.2 * random.direction());
-      const glm::dvec3 eye = up * (surface.at(up, x).radius_m + random.log_uniform(10, 1e7));
+      const glm::dvec3 camera = up * (surface.at(up, x).radius_m + random.log_uniform(10, 1e7));
       const glm::dvec3 target = glm::normalize(kCorner + 0.2 * random.direction()) * 2.5e6;
-      const glm::dvec3 direction = glm::normalize(target - eye);
-      const double t = surface.cast(eye, direction, x);
+      const glm::dvec3 direction = glm::normalize(target - camera);
+      const double t = surface.cast(camera, direction, x);
       ASSERT_TRUE(std::isfinite(t)) << n << " times " << x;
-      const glm::dvec3 hit = eye + t * direction;
+      const glm::dvec3 hit = camera + t * direction;
       std::vector<double> radius_m(1);
       surface.radius(std::vector{hit}, radius_m, x);
       ASSERT_EQ(radius_m[0], surface.at(hit, x).radius_m);
@@ -193,7 +193,7 @@ TEST(Surface, NoRayGetsThroughExaggeratedGround) {
   }
 }
 
-TEST(Surface, EyeBelowTheGroundHitsAtOnce) {
+TEST(Surface, CameraBelowTheGroundHitsAtOnce) {
   TempDir dir;
   const auto planet = build_fake(dir / "p.vpe", FakeElevation(bumpy_height), 400000);
   const paging::Surface surface(planet, 1 << 26);

@@ -135,7 +135,7 @@ TEST_F(Verify, BoundsThatAreTooSmallAreSeenByMeasuringAgain) {
     db.execute("UPDATE variant SET relief_m = 0.99 * relief_m, sag_m = 0.99 * sag_m, total_m = 0.99 * total_m");
     for (paging::NodeRow& row : rows) {
       for (lod::MeshVariant& v : row.variants) {
-        v.terms = {0.99 * v.terms.relief_m, 0.99 * v.terms.sag_m, 0.99 * v.terms.total_m};
+        v.terms = {0.99 * v.terms.height_error_m, 0.99 * v.terms.sagitta_m, 0.99 * v.terms.total_m};
       }
       paging::Statement update(db, "UPDATE node SET checksum = ? WHERE key = ?");
       update.bind(1, paging::checksum(row)).bind(2, row.key).step();

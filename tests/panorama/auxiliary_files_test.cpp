@@ -11,17 +11,17 @@
 namespace {
 
 namespace fs = std::filesystem;
-using panorama::Companions;
+using panorama::AuxiliaryFiles;
 using panorama::PairLayout;
 using panorama::RasterPlane;
-using panorama::read_companions;
+using panorama::read_auxiliary_files;
 using panorama_test::message_of;
 
-TEST(Companions, AreRead) {
-  const Companions none = read_companions(R"({"projection": "cylinder"})");
+TEST(AuxiliaryFiles, AreRead) {
+  const AuxiliaryFiles none = read_auxiliary_files(R"({"projection": "cylinder"})");
   EXPECT_EQ(none.pair, PairLayout::kNone);
   EXPECT_TRUE(none.planes.empty());
-  const Companions all = read_companions(
+  const AuxiliaryFiles all = read_auxiliary_files(
       R"({"stereo": "ou", "planes": {"range": "a.range.tif", "lonlat": {"file": "a.lonlat.tif", "unit": "deg"}}})");
   EXPECT_EQ(all.pair, PairLayout::kOverUnder);
   ASSERT_EQ(all.planes.size(), 2U);
@@ -30,8 +30,8 @@ TEST(Companions, AreRead) {
   EXPECT_EQ(all.planes[1].file, "a.range.tif");
 }
 
-TEST(Companions, BadOnesAreNamed) {
-  const auto said = [](const std::string& json) { return message_of([&] { read_companions(json); }); };
+TEST(AuxiliaryFiles, BadOnesAreNamed) {
+  const auto said = [](const std::string& json) { return message_of([&] { read_auxiliary_files(json); }); };
   EXPECT_SAYS(said(R"({"stereo": "cross"})"), "stereo", "cross", "sbs");
   EXPECT_SAYS(said(R"({"stereo": 3})"), "stereo", "3");
   EXPECT_SAYS(said(R"({"planes": ["a.tif"]})"), "planes", "object");
@@ -40,12 +40,12 @@ TEST(Companions, BadOnesAreNamed) {
   EXPECT_SAYS(said("["), "JSON");
 }
 
-// A sphere of 360 x 180 for each eye, both in one picture.
-TEST(Companions, APairIsDescribedByOneEye) {
+// A sphere of 360 x 180 for each eye, both in one image.
+TEST(AuxiliaryFiles, APairIsDescribedByOneEye) {
   const test_support::TempDir folder;
-  const auto eye = panorama::equirectangular_map(360, 180, 360, 0.0, 90.0);
+  const auto camera = panorama::equirectangular_map(360, 180, 360, 0.0, 90.0);
   vpe::core::write_image(folder / "ou.png", panorama_test::pixels(360, 360), 360, 360);
-  std::string json = panorama::to_json({"ou.png", eye, {}});
+  std::string json = panorama::to_json({"ou.png", camera, {}});
   json.insert(json.find('{') + 1, R"("stereo": "ou",)");
   vpe::base::write_file(folder / "ou.json", json);
   const auto described = panorama::describe(folder / "ou.png");
@@ -55,7 +55,7 @@ TEST(Companions, APairIsDescribedByOneEye) {
   EXPECT_SAYS(message_of([&] { panorama::describe(folder / "ou.png", PairLayout::kNone); }), "360x360",
               "360x180");
 
-  // The whole picture's size is as good, where the projection allows it.
+  // The whole image's size is as good, where the projection allows it.
   vpe::core::write_image(folder / "sbs.png", panorama_test::pixels(720, 60), 720, 60);
   vpe::base::write_file(folder / "sbs.json",
                         panorama::to_json({"sbs.png", panorama::cylinder_map(720, 60, 360, 0.0, 30.0), {}}));
@@ -88,11 +88,11 @@ TEST(RasterPlane, ValuesOfEveryKind) {
   }
 }
 
-TEST(Companions, DeepNestingIsNoDanger) {
+TEST(AuxiliaryFiles, DeepNestingIsNoDanger) {
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
   for (const std::string& json : {"{\"stereo\": " + deep + "}", "{\"planes\": {\"range\": " + deep + "}}",
                                   "{\"planes\": " + deep + "}", deep}) {
-    const std::string message = message_of([&] { panorama::read_companions(json); });
+    const std::string message = message_of([&] { panorama::read_auxiliary_files(json); });
     EXPECT_FALSE(message.empty());
     EXPECT_LT(message.size(), 1000U);
   }

@@ -1,4 +1,4 @@
-// Looking around in pictures that are far larger than memory.
+// Looking around in images that are far larger than memory.
 #include <cmath>
 #include <fstream>
 
@@ -28,19 +28,19 @@ constexpr std::int64_t kWidth = 100'000;
 constexpr std::int64_t kHeight = 20'000;
 constexpr std::size_t kBudget = std::size_t{192} << 20;  // what vpe gives it of --memory 256
 
-// Random views; returns the most that the picture kept.
-void look_around(const fs::path& path, int requests) {
+// Random views; returns the most that the image kept.
+void view_panorama(const fs::path& path, int requests) {
   const std::int64_t before = bytes_asked_for();
-  panorama::PictureOptions options;
+  panorama::TiledImageOptions options;
   options.budget_bytes = kBudget;
-  const auto picture = panorama::open_picture(path, panorama::PictureFormat::kTiff, options);
-  ASSERT_EQ(picture->levels().size(), 9U);
+  const auto tiled_image = panorama::open_tiled_image(path, panorama::ImageFileFormat::kTiff, options);
+  ASSERT_EQ(tiled_image->levels().size(), 9U);
   EXPECT_LT(bytes_asked_for() - before, 100'000);  // of directories
 
   const panorama::PanoramaMap map =
       panorama::equirectangular_map(kWidth, kHeight, static_cast<double>(kWidth), 0.0, 0.5 * kHeight);
   test_support::Random random(42);
-  panorama::LookOptions look;
+  panorama::RenderViewOptions look;
   look.outside = {1, 2, 3};
   [[maybe_unused]] const std::int64_t resident_kib = of_process("status", "VmRSS:");
   for (int n = 0; n < requests; ++n) {
@@ -48,37 +48,37 @@ void look_around(const fs::path& path, int requests) {
     viewer.look_at(random.uniform(-1e4, 1e4), random.uniform(-90.0, 90.0));
     viewer.set_fov(random.log_uniform(0.05, 120.0));
     look.threads = 1;
-    const vpe::core::RgbImage image = panorama::look(*picture, map, viewer.view(), look);
+    const vpe::core::RgbImage image = panorama::look(*tiled_image, map, viewer.view(), look);
     for (const vpe::base::Rgb& p : image.pixels) {
       ASSERT_TRUE(p == look.outside || (p.r >= 100 && p.r <= 107 && p.g == p.r && p.b == p.r));
     }
-    ASSERT_LE(picture->bytes(), kBudget / 2);
+    ASSERT_LE(tiled_image->bytes(), kBudget / 2);
   }
-  EXPECT_GT(picture->reads(), requests / 4);
+  EXPECT_GT(tiled_image->reads(), requests / 4);
   // What was read of pixels are tiles; 16 bytes tell where each of them is.
-  EXPECT_LT(bytes_asked_for() - before, picture->reads() * 210'000 + 2'000'000);
+  EXPECT_LT(bytes_asked_for() - before, tiled_image->reads() * 210'000 + 2'000'000);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   EXPECT_LT(of_process("status", "VmHWM:") - resident_kib, static_cast<std::int64_t>(kBudget >> 10));
 #endif
 }
 
-TEST(BigPicture, ViewsReadTheTilesThatTheyNeed) {
+TEST(BigImage, ViewsReadTheTilesThatTheyNeed) {
   const test_support::TempDir folder;
   panorama_test::SharedTiles::write(folder / "big.tif", kWidth, kHeight);
-  look_around(folder / "big.tif", 200);
+  view_panorama(folder / "big.tif", 200);
 }
 
-TEST(LongBigPicture, TenThousandRandomViewsInBoundedMemory) {
+TEST(LongBigImage, TenThousandRandomViewsInBoundedMemory) {
   const test_support::TempDir folder;
   panorama_test::SharedTiles::write(folder / "big.tif", kWidth, kHeight);
-  look_around(folder / "big.tif", 10'000);
+  view_panorama(folder / "big.tif", 10'000);
 }
 
-// Every pixel of a view straight at a tile's middle is that tile's, drawn from the full picture.
-TEST(BigPicture, TilesAreWhereTheyBelong) {
+// Every pixel of a view straight at a tile's middle is that tile's, drawn from the full image.
+TEST(BigImage, TilesAreWhereTheyBelong) {
   const test_support::TempDir folder;
   panorama_test::SharedTiles::write(folder / "big.tif", kWidth, kHeight);
-  const auto picture = panorama::open_picture(folder / "big.tif", panorama::PictureFormat::kTiff, {});
+  const auto tiled_image = panorama::open_tiled_image(folder / "big.tif", panorama::ImageFileFormat::kTiff, {});
   const panorama::PanoramaMap map =
       panorama::equirectangular_map(kWidth, kHeight, static_cast<double>(kWidth), 0.0, 0.5 * kHeight);
   for (const auto& [column, row] : {std::pair(0, 39), {1, 40}, {390, 39}, {200, 20}, {13, 60}}) {
@@ -87,7 +87,7 @@ TEST(BigPicture, TilesAreWhereTheyBelong) {
         map.to_direction(std::min(256.0 * column + 128.0, kWidth - 80.0), 256.0 * row + 128.0);
     const vpe::core::View view = panorama::view_of(middle.azimuth_deg, middle.elevation_deg, 0.05, 16, 16);
     const auto grey = static_cast<std::uint8_t>(panorama_test::SharedTiles::grey(column, row));
-    for (const vpe::base::Rgb& p : panorama::look(*picture, map, view, {}).pixels)
+    for (const vpe::base::Rgb& p : panorama::look(*tiled_image, map, view, {}).pixels)
       ASSERT_EQ(p, (vpe::base::Rgb{grey, grey, grey})) << column << "," << row;
   }
 }

@@ -1,4 +1,4 @@
-// Huge pictures as small files: tiles that share their bytes.
+// Huge images as small files: tiles that share their bytes.
 #pragma once
 
 #include <cstdint>

@@ -116,8 +116,8 @@ TEST_F(BigTiff, ColoursAndReducedPagesAreReadByLibtiff) {
     ++pages;
   } while (TIFFReadDirectory(tiff.get()) == 1);
   EXPECT_EQ(pages, 4);  // 1031, 516, 258, 129
-  const PictureHeader header = read_picture_header(path);
-  EXPECT_EQ(header.format, PictureFormat::kTiff);
+  const ImageFileHeader header = read_image_header(path);
+  EXPECT_EQ(header.format, ImageFileFormat::kTiff);
   EXPECT_EQ(header.xmp, xmp);
 }
 
@@ -199,7 +199,7 @@ TEST_F(BigTiff, RowsMakeThePngThatOthersRead) {
   const vpe::core::RgbImage image = vpe::core::decode_png(bytes[0]);
   EXPECT_EQ(image.width, kWidth);
   EXPECT_EQ(image.pixels, rows);
-  EXPECT_EQ(read_picture_header(path).xmp, xmp);
+  EXPECT_EQ(read_image_header(path).xmp, xmp);
   // Not much larger than what libpng makes of it.
   EXPECT_LT(bytes[0].size(), vpe::core::encode_png(rows, kWidth, kHeight).size() * 11 / 10);
 }
@@ -217,10 +217,10 @@ TEST_F(BigTiff, RowsMakeTheJpegThatOthersRead) {
     writer->finish();
     file.commit();
   }
-  const PictureHeader header = read_picture_header(path);
-  EXPECT_EQ(header.format, PictureFormat::kJpeg);
+  const ImageFileHeader header = read_image_header(path);
+  EXPECT_EQ(header.format, ImageFileFormat::kJpeg);
   EXPECT_EQ(header.xmp, xmp);
-  // The same picture as in one go.
+  // The same image as in one go.
   const auto whole = vpe::core::decode_jpeg(vpe::core::encode_jpeg(rows, kWidth, kHeight, 90));
   EXPECT_EQ(vpe::core::read_image(path).pixels, whole.pixels);
 }

@@ -8,7 +8,7 @@
 
 namespace {
 
-using panorama::Halver;
+using panorama::BoxDownsampler;
 
 // The definition, in floating point.
 double mean_over(const std::vector<vpe::base::Rgb>& pixels, int width, int height, int x, int y) {
@@ -29,17 +29,17 @@ double mean_over(const std::vector<vpe::base::Rgb>& pixels, int width, int heigh
   return sum / (across * down);
 }
 
-TEST(Halver, IsTheMeanOverTheArea) {
+TEST(BoxDownsampler, IsTheMeanOverTheArea) {
   for (const auto& [width, height] :
        {std::pair(8, 6), {7, 6}, {8, 5}, {9, 7}, {1, 1}, {1, 5}, {3, 1}, {2, 2}}) {
     std::vector<vpe::base::Rgb> pixels(static_cast<std::size_t>(width * height));
     for (std::size_t n = 0; n < pixels.size(); ++n)
       pixels[n] = {0, static_cast<std::uint8_t>((n * n * 37 + n * 11) % 256), 255};
     std::vector<vpe::base::Rgb> half;
-    Halver halver(width, height,
+    BoxDownsampler downsampler(width, height,
                   [&](std::span<const vpe::base::Rgb> row) { half.insert(half.end(), row.begin(), row.end()); });
     for (int y = 0; y < height; ++y)
-      halver.take(
+      downsampler.take(
           std::span(pixels).subspan(static_cast<std::size_t>(y * width), static_cast<std::size_t>(width)));
     const int half_width = (width + 1) / 2;
     ASSERT_EQ(half.size(), static_cast<std::size_t>(half_width * ((height + 1) / 2)));

@@ -158,7 +158,7 @@ TEST(GPano, PrefixesStandForWhatTheNearestElementSays) {
               "GPano without");
 }
 
-TEST(GPano, GivesTheMapOfTheDescribedPicture) {
+TEST(GPano, GivesTheMapOfTheDescribedImage) {
   // 3600 columns to the turn, heading 90 in its middle, 200 columns cut at the left, top 150 rows above the
   // horizon.
   GPano g = needed_fields("cylindrical", 1000, 400, 3600, 400, 200, -150);
@@ -291,7 +291,7 @@ TEST(GPanoOracle, WhatExiftoolWritesIsRead) {
                            "-XMP-GPano:LargestValidInteriorRectWidth=29",
                            "-XMP-GPano:LargestValidInteriorRectHeight=13",
                            file});
-    const panorama::PictureHeader header = panorama::read_picture_header(std::filesystem::path(file));
+    const panorama::ImageFileHeader header = panorama::read_image_header(std::filesystem::path(file));
     EXPECT_EQ(header.width_px, 31);
     EXPECT_EQ(header.height_px, 17);
     ASSERT_TRUE(header.xmp) << name;
@@ -310,7 +310,7 @@ TEST(GPanoOracle, WhatExiv2WritesIsRead) {
   panorama::write_xmp(file, panorama::to_xmp(every_field()));
   // exiv2 writes the packet again, as attributes.
   output_of("exiv2", {"-M", "set Xmp.GPano.PoseHeadingDegrees 77.5", file});
-  const auto header = panorama::read_picture_header(std::filesystem::path(file));
+  const auto header = panorama::read_image_header(std::filesystem::path(file));
   ASSERT_TRUE(header.xmp);
   EXPECT_SAYS(*header.xmp, "GPano:PoseHeadingDegrees=\"77.5\"");
   GPano expected = every_field();

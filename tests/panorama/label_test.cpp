@@ -179,7 +179,7 @@ TEST(RoverLabel, BadOnesAreMessages) {
   EXPECT_SAYS(refused("(12.9059 <pix/deg>, 12.9059 <pix/deg>)", "(12.9059"), "MAP_RESOLUTION");
   EXPECT_SAYS(refused("903.503", "N/A"), "ZERO_ELEVATION_LINE", "N/A");
   EXPECT_SAYS(refused("LINES = 1182", "LINES = 11.5"), "LINES");
-  // Contradictions: label and picture, and within.
+  // Contradictions: label and image, and within.
   EXPECT_SAYS(refused("LINES = 1182", "LINES = 1183"), "4646x1183", "4646x1182");
   EXPECT_SAYS(refused("360.0 <deg>", "180.0 <deg>"), "STOP_AZIMUTH", "2323", "4646");
   EXPECT_SAYS(refused("-21.673", "-41.673"), "MINIMUM_ELEVATION", "1182");

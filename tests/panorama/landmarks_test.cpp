@@ -12,37 +12,37 @@
 namespace {
 
 using panorama::Landmark;
-using panorama::SkylineEye;
+using panorama::SkylineCamera;
 using vpe::core::Place;
 using vpe::base::ThreadPool;
 
 constexpr double kR = mars::kMarsRadius_m;
 
-double sphere_range(const glm::dvec3& eye_m, const glm::dvec3& ray) {
-  const double along = -glm::dot(eye_m, ray);
-  const double half2 = kR * kR - glm::dot(eye_m, eye_m) + along * along;
+double sphere_range(const glm::dvec3& camera_m, const glm::dvec3& ray) {
+  const double along = -glm::dot(camera_m, ray);
+  const double half2 = kR * kR - glm::dot(camera_m, camera_m) + along * along;
   if (along < 0 || half2 < 0) return std::numeric_limits<double>::infinity();
   return along - std::sqrt(half2);
 }
 
-std::vector<Landmark> seen(const SkylineEye& eye, const std::vector<Place>& features, double within_m) {
+std::vector<Landmark> seen(const SkylineCamera& camera, const std::vector<Place>& features, double within_m) {
   ThreadPool pool(2);
   return panorama::landmarks(
-      eye, features, within_m, [](const glm::dvec3&) { return kR; },
-      [&](const glm::dvec3& ray) { return sphere_range(eye.eye_m, ray); }, pool);
+      camera, features, within_m, [](const glm::dvec3&) { return kR; },
+      [&](const glm::dvec3& ray) { return sphere_range(camera.position_m, ray); }, pool);
 }
 
 TEST(Landmarks, VisibleUpToTheHorizonAndHiddenByTheGroundBefore) {
   const mars::LonLat at{170, 30};
   constexpr double kAlt = 5000;
-  const SkylineEye eye = panorama::skyline_eye(at, kAlt, kR);
+  const SkylineCamera camera = panorama::skyline_camera(at, kAlt, kR);
   const double dip = mars::horizon_dip_rad(kAlt, kR);
   std::vector<Place> features;
   for (int n = 40; n >= 1; --n) {
     const mars::LonLat p = mars::destination(at, 9.0 * n, 0.05 * n * dip);
     features.push_back({"f" + std::to_string(n), p.lon_deg, p.lat_deg, 1000});
   }
-  const auto list = seen(eye, features, 1e6);
+  const auto list = seen(camera, features, 1e6);
   ASSERT_EQ(list.size(), features.size());
   for (std::size_t n = 0; n < list.size(); ++n) {
     const Landmark& l = list[n];
@@ -67,27 +67,27 @@ TEST(Landmarks, VisibleUpToTheHorizonAndHiddenByTheGroundBefore) {
 
 TEST(Landmarks, TheDistanceLimitIsStraightAndNamesWhatHides) {
   const mars::LonLat at{0, 0};
-  const SkylineEye eye = panorama::skyline_eye(at, 100, kR);  // horizon at 26 km
+  const SkylineCamera camera = panorama::skyline_camera(at, 100, kR);  // horizon at 26 km
   const std::vector<Place> features{{"planet", 0, 0, 3e7},
                                     {"plain", 0.3, 0, 100000},
                                     {"hill", 0.43, 0, 6000},
                                     {"far", 2, 0, 0},
                                     {"behind", 180, 0, 0}};
-  auto list = seen(eye, features, 200000);
+  auto list = seen(camera, features, 200000);
   ASSERT_EQ(list.size(), 4U);
   EXPECT_EQ(list[3].feature.name, "far");
   ASSERT_TRUE(list[3].hidden_by);
   EXPECT_NEAR(list[3].hidden_by->place.lat_deg, 0, 1e-9);
   // The line to it goes into the ground before the horizon.
   EXPECT_EQ(list[3].hidden_by_name, "plain");
-  EXPECT_EQ(seen(eye, features, 118000).size(), 3U);
-  EXPECT_EQ(seen(eye, features, 1e9).size(), 5U);
+  EXPECT_EQ(seen(camera, features, 118000).size(), 3U);
+  EXPECT_EQ(seen(camera, features, 1e9).size(), 5U);
   EXPECT_EQ(panorama::smallest_feature_around(features, {0.44, 0}, kR)->name, "hill");
   EXPECT_EQ(panorama::smallest_feature_around(std::span(features).subspan(3), {2, 0}, kR), nullptr);
 }
 
 TEST(Landmarks, FarthestSight) {
-  // Both of one height: twice the way to the horizon; an eye at the bottom sees the top alone.
+  // Both of one height: twice the way to the horizon; a camera at the bottom sees the top alone.
   EXPECT_NEAR(panorama::farthest_sight_m(kR + 2000, kR, kR + 2000), 2 * mars::horizon_distance_m(2000, kR),
               1e-6);
   EXPECT_NEAR(panorama::farthest_sight_m(kR, kR, kR + 2000), mars::horizon_distance_m(2000, kR), 1e-6);

@@ -1,4 +1,4 @@
-// What describes a picture, and what contradicts it.
+// What describes an image, and what contradicts it.
 #include "panorama/metadata/open_panorama.h"
 
 #include <cmath>
@@ -20,7 +20,7 @@ using panorama_test::message_of;
 const panorama::PanoramaMap kMap = panorama::cylinder_map(360, 60, 360, 15.0, 30.0);
 
 // A cylinder of 360 x 60 with GPano inside.
-fs::path picture_with_gpano(const test_support::TempDir& folder, const std::string& name) {
+fs::path image_with_gpano(const test_support::TempDir& folder, const std::string& name) {
   const fs::path path = folder / name;
   vpe::core::write_image(path, panorama_test::pixels(360, 60), 360, 60);
   panorama::write_xmp(path, panorama::to_xmp(panorama::gpano_of(kMap)));
@@ -36,12 +36,12 @@ std::string said(const fs::path& path) {
 TEST(OpenPanorama, FindsGPanoInside) {
   const test_support::TempDir folder;
   for (const char* name : {"a.png", "b.jpg"}) {
-    const fs::path path = picture_with_gpano(folder, name);
+    const fs::path path = image_with_gpano(folder, name);
     const PanoramaDescription d = describe(path);
-    EXPECT_EQ(d.picture, path);
+    EXPECT_EQ(d.image, path);
     EXPECT_LT(panorama::largest_difference_px(d.map, kMap), 1e-9);
     EXPECT_TRUE(d.heading_is_known);
-    EXPECT_FALSE(d.station);
+    EXPECT_FALSE(d.viewpoint);
     ASSERT_EQ(d.sources.size(), 1U);
     EXPECT_SAYS(d.sources[0], "GPano", name);
   }
@@ -49,24 +49,24 @@ TEST(OpenPanorama, FindsGPanoInside) {
 
 TEST(OpenPanorama, JsonComesFirstAndAgrees) {
   const test_support::TempDir folder;
-  const fs::path path = picture_with_gpano(folder, "a.png");
-  panorama::Sidecar sidecar{"a.png", kMap, panorama::Station{137.0, -4.5, {}, 2.0, {}, {}}};
+  const fs::path path = image_with_gpano(folder, "a.png");
+  panorama::Sidecar sidecar{"a.png", kMap, panorama::Viewpoint{137.0, -4.5, {}, 2.0, {}, {}}};
   sidecar.map.horizon_px += 0.4;  // what GPano rounds
   write(folder / "a.json", panorama::to_json(sidecar));
   for (const fs::path& given : {path, folder / "a.json"}) {
     const PanoramaDescription d = describe(given);
-    EXPECT_EQ(d.picture, path);
+    EXPECT_EQ(d.image, path);
     EXPECT_DOUBLE_EQ(d.map.horizon_px, 30.4);
     EXPECT_EQ(d.sources.size(), 2U);
     EXPECT_SAYS(d.sources[0], "a.json");
-    ASSERT_TRUE(d.station);
-    EXPECT_EQ(d.station->lon_deg, 137.0);
+    ASSERT_TRUE(d.viewpoint);
+    EXPECT_EQ(d.viewpoint->lon_deg, 137.0);
   }
 }
 
 TEST(OpenPanorama, ContradictionsNameBoth) {
   const test_support::TempDir folder;
-  const fs::path path = picture_with_gpano(folder, "a.png");
+  const fs::path path = image_with_gpano(folder, "a.png");
   panorama::Sidecar sidecar{"a.png", kMap, {}};
   sidecar.map.turn_azimuth_deg += 5.0;
   write(folder / "a.json", panorama::to_json(sidecar));
@@ -102,16 +102,16 @@ TEST(OpenPanorama, NothingFoundSaysWhatToGive) {
   EXPECT_SAYS(said(folder / "c.json"), "c.json", "names no picture");
   write(folder / "a.json", "{\"projection\": ");
   EXPECT_SAYS(said(folder / "a.png"), "a.json", "JSON");
-  // A JSON never names pictures in other folders.
+  // A JSON never names images in other folders.
   panorama::Sidecar sidecar{"../../a.png", panorama::cylinder_map(20, 10, 20, 0, 5), {}};
   write(folder / "d.json", panorama::to_json(sidecar));
   write(folder / "a.json", panorama::to_json({"a.png", sidecar.map, {}}));
-  EXPECT_EQ(describe(folder / "d.json").picture, folder / "a.png");
+  EXPECT_EQ(describe(folder / "d.json").image, folder / "a.png");
 }
 
-TEST(OpenPanorama, CutPicturesAreMessages) {
+TEST(OpenPanorama, CutImagesAreMessages) {
   const test_support::TempDir folder;
-  const fs::path path = picture_with_gpano(folder, "a.png");
+  const fs::path path = image_with_gpano(folder, "a.png");
   fs::resize_file(path, fs::file_size(path) - 20);
   EXPECT_SAYS(said(path), "a.png", "cut short");
 }
@@ -140,7 +140,7 @@ TEST(OpenPanorama, FindsLabelsBesideAndInside) {
         "PDS_VERSION_ID = PDS3\nOBJECT = IMAGE\n LINES = 60\n LINE_SAMPLES = 360\nEND_OBJECT\n" + kParms +
             std::string(360 * 60, '\1'));
   const PanoramaDescription raw = describe(folder / "raw.img");
-  EXPECT_EQ(raw.format, panorama::PictureFormat::kOther);
+  EXPECT_EQ(raw.format, panorama::ImageFileFormat::kOther);
   EXPECT_EQ(raw.map.width_px, 360);
   EXPECT_SAYS(raw.sources.at(0), "label in", "raw.img");
   write(folder / "no_size.img", "PDS_VERSION_ID = PDS3\n" + kParms);
@@ -149,7 +149,7 @@ TEST(OpenPanorama, FindsLabelsBesideAndInside) {
 
 TEST(OpenPanorama, HeadingMayBeUnknown) {
   const test_support::TempDir folder;
-  const fs::path path = picture_with_gpano(folder, "a.png");
+  const fs::path path = image_with_gpano(folder, "a.png");
   panorama::GPano gpano = panorama::gpano_of(kMap);
   gpano.heading_deg.reset();
   panorama::write_xmp(path, panorama::to_xmp(gpano));
@@ -160,7 +160,7 @@ TEST(OpenPanorama, TheNavcamMosaicOpens) {
   VPE_NEED_SHARED(path, "pano-navcam1051/N_L000_1051_ILT048CYL_S_2470_UNCORM1.jpg");
   const PanoramaDescription d = describe(path);
   EXPECT_EQ(d.map.kind, MapKind::kEquirectangular);
-  EXPECT_EQ(d.format, panorama::PictureFormat::kJpeg);
+  EXPECT_EQ(d.format, panorama::ImageFileFormat::kJpeg);
   EXPECT_EQ(d.map.width_px, 7696);
   EXPECT_EQ(d.map.height_px, 1800);
   EXPECT_TRUE(d.map.is_full_turn());
@@ -168,14 +168,14 @@ TEST(OpenPanorama, TheNavcamMosaicOpens) {
   EXPECT_NEAR(std::remainder(d.map.to_direction(0.5, 0.5).azimuth_deg, 360.0), 0.0, 1e-9);
   EXPECT_NEAR(d.map.to_direction(0.5, 0.5).elevation_deg, 17.7171, 1e-9);
   EXPECT_NEAR(d.map.to_direction(0.0, 1800.0).elevation_deg, -66.48, 0.03);
-  ASSERT_TRUE(d.station);
-  EXPECT_EQ(d.station->lon_deg, 137.37024);
-  EXPECT_EQ(d.station->lat_deg, -4.66798364);
-  EXPECT_EQ(d.station->ground_m, -4446.783203);
-  EXPECT_EQ(d.station->height_m, 1.97);
-  EXPECT_EQ(d.station->datum, mars::VerticalDatum::areoid());
+  ASSERT_TRUE(d.viewpoint);
+  EXPECT_EQ(d.viewpoint->lon_deg, 137.37024);
+  EXPECT_EQ(d.viewpoint->lat_deg, -4.66798364);
+  EXPECT_EQ(d.viewpoint->ground_m, -4446.783203);
+  EXPECT_EQ(d.viewpoint->height_m, 1.97);
+  EXPECT_EQ(d.viewpoint->datum, mars::VerticalDatum::areoid());
 
-  // Places that were measured in the picture, by pixel centres.
+  // Places that were measured in the image, by pixel centres.
   VPE_NEED_SHARED(targets, "pano-navcam1051/azel_targets_N_L000_1051_ILT048CYL_S_2470_UNCORM1_sol1051.csv");
   std::ifstream lines(targets);
   std::string line;

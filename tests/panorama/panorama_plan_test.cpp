@@ -15,10 +15,10 @@ namespace {
 using mars::kPi;
 using mars::kRadiansPerDegree;
 
-const Standpoint kStand{{137.4, -4.6, 2000, 77, 0, 0}, mars::kMarsRadius_m};
+const PoseOnSphere kStand{{137.4, -4.6, 2000, 77, 0, 0}, mars::kMarsRadius_m};
 
 // The map's direction at a place, in the body-fixed frame, without any View.
-glm::dvec3 ray_of(const PanoramaMap& map, const Standpoint& stand, double x, double y) {
+glm::dvec3 ray_of(const PanoramaMap& map, const PoseOnSphere& stand, double x, double y) {
   const Direction d = map.to_direction(x, y);
   const mars::LocalFrame frame = mars::local_frame({stand.pose.lon_deg, stand.pose.lat_deg});
   const mars::SinCos a = mars::sin_cos_deg(d.azimuth_deg);
@@ -28,8 +28,8 @@ glm::dvec3 ray_of(const PanoramaMap& map, const Standpoint& stand, double x, dou
 
 double angle_rad(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(glm::cross(a, b)); }
 
-// Every pixel of the picture belongs to one piece, and looks where the map says.
-void expect_covered(const PanoramaMap& map, const Standpoint& stand, int margin_px) {
+// Every pixel of the image belongs to one piece, and looks where the map says.
+void expect_covered(const PanoramaMap& map, const PoseOnSphere& stand, int margin_px) {
   std::int64_t pixels = 0;
   std::int64_t next = 0;
   std::mt19937 random(5);
@@ -72,7 +72,7 @@ PlanOptions options_of(MapKind kind, std::int64_t width_px) {
   return options;
 }
 
-TEST(Plan, PiecesLookWhereTheMapSays) {
+TEST(PanoramaPlan, PiecesLookWhereTheMapSays) {
   for (const MapKind kind : {MapKind::kCylinder, MapKind::kEquirectangular, MapKind::kFacets}) {
     for (const std::int64_t width_px : {37, 1000, 6000, 100000}) {
       PlanOptions options = options_of(kind, width_px);
@@ -86,16 +86,16 @@ TEST(Plan, PiecesLookWhereTheMapSays) {
   }
 }
 
-TEST(Plan, AtThePolesNorthIsAlongTheMeridian) {
+TEST(PanoramaPlan, AtThePolesNorthIsAlongTheMeridian) {
   for (const double lat_deg : {90.0, -90.0}) {
-    Standpoint stand = kStand;
+    PoseOnSphere stand = kStand;
     stand.pose.lat_deg = lat_deg;
     expect_covered(plan_panorama(options_of(MapKind::kCylinder, 900)).map, stand, 0);
     expect_covered(plan_panorama(options_of(MapKind::kFacets, 900)).map, stand, 6);
   }
 }
 
-TEST(Plan, FacetsFollowTheContract) {
+TEST(PanoramaPlan, FacetsFollowTheContract) {
   for (const int facets : {3, 8, 64}) {
     PlanOptions options = options_of(MapKind::kFacets, 6000);
     options.facets = facets;
@@ -118,11 +118,11 @@ TEST(Plan, FacetsFollowTheContract) {
   }
 }
 
-TEST(Plan, SizesAreAsAskedFor) {
+TEST(PanoramaPlan, SizesAreAsAskedFor) {
   PlanOptions options = options_of(MapKind::kCylinder, 6000);
   options.lowest_deg = -20;
   options.highest_deg = 40;
-  Plan plan = plan_panorama(options);
+  PanoramaPlan plan = plan_panorama(options);
   EXPECT_EQ(plan.map.width_px, 6000);
   EXPECT_TRUE(plan.rounded.empty());
   EXPECT_NEAR(plan.map.to_direction(0, 0).elevation_deg, 40, 0.5 * 360 / 6000);
@@ -163,7 +163,7 @@ TEST(Plan, SizesAreAsAskedFor) {
   EXPECT_NEAR(plan.map.to_direction(0, 0).azimuth_deg, 80, 0.01);
 }
 
-TEST(Plan, AreaOfWhatIsHeldIsBounded) {
+TEST(PanoramaPlan, AreaOfWhatIsHeldIsBounded) {
   for (const MapKind kind : {MapKind::kCylinder, MapKind::kFacets}) {
     PlanOptions options = options_of(kind, 100000);
     options.lowest_deg = -33;
@@ -188,7 +188,7 @@ std::string refusal(const PlanOptions& options) {
   return "";
 }
 
-TEST(Plan, RefusesWhatCannotBe) {
+TEST(PanoramaPlan, RefusesWhatCannotBe) {
   for (const int facets : {-1, 0, 2, 65, 1000000}) {
     PlanOptions options = options_of(MapKind::kFacets, 800);
     options.facets = facets;

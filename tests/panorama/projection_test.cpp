@@ -140,7 +140,7 @@ TEST(PanoramaMap, HasNoPlaceForWhatItDoesNotShow) {
     EXPECT_FALSE(arc.to_pixel({0.0, std::numeric_limits<double>::quiet_NaN()}));
     EXPECT_FALSE(arc.to_pixel({std::numeric_limits<double>::infinity(), 0.0}));
   }
-  // The horizon above the picture's edge, which shows ground only.
+  // The horizon above the image's edge, which shows ground only.
   const PanoramaMap below = panorama::equirectangular_map(100, 100, 3600, 0.0, -50.0);
   ASSERT_EQ(check(below), "");
   EXPECT_FALSE(below.to_pixel({5.0, 0.0}));
@@ -154,7 +154,7 @@ TEST(PanoramaMap, HasNoPlaceForWhatItDoesNotShow) {
 // Azimuth and elevation of a body-fixed direction seen from a pose.
 Direction seen_from(const mars::Pose& pose, const glm::dvec3& ray) {
   const mars::Axes level =
-      mars::to_eye({pose.lon_deg, pose.lat_deg, pose.alt_m, 0, 0, 0}, mars::kMarsRadius_m).axes;
+      mars::to_camera({pose.lon_deg, pose.lat_deg, pose.alt_m, 0, 0, 0}, mars::kMarsRadius_m).axes;
   return {std::atan2(glm::dot(ray, level.right), glm::dot(ray, level.forward)) * kDegrees,
           std::asin(glm::dot(ray, level.up)) * kDegrees};
 }
@@ -171,7 +171,7 @@ TEST(PanoramaMap, AgreesWithTheViewsThatMakeIt) {
       const mars::Pose pose{
           random.uniform(-180, 180), random.uniform(-80, 80), 10.0, random.uniform(0, 360), 0, 0};
       vpe::core::View view{
-          mars::to_eye(pose, mars::kMarsRadius_m), projection, 60.0, 1600, 400, {13.5, -21.25}, {}};
+          mars::to_camera(pose, mars::kMarsRadius_m), projection, 60.0, 1600, 400, {13.5, -21.25}, {}};
       if (n % 2 == 1) view.part = {200, 30, 700, 300};
       ASSERT_EQ(vpe::core::check(view), "");
       const PanoramaMap map = panorama::map_of(view);
@@ -192,7 +192,7 @@ TEST(PanoramaMap, AgreesWithThePerspectiveViewOfEachFacet) {
     for (int k = 0; k < facets; ++k) {
       const mars::Pose pose{137.4, -4.6, 10.0, 33.0 + 360.0 * k / facets, 0, 0};
       const double fov_deg = 2.0 * std::atan(150.0 / map.focal_px) * kDegrees;
-      const vpe::core::View view{mars::to_eye(pose, mars::kMarsRadius_m),
+      const vpe::core::View view{mars::to_camera(pose, mars::kMarsRadius_m),
                                  vpe::core::Projection::kPerspective,
                                  fov_deg,
                                  240,
@@ -211,11 +211,11 @@ TEST(PanoramaMap, AgreesWithThePerspectiveViewOfEachFacet) {
 
 TEST(PanoramaMap, RefusesViewsThatAreNoPanoramas) {
   vpe::core::View view;
-  view.eye = mars::to_eye({0, 0, 10, 0, 0, 0}, mars::kMarsRadius_m);
+  view.camera = mars::to_camera({0, 0, 10, 0, 0, 0}, mars::kMarsRadius_m);
   EXPECT_THROW(panorama::map_of(view), std::invalid_argument);
   view.projection = vpe::core::Projection::kCylinder;
   EXPECT_NO_THROW(panorama::map_of(view));
-  view.eye = mars::to_eye({0, 0, 10, 0, 0.5, 0}, mars::kMarsRadius_m);
+  view.camera = mars::to_camera({0, 0, 10, 0, 0.5, 0}, mars::kMarsRadius_m);
   EXPECT_THROW(panorama::map_of(view), std::invalid_argument);
 }
 

@@ -1,4 +1,4 @@
-// Views of panoramas, against what the picture's formula says in each direction.
+// Views of panoramas, against what the image's formula says in each direction.
 #include "panorama/viewer/render_view.h"
 
 #include <cmath>
@@ -12,13 +12,13 @@ namespace {
 
 using panorama::Direction;
 using panorama::PanoramaMap;
-using panorama::Picture;
-using panorama::PictureLevel;
+using panorama::TiledImage;
+using panorama::ImageLevel;
 using panorama::Tile;
 
 constexpr double kDeg = mars::kRadiansPerDegree;
 
-// A picture by formula, its smaller levels means of the larger; tiles of 64 x 64.
+// An image by formula, its smaller levels means of the larger; tiles of 64 x 64.
 class FormulaTiles : public panorama::TileSource {
  public:
   using Formula = std::function<glm::dvec3(const Direction&)>;
@@ -32,9 +32,9 @@ class FormulaTiles : public panorama::TileSource {
     }
     for (int n = 1; n < levels; ++n) add_level();
   }
-  const std::vector<PictureLevel>& levels() const override { return levels_; }
+  const std::vector<ImageLevel>& levels() const override { return levels_; }
   std::shared_ptr<const Tile> read(int level, std::int64_t column, std::int64_t row) const override {
-    const PictureLevel& size = levels_[static_cast<std::size_t>(level)];
+    const ImageLevel& size = levels_[static_cast<std::size_t>(level)];
     auto tile = std::make_shared<Tile>();
     tile->width_px = tile->height_px = 64;
     for (std::int64_t y = row * 64; y < row * 64 + 64; ++y) {
@@ -54,8 +54,8 @@ class FormulaTiles : public panorama::TileSource {
 
  private:
   void add_level() {
-    const PictureLevel fine = levels_.back();
-    const PictureLevel coarse{fine.width_px / 2, fine.height_px / 2, 64, 64};
+    const ImageLevel fine = levels_.back();
+    const ImageLevel coarse{fine.width_px / 2, fine.height_px / 2, 64, 64};
     const auto& from = pixels_.back();
     const auto at = [&](std::int64_t x, std::int64_t y) {
       return from[static_cast<std::size_t>(y * fine.width_px + x)];
@@ -71,11 +71,11 @@ class FormulaTiles : public panorama::TileSource {
     pixels_.push_back(std::move(to));
   }
 
-  std::vector<PictureLevel> levels_;
+  std::vector<ImageLevel> levels_;
   std::vector<std::vector<glm::dvec3>> pixels_;
 };
 
-Picture picture_of(const PanoramaMap& map, const FormulaTiles::Formula& formula, int levels = 4) {
+TiledImage image_of(const PanoramaMap& map, const FormulaTiles::Formula& formula, int levels = 4) {
   return {std::make_unique<FormulaTiles>(map, levels, formula), std::size_t{64} << 20};
 }
 
@@ -98,11 +98,11 @@ const std::vector<PanoramaMap>& maps() {
 
 TEST(Look, ShowsWhatIsThereAcrossEverySeam) {
   for (const PanoramaMap& map : maps()) {
-    const Picture picture = picture_of(map, smooth);
+    const TiledImage tiled_image = image_of(map, smooth);
     for (double yaw_deg = 0; yaw_deg < 360; yaw_deg += 45) {
       for (const double fov_deg : {20.0, 60.0}) {
         const vpe::core::View view = panorama::view_of(yaw_deg, 3.0, fov_deg, 160, 90);
-        const vpe::core::RgbImage image = panorama::look(picture, map, view, {});
+        const vpe::core::RgbImage image = panorama::look(tiled_image, map, view, {});
         double worst = 0;
         for (int y = 0; y < 90; ++y) {
           for (int x = 0; x < 160; ++x) {
@@ -129,7 +129,7 @@ TEST(Look, MarksAreFoundWhereTheViewerSays) {
   for (const PanoramaMap& map : large) {
     std::vector<Direction> marks;
     for (int n = 0; n < 20; ++n) marks.push_back({std::fmod(2.0 + 18.0 * n, 360.0), -14.0 + 1.5 * n});
-    const Picture picture = picture_of(
+    const TiledImage tiled_image = image_of(
         map,
         [&](const Direction& d) {
           double nearest_deg = 1e9;
@@ -147,7 +147,7 @@ TEST(Look, MarksAreFoundWhereTheViewerSays) {
       panorama::Viewer viewer(map, 240, 180);
       viewer.set_fov(20.0);
       viewer.look_at(mark.azimuth_deg + 4.0, mark.elevation_deg - 3.0);
-      const vpe::core::RgbImage image = panorama::look(picture, map, viewer.view(), {});
+      const vpe::core::RgbImage image = panorama::look(tiled_image, map, viewer.view(), {});
       const auto said = viewer.screen(mark);
       ASSERT_TRUE(said);
       glm::dvec2 sum(0.0);
@@ -173,31 +173,31 @@ TEST(Look, MarksAreFoundWhereTheViewerSays) {
 
 TEST(Look, FineStripesFadeWhenTheyAreFarOff) {
   const PanoramaMap map = panorama::equirectangular_map(2048, 1024, 2048, 0.0, 512.0);
-  const Picture picture = picture_of(
+  const TiledImage tiled_image = image_of(
       map,
       [&](const Direction& d) {
         const auto at = map.place(d);
         return glm::dvec3((static_cast<int>(at.x) + static_cast<int>(at.y)) % 2 == 0 ? 255.0 : 0.0);
       },
       5);
-  // Eight pixels of the picture fall into one of the view.
+  // Eight pixels of the image fall into one of the view.
   const vpe::core::RgbImage image =
-      panorama::look(picture, map, panorama::view_of(33.0, 0.0, 90.0, 80, 65), {});
+      panorama::look(tiled_image, map, panorama::view_of(33.0, 0.0, 90.0, 80, 65), {});
   for (const vpe::base::Rgb& p : image.pixels) EXPECT_NEAR(p.g, 127.5, 6.0);
-  // Towards the zenith a row of the picture is a point; it is still the mean.
-  const vpe::core::RgbImage up = panorama::look(picture, map, panorama::view_of(33.0, 90.0, 40.0, 64, 64), {});
+  // Towards the zenith a row of the image is a point; it is still the mean.
+  const vpe::core::RgbImage up = panorama::look(tiled_image, map, panorama::view_of(33.0, 90.0, 40.0, 64, 64), {});
   for (const vpe::base::Rgb& p : up.pixels) EXPECT_NEAR(p.g, 127.5, 20.0);
 }
 
 TEST(Look, PartsOfATurnEndSharply) {
   // A third of a turn, from azimuth 300 to 60.
   const PanoramaMap map = panorama::cylinder_map(600, 300, 1800, 300.0, 150.0);
-  const Picture picture = picture_of(
+  const TiledImage tiled_image = image_of(
       map, [](const Direction&) { return glm::dvec3(200.0); }, 3);
-  panorama::LookOptions options;
+  panorama::RenderViewOptions options;
   options.outside = {0, 0, 255};
   const vpe::core::View view = panorama::view_of(60.0, 0.0, 30.0, 200, 100);
-  const vpe::core::RgbImage image = panorama::look(picture, map, view, options);
+  const vpe::core::RgbImage image = panorama::look(tiled_image, map, view, options);
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 200; ++x) {
       const Direction d = panorama::to_direction(vpe::core::pixel_ray(view, x + 0.5, y + 0.5));
@@ -213,21 +213,21 @@ TEST(Look, PartsOfATurnEndSharply) {
 TEST(Look, AlmostATurnHasNoGap) {
   // As rover mosaics: whole degrees a pixel do not make whole columns.
   const PanoramaMap map = panorama::equirectangular_map(770, 300, 770.45, 0.0, 150.0);
-  const Picture picture = picture_of(
+  const TiledImage tiled_image = image_of(
       map, [](const Direction&) { return glm::dvec3(200.0); }, 3);
   for (const double fov_deg : {0.5, 5.0, 60.0}) {
     const vpe::core::RgbImage image =
-        panorama::look(picture, map, panorama::view_of(0.0, 0.0, fov_deg, 120, 80), {});
+        panorama::look(tiled_image, map, panorama::view_of(0.0, 0.0, fov_deg, 120, 80), {});
     for (const vpe::base::Rgb& p : image.pixels) EXPECT_EQ(p, (vpe::base::Rgb{200, 200, 200}));
   }
 }
 
 TEST(Look, MoreThanATurnIsSeamless) {
   const PanoramaMap map = panorama::cylinder_map(1000, 300, 800, 0.0, 150.0);
-  const Picture picture = picture_of(map, smooth, 3);
+  const TiledImage tiled_image = image_of(map, smooth, 3);
   for (double yaw_deg = 0; yaw_deg < 360; yaw_deg += 20) {
     const vpe::core::View view = panorama::view_of(yaw_deg, 0.0, 40.0, 90, 60);
-    const vpe::core::RgbImage image = panorama::look(picture, map, view, {});
+    const vpe::core::RgbImage image = panorama::look(tiled_image, map, view, {});
     for (int x = 0; x < 90; ++x) {
       const glm::dvec3 is = smooth(panorama::to_direction(vpe::core::pixel_ray(view, x + 0.5, 30.5)));
       EXPECT_NEAR(image.pixels[static_cast<std::size_t>(30 * 90 + x)].r, is.x, 3.0) << yaw_deg;
@@ -242,9 +242,9 @@ TEST(Look, TheEyesOfAPairStayApart) {
     Halves() {
       for (int n = 0; n < 5; ++n) levels_.push_back({1024 >> n, 208 >> n, 1024 >> n, 208 >> n});
     }
-    const std::vector<PictureLevel>& levels() const override { return levels_; }
+    const std::vector<ImageLevel>& levels() const override { return levels_; }
     std::shared_ptr<const Tile> read(int level, std::int64_t, std::int64_t) const override {
-      const PictureLevel& size = levels_[static_cast<std::size_t>(level)];
+      const ImageLevel& size = levels_[static_cast<std::size_t>(level)];
       auto tile = std::make_shared<Tile>();
       tile->width_px = size.tile_width_px;
       tile->height_px = size.tile_height_px;
@@ -256,21 +256,21 @@ TEST(Look, TheEyesOfAPairStayApart) {
     }
 
    private:
-    std::vector<PictureLevel> levels_;
+    std::vector<ImageLevel> levels_;
   };
-  const Picture pair(std::make_unique<Halves>(), std::size_t{64} << 20);
-  const PanoramaMap eye = panorama::cylinder_map(512, 208, 512, 0.0, 100.0);
+  const TiledImage pair(std::make_unique<Halves>(), std::size_t{64} << 20);
+  const PanoramaMap camera = panorama::cylinder_map(512, 208, 512, 0.0, 100.0);
   for (const double fov_deg : {10.0, 90.0}) {
     for (const double yaw_deg : {0.0, 180.0, 359.0}) {
       for (const int height : {8, 120}) {
         const vpe::core::View view = panorama::view_of(yaw_deg, 0.0, fov_deg, 2 * height, height);
-        panorama::LookOptions options;
+        panorama::RenderViewOptions options;
         options.outside = {0, 255, 0};
-        for (const vpe::base::Rgb& p : panorama::look(pair, eye, view, options).pixels)
+        for (const vpe::base::Rgb& p : panorama::look(pair, camera, view, options).pixels)
           EXPECT_EQ(p, (vpe::base::Rgb{0, 255, 0}));
         options.outside = {0, 0, 255};
         options.origin.x_px = 512;
-        for (const vpe::base::Rgb& p : panorama::look(pair, eye, view, options).pixels)
+        for (const vpe::base::Rgb& p : panorama::look(pair, camera, view, options).pixels)
           EXPECT_EQ(p, (vpe::base::Rgb{0, 0, 255}));
       }
     }
@@ -280,32 +280,32 @@ TEST(Look, TheEyesOfAPairStayApart) {
 TEST(Look, TheSameBytesForAnyNumberOfThreads) {
   const PanoramaMap map = maps()[2];
   const vpe::core::View view = panorama::view_of(7.0, 5.0, 70.0, 241, 153);
-  panorama::LookOptions one;
+  panorama::RenderViewOptions one;
   one.threads = 1;
-  const Picture picture = picture_of(map, smooth);
-  const vpe::core::RgbImage alone = panorama::look(picture, map, view, one);
+  const TiledImage tiled_image = image_of(map, smooth);
+  const vpe::core::RgbImage alone = panorama::look(tiled_image, map, view, one);
   for (const int threads : {2, 8}) {
-    panorama::LookOptions many;
+    panorama::RenderViewOptions many;
     many.threads = threads;
     // A budget of two tiles only: what is kept changes nothing either.
-    const Picture tight(std::make_unique<FormulaTiles>(map, 4, smooth), 25000);
+    const TiledImage tight(std::make_unique<FormulaTiles>(map, 4, smooth), 25000);
     EXPECT_EQ(panorama::look(tight, map, view, many).pixels, alone.pixels);
   }
 }
 
 TEST(Look, OtherViewsAndBadOnes) {
   const PanoramaMap map = maps()[0];
-  const Picture picture = picture_of(map, smooth);
+  const TiledImage tiled_image = image_of(map, smooth);
   vpe::core::View view = panorama::view_of(0.0, 0.0, 60.0, 64, 48);
   view.projection = vpe::core::Projection::kEquirectangular;
-  const vpe::core::RgbImage round = panorama::look(picture, map, view, {});
+  const vpe::core::RgbImage round = panorama::look(tiled_image, map, view, {});
   const Direction d = panorama::to_direction(vpe::core::pixel_ray(view, 20.5, 24.5));
   EXPECT_NEAR(round.pixels[24 * 64 + 20].r, smooth(d).x, 12.0);  // a pixel is 6 degrees wide
   view.fov_deg = 0;
-  EXPECT_THROW(panorama::look(picture, map, view, {}), std::invalid_argument);
+  EXPECT_THROW(panorama::look(tiled_image, map, view, {}), std::invalid_argument);
   PanoramaMap bad = map;
   bad.focal_px = NAN;
-  EXPECT_THROW(panorama::look(picture, bad, panorama::view_of(0, 0, 60, 64, 48), {}), std::invalid_argument);
+  EXPECT_THROW(panorama::look(tiled_image, bad, panorama::view_of(0, 0, 60, 64, 48), {}), std::invalid_argument);
 }
 
 }  // namespace

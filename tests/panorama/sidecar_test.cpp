@@ -1,4 +1,4 @@
-// JSON beside pictures.
+// JSON beside images.
 #include "panorama/metadata/sidecar.h"
 
 #include <cmath>
@@ -33,12 +33,12 @@ TEST(Sidecar, ComesBackFromItsText) {
     if (n % 3 != 2) sidecar.map.focal_px *= random.uniform(0.9, 1.1);
     sidecar.map.crop_left_px = random.uniform(0, 3500);
     if (n % 5 != 0)
-      sidecar.station = {random.uniform(-180, 180), -4.6, 1.5, 2.0, -4446.5, mars::VerticalDatum::areoid()};
+      sidecar.viewpoint = {random.uniform(-180, 180), -4.6, 1.5, 2.0, -4446.5, mars::VerticalDatum::areoid()};
     ASSERT_EQ(panorama::check(sidecar.map), "");
     const Sidecar back = panorama::read_sidecar(panorama::to_json(sidecar));
     EXPECT_EQ(back.image, sidecar.image);
     EXPECT_EQ(back.map.kind, sidecar.map.kind);
-    EXPECT_EQ(back.station, sidecar.station);
+    EXPECT_EQ(back.viewpoint, sidecar.viewpoint);
     EXPECT_LT(panorama::largest_difference_px(sidecar.map, back.map), panorama::kRoundTrip_px);
   }
 }

@@ -13,12 +13,12 @@ namespace test_support {
 class TwoEyes {
  public:
   TwoEyes(const mars::Pose& middle, double radius_m, double base_m)
-      : origin_m_(mars::to_eye(middle, radius_m).eye_m),
+      : origin_m_(mars::to_camera(middle, radius_m).camera_m),
         axes_(mars::local_frame({middle.lon_deg, middle.lat_deg})),
         base_m_(base_m) {}
 
   struct Ray {
-    glm::dvec3 eye_m;
+    glm::dvec3 camera_m;
     glm::dvec3 direction;
   };
   // Body-fixed.

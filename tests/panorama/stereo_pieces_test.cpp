@@ -19,7 +19,7 @@ namespace {
 using test_support::TwoEyes;
 using vpe::core::StereoLayout;
 
-const Standpoint kStand{{137.4, -4.6, 2000, 0, 0, 0}, mars::kMarsRadius_m};
+const PoseOnSphere kStand{{137.4, -4.6, 2000, 0, 0, 0}, mars::kMarsRadius_m};
 
 PanoramaMap map_with(MapKind kind, std::int64_t width_px, double lowest_deg, double highest_deg) {
   PlanOptions options;
@@ -42,7 +42,7 @@ const Piece* piece_at(const std::vector<Piece>& pieces, std::int64_t x, std::int
 glm::dvec2 off_px(const PanoramaMap& map, const TwoEyes& eyes, Eye eye, const Piece& piece, std::int64_t x,
                   std::int64_t y, double range_m) {
   const glm::dvec3 ray = line_of_sight(piece, x, y);
-  const glm::dvec2 is = map.place(eyes.seen(eye, piece.view.eye.eye_m + range_m * ray));
+  const glm::dvec2 is = map.place(eyes.seen(eye, piece.view.camera.position_m + range_m * ray));
   return {std::remainder(is.x - (static_cast<double>(x) + 0.5), map.turn_px),
           is.y - (static_cast<double>(y) + 0.5)};
 }
@@ -120,7 +120,7 @@ TEST(StereoPieces, AreAsLargeAsTheBoundAllows) {
   EXPECT_EQ(bands.front().columns, bands.back().columns);
   EXPECT_GE(bands.back().columns, 8);  // 10.6 by the formula
   for (const StereoBand& band : bands) EXPECT_EQ(band.base_m, 0.1);
-  // As many for any size of picture.
+  // As many for any size of image.
   EXPECT_EQ(stereo_bands(map_with(MapKind::kCylinder, 60000, -45, 45), usual).back().columns,
             bands.back().columns);
   const Worst worst = worst_of(map, usual, Eye::kLeft, 2.95);
@@ -147,7 +147,7 @@ TEST(StereoPieces, NearerGroundIsShiftedInwardsAndTheHorizonIsNot) {
     for (const double elevation_deg : {0.0, -30.0}) {
       for (const double range_m : {3.0, 30.0, 1e9}) {
         const TwoEyes::Ray ray = middle.ray(Eye::kLeft, {azimuth_deg, elevation_deg});
-        const glm::dvec3 point_m = ray.eye_m + range_m * ray.direction;
+        const glm::dvec3 point_m = ray.camera_m + range_m * ray.direction;
         const double level_m = range_m * std::cos(elevation_deg * mars::kRadiansPerDegree);
         EXPECT_NEAR(column_of(Eye::kLeft, point_m) - column_of(Eye::kRight, point_m),
                     0.1 * map.focal_px / level_m, 0.1)
@@ -162,9 +162,9 @@ TEST(StereoPieces, EyesStandUprightUnlessThatShows) {
   const auto tilt = [&](double base_m) {
     const EyePair pair{StereoLayout::kSideBySide, base_m, 30 * base_m};
     const auto pieces = eye_pieces_of(map, kStand, stereo_bands(map, pair), Eye::kRight, {0, 256});
-    const mars::EyePose& eye = pieces.back().view.eye;
+    const mars::CameraPose& eye = pieces.back().view.camera;
     EXPECT_NEAR(glm::dot(eye.axes.up, eye.axes.forward), 0, 1e-15);
-    return glm::length(glm::cross(eye.axes.up, glm::normalize(eye.eye_m)));
+    return glm::length(glm::cross(eye.axes.up, glm::normalize(camera.position_m)));
   };
   EXPECT_LT(tilt(0.1), 1e-15);
   EXPECT_LT(tilt(300), 1e-15);
@@ -179,7 +179,7 @@ TEST(StereoPieces, CoverTheFileOnceForEachEye) {
   for (const StereoLayout layout :
        {StereoLayout::kSideBySide, StereoLayout::kOverUnder, StereoLayout::kAnaglyph}) {
     const EyePair pair{layout, 0.1, 3};
-    const PictureSize size = size_of_pair(map, layout);
+    const ImageSize size = size_of_pair(map, layout);
     EXPECT_EQ(size.width_px, layout == StereoLayout::kSideBySide ? 1400 : 700);
     EXPECT_EQ(size.height_px, map.height_px * (layout == StereoLayout::kOverUnder ? 2 : 1));
     std::vector<int> covered(static_cast<std::size_t>(size.width_px * size.height_px));
@@ -194,9 +194,9 @@ TEST(StereoPieces, CoverTheFileOnceForEachEye) {
                              : layout == StereoLayout::kSideBySide ? piece.x < map.width_px
                                                                    : piece.y < map.height_px;
         // It stands on that side of the middle.
-        const glm::dvec3 aside_m = piece.view.eye.eye_m - mars::to_eye(kStand.pose, kStand.radius_m).eye_m;
+        const glm::dvec3 aside_m = piece.view.camera.position_m - mars::to_camera(kStand.pose, kStand.radius_m).camera_m;
         const glm::dvec3 right =
-            glm::cross(line_of_sight(piece, piece.x + piece.width / 2, piece.y), piece.view.eye.axes.up);
+            glm::cross(line_of_sight(piece, piece.x + piece.width / 2, piece.y), piece.view.camera.axes.up);
         EXPECT_EQ(glm::dot(aside_m, right) < 0, is_left);
         for (std::int64_t y = piece.y; y < piece.y + piece.height; ++y) {
           for (std::int64_t i = piece.x; i < piece.x + piece.width; ++i) {

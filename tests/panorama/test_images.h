@@ -1,4 +1,4 @@
-// Small pictures and programs that judge them.
+// Small images and programs that judge them.
 #pragma once
 
 #include <filesystem>

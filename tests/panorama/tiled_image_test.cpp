@@ -1,4 +1,4 @@
-// Pages of pictures: what is read, when, and how much of it is kept.
+// Pages of images: what is read, when, and how much of it is kept.
 #include "panorama/image/tiled_image.h"
 
 #include <tiffio.h>
@@ -15,19 +15,19 @@
 namespace {
 
 namespace fs = std::filesystem;
-using panorama::Picture;
-using panorama::PictureFormat;
-using panorama::PictureLevel;
+using panorama::TiledImage;
+using panorama::ImageFileFormat;
+using panorama::ImageLevel;
 using panorama::Tile;
 using panorama_test::message_of;
 
-// Tiles of 64 x 64 that know where they are, of a picture of any size.
+// Tiles of 64 x 64 that know where they are, of an image of any size.
 class FakeTiles : public panorama::TileSource {
  public:
   FakeTiles(std::int64_t width_px, std::int64_t height_px, int levels) {
     for (int n = 0; n < levels; ++n) levels_.push_back({width_px >> n, height_px >> n, 64, 64});
   }
-  const std::vector<PictureLevel>& levels() const override { return levels_; }
+  const std::vector<ImageLevel>& levels() const override { return levels_; }
   std::shared_ptr<const Tile> read(int level, std::int64_t column, std::int64_t row) const override {
     ++reads;
     if (fails) throw vpe::base::FileError("no such tile");
@@ -41,56 +41,56 @@ class FakeTiles : public panorama::TileSource {
   std::atomic<bool> fails = false;
 
  private:
-  std::vector<PictureLevel> levels_;
+  std::vector<ImageLevel> levels_;
 };
 
 constexpr std::size_t kTileBytes = 64 * 64 * 3;
 
-TEST(Picture, KeepsWithinItsBudgetTheLastUsed) {
+TEST(TiledImage, KeepsWithinItsBudgetTheLastUsed) {
   auto source = std::make_unique<FakeTiles>(6400, 640, 3);
   const FakeTiles& fake = *source;
-  const Picture picture(std::move(source), 10 * (kTileBytes + 200));
-  for (int n = 0; n < 10; ++n) picture.tile(0, n, 0);
+  const TiledImage tiled_image(std::move(source), 10 * (kTileBytes + 200));
+  for (int n = 0; n < 10; ++n) tiled_image.tile(0, n, 0);
   EXPECT_EQ(fake.reads, 10);
-  for (int n = 0; n < 10; ++n) picture.tile(0, n, 0);
+  for (int n = 0; n < 10; ++n) tiled_image.tile(0, n, 0);
   EXPECT_EQ(fake.reads, 10);
-  picture.tile(0, 0, 0);
-  picture.tile(0, 50, 0);  // puts out the tile that was used longest ago: 1
-  picture.tile(0, 0, 0);
+  tiled_image.tile(0, 0, 0);
+  tiled_image.tile(0, 50, 0);  // puts out the tile that was used longest ago: 1
+  tiled_image.tile(0, 0, 0);
   EXPECT_EQ(fake.reads, 11);
-  picture.tile(0, 1, 0);
+  tiled_image.tile(0, 1, 0);
   EXPECT_EQ(fake.reads, 12);
   test_support::Random random(7);
   for (int n = 0; n < 10000; ++n) {
-    const auto tile = picture.tile(0, random.integer(0, 99), random.integer(0, 9));
+    const auto tile = tiled_image.tile(0, random.integer(0, 99), random.integer(0, 9));
     ASSERT_EQ(tile->pixels.size(), 64U * 64U);
-    ASSERT_LE(picture.bytes(), 10 * (kTileBytes + 200));
+    ASSERT_LE(tiled_image.bytes(), 10 * (kTileBytes + 200));
   }
-  EXPECT_EQ(picture.reads(), fake.reads);
+  EXPECT_EQ(tiled_image.reads(), fake.reads);
 }
 
-TEST(Picture, ThreadsThatWantOneTileReadItOnce) {
+TEST(TiledImage, ThreadsThatWantOneTileReadItOnce) {
   auto source = std::make_unique<FakeTiles>(6400, 640, 1);
   const FakeTiles& fake = *source;
-  const Picture picture(std::move(source), std::size_t{64} << 20);
-  vpe::core::parallel_for(20000, 8, [&](std::size_t n) {
+  const TiledImage tiled_image(std::move(source), std::size_t{64} << 20);
+  vpe::base::parallel_for(20000, 8, [&](std::size_t n) {
     const auto column = static_cast<std::int64_t>(n % 100);
     const auto row = static_cast<std::int64_t>(n / 100 % 10);
-    const auto tile = picture.tile(0, column, row);
+    const auto tile = tiled_image.tile(0, column, row);
     EXPECT_EQ(tile->pixels[5],
               (vpe::base::Rgb{0, static_cast<std::uint8_t>(column), static_cast<std::uint8_t>(row)}));
   });
   EXPECT_EQ(fake.reads, 1000);
 }
 
-TEST(Picture, AFailureIsToldAndTriedAgain) {
+TEST(TiledImage, AFailureIsToldAndTriedAgain) {
   auto source = std::make_unique<FakeTiles>(640, 640, 1);
   FakeTiles& fake = *source;
-  const Picture picture(std::move(source), std::size_t{1} << 20);
+  const TiledImage tiled_image(std::move(source), std::size_t{1} << 20);
   fake.fails = true;
-  EXPECT_SAYS(message_of([&] { picture.tile(0, 1, 1); }), "no such tile");
+  EXPECT_SAYS(message_of([&] { tiled_image.tile(0, 1, 1); }), "no such tile");
   fake.fails = false;
-  EXPECT_EQ(picture.tile(0, 1, 1)->pixels[0].g, 1);
+  EXPECT_EQ(tiled_image.tile(0, 1, 1)->pixels[0].g, 1);
 }
 
 vpe::base::Rgb colour_at(int x, int y) {
@@ -104,27 +104,27 @@ vpe::core::RgbImage pattern(int width, int height) {
   return image;
 }
 
-vpe::base::Rgb pixel(const Picture& picture, int level, std::int64_t x, std::int64_t y) {
-  const PictureLevel& size = picture.levels()[static_cast<std::size_t>(level)];
-  const auto tile = picture.tile(level, x / size.tile_width_px, y / size.tile_height_px);
+vpe::base::Rgb pixel(const TiledImage& tiled_image, int level, std::int64_t x, std::int64_t y) {
+  const ImageLevel& size = tiled_image.levels()[static_cast<std::size_t>(level)];
+  const auto tile = tiled_image.tile(level, x / size.tile_width_px, y / size.tile_height_px);
   return tile
       ->pixels[static_cast<std::size_t>(y % size.tile_height_px * tile->width_px + x % size.tile_width_px)];
 }
 
 // All of level 0 as the pattern; sizes of levels halve, rounded either way.
-void expect_pattern(const Picture& picture, int width, int height) {
-  ASSERT_EQ(picture.levels()[0].width_px, width);
-  ASSERT_EQ(picture.levels()[0].height_px, height);
+void expect_pattern(const TiledImage& tiled_image, int width, int height) {
+  ASSERT_EQ(tiled_image.levels()[0].width_px, width);
+  ASSERT_EQ(tiled_image.levels()[0].height_px, height);
   for (int y = 0; y < height; y += 31) {
-    for (int x = 0; x < width; ++x) ASSERT_EQ(pixel(picture, 0, x, y), colour_at(x, y)) << x << "," << y;
+    for (int x = 0; x < width; ++x) ASSERT_EQ(pixel(tiled_image, 0, x, y), colour_at(x, y)) << x << "," << y;
   }
-  for (std::size_t n = 1; n < picture.levels().size(); ++n)
-    EXPECT_LE(std::abs(2 * picture.levels()[n].width_px - picture.levels()[n - 1].width_px), 1);
-  EXPECT_LE(picture.levels().back().width_px, 256);
+  for (std::size_t n = 1; n < tiled_image.levels().size(); ++n)
+    EXPECT_LE(std::abs(2 * tiled_image.levels()[n].width_px - tiled_image.levels()[n - 1].width_px), 1);
+  EXPECT_LE(tiled_image.levels().back().width_px, 256);
 }
 
-panorama::PictureOptions options(const test_support::TempDir& folder, std::size_t budget_bytes) {
-  panorama::PictureOptions options;
+panorama::TiledImageOptions options(const test_support::TempDir& folder, std::size_t budget_bytes) {
+  panorama::TiledImageOptions options;
   options.budget_bytes = budget_bytes;
   options.cache_folder = [path = folder / "cache"] {
     fs::create_directories(path);
@@ -137,17 +137,17 @@ panorama::PictureOptions options(const test_support::TempDir& folder, std::size_
 constexpr int kWidth = 2001;
 constexpr int kHeight = 1003;
 
-TEST(OpenPicture, SmallOnesLieInMemory) {
+TEST(OpenImage, SmallOnesLieInMemory) {
   const test_support::TempDir folder;
   const vpe::core::RgbImage image = pattern(701, 301);
   vpe::core::write_image(folder / "a.png", image.pixels, 701, 301);
-  const auto picture = panorama::open_picture(folder / "a.png", PictureFormat::kPng, options(folder, 1 << 26));
-  expect_pattern(*picture, 701, 301);
-  EXPECT_EQ(picture->levels().size(), 3U);
+  const auto tiled_image = panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 1 << 26));
+  expect_pattern(*tiled_image, 701, 301);
+  EXPECT_EQ(tiled_image->levels().size(), 3U);
   EXPECT_FALSE(fs::exists(folder / "cache"));
 }
 
-TEST(OpenPicture, LargePngIsCopiedOnce) {
+TEST(OpenImage, LargePngIsCopiedOnce) {
   const test_support::TempDir folder;
   const vpe::core::RgbImage image = pattern(kWidth, kHeight);
   vpe::core::write_image(folder / "a.png", image.pixels, kWidth, kHeight);
@@ -157,37 +157,37 @@ TEST(OpenPicture, LargePngIsCopiedOnce) {
     EXPECT_LE(fraction, 1.0);
     ++steps;
   };
-  expect_pattern(*panorama::open_picture(folder / "a.png", PictureFormat::kPng, opening), kWidth, kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth, kHeight);
   EXPECT_GT(steps, 5);
   steps = 0;
-  expect_pattern(*panorama::open_picture(folder / "a.png", PictureFormat::kPng, opening), kWidth, kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth, kHeight);
   EXPECT_EQ(steps, 0);
-  // Another picture under that name is another one.
+  // Another image under that name is another one.
   vpe::core::write_image(folder / "a.png", pattern(kWidth + 4, kHeight).pixels, kWidth + 4, kHeight);
-  expect_pattern(*panorama::open_picture(folder / "a.png", PictureFormat::kPng, opening), kWidth + 4, kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth + 4, kHeight);
 }
 
-TEST(OpenPicture, CopiesThatLostALevelAreMadeAgain) {
+TEST(OpenImage, CopiesThatLostALevelAreMadeAgain) {
   const test_support::TempDir folder;
   vpe::core::write_image(folder / "a.png", pattern(kWidth, kHeight).pixels, kWidth, kHeight);
-  panorama::open_picture(folder / "a.png", PictureFormat::kPng, options(folder, 0));
+  panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 0));
   for (const char* name : {"level-0.tif", "level-1.tif"}) {
     for (const auto& entry : fs::directory_iterator(folder / "cache")) fs::remove(entry.path() / name);
-    expect_pattern(*panorama::open_picture(folder / "a.png", PictureFormat::kPng, options(folder, 0)), kWidth,
+    expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 0)), kWidth,
                    kHeight);
   }
 }
 
-TEST(OpenPicture, LargeJpegIsTheSameAsInMemory) {
+TEST(OpenImage, LargeJpegIsTheSameAsInMemory) {
   const test_support::TempDir folder;
   vpe::core::write_image(folder / "a.jpg", pattern(kWidth, kHeight).pixels, kWidth, kHeight);
-  const auto small = panorama::open_picture(folder / "a.jpg", PictureFormat::kJpeg, options(folder, 0));
+  const auto small = panorama::open_tiled_image(folder / "a.jpg", ImageFileFormat::kJpeg, options(folder, 0));
   EXPECT_TRUE(fs::exists(folder / "cache"));
   const auto large =
-      panorama::open_picture(folder / "a.jpg", PictureFormat::kJpeg, options(folder, std::size_t{1} << 28));
+      panorama::open_tiled_image(folder / "a.jpg", ImageFileFormat::kJpeg, options(folder, std::size_t{1} << 28));
   ASSERT_EQ(small->levels().size(), large->levels().size());
   for (int level = 0; level < static_cast<int>(small->levels().size()); ++level) {
-    const PictureLevel& size = small->levels()[static_cast<std::size_t>(level)];
+    const ImageLevel& size = small->levels()[static_cast<std::size_t>(level)];
     for (std::int64_t y = 0; y < size.height_px; y += 3) {
       for (std::int64_t x = 0; x < size.width_px; x += 3)
         ASSERT_EQ(pixel(*small, level, x, y), pixel(*large, level, x, y)) << level;
@@ -195,27 +195,27 @@ TEST(OpenPicture, LargeJpegIsTheSameAsInMemory) {
   }
 }
 
-TEST(OpenPicture, AnInterruptedCopyLeavesNothing) {
+TEST(OpenImage, AnInterruptedCopyLeavesNothing) {
   const test_support::TempDir folder;
   vpe::core::write_image(folder / "a.png", pattern(kWidth, kHeight).pixels, kWidth, kHeight);
   auto opening = options(folder, 0);
   opening.progress = [](double fraction) {
     if (fraction > 0.5) throw std::runtime_error("stopped");
   };
-  EXPECT_SAYS(message_of([&] { panorama::open_picture(folder / "a.png", PictureFormat::kPng, opening); }),
+  EXPECT_SAYS(message_of([&] { panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening); }),
               "stopped");
   EXPECT_TRUE(fs::is_empty(folder / "cache"));
 }
 
-TEST(OpenPicture, DamagedOnesAreNamed) {
+TEST(OpenImage, DamagedOnesAreNamed) {
   const test_support::TempDir folder;
   const vpe::core::RgbImage image = pattern(kWidth, kHeight);
   for (const char* name : {"a.png", "a.jpg"}) {
     vpe::core::write_image(folder / name, image.pixels, kWidth, kHeight);
     fs::resize_file(folder / name, fs::file_size(folder / name) / 2);
-    const PictureFormat format = name == std::string("a.png") ? PictureFormat::kPng : PictureFormat::kJpeg;
+    const ImageFileFormat format = name == std::string("a.png") ? ImageFileFormat::kPng : ImageFileFormat::kJpeg;
     for (const std::size_t budget : {std::size_t{0}, std::size_t{1} << 28}) {
-      EXPECT_SAYS(message_of([&] { panorama::open_picture(folder / name, format, options(folder, budget)); }),
+      EXPECT_SAYS(message_of([&] { panorama::open_tiled_image(folder / name, format, options(folder, budget)); }),
                   name, "cannot read", "damaged");
     }
   }
@@ -233,39 +233,39 @@ void write_tiled(const fs::path& path, const vpe::core::RgbImage& image) {
   writer.finish();
 }
 
-TEST(OpenPicture, TiledTiffWithoutCopiesKeepsItsOwnPixels) {
+TEST(OpenImage, TiledTiffWithoutCopiesKeepsItsOwnPixels) {
   const test_support::TempDir folder;
   write_tiled(folder / "a.tif", pattern(kWidth, kHeight));
-  const auto picture = panorama::open_picture(folder / "a.tif", PictureFormat::kTiff, options(folder, 0));
-  expect_pattern(*picture, kWidth, kHeight);
+  const auto tiled_image = panorama::open_tiled_image(folder / "a.tif", ImageFileFormat::kTiff, options(folder, 0));
+  expect_pattern(*tiled_image, kWidth, kHeight);
   for (const auto& entry : fs::recursive_directory_iterator(folder / "cache"))
     EXPECT_NE(entry.path().filename(), "level-0.tif");
 }
 
-TEST(OpenPicture, TiffOfOtherProgramsWithReducedPages) {
+TEST(OpenImage, TiffOfOtherProgramsWithReducedPages) {
   const test_support::TempDir folder;
   vpe::core::write_image(folder / "a.png", pattern(kWidth, kHeight).pixels, kWidth, kHeight);
-  // A COG has its copies in the chain of pictures, with JPEG, LZW, a mask or 16 bits; gdaladdo adds to any.
+  // A COG has its copies in the chain of images, with JPEG, LZW, a mask or 16 bits; gdaladdo adds to any.
   panorama_test::output_of("gdal_translate", {"-q", "-of", "COG", "-co", "COMPRESS=LZW", "-co", "BLOCKSIZE=128",
                                               (folder / "a.png").string(), (folder / "cog.tif").string()});
-  const auto cog = panorama::open_picture(folder / "cog.tif", PictureFormat::kTiff, options(folder, 0));
+  const auto cog = panorama::open_tiled_image(folder / "cog.tif", ImageFileFormat::kTiff, options(folder, 0));
   expect_pattern(*cog, kWidth, kHeight);
   EXPECT_FALSE(fs::exists(folder / "cache"));
   panorama_test::output_of("gdal_translate",
                            {"-q", "-ot", "UInt16", "-scale", "0", "255", "0", "65535", "-of", "COG", "-co",
                             "BLOCKSIZE=128", (folder / "a.png").string(), (folder / "deep.tif").string()});
-  expect_pattern(*panorama::open_picture(folder / "deep.tif", PictureFormat::kTiff, options(folder, 0)), kWidth,
+  expect_pattern(*panorama::open_tiled_image(folder / "deep.tif", ImageFileFormat::kTiff, options(folder, 0)), kWidth,
                  kHeight);
   // In rows: all of it is copied.
   panorama_test::output_of("gdal_translate",
                            {"-q", (folder / "a.png").string(), (folder / "rows.tif").string()});
-  expect_pattern(*panorama::open_picture(folder / "rows.tif", PictureFormat::kTiff, options(folder, 0)), kWidth,
+  expect_pattern(*panorama::open_tiled_image(folder / "rows.tif", ImageFileFormat::kTiff, options(folder, 0)), kWidth,
                  kHeight);
   EXPECT_TRUE(fs::exists(folder / "cache"));
 }
 
 // What the libraries hold by then is given back: the address sanitizer looks.
-TEST(OpenRows, RefusedPicturesLeaveNothingBehind) {
+TEST(OpenRows, RefusedImagesLeaveNothingBehind) {
   const test_support::TempDir folder;
   const std::vector<std::uint8_t> png = panorama_test::png(64, 48);
   vpe::base::write_file(folder / "cut.png", std::span(png).first(30));
@@ -280,16 +280,16 @@ TEST(OpenRows, RefusedPicturesLeaveNothingBehind) {
               "--memory");
 }
 
-TEST(OpenPicture, KindsThatCannotBeReadAreToldWithWhatToDo) {
+TEST(OpenImage, KindsThatCannotBeReadAreToldWithWhatToDo) {
   const test_support::TempDir folder;
   vpe::core::write_tiff(folder / "float.tif", std::vector<float>(64, 1.0F), 8, 8);
   EXPECT_SAYS(message_of([&] {
-                panorama::open_picture(folder / "float.tif", PictureFormat::kTiff, options(folder, 0));
+                panorama::open_tiled_image(folder / "float.tif", ImageFileFormat::kTiff, options(folder, 0));
               }),
               "float.tif", "8 or 16 bits", "gdal_translate");
   std::ofstream(folder / "no.tif") << "II*\0 and nothing else";
   EXPECT_SAYS(
-      message_of([&] { panorama::open_picture(folder / "no.tif", PictureFormat::kTiff, options(folder, 0)); }),
+      message_of([&] { panorama::open_tiled_image(folder / "no.tif", ImageFileFormat::kTiff, options(folder, 0)); }),
       "no.tif", "cannot read");
 }
 

@@ -73,7 +73,7 @@ TEST(Viewer, WhatIsBehindIsNotOnTheScreen) {
   EXPECT_GT(east_of_it->x, 320.0);  // clockwise is to the right
 }
 
-TEST(Viewer, PitchEndsAtThePicture) {
+TEST(Viewer, PitchEndsAtTheImage) {
   Viewer viewer(kCylinder, 1000, 500);
   viewer.set_fov(40.0);
   viewer.look_at(0.0, 80.0);
@@ -81,7 +81,7 @@ TEST(Viewer, PitchEndsAtThePicture) {
   EXPECT_NEAR(viewer.direction(500.0, 0.0).elevation_deg, 45.0, 1e-6);
   viewer.turn(10.0, -200.0);
   EXPECT_NEAR(viewer.pitch_deg(), -25.0, 1e-6);
-  viewer.set_fov(100.0);  // higher than the picture
+  viewer.set_fov(100.0);  // higher than the image
   EXPECT_NEAR(viewer.pitch_deg(), 0.0, 1e-9);
   EXPECT_NEAR(viewer.direction(500.0, 0.0).elevation_deg, 50.0, 1e-9);
 
@@ -113,7 +113,7 @@ TEST(Viewer, FieldOfViewHasLimits) {
   viewer.set_fov(170.0);
   EXPECT_EQ(viewer.fov_deg(), ViewerLimits::kMaxFov_deg);
   viewer.set_fov(1e-9);
-  // A pixel of the picture (1000 to a radian) is 16 wide in the middle of the screen.
+  // A pixel of the image (1000 to a radian) is 16 wide in the middle of the screen.
   const double focal_px = 300.0 / std::tan(0.5 * viewer.fov_deg() * kDeg);
   EXPECT_NEAR(focal_px / 1000.0, ViewerLimits::kMaxMagnification, 1e-6);
   const double before = viewer.fov_deg();

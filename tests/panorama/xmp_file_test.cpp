@@ -13,24 +13,24 @@
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using panorama::PictureFormat;
-using panorama::PictureHeader;
-using panorama::read_picture_header;
+using panorama::ImageFileFormat;
+using panorama::ImageFileHeader;
+using panorama::read_image_header;
 using panorama_test::message_of;
 
-PictureHeader header_of(const Bytes& bytes) {
-  return read_picture_header(std::span<const std::uint8_t>(bytes));
+ImageFileHeader header_of(const Bytes& bytes) {
+  return read_image_header(std::span<const std::uint8_t>(bytes));
 }
 
 const std::string kPacket = "<?xpacket?><a>one</a>";
 
 TEST(XmpFile, IsReadBackAndChangesNothingElse) {
-  for (const Bytes& picture : {panorama_test::png(31, 17), panorama_test::jpeg(31, 17)}) {
-    const bool is_png = picture[0] == 0x89;
-    EXPECT_EQ(header_of(picture).xmp, std::nullopt);
-    const Bytes once = panorama::with_xmp(picture, kPacket);
-    const PictureHeader header = header_of(once);
-    EXPECT_EQ(header.format, is_png ? PictureFormat::kPng : PictureFormat::kJpeg);
+  for (const Bytes& image : {panorama_test::png(31, 17), panorama_test::jpeg(31, 17)}) {
+    const bool is_png = image[0] == 0x89;
+    EXPECT_EQ(header_of(image).xmp, std::nullopt);
+    const Bytes once = panorama::with_xmp(image, kPacket);
+    const ImageFileHeader header = header_of(once);
+    EXPECT_EQ(header.format, is_png ? ImageFileFormat::kPng : ImageFileFormat::kJpeg);
     EXPECT_EQ(header.width_px, 31);
     EXPECT_EQ(header.height_px, 17);
     EXPECT_EQ(header.xmp, kPacket);
@@ -42,7 +42,7 @@ TEST(XmpFile, IsReadBackAndChangesNothingElse) {
     const auto decode = [&](const Bytes& b) {
       return is_png ? vpe::core::decode_png(b).pixels : vpe::core::decode_jpeg(b).pixels;
     };
-    EXPECT_EQ(decode(once), decode(picture));
+    EXPECT_EQ(decode(once), decode(image));
     if (is_png) {
       const std::string_view text(reinterpret_cast<const char*>(once.data()), once.size());
       EXPECT_LT(text.find("XML:com.adobe.xmp"), text.find("IDAT"));
@@ -56,16 +56,16 @@ TEST(XmpFile, IsWrittenIntoFiles) {
   panorama::write_xmp(folder / "a.jpg", kPacket);
   EXPECT_EQ(vpe::base::read_file(folder / "a.jpg", 1 << 20),
             panorama::with_xmp(panorama_test::jpeg(31, 17), kPacket));
-  EXPECT_EQ(read_picture_header(folder / "a.jpg").xmp, kPacket);
+  EXPECT_EQ(read_image_header(folder / "a.jpg").xmp, kPacket);
   vpe::base::write_file(folder / "a.txt", "no picture");
-  EXPECT_EQ(read_picture_header(folder / "a.txt").format, PictureFormat::kOther);
+  EXPECT_EQ(read_image_header(folder / "a.txt").format, ImageFileFormat::kOther);
   EXPECT_SAYS(message_of([&] { panorama::write_xmp(folder / "a.txt", kPacket); }), "a.txt",
               "neither PNG nor JPEG");
   EXPECT_EQ(vpe::base::read_file(folder / "a.txt", 100).size(), 10U);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.txt.tmp"));
-  EXPECT_SAYS(message_of([&] { read_picture_header(folder / "none.png"); }), "none.png", "cannot read");
-  EXPECT_SAYS(message_of([&] { read_picture_header(folder.path()); }), "cannot read");
-  EXPECT_EQ(read_picture_header(std::span<const std::uint8_t>()).format, PictureFormat::kOther);
+  EXPECT_SAYS(message_of([&] { read_image_header(folder / "none.png"); }), "none.png", "cannot read");
+  EXPECT_SAYS(message_of([&] { read_image_header(folder.path()); }), "cannot read");
+  EXPECT_EQ(read_image_header(std::span<const std::uint8_t>()).format, ImageFileFormat::kOther);
 }
 
 TEST(XmpFile, RefusesPacketsThatDoNotFit) {
@@ -144,13 +144,13 @@ TEST(XmpFile, LengthsThatLieAreSeen) {
 }
 
 TEST(XmpFile, AnyCutIsAMessage) {
-  for (const Bytes& picture : {panorama_test::png(31, 17), panorama_test::jpeg(31, 17)}) {
-    const Bytes whole = panorama::with_xmp(picture, kPacket);
+  for (const Bytes& image : {panorama_test::png(31, 17), panorama_test::jpeg(31, 17)}) {
+    const Bytes whole = panorama::with_xmp(image, kPacket);
     const bool is_png = whole[0] == 0x89;
     int refused = 0;
     for (std::size_t size = 8; size < whole.size(); ++size) {
       const auto cut = std::span(whole).first(size);
-      const std::string said = message_of([&] { read_picture_header(cut); });
+      const std::string said = message_of([&] { read_image_header(cut); });
       if (is_png) {
         EXPECT_NE(said, "") << size;
       }
@@ -162,15 +162,15 @@ TEST(XmpFile, AnyCutIsAMessage) {
 }
 
 TEST(XmpFile, AnyFlippedByteIsAMessageOrAHeader) {
-  for (const Bytes& picture : {panorama_test::png(31, 17), panorama_test::jpeg(31, 17)}) {
-    const Bytes whole = panorama::with_xmp(picture, kPacket);
+  for (const Bytes& image : {panorama_test::png(31, 17), panorama_test::jpeg(31, 17)}) {
+    const Bytes whole = panorama::with_xmp(image, kPacket);
     test_support::Random random(821);
     for (std::size_t at = 0; at < whole.size(); ++at) {
       Bytes bytes = whole;
       bytes[at] = static_cast<std::uint8_t>(random.integer(0, 255));
       message_of([&] {
-        const PictureHeader header = header_of(bytes);
-        EXPECT_GE(header.width_px, header.format == PictureFormat::kOther ? 0 : 1);
+        const ImageFileHeader header = header_of(bytes);
+        EXPECT_GE(header.width_px, header.format == ImageFileFormat::kOther ? 0 : 1);
       });
       message_of([&] { panorama::with_xmp(bytes, kPacket); });
     }
@@ -212,22 +212,22 @@ TEST(XmpFile, SizeOfAGigapixelBigTiffComesFromItsHeader) {
   const test_support::TempDir folder;
   std::ofstream(folder / "big.tif", std::ios::binary) << head;
   std::filesystem::resize_file(folder / "big.tif", 1000000 + tiles * 262144);
-  const PictureHeader header = read_picture_header(folder / "big.tif");
-  EXPECT_EQ(header.format, PictureFormat::kTiff);
+  const ImageFileHeader header = read_image_header(folder / "big.tif");
+  EXPECT_EQ(header.format, ImageFileFormat::kTiff);
   EXPECT_EQ(header.width_px, 100000);
   EXPECT_EQ(header.height_px, 20000);
   EXPECT_EQ(header.xmp, packet);
 
   for (const std::size_t size : {8U, 12U, 20U, 60U, 200U}) {
     std::ofstream(folder / "cut.tif", std::ios::binary | std::ios::trunc) << head.substr(0, size);
-    EXPECT_SAYS(message_of([&] { read_picture_header(folder / "cut.tif"); }), "cut.tif", "damaged");
+    EXPECT_SAYS(message_of([&] { read_image_header(folder / "cut.tif"); }), "cut.tif", "damaged");
   }
   // A count of tag 700 that no file could hold.
   std::string liar = head;
   liar.replace(16 + 8 + 9 * 20 + 4, 8, "\xFF\xFF\xFF\xFF\0\0\0\0", 8);
   std::ofstream(folder / "liar.tif", std::ios::binary) << liar;
   const std::string said =
-      message_of([&] { EXPECT_EQ(read_picture_header(folder / "liar.tif").xmp, std::nullopt); });
+      message_of([&] { EXPECT_EQ(read_image_header(folder / "liar.tif").xmp, std::nullopt); });
   EXPECT_TRUE(said.empty() || said.find("liar.tif") != std::string::npos) << said;
 }
 
@@ -244,8 +244,8 @@ TEST(XmpFile, AnyDamagedTiffIsAMessageOrAHeader) {
     }
     vpe::base::write_file(folder / "b.tif", bytes);
     message_of([&] {
-      const PictureHeader header = read_picture_header(folder / "b.tif");
-      EXPECT_GE(header.width_px, header.format == PictureFormat::kOther ? 0 : 1);
+      const ImageFileHeader header = read_image_header(folder / "b.tif");
+      EXPECT_GE(header.width_px, header.format == ImageFileFormat::kOther ? 0 : 1);
     });
   }
 }

@@ -17,7 +17,7 @@ constexpr double kHeight_m = 1000;
 
 core::View view_down() {
   core::View view;
-  view.eye = mars::to_eye({10, 20, kHeight_m, 0, -90, 0}, kRadius_m);
+  view.camera = mars::to_camera({10, 20, kHeight_m, 0, -90, 0}, kRadius_m);
   view.width = 40;
   view.height = 30;
   view.fov_deg = 20;
@@ -61,8 +61,8 @@ class FakeRenderer : public core::Renderer {
         if (!request.want_range) continue;
         const core::SubRectangle part = core::drawn_part(request.view);
         const glm::dvec3 ray = core::pixel_ray(request.view, part.x + x + 0.5, part.y + y + 0.5);
-        const double along = -glm::dot(request.view.eye.eye_m, ray);
-        const double deep2 = glm::dot(request.view.eye.eye_m, request.view.eye.eye_m) - along * along;
+        const double along = -glm::dot(request.view.camera.position_m, ray);
+        const double deep2 = glm::dot(request.view.camera.position_m, request.view.camera.position_m) - along * along;
         const double r = kRadius_m + high_m;
         result.frame.range_m.push_back(static_cast<float>(along - std::sqrt(r * r - deep2)));
       }
@@ -82,11 +82,11 @@ class FakeRenderer : public core::Renderer {
   int frames_ = 0;
 };
 
-Way way(double tolerance, const std::string& renderer = "a") {
-  Way one;
+Configuration configuration(double tolerance, const std::string& renderer = "a") {
+  Configuration one;
   one.sweep = renderer + " by tolerance";
   one.knob = "lod.tolerance=" + std::to_string(static_cast<int>(tolerance));
-  one.rivals = one.plot = one.colour_plot = "picture";
+  one.comparison_group = one.plot = one.colour_plot = "picture";
   one.renderer = renderer;
   core::DrawRequest request;
   request.view = view_down();
@@ -99,10 +99,10 @@ Subject subject() {
   Subject all;
   all.view = "straight down";
   all.about = "a <sphere>";
-  all.references.push_back({view_down(), "a", {way(0).requests.front()}, {}, true});
-  for (const double tolerance : {8.0, 4.0, 2.0}) all.ways.push_back(way(tolerance));
-  all.ways[1].is_default = true;
-  all.ways.push_back(way(4, "b"));
+  all.references.push_back({view_down(), "a", {configuration(0).requests.front()}, {}, true});
+  for (const double tolerance : {8.0, 4.0, 2.0}) all.configurations.push_back(configuration(tolerance));
+  all.configurations[1].is_default = true;
+  all.configurations.push_back(configuration(4, "b"));
   all.baseline = 1;
   return all;
 }
@@ -178,7 +178,7 @@ TEST_F(ErrorTime, TimesInTurnsByRenderersThatAreWarm) {
 // What is quick is drawn once more before each time that counts.
 TEST_F(ErrorTime, QuickWaysAreTimedWarm) {
   Subject all = subject();
-  all.ways[0].requests.front().settings.lod_tolerance_px = 16;
+  all.configurations[0].requests.front().settings.lod_tolerance_px = 16;
   const SubjectResult result = measure(all, options_);
   EXPECT_NEAR(result.measured[0].timing.median_s(), 1 / 16.0, 1e-9);
   // In the round that does not count and twice in each of three that do; slower ones once, but for the first.
@@ -235,14 +235,14 @@ TEST_F(ErrorTime, SweepsSayHowFarErrorsFall) {
   EXPECT_NEAR(sweeps[0].decades, std::log10(4.0), 0.05);
   EXPECT_NEAR(sweeps[0].worst_rise, 0.5, 0.03);
   Subject rising = subject();
-  std::swap(rising.ways[1], rising.ways[2]);
+  std::swap(rising.configurations[1], rising.configurations[2]);
   EXPECT_NEAR(summarize_sweeps(measure(rising, options_)).at(0).worst_rise, 2, 0.2);
 }
 
 TEST_F(ErrorTime, DefaultsAreHeldAgainstTheFront) {
   Subject all = subject();
   // Twice as quick and as exact as the default, by another renderer; what shows something else is no rival.
-  all.ways[3].requests.front().settings.lod_tolerance_px = 4;
+  all.configurations[3].requests.front().settings.lod_tolerance_px = 4;
   SubjectResult result = measure(all, options_);
   result.measured[3].timing.round_s = {0.05, 0.05, 0.05};
   const std::vector<DefaultPlace> places = place_defaults(result);
@@ -252,12 +252,12 @@ TEST_F(ErrorTime, DefaultsAreHeldAgainstTheFront) {
   EXPECT_EQ(places[0].front, "b by tolerance, lod.tolerance=4");
   EXPECT_EQ(fronts(result), (std::vector<std::size_t>{2, 3}));
   EXPECT_FALSE(places[0].is_chosen);
-  result.subject.ways[3].is_chosen = true;
+  result.subject.configurations[3].is_chosen = true;
   ASSERT_EQ(place_defaults(result).size(), 2U);
   EXPECT_TRUE(place_defaults(result)[1].is_chosen);
   EXPECT_NEAR(place_defaults(result)[1].over_front, 1, 1e-6);
-  EXPECT_TRUE(over_views({result}).at(3).way.is_chosen);
-  result.subject.ways[3].rivals = "others";
+  EXPECT_TRUE(over_views({result}).at(3).configuration.is_chosen);
+  result.subject.configurations[3].comparison_group = "others";
   EXPECT_NEAR(place_defaults(result).at(0).over_front, 1, 1e-6);
 }
 
@@ -269,10 +269,10 @@ TEST_F(ErrorTime, WhatIsRoundingsIsNotBetter) {
   EXPECT_EQ(place_defaults(result).at(0).error, 2e-5);
 }
 
-// Two halves of a picture, put together.
-TEST_F(ErrorTime, PicturesMayBePutTogether) {
+// Two halves of an image, put together.
+TEST_F(ErrorTime, ImagesMayBePutTogether) {
   Subject all = subject();
-  Way halves = way(2);
+  Configuration halves = configuration(2);
   halves.requests.push_back(halves.requests.front());
   halves.requests[0].view.part = {0, 0, 40, 15};
   halves.requests[1].view.part = {0, 15, 40, 15};
@@ -283,21 +283,21 @@ TEST_F(ErrorTime, PicturesMayBePutTogether) {
     whole.range_m.insert(whole.range_m.end(), frames[1].range_m.begin(), frames[1].range_m.end());
     return whole;
   };
-  all.ways.push_back(halves);
+  all.configurations.push_back(halves);
   const SubjectResult result = measure(all, options_);
   EXPECT_NEAR(result.measured[4].shift.forward.max_px, result.measured[2].shift.forward.max_px, 1e-9);
   EXPECT_FALSE(result.measured[4].stated_px.has_value());
   EXPECT_NEAR(result.measured[4].timing.median_s(), 1, 1e-9);
-  all.ways.back().compose = {};
+  all.configurations.back().compose = {};
   EXPECT_THROW(measure(all, options_), std::invalid_argument);
 }
 
 TEST_F(ErrorTime, RefusesWhatCannotBeMeasured) {
   Subject none = subject();
-  none.ways.clear();
+  none.configurations.clear();
   EXPECT_THROW(measure(none, options_), std::invalid_argument);
   Subject other = subject();
-  other.ways[0].requests.front().view.width = 41;
+  other.configurations[0].requests.front().view.width = 41;
   EXPECT_THROW(measure(other, options_), std::invalid_argument);
 }
 

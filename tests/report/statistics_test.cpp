@@ -100,10 +100,10 @@ TEST(Front, LeavesOutWhatIsNotFinite) {
   EXPECT_EQ(cost_at_error(points, 1), infinity);
 }
 
-TEST(Turns, AreTakenInTurnsAndTheFirstDoesNotCount) {
+TEST(InterleavedTiming, AreTakenInTurnsAndTheFirstDoesNotCount) {
   double now_s = 0;
   std::string order;
-  const std::vector<std::function<void()>> contestants{[&] {
+  const std::vector<std::function<void()>> cases{[&] {
                                                          order += 'a';
                                                          now_s += order.size() < 3 ? 100 : 2;
                                                        },
@@ -111,41 +111,41 @@ TEST(Turns, AreTakenInTurnsAndTheFirstDoesNotCount) {
                                                          order += 'b';
                                                          now_s += static_cast<double>(order.size());
                                                        }};
-  const std::vector<Timing> timings = time_in_turns(contestants, 3, [&] { return now_s; });
+  const std::vector<Timing> timings = time_interleaved(cases, 3, [&] { return now_s; });
   EXPECT_EQ(order, "abababab");
   EXPECT_EQ(timings[0].round_s, (std::vector<double>{2, 2, 2}));
   EXPECT_EQ(timings[1].round_s, (std::vector<double>{4, 6, 8}));
   EXPECT_EQ(timings[1].median_s(), 6);
   EXPECT_EQ(ratio(timings[1], timings[0]), 3);
-  EXPECT_THROW(time_in_turns(contestants, 0), std::invalid_argument);
+  EXPECT_THROW(time_interleaved(cases, 0), std::invalid_argument);
   EXPECT_THROW(ratio(timings[0], Timing{}), std::invalid_argument);
 }
 
-TEST(Turns, WhatIsMadeReadyDoesNotCountAndSlowOnesRunLess) {
+TEST(InterleavedTiming, WhatIsMadeReadyDoesNotCountAndSlowOnesRunLess) {
   double now_s = 0;
   std::string order;
-  std::vector<Contestant> contestants(2);
-  contestants[0].prepare = [&](double) {
+  std::vector<BenchmarkCase> cases(2);
+  cases[0].prepare = [&](double) {
     order += 'p';
     now_s += 50;
   };
-  contestants[0].run = [&] {
+  cases[0].run = [&] {
     order += 'a';
     now_s += 2;
   };
-  contestants[1].run = [&] {
+  cases[1].run = [&] {
     order += 'b';
     now_s += 8;
   };
-  contestants[1].most_rounds = 1;
-  const std::vector<Timing> timings = time_in_turns(contestants, 3, [&] { return now_s; });
+  cases[1].most_rounds = 1;
+  const std::vector<Timing> timings = time_interleaved(cases, 3, [&] { return now_s; });
   EXPECT_EQ(order, "papabpapa");
   EXPECT_EQ(timings[0].round_s, (std::vector<double>{2, 2, 2}));
   EXPECT_EQ(timings[1].round_s, std::vector<double>{8});
   EXPECT_EQ(ratio(timings[1], timings[0]), 4);
 }
 
-TEST(Turns, MedianIsTheMiddle) {
+TEST(InterleavedTiming, MedianIsTheMiddle) {
   EXPECT_EQ(median({3, 1, 2}), 2);
   EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
   EXPECT_TRUE(std::isnan(median({})));

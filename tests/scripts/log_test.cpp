@@ -73,9 +73,9 @@ TEST(FlightLog, ReplaysToTheBit) {
     EXPECT_EQ(replayed, end ? frames : frames - 1);
     for (std::int64_t k = 0; k < frames; ++k) {
       const double t = frame_time(flight.view.fps, k);
-      const mars::EyePose a = path.at(t).eye;
-      const mars::EyePose b = replay.at(t).eye;
-      ASSERT_EQ(a.eye_m, b.eye_m) << k;
+      const mars::CameraPose a = path.at(t).camera;
+      const mars::CameraPose b = replay.at(t).camera;
+      ASSERT_EQ(a.camera_m, b.camera_m) << k;
       ASSERT_EQ(a.axes.right, b.axes.right) << k;
       ASSERT_EQ(a.axes.up, b.axes.up) << k;
       ASSERT_EQ(a.axes.forward, b.axes.forward) << k;
@@ -140,8 +140,8 @@ vpe::core::FrameStats some_stats() {
 
 vpe::core::Certificate some_certificate() {
   vpe::core::Certificate certificate;
-  certificate.tile_error_m = 3.5;
-  certificate.tile_error_px = 0.75;
+  certificate.geometric_error_m = 3.5;
+  certificate.screen_space_error_px = 0.75;
   certificate.shift_bound_px = std::numeric_limits<double>::infinity();
   return certificate;
 }

@@ -22,10 +22,10 @@ Flight flight_of(const std::string& lines) {
 
 Path path_of(const std::string& lines) { return {flight_of(lines), kRadius_m, {}}; }
 
-glm::dvec3 up_of(const FlightState& state) { return glm::normalize(state.eye.eye_m); }
+glm::dvec3 up_of(const FlightState& state) { return glm::normalize(state.camera.position_m); }
 
 double pitch_deg(const FlightState& state) {
-  return std::asin(std::clamp(glm::dot(state.eye.axes.forward, up_of(state)), -1.0, 1.0)) /
+  return std::asin(std::clamp(glm::dot(state.camera.axes.forward, up_of(state)), -1.0, 1.0)) /
          mars::kRadiansPerDegree;
 }
 
@@ -108,10 +108,10 @@ TEST(PathProperty, VelocityIsContinuousAtWaypoints) {
         ++checked;
       };
       check([&](double s) { return up_of(path.at(s)); }, 1e-14);
-      // Altitude apart: to_eye's sum with the radius would round it away.
+      // Altitude apart: to_camera's sum with the radius would round it away.
       check([&](double s) { return glm::dvec3(path.at(s).pose.alt_m, 0, 0); },
             1e-14 * std::abs(path.at(t).pose.alt_m));
-      const auto platform = [&](double s) { return mars::to_eye(path.at(s).pose, kRadius_m).axes; };
+      const auto platform = [&](double s) { return mars::to_camera(path.at(s).pose, kRadius_m).axes; };
       check([&](double s) { return platform(s).forward; }, 1e-13);
       check([&](double s) { return platform(s).up; }, 1e-13);
     }
@@ -133,9 +133,9 @@ TEST(PathProperty, StatesAreFiniteContinuousAndWithinTheirKnots) {
         const FlightState state = path.at(std::min(b.time_s, a.time_s + (b.time_s - a.time_s) * k / 100.0));
         ASSERT_TRUE(state.pose.alt_m >= low && state.pose.alt_m <= high);
         ASSERT_TRUE(std::abs(state.look.pitch_deg) <= 90.0);
-        ASSERT_TRUE(std::abs(glm::length(state.eye.axes.forward) - 1.0) < 1e-14);
-        const mars::Axes platform = mars::to_eye(state.pose, kRadius_m).axes;
-        ASSERT_TRUE(turned_rad(platform, mars::to_eye(before.pose, kRadius_m).axes) < 0.15);
+        ASSERT_TRUE(std::abs(glm::length(state.camera.axes.forward) - 1.0) < 1e-14);
+        const mars::Axes platform = mars::to_camera(state.pose, kRadius_m).axes;
+        ASSERT_TRUE(turned_rad(platform, mars::to_camera(before.pose, kRadius_m).axes) < 0.15);
         ASSERT_TRUE(mars::angle_between_rad(up_of(state), up_of(before)) < 0.1);
         before = state;
       }
@@ -157,11 +157,11 @@ TEST(PathProperty, StateAtAWaypointIsTheLineToTheBit) {
       const Look& look = flight.looks[i];
       ASSERT_TRUE(state.look.yaw_deg == look.yaw_deg && state.look.pitch_deg == look.pitch_deg &&
                   state.look.roll_deg == look.roll_deg);
-      ASSERT_TRUE(equal(state.eye.axes, mars::to_eye(state.pose, state.look, kRadius_m).axes));
+      ASSERT_TRUE(equal(state.camera.axes, mars::to_camera(state.pose, state.look, kRadius_m).axes));
       // And what comes right before and after it is next to it.
       const FlightState after = path.at(std::nextafter(w.time_s, 1e9));
-      ASSERT_TRUE(turned_rad(after.eye.axes, state.eye.axes) < 1e-6);
-      ASSERT_TRUE(glm::length(after.eye.eye_m - state.eye.eye_m) < 1e-6);
+      ASSERT_TRUE(turned_rad(after.camera.axes, state.camera.axes) < 1e-6);
+      ASSERT_TRUE(glm::length(after.camera.position_m - state.camera.position_m) < 1e-6);
     }
   }
 }
@@ -215,7 +215,7 @@ TEST(Path, CrossesThePolesWithoutSpin) {
   for (int k = 0; k < 1000; ++k) {
     const FlightState a = path.at(k / 100.0);
     const FlightState b = path.at((k + 1) / 100.0);
-    ASSERT_NEAR(turned_rad(a.eye.axes, b.eye.axes), step_rad, 1e-7);
+    ASSERT_NEAR(turned_rad(a.camera.axes, b.camera.axes), step_rad, 1e-7);
     ASSERT_NEAR(pitch_deg(b), -10, 1e-6);
   }
   EXPECT_NEAR(path.at(5).pose.lat_deg, 90, 1e-12);
@@ -225,8 +225,8 @@ TEST(Path, CrossesThePolesWithoutSpin) {
                                    " lat=90 alt=1000 pitch=-10 yaw=" + std::to_string(lon) + "\n" +
                                    "at 10 pose lon=180 lat=80 alt=1000 yaw=180 pitch=-10\n");
     for (int k = 0; k <= 1000; ++k) {
-      ASSERT_LT(glm::length(with_pole.at(k / 100.0).eye.axes.up - path.at(k / 100.0).eye.axes.up), 1e-8);
-      ASSERT_LT(glm::length(with_pole.at(k / 100.0).eye.eye_m - path.at(k / 100.0).eye.eye_m), 1e-2);
+      ASSERT_LT(glm::length(with_pole.at(k / 100.0).camera.axes.up - path.at(k / 100.0).camera.axes.up), 1e-8);
+      ASSERT_LT(glm::length(with_pole.at(k / 100.0).camera.position_m - path.at(k / 100.0).camera.position_m), 1e-2);
     }
   }
 }
@@ -244,7 +244,7 @@ TEST(Path, CrossesTheAntimeridianTheShortWay) {
     const double lon = mars::normalize_lon_deg(170 + 40 * k / 200.0);
     ASSERT_NEAR(std::remainder(path.at(k / 10.0).pose.lon_deg - lon, 360), 0, 1e-12);
     ASSERT_NEAR(path.at(k / 10.0).pose.yaw_deg, 90, 1e-9);
-    ASSERT_LT(glm::length(path.at(k / 10.0).eye.eye_m - same.at(k / 10.0).eye.eye_m), 1e-8);
+    ASSERT_LT(glm::length(path.at(k / 10.0).camera.position_m - same.at(k / 10.0).camera.position_m), 1e-8);
   }
 }
 
@@ -261,11 +261,11 @@ TEST(Path, HoldsAreHoldsToTheBit) {
   const FlightState held = path.at(5);
   for (int k = 0; k <= 400; ++k) {
     const FlightState state = path.at(5 + k / 100.0);
-    ASSERT_EQ(state.eye.eye_m, held.eye.eye_m);
-    ASSERT_TRUE(equal(state.eye.axes, held.eye.axes));
+    ASSERT_EQ(state.camera.position_m, held.camera.position_m);
+    ASSERT_TRUE(equal(state.camera.axes, held.camera.axes));
   }
-  EXPECT_GT(glm::length(path.at(4.9).eye.eye_m - held.eye.eye_m), 1);
-  EXPECT_GT(glm::length(path.at(9.1).eye.eye_m - held.eye.eye_m), 1);
+  EXPECT_GT(glm::length(path.at(4.9).camera.position_m - held.camera.position_m), 1);
+  EXPECT_GT(glm::length(path.at(9.1).camera.position_m - held.camera.position_m), 1);
 }
 
 TEST(Path, IsHeldBeforeTheFirstPoseAndAfterTheLast) {
@@ -294,7 +294,7 @@ TEST(Path, AHeadThatIsHeldIsHeldToTheBit) {
                        .flight,
                   mars::kMarsRadius_m, {});
   for (const double t : {2.0, 2.1, 3.7, 4.9, 5.0, 8.0, 9.0}) {
-    const mars::HeadLook look = path.at(t).look;
+    const mars::HeadAngles look = path.at(t).look;
     EXPECT_EQ(look.yaw_deg, -102.259) << t;
     EXPECT_EQ(look.pitch_deg, 0.3) << t;
     EXPECT_EQ(look.roll_deg, 100.1) << t;
@@ -320,7 +320,7 @@ TEST(Path, HeadTurnsSmoothlyTheShortWayAndIsHeldOutside) {
     before += step;
   }
   const FlightState state = path.at(4);
-  EXPECT_TRUE(equal(state.eye.axes, mars::to_eye(state.pose, {-170, 10, 0}, kRadius_m).axes));
+  EXPECT_TRUE(equal(state.camera.axes, mars::to_camera(state.pose, {-170, 10, 0}, kRadius_m).axes));
   const FlightState ahead = path_of("at 0 pose lon=0 lat=0 alt=0\n").at(0);
   EXPECT_EQ(ahead.look.yaw_deg, 0);
 }

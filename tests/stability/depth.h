@@ -1,4 +1,4 @@
-// A picture that holds ground from 0.1 m to 10^8 m away: from the top of a mountain on a planet of 10^8 m.
+// An image that holds ground from 0.1 m to 10^8 m away: from the top of a mountain on a planet of 10^8 m.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +29,8 @@ inline vpe::core::View deep_view(const paging::Surface& surface, double yaw_deg)
       mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
   const mars::LonLat at = mars::lon_lat(top);
   vpe::core::View view;
-  view.eye =
-      mars::to_eye({at.lon_deg, at.lat_deg, surface.at(top).height_m + 0.1, yaw_deg, -55, 10}, kDeepRadius_m);
+  view.camera =
+      mars::to_camera({at.lon_deg, at.lat_deg, surface.at(top).height_m + 0.1, yaw_deg, -55, 10}, kDeepRadius_m);
   view.width = 160;
   view.height = 120;
   view.fov_deg = 110;
@@ -54,7 +54,7 @@ inline DepthOrder check_depth_order(const paging::Surface& surface, const vpe::c
       double high = 0;
       for (int n = 0; n < 9; ++n) {
         const glm::dvec2 at(x + 0.5 * (n % 3), y + 0.5 * (n / 3));
-        const double exact = surface.cast(view.eye.eye_m, vpe::core::pixel_ray(view, at.x, at.y));
+        const double exact = surface.cast(view.camera.position_m, vpe::core::pixel_ray(view, at.x, at.y));
         low = std::min(low, exact);
         high = std::max(high, exact);
         if (n == 4 && std::isfinite(exact)) {

@@ -32,9 +32,9 @@ TEST(GeometryErrors, HoldBetweenTheVerticesWhereTheyAreMeasured) {
     const int last = (1 << level) - 1;
     const lod::TileKey key{static_cast<mars::Face>(random.integer(0, 5)), level, random.integer(0, last),
                            random.integer(0, last)};
-    const double relief_m = kRadius_m * random.log_uniform(1e-3, 0.6);
+    const double height_error_m = kRadius_m * random.log_uniform(1e-3, 0.6);
     lod::Posts fine{key, 2, {}};
-    for (int k = 0; k < 9; ++k) fine.height_m.push_back(random.uniform(-relief_m, relief_m));
+    for (int k = 0; k < 9; ++k) fine.height_m.push_back(random.uniform(-height_error_m, height_error_m));
     const lod::Posts coarse{key, 1, {fine.at(0, 0), fine.at(2, 0), fine.at(0, 2), fine.at(2, 2)}};
     const std::vector<double> corners{fine.at(0, 0), fine.at(2, 0), fine.at(2, 2), fine.at(0, 2)};
     const lod::ErrorTerms terms = lod::measure_error(key, two_triangles(2), corners, fine, kRadius_m);

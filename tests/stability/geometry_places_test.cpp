@@ -39,12 +39,12 @@ TEST(GeometryPlaces, PosesComeBackFromEyes) {
             random.integer(0, 2) == 0 ? 90.0 * random.integer(-2, 2) : random.uniform(-180, 180),
             random.integer(0, 2) == 0 ? 90.0 * random.integer(-1, 1) : random.uniform(-90, 90),
             random.integer(0, 2) == 0 ? 180.0 : random.uniform(-180, 180)};
-        const mars::EyePose eye = mars::to_eye(pose, radius_m);
-        const mars::Pose back = mars::to_pose(eye, radius_m);
-        const mars::EyePose again = mars::to_eye(back, radius_m);
-        const double away = glm::length(eye.eye_m);
-        position = std::max(position, glm::length(again.eye_m - eye.eye_m) / away);
-        axes = std::max(axes, largest_difference(again.axes, eye.axes));
+        const mars::CameraPose camera = mars::to_camera(pose, radius_m);
+        const mars::Pose back = mars::to_pose(camera, radius_m);
+        const mars::CameraPose again = mars::to_camera(back, radius_m);
+        const double away = glm::length(camera.position_m);
+        position = std::max(position, glm::length(again.camera_m - camera.position_m) / away);
+        axes = std::max(axes, largest_difference(again.axes, camera.axes));
         height = std::max(height, std::abs(back.alt_m - pose.alt_m) / away);
         ASSERT_TRUE(mars::is_valid({back.lon_deg, back.lat_deg}));
         ASSERT_LE(std::abs(back.pitch_deg), 90.0);
@@ -75,14 +75,14 @@ TEST(GeometryPlaces, EveryPlaceIsOnAChartAndComesBack) {
   EXPECT_LE(lines, 0.0);
 }
 
-// Moving 1e-9 degrees over a pole, the antimeridian or an edge of the cube moves the eye by so much and no
+// Moving 1e-9 degrees over a pole, the antimeridian or an edge of the cube moves the camera by so much and no
 // more.
 TEST(GeometryPlaces, NothingJumpsBetweenNeighbours) {
   constexpr double kStep_deg = 1e-9;
   double jump = 0;
   for (const mars::LonLat& place : hostile_places()) {
-    const mars::EyePose eye = mars::to_eye({place.lon_deg, place.lat_deg, 10, 30, -10, 5}, mars::kMarsRadius_m);
-    const glm::dvec3 up = glm::normalize(eye.eye_m);
+    const mars::CameraPose camera = mars::to_camera({place.lon_deg, place.lat_deg, 10, 30, -10, 5}, mars::kMarsRadius_m);
+    const glm::dvec3 up = glm::normalize(camera.position_m);
     for (int n = 0; n < 16; ++n) {
       const mars::LonLat next =
           mars::destination(mars::lon_lat(up), 22.5 * n, kStep_deg * mars::kRadiansPerDegree);
@@ -109,14 +109,14 @@ TEST(GeometryPlaces, PixelsComeBackAtAnyFieldOfView) {
         view.width = 1920;
         view.height = 1080;
         const double height_m = random.log_uniform(0.1, 3e7);
-        view.eye = mars::to_eye({place.lon_deg, place.lat_deg, height_m, random.uniform(0, 360),
+        view.camera = mars::to_camera({place.lon_deg, place.lat_deg, height_m, random.uniform(0, 360),
                                  random.uniform(-90, 90), random.uniform(-180, 180)},
                                 mars::kMarsRadius_m);
         ASSERT_EQ(core::check(view), "");
         const glm::dvec2 at(random.uniform(0, 1920), random.uniform(0, 1080));
         const glm::dvec3 ray = core::pixel_ray(view, at.x, at.y);
-        // As far as the ground is at least, so that the eye's own rounding does not count.
-        const core::Projected back = core::project(view, view.eye.eye_m + ray * 1e9);
+        // As far as the ground is at least, so that the camera's own rounding does not count.
+        const core::Projected back = core::project(view, view.camera.position_m + ray * 1e9);
         ASSERT_FALSE(back.behind);
         double across = std::abs(back.xy.x - at.x);
         if (projection != core::Projection::kPerspective) across = std::min(across, 1920 - across);

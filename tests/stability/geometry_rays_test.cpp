@@ -18,7 +18,7 @@ using test_support::StrangeGround;
 constexpr std::size_t kBudget = std::size_t{1} << 26;
 
 struct Ray {
-  glm::dvec3 eye_m;
+  glm::dvec3 camera_m;
   glm::dvec3 direction;
 };
 
@@ -29,7 +29,7 @@ glm::dvec3 random_post(Random& random) {
 }
 
 // Over anything, poles, edges and posts included; from 1e-7 to ten radii above S.
-glm::dvec3 random_eye(Random& random, const paging::Surface& surface, double exaggeration) {
+glm::dvec3 random_camera(Random& random, const paging::Surface& surface, double exaggeration) {
   static const std::vector<mars::LonLat> places = test_support::hostile_places();
   glm::dvec3 up = random.direction();
   const int kind = random.integer(0, 2);
@@ -42,35 +42,35 @@ glm::dvec3 random_eye(Random& random, const paging::Surface& surface, double exa
 }
 
 Ray random_ray(Random& random, const paging::Surface& surface, double exaggeration) {
-  const glm::dvec3 eye = random_eye(random, surface, exaggeration);
-  const glm::dvec3 up = glm::normalize(eye);
+  const glm::dvec3 camera = random_camera(random, surface, exaggeration);
+  const glm::dvec3 up = glm::normalize(camera);
   const double radius_m = surface.planet_radius_m();
   const glm::dvec3 post = random_post(random);
   switch (random.integer(0, 5)) {
-    case 0: return {eye, -up};
-    case 1: return {eye, up};
+    case 0: return {camera, -up};
+    case 1: return {camera, up};
     case 2:
-      return {eye, glm::normalize(post * surface.at(post, exaggeration).radius_m - eye)};  // through a post
+      return {camera, glm::normalize(post * surface.at(post, exaggeration).radius_m - camera)};  // through a post
     case 3: {  // in the plane of a grid line, where two neighbours share all they are asked
       const mars::Face face = mars::chart_point(up).face;
       const double u = mars::face_line(random.integer(0, kFacePosts), 6);
       const glm::dvec3 on = mars::chart_direction(face, u, random.uniform(-1, 1));
       const glm::dvec3 to = mars::chart_direction(face, u, random.uniform(-1, 1)) * (0.9 * radius_m);
-      const glm::dvec3 from = on * std::max(glm::length(eye), 1.0001 * surface.at(on, exaggeration).radius_m);
+      const glm::dvec3 from = on * std::max(glm::length(camera), 1.0001 * surface.at(on, exaggeration).radius_m);
       return {from, glm::normalize(to - from)};
     }
     case 4: {  // touching the sphere, or about to
       const glm::dvec3 side = glm::normalize(glm::cross(up, random.direction()));
       const double dip =
-          mars::horizon_dip_rad(glm::length(eye) - radius_m, radius_m) + random.uniform(-1e-3, 1e-3);
-      return {eye, side * std::cos(dip) - up * std::sin(dip)};
+          mars::horizon_dip_rad(glm::length(camera) - radius_m, radius_m) + random.uniform(-1e-3, 1e-3);
+      return {camera, side * std::cos(dip) - up * std::sin(dip)};
     }
-    default: return {eye, random.direction()};
+    default: return {camera, random.direction()};
   }
 }
 
 struct Worst {
-  double off = 0;      // of what is hit from the facet, by distance from the centre and from the eye
+  double off = 0;      // of what is hit from the facet, by distance from the centre and from the camera
   double through = 0;  // how far below S a ray was before its hit, likewise
   int hits = 0;
   int misses = 0;
@@ -79,15 +79,15 @@ struct Worst {
 void check(Random& random, const paging::Surface& surface, double exaggeration, int rays, Worst& worst) {
   for (int n = 0; n < rays; ++n) {
     const Ray ray = random_ray(random, surface, exaggeration);
-    const double hit_m = surface.cast(ray.eye_m, ray.direction, exaggeration);
+    const double hit_m = surface.cast(ray.camera_m, ray.direction, exaggeration);
     ASSERT_FALSE(std::isnan(hit_m) || hit_m < 0);
-    const double away_m = glm::length(ray.eye_m);
+    const double away_m = glm::length(ray.camera_m);
     // Past the far side of everything when nothing is hit.
     const double length_m = std::isfinite(hit_m) ? hit_m : 2.2 * away_m;
     const double scale_m = away_m + length_m;
     (std::isfinite(hit_m) ? worst.hits : worst.misses) += 1;
     const auto below_m = [&](double t) {
-      const glm::dvec3 p = ray.eye_m + t * ray.direction;
+      const glm::dvec3 p = ray.camera_m + t * ray.direction;
       const paging::SurfacePoint s = surface.at(p, exaggeration);
       // Across the facet: on a wall the radius says nothing.
       return (s.radius_m - glm::length(p)) * glm::dot(s.normal, glm::normalize(p));
@@ -160,10 +160,10 @@ TEST(GeometryRays, StraightDownIsTheHeightAndStraightUpTheSky) {
         const glm::dvec3 up = mars::direction(place);
         for (const double height : {1e-7, 1e-3, 1.0, 10.0}) {
           const double ground_m = surface.at(up).radius_m;
-          const glm::dvec3 eye = up * (ground_m + height * radius_m);
-          const double down_m = surface.cast(eye, -glm::normalize(eye));
-          off = std::max(off, std::abs(down_m - (glm::length(eye) - ground_m)) / glm::length(eye));
-          ASSERT_EQ(surface.cast(eye, glm::normalize(eye)), std::numeric_limits<double>::infinity())
+          const glm::dvec3 camera = up * (ground_m + height * radius_m);
+          const double down_m = surface.cast(camera, -glm::normalize(camera));
+          off = std::max(off, std::abs(down_m - (glm::length(camera) - ground_m)) / glm::length(camera));
+          ASSERT_EQ(surface.cast(camera, glm::normalize(camera)), std::numeric_limits<double>::infinity())
               << ground.name << " " << place.lon_deg << " " << place.lat_deg;
         }
       }
@@ -191,10 +191,10 @@ TEST(GeometryRays, GroundWithoutDataIsThereAndToldAsMissing) {
 TEST(GeometryRays, HeightsThatCannotBeStoredAreRefused) {
   test_support::TempDir dir;
   for (const double wild_m : {3.0e38, -3.4028226550889045e38, 1e25, 1e13, -1e13}) {
-    const glm::dvec3 spot =
+    const glm::dvec3 hotspot =
         mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
     const StrangeGround ground{
-        "wild", [&](const glm::dvec3& d) { return glm::length(d - spot) < 1e-9 ? wild_m / 1e6 : 0; }};
+        "wild", [&](const glm::dvec3& d) { return glm::length(d - hotspot) < 1e-9 ? wild_m / 1e6 : 0; }};
     try {
       build_ground(dir / "wild.vpe", 1e6, ground);
       FAIL() << wild_m << " was taken";

@@ -1,4 +1,4 @@
-// Pictures of the ray backend from 0.1 m to ten radii, 0.01 to 179 degrees wide, on planets of any size and
+// Images of the ray backend from 0.1 m to ten radii, 0.01 to 179 degrees wide, on planets of any size and
 // ground that strains arithmetic: every pixel shows what a single exact cast shows, or what one less than a
 // pixel beside it does.
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ bool seen_beside(const paging::Surface& surface, const core::View& view, glm::dv
   for (int n = 0; n < 24; ++n) {
     const double size = 0.25 * (n / 8 + 1);
     const glm::dvec2 moved = at + size * glm::dvec2(std::cos(0.785398 * n), std::sin(0.785398 * n));
-    const double other = surface.cast(view.eye.eye_m, core::pixel_ray(view, moved.x, moved.y), exaggeration);
+    const double other = surface.cast(view.camera.position_m, core::pixel_ray(view, moved.x, moved.y), exaggeration);
     low = std::min(low, other);
     high = std::max(high, other);
   }
@@ -51,7 +51,7 @@ bool seen_beside(const paging::Surface& surface, const core::View& view, glm::dv
 }
 
 void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& view, double exaggeration,
-           Tally& tally) {
+           Tally& update_totals) {
   const paging::PlanetMeta& meta = caster.surface().planet().meta();
   const bool wide = view.fov_deg > RangeCaster::kWide_deg ||
                     exaggeration * (meta.highest_radius_m - meta.lowest_radius_m) > 0.1 * meta.radius_m;
@@ -64,17 +64,17 @@ void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& v
       ASSERT_FALSE(std::isnan(seen) || seen < 0) << x << " " << y;
       const glm::dvec2 at(x + 0.5, y + 0.5);
       const glm::dvec3 ray = core::pixel_ray(view, at.x, at.y);
-      const double exact = caster.surface().cast(view.eye.eye_m, ray, exaggeration);
-      tally.pixels += 1;
+      const double exact = caster.surface().cast(view.camera.position_m, ray, exaggeration);
+      update_totals.pixels += 1;
       if (same(seen, exact)) {
         if (!std::isfinite(exact) || exact <= 0) continue;
-        const glm::dvec3 normal = caster.surface().at(view.eye.eye_m + exact * ray, exaggeration).normal;
-        double& range_error = wide ? tally.wide : tally.range;
+        const glm::dvec3 normal = caster.surface().at(view.camera.position_m + exact * ray, exaggeration).normal;
+        double& range_error = wide ? update_totals.wide : update_totals.range;
         range_error = std::max(range_error, std::abs(glm::dot(normal, ray)) * std::abs(seen - exact) / exact);
       } else if (seen_beside(caster.surface(), view, at, seen, exaggeration)) {
-        tally.beside += 1;
+        update_totals.beside += 1;
       } else {
-        tally.wrong += 1;
+        update_totals.wrong += 1;
       }
     }
   }
@@ -101,7 +101,7 @@ core::View random_view(Random& random, const paging::Surface& surface, double ex
   view.fov_deg = fov_deg;
   view.width = 32;
   view.height = 24;
-  view.eye = mars::to_eye({place.lon_deg, place.lat_deg, ground_m + height_m, random.uniform(-180, 180),
+  view.camera = mars::to_camera({place.lon_deg, place.lat_deg, ground_m + height_m, random.uniform(-180, 180),
                            std::max(-90.0, pitch), flat ? random.uniform(-180, 180) : 0},
                           radius_m);
   return view;
@@ -118,7 +118,7 @@ TEST(GeometryViews, PixelsAreTheCastsOfTheirRays) {
     for (const StrangeGround& ground : test_support::strange_grounds(0.008)) {
       RangeCaster caster(build_ground(dir / std::to_string(n++), radius_m, ground), kBudget);
       const std::string name = ground.name;
-      Tally& tally =
+      Tally& update_totals =
           name == "flat" || name == "constant" || name == "ramp" || name == "no data" ? smooth : rough;
       for (const double exaggeration : {0.1, 1.0, 100.0}) {
         for (const double fov_deg : {0.01, 1.0, 60.0, 120.0, 179.0}) {
@@ -127,7 +127,7 @@ TEST(GeometryViews, PixelsAreTheCastsOfTheirRays) {
             const core::View view = random_view(random, caster.surface(), exaggeration, fov_deg, projection);
             SCOPED_TRACE(name + " radius " + std::to_string(radius_m) + " times " +
                          std::to_string(exaggeration) + " fov " + std::to_string(fov_deg));
-            check(caster, pool, view, exaggeration, tally);
+            check(caster, pool, view, exaggeration, update_totals);
           }
         }
       }
@@ -151,7 +151,7 @@ TEST(GeometryViews, FromOverTheMiddleOfAFaceTheWholeDiscIsThere) {
   test_support::TempDir dir;
   vpe::base::ThreadPool pool(2);
   RangeCaster caster(build_ground(dir / "p", 3e6, {"flat", [](const glm::dvec3&) { return 0.0; }}), kBudget);
-  Tally tally;
+  Tally update_totals;
   for (const mars::LonLat at :
        {mars::LonLat{0, 0}, {90, 0}, {180, 0}, {-90, 0}, {0, 90}, {0, -90}, {45, 0}, {0, 45}}) {
     for (const double up : {0.5, 1.0, 3.0, 10.0}) {
@@ -163,19 +163,19 @@ TEST(GeometryViews, FromOverTheMiddleOfAFaceTheWholeDiscIsThere) {
         view.width = 32;
         view.height = 24;
         view.fov_deg = flat ? 2.2 * std::asin(1 / (1 + up)) / mars::kRadiansPerDegree : 178;
-        view.eye =
-            mars::to_eye({at.lon_deg, at.lat_deg, up * 3e6, 77, flat ? -90.0 : 0.0, flat ? 33.0 : 0.0}, 3e6);
-        check(caster, pool, view, 1, tally);
+        view.camera =
+            mars::to_camera({at.lon_deg, at.lat_deg, up * 3e6, 77, flat ? -90.0 : 0.0, flat ? 33.0 : 0.0}, 3e6);
+        check(caster, pool, view, 1, update_totals);
       }
     }
   }
   record_worst("ray pictures from over the middle of a face: pixels of neither their own ray nor one beside",
-               tally.wrong / tally.pixels, 0, "of all");
-  record_worst("ray pictures: range times sine of incidence", tally.range, RangeCaster::kRangeError,
+               update_totals.wrong / update_totals.pixels, 0, "of all");
+  record_worst("ray pictures: range times sine of incidence", update_totals.range, RangeCaster::kRangeError,
                "of the range");
   record_worst(
       "ray pictures, over 150 degrees or relief over a tenth of the radius: range times sine of incidence",
-      tally.wide, RangeCaster::kWideRangeError, "of the range");
+      update_totals.wide, RangeCaster::kWideRangeError, "of the range");
 }
 
 }  // namespace

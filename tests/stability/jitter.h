@@ -1,4 +1,4 @@
-// Does ground stand still while the eye moves by a millimetre a frame?
+// Does ground stand still while the camera moves by a millimetre a frame?
 #pragma once
 
 #include <algorithm>
@@ -44,13 +44,13 @@ struct FinePlace {
   mars::LocalFrame frame;
 };
 
-// A metre over the ground, a millimetre further each frame: a part of a picture of 1280 x 720.
+// A metre over the ground, a millimetre further each frame: a part of an image of 1280 x 720.
 inline vpe::core::View millimetre_view(const FinePlace& place, const paging::Surface& surface, double yaw_deg,
                                        int frame) {
   const mars::LonLat at = mars::destination(place.at, yaw_deg, frame * 1e-3 / mars::kMarsRadius_m);
   const double ground_m = surface.at(place.frame.up).height_m;
   vpe::core::View view;
-  view.eye = mars::to_eye({at.lon_deg, at.lat_deg, ground_m + 1, yaw_deg, -25, 7}, mars::kMarsRadius_m);
+  view.camera = mars::to_camera({at.lon_deg, at.lat_deg, ground_m + 1, yaw_deg, -25, 7}, mars::kMarsRadius_m);
   view.width = 1280;
   view.height = 720;
   view.fov_deg = 60;
@@ -82,7 +82,7 @@ inline Jitter measure_jitter(const FinePlace& place, const paging::Surface& surf
         const int x = static_cast<int>(k) % width;
         const int y = static_cast<int>(k) / width;
         ray[k] = vpe::core::pixel_ray(view, view.part.x + x + 0.5, view.part.y + y + 0.5);
-        exact[k] = surface.cast(view.eye.eye_m, ray[k]);
+        exact[k] = surface.cast(view.camera.position_m, ray[k]);
       }
       std::vector<double> off(range_m.size(), std::nan(""));
       for (std::size_t k = 0; k < range_m.size(); ++k) {
@@ -98,7 +98,7 @@ inline Jitter measure_jitter(const FinePlace& place, const paging::Surface& surf
           jitter.outlines += 1;
           continue;
         }
-        const glm::dvec3 normal = surface.at(view.eye.eye_m + exact[k] * ray[k]).normal;
+        const glm::dvec3 normal = surface.at(view.camera.position_m + exact[k] * ray[k]).normal;
         off[k] =
             (static_cast<double>(range_m[k]) - exact[k]) * std::abs(glm::dot(normal, ray[k])) * f / exact[k];
         jitter.measured += 1;

@@ -1,4 +1,4 @@
-// The ray backend while the eye moves by millimetres, and over nine orders of magnitude in one picture.
+// The ray backend while the camera moves by millimetres, and over nine orders of magnitude in one image.
 #include "tests/stability/jitter.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(Jitter, GroundOfRaysStandsStillUnderMillimetreSteps) {
   }
 }
 
-// The eye's own pixels of a point that stands still: no step beyond what was moved.
+// The camera's own pixels of a point that stands still: no step beyond what was moved.
 TEST(Jitter, ProjectedPostsMoveSmoothly) {
   test_support::TempDir dir;
   const test_support::FinePlace place({-59.2, -13.7});

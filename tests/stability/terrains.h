@@ -35,13 +35,13 @@ struct StrangeGround {
 
 // `relief`: the largest height, and depth, as a part of the radius.
 inline std::vector<StrangeGround> strange_grounds(double relief) {
-  const glm::dvec3 spot =
+  const glm::dvec3 hotspot =
       mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
   return {
       {"flat", [](const glm::dvec3&) { return 0.0; }},
       {"constant", [=](const glm::dvec3&) { return 0.37 * relief; }},
-      {"spike", [=](const glm::dvec3& d) { return glm::length(d - spot) < 1e-9 ? relief : 0.0; }},
-      {"pit", [=](const glm::dvec3& d) { return glm::length(d - spot) < 1e-9 ? -relief : 0.0; }},
+      {"spike", [=](const glm::dvec3& d) { return glm::length(d - hotspot) < 1e-9 ? relief : 0.0; }},
+      {"pit", [=](const glm::dvec3& d) { return glm::length(d - hotspot) < 1e-9 ? -relief : 0.0; }},
       {"cliff", [=](const glm::dvec3& d) { return d.x + 0.7 * d.y + 0.2 * d.z > 0.31 ? relief : -relief; }},
       {"checkerboard",
        [=](const glm::dvec3& d) {

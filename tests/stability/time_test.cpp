@@ -27,7 +27,7 @@ Waypoint waypoint(double time_s, mars::LonLat place, double alt_m, double yaw_de
   return {time_s, place.lon_deg, place.lat_deg, alt_m, false, yaw_deg, pitch_deg, roll_deg};
 }
 
-glm::dvec3 up_of(const FlightState& state) { return glm::normalize(state.eye.eye_m); }
+glm::dvec3 up_of(const FlightState& state) { return glm::normalize(state.camera.position_m); }
 
 // Segments of a thousandth of a second beside some of a thousand seconds, of nothing to half a turn.
 Flight stiff_flight(Random& random) {
@@ -65,7 +65,7 @@ TEST(StiffFlight, NeverSwingsOut) {
         const FlightState state =
             path.at(k == kSteps ? b.time_s : a.time_s + (b.time_s - a.time_s) * k / kSteps);
         for (const glm::dvec3& v :
-             {state.eye.eye_m, state.eye.axes.right, state.eye.axes.up, state.eye.axes.forward})
+             {state.camera.position_m, state.camera.axes.right, state.camera.axes.up, state.camera.axes.forward})
           ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
         ASSERT_TRUE(state.pose.alt_m >= low && state.pose.alt_m <= high);
         const glm::dvec3 up = up_of(state);
@@ -145,8 +145,8 @@ TEST(StiffFlight, CoincidentPosesRestAndOppositeOnesAreRefused) {
   const FlightState held = rest.at(0);
   for (int k = 0; k <= 5000; ++k) {
     const FlightState state = rest.at(rest.duration_s() * k / 5000);
-    ASSERT_EQ(state.eye.eye_m, held.eye.eye_m);
-    ASSERT_EQ(state.eye.axes.forward, held.eye.axes.forward);
+    ASSERT_EQ(state.camera.position_m, held.camera.position_m);
+    ASSERT_EQ(state.camera.axes.forward, held.camera.axes.forward);
   }
 }
 
@@ -192,11 +192,11 @@ TEST(LongReplay, StatesDoNotDependOnWhatWasPlayed) {
   std::vector<glm::dvec3> eyes;
   std::vector<std::int64_t> some;
   for (std::int64_t k = 0; k < frames; k += 97) some.push_back(k);
-  for (const std::int64_t k : some) eyes.push_back(at(k).eye.eye_m);
-  for (std::size_t n = some.size(); n-- > 0;) ASSERT_EQ(at(some[n]).eye.eye_m, eyes[n]);
+  for (const std::int64_t k : some) eyes.push_back(at(k).camera.position_m);
+  for (std::size_t n = some.size(); n-- > 0;) ASSERT_EQ(at(some[n]).camera.position_m, eyes[n]);
   for (int n = 0; n < 2000; ++n) {
     const auto pick = static_cast<std::size_t>(random.integer(0, static_cast<int>(some.size()) - 1));
-    ASSERT_EQ(at(some[pick]).eye.eye_m, eyes[pick]);
+    ASSERT_EQ(at(some[pick]).camera.position_m, eyes[pick]);
   }
   double drift_s = 0;
   for (std::int64_t k = 0; k <= frames; k += 11) {
@@ -230,9 +230,9 @@ TEST(LongReplay, ThePlayerKeepsTime) {
   record_worst("player: 10^5 s of a loop of 7 s", loop_drift_s, 1e-4, "s");
 }
 
-// 10^5 s along a great circle over the poles, in steps of a second: where the eye ends is where it should.
+// 10^5 s along a great circle over the poles, in steps of a second: where the camera ends is where it should.
 TEST(LongReplay, SteeringStraightAheadStaysOnItsGreatCircle) {
-  const vpe::explore::Ground ball = vpe::explore::ball(kRadius_m);
+  const vpe::explore::TerrainQuery ball = vpe::explore::ball(kRadius_m);
   constexpr double kStep_m = 800;
   for (const double heading_deg : {0.0, 37.0, 90.0}) {
     const mars::LonLat start{170, 60};

@@ -15,8 +15,8 @@ constexpr double kRounding = 4e-15;  // of the edge tests, relative to their fac
 constexpr int kSamples = 64;
 
 // Whether the part t >= 0 of the ray may meet the ball.
-bool meets(const glm::dvec3& eye, const glm::dvec3& direction, const glm::dvec3& centre, double radius_m) {
-  const glm::dvec3 to = centre - eye;
+bool meets(const glm::dvec3& camera, const glm::dvec3& direction, const glm::dvec3& centre, double radius_m) {
+  const glm::dvec3 to = centre - camera;
   const double along = glm::dot(to, direction);
   const glm::dvec3 off = to - along * direction;
   const double wide = radius_m * (1.0 + 1e-9) + 1e-6;
@@ -84,12 +84,12 @@ void BruteForce::add_tile(const paging::TileHeights& tile, double radius_m) {
 }
 
 template <typename Visit>
-void BruteForce::each_crossing(const glm::dvec3& eye_m, const glm::dvec3& direction, Visit&& visit) const {
+void BruteForce::each_crossing(const glm::dvec3& camera_m, const glm::dvec3& direction, Visit&& visit) const {
   for (const Ball& tile : tiles_) {
-    if (!meets(eye_m, direction, tile.centre, tile.radius_m)) continue;
+    if (!meets(camera_m, direction, tile.centre, tile.radius_m)) continue;
     for (std::size_t b = tile.begin; b < tile.end; ++b) {
       const Ball& block = blocks_[b];
-      if (!meets(eye_m, direction, block.centre, block.radius_m)) continue;
+      if (!meets(camera_m, direction, block.centre, block.radius_m)) continue;
       for (std::size_t n = block.begin; n < block.end; ++n) {
         const Triangle& triangle = triangles_[n];
         const glm::dvec3 p = glm::cross(direction, triangle.edge2);
@@ -97,7 +97,7 @@ void BruteForce::each_crossing(const glm::dvec3& eye_m, const glm::dvec3& direct
         if (area == 0.0) continue;  // edge-on: its neighbours are not
         const double sign = area < 0.0 ? -1.0 : 1.0;
         area *= sign;
-        const glm::dvec3 from = eye_m - triangle.corner;
+        const glm::dvec3 from = camera_m - triangle.corner;
         const double slack = kRounding * (glm::length(from) + triangle.longest_m) * triangle.longest_m;
         const double u = sign * glm::dot(from, p);
         if (u < -slack || u > area + slack) continue;
@@ -111,16 +111,16 @@ void BruteForce::each_crossing(const glm::dvec3& eye_m, const glm::dvec3& direct
   }
 }
 
-std::vector<double> BruteForce::crossings(const glm::dvec3& eye_m, const glm::dvec3& direction) const {
+std::vector<double> BruteForce::crossings(const glm::dvec3& camera_m, const glm::dvec3& direction) const {
   std::vector<double> found;
-  each_crossing(eye_m, direction, [&](double t) { found.push_back(t); });
+  each_crossing(camera_m, direction, [&](double t) { found.push_back(t); });
   std::sort(found.begin(), found.end());
   return found;
 }
 
-double BruteForce::cast(const glm::dvec3& eye_m, const glm::dvec3& direction) const {
+double BruteForce::cast(const glm::dvec3& camera_m, const glm::dvec3& direction) const {
   double nearest = kNone;
-  each_crossing(eye_m, direction, [&](double t) { nearest = std::min(nearest, t); });
+  each_crossing(camera_m, direction, [&](double t) { nearest = std::min(nearest, t); });
   return nearest;
 }
 
@@ -128,14 +128,14 @@ double BruteForce::radius_m(const glm::dvec3& direction) const {
   return cast(glm::dvec3(0), glm::normalize(direction));
 }
 
-double BruteForce::deepest_m(const glm::dvec3& eye_m, const glm::dvec3& direction, double from,
+double BruteForce::deepest_m(const glm::dvec3& camera_m, const glm::dvec3& direction, double from,
                              double to) const {
   const auto depth = [&](double t) {
-    const glm::dvec3 at = eye_m + t * direction;
+    const glm::dvec3 at = camera_m + t * direction;
     return radius_m(at) - glm::length(at);
   };
   std::vector<double> cuts{from};
-  for (const double t : crossings(eye_m, direction)) {
+  for (const double t : crossings(camera_m, direction)) {
     if (t > from && t < to) cuts.push_back(t);
   }
   if (std::isfinite(to)) cuts.push_back(to);
@@ -147,17 +147,17 @@ double BruteForce::deepest_m(const glm::dvec3& eye_m, const glm::dvec3& directio
   return deepest;
 }
 
-Verdict judge(const BruteForce& truth, const glm::dvec3& eye_m, const glm::dvec3& direction, double claimed_m,
+Verdict judge(const BruteForce& truth, const glm::dvec3& camera_m, const glm::dvec3& direction, double claimed_m,
               const Tie& tie) {
-  const double exact_m = truth.cast(eye_m, direction);
+  const double exact_m = truth.cast(camera_m, direction);
   if (claimed_m == exact_m) return Verdict::kSame;  // none, too
   if (std::isfinite(exact_m) && std::abs(claimed_m - exact_m) <= kSameRange * exact_m) return Verdict::kSame;
   if (claimed_m > exact_m) {
-    const double sunk_m = truth.deepest_m(eye_m, direction, exact_m, claimed_m);
+    const double sunk_m = truth.deepest_m(camera_m, direction, exact_m, claimed_m);
     return sunk_m < tie.share * exact_m + tie.metres ? Verdict::kTie : Verdict::kMissed;
   }
   // Also catches NaN.
-  const double above_m = -truth.deepest_m(eye_m, direction, claimed_m, claimed_m);
+  const double above_m = -truth.deepest_m(camera_m, direction, claimed_m, claimed_m);
   return above_m < tie.share * claimed_m + tie.metres ? Verdict::kTie : Verdict::kPhantom;
 }
 

@@ -16,20 +16,20 @@ class BruteForce {
   // Reads all finest tiles. Throws paging::PlanetError.
   explicit BruteForce(const paging::PlanetFile& planet);
 
-  // Where the ray from `eye_m` (metres from the planet's centre) along unit `direction` crosses S, t >= 0,
+  // Where the ray from `camera_m` (metres from the planet's centre) along unit `direction` crosses S, t >= 0,
   // ascending. Every triangle whose bounding ball the ray meets is tried (Moeller & Trumbore 1997), with its
   // edges widened by the rounding of that test, so no ray gets through between neighbours; a ray through an
-  // edge may be told twice. Error of t about 1e-15 (|eye| + |S|) / sin(incidence).
-  std::vector<double> crossings(const glm::dvec3& eye_m, const glm::dvec3& direction) const;
+  // edge may be told twice. Error of t about 1e-15 (|camera| + |S|) / sin(incidence).
+  std::vector<double> crossings(const glm::dvec3& camera_m, const glm::dvec3& direction) const;
   // The first of them; infinity when there is none.
-  double cast(const glm::dvec3& eye_m, const glm::dvec3& direction) const;
+  double cast(const glm::dvec3& camera_m, const glm::dvec3& direction) const;
 
   // Radius of S along a direction of any length but 0, metres.
   double radius_m(const glm::dvec3& direction) const;
 
   // How far below S, along the vertical, the ray gets at most between two distances; negative when it stays
   // above. Sampled between crossings, and good to a few percent there.
-  double deepest_m(const glm::dvec3& eye_m, const glm::dvec3& direction, double from, double to) const;
+  double deepest_m(const glm::dvec3& camera_m, const glm::dvec3& direction, double from, double to) const;
 
   std::size_t triangles() const { return triangles_.size(); }
 
@@ -45,7 +45,7 @@ class BruteForce {
   };
 
   template <typename Visit>
-  void each_crossing(const glm::dvec3& eye_m, const glm::dvec3& direction, Visit&& visit) const;
+  void each_crossing(const glm::dvec3& camera_m, const glm::dvec3& direction, Visit&& visit) const;
   void add_tile(const paging::TileHeights& tile, double radius_m);
 
   std::vector<Ball> tiles_;
@@ -67,7 +67,7 @@ struct Tie {
   double share = 1e-6;
   double metres = 0;
 };
-Verdict judge(const BruteForce& truth, const glm::dvec3& eye_m, const glm::dvec3& direction, double claimed_m,
+Verdict judge(const BruteForce& truth, const glm::dvec3& camera_m, const glm::dvec3& direction, double claimed_m,
               const Tie& tie = {});
 
 }  // namespace test_support

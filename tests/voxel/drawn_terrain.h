@@ -1,4 +1,4 @@
-// The ground that mode multires draws for an eye, told from the posts of its tiles.
+// The ground that mode multires draws for a camera, told from the posts of its tiles.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -18,7 +18,7 @@ namespace test_support {
 class DrawnGround {
  public:
   DrawnGround(const paging::Surface& surface, const vpe::core::View& view, double cell_px)
-      : walk_(surface, eye(surface, view.eye.eye_m), 1, {cell_px, vpe::core::focal_px(view)}) {}
+      : walk_(surface, camera(surface, view.camera.position_m), 1, {cell_px, vpe::core::focal_px(view)}) {}
 
   lod::TileTree::Index tile(const glm::dvec3& direction) const {
     const mars::ChartPoint at = mars::chart_point(direction);
@@ -33,9 +33,9 @@ class DrawnGround {
   }
 
  private:
-  static vpe::voxel::ColumnEye eye(const paging::Surface& surface, const glm::dvec3& eye_m) {
-    const double distance = glm::length(eye_m);
-    return {eye_m / distance, distance, surface.planet_radius_m(), surface.at(eye_m).radius_m};
+  static vpe::voxel::ColumnCamera camera(const paging::Surface& surface, const glm::dvec3& camera_m) {
+    const double distance = glm::length(camera_m);
+    return {camera_m / distance, distance, surface.planet_radius_m(), surface.at(camera_m).radius_m};
   }
 
   vpe::voxel::ColumnWalk walk_;

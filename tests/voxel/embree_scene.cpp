@@ -18,16 +18,16 @@ constexpr std::size_t kPadding = 1;  // indices: Embree reads 16 bytes at the la
 
 }  // namespace
 
-std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const glm::dvec3& eye_m) {
+std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const glm::dvec3& camera_m) {
   // A point at the highest radius is hidden by the ball of the lowest one beyond both horizons' dips.
   const double low_m = planet.meta().lowest_radius_m;
   const auto dip_rad = [&](double radius_m) { return std::acos(std::min(1.0, low_m / radius_m)); };
-  const double reach_rad = dip_rad(glm::length(eye_m)) + dip_rad(planet.meta().highest_radius_m);
+  const double reach_rad = dip_rad(glm::length(camera_m)) + dip_rad(planet.meta().highest_radius_m);
   std::vector<lod::TileKey> keys;
   for (const lod::TileInfo& tile : planet.tree().tiles()) {
     if (tile.has_children) continue;
     const mars::Cap cap = lod::bounding_cap(tile.key);
-    if (mars::angle_between_rad(cap.centre, eye_m) <= reach_rad + cap.radius_rad) keys.push_back(tile.key);
+    if (mars::angle_between_rad(cap.centre, camera_m) <= reach_rad + cap.radius_rad) keys.push_back(tile.key);
   }
   return keys;
 }
@@ -38,7 +38,7 @@ std::int64_t triangle_count(const paging::PlanetFile& planet, const std::vector<
 }
 
 EmbreeScene::EmbreeScene(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles,
-                         const glm::dvec3& eye_m, const EmbreeOptions& options)
+                         const glm::dvec3& camera_m, const EmbreeOptions& options)
     : triangles_(triangle_count(planet, tiles)) {
   const std::string config = "threads=" + std::to_string(std::max(0, options.threads));
   device_ = rtcNewDevice(config.c_str());
@@ -67,8 +67,8 @@ EmbreeScene::EmbreeScene(const paging::PlanetFile& planet, const std::vector<lod
     indices_.resize(indices_.size() + kPadding);
     bytes_ += static_cast<std::int64_t>(indices_.size() * sizeof(std::uint32_t));
   }
-  vpe::core::parallel_for(tiles.size(), options.threads, [&](std::size_t t) {
-    add_tile(planet, tiles[t], static_cast<unsigned>(t), eye_m, options);
+  vpe::base::parallel_for(tiles.size(), options.threads, [&](std::size_t t) {
+    add_tile(planet, tiles[t], static_cast<unsigned>(t), camera_m, options);
   });
   const auto start = std::chrono::steady_clock::now();
   rtcCommitScene(scene_);
@@ -90,7 +90,7 @@ void EmbreeScene::check(const char* what) const {
 }
 
 void EmbreeScene::add_tile(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id,
-                           const glm::dvec3& eye_m, const EmbreeOptions& options) {
+                           const glm::dvec3& camera_m, const EmbreeOptions& options) {
   const lod::Posts posts = planet.heights(key).posts;
   const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
   const bool grid = options.shape == EmbreeShape::kGrid;
@@ -104,7 +104,7 @@ void EmbreeScene::add_tile(const paging::PlanetFile& planet, const lod::TileKey&
     for (std::size_t i = side; i-- > 0;) {
       const glm::dvec3 p = mars::cube_point(key.face, lines.u[i], lines.v[j]);
       const double radius_m = planet.radius_m() + posts.height_m[j * side + i];
-      const glm::dvec3 at = p * (radius_m / mars::cube_length(p)) - eye_m;
+      const glm::dvec3 at = p * (radius_m / mars::cube_length(p)) - camera_m;
       for (const double x : {at.x, at.y, at.z}) *vertex++ = static_cast<float>(x);
     }
   }

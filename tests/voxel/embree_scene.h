@@ -25,16 +25,16 @@ struct EmbreeOptions {
   int threads = 0;      // of building; 0: all
 };
 
-// Finest tiles with ground that the eye can possibly see.
-std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const glm::dvec3& eye_m);
+// Finest tiles with ground that the camera can possibly see.
+std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const glm::dvec3& camera_m);
 std::int64_t triangle_count(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles);
 
-// Finest tiles as one Embree scene, a geometry each, in floats relative to the eye: rays start at 0. Cells are
+// Finest tiles as one Embree scene, a geometry each, in floats relative to the camera: rays start at 0. Cells are
 // split along the diagonal of lod/tree/posts.h in both shapes. Any thread may cast into scene().
 class EmbreeScene {
  public:
   // Throws paging::PlanetError, and std::runtime_error with Embree's words.
-  EmbreeScene(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles, const glm::dvec3& eye_m,
+  EmbreeScene(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles, const glm::dvec3& camera_m,
               const EmbreeOptions& options = {});
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
@@ -49,7 +49,7 @@ class EmbreeScene {
   double cast(const glm::dvec3& direction) const;
 
  private:
-  void add_tile(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id, const glm::dvec3& eye_m,
+  void add_tile(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id, const glm::dvec3& camera_m,
                 const EmbreeOptions& options);
   void check(const char* what) const;
 

@@ -36,7 +36,7 @@ glm::dvec3 float_direction(const glm::dvec3& d) {
   return {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
 }
 
-// Embree's corners are floats relative to the eye, so its triangles lie this share of (range + their longest
+// Embree's corners are floats relative to the camera, so its triangles lie this share of (range + their longest
 // side) off S; rays that get nearer than that to S are ties between the two.
 constexpr double kQuantum = 3e-7;
 // What Embree may still tell otherwise; of those the brute force must side with S.
@@ -53,33 +53,33 @@ TEST_F(Embree, CastsOfSAreEmbrees) {
   for (int e = 0; e < 12; ++e) {
     const glm::dvec3 up =
         e % 3 == 0 ? glm::normalize(mars::direction({40, 34}) + 0.03 * random.direction()) : random.direction();
-    const glm::dvec3 eye = up * (surface.at(up).radius_m + random.log_uniform(2, 1e6));
-    const auto tiles = test_support::tiles_in_sight(*planet, eye);
-    const EmbreeScene triangles(*planet, tiles, eye,
+    const glm::dvec3 camera = up * (surface.at(up).radius_m + random.log_uniform(2, 1e6));
+    const auto tiles = test_support::tiles_in_sight(*planet, camera);
+    const EmbreeScene triangles(*planet, tiles, camera,
                                 {EmbreeShape::kTriangles, RTC_BUILD_QUALITY_MEDIUM, true, 2});
-    const EmbreeScene grid(*planet, tiles, eye, {EmbreeShape::kGrid, RTC_BUILD_QUALITY_MEDIUM, true, 2});
+    const EmbreeScene grid(*planet, tiles, camera, {EmbreeShape::kGrid, RTC_BUILD_QUALITY_MEDIUM, true, 2});
     for (int n = 0; n < 4000; ++n) {
-      // Evenly about the eye, and as many near the horizon.
+      // Evenly about the camera, and as many near the horizon.
       glm::dvec3 d = random.direction();
       if (n % 2 == 0) {
-        const double dip = std::acos(std::min(1.0, planet->radius_m() / glm::length(eye)));
+        const double dip = std::acos(std::min(1.0, planet->radius_m() / glm::length(camera)));
         d = glm::normalize(glm::cross(up, d));
         d = glm::normalize(d + up * std::tan(random.uniform(-0.1, 0.05) - dip));
       }
       const glm::dvec3 direction = float_direction(d);
       const double length = glm::length(direction);
-      const double ours = surface.cast(eye, direction / length);
+      const double ours = surface.cast(camera, direction / length);
       for (const EmbreeScene* scene : {&triangles, &grid}) {
         const double theirs = scene->cast(direction) * length;
         ++rays;
         hits += std::isfinite(ours) ? 1 : 0;
         if (ours == theirs || std::abs(ours - theirs) <= kFar * std::min(ours, theirs)) continue;
         ++differ;
-        const Verdict verdict = test_support::judge(truth, eye, direction / length, ours);
+        const Verdict verdict = test_support::judge(truth, camera, direction / length, ours);
         EXPECT_TRUE(verdict == Verdict::kSame || verdict == Verdict::kTie)
             << "eye " << e << " ray " << n << ": S " << ours << " m, Embree " << theirs << " m";
         const Verdict other =
-            test_support::judge(truth, eye, direction / length, theirs, {kQuantum, kQuantum * longest_m});
+            test_support::judge(truth, camera, direction / length, theirs, {kQuantum, kQuantum * longest_m});
         embree_wrong += other == Verdict::kMissed || other == Verdict::kPhantom ? 1 : 0;
       }
     }
@@ -98,18 +98,18 @@ TEST_F(Embree, TilesOutOfSightAreNotHit) {
   int outside = 0;
   for (int e = 0; e < 20; ++e) {
     const glm::dvec3 up = random.direction();
-    const glm::dvec3 eye = up * (surface.at(up).radius_m + random.log_uniform(2, 1e6));
-    const auto tiles = test_support::tiles_in_sight(*planet, eye);
+    const glm::dvec3 camera = up * (surface.at(up).radius_m + random.log_uniform(2, 1e6));
+    const auto tiles = test_support::tiles_in_sight(*planet, camera);
     outside += static_cast<int>(planet->meta().leaf_tiles) - static_cast<int>(tiles.size());
     for (int n = 0; n < 1000; ++n) {
       const glm::dvec3 direction = random.direction();
-      const double range = surface.cast(eye, direction);
+      const double range = surface.cast(camera, direction);
       if (!std::isfinite(range)) continue;
-      const lod::TileKey hit = surface.at(eye + range * direction).tile;
+      const lod::TileKey hit = surface.at(camera + range * direction).tile;
       // A hit on a border may be told of either side.
       const auto touches = [&](const lod::TileKey& key) {
         const mars::Cap cap = lod::bounding_cap(key);
-        return mars::angle_between_rad(cap.centre, eye + range * direction) <= cap.radius_rad + 1e-12;
+        return mars::angle_between_rad(cap.centre, camera + range * direction) <= cap.radius_rad + 1e-12;
       };
       EXPECT_TRUE(std::any_of(tiles.begin(), tiles.end(), touches)) << lod::to_string(hit);
     }

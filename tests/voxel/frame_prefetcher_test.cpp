@@ -1,4 +1,4 @@
-// What is begun beforehand is the same picture, found sooner, and harms nobody.
+// What is begun beforehand is the same image, found sooner, and harms nobody.
 #include "vpe/voxel/frame_prefetcher.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace {
 namespace core = vpe::core;
 using test_support::Random;
 using test_support::request_for;
-using vpe::voxel::PictureAhead;
-using vpe::voxel::PicturePainter;
+using vpe::voxel::FramePrefetcher;
+using vpe::voxel::ImagePainter;
 using vpe::voxel::RangeCaster;
 
 constexpr std::size_t kBudget = std::size_t{1} << 28;
@@ -63,9 +63,9 @@ struct Backend {
   std::int64_t tiles() const { return caster.store().made().tiles; }
 
   RangeCaster caster;
-  PicturePainter painter;
+  ImagePainter painter;
   vpe::base::ThreadPool pool;
-  PictureAhead ahead;
+  FramePrefetcher ahead;
   std::vector<float> taken;
 };
 
@@ -100,12 +100,12 @@ TEST_F(Ahead, ThinViewsSeeTheSame) {
     core::View& view = request.view;
     view.projection = static_cast<core::Projection>(random.integer(0, 2));
     const bool round = view.projection != core::Projection::kPerspective;
-    // Round pictures keep their azimuths only where columns go up evenly.
+    // Round images keep their azimuths only where columns go up evenly.
     view.width = round ? 16 * random.integer(2, 60) : random.integer(17, 900);
     view.height = random.integer(17, 700);
     view.fov_deg = random.uniform(1, 100);
     view.principal_offset_px = {random.uniform(-50, 50), random.uniform(-50, 50)};
-    const core::View thin = vpe::voxel::thin_view(view, 16);
+    const core::View thin = vpe::voxel::downsampled_view(view, 16);
     ASSERT_EQ(core::check(thin), "");
     EXPECT_EQ(thin.width, (view.width + 15) / 16);
     for (int k = 0; k < 8; ++k) {
@@ -116,7 +116,7 @@ TEST_F(Ahead, ThinViewsSeeTheSame) {
     view.part = {random.integer(0, view.width - 2), random.integer(0, view.height - 2), 1, 1};
     view.part.width = random.integer(1, view.width - view.part.x);
     view.part.height = random.integer(1, view.height - view.part.y);
-    const core::View part = vpe::voxel::thin_view(view, 16);
+    const core::View part = vpe::voxel::downsampled_view(view, 16);
     ASSERT_EQ(core::check(part), "");
     EXPECT_LE(part.part.x * 16, view.part.x);
     EXPECT_GE((part.part.x + part.part.width) * 16, view.part.x + view.part.width);
@@ -147,13 +147,13 @@ TEST_F(Ahead, TilesOfUpcomingViewsAreThere) {
   Backend without(planet_);
   range = without.cast(now);
   without.paint(now, range);
-  // What is new to the later picture was there but for a quarter.
+  // What is new to the later image was there but for a quarter.
   const std::size_t fresh = painted - without.painter.bytes_resident();
   EXPECT_GT(fresh, without.painter.bytes_resident() / 10);
   EXPECT_LE(painted - painted_ahead, fresh / 4);
 }
 
-TEST_F(Ahead, TheNextPictureIsCast) {
+TEST_F(Ahead, TheNextImageIsCast) {
   for (const auto projection :
        {core::Projection::kPerspective, core::Projection::kCylinder, core::Projection::kEquirectangular}) {
     for (const auto mode : {core::RayMode::kExact, core::RayMode::kMultires, core::RayMode::kPlain}) {
@@ -200,7 +200,7 @@ TEST_F(Ahead, AnythingElseIsThrownAway) {
   Backend backend(planet_);
   const core::DrawRequest next = wavy_request(0.5, 45, 64, 40);
   std::vector<core::DrawRequest> others(8, next);
-  double& x = others[0].view.eye.eye_m.x;
+  double& x = others[0].view.camera.position_m.x;
   x = std::nextafter(x, 0.0);
   others[1].view.width = 65;
   others[2].view.part = {0, 0, 64, 39};
@@ -217,7 +217,7 @@ TEST_F(Ahead, AnythingElseIsThrownAway) {
   }
 }
 
-TEST_F(Ahead, NotWithOneThreadNorLargePicturesNorSeveralSamples) {
+TEST_F(Ahead, NotWithOneThreadNorLargeImagesNorSeveralSamples) {
   core::DrawRequest next = wavy_request(0.5, 45, 64, 40);
   Backend one(planet_, 1);
   one.ahead.begin(announcing(wavy_request(0, 0), next));
@@ -242,8 +242,8 @@ TEST_F(Ahead, NotWithOneThreadNorLargePicturesNorSeveralSamples) {
   EXPECT_FALSE(several.take(next));
 }
 
-// The picture at hand still has all its tiles.
-TEST_F(Ahead, CachesKeepWhatThePictureUses) {
+// The image at hand still has all its tiles.
+TEST_F(Ahead, CachesKeepWhatTheImageUses) {
   const core::DrawRequest now = wavy_request(0, 0);
   Backend roomy(planet_);
   const std::vector<float> range = roomy.cast(now);
@@ -256,7 +256,7 @@ TEST_F(Ahead, CachesKeepWhatThePictureUses) {
     const std::int64_t cast = backend.tiles();
     backend.cast(now);
     const std::int64_t before = backend.tiles();
-    const std::int64_t always = before - cast;  // in double, about the eye's foot: few are kept
+    const std::int64_t always = before - cast;  // in double, about the camera's foot: few are kept
     core::DrawRequest request = now;
     for (int k = 1; k <= 3; ++k) request.paging.upcoming.push_back(wavy_request(n, 60.0 * k).view);
     backend.ahead.begin(request);
@@ -295,7 +295,7 @@ TEST_F(Ahead, EndsAtAnyMoment) {
 }
 
 // A film: with what comes next told, told wrongly, and not told.
-TEST_F(Ahead, PicturesAreTheSame) {
+TEST_F(Ahead, ImagesAreTheSame) {
   std::vector<core::DrawRequest> film;
   for (int n = 0; n < 10; ++n) {
     core::DrawRequest request = wavy_request(0.05 * n, 3.0 * n, 160, 90);
@@ -329,10 +329,10 @@ TEST_F(Ahead, DamageAheadHarmsNothingHere) {
   std::filesystem::copy_file(*dir_ / "wavy.vpe", path);
   const core::DrawRequest now = wavy_request(0, 0, 96, 60);
   core::DrawRequest next = wavy_request(180, 0, 96, 60);
-  next.view.eye = mars::to_eye({40, -60, 200000, 0, -60, 0}, planet_->radius_m());
-  // The tile below the next eye.
+  next.view.camera = mars::to_camera({40, -60, 200000, 0, -60, 0}, planet_->radius_m());
+  // The tile below the next camera.
   const paging::Surface surface(planet_, kBudget);
-  const std::int64_t tile = lod::pack(surface.at(next.view.eye.eye_m).tile);
+  const std::int64_t tile = lod::pack(surface.at(next.view.camera.position_m).tile);
   damage(path, tile);
   const auto damaged = paging::PlanetFile::open(path.string());
   const auto renderer = vpe::voxel::make_ray_renderer(damaged, {kBudget, 2});

@@ -1,4 +1,4 @@
-// Pictures painted many pixels at once against their definition, pixel by pixel.
+// Images painted many pixels at once against their definition, pixel by pixel.
 #include "vpe/voxel/paint/image_painter.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 namespace core = vpe::core;
 using test_support::Random;
-using vpe::voxel::PicturePainter;
+using vpe::voxel::ImagePainter;
 
 constexpr std::size_t kMemory = std::size_t{64} << 20;
 const mars::LonLat kPlace = mars::lon_lat(test_support::kWavyMiddle);
@@ -47,7 +47,7 @@ class Painting : public ::testing::Test {
 
   core::DrawRequest request(const mars::Pose& pose, int width, int height, double fov_deg = 60) const {
     core::DrawRequest out;
-    out.view.eye = mars::to_eye(pose, planet_->radius_m());
+    out.view.camera = mars::to_camera(pose, planet_->radius_m());
     out.view.width = width;
     out.view.height = height;
     out.view.fov_deg = fov_deg;
@@ -61,14 +61,14 @@ class Painting : public ::testing::Test {
     pool_.run(static_cast<std::size_t>(part.height), [&](std::size_t y) {
       for (int x = 0; x < part.width; ++x)
         out[y * static_cast<std::size_t>(part.width) + static_cast<std::size_t>(x)] = static_cast<float>(
-            surface.cast(of.view.eye.eye_m,
+            surface.cast(of.view.camera.position_m,
                          core::pixel_ray(of.view, part.x + x + 0.5, part.y + static_cast<double>(y) + 0.5),
                          of.settings.exaggeration));
     });
     return out;
   }
 
-  static Painted paint(PicturePainter& painter, const core::DrawRequest& of, const std::vector<float>& range_m,
+  static Painted paint(ImagePainter& painter, const core::DrawRequest& of, const std::vector<float>& range_m,
                        vpe::base::ThreadPool& pool, bool depths = false) {
     Painted out;
     out.colour.resize(range_m.size());
@@ -85,7 +85,7 @@ class Painting : public ::testing::Test {
 TEST_F(Painting, AllLooksAsDefined) {
   const paging::Surface surface(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
-  PicturePainter painter(planet_, kMemory);
+  ImagePainter painter(planet_, kMemory);
   // Low over fine posts, tiles of many levels to the horizon, and the whole planet, where tiles span several
   // knots.
   for (const mars::Pose& pose : {mars::Pose{kPlace.lon_deg, kPlace.lat_deg, 15000, 40, -12, 10},
@@ -104,7 +104,7 @@ TEST_F(Painting, AllLooksAsDefined) {
 TEST_F(Painting, AllProjectionsPartsAndSkiesAsDefined) {
   const paging::Surface surface(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
-  PicturePainter painter(planet_, kMemory);
+  ImagePainter painter(planet_, kMemory);
   Random random(17);
   std::size_t pixels = 0, off = 0;
   for (int n = 0; n < 60; ++n) {
@@ -131,7 +131,7 @@ TEST_F(Painting, AllProjectionsPartsAndSkiesAsDefined) {
 
 // Sky alone, also from very far away and round the sun's disc.
 TEST_F(Painting, SkyAndSunFromEverywhere) {
-  PicturePainter painter(planet_, kMemory);
+  ImagePainter painter(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
   for (const double height_m : {0.0, 5e4, 1e7, 1e9, 1e12}) {
     for (const double fov_deg : {1.5, 90.0}) {
@@ -148,7 +148,7 @@ TEST_F(Painting, SkyAndSunFromEverywhere) {
 TEST_F(Painting, OneColourBehindAnyAirAsDefined) {
   const paging::Surface surface(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
-  PicturePainter painter(planet_, kMemory);
+  ImagePainter painter(planet_, kMemory);
   core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 15000, 40, -5, 10}, 77, 52, 60);
   r.settings.mode = core::Mode::kUnlit;
   r.settings.colour = core::Colour::kNone;
@@ -176,7 +176,7 @@ TEST_F(Painting, ShadowsAndGapsAsDefined) {
       40000);
   const paging::Surface surface(holed, kMemory);
   const test_support::PaintedByPoint definition(holed, kMemory);
-  PicturePainter painter(holed, kMemory);
+  ImagePainter painter(holed, kMemory);
   core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 700000, 40, -70, 0}, 100, 70);
   r.sun = mars::sun_direction(kPlace, 315, 4);
   struct Look {
@@ -204,9 +204,9 @@ TEST_F(Painting, ShadowsAndGapsAsDefined) {
 
 TEST_F(Painting, ThreadsInstructionsMemoryAndHistoryChangeNothing) {
   const paging::Surface surface(planet_, kMemory);
-  PicturePainter reference(planet_, kMemory);
+  ImagePainter reference(planet_, kMemory);
   // Nearly nothing can be kept.
-  PicturePainter poor(planet_, std::size_t{1} << 20);
+  ImagePainter poor(planet_, std::size_t{1} << 20);
   vpe::base::ThreadPool one(1), three(3);
   core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 60000, 40, -20, 10}, 131, 90);
   r.settings.haze_visibility_m = 3e5;
@@ -234,14 +234,14 @@ TEST_F(Painting, ThreadsInstructionsMemoryAndHistoryChangeNothing) {
 
 TEST_F(Painting, InverseDepthsAreAlongTheEyesAxis) {
   const paging::Surface surface(planet_, kMemory);
-  PicturePainter painter(planet_, kMemory);
+  ImagePainter painter(planet_, kMemory);
   const core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 30000, 40, -10, 30}, 70, 50);
   const auto range_m = ranges(surface, r);
   const Painted painted = paint(painter, r, range_m, pool_, true);
   for (int y = 0; y < 50; ++y) {
     for (int x = 0; x < 70; ++x) {
       const auto at = static_cast<std::size_t>(70 * y + x);
-      const double along = glm::dot(core::pixel_ray(r.view, x + 0.5, y + 0.5), r.view.eye.axes.forward);
+      const double along = glm::dot(core::pixel_ray(r.view, x + 0.5, y + 0.5), r.view.camera.axes.forward);
       const double wanted = std::isinf(range_m[at]) ? 0 : 1 / (static_cast<double>(range_m[at]) * along);
       ASSERT_NEAR(static_cast<double>(painted.inverse_depth[at]), wanted, 3e-7 * wanted);
     }
@@ -249,7 +249,7 @@ TEST_F(Painting, InverseDepthsAreAlongTheEyesAxis) {
 }
 
 TEST_F(Painting, UnreadablePalettesAreTold) {
-  PicturePainter painter(planet_, kMemory);
+  ImagePainter painter(planet_, kMemory);
   core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 60000, 40, -20, 10}, 40, 30);
   r.settings.mode = core::Mode::kColoured;
   r.settings.palette = (dir_ / "none.txt").string();
@@ -262,8 +262,8 @@ TEST(RayRows, AreThePixelsRays) {
   Random random(3);
   for (int n = 0; n < 60; ++n) {
     core::View view;
-    view.eye =
-        mars::to_eye({10, 20, 1000, random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180)},
+    view.camera =
+        mars::to_camera({10, 20, 1000, random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180)},
                      mars::kMarsRadius_m);
     view.projection = static_cast<core::Projection>(n % 3);
     view.width = 201;

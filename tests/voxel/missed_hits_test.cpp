@@ -37,7 +37,7 @@ std::shared_ptr<const paging::PlanetFile> stepped_planet(const std::filesystem::
 constexpr test_support::Tie kRounding{4e-15, 1e-8};
 
 struct Ray {
-  glm::dvec3 eye_m;
+  glm::dvec3 camera_m;
   glm::dvec3 direction;
 };
 
@@ -73,7 +73,7 @@ Ray pick_ray(Random& random, const paging::Surface& surface) {
     const double distance_m = random.log_uniform(1.0, 1e7);
     if (random.integer(0, 3) == 0) {
       const glm::dvec3 up = random.direction();
-      ray.eye_m = up * (surface.at(up).radius_m + distance_m);
+      ray.camera_m = up * (surface.at(up).radius_m + distance_m);
       ray.direction = random.direction();
       return ray;
     }
@@ -82,9 +82,9 @@ Ray pick_ray(Random& random, const paging::Surface& surface) {
     const glm::dvec3 along = glm::normalize(glm::cross(up, random.direction()));
     const double elevation_rad =
         random.integer(0, 1) == 0 ? random.uniform(0.0, 1.57) : random.log_uniform(1e-7, 0.3);
-    ray.eye_m = target + distance_m * (std::cos(elevation_rad) * along + std::sin(elevation_rad) * up);
-    ray.direction = glm::normalize(target - ray.eye_m);
-    if (glm::length(ray.eye_m) > surface.at(ray.eye_m).radius_m + 0.5) return ray;
+    ray.camera_m = target + distance_m * (std::cos(elevation_rad) * along + std::sin(elevation_rad) * up);
+    ray.direction = glm::normalize(target - ray.camera_m);
+    if (glm::length(ray.camera_m) > surface.at(ray.camera_m).radius_m + 0.5) return ray;
   }
 }
 
@@ -94,7 +94,7 @@ void expect_no_missed_hits(std::int64_t count) {
   const paging::Surface surface(planet, std::size_t{256} << 20);
   const BruteForce truth(*planet);
   Random random(7000);
-  std::array<std::int64_t, 4> tally{};
+  std::array<std::int64_t, 4> update_totals{};
   std::int64_t hits = 0;
   std::vector<Ray> wrong;
   constexpr std::int64_t kBatch = 20000;
@@ -103,24 +103,24 @@ void expect_no_missed_hits(std::int64_t count) {
     for (Ray& ray : rays) ray = pick_ray(random, surface);
     std::vector<Verdict> verdicts(rays.size());
     std::vector<char> hit(rays.size());
-    vpe::core::parallel_for(rays.size(), 0, [&](std::size_t n) {
-      const double found_m = surface.cast(rays[n].eye_m, rays[n].direction);
-      verdicts[n] = test_support::judge(truth, rays[n].eye_m, rays[n].direction, found_m, kRounding);
+    vpe::base::parallel_for(rays.size(), 0, [&](std::size_t n) {
+      const double found_m = surface.cast(rays[n].camera_m, rays[n].direction);
+      verdicts[n] = test_support::judge(truth, rays[n].camera_m, rays[n].direction, found_m, kRounding);
       hit[n] = std::isfinite(found_m) ? 1 : 0;
     });
     for (std::size_t n = 0; n < rays.size(); ++n) {
-      ++tally[static_cast<std::size_t>(verdicts[n])];
+      ++update_totals[static_cast<std::size_t>(verdicts[n])];
       hits += hit[n];
       if (verdicts[n] == Verdict::kMissed || verdicts[n] == Verdict::kPhantom) wrong.push_back(rays[n]);
     }
   }
-  const auto verdicts = [&](Verdict v) { return tally[static_cast<std::size_t>(v)]; };
+  const auto verdicts = [&](Verdict v) { return update_totals[static_cast<std::size_t>(v)]; };
   for (std::size_t n = 0; n < std::min<std::size_t>(wrong.size(), 5); ++n) {
     const Ray& ray = wrong[n];
-    ADD_FAILURE() << "eye " << ray.eye_m.x << " " << ray.eye_m.y << " " << ray.eye_m.z << " towards "
+    ADD_FAILURE() << "eye " << ray.camera_m.x << " " << ray.camera_m.y << " " << ray.camera_m.z << " towards "
                   << ray.direction.x << " " << ray.direction.y << " " << ray.direction.z << ": cast "
-                  << surface.cast(ray.eye_m, ray.direction) << " m, exact "
-                  << truth.cast(ray.eye_m, ray.direction) << " m";
+                  << surface.cast(ray.camera_m, ray.direction) << " m, exact "
+                  << truth.cast(ray.camera_m, ray.direction) << " m";
   }
   EXPECT_EQ(verdicts(Verdict::kMissed), 0);
   EXPECT_EQ(verdicts(Verdict::kPhantom), 0);
@@ -154,17 +154,17 @@ TEST(BruteForceJudge, TellsWrongFromRight) {
     const double ground_m = surface.at(up).radius_m;
     EXPECT_NEAR(truth.radius_m(up), ground_m, 1e-8);
     const double height_m = random.log_uniform(10, 1e6);
-    const glm::dvec3 eye = up * (ground_m + height_m);
-    EXPECT_EQ(test_support::judge(truth, eye, -up, height_m), Verdict::kSame);
-    EXPECT_EQ(test_support::judge(truth, eye, -up, height_m * (1 + 5e-7)), Verdict::kTie);
-    EXPECT_EQ(test_support::judge(truth, eye, -up, height_m * (1 + 1e-4)), Verdict::kMissed);
-    EXPECT_EQ(test_support::judge(truth, eye, -up, height_m * (1 - 5e-7)), Verdict::kTie);
-    EXPECT_EQ(test_support::judge(truth, eye, -up, height_m * (1 - 1e-4)), Verdict::kPhantom);
+    const glm::dvec3 camera = up * (ground_m + height_m);
+    EXPECT_EQ(test_support::judge(truth, camera, -up, height_m), Verdict::kSame);
+    EXPECT_EQ(test_support::judge(truth, camera, -up, height_m * (1 + 5e-7)), Verdict::kTie);
+    EXPECT_EQ(test_support::judge(truth, camera, -up, height_m * (1 + 1e-4)), Verdict::kMissed);
+    EXPECT_EQ(test_support::judge(truth, camera, -up, height_m * (1 - 5e-7)), Verdict::kTie);
+    EXPECT_EQ(test_support::judge(truth, camera, -up, height_m * (1 - 1e-4)), Verdict::kPhantom);
     constexpr double kNone = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(test_support::judge(truth, eye, -up, kNone), Verdict::kMissed);
-    EXPECT_EQ(test_support::judge(truth, eye, up, kNone), Verdict::kSame);
-    EXPECT_EQ(test_support::judge(truth, eye, up, 5.0), Verdict::kPhantom);
-    EXPECT_EQ(test_support::judge(truth, eye, -up, std::numeric_limits<double>::quiet_NaN()),
+    EXPECT_EQ(test_support::judge(truth, camera, -up, kNone), Verdict::kMissed);
+    EXPECT_EQ(test_support::judge(truth, camera, up, kNone), Verdict::kSame);
+    EXPECT_EQ(test_support::judge(truth, camera, up, 5.0), Verdict::kPhantom);
+    EXPECT_EQ(test_support::judge(truth, camera, -up, std::numeric_limits<double>::quiet_NaN()),
               Verdict::kPhantom);
   }
 }

@@ -1,4 +1,4 @@
-// A picture of given ranges painted by its definition, one pixel after the other: GroundPainter::colour_at,
+// An image of given ranges painted by its definition, one pixel after the other: TerrainShader::colour_at,
 // haze and sky. What vpe/voxel/paint/image_painter.h is compared with and timed against.
 #pragma once
 
@@ -29,13 +29,13 @@ class PaintedByPoint {
     std::shared_ptr<const core::ColourScale> scale;
     if (paging::needs_scale(appearance, has_image))
       scale = std::make_shared<const core::ColourScale>(appearance);
-    const paging::ShadeParams look = paging::shade_params(appearance, request.sun, has_image, scale);
+    const paging::ShadingParams look = paging::shading_params(appearance, request.sun, has_image, scale);
     const core::View& view = request.view;
     const core::SubRectangle part = core::drawn_part(view);
     const auto width = static_cast<std::size_t>(part.width);
     std::vector<vpe::base::Rgb> out(width * static_cast<std::size_t>(part.height));
     pool.run(static_cast<std::size_t>(part.height), [&](std::size_t y) {
-      paging::GroundPainter::Cursor cursor;
+      paging::TerrainShader::Cursor cursor;
       for (std::size_t x = 0; x < width; ++x) {
         const glm::dvec3 ray =
             core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(y) + 0.5);
@@ -50,29 +50,29 @@ class PaintedByPoint {
   }
 
  private:
-  glm::dvec3 colour(const vpe::core::DrawRequest& request, const paging::ShadeParams& look,
-                    const glm::dvec3& ray, double range_m, paging::GroundPainter::Cursor& cursor) const {
+  glm::dvec3 colour(const vpe::core::DrawRequest& request, const paging::ShadingParams& look,
+                    const glm::dvec3& ray, double range_m, paging::TerrainShader::Cursor& cursor) const {
     namespace core = vpe::core;
-    const glm::dvec3& eye = request.view.eye.eye_m;
+    const glm::dvec3& camera = request.view.camera.position_m;
     const double radius = planet_->radius_m();
     if (std::isinf(range_m)) {
       if (request.settings.background == core::Background::kBlack) return glm::dvec3(0);
       if (request.settings.background == core::Background::kWhite) return glm::dvec3(255);
-      return core::sky_colour(eye, ray, request.sun, radius);
+      return core::sky_colour(camera, ray, request.sun, radius);
     }
-    const glm::dvec3 up = glm::normalize(eye + range_m * ray);
+    const glm::dvec3 up = glm::normalize(camera + range_m * ray);
     const glm::dvec3 ground = glm::clamp(
         painter_.colour_at(up, range_m / core::focal_px(request.view), look, cursor).value_or(glm::dvec3(105)),
         0.0, 255.0);
     if (!(request.settings.haze_visibility_m > 0.0)) return ground;
-    const double eye_radius = glm::length(eye);
-    const double air = core::air_m(radius, eye_radius - radius, glm::dot(ray, eye) / eye_radius, range_m);
+    const double camera_radius = glm::length(camera);
+    const double air = core::air_m(radius, camera_radius - radius, glm::dot(ray, camera) / camera_radius, range_m);
     return glm::mix(core::haze_colour(glm::dot(up, request.sun)), ground,
                     core::transmittance(air, request.settings.haze_visibility_m));
   }
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::GroundPainter painter_;
+  paging::TerrainShader painter_;
 };
 
 }  // namespace test_support

@@ -32,14 +32,14 @@ std::vector<float> cast(RangeCaster& caster, const core::View& view, const Range
 // Whether the ray, tilted by a little, meets S where it was seen: it only just touches something.
 bool is_tie(const paging::Surface& surface, const core::View& view, const glm::dvec3& ray, double seen,
             double exaggeration, double tilt) {
-  const glm::dvec3 up = glm::normalize(view.eye.eye_m);
+  const glm::dvec3 up = glm::normalize(view.camera.position_m);
   const glm::dvec3 side = glm::normalize(glm::cross(ray, up));
   const glm::dvec3 over = glm::cross(side, ray);
   for (int n = 0; n < 24; ++n) {
     const double angle = 0.785398 * n;
     const double size = tilt * (n / 8 + 1) / 3;
     const glm::dvec3 other_ray = glm::normalize(ray + size * (std::cos(angle) * side + std::sin(angle) * over));
-    const double other = surface.cast(view.eye.eye_m, other_ray, exaggeration);
+    const double other = surface.cast(view.camera.position_m, other_ray, exaggeration);
     if (std::isinf(seen) ? std::isinf(other) : std::abs(other - seen) <= 1e-3 * seen) return true;
   }
   return false;
@@ -66,7 +66,7 @@ void compare(Agreement& sum, const paging::Surface& surface, const core::View& v
   for (int y = 0; y < part.height; ++y) {
     for (int x = 0; x < part.width; ++x) {
       const glm::dvec3 ray = core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5);
-      const double exact = surface.cast(view.eye.eye_m, ray, exaggeration);
+      const double exact = surface.cast(view.camera.position_m, ray, exaggeration);
       const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * part.width + x)]);
       ASSERT_FALSE(std::isnan(seen)) << x << " " << y;
       ++sum.pixels;
@@ -115,7 +115,7 @@ class Columns : public testing::Test {
       pose.pitch_deg = random.integer(0, 4) == 0 ? -90 : random.uniform(-90, 30);
       pose.roll_deg = random.integer(0, 3) == 0 ? 90 * random.integer(-1, 2) : random.uniform(-180, 180);
     }
-    view.eye = mars::to_eye(pose, surface.planet_radius_m());
+    view.camera = mars::to_camera(pose, surface.planet_radius_m());
     if (random.integer(0, 2) == 0 && view.width > 4 && view.height > 4)
       view.part = {1, 2, view.width - 3, view.height - 4};
     return view;
@@ -124,7 +124,7 @@ class Columns : public testing::Test {
   test_support::TempDir dir_;
 };
 
-TEST_F(Columns, RoundPicturesAreExact) {
+TEST_F(Columns, RoundImagesAreExact) {
   RangeCaster caster(bumpy(), kBudget);
   Random random(71);
   Agreement sum;
@@ -143,7 +143,7 @@ TEST_F(Columns, RoundPicturesAreExact) {
 
 // A million rays of columns, each against a cast of its own (which voxel/missed_hits_test holds to every
 // triangle).
-TEST_F(Columns, AMillionRaysOfRoundPictures) {
+TEST_F(Columns, AMillionRaysOfRoundImages) {
   RangeCaster caster(bumpy(), kBudget);
   Random random(76);
   Agreement sum;
@@ -162,7 +162,7 @@ TEST_F(Columns, AMillionRaysOfRoundPictures) {
               sum.wrong, sum.at(0.5), sum.at(0.99), sum.at(0.999));
 }
 
-TEST_F(Columns, PerspectivePicturesAreExactButForWhatIsNarrowerThanAPixel) {
+TEST_F(Columns, PerspectiveImagesAreExactButForWhatIsNarrowerThanAPixel) {
   RangeCaster caster(bumpy(), kBudget);
   Random random(72);
   Agreement sum;
@@ -191,28 +191,28 @@ TEST_F(Columns, FlatPlanetIsTheSphere) {
   const double spacing =
       lod::post_spacing_m(planet->meta().finest_level, planet->meta().tile.intervals(), radius);
   // Facets lie below the sphere by their sagitta at most.
-  const double sag = 1.2 * spacing * spacing / (4 * radius);
+  const double sagitta = 1.2 * spacing * spacing / (4 * radius);
   for (const double height : {1e5, 1e6, 1e7}) {
     core::View view;
     view.projection = core::Projection::kEquirectangular;
     view.fov_deg = 179;
     view.width = 64;
     view.height = 400;
-    view.eye = mars::to_eye({20, 30, height, 0, 0, 0}, radius);
+    view.camera = mars::to_camera({20, 30, height, 0, 0, 0}, radius);
     const std::vector<float> range = cast(caster, view);
     for (int y = 0; y < view.height; ++y) {
       for (int x = 0; x < view.width; ++x) {
         const glm::dvec3 ray = core::pixel_ray(view, x + 0.5, y + 0.5);
-        const double half = glm::dot(ray, view.eye.eye_m);
-        const double closest = std::sqrt(glm::dot(view.eye.eye_m, view.eye.eye_m) - half * half);
+        const double half = glm::dot(ray, view.camera.position_m);
+        const double closest = std::sqrt(glm::dot(view.camera.position_m, view.camera.position_m) - half * half);
         const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * view.width + x)]);
         // The limb, but for the sagitta and one millionth.
         if (half >= 0 || closest > radius * (1 + 1e-6)) {
           ASSERT_TRUE(std::isinf(seen)) << x << " " << y;
-        } else if (closest < radius * (1 - 1e-6) - 4 * sag) {
+        } else if (closest < radius * (1 - 1e-6) - 4 * sagitta) {
           const double under = std::sqrt(radius * radius - closest * closest);
           const double sine = under / radius;
-          ASSERT_NEAR(seen, -half - under, (1e-6 * (-half - under) + 1.2 * sag) / sine) << x << " " << y;
+          ASSERT_NEAR(seen, -half - under, (1e-6 * (-half - under) + 1.2 * sagitta) / sine) << x << " " << y;
         }
       }
     }
@@ -249,7 +249,7 @@ TEST_F(Columns, VectorUnitsAndThreadsAgree) {
           ++ties;
         } else if (std::abs(a - b) > 2e-6 * a) {
           // A grazing ray: both are on S.
-          const glm::dvec3 place = view.eye.eye_m + b * ray;
+          const glm::dvec3 place = view.camera.position_m + b * ray;
           EXPECT_NEAR(glm::length(place), caster.surface().at(place).radius_m, 1e-6 * b) << name << " " << k;
           ++ties;
         }
@@ -288,7 +288,7 @@ TEST_F(Columns, CoarserCellsStayWithinTheirWidth) {
         ASSERT_FALSE(std::isnan(seen));
         if (std::isinf(seen)) continue;
         // Posts of coarser tiles lie on S, so a facet is off by its slope over a cell at most.
-        const glm::dvec3 place = view.eye.eye_m + seen * core::pixel_ray(view, x + 0.5, y + 0.5);
+        const glm::dvec3 place = view.camera.position_m + seen * core::pixel_ray(view, x + 0.5, y + 0.5);
         const double off = std::abs(glm::length(place) - surface.at(place).radius_m);
         const double steepest = 4;
         ASSERT_LE(off, 2.0 * 1.5 * steepest * seen / focal + 1.0) << x << " " << y;
@@ -297,13 +297,13 @@ TEST_F(Columns, CoarserCellsStayWithinTheirWidth) {
   }
 }
 
-TEST_F(Columns, AnEyeBelowTheGroundSeesNothingFar) {
+TEST_F(Columns, AnCameraBelowTheGroundSeesNothingFar) {
   RangeCaster caster(bumpy(), kBudget);
   core::View view;
   view.width = 16;
   view.height = 9;
   const double ground = caster.surface().at(mars::direction({10, 20})).height_m;
-  view.eye = mars::to_eye({10, 20, ground - 5, 0, 0, 0}, caster.surface().planet_radius_m());
+  view.camera = mars::to_camera({10, 20, ground - 5, 0, 0, 0}, caster.surface().planet_radius_m());
   for (const auto projection : {core::Projection::kPerspective, core::Projection::kCylinder}) {
     view.projection = projection;
     for (float range : cast(caster, view)) EXPECT_EQ(range, 0.0F);

@@ -74,24 +74,24 @@ TEST_F(Rays, FlatPlanetIsTheSphere) {
   // Facets lie below the sphere by their sagitta at most.
   const double spacing_m =
       lod::post_spacing_m(planet->meta().finest_level, planet->meta().tile.intervals(), radius);
-  const double sag_m = spacing_m * spacing_m / (4 * radius);
+  const double sagitta_m = spacing_m * spacing_m / (4 * radius);
   for (const double height : {1e6, 3e7}) {
     core::DrawRequest request = request_for({20, 30, height, 0, -90, 0}, radius, 80, 60, 40);
     const core::DrawResult result = draw->draw(request);
     for (int y = 0; y < 60; ++y) {
       for (int x = 0; x < 80; ++x) {
         const glm::dvec3 ray = core::pixel_ray(request.view, x + 0.5, y + 0.5);
-        const double half = glm::dot(ray, request.view.eye.eye_m);
+        const double half = glm::dot(ray, request.view.camera.position_m);
         const double under =
-            half * half - glm::dot(request.view.eye.eye_m, request.view.eye.eye_m) + radius * radius;
+            half * half - glm::dot(request.view.camera.position_m, request.view.camera.position_m) + radius * radius;
         const float drawn = result.frame.range_m[static_cast<std::size_t>(y * 80 + x)];
         const double closest = std::sqrt(std::max(0.0, radius * radius - under));
-        if (std::abs(closest - radius) < 2 * sag_m) continue;  // the limb
+        if (std::abs(closest - radius) < 2 * sagitta_m) continue;  // the limb
         ASSERT_EQ(std::isfinite(drawn), under > 0) << x << " " << y;
         if (!(under > 0)) continue;
         const double exact = -half - std::sqrt(under);
         const double sine = std::sqrt(under) / radius;
-        ASSERT_NEAR(static_cast<double>(drawn), exact, 2e-7 * exact / sine + sag_m / sine * 1.1);
+        ASSERT_NEAR(static_cast<double>(drawn), exact, 2e-7 * exact / sine + sagitta_m / sine * 1.1);
       }
     }
   }
@@ -181,7 +181,7 @@ TEST_F(Rays, MultiresStatesNoMoreThanTheCell) {
     request.settings.exaggeration = exaggeration;
     const core::DrawResult drawn = draw->draw(request);
     EXPECT_LE(drawn.certificate.shift_bound_px, request.settings.ray_cell_px + 0.01) << n;
-    coarser += drawn.certificate.tile_error_px > 0.5 * request.settings.ray_cell_px ? 1 : 0;
+    coarser += drawn.certificate.screen_space_error_px > 0.5 * request.settings.ray_cell_px ? 1 : 0;
   }
   EXPECT_GE(coarser, 10);
 }
@@ -203,7 +203,7 @@ TEST_F(Rays, PlainStepsEndOnTheSurface) {
       ++hits;
       const glm::dvec3 ray =
           core::pixel_ray(request.view, static_cast<double>(k % 40) + 0.5, static_cast<double>(k / 40) + 0.5);
-      const glm::dvec3 place = request.view.eye.eye_m + range * ray;
+      const glm::dvec3 place = request.view.camera.position_m + range * ray;
       ASSERT_NEAR(glm::length(place), surface.at(place).radius_m, 1e-6 * range + 0.01) << n << " " << k;
       same += std::abs(range - static_cast<double>(exact.frame.range_m[k])) <= 1e-5 * range ? 1 : 0;
     }
@@ -250,9 +250,9 @@ TEST_F(Rays, SamplesAverageThePixel) {
   const core::Certificate single = draw->draw(coarse).certificate;
   coarse.settings.samples = 4;
   const core::Certificate several = draw->draw(coarse).certificate;
-  EXPECT_GE(several.tile_error_px, single.tile_error_px);
-  EXPECT_LE(several.tile_error_px, coarse.settings.ray_cell_px);
-  EXPECT_GT(several.tile_error_m, 0);
+  EXPECT_GE(several.screen_space_error_px, single.screen_space_error_px);
+  EXPECT_LE(several.screen_space_error_px, coarse.settings.ray_cell_px);
+  EXPECT_GT(several.geometric_error_m, 0);
   EXPECT_GE(several.tiles_drawn, single.tiles_drawn);
   // Ranges are those of the middle.
   EXPECT_EQ(draw->draw(request(1, 4)).frame.range_m, draw->draw(request(1, 1)).frame.range_m);
@@ -297,9 +297,9 @@ struct Worst {
   }
 };
 
-// Shift between both backends' pictures of one view: at most 1 px on all but 0.5 % of the pixels (skylines).
-// $VPE_PICTURES names a folder for pictures of the differences.
-core::PictureErrors expect_agreement(core::Renderer& polygons, core::Renderer& rays,
+// Shift between both backends' images of one view: at most 1 px on all but 0.5 % of the pixels (skylines).
+// $VPE_PICTURES names a folder for images of the differences.
+core::ImageErrors expect_agreement(core::Renderer& polygons, core::Renderer& rays,
                                      const paging::Surface& surface, core::DrawRequest request,
                                      const std::string& name) {
   request.settings.lod_tolerance_px = 0.5;
@@ -311,9 +311,9 @@ core::PictureErrors expect_agreement(core::Renderer& polygons, core::Renderer& r
   SCOPED_TRACE(name + " " + core::to_json(errors));
   EXPECT_LE(errors.forward.share_over_1px, 0.005);
   EXPECT_LE(errors.backward.share_over_1px, 0.005);
-  const char* pictures = std::getenv("VPE_PICTURES");
-  if (pictures != nullptr)
-    write_difference(std::string(pictures) + "/" + name + ".png", a, b,
+  const char* images = std::getenv("VPE_PICTURES");
+  if (images != nullptr)
+    write_difference(std::string(images) + "/" + name + ".png", a, b,
                      core::forward_shift_px(request.view, a.frame.range_m, test_support::radius_of(surface)),
                      core::backward_shift_px(request.view, a.frame.range_m, b.frame.range_m, {1, 1}));
   // Where both see sky, it is one sky.
@@ -399,7 +399,7 @@ TEST_F(Rays, RefusesWhatItCannotDraw) {
   EXPECT_THROW(draw->draw(request), std::runtime_error);
   request.cull_view.reset();
   EXPECT_NO_THROW(draw->draw(request));
-  request.view.eye.eye_m.x = std::numeric_limits<double>::quiet_NaN();
+  request.view.camera.position_m.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(draw->draw(request), std::runtime_error);
 }
 

@@ -23,7 +23,7 @@ bool even(double a, double b, double c, double d) {
          std::abs(step) <= (kSameRange - 1) * b;
 }
 
-bool one_surface(const RangePicture& p, int x, int y) {
+bool one_surface(const RangeImage& p, int x, int y) {
   std::array<std::array<double, 4>, 4> inverse{};
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
@@ -42,11 +42,11 @@ bool one_surface(const RangePicture& p, int x, int y) {
 }
 
 // Metres from the planet's centre.
-glm::dvec3 place_of(const RangePicture& p, int x, int y) {
-  return p.view.eye.eye_m + static_cast<double>(p.range(x, y)) * core::pixel_ray(p.view, x + 0.5, y + 0.5);
+glm::dvec3 place_of(const RangeImage& p, int x, int y) {
+  return p.view.camera.position_m + static_cast<double>(p.range(x, y)) * core::pixel_ray(p.view, x + 0.5, y + 0.5);
 }
 
-double pop_px(const RangePicture& before, const RangePicture& now, int x, int y) {
+double pop_px(const RangeImage& before, const RangeImage& now, int x, int y) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto range = static_cast<double>(now.range(x, y));
   if (!(range > 0) || std::isinf(range)) return kNone;
@@ -70,7 +70,7 @@ double pop_px(const RangePicture& before, const RangePicture& now, int x, int y)
 
 }  // namespace
 
-std::vector<float> pops_px(const RangePicture& before, const RangePicture& now, vpe::base::ThreadPool& pool) {
+std::vector<float> pops_px(const RangeImage& before, const RangeImage& now, vpe::base::ThreadPool& pool) {
   std::vector<float> out(now.range_m.size());
   const auto width = static_cast<std::size_t>(now.view.width);
   pool.run(static_cast<std::size_t>(now.view.height), [&](std::size_t y) {

@@ -1,4 +1,4 @@
-// How far drawn ground moves between two pictures of a flight.
+// How far drawn ground moves between two images of a flight.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace test_support {
 
-struct RangePicture {
-  vpe::core::View view;  // the whole picture is drawn
+struct RangeImage {
+  vpe::core::View view;  // the whole image is drawn
   std::vector<float> range_m;
 
   float range(int x, int y) const {
@@ -27,7 +27,7 @@ struct RangePicture {
 // interpolation makes of relief within a pixel. NaN where there is nothing to measure: sky; outside `before`;
 // the four pixels see more than one surface (their ranges differ by more than 1 % and the inverse ranges are
 // not even along either side); or the point lies more than 2 px from that triangle, hidden before.
-std::vector<float> pops_px(const RangePicture& before, const RangePicture& now, vpe::base::ThreadPool& pool);
+std::vector<float> pops_px(const RangeImage& before, const RangeImage& now, vpe::base::ThreadPool& pool);
 
 // Distribution of |pop|.
 class Pops {

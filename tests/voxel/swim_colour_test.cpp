@@ -1,4 +1,4 @@
-// Do colours of the ground stand still while the eye moves? Consecutive frames, each pixel's ground looked up
+// Do colours of the ground stand still while the camera moves? Consecutive frames, each pixel's ground looked up
 // in the frame before.
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace {
 
 namespace core = vpe::core;
-using test_support::RangePicture;
+using test_support::RangeImage;
 
 double grey(const vpe::base::Rgb& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; }
 
@@ -58,7 +58,7 @@ class Steps {
 };
 
 // Colours have a level whose posts and texels are at most a pixel wide: it changes where the range passes a
-// power of two of some length, all around the eye. `crossing`: pixels whose ground has passed one since the
+// power of two of some length, all around the camera. `crossing`: pixels whose ground has passed one since the
 // frame before; `beside`: those within a tenth of one that have not.
 struct ColourSwim {
   Steps all, beside, crossing;
@@ -79,12 +79,12 @@ class LongColourSwim : public testing::TestWithParam<core::RayMode> {
     vpe::base::ThreadPool pool(2);
     ColourSwim swim;
     core::DrawResult before;
-    RangePicture before_range;
+    RangeImage before_range;
     for (int n = 0; n < kFrames; ++n) {
       core::DrawRequest request;
       const double way_deg = metres_a_frame * n / planet_->radius_m() * 57.29577951308232;
       const mars::Pose pose{137.38 + 0.94 * way_deg, -4.62 + 0.34 * way_deg, alt_m, 70, pitch_deg, 0};
-      request.view.eye = mars::to_eye(pose, planet_->radius_m());
+      request.view.camera = mars::to_camera(pose, planet_->radius_m());
       request.view.width = 640;
       request.view.height = 360;
       request.settings.ray_mode = GetParam();
@@ -94,7 +94,7 @@ class LongColourSwim : public testing::TestWithParam<core::RayMode> {
       request.sun = mars::sun_direction({137.4, -4.6}, 300, 30);
       request.want_range = true;
       core::DrawResult now = renderer->draw(request);
-      RangePicture now_range{request.view, now.frame.range_m};
+      RangeImage now_range{request.view, now.frame.range_m};
       if (n > 0) add(swim, before, before_range, now, now_range, pool);
       before = std::move(now);
       before_range = std::move(now_range);
@@ -105,8 +105,8 @@ class LongColourSwim : public testing::TestWithParam<core::RayMode> {
   std::shared_ptr<const paging::PlanetFile> planet_;
 
  private:
-  void add(ColourSwim& swim, const core::DrawResult& before, const RangePicture& before_range,
-           const core::DrawResult& now, const RangePicture& now_range, vpe::base::ThreadPool& pool) const {
+  void add(ColourSwim& swim, const core::DrawResult& before, const RangeImage& before_range,
+           const core::DrawResult& now, const RangeImage& now_range, vpe::base::ThreadPool& pool) const {
     const core::View& view = now_range.view;
     const double root = lod::nominal_side_m(0, planet_->radius_m()) / planet_->meta().tile.intervals();
     const auto level = [&](double range_m) { return std::log2(root * core::focal_px(view) / range_m); };
@@ -116,11 +116,11 @@ class LongColourSwim : public testing::TestWithParam<core::RayMode> {
       const auto x = static_cast<double>(k % static_cast<std::size_t>(view.width)) + 0.5;
       const auto y = static_cast<double>(k / static_cast<std::size_t>(view.width)) + 0.5;
       const auto range = static_cast<double>(now_range.range_m[k]);
-      const glm::dvec3 place = view.eye.eye_m + range * core::pixel_ray(view, x, y);
+      const glm::dvec3 place = view.camera.position_m + range * core::pixel_ray(view, x, y);
       const core::Projected at = core::project(before_range.view, place);
       const double step = grey(now.frame.colour[k]) - grey_at(before.frame, at.xy);
       const double is = level(range);
-      const double was = level(glm::length(place - before_range.view.eye.eye_m));
+      const double was = level(glm::length(place - before_range.view.camera.position_m));
       swim.all.add(step);
       if (std::ceil(is) != std::ceil(was)) {
         swim.crossing.add(step);

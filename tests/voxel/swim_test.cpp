@@ -1,4 +1,4 @@
-// Does drawn ground stand still while the eye moves? Pops between consecutive frames (swim.h) of mode multires
+// Does drawn ground stand still while the camera moves? Pops between consecutive frames (swim.h) of mode multires
 // against those of exact, whose ground does not move: what is left there is relief within a pixel.
 #include "tests/voxel/swim.h"
 
@@ -19,11 +19,11 @@ namespace core = vpe::core;
 using test_support::DrawnGround;
 using test_support::Pops;
 using test_support::PostsOf;
-using test_support::RangePicture;
+using test_support::RangeImage;
 using vpe::voxel::RangeCaster;
 
 struct Swim {
-  Pops drawn;     // as pictures show it
+  Pops drawn;     // as images show it
   Pops beyond;    // the pixels' pop less that of mode exact at the same pixel
   Pops changed;   // of drawn: those where the tile has changed
   Pops by_posts;  // of the ground's posts
@@ -39,7 +39,7 @@ using Flight = std::function<mars::Pose(int frame)>;
 
 core::View view_of(const mars::Pose& pose, double radius_m, int width, int height) {
   core::View view;
-  view.eye = mars::to_eye(pose, radius_m);
+  view.camera = mars::to_camera(pose, radius_m);
   view.width = width;
   view.height = height;
   return view;
@@ -47,12 +47,12 @@ core::View view_of(const mars::Pose& pose, double radius_m, int width, int heigh
 
 // Grey, and pops in colour: green from 1/10 px, yellow from 1/4, red from 1/2, white from 1; blue: not
 // measured.
-void write_pops(const std::string& path, const RangePicture& picture, std::span<const float> pops) {
+void write_pops(const std::string& path, const RangeImage& image, std::span<const float> pops) {
   std::vector<vpe::base::Rgb> out;
   for (std::size_t k = 0; k < pops.size(); ++k) {
     const float pop = std::abs(pops[k]);
-    const bool sky = std::isinf(picture.range_m[k]);
-    const auto grey = static_cast<std::uint8_t>(sky ? 0.0F : 30 + 8 * std::log2(picture.range_m[k]));
+    const bool sky = std::isinf(image.range_m[k]);
+    const auto grey = static_cast<std::uint8_t>(sky ? 0.0F : 30 + 8 * std::log2(image.range_m[k]));
     vpe::base::Rgb colour{grey, grey, grey};
     if (std::isnan(pop) && !sky) colour = {0, 0, 90};
     if (pop >= 0.1F) colour = {0, 160, 0};
@@ -61,26 +61,26 @@ void write_pops(const std::string& path, const RangePicture& picture, std::span<
     if (pop >= 1) colour = {255, 255, 255};
     out.push_back(colour);
   }
-  core::write_image(path, out, picture.view.width, picture.view.height);
+  core::write_image(path, out, image.view.width, image.view.height);
 }
 
-// $VPE_PICTURES names a folder for pictures of each mode's worst frame.
+// $VPE_PICTURES names a folder for images of each mode's worst frame.
 std::vector<Swim> fly(RangeCaster& caster, const Flight& flight, int frames, int width, int height,
                       std::span<const double> cells, const std::string& name) {
-  const char* pictures = std::getenv("VPE_PICTURES");
+  const char* images = std::getenv("VPE_PICTURES");
   const paging::Surface& surface = caster.surface();
   vpe::base::ThreadPool pool(2);
   PostsOf posts(surface.planet());
   std::vector<Swim> swims(cells.size());
   std::vector<float> exact;
-  std::vector<RangePicture> before(cells.size());
+  std::vector<RangeImage> before(cells.size());
   std::vector<std::unique_ptr<DrawnGround>> ground_before(cells.size());
   for (int frame = 0; frame < frames; ++frame) {
     const core::View view = view_of(flight(frame), surface.planet_radius_m(), width, height);
     std::vector<float> still;
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-      RangePicture now{view, std::vector<float>(pixels)};
+      RangeImage now{view, std::vector<float>(pixels)};
       caster.cast(view, {1, cells[c], vpe::voxel::RangeOptions::Method::kColumns}, pool, now.range_m);
       if (cells[c] == 0) exact = now.range_m;
       auto ground = std::make_unique<DrawnGround>(surface, view, cells[c]);
@@ -98,7 +98,7 @@ std::vector<Swim> fly(RangeCaster& caster, const Flight& flight, int frames, int
             if (std::isinf(now.range_m[k])) continue;
             const auto range = static_cast<double>(now.range_m[k]);
             const glm::dvec3 place =
-                view.eye.eye_m +
+                view.camera.position_m +
                 range * core::pixel_ray(view, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
             const auto was = ground_before[c]->tile(place);
             const auto is = ground->tile(place);
@@ -126,8 +126,8 @@ std::vector<Swim> fly(RangeCaster& caster, const Flight& flight, int frames, int
         if (swim.worst_frame < 0 || drawn.share_over(0.5) > swim.worst.share_over(0.5)) {
           swim.worst = drawn;
           swim.worst_frame = frame;
-          if (pictures != nullptr) {
-            const std::string stem = std::string(pictures) + "/" + name + "-" + std::to_string(c);
+          if (images != nullptr) {
+            const std::string stem = std::string(images) + "/" + name + "-" + std::to_string(c);
             write_pops(stem + "-drawn.png", now, pops);
             write_pops(stem + "-posts.png", now, by_posts);
           }
@@ -222,21 +222,21 @@ TEST_F(Swimming, MeterFindsAKnownPop) {
   RangeCaster caster(rough_, std::size_t{1} << 28);
   const paging::Surface& surface = caster.surface();
   vpe::base::ThreadPool pool(2);
-  const auto picture = [&](int frame, double exaggeration) {
-    RangePicture p{view_of(pose(frame), rough_->radius_m(), 160, 90), std::vector<float>(160 * 90)};
+  const auto image = [&](int frame, double exaggeration) {
+    RangeImage p{view_of(pose(frame), rough_->radius_m(), 160, 90), std::vector<float>(160 * 90)};
     caster.cast(p.view, {exaggeration, 0, vpe::voxel::RangeOptions::Method::kColumns}, pool, p.range_m);
     return p;
   };
-  const RangePicture now = picture(1, 1.2);
-  const std::vector<float> pops = test_support::pops_px(picture(0, 1), now, pool);
-  const std::vector<float> none = test_support::pops_px(picture(0, 1.2), now, pool);
+  const RangeImage now = image(1, 1.2);
+  const std::vector<float> pops = test_support::pops_px(image(0, 1), now, pool);
+  const std::vector<float> none = test_support::pops_px(image(0, 1.2), now, pool);
   double sum = 0, squares = 0;
   int measured = 0;
   for (std::size_t k = 0; k < pops.size(); ++k) {
     if (std::isnan(pops[k]) || std::isnan(none[k])) continue;
     const auto range = static_cast<double>(now.range_m[k]);
     const glm::dvec3 place =
-        now.view.eye.eye_m + range * core::pixel_ray(now.view, static_cast<double>(k % 160) + 0.5,
+        now.view.camera.position_m + range * core::pixel_ray(now.view, static_cast<double>(k % 160) + 0.5,
                                                      static_cast<double>(k / 160) + 0.5);
     const double raised_m = surface.at(place, 1.2).radius_m - surface.at(place, 1).radius_m;
     const double expected = raised_m * core::focal_px(now.view) / range;

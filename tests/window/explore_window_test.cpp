@@ -16,15 +16,15 @@ namespace {
 
 TEST_F(ExploreWindowTest, ShowsThePlanetAndComesToRest) {
   open();
-  ASSERT_NE(window_->picture(), nullptr);
-  EXPECT_TRUE(window_->picture()->error.empty());
-  EXPECT_EQ(window_->picture()->order.request.coarsening, 1.0);
+  ASSERT_NE(window_->drawn(), nullptr);
+  EXPECT_TRUE(window_->drawn()->error.empty());
+  EXPECT_EQ(window_->drawn()->order.request.coarsening, 1.0);
   EXPECT_EQ(window_->image().width, window_->session().screen().width);
   const std::int64_t frames = window_->frames();
-  const std::int64_t pictures = window_->pictures();
+  const std::int64_t images = window_->images();
   for (int n = 0; n < 50; ++n) window_->step(0.001);
   EXPECT_EQ(window_->frames(), frames);  // draws only when something changes
-  EXPECT_EQ(window_->pictures(), pictures);
+  EXPECT_EQ(window_->images(), images);
 }
 
 TEST_F(ExploreWindowTest, AClickOnTheMapGoesThere) {
@@ -57,7 +57,7 @@ TEST_F(ExploreWindowTest, ADragHoldsTheGround) {
 
 TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
   open();
-  const std::int64_t before = window_->pictures();
+  const std::int64_t before = window_->images();
   int left = 0;
   int top = 0;
   glfwGetWindowPos(window_->display().handle(), &left, &top);
@@ -67,9 +67,9 @@ TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
   robot_->wheel(1);
   for (int n = 0; n < 100 && window_->session().pose().alt_m == pose.alt_m; ++n) window_->step(0.01);
   ASSERT_NE(window_->session().pose().alt_m, pose.alt_m);
-  // The turn that took the event has ordered the picture; it is the next one shown.
-  for (int n = 0; n < 100 && window_->pictures() == before; ++n) window_->step(0.01);
-  EXPECT_EQ(glm::length(window_->picture()->order.request.view.eye.eye_m - window_->session().view().eye.eye_m),
+  // The turn that took the event has ordered the image; it is the next one shown.
+  for (int n = 0; n < 100 && window_->images() == before; ++n) window_->step(0.01);
+  EXPECT_EQ(glm::length(window_->drawn()->order.request.view.camera.position_m - window_->session().view().camera.position_m),
             0.0);
 }
 
@@ -78,9 +78,9 @@ TEST_F(ExploreWindowTest, EveryModeAndBothBackendsWhileRunning) {
   for (const char* backend : {"Triangles", "Rays"}) {
     click(backend);
     settle();
-    EXPECT_EQ(window_->picture()->order.backend,
+    EXPECT_EQ(window_->drawn()->order.backend,
               backend == std::string("Rays") ? Backend::kRays : Backend::kPolygons);
-    EXPECT_TRUE(window_->picture()->error.empty()) << window_->picture()->error;
+    EXPECT_TRUE(window_->drawn()->error.empty()) << window_->drawn()->error;
     click("Appearance");
     for (const char* mode : {"wireframe", "markers", "unlit", "lit", "coloured", "textured"}) {
       // Rays draw surfaces; lines and dots are refused with a reason, and the window goes on.
@@ -157,7 +157,7 @@ TEST_F(ExploreWindowTest, TheCursorIsOnTheGroundThatIsSeenThereAlsoInPairs) {
   click("##eyes=side by side");
   settle();
   const explore::Screen screen = window_->session().screen();
-  // The same place of both eyes' pictures: a quarter of the way from their middles to their right ends.
+  // The same place of both eyes' images: a quarter of the way from their middles to their right ends.
   const double half = screen.width / 2.0;
   for (const double left : {330.0, 330.0 + half}) {
     const double x = left + half * 0.6;
@@ -195,23 +195,23 @@ TEST_F(ExploreWindowTest, HiddenPanelsLetItRest) {
   EXPECT_EQ(window_->frames(), frames);
 }
 
-TEST_F(ExploreWindowTest, APictureThatCannotBeMadeIsToldInItsPlace) {
+TEST_F(ExploreWindowTest, AImageThatCannotBeMadeIsToldInItsPlace) {
   open();
   ASSERT_EQ(window_->session().set("mode", "wireframe"), "");
   settle();
-  EXPECT_FALSE(window_->state().picture_error.empty());
-  EXPECT_FALSE(window_->shows_final_picture());
+  EXPECT_FALSE(window_->state().image_error.empty());
+  EXPECT_FALSE(window_->shows_final_image());
   click("Triangles");
   settle();
-  EXPECT_TRUE(window_->state().picture_error.empty());
-  EXPECT_TRUE(window_->shows_final_picture());
+  EXPECT_TRUE(window_->state().image_error.empty());
+  EXPECT_TRUE(window_->shows_final_image());
 }
 
 TEST_F(ExploreWindowTest, AFlightThatWasNotSavedIsKept) {
   open();
-  EXPECT_EQ(window_->parting_words(), "");
+  EXPECT_EQ(window_->exit_message(), "");
   key("p");
-  const std::string words = window_->parting_words();
+  const std::string words = window_->exit_message();
   EXPECT_NE(words.find("unsaved"), std::string::npos) << words;
   int kept = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))

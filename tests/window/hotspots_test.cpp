@@ -12,7 +12,7 @@
 namespace vpe::window {
 namespace {
 
-class SpotsTest : public ExploreWindowTest {
+class HotspotsTest : public ExploreWindowTest {
  protected:
   // A turn of 720 columns whose red is the azimuth.
   std::filesystem::path make_panorama() {
@@ -29,13 +29,13 @@ class SpotsTest : public ExploreWindowTest {
   }
 };
 
-TEST_F(SpotsTest, EnterStepsInAndEscapeOut) {
-  explore::Spot spot;
-  spot.name = "Ridge";
-  spot.place = {30, 10};
-  spot.height_m = 20;
-  spot.panorama = make_panorama();
-  extra_.spots = {spot};
+TEST_F(HotspotsTest, EnterStepsInAndEscapeOut) {
+  explore::Hotspot hotspot;
+  hotspot.name = "Ridge";
+  hotspot.place = {30, 10};
+  hotspot.height_m = 20;
+  hotspot.panorama = make_panorama();
+  extra_.hotspots = {hotspot};
   extra_.open_overlook = [](const std::filesystem::path& file) {
     return app::overlook_setup({file.string(), {}, {}}, std::size_t{64} << 20, 2);
   };
@@ -45,7 +45,7 @@ TEST_F(SpotsTest, EnterStepsInAndEscapeOut) {
   EXPECT_EQ(window_->overlook(), nullptr);
   EXPECT_TRUE(window_->state().message_is_trouble);
 
-  const double ground_m = window_->session().ground().height_m(mars::direction(spot.place));
+  const double ground_m = window_->session().ground().height_m(mars::direction(hotspot.place));
   window_->session().put({30.0, 10.0005, ground_m + 60, 180, -20, 0});
   settle();
   EXPECT_NE(window_->state().message.find("Ridge"), std::string::npos);
@@ -60,7 +60,7 @@ TEST_F(SpotsTest, EnterStepsInAndEscapeOut) {
   settle();
   EXPECT_GT(window_->overlook()->viewer().yaw_deg(), yaw_deg);
   const double turned_deg = window_->overlook()->viewer().yaw_deg();
-  // Nothing moves the eye that nobody sees through.
+  // Nothing moves the camera that nobody sees through.
   key("Home");
   EXPECT_TRUE(window_->state().message_is_trouble);
   click("map");
@@ -78,15 +78,15 @@ TEST_F(SpotsTest, EnterStepsInAndEscapeOut) {
   EXPECT_TRUE(scripts::parse_flight(text.str(), "log").flight.has_value());
   const std::vector<explore::OverlookStep> steps = explore::overlook_steps(text.str());
   ASSERT_EQ(steps.size(), 2U);
-  EXPECT_EQ(steps[0].spot, "Ridge");
+  EXPECT_EQ(steps[0].hotspot, "Ridge");
   EXPECT_FALSE(steps[1].in);
-  // Played, the eye stands at the spot and the head looks where the overlook's view did.
+  // Played, the camera stands at the spot and the head looks where the overlook's view did.
   const scripts::Path path(*scripts::parse_flight(text.str(), "log").flight, planet_->radius_m(),
                            [](mars::LonLat, double) { return 0.0; });
   const scripts::FlightState before_out = path.at(steps[1].time_s - 1e-3);
-  EXPECT_NEAR(before_out.pose.lon_deg, spot.place.lon_deg, 1e-9);
-  EXPECT_NEAR(before_out.pose.lat_deg, spot.place.lat_deg, 1e-9);
-  EXPECT_NEAR(before_out.pose.alt_m, ground_m + spot.height_m, 1e-3);
+  EXPECT_NEAR(before_out.pose.lon_deg, hotspot.place.lon_deg, 1e-9);
+  EXPECT_NEAR(before_out.pose.lat_deg, hotspot.place.lat_deg, 1e-9);
+  EXPECT_NEAR(before_out.pose.alt_m, ground_m + hotspot.height_m, 1e-3);
   EXPECT_NEAR(std::remainder(before_out.pose.yaw_deg + before_out.look.yaw_deg - turned_deg, 360.0), 0, 1e-6);
 }
 

@@ -58,7 +58,7 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     ImGui::SetNextWindowSize({330, 1990});
     ImGui::Begin("side", nullptr, ImGuiWindowFlags_NoDecoration);
     ImGui::LogToClipboard();
-    MeasureWish wish = panel_->draw(*session_, under_cursor, widgets_);
+    MeasureActions wish = panel_->draw(*session_, under_cursor, widgets_);
     ImGui::LogFinish();
     ImGui::End();
     if (wish.go_to || !wish.message.empty()) wish_ = wish;
@@ -125,7 +125,7 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
   std::atomic<int> told_{0};
   std::unique_ptr<MeasurePanel> panel_;
   Widgets widgets_;
-  MeasureWish wish_;
+  MeasureActions wish_;
   std::string logged_;
 };
 
@@ -137,7 +137,7 @@ TEST_F(MeasurePanelTest, WhatIsUnderTheCursorIsReadOutAndStays) {
   const std::string there = frame(kEast);
   for (const explore::ReadOutLine& line : explore::read_out_lines(explore::read_out_at(surface(), kEast)))
     EXPECT_TRUE(has(there, line.text)) << line.text << " in\n" << there;
-  EXPECT_FALSE(has(there, "Range")) << there;  // the eye is on the other side
+  EXPECT_FALSE(has(there, "Range")) << there;  // the camera is on the other side
   EXPECT_TRUE(has(frame(), "-34.85000"));
   session_->put({-34.85, 20, 20000, 0, -90, 0});
   EXPECT_TRUE(has(frame(kEast), "Range"));

@@ -85,7 +85,7 @@ class OverlookWindowTest : public HandsTest<OverlookWindow> {
     setup.view.look = how.look;
     setup.view.fov_deg = how.fov_deg;
     setup.view.stereo = how.stereo;
-    setup.view.pictures = folder_.path();
+    setup.view.images = folder_.path();
     setup.display.width = how.width;
     setup.display.height = how.height;
     setup.display.scale = how.width > 2000 ? 2 : 1;
@@ -133,7 +133,7 @@ void expect_same(const Direction& a, const Direction& b, double within_deg) {
 TEST_F(OverlookWindowTest, ShowsEachDirectionAtItsPixelAndThenDrawsNothing) {
   for (const PanoramaMap& map : {kCylinder, kFacets}) {
     open(write(map, "a.png"));
-    ASSERT_NE(window_->view().picture(), nullptr);
+    ASSERT_NE(window_->view().drawn(), nullptr);
     const core::RgbImage shown = screenshot();
     ASSERT_EQ(shown.width, 640);
     ASSERT_EQ(shown.height, 400);
@@ -148,10 +148,10 @@ TEST_F(OverlookWindowTest, ShowsEachDirectionAtItsPixelAndThenDrawsNothing) {
     }
     settle();
     const std::int64_t frames = window_->frames();
-    const std::int64_t pictures = window_->view().pictures();
+    const std::int64_t images = window_->view().images();
     for (int n = 0; n < 50; ++n) window_->step(0.001);
     EXPECT_EQ(window_->frames(), frames);
-    EXPECT_EQ(window_->view().pictures(), pictures);
+    EXPECT_EQ(window_->view().images(), images);
   }
 }
 
@@ -169,13 +169,13 @@ TEST_F(OverlookWindowTest, ADragHoldsTheDirectionAcrossTheWholeTurn) {
     if (all_around) {
       EXPECT_GT(viewer().yaw_deg(), begun_deg + 360.0);  // and on
     }
-    const core::View& view = window_->view().picture()->order.request.view;
+    const core::View& view = window_->view().drawn()->order.request.view;
     EXPECT_EQ(view.height, viewer().size().y);
-    EXPECT_EQ(view.eye.axes.forward, viewer().view().eye.axes.forward);
+    EXPECT_EQ(view.camera.axes.forward, viewer().view().camera.axes.forward);
   }
 }
 
-TEST_F(OverlookWindowTest, EndsAtThePicturesEdges) {
+TEST_F(OverlookWindowTest, EndsAtTheImagesEdges) {
   for (const PanoramaMap& map : {kCylinder, kFacets}) {
     open(write(map, "a.png"));
     const panorama::ElevationRange seen = panorama::elevations_of(map);
@@ -318,7 +318,7 @@ TEST_F(OverlookWindowTest, AHeadTrackerTurnsItAndComesBack) {
     ADD_FAILURE() << "looks to " << viewer().yaw_deg() << "," << viewer().pitch_deg();
   };
   turn_until(130, 8, true);
-  EXPECT_EQ(window_->view().viewer().view().eye.axes.right.z, 0.0);  // level: the head's roll is left out
+  EXPECT_EQ(window_->view().viewer().view().camera.axes.right.z, 0.0);  // level: the head's roll is left out
   turn_until(100, 0, false);                                         // nothing is sent any more
   close(out);
 }
@@ -348,15 +348,15 @@ TEST_F(OverlookWindowTest, PairsInEveryLayout) {
   Opening anaglyph;
   anaglyph.stereo = core::StereoLayout::kAnaglyph;
   open(folder_ / "ou.json", anaglyph);
-  const auto picture = panorama::open_picture(folder_ / "ou.png", panorama::PictureFormat::kPng, {});
+  const auto drawn = panorama::open_image(folder_ / "ou.png", panorama::ImageFormat::kPng, {});
   const auto expected = [&] {
-    panorama::LookOptions options;
-    const core::RgbImage left = panorama::look(*picture, kCylinder, viewer().view(), options);
+    panorama::RenderViewOptions options;
+    const core::RgbImage left = panorama::look(*drawn, kCylinder, viewer().view(), options);
     options.origin.y_px = kCylinder.height_px;
-    return core::combine_stereo(left, panorama::look(*picture, kCylinder, viewer().view(), options),
+    return core::combine_stereo(left, panorama::look(*drawn, kCylinder, viewer().view(), options),
                                 *window_->view().stereo());
   };
-  EXPECT_EQ(window_->view().picture()->image.pixels, expected().pixels);
+  EXPECT_EQ(window_->view().drawn()->image.pixels, expected().pixels);
   for (const auto& [name, size] : {std::pair{"side by side", glm::ivec2{320, 348}},
                                    {"over and under", glm::ivec2{640, 174}},
                                    {"red and cyan", glm::ivec2{640, 348}}}) {
@@ -364,7 +364,7 @@ TEST_F(OverlookWindowTest, PairsInEveryLayout) {
     click("##eyes=" + std::string(name));
     settle();
     EXPECT_EQ(viewer().size(), size) << name;
-    EXPECT_EQ(window_->view().picture()->image.pixels, expected().pixels) << name;
+    EXPECT_EQ(window_->view().drawn()->image.pixels, expected().pixels) << name;
   }
   // The halves show the same directions.
   click("##eyes");
@@ -396,7 +396,7 @@ TEST_F(OverlookWindowTest, HidesHelpsSavesAndCloses) {
   EXPECT_FALSE(window_->view().message_is_trouble());
   EXPECT_NE(window_->view().message().find("a-view-2.png"), std::string::npos) << window_->view().message();
   for (const char* name : {"a-view-1.png", "a-view-2.png"})
-    EXPECT_EQ(core::read_image(folder_ / name).pixels, window_->view().picture()->image.pixels);
+    EXPECT_EQ(core::read_image(folder_ / name).pixels, window_->view().drawn()->image.pixels);
   key("F1");
   key("Escape");  // the help
   EXPECT_FALSE(window_->display().should_close());
@@ -406,7 +406,7 @@ TEST_F(OverlookWindowTest, HidesHelpsSavesAndCloses) {
   EXPECT_FALSE(open);
 }
 
-TEST_F(OverlookWindowTest, MovesInSmallerPicturesWhenTimeIsShort) {
+TEST_F(OverlookWindowTest, MovesInSmallerImagesWhenTimeIsShort) {
   preferences_.draw_budget_ms = 1e-3;
   open(write(kCylinder, "a.png"));
   move(150, 150);
@@ -415,15 +415,15 @@ TEST_F(OverlookWindowTest, MovesInSmallerPicturesWhenTimeIsShort) {
   int smallest = viewer().size().y;
   for (int n = 1; n <= 20; ++n) {
     move(150 + 10 * n, 150);
-    smallest = std::min(smallest, window_->view().picture()->order.request.view.height);
+    smallest = std::min(smallest, window_->view().drawn()->order.request.view.height);
   }
   robot_->release();
   settle();
   EXPECT_LT(smallest, viewer().size().y);
-  EXPECT_EQ(window_->view().picture()->order.request.view.height, viewer().size().y);
+  EXPECT_EQ(window_->view().drawn()->order.request.view.height, viewer().size().y);
 }
 
-TEST_F(OverlookWindowTest, ADamagedPictureIsTold) {
+TEST_F(OverlookWindowTest, ADamagedImageIsTold) {
   const fs::path json = write(kCylinder, "bad.png");
   std::fstream file(folder_ / "bad.png", std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(static_cast<std::streamoff>(fs::file_size(folder_ / "bad.png") / 2));
@@ -432,7 +432,7 @@ TEST_F(OverlookWindowTest, ADamagedPictureIsTold) {
   open(json);
   EXPECT_TRUE(window_->view().message_is_trouble());
   EXPECT_NE(window_->view().message().find("bad.png"), std::string::npos) << window_->view().message();
-  EXPECT_EQ(window_->view().picture(), nullptr);
+  EXPECT_EQ(window_->view().drawn(), nullptr);
 }
 
 TEST_F(OverlookWindowTest, NothingOverlaps) {
@@ -456,7 +456,7 @@ TEST_F(OverlookWindowTest, NothingOverlaps) {
   }
 }
 
-// A picture that does not fit is copied into the cache, and nobody waits for that when the window is closed.
+// An image that does not fit is copied into the cache, and nobody waits for that when the window is closed.
 TEST(PanoramaPainterTest, StopsCopyingWhenNobodyWantsIt) {
   const test_support::TempDir folder;
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
@@ -464,8 +464,8 @@ TEST(PanoramaPainterTest, StopsCopyingWhenNobodyWantsIt) {
   core::write_image(folder / "a.png", pixels_of(map), 1440, 1440);
   base::write_file(folder / "a.json", panorama::to_json({"a.png", map, {}}));
   OverlookSetup setup = app::overlook_setup({(folder / "a.json").string(), {}, {}},
-                                            panorama::PictureOptions::kMinBudget_bytes, 1);
-  PictureOrder order;
+                                            panorama::TiledImageOptions::kMinBudget_bytes, 1);
+  ImageRequest order;
   order.request.view = panorama::view_of(0, 0, 60, 64, 36);
   const auto painter = setup.make_painter();
   setup.copying->stop = true;

@@ -19,20 +19,20 @@ namespace vpe::window {
 namespace {
 
 struct Shown {
-  PictureOrder order;
+  ImageRequest order;
   core::RgbImage image;
   mars::Pose pose;
 };
 
 class SessionTest : public ExploreWindowTest {
  protected:
-  // Turns of the loop; every picture that is shown is kept.
+  // Turns of the loop; every image that is shown is kept.
   void watch(int count) {
     for (int n = 0; n < count; ++n) {
-      const std::int64_t before = window_->pictures();
+      const std::int64_t before = window_->images();
       ASSERT_TRUE(window_->step(0.01));
-      if (window_->pictures() != before && window_->picture()->order.logged_s)
-        shown_.push_back({window_->picture()->order, window_->image(), window_->session().pose()});
+      if (window_->images() != before && window_->drawn()->order.logged_s)
+        shown_.push_back({window_->drawn()->order, window_->image(), window_->session().pose()});
     }
   }
 
@@ -113,17 +113,17 @@ TEST_F(SessionTest, IsTheSameFromItsLog) {
   double off_rad = 0;
   for (const Shown& shown : shown_) {
     const double time_s = *shown.order.logged_s;
-    const mars::EyePose eye = path.at(time_s).eye;
-    const mars::EyePose& drawn = shown.order.request.view.eye;
-    off_m = std::max(off_m, glm::length(eye.eye_m - drawn.eye_m));
-    off_rad = std::max(off_rad, mars::angle_between_rad(eye.axes.forward, drawn.axes.forward));
-    off_rad = std::max(off_rad, mars::angle_between_rad(eye.axes.up, drawn.axes.up));
+    const mars::CameraPose camera = path.at(time_s).camera;
+    const mars::CameraPose& drawn = shown.order.request.view.camera;
+    off_m = std::max(off_m, glm::length(camera.position_m - drawn.camera_m));
+    off_rad = std::max(off_rad, mars::angle_between_rad(camera.axes.forward, drawn.axes.forward));
+    off_rad = std::max(off_rad, mars::angle_between_rad(camera.axes.up, drawn.axes.up));
     if (shown.order.request.coarsening != 1.0 || compared >= 3) continue;
     core::Settings settings = first;
     path.apply_settings(time_s, settings);
     core::DrawRequest request;
     request.view = shown.order.request.view;
-    request.view.eye = eye;
+    request.view.camera = camera;
     request.settings = settings.values();
     request.sun = app::sun_for(settings.values(), path.at(time_s).pose);
     const core::Frame frame = renderer->draw(request).frame;
@@ -160,18 +160,18 @@ TEST_F(SessionTest, BookmarksAndViewsLeadBack) {
   EXPECT_LT(window_->session().pose().alt_m, start.alt_m / 2);
 }
 
-TEST_F(SessionTest, APictureIsWhatIsShown) {
+TEST_F(SessionTest, AImageIsWhatIsShown) {
   open();
   key("F12");
   settle();
-  int pictures = 0;
+  int images = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
     if (entry.path().extension() != ".png") continue;
-    ++pictures;
+    ++images;
     const core::RgbImage saved = core::read_image(entry.path().string());
     EXPECT_EQ(saved.pixels, window_->image().pixels);
   }
-  EXPECT_EQ(pictures, 1);
+  EXPECT_EQ(images, 1);
 }
 
 TEST_F(SessionTest, AGamepadASpaceMouseAndAHeadMoveTheEye) {
@@ -268,7 +268,7 @@ TEST_F(SessionTest, AWaypointIsDraggedAndARegionDrawnOnTheMap) {
   const core::InterestRegion region = window_->session().interest().front();
   EXPECT_NEAR(region.lon_deg, 0.2 * 360, 2 * degrees_px);
   EXPECT_NEAR(region.radius_m / planet()->radius_m() / mars::kRadiansPerDegree, 0.08 * 180, 2 * degrees_px);
-  EXPECT_EQ(window_->picture()->order.request.interest.size(), 1U);
+  EXPECT_EQ(window_->drawn()->order.request.interest.size(), 1U);
 }
 
 TEST_F(SessionTest, TwoEyesInEveryLayout) {
@@ -280,7 +280,7 @@ TEST_F(SessionTest, TwoEyesInEveryLayout) {
     click("##eyes");
     click(std::string("##eyes=") + name);
     settle();
-    ASSERT_EQ(window_->picture()->order.stereo, layout);
+    ASSERT_EQ(window_->drawn()->order.stereo, layout);
     EXPECT_EQ(window_->image().width, screen.width * (layout == core::StereoLayout::kSideBySide ? 2 : 1));
     EXPECT_EQ(window_->image().height, screen.height * (layout == core::StereoLayout::kOverUnder ? 2 : 1));
   }

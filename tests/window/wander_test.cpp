@@ -35,12 +35,12 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
 
   test_support::Random random(20261122);
   std::vector<double> frames_ms;
-  std::vector<double> pictures_ms;
+  std::vector<double> images_ms;
   std::vector<double> memory_mb;
   std::vector<double> longest_ms;  // frame, of each tenth of the time
   const auto begun = Clock::now();
   double next_memory_s = 0;
-  std::int64_t pictures = window_->pictures();
+  std::int64_t images = window_->images();
   // One thing after another, each for a while.
   enum class Doing { kForward, kDrag, kTilt, kZoomIn, kZoomOut, kMap, kRest };
   Doing doing = Doing::kRest;
@@ -81,10 +81,10 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
     const auto frame = Clock::now();
     ASSERT_TRUE(window_->step(0.02));
     frames_ms.push_back(seconds(Clock::now() - frame) * 1e3);
-    if (window_->pictures() != pictures) {
-      pictures = window_->pictures();
-      pictures_ms.push_back(window_->picture()->seconds * 1e3);
-      ASSERT_TRUE(window_->picture()->error.empty()) << window_->picture()->error;
+    if (window_->images() != images) {
+      images = window_->images();
+      images_ms.push_back(window_->drawn()->seconds * 1e3);
+      ASSERT_TRUE(window_->drawn()->error.empty()) << window_->drawn()->error;
     }
     if (now_s >= next_memory_s) {
       memory_mb.push_back(resident_mb());
@@ -96,7 +96,7 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
   }
   stop();
   std::ranges::sort(frames_ms);
-  std::ranges::sort(pictures_ms);
+  std::ranges::sort(images_ms);
   const auto part = [](const std::vector<double>& sorted, double p) {
     return sorted[std::min(sorted.size() - 1,
                            static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
@@ -104,8 +104,8 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
   std::printf(
       "%zu frames: median %.1f ms, 99 %% %.1f, longest %.1f; %zu pictures: median %.1f, 99 %% %.1f, longest "
       "%.1f\n",
-      frames_ms.size(), part(frames_ms, 0.5), part(frames_ms, 0.99), frames_ms.back(), pictures_ms.size(),
-      part(pictures_ms, 0.5), part(pictures_ms, 0.99), pictures_ms.back());
+      frames_ms.size(), part(frames_ms, 0.5), part(frames_ms, 0.99), frames_ms.back(), images_ms.size(),
+      part(images_ms, 0.5), part(images_ms, 0.99), images_ms.back());
   std::printf("memory, MB:");
   for (const double mb : memory_mb) std::printf(" %.0f", mb);
   std::printf("\nlongest frames, ms:");

@@ -119,9 +119,9 @@ Finding find_cache() {
 
 Finding find_ffmpeg() {
   try {
-    Child child({"ffmpeg", "-version"});
+    Subprocess child({"ffmpeg", "-version"});
     if (child.finish()) return {"ffmpeg", State::kGood, child.output().substr(0, child.output().find('\n'))};
-    return {"ffmpeg", State::kNote, "does not run: " + child.said() + "; films as .mp4 need it"};
+    return {"ffmpeg", State::kNote, "does not run: " + child.stderr_text() + "; films as .mp4 need it"};
   } catch (const std::runtime_error& e) {
     return {
         "ffmpeg", State::kNote,

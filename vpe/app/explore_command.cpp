@@ -34,14 +34,14 @@ struct ExploreArguments {
   double scale = 0;
   std::string log;
   std::string flight;
-  std::string spots;
+  std::string hotspots;
   bool print_settings = false;
-  PictureOptions picture;
+  RenderOptions image;
 };
 
 #ifdef VPE_HAS_WINDOW
 
-bool sets(const PictureOptions& options, const std::string& key) {
+bool sets(const RenderOptions& options, const std::string& key) {
   for (const std::string& assignment : options.set)
     if (assignment.starts_with(key + "=")) return true;
   return false;
@@ -75,13 +75,13 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   if (!arguments.flight.empty() && std::filesystem::exists(arguments.flight))
     setup.flight = read_flight(arguments.flight);
   setup.bookmarks = vpe::explore::explore_files().bookmarks;
-  if (!arguments.spots.empty()) {
-    const vpe::explore::ParsedSpots parsed = vpe::explore::load_spots(arguments.spots);
+  if (!arguments.hotspots.empty()) {
+    const vpe::explore::ParsedHotspots parsed = vpe::explore::load_hotspots(arguments.hotspots);
     std::string wrong;
     for (const auto& error : parsed.errors)
       wrong += (wrong.empty() ? "" : "\n     ") + scripts::to_string(error);
     if (!wrong.empty()) throw std::runtime_error(wrong);
-    setup.spots = parsed.spots;
+    setup.hotspots = parsed.hotspots;
   }
   setup.open_overlook = [common, budget_ms = preferences.draw_budget_ms,
                          invert_wheel = preferences.invert_wheel](const std::filesystem::path& panorama) {
@@ -94,10 +94,10 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.session.mouse_speed = preferences.mouse_speed;
   setup.session.invert_wheel = preferences.invert_wheel;
   setup.panels = last.panels;
-  setup.session.settings = make_settings(arguments.picture);
-  setup.session.interest = parse_interest(arguments.picture);
+  setup.session.settings = make_settings(arguments.image);
+  setup.session.interest = parse_interest(arguments.image);
   setup.session.fov_deg = arguments.fov_deg;
-  if (!sets(arguments.picture, "lod.frame_ms")) {
+  if (!sets(arguments.image, "lod.frame_ms")) {
     const std::string trouble =
         setup.session.settings.set("lod.frame_ms", base::format_number(preferences.draw_budget_ms));
     if (!trouble.empty()) throw std::logic_error(trouble);
@@ -117,9 +117,9 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.display.instead =
       "set DISPLAY to an X server, or work without a window: 'vpe render' draws a picture, 'vpe fly' a flight, "
       "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this one out of sight";
-  const bool rays = arguments.picture.backend == kAutoBackend
+  const bool rays = arguments.image.backend == kAutoBackend
                         ? last.backend == vpe::explore::SessionBackend::kVoxel
-                        : arguments.picture.backend == kRayBackend;
+                        : arguments.image.backend == kRayBackend;
   setup.backend = rays ? window::Backend::kRays : window::Backend::kPolygons;
   setup.sun = sun_for;
   setup.threads = common.threads;
@@ -159,12 +159,12 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     setup.make_painter = [planet, common] { return std::make_unique<WindowPainter>(planet, common); };
     window::ExploreWindow shown(std::move(setup));
     shown.run();
-    if (const std::string words = shown.parting_words(); !words.empty())
+    if (const std::string words = shown.exit_message(); !words.empty())
       std::fprintf(stderr, "vpe: note: %s\n", words.c_str());
     // Flights, logs, spots and regions are of one planet; how it is drawn goes on.
-    here.pose = here.log = here.flight = here.spots = "";
-    here.picture.interest.clear();
-    here.picture.backend = kAutoBackend;
+    here.pose = here.log = here.flight = here.hotspots = "";
+    here.image.interest.clear();
+    here.image.backend = kAutoBackend;
     here.size = "";
     here.fov_deg = shown.session().screen().fov_deg;
     shown.session().leave_flight();
@@ -214,10 +214,10 @@ void add_explore(CLI::App& program, Common& common) {
                    "Size of letters and panels; as the monitor has it when left out")
       ->check(number_within(0.5, 4));
   command->add_option("--flight", arguments->flight, "Flight to play and edit; where it is saved");
-  command->add_option("--spots", arguments->spots, "File of places that have a panorama to step into");
+  command->add_option("--spots", arguments->hotspots, "File of places that have a panorama to step into");
   command->add_option("--log", arguments->log, "Record everything that happens, as a flight");
   command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and end");
-  add_picture_options(*command, arguments->picture);
+  add_render_options(*command, arguments->image);
   command->callback([arguments, &common] { explore(*arguments, common); });
 }
 

@@ -27,9 +27,9 @@ nlohmann::json to_json(const paging::ProfilePoint& p) {
           {"ground_distance_m", p.ground_distance_m},
           {"lon_deg", p.place.lon_deg},
           {"lat_deg", p.place.lat_deg},
-          {"elevation_m", p.missing ? json() : json(p.height_m)},
-          {"slope_deg", p.missing ? json() : json(p.slope_deg)},
-          {"steepest_slope_deg", p.missing ? json() : json(p.cross_slope_deg)},
+          {"elevation_m", p.nodata ? json() : json(p.height_m)},
+          {"slope_deg", p.nodata ? json() : json(p.slope_deg)},
+          {"steepest_slope_deg", p.nodata ? json() : json(p.cross_slope_deg)},
           {"place_given", p.waypoint}};
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
   using nlohmann::json;
-  const auto value = [&](double x) { return a.missing ? json() : json(x); };
+  const auto value = [&](double x) { return a.nodata ? json() : json(x); };
   return {{"lon_deg", a.place.lon_deg},
           {"lat_deg", a.place.lat_deg},
           {"elevation_m", value(a.elevation_m)},
@@ -31,14 +31,14 @@ nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& m
           {"level", a.level},
           {"post_spacing_m", a.spacing_m},
           {"source", a.source},
-          {"tile_error_m", a.tile_error_m},
+          {"tile_error_m", a.geometric_error_m},
           {"resampling_max_m", meta.resampling.max_m},
           {"illustration", meta.illustration}};
 }
 
 void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
   const auto number = [&](double x, int digits) {
-    if (a.missing) return std::string();
+    if (a.nodata) return std::string();
     char text[48];
     std::snprintf(text, sizeof text, "%.*f", digits, x);
     return std::string(text);
@@ -46,7 +46,7 @@ void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
   std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s\n", base::format_number(a.place.lon_deg).c_str(),
               base::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
               number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
-              csv_field(a.source).c_str(), a.tile_error_m, datum.c_str());
+              csv_field(a.source).c_str(), a.geometric_error_m, datum.c_str());
 }
 
 void query(const std::vector<std::string>& arguments, const Common& common) {

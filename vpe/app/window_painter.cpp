@@ -18,34 +18,34 @@ core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double ti
   return result;
 }
 
-window::Picture WindowPainter::paint(const window::PictureOrder& order) {
+window::DrawnImage WindowPainter::paint(const window::ImageRequest& order) {
   if (backend_ != order.backend) {
     renderer_.reset();
     backend_.reset();  // until there is one: making it may fail
-    PictureOptions options;
+    RenderOptions options;
     options.backend = window::to_string(order.backend);
     renderer_ = make_renderer(options, common_, planet_);
     backend_ = order.backend;
   }
   core::DrawRequest request = order.request;
   request.want_range = request.want_range || overlay::needs_range(request.settings);
-  window::Picture picture;
+  window::DrawnImage drawn;
   const auto draw_one = [&](const core::DrawRequest& eye) { return draw(eye, order.flight_time_s); };
   if (order.stereo) {
     StereoArguments stereo;
     stereo.layout = core::to_string(*order.stereo);
     stereo.eye_base_m = order.eye_base_m;
-    StereoPicture pair = draw_stereo(stereo, request, draw_one);
-    picture.image = std::move(pair.image);
-    picture.result = std::move(pair.left);
-    picture.result.settled = picture.result.settled && pair.right.settled;
-    return picture;
+    StereoImage pair = draw_stereo(stereo, request, draw_one);
+    drawn.image = std::move(pair.image);
+    drawn.result = std::move(pair.left);
+    drawn.result.settled = drawn.result.settled && pair.right.settled;
+    return drawn;
   }
-  picture.result = draw_one(request);
-  core::Frame& frame = picture.result.frame;
-  picture.image = {frame.width, frame.height, std::move(frame.colour)};
+  drawn.result = draw_one(request);
+  core::Frame& frame = drawn.result.frame;
+  drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};
-  return picture;
+  return drawn;
 }
 
 }  // namespace vpe::app

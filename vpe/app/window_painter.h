@@ -1,4 +1,4 @@
-// Pictures for a window: either backend, overlays, one eye or two.
+// Images for a window: either backend, overlays, one eye or two.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace vpe::app {
 class WindowPainter : public window::Painter {
  public:
   WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common);
-  window::Picture paint(const window::PictureOrder& order) override;
+  window::DrawnImage paint(const window::ImageRequest& order) override;
 
  private:
   core::DrawResult draw(const core::DrawRequest& request, double time_s);

@@ -18,7 +18,7 @@ namespace vpe::base {
 
 enum class Guard : std::uint8_t {
   kLowestOccluder,  // what hides is a sphere below all terrain, not the datum
-  kFacetSag,        // flat facets lie below the posts that they are drawn through
+  kFacetSagitta,        // flat facets lie below the posts that they are drawn through
   kSkirtNeighbour,  // a skirt covers the neighbour's error too
   kSecondOrder,     // what exaggeration makes of a facet's harmonic mean
   kCellVariation,   // error terms hold between the vertices at which they are measured
@@ -26,7 +26,7 @@ enum class Guard : std::uint8_t {
   kBorderPosts,     // border posts lie on the coarser neighbour's edge
   kShortWay,        // angles are interpolated through 180 degrees
   kFaceOrder,       // a ray meets the faces of the cube in its own order
-  kNearOrigin,      // vertices are relative to a post near the eye, where rounding would show
+  kNearOrigin,      // vertices are relative to a post near the camera, where rounding would show
   kReversedDepth,   // depth runs from 1 at the near plane to 0, where floats are dense
   kMissingHeights,  // no height that is none is ever stored
 };

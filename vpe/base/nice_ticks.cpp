@@ -74,7 +74,8 @@ NiceTicks nice_ticks(double low, double high, int most) {
     if (last - first >= most) continue;
     ticks.decimals = std::max(0, -exponent);
     const int count = static_cast<int>(last - first) + 1;
-    for (int k = 0; k < count; ++k) ticks.values.push_back((first + k) * step);
+    double multiple = first;  // counted separately: adding 1 to a large one may not change it
+    for (int k = 0; k < count; ++k, ++multiple) ticks.values.push_back(multiple * step);
     return ticks;
   }
 }

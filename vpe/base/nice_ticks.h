@@ -30,8 +30,9 @@ struct NiceTicks {
 // it where ticks must not crowd. Returns none for a range that is empty or not finite, and for most < 2.
 NiceTicks nice_ticks(double low, double high, int most);
 
-// Returns at least 2 and at most `most` + 1 multiples of a nice step within [low, high]. Use it where a scale
-// needs two labels to be understood. Returns none for a range that is empty or not finite, and for most < 1.
+// Returns multiples of a nice step within [low, high]: at least 2, and at most `most` + 1 or 5 if that is more.
+// Use it where a scale needs two labels to be understood. Returns none for a range that is empty or not finite,
+// and for most < 1.
 std::vector<double> nice_ticks_two_or_more(double low, double high, int most);
 
 }  // namespace vpe::base

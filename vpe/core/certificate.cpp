@@ -14,7 +14,7 @@ std::string meaning(const Certificate& c) {
       "that surface against the posts of its own sources. source_accuracy_m: the "
       "sources "
       "against the planet, one sigma, null where unknown.";
-  if (c.share_without_data.value_or(0) > 0) text += " Where no source has data the picture is striped.";
+  if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped.";
   if (c.illustration) text += " The elevations are an illustration, not data.";
   if (c.tiles_missing > 0 || c.tiles_substituted > 0) {
     text += " Missing or substituted tiles are not covered by the bounds.";
@@ -27,20 +27,20 @@ std::string meaning(const Certificate& c) {
 std::string to_json(const Certificate& c) {
   nlohmann::ordered_json json;
   json["what_this_means"] = meaning(c);
-  json["tile_error_m"] = c.tile_error_m;
-  json["tile_error_px"] = c.tile_error_px;
+  json["tile_error_m"] = c.geometric_error_m;
+  json["tile_error_px"] = c.screen_space_error_px;
   json["quantisation_m"] = c.quantisation_m;
   json["quantisation_px"] = c.quantisation_px;
   json["shift_bound_px"] = c.shift_bound_px;
   json["picture_bound_px"] = nullptr;
-  if (c.picture_bound_px) json["picture_bound_px"] = *c.picture_bound_px;
+  if (c.image_bound_px) json["picture_bound_px"] = *c.image_bound_px;
   json["tolerance_px"] = c.tolerance_px;
   json["tiles_drawn"] = c.tiles_drawn;
   json["tiles_missing"] = c.tiles_missing;
   json["tiles_substituted"] = c.tiles_substituted;
   json["share_at_data_limit"] = c.share_at_data_limit;
   json["share_without_data"] = nullptr;
-  if (c.share_without_data) json["share_without_data"] = *c.share_without_data;
+  if (c.nodata_share) json["share_without_data"] = *c.nodata_share;
   json["resampling_max_m"] = c.resampling_max_m;
   json["resampling_rms_m"] = c.resampling_rms_m;
   json["source_accuracy_m"] = nullptr;

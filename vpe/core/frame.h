@@ -1,4 +1,4 @@
-// A finished picture: colour and range, and the interface of what draws it.
+// A finished image: colour and range, and the interface of what draws it.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Frame {
   int width = 0;
   int height = 0;
   std::vector<base::Rgb> colour;  // width * height
-  std::vector<float> range_m;     // width * height when asked for, else empty; eye to surface; kSkyRange = sky
+  std::vector<float> range_m;     // width * height when asked for, else empty; camera to surface; kSkyRange = sky
 };
 
 // Counts of one frame (design: every frame reports).
@@ -54,12 +54,12 @@ struct DrawRequest;
 
 // How a frame deals with tiles that are not there yet.
 struct PagingRequest {
-  // True: the frame waits for all that its view needs, so that its picture does not depend on what was drawn
+  // True: the frame waits for all that its view needs, so that its image does not depend on what was drawn
   // before. False: it is drawn at once with what is there, in full cover from the first frame on.
   bool wait = true;
   double timeout_s = std::numeric_limits<double>::infinity();  // of waiting; then what is there is drawn
   double upload_ms = 4;  // time for new tiles in a frame that does not wait; one is taken in any case
-  // Where the eye is expected soon, nearest first: loaded after all that the view itself needs. Never changes
+  // Where the camera is expected soon, nearest first: loaded after all that the view itself needs. Never changes
   // what is drawn of a complete frame.
   std::vector<View> upcoming;
   // What is drawn next, where that is known: may be begun while this frame is drawn. When something else comes
@@ -77,7 +77,7 @@ struct DrawRequest {
   std::optional<View> cull_view;
   std::vector<InterestRegion> interest;  // where regions overlap, their levels add up
   // >= 1: what is given up for speed (lod/frame_budget.h, lod/progressive_refinement.h). The tolerance counts times
-  // this, in rule hitchner every distance. 1 in single pictures and films.
+  // this, in rule hitchner every distance. 1 in single images and films.
   double coarsening = 1;
   PagingRequest paging;
 };
@@ -92,8 +92,8 @@ struct DrawResult {
   Frame frame;
   FrameStats stats;
   Certificate certificate;
-  bool settled = true;                // nothing is under way that would change this view's picture
-  std::vector<MissingTile> missing;   // empty when the picture is complete
+  bool settled = true;                // nothing is under way that would change this view's image
+  std::vector<MissingTile> missing;   // empty when the image is complete
   std::vector<std::string> failures;  // of tiles that cannot be read, each told once by a renderer
 };
 

@@ -21,7 +21,7 @@ bool is_surface(float range_m) { return is_valid_range(range_m) && std::isfinite
 bool is_sky(float range_m) { return range_m == std::numeric_limits<float>::infinity(); }
 
 // A range image with its size.
-struct Picture {
+struct Image {
   std::span<const float> range_m;
   int width;
   int height;
@@ -33,14 +33,14 @@ struct Picture {
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
 };
 
-Picture picture_of(const View& view, std::span<const float> range_m, const char* name) {
+Image image_of(const View& view, std::span<const float> range_m, const char* name) {
   const glm::ivec2 size = drawn_size(view);
-  const Picture picture{range_m, size.x, size.y};
+  const Image image{range_m, size.x, size.y};
   if (range_m.size() != static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y)) {
     throw std::invalid_argument(std::string(name) + " has " + std::to_string(range_m.size()) +
                                 " pixels, the view " + std::to_string(size.x) + "x" + std::to_string(size.y));
   }
-  return picture;
+  return image;
 }
 
 glm::dvec3 centre_ray(const View& view, int x, int y) {
@@ -55,10 +55,10 @@ double distance_to_segment(const glm::dvec3& from, const glm::dvec3& to) {
   return glm::length(from + along * s);
 }
 
-// The drawn picture about one reference hit, in its pixel space with the hit at the origin.
+// The drawn image about one reference hit, in its pixel space with the hit at the origin.
 class PixelSpace {
  public:
-  PixelSpace(const Picture& drawn, int x, int y, double range_m, double focal)
+  PixelSpace(const Image& drawn, int x, int y, double range_m, double focal)
       : drawn_(drawn), x_(x), y_(y), range_m_(range_m), focal_(focal) {}
 
   // Distance to the nearest edge of the drawn net within `reach` columns and rows.
@@ -89,7 +89,7 @@ class PixelSpace {
     return {dx, dy, focal_ * (nearness - 1.0)};
   }
 
-  const Picture& drawn_;
+  const Image& drawn_;
   int x_;
   int y_;
   double range_m_;
@@ -97,7 +97,7 @@ class PixelSpace {
 };
 
 // An edge outside a window of `reach` is at least `reach` away, so a smaller distance is final.
-double surface_shift(const Picture& drawn, int x, int y, float reference_m, double focal, int search) {
+double surface_shift(const Image& drawn, int x, int y, float reference_m, double focal, int search) {
   const PixelSpace space(drawn, x, y, static_cast<double>(reference_m), focal);
   double shift = space.distance(1);
   for (int reach = 1; shift > reach && reach < search;) {
@@ -107,7 +107,7 @@ double surface_shift(const Picture& drawn, int x, int y, float reference_m, doub
   return shift;
 }
 
-double sky_shift(const Picture& drawn, int x, int y, int search) {
+double sky_shift(const Image& drawn, int x, int y, int search) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int reach = 0; reach <= search && nearest > reach; ++reach) {
     for (int dy = -reach; dy <= reach; ++dy) {
@@ -120,16 +120,16 @@ double sky_shift(const Picture& drawn, int x, int y, int search) {
   return nearest;
 }
 
-bool is_inner(const Picture& picture, int x, int y) {
-  return x > 0 && y > 0 && x < picture.width - 1 && y < picture.height - 1;
+bool is_inner(const Image& image, int x, int y) {
+  return x > 0 && y > 0 && x < image.width - 1 && y < image.height - 1;
 }
 
 template <class Predicate>
-bool all_nine(const Picture& picture, int x, int y, const Predicate& predicate) {
-  if (x < 1 || y < 1 || x + 1 >= picture.width || y + 1 >= picture.height) return false;
+bool all_nine(const Image& image, int x, int y, const Predicate& predicate) {
+  if (x < 1 || y < 1 || x + 1 >= image.width || y + 1 >= image.height) return false;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
-      if (!predicate(picture.at(x + dx, y + dy))) return false;
+      if (!predicate(image.at(x + dx, y + dy))) return false;
     }
   }
   return true;
@@ -156,17 +156,17 @@ nlohmann::ordered_json as_json(const ShiftSummary& s) {
 
 std::vector<double> forward_shift_px(const View& view, std::span<const float> range_m,
                                      const SurfaceRadius& surface, const MetricOptions& options) {
-  const Picture drawn = picture_of(view, range_m, "the drawn picture");
+  const Image drawn = image_of(view, range_m, "the drawn picture");
   const double focal = focal_px(view);
   std::vector<double> shift_px(range_m.size(), kNotMeasured);
-  parallel_for(static_cast<std::size_t>(drawn.height), options.threads, [&](std::size_t row) {
+  base::parallel_for(static_cast<std::size_t>(drawn.height), options.threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     std::vector<std::size_t> places;
     std::vector<glm::dvec3> directions;
     std::vector<double> drawn_radius_m;
     for (int x = 0; x < drawn.width; ++x) {
       if (!is_surface(drawn.at(x, y))) continue;
-      const glm::dvec3 point = view.eye.eye_m + centre_ray(view, x, y) * static_cast<double>(drawn.at(x, y));
+      const glm::dvec3 point = view.camera.position_m + centre_ray(view, x, y) * static_cast<double>(drawn.at(x, y));
       places.push_back(drawn.index(x, y));
       drawn_radius_m.push_back(glm::length(point));
       directions.push_back(point / drawn_radius_m.back());
@@ -183,12 +183,12 @@ std::vector<double> forward_shift_px(const View& view, std::span<const float> ra
 
 std::vector<double> backward_shift_px(const View& view, std::span<const float> range_m,
                                       std::span<const float> reference_m, const MetricOptions& options) {
-  const Picture drawn = picture_of(view, range_m, "the drawn picture");
-  const Picture reference = picture_of(view, reference_m, "the reference picture");
+  const Image drawn = image_of(view, range_m, "the drawn picture");
+  const Image reference = image_of(view, reference_m, "the reference picture");
   const double focal = focal_px(view);
   const int search = std::max(1, options.search_px);
   std::vector<double> shift_px(range_m.size(), kNotMeasured);
-  parallel_for(static_cast<std::size_t>(drawn.height), options.threads, [&](std::size_t row) {
+  base::parallel_for(static_cast<std::size_t>(drawn.height), options.threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < drawn.width; ++x) {
       const float hit_m = reference.at(x, y);
@@ -223,30 +223,30 @@ ShiftSummary summarize(std::span<const double> shift_px, int width) {
   return summary;
 }
 
-PictureErrors compare_to_reference(const View& view, std::span<const float> range_m,
+ImageErrors compare_to_reference(const View& view, std::span<const float> range_m,
                                    std::span<const float> reference_m, const SurfaceRadius& surface,
                                    const MetricOptions& options) {
-  const Picture drawn = picture_of(view, range_m, "the drawn picture");
-  const Picture reference = picture_of(view, reference_m, "the reference picture");
-  PictureErrors errors;
+  const Image drawn = image_of(view, range_m, "the drawn picture");
+  const Image reference = image_of(view, reference_m, "the reference picture");
+  ImageErrors errors;
   errors.forward = summarize(forward_shift_px(view, range_m, surface, options), drawn.width);
   errors.backward = summarize(backward_shift_px(view, range_m, reference_m, options), drawn.width);
   for (int y = 0; y < drawn.height; ++y) {
     for (int x = 0; x < drawn.width; ++x) {
       const float range = drawn.at(x, y);
       if (!is_valid_range(range)) ++errors.invalid;
-      if (is_sky(range) && all_nine(reference, x, y, is_surface)) ++errors.holes;
+      if (is_sky(range) && all_nine(reference, x, y, is_surface)) ++errors.sky_for_ground;
       if (is_surface(range) && all_nine(reference, x, y, is_sky)) ++errors.false_surface;
     }
   }
   return errors;
 }
 
-std::string to_json(const PictureErrors& errors) {
+std::string to_json(const ImageErrors& errors) {
   nlohmann::ordered_json json;
   json["forward"] = as_json(errors.forward);
   json["backward"] = as_json(errors.backward);
-  json["holes"] = errors.holes;
+  json["holes"] = errors.sky_for_ground;
   json["false_surface"] = errors.false_surface;
   json["invalid"] = errors.invalid;
   return json.dump(2) + "\n";
@@ -254,15 +254,15 @@ std::string to_json(const PictureErrors& errors) {
 
 HorizonErrors check_horizon(const View& view, std::span<const float> range_m, double lowest_radius_m,
                             double highest_radius_m) {
-  const Picture drawn = picture_of(view, range_m, "the drawn picture");
-  const double eye_distance_m = glm::length(view.eye.eye_m);
-  const glm::dvec3 down = eye_distance_m > 0.0 ? -view.eye.eye_m / eye_distance_m : glm::dvec3(0, 0, 1);
+  const Image drawn = image_of(view, range_m, "the drawn picture");
+  const double camera_distance_m = glm::length(view.camera.position_m);
+  const glm::dvec3 down = camera_distance_m > 0.0 ? -view.camera.position_m / camera_distance_m : glm::dvec3(0, 0, 1);
   constexpr double kRim_rad = 1e-12;
   // A ray meets a sphere when its angle from straight down is at most that of the sphere's rim.
-  const auto rim_rad = [eye_distance_m](double radius_m) {
-    if (eye_distance_m <= radius_m) return 2.0 * mars::kPi;
+  const auto rim_rad = [camera_distance_m](double radius_m) {
+    if (camera_distance_m <= radius_m) return 2.0 * mars::kPi;
     // asin(radius / distance) by its tangent, which does not cancel close to the sphere.
-    return std::atan2(radius_m, std::sqrt((eye_distance_m - radius_m) * (eye_distance_m + radius_m)));
+    return std::atan2(radius_m, std::sqrt((camera_distance_m - radius_m) * (camera_distance_m + radius_m)));
   };
   const double lowest_rim_rad = rim_rad(lowest_radius_m);
   const double highest_rim_rad = rim_rad(highest_radius_m);

@@ -80,7 +80,7 @@ void mix_red_cyan(std::span<base::Rgb> left, std::span<const base::Rgb> right) {
 
 View eye_aside(const View& view, double aside_m, std::optional<double> convergence_m) {
   View eye = view;
-  eye.eye.eye_m += aside_m * view.eye.axes.right;
+  eye.camera.position_m += aside_m * view.camera.axes.right;
   // A point straight ahead is seen to the left by an eye on the right: the principal point goes right.
   if (convergence_m) eye.principal_offset_px.x += focal_px(view) * aside_m / *convergence_m;
   return eye;

@@ -1,4 +1,4 @@
-// Two eyes in one picture.
+// Two eyes in one image.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ enum class StereoLayout : std::uint8_t {
 std::optional<StereoLayout> parse_stereo(std::string_view name);
 const char* to_string(StereoLayout layout);
 
-// Both pictures in full size, so that sbs is twice as wide and ou twice as high. Red-cyan is made by Dubois's
+// Both images in full size, so that sbs is twice as wide and ou twice as high. Red-cyan is made by Dubois's
 // matrix for such glasses in the rounding of ffmpeg's stereo3d (arcd; within 1/255 of it), on the stored
-// values. Throws ImageError when the pictures differ in size or the result has a side over kMaxImageSide_px.
+// values. Throws ImageError when the images differ in size or the result has a side over kMaxImageSide_px.
 RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayout layout);
 
 // Red-cyan in place of the left eye's pixels; both as long as each other.

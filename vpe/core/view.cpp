@@ -47,11 +47,11 @@ std::string check_part(const View& view) {
 }  // namespace
 
 std::string check(const View& view) {
-  if (!is_finite(view.eye.eye_m) || glm::length(view.eye.eye_m) > ViewLimits::kMaxEyeDistance_m) {
-    return "the eye's position is not finite or farther than " + base::format_number(ViewLimits::kMaxEyeDistance_m) +
+  if (!is_finite(view.camera.position_m) || glm::length(view.camera.position_m) > ViewLimits::kMaxCameraDistance_m) {
+    return "the eye's position is not finite or farther than " + base::format_number(ViewLimits::kMaxCameraDistance_m) +
            " m from the planet's centre";
   }
-  if (!is_orthonormal(view.eye.axes)) return "the eye's axes are not orthonormal; make them with mars::to_eye";
+  if (!is_orthonormal(view.camera.axes)) return "the eye's axes are not orthonormal; make them with mars::to_eye";
   const int max_side_px = has_part(view) ? ViewLimits::kMaxFullSide_px : ViewLimits::kMaxSide_px;
   if (view.width < 1 || view.height < 1 || view.width > max_side_px || view.height > max_side_px) {
     return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
@@ -83,7 +83,7 @@ double focal_px(const View& view) {
 }
 
 glm::dvec3 pixel_ray(const View& view, double x, double y) {
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   const glm::dvec2 from_principal = glm::dvec2(x, y) - principal_point(view);
   const auto in_axes = [&axes](double right, double up, double forward) {
     const glm::dvec3 d = axes.right * right + axes.up * up + axes.forward * forward;
@@ -103,10 +103,10 @@ glm::dvec3 pixel_ray(const View& view, double x, double y) {
 }
 
 Projected project(const View& view, const glm::dvec3& point_m) {
-  const glm::dvec3 to = point_m - view.eye.eye_m;
-  const double right = glm::dot(to, view.eye.axes.right);
-  const double up = glm::dot(to, view.eye.axes.up);
-  const double forward = glm::dot(to, view.eye.axes.forward);
+  const glm::dvec3 to = point_m - view.camera.position_m;
+  const double right = glm::dot(to, view.camera.axes.right);
+  const double up = glm::dot(to, view.camera.axes.up);
+  const double forward = glm::dot(to, view.camera.axes.forward);
   const glm::dvec2 principal = principal_point(view);
   Projected result;
   result.depth_m = forward;
@@ -141,26 +141,26 @@ std::array<Plane, 4> side_planes(const View& view) {
   if (view.projection != Projection::kPerspective) {
     throw std::invalid_argument("side planes exist for perspective views only");
   }
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   const SubRectangle part = drawn_part(view);
   const double f = focal_px(view);
   const glm::dvec2 low = glm::dvec2(part.x, part.y) - principal_point(view);
   const glm::dvec2 high = low + glm::dvec2(part.width, part.height);
   const auto plane = [&view](const glm::dvec3& inward) {
     const glm::dvec3 normal = inward / glm::length(inward);
-    return Plane{normal, glm::dot(normal, view.eye.eye_m)};
+    return Plane{normal, glm::dot(normal, view.camera.position_m)};
   };
   return {plane(axes.right * f - axes.forward * low.x), plane(axes.forward * high.x - axes.right * f),
           plane(axes.up * f + axes.forward * high.y), plane(-axes.up * f - axes.forward * low.y)};
 }
 
 bool reaches_horizon(const View& view, double radius_m) {
-  const double distance_m = glm::length(view.eye.eye_m);
+  const double distance_m = glm::length(view.camera.position_m);
   if (view.projection != Projection::kPerspective || !(distance_m > radius_m)) return true;
-  const glm::dvec3 down = -view.eye.eye_m / distance_m;
+  const glm::dvec3 down = -view.camera.position_m / distance_m;
   const double sine = radius_m / distance_m;
   const double least_cosine = std::sqrt((1 - sine) * (1 + sine));
-  // What lies below the horizon is a convex cone: the picture is within it when its corners are.
+  // What lies below the horizon is a convex cone: the image is within it when its corners are.
   const SubRectangle part = drawn_part(view);
   for (const int x : {part.x, part.x + part.width}) {
     for (const int y : {part.y, part.y + part.height}) {

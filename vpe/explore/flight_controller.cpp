@@ -5,10 +5,10 @@
 
 namespace vpe::explore {
 
-FlightDesk::FlightDesk(double radius_m, scripts::TerrainHeight terrain_height_m)
+FlightController::FlightController(double radius_m, scripts::TerrainHeight terrain_height_m)
     : radius_m_(radius_m), terrain_height_m_(std::move(terrain_height_m)) {}
 
-std::string FlightDesk::take(const scripts::Flight& flight) {
+std::string FlightController::take(const scripts::Flight& flight) {
   try {
     FlightEditor editor(flight, radius_m_);
     FlightPlayer player(scripts::Path(flight, radius_m_, terrain_height_m_), radius_m_);
@@ -23,13 +23,13 @@ std::string FlightDesk::take(const scripts::Flight& flight) {
   }
 }
 
-void FlightDesk::clear() {
+void FlightController::clear() {
   editor_.reset();
   player_.reset();
   problem_.clear();
 }
 
-std::string FlightDesk::add(const mars::Pose& pose, double speed_m_per_s) {
+std::string FlightController::add(const mars::Pose& pose, double speed_m_per_s) {
   scripts::Waypoint waypoint;
   waypoint.lon_deg = pose.lon_deg;
   waypoint.lat_deg = pose.lat_deg;
@@ -45,7 +45,7 @@ std::string FlightDesk::add(const mars::Pose& pose, double speed_m_per_s) {
   return trouble;
 }
 
-FlightPlayer* FlightDesk::player(double exaggeration) {
+FlightPlayer* FlightController::player(double exaggeration) {
   if (!editor_) return nullptr;
   if (played_ == editor_->revision() && played_exaggeration_ == exaggeration)
     return player_ ? &*player_ : nullptr;
@@ -63,7 +63,7 @@ FlightPlayer* FlightDesk::player(double exaggeration) {
     player_->set_speed(before->speed());
     player_->set_loop(before->loops());
     player_->scrub(before->time_s());
-    player_->look_around(before->look_offset());
+    player_->view_panorama(before->look_offset());
     player_->keep_settings_of(*before);
     if (before->is_playing()) player_->play();
   }

@@ -12,9 +12,9 @@
 
 namespace vpe::explore {
 
-class FlightDesk {
+class FlightController {
  public:
-  FlightDesk(double radius_m, scripts::TerrainHeight terrain_height_m);
+  FlightController(double radius_m, scripts::TerrainHeight terrain_height_m);
 
   // Replaces what is there; paused at the start. What is wrong, empty when all is well; then nothing changes.
   [[nodiscard]] std::string take(const scripts::Flight& flight);

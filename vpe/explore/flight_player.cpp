@@ -43,7 +43,7 @@ void FlightPlayer::set_speed(double speed) {
   speed_ = std::copysign(size, speed);
 }
 
-void FlightPlayer::look_around(const mars::HeadLook& offset) {
+void FlightPlayer::view_panorama(const mars::HeadAngles& offset) {
   offset_ = {mars::normalize_lon_deg(finite(offset.yaw_deg)),
              std::clamp(finite(offset.pitch_deg), -180.0, 180.0),
              mars::normalize_lon_deg(finite(offset.roll_deg))};
@@ -53,7 +53,7 @@ void FlightPlayer::turn_look(double yaw_deg, double pitch_deg, double roll_deg) 
   // Kept to what can be seen, so that turning back is felt at once.
   const double flight_deg = path_.at(time_s_).look.pitch_deg;
   const double pitch = std::clamp(flight_deg + offset_.pitch_deg + finite(pitch_deg), -90.0, 90.0) - flight_deg;
-  look_around({offset_.yaw_deg + finite(yaw_deg), pitch, offset_.roll_deg + finite(roll_deg)});
+  view_panorama({offset_.yaw_deg + finite(yaw_deg), pitch, offset_.roll_deg + finite(roll_deg)});
 }
 
 scripts::FlightState FlightPlayer::state() const {
@@ -62,7 +62,7 @@ scripts::FlightState FlightPlayer::state() const {
   state.look = {mars::normalize_lon_deg(state.look.yaw_deg + offset_.yaw_deg),
                 std::clamp(state.look.pitch_deg + offset_.pitch_deg, -90.0, 90.0),
                 mars::normalize_lon_deg(state.look.roll_deg + offset_.roll_deg)};
-  state.eye = mars::to_eye(state.pose, state.look, radius_m_);
+  state.camera = mars::to_camera(state.pose, state.look, radius_m_);
   return state;
 }
 

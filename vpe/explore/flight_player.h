@@ -52,10 +52,10 @@ class FlightPlayer {
 
   // The user's look, added to that of the flight angle by angle (pitch stops straight up and down). The
   // platform's motion and the flight's own look go on below it. Angles that are not finite count as 0.
-  void look_around(const mars::HeadLook& offset);
+  void view_panorama(const mars::HeadAngles& offset);
   void turn_look(double yaw_deg, double pitch_deg, double roll_deg = 0);  // further, from where it is
-  void look_ahead() { look_around({}); }
-  const mars::HeadLook& look_offset() const { return offset_; }
+  void look_ahead() { view_panorama({}); }
+  const mars::HeadAngles& look_offset() const { return offset_; }
 
   // Now: without an offset that of Path::at(), to the bit.
   scripts::FlightState state() const;
@@ -81,7 +81,7 @@ class FlightPlayer {
   double speed_ = 1;
   bool playing_ = false;
   bool loop_ = false;
-  mars::HeadLook offset_;
+  mars::HeadAngles offset_;
   std::map<std::string, std::string> kept_;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFloor_m = 5;  // heights are compared as logarithms
 
-double log_height(const mars::Pose& pose, const Ground& ground) {
+double log_height(const mars::Pose& pose, const TerrainQuery& ground) {
   return std::log(std::max(height_above_ground_m(pose, ground), kFloor_m));
 }
 
@@ -22,7 +22,7 @@ double turned_part(double from_deg, double to_deg, double part) {
 
 }  // namespace
 
-FlyTo::FlyTo(const mars::Pose& from, const mars::Pose& to, const Ground& ground) : from_(from), to_(to) {
+FlyTo::FlyTo(const mars::Pose& from, const mars::Pose& to, const TerrainQuery& ground) : from_(from), to_(to) {
   const double way_m =
       mars::distance_rad({from.lon_deg, from.lat_deg}, {to.lon_deg, to.lat_deg}) * ground.radius_m;
   const double low = std::max(log_height(from, ground), log_height(to, ground));
@@ -33,7 +33,7 @@ FlyTo::FlyTo(const mars::Pose& from, const mars::Pose& to, const Ground& ground)
   duration_s_ = std::clamp(0.6 + 0.35 * (climb + far), FlyToLimits::kShortest_s, FlyToLimits::kLongest_s);
 }
 
-mars::Pose FlyTo::at(double time_s, const Ground& ground) const {
+mars::Pose FlyTo::at(double time_s, const TerrainQuery& ground) const {
   if (!(time_s < duration_s_)) return to_;
   const double u = std::clamp(time_s / duration_s_, 0.0, 1.0);
   const double s =

@@ -15,11 +15,11 @@ struct FlyToLimits {
 // ends are in sight in the middle, eased at both ends; angles the short way round. Immutable, pure.
 class FlyTo {
  public:
-  FlyTo(const mars::Pose& from, const mars::Pose& to, const Ground& ground);
+  FlyTo(const mars::Pose& from, const mars::Pose& to, const TerrainQuery& ground);
 
   double duration_s() const { return duration_s_; }
   // Clear of the ground in between; at the end, and after it, `to` itself.
-  mars::Pose at(double time_s, const Ground& ground) const;
+  mars::Pose at(double time_s, const TerrainQuery& ground) const;
 
  private:
   mars::Pose from_;

@@ -9,8 +9,8 @@ namespace vpe::explore {
 
 namespace {
 
-lod::LookAndWaitOptions look_options() {
-  lod::LookAndWaitOptions options;
+lod::ProgressiveRefinementOptions look_options() {
+  lod::ProgressiveRefinementOptions options;
   options.max_multiplier = 1;  // only what the budget asks for is given up
   options.refine_factor = 2;
   return options;
@@ -33,31 +33,31 @@ core::View reduced(const core::View& view, double side) {
   return small;
 }
 
-LivePicture::LivePicture(const LivePictureOptions& options) : options_(options), look_(look_options()) {
+LiveImage::LiveImage(const LiveImageOptions& options) : options_(options), look_(look_options()) {
   if (!(options.budget_ms >= 0.0) || !std::isfinite(options.budget_ms))
     throw std::invalid_argument("the budget of a picture must be 0 (none) or more milliseconds");
   if (!(options.smallest_side > 0.0 && options.smallest_side <= 1.0))
     throw std::invalid_argument("the smallest side must be within 0..1 of the picture's");
 }
 
-void LivePicture::set_budget_ms(double budget_ms) {
+void LiveImage::set_budget_ms(double budget_ms) {
   if (!(budget_ms >= 0.0) || !std::isfinite(budget_ms) || budget_ms == options_.budget_ms) return;
   options_.budget_ms = budget_ms;
   budget_ = {};
 }
 
-std::optional<LivePicture::Order> LivePicture::next(const core::View& wanted, bool changed, double nearest_m) {
-  lod::LookInput input;
+std::optional<LiveImage::Request> LiveImage::next(const core::View& wanted, bool changed, double nearest_m) {
+  lod::RefinementInput input;
   input.motion_px =
-      last_ ? lod::picture_motion_px(*last_, wanted, nearest_m) : std::numeric_limits<double>::infinity();
+      last_ ? lod::image_motion_px(*last_, wanted, nearest_m) : std::numeric_limits<double>::infinity();
   input.changed = changed || lost_;
-  // A picture in which something was given up is not the final one, whatever was loaded.
+  // An image in which something was given up is not the final one, whatever was loaded.
   input.settled = settled_ && last_multiplier_ == 1.0;
   input.budget_multiplier = options_.budget_ms > 0.0 ? budget_.multiplier : 1.0;
-  const lod::LookOutput output = look_.next(input);
+  const lod::RefinementOutput output = look_.next(input);
   state_ = output.state;
   if (!output.draw) return std::nullopt;
-  Order order;
+  Request order;
   order.multiplier = output.multiplier;
   order.is_full = output.multiplier == 1.0;
   order.view = reduced(wanted, std::max(options_.smallest_side, 1.0 / std::sqrt(output.multiplier)));
@@ -67,9 +67,9 @@ std::optional<LivePicture::Order> LivePicture::next(const core::View& wanted, bo
   return order;
 }
 
-void LivePicture::made(double ms, bool settled) {
+void LiveImage::made(double ms, bool settled) {
   settled_ = settled;
-  // Pictures at rest are full whatever they take; they tell the controller about its line all the same.
+  // Images at rest are full whatever they take; they tell the controller about its line all the same.
   if (options_.budget_ms > 0.0) {
     lod::FrameBudgetOptions budget;
     budget.budget_ms = options_.budget_ms;

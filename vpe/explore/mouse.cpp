@@ -16,20 +16,20 @@ using mars::Pose;
 constexpr double kPoleKeepsHeading_deg = 80;
 
 // Where a line of sight meets a ball about the planet's centre; beside it, the edge nearest to the line.
-glm::dvec3 on_ball(const glm::dvec3& eye_m, const glm::dvec3& ray, double radius_m) {
-  const double middle_m = -glm::dot(eye_m, ray);
-  const glm::dvec3 nearest = eye_m + ray * middle_m;
+glm::dvec3 on_ball(const glm::dvec3& camera_m, const glm::dvec3& ray, double radius_m) {
+  const double middle_m = -glm::dot(camera_m, ray);
+  const glm::dvec3 nearest = camera_m + ray * middle_m;
   const double off_m = glm::length(nearest);
   const double half2 = (radius_m - off_m) * (radius_m + off_m);
-  const double inside = glm::length(eye_m) - radius_m;
+  const double inside = glm::length(camera_m) - radius_m;
   if (half2 >= 0.0) {
     const double half_m = std::sqrt(half2);
-    if (inside < 0.0) return eye_m + ray * (middle_m + half_m);
-    if (middle_m >= 0.0) return eye_m + ray * (middle_m - half_m);
+    if (inside < 0.0) return camera_m + ray * (middle_m + half_m);
+    if (middle_m >= 0.0) return camera_m + ray * (middle_m - half_m);
   }
-  // The edge as it is seen: where a tangent through the eye, in the plane of the line of sight, touches.
-  const double distance_m = glm::length(eye_m);
-  const glm::dvec3 up = eye_m / distance_m;
+  // The edge as it is seen: where a tangent through the camera, in the plane of the line of sight, touches.
+  const double distance_m = glm::length(camera_m);
+  const glm::dvec3 up = camera_m / distance_m;
   const glm::dvec3 side = ray - up * glm::dot(ray, up);
   const double length = glm::length(side);
   if (length < 1e-12 || inside <= 0.0) return up * radius_m;
@@ -62,14 +62,14 @@ Pose pulled(const Pose& pose, const Screen& screen, const glm::dvec3& held_m, gl
   double best_px = std::numeric_limits<double>::infinity();
   for (int n = 0; n < kMostSteps; ++n) {
     const core::View view = view_of(at, screen, radius_m);
-    const glm::dvec3 shown = on_ball(view.eye.eye_m, core::pixel_ray(view, xy.x, xy.y), held_radius_m);
+    const glm::dvec3 shown = on_ball(view.camera.position_m, core::pixel_ray(view, xy.x, xy.y), held_radius_m);
     const glm::dvec3 from = glm::normalize(shown);
     const glm::dvec3 to = held_m / held_radius_m;
-    mars::EyePose eye = view.eye;
-    eye.eye_m = rotated(eye.eye_m, from, to);
-    for (glm::dvec3* axis : {&eye.axes.right, &eye.axes.up, &eye.axes.forward})
+    mars::CameraPose camera = view.camera;
+    camera.position_m = rotated(camera.position_m, from, to);
+    for (glm::dvec3* axis : {&camera.axes.right, &camera.axes.up, &camera.axes.forward})
       *axis = rotated(*axis, from, to);
-    const Pose found = mars::to_pose(eye, radius_m);
+    const Pose found = mars::to_pose(camera, radius_m);
     Pose next = pose;
     next.lon_deg = found.lon_deg;
     next.lat_deg = found.lat_deg;
@@ -107,7 +107,7 @@ glm::dvec2 middle(const Screen& screen) { return {screen.width / 2.0, screen.hei
 
 core::View view_of(const Pose& pose, const Screen& screen, double radius_m) {
   core::View view;
-  view.eye = mars::to_eye(pose, radius_m);
+  view.camera = mars::to_camera(pose, radius_m);
   view.width = screen.width;
   view.height = screen.height;
   view.fov_deg = screen.fov_deg;
@@ -115,16 +115,16 @@ core::View view_of(const Pose& pose, const Screen& screen, double radius_m) {
 }
 
 std::optional<glm::dvec3> ground_at(const Pose& pose, const Screen& screen, glm::dvec2 xy,
-                                    const Ground& ground) {
+                                    const TerrainQuery& ground) {
   const core::View view = view_of(pose, screen, ground.radius_m);
   const glm::dvec3 ray = core::pixel_ray(view, xy.x, xy.y);
-  const double range_m = ground.cast_m(view.eye.eye_m, ray);
+  const double range_m = ground.cast_m(view.camera.position_m, ray);
   if (!std::isfinite(range_m)) return std::nullopt;
-  return view.eye.eye_m + ray * range_m;
+  return view.camera.position_m + ray * range_m;
 }
 
 Pose dragged(const Pose& begun, const Screen& screen, const glm::dvec3& held_m, glm::dvec2 xy,
-             const Ground& ground) {
+             const TerrainQuery& ground) {
   return kept_clear(held_under(begun, screen, held_m, xy, ground.radius_m), ground);
 }
 
@@ -139,7 +139,7 @@ Pose looked(const Pose& begun, const Screen& screen, glm::dvec2 from, glm::dvec2
                 angle(to.y - m.y) - angle(from.y - m.y), 0.0);
 }
 
-Pose zoomed(const Pose& pose, const Screen& screen, glm::dvec2 xy, double factor, const Ground& ground) {
+Pose zoomed(const Pose& pose, const Screen& screen, glm::dvec2 xy, double factor, const TerrainQuery& ground) {
   if (!(factor > 0.0) || !std::isfinite(factor)) return pose;
   const double f = std::clamp(factor, 0.1, 10.0);
   const std::optional<glm::dvec3> point = ground_at(pose, screen, xy, ground);
@@ -149,8 +149,8 @@ Pose zoomed(const Pose& pose, const Screen& screen, glm::dvec2 xy, double factor
     next.alt_m += height_m * (f - 1.0);
     return kept_clear(next, ground);
   }
-  const mars::EyePose eye = mars::to_eye(pose, ground.radius_m);
-  const glm::dvec3 away = eye.eye_m - *point;
+  const mars::CameraPose camera = mars::to_camera(pose, ground.radius_m);
+  const glm::dvec3 away = camera.position_m - *point;
   const double distance_m = glm::length(away);
   const double goal_m = std::max(distance_m * f, std::min(distance_m, MouseLimits::kNearest_m));
   const glm::dvec3 there = *point + away * (goal_m / std::max(distance_m, 1e-9));
@@ -161,43 +161,43 @@ Pose zoomed(const Pose& pose, const Screen& screen, glm::dvec2 xy, double factor
   return kept_clear(held_under(next, screen, *point, xy, ground.radius_m), ground);
 }
 
-Pose tilted(const Pose& pose, const Screen& screen, double around_deg, double up_deg, const Ground& ground) {
+Pose tilted(const Pose& pose, const Screen& screen, double around_deg, double up_deg, const TerrainQuery& ground) {
   if (!(std::isfinite(around_deg) && std::isfinite(up_deg))) return pose;
   const std::optional<glm::dvec3> pivot = ground_at(pose, screen, middle(screen), ground);
   if (!pivot) return kept_clear(turned(pose, around_deg, -up_deg, 0.0), ground);
-  const mars::EyePose eye = mars::to_eye(pose, ground.radius_m);
-  const glm::dvec3 away = eye.eye_m - *pivot;
+  const mars::CameraPose camera = mars::to_camera(pose, ground.radius_m);
+  const glm::dvec3 away = camera.position_m - *pivot;
   const double distance_m = glm::length(away);
-  // In the pivot's level frame: azimuth and elevation of the eye.
+  // In the pivot's level frame: azimuth and elevation of the camera.
   const mars::LocalFrame frame = mars::local_frame(mars::lon_lat(*pivot));
   const glm::dvec3 out = away / std::max(distance_m, 1e-9);
   const double elevation_deg =
       std::asin(std::clamp(glm::dot(out, frame.up), -1.0, 1.0)) / mars::kRadiansPerDegree;
-  // The heading towards the pivot as the eye has it: defined straight above it too, by the picture's up.
-  const Pose local = mars::to_pose({frame.up * ground.radius_m, eye.axes}, ground.radius_m);
+  // The heading towards the pivot as the camera has it: defined straight above it too, by the image's up.
+  const Pose local = mars::to_pose({frame.up * ground.radius_m, camera.axes}, ground.radius_m);
   const double heading_deg = local.yaw_deg + (local.pitch_deg < -89.9 ? local.roll_deg : 0.0) + around_deg;
   const double lowest_deg = std::min(elevation_deg, MouseLimits::kLowestTilt_deg);
   const double next_deg = std::clamp(elevation_deg + up_deg, lowest_deg, 90.0);
   const mars::SinCos h = mars::sin_cos_deg(heading_deg);
   const mars::SinCos e = mars::sin_cos_deg(next_deg);
   const glm::dvec3 ahead = frame.north * h.cos + frame.east * h.sin;
-  mars::EyePose next;
-  next.eye_m = *pivot + (frame.up * e.sin - ahead * e.cos) * distance_m;
+  mars::CameraPose next;
+  next.position_m = *pivot + (frame.up * e.sin - ahead * e.cos) * distance_m;
   next.axes = mars::oriented_axes(frame, heading_deg, -next_deg, 0.0);
   Pose result = mars::to_pose(next, ground.radius_m);
   if (std::abs(local.pitch_deg) < 89.9) result.roll_deg = pose.roll_deg;
   return kept_clear(result, ground);
 }
 
-Pose looking_at(const Pose& pose, const glm::dvec3& point_m, double distance_m, const Ground& ground) {
+Pose looking_at(const Pose& pose, const glm::dvec3& point_m, double distance_m, const TerrainQuery& ground) {
   const mars::LonLat place = mars::lon_lat(point_m);
   const mars::LocalFrame frame = mars::local_frame(place);
   const double down_deg = std::clamp(-pose.pitch_deg, 20.0, 90.0);
   const mars::SinCos h = mars::sin_cos_deg(pose.yaw_deg);
   const mars::SinCos e = mars::sin_cos_deg(down_deg);
   const glm::dvec3 ahead = frame.north * h.cos + frame.east * h.sin;
-  mars::EyePose next;
-  next.eye_m = point_m + (frame.up * e.sin - ahead * e.cos) * std::max(distance_m, MouseLimits::kNearest_m);
+  mars::CameraPose next;
+  next.position_m = point_m + (frame.up * e.sin - ahead * e.cos) * std::max(distance_m, MouseLimits::kNearest_m);
   next.axes = mars::oriented_axes(frame, pose.yaw_deg, -down_deg, 0.0);
   return kept_clear(mars::to_pose(next, ground.radius_m), ground);
 }

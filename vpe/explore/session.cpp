@@ -11,17 +11,17 @@ namespace vpe::explore {
 
 namespace {
 
-constexpr double kTilt_deg_px = 0.25;  // of a drag, on a picture of 720 rows
+constexpr double kTilt_deg_px = 0.25;  // of a drag, on an image of 720 rows
 constexpr double kWheelNotch = 0.8;    // of the distance
 constexpr double kDoubleClick = 0.4;   // of the distance
 
 // A head does not go over backwards, and a log takes no steeper look.
-mars::HeadLook added(const mars::HeadLook& a, const mars::HeadLook& b) {
+mars::HeadAngles added(const mars::HeadAngles& a, const mars::HeadAngles& b) {
   return {std::remainder(a.yaw_deg + b.yaw_deg, 360.0), std::clamp(a.pitch_deg + b.pitch_deg, -90.0, 90.0),
           std::remainder(a.roll_deg + b.roll_deg, 360.0)};
 }
 
-bool is_ahead(const mars::HeadLook& look) {
+bool is_ahead(const mars::HeadAngles& look) {
   return look.yaw_deg == 0 && look.pitch_deg == 0 && look.roll_deg == 0;
 }
 
@@ -47,24 +47,24 @@ double Session::height_m() const { return height_above_ground_m(pose_, ground_);
 
 core::View Session::view() const {
   core::View view = view_of(pose_, screen_, ground_.radius_m);
-  view.eye = mars::to_eye(pose_, look_, ground_.radius_m);
+  view.camera = mars::to_camera(pose_, look_, ground_.radius_m);
   return view;
 }
 
 mars::Pose Session::seen() const {
-  return is_ahead(look_) ? pose_ : mars::to_pose(mars::to_eye(pose_, look_, ground_.radius_m), ground_.radius_m);
+  return is_ahead(look_) ? pose_ : mars::to_pose(mars::to_camera(pose_, look_, ground_.radius_m), ground_.radius_m);
 }
 
-// The head's axes in those of its platform, right, ahead and up, taken off the eye's.
+// The head's axes in those of its platform, right, ahead and up, taken off the camera's.
 mars::Pose Session::platform_of(const mars::Pose& seen) const {
   if (is_ahead(look_)) return seen;
-  const mars::EyePose eye = mars::to_eye(seen, ground_.radius_m);
+  const mars::CameraPose camera = mars::to_camera(seen, ground_.radius_m);
   const mars::Axes head =
       mars::oriented_axes({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, look_.yaw_deg, look_.pitch_deg, look_.roll_deg);
   const auto axis = [&](int k) {
-    return eye.axes.right * head.right[k] + eye.axes.up * head.up[k] + eye.axes.forward * head.forward[k];
+    return camera.axes.right * head.right[k] + camera.axes.up * head.up[k] + camera.axes.forward * head.forward[k];
   };
-  return mars::to_pose({eye.eye_m, {axis(0), axis(2), axis(1)}}, ground_.radius_m);
+  return mars::to_pose({camera.position_m, {axis(0), axis(2), axis(1)}}, ground_.radius_m);
 }
 
 double Session::wheel_factor(double notches) const {
@@ -155,7 +155,7 @@ void Session::scrub(double time_s) {
   take_flight_state(tracker_);
 }
 
-void Session::take_flight_state(const mars::HeadLook& tracker) {
+void Session::take_flight_state(const mars::HeadAngles& tracker) {
   FlightPlayer* flight = player();
   if (flight == nullptr) {
     leave_flight();
@@ -204,7 +204,7 @@ void Session::look_down(bool north_up) {
   mars::Pose goal = pose_;
   goal.roll_deg = 0;
   goal = tilted(goal, screen_, 0, 180, ground_);
-  // Without ground in the middle the eye turns in its place.
+  // Without ground in the middle the camera turns in its place.
   goal.pitch_deg = -90;
   if (north_up) goal.yaw_deg = 0;
   go(goal);
@@ -212,7 +212,7 @@ void Session::look_down(bool north_up) {
 
 void Session::show_planet() { go(overview({pose_.lon_deg, pose_.lat_deg}, screen_, ground_.radius_m)); }
 
-void Session::advance(double dt_s, const Controls& controls, const mars::HeadLook& tracker) {
+void Session::advance(double dt_s, const Controls& controls, const mars::HeadAngles& tracker) {
   tracker_ = tracker;
   if (follows_) {
     FlightPlayer* flight = player();
@@ -255,7 +255,7 @@ void Session::drag(glm::dvec2 xy) {
     if (flight == nullptr || use_ == MouseUse::kNone) return;
     // As the sky is held: to the left shows what is right.
     const mars::Pose turned_by = looked({0, 0, 0, 0, 0, 0}, screen_, begun_xy_, xy);
-    flight->look_around({begun_look_.yaw_deg + mouse_speed_ * turned_by.yaw_deg,
+    flight->view_panorama({begun_look_.yaw_deg + mouse_speed_ * turned_by.yaw_deg,
                          begun_look_.pitch_deg + mouse_speed_ * turned_by.pitch_deg,
                          begun_look_.roll_deg});
     take_flight_state(tracker_);
@@ -284,7 +284,7 @@ void Session::fly_towards(glm::dvec2 xy) {
   const mars::Pose from = seen();
   const std::optional<glm::dvec3> point = ground_at(from, screen_, xy, ground_);
   if (!point) return;
-  const double distance_m = glm::length(mars::to_eye(from, ground_.radius_m).eye_m - *point);
+  const double distance_m = glm::length(mars::to_camera(from, ground_.radius_m).position_m - *point);
   go(platform_of(looking_at(from, *point, distance_m * kDoubleClick, ground_)));
 }
 

@@ -1,4 +1,4 @@
-// One exploration: where the eye is and where it goes, what is set, and what a mouse is doing. Knows no window
+// One exploration: where the camera is and where it goes, what is set, and what a mouse is doing. Knows no window
 // and no clock: it is told what devices say and how much time has passed.
 #pragma once
 
@@ -42,12 +42,12 @@ class Session {
   Session(std::shared_ptr<const paging::Surface> surface, const SessionOptions& options);
 
   const mars::Pose& pose() const { return pose_; }
-  const mars::HeadLook& look() const { return look_; }
+  const mars::HeadAngles& look() const { return look_; }
   const Screen& screen() const { return screen_; }
-  const Ground& ground() const { return ground_; }
+  const TerrainQuery& ground() const { return ground_; }
   const paging::Surface& surface() const { return *surface_; }
-  double height_m() const;  // of the eye above the ground
-  // What the eye sees: pose, head and screen.
+  double height_m() const;  // of the camera above the ground
+  // What the camera sees: pose, head and screen.
   core::View view() const;
 
   // While a flight is followed: the flight's too, and over them what was set since.
@@ -74,15 +74,15 @@ class Session {
   void go_to(mars::LonLat place);
   void north_up() { go_turned(0, pose_.pitch_deg, pose_.roll_deg); }
   void level() { go_turned(pose_.yaw_deg, pose_.pitch_deg, 0); }
-  // Straight down on what is in the middle of the picture, from as far away; perhaps with north up.
+  // Straight down on what is in the middle of the image, from as far away; perhaps with north up.
   void look_down(bool north_up);
-  // The whole planet from above where the eye is.
+  // The whole planet from above where the camera is.
   void show_planet();
 
-  // The flight: edited here, played by follow(). While it is followed the eye is its platform's, and drags and
+  // The flight: edited here, played by follow(). While it is followed the camera is its platform's, and drags and
   // turns look around in it without disturbing it; moving by hand while it is paused leaves it.
-  FlightDesk& flights() { return flights_; }
-  const FlightDesk& flights() const { return flights_; }
+  FlightController& flights() { return flights_; }
+  const FlightController& flights() const { return flights_; }
   FlightPlayer* player() { return flights_.player(shown_settings_.values().exaggeration); }
   bool follows_flight() const { return follows_; }
   // Plays (or shows, paused). What is wrong, empty when all is well.
@@ -91,7 +91,7 @@ class Session {
   void scrub(double time_s);
 
   // A frame: what hands ask for, and where a tracker says that the head looks.
-  void advance(double dt_s, const Controls& controls, const mars::HeadLook& tracker = {});
+  void advance(double dt_s, const Controls& controls, const mars::HeadAngles& tracker = {});
 
   // Positions on the screen, of what is seen there: with the head on its platform. A press ends a flight to
   // somewhere.
@@ -103,23 +103,23 @@ class Session {
   void fly_towards(glm::dvec2 xy);  // double click
 
  private:
-  mars::Pose seen() const;                               // the eye's, with the head
+  mars::Pose seen() const;                               // the camera's, with the head
   mars::Pose platform_of(const mars::Pose& seen) const;  // its inverse
   double wheel_factor(double notches) const;
   void go_turned(double yaw_deg, double pitch_deg, double roll_deg);
-  void take_flight_state(const mars::HeadLook& tracker);
+  void take_flight_state(const mars::HeadAngles& tracker);
   void follow_settings();
 
   std::shared_ptr<const paging::Surface> surface_;
   core::Settings settings_;        // the user's own
   core::Settings shown_settings_;  // with a flight's
-  FlightDesk flights_;
+  FlightController flights_;
   bool follows_ = false;
-  mars::HeadLook tracker_;
-  Ground ground_;
+  mars::HeadAngles tracker_;
+  TerrainQuery ground_;
   Screen screen_;
   mars::Pose pose_;
-  mars::HeadLook look_;
+  mars::HeadAngles look_;
   std::vector<core::InterestRegion> interest_;
   double mouse_speed_ = 1;
   bool invert_wheel_ = false;
@@ -127,7 +127,7 @@ class Session {
   std::optional<FlyTo> going_;
   double gone_s_ = 0;
   MouseUse use_ = MouseUse::kNone;
-  mars::HeadLook begun_look_;  // when the button was pressed, in a flight
+  mars::HeadAngles begun_look_;  // when the button was pressed, in a flight
   mars::Pose begun_;           // what was seen when the button was pressed
   glm::dvec2 begun_xy_{0, 0};
   std::optional<glm::dvec3> held_m_;  // ground under it then

@@ -17,11 +17,11 @@ double wrapped(double angle_deg) {
   return turned_deg <= -180.0 ? 180.0 : turned_deg;
 }
 
-double ground_height_m(const Pose& pose, const Ground& ground) {
+double ground_height_m(const Pose& pose, const TerrainQuery& ground) {
   return ground.height_m(mars::direction({pose.lon_deg, pose.lat_deg}));
 }
 
-// Along the great circle that leaves with `heading_deg`; the eye turns with it.
+// Along the great circle that leaves with `heading_deg`; the camera turns with it.
 Pose carried(const Pose& pose, double heading_deg, double arc_rad) {
   if (arc_rad == 0.0) return pose;
   // Directions, not bearings, are carried: at a pole a bearing says nothing.
@@ -46,15 +46,15 @@ Pose carried(const Pose& pose, double heading_deg, double arc_rad) {
 
 }  // namespace
 
-double height_above_ground_m(const Pose& pose, const Ground& ground) {
+double height_above_ground_m(const Pose& pose, const TerrainQuery& ground) {
   return pose.alt_m - ground_height_m(pose, ground);
 }
 
-double full_speed_m_s(const Pose& pose, const Ground& ground) {
+double full_speed_m_s(const Pose& pose, const TerrainQuery& ground) {
   return std::max(SteerLimits::kSlowest_m_s, SteerLimits::kSpeed_per_s * height_above_ground_m(pose, ground));
 }
 
-Pose kept_clear(const Pose& pose, const Ground& ground, double clearance_m) {
+Pose kept_clear(const Pose& pose, const TerrainQuery& ground, double clearance_m) {
   Pose clear = pose;
   clear.lon_deg = mars::normalize_lon_deg(pose.lon_deg);
   clear.pitch_deg = std::clamp(pose.pitch_deg, -90.0, 90.0);
@@ -66,11 +66,11 @@ Pose kept_clear(const Pose& pose, const Ground& ground, double clearance_m) {
   return clear;
 }
 
-Pose moved(const Pose& pose, double right_m, double up_m, double forward_m, const Ground& ground) {
+Pose moved(const Pose& pose, double right_m, double up_m, double forward_m, const TerrainQuery& ground) {
   const double ahead_m = std::hypot(right_m, forward_m);
   if (!(std::isfinite(ahead_m) && std::isfinite(up_m))) return pose;
   const double heading_deg = pose.yaw_deg + std::atan2(right_m, forward_m) / mars::kRadiansPerDegree;
-  // What stands in the way is met when a step is no longer than the eye is above the ground.
+  // What stands in the way is met when a step is no longer than the camera is above the ground.
   const double height_m = std::max(height_above_ground_m(pose, ground), SteerLimits::kClearance_m);
   const int steps = std::clamp(static_cast<int>(std::ceil(4.0 * ahead_m / height_m)), 1, kMostSteps);
   Pose at = pose;
@@ -95,7 +95,7 @@ Pose turned(const Pose& pose, double yaw_deg, double pitch_deg, double roll_deg)
   return next;
 }
 
-Pose steered(const Pose& pose, const Controls& controls, double dt_s, const Ground& ground) {
+Pose steered(const Pose& pose, const Controls& controls, double dt_s, const TerrainQuery& ground) {
   if (!any(controls) || !(dt_s > 0.0)) return pose;
   const double dt = std::min(dt_s, SteerLimits::kLongestStep_s);
   const Pose aimed = turned(pose, controls.yaw_right * SteerLimits::kTurn_deg_s * dt,
@@ -103,7 +103,7 @@ Pose steered(const Pose& pose, const Controls& controls, double dt_s, const Grou
                             controls.roll_right * SteerLimits::kRoll_deg_s * dt);
   if (controls.right == 0 && controls.up == 0 && controls.forward == 0) return aimed;
   const double step_m = full_speed_m_s(aimed, ground) * controls.speed * dt;
-  // The eye's axes in its level frame: right, up, forward.
+  // The camera's axes in its level frame: right, up, forward.
   const mars::LocalFrame level{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};  // east, north, up
   const mars::Axes axes = mars::oriented_axes(level, 0.0, aimed.pitch_deg, aimed.roll_deg);
   const glm::dvec3 way =

@@ -31,9 +31,9 @@ double exaggerated(const lod::TileInfo& tile, double x, const lod::TileTree& tre
 // What float storage does to a point of a tile at a distance.
 double storage_px(const CertifiedTile& t, double distance_m, double focal_px) {
   const double stored_m =
-      std::min(t.quantisation_m, kRounding * (distance_m + t.eye_to_centre_m + t.longest_edge_m));
+      std::min(t.quantisation_m, kRounding * (distance_m + t.camera_to_centre_m + t.longest_edge_m));
   const double moved_m =
-      stored_m + kRounding * t.eye_to_centre_m + kTransformError * (distance_m + t.longest_edge_m);
+      stored_m + kRounding * t.camera_to_centre_m + kTransformError * (distance_m + t.longest_edge_m);
   return moved_m * focal_px / distance_m;
 }
 
@@ -53,9 +53,9 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
     const double stored_px = storage_px(t, distance_m, optics.focal_px);
     const lod::TileInfo& info = tree[tile.index];
     slope = std::max(slope, exaggerated(info, optics.exaggeration, tree));
-    surface_px = std::max(surface_px, tile.error_px + stored_px);
-    c.tile_error_m = std::max(c.tile_error_m, tile.error_m);
-    c.tile_error_px = std::max(c.tile_error_px, tile.error_px);
+    surface_px = std::max(surface_px, tile.screen_space_error_px + stored_px);
+    c.geometric_error_m = std::max(c.geometric_error_m, tile.geometric_error_m);
+    c.screen_space_error_px = std::max(c.screen_space_error_px, tile.screen_space_error_px);
     c.quantisation_m = std::max(c.quantisation_m, t.quantisation_m);
     c.quantisation_px = std::max(c.quantisation_px, stored_px);
     const double side_m = lod::nominal_side_m(tile.key.level, tree.radius_m());
@@ -73,14 +73,14 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
   return c;
 }
 
-double bound_in_picture(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
+double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
                         const DrawnPixels& pixels, const FrameOptics& optics) {
   std::vector<std::array<float, kTileParts>> nearest(tiles.size(),
                                                      {core::kSkyRange, core::kSkyRange, core::kSkyRange});
   float nearest_m = core::kSkyRange;
   for (std::size_t k = 0; k < pixels.range_m.size(); ++k) {
     if (pixels.number[k] == kNoTile) continue;
-    const TileNumber drawn = unpack(pixels.number[k]);
+    const TileId drawn = unpack(pixels.number[k]);
     float& least = nearest[drawn.tile][static_cast<std::size_t>(drawn.part)];
     least = std::min(least, pixels.range_m[k]);
     nearest_m = std::min(nearest_m, pixels.range_m[k]);
@@ -97,9 +97,9 @@ double bound_in_picture(std::span<const CertifiedTile> tiles, const lod::TileTre
       const double distance_m =
           std::max(range_m * (1.0 - pixels.range_error * (1.0 + range_m / nearest_m)), double{nearest_m});
       const bool skirt = part == static_cast<std::size_t>(TilePart::kSkirt);
-      const double error_m = tiles[k].tile->error_m + (skirt ? tiles[k].deepest_skirt_m : 0.0);
+      const double geometric_error_m = tiles[k].tile->geometric_error_m + (skirt ? tiles[k].deepest_skirt_m : 0.0);
       bound_px =
-          std::max(bound_px, error_m * optics.focal_px / distance_m +
+          std::max(bound_px, geometric_error_m * optics.focal_px / distance_m +
                                  storage_px(tiles[k], distance_m, optics.focal_px) + optics.snap_px * steep);
     }
   }

@@ -29,7 +29,7 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// What OpenGL without a GPU keeps of a triangle, with its share of the pictures on their way out.
+// What OpenGL without a GPU keeps of a triangle, with its share of the images on their way out.
 constexpr std::size_t kBytesPerTriangle = 600;
 
 const glm::vec3 kLineColour(0.95F, 0.75F, 0.55F);
@@ -64,13 +64,13 @@ class PolygonRenderer : public core::Renderer {
 
  private:
   double near_plane_m(const core::View& view, double exaggeration) const;
-  void draw_sky(const core::DrawRequest& request, const Lens& lens);
+  void draw_sky(const core::DrawRequest& request, const ClipProjection& clip);
   void set_paint(const core::DrawRequest& request);
-  void draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture);
-  void read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame);
+  void draw_pass(const core::DrawRequest& request, const ClipProjection& clip, Target& to, bool image);
+  void read_range(const core::DrawRequest& request, ClipProjection clip, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
-  std::optional<double> share_without_data(core::Mode mode, const Target& picture) const;
-  core::Certificate certify(const core::DrawRequest& request, const Lens& lens, const core::Frame& frame);
+  std::optional<double> nodata_share(core::Mode mode, const Target& image) const;
+  core::Certificate certify(const core::DrawRequest& request, const ClipProjection& clip, const core::Frame& frame);
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -86,15 +86,15 @@ class PolygonRenderer : public core::Renderer {
   std::vector<CertifiedTile> certified_;
   std::vector<float> depth_;
   std::vector<base::Rgb> colours_;
-  std::vector<std::uint32_t> numbers_;  // of the range image's pixels (tile_number.h)
+  std::vector<std::uint32_t> numbers_;  // of the range image's pixels (tile_id.h)
 };
 
 // Depth interpolation loses precision on triangles that reach from the near plane to far away, so the near
-// plane is as far out as the ground allows: some fiftieth of the eye's height is only passed by slopes over 88
+// plane is as far out as the ground allows: some fiftieth of the camera's height is only passed by slopes over 88
 // degrees.
 double PolygonRenderer::near_plane_m(const core::View& view, double exaggeration) const {
   const double nearest = scene_.nearest_m();
-  // In the picture's corners depth is less than distance.
+  // In the image's corners depth is less than distance.
   const double f = core::focal_px(view);
   const double x = 0.5 * view.width + std::abs(view.principal_offset_px.x);
   const double y = 0.5 * view.height + std::abs(view.principal_offset_px.y);
@@ -103,17 +103,17 @@ double PolygonRenderer::near_plane_m(const core::View& view, double exaggeration
   return std::clamp(0.03 * cosine * scene_.clearance_m() / std::max(1.0, exaggeration), 0.003, 1000.0);
 }
 
-void PolygonRenderer::draw_sky(const core::DrawRequest& request, const Lens& lens) {
-  const glm::dvec3& eye = request.view.eye.eye_m;
-  const double r = glm::length(eye);
-  const glm::mat3 to_body = glm::transpose(body_to_eye(request.view.eye.axes));
-  const glm::vec3 up(eye / r);
+void PolygonRenderer::draw_sky(const core::DrawRequest& request, const ClipProjection& clip) {
+  const glm::dvec3& camera = request.view.camera.position_m;
+  const double r = glm::length(camera);
+  const glm::mat3 to_body = glm::transpose(body_to_camera(request.view.camera.axes));
+  const glm::vec3 up(camera / r);
   const glm::vec3 sun(request.sun);
   if (!sky_program_) sky_program_ = make_program("sky", kSkyVertexShader, kSkyFragmentShader);
   glUseProgram(sky_program_.name());
   glBindVertexArray(empty_array_.name());
   glUniformMatrix3fv(kSkyRotation, 1, GL_FALSE, &to_body[0][0]);
-  glUniform4fv(kSkyLens, 1, &lens.scale_shift[0]);
+  glUniform4fv(kSkyProjection, 1, &clip.scale_shift[0]);
   glUniform3fv(kSkyUp, 1, &up[0]);
   glUniform2f(kSkyAltitude, static_cast<float>(r - planet_->radius_m()),
               static_cast<float>(planet_->radius_m()));
@@ -132,33 +132,33 @@ Target& PolygonRenderer::target(std::optional<Target>& slot, const glm::ivec2& s
   return *slot;
 }
 
-// Of the picture that was drawn and read last.
-std::optional<double> PolygonRenderer::share_without_data(core::Mode mode, const Target& picture) const {
+// Of the image that was drawn and read last.
+std::optional<double> PolygonRenderer::nodata_share(core::Mode mode, const Target& image) const {
   if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers) {
-    const auto has_missing = [&](const SceneTile& t) { return planet_->has_missing(t.tile->key); };
+    const auto has_nodata = [&](const SceneTile& t) { return planet_->has_nodata(t.tile->key); };
     const auto tiles = scene_.tiles();
-    if (std::any_of(tiles.begin(), tiles.end(), has_missing)) return std::nullopt;
+    if (std::any_of(tiles.begin(), tiles.end(), has_nodata)) return std::nullopt;
     return 0.0;
   }
-  const auto has_gaps = [](const TileDraw& t) { return t.texture != nullptr && t.texture->gaps; };
-  return std::any_of(draws_.begin(), draws_.end(), has_gaps) ? 1.0 - picture.mean_alpha() : 0.0;
+  const auto has_nodata_pixels = [](const TileDraw& t) { return t.texture != nullptr && t.texture->nodata; };
+  return std::any_of(draws_.begin(), draws_.end(), has_nodata_pixels) ? 1.0 - image.mean_alpha() : 0.0;
 }
 
-core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const Lens& lens,
+core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, const ClipProjection& clip,
                                            const core::Frame& frame) {
   certified_.clear();
   for (const SceneTile& t : scene_.tiles()) {
     certified_.push_back({t.tile, t.mesh->quantisation_m, t.mesh->longest_edge_m,
-                          glm::length(t.mesh->centre_m - request.view.eye.eye_m),
+                          glm::length(t.mesh->centre_m - request.view.camera.position_m),
                           *std::max_element(t.skirt_m.begin(), t.skirt_m.end())});
   }
-  const FrameOptics optics{core::focal_px(request.view), lens.near_m, tiles_.snap_px(),
+  const FrameOptics optics{core::focal_px(request.view), clip.near_m, tiles_.snap_px(),
                            request.settings.exaggeration};
   core::Certificate c = gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(), optics);
   if (request.want_range) {
     const double bound_px =
-        bound_in_picture(certified_, planet_->tree(), {numbers_, frame.range_m, kRangeError}, optics);
-    c.picture_bound_px = std::min(bound_px, c.shift_bound_px);
+        bound_in_image(certified_, planet_->tree(), {numbers_, frame.range_m, kRangeError}, optics);
+    c.image_bound_px = std::min(bound_px, c.shift_bound_px);
   }
   c.tolerance_px = request.settings.lod_tolerance_px;
   const paging::PlanetMeta& meta = planet_->meta();
@@ -171,10 +171,10 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
   return c;
 }
 
-// What the programs of this picture's tiles need, and nothing else.
+// What the programs of this image's tiles need, and nothing else.
 void PolygonRenderer::set_paint(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
-  const bool shows = scene_.painting().by == PaintBy::kPalette;
+  const bool shows = scene_.material().by == PaintMethod::kPalette;
   const std::shared_ptr<const core::ColourScale> wanted = shows ? scene_.scale() : nullptr;
   if (wanted != palette_) {
     if (wanted) {
@@ -197,10 +197,10 @@ void PolygonRenderer::set_paint(const core::DrawRequest& request) {
   if (appearance.background != core::Background::kSky) sky_program_ = {};
 }
 
-void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& lens, Target& to, bool picture) {
+void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProjection& clip, Target& to, bool image) {
   const bool wireframe = request.settings.mode == core::Mode::kWireframe;
   const bool markers = request.settings.mode == core::Mode::kMarkers;
-  const bool white = picture && request.settings.background == core::Background::kWhite;
+  const bool white = image && request.settings.background == core::Background::kWhite;
   const float paper = white ? 1.0F : 0.0F;
   to.bind();
   glClearColor(paper, paper, paper, 1.0F);
@@ -208,22 +208,22 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDepthFunc(GL_GREATER);
   draws_.clear();
-  const PaintBy by = scene_.painting().by;
+  const PaintMethod by = scene_.material().by;
   const glm::vec3 plain = wireframe || markers ? kLineColour : glm::vec3(core::kPlainGround / 255.0);
   for (const SceneTile& t : scene_.tiles()) {
     TileDraw& draw = draws_.emplace_back();
     draw.mesh = t.mesh;
     draw.key = t.tile->key;
     draw.skirt_m = t.skirt_m;
-    if (!picture) continue;
+    if (!image) continue;
     draw.texture = t.texture;
-    draw.flat = by == PaintBy::kColour;
-    draw.palette = by == PaintBy::kPalette;
+    draw.flat = by == PaintMethod::kColour;
+    draw.palette = by == PaintMethod::kPalette;
     draw.colour = plain;
-    if (picture && request.settings.inspect == core::Inspect::kLevels)
+    if (image && request.settings.inspect == core::Inspect::kLevels)
       draws_.back().tint = level_tint(t.tile->key.level);
   }
-  if (picture && (wireframe || markers)) {
+  if (image && (wireframe || markers)) {
     // What stands before them hides dots and lines, and no sky shows through. The ground itself must not: it is
     // pushed back by what its depth changes on the way from an edge or a vertex to the last pixel that shows
     // it.
@@ -231,36 +231,36 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const Lens& le
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-2.0F * reach_px, 0.0F);  // times the larger of the slopes to the right and up
-    tiles_.draw_numbers(request.view, lens, draws_);
+    tiles_.draw_tile_ids(request.view, clip, draws_);
     glDisable(GL_POLYGON_OFFSET_FILL);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     if (markers) {
-      tiles_.draw_vertices(request.view, lens, draws_, static_cast<float>(request.settings.marker_px));
+      tiles_.draw_vertices(request.view, clip, draws_, static_cast<float>(request.settings.marker_px));
     } else {
-      tiles_.draw_edges(request.view, lens, draws_);
+      tiles_.draw_edges(request.view, clip, draws_);
     }
-  } else if (picture) {
-    tiles_.draw(request.view, lens, draws_);
+  } else if (image) {
+    tiles_.draw(request.view, clip, draws_);
   } else {
-    tiles_.draw_numbers(request.view, lens, draws_);
+    tiles_.draw_tile_ids(request.view, clip, draws_);
   }
-  if (picture && request.settings.background == core::Background::kSky) draw_sky(request, lens);
-  if (picture && request.settings.inspect == core::Inspect::kBorders) {
+  if (image && request.settings.background == core::Background::kSky) draw_sky(request, clip);
+  if (image && request.settings.inspect == core::Inspect::kBorders) {
     glDepthFunc(GL_GREATER);
-    tiles_.draw_borders(request.view, lens, draws_, kBorderColour);
+    tiles_.draw_borders(request.view, clip, draws_, kBorderColour);
   }
 }
 
 // Depth is interpolated with an absolute error of some 2^-24 near the near plane, so a first pass finds the
 // nearest surface and a second one puts the near plane just before it.
-void PolygonRenderer::read_range(const core::DrawRequest& request, Lens lens, core::Frame& frame) {
+void PolygonRenderer::read_range(const core::DrawRequest& request, ClipProjection clip, core::Frame& frame) {
   const glm::ivec2 size = core::drawn_size(request.view);
   Target& to = target(range_target_, size, 1);
   for (int pass = 0; pass < 2; ++pass) {
-    draw_pass(request, lens, to, false);
+    draw_pass(request, clip, to, false);
     to.read_depth(frame.range_m);
     const float nearest = *std::max_element(frame.range_m.begin(), frame.range_m.end());
-    if (pass == 0 && nearest > 0.0F) lens.near_m = std::max(lens.near_m, 0.5F * lens.near_m / nearest);
+    if (pass == 0 && nearest > 0.0F) clip.near_m = std::max(clip.near_m, 0.5F * clip.near_m / nearest);
   }
   to.read_colour(colours_);
   numbers_.resize(colours_.size());
@@ -275,7 +275,7 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, Lens lens, co
     const double b = (y + 0.5 - cy) / f;
     for (int x = 0; x < size.x; ++x) {
       const double a = (x + 0.5 - cx) / f;
-      row[x] = row[x] > 0.0F ? static_cast<float>(lens.near_m / row[x] * std::sqrt(1.0 + a * a + b * b))
+      row[x] = row[x] > 0.0F ? static_cast<float>(clip.near_m / row[x] * std::sqrt(1.0 + a * a + b * b))
                              : core::kSkyRange;
     }
   }
@@ -294,10 +294,10 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
 
   auto start = Clock::now();
   const glm::ivec2 size = core::drawn_size(request.view);
-  const Lens lens = make_lens(request.view, near_plane_m(request.view, settings.exaggeration));
-  Target& picture = target(colour_target_, size, settings.samples);
+  const ClipProjection clip = clip_projection(request.view, near_plane_m(request.view, settings.exaggeration));
+  Target& image = target(colour_target_, size, settings.samples);
   set_paint(request);
-  draw_pass(request, lens, picture, true);
+  draw_pass(request, clip, image, true);
   glFinish();
   check_gl("draw");
   result.stats.draw_ms = ms_since(start);
@@ -306,23 +306,23 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   start = Clock::now();
   result.frame.width = size.x;
   result.frame.height = size.y;
-  picture.read_colour(result.frame.colour);
-  const std::optional<double> without_data = share_without_data(settings.mode, picture);
+  image.read_colour(result.frame.colour);
+  const std::optional<double> without_data = nodata_share(settings.mode, image);
   const bool lines = settings.mode == core::Mode::kWireframe || settings.mode == core::Mode::kMarkers;
   const bool smooth = settings.samples == 1 && settings.smooth_edges && !lines;
-  if (smooth) picture.read_depth(depth_);
+  if (smooth) image.read_depth(depth_);
   result.stats.read_ms = ms_since(start);
   start = Clock::now();
   if (smooth) core::smooth_edges(result.frame.colour, depth_, size.x, size.y, pool_);
   core::apply_gamma(result.frame.colour, settings.gamma);
   result.stats.draw_ms += ms_since(start);
   start = Clock::now();
-  if (request.want_range) read_range(request, lens, result.frame);
+  if (request.want_range) read_range(request, clip, result.frame);
   result.stats.read_ms += ms_since(start);
 
   tiles_.drop_unused();
-  result.certificate = certify(request, lens, result.frame);
-  result.certificate.share_without_data = without_data;
+  result.certificate = certify(request, clip, result.frame);
+  result.certificate.nodata_share = without_data;
   result.certificate.tiles_missing = result.stats.tiles_missing;
   result.certificate.tiles_substituted = result.stats.tiles_substituted;
   return result;

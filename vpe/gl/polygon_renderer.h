@@ -21,11 +21,11 @@ struct RendererOptions {
 // Triangles of the largest frame for which the memory is enough.
 std::int64_t most_triangles(std::size_t memory_bytes);
 
-// Complete pictures (core::DrawResult::missing is empty) do not depend on what was drawn before, on threads or
+// Complete images (core::DrawResult::missing is empty) do not depend on what was drawn before, on threads or
 // on the order in which tiles came. Others are in full cover: coarser tiles stand in for missing ones.
-// Positions are relative to each tile's centre, the eye is subtracted in double, depth is reversed 32-bit
+// Positions are relative to each tile's centre, the camera is subtracted in double, depth is reversed 32-bit
 // float. Range of a pixel is the distance to the drawn triangle at the pixel's centre; its relative error is at
-// most kRangeError * (1 + range / nearest range in the picture), from the interpolation of depth over large
+// most kRangeError * (1 + range / nearest range in the image), from the interpolation of depth over large
 // triangles. Sky pixels are +infinity. Range takes passes of its own, with one sample a pixel.
 inline constexpr double kRangeError = 5e-7;
 std::unique_ptr<core::Renderer> make_polygon_renderer(std::shared_ptr<Context> context,

@@ -1,4 +1,4 @@
-// How eye coordinates become clip coordinates.
+// How camera coordinates become clip coordinates.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -9,14 +9,14 @@
 namespace vpe::gl {
 
 // clip = (scale.x e.x + shift.x e.z, scale.y e.y + shift.y e.z, near, -e.z) for a point e right, up and
-// backward of the eye: depth is near / distance along the view axis, 1 at the near plane and 0 at infinity.
-struct Lens {
+// backward of the camera: depth is near / distance along the view axis, 1 at the near plane and 0 at infinity.
+struct ClipProjection {
   float near_m = 1;
   glm::vec4 scale_shift{1, 1, 0, 0};
 };
-Lens make_lens(const core::View& view, double near_m);
+ClipProjection clip_projection(const core::View& view, double near_m);
 
 // Body-fixed to right, up, backward.
-glm::mat3 body_to_eye(const mars::Axes& axes);
+glm::mat3 body_to_camera(const mars::Axes& axes);
 
 }  // namespace vpe::gl

@@ -55,7 +55,7 @@ GpuTexture upload(const ShadedTile& tile) {
   out.intervals = tile.intervals;
   out.light = tile.channels == 1;
   out.brightest = tile.brightest;
-  out.gaps = tile.gaps;
+  out.nodata = tile.nodata;
   const bool facets = tile.intervals == 0;
   const auto count = static_cast<GLsizei>(tile.texels.size() / static_cast<std::size_t>(tile.channels));
   const GLsizei width = facets ? kFacetRow : tile.intervals + 1;

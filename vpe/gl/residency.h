@@ -16,7 +16,7 @@
 namespace vpe::gl {
 
 using paging::ShadedTile;
-using paging::ShadeParams;
+using paging::ShadingParams;
 
 struct GpuMesh {
   Buffer positions;
@@ -28,7 +28,7 @@ struct GpuMesh {
   IndexRanges ranges;
   double quantisation_m = 0;
   double longest_edge_m = 0;
-  std::shared_ptr<const lod::TileWalls> walls;  // null: nobody asked for them
+  std::shared_ptr<const lod::OccluderProfile> occluders;  // null: nobody asked for them
   std::size_t bytes = 0;
 };
 GpuMesh upload(const TileGeometry& geometry);
@@ -41,7 +41,7 @@ struct GpuTexture {
   int intervals = 0;     // 0: facets
   bool light = false;    // one channel: ShadedTile::channels
   double brightest = 1;  // of light
-  bool gaps = false;     // ShadedTile::gaps
+  bool nodata = false;     // ShadedTile::nodata
   std::size_t bytes = 0;
 };
 GpuTexture upload(const ShadedTile& tile);
@@ -55,7 +55,7 @@ struct MeshDetail {
 };
 struct TextureDetail {
   int paint = 0;  // TileNeed::paint
-  std::shared_ptr<const ShadeParams> look;
+  std::shared_ptr<const ShadingParams> shading;
   bool operator==(const TextureDetail&) const = default;
 };
 

@@ -10,10 +10,10 @@ constexpr std::string_view kVersion = "#version 450 core\n";
 
 constexpr std::string_view kVertexShader = R"glsl(
 layout(location = 0) in vec3 position;
-layout(location = 0) uniform vec3 to_eye;
+layout(location = 0) uniform vec3 to_camera;
 layout(location = 1) uniform vec3 centre;
 layout(location = 2) uniform mat3 rotation;
-layout(location = 3) uniform vec4 lens;
+layout(location = 3) uniform vec4 projection;
 layout(location = 4) uniform float near;
 layout(location = 5) uniform float skirt;
 layout(location = 6) uniform int first_foot;
@@ -38,7 +38,7 @@ layout(location = 16) uniform vec3 height_terms;
 layout(location = 3) out float height;
 #endif
 #ifdef HAZE
-layout(location = 4) out vec4 eye_position;
+layout(location = 4) out vec4 camera_position;
 #endif
 void main() {
   vec3 p = position;
@@ -51,15 +51,15 @@ void main() {
   height = drawn_height * height_terms.z;
 #endif
   if (gl_VertexID >= first_foot) p -= skirt * normalize(from_centre);
-  vec3 e = rotation * (p + to_eye);
+  vec3 e = rotation * (p + to_camera);
 #ifdef HAZE
-  eye_position = vec4(e, drawn_height);
+  camera_position = vec4(e, drawn_height);
 #endif
   // Infinite reversed depth: 1 at the near plane, 0 at infinity.
-  gl_Position = vec4(lens.x * e.x + lens.z * e.z, lens.y * e.y + lens.w * e.z, near, -e.z);
+  gl_Position = vec4(projection.x * e.x + projection.z * e.z, projection.y * e.y + projection.w * e.z, near, -e.z);
   // Onto the rasteriser's own grid, where it would put the vertex anyway: one that interpolates from where the vertex
-  // was (Mesa's llvmpipe) leaves the range of depths of a triangle seen on its edge. Far outside the picture the grid
-  // is finer than a float. A triangle that reaches behind the eye is left alone: it is cut before it is put on the grid,
+  // was (Mesa's llvmpipe) leaves the range of depths of a triangle seen on its edge. Far outside the image the grid
+  // is finer than a float. A triangle that reaches behind the camera is left alone: it is cut before it is put on the grid,
   // and a step of its far corner would be many of a near pixel.
   float far_out = max(abs(gl_Position.x), abs(gl_Position.y));
   if (steps.x > 0.0 && gl_Position.w > snap_from && far_out < 4.0 * gl_Position.w) {
@@ -77,7 +77,7 @@ void main() {
 }
 )glsl";
 
-// The colour of ground, without and with its gaps, in air.
+// The colour of ground, without and with its nodata, in air.
 constexpr std::string_view kPaint = R"glsl(
 layout(location = 9) uniform vec4 flat_colour;
 layout(location = 14) uniform vec4 tint;
@@ -93,18 +93,18 @@ layout(location = 17) uniform vec2 palette_terms;
 layout(binding = 1) uniform sampler2D palette;
 #endif
 #ifdef HAZE
-layout(location = 4) in vec4 eye_position;  // and height
+layout(location = 4) in vec4 camera_position;  // and height
 layout(location = 18) uniform vec4 haze;
 layout(location = 20) uniform vec3 up;
 layout(location = 22) uniform vec3 sun;
-layout(location = 21) uniform vec4 air;  // planet's radius, eye's height, height of air's top, 1 / its scale
+layout(location = 21) uniform vec4 air;  // planet's radius, camera's height, height of air's top, 1 / its scale
 // core::air_m(), with the same points and weights. Triangles far away are chords deep below the ground: the way ends at
 // the height between their corners.
 const vec3 kPoints = vec3(0.033765242898423987, 0.169395306766867743, 0.380690406958401546);
 const vec3 kWeights = vec3(0.0856622461895851725, 0.1803807865240693038, 0.2339569672863455237);
 float air_length() {
-  float range = length(eye_position.xyz);
-  float sine = dot(eye_position.xyz, up) / range;
+  float range = length(camera_position.xyz);
+  float sine = dot(camera_position.xyz, up) / range;
   float r = air.x + air.y;
   float inner = air.y * (2.0 * air.x + air.y);
   float half_way = -r * sine;
@@ -113,7 +113,7 @@ float air_length() {
   float root = sqrt(under);
   float begin = clamp(half_way - root, 0.0, range);
   float size = clamp(half_way + root, 0.0, range) - begin;
-  float off = eye_position.w * (2.0 * air.x + eye_position.w) - (inner + range * (2.0 * r * sine + range));
+  float off = camera_position.w * (2.0 * air.x + camera_position.w) - (inner + range * (2.0 * r * sine + range));
   float sum = 0.0;
   for (int k = 0; k < 6; ++k) {
     float x = k < 3 ? kPoints[k] : 1.0 - kPoints[k - 3];
@@ -125,8 +125,8 @@ float air_length() {
 }
 #endif
 layout(location = 0) out vec4 colour;
-#ifdef GAPS
-void show_gaps(inout vec4 colour, bool has_data);
+#ifdef NODATA
+void show_nodata(inout vec4 colour, bool has_data);
 #endif
 void paint() {
 #if defined(FACETS)
@@ -142,16 +142,16 @@ void paint() {
 #else
   colour = vec4(flat_colour.rgb, 1.0);
 #endif
-#ifdef GAPS
+#ifdef NODATA
 #ifndef FACETS
   ivec2 size = textureSize(surface, 0);
   bool has_data = texelFetch(surface, clamp(ivec2(at * vec2(size)), ivec2(0), size - 1), 0).a > 0.5;
 #endif
-  show_gaps(colour, has_data);
+  show_nodata(colour, has_data);
 #endif
 #ifdef HAZE
   // core::haze_colour() over the ground.
-  float day = smoothstep(-0.15, 0.3, dot(normalize(up * (air.x + air.y) + eye_position.xyz), sun));
+  float day = smoothstep(-0.15, 0.3, dot(normalize(up * (air.x + air.y) + camera_position.xyz), sun));
   colour.rgb = mix(haze.rgb * (0.08 + 0.92 * day), colour.rgb, exp(-haze.a * air_length()));
 #endif
   colour.rgb = mix(colour.rgb, tint.rgb, tint.a);
@@ -163,9 +163,9 @@ void main() { paint(); }
 )glsl";
 
 // Stripes across the face's chart, along u + v = constant. Each octave of periods halves the one before: as the
-// eye comes nearer, a dark stripe grows in the middle of each bright one while the old ones get thinner, so
+// camera comes nearer, a dark stripe grows in the middle of each bright one while the old ones get thinner, so
 // that centres stay where they are on the ground and half of it is dark at any distance.
-constexpr std::string_view kGapPattern = R"glsl(
+constexpr std::string_view kNodataPattern = R"glsl(
 layout(location = 8) uniform vec2 texel;
 layout(location = 12) uniform vec3 tile_sides;
 layout(location = 13) uniform uint tile_phase;
@@ -176,7 +176,7 @@ const float kDark = 60.0 / 255.0;
 float stripe(float away, float reach, float wide) {
   return clamp((reach - away) / wide + 0.5, 0.0, min(1.0, 2.0 * reach / wide));
 }
-void show_gaps(inout vec4 colour, bool has_data) {
+void show_nodata(inout vec4 colour, bool has_data) {
   vec2 at = texture_position.xy / texture_position.z;
   float along = dot((at - texel.y) / texel.x, tile_sides.xy);
   float pixel = length(vec2(dFdx(along), dFdy(along)));
@@ -205,8 +205,8 @@ layout(location = 3) in float corner_height[];
 layout(location = 3) out float height;
 #endif
 #ifdef HAZE
-layout(location = 4) in vec4 corner_eye_position[];
-layout(location = 4) out vec4 eye_position;
+layout(location = 4) in vec4 corner_camera_position[];
+layout(location = 4) out vec4 camera_position;
 #endif
 #ifdef FACETS
 layout(location = 19) uniform int first_facet;
@@ -219,7 +219,7 @@ void hand_on(int from, int to, float share) {
   height = mix(corner_height[from], corner_height[to], share);
 #endif
 #ifdef HAZE
-  eye_position = mix(corner_eye_position[from], corner_eye_position[to], share);
+  camera_position = mix(corner_camera_position[from], corner_camera_position[to], share);
 #endif
 #ifdef FACETS
   gl_PrimitiveID = first_facet + gl_PrimitiveIDIn;
@@ -227,7 +227,7 @@ void hand_on(int from, int to, float share) {
 }
 )glsl";
 
-// From two neighbouring vertices of a border and the feet below them. What is thinner in the picture than the
+// From two neighbouring vertices of a border and the feet below them. What is thinner in the image than the
 // ribbon along its border is left to the ribbon: slivers near the size of the grid that rasterisers snap to
 // have no trustworthy depth.
 constexpr std::string_view kSkirtGeometryShader = R"glsl(
@@ -281,7 +281,7 @@ void main() {
 )glsl";
 
 // Widens a line to a ribbon some hundredths of a pixel across, at the line's own depth. What is behind the near
-// plane is cut off first: the corners of a ribbon to behind the eye would change sides on the way.
+// plane is cut off first: the corners of a ribbon to behind the camera would change sides on the way.
 constexpr std::string_view kRibbonGeometryShader = R"glsl(
 layout(triangle_strip, max_vertices = 4) out;
 layout(location = 10) uniform vec3 ribbon;
@@ -329,10 +329,10 @@ TileShaders tile_shaders(TilePart part, const TilePaint& paint) {
   define(paint.texture, "TEXTURE");
   define(paint.facets, "FACETS");
   define(paint.palette, "PALETTE");
-  define(paint.gaps, "GAPS");
+  define(paint.nodata, "NODATA");
   define(paint.haze, "HAZE");
   define(paint.placed, "PLACED");
-  define(paint.texture || paint.gaps, "CHART");
+  define(paint.texture || paint.nodata, "CHART");
   TileShaders out;
   const auto join = [&](std::initializer_list<std::string_view> parts) {
     std::string text = defines;
@@ -340,7 +340,7 @@ TileShaders tile_shaders(TilePart part, const TilePaint& paint) {
     return text;
   };
   out.vertex = join({kVertexShader});
-  out.fragment = join({kPaint, paint.gaps ? kGapPattern : std::string_view(),
+  out.fragment = join({kPaint, paint.nodata ? kNodataPattern : std::string_view(),
                        part == TilePart::kSkirt ? kSkirtFragmentShader : kFragmentShader});
   if (part != TilePart::kSurface)
     out.geometry = join({part == TilePart::kSkirt ? "layout(lines_adjacency) in;" : "layout(lines) in;",
@@ -351,18 +351,18 @@ TileShaders tile_shaders(TilePart part, const TilePaint& paint) {
 const char* const kSkyVertexShader = R"glsl(
 #version 450 core
 layout(location = 0) uniform mat3 to_body;
-layout(location = 1) uniform vec4 lens;
+layout(location = 1) uniform vec4 projection;
 layout(location = 0) out vec3 ray;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
   gl_Position = vec4(corner, 0.0, 1.0);
-  // On the plane e.z = -1: clip = lens.xy * e.xy - lens.zw.
-  ray = to_body * vec3((corner + lens.zw) / lens.xy, -1.0);
+  // On the plane e.z = -1: clip = projection.xy * e.xy - projection.zw.
+  ray = to_body * vec3((corner + projection.zw) / projection.xy, -1.0);
 }
 )glsl";
 
 // A thin exponential atmosphere of dust over a black sky: optical depth from the height where the ray passes
-// lowest and a bounded air mass. A picture, not radiometry.
+// lowest and a bounded air mass. An image, not radiometry.
 const char* const kSkyFragmentShader = R"glsl(
 #version 450 core
 layout(location = 0) in vec3 ray;

@@ -1,4 +1,4 @@
-// An offscreen picture: colour and reversed float depth, with or without multisampling.
+// An offscreen image: colour and reversed float depth, with or without multisampling.
 #pragma once
 
 #include <vector>

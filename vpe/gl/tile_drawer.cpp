@@ -30,7 +30,7 @@ TilePaint TileDrawer::paint_of(const TileDraw& tile) const {
   paint.facets = tile.texture != nullptr && tile.texture->intervals == 0;
   paint.texture = tile.texture != nullptr && !paint.facets;
   paint.palette = tile.texture == nullptr && tile.palette;
-  paint.gaps = tile.texture != nullptr && tile.texture->gaps && tile.mesh->charts;
+  paint.nodata = tile.texture != nullptr && tile.texture->nodata && tile.mesh->charts;
   paint.haze = air_.visibility_m > 0.0F;
   paint.placed = paint.texture && !tile.mesh->charts;
   return paint;
@@ -87,13 +87,13 @@ TileDrawer::TileDrawer(double planet_radius_m) : radius_m_(planet_radius_m), arr
 }
 
 void TileDrawer::use(const Program& program, const TilePaint& paint, TilePart part, const core::View& view,
-                     const Lens& lens) {
-  const glm::mat3 rotation = body_to_eye(view.eye.axes);
+                     const ClipProjection& projection) {
+  const glm::mat3 rotation = body_to_camera(view.camera.axes);
   const glm::ivec2 size = core::drawn_size(view);
   glUseProgram(program.name());
   glUniformMatrix3fv(kRotation, 1, GL_FALSE, &rotation[0][0]);
-  glUniform4fv(kLens, 1, &lens.scale_shift[0]);
-  glUniform1f(kNear, lens.near_m);
+  glUniform4fv(kLens, 1, &projection.scale_shift[0]);
+  glUniform1f(kNear, projection.near_m);
   if (part == TilePart::kSurface) {
     const auto per_px = static_cast<float>(0.5 / step_px_);
     glUniform2f(kSteps, per_px * static_cast<float>(size.x), per_px * static_cast<float>(size.y));
@@ -109,8 +109,8 @@ void TileDrawer::use(const Program& program, const TilePaint& paint, TilePart pa
     const auto extinction = static_cast<float>(core::kKoschmieder / air_.visibility_m);
     const glm::vec3 dust(core::kDust / 255.0);
     glUniform4f(kHaze, dust.x, dust.y, dust.z, extinction);
-    const double r = glm::length(view.eye.eye_m);
-    const glm::vec3 up = rotation * glm::vec3(view.eye.eye_m / r);
+    const double r = glm::length(view.camera.position_m);
+    const glm::vec3 up = rotation * glm::vec3(view.camera.position_m / r);
     glUniform3fv(kUp, 1, &up[0]);
     const glm::vec3 sun = rotation * air_.sun;
     glUniform3fv(kSun, 1, &sun[0]);
@@ -122,9 +122,9 @@ void TileDrawer::use(const Program& program, const TilePaint& paint, TilePart pa
 void TileDrawer::use(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
                      float near_m) {
   const GpuMesh& mesh = *tile.mesh;
-  const glm::vec3 to_eye(mesh.centre_m - view.eye.eye_m);
+  const glm::vec3 to_camera(mesh.centre_m - view.camera.position_m);
   const glm::vec3 centre(mesh.centre_m);
-  glUniform3fv(kToEye, 1, &to_eye[0]);
+  glUniform3fv(kToEye, 1, &to_camera[0]);
   glUniform3fv(kCentre, 1, &centre[0]);
   glUniform1f(kSkirt, 0.0F);
   glUniform1f(kSnapFrom, near_m + static_cast<float>(mesh.longest_edge_m));
@@ -136,7 +136,7 @@ void TileDrawer::use(const TileDraw& tile, const TilePaint& paint, TilePart part
     tint.a = 1.0F;
   }
   glUniform4fv(kTint, 1, &tint[0]);
-  if (paint.texture || paint.gaps) {
+  if (paint.texture || paint.nodata) {
     const glm::vec3 out(mars::face_axes(tile.key.face).out);
     glUniform3fv(kFaceOut, 1, &out[0]);
     // Facets have no texels to be between.
@@ -174,7 +174,7 @@ void TileDrawer::use(const TileDraw& tile, const TilePaint& paint, TilePart part
     glUniform3f(kHeightTerms, static_cast<float>(outer2), static_cast<float>(radius_m_),
                 static_cast<float>(1.0 / exaggeration_));
   }
-  if (paint.gaps) {
+  if (paint.nodata) {
     const mars::ChartRect rect = lod::chart_rect(tile.key);
     const double corner = rect.u0 + rect.v0;
     // Finer, stripes would show the rounding of texture coordinates, which is in proportion to the tile; and of
@@ -225,7 +225,7 @@ void TileDrawer::draw_part(const TileDraw& tile, const TilePaint& paint, TilePar
   }
 }
 
-void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
+void TileDrawer::draw(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles) {
   glBindVertexArray(array_.name());
   std::map<TilePaint, std::vector<const TileDraw*>> by_paint;
   for (const TileDraw& tile : tiles) by_paint[paint_of(tile)].push_back(&tile);
@@ -235,16 +235,16 @@ void TileDrawer::draw(const core::View& view, const Lens& lens, std::span<const 
       use(part == TilePart::kSurface  ? made.surface
           : part == TilePart::kRibbon ? made.ribbon
                                       : made.skirt,
-          paint, part, view, lens);
-      for (const TileDraw* tile : painted) draw_part(*tile, paint, part, view, lens.near_m);
+          paint, part, view, projection);
+      for (const TileDraw* tile : painted) draw_part(*tile, paint, part, view, projection.near_m);
     }
   }
 }
 
 template <typename DrawOne>
-void TileDrawer::draw_before_ground(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+void TileDrawer::draw_before_ground(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
                                     const DrawOne& draw_one) {
-  Lens nearer = lens;
+  ClipProjection nearer = projection;
   nearer.near_m *= kNearer;
   glBindVertexArray(array_.name());
   for (const TileDraw& tile : tiles) {
@@ -255,32 +255,32 @@ void TileDrawer::draw_before_ground(const core::View& view, const Lens& lens, st
   }
 }
 
-void TileDrawer::draw_vertices(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+void TileDrawer::draw_vertices(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
                                float size_px) {
   glPointSize(size_px);
-  draw_before_ground(view, lens, tiles, [](const GpuMesh& mesh) {
+  draw_before_ground(view, projection, tiles, [](const GpuMesh& mesh) {
     glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(mesh.first_foot));
   });
   glPointSize(1.0F);
 }
 
-void TileDrawer::draw_edges(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
+void TileDrawer::draw_edges(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles) {
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-  draw_before_ground(view, lens, tiles,
+  draw_before_ground(view, projection, tiles,
                      [this](const GpuMesh& mesh) { draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface); });
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
-void TileDrawer::draw_numbers(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles) {
+void TileDrawer::draw_tile_ids(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles) {
   numbered_from_ = tiles.data();
-  draw(view, lens, tiles);
+  draw(view, projection, tiles);
   numbered_from_ = nullptr;
 }
 
-void TileDrawer::draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+void TileDrawer::draw_borders(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
                               const glm::vec3& colour) {
   constexpr float kHalfWidth_px = 0.75F;
-  Lens nearer = lens;
+  ClipProjection nearer = projection;
   nearer.near_m *= kNearer;  // depth is the near plane's over the distance
   const glm::ivec2 size = core::drawn_size(view);
   glBindVertexArray(array_.name());

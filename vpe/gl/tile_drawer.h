@@ -30,7 +30,7 @@ struct TileDraw {
   glm::vec4 tint{0, 0, 0, 0};      // this colour takes the share alpha
 };
 
-// What all tiles of a picture share.
+// What all tiles of an image share.
 struct Air {
   glm::vec3 sun{1, 0, 0};  // body-fixed
   float visibility_m = 0;  // 0: clear
@@ -59,24 +59,24 @@ class TileDrawer {
   void drop_unused();
 
   // The target's framebuffer is bound, depth test and polygon mode are set.
-  void draw(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles);
+  void draw(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles);
 
   // Edges of triangles that the surfaces, drawn before, do not hide.
-  void draw_edges(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles);
+  void draw_edges(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles);
 
   // A square dot at each vertex, likewise.
-  void draw_vertices(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles, float size_px);
+  void draw_vertices(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles, float size_px);
 
   // Lines along the borders of tiles over what draw() drew with the same view, lens and tiles. Depth and alpha
   // stay as they are; a line is before the ground by a five-hundredth of its distance, so that its own tile
   // does not hide it.
-  void draw_borders(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+  void draw_borders(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
                     const glm::vec3& colour);
 
-  // draw() in colours that number tiles and their parts (tile_number.h), on black.
-  void draw_numbers(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles);
+  // draw() in colours that number tiles and their parts (tile_id.h), on black.
+  void draw_tile_ids(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles);
 
-  // What is drawn at a pixel's centre is a point of the meshes moved by at most this in the picture: by a
+  // What is drawn at a pixel's centre is a point of the meshes moved by at most this in the image: by a
   // vertex's snap, or from a border to the corner of a ribbon and its snap.
   double snap_px() const { return (kRibbonSteps + 1) * std::numbers::sqrt2 * step_px_; }
 
@@ -93,12 +93,12 @@ class TileDrawer {
   TilePaint paint_of(const TileDraw& tile) const;
   Programs& programs(const TilePaint& paint);
   void use(const Program& program, const TilePaint& paint, TilePart part, const core::View& view,
-           const Lens& lens);
+           const ClipProjection& projection);
   void use(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view, float near_m);
   void draw_part(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
                  float near_m);
   template <typename DrawOne>
-  void draw_before_ground(const core::View& view, const Lens& lens, std::span<const TileDraw> tiles,
+  void draw_before_ground(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
                           const DrawOne& draw_one);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
 

@@ -47,7 +47,7 @@ struct TileGeometry {
 };
 
 // Positions are relative to the tile's centre, or to the vertex nearest to post i, j of the finest grid, where
-// the eye is so near that rounding relative to the centre would show: origin = j * (intervals + 1) + i.
+// the camera is so near that rounding relative to the centre would show: origin = j * (intervals + 1) + i.
 inline constexpr int kTileCentre = -1;
 
 // height_m: one per vertex, above the sphere. The feet of the skirts stand at the border vertices themselves;

@@ -1,4 +1,4 @@
-// Numbers of tiles' parts as colours, to read from a picture what is drawn at each of its pixels. Pure; no
+// Numbers of tiles' parts as colours, to read from an image what is drawn at each of its pixels. Pure; no
 // OpenGL.
 #pragma once
 
@@ -13,17 +13,17 @@ inline constexpr std::size_t kTileParts = 3;
 
 inline constexpr std::uint32_t kNoTile = 0;  // sky
 
-struct TileNumber {
+struct TileId {
   std::size_t tile;  // index into the drawn tiles, below 2^22
   TilePart part;
 };
 
-constexpr std::uint32_t pack(TileNumber n) {
+constexpr std::uint32_t pack(TileId n) {
   return static_cast<std::uint32_t>(n.tile * kTileParts + static_cast<std::size_t>(n.part) + 1);
 }
 
 // Not of kNoTile.
-constexpr TileNumber unpack(std::uint32_t number) {
+constexpr TileId unpack(std::uint32_t number) {
   return {(number - 1) / kTileParts, static_cast<TilePart>((number - 1) % kTileParts)};
 }
 

@@ -11,73 +11,73 @@ namespace {
 
 constexpr int kLargestTexture = 1024;
 
-// The tile's centre, unless rounding relative to that would show: then the post nearest to the eye.
+// The tile's centre, unless rounding relative to that would show: then the post nearest to the camera.
 int origin(const lod::SelectedTile& tile, const core::View& view, const paging::PlanetFile& planet) {
   constexpr double kShows_px = 0.01;
   if (base::mutated(base::Guard::kNearOrigin)) return kTileCentre;
   const double side_m = lod::nominal_side_m(tile.key.level, planet.radius_m());
   if (side_m * core::focal_px(view) < kShows_px * (1 << 24) * tile.min_distance_m) return kTileCentre;
-  if (glm::dot(mars::face_axes(tile.key.face).out, view.eye.eye_m) <= 0.0) return kTileCentre;
+  if (glm::dot(mars::face_axes(tile.key.face).out, view.camera.position_m) <= 0.0) return kTileCentre;
   const int intervals = planet.meta().tile.intervals();
   const lod::GridLines lines = lod::grid_lines(tile.key, intervals);
-  const mars::ChartPoint eye = mars::chart_on(tile.key.face, view.eye.eye_m);
+  const mars::ChartPoint camera = mars::chart_on(tile.key.face, view.camera.position_m);
   const auto nearest = [](const std::vector<double>& line, double x) {
     auto at = std::lower_bound(line.begin(), line.end(), x);
     if (at == line.end() || (at != line.begin() && x - *(at - 1) < *at - x)) --at;
     return static_cast<int>(at - line.begin());
   };
-  return nearest(lines.v, eye.v) * (intervals + 1) + nearest(lines.u, eye.u);
+  return nearest(lines.v, camera.v) * (intervals + 1) + nearest(lines.u, camera.u);
 }
 
 }  // namespace
 
-Painting painting(const core::Appearance& a, const glm::dvec3& sun, bool has_image,
+TileMaterial material(const core::Appearance& a, const glm::dvec3& sun, bool has_image,
                   std::shared_ptr<const core::ColourScale> scale) {
-  Painting out;
-  out.shows_gaps = a.mode != core::Mode::kWireframe && a.mode != core::Mode::kMarkers;
-  out.look = paging::shade_params(a, sun, has_image, std::move(scale));
-  const ShadeParams& look = out.look;
-  out.by = look.lit                                                        ? PaintBy::kTexture
-           : look.surfacing == paging::Surfacing::kPlain                   ? PaintBy::kColour
-           : look.surfacing == paging::Surfacing::kElevation && !look.flat ? PaintBy::kPalette
-                                                                           : PaintBy::kTexture;
-  if (out.by == PaintBy::kPalette && look.scale)
-    out.palette_error_m = std::abs(look.scale->high() - look.scale->low()) / 256;
+  TileMaterial out;
+  out.shows_nodata = a.mode != core::Mode::kWireframe && a.mode != core::Mode::kMarkers;
+  out.shading = paging::shading_params(a, sun, has_image, std::move(scale));
+  const ShadingParams& shading = out.shading;
+  out.by = shading.lit                                                        ? PaintMethod::kTexture
+           : shading.colour_source == paging::ColourSource::kPlain                   ? PaintMethod::kColour
+           : shading.colour_source == paging::ColourSource::kElevation && !shading.flat ? PaintMethod::kPalette
+                                                                           : PaintMethod::kTexture;
+  if (out.by == PaintMethod::kPalette && shading.scale)
+    out.palette_error_m = std::abs(shading.scale->high() - shading.scale->low()) / 256;
   return out;
 }
 
-bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting) {
-  if (painting.by == PaintBy::kTexture || (painting.shows_gaps && planet.has_missing(tile))) return true;
-  if (painting.by != PaintBy::kPalette) return false;
+bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material) {
+  if (material.by == PaintMethod::kTexture || (material.shows_nodata && planet.has_nodata(tile))) return true;
+  if (material.by != PaintMethod::kPalette) return false;
   const lod::TileInfo* info = planet.tree().find(tile);
-  return info != nullptr && info->variants.front().terms.relief_m > painting.palette_error_m;
+  return info != nullptr && info->variants.front().terms.height_error_m > material.palette_error_m;
 }
 
-bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting) {
-  if (!is_textured(tile, planet, painting)) return false;
+bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material) {
+  if (!is_textured(tile, planet, material)) return false;
   // The programs of coarse tiles find the place by themselves (TilePaint::placed): a texel is wide there.
-  return (painting.by != PaintBy::kPalette && !painting.look.flat) || planet.has_missing(tile);
+  return (material.by != PaintMethod::kPalette && !material.shading.flat) || planet.has_nodata(tile);
 }
 
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
-                                 const paging::PlanetFile& planet, const GroundPainter& painter,
+                                 const paging::PlanetFile& planet, const TerrainShader& painter,
                                  const NeedOptions& options) {
   const double focal = core::focal_px(view);
   std::vector<TileNeed> needs;
   needs.reserve(tiles.size());
   for (const lod::SelectedTile& tile : tiles) {
-    TileNeed need{{tile.variant, origin(tile, view, planet), needs_charts(tile.key, planet, options.painting)},
+    TileNeed need{{tile.variant, origin(tile, view, planet), needs_charts(tile.key, planet, options.material)},
                   0};
-    if (!is_textured(tile.key, planet, options.painting)) {
-    } else if (options.painting.look.flat) {
+    if (!is_textured(tile.key, planet, options.material)) {
+    } else if (options.material.shading.flat) {
       need.paint = facet_paint(tile.variant);
     } else {
       const double side = lod::nominal_side_m(tile.key.level, planet.radius_m());
       const double wanted = 0.75 * side * focal / std::max(tile.min_distance_m, 1e-3 * side);
       const int most =
-          std::min(kLargestTexture, painter.useful_intervals(tile.key, options.painting.look.surfacing));
+          std::min(kLargestTexture, painter.useful_intervals(tile.key, options.material.shading.colour_source));
       // Colours of posts are not made finer than posts.
-      const bool at_posts = options.painting.look.surfacing == paging::Surfacing::kImageAtPosts;
+      const bool at_posts = options.material.shading.colour_source == paging::ColourSource::kImageAtPosts;
       need.paint = at_posts ? std::min(kSmallestTexture, most) : kSmallestTexture;
       while (need.paint < wanted && need.paint < most) need.paint *= 2;
     }

@@ -12,31 +12,31 @@
 namespace vpe::gl {
 
 // How an appearance paints ground.
-enum class PaintBy {
+enum class PaintMethod {
   kColour,   // one colour
   kPalette,  // colour of the height of what is drawn, by the program; where its meshes are too coarse for the
              // palette a texture
   kTexture,  // ShadedTile: a grid, or with flat shading facets
 };
 
-struct Painting {
-  PaintBy by = PaintBy::kTexture;
-  bool shows_gaps = true;      // ground without data looks different: such tiles have textures in any case
+struct TileMaterial {
+  PaintMethod by = PaintMethod::kTexture;
+  bool shows_nodata = true;      // ground without data looks different: such tiles have textures in any case
   double palette_error_m = 0;  // relief that a palette may be off: a 256th of its range
-  ShadeParams look;            // of textures
-  bool operator==(const Painting&) const = default;
+  ShadingParams shading;            // of textures
+  bool operator==(const TileMaterial&) const = default;
 };
 
 // scale: of the appearance; null where it shows none (paging::needs_scale).
-Painting painting(const core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
+TileMaterial material(const core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
                   std::shared_ptr<const core::ColourScale> scale);
 
 inline constexpr int kSmallestTexture = 128;
 
-bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting);
+bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material);
 
 // Whether vertices need to know where they are in their tile.
-bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const Painting& painting);
+bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material);
 
 struct TileNeed {
   MeshDetail mesh;
@@ -44,14 +44,14 @@ struct TileNeed {
 };
 
 struct NeedOptions {
-  Painting painting;
+  TileMaterial material;
   std::size_t texture_bytes = 0;  // for the textures of all the tiles
 };
 
 // One for each tile. Textures have one texel a pixel at the tile's nearest point, unless the data or the memory
 // has less.
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
-                                 const paging::PlanetFile& planet, const GroundPainter& painter,
+                                 const paging::PlanetFile& planet, const TerrainShader& painter,
                                  const NeedOptions& options);
 
 }  // namespace vpe::gl

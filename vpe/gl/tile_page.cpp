@@ -27,25 +27,25 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
       with_mesh(key.tile, key.detail, key.exaggeration, [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
         page.geometry =
             make_geometry(key.tile, mesh, height_m, radius_m, {key.exaggeration, key.origin, key.charts});
-        if (!key.walls) return;
-        page.walls = std::make_shared<const lod::TileWalls>(
-            lod::make_walls(key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m));
+        if (!key.occluders) return;
+        page.occluders = std::make_shared<const lod::OccluderProfile>(
+            lod::make_occluder_profile(key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m));
       });
       const std::size_t bytes = page.geometry.bytes();
       return {std::move(page), bytes};
     }
     case PageKind::kTexture: {
-      if (key.look->flat) {
-        with_mesh(key.tile, painted_variant(key.detail), key.look->exaggeration,
+      if (key.shading->flat) {
+        with_mesh(key.tile, painted_variant(key.detail), key.shading->exaggeration,
                   [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
-                    page.shaded = painter_->shade_facets(key.tile, mesh, height_m, *key.look);
+                    page.shaded = painter_->shade_facets(key.tile, mesh, height_m, *key.shading);
                     for (const std::uint32_t triangle : border_triangles(mesh)) {
                       for (std::size_t c = 0; c < 4; ++c)
                         page.shaded.texels.push_back(page.shaded.texels[4 * triangle + c]);
                     }
                   });
       } else {
-        page.shaded = painter_->shade(key.tile, key.detail, *key.look);
+        page.shaded = painter_->shade(key.tile, key.detail, *key.shading);
       }
       const std::size_t bytes = page.shaded.bytes();
       return {std::move(page), bytes};

@@ -12,9 +12,9 @@
 
 namespace vpe::gl {
 
-using paging::GroundPainter;
+using paging::TerrainShader;
 using paging::ShadedTile;
-using paging::ShadeParams;
+using paging::ShadingParams;
 
 enum class PageKind : std::uint8_t {
   kMesh,     // of a variant, relative to an origin, at an exaggeration
@@ -29,8 +29,8 @@ struct PageKey {
   int origin = kTileCentre;
   bool charts = true;                       // of meshes
   double exaggeration = 1;                  // of meshes and posts
-  std::shared_ptr<const ShadeParams> look;  // of textures; equal looks are one object
-  bool walls = false;                       // of meshes: with them
+  std::shared_ptr<const ShadingParams> shading;  // of textures; equal looks are one object
+  bool occluders = false;                       // of meshes: with them
   bool operator==(const PageKey&) const = default;
 };
 struct PageKeyHash {
@@ -48,7 +48,7 @@ constexpr int painted_variant(int paint) { return -1 - paint; }
 // The member of the key's kind is there.
 struct Page {
   TileGeometry geometry;
-  std::shared_ptr<const lod::TileWalls> walls;  // of the geometry; null unless asked for
+  std::shared_ptr<const lod::OccluderProfile> occluders;  // of the geometry; null unless asked for
   ShadedTile shaded;
   std::shared_ptr<const paging::TileHeights> ground;
 };
@@ -56,7 +56,7 @@ struct Page {
 // Thread rule: any thread may load.
 class PageLoader {
  public:
-  PageLoader(std::shared_ptr<const paging::PlanetFile> planet, std::shared_ptr<const GroundPainter> painter)
+  PageLoader(std::shared_ptr<const paging::PlanetFile> planet, std::shared_ptr<const TerrainShader> painter)
       : planet_(std::move(planet)), painter_(std::move(painter)) {}
 
   // The page and its bytes. Throws paging::PlanetError that names the tile.
@@ -68,7 +68,7 @@ class PageLoader {
   void with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  std::shared_ptr<const GroundPainter> painter_;
+  std::shared_ptr<const TerrainShader> painter_;
 };
 
 }  // namespace vpe::gl

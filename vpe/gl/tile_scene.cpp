@@ -25,7 +25,7 @@ constexpr double kMeshShare = 0.17;
 constexpr double kTextureShare = 0.34;
 constexpr double kLoadedShare = 0.05;
 
-// What OpenGL without a GPU keeps of a frame of some 400 000 triangles, and the pictures on their way out.
+// What OpenGL without a GPU keeps of a frame of some 400 000 triangles, and the images on their way out.
 constexpr std::size_t kDriverBytes = std::size_t{160} << 20;
 // Skirts reach farther down by this part of distance and tile side, for the rounding of their feet to float.
 constexpr double kFootError = 1e-6;
@@ -33,7 +33,7 @@ constexpr double kFootError = 1e-6;
 // Pages for later views are loaded while what this view needs takes up less than this part of the budget.
 constexpr double kRoomForLater = 0.6;
 
-// Below the eye now and soon, and below the culling camera.
+// Below the camera now and soon, and below the culling camera.
 constexpr std::size_t kGroundTiles = 8;
 
 constexpr std::size_t kTakeAtOnce = std::size_t{1} << 20;
@@ -59,7 +59,7 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
     : planet_(std::move(planet)),
       most_triangles_(most_triangles(options.memory_bytes)),
       memory_(for_tiles(options.memory_bytes, planet_->tree().bytes())),
-      painter_(std::make_shared<GroundPainter>(planet_, share(kPainterShare))),
+      painter_(std::make_shared<TerrainShader>(planet_, share(kPainterShare))),
       loader_(planet_, painter_),
       load_([this, before = options.before_load](const PageKey& key) {
         if (before) before(key.tile);
@@ -69,7 +69,7 @@ TileScene::TileScene(std::shared_ptr<const paging::PlanetFile> planet, const Ren
              options.threads > 0 ? std::min(options.threads, base::kMaxThreads) : base::default_threads(),
              share(kLoadedShare)) {}
 
-void TileScene::set_look(const core::DrawRequest& request) {
+void TileScene::set_shading(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
   const bool has_image = planet_->meta().finest_image_level >= 0;
   if (!paging::needs_scale(appearance, has_image)) {
@@ -80,51 +80,51 @@ void TileScene::set_look(const core::DrawRequest& request) {
   }
   // Those that are there have none, and would hide nothing. Once asked for they are made from then on, so that
   // switching to and fro loses nothing.
-  if (!needs_walls_ && request.settings.occlusion != core::Occlusion::kOff) {
-    needs_walls_ = true;
+  if (!needs_occluders_ && request.settings.occlusion != core::Occlusion::kOff) {
+    needs_occluders_ = true;
     meshes_.clear();
   }
-  const Painting now = gl::painting(appearance, request.sun, has_image, scale_);
-  if (look_ && painting_ == now) return;
+  const TileMaterial now = gl::material(appearance, request.sun, has_image, scale_);
+  if (shading_ && material_ == now) return;
   // Meshes of two exaggerations do not meet; what is painted in another way needs other vertices and programs.
-  const bool other_meshes = !look_ || look_->exaggeration != now.look.exaggeration;
+  const bool other_meshes = !shading_ || shading_->exaggeration != now.shading.exaggeration;
   const bool other_paint =
-      painting_.by != now.by || painting_.shows_gaps != now.shows_gaps || painting_.look.flat != now.look.flat;
+      material_.by != now.by || material_.shows_nodata != now.shows_nodata || material_.shading.flat != now.shading.flat;
   if (other_meshes) ground_.clear();
   if (other_meshes || other_paint) meshes_.clear();
   if (other_paint) textures_.clear();
-  painting_ = now;
-  other_looks_ = true;
-  if (!look_ || *look_ != now.look) look_ = std::make_shared<const ShadeParams>(now.look);
+  material_ = now;
+  other_shadings_ = true;
+  if (!shading_ || *shading_ != now.shading) shading_ = std::make_shared<const ShadingParams>(now.shading);
 }
 
-// Once the picture is complete nothing of what was drawn before a change is of use.
-void TileScene::drop_other_looks() {
-  if (!std::exchange(other_looks_, false)) return;
-  textures_.drop([&](const TextureDetail& t) { return t.look != look_; });
+// Once the image is complete nothing of what was drawn before a change is of use.
+void TileScene::drop_other_shadings() {
+  if (!std::exchange(other_shadings_, false)) return;
+  textures_.drop([&](const TextureDetail& t) { return t.shading != shading_; });
 }
 
 std::vector<TileNeed> TileScene::needs_of(const lod::Selection& selection, const core::View& view) const {
-  return tile_needs(selection.tiles, view, *planet_, *painter_, {painting_, share(kTextureShare)});
+  return tile_needs(selection.tiles, view, *planet_, *painter_, {material_, share(kTextureShare)});
 }
 
 PageKey TileScene::mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const {
-  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, mesh.charts, look_->exaggeration, nullptr,
-          needs_walls_};
+  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, mesh.charts, shading_->exaggeration, nullptr,
+          needs_occluders_};
 }
 PageKey TileScene::texture_page(const lod::TileKey& tile, int paint) const {
-  return {PageKind::kTexture, tile, paint, kTileCentre, true, 1, look_};
+  return {PageKind::kTexture, tile, paint, kTileCentre, true, 1, shading_};
 }
 TileNeed TileScene::coarse_need(const lod::TileKey& tile) const {
-  const bool textured = is_textured(tile, *planet_, painting_);
-  return {{0, kTileCentre, needs_charts(tile, *planet_, painting_)},
+  const bool textured = is_textured(tile, *planet_, material_);
+  return {{0, kTileCentre, needs_charts(tile, *planet_, material_)},
           !textured     ? 0
-          : look_->flat ? facet_paint(0)
+          : shading_->flat ? facet_paint(0)
                         : kSmallestTexture};
 }
-PageKey TileScene::ground_page(const glm::dvec3& eye_m) const {
-  const lod::TileKey finest = lod::tile_at(mars::chart_point(eye_m), lod::kMaxLevel);
-  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, true, look_->exaggeration,
+PageKey TileScene::ground_page(const glm::dvec3& camera_m) const {
+  const lod::TileKey finest = lod::tile_at(mars::chart_point(camera_m), lod::kMaxLevel);
+  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, true, shading_->exaggeration,
           nullptr};
 }
 
@@ -132,7 +132,7 @@ bool TileScene::is_resident(const PageKey& page, std::uint64_t frame) {
   switch (page.kind) {
     case PageKind::kMesh:
       return meshes_.find(page.tile, {page.detail, page.origin, page.charts}, frame) != nullptr;
-    case PageKind::kTexture: return textures_.find(page.tile, {page.detail, page.look}, frame) != nullptr;
+    case PageKind::kTexture: return textures_.find(page.tile, {page.detail, page.shading}, frame) != nullptr;
     case PageKind::kGround: break;
   }
   return ground_tile(page.tile) != nullptr;
@@ -143,7 +143,7 @@ bool TileScene::can_be_drawn(const lod::TileInfo& tile, int variant) {
   const bool mesh = meshes_.best(tile.key, frame_,
                                  [&](const MeshDetail& m) { return m.variant == variant ? 0 : -1; }) != nullptr;
   if (!mesh) return false;
-  return !is_textured(tile.key, *planet_, painting_) ||
+  return !is_textured(tile.key, *planet_, material_) ||
          textures_.best(tile.key, frame_, [&](const TextureDetail& t) { return fits(t, variant) ? 0 : -1; }) !=
              nullptr;
 }
@@ -155,21 +155,21 @@ void TileScene::upload(TilePager::Loaded page) {
   switch (key.kind) {
     case PageKind::kMesh:
       // Asked for before a change.
-      if (key.exaggeration != look_->exaggeration || key.charts != needs_charts(key.tile, *planet_, painting_))
+      if (key.exaggeration != shading_->exaggeration || key.charts != needs_charts(key.tile, *planet_, material_))
         return;
-      if (needs_walls_ && !key.walls) return;
+      if (needs_occluders_ && !key.occluders) return;
       {
         GpuMesh mesh = gl::upload(page.value.geometry);
-        mesh.walls = std::move(page.value.walls);
+        mesh.occluders = std::move(page.value.occluders);
         meshes_.insert(key.tile, {key.detail, key.origin, key.charts}, std::move(mesh), frame_);
         break;
       }
     case PageKind::kTexture:
-      if (key.look->flat != look_->flat || !is_textured(key.tile, *planet_, painting_)) return;
-      textures_.insert(key.tile, {key.detail, key.look}, gl::upload(page.value.shaded), frame_);
+      if (key.shading->flat != shading_->flat || !is_textured(key.tile, *planet_, material_)) return;
+      textures_.insert(key.tile, {key.detail, key.shading}, gl::upload(page.value.shaded), frame_);
       break;
     case PageKind::kGround:
-      if (key.exaggeration != look_->exaggeration) return;
+      if (key.exaggeration != shading_->exaggeration) return;
       if (ground_.size() >= kGroundTiles) ground_.erase(ground_.begin());
       ground_.emplace_back(key.tile, page.value.ground);
       break;
@@ -183,9 +183,9 @@ void TileScene::trim() {
 }
 
 bool TileScene::has_room() const {
-  std::size_t used = 0;
-  for (const SceneTile& t : tiles_) used += t.mesh->bytes + (t.texture != nullptr ? t.texture->bytes : 0);
-  return static_cast<double>(used) < kRoomForLater * static_cast<double>(share(kMeshShare + kTextureShare));
+  std::size_t record_frame = 0;
+  for (const SceneTile& t : tiles_) record_frame += t.mesh->bytes + (t.texture != nullptr ? t.texture->bytes : 0);
+  return static_cast<double>(record_frame) < kRoomForLater * static_cast<double>(share(kMeshShare + kTextureShare));
 }
 
 // What a selection needs and is not resident, nearest tiles first; what is resident counts as used in `frame`.
@@ -289,16 +289,16 @@ void TileScene::prepare(const core::DrawRequest& request) {
   failures_.clear();
   settled_ = true;
   auto start = Clock::now();
-  set_look(request);
+  set_shading(request);
   const lod::SelectOptions options = lod::select_options(request, planet_->radius_m(), most_triangles_);
   lod::select(options, planet_->tree(), lod::select_view(request.cull_view.value_or(request.view)), scratch_,
               wanted_);
-  if (request.cull_view) lod::look_from(lod::select_view(request.view), planet_->tree(), wanted_);
+  if (request.cull_view) lod::reevaluate_for_view(lod::select_view(request.view), planet_->tree(), wanted_);
   stats_.select_ms = ms_since(start);
   start = Clock::now();
   const core::Occlusion occlusion = request.settings.occlusion;
   occluding_ = occlusion == core::Occlusion::kOn ||
-               (occlusion == core::Occlusion::kAuto && (request.paging.wait || worth_.use()));
+               (occlusion == core::Occlusion::kAuto && (request.paging.wait || culling_.use()));
   hidden_.clear();
   not_needed_.clear();
   if (request.paging.wait) {
@@ -310,7 +310,7 @@ void TileScene::prepare(const core::DrawRequest& request) {
   lay_out(request.view);
   ask(request, options);
   find_clearance(request.view);
-  if (settled_) drop_other_looks();
+  if (settled_) drop_other_shadings();
   trim();
   stats_.load_ms = ms_since(start);
 }
@@ -329,12 +329,12 @@ void TileScene::lay_out(const core::View& view) {
       return m.variant != tile.variant ? -1 : m == needs[n].mesh ? 1 : 0;
     });
     if (needs[n].paint != 0) {
-      const TextureDetail wanted{needs[n].paint, look_};
+      const TextureDetail wanted{needs[n].paint, shading_};
       // Else the right look, else the nearest size.
       out.texture = textures_.best(tile.key, frame_, [&](const TextureDetail& t) {
         if (t == wanted) return 1 << 20;
         if (!fits(t, tile.variant)) return -1;
-        return (t.look == look_ ? 1 << 16 : 0) + std::max(0, std::min(t.paint, wanted.paint));
+        return (t.shading == shading_ ? 1 << 16 : 0) + std::max(0, std::min(t.paint, wanted.paint));
       });
     }
     out.skirt_m = skirts_[n];

@@ -40,15 +40,15 @@ class TileScene {
 
   std::span<const SceneTile> tiles() const { return tiles_; }
 
-  const Painting& painting() const { return painting_; }
+  const TileMaterial& material() const { return material_; }
   const std::shared_ptr<const core::ColourScale>& scale() const { return scale_; }  // null: none is shown
 
   // Of the frame that was prepared last, whose tiles took so long to draw.
   void drawn_in(double draw_ms);
 
-  double nearest_m() const;  // no tile is nearer to the eye; infinite when there are none
+  double nearest_m() const;  // no tile is nearer to the camera; infinite when there are none
 
-  // Distance of the eye from the ground below or above it. A lower bound while the ground is not there yet.
+  // Distance of the camera from the ground below or above it. A lower bound while the ground is not there yet.
   double clearance_m() const { return clearance_m_; }
 
   // Counts, times, missing tiles and failures of the frame.
@@ -60,13 +60,13 @@ class TileScene {
   using Deadline = TilePager::Clock::time_point;
 
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
-  void set_look(const core::DrawRequest& request);
-  void drop_other_looks();
+  void set_shading(const core::DrawRequest& request);
+  void drop_other_shadings();
   std::vector<TileNeed> needs_of(const lod::Selection& selection, const core::View& view) const;
   PageKey mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const;
   PageKey texture_page(const lod::TileKey& tile, int paint) const;
   TileNeed coarse_need(const lod::TileKey& tile) const;  // of its first mesh
-  PageKey ground_page(const glm::dvec3& eye_m) const;
+  PageKey ground_page(const glm::dvec3& camera_m) const;
 
   bool is_resident(const PageKey& page, std::uint64_t frame);  // counts as used in it
   bool can_be_drawn(const lod::TileInfo& tile, int variant);
@@ -96,22 +96,22 @@ class TileScene {
                      std::vector<TilePager::Want>& wants);
   void lay_out(const core::View& view);
   const paging::TileHeights* ground_tile(const lod::TileKey& key) const;
-  // Height of the drawn ground below the eye, metres above the sphere; nothing while its tile is not there.
+  // Height of the drawn ground below the camera, metres above the sphere; nothing while its tile is not there.
   std::optional<double> ground_m(const core::View& view);
   void find_clearance(const core::View& view);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::int64_t most_triangles_;
   std::size_t memory_;
-  std::shared_ptr<GroundPainter> painter_;
+  std::shared_ptr<TerrainShader> painter_;
   PageLoader loader_;
 
   Resident<MeshDetail, GpuMesh> meshes_;
   Resident<TextureDetail, GpuTexture> textures_;
   std::vector<std::pair<lod::TileKey, std::shared_ptr<const paging::TileHeights>>> ground_;  // latest last
-  Painting painting_;
-  std::shared_ptr<const ShadeParams> look_;  // painting_.look, one object while it stays the same
-  bool other_looks_ = false;                 // may be resident
+  TileMaterial material_;
+  std::shared_ptr<const ShadingParams> shading_;  // material_.look, one object while it stays the same
+  bool other_shadings_ = false;                 // may be resident
   core::Appearance scale_of_;                // whose scale this is
   std::shared_ptr<const core::ColourScale> scale_;
   std::uint64_t frame_ = 0;
@@ -119,13 +119,13 @@ class TileScene {
   lod::SelectScratch scratch_;
   lod::Selection wanted_;
   // Its selection covers all that is seen: what is drawn and, as hidden_ says, what nearer ground hides.
-  lod::Substitution drawn_;
+  lod::FallbackSelection drawn_;
   std::vector<std::uint8_t> hidden_;
   std::vector<std::uint8_t> not_needed_;  // of wanted_: hidden, and not there
   lod::OcclusionPass pass_;
-  cull::CullerWorth worth_;
+  cull::AdaptiveCulling culling_;
   bool occluding_ = false;
-  bool needs_walls_ = false;  // of the meshes that come: some frame was asked to leave out what is hidden
+  bool needs_occluders_ = false;  // of the meshes that come: some frame was asked to leave out what is hidden
   std::vector<std::array<float, 4>> skirts_;
   std::vector<SceneTile> tiles_;
   double clearance_m_ = 0;

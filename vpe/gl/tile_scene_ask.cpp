@@ -10,13 +10,13 @@ namespace vpe::gl {
 namespace {
 
 constexpr std::size_t kMostUpcoming = 3;
-constexpr double kBufferZone = 1.25;  // the field of view of what is kept ready round a moving picture
+constexpr double kBufferZone = 1.25;  // the field of view of what is kept ready round a moving image
 constexpr double kLater = 1e12;       // less urgent than anything of this view
 
-// Tiles in the middle of the picture count more: half at a radian from the view's axis, for instance.
+// Tiles in the middle of the image count more: half at a radian from the view's axis, for instance.
 double centre_weight(const lod::TileKey& key, const core::View& view, double radius_m) {
-  const glm::dvec3 to = radius_m * lod::bounding_cap(key).centre - view.eye.eye_m;
-  const double angle = std::acos(std::clamp(glm::dot(glm::normalize(to), view.eye.axes.forward), -1.0, 1.0));
+  const glm::dvec3 to = radius_m * lod::bounding_cap(key).centre - view.camera.position_m;
+  const double angle = std::acos(std::clamp(glm::dot(glm::normalize(to), view.camera.axes.forward), -1.0, 1.0));
   return 1.0 / (1.0 + angle * angle);
 }
 
@@ -31,8 +31,8 @@ const lod::SelectedTile* stand_in(const lod::Selection& drawn, const lod::TileKe
 
 }  // namespace
 
-// How wrong the picture is without the page, in pixels, more in the middle. Where a tile far above stands in,
-// the levels between are wanted first, so that the picture sharpens in steps.
+// How wrong the image is without the page, in pixels, more in the middle. Where a tile far above stands in,
+// the levels between are wanted first, so that the image sharpens in steps.
 void TileScene::ask(const core::DrawRequest& request, const lod::SelectOptions& options) {
   std::vector<TilePager::Want> wants;
   std::unordered_set<PageKey, PageKeyHash> asked;
@@ -51,7 +51,7 @@ void TileScene::ask(const core::DrawRequest& request, const lod::SelectOptions& 
           0.5 * centre_weight(tile.key, request.view, planet_->radius_m());  // of its exact texture
       const lod::SelectedTile* stand = stand_in(drawn_.drawn, tile.key);
       if (stand != nullptr && stand->key.level < tile.key.level) {
-        urgency *= 2.0 * std::min(stand->error_px, 1e6);
+        urgency *= 2.0 * std::min(stand->screen_space_error_px, 1e6);
         if (stand->key.level + 1 < tile.key.level) {
           const lod::TileKey step = lod::ancestor(tile.key, stand->key.level + 1);
           const TileNeed coarse = coarse_need(step);
@@ -63,9 +63,9 @@ void TileScene::ask(const core::DrawRequest& request, const lod::SelectOptions& 
       add(mesh_page(tile.key, needs[n].mesh), urgency);
       if (needs[n].paint != 0) add(texture_page(tile.key, needs[n].paint), urgency);
     }
-    if (needs_ground(request.view)) add(ground_page(request.view.eye.eye_m), 1e6);
+    if (needs_ground(request.view)) add(ground_page(request.view.camera.position_m), 1e6);
     if (request.cull_view && needs_ground(*request.cull_view))
-      add(ground_page(request.cull_view->eye.eye_m), 1e6);
+      add(ground_page(request.cull_view->camera.position_m), 1e6);
     if (!wants.empty()) settled_ = false;
   }
   want_upcoming(request, options, wants);
@@ -96,7 +96,7 @@ void TileScene::want_upcoming(const core::DrawRequest& request, const lod::Selec
       std::erase_if(later.tiles, [&](const lod::SelectedTile&) { return hidden[n++] != 0; });
     }
     std::vector<PageKey> pages = absent_pages(later, view, frame_ - 1);
-    if (needs_ground(view)) pages.insert(pages.begin(), ground_page(view.eye.eye_m));
+    if (needs_ground(view)) pages.insert(pages.begin(), ground_page(view.camera.position_m));
     for (const PageKey& page : pages) {
       if (unreadable_.count(page.tile) != 0 || !asked.insert(page).second) continue;
       wants.push_back({page, -kLater - static_cast<double>(wants.size())});

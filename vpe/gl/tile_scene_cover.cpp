@@ -29,7 +29,7 @@ class Stopwatch {
 // Tiles whose meshes are loaded at once before what they hide is known.
 constexpr std::size_t kWave = 32;
 
-// Nearer than this the near plane depends on the ground below the eye.
+// Nearer than this the near plane depends on the ground below the camera.
 constexpr double kGroundMatters_m = 1000.0;
 
 // What is drawn lies within this of its place: docs/culling.md.
@@ -58,47 +58,47 @@ const paging::TileHeights* TileScene::ground_tile(const lod::TileKey& key) const
 }
 
 std::optional<double> TileScene::ground_m(const core::View& view) {
-  const lod::TileKey key = ground_page(view.eye.eye_m).tile;
+  const lod::TileKey key = ground_page(view.camera.position_m).tile;
   const paging::TileHeights* tile = ground_tile(key);
   if (tile == nullptr) return std::nullopt;
-  const mars::ChartPoint at = mars::chart_point(view.eye.eye_m);
+  const mars::ChartPoint at = mars::chart_point(view.camera.position_m);
   const lod::Posts& posts = tile->posts;
   return lod::surface_height(posts, lod::grid_lines(key, posts.intervals), at.u, at.v, planet_->radius_m(),
-                             nullptr, look_->exaggeration);
+                             nullptr, shading_->exaggeration);
 }
 
 void TileScene::find_clearance(const core::View& view) {
-  const double height = glm::length(view.eye.eye_m) - planet_->radius_m();
+  const double height = glm::length(view.camera.position_m) - planet_->radius_m();
   if (const auto ground = ground_m(view)) {
     clearance_m_ = std::abs(height - *ground);
     return;
   }
-  const double x = look_->exaggeration;
-  const lod::TileInfo& tile = *planet_->tree().find(ground_page(view.eye.eye_m).tile);
+  const double x = shading_->exaggeration;
+  const lod::TileInfo& tile = *planet_->tree().find(ground_page(view.camera.position_m).tile);
   clearance_m_ = std::max({0.0, height - x * tile.max_height_m, x * tile.min_height_m - height});
 }
 
 bool TileScene::needs_ground(const core::View& view) const {
-  const double height = glm::length(view.eye.eye_m) - planet_->radius_m();
-  const lod::TileInfo& tile = *planet_->tree().find(ground_page(view.eye.eye_m).tile);
-  const double x = look_->exaggeration;
+  const double height = glm::length(view.camera.position_m) - planet_->radius_m();
+  const lod::TileInfo& tile = *planet_->tree().find(ground_page(view.camera.position_m).tile);
+  const double x = shading_->exaggeration;
   return height < x * tile.max_height_m + kGroundMatters_m && unreadable_.count(tile.key) == 0;
 }
 
 // Above what is drawn under it, not only above S.
 bool TileScene::is_above_ground(const lod::Selection& cover, const core::View& view) {
-  const lod::TileKey finest = ground_page(view.eye.eye_m).tile;
+  const lod::TileKey finest = ground_page(view.camera.position_m).tile;
   const lod::SelectedTile* drawn = tile_over(cover, finest);
-  const double error_m = drawn == nullptr ? 0.0 : drawn->error_m;
-  const double height = glm::length(view.eye.eye_m) - planet_->radius_m();
+  const double geometric_error_m = drawn == nullptr ? 0.0 : drawn->geometric_error_m;
+  const double height = glm::length(view.camera.position_m) - planet_->radius_m();
   const lod::TileInfo& tile = *planet_->tree().find(finest);
-  if (height > look_->exaggeration * tile.max_height_m + error_m) return true;
+  if (height > shading_->exaggeration * tile.max_height_m + geometric_error_m) return true;
   const auto ground = ground_m(view);
-  return ground && height > *ground + error_m;
+  return ground && height > *ground + geometric_error_m;
 }
 
 TileScene::Load TileScene::load_ground(const core::View& view, Deadline deadline) {
-  const PageKey page = ground_page(view.eye.eye_m);
+  const PageKey page = ground_page(view.camera.position_m);
   if (!needs_ground(view) || ground_tile(page.tile) != nullptr) return Load::kAll;
   return load(std::span(&page, 1), {}, deadline);
 }
@@ -124,12 +124,12 @@ TileScene::Load TileScene::load_cover(const core::DrawRequest& request, Deadline
   std::vector<std::uint32_t> order;
   {
     const Stopwatch watch(stats_.occlude_ms);
-    lod::front_to_back(keys, glm::normalize(seen.eye.eye_m), order);
-    pass_.begin(seen.eye.eye_m, occluding_ && is_above_ground(cover, seen), occlusion_margin_rad(seen));
+    lod::front_to_back(keys, glm::normalize(seen.camera.position_m), order);
+    pass_.begin(seen.camera.position_m, occluding_ && is_above_ground(cover, seen), occlusion_margin_rad(seen));
   }
   const auto hidden = [&](std::uint32_t n) {
     if (hidden_[n] == 0 && occluding_ &&
-        pass_.hidden(planet_->tree().shell(cover.tiles[n].index, cover.exaggeration, cover.tiles[n].error_m))) {
+        pass_.hidden(planet_->tree().region(cover.tiles[n].index, cover.exaggeration, cover.tiles[n].geometric_error_m))) {
       hidden_[n] = 1;
     }
     return hidden_[n] != 0;
@@ -147,7 +147,7 @@ TileScene::Load TileScene::load_cover(const core::DrawRequest& request, Deadline
     for (const std::uint32_t n : wave) {
       if (hidden(n)) continue;
       if (occluding_) {
-        pass_.add(keys[n], *meshes_.find(keys[n], needs[n].mesh, frame_)->walls, planet_->radius_m());
+        pass_.add(keys[n], *meshes_.find(keys[n], needs[n].mesh, frame_)->occluders, planet_->radius_m());
       }
       if (needs[n].paint == 0) continue;
       const PageKey page = texture_page(keys[n], needs[n].paint);
@@ -168,7 +168,7 @@ void TileScene::complete(const core::DrawRequest& request, const lod::SelectOpti
     return static_cast<const TileScene*>(self)->is_readable(tile);
   };
   for (;;) {
-    lod::substitute(options, planet_->tree(), view, wanted_, {readable, this}, drawn_);
+    lod::select_fallbacks(options, planet_->tree(), view, wanted_, {readable, this}, drawn_);
     const Load outcome = load_cover(request, deadline);
     if (outcome == Load::kAll) return;
     if (outcome == Load::kTimeout) break;
@@ -188,10 +188,10 @@ void TileScene::occlude(const lod::Selection& tiles, const core::View& view,
       mesh = meshes_.best(tile.key, frame_,
                           [&](const MeshDetail& m) { return m.variant == tile.variant ? 0 : -1; });
     }
-    list.push_back({tile.key, planet_->tree().shell(tile.index, tiles.exaggeration, tile.error_m),
-                    mesh == nullptr ? nullptr : mesh->walls.get()});
+    list.push_back({tile.key, planet_->tree().region(tile.index, tiles.exaggeration, tile.geometric_error_m),
+                    mesh == nullptr ? nullptr : mesh->occluders.get()});
   }
-  lod::occlude(list, view.eye.eye_m, is_above_ground(tiles, view), occlusion_margin_rad(view),
+  lod::occlude(list, view.camera.position_m, is_above_ground(tiles, view), occlusion_margin_rad(view),
                planet_->radius_m(), pass_, hidden);
 }
 
@@ -209,9 +209,9 @@ void TileScene::cover_without(const std::vector<std::uint8_t>& left_out, const c
   for (std::size_t n = 0; n < wanted_.tiles.size(); ++n) {
     if (left_out.empty() || left_out[n] == 0) needed.tiles.push_back(wanted_.tiles[n]);
   }
-  lod::substitute(options, planet_->tree(), view, needed, {there, this}, drawn_);
+  lod::select_fallbacks(options, planet_->tree(), view, needed, {there, this}, drawn_);
   if (drawn_.uncovered > 0 && load_roots(needed)) {
-    lod::substitute(options, planet_->tree(), view, needed, {there, this}, drawn_);
+    lod::select_fallbacks(options, planet_->tree(), view, needed, {there, this}, drawn_);
   }
   // From places in `needed` to places in wanted_.
   std::vector<std::size_t> places;
@@ -278,10 +278,10 @@ void TileScene::draw_what_is_there(const core::DrawRequest& request, const lod::
 
 void TileScene::drawn_in(double draw_ms) {
   if (!occluding_) {
-    worth_.not_used();
+    culling_.skip_frame();
     return;
   }
-  worth_.used({stats_.occlude_ms, static_cast<int>(hidden_.size()),
+  culling_.record_frame({stats_.occlude_ms, static_cast<int>(hidden_.size()),
                static_cast<int>(std::count(hidden_.begin(), hidden_.end(), 1)),
                draw_ms / std::max<double>(1.0, static_cast<double>(tiles_.size()))});
 }

@@ -1,4 +1,4 @@
-// Vectors and text on a transparent picture: all that the overlays need of Cairo, which nothing else includes.
+// Vectors and text on a transparent image: all that the overlays need of Cairo, which nothing else includes.
 // Positions are in pixels, x right, y down, pixel centres at +0.5.
 #pragma once
 

@@ -50,7 +50,7 @@ double turned(double azimuth_deg) {
   return rest < 360.0 - kSame_deg ? rest : 0.0;
 }
 
-// East and north of what the eye's axes are.
+// East and north of what the camera's axes are.
 struct Level {
   const mars::LocalFrame& frame;
 
@@ -66,12 +66,12 @@ glm::dvec2 level_of(double azimuth_deg) {
   return {a.sin, a.cos};
 }
 
-struct Picture {
+struct Image {
   core::SubRectangle part;
   glm::dvec2 principal;
   double focal_px;
 
-  explicit Picture(const core::View& view)
+  explicit Image(const core::View& view)
       : part(core::drawn_part(view)),
         principal(0.5 * view.width + view.principal_offset_px.x,
                   0.5 * view.height + view.principal_offset_px.y),
@@ -80,11 +80,11 @@ struct Picture {
 
 std::optional<double> level_yaw_deg(const core::View& view, const mars::LocalFrame& frame) {
   constexpr double kLevel = 1e-9;
-  if (std::abs(glm::dot(view.eye.axes.right, frame.up)) > kLevel ||
-      std::abs(glm::dot(view.eye.axes.forward, frame.up)) > kLevel) {
+  if (std::abs(glm::dot(view.camera.axes.right, frame.up)) > kLevel ||
+      std::abs(glm::dot(view.camera.axes.forward, frame.up)) > kLevel) {
     return std::nullopt;
   }
-  return azimuth_of(Level{frame}(view.eye.axes.forward));
+  return azimuth_of(Level{frame}(view.camera.axes.forward));
 }
 
 // Of a round view, in a row of its part.
@@ -92,28 +92,28 @@ std::vector<PlacedMark> round_row(const core::View& view, const mars::LocalFrame
                                   double label_px) {
   const auto yaw_deg = level_yaw_deg(view, frame);
   if (!yaw_deg) return {};
-  const Picture picture(view);
+  const Image image(view);
   const double px_per_deg = view.width / 360.0;
-  const double left_deg = *yaw_deg + (picture.part.x - picture.principal.x) / px_per_deg;
+  const double left_deg = *yaw_deg + (image.part.x - image.principal.x) / px_per_deg;
   std::vector<PlacedMark> placed;
   for (CompassMark& mark :
-       compass_marks(left_deg, picture.part.width / px_per_deg, compass_steps(px_per_deg, label_px))) {
+       compass_marks(left_deg, image.part.width / px_per_deg, compass_steps(px_per_deg, label_px))) {
     const double x = (mark.azimuth_deg - left_deg) * px_per_deg;
     placed.push_back({std::move(mark), {x, row_px}});
   }
   return placed;
 }
 
-// Of a perspective view along the straight line between two places of its full picture.
+// Of a perspective view along the straight line between two places of its full image.
 std::vector<PlacedMark> along(const core::View& view, const mars::LocalFrame& frame, glm::dvec2 from,
                               glm::dvec2 to, double label_px) {
   constexpr double kNearZenith = 0.035;  // sine of 2 degrees
-  const Picture picture(view);
+  const Image image(view);
   const Level level{frame};
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   const auto ray = [&](glm::dvec2 at) {
-    return level(axes.right * (at.x - picture.principal.x) + axes.up * (picture.principal.y - at.y) +
-                 axes.forward * picture.focal_px);
+    return level(axes.right * (at.x - image.principal.x) + axes.up * (image.principal.y - at.y) +
+                 axes.forward * image.focal_px);
   };
   // Seen from above, the line's rays end on a line; an azimuth is where it crosses that.
   const double length_px = glm::length(to - from);
@@ -122,7 +122,7 @@ std::vector<PlacedMark> along(const core::View& view, const mars::LocalFrame& fr
   const glm::dvec2 step = (ray(to) - start) / length_px;
   const double turning = cross(step, start);  // > 0: clockwise
   const double step_length = glm::length(step);
-  if (!(step_length > 0) || std::abs(turning) / step_length < kNearZenith * picture.focal_px) return {};
+  if (!(step_length > 0) || std::abs(turning) / step_length < kNearZenith * image.focal_px) return {};
   const double nearest_px = std::clamp(-glm::dot(start, step) / (step_length * step_length), 0.0, length_px);
   const glm::dvec2 nearest = start + step * nearest_px;
   const double px_per_deg = glm::dot(nearest, nearest) / std::abs(turning) * kRadiansPerDegree;
@@ -136,7 +136,7 @@ std::vector<PlacedMark> along(const core::View& view, const mars::LocalFrame& fr
     const glm::dvec2 way = level_of(mark.azimuth_deg);
     const double along_px = std::clamp(-cross(start, way) / cross(step, way), 0.0, length_px);
     const glm::dvec2 at = from + (to - from) * (along_px / length_px);
-    placed.push_back({std::move(mark), {at.x - picture.part.x, at.y - picture.part.y}});
+    placed.push_back({std::move(mark), {at.x - image.part.x, at.y - image.part.y}});
   }
   return placed;
 }
@@ -195,19 +195,19 @@ std::vector<PlacedMark> compass_row(const core::View& view, const mars::LocalFra
 }
 
 std::optional<HorizonLine> horizon_line(const core::View& view, const mars::LocalFrame& frame) {
-  const Picture picture(view);
-  const glm::dvec2 corner(picture.part.x, picture.part.y);
-  const glm::dvec2 size(picture.part.width, picture.part.height);
+  const Image image(view);
+  const glm::dvec2 corner(image.part.x, image.part.y);
+  const glm::dvec2 size(image.part.width, image.part.height);
   if (view.projection != core::Projection::kPerspective) {
-    const double row = picture.principal.y - corner.y;
+    const double row = image.principal.y - corner.y;
     if (row < 0 || row > size.y || !level_yaw_deg(view, frame)) return std::nullopt;
     return HorizonLine{{0, row}, {size.x, row}};
   }
   // Rays without an upward part: normal.x x + normal.y y + offset = 0.
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   const glm::dvec2 normal(glm::dot(axes.right, frame.up), -glm::dot(axes.up, frame.up));
   const double offset =
-      picture.focal_px * glm::dot(axes.forward, frame.up) + glm::dot(normal, corner - picture.principal);
+      image.focal_px * glm::dot(axes.forward, frame.up) + glm::dot(normal, corner - image.principal);
   const double squared = glm::dot(normal, normal);
   if (!(squared > 0)) return std::nullopt;
   // From its foot to the right, cut at the edges one after the other.

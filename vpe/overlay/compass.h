@@ -32,7 +32,7 @@ struct CompassSteps {
   double room_deg = 0;  // that one label takes
 };
 
-// As suits a picture of so many pixels a degree, where it has the fewest, and labels that are `label_px` wide:
+// As suits an image of so many pixels a degree, where it has the fewest, and labels that are `label_px` wide:
 // figures every 90, 45, 30, 15, 10, 5, 2, 1, 0.5 ... 0.001 degrees, two labels apart at least (90 always), and
 // two to six ticks to each. Both numbers are more than 0.
 CompassSteps compass_steps(double px_per_deg, double label_px);
@@ -48,12 +48,12 @@ struct PlacedMark {
 };
 
 // Where the azimuths that the middle row of a view shows are in that row. `frame` says what is north and up at
-// the eye. Empty where the row has no order of azimuths: within 2 degrees of the zenith or nadir, and in round
-// views whose eye is not level.
+// the camera. Empty where the row has no order of azimuths: within 2 degrees of the zenith or nadir, and in round
+// views whose camera is not level.
 std::vector<PlacedMark> compass_row(const core::View& view, const mars::LocalFrame& frame, double label_px);
 
 // The line of elevation 0 in a view's drawn part, left to right; nothing where it shows none, and in round
-// views whose eye is not level.
+// views whose camera is not level.
 struct HorizonLine {
   glm::dvec2 left;
   glm::dvec2 right;

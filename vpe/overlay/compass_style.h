@@ -1,4 +1,4 @@
-// How the compass looks, in pictures of any size.
+// How the compass looks, in images of any size.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace vpe::overlay {
 
 // Pixels.
-struct CompassLook {
+struct CompassStyle {
   double unit = 1;     // pixels at 720 rows
   bool is_up = false;  // ticks and labels are above their line, not below
 

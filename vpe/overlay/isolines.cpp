@@ -38,7 +38,7 @@ struct Corner {
 
 class Tracer {
  public:
-  Tracer(const Ground& ground, const std::vector<double>& values, const IsolineOptions& options)
+  Tracer(const VisibleTerrain& ground, const std::vector<double>& values, const IsolineOptions& options)
       : ground_(ground), values_(values), options_(options) {}
 
   std::vector<Isoline> run() {
@@ -195,7 +195,7 @@ class Tracer {
     }
   }
 
-  const Ground& ground_;
+  const VisibleTerrain& ground_;
   const std::vector<double>& values_;
   const IsolineOptions& options_;
   std::vector<Segment> segments_;
@@ -209,7 +209,7 @@ double Isoline::length_px() const {
   return sum;
 }
 
-std::vector<Isoline> isolines(const Ground& ground, const std::vector<double>& values,
+std::vector<Isoline> isolines(const VisibleTerrain& ground, const std::vector<double>& values,
                               const IsolineOptions& options) {
   return Tracer(ground, values, options).run();
 }

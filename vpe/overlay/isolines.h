@@ -1,4 +1,4 @@
-// Lines of equal value over the ground in a picture, as chains of points (marching squares).
+// Lines of equal value over the ground in an image, as chains of points (marching squares).
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct IsolineOptions {
 // `values`: of every pixel of the ground, straight between pixel centres. Each point of a line is where its
 // value is on the edge between two neighbouring pixels. In no particular order, but the same for the same
 // input.
-std::vector<Isoline> isolines(const Ground& ground, const std::vector<double>& values,
+std::vector<Isoline> isolines(const VisibleTerrain& ground, const std::vector<double>& values,
                               const IsolineOptions& options);
 
 }  // namespace vpe::overlay

@@ -1,4 +1,4 @@
-// The picture as a sheet to draw on: sizes that suit it, and which places are taken.
+// The image as a sheet to draw on: sizes that suit it, and which places are taken.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -21,11 +21,11 @@ struct Box {
 inline constexpr Ink kWhite{1, 1, 1, 1};
 inline constexpr Ink kShade{0, 0, 0, 0.65};
 
-class Sheet {
+class LabelLayout {
  public:
-  explicit Sheet(Canvas& canvas);
-  // Of a part of a picture, where a pixel at 720 rows is `unit` pixels.
-  Sheet(Canvas& canvas, double unit);
+  explicit LabelLayout(Canvas& canvas);
+  // Of a part of an image, where a pixel at 720 rows is `unit` pixels.
+  LabelLayout(Canvas& canvas, double unit);
 
   Canvas& canvas() { return canvas_; }
   // Pixels that are one pixel at 720 rows, and the least that can be seen where that matters.
@@ -34,7 +34,7 @@ class Sheet {
   Font font(double at_720 = 16, bool bold = false) const;
   double margin_px() const { return px(16); }
 
-  // What is left of the picture for what stands at its edges.
+  // What is left of the image for what stands at its edges.
   const Box& area() const { return area_; }
   void cut_top(double px) { area_.top += px; }
   void cut_bottom(double px) { area_.bottom -= px; }

@@ -13,18 +13,18 @@ struct LineLabel {
   double angle_rad;
   Lettering style;
 };
-std::vector<LineLabel> draw_graticule(Sheet& sheet, const Ground& ground, double step_deg);
-std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double step_m);
+std::vector<LineLabel> draw_graticule(LabelLayout& layout, const VisibleTerrain& ground, double step_deg);
+std::vector<LineLabel> draw_contours(LabelLayout& layout, const VisibleTerrain& ground, double step_m);
 // In gaps of the lines. Labels of the same text keep a distance.
-void draw_labels(Sheet& sheet, const std::vector<LineLabel>& labels);
+void draw_labels(LabelLayout& layout, const std::vector<LineLabel>& labels);
 
-void draw_title(Sheet& sheet, const std::string& title);
-void draw_time(Sheet& sheet, double time_s);
-void draw_legend(Sheet& sheet, const Scene& scene);
-void draw_scale_bar(Sheet& sheet, const Ground& ground);
-void draw_north_arrow(Sheet& sheet, const Ground& ground);
+void draw_title(LabelLayout& layout, const std::string& title);
+void draw_time(LabelLayout& layout, double time_s);
+void draw_legend(LabelLayout& layout, const Scene& scene);
+void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& ground);
+void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& ground);
 // Takes the edge for itself. With `distances` a name has its distance beside it (name_text()).
-void draw_compass(Sheet& sheet, const Scene& scene, core::CompassStrip where);
-void draw_names(Sheet& sheet, const Ground& ground, bool distances);
+void draw_compass(LabelLayout& layout, const Scene& scene, core::CompassStrip where);
+void draw_names(LabelLayout& layout, const VisibleTerrain& ground, bool distances);
 
 }  // namespace vpe::overlay

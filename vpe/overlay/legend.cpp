@@ -62,29 +62,29 @@ Figures figures_of(Colour colour, double low, double high) {
 
 }  // namespace
 
-void draw_legend(Sheet& sheet, const Scene& scene) {
+void draw_legend(LabelLayout& layout, const Scene& scene) {
   if (!shows_values(scene)) return;
-  Canvas& canvas = sheet.canvas();
+  Canvas& canvas = layout.canvas();
   const core::ColourScale scale(scene.appearance);
   if (scale.low() == scale.high()) return;  // a palette of one colour
   const Figures figures = figures_of(scene.appearance.colour, scale.low(), scale.high());
-  const Font font = sheet.font(14);
-  const Font title_font = sheet.font(14, true);
+  const Font font = layout.font(14);
+  const Font title_font = layout.font(14, true);
   const TextSize title = canvas.measure(figures.title, title_font);
   double ticks_px = 0;
   for (const Tick& tick : figures.ticks) ticks_px = std::max(ticks_px, canvas.measure(tick.text, font).width);
 
-  const double pad = sheet.px(8);
-  const double bar_width = std::max(sheet.px(16), 9.0);
-  const double bar_height = std::max(sheet.px(190), 95.0);
-  const double tick_px = sheet.px(4);
+  const double pad = layout.px(8);
+  const double bar_width = std::max(layout.px(16), 9.0);
+  const double bar_height = std::max(layout.px(190), 95.0);
+  const double tick_px = layout.px(4);
   const double width = 2 * pad + std::max(title.width, bar_width + 3 * tick_px + ticks_px);
   const double height = 2 * pad + 1.4 * title.height + bar_height + 0.5 * title.height;
-  const double right = sheet.area().right - sheet.margin_px();
-  const double bottom = sheet.area().bottom - sheet.margin_px();
+  const double right = layout.area().right - layout.margin_px();
+  const double bottom = layout.area().bottom - layout.margin_px();
   const Box box{right - width, bottom - height, right, bottom};
-  if (!sheet.is_free(box)) return;
-  sheet.take(box.grown(sheet.px(4)));
+  if (!layout.is_free(box)) return;
+  layout.take(box.grown(layout.px(4)));
   const auto rectangle = [&](const Box& b, const Ink& ink) {
     const std::vector<glm::dvec2> corners{
         {b.left, b.top}, {b.right, b.top}, {b.right, b.bottom}, {b.left, b.bottom}};
@@ -92,7 +92,7 @@ void draw_legend(Sheet& sheet, const Scene& scene) {
   };
   canvas.clear({0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)}, {width, height}, 0);
   rectangle(box, {0, 0, 0, 0.6});
-  sheet.label(figures.title, {0.5 * (box.left + box.right), box.top + pad + 0.5 * title.height}, title_font);
+  layout.label(figures.title, {0.5 * (box.left + box.right), box.top + pad + 0.5 * title.height}, title_font);
 
   // Whole pixels, each with the colour of its middle.
   const double left = std::round(box.left + pad);
@@ -109,9 +109,9 @@ void draw_legend(Sheet& sheet, const Scene& scene) {
     const double y = top + rows * (1 - at);
     const double x = left + std::round(bar_width) + 1;
     const std::vector<glm::dvec2> mark{{x, y}, {x + tick_px, y}};
-    canvas.line(mark, false, sheet.line_px(1.3), kWhite);
+    canvas.line(mark, false, layout.line_px(1.3), kWhite);
     const TextSize size = canvas.measure(tick.text, font);
-    sheet.label(tick.text, {x + 2 * tick_px + ticks_px - 0.5 * size.width, y}, font);
+    layout.label(tick.text, {x + 2 * tick_px + ticks_px - 0.5 * size.width, y}, font);
   }
 }
 

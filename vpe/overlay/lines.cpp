@@ -27,20 +27,20 @@ constexpr Ink kContourHalo{1, 0.93, 0.80, 0.30};
 constexpr double kInside_px = 1e-6;  // off the border, whatever is rounded
 
 // Of the gap in a line, beyond the text.
-double label_room_px(const Sheet& sheet) { return sheet.px(6); }
+double label_room_px(const LabelLayout& layout) { return layout.px(6); }
 
 // Opacity by the distance to the next line.
-double opacity(double spacing_px, const Sheet& sheet) {
-  return std::clamp((spacing_px - sheet.line_px(2)) / (sheet.line_px(5) - sheet.line_px(2)), 0.0, 1.0);
+double opacity(double spacing_px, const LabelLayout& layout) {
+  return std::clamp((spacing_px - layout.line_px(2)) / (layout.line_px(5) - layout.line_px(2)), 0.0, 1.0);
 }
 
 // Calls draw(points, closed, opacity) for each stretch of a line that has one opacity, of eight.
 template <class Draw>
-void for_stretches(const Isoline& line, const Sheet& sheet, const Draw& draw) {
+void for_stretches(const Isoline& line, const LabelLayout& layout, const Draw& draw) {
   constexpr int kShades = 8;
   const auto shade = [&](std::size_t n) {
     const double trust = line.trust.empty() ? 1.0 : line.trust[n];
-    return static_cast<int>(std::lround(kShades * trust * opacity(line.spacing_px[n], sheet)));
+    return static_cast<int>(std::lround(kShades * trust * opacity(line.spacing_px[n], layout)));
   };
   std::size_t begin = 0;
   for (std::size_t n = 1; n <= line.points.size(); ++n) {
@@ -57,20 +57,20 @@ void for_stretches(const Isoline& line, const Sheet& sheet, const Draw& draw) {
 }
 
 // Crumbs are noise of the ground, not lines to read.
-void drop_crumbs(std::vector<Isoline>& lines, const Sheet& sheet) {
-  std::erase_if(lines, [&](const Isoline& line) { return line.length_px() < sheet.line_px(10); });
+void drop_crumbs(std::vector<Isoline>& lines, const LabelLayout& layout) {
+  std::erase_if(lines, [&](const Isoline& line) { return line.length_px() < layout.line_px(10); });
 }
 
-void draw_lines(Sheet& sheet, const std::vector<Isoline>& lines, const LineStyle& style) {
+void draw_lines(LabelLayout& layout, const std::vector<Isoline>& lines, const LineStyle& style) {
   const auto pass = [&](double width_px, const Ink& ink) {
     for (const Isoline& line : lines) {
-      for_stretches(line, sheet, [&](std::span<const glm::dvec2> points, bool closed, double share) {
-        sheet.canvas().line(points, closed, width_px, {ink.r, ink.g, ink.b, ink.a * share});
+      for_stretches(line, layout, [&](std::span<const glm::dvec2> points, bool closed, double share) {
+        layout.canvas().line(points, closed, width_px, {ink.r, ink.g, ink.b, ink.a * share});
       });
     }
   };
   // All halos below all lines.
-  pass(style.width_px + 2 * sheet.line_px(1), style.halo);
+  pass(style.width_px + 2 * layout.line_px(1), style.halo);
   pass(style.width_px, style.ink);
 }
 
@@ -95,49 +95,49 @@ std::size_t halfway(const Isoline& line) {
   return 0;
 }
 
-// Where lines leave the picture; those that never do are labelled halfway.
+// Where lines leave the image; those that never do are labelled halfway.
 template <class TextOf>
-void label_graticule(std::vector<LineLabel>& labels, Sheet& sheet, const std::vector<Isoline>& lines,
+void label_graticule(std::vector<LineLabel>& labels, LabelLayout& layout, const std::vector<Isoline>& lines,
                      const TextOf& text_of) {
-  const Lettering style{sheet.font(14), {1, 1, 1, 1}, kShade};
-  const glm::dvec2 size(sheet.canvas().width(), sheet.canvas().height());
+  const Lettering style{layout.font(14), {1, 1, 1, 1}, kShade};
+  const glm::dvec2 size(layout.canvas().width(), layout.canvas().height());
   std::set<std::int64_t> labelled;
   const auto add = [&](const Isoline& line, glm::dvec2 at) {
     const std::string text = text_of(line.multiple);
-    const TextSize box = sheet.canvas().measure(text, style.font);
+    const TextSize box = layout.canvas().measure(text, style.font);
     // No stub of the line remains between its label and the border.
-    const glm::dvec2 room(0.5 * (box.width + label_room_px(sheet)) + kInside_px, 0.5 * box.height + kInside_px);
+    const glm::dvec2 room(0.5 * (box.width + label_room_px(layout)) + kInside_px, 0.5 * box.height + kInside_px);
     if (2 * room.x > size.x || 2 * room.y > size.y) return;
     labels.push_back({text, glm::clamp(at, room, size - room), 0, style});
     labelled.insert(line.multiple);
   };
   for (const Isoline& line : lines) {
-    if (line.closed || line.length_px() < sheet.px(40)) continue;
+    if (line.closed || line.length_px() < layout.px(40)) continue;
     for (const std::size_t n : {std::size_t{0}, line.points.size() - 1}) {
       const glm::dvec2 p = line.points[n];
       const bool leaves = p.x < 1 || p.y < 1 || p.x > size.x - 1 || p.y > size.y - 1;
-      if (leaves && opacity(line.spacing_px[n], sheet) > 0.5) add(line, p);
+      if (leaves && opacity(line.spacing_px[n], layout) > 0.5) add(line, p);
     }
   }
   for (const Isoline& line : lines) {
-    if (labelled.contains(line.multiple) || line.length_px() < sheet.px(80)) continue;
+    if (labelled.contains(line.multiple) || line.length_px() < layout.px(80)) continue;
     const std::size_t n = halfway(line);
-    if (opacity(line.spacing_px[n], sheet) > 0.5) add(line, line.points[n]);
+    if (opacity(line.spacing_px[n], layout) > 0.5) add(line, line.points[n]);
   }
 }
 
 // Stretches of a line about `length_px` long that are straight enough to write on.
-struct Spot {
+struct Hotspot {
   glm::dvec2 at;
   double angle_rad;
 };
-std::vector<Spot> spots_on(const Isoline& line, double length_px, double apart_px, const Sheet& sheet) {
+std::vector<Hotspot> hotspots_on(const Isoline& line, double length_px, double apart_px, const LabelLayout& layout) {
   constexpr double kStraight = 0.93;  // of the way along the line, as the crow flies
   std::vector<double> along(line.points.size(), 0.0);
   for (std::size_t n = 1; n < along.size(); ++n) {
     along[n] = along[n - 1] + glm::length(line.points[n] - line.points[n - 1]);
   }
-  std::vector<Spot> spots;
+  std::vector<Hotspot> hotspots;
   double wait_until = 0.25 * apart_px;
   std::size_t end = 0;
   for (std::size_t n = 0; n < along.size(); ++n) {
@@ -147,29 +147,29 @@ std::vector<Spot> spots_on(const Isoline& line, double length_px, double apart_p
     const glm::dvec2 way = line.points[end] - line.points[n];
     const std::size_t middle = (n + end) / 2;
     if (glm::length(way) < kStraight * (along[end] - along[n])) continue;
-    if (opacity(line.spacing_px[middle], sheet) < 1 || (!line.trust.empty() && line.trust[middle] < 1))
+    if (opacity(line.spacing_px[middle], layout) < 1 || (!line.trust.empty() && line.trust[middle] < 1))
       continue;
     double angle = std::atan2(way.y, way.x);
     if (std::abs(angle) > 0.5 * mars::kPi) angle -= std::copysign(mars::kPi, angle);
-    spots.push_back({line.points[middle], angle});
+    hotspots.push_back({line.points[middle], angle});
     wait_until = along[n] + apart_px;
   }
-  return spots;
+  return hotspots;
 }
 
 }  // namespace
 
-std::vector<LineLabel> draw_graticule(Sheet& sheet, const Ground& ground, double step_deg) {
+std::vector<LineLabel> draw_graticule(LabelLayout& layout, const VisibleTerrain& ground, double step_deg) {
   std::vector<LineLabel> labels;
-  const LineStyle style{sheet.line_px(1.3), kGraticule, kGraticuleHalo};
+  const LineStyle style{layout.line_px(1.3), kGraticule, kGraticuleHalo};
   const auto family = [&](const std::vector<double>& values, double period, const auto& text) {
     IsolineOptions options;
     options.step = step_deg > 0 ? step_deg : graticule_step(spread_of(values, period));
     options.period = period;
     std::vector<Isoline> lines = isolines(ground, values, options);
-    drop_crumbs(lines, sheet);
-    draw_lines(sheet, lines, style);
-    label_graticule(labels, sheet, lines, [&](std::int64_t multiple) {
+    drop_crumbs(lines, layout);
+    draw_lines(layout, lines, style);
+    label_graticule(labels, layout, lines, [&](std::int64_t multiple) {
       return text(static_cast<double>(multiple) * options.step, options.step);
     });
   };
@@ -183,22 +183,22 @@ namespace {
 // Elevations are to be believed where they are off by this part of the step at most.
 constexpr double kTrusted = 2;
 
-void weigh(std::vector<Isoline>& lines, const Ground& ground, double step_m) {
+void weigh(std::vector<Isoline>& lines, const VisibleTerrain& ground, double step_m) {
   if (ground.scene().shift_px <= 0) return;
   for (Isoline& line : lines) {
     line.trust.reserve(line.points.size());
     for (const glm::dvec2& p : line.points) {
-      const double error_m = ground.error_m(ground.index(static_cast<int>(p.x), static_cast<int>(p.y)));
-      line.trust.push_back(std::clamp((step_m / error_m - 1) / (kTrusted - 1), 0.0, 1.0));
+      const double deviation_m = ground.deviation_m(ground.index(static_cast<int>(p.x), static_cast<int>(p.y)));
+      line.trust.push_back(std::clamp((step_m / deviation_m - 1) / (kTrusted - 1), 0.0, 1.0));
     }
   }
 }
 
 // In the middle of all pixels with ground.
-double usual_error_m(const Ground& ground) {
+double usual_error_m(const VisibleTerrain& ground) {
   std::vector<double> errors_m;
   for (std::size_t p = 0; p < ground.scene().range_m.size(); p += 97) {
-    if (ground.is_ground(p)) errors_m.push_back(ground.error_m(p));
+    if (ground.is_ground(p)) errors_m.push_back(ground.deviation_m(p));
   }
   if (errors_m.empty()) return 0;
   const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
@@ -208,7 +208,7 @@ double usual_error_m(const Ground& ground) {
 
 }  // namespace
 
-std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double step_m) {
+std::vector<LineLabel> draw_contours(LabelLayout& layout, const VisibleTerrain& ground, double step_m) {
   constexpr int kHeavy = 5;
   constexpr double kMostLines = 20;
   constexpr double kSmallestStep_m = 0.1;
@@ -231,42 +231,42 @@ std::vector<LineLabel> draw_contours(Sheet& sheet, const Ground& ground, double 
   std::vector<Isoline> heavy = isolines(ground, elevations_m, options);
   weigh(light, ground, step);
   weigh(heavy, ground, options.step);
-  drop_crumbs(light, sheet);
-  drop_crumbs(heavy, sheet);
-  draw_lines(sheet, light, {sheet.line_px(1.0), kContour, kContourHalo});
-  draw_lines(sheet, heavy, {sheet.line_px(2.0), kContour, kContourHalo});
+  drop_crumbs(light, layout);
+  drop_crumbs(heavy, layout);
+  draw_lines(layout, light, {layout.line_px(1.0), kContour, kContourHalo});
+  draw_lines(layout, heavy, {layout.line_px(2.0), kContour, kContourHalo});
 
   std::vector<LineLabel> labels;
-  const Lettering style{sheet.font(13), {0.18, 0.08, 0.02, 1}, {1, 0.95, 0.86, 0.85}};
+  const Lettering style{layout.font(13), {0.18, 0.08, 0.02, 1}, {1, 0.95, 0.86, 0.85}};
   // The longest lines first.
   std::stable_sort(heavy.begin(), heavy.end(),
                    [](const Isoline& a, const Isoline& b) { return a.points.size() > b.points.size(); });
   for (const Isoline& line : heavy) {
     const double value_m = static_cast<double>(line.multiple) * options.step;
     const std::string text = number_text(value_m, decimals_of(step)) + " m";
-    const double length_px = 1.15 * sheet.canvas().measure(text, style.font).width;
-    for (const Spot& spot : spots_on(line, length_px, sheet.px(450), sheet)) {
-      labels.push_back({text, spot.at, spot.angle_rad, style});
+    const double length_px = 1.15 * layout.canvas().measure(text, style.font).width;
+    for (const Hotspot& hotspot : hotspots_on(line, length_px, layout.px(450), layout)) {
+      labels.push_back({text, hotspot.at, hotspot.angle_rad, style});
     }
   }
   return labels;
 }
 
-void draw_labels(Sheet& sheet, const std::vector<LineLabel>& labels) {
-  const double apart_px = sheet.px(220);
+void draw_labels(LabelLayout& layout, const std::vector<LineLabel>& labels) {
+  const double apart_px = layout.px(220);
   std::vector<const LineLabel*> drawn;
   for (const LineLabel& label : labels) {
-    TextSize size = sheet.canvas().measure(label.text, label.style.font);
-    size.width += label_room_px(sheet);
+    TextSize size = layout.canvas().measure(label.text, label.style.font);
+    size.width += label_room_px(layout);
     const Box box = Box::about(label.at, size, label.angle_rad);
     const bool again = std::any_of(drawn.begin(), drawn.end(), [&](const LineLabel* other) {
       return other->text == label.text && glm::length(other->at - label.at) < apart_px;
     });
-    if (again || !sheet.is_free(box)) continue;
-    sheet.take(box);
+    if (again || !layout.is_free(box)) continue;
+    layout.take(box);
     drawn.push_back(&label);
-    sheet.canvas().clear(label.at, size, label.angle_rad);
-    sheet.canvas().text(label.text, label.at, label.angle_rad, label.style);
+    layout.canvas().clear(label.at, size, label.angle_rad);
+    layout.canvas().text(label.text, label.at, label.angle_rad, label.style);
   }
 }
 

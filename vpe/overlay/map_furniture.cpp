@@ -10,10 +10,10 @@ namespace vpe::overlay {
 
 namespace {
 
-// A line of text in the middle of the picture's width; in smaller letters, then cut, when it is too long.
-void draw_middle(Sheet& sheet, std::string text, Font font, bool at_top) {
-  Canvas& canvas = sheet.canvas();
-  const double most_px = canvas.width() - 2 * sheet.margin_px();
+// A line of text in the middle of the image's width; in smaller letters, then cut, when it is too long.
+void draw_middle(LabelLayout& layout, std::string text, Font font, bool at_top) {
+  Canvas& canvas = layout.canvas();
+  const double most_px = canvas.width() - 2 * layout.margin_px();
   TextSize size = canvas.measure(text, font);
   if (size.width > most_px) {
     font.size_px *= std::max(0.6, most_px / size.width);
@@ -28,43 +28,43 @@ void draw_middle(Sheet& sheet, std::string text, Font font, bool at_top) {
     text = whole.substr(0, kept) + "\u2026";
     size = canvas.measure(text, font);
   }
-  const double y = at_top ? sheet.area().top + sheet.margin_px() + 0.5 * size.height
-                          : sheet.area().bottom - sheet.margin_px() - 0.5 * size.height;
+  const double y = at_top ? layout.area().top + layout.margin_px() + 0.5 * size.height
+                          : layout.area().bottom - layout.margin_px() - 0.5 * size.height;
   const glm::dvec2 centre(0.5 * canvas.width(), y);
   const Box box = Box::about(centre, size);
-  if (!sheet.is_free(box)) return;
-  sheet.take(box.grown(sheet.px(4)));
+  if (!layout.is_free(box)) return;
+  layout.take(box.grown(layout.px(4)));
   canvas.clear(centre, size, 0);
-  sheet.label(text, centre, font);
+  layout.label(text, centre, font);
 }
 
-// Where the picture's centre looks at the ground.
+// Where the image's centre looks at the ground.
 struct Centre {
   glm::dvec3 point_m;
   glm::dvec3 ray;
   bool is_ground;
 };
 
-Centre centre_of(const Ground& ground) {
+Centre centre_of(const VisibleTerrain& ground) {
   const int x = ground.width() / 2;
   const int y = ground.height() / 2;
   const core::View& view = ground.scene().view;
   const core::SubRectangle part = core::drawn_part(view);
   const glm::dvec3 ray = core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5);
   if (ground.is_ground(ground.index(x, y))) return {ground.point(x, y), ray, true};
-  return {view.eye.eye_m, ray, false};
+  return {view.camera.position_m, ray, false};
 }
 
 }  // namespace
 
-void draw_title(Sheet& sheet, const std::string& title) {
-  draw_middle(sheet, title, sheet.font(24, true), true);
+void draw_title(LabelLayout& layout, const std::string& title) {
+  draw_middle(layout, title, layout.font(24, true), true);
 }
 
-void draw_time(Sheet& sheet, double time_s) { draw_middle(sheet, time_text(time_s), sheet.font(18), false); }
+void draw_time(LabelLayout& layout, double time_s) { draw_middle(layout, time_text(time_s), layout.font(18), false); }
 
-void draw_scale_bar(Sheet& sheet, const Ground& ground) {
-  Canvas& canvas = sheet.canvas();
+void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& ground) {
+  Canvas& canvas = layout.canvas();
   const Centre centre = centre_of(ground);
   if (!centre.is_ground) return;
   const core::View& view = ground.scene().view;
@@ -72,28 +72,28 @@ void draw_scale_bar(Sheet& sheet, const Ground& ground) {
   const double x = part.x + ground.width() / 2 + 0.5;
   const double y = part.y + ground.height() / 2 + 0.5;
   const glm::dvec3 across = core::pixel_ray(view, x + 0.5, y) - core::pixel_ray(view, x - 0.5, y);
-  const double m_per_px = glm::length(centre.point_m - view.eye.eye_m) * glm::length(across);
+  const double m_per_px = glm::length(centre.point_m - view.camera.position_m) * glm::length(across);
   const double length_m = round_below(0.22 * canvas.width() * m_per_px);
   const double length_px = length_m / m_per_px;
 
-  const Font font = sheet.font(16);
+  const Font font = layout.font(16);
   const std::string text = length_text(length_m, length_m);
   const std::string where = "at the centre";
-  const Font small = sheet.font(13);
+  const Font small = layout.font(13);
   const double text_px = std::max(canvas.measure(text, font).width, canvas.measure(where, small).width);
-  const double bar_px = std::max(sheet.px(6), 4.0);
-  const double left = sheet.margin_px() + std::max(0.0, 0.5 * (text_px - length_px));
-  const double bottom = sheet.area().bottom - sheet.margin_px();
+  const double bar_px = std::max(layout.px(6), 4.0);
+  const double left = layout.margin_px() + std::max(0.0, 0.5 * (text_px - length_px));
+  const double bottom = layout.area().bottom - layout.margin_px();
   const double row_px = canvas.measure(where, small).height;
   const double upper_px = canvas.measure(text, font).height;
-  const double top = bottom - row_px - bar_px - upper_px - 2 * sheet.px(2);
-  const Box box{sheet.margin_px() - sheet.px(2), top, left + std::max(length_px, text_px), bottom};
-  if (!sheet.is_free(box)) return;
-  sheet.take(box.grown(sheet.px(6)));
+  const double top = bottom - row_px - bar_px - upper_px - 2 * layout.px(2);
+  const Box box{layout.margin_px() - layout.px(2), top, left + std::max(length_px, text_px), bottom};
+  if (!layout.is_free(box)) return;
+  layout.take(box.grown(layout.px(6)));
   canvas.clear({0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)},
                {box.right - box.left, box.bottom - box.top}, 0);
   // Black and white in four fields, white first.
-  const double bar_bottom = bottom - row_px - sheet.px(2);
+  const double bar_bottom = bottom - row_px - layout.px(2);
   const auto field = [&](double from, double to, double grow, const Ink& ink) {
     const double l = left + from * length_px - grow;
     const double r = left + to * length_px + grow;
@@ -102,66 +102,66 @@ void draw_scale_bar(Sheet& sheet, const Ground& ground) {
     const std::vector<glm::dvec2> corners{{l, t}, {r, t}, {r, b}, {l, b}};
     canvas.polygon(corners, ink);
   };
-  const double rim = sheet.line_px(1.3);
+  const double rim = layout.line_px(1.3);
   field(0, 1, 2 * rim, {0, 0, 0, 0.8});
   field(0, 1, rim, kWhite);
   for (const double from : {0.25, 0.75}) field(from, from + 0.25, 0, {0, 0, 0, 1});
   const double middle = left + 0.5 * length_px;
-  sheet.label(text, {middle, top + 0.5 * upper_px}, font);
-  sheet.label(where, {middle, bottom - 0.5 * row_px}, small);
+  layout.label(text, {middle, top + 0.5 * upper_px}, font);
+  layout.label(where, {middle, bottom - 0.5 * row_px}, small);
 }
 
-void draw_north_arrow(Sheet& sheet, const Ground& ground) {
+void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& ground) {
   constexpr double kLeastTilt = 0.5;  // sine of 30 degrees
   constexpr double kPole = 1e-7;
   const Centre centre = centre_of(ground);
-  const mars::Axes& axes = ground.scene().view.eye.axes;
+  const mars::Axes& axes = ground.scene().view.camera.axes;
   const glm::dvec3 up = glm::normalize(centre.point_m);
   if (std::hypot(up.x, up.y) < kPole) return;
   const mars::LocalFrame frame = mars::local_frame(mars::lon_lat(up));
-  // Away from the eye along the ground; looking straight down, what is up in the picture.
+  // Away from the camera along the ground; looking straight down, what is up in the image.
   glm::dvec3 away = centre.ray - up * glm::dot(centre.ray, up);
   if (glm::length(away) < 1e-6) away = axes.up - up * glm::dot(axes.up, up);
   away = glm::normalize(away);
   const glm::dvec3 across = glm::cross(away, up);
   const double tilt = std::max(kLeastTilt, -glm::dot(centre.ray, up));
-  // `across` is square to the line of sight: the picture shows it unshortened, and turned by the roll.
+  // `across` is square to the line of sight: the image shows it unshortened, and turned by the roll.
   const glm::dvec2 roll = glm::normalize(glm::dvec2(glm::dot(across, axes.right), glm::dot(across, axes.up)));
-  const double radius_px = std::max(sheet.px(30), 15.0);
+  const double radius_px = std::max(layout.px(30), 15.0);
   const auto on_disc = [&](glm::dvec2 east_north) {
     const glm::dvec3 v = frame.east * east_north.x + frame.north * east_north.y;
     const glm::dvec2 flat(glm::dot(v, across), glm::dot(v, away) * tilt);
-    // The picture's y runs down.
+    // The image's y runs down.
     return glm::dvec2(flat.x * roll.x - flat.y * roll.y, -(flat.x * roll.y + flat.y * roll.x)) * radius_px;
   };
-  const Font font = sheet.font(18, true);
-  const double letter_px = sheet.canvas().measure("N", font).height;
-  const double half_px = radius_px + letter_px + sheet.px(2);
-  const glm::dvec2 middle(sheet.area().right - sheet.margin_px() - half_px,
-                          sheet.area().top + sheet.margin_px() + half_px);
+  const Font font = layout.font(18, true);
+  const double letter_px = layout.canvas().measure("N", font).height;
+  const double half_px = radius_px + letter_px + layout.px(2);
+  const glm::dvec2 middle(layout.area().right - layout.margin_px() - half_px,
+                          layout.area().top + layout.margin_px() + half_px);
   const Box box = Box::about(middle, {2 * half_px, 2 * half_px});
-  if (!sheet.is_free(box)) return;
-  sheet.take(box);
+  if (!layout.is_free(box)) return;
+  layout.take(box);
   std::vector<glm::dvec2> rim;
   for (int n = 0; n <= 48; ++n) {
     const mars::SinCos a = mars::sin_cos_deg(n * 7.5);
     rim.push_back(middle + on_disc({a.sin, a.cos}));
   }
-  sheet.canvas().polygon(rim, {0, 0, 0, 0.25});
-  sheet.outlined(rim, sheet.line_px(1.5), kWhite, kShade);
+  layout.canvas().polygon(rim, {0, 0, 0, 0.25});
+  layout.outlined(rim, layout.line_px(1.5), kWhite, kShade);
   const glm::dvec2 tip = middle + on_disc({0, 0.94});
   const glm::dvec2 tail = middle + on_disc({0, -0.5});
   const auto half = [&](double side, const Ink& ink) {
     const std::vector<glm::dvec2> corners{tip, middle + on_disc({0.5 * side, -0.8}), tail};
-    sheet.canvas().polygon(corners, ink);
-    sheet.canvas().line(corners, true, sheet.line_px(1), {0, 0, 0, 1});
+    layout.canvas().polygon(corners, ink);
+    layout.canvas().line(corners, true, layout.line_px(1), {0, 0, 0, 1});
   };
   half(-1, kWhite);
   half(1, {0.75, 0.1, 0.05, 1});
   // Beyond the tip, upright, however short the arrow is.
   const glm::dvec2 way = on_disc({0, 1});
   const double length = glm::length(way);
-  sheet.label("N", middle + way / length * (length + 0.5 * letter_px), font);
+  layout.label("N", middle + way / length * (length + 0.5 * letter_px), font);
 }
 
 }  // namespace vpe::overlay

@@ -16,30 +16,30 @@ constexpr double kLowest_m = -12e3;
 constexpr std::size_t kMostNames = 100;
 
 // Whether a place could be above the horizon of a sphere under all ground.
-bool may_be_seen(const Ground& ground, const glm::dvec3& up) {
+bool may_be_seen(const VisibleTerrain& ground, const glm::dvec3& up) {
   const Scene& scene = ground.scene();
   const double exaggeration = scene.appearance.exaggeration;
   const double lowest = scene.radius_m + kLowest_m * exaggeration;
   if (lowest <= 0) return true;
-  const glm::dvec3& eye = scene.view.eye.eye_m;
+  const glm::dvec3& camera = scene.view.camera.position_m;
   const auto reach = [lowest](double radius_m) { return std::acos(std::min(1.0, lowest / radius_m)); };
-  const double most = reach(glm::length(eye)) + reach(scene.radius_m + kHighest_m * exaggeration);
-  return mars::angle_between_rad(up, eye) <= most;
+  const double most = reach(glm::length(camera)) + reach(scene.radius_m + kHighest_m * exaggeration);
+  return mars::angle_between_rad(up, camera) <= most;
 }
 
-// Whether the segment between the lowest and the highest ground there is comes near the picture.
-bool may_be_inside(const Ground& ground, const glm::dvec3& up) {
+// Whether the segment between the lowest and the highest ground there is comes near the image.
+bool may_be_inside(const VisibleTerrain& ground, const glm::dvec3& up) {
   const Scene& scene = ground.scene();
   const double exaggeration = scene.appearance.exaggeration;
-  const auto low = ground.to_picture(up * (scene.radius_m + kLowest_m * exaggeration));
-  const auto high = ground.to_picture(up * (scene.radius_m + kHighest_m * exaggeration));
+  const auto low = ground.to_image(up * (scene.radius_m + kLowest_m * exaggeration));
+  const auto high = ground.to_image(up * (scene.radius_m + kHighest_m * exaggeration));
   if (!low || !high || scene.view.projection != core::Projection::kPerspective) return true;
   const glm::dvec2 least = glm::min(*low, *high);
   const glm::dvec2 most = glm::max(*low, *high);
   return most.x >= 0 && most.y >= 0 && least.x <= ground.width() && least.y <= ground.height();
 }
 
-bool is_hidden(const Ground& ground, glm::dvec2 at, double distance_m) {
+bool is_hidden(const VisibleTerrain& ground, glm::dvec2 at, double distance_m) {
   const auto x = static_cast<int>(at.x);
   const auto y = static_cast<int>(at.y);
   for (int j = std::max(0, y - 1); j <= std::min(ground.height() - 1, y + 1); ++j) {
@@ -53,11 +53,11 @@ bool is_hidden(const Ground& ground, glm::dvec2 at, double distance_m) {
 
 }  // namespace
 
-void draw_names(Sheet& sheet, const Ground& ground, bool distances) {
+void draw_names(LabelLayout& layout, const VisibleTerrain& ground, bool distances) {
   constexpr double kSmallest_px = 4;
   const Scene& scene = ground.scene();
-  const Font font = sheet.font(14);
-  const double dot_px = sheet.line_px(2.4);
+  const Font font = layout.font(14);
+  const double dot_px = layout.line_px(2.4);
   const double f = core::focal_px(scene.view);
   std::size_t count = 0;
   for (const core::Place& place : scene.places) {
@@ -65,37 +65,37 @@ void draw_names(Sheet& sheet, const Ground& ground, bool distances) {
     if (!may_be_seen(ground, up) || !may_be_inside(ground, up)) continue;
     const double height_m = scene.height_m ? scene.height_m(place) : 0.0;
     const glm::dvec3 point_m = up * (scene.radius_m + height_m * scene.appearance.exaggeration);
-    const std::optional<glm::dvec2> at = ground.to_picture(point_m);
+    const std::optional<glm::dvec2> at = ground.to_image(point_m);
     if (!at || at->x < 0 || at->y < 0 || at->x >= ground.width() || at->y >= ground.height()) continue;
-    const double distance_m = glm::length(point_m - scene.view.eye.eye_m);
-    if (place.diameter_m > 0 && place.diameter_m * f < sheet.px(kSmallest_px) * distance_m) continue;
+    const double distance_m = glm::length(point_m - scene.view.camera.position_m);
+    if (place.diameter_m > 0 && place.diameter_m * f < layout.px(kSmallest_px) * distance_m) continue;
     if (is_hidden(ground, *at, distance_m)) continue;
 
     const Box dot = Box::about(*at, {2 * dot_px, 2 * dot_px});
     const std::string text = distances ? name_text(place.name, distance_m) : place.name;
-    const TextSize size = sheet.canvas().measure(text, font);
+    const TextSize size = layout.canvas().measure(text, font);
     const double beside = 0.5 * size.width + 2.2 * dot_px;
     const double over = 0.5 * size.height + 1.2 * dot_px;
     const std::array<glm::dvec2, 4> offsets{glm::dvec2{beside, 0}, glm::dvec2{-beside, 0}, glm::dvec2{0, -over},
                                             glm::dvec2{0, over}};
-    if (!sheet.is_free(dot)) continue;
+    if (!layout.is_free(dot)) continue;
     const auto offset = std::find_if(offsets.begin(), offsets.end(), [&](const glm::dvec2& o) {
-      return sheet.is_free(Box::about(*at + o, size));
+      return layout.is_free(Box::about(*at + o, size));
     });
     if (offset == offsets.end()) continue;
-    sheet.take(dot.grown(sheet.px(2)));
-    sheet.take(Box::about(*at + *offset, size).grown(sheet.px(4)));
+    layout.take(dot.grown(layout.px(2)));
+    layout.take(Box::about(*at + *offset, size).grown(layout.px(4)));
     const auto disc = [&](double radius_px, const Ink& ink) {
       std::vector<glm::dvec2> rim;
       for (int n = 0; n < 16; ++n) {
         const mars::SinCos a = mars::sin_cos_deg(n * 22.5);
         rim.push_back(*at + glm::dvec2(a.cos, a.sin) * radius_px);
       }
-      sheet.canvas().polygon(rim, ink);
+      layout.canvas().polygon(rim, ink);
     };
-    disc(dot_px + sheet.line_px(1), kShade);
+    disc(dot_px + layout.line_px(1), kShade);
     disc(dot_px, kWhite);
-    sheet.label(text, *at + *offset, font);
+    layout.label(text, *at + *offset, font);
     if (++count == kMostNames) return;
   }
 }

@@ -23,23 +23,23 @@ struct Mark {
 
 class Layout {
  public:
-  Layout(const core::Overlays& overlays, const WideScene& scene)
+  Layout(const core::Overlays& overlays, const PanoramaScene& scene)
       : overlays_(overlays),
         scene_(scene),
-        unit_(wide_unit(scene)),
+        unit_(panorama_unit(scene)),
         ruler_(1, 1),
         size_(static_cast<double>(scene.width_px), static_cast<double>(scene.height_px)),
-        decals_(scene.width_px, scene.height_px, scene.width_px == scene.turn_px ? scene.turn_px : 0),
+        sprites_(scene.width_px, scene.height_px, scene.width_px == scene.turn_px ? scene.turn_px : 0),
         bottom_px_(size_.y) {}
 
-  Decals run() {
+  SpriteLayer run() {
     if (overlays_.compass != CompassStrip::kOff) compass();
     if (!overlays_.title.empty()) title();
     if (overlays_.legend) legend();
     names();
     // Last, where there is still room.
     for (const Mark& m : figures_) label(m);
-    return std::move(decals_);
+    return std::move(sprites_);
   }
 
  private:
@@ -75,7 +75,7 @@ class Layout {
     if (where != CompassStrip::kHorizon) {
       line_y = look_.is_up ? height_px : size_.y - height_px;
       const Box band{0, look_.is_up ? 0 : line_y, size_.x, look_.is_up ? line_y : size_.y};
-      decals_.fill(band, {0, 0, 0, static_cast<std::uint8_t>(std::lround(255 * kCompassBand.a))});
+      sprites_.fill(band, {0, 0, 0, static_cast<std::uint8_t>(std::lround(255 * kCompassBand.a))});
       if (look_.is_up) top_px_ = line_y;
       if (!look_.is_up) bottom_px_ = line_y;
     } else {
@@ -84,13 +84,13 @@ class Layout {
       const double y = std::round(line_y - 0.5 * width_px);
       constexpr core::Rgba kDark{0, 0, 0, 110};
       constexpr core::Rgba kBright{255, 255, 255, 190};
-      decals_.fill({0, y - 1, size_.x, y + width_px + 1}, kDark);
-      decals_.fill({0, y, size_.x, y + width_px}, kBright);
+      sprites_.fill({0, y - 1, size_.x, y + width_px + 1}, kDark);
+      sprites_.fill({0, y, size_.x, y + width_px}, kBright);
     }
     for (Mark& m : marks(line_y)) {
       const Box tick = look_.tick_box(m.at, m.mark).grown(2 * look_.line_px());
-      decals_.add(tick, [look = look_, m](Canvas& canvas, glm::dvec2 corner) {
-        look.draw_tick(canvas, m.at - corner, m.mark);
+      sprites_.add(tick, [style = look_, m](Canvas& canvas, glm::dvec2 corner) {
+        style.draw_tick(canvas, m.at - corner, m.mark);
       });
       if (m.mark.rank == CompassRank::kWind) label(m);
       if (m.mark.rank == CompassRank::kFigure) figures_.push_back(std::move(m));
@@ -101,37 +101,37 @@ class Layout {
     }
     for (const Mark& m : figures_) label(m);
     figures_.clear();
-    decals_.take({0, look_.is_up ? 0 : line_y, size_.x, look_.is_up ? line_y : size_.y});
+    sprites_.take({0, look_.is_up ? 0 : line_y, size_.x, look_.is_up ? line_y : size_.y});
   }
 
   void label(const Mark& m) {
     const Box box = look_.label_box(ruler_, m.at, m.mark);
-    if (!decals_.is_free(box)) return;
-    decals_.take(box.grown(px(3)));
-    decals_.add(halo(box), [look = look_, m](Canvas& canvas, glm::dvec2 corner) {
-      look.draw_label(canvas, m.at - corner, m.mark);
+    if (!sprites_.is_free(box)) return;
+    sprites_.take(box.grown(px(3)));
+    sprites_.add(halo(box), [style = look_, m](Canvas& canvas, glm::dvec2 corner) {
+      style.draw_label(canvas, m.at - corner, m.mark);
     });
   }
 
   // With what an outline and slanting letters add.
   Box halo(const Box& box) const { return box.grown(2 + 0.2 * (box.bottom - box.top)); }
 
-  // Furniture is drawn as in a picture of the size of its own corner.
-  void furniture(const Box& box, const std::function<void(Sheet&)>& draw) {
+  // Furniture is drawn as in an image of the size of its own corner.
+  void furniture(const Box& box, const std::function<void(LabelLayout&)>& draw) {
     const auto width = static_cast<int>(box.right - box.left);
     const auto height = static_cast<int>(box.bottom - box.top);
     Canvas canvas(width, height);
-    Sheet sheet(canvas, unit_);
-    draw(sheet);
-    if (sheet.taken().empty()) return;
-    const Box& b = sheet.taken().front();
+    LabelLayout layout(canvas, unit_);
+    draw(layout);
+    if (layout.taken().empty()) return;
+    const Box& b = layout.taken().front();
     const Box taken{b.left + box.left, b.top + box.top, b.right + box.left, b.bottom + box.top};
-    if (!decals_.is_free({std::max(taken.left, 0.0), std::max(taken.top, 0.0), std::min(taken.right, size_.x),
+    if (!sprites_.is_free({std::max(taken.left, 0.0), std::max(taken.top, 0.0), std::min(taken.right, size_.x),
                           std::min(taken.bottom, size_.y)}))
       return;
-    decals_.take(taken);
-    decals_.add(box, [unit = unit_, draw](Canvas& part, glm::dvec2) {
-      Sheet again(part, unit);
+    sprites_.take(taken);
+    sprites_.add(box, [unit = unit_, draw](Canvas& part, glm::dvec2) {
+      LabelLayout again(part, unit);
       draw(again);
     });
   }
@@ -148,7 +148,7 @@ class Layout {
     const Box box{left, top_px_, left + std::ceil(width_px),
                   std::min(bottom_px_, top_px_ + std::ceil(height_px))};
     if (box.bottom - box.top < 1) return;
-    furniture(box, [text = overlays_.title](Sheet& sheet) { draw_title(sheet, text); });
+    furniture(box, [text = overlays_.title](LabelLayout& layout) { draw_title(layout, text); });
   }
 
   void legend() {
@@ -157,39 +157,39 @@ class Layout {
     scene.has_imagery = scene_.has_imagery;
     const double left = std::max(0.0, size_.x - std::ceil(std::max(px(240), 168.0)));
     const double top = std::max(top_px_, bottom_px_ - std::ceil(std::max(px(320), 224.0)));
-    furniture({left, top, size_.x, bottom_px_}, [scene](Sheet& sheet) { draw_legend(sheet, scene); });
+    furniture({left, top, size_.x, bottom_px_}, [scene](LabelLayout& layout) { draw_legend(layout, scene); });
   }
 
   void names() {
     constexpr double kSmallest_px = 4;
     constexpr std::size_t kMost = 1000;
-    std::vector<const WideName*> order;
-    for (const WideName& name : scene_.names) order.push_back(&name);
-    const auto apparent = [](const WideName& name) {
+    std::vector<const PanoramaName*> order;
+    for (const PanoramaName& name : scene_.names) order.push_back(&name);
+    const auto apparent = [](const PanoramaName& name) {
       return name.diameter_m / std::max(name.distance_m, 1e-3);
     };
-    std::stable_sort(order.begin(), order.end(), [&](const WideName* a, const WideName* b) {
+    std::stable_sort(order.begin(), order.end(), [&](const PanoramaName* a, const PanoramaName* b) {
       const double x = apparent(*a);
       const double y = apparent(*b);
       return x != y ? x > y : a->distance_m < b->distance_m;
     });
     const double px_per_rad = scene_.px_per_deg / mars::kRadiansPerDegree;
     std::size_t count = 0;
-    for (const WideName* name : order) {
+    for (const PanoramaName* name : order) {
       if (name->diameter_m > 0 && apparent(*name) * px_per_rad < px(kSmallest_px)) continue;
       const auto at = scene_.place(name->azimuth_deg, name->elevation_deg);
       if (at && draw_name(*name, *at) && ++count == kMost) return;
     }
   }
 
-  bool draw_name(const WideName& name, glm::dvec2 at) {
+  bool draw_name(const PanoramaName& name, glm::dvec2 at) {
     constexpr std::array<int, 10> kRows{0, 1, 2, 3, 4, 5, 6, 7, -1, -2};
     const Font letters = font(14);
     const double dot_px = line_px(2.4);
     const std::string text = overlays_.distances ? name_text(name.name, name.distance_m) : name.name;
     const TextSize size = ruler_.measure(text, letters);
     const Box dot = Box::about(at, {2 * dot_px, 2 * dot_px});
-    if (!decals_.is_free(dot)) return false;
+    if (!sprites_.is_free(dot)) return false;
     glm::dvec2 centre = at;
     if (scene_.width_px != scene_.turn_px) {
       const double half_px = 0.5 * size.width + px(2);
@@ -206,13 +206,13 @@ class Layout {
         const double half_px = 1.5 * line_px(1);
         const Box leader{at.x - half_px, way < 0 ? box.bottom : dot.bottom, at.x + half_px,
                          way < 0 ? dot.top : box.top};
-        if (!decals_.is_free(box) || !decals_.is_free(leader)) continue;
+        if (!sprites_.is_free(box) || !sprites_.is_free(leader)) continue;
         if (spares_figures && (meets_figure(box.grown(px(4))) || meets_figure(leader))) continue;
-        decals_.take(dot.grown(px(2)));
-        decals_.take(box.grown(px(4)));
-        decals_.take(leader);
+        sprites_.take(dot.grown(px(2)));
+        sprites_.take(box.grown(px(4)));
+        sprites_.take(leader);
         add_leader(at, leader, dot_px);
-        decals_.add(halo(box), [text, letters, centre](Canvas& canvas, glm::dvec2 corner) {
+        sprites_.add(halo(box), [text, letters, centre](Canvas& canvas, glm::dvec2 corner) {
           canvas.text(text, centre - corner, 0, {letters, kWhite, kShade});
         });
         return true;
@@ -236,7 +236,7 @@ class Layout {
     const double rim = dot_px + line;
     const Box box{at.x - rim, std::min(leader.top, at.y - rim), at.x + rim,
                   std::max(leader.bottom, at.y + rim)};
-    decals_.add(box.grown(1), [at, leader, line, dot_px](Canvas& canvas, glm::dvec2 corner) {
+    sprites_.add(box.grown(1), [at, leader, line, dot_px](Canvas& canvas, glm::dvec2 corner) {
       const std::array<glm::dvec2, 2> ends{glm::dvec2{at.x, leader.top} - corner,
                                            glm::dvec2{at.x, leader.bottom} - corner};
       canvas.line(ends, false, 3 * line, kShade);
@@ -255,12 +255,12 @@ class Layout {
   }
 
   const core::Overlays& overlays_;
-  const WideScene& scene_;
+  const PanoramaScene& scene_;
   double unit_;
   Canvas ruler_;
   glm::dvec2 size_;
-  Decals decals_;
-  CompassLook look_;
+  SpriteLayer sprites_;
+  CompassStyle look_;
   std::vector<Mark> figures_;  // whose labels are still to be placed
   std::vector<Box> figure_boxes_;
   double top_px_ = 0;
@@ -269,9 +269,9 @@ class Layout {
 
 }  // namespace
 
-double wide_unit(const WideScene& scene) {
+double panorama_unit(const PanoramaScene& scene) {
   const double side_px = static_cast<double>(std::min(scene.width_px, scene.height_px));
-  return std::min({side_px / 720.0, static_cast<double>(scene.turn_px) / 3200.0, kMostWideUnit});
+  return std::min({side_px / 720.0, static_cast<double>(scene.turn_px) / 3200.0, kMostPanoramaUnit});
 }
 
 std::string not_for_panoramas(const core::Overlays& overlays) {
@@ -284,7 +284,7 @@ std::string not_for_panoramas(const core::Overlays& overlays) {
   return {};
 }
 
-Decals lay_out_wide(const core::Overlays& overlays, const WideScene& scene) {
+SpriteLayer lay_out_panorama(const core::Overlays& overlays, const PanoramaScene& scene) {
   return Layout(overlays, scene).run();
 }
 

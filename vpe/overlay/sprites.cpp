@@ -8,13 +8,13 @@
 
 namespace vpe::overlay {
 
-Decals::Decals(std::int64_t width_px, std::int64_t height_px, std::int64_t turn_px)
+SpriteLayer::SpriteLayer(std::int64_t width_px, std::int64_t height_px, std::int64_t turn_px)
     : width_(width_px), height_(height_px), turn_(turn_px) {}
 
-void Decals::add(const Box& box, Paint paint) {
+void SpriteLayer::add(const Box& box, Paint paint) {
   const auto x = static_cast<std::int64_t>(std::floor(box.left));
   const auto y = static_cast<std::int64_t>(std::floor(box.top));
-  decals_.push_back({x,
+  sprites_.push_back({x,
                      y,
                      static_cast<std::int64_t>(std::ceil(box.right)) - x,
                      static_cast<std::int64_t>(std::ceil(box.bottom)) - y,
@@ -22,12 +22,12 @@ void Decals::add(const Box& box, Paint paint) {
                      {}});
 }
 
-void Decals::fill(const Box& box, const core::Rgba& colour) {
+void SpriteLayer::fill(const Box& box, const core::Rgba& colour) {
   add(box, nullptr);
-  decals_.back().colour = colour;
+  sprites_.back().colour = colour;
 }
 
-bool Decals::is_free(const Box& box) const {
+bool SpriteLayer::is_free(const Box& box) const {
   const double width = static_cast<double>(width_);
   if (box.top < 0 || box.bottom > static_cast<double>(height_)) return false;
   if (turn_ == 0 && (box.left < 0 || box.right > width)) return false;
@@ -41,38 +41,38 @@ bool Decals::is_free(const Box& box) const {
   });
 }
 
-void Decals::lay(const PicturePart& part) const {
+void SpriteLayer::lay(const ImageRegion& part) const {
   if (part.pixels.size() != static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
     throw std::invalid_argument("a part of " + std::to_string(part.width) + "x" + std::to_string(part.height) +
                                 " pixels with " + std::to_string(part.pixels.size()));
   }
-  for (const Decal& decal : decals_) {
-    lay(decal, 0, part);
+  for (const Sprite& sprite : sprites_) {
+    lay(sprite, 0, part);
     if (turn_ == 0) continue;
-    lay(decal, -turn_, part);
-    lay(decal, turn_, part);
+    lay(sprite, -turn_, part);
+    lay(sprite, turn_, part);
   }
 }
 
-void Decals::lay(const Decal& decal, std::int64_t shift, const PicturePart& part) const {
-  const std::int64_t x = decal.x + shift;
+void SpriteLayer::lay(const Sprite& sprite, std::int64_t shift, const ImageRegion& part) const {
+  const std::int64_t x = sprite.x + shift;
   const std::int64_t left = std::max(x, part.x);
-  const std::int64_t right = std::min(x + decal.width, part.x + part.width);
-  const std::int64_t top = std::max(decal.y, part.y);
-  const std::int64_t bottom = std::min(decal.y + decal.height, part.y + part.height);
+  const std::int64_t right = std::min(x + sprite.width, part.x + part.width);
+  const std::int64_t top = std::max(sprite.y, part.y);
+  const std::int64_t bottom = std::min(sprite.y + sprite.height, part.y + part.height);
   if (left >= right || top >= bottom) return;
   // Never cut at the part's edges: what Cairo makes of a shape may depend on where it ends.
   Layer layer;
-  if (decal.paint) {
-    Canvas canvas(static_cast<int>(decal.width), static_cast<int>(decal.height));
-    decal.paint(canvas, {static_cast<double>(decal.x), static_cast<double>(decal.y)});
+  if (sprite.paint) {
+    Canvas canvas(static_cast<int>(sprite.width), static_cast<int>(sprite.height));
+    sprite.paint(canvas, {static_cast<double>(sprite.x), static_cast<double>(sprite.y)});
     layer = canvas.layer();
   }
   for (std::int64_t row = top; row < bottom; ++row) {
     for (std::int64_t column = left; column < right; ++column) {
       const core::Rgba over =
-          decal.paint ? layer.pixels[static_cast<std::size_t>((row - decal.y) * decal.width + column - x)]
-                      : decal.colour;
+          sprite.paint ? layer.pixels[static_cast<std::size_t>((row - sprite.y) * sprite.width + column - x)]
+                      : sprite.colour;
       if (over.a == 0) continue;
       base::Rgb& pixel = part.pixels[static_cast<std::size_t>((row - part.y) * part.width + column - part.x)];
       pixel = blend(over, pixel);

@@ -14,14 +14,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Ground::Ground(const Scene& scene)
+VisibleTerrain::VisibleTerrain(const Scene& scene)
     : scene_(scene),
       part_(core::drawn_part(scene.view)),
       size_(core::drawn_size(scene.view)),
       is_flat_(scene.view.projection == core::Projection::kPerspective) {
   if (is_flat_) {
     // As core::pixel_ray(), with what is the same for all pixels worked out once.
-    const mars::Axes& axes = scene.view.eye.axes;
+    const mars::Axes& axes = scene.view.camera.axes;
     const glm::dvec2 first = glm::dvec2(part_.x + 0.5, part_.y + 0.5) -
                              glm::dvec2(scene.view.width, scene.view.height) * 0.5 -
                              scene.view.principal_offset_px;
@@ -39,16 +39,16 @@ Ground::Ground(const Scene& scene)
                               std::to_string(size_.y));
 }
 
-bool Ground::is_ground(std::size_t pixel) const {
+bool VisibleTerrain::is_ground(std::size_t pixel) const {
   const float range_m = scene_.range_m[pixel];
   return range_m > 0.0F && std::isfinite(range_m);
 }
 
-double Ground::error_m(std::size_t pixel) const {
+double VisibleTerrain::deviation_m(std::size_t pixel) const {
   return scene_.shift_px * static_cast<double>(scene_.range_m[pixel]) / core::focal_px(scene_.view);
 }
 
-double Ground::noise_m(std::size_t pixel) const {
+double VisibleTerrain::noise_m(std::size_t pixel) const {
   // A tenth of what vpe/gl bounds it by: what is usual, not what is possible.
   constexpr double kShare = 5e-8;
   constexpr double kRounding = 1.2e-7;
@@ -56,16 +56,16 @@ double Ground::noise_m(std::size_t pixel) const {
   return range_m * (kRounding + kShare * range_m / nearest_m_);
 }
 
-glm::dvec3 Ground::point(int x, int y) const {
+glm::dvec3 VisibleTerrain::point(int x, int y) const {
   const auto range_m = static_cast<double>(scene_.range_m[index(x, y)]);
   if (is_flat_) {
     const glm::dvec3 along = corner_ + right_ * static_cast<double>(x) + down_ * static_cast<double>(y);
-    return scene_.view.eye.eye_m + along * (range_m / glm::length(along));
+    return scene_.view.camera.position_m + along * (range_m / glm::length(along));
   }
-  return scene_.view.eye.eye_m + core::pixel_ray(scene_.view, part_.x + x + 0.5, part_.y + y + 0.5) * range_m;
+  return scene_.view.camera.position_m + core::pixel_ray(scene_.view, part_.x + x + 0.5, part_.y + y + 0.5) * range_m;
 }
 
-std::optional<glm::dvec2> Ground::to_picture(const glm::dvec3& point_m) const {
+std::optional<glm::dvec2> VisibleTerrain::to_image(const glm::dvec3& point_m) const {
   const core::Projected p = core::project(scene_.view, point_m);
   if (p.behind) return std::nullopt;
   return p.xy - glm::dvec2(part_.x, part_.y);
@@ -74,7 +74,7 @@ std::optional<glm::dvec2> Ground::to_picture(const glm::dvec3& point_m) const {
 // Whether ground ends between a pixel and the next one, to the right (side = width) or below. One over the
 // range is nearly linear along a plane however it is tilted, so that a step much larger than those beside it is
 // an edge.
-bool Ground::breaks(std::size_t pixel, int x, int side, std::size_t step) const {
+bool VisibleTerrain::breaks(std::size_t pixel, int x, int side, std::size_t step) const {
   constexpr double kTimesTheNeighbours = 4;
   constexpr double kUnnoticed = 0.003;
   constexpr double kAlone = 0.1;
@@ -92,7 +92,7 @@ bool Ground::breaks(std::size_t pixel, int x, int side, std::size_t step) const 
   return here > kTimesTheNeighbours * beside + kUnnoticed * most;
 }
 
-bool Ground::is_whole(int x, int y) const {
+bool VisibleTerrain::is_whole(int x, int y) const {
   const std::size_t p = index(x, y);
   const std::size_t below = p + static_cast<std::size_t>(size_.x);
   if (!is_ground(p) || !is_ground(p + 1) || !is_ground(below) || !is_ground(below + 1)) return false;
@@ -102,7 +102,7 @@ bool Ground::is_whole(int x, int y) const {
 }
 
 template <class Value>
-std::vector<double> Ground::values(const Value& value) const {
+std::vector<double> VisibleTerrain::values(const Value& value) const {
   std::vector<double> out(scene_.range_m.size(), kNaN);
   for (int y = 0; y < size_.y; ++y) {
     for (int x = 0; x < size_.x; ++x) {
@@ -113,17 +113,17 @@ std::vector<double> Ground::values(const Value& value) const {
   return out;
 }
 
-std::vector<double> Ground::longitudes_deg() const {
+std::vector<double> VisibleTerrain::longitudes_deg() const {
   return values([](const glm::dvec3& p) { return std::atan2(p.y, p.x) / mars::kRadiansPerDegree; });
 }
 
-std::vector<double> Ground::latitudes_deg() const {
+std::vector<double> VisibleTerrain::latitudes_deg() const {
   return values([](const glm::dvec3& p) {
     return std::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y)) / mars::kRadiansPerDegree;
   });
 }
 
-std::vector<double> Ground::elevations_m() const {
+std::vector<double> VisibleTerrain::elevations_m() const {
   const double radius_m = scene_.radius_m;
   const double factor = 1.0 / scene_.appearance.exaggeration;
   return values([=](const glm::dvec3& p) { return (glm::length(p) - radius_m) * factor; });

@@ -1,4 +1,4 @@
-// The ground that a picture shows, pixel by pixel, from its range image.
+// The ground that an image shows, pixel by pixel, from its range image.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -11,10 +11,10 @@
 namespace vpe::overlay {
 
 // Refers to the scene. Pixels count row by row from the upper left one. Const members from any thread.
-class Ground {
+class VisibleTerrain {
  public:
-  // Throws std::invalid_argument when the range image is not of the picture's size.
-  explicit Ground(const Scene& scene);
+  // Throws std::invalid_argument when the range image is not of the image's size.
+  explicit VisibleTerrain(const Scene& scene);
 
   int width() const { return size_.x; }
   int height() const { return size_.y; }
@@ -24,14 +24,14 @@ class Ground {
   bool is_ground(std::size_t pixel) const;
   // Body-fixed, metres from the planet's centre.
   glm::dvec3 point(int x, int y) const;
-  // In the layer's pixels; nothing when it is behind the eye.
-  std::optional<glm::dvec2> to_picture(const glm::dvec3& point_m) const;
+  // In the layer's pixels; nothing when it is behind the camera.
+  std::optional<glm::dvec2> to_image(const glm::dvec3& point_m) const;
   // Whether the ground between the four pixels from (x, y) to (x + 1, y + 1) is one piece: no sky, and no edge
   // where near ground hides far ground.
   bool is_whole(int x, int y) const;
 
   // How far the drawn ground may be off the surface, by Scene::shift_px.
-  double error_m(std::size_t pixel) const;
+  double deviation_m(std::size_t pixel) const;
   // How far the range may be off at a pixel with ground, as a backend's depths and 32 bits make it.
   double noise_m(std::size_t pixel) const;
 

@@ -65,7 +65,7 @@ double slack_px(const core::View& view, const std::vector<float>& range_m, doubl
 
 void count(const core::DrawRequest& request, const core::DrawResult& result, Measured& measured) {
   const core::Certificate& c = result.certificate;
-  const double stated_px = c.picture_bound_px.value_or(c.shift_bound_px);
+  const double stated_px = c.image_bound_px.value_or(c.shift_bound_px);
   if (std::isfinite(stated_px)) measured.stated_px = std::max(measured.stated_px.value_or(0.0), stated_px);
   measured.triangles += result.stats.triangles + result.stats.skirt_triangles;
   measured.tiles += result.stats.tiles_drawn;
@@ -76,25 +76,25 @@ void count(const core::DrawRequest& request, const core::DrawResult& result, Mea
   measured.bytes = std::max(measured.bytes, result.stats.bytes_resident);
 }
 
-Measured measure_errors(const Way& way, const core::View& view, const core::Frame& truth,
+Measured measure_errors(const Configuration& configuration, const core::View& view, const core::Frame& truth,
                         const ErrorTimeOptions& options) {
   Measured measured;
-  const std::unique_ptr<core::Renderer> renderer = options.make(way.renderer, 1.0);
-  Results results = draw_all(*renderer, way.requests, way.has_ranges);
-  for (std::size_t k = 0; k < results.size(); ++k) count(way.requests[k], results[k], measured);
-  const core::Frame frame = put_together(way.compose, results, view);
-  if (way.has_colours) {
+  const std::unique_ptr<core::Renderer> renderer = options.make(configuration.renderer, 1.0);
+  Results results = draw_all(*renderer, configuration.requests, configuration.has_ranges);
+  for (std::size_t k = 0; k < results.size(); ++k) count(configuration.requests[k], results[k], measured);
+  const core::Frame frame = put_together(configuration.compose, results, view);
+  if (configuration.has_colours) {
     measured.colour_rms = core::colour_rms(frame.colour, truth.colour);
     measured.similarity = core::structural_similarity(frame.colour, truth.colour, frame.width, frame.height);
   }
-  if (!way.has_ranges || way.compose) measured.stated_px.reset();
-  if (way.has_ranges) {
+  if (!configuration.has_ranges || configuration.compose) measured.stated_px.reset();
+  if (configuration.has_ranges) {
     core::MetricOptions metrics;
     metrics.threads = options.threads;
     measured.shift = core::compare_to_reference(view, frame.range_m, truth.range_m, options.surface, metrics);
     measured.skyline = core::skyline_shift_px(frame.range_m, truth.range_m, frame.width, frame.height);
     measured.range = core::range_error(frame.range_m, truth.range_m);
-    measured.slack_px = slack_px(view, frame.range_m, way.range_error);
+    measured.slack_px = slack_px(view, frame.range_m, configuration.range_error);
   }
   return measured;
 }
@@ -102,39 +102,39 @@ Measured measure_errors(const Way& way, const core::View& view, const core::Fram
 void measure_times(const Subject& subject, const ErrorTimeOptions& options, std::vector<Measured>& measured,
                    const std::function<void(const std::string&)>& step) {
   std::set<std::string> names;
-  for (const Way& way : subject.ways) names.insert(way.renderer);
+  for (const Configuration& configuration : subject.configurations) names.insert(configuration.renderer);
   std::map<std::string, std::unique_ptr<core::Renderer>> renderers;
   for (const std::string& name : names) renderers[name] = options.make(name, share_of(names.size()));
-  const auto draw = [&](const Way& way) {
+  const auto draw = [&](const Configuration& configuration) {
     std::int64_t uploaded = 0;
-    for (const core::DrawRequest& request : way.requests) {
+    for (const core::DrawRequest& request : configuration.requests) {
       core::DrawRequest plain = request;
-      plain.want_range = !way.has_colours;
-      uploaded += renderers.at(way.renderer)->draw(plain).stats.pages_uploaded;
+      plain.want_range = !configuration.has_colours;
+      uploaded += renderers.at(configuration.renderer)->draw(plain).stats.pages_uploaded;
     }
     return uploaded;
   };
-  std::vector<Contestant> contestants;
-  std::vector<int> turns(subject.ways.size(), 0);
-  std::vector<bool> forgotten(subject.ways.size(), false);  // what it needs, while others are drawn
-  for (std::size_t k = 0; k < subject.ways.size(); ++k) {
-    Contestant contestant;
-    contestant.most_rounds = subject.ways[k].most_rounds;
-    contestant.prepare = [&, k](double last_s) {
-      step("timing " + subject.ways[k].sweep);
-      if (turns[k] == 1) {
-        forgotten[k] = draw(subject.ways[k]) > 0;
-      } else if (turns[k] > 1 && (forgotten[k] || last_s < kQuick_s)) {
-        draw(subject.ways[k]);
+  std::vector<BenchmarkCase> cases;
+  std::vector<int> interleaved(subject.configurations.size(), 0);
+  std::vector<bool> forgotten(subject.configurations.size(), false);  // what it needs, while others are drawn
+  for (std::size_t k = 0; k < subject.configurations.size(); ++k) {
+    BenchmarkCase benchmark_case;
+    benchmark_case.most_rounds = subject.configurations[k].most_rounds;
+    benchmark_case.prepare = [&, k](double last_s) {
+      step("timing " + subject.configurations[k].sweep);
+      if (interleaved[k] == 1) {
+        forgotten[k] = draw(subject.configurations[k]) > 0;
+      } else if (interleaved[k] > 1 && (forgotten[k] || last_s < kQuick_s)) {
+        draw(subject.configurations[k]);
       }
     };
-    contestant.run = [&, k] {
-      const std::int64_t uploaded = draw(subject.ways[k]);
-      if (turns[k]++ > 0) measured[k].pages_reloaded += uploaded;
+    benchmark_case.run = [&, k] {
+      const std::int64_t uploaded = draw(subject.configurations[k]);
+      if (interleaved[k]++ > 0) measured[k].pages_reloaded += uploaded;
     };
-    contestants.push_back(std::move(contestant));
+    cases.push_back(std::move(benchmark_case));
   }
-  const std::vector<Timing> timings = time_in_turns(contestants, options.rounds, options.clock);
+  const std::vector<Timing> timings = time_interleaved(cases, options.rounds, options.clock);
   for (std::size_t k = 0; k < timings.size(); ++k) {
     measured[k].timing = timings[k];
     measured[k].ratio = ratio(timings[k], timings[subject.baseline]);
@@ -152,10 +152,10 @@ double Measured::error(ErrorKind kind) const {
 bool Measured::within_stated() const { return !stated_px || shift.forward.max_px <= *stated_px + slack_px; }
 
 SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options) {
-  if (subject.ways.empty() || subject.baseline >= subject.ways.size() || subject.references.empty())
+  if (subject.configurations.empty() || subject.baseline >= subject.configurations.size() || subject.references.empty())
     throw std::invalid_argument("measure: a subject without ways, baseline or reference");
-  const double ways = static_cast<double>(subject.ways.size());
-  const double steps = static_cast<double>(subject.references.size()) + 2 * ways + (options.rounds + 1) * ways;
+  const double configurations = static_cast<double>(subject.configurations.size());
+  const double steps = static_cast<double>(subject.references.size()) + 2 * configurations + (options.rounds + 1) * configurations;
   double done = 0;
   const auto step = [&](const std::string& what, double many) {
     options.progress(subject.view + ", " + what, std::min(1.0, done / steps));
@@ -169,10 +169,10 @@ SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options) {
     truths.push_back(put_together(reference.compose, results, reference.view));
   }
   SubjectResult result{subject, {}};
-  for (const Way& way : subject.ways) {
-    step(way.sweep, 2);
+  for (const Configuration& configuration : subject.configurations) {
+    step(configuration.sweep, 2);
     result.measured.push_back(
-        measure_errors(way, subject.references.at(way.reference).view, truths.at(way.reference), options));
+        measure_errors(configuration, subject.references.at(configuration.reference).view, truths.at(configuration.reference), options));
   }
   measure_times(subject, options, result.measured, [&](const std::string& what) { step(what, 1); });
   return result;

@@ -1,4 +1,4 @@
-// Error against run time: pictures of one view made in many ways, each measured against a reference and timed
+// Error against run time: images of one view made in many ways, each measured against a reference and timed
 // in turns with the others.
 //
 // A way is a point of a sweep over a knob of quality; renderers come in by name, so that tests can count frames
@@ -27,21 +27,21 @@ enum class ErrorKind : std::uint8_t {
   kColour,  // root mean square, steps of 8-bit sRGB
 };
 
-// Puts what was drawn together to one picture of the reference's size.
+// Puts what was drawn together to one image of the reference's size.
 using Compose = std::function<core::Frame(std::vector<core::Frame> frames)>;
 
-struct Way {
+struct Configuration {
   std::string sweep;        // as in "triangles by tolerance"
   std::string knob;         // as in "lod.tolerance=2"
   bool is_default = false;  // what is drawn when no more than the backend is named
   bool is_chosen = false;   // what is drawn when nothing is named
   ErrorKind kind = ErrorKind::kShift;
-  std::string rivals;       // ways of equal name show the same and may stand on one front; empty: on none
+  std::string comparison_group;       // ways of equal name show the same and may stand on one front; empty: on none
   std::string plot;         // of the view, by its kind of error, on which it stands; empty: on none
   std::string colour_plot;  // by its colours, likewise
   std::string renderer;     // name for MakeRenderer
   std::vector<core::DrawRequest> requests;  // drawn one after another: what is timed
-  Compose compose;                          // left out: the picture of the only request
+  Compose compose;                          // left out: the image of the only request
   std::size_t reference = 0;                // which of Subject::references
   // Relative error of the renderer's range images at the nearest ground; at the farthest 1 + farthest / nearest
   // times (vpe/gl/polygon_renderer.h). 0: in what it states.
@@ -51,7 +51,7 @@ struct Way {
   bool has_ranges = true;                             // false: colours alone are compared
 };
 
-// A picture that counts as exact, and how it is made.
+// An image that counts as exact, and how it is made.
 struct Reference {
   core::View view;
   std::string renderer;
@@ -64,7 +64,7 @@ struct Subject {
   std::string view;   // its name
   std::string about;  // where it is, as people read it
   std::vector<Reference> references;
-  std::vector<Way> ways;
+  std::vector<Configuration> configurations;
   std::size_t baseline = 0;  // the way that times are ratios to
 };
 
@@ -72,13 +72,13 @@ struct Subject {
 using MakeRenderer = std::function<std::unique_ptr<core::Renderer>(const std::string& name, double share)>;
 
 struct Measured {
-  core::PictureErrors shift;  // of nothing where colours alone are compared
+  core::ImageErrors shift;  // of nothing where colours alone are compared
   core::Spread skyline;
   core::Spread range;
   std::optional<double> colour_rms;
   std::optional<double> similarity;
   // That no forward shift exceeds, by the certificate; nothing where that is not finite, and of composed
-  // pictures.
+  // images.
   std::optional<double> stated_px;
   double slack_px = 0;  // what the range image itself may be off, beside what is stated
   std::int64_t triangles = 0;
@@ -113,8 +113,8 @@ struct ErrorTimeOptions {
 // Draws the references, then every way by a renderer of its own with ranges, then all ways in turns, without
 // ranges, by one renderer for each name; where that had to load something again, as other ways took the memory,
 // and before every quick one, a frame that does not count goes before the next. Throws what renderers throw, std::invalid_argument for a
-// subject without ways or with pictures of other sizes than their reference's, std::runtime_error when a
-// picture is not complete.
+// subject without ways or with images of other sizes than their reference's, std::runtime_error when a
+// image is not complete.
 SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options);
 
 }  // namespace vpe::report

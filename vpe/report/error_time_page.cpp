@@ -16,8 +16,8 @@ Series& series_of(Plot& plot, const std::string& name) {
   return plot.series.back();
 }
 
-std::string label(const Way& way) {
-  return way.knob + (way.is_chosen ? " (default)" : way.is_default ? " (default of its backend)" : "");
+std::string label(const Configuration& configuration) {
+  return configuration.knob + (configuration.is_chosen ? " (default)" : configuration.is_default ? " (default of its backend)" : "");
 }
 
 class Plots {
@@ -26,18 +26,18 @@ class Plots {
 
   std::vector<Plot> all() {
     for (std::size_t k = 0; k < result_.measured.size(); ++k) {
-      const Way& way = result_.subject.ways[k];
+      const Configuration& configuration = result_.subject.configurations[k];
       const Measured& measured = result_.measured[k];
-      if (!way.plot.empty()) add(k, way.plot, way.kind, measured.error(way.kind));
-      if (!way.colour_plot.empty() && measured.colour_rms)
-        add(k, way.colour_plot, ErrorKind::kColour, *measured.colour_rms);
+      if (!configuration.plot.empty()) add(k, configuration.plot, configuration.kind, measured.error(configuration.kind));
+      if (!configuration.colour_plot.empty() && measured.colour_rms)
+        add(k, configuration.colour_plot, ErrorKind::kColour, *measured.colour_rms);
     }
     return std::move(plots_);
   }
 
  private:
   void add(std::size_t k, const std::string& name, ErrorKind kind, double error) {
-    const Way& way = result_.subject.ways[k];
+    const Configuration& configuration = result_.subject.configurations[k];
     const Measured& measured = result_.measured[k];
     const std::string title = result_.subject.view + ": " + name;
     auto plot = std::find_if(plots_.begin(), plots_.end(), [&](const Plot& p) { return p.title == title; });
@@ -50,10 +50,10 @@ class Plots {
       plots_.push_back(fresh);
       plot = plots_.end() - 1;
     }
-    Point point{1e3 * measured.timing.median_s(), error, label(way), {}, false};
-    point.marked = kind == way.kind && std::binary_search(front_.begin(), front_.end(), k);
+    Point point{1e3 * measured.timing.median_s(), error, label(configuration), {}, false};
+    point.marked = kind == configuration.kind && std::binary_search(front_.begin(), front_.end(), k);
     if (kind == ErrorKind::kShift) point.bound = measured.stated_px;
-    series_of(*plot, way.sweep).points.push_back(point);
+    series_of(*plot, configuration.sweep).points.push_back(point);
   }
 
   const SubjectResult& result_;
@@ -71,13 +71,13 @@ Plot summary_plot(const std::vector<SubjectResult>& results) {
   plot.height_px = 520;
   if (results.empty()) return plot;
   const Subject& first = results.front().subject;
-  const Way& baseline = first.ways.at(first.baseline);
+  const Configuration& baseline = first.configurations.at(first.baseline);
   plot.x_label = "time, to that of " + baseline.sweep + ", " + baseline.knob;
-  for (const WayOverViews& w : over_views(results)) {
-    if (w.way.plot != baseline.plot || w.way.kind != ErrorKind::kShift) continue;
-    Point point{w.ratio, w.error, label(w.way), {}, w.way.is_default || w.way.is_chosen};
+  for (const ConfigurationOverViews& w : over_views(results)) {
+    if (w.configuration.plot != baseline.plot || w.configuration.kind != ErrorKind::kShift) continue;
+    Point point{w.ratio, w.error, label(w.configuration), {}, w.configuration.is_default || w.configuration.is_chosen};
     if (std::isfinite(w.stated_px)) point.bound = w.stated_px;
-    series_of(plot, w.way.sweep).points.push_back(point);
+    series_of(plot, w.configuration.sweep).points.push_back(point);
   }
   return plot;
 }

@@ -51,13 +51,13 @@ std::vector<DefaultPlace> place_defaults(const SubjectResult& result);
 std::vector<std::size_t> fronts(const SubjectResult& result);
 
 // A way over all views that have it: medians.
-struct WayOverViews {
-  Way way;  // without its requests; chosen if it is so in any view
+struct ConfigurationOverViews {
+  Configuration configuration;  // without its requests; chosen if it is so in any view
   int views = 0;
   double ratio = 0;  // time to the baseline's
   double error = 0;
   double stated_px = 0;  // NaN where nothing is stated
 };
-std::vector<WayOverViews> over_views(const std::vector<SubjectResult>& results);
+std::vector<ConfigurationOverViews> over_views(const std::vector<SubjectResult>& results);
 
 }  // namespace vpe::report

@@ -15,11 +15,11 @@ constexpr double kMegabyte = 1 << 20;
 struct Field {
   Column column;
   bool in_page;  // of the many figures, those that people look for
-  Cell (*of)(const Way& way, const Measured& measured);
+  Cell (*of)(const Configuration& configuration, const Measured& measured);
 };
 
 const std::vector<Field>& fields() {
-  using W = const Way&;
+  using W = const Configuration&;
   using M = const Measured&;
   static const std::vector<Field> all{
       {{"sweep", "what is varied"}, true, [](W w, M) { return Cell(w.sweep); }},
@@ -64,7 +64,7 @@ const std::vector<Field>& fields() {
        [](W w, M m) { return w.has_ranges && m.skyline.count > 0 ? number(m.skyline.max) : Cell(); }},
       {{"holes", "sky where there is ground all around"},
        false,
-       [](W w, M m) { return w.has_ranges ? number(m.shift.holes) : Cell(); }},
+       [](W w, M m) { return w.has_ranges ? number(m.shift.sky_for_ground) : Cell(); }},
       {{"range_median", "relative range error, median"},
        false,
        [](W w, M m) { return w.has_ranges ? number(m.range.median) : Cell(); }},
@@ -113,7 +113,7 @@ void add_rows(Table& table, const SubjectResult& result, bool page) {
     std::vector<Cell> row;
     if (!page) row.emplace_back(result.subject.view);
     for (const Field& field : fields()) {
-      if (!page || field.in_page) row.push_back(field.of(result.subject.ways[k], result.measured[k]));
+      if (!page || field.in_page) row.push_back(field.of(result.subject.configurations[k], result.measured[k]));
     }
     row.push_back(std::binary_search(front.begin(), front.end(), k) ? Cell(std::string("yes")) : Cell());
     table.add(std::move(row));

@@ -13,7 +13,7 @@ namespace vpe::report {
 // Of one process that drew a scene. Nothing: not measured.
 struct SceneCost {
   std::optional<double> peak_mb;      // of the process
-  std::optional<double> startup_s;    // from starting the process to the first finished picture
+  std::optional<double> startup_s;    // from starting the process to the first finished image
   std::optional<double> frame_s;      // in the median, tiles there
   std::optional<double> processor_s;  // of all threads for such a frame
   std::optional<double> resident_mb;  // counted by the renderer: payloads of tiles on CPU and GPU

@@ -21,18 +21,18 @@ double median(std::vector<double> values) {
 
 double Timing::median_s() const { return median(round_s); }
 
-std::vector<Timing> time_in_turns(std::span<const Contestant> contestants, int rounds, const Clock& clock) {
+std::vector<Timing> time_interleaved(std::span<const BenchmarkCase> cases, int rounds, const Clock& clock) {
   if (rounds < 1) throw std::invalid_argument("time_in_turns: at least one round");
-  std::vector<Timing> timings(contestants.size());
-  std::vector<double> last_s(contestants.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<Timing> timings(cases.size());
+  std::vector<double> last_s(cases.size(), std::numeric_limits<double>::quiet_NaN());
   for (int round = -1; round < rounds; ++round) {
-    for (std::size_t k = 0; k < contestants.size(); ++k) {
-      const Contestant& contestant = contestants[k];
-      const bool is_rare = contestant.most_rounds < rounds;
-      if (is_rare && (round < 0 || round >= contestant.most_rounds)) continue;
-      if (contestant.prepare) contestant.prepare(last_s[k]);
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      const BenchmarkCase& benchmark_case = cases[k];
+      const bool is_rare = benchmark_case.most_rounds < rounds;
+      if (is_rare && (round < 0 || round >= benchmark_case.most_rounds)) continue;
+      if (benchmark_case.prepare) benchmark_case.prepare(last_s[k]);
       const double begin_s = clock();
-      contestant.run();
+      benchmark_case.run();
       const double end_s = clock();
       last_s[k] = end_s - begin_s;
       if (round >= 0) timings[k].round_s.push_back(end_s - begin_s);
@@ -41,11 +41,11 @@ std::vector<Timing> time_in_turns(std::span<const Contestant> contestants, int r
   return timings;
 }
 
-std::vector<Timing> time_in_turns(std::span<const std::function<void()>> contestants, int rounds,
+std::vector<Timing> time_interleaved(std::span<const std::function<void()>> cases, int rounds,
                                   const Clock& clock) {
-  std::vector<Contestant> all;
-  for (const std::function<void()>& run : contestants) all.push_back({run, {}});
-  return time_in_turns(all, rounds, clock);
+  std::vector<BenchmarkCase> all;
+  for (const std::function<void()>& run : cases) all.push_back({run, {}});
+  return time_interleaved(all, rounds, clock);
 }
 
 double ratio(const Timing& timing, const Timing& baseline) {

@@ -18,7 +18,7 @@ struct Timing {
 };
 
 // What is timed, and what makes it ready, which is not.
-struct Contestant {
+struct BenchmarkCase {
   std::function<void()> run;
   // Before each run, given how long the last one took (NaN: none yet); may be left out.
   std::function<void(double last_s)> prepare;
@@ -28,9 +28,9 @@ struct Contestant {
 
 // Runs every contestant once a round, in turns: first one round that does not count, then `rounds` that do. The
 // clock is read right before and right after each. Throws std::invalid_argument for rounds < 1.
-std::vector<Timing> time_in_turns(std::span<const Contestant> contestants, int rounds,
+std::vector<Timing> time_interleaved(std::span<const BenchmarkCase> cases, int rounds,
                                   const Clock& clock = wall_clock());
-std::vector<Timing> time_in_turns(std::span<const std::function<void()>> contestants, int rounds,
+std::vector<Timing> time_interleaved(std::span<const std::function<void()>> cases, int rounds,
                                   const Clock& clock = wall_clock());
 
 // How many times as long as the other, in the median of the rounds that both have: what disturbs a round

@@ -9,12 +9,12 @@
 
 namespace vpe::voxel {
 
-core::View thin_view(const core::View& view, int times) {
+core::View downsampled_view(const core::View& view, int times) {
   const auto fewer = [&](int pixels) { return (pixels + times - 1) / times; };
   core::View thin = view;
   thin.width = fewer(view.width);
   thin.height = fewer(view.height);
-  // The principal point stays where it is in the picture, and so does what a pixel is worth.
+  // The principal point stays where it is in the image, and so does what a pixel is worth.
   const glm::dvec2 principal = glm::dvec2(view.width, view.height) * 0.5 + view.principal_offset_px;
   thin.principal_offset_px = principal / static_cast<double>(times) - 0.5 * glm::dvec2(thin.width, thin.height);
   if (view.projection == core::Projection::kEquirectangular) {
@@ -35,10 +35,10 @@ core::View thin_view(const core::View& view, int times) {
 
 bool same_view(const core::View& a, const core::View& b) {
   const auto numbers = [](const core::View& v) {
-    const mars::EyePose& e = v.eye;
+    const mars::CameraPose& e = v.camera;
     std::array<double, 15> all{};
     std::size_t n = 0;
-    for (const glm::dvec3& x : {e.eye_m, e.axes.right, e.axes.up, e.axes.forward}) {
+    for (const glm::dvec3& x : {e.position_m, e.axes.right, e.axes.up, e.axes.forward}) {
       for (int k = 0; k < 3; ++k) all[n++] = x[k];
     }
     all[n++] = v.fov_deg;

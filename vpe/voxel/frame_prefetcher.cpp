@@ -11,11 +11,11 @@ namespace vpe::voxel {
 
 namespace {
 
-// Of the lattices' budget: what may be made ahead of one picture.
-constexpr std::size_t kLatticePart = 4;
-// Of the whole budget: the ranges of a picture that is cast beforehand.
+// Of the lattices' budget: what may be made ahead of one image.
+constexpr std::size_t kGridPart = 4;
+// Of the whole budget: the ranges of an image that is cast beforehand.
 constexpr std::size_t kRangePart = 8;
-// A picture is read in so many strips, to look after each of them at what that took.
+// An image is read in so many strips, to look after each of them at what that took.
 constexpr int kStrips = 4;
 constexpr std::size_t kMostUpcoming = 3;
 
@@ -42,7 +42,7 @@ RangeOptions range_options(const core::DrawRequest& request) {
   return options;
 }
 
-struct PictureAhead::Job {
+struct FramePrefetcher::Job {
   explicit Job(base::ThreadPool& front) : behind(base::ThreadPool::Behind{front}) {}
 
   base::ThreadPool alone{1};
@@ -60,11 +60,11 @@ struct PictureAhead::Job {
   }
 };
 
-PictureAhead::PictureAhead(const RangeCaster& caster, const PicturePainter& painter, base::ThreadPool& pool,
+FramePrefetcher::FramePrefetcher(const RangeCaster& caster, const ImagePainter& painter, base::ThreadPool& pool,
                            std::size_t budget_bytes)
     : caster_(caster), painter_(painter), pool_(pool), budget_(budget_bytes) {}
 
-PictureAhead::~PictureAhead() {
+FramePrefetcher::~FramePrefetcher() {
   stop();
   {
     const std::lock_guard lock(mutex_);
@@ -74,12 +74,12 @@ PictureAhead::~PictureAhead() {
   if (thread_.joinable()) thread_.join();
 }
 
-bool PictureAhead::can_cast(const core::DrawRequest& next) const {
+bool FramePrefetcher::can_cast(const core::DrawRequest& next) const {
   return pool_.threads() > 1 && next.settings.samples <= 1 &&
          pixels_of(next.view) * sizeof(float) * kRangePart <= budget_;
 }
 
-void PictureAhead::begin(const core::DrawRequest& request) {
+void FramePrefetcher::begin(const core::DrawRequest& request) {
   stop();
   auto job = std::make_shared<Job>(pool_);
   const auto add = [&](core::DrawRequest later) {
@@ -110,19 +110,19 @@ void PictureAhead::begin(const core::DrawRequest& request) {
   changed_.notify_all();
 }
 
-void PictureAhead::stop() {
+void FramePrefetcher::stop() {
   std::unique_lock lock(mutex_);
   if (job_) job_->stop();
   changed_.wait(lock, [this] { return !working_; });
   job_ = nullptr;
 }
 
-void PictureAhead::wait() {
+void FramePrefetcher::wait() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return !job_ || (job_->begun && !working_); });
 }
 
-std::optional<ColumnWalk::Used> PictureAhead::take(const core::View& view, const RangeOptions& options,
+std::optional<ColumnWalk::Used> FramePrefetcher::take(const core::View& view, const RangeOptions& options,
                                                    std::vector<float>& range_m) {
   {
     std::unique_lock lock(mutex_);
@@ -143,12 +143,12 @@ std::optional<ColumnWalk::Used> PictureAhead::take(const core::View& view, const
   return std::nullopt;
 }
 
-std::size_t PictureAhead::bytes() const {
+std::size_t FramePrefetcher::bytes() const {
   const std::lock_guard lock(mutex_);
   return bytes_;
 }
 
-void PictureAhead::serve() {
+void FramePrefetcher::serve() {
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return closed_ || (job_ && !job_->begun); });
@@ -160,20 +160,20 @@ void PictureAhead::serve() {
     try {
       work(*job);
     } catch (...) {
-      // Whoever draws this picture meets it again.
+      // Whoever draws this image meets it again.
     }
     lock.lock();
     if (job->state != State::kCast) job->state = State::kIdle;
-    bytes_ = fans_.bytes() + thin_fans_.bytes() + range_m_.capacity() * sizeof(float);
+    bytes_ = sectors_.bytes() + coarse_sectors_.bytes() + range_m_.capacity() * sizeof(float);
     working_ = false;
     changed_.notify_all();
   }
 }
 
-void PictureAhead::work(Job& job) {
+void FramePrefetcher::work(Job& job) {
   job.made_before = caster_.store().made().bytes;
   for (const core::DrawRequest& later : job.reading) {
-    if (!read(job, later, thin_view(later.view, kThinning))) break;
+    if (!read(job, later, downsampled_view(later.view, kThinning))) break;
   }
   if (!job.next || job.alone.is_stopped()) return;
   {
@@ -181,18 +181,18 @@ void PictureAhead::work(Job& job) {
     job.state = State::kCasting;
   }
   range_m_.resize(pixels_of(job.next->view));
-  job.used = caster_.cast(job.next->view, range_options(*job.next), job.behind, range_m_, fans_);
+  job.used = caster_.cast(job.next->view, range_options(*job.next), job.behind, range_m_, sectors_);
   if (job.behind.is_stopped()) return;
   const std::lock_guard lock(mutex_);
   job.state = State::kCast;
 }
 
 // False when no more is to be read.
-bool PictureAhead::read(Job& job, const core::DrawRequest& request, const core::View& view) {
+bool FramePrefetcher::read(Job& job, const core::DrawRequest& request, const core::View& view) {
   RangeOptions options = range_options(request);
   if (options.method != RangeOptions::Method::kColumns) return false;
   options.cell_px /= kThinning;
-  const LatticeStore& store = caster_.store();
+  const HeightGridStore& store = caster_.store();
   const core::SubRectangle whole = core::drawn_part(view);
   std::vector<float> all_m(pixels_of(view));
   std::vector<float> range_m;
@@ -202,8 +202,8 @@ bool PictureAhead::read(Job& job, const core::DrawRequest& request, const core::
     part.part = {whole.x + begin, whole.y, whole.width * (strip + 1) / kStrips - begin, whole.height};
     if (part.part.width == 0) continue;
     range_m.resize(pixels_of(part));
-    caster_.cast(part, options, job.alone, range_m, thin_fans_);
-    if (job.alone.is_stopped() || store.made().bytes - job.made_before > store.budget_bytes() / kLatticePart)
+    caster_.cast(part, options, job.alone, range_m, coarse_sectors_);
+    if (job.alone.is_stopped() || store.made().bytes - job.made_before > store.budget_bytes() / kGridPart)
       return false;
     for (int row = 0; row < whole.height; ++row)
       std::copy_n(range_m.begin() + std::ptrdiff_t{row} * part.part.width, part.part.width,

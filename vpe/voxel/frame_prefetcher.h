@@ -1,5 +1,5 @@
-// What comes after the picture at hand: its tiles are read, and its ranges are cast, by whoever has nothing
-// else to do (Cohen-Or 1996, section 3.2, with pictures in place of columns).
+// What comes after the image at hand: its tiles are read, and its ranges are cast, by whoever has nothing
+// else to do (Cohen-Or 1996, section 3.2, with images in place of columns).
 #pragma once
 
 #include <condition_variable>
@@ -14,25 +14,25 @@
 
 namespace vpe::voxel {
 
-// How a picture is cast, as the settings and the coarsening of a request have it.
+// How an image is cast, as the settings and the coarsening of a request have it.
 RangeOptions range_options(const core::DrawRequest& request);
 
-// Never changes a picture: ranges are handed over only for the very view and options that they were cast for,
-// and caches keep within their budgets. What goes wrong here is left to the picture that meets it again. Called
+// Never changes an image: ranges are handed over only for the very view and options that they were cast for,
+// and caches keep within their budgets. What goes wrong here is left to the image that meets it again. Called
 // by one thread; has one of its own, from the first begin() on.
-class PictureAhead {
+class FramePrefetcher {
  public:
-  // All three must outlive this. Nothing is cast beforehand with a pool of one thread, nor pictures whose
+  // All three must outlive this. Nothing is cast beforehand with a pool of one thread, nor images whose
   // ranges take more than an eighth of `budget_bytes`, nor such with several samples.
-  PictureAhead(const RangeCaster& caster, const PicturePainter& painter, base::ThreadPool& pool,
+  FramePrefetcher(const RangeCaster& caster, const ImagePainter& painter, base::ThreadPool& pool,
                std::size_t budget_bytes);
-  ~PictureAhead();  // stops
-  PictureAhead(const PictureAhead&) = delete;
-  PictureAhead& operator=(const PictureAhead&) = delete;
+  ~FramePrefetcher();  // stops
+  FramePrefetcher(const FramePrefetcher&) = delete;
+  FramePrefetcher& operator=(const FramePrefetcher&) = delete;
 
   // Drops what is there and begins on paging.next and paging.upcoming of a request: reads their tiles on the
   // thread of its own, found by rays kThinning pixels apart and as long as they take up no more than a
-  // part of the caches that leaves room for the picture at hand; then casts paging.next behind the pool's
+  // part of the caches that leaves room for the image at hand; then casts paging.next behind the pool's
   // loops.
   void begin(const core::DrawRequest& request);
   static constexpr int kThinning = 32;
@@ -60,12 +60,12 @@ class PictureAhead {
   bool can_cast(const core::DrawRequest& next) const;
 
   const RangeCaster& caster_;
-  const PicturePainter& painter_;
+  const ImagePainter& painter_;
   base::ThreadPool& pool_;
   std::size_t budget_;
   // Of the thread of its own, while a job is under way.
-  FanCaster fans_;
-  FanCaster thin_fans_;
+  SectorCaster sectors_;
+  SectorCaster coarse_sectors_;
   std::vector<float> range_m_;
 
   mutable std::mutex mutex_;

@@ -50,7 +50,7 @@ class RayRenderer : public core::Renderer {
     return static_cast<std::size_t>(part * static_cast<double>(options.memory_bytes));
   }
 
-  core::DrawResult draw_picture(const core::DrawRequest& request);
+  core::DrawResult draw_image(const core::DrawRequest& request);
   bool has_room_ahead() const;
   ColumnWalk::Used cast(const core::DrawRequest& request, std::vector<float>& range_m);
   ColumnWalk::Used draw_samples(const core::DrawRequest& request, core::Frame& frame, std::int64_t& gaps);
@@ -59,10 +59,10 @@ class RayRenderer : public core::Renderer {
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   RangeCaster caster_;
-  PicturePainter painter_;
+  ImagePainter painter_;
   base::ThreadPool pool_;
-  PictureAhead ahead_;
-  // Used again by the next picture, so that it need not ask for memory.
+  FramePrefetcher ahead_;
+  // Used again by the next image, so that it need not ask for memory.
   std::vector<float> range_m_;
   std::vector<float> inverse_depth_;
   std::int64_t tiles_used_ = 0;  // by the last cast
@@ -87,10 +87,10 @@ core::View shifted(core::View view, const glm::dvec2& place) {
     view.principal_offset_px.x -= place.x;
   } else {
     const double turn = place.x / view.width * 2 * glm::pi<double>();
-    const glm::dvec3 right = view.eye.axes.right;
-    const glm::dvec3 forward = view.eye.axes.forward;
-    view.eye.axes.forward = std::cos(turn) * forward + std::sin(turn) * right;
-    view.eye.axes.right = std::cos(turn) * right - std::sin(turn) * forward;
+    const glm::dvec3 right = view.camera.axes.right;
+    const glm::dvec3 forward = view.camera.axes.forward;
+    view.camera.axes.forward = std::cos(turn) * forward + std::sin(turn) * right;
+    view.camera.axes.right = std::cos(turn) * right - std::sin(turn) * forward;
   }
   return view;
 }
@@ -99,13 +99,13 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
                                        std::int64_t gaps, const ColumnWalk::Used& used) const {
   core::Certificate c;
   c.quantisation_px = RangeCaster::range_error(request.view) * core::focal_px(request.view);
-  c.tile_error_m = used.error_m;
-  c.tile_error_px = used.error_px;
-  c.shift_bound_px = used.error_px + c.quantisation_px;
+  c.geometric_error_m = used.geometric_error_m;
+  c.screen_space_error_px = used.screen_space_error_px;
+  c.shift_bound_px = used.screen_space_error_px + c.quantisation_px;
   for (const int n : used.tiles_by_level) c.tiles_drawn += n;
-  c.picture_bound_px = c.shift_bound_px;
+  c.image_bound_px = c.shift_bound_px;
   c.tolerance_px = request.settings.lod_tolerance_px;
-  c.share_without_data =
+  c.nodata_share =
       static_cast<double>(gaps) / static_cast<double>(std::max<std::size_t>(1, frame.colour.size()));
   const paging::PlanetMeta& meta = planet_->meta();
   c.resampling_max_m = meta.resampling.max_m;
@@ -147,9 +147,9 @@ ColumnWalk::Used RayRenderer::draw_samples(const core::DrawRequest& request, cor
   return used;
 }
 
-// Whether the caches have room for two pictures at once.
+// Whether the caches have room for two images at once.
 bool RayRenderer::has_room_ahead() const {
-  const LatticeStore::Made made = caster_.store().made();
+  const HeightGridStore::Made made = caster_.store().made();
   if (tiles_used_ == 0 || made.tiles == 0) return false;
   const double tile_bytes = static_cast<double>(made.bytes) / static_cast<double>(made.tiles);
   // Some tiles are there in two families.
@@ -172,14 +172,14 @@ ColumnWalk::Used RayRenderer::cast(const core::DrawRequest& request, std::vector
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   try {
-    return draw_picture(request);
+    return draw_image(request);
   } catch (...) {
     ahead_.stop();
     throw;
   }
 }
 
-core::DrawResult RayRenderer::draw_picture(const core::DrawRequest& request) {
+core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);

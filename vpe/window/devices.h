@@ -28,7 +28,7 @@ struct DeviceSources {
 
 struct DeviceReading {
   explore::Controls controls;
-  mars::HeadLook look;
+  mars::HeadAngles look;
   std::vector<explore::Action> actions;
 };
 

@@ -1,5 +1,5 @@
-// A window on the screen with Dear ImGui in it: GLFW, an OpenGL context for panels and finished pictures, fonts
-// for its pixel density. Pictures of ground come as pixels (painter.h): their OpenGL is elsewhere.
+// A window on the screen with Dear ImGui in it: GLFW, an OpenGL context for panels and finished images, fonts
+// for its pixel density. Images of ground come as pixels (painter.h): their OpenGL is elsewhere.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kZoomStep = 1.15;  // of the field of view
 
-// What the window itself does while one stands in a panorama; all else would move an eye that nobody sees through.
+// What the window itself does while one stands in a panorama; all else would move a camera that nobody sees through.
 using Kind = explore::ActionKind;
 constexpr std::array kInside{Kind::kRecord,     Kind::kLeave,      Kind::kRecentreHead, Kind::kMap,
                              Kind::kHidePanels, Kind::kFullScreen, Kind::kHelp,         Kind::kEnterOverlook};
@@ -60,8 +60,8 @@ void ExploreWindow::take_opened() {
   }
 }
 
-void ExploreWindow::save_picture() {
-  saves_picture_ = false;
+void ExploreWindow::save_image() {
+  saves_image_ = false;
   const fs::path file = new_file("", ".png");
   try {
     core::write_image(file.string(), last_image_.pixels, last_image_.width, last_image_.height);
@@ -99,17 +99,17 @@ void ExploreWindow::stop_log() {
   }
 }
 
-// In a panorama the eye stands at the spot and the head looks where its view does.
+// In a panorama the camera stands at the spot and the head looks where its view does.
 void ExploreWindow::log_overlook() {
   if (log_ == nullptr) return;
   const panorama::Viewer& viewer = guide_.inside()->viewer();
   const std::pair look{viewer.yaw_deg(), viewer.pitch_deg()};
   if (look == logged_look_) return;
   logged_look_ = look;
-  mars::EyePose eye;
-  eye.eye_m = guide_.inside_eye_m();
-  const mars::LonLat place = mars::lon_lat(eye.eye_m);
-  const mars::Pose stand{place.lon_deg, place.lat_deg, glm::length(eye.eye_m) - session_.ground().radius_m, 0, 0, 0};
+  mars::CameraPose camera;
+  camera.position_m = guide_.inside_camera_m();
+  const mars::LonLat place = mars::lon_lat(camera.position_m);
+  const mars::Pose stand{place.lon_deg, place.lat_deg, glm::length(camera.position_m) - session_.ground().radius_m, 0, 0, 0};
   try {
     log_->frame({now_s() - log_begun_s_, stand, {std::remainder(look.first, 360.0), look.second, 0}},
                 session_.settings(), session_.all_interest());
@@ -119,7 +119,7 @@ void ExploreWindow::log_overlook() {
   }
 }
 
-std::string ExploreWindow::parting_words() {
+std::string ExploreWindow::exit_message() {
   const explore::FlightEditor* editor = session_.flights().editor();
   if (editor == nullptr || !editor->is_changed()) return {};
   const fs::path file = new_file("unsaved-", ".flight");
@@ -131,7 +131,7 @@ std::string ExploreWindow::parting_words() {
   }
 }
 
-void ExploreWindow::log_picture(PictureOrder& order) {
+void ExploreWindow::log_image(ImageRequest& order) {
   if (log_ == nullptr) return;
   try {
     const double time_s = now_s() - log_begun_s_;
@@ -244,10 +244,10 @@ std::string ExploreWindow::act(const explore::Action& action) {
     case Kind::kHidePanels: state_.panels = !state_.panels; return {};
     case Kind::kFullScreen: display_.set_fullscreen(!display_.is_fullscreen()); return {};
     case Kind::kScreenshot:
-      if (shows_final_picture())
-        save_picture();
+      if (shows_final_image())
+        save_image();
       else
-        saves_picture_ = true;
+        saves_image_ = true;
       return {};
     case Kind::kHelp: state_.help = !state_.help; return {};
     case Kind::kMeasure:
@@ -255,14 +255,14 @@ std::string ExploreWindow::act(const explore::Action& action) {
       measure_.add(*under_cursor_);
       return {};
     case Kind::kEnterOverlook: {
-      const std::string trouble = guide_.step_in();
+      const std::string trouble = guide_.enter();
       if (!trouble.empty()) return trouble;
-      const explore::Spot& spot = *guide_.inside_spot();
-      say(spot.name + ": Esc steps out");
+      const explore::Hotspot& hotspot = *guide_.inside_hotspot();
+      say(hotspot.name + ": Esc steps out");
       session_.release();
       if (log_ == nullptr) return {};
       try {
-        log_->step_in(now_s() - log_begun_s_, spot.name, spot.panorama);
+        log_->enter(now_s() - log_begun_s_, hotspot.name, hotspot.panorama);
       } catch (const std::exception& e) {
         log_.reset();
         return e.what();

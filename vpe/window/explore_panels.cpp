@@ -88,14 +88,14 @@ void ExploreWindow::draw_side() {
 
 void ExploreWindow::measure_panel() {
   ImGui::BeginChild("measure");
-  const MeasureWish wish = measure_.draw(session_, under_cursor_, widgets_);
+  const MeasureActions wish = measure_.draw(session_, under_cursor_, widgets_);
   if (wish.go_to) session_.go_to(*wish.go_to);
   if (!wish.message.empty()) say(wish.message, wish.message_is_trouble);
   ImGui::EndChild();
 }
 
 void ExploreWindow::draw_map(int width, int height) {
-  const MapWish wish = map_.draw(session_, state_.map_ground, measure_.points(), guide_.spots(), width, height, widgets_);
+  const MapActions wish = map_.draw(session_, state_.map_ground, measure_.points(), guide_.hotspots(), width, height, widgets_);
   if (wish.under_cursor) under_cursor_ = wish.under_cursor;
   if (guide_.inside() != nullptr) {
     if (wish.go_to || wish.new_waypoint || wish.new_region || wish.drag) say("Esc steps out of the panorama first", true);
@@ -109,7 +109,7 @@ void ExploreWindow::draw_map(int width, int height) {
   }
   std::string trouble;
   if (wish.new_waypoint) {
-    // As high above the ground there as the eye is here.
+    // As high above the ground there as the camera is here.
     mars::Pose pose = session_.pose();
     pose.lon_deg = wish.new_waypoint->lon_deg;
     pose.lat_deg = wish.new_waypoint->lat_deg;
@@ -201,16 +201,16 @@ void ExploreWindow::draw_status() {
             metres(pose.alt_m).c_str(), metres(session_.height_m()).c_str(),
             pose.yaw_deg < 0 ? pose.yaw_deg + 360 : pose.yaw_deg, pose.pitch_deg, pose.roll_deg);
   if (const OverlookView* inside = guide_.inside(); inside != nullptr)
-    place = guide_.inside_spot()->name +
+    place = guide_.inside_hotspot()->name +
             print("   azimuth %.2f°  elevation %.2f°  field of view %.1f°",
                   std::fmod(inside->viewer().yaw_deg() + 720.0, 360.0), inside->viewer().pitch_deg(),
                   inside->viewer().fov_deg());
   status_line(place, ImGui::GetStyleColorVec4(ImGuiCol_Text));
   if (!state_.message.empty()) {
     status_line(state_.message, state_.message_is_trouble ? kTrouble : kGood);
-  } else if (guide_.inside() == nullptr && picture_) {
-    const core::DrawResult& r = picture_->result;
-    const bool rays = picture_->order.backend == Backend::kRays;
+  } else if (guide_.inside() == nullptr && drawn_) {
+    const core::DrawResult& r = drawn_->result;
+    const bool rays = drawn_->order.backend == Backend::kRays;
     double mean_s = 0;
     for (const double s : frame_times_s_) mean_s += s / static_cast<double>(frame_times_s_.size());
     int finest = 0;
@@ -222,14 +222,14 @@ void ExploreWindow::draw_status() {
                        (rays ? " by rays" : " by triangles") + "   level " +
                        std::to_string(core::shown_level(finest)) + " (" + metres(spacing_m) +
                        " posts)   within " + print("%.2f px", r.certificate.shift_bound_px);
-    const core::View& drawn = picture_->order.request.view;
+    const core::View& drawn = drawn_->order.request.view;
     line += "   " + (rays ? print("%.0f k rays", drawn.width * drawn.height / 1e3)
                           : print("%.0f k triangles", static_cast<double>(r.stats.triangles) / 1e3));
     line += "   " + print("%.0f MB", static_cast<double>(r.stats.bytes_resident) / 1e6) + "   " +
             print("%.0f ms", mean_s * 1e3);
     const std::int64_t loading = r.stats.pages_wanted + r.stats.pages_loading;
     if (loading > 0 && !r.settled) line += "   loading " + std::to_string(loading);
-    if (picture_->order.request.coarsening > 1) line += "   coarser while moving";
+    if (drawn_->order.request.coarsening > 1) line += "   coarser while moving";
     status_line(line, ImGui::GetStyleColorVec4(ImGuiCol_Text));
   }
   ImGui::End();

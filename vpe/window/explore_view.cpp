@@ -1,4 +1,4 @@
-// The view of the explore window: its pictures, and what is drawn over them.
+// The view of the explore window: its images, and what is image_request over them.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace vpe::window {
 
-void ExploreWindow::order_picture() {
+void ExploreWindow::order_image() {
   if (!maker_->is_idle()) return;
   live_.set_budget_ms(session_.settings().values().lod_frame_ms);
   const std::string shown = std::string(to_string(state_.backend)) +
@@ -22,30 +22,30 @@ void ExploreWindow::order_picture() {
   if (!order) return;
   shown_changes_ = session_.changes();
   shown_state_ = shown;
-  PictureOrder picture;
-  picture.number = ++ordered_;
-  picture.backend = state_.backend;
-  picture.stereo = state_.stereo;
-  picture.eye_base_m =
+  ImageRequest image_request;
+  image_request.number = ++ordered_;
+  image_request.backend = state_.backend;
+  image_request.stereo = state_.stereo;
+  image_request.eye_base_m =
       state_.eye_base_m > 0 ? state_.eye_base_m : std::max(session_.height_m(), 1.0) / core::kNearestToBase;
-  picture.request.view = order->view;
-  picture.request.settings = session_.settings().values();
-  picture.request.sun = setup_.sun(session_.settings().values(), session_.pose());
-  picture.request.interest = session_.all_interest();
-  picture.request.coarsening = order->multiplier;
-  picture.request.paging.wait = false;
+  image_request.request.view = order->view;
+  image_request.request.settings = session_.settings().values();
+  image_request.request.sun = setup_.sun(session_.settings().values(), session_.pose());
+  image_request.request.interest = session_.all_interest();
+  image_request.request.coarsening = order->multiplier;
+  image_request.request.paging.wait = false;
   if (const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
       flight != nullptr)
-    picture.flight_time_s = flight->time_s();
-  log_picture(picture);
-  maker_->ask(std::move(picture));
+    image_request.flight_time_s = flight->time_s();
+  log_image(image_request);
+  maker_->ask(std::move(image_request));
 }
 
-void ExploreWindow::take_picture(double wait_s) {
-  std::optional<Picture> made = maker_->take(wait_s);
+void ExploreWindow::take_image(double wait_s) {
+  std::optional<DrawnImage> made = maker_->take(wait_s);
   if (!made) return;
   frames_due_ = std::max(frames_due_, 1);
-  state_.picture_error = made->error;
+  state_.image_error = made->error;
   if (!made->error.empty()) {
     live_.made(made->seconds * 1e3, true);
     say(made->error, true);
@@ -57,22 +57,22 @@ void ExploreWindow::take_picture(double wait_s) {
     say(failures.front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : ""), true);
   }
   view_texture_.upload(made->image);
-  ++pictures_;
+  ++images_;
   last_image_ = std::move(made->image);
-  picture_ = std::move(*made);
-  frame_times_s_.push_back(picture_->seconds);
+  drawn_ = std::move(*made);
+  frame_times_s_.push_back(drawn_->seconds);
   if (frame_times_s_.size() > 20) frame_times_s_.pop_front();
   history_.observe(now_s(), {session_.pose(), session_.screen().fov_deg}, session_.height_m());
-  if (saves_picture_ && picture_->order.request.coarsening == 1.0 && picture_->result.settled) save_picture();
+  if (saves_image_ && drawn_->order.request.coarsening == 1.0 && drawn_->result.settled) save_image();
 }
 
 // In a panorama: true, and a turn of the loop is done.
-bool ExploreWindow::look_around(const DeviceReading& hands, double dt_s) {
+bool ExploreWindow::view_panorama(const DeviceReading& hands, double dt_s) {
   OverlookView* inside = guide_.inside();
   if (inside == nullptr) return false;
   inside->place(view_area_);
   inside->advance(hands.controls, hands.look, dt_s);
-  if (inside->update(kPictureWait_s)) frames_due_ = std::max(frames_due_, 1);
+  if (inside->update(kImageWait_s)) frames_due_ = std::max(frames_due_, 1);
   if (inside->message() != state_.message && !inside->message().empty())
     say(inside->message(), inside->message_is_trouble());
   log_overlook();
@@ -99,8 +99,8 @@ void ExploreWindow::step_out() {
   }
 }
 
-// Where pictures stand: pairs have another shape than the view and are shown whole.
-ExploreWindow::Area ExploreWindow::picture_area() const {
+// Where images stand: pairs have another shape than the view and are shown whole.
+ExploreWindow::Area ExploreWindow::image_area() const {
   const bool wide = state_.stereo == core::StereoLayout::kSideBySide;
   const bool tall = state_.stereo == core::StereoLayout::kOverUnder;
   if (!wide && !tall) return view_area_;
@@ -111,20 +111,20 @@ ExploreWindow::Area ExploreWindow::picture_area() const {
           view_area_.y + (view_area_.height - height * scale) / 2, width * scale, height * scale};
 }
 
-// A position of the window in the picture of one eye; nothing beside it.
-std::optional<glm::dvec2> ExploreWindow::eye_xy(glm::dvec2 cursor) const {
-  const Area area = picture_area();
+// A position of the window in the image of one eye; nothing beside it.
+std::optional<glm::dvec2> ExploreWindow::camera_xy(glm::dvec2 cursor) const {
+  const Area area = image_area();
   if (!area.holds(cursor.x, cursor.y)) return std::nullopt;
   const double wide = state_.stereo == core::StereoLayout::kSideBySide ? 2 : 1;
   const double tall = state_.stereo == core::StereoLayout::kOverUnder ? 2 : 1;
-  const glm::dvec2 eye{(cursor.x - area.x) * wide * view_area_.width / area.width,
+  const glm::dvec2 camera{(cursor.x - area.x) * wide * view_area_.width / area.width,
                        (cursor.y - area.y) * tall * view_area_.height / area.height};
-  return glm::dvec2{std::fmod(eye.x, view_area_.width), std::fmod(eye.y, view_area_.height)};
+  return glm::dvec2{std::fmod(camera.x, view_area_.width), std::fmod(camera.y, view_area_.height)};
 }
 
-// Of a drag: it belongs to the eye in whose picture it began, wherever the hand goes.
+// Of a drag: it belongs to the camera in whose image it began, wherever the hand goes.
 glm::dvec2 ExploreWindow::held_xy(glm::dvec2 cursor) const {
-  const Area area = picture_area();
+  const Area area = image_area();
   const double wide = state_.stereo == core::StereoLayout::kSideBySide ? 2 : 1;
   const double tall = state_.stereo == core::StereoLayout::kOverUnder ? 2 : 1;
   return glm::dvec2{(cursor.x - area.x) * wide * view_area_.width / area.width,
@@ -137,23 +137,23 @@ void ExploreWindow::find_cursor() {
   measure_.update();
   under_cursor_.reset();
   if (state_.large_map || guide_.inside() != nullptr || ImGui::GetIO().WantCaptureMouse) return;
-  const std::optional<glm::dvec2> xy = eye_xy(cursor_);
+  const std::optional<glm::dvec2> xy = camera_xy(cursor_);
   if (!xy) return;
   const core::View view = session_.view();
   const glm::dvec3 ray = core::pixel_ray(view, xy->x, xy->y);
-  const double range_m = session_.ground().cast_m(view.eye.eye_m, ray);
-  if (std::isfinite(range_m)) under_cursor_ = mars::lon_lat(view.eye.eye_m + ray * range_m);
+  const double range_m = session_.ground().cast_m(view.camera.position_m, ray);
+  if (std::isfinite(range_m)) under_cursor_ = mars::lon_lat(view.camera.position_m + ray * range_m);
 }
 
 void ExploreWindow::draw_view() {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  if (!state_.picture_error.empty()) {
-    // The picture before is of something else by now.
-    draw_words(list, view_area_, state_.picture_error);
+  if (!state_.image_error.empty()) {
+    // The image before is of something else by now.
+    draw_words(list, view_area_, state_.image_error);
     return;
   }
-  if (!picture_) return;
-  const Area area = picture_->order.stereo == state_.stereo ? picture_area() : view_area_;
+  if (!drawn_) return;
+  const Area area = drawn_->order.stereo == state_.stereo ? image_area() : view_area_;
   list.AddImage(view_texture_.id(), at(area.x, area.y), at(area.x + area.width, area.y + area.height));
   if (state_.stereo) return;
   list.PushClipRect(at(view_area_.x, view_area_.y),

@@ -33,14 +33,14 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       display_(setup_.display),
       map_(setup_.planet, setup_.threads, [] { Display::wake(); }),
       measure_(setup_.surface, [] { Display::wake(); }),
-      guide_(setup_.spots, setup_.open_overlook),
+      guide_(setup_.hotspots, setup_.open_overlook),
       live_({setup_.session.settings.values().lod_frame_ms}),
       devices_(setup_.preferences, std::move(setup_.devices)),
       history_(session_.ground().radius_m),
       first_fov_deg_(setup_.session.fov_deg),
       begun_(Clock::now()),
       last_frame_(begun_),
-      maker_(std::make_unique<PictureMaker>(setup_.make_painter, [] { Display::wake(); })) {
+      maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
   state_.backend = setup_.backend;
   lay_out();
   if (!setup_.session.start)
@@ -72,12 +72,12 @@ bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
   return maker_->is_idle() && (!shows_map() || map_.is_at_rest()) && measure_.is_at_rest() &&
          !session_.is_going() &&
-         frames_due_ <= 0 && live_.state() == lod::LookState::kWaiting;
+         frames_due_ <= 0 && live_.state() == lod::RefinementState::kWaiting;
 }
 
-bool ExploreWindow::shows_final_picture() const {
-  return picture_ && state_.picture_error.empty() && picture_->result.settled && picture_->order.request.coarsening == 1.0 &&
-         maker_->is_idle() && live_.state() == lod::LookState::kWaiting;
+bool ExploreWindow::shows_final_image() const {
+  return drawn_ && state_.image_error.empty() && drawn_->result.settled && drawn_->order.request.coarsening == 1.0 &&
+         maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting;
 }
 
 bool ExploreWindow::step(double wait_s) {
@@ -88,7 +88,7 @@ bool ExploreWindow::step(double wait_s) {
   const double pause_s = std::max(0.0, kShortestFrame_s - since_s);
   const bool looks = guide_.inside() != nullptr;
   const bool busy = looks ? !guide_.inside()->is_at_rest() || frames_due_ > 0
-                          : moves || frames_due_ > 0 || live_.state() != lod::LookState::kWaiting;
+                          : moves || frames_due_ > 0 || live_.state() != lod::RefinementState::kWaiting;
   const double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
   const std::vector<Event> events = display_.events(busy ? pause_s : rest_s);
   if (display_.should_close()) return false;
@@ -109,7 +109,7 @@ bool ExploreWindow::step(double wait_s) {
   last_frame_ = now;
   take_opened();
   forget_old_message();
-  if (look_around(hands, dt_s)) return !display_.should_close();
+  if (view_panorama(hands, dt_s)) return !display_.should_close();
   explore::Controls controls = hands.controls;
   controls.speed *= state_.speed;
   was_moving_ = explore::any(controls);
@@ -117,8 +117,8 @@ bool ExploreWindow::step(double wait_s) {
 
   if (const std::string words = guide_.follow(session_, view_area_); !words.empty()) say(words);
 
-  order_picture();
-  take_picture(kPictureWait_s);
+  order_image();
+  take_image(kImageWait_s);
   if ((shows_map() && !map_.is_at_rest()) || !measure_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
   if (frames_due_ > 0 || session_.is_going() || plays) {
     draw_frame();
@@ -151,7 +151,7 @@ void ExploreWindow::handle(const Event& event) {
       if (session_.mouse_use() != explore::MouseUse::kNone) session_.drag(held_xy(cursor_));
       break;
     case Event::Kind::kScroll:
-      if (const auto xy = eye_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
+      if (const auto xy = camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
         session_.wheel(*xy, event.scroll);
       break;
     case Event::Kind::kDrop: break;  // above
@@ -163,7 +163,7 @@ void ExploreWindow::handle_button(const Event& event) {
     session_.release();
     return;
   }
-  const std::optional<glm::dvec2> over = eye_xy(cursor_);
+  const std::optional<glm::dvec2> over = camera_xy(cursor_);
   if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
   const glm::dvec2 xy = *over;
   held_half_ = {0, 0};

@@ -8,10 +8,10 @@ namespace vpe::window {
 
 const char* to_string(Backend backend) { return backend == Backend::kRays ? "voxel" : "polygon"; }
 
-PictureMaker::PictureMaker(MakePainter make_painter, std::function<void()> tell)
+ImageMaker::ImageMaker(MakePainter make_painter, std::function<void()> tell)
     : make_painter_(std::move(make_painter)), tell_(std::move(tell)), thread_([this] { run(); }) {}
 
-PictureMaker::~PictureMaker() {
+ImageMaker::~ImageMaker() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
@@ -20,7 +20,7 @@ PictureMaker::~PictureMaker() {
   thread_.join();
 }
 
-void PictureMaker::ask(PictureOrder order) {
+void ImageMaker::ask(ImageRequest order) {
   {
     const std::lock_guard lock(mutex_);
     waiting_ = std::move(order);
@@ -28,22 +28,22 @@ void PictureMaker::ask(PictureOrder order) {
   changed_.notify_all();
 }
 
-bool PictureMaker::is_idle() const {
+bool ImageMaker::is_idle() const {
   const std::lock_guard lock(mutex_);
   return !waiting_ && !is_busy_ && !finished_;
 }
 
-std::optional<Picture> PictureMaker::take(double wait_s) {
+std::optional<DrawnImage> ImageMaker::take(double wait_s) {
   std::unique_lock lock(mutex_);
   if (wait_s > 0 && !finished_ && (waiting_ || is_busy_))
     changed_.wait_for(lock, std::chrono::duration<double>(wait_s), [this] { return finished_.has_value(); });
   return std::exchange(finished_, std::nullopt);
 }
 
-void PictureMaker::run() {
+void ImageMaker::run() {
   std::unique_ptr<Painter> painter;
   while (true) {
-    PictureOrder order;
+    ImageRequest order;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return waiting_ || ends_; });
@@ -52,19 +52,19 @@ void PictureMaker::run() {
       waiting_.reset();
       is_busy_ = true;
     }
-    Picture picture;
+    DrawnImage image;
     const auto begun = std::chrono::steady_clock::now();
     try {
       if (painter == nullptr) painter = make_painter_();
-      picture = painter->paint(order);
+      image = painter->paint(order);
     } catch (const std::exception& e) {
-      picture.error = e.what();
+      image.error = e.what();
     }
-    picture.order = std::move(order);
-    picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    image.order = std::move(order);
+    image.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     {
       const std::lock_guard lock(mutex_);
-      finished_ = std::move(picture);
+      finished_ = std::move(image);
       is_busy_ = false;
     }
     changed_.notify_all();

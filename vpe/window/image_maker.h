@@ -1,4 +1,4 @@
-// Makes pictures on a thread of its own, so that a window never waits for one longer than it wants to.
+// Makes images on a thread of its own, so that a window never waits for one longer than it wants to.
 #pragma once
 
 #include <condition_variable>
@@ -13,21 +13,21 @@
 namespace vpe::window {
 
 // One thread at a time calls. An order that is not begun is replaced by a later one; one that is begun is
-// finished. Errors come as pictures: nothing is thrown across threads.
-class PictureMaker {
+// finished. Errors come as images: nothing is thrown across threads.
+class ImageMaker {
  public:
-  // The painter is made on the maker's thread, at the first order. `tell`: called on that thread when a picture
+  // The painter is made on the maker's thread, at the first order. `tell`: called on that thread when an image
   // is finished.
-  PictureMaker(MakePainter make_painter, std::function<void()> tell);
-  ~PictureMaker();  // waits for the picture that is begun
-  PictureMaker(const PictureMaker&) = delete;
-  PictureMaker& operator=(const PictureMaker&) = delete;
+  ImageMaker(MakePainter make_painter, std::function<void()> tell);
+  ~ImageMaker();  // waits for the image that is begun
+  ImageMaker(const ImageMaker&) = delete;
+  ImageMaker& operator=(const ImageMaker&) = delete;
 
-  void ask(PictureOrder order);
+  void ask(ImageRequest order);
   // Neither begun nor waiting nor finished and not taken.
   bool is_idle() const;
-  // The picture finished last, once. Waits for at most so long when there is none but one is on its way.
-  std::optional<Picture> take(double wait_s = 0);
+  // The image finished last, once. Waits for at most so long when there is none but one is on its way.
+  std::optional<DrawnImage> take(double wait_s = 0);
 
  private:
   void run();
@@ -36,8 +36,8 @@ class PictureMaker {
   std::function<void()> tell_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<PictureOrder> waiting_;
-  std::optional<Picture> finished_;
+  std::optional<ImageRequest> waiting_;
+  std::optional<DrawnImage> finished_;
   bool is_busy_ = false;
   bool ends_ = false;
   std::thread thread_;  // last: uses all of the above

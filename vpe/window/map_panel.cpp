@@ -15,12 +15,12 @@ namespace {
 constexpr std::size_t kBudget_bytes = std::size_t{96} << 20;
 constexpr double kDragBegins_px = 4;
 constexpr std::size_t kMostMarks = 200;     // of waypoints, and of spots that are named
-constexpr double kSpotNames_deg_px = 0.05;  // from afar names would lie over each other
+constexpr double kHotspotNames_deg_px = 0.05;  // from afar names would lie over each other
 constexpr ImU32 kEye = IM_COL32(255, 214, 90, 255);
 constexpr ImU32 kOutline = IM_COL32(255, 214, 90, 190);
 constexpr ImU32 kRegion = IM_COL32(90, 200, 255, 220);
 constexpr ImU32 kFlight = IM_COL32(255, 255, 255, 230);
-constexpr ImU32 kSpot = IM_COL32(120, 220, 255, 255);
+constexpr ImU32 kHotspot = IM_COL32(120, 220, 255, 255);
 constexpr ImU32 kWay = IM_COL32(120, 255, 160, 255);
 constexpr ImU32 kDark = IM_COL32(0, 0, 0, 160);
 
@@ -47,7 +47,7 @@ void MapPanel::run() {
   std::unique_ptr<explore::MapPainter> painter;
   std::unique_ptr<base::ThreadPool> pool;
   while (true) {
-    Order order;
+    Request order;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return waiting_ || ends_; });
@@ -74,10 +74,10 @@ void MapPanel::run() {
   }
 }
 
-MapWish MapPanel::draw(const explore::Session& session, explore::MapGround ground,
-                       std::span<const mars::LonLat> way, std::span<const explore::Spot> spots, int width,
+MapActions MapPanel::draw(const explore::Session& session, explore::MapGround ground,
+                       std::span<const mars::LonLat> way, std::span<const explore::Hotspot> hotspots, int width,
                        int height, Widgets& widgets) {
-  MapWish wish;
+  MapActions wish;
   if (is_fresh_) {
     map_ = explore::whole_map(width, height);
     is_fresh_ = false;
@@ -106,7 +106,7 @@ MapWish MapPanel::draw(const explore::Session& session, explore::MapGround groun
     is_drag_ = is_drag_ || glm::length(xy - *pressed_) > kDragBegins_px;
     if (is_drag_ && waypoint_) {
       if (const auto place = map_.place(xy); place && xy != dragged_) {
-        wish.drag = MapWish::Drag{*waypoint_, *place, waypoint_moved_};
+        wish.drag = MapActions::Drag{*waypoint_, *place, waypoint_moved_};
         waypoint_moved_ = true;
       }
     } else if (is_drag_ && !with_shift_) {
@@ -131,7 +131,7 @@ MapWish MapPanel::draw(const explore::Session& session, explore::MapGround groun
     pressed_.reset();
   }
 
-  const Order order{map_, ground};
+  const Request order{map_, ground};
   {
     const std::lock_guard lock(mutex_);
     if (!(asked_ == order)) {
@@ -153,7 +153,7 @@ MapWish MapPanel::draw(const explore::Session& session, explore::MapGround groun
   list.AddRectFilled(corner, at(corner.x + static_cast<float>(width), corner.y + static_cast<float>(height)),
                      IM_COL32(40, 42, 46, 255));
   if (texture_ != nullptr) {
-    // The picture that is there, where it belongs on the map as it is now.
+    // The image that is there, where it belongs on the map as it is now.
     const double scale = shown_.degrees_per_px / map_.degrees_per_px;
     const double wide = shown_.lon_degrees_per_px() / map_.lon_degrees_per_px();
     const glm::dvec2 middle = map_.position(shown_.middle);
@@ -163,7 +163,7 @@ MapWish MapPanel::draw(const explore::Session& session, explore::MapGround groun
                   at(corner.x + middle.x + w, corner.y + middle.y + h));
   }
   draw_marks(session, corner.x, corner.y);
-  draw_spots(spots, corner.x, corner.y);
+  draw_hotspots(hotspots, corner.x, corner.y);
   draw_way(way, corner.x, corner.y);
   list.PopClipRect();
   return wish;
@@ -245,34 +245,34 @@ void MapPanel::draw_marks(const explore::Session& session, double x0, double y0)
     list.AddCircle(at(x0 + pressed_->x, y0 + pressed_->y), static_cast<float>(radius), kRegion, 48, 1.5F);
   }
 
-  const ImVec2 eye = point({pose.lon_deg, pose.lat_deg});
+  const ImVec2 camera = point({pose.lon_deg, pose.lat_deg});
   const double heading = (pose.yaw_deg + session.look().yaw_deg) * mars::kRadiansPerDegree;
   const double size = ImGui::GetFontSize() * 0.6;
   const auto corner_at = [&](double angle, double r) {
-    return at(eye.x + r * std::sin(heading + angle), eye.y - r * std::cos(heading + angle));
+    return at(camera.x + r * std::sin(heading + angle), camera.y - r * std::cos(heading + angle));
   };
   list.AddTriangleFilled(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kEye);
   list.AddTriangle(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kDark, 1.5F);
 }
 
-void MapPanel::draw_spots(std::span<const explore::Spot> spots, double x0, double y0) const {
+void MapPanel::draw_hotspots(std::span<const explore::Hotspot> hotspots, double x0, double y0) const {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float size = ImGui::GetFontSize() * 0.35F;
-  const bool named = spots.size() <= kMostMarks && map_.degrees_per_px < kSpotNames_deg_px;
-  for (const explore::Spot& spot : spots) {
-    const glm::dvec2 p = map_.position(spot.place);
+  const bool named = hotspots.size() <= kMostMarks && map_.degrees_per_px < kHotspotNames_deg_px;
+  for (const explore::Hotspot& hotspot : hotspots) {
+    const glm::dvec2 p = map_.position(hotspot.place);
     if (p.x < 0 || p.y < 0 || p.x > map_.width || p.y > map_.height) continue;
     const ImVec2 middle = at(x0 + p.x, y0 + p.y);
     const ImVec2 corners[4] = {{middle.x, middle.y - size},
                                {middle.x + size, middle.y},
                                {middle.x, middle.y + size},
                                {middle.x - size, middle.y}};
-    list.AddConvexPolyFilled(corners, 4, kSpot);
+    list.AddConvexPolyFilled(corners, 4, kHotspot);
     list.AddPolyline(corners, 4, kDark, ImDrawFlags_Closed, 1.5F);
     if (!named) continue;
     const ImVec2 text{middle.x + size * 1.6F, middle.y - ImGui::GetFontSize() * 0.5F};
-    list.AddText({text.x + 1, text.y + 1}, kDark, spot.name.c_str());
-    list.AddText(text, kSpot, spot.name.c_str());
+    list.AddText({text.x + 1, text.y + 1}, kDark, hotspot.name.c_str());
+    list.AddText(text, kHotspot, hotspot.name.c_str());
   }
 }
 

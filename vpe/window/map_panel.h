@@ -1,4 +1,4 @@
-// The map: the planet flat, the eye and what it sees, clicked to go there, dragged, zoomed.
+// The map: the planet flat, the camera and what it sees, clicked to go there, dragged, zoomed.
 #pragma once
 
 #include <condition_variable>
@@ -21,7 +21,7 @@
 namespace vpe::window {
 
 // What the user asked for in a frame.
-struct MapWish {
+struct MapActions {
   std::optional<mars::LonLat> under_cursor;
   std::optional<mars::LonLat> go_to;               // a click
   std::optional<core::InterestRegion> new_region;  // drawn with Shift
@@ -36,28 +36,28 @@ struct MapWish {
 
 class MapPanel {
  public:
-  // Pictures of the map are made on a thread of its own; `tell` is called there when one is finished.
+  // Images of the map are made on a thread of its own; `tell` is called there when one is finished.
   MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> tell);
   ~MapPanel();
 
   // Inside an ImGui window: takes so many pixels of it. `way`: points that are measured. `spots`: that have panoramas.
-  MapWish draw(const explore::Session& session, explore::MapGround ground, std::span<const mars::LonLat> way,
-               std::span<const explore::Spot> spots, int width, int height, Widgets& widgets);
+  MapActions draw(const explore::Session& session, explore::MapGround ground, std::span<const mars::LonLat> way,
+               std::span<const explore::Hotspot> hotspots, int width, int height, Widgets& widgets);
 
   const explore::MapView& map() const { return map_; }
   bool is_at_rest() const;
 
  private:
-  struct Order {
+  struct Request {
     explore::MapView map;
     explore::MapGround ground = explore::MapGround::kRelief;
-    bool operator==(const Order&) const = default;
+    bool operator==(const Request&) const = default;
   };
 
   void run();
   std::optional<std::size_t> waypoint_near(const explore::Session& session, glm::dvec2 xy) const;
   void draw_marks(const explore::Session& session, double x0, double y0) const;
-  void draw_spots(std::span<const explore::Spot> spots, double x0, double y0) const;
+  void draw_hotspots(std::span<const explore::Hotspot> hotspots, double x0, double y0) const;
   void draw_way(std::span<const mars::LonLat> way, double x0, double y0) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -74,12 +74,12 @@ class MapPanel {
   bool waypoint_moved_ = false;
   std::unique_ptr<Texture> texture_;
   explore::MapView shown_;  // of the texture
-  std::optional<Order> asked_;
+  std::optional<Request> asked_;
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Order> waiting_;
-  std::optional<std::pair<Order, core::RgbImage>> finished_;
+  std::optional<Request> waiting_;
+  std::optional<std::pair<Request, core::RgbImage>> finished_;
   bool is_busy_ = false;
   bool ends_ = false;
   std::thread thread_;

@@ -34,11 +34,11 @@ class Marker {
   // What is aimed at stands a little above the ground: about two pixels, so that its own facet does not hide
   // it.
   bool is_hidden(const glm::dvec3& point_m) const {
-    const glm::dvec3& eye_m = view_.eye.eye_m;
-    const double lift_m = std::max(0.5, 2 * glm::length(point_m - eye_m) / core::focal_px(view_));
-    const glm::dvec3 way = point_m * (1 + lift_m / glm::length(point_m)) - eye_m;
+    const glm::dvec3& camera_m = view_.camera.position_m;
+    const double lift_m = std::max(0.5, 2 * glm::length(point_m - camera_m) / core::focal_px(view_));
+    const glm::dvec3 way = point_m * (1 + lift_m / glm::length(point_m)) - camera_m;
     const double distance_m = glm::length(way);
-    return session_.ground().cast_m(eye_m, way / distance_m) < distance_m * (1 - 1e-9);
+    return session_.ground().cast_m(camera_m, way / distance_m) < distance_m * (1 - 1e-9);
   }
 
   core::Projected seen(const glm::dvec3& point_m) const { return core::project(view_, point_m); }
@@ -59,7 +59,7 @@ class Marker {
     core::Projected seen;
     bool hidden = false;
   };
-  void stretch(std::vector<LinePoint> points) const;
+  void off_axis_magnification(std::vector<LinePoint> points) const;
 
   ImDrawList& list_;
   const explore::Session& session_;
@@ -70,7 +70,7 @@ class Marker {
 };
 
 // One part of the line that crosses the view.
-void Marker::stretch(std::vector<LinePoint> points) const {
+void Marker::off_axis_magnification(std::vector<LinePoint> points) const {
   const std::size_t every = 1 + points.size() / MarkLimits::kLinePoints;
   std::vector<LinePoint> kept;
   for (std::size_t n = 0; n < points.size(); ++n)
@@ -113,7 +113,7 @@ void Marker::line(const explore::Profile& profile) const {
     if (!crosses(n)) continue;
     const std::size_t begin = n - 1;
     while (n < all.size() && crosses(n)) ++n;
-    stretch({all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(n)});
+    off_axis_magnification({all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(n)});
   }
 }
 

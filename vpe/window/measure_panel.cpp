@@ -71,10 +71,10 @@ void MeasurePanel::take() {
   if (made && made->number == wanted_) measured_ = std::move(made);
 }
 
-MeasureWish MeasurePanel::draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
+MeasureActions MeasurePanel::draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
                                Widgets& widgets) {
   take();
-  MeasureWish wish;
+  MeasureActions wish;
   ImGui::BeginChild("measure");
   if (ImGui::CollapsingHeader("Under the cursor", ImGuiTreeNodeFlags_DefaultOpen))
     draw_read_out(session, under_cursor);
@@ -98,10 +98,10 @@ void MeasurePanel::draw_read_out(const explore::Session& session, std::optional<
       explore::ReadOut out =
           explore::read_out_at(session.surface(), *under_cursor, session.settings().values().exaggeration);
       // A place pointed at on the map has a range when it can be seen.
-      const glm::dvec3 eye_m = session.view().eye.eye_m;
-      const glm::dvec3 way = out.point_m - eye_m;
+      const glm::dvec3 camera_m = session.view().camera.position_m;
+      const glm::dvec3 way = out.point_m - camera_m;
       const double range_m = glm::length(way);
-      const double cast_m = range_m > 0 ? session.ground().cast_m(eye_m, way / range_m) : 0;
+      const double cast_m = range_m > 0 ? session.ground().cast_m(camera_m, way / range_m) : 0;
       if (std::abs(cast_m - range_m) <= 0.01 + 1e-3 * range_m) out.range_m = range_m;
       read_out_ = explore::read_out_lines(out);
     } catch (const std::exception& e) {
@@ -119,7 +119,7 @@ void MeasurePanel::draw_read_out(const explore::Session& session, std::optional<
   }
 }
 
-void MeasurePanel::draw_place(MeasureWish& wish, Widgets& widgets) {
+void MeasurePanel::draw_place(MeasureActions& wish, Widgets& widgets) {
   ImGui::SetNextItemWidth(-1);
   if (widgets.text("##place", place_text_,
                    "Longitude, latitude; or with E, W, N, S; degrees, minutes, seconds. Enter reads it.")) {
@@ -207,7 +207,7 @@ void MeasurePanel::draw_sight(Widgets& widgets) {
                                 : "no height of " + last + " is enough: it is too far round the planet");
 }
 
-void MeasurePanel::draw_profile(MeasureWish& wish, Widgets& widgets) {
+void MeasurePanel::draw_profile(MeasureActions& wish, Widgets& widgets) {
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const double height = ImGui::GetFontSize() * 12;
   if (!measured_ || measured_->profile == nullptr) {
@@ -231,7 +231,7 @@ void MeasurePanel::draw_profile(MeasureWish& wish, Widgets& widgets) {
     const paging::ProfilePoint& point = explore::nearest_point(profile, *cursor_m);
     marked_ = point.place;
     ImGui::TextUnformatted((explore::length_text(point.distance_m) + ": " +
-                            (point.missing ? std::string("no data")
+                            (point.nodata ? std::string("no data")
                                            : explore::fixed_text(point.height_m, 1) + " m, slope " +
                                                  explore::fixed_text(point.slope_deg, 1) + "\u00b0"))
                                .c_str());
@@ -247,7 +247,7 @@ void MeasurePanel::draw_profile(MeasureWish& wish, Widgets& widgets) {
   if (widgets.button("Save CSV")) save(wish);
 }
 
-void MeasurePanel::save(MeasureWish& wish) const {
+void MeasurePanel::save(MeasureActions& wish) const {
   wish.message_is_trouble = true;
   if (file_.empty()) {
     wish.message = "type the name of a file for the profile";

@@ -16,7 +16,7 @@
 namespace vpe::window {
 
 // What the user asked for in a frame, and what is to be said.
-struct MeasureWish {
+struct MeasureActions {
   std::optional<mars::LonLat> go_to;
   std::string message;  // of something done, or that could not be; empty: nothing new
   bool message_is_trouble = false;
@@ -30,7 +30,7 @@ class MeasurePanel {
 
   // Inside the tab "Measure". The place under the cursor, in view or map; nothing where there is none: then the
   // last one stays.
-  MeasureWish draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor, Widgets& widgets);
+  MeasureActions draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor, Widgets& widgets);
 
   // Another point of the way. Places that are none are ignored.
   void add(mars::LonLat place);
@@ -55,12 +55,12 @@ class MeasurePanel {
   void order();
   void take();
   void draw_read_out(const explore::Session& session, std::optional<mars::LonLat> under_cursor);
-  void draw_place(MeasureWish& wish, Widgets& widgets);
+  void draw_place(MeasureActions& wish, Widgets& widgets);
   void draw_points(Widgets& widgets);
   void draw_figures();
   void draw_sight(Widgets& widgets);
-  void draw_profile(MeasureWish& wish, Widgets& widgets);
-  void save(MeasureWish& wish) const;
+  void draw_profile(MeasureActions& wish, Widgets& widgets);
+  void save(MeasureActions& wish) const;
 
   std::shared_ptr<const paging::Surface> surface_;
   std::vector<mars::LonLat> places_;

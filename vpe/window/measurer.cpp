@@ -28,7 +28,7 @@ Measurer::~Measurer() {
   thread_.join();
 }
 
-std::uint64_t Measurer::ask(MeasureOrder order) {
+std::uint64_t Measurer::ask(MeasureRequest order) {
   std::uint64_t number = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -57,7 +57,7 @@ bool Measurer::is_at_rest() const {
 
 void Measurer::run() {
   while (true) {
-    std::pair<std::uint64_t, MeasureOrder> next;
+    std::pair<std::uint64_t, MeasureRequest> next;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return waiting_ || ends_; });
@@ -76,7 +76,7 @@ void Measurer::run() {
   }
 }
 
-Measured Measurer::measure(std::uint64_t number, const MeasureOrder& order) {
+Measured Measurer::measure(std::uint64_t number, const MeasureRequest& order) {
   Measured out;
   out.number = number;
   out.order = order;

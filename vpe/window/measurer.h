@@ -16,7 +16,7 @@
 namespace vpe::window {
 
 // Points of a way and how high above the ground its ends look from.
-struct MeasureOrder {
+struct MeasureRequest {
   std::vector<mars::LonLat> places;
   double from_height_m = 0;
   double to_height_m = 0;
@@ -24,7 +24,7 @@ struct MeasureOrder {
 
 struct Measured {
   std::uint64_t number = 0;  // of the order
-  MeasureOrder order;
+  MeasureRequest order;
   std::shared_ptr<const explore::Profile> profile;  // null: trouble says why
   std::optional<explore::LineOfSight> sight;        // between the first and the last place
   std::string trouble;
@@ -41,7 +41,7 @@ class Measurer {
   Measurer& operator=(const Measurer&) = delete;
 
   // In place of what has not begun. The number of the order, larger than all before.
-  std::uint64_t ask(MeasureOrder order);
+  std::uint64_t ask(MeasureRequest order);
   // Drops what has not begun and what is finished.
   void forget();
   // What is finished, once.
@@ -51,7 +51,7 @@ class Measurer {
 
  private:
   void run();
-  Measured measure(std::uint64_t number, const MeasureOrder& order);
+  Measured measure(std::uint64_t number, const MeasureRequest& order);
 
   std::shared_ptr<const paging::Surface> surface_;
   std::function<void()> tell_;
@@ -59,7 +59,7 @@ class Measurer {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::uint64_t asked_ = 0;
-  std::optional<std::pair<std::uint64_t, MeasureOrder>> waiting_;
+  std::optional<std::pair<std::uint64_t, MeasureRequest>> waiting_;
   std::optional<Measured> finished_;
   bool is_busy_ = false;
   bool ends_ = false;

@@ -1,4 +1,4 @@
-// What an overlook view draws: its picture, and the compass strip.
+// What an overlook view draws: its image, and the compass strip.
 #include <imgui.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void OverlookView::draw() {
   const glm::ivec2 eye = eye_size();
   const int across = stereo_ == core::StereoLayout::kSideBySide ? 2 : 1;
   const int down = stereo_ == core::StereoLayout::kOverUnder ? 2 : 1;
-  if (picture_) {
+  if (drawn_) {
     list.AddImage(texture_.id(), at(area_.x, area_.y), at(area_.x + eye.x * across, area_.y + eye.y * down));
     for (int right = 0; right < across; ++right) {
       for (int below = 0; below < down; ++below) draw_strip({area_.x + right * eye.x, area_.y + below * eye.y});
@@ -42,7 +42,7 @@ void OverlookView::draw() {
   } else if (shown_copying_ >= 0) {
     char words[256];
     std::snprintf(words, sizeof words, "copying %s once, in tiles: %.0f %%",
-                  setup_.panorama.picture.filename().c_str(), 100 * shown_copying_);
+                  setup_.panorama.image.filename().c_str(), 100 * shown_copying_);
     draw_words(list, area_, words);
   } else if (message_is_trouble_) {
     draw_words(list, area_, message_);
@@ -57,8 +57,8 @@ void OverlookView::draw_strip(const glm::dvec2& corner) {
   const double tick = std::round(letters * 0.55);
   const double thick = std::max(1.0, std::round(letters / 14));
   const glm::ivec2 size = viewer_.size();
-  // Of the picture that is shown, which may be one behind where it is to look.
-  core::View view = picture_->order.request.view;
+  // Of the image that is shown, which may be one behind where it is to look.
+  core::View view = drawn_->order.request.view;
   view.width = size.x;
   view.height = size.y;
   marks_ = overlay::compass_row(view, panorama::kViewerFrame, kWidest_em * letters);

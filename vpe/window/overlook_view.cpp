@@ -25,7 +25,7 @@ double tangent_of_half(double fov_deg) { return std::tan(0.5 * fov_deg * mars::k
 
 bool same_view(const core::View& a, const core::View& b) {
   return a.width == b.width && a.height == b.height && a.fov_deg == b.fov_deg &&
-         a.eye.axes.forward == b.eye.axes.forward && a.eye.axes.up == b.eye.axes.up;
+         a.camera.axes.forward == b.camera.axes.forward && a.camera.axes.up == b.camera.axes.up;
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ OverlookView::OverlookView(OverlookSetup setup)
       viewer_(setup_.panorama.map, 1280, 720),
       reader_(setup_.panorama),
       live_({setup_.budget_ms}),
-      maker_(std::make_unique<PictureMaker>(setup_.make_painter, [] { Display::wake(); })) {
+      maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
   viewer_.set_fov(setup_.fov_deg);
   if (setup_.look) viewer_.look_at(setup_.look->azimuth_deg, setup_.look->elevation_deg);
   start_deg_ = {viewer_.yaw_deg(), viewer_.pitch_deg()};
@@ -52,7 +52,7 @@ glm::ivec2 OverlookView::eye_size() const {
   return {side(area_.width, across), side(area_.height, down)};
 }
 
-glm::dvec2 OverlookView::eye_xy(double x, double y) const {
+glm::dvec2 OverlookView::camera_xy(double x, double y) const {
   const glm::ivec2 size = eye_size();
   glm::dvec2 xy{x - area_.x, y - area_.y};
   if (stereo_ == core::StereoLayout::kSideBySide && xy.x >= size.x) xy.x -= size.x;
@@ -85,7 +85,7 @@ void OverlookView::handle(const Event& event, bool captured) {
     case Event::Kind::kPress:
       if (!over || event.code != GLFW_MOUSE_BUTTON_LEFT) break;
       message_.clear();
-      cursor_ = eye_xy(event.x, event.y);
+      cursor_ = camera_xy(event.x, event.y);
       (void)reading();
       held_ = viewer_.direction(cursor_->x, cursor_->y);
       break;
@@ -93,7 +93,7 @@ void OverlookView::handle(const Event& event, bool captured) {
       if (event.code != GLFW_MOUSE_BUTTON_LEFT || !held_) break;
       held_.reset();
       // Of a pair the cursor may have come into the other half.
-      cursor_ = over ? std::optional(eye_xy(event.x, event.y)) : std::nullopt;
+      cursor_ = over ? std::optional(camera_xy(event.x, event.y)) : std::nullopt;
       break;
     case Event::Kind::kMove:
       if (held_) {
@@ -108,7 +108,7 @@ void OverlookView::handle(const Event& event, bool captured) {
         viewer_.hold(*held_, xy.x, xy.y);
         took_over();
       } else if (over) {
-        cursor_ = eye_xy(event.x, event.y);
+        cursor_ = camera_xy(event.x, event.y);
       } else {
         cursor_.reset();
       }
@@ -116,7 +116,7 @@ void OverlookView::handle(const Event& event, bool captured) {
     case Event::Kind::kScroll: {
       if (!over || event.scroll == 0) break;
       message_.clear();
-      const glm::dvec2 xy = eye_xy(event.x, event.y);
+      const glm::dvec2 xy = camera_xy(event.x, event.y);
       viewer_.zoom(std::pow(kZoomStep, setup_.invert_wheel ? -event.scroll : event.scroll), xy.x, xy.y);
       took_over();
       break;
@@ -148,7 +148,7 @@ bool OverlookView::act(const explore::Action& action) {
   return true;
 }
 
-void OverlookView::advance(const explore::Controls& controls, const mars::HeadLook& look, double dt_s) {
+void OverlookView::advance(const explore::Controls& controls, const mars::HeadAngles& look, double dt_s) {
   const glm::dvec2 head{look.yaw_deg, look.pitch_deg};
   if (head != head_deg_) {
     head_deg_ = head;
@@ -187,35 +187,35 @@ void OverlookView::set_fov(double fov_deg) {
 }
 
 bool OverlookView::is_at_rest() const {
-  return maker_->is_idle() && live_.state() == lod::LookState::kWaiting && !turns_ && !is_new_ && !save_due_;
+  return maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting && !turns_ && !is_new_ && !save_due_;
 }
 
 bool OverlookView::update(double wait_s) {
-  const std::int64_t before = pictures_;
-  take_picture(0);
+  const std::int64_t before = images_;
+  take_image(0);
   // The next one is made while this one is shown.
-  order_picture();
-  if (pictures_ == before) take_picture(wait_s);
+  order_image();
+  if (images_ == before) take_image(wait_s);
   const double copying = setup_.copying->fraction;
   if (copying != shown_copying_) is_new_ = true;
   shown_copying_ = copying;
   return std::exchange(is_new_, false);
 }
 
-void OverlookView::order_picture() {
+void OverlookView::order_image() {
   if (!maker_->is_idle()) return;
   const core::View wanted = viewer_.view();
   // A view that was saved while it moved is one that nobody had a good look at.
-  const bool shows_it = picture_ && picture_is_full_ && picture_->error.empty() &&
-                        same_view(picture_->order.request.view, wanted) && picture_->order.stereo == stereo_;
-  if (save_due_ && shows_it) save_picture();
+  const bool shows_it = drawn_ && image_is_full_ && drawn_->error.empty() &&
+                        same_view(drawn_->order.request.view, wanted) && drawn_->order.stereo == stereo_;
+  if (save_due_ && shows_it) save_image();
   if (ordered_ == 0) {
-    // A full one may take long; this is there at once, and tells nothing of how long pictures take.
+    // A full one may take long; this is there at once, and tells nothing of how long images take.
     order_is_full_ = false;
-    PictureOrder first;
+    ImageRequest first;
     first.number = ++ordered_;
     first.stereo = ordered_stereo_ = stereo_;
-    first.request.view = explore::reduced(wanted, explore::LivePictureOptions().smallest_side);
+    first.request.view = explore::reduced(wanted, explore::LiveImageOptions().smallest_side);
     maker_->ask(std::move(first));
     return;
   }
@@ -229,17 +229,17 @@ void OverlookView::order_picture() {
   }
   ordered_stereo_ = stereo_;
   order_is_full_ = order->is_full;
-  PictureOrder picture;
-  picture.number = ++ordered_;
-  picture.stereo = stereo_;
-  picture.request.view = order->view;
-  maker_->ask(std::move(picture));
+  ImageRequest image_request;
+  image_request.number = ++ordered_;
+  image_request.stereo = stereo_;
+  image_request.request.view = order->view;
+  maker_->ask(std::move(image_request));
 }
 
-void OverlookView::take_picture(double wait_s) {
-  std::optional<Picture> made = maker_->take(wait_s);
+void OverlookView::take_image(double wait_s) {
+  std::optional<DrawnImage> made = maker_->take(wait_s);
   if (!made) return;
-  ++pictures_;
+  ++images_;
   is_new_ = true;
   if (made->order.number > 1) live_.made(made->seconds * 1e3, true);
   if (!made->error.empty()) {
@@ -247,19 +247,19 @@ void OverlookView::take_picture(double wait_s) {
     return;
   }
   texture_.upload(made->image);
-  picture_ = std::move(*made);
-  picture_is_full_ = order_is_full_;
+  drawn_ = std::move(*made);
+  image_is_full_ = order_is_full_;
 }
 
-void OverlookView::save_picture() {
+void OverlookView::save_image() {
   namespace fs = std::filesystem;
   save_due_ = false;
-  const std::string stem = setup_.panorama.picture.stem().string() + "-view-";
+  const std::string stem = setup_.panorama.image.stem().string() + "-view-";
   std::error_code ignored;
   fs::path path;
   for (int n = 1; path.empty() || fs::exists(path, ignored); ++n)
-    path = setup_.pictures / (stem + std::to_string(n) + ".png");
-  const core::RgbImage& image = picture_->image;
+    path = setup_.images / (stem + std::to_string(n) + ".png");
+  const core::RgbImage& image = drawn_->image;
   try {
     core::write_image(path, image.pixels, image.width, image.height);
     say("written: " + fs::absolute(path, ignored).string(), false);

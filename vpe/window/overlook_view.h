@@ -10,7 +10,7 @@
 //   if (view.update(wait_s)) ...           something is to be shown: a frame with view.draw()
 //
 // and waits for events when is_at_rest(). Two degrees of freedom: yaw and pitch; the roll of devices and heads
-// is left out. Belongs to the main thread and a Display that outlives it; pictures are made on a thread of its
+// is left out. Belongs to the main thread and a Display that outlives it; images are made on a thread of its
 // own, which wakes the display.
 #pragma once
 
@@ -39,7 +39,7 @@
 
 namespace vpe::window {
 
-// Between a view and its painter, on two threads: how far the copying of a large picture is, and that nobody
+// Between a view and its painter, on two threads: how far the copying of a large image is, and that nobody
 // wants it any more.
 struct CopyingState {
   std::atomic<double> fraction{-1};  // < 0: nothing is copied
@@ -49,20 +49,20 @@ struct CopyingState {
 struct OverlookSetup {
   panorama::PanoramaDescription panorama;
   bool is_pair = false;      // there is a second eye
-  MakePainter make_painter;  // of views of the panorama: PictureOrder's request.view and stereo count
+  MakePainter make_painter;  // of views of the panorama: ImageRequest's request.view and stereo count
   std::shared_ptr<CopyingState> copying = std::make_shared<CopyingState>();
   std::optional<panorama::Direction> look;                   // to begin with; the middle when left out
   double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;  // vertical, of one eye
   std::optional<core::StereoLayout> stereo;                  // only with a pair
-  double budget_ms = 40;           // of a picture while the view moves; 0: always full pictures
+  double budget_ms = 40;           // of an image while the view moves; 0: always full images
   bool invert_wheel = false;       // rolling away zooms out
-  std::filesystem::path pictures;  // folder of saved views
+  std::filesystem::path images;  // folder of saved views
 };
 
 // What the cursor is on.
 struct OverlookReading {
   panorama::Direction direction;
-  std::optional<panorama::PlaceRead> place;  // nothing where the picture shows nothing
+  std::optional<panorama::ProbeResult> place;  // nothing where the image shows nothing
 };
 
 class OverlookView {
@@ -72,7 +72,7 @@ class OverlookView {
 
   // Needs a Display. Throws vpe::base::FileError when a plane of the panorama cannot be used.
   explicit OverlookView(OverlookSetup setup);
-  ~OverlookView();  // waits for the picture that is begun, which stops copying
+  ~OverlookView();  // waits for the image that is begun, which stops copying
   OverlookView(const OverlookView&) = delete;
   OverlookView& operator=(const OverlookView&) = delete;
 
@@ -82,11 +82,11 @@ class OverlookView {
   void handle(const Event& event, bool captured);
   // north-up, level, reset, zoom-in, zoom-out, zoom-reset, screenshot; false for all others.
   bool act(const explore::Action& action);
-  void advance(const explore::Controls& controls, const mars::HeadLook& look, double dt_s);
-  // Orders a picture when one is due, and takes one that is finished, for which it waits at most so long. True
+  void advance(const explore::Controls& controls, const mars::HeadAngles& look, double dt_s);
+  // Orders an image when one is due, and takes one that is finished, for which it waits at most so long. True
   // when what draw() shows has changed.
   bool update(double wait_s);
-  // Picture and compass strip, into the area, behind ImGui's windows.
+  // Image and compass strip, into the area, behind ImGui's windows.
   void draw();
   // Nothing moves, is being made, or waits to be shown.
   bool is_at_rest() const;
@@ -104,27 +104,27 @@ class OverlookView {
   std::optional<OverlookReading> reading();
   // Marks of the strip as drawn last, in pixels of one eye's screen: where the azimuths of its middle row are.
   const std::vector<overlay::PlacedMark>& compass() const { return marks_; }
-  // The picture shown last; null before the first.
-  const Picture* picture() const { return picture_ ? &*picture_ : nullptr; }
-  std::int64_t pictures() const { return pictures_; }
+  // The image shown last; null before the first.
+  const DrawnImage* drawn() const { return drawn_ ? &*drawn_ : nullptr; }
+  std::int64_t images() const { return images_; }
   // What was done last or went wrong, until somebody does something else; empty: nothing.
   const std::string& message() const { return message_; }
   bool message_is_trouble() const { return message_is_trouble_; }
 
  private:
   glm::ivec2 eye_size() const;
-  glm::dvec2 eye_xy(double x, double y) const;
+  glm::dvec2 camera_xy(double x, double y) const;
   void took_over();
   void say(std::string words, bool is_trouble);
-  void order_picture();
-  void take_picture(double wait_s);
-  void save_picture();
+  void order_image();
+  void take_image(double wait_s);
+  void save_image();
   void draw_strip(const glm::dvec2& corner);  // of an eye
 
   OverlookSetup setup_;
   panorama::Viewer viewer_;  // the platform's direction and the head's look
-  panorama::PlaceReader reader_;
-  explore::LivePicture live_;
+  panorama::PixelProbe reader_;
+  explore::LiveImage live_;
   std::optional<core::StereoLayout> stereo_;
   ViewArea area_;
   Texture texture_;
@@ -137,19 +137,19 @@ class OverlookView {
   std::optional<core::View> read_view_;
   std::optional<OverlookReading> reading_;
   std::vector<overlay::PlacedMark> marks_;
-  std::optional<Picture> picture_;
+  std::optional<DrawnImage> drawn_;
   std::optional<core::StereoLayout> ordered_stereo_;
   bool order_is_full_ = false;
-  bool picture_is_full_ = false;
+  bool image_is_full_ = false;
   bool save_due_ = false;
   bool is_new_ = true;
   bool turns_ = false;
   double shown_copying_ = -1;
   std::uint64_t ordered_ = 0;
-  std::int64_t pictures_ = 0;
+  std::int64_t images_ = 0;
   std::string message_;
   bool message_is_trouble_ = false;
-  std::unique_ptr<PictureMaker> maker_;  // last: its thread uses what is above
+  std::unique_ptr<ImageMaker> maker_;  // last: its thread uses what is above
 };
 
 }  // namespace vpe::window

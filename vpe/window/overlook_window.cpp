@@ -15,7 +15,7 @@ using explore::ActionKind;
 
 constexpr double kShortestFrame_s = 1.0 / 120;
 constexpr double kPoll_s = 1.0 / 60;    // of devices that send no events
-constexpr double kPictureWait_s = 0.1;  // for which a frame waits for its picture
+constexpr double kImageWait_s = 0.1;  // for which a frame waits for its image
 constexpr int kFramesAfterChange = 3;   // ImGui settles within so many
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
@@ -75,7 +75,7 @@ bool OverlookWindow::step(double wait_s) {
   for (const explore::Action& action : reading.actions) act(action);
   view_.advance(reading.controls, reading.look, dt_s);
   lay_out();
-  if (view_.update(kPictureWait_s)) frames_due_ = std::max(frames_due_, 1);
+  if (view_.update(kImageWait_s)) frames_due_ = std::max(frames_due_, 1);
   if (frames_due_ > 0) {
     draw_frame();
     --frames_due_;

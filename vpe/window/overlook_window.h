@@ -26,7 +26,7 @@ class OverlookWindow {
   // Throws DisplayError, and as OverlookView.
   explicit OverlookWindow(OverlookWindowSetup setup);
 
-  // One turn: events, devices, a picture when one is due, a frame when something changed. Waits for events for
+  // One turn: events, devices, an image when one is due, a frame when something changed. Waits for events for
   // at most so long when there is nothing to do. False when the window is closed.
   bool step(double wait_s);
 

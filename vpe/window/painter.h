@@ -1,4 +1,4 @@
-// Who makes the pictures that a window shows. The window says what; how is the backends' business.
+// Who makes the images that a window shows. The window says what; how is the backends' business.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class Backend : std::uint8_t { kPolygons, kRays };
 // "polygon", "voxel", as on the command line.
 const char* to_string(Backend backend);
 
-struct PictureOrder {
+struct ImageRequest {
   std::uint64_t number = 0;  // of orders of one window; later ones are larger
   Backend backend = Backend::kPolygons;
   core::DrawRequest request;
@@ -29,8 +29,8 @@ struct PictureOrder {
 };
 
 // What became of an order.
-struct Picture {
-  PictureOrder order;
+struct DrawnImage {
+  ImageRequest order;
   core::RgbImage image;     // of another size than the view's in stereo; empty after an error
   core::DrawResult result;  // without its pixels; of the left eye in stereo
   double seconds = 0;
@@ -42,7 +42,7 @@ class Painter {
  public:
   virtual ~Painter() = default;
   // Throws what renderers throw.
-  virtual Picture paint(const PictureOrder& order) = 0;
+  virtual DrawnImage paint(const ImageRequest& order) = 0;
 };
 
 using MakePainter = std::function<std::unique_ptr<Painter>()>;

@@ -19,7 +19,7 @@ inline void coloured(const ImVec4& colour, const std::string& words) {
   ImGui::PopStyleColor();
 }
 
-// In the middle of a view that has no picture, in lines as wide as most of it.
+// In the middle of a view that has no image, in lines as wide as most of it.
 inline void draw_words(ImDrawList& list, const ViewArea& area, const std::string& words) {
   const double most = area.width * 0.8;
   const ImVec2 size = ImGui::CalcTextSize(words.c_str(), nullptr, false, static_cast<float>(most));

@@ -86,8 +86,8 @@ void draw_ground(ImDrawList& list, const Frame& f, const explore::Profile& profi
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const explore::PlotColumn& c = columns[k];
     const double x = f.x0 + static_cast<double>(k);
-    list.AddRectFilled(at(x, f.y(c.high_m)), at(x + 1, f.y1), c.missing ? kNoData : kBand);
-    list.AddRectFilled(at(x, f.y(c.low_m)), at(x + 1, f.y1), c.missing ? kNoData : kGround);
+    list.AddRectFilled(at(x, f.y(c.high_m)), at(x + 1, f.y1), c.nodata ? kNoData : kBand);
+    list.AddRectFilled(at(x, f.y(c.low_m)), at(x + 1, f.y1), c.nodata ? kNoData : kGround);
     line.push_back(at(x, f.y(c.begin_m)));
   }
   line.push_back(at(f.x1, f.y(columns.back().end_m)));

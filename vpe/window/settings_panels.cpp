@@ -83,8 +83,8 @@ void ExploreWindow::detail_panel() {
     settings_group("cull.", {});
     settings_group("inspect", {});
   }
-  if (picture_ && ImGui::CollapsingHeader("Tiles by level", ImGuiTreeNodeFlags_DefaultOpen)) {
-    const std::vector<int>& levels = picture_->result.stats.tiles_by_level;
+  if (drawn_ && ImGui::CollapsingHeader("Tiles by level", ImGuiTreeNodeFlags_DefaultOpen)) {
+    const std::vector<int>& levels = drawn_->result.stats.tiles_by_level;
     for (std::size_t n = 0; n < levels.size(); ++n) {
       if (levels[n] == 0) continue;
       const double spacing_m = lod::post_spacing_m(static_cast<int>(n), setup_.planet->meta().tile.intervals(),

@@ -111,9 +111,9 @@ TEST_F(FilmFolder, DamagedAndMissingFramesAreMadeAgainAndForeignFilesStay) {
   write_bytes(dir_ / "out" / frame_name(20), vpe::core::with_png_text(bytes_of(empty), *texts));
   auto other = *vpe::core::read_png_text(bytes_of(whole.at(frame_name(21))));
   other[0].text = std::string(32, '0');
-  const auto picture = vpe::core::read_image(dir_ / "out" / frame_name(21));
+  const auto panorama_image = vpe::core::read_image(dir_ / "out" / frame_name(21));
   write_bytes(dir_ / "out" / frame_name(21),
-              vpe::core::with_png_text(vpe::core::encode_png(picture.pixels, 64, 48), other));
+              vpe::core::with_png_text(vpe::core::encode_png(panorama_image.pixels, 64, 48), other));
   const std::map<std::string, std::string> foreign{
       {"notes.txt", "mine"}, {"frame_x.png", "mine"},   {"frame_000000.png.bak", "mine"},
       {"x.png.tmp", "mine"}, {"frame_999999.png", "x"}, {"frame_000003.PNG", "mine"}};
@@ -152,7 +152,7 @@ TEST_F(FilmFolder, AnEditRemakesTheFramesThatChange) {
   expect_counts("out", 0, kFrames, palette);
   write_text(dir_ / "p.txt", "-8000 0 0 1\n9000 255 255 255\n");
   expect_counts("out", kFrames, 0, palette);
-  // What changes every picture, or may.
+  // What changes every image, or may.
   expect_counts("out", kFrames, 0, {"--memory", "512"});
   expect_counts("out", 0, kFrames, {"--memory", "512", "--threads", "1"});
 }

@@ -85,15 +85,15 @@ TEST_F(FilmVideo, CanBeEnteredAnywhere) {
   Command all;
   all.program = find_program("ffmpeg");
   all.arguments = {"-v", "error", "-i", path("x.mp4"), "-f", "rawvideo", "-pix_fmt", "gray", "-"};
-  const std::string pictures = run(all).out;
+  const std::string images = run(all).out;
   constexpr std::size_t kSize = 64 * 48;
-  ASSERT_EQ(pictures.size(), kFrames * kSize);
+  ASSERT_EQ(images.size(), kFrames * kSize);
   // About the joins at 8 and 16.
   for (const int k : {7, 8, 9, 16}) {
     Command one = all;
     one.arguments.insert(one.arguments.begin() + 2, {"-ss", std::to_string(k / 2.0)});
     one.arguments.insert(one.arguments.end() - 1, {"-frames:v", "1"});
-    EXPECT_EQ(run(one).out, pictures.substr(static_cast<std::size_t>(k) * kSize, kSize)) << k;
+    EXPECT_EQ(run(one).out, images.substr(static_cast<std::size_t>(k) * kSize, kSize)) << k;
   }
 }
 
@@ -192,7 +192,7 @@ TEST_F(FilmVideo, IsNotJoinedWhenFramesFail) {
   write_text(dir_ / "f.flight", round_flight());
   fs::copy_file(planet(), dir_ / "p.vpe");
   damage_a_face(dir_ / "p.vpe");
-  // The face is in the pictures of the first and the last segment.
+  // The face is in the images of the first and the last segment.
   const Words words{"fly", "f.flight", "p.vpe", "-o", "x.mp4", "--json"};
   const Result result = vpe(words);
   ASSERT_EQ(result.exit_code, 1) << "signal " << result.signal;

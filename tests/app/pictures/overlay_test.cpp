@@ -1,4 +1,4 @@
-// Overlays as people ask for them: in pictures, as layers, in films.
+// Overlays as people ask for them: in images, as layers, in films.
 #include <png.h>
 
 #include "tests/app/support/app_fixture.h"
@@ -46,7 +46,7 @@ vpe::overlay::Layer read_layer(const std::filesystem::path& path) {
   return layer;
 }
 
-TEST_F(OverlayApp, ThePictureIsThePlainOneUnderTheLayer) {
+TEST_F(OverlayApp, TheImageIsThePlainOneUnderTheLayer) {
   ASSERT_EQ(render({}, "plain.png").exit_code, 0);
   const Result result = render(all(), "with.png");
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -54,17 +54,17 @@ TEST_F(OverlayApp, ThePictureIsThePlainOneUnderTheLayer) {
   more.insert(more.end(), {"--overlay-layer", "layer.png"});
   ASSERT_EQ(render(more, "without.png").exit_code, 0);
   EXPECT_TRUE(read_text(dir_ / "without.png") == read_text(dir_ / "plain.png"));
-  auto picture = vpe::core::read_image(dir_ / "plain.png");
+  auto panorama_image = vpe::core::read_image(dir_ / "plain.png");
   const auto layer = read_layer(dir_ / "layer.png");
   ASSERT_EQ(layer.width, 320);
-  const auto before = picture.pixels;
-  vpe::overlay::composite(layer, picture.pixels);
-  EXPECT_TRUE(picture.pixels != before);
-  EXPECT_TRUE(picture.pixels == vpe::core::read_image(dir_ / "with.png").pixels);
+  const auto before = panorama_image.pixels;
+  vpe::overlay::composite(layer, panorama_image.pixels);
+  EXPECT_TRUE(panorama_image.pixels != before);
+  EXPECT_TRUE(panorama_image.pixels == vpe::core::read_image(dir_ / "with.png").pixels);
   EXPECT_EQ(leftovers(), Words{});
 }
 
-TEST_F(OverlayApp, EachOneOnAndOffLeavesThePlainPicture) {
+TEST_F(OverlayApp, EachOneOnAndOffLeavesThePlainImage) {
   // Contours are drawn only where the ground is right enough for them.
   const Words exact{"--tolerance", "0"};
   ASSERT_EQ(render(exact, "plain.png").exit_code, 0);

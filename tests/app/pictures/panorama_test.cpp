@@ -34,7 +34,7 @@ std::vector<float> read_range(const std::filesystem::path& path) {
 }
 
 struct Agreement {
-  ShiftSummary rays_in_triangles;  // every hit of the rays, looked for in the triangles' picture
+  ShiftSummary rays_in_triangles;  // every hit of the rays, looked for in the triangles' image
   ShiftSummary triangles_in_rays;  // the other way round
 };
 
@@ -60,7 +60,7 @@ double step_at(const vpe::core::RgbImage& image, int column) {
 
 constexpr int kReach = 15;
 
-// Of several pictures of eight facets, the same number of columns about each seam.
+// Of several images of eight facets, the same number of columns about each seam.
 Seams seams_of(const std::vector<vpe::core::RgbImage>& images) {
   Seams seams;
   for (int n = -kReach; n <= kReach; ++n) {
@@ -118,8 +118,8 @@ class PolygonPanorama : public AppTest {
     EXPECT_EQ(facets.facets, 8);
     const auto triangles = read_range(dir_ / "f.range.tif");
     const auto rays = read_range(dir_ / "c.range.tif");
-    const panorama::Standpoint stand_there{
-        {described.station->lon_deg, described.station->lat_deg, *described.station->alt_m, 0, 0, 0},
+    const panorama::PoseOnSphere stand_there{
+        {described.viewpoint->lon_deg, described.viewpoint->lat_deg, *described.viewpoint->alt_m, 0, 0, 0},
         mars::kMarsRadius_m};
     std::vector<double> forth;
     std::vector<double> back;
@@ -157,7 +157,7 @@ class PolygonPanorama : public AppTest {
       EXPECT_GT(found.rays_in_triangles.pixels, width * 100);
       EXPECT_LE(found.rays_in_triangles.share_over_1px, 0.005);
       EXPECT_LE(found.triangles_in_rays.share_over_1px, 0.005);
-      EXPECT_GT(found.rays_in_triangles.median_px, 0);  // they are two pictures
+      EXPECT_GT(found.rays_in_triangles.median_px, 0);  // they are two images
       for (const ShiftSummary& s : {found.rays_in_triangles, found.triangles_in_rays}) {
         std::printf("%-32s median %.3f, 99 %% %.3f, 99.9 %% %.3f, largest %.2f px; over 1 px %.4f %% of %lld\n",
                     stand.text().c_str(), s.median_px, s.p99_px, s.p999_px, s.max_px, 100 * s.share_over_1px,
@@ -196,21 +196,21 @@ TEST_F(PolygonPanorama, SeamsAreNotSeen) {
   expect_no_seams("rough.vpe", {{"-70,-11.1", "3000"}}, 1.2);
 }
 
-// On one machine: triangles differ between drivers. Under a hard cap of triangles the eye may be within the
+// On one machine: triangles differ between drivers. Under a hard cap of triangles the camera may be within the
 // error of the ground, so that no number of pixels bounds it: that is no reason to draw again.
 TEST_F(PolygonPanorama, ResumedAfterASignalItIsTheSame) {
   const Words capped{"--height", "1", "--set", "lod.triangles=60"};
-  for (const Words& eye : {Words{"--height", "4000", "--planes", "range"}, capped}) {
+  for (const Words& camera : {Words{"--height", "4000", "--planes", "range"}, capped}) {
     // Wide enough for three strips.
     Words words{
         "panorama", planet().string(),       "--at",      "10,5",   "-o", "p.tif", "-q", "--json", "--width",
         "18000",    "--elevation=-3.2,-1.8", "--backend", "polygon"};
-    words.insert(words.end(), eye.begin(), eye.end());
+    words.insert(words.end(), camera.begin(), camera.end());
     const Result whole = vpe(words);
     ASSERT_EQ(whole.exit_code, 0) << whole.err;
-    EXPECT_EQ(parse_json(whole.out)["shift_bound_px"].is_null(), eye == capped);
-    const std::string picture = read_text(dir_ / "p.tif");
-    const std::string range = eye == capped ? "" : read_text(dir_ / "p.range.tif");
+    EXPECT_EQ(parse_json(whole.out)["shift_bound_px"].is_null(), camera == capped);
+    const std::string panorama_image = read_text(dir_ / "p.tif");
+    const std::string range = camera == capped ? "" : read_text(dir_ / "p.range.tif");
     const std::string error = parse_json(read_text(dir_ / "p.json"))["error"].dump();
     std::filesystem::remove(dir_ / "p.tif");
     std::filesystem::remove(dir_ / "p.range.tif");
@@ -228,8 +228,8 @@ TEST_F(PolygonPanorama, ResumedAfterASignalItIsTheSame) {
     const auto report = parse_json(resumed.out);
     EXPECT_GE(report["strips_kept"], 1);
     EXPECT_EQ(report["strips_kept"].get<int>() + report["strips_made"].get<int>(), 3);
-    EXPECT_TRUE(read_text(dir_ / "p.tif") == picture);
-    if (eye != capped) {
+    EXPECT_TRUE(read_text(dir_ / "p.tif") == panorama_image);
+    if (camera != capped) {
       EXPECT_TRUE(read_text(dir_ / "p.range.tif") == range);
     }
     std::filesystem::remove(dir_ / "p.range.tif");

@@ -1,4 +1,4 @@
-// One picture, its ranges and its certificate.
+// One image, its ranges and its certificate.
 #include <cmath>
 
 #include "mars/geodesy/mars_time.h"
@@ -23,7 +23,7 @@ class Render : public AppTest {
   }
 };
 
-TEST_F(Render, PictureRangeAndCertificate) {
+TEST_F(Render, ImageRangeAndCertificate) {
   const Result result =
       render({"--range", "r.tif", "--certificate", "c.json", "--json", "--fov", "60", "--backend", "polygon"},
              "-74,-13.5,300000,0,-30,0");
@@ -45,9 +45,9 @@ TEST_F(Render, PictureRangeAndCertificate) {
   EXPECT_GT(report["stats"]["triangles"], 0);
   EXPECT_EQ(report["stats"]["tiles_drawn"], c["tiles_drawn"]);
 
-  const auto picture = vpe::core::read_image(dir_ / "x.png");
-  EXPECT_EQ(picture.width, 96);
-  EXPECT_EQ(picture.height, 54);
+  const auto panorama_image = vpe::core::read_image(dir_ / "x.png");
+  EXPECT_EQ(panorama_image.width, 96);
+  EXPECT_EQ(panorama_image.height, 54);
   const auto range = vpe::core::read_tiff(dir_ / "r.tif");
   ASSERT_EQ(range.width, 96);
   ASSERT_EQ(range.height, 54);
@@ -109,7 +109,7 @@ TEST_F(Render, StraightDownTheRangeIsTheAltitudeOverTheTerrain) {
   EXPECT_NEAR(middle_m({"--set", "exaggeration=10"}, "31,1,100000,0,-90,0"), 100000 - 10 * ground, 1300);
 }
 
-TEST_F(Render, SamePictureAgainAndInOtherFormats) {
+TEST_F(Render, SameImageAgainAndInOtherFormats) {
   ASSERT_EQ(render({}, "286,-13.5,300000,20,-40,5", "a.png").exit_code, 0);
   ASSERT_EQ(render({"--threads", "1"}, "-74,-13.5,300000,20,-40,5", "b.png").exit_code, 0);
   EXPECT_EQ(read_text(dir_ / "a.png"), read_text(dir_ / "b.png"));
@@ -121,7 +121,7 @@ TEST_F(Render, SamePictureAgainAndInOtherFormats) {
 }
 
 TEST_F(Render, TheSunOfADateOrASeason) {
-  const auto picture = [&](const Words& more) {
+  const auto panorama_image = [&](const Words& more) {
     Words words{"--set", "mode=lit"};
     words.insert(words.end(), more.begin(), more.end());
     const Result result = render(words, "-74,-13.5,300000,0,-90,0", "s.png");
@@ -133,22 +133,22 @@ TEST_F(Render, TheSunOfADateOrASeason) {
     for (const vpe::base::Rgb& p : pixels) sum += p.r;
     return sum / static_cast<double>(pixels.size());
   };
-  const auto noon = picture({"--sun", "Ls0,12:00"});
-  const auto evening = picture({"--sun", "Ls0,17:30"});
-  const auto night = picture({"--sun", "ls0,00:00"});
+  const auto noon = panorama_image({"--sun", "Ls0,12:00"});
+  const auto evening = panorama_image({"--sun", "Ls0,17:30"});
+  const auto night = panorama_image({"--sun", "ls0,00:00"});
   EXPECT_GT(brightness(noon), 1.3 * brightness(evening));
   EXPECT_GT(brightness(evening), 1.3 * brightness(night));
-  EXPECT_EQ(picture({"--set", "sun=Ls0,17:30"}), evening);
-  EXPECT_EQ(picture({"--sun", "Ls0,12:00", "--set", "sun=Ls0,17:30"}), evening);
-  EXPECT_EQ(picture({"--sun", "local"}), picture({}));
+  EXPECT_EQ(panorama_image({"--set", "sun=Ls0,17:30"}), evening);
+  EXPECT_EQ(panorama_image({"--sun", "Ls0,12:00", "--set", "sun=Ls0,17:30"}), evening);
+  EXPECT_EQ(panorama_image({"--sun", "local"}), panorama_image({}));
 
-  // By date, and by where that sun stands at the ground below the eye.
+  // By date, and by where that sun stands at the ground below the camera.
   const mars::LonLat below{-74, -13.5};
   const mars::MarsTime time = mars::mars_time(1795176000);  // 2026-11-20T12:00Z
   const mars::SunPlace at =
       mars::sun_place(below, mars::direction({time.subsolar_lon_deg, time.subsolar_lat_deg}));
-  const auto dated = picture({"--sun", "2026-11-20T14:00+02:00"});
-  const auto put = picture({"--set", "sun.azimuth=" + vpe::base::format_number(at.azimuth_deg), "--set",
+  const auto dated = panorama_image({"--sun", "2026-11-20T14:00+02:00"});
+  const auto put = panorama_image({"--set", "sun.azimuth=" + vpe::base::format_number(at.azimuth_deg), "--set",
                             "sun.elevation=" + vpe::base::format_number(at.elevation_deg)});
   ASSERT_EQ(dated.size(), put.size());
   for (std::size_t n = 0; n < put.size(); ++n) ASSERT_NEAR(dated[n].r, put[n].r, 1) << n;

@@ -118,7 +118,7 @@ void ReportErrorTime::exact_rays_are_reference_and_baseline() const {
     EXPECT_EQ(exact.at("default"), "backend");
     EXPECT_LT(exact.at("shift_max_px").get<double>(), 1e-3);
   }
-  // What is drawn when nothing is named is one way a view, among pictures and among samples.
+  // What is drawn when nothing is named is one way a view, among images and among samples.
   std::multiset<std::string> chosen;
   for (const nlohmann::json& row : rows("defaults")) {
     if (row.at("default") == "yes") chosen.insert(row.at("view").get<std::string>());

@@ -1,4 +1,4 @@
-// Pictures for two eyes.
+// Images for two eyes.
 #include <algorithm>
 #include <cmath>
 

@@ -58,7 +58,7 @@ vpe::core::View random_view() {
   view.fov_deg = std::exp(uniform(std::log(0.01), std::log(150)));
   view.width = integer(10, 4000);
   view.height = integer(10, 3000);
-  view.eye = mars::to_eye({at.lon_deg, at.lat_deg, std::exp(uniform(-2, 17)), uniform(-180, 180),
+  view.camera = mars::to_camera({at.lon_deg, at.lat_deg, std::exp(uniform(-2, 17)), uniform(-180, 180),
                            uniform(-90, 90), uniform(-180, 180)},
                           mars::kMarsRadius_m);
   return view;
@@ -80,11 +80,11 @@ void planet(int n) {
   const double alt_m = std::exp(uniform(-3, 18));
   print("horizon", n, {mars::horizon_dip_rad(alt_m, 3.4e6), mars::horizon_distance_m(alt_m, 3.4e6)});
   const mars::Pose pose{a.lon_deg, a.lat_deg, alt_m, uniform(-400, 400), uniform(-90, 90), uniform(-200, 200)};
-  const mars::EyePose eye = mars::to_eye(pose, {uniform(-90, 90), uniform(-90, 90), 3}, mars::kMarsRadius_m);
-  print("eye", n, eye.eye_m);
-  print("eye forward", n, eye.axes.forward);
-  print("eye up", n, eye.axes.up);
-  const mars::Pose again = mars::to_pose(eye, mars::kMarsRadius_m);
+  const mars::CameraPose camera = mars::to_camera(pose, {uniform(-90, 90), uniform(-90, 90), 3}, mars::kMarsRadius_m);
+  print("eye", n, camera.position_m);
+  print("eye forward", n, camera.axes.forward);
+  print("eye up", n, camera.axes.up);
+  const mars::Pose again = mars::to_pose(camera, mars::kMarsRadius_m);
   print("pose", n, {again.lon_deg, again.lat_deg, again.alt_m, again.yaw_deg, again.pitch_deg, again.roll_deg});
   const mars::ChartPoint chart = mars::chart_point(direction());
   print("chart", n, {chart.u, chart.v, mars::face_parameter(chart.u)});
@@ -97,27 +97,27 @@ void views(int n) {
   const vpe::core::Projected p = vpe::core::project(view, direction() * uniform(1e6, 1e8));
   print("project", n, {p.xy.x, p.xy.y, p.depth_m});
   const lod::TileKey key{static_cast<mars::Face>(integer(0, 5)), 5, integer(0, 31), integer(0, 31)};
-  const cull::Shell shell{lod::chart_rect(key), uniform(3.38e6, 3.39e6), uniform(3.39e6, 3.41e6)};
-  const cull::Eye eye = cull::make_eye(view.eye.eye_m);
-  const double chord2 = cull::nearest_chord2(shell.rect, eye.direction);
+  const cull::BoundingRegion region{lod::chart_rect(key), uniform(3.38e6, 3.39e6), uniform(3.39e6, 3.41e6)};
+  const cull::Camera camera = cull::make_camera(view.camera.position_m);
+  const double chord2 = cull::nearest_chord2(region.rect, camera.direction);
   print("distance", n,
-        {chord2, cull::farthest_chord2(shell.rect, eye.direction),
-         cull::min_distance_m(eye, chord2, shell.min_radius_m, shell.max_radius_m),
-         cull::max_distance_m(eye, chord2, shell.min_radius_m, shell.max_radius_m)});
-  const cull::TileVolume volume = cull::make_volume(shell);
+        {chord2, cull::farthest_chord2(region.rect, camera.direction),
+         cull::min_distance_m(camera, chord2, region.min_radius_m, region.max_radius_m),
+         cull::max_distance_m(camera, chord2, region.min_radius_m, region.max_radius_m)});
+  const cull::BoundingHexahedron volume = cull::bounding_hexahedron(region);
   print("volume", n, volume.corners_m[static_cast<std::size_t>(n % 8)]);
   const cull::Frustum frustum = cull::make_frustum(view);
   const auto crossed = cull::planes_crossed(frustum, volume, cull::all_planes(frustum));
-  const cull::Horizon horizon = cull::make_horizon(eye, 3.38e6);
+  const cull::Horizon horizon = cull::make_horizon(camera, 3.38e6);
   print("culled", n,
         {crossed ? static_cast<double>(*crossed) : -1, horizon.half_tangent,
-         cull::hidden(horizon, chord2, shell.max_radius_m) ? 1.0 : 0.0,
-         cull::against_sky(eye, horizon, chord2, shell.max_radius_m) ? 1.0 : 0.0});
-  print("stretch", n, {lod::stretch(lod::picture_plane(view), volume)});
+         cull::hidden(horizon, chord2, region.max_radius_m) ? 1.0 : 0.0,
+         cull::against_sky(camera, horizon, chord2, region.max_radius_m) ? 1.0 : 0.0});
+  print("stretch", n, {lod::off_axis_magnification(lod::image_plane(view), volume)});
   print("centre", n, {lod::least_angle_rad(lod::centre_of_view(view), volume)});
 }
 
-void walls(int n) {
+void occluders(int n) {
   cull::TerrainHorizon horizon;
   const glm::dvec3 up = direction();
   horizon.begin({up, 3.4e6 + uniform(10, 1e5)}, 1e-5);
@@ -161,7 +161,7 @@ void ground(int n) {
   const std::vector<double> heights{posts.at(0, 0), posts.at(16, 0), posts.at(16, 16), posts.at(0, 16)};
   const lod::ErrorTerms terms = lod::measure_error(key, mesh, heights, posts, radius_m);
   print("error", n,
-        {terms.relief_m, terms.sag_m, terms.total_m, lod::error_bound(terms, 3.7, -5000, 8000, radius_m)});
+        {terms.height_error_m, terms.sagitta_m, terms.total_m, lod::error_bound(terms, 3.7, -5000, 8000, radius_m)});
 }
 
 void light(int n) {
@@ -194,11 +194,11 @@ void flights(int trial) {
   const scripts::Path path(flight, mars::kMarsRadius_m, {});
   for (int n = 0; n < 30; ++n) {
     const scripts::FlightState state = path.at(uniform(0, t));
-    print("flight eye", 30 * trial + n, state.eye.eye_m);
-    print("flight forward", 30 * trial + n, state.eye.axes.forward);
+    print("flight eye", 30 * trial + n, state.camera.position_m);
+    print("flight forward", 30 * trial + n, state.camera.axes.forward);
     print("flight look", 30 * trial + n, {state.look.yaw_deg, state.look.pitch_deg, state.pose.alt_m});
   }
-  const vpe::explore::Ground ball = vpe::explore::ball(mars::kMarsRadius_m);
+  const vpe::explore::TerrainQuery ball = vpe::explore::ball(mars::kMarsRadius_m);
   mars::Pose pose{at.lon_deg, at.lat_deg, 5000, 30, 0, 0};
   for (int n = 0; n < 20; ++n)
     pose = vpe::explore::moved(pose, uniform(-1e4, 1e4), 0, uniform(-1e4, 1e4), ball);
@@ -221,7 +221,7 @@ void panoramas(int n) {
 int main() {
   for (int n = 0; n < 2000; ++n) planet(n);
   for (int n = 0; n < 2000; ++n) views(n);
-  for (int n = 0; n < 30; ++n) walls(n);
+  for (int n = 0; n < 30; ++n) occluders(n);
   for (int n = 0; n < 60; ++n) ground(n);
   for (int n = 0; n < 1000; ++n) light(n);
   control();

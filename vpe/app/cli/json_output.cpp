@@ -29,7 +29,7 @@ json levels_json(const paging::PlanetMeta& m) {
                {"finest_tiles", l.leaf_tiles},
                {"image_tiles", l.image_tiles},
                {"bytes", l.bytes},
-               {"holes", l.holes},
+               {"holes", l.nodata_posts},
                {"resampling_posts", l.resampling.posts}};
     entry["resampling_max_m"] = l.resampling.posts > 0 ? json(l.resampling.max_m) : json();
     entry["resampling_rms_m"] = l.resampling.posts > 0 ? json(l.resampling.rms_m) : json();

@@ -44,7 +44,7 @@ void check_output(const fs::path& path) {
   }
 }
 
-void check_picture_output(const fs::path& path) {
+void check_image_output(const fs::path& path) {
   if (!core::is_image_path(path))
     fail(path, "no known picture format; let the name end in .png, .jpg or .jpeg");
   check_output(path);

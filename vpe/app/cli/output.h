@@ -10,11 +10,11 @@ namespace vpe::app {
 void check_output(const std::filesystem::path& path);
 
 // check_output(), and a name whose extension says the format.
-void check_picture_output(const std::filesystem::path& path);
+void check_image_output(const std::filesystem::path& path);
 void check_range_output(const std::filesystem::path& path);
 void check_stats_output(const std::filesystem::path& path);
 
-// True for a video, false for a folder of pictures, which may have to be made.
+// True for a video, false for a folder of images, which may have to be made.
 bool check_film_output(const std::filesystem::path& path);
 
 void make_folder(const std::filesystem::path& path);

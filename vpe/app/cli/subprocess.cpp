@@ -29,7 +29,7 @@ int memory_file() {
 
 }  // namespace
 
-Child::Child(std::vector<std::string> words) {
+Subprocess::Subprocess(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -57,13 +57,13 @@ Child::Child(std::vector<std::string> words) {
   fail("cannot start " + words[0], error);
 }
 
-Child::~Child() {
+Subprocess::~Subprocess() {
   static_cast<void>(finish());
   ::close(output_);
   ::close(errors_);
 }
 
-bool Child::write(std::span<const std::uint8_t> bytes) {
+bool Subprocess::write(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(pipe_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
@@ -73,7 +73,7 @@ bool Child::write(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-bool Child::finish() {
+bool Subprocess::finish() {
   if (pid_ <= 0) return ended_well_;
   if (pipe_ >= 0) ::close(pipe_);
   pipe_ = -1;
@@ -85,7 +85,7 @@ bool Child::finish() {
   return ended_well_;
 }
 
-std::string Child::text_of(int file) {
+std::string Subprocess::text_of(int file) {
   std::string text;
   std::array<char, 4096> buffer{};
   for (ssize_t count = 0;

@@ -19,7 +19,7 @@ class FilmFolder : public FilmTarget {
   std::int64_t group_size() const override { return 1; }
   void keep(std::span<FilmFrame> frames, const FilmPlace& place, base::ThreadPool& pool) override;
   void prepare() override;
-  void add(std::int64_t group, FilmFrame& frame, const core::Frame& picture) override;
+  void add(std::int64_t group, FilmFrame& frame, const core::Frame& image) override;
   void end_group(std::int64_t, std::span<FilmFrame>) override {}
   void abandon() override {}
   void finish(std::span<FilmFrame>) override {}

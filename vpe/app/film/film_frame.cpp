@@ -23,8 +23,8 @@ void visit(Figures& f, const Field& field) {
   field("triangles", f.stats.triangles);
   field("skirt_triangles", f.stats.skirt_triangles);
   field("tiles_by_level", f.stats.tiles_by_level);
-  field("tile_error_m", f.certificate.tile_error_m);
-  field("tile_error_px", f.certificate.tile_error_px);
+  field("tile_error_m", f.certificate.geometric_error_m);
+  field("tile_error_px", f.certificate.screen_space_error_px);
   field("shift_bound_px", f.certificate.shift_bound_px);
   field("tiles_substituted", f.certificate.tiles_substituted);
 }

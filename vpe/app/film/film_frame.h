@@ -1,4 +1,4 @@
-// One frame of a film: what its picture depends on, and what became of it.
+// One frame of a film: what its image depends on, and what became of it.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,7 @@ bool all_there(std::span<const FilmFrame> frames) {
 }  // namespace
 
 FilmMaker::FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
-                     const PictureOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays)
+                     const RenderOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays)
     : plan_(plan),
       target_(target),
       frames_(frames),
@@ -98,12 +98,12 @@ bool FilmMaker::draw(std::size_t n) {
   frame.figures = {result.stats, result.certificate};
   // Made again by the next run.
   if (!result.missing.empty()) frame.fingerprint += kIncomplete;
-  const auto picture = std::make_shared<core::Frame>(std::move(result.frame));
+  const auto image = std::make_shared<core::Frame>(std::move(result.frame));
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
-  sink_->push([this, group, &frame, picture, request = planned.request] {
-    overlay::composite(overlays_.layer(request, *picture, frame.figures.certificate, frame.time_s),
-                       picture->colour);
-    target_.add(group, frame, *picture);
+  sink_->push([this, group, &frame, image, request = planned.request] {
+    overlay::composite(overlays_.layer(request, *image, frame.figures.certificate, frame.time_s),
+                       image->colour);
+    target_.add(group, frame, *image);
   });
   return true;
 }

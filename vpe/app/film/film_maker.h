@@ -30,7 +30,7 @@ class FilmMaker {
 
   // The renderer is made when the first frame has to be drawn. `first` is the number of frames[0] in the film.
   FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
-            const PictureOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays);
+            const RenderOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays);
 
   // Draws what is missing, in order. A frame that the renderer cannot draw or not completely (unless
   // the options allow it) is marked as failed, and its group
@@ -49,7 +49,7 @@ class FilmMaker {
   FilmTarget& target_;
   std::span<FilmFrame> frames_;
   std::int64_t first_;
-  const PictureOptions& options_;
+  const RenderOptions& options_;
   MakeRenderer make_renderer_;
   FrameOverlays& overlays_;
   std::unique_ptr<core::Renderer> renderer_;

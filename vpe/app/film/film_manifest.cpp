@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
 
-std::string part_name(const Part& part) {
+std::string part_name(const Shard& part) {
   return part.of == 1 ? "" : ".part-" + std::to_string(part.number) + "-of-" + std::to_string(part.of);
 }
 
@@ -35,11 +35,11 @@ json to_json(const FilmFrame& frame) {
 
 }  // namespace
 
-fs::path manifest_of_folder(const fs::path& folder, const std::string& frames, const Part& part) {
+fs::path manifest_of_folder(const fs::path& folder, const std::string& frames, const Shard& part) {
   return folder / ("manifest" + (frames.empty() ? "" : ".frames-" + frames) + part_name(part) + ".json");
 }
 
-fs::path manifest_of_video(const fs::path& film, const fs::path& parts, const Part& part) {
+fs::path manifest_of_video(const fs::path& film, const fs::path& parts, const Shard& part) {
   return part.of == 1 ? fs::path(film.string() + ".json") : parts / ("manifest" + part_name(part) + ".json");
 }
 

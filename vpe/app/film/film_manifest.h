@@ -21,16 +21,16 @@ struct FilmHead {
   int width = 0;
   int height = 0;
   std::string frames;  // --frames as given
-  Part part;
+  Shard part;
 };
 
 // FOLDER/manifest.json of a folder, FILE.mp4.json of a video. A run over some of a folder's frames only, and a
 // part, have a name that says so, and so do not take the whole film's place:
 // manifest[.frames-A-BxN][.part-K-of-N].json; parts of a video have theirs in `parts`.
 std::filesystem::path manifest_of_folder(const std::filesystem::path& folder, const std::string& frames,
-                                         const Part& part);
+                                         const Shard& part);
 std::filesystem::path manifest_of_video(const std::filesystem::path& film, const std::filesystem::path& parts,
-                                        const Part& part);
+                                        const Shard& part);
 
 // `target` is what the film's target says of itself. Keys of a frame: index, time_s, fingerprint; checksum (of
 // its file, or of the segment it was joined from) and figures; or failed, with the reason; or missing. Throws

@@ -23,7 +23,7 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   path_.apply_settings(out.time_s, out.settings);
   out.state = path_.at(out.time_s);
   core::DrawRequest& request = out.request;
-  request.view.eye = out.state.eye;
+  request.view.camera = out.state.camera;
   request.view.width = view_.width;
   request.view.height = view_.height;
   request.view.fov_deg = view_.fov_deg;

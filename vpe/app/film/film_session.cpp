@@ -32,7 +32,7 @@ void FilmSession::look(const FilmPlan& plan, int threads) {
   target_->keep(frames_, {first_, all}, pool);
 }
 
-void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const PictureOptions& options,
+void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const RenderOptions& options,
                        const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet) {
   try {
     ProgressLine line(quiet);

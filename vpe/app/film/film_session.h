@@ -20,7 +20,7 @@ struct FilmRequest {
   VideoFormat format;
   std::string frames;  // --frames as given
   FrameRange range;    // of the flight
-  Part part;
+  Shard part;
   bool remake = false;
 };
 
@@ -33,7 +33,7 @@ class FilmSession {
   void look(const FilmPlan& plan, int threads);
 
   // Makes the rest. Throws Interrupted and std::runtime_error, both saying how far the film is.
-  void make(const FilmPlan& plan, FilmReports& reports, const PictureOptions& options,
+  void make(const FilmPlan& plan, FilmReports& reports, const RenderOptions& options,
             const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet);
 
   // The manifest; of a whole video also the film. Not to be called when make() threw.

@@ -1,4 +1,4 @@
-// Where the frames of a film are kept from run to run: a folder of pictures (film_folder.h) or a video in
+// Where the frames of a film are kept from run to run: a folder of images (film_folder.h) or a video in
 // segments (film_video.h).
 #pragma once
 
@@ -37,7 +37,7 @@ class FilmTarget {
 
   // The frames of a group in order, then its end, or abandon() instead; one thread at a time. Those that are
   // there then are marked as made.
-  virtual void add(std::int64_t group, FilmFrame& frame, const core::Frame& picture) = 0;
+  virtual void add(std::int64_t group, FilmFrame& frame, const core::Frame& image) = 0;
   virtual void end_group(std::int64_t group, std::span<FilmFrame> frames) = 0;
   virtual void abandon() = 0;
 

@@ -152,9 +152,9 @@ void FilmVideo::remove_stale() const {
                                        const std::string& name) { return name == film || name == manifest; });
 }
 
-void FilmVideo::add(std::int64_t group, FilmFrame& /*frame*/, const core::Frame& picture) {
+void FilmVideo::add(std::int64_t group, FilmFrame& /*frame*/, const core::Frame& image) {
   if (!writer_) writer_ = std::make_unique<VideoWriter>(segment(group, ".mp4"), format_);
-  writer_->add(picture);
+  writer_->add(image);
 }
 
 void FilmVideo::end_group(std::int64_t group, std::span<FilmFrame> frames) {

@@ -32,7 +32,7 @@ class FilmVideo : public FilmTarget {
   std::int64_t group_size() const override { return group_; }
   void keep(std::span<FilmFrame> frames, const FilmPlace& place, base::ThreadPool& pool) override;
   void prepare() override;
-  void add(std::int64_t group, FilmFrame& frame, const core::Frame& picture) override;
+  void add(std::int64_t group, FilmFrame& frame, const core::Frame& image) override;
   void end_group(std::int64_t group, std::span<FilmFrame> frames) override;
   void abandon() override { writer_.reset(); }
   // Joins the segments, unless the film is complete. The segments stay.

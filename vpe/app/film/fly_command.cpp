@@ -37,7 +37,7 @@ struct FlyArguments {
   std::string log;
   std::string stats;
   bool force = false;
-  PictureOptions picture;
+  RenderOptions image;
 };
 
 scripts::Flight flight_of(const FlyArguments& arguments) {
@@ -58,7 +58,7 @@ FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& f
   request.format = {flight.view.width, flight.view.height, flight.view.fps};
   request.frames = arguments.frames;
   request.range = parse_frames(arguments.frames, count);
-  request.part = parse_part(arguments.part);
+  request.part = parse_shard(arguments.part);
   request.remake = arguments.force;
   request.is_video = check_film_output(arguments.output);
   if (!arguments.log.empty()) check_output(arguments.log);
@@ -93,7 +93,7 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
   if (common.json) {
     nlohmann::json json = film_json(frames, seconds);
     json["output"] = arguments.output;
-    json["backend"] = arguments.picture.backend;
+    json["backend"] = arguments.image.backend;
     json["illustration"] = illustration;
     json["manifest"] =
         session.manifest().empty() ? nlohmann::json() : nlohmann::json(session.manifest().string());
@@ -122,11 +122,11 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
         chosen.backend,
         FilmPlan({version(), planet.meta().identity, chosen.backend, common.memory_mb}, flight.view,
                  scripts::Path(flight, planet.radius_m(), terrain, base.values().exaggeration), chosen.settings,
-                 parse_interest(arguments.picture))};
+                 parse_interest(arguments.image))};
   };
-  const PictureOptions& picture = arguments.picture;
+  const RenderOptions& image = arguments.image;
   std::vector<PlannedFilm> films{plan_of({kPolygonBackend, base})};
-  if (picture.backend != kAutoBackend) return {plan_of({picture.backend, base})};
+  if (image.backend != kAutoBackend) return {plan_of({image.backend, base})};
   // Whatever the flight sets, however shortly: looking at some of the frames would miss it.
   if (!flight.interests.empty()) return films;
   core::DrawRequest set_so = films.front().plan.at(0).request;
@@ -139,10 +139,10 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   constexpr std::int64_t kMostLooked = 100;
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   const std::int64_t looked = std::min(count, kMostLooked);
-  std::vector<core::DrawRequest> pictures;
+  std::vector<core::DrawRequest> images;
   for (std::int64_t k = 0; k < looked; ++k)
-    pictures.push_back(films.front().plan.at(k * count / looked).request);
-  const BackendChoice rays = choose_backend(picture, base, pictures, planet.radius_m(), false);
+    images.push_back(films.front().plan.at(k * count / looked).request);
+  const BackendChoice rays = choose_backend(image, base, images, planet.radius_m(), false);
   if (rays.backend != kRayBackend) return films;
   films.push_back(plan_of(rays));
   if (arguments.part.empty() && !gl::has_gpu()) std::swap(films[0], films[1]);
@@ -160,9 +160,9 @@ const PlannedFilm& look_for(FilmSession& session, const std::vector<PlannedFilm>
 }
 
 void fly(FlyArguments& arguments, const Common& common) {
-  parse_interest(arguments.picture);
+  parse_interest(arguments.image);
   const scripts::Flight flight = flight_of(arguments);
-  const core::Settings base = make_settings(arguments.picture);
+  const core::Settings base = make_settings(arguments.image);
   const FilmRequest request = film_request(arguments, flight);
 
   // A planet may be minutes of work: what can be wrong before is told before.
@@ -178,7 +178,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, *planet, terrain);
   const PlannedFilm& film = look_for(session, films, common.threads);
   const FilmPlan& plan = film.plan;
-  arguments.picture.backend = film.backend;
+  arguments.image.backend = film.backend;
   if (!common.quiet) warn_of_terrain(arguments.flight, plan, terrain);
 
   FrameOverlays overlays(planet);
@@ -188,11 +188,11 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view);
   auto start = std::chrono::steady_clock::now();
   const auto renderer = [&] {
-    auto made = make_renderer(arguments.picture, common, planet);
+    auto made = make_renderer(arguments.image, common, planet);
     start = std::chrono::steady_clock::now();  // the rate is that of drawing and encoding
     return made;
   };
-  session.make(plan, reports, arguments.picture, renderer, overlays, common.quiet);
+  session.make(plan, reports, arguments.image, renderer, overlays, common.quiet);
   if (!common.quiet) warn_of(reports.failures);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
@@ -219,7 +219,7 @@ void add_fly(CLI::App& program, Common& common) {
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT instead of the flight's own");
   command->add_option("--log", arguments->log, "Write what was flown as a flight");
   command->add_option("--stats", arguments->stats, "Write one row of figures a frame (.csv, .jsonl)");
-  add_picture_options(*command, arguments->picture);
+  add_render_options(*command, arguments->image);
   command->callback([arguments, &common] { fly(*arguments, common); });
 }
 

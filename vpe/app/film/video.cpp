@@ -61,8 +61,8 @@ Words segment_words(const VideoFormat& format, const fs::path& to) {
   return append(words, {"-f", "mp4", file_word(to)});
 }
 
-Child start_ffmpeg(const Words& words, const fs::path& film) try {
-  return Child(words);
+Subprocess start_ffmpeg(const Words& words, const fs::path& film) try {
+  return Subprocess(words);
 } catch (const std::runtime_error& e) {
   throw std::runtime_error(film.string() + ": " + e.what() +
                            "; install ffmpeg, or give a folder to get PNG frames");
@@ -127,13 +127,13 @@ std::string encoder_settings(const VideoFormat& format) {
 }
 
 std::string encoder_version(const fs::path& film) {
-  Child child = start_ffmpeg({"ffmpeg", "-version"}, film);
+  Subprocess child = start_ffmpeg({"ffmpeg", "-version"}, film);
   if (!child.finish()) {
-    throw std::runtime_error(with_words(film.string() + ": ffmpeg does not run", child.said()) +
+    throw std::runtime_error(with_words(film.string() + ": ffmpeg does not run", child.stderr_text()) +
                              "; mend it, or give a folder to get PNG frames");
   }
-  const std::string said = child.output();
-  return said.substr(0, said.find('\n'));
+  const std::string stderr_text = child.output();
+  return stderr_text.substr(0, stderr_text.find('\n'));
 }
 
 VideoWriter::VideoWriter(fs::path path, const VideoFormat& format)
@@ -149,7 +149,7 @@ VideoWriter::~VideoWriter() {
 
 void VideoWriter::fail(const std::string& what) {
   static_cast<void>(ffmpeg_.finish());
-  throw std::runtime_error(with_words(path_.string() + ": " + what, ffmpeg_.said()));
+  throw std::runtime_error(with_words(path_.string() + ": " + what, ffmpeg_.stderr_text()));
 }
 
 void VideoWriter::add(const core::Frame& frame) {
@@ -175,10 +175,10 @@ void join_video(const fs::path& folder, std::span<const VideoSegment> segments, 
   append(words, {"-bsf:v", exact_times(format.rate)});
   append(words, timescale(format));
   append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(joined.path)});
-  Child child = start_ffmpeg(words, film);
+  Subprocess child = start_ffmpeg(words, film);
   if (!child.finish()) {
     throw std::runtime_error(
-        with_words(film.string() + ": cannot join the video", child.said()) +
+        with_words(film.string() + ": cannot join the video", child.stderr_text()) +
         "; check the free space there; its segments are kept, and the same command joins them");
   }
   std::error_code error;

@@ -21,7 +21,7 @@ struct VideoFormat {
 // Throws std::runtime_error that names the film when the size is odd.
 void check_video_format(const std::filesystem::path& film, const VideoFormat& format);
 
-// How ffmpeg is told to encode: equal text, equal picture from equal frames by one version of ffmpeg. The
+// How ffmpeg is told to encode: equal text, equal image from equal frames by one version of ffmpeg. The
 // number of its threads is fixed, because x264's output depends on it.
 std::string encoder_settings(const VideoFormat& format);
 
@@ -47,7 +47,7 @@ class VideoWriter {
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;
-  Child ffmpeg_;
+  Subprocess ffmpeg_;
 };
 
 struct VideoSegment {

@@ -43,11 +43,11 @@ struct HorizonArguments {
 constexpr double kLeastStep_deg = 0.0001;
 // Well above rounding.
 constexpr double kLeastHeight_m = 0.001;
-// The picture that finds where to look: as wide as there are azimuths, within these.
+// The image that finds where to look: as wide as there are azimuths, within these.
 constexpr double kLeastColumns = 720;
 constexpr double kMostColumns = 14400;
 constexpr int kRows = 1800;            // a tenth of a degree each
-constexpr double kPictureShare = 0.3;  // of the work, about
+constexpr double kImageShare = 0.3;  // of the work, about
 
 bool is_full_turn(const HorizonArguments& a) { return a.to_deg - a.from_deg >= 360.0; }
 
@@ -91,14 +91,14 @@ void check(const HorizonArguments& a) {
 }
 
 // Ranges of the arc, or a bit more of it.
-struct Picture {
+struct DrawnImage {
   core::View view;
   std::vector<float> range_m;
 };
 
-Picture cast_picture(const voxel::RangeCaster& caster, const HorizonArguments& a, const mars::Pose& pose,
+DrawnImage cast_image(const voxel::RangeCaster& caster, const HorizonArguments& a, const mars::Pose& pose,
                      base::ThreadPool& pool) {
-  Picture out;
+  DrawnImage out;
   core::View& view = out.view;
   view.projection = core::Projection::kEquirectangular;
   view.fov_deg = 180;
@@ -106,7 +106,7 @@ Picture cast_picture(const voxel::RangeCaster& caster, const HorizonArguments& a
   view.height = kRows;
   mars::Pose middle = pose;
   middle.yaw_deg = 0.5 * (a.from_deg + a.to_deg);
-  view.eye = mars::to_eye(middle, caster.surface().planet_radius_m());
+  view.camera = mars::to_camera(middle, caster.surface().planet_radius_m());
   if (!is_full_turn(a)) {
     const double columns = view.width * (a.to_deg - a.from_deg) / 360.0;
     const int half = std::min(view.width / 2, static_cast<int>(std::ceil(0.5 * columns)) + 1);
@@ -114,25 +114,25 @@ Picture cast_picture(const voxel::RangeCaster& caster, const HorizonArguments& a
   }
   const glm::ivec2 size = core::drawn_size(view);
   out.range_m.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
-  voxel::FanCaster fans;
+  voxel::SectorCaster fans;
   caster.cast(view, {}, pool, out.range_m, fans);
   return out;
 }
 
-std::vector<panorama::GroundPoint> trace(const panorama::SkylineEye& eye, const std::vector<double>& azimuths,
-                                         const panorama::RangePicture& picture,
+std::vector<panorama::GroundPoint> trace(const panorama::SkylineCamera& viewer, const std::vector<double>& azimuths,
+                                         const panorama::RangeImage& image,
                                          const panorama::GroundRange& range, base::ThreadPool& pool,
                                          ProgressLine& progress) {
   constexpr std::size_t kPieces = 50;
   const std::size_t piece = std::max<std::size_t>(64, azimuths.size() / kPieces);
-  const auto first = panorama::first_brackets(picture, azimuths);
+  const auto first = panorama::first_brackets(image, azimuths);
   std::vector<panorama::GroundPoint> out;
   for (std::size_t begin = 0; begin < azimuths.size(); begin += piece) {
     InterruptGuard::check();
     const double done = static_cast<double>(begin) / static_cast<double>(azimuths.size());
-    progress.show("skyline", kPictureShare + (1 - kPictureShare) * done);
+    progress.show("skyline", kImageShare + (1 - kImageShare) * done);
     const std::size_t count = std::min(piece, azimuths.size() - begin);
-    const auto points = panorama::skyline(eye, std::span(azimuths).subspan(begin, count), range, pool,
+    const auto points = panorama::skyline(viewer, std::span(azimuths).subspan(begin, count), range, pool,
                                           std::span(first).subspan(begin, count));
     out.insert(out.end(), points.begin(), points.end());
   }
@@ -152,23 +152,23 @@ std::string describe(const panorama::GroundPoint& p) {
   return text;
 }
 
-struct Eye {
+struct Viewer {
   mars::Pose pose;
   double height_m = 0;  // above the ground
 };
 
-Eye eye_of(const HorizonArguments& a, const paging::Surface& surface) {
+Viewer viewer_of(const HorizonArguments& a, const paging::Surface& surface) {
   const mars::LonLat place = place_of(a);
   const double ground_m = surface.at(mars::direction(place)).height_m;
-  Eye eye{{place.lon_deg, place.lat_deg, 0, 0, 0, 0}, a.height_m ? *a.height_m : *a.altitude_m - ground_m};
-  eye.pose.alt_m = a.altitude_m ? *a.altitude_m : ground_m + eye.height_m;
-  if (eye.height_m < kLeastHeight_m) {
+  Viewer viewer{{place.lon_deg, place.lat_deg, 0, 0, 0, 0}, a.height_m ? *a.height_m : *a.altitude_m - ground_m};
+  viewer.pose.alt_m = a.altitude_m ? *a.altitude_m : ground_m + viewer.height_m;
+  if (viewer.height_m < kLeastHeight_m) {
     throw std::runtime_error(
-        "the eye at " + a.at + " is " + short_number(eye.height_m, 0.01) + " m above the ground, which lies " +
+        "the eye at " + a.at + " is " + short_number(viewer.height_m, 0.01) + " m above the ground, which lies " +
         short_number(ground_m, 0.01) + " m above the sphere there; put it at least " +
         base::format_number(kLeastHeight_m) + " m above the ground (--height, --altitude)");
   }
-  return eye;
+  return viewer;
 }
 
 void horizon(const HorizonArguments& a, const Common& common) {
@@ -181,10 +181,10 @@ void horizon(const HorizonArguments& a, const Common& common) {
   note_illustration(meta, common.quiet);
   const voxel::RangeCaster caster(planet, memory_bytes(common));
   const paging::Surface& surface = caster.surface();
-  const auto [pose, height_m] = eye_of(a, surface);
+  const auto [pose, height_m] = viewer_of(a, surface);
   const mars::LonLat place{pose.lon_deg, pose.lat_deg};
-  const panorama::SkylineEye eye = panorama::skyline_eye(place, pose.alt_m, planet->radius_m());
-  const panorama::GroundRange range = [&](const glm::dvec3& ray) { return surface.cast(eye.eye_m, ray); };
+  const panorama::SkylineCamera viewer = panorama::skyline_camera(place, pose.alt_m, planet->radius_m());
+  const panorama::GroundRange range = [&](const glm::dvec3& ray) { return surface.cast(viewer.position_m, ray); };
   base::ThreadPool pool(common.threads);
 
   std::vector<panorama::GroundPoint> points;
@@ -193,11 +193,11 @@ void horizon(const HorizonArguments& a, const Common& common) {
   {
     ProgressLine progress(common.quiet);
     progress.show("ranges", 0);
-    const Picture picture = cast_picture(caster, a, pose, pool);
-    const panorama::RangePicture ranges{panorama::map_of(picture.view), picture.range_m};
-    points = trace(eye, azimuths_of(a), ranges, range, pool, progress);
+    const DrawnImage image = cast_image(caster, a, pose, pool);
+    const panorama::RangeImage ranges{panorama::map_of(image.view), image.range_m};
+    points = trace(viewer, azimuths_of(a), ranges, range, pool, progress);
     InterruptGuard::check();
-    farthest = panorama::farthest_ground(eye, ranges, points, range, pool);
+    farthest = panorama::farthest_ground(viewer, ranges, points, range, pool);
     InterruptGuard::check();
     if (!names.empty()) {
       const double within_m = a.within_m > 0 ? a.within_m
@@ -205,7 +205,7 @@ void horizon(const HorizonArguments& a, const Common& common) {
                                                                           planet->tree().lowest_radius_m(1.0),
                                                                           meta.highest_radius_m);
       seen = panorama::landmarks(
-          eye, names, within_m, [&](const glm::dvec3& d) { return surface.at(d).radius_m; }, range, pool);
+          viewer, names, within_m, [&](const glm::dvec3& d) { return surface.at(d).radius_m; }, range, pool);
       InterruptGuard::check();
     }
     progress.show("skyline", 1);
@@ -225,7 +225,7 @@ void horizon(const HorizonArguments& a, const Common& common) {
   const auto visible = std::count_if(seen.begin(), seen.end(), [](const auto& l) { return !l.hidden_by; });
   if (common.json) {
     const auto without_data = std::count_if(points.begin(), points.end(), [&](const auto& p) {
-      return surface.at(mars::direction(p.place)).missing;
+      return surface.at(mars::direction(p.place)).nodata;
     });
     nlohmann::json json{{"eye",
                          {{"lon_deg", mars::normalize_lon_deg(place.lon_deg)},

@@ -30,8 +30,8 @@ core::RgbImage OpenEyes::draw(const core::View& view, const std::optional<core::
 core::RgbImage OpenEyes::look(Panorama& panorama, bool is_second, const core::View& view,
                               const CopyProgress& progress) {
   const panorama::PanoramaDescription& description = panorama.description;
-  if (panorama.picture == nullptr) {
-    panorama::PictureOptions options;
+  if (panorama.tiled_image == nullptr) {
+    panorama::TiledImageOptions options;
     options.budget_bytes = budget_bytes_;
     options.cache_folder = [] {
       const std::filesystem::path folder = cache_folder() / "pictures";
@@ -40,18 +40,18 @@ core::RgbImage OpenEyes::look(Panorama& panorama, bool is_second, const core::Vi
     };
     if (progress) {
       options.progress = [&](double fraction) {
-        progress("copying " + description.picture.filename().string() + " once, in tiles", fraction);
+        progress("copying " + description.image.filename().string() + " once, in tiles", fraction);
       };
     }
-    panorama.picture = panorama::open_picture(description.picture, description.format, options);
+    panorama.tiled_image = panorama::open_tiled_image(description.image, description.format, options);
   }
-  panorama::LookOptions options;
+  panorama::RenderViewOptions options;
   options.threads = threads_;
   if (is_second && description.pair == panorama::PairLayout::kSideBySide)
     options.origin.x_px = description.map.width_px;
   if (is_second && description.pair == panorama::PairLayout::kOverUnder)
     options.origin.y_px = description.map.height_px;
-  return panorama::look(*panorama.picture, description.map, view, options);
+  return panorama::look(*panorama.tiled_image, description.map, view, options);
 }
 
 }  // namespace vpe::app

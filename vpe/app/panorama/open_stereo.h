@@ -21,7 +21,7 @@ struct EyesFiles {
   std::optional<panorama::PairLayout> layout;  // whatever the JSON says
 };
 
-// Of the copying that large pictures may need before the first view, fraction 0..1. May throw to stop it.
+// Of the copying that large images may need before the first view, fraction 0..1. May throw to stop it.
 using CopyProgress = std::function<void(const std::string& what, double fraction)>;
 
 // One thread at a time.
@@ -34,8 +34,8 @@ class OpenEyes {
   const panorama::PanoramaDescription& description() const { return left_.description; }
   bool is_pair() const { return right_ || left_.description.pair != panorama::PairLayout::kNone; }
 
-  // A view whose axes are in the panorama's frame; `finish` is called for each eye's picture before two are
-  // combined. Without stereo the left eye's. Throws as panorama::open_picture() and panorama::look().
+  // A view whose axes are in the panorama's frame; `finish` is called for each eye's image before two are
+  // combined. Without stereo the left eye's. Throws as panorama::open_tiled_image() and panorama::look().
   core::RgbImage draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
                       const CopyProgress& progress = {},
                       const std::function<void(core::RgbImage&)>& finish = {});
@@ -43,14 +43,14 @@ class OpenEyes {
  private:
   struct Panorama {
     panorama::PanoramaDescription description;
-    std::unique_ptr<panorama::Picture> picture;  // null until it is needed
+    std::unique_ptr<panorama::TiledImage> tiled_image;  // null until it is needed
   };
 
   core::RgbImage look(Panorama& panorama, bool is_second, const core::View& view, const CopyProgress& progress);
 
   Panorama left_;
   std::optional<Panorama> right_;  // nothing: in the left one's file
-  std::size_t budget_bytes_;       // of each picture
+  std::size_t budget_bytes_;       // of each image
   int threads_;
 };
 

@@ -72,7 +72,7 @@ OpenEyes open_eyes(const OverlookArguments& arguments, const Common& common) {
   OpenEyes eyes(files_of(arguments), memory_bytes(common) / 4 * 3,
                 common.threads);  // the rest is for the view itself
   if (!arguments.stereo.empty() && !eyes.is_pair()) {
-    throw UsageError("--stereo " + arguments.stereo + ": '" + eyes.description().picture.string() +
+    throw UsageError("--stereo " + arguments.stereo + ": '" + eyes.description().image.string() +
                      "' is for one eye; give the other's picture with --right, or --stereo-layout if it holds "
                      "both");
   }
@@ -143,7 +143,7 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   std::vector<Pair> pixels;
   for (const std::string& text : arguments.at_pixel)
     pixels.push_back(parse_pair("--at-pixel", text, "X,Y (pixels of the picture, centres at .5)"));
-  if (!arguments.output.empty()) check_picture_output(arguments.output);
+  if (!arguments.output.empty()) check_image_output(arguments.output);
   if (arguments.compass && !core::overlays_refused().empty())
     throw UsageError("--compass: " + std::string(core::overlays_refused()));
   const bool in_window = arguments.output.empty() && directions.empty() && pixels.empty();
@@ -153,14 +153,14 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   const panorama::PanoramaDescription& description = eyes.description();
   if (!description.heading_is_known && arguments.compass) {
     throw UsageError(
-        "--compass: '" + description.picture.string() +
+        "--compass: '" + description.image.string() +
         "' does not say where north is; leave it out, or describe the picture in a JSON beside it");
   }
   if (!description.heading_is_known && !common.quiet) {
     std::fprintf(stderr, "vpe: note: '%s' does not say where north is; azimuths are counted from its middle\n",
-                 description.picture.c_str());
+                 description.image.c_str());
   }
-  nlohmann::json json{{"picture", description.picture.string()},
+  nlohmann::json json{{"picture", description.image.string()},
                       {"projection", panorama::to_string(description.map.kind)},
                       {"described_by", description.sources}};
 
@@ -170,10 +170,10 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   for (const ShownPlace& place : places) json["places"].push_back(to_json(place));
 
   if (in_window) {
-    LookAround request{files_of(arguments), {}, arguments.fov_deg, core::parse_stereo(arguments.stereo), size,
+    PanoramaViewer request{files_of(arguments), {}, arguments.fov_deg, core::parse_stereo(arguments.stereo), size,
                        arguments.scale};
     if (arguments.view) request.look = parse_direction("--view", *arguments.view);
-    const panorama::Viewer viewer = look_around(request, common);
+    const panorama::Viewer viewer = view_panorama(request, common);
     json["view"] = describe_view(viewer, viewer.size().x, viewer.size().y);
   }
   if (!arguments.output.empty()) {

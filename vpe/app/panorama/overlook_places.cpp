@@ -26,17 +26,17 @@ std::string extent(const panorama::PanoramaMap& map) {
 }  // namespace
 
 ShownPlace place_at_pixel(const panorama::PanoramaDescription& description, double x, double y) {
-  std::optional<ShownPlace> place = panorama::PlaceReader(description).at_pixel(x, y);
+  std::optional<ShownPlace> place = panorama::PixelProbe(description).at_pixel(x, y);
   if (place) return *std::move(place);
   throw std::runtime_error("--at-pixel " + format_number(x) + "," + format_number(y) + " is not in '" +
-                           description.picture.string() + "': " + extent(description.map));
+                           description.image.string() + "': " + extent(description.map));
 }
 
 ShownPlace place_at(const panorama::PanoramaDescription& description, const panorama::Direction& direction) {
-  std::optional<ShownPlace> place = panorama::PlaceReader(description).at(direction);
+  std::optional<ShownPlace> place = panorama::PixelProbe(description).at(direction);
   if (place) return *std::move(place);
   throw std::runtime_error("--at " + format_number(direction.azimuth_deg) + "," +
-                           format_number(direction.elevation_deg) + ": '" + description.picture.string() +
+                           format_number(direction.elevation_deg) + ": '" + description.image.string() +
                            "' does not show it: " + extent(description.map));
 }
 

@@ -1,4 +1,4 @@
-// What a panorama shows at a place of its picture or in a direction, as the command line asks and prints it.
+// What a panorama shows at a place of its image or in a direction, as the command line asks and prints it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,9 +8,9 @@
 
 namespace vpe::app {
 
-using ShownPlace = panorama::PlaceRead;
+using ShownPlace = panorama::ProbeResult;
 
-// Throws std::runtime_error that names the picture and what it shows, when it does not show the place.
+// Throws std::runtime_error that names the image and what it shows, when it does not show the place.
 ShownPlace place_at_pixel(const panorama::PanoramaDescription& description, double x, double y);
 ShownPlace place_at(const panorama::PanoramaDescription& description, const panorama::Direction& direction);
 

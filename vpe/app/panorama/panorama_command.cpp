@@ -30,7 +30,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Lower, and the eye's own facet fills the picture.
+// Lower, and the camera's own facet fills the image.
 constexpr double kLeastHeight_m = 0.01;
 
 void require_drawable(PanoramaRecipe& recipe) {
@@ -40,20 +40,20 @@ void require_drawable(PanoramaRecipe& recipe) {
 }
 
 // Elevation of the ground as drawn, and as it is.
-struct Ground {
+struct TerrainQuery {
   double drawn_m = 0;
   double height_m = 0;
 };
 
-Ground ground_below(const std::shared_ptr<const paging::PlanetFile>& planet, const PanoramaRecipe& recipe) {
+TerrainQuery ground_below(const std::shared_ptr<const paging::PlanetFile>& planet, const PanoramaRecipe& recipe) {
   const paging::Surface surface(planet, std::size_t{8} << 20);
-  const glm::dvec3 direction = mars::direction({recipe.eye.lon_deg, recipe.eye.lat_deg});
+  const glm::dvec3 direction = mars::direction({recipe.camera.lon_deg, recipe.camera.lat_deg});
   return {surface.at(direction, recipe.settings.values().exaggeration).height_m,
           surface.at(direction).height_m};
 }
 
-void place_eye(PanoramaOrder& order, const Ground& ground) {
-  double& alt_m = order.recipe.eye.alt_m;
+void place_camera(PanoramaOrder& order, const TerrainQuery& ground) {
+  double& alt_m = order.recipe.camera.alt_m;
   if (order.height_m) alt_m = ground.drawn_m + *order.height_m;
   if (alt_m - ground.drawn_m >= kLeastHeight_m) return;
   throw std::runtime_error(
@@ -64,13 +64,13 @@ void place_eye(PanoramaOrder& order, const Ground& ground) {
 }
 
 std::string sidecar_text(const PanoramaOrder& order, const PanoramaJob& job, const paging::PlanetMeta& meta,
-                         const Ground& ground, const PanoramaFigures& figures, const Common& common) {
+                         const TerrainQuery& ground, const PanoramaFigures& figures, const Common& common) {
   panorama::Sidecar sidecar;
   sidecar.image = job.output.filename().string();
   sidecar.map = job.map;
-  const mars::Pose& eye = order.recipe.eye;
-  sidecar.station = panorama::Station{mars::normalize_lon_deg(eye.lon_deg), eye.lat_deg,     eye.alt_m,
-                                      eye.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
+  const mars::Pose& camera = order.recipe.camera;
+  sidecar.viewpoint = panorama::Viewpoint{mars::normalize_lon_deg(camera.lon_deg), camera.lat_deg,     camera.alt_m,
+                                      camera.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
   auto json = nlohmann::ordered_json::parse(panorama::to_json(sidecar));
   if (const auto& eyes = order.recipe.stereo) {
     if (eyes->layout != core::StereoLayout::kAnaglyph) json["stereo"] = core::to_string(eyes->layout);
@@ -84,7 +84,7 @@ std::string sidecar_text(const PanoramaOrder& order, const PanoramaJob& job, con
                                               {"unit", info.unit},
                                               {"meaning", info.meaning}};
   }
-  json["error"] = {{"tile_error_m", figures.tile_error_m},
+  json["error"] = {{"tile_error_m", figures.geometric_error_m},
                    {"shift_bound_px", figures.shift_bound_px},
                    {"tiles_missing", figures.tiles_missing}};
   json["vpe"] = {{"version", version()}, {"command", common.words}, {"recipe", to_json(order.recipe)}};
@@ -95,7 +95,7 @@ std::string fingerprint(const PanoramaOrder& order, const PanoramaJob& job, cons
                         double radius_m) {
   const PanoramaRecipe& recipe = order.recipe;
   core::DrawRequest first = request;
-  first.view = panorama::pieces_of(job.map, {recipe.eye, radius_m}, job.strips.front(), 0).front().view;
+  first.view = panorama::pieces_of(job.map, {recipe.camera, radius_m}, job.strips.front(), 0).front().view;
   Digest digest;
   digest.add(
       fingerprint_of({version(), recipe.identity, recipe.backend, recipe.memory_mb}, first, recipe.settings));
@@ -107,7 +107,7 @@ std::string fingerprint(const PanoramaOrder& order, const PanoramaJob& job, cons
 }
 
 nlohmann::json report_json(const PanoramaJob& job, const PanoramaMaker& maker, const PanoramaTimes& times,
-                           double total_s, const panorama::Plan& plan, const std::string& backend) {
+                           double total_s, const panorama::PanoramaPlan& plan, const std::string& backend) {
   nlohmann::json planes = nlohmann::json::object();
   for (const panorama::Plane plane : job.planes)
     planes[std::string(panorama::info_of(plane).name)] = plane_file(job.output, plane).string();
@@ -132,7 +132,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   const auto start = Clock::now();
   const auto seconds = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   PanoramaOrder order;
-  panorama::Plan plan;
+  panorama::PanoramaPlan plan;
   PanoramaJob job;
   try {
     order = arguments.again.empty() ? new_order(arguments, common) : order_again(arguments, common);
@@ -152,9 +152,9 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   job.planes = recipe.planes;
   job.software = std::string("vpe ") + version();
   job.size = layout ? panorama::size_of_pair(job.map, *layout)
-                    : panorama::PictureSize{job.map.width_px, job.map.height_px};
+                    : panorama::ImageSize{job.map.width_px, job.map.height_px};
   job.is_red_cyan = layout == core::StereoLayout::kAnaglyph;
-  // GPano knows of one picture.
+  // GPano knows of one image.
   job.has_gpano = job.map.kind != panorama::MapKind::kFacets && (!layout || job.is_red_cyan);
   job.strips = panorama::strips_of(job.size.width_px, job.size.height_px);
   check_panorama_size(job.output, job.size, common.memory_mb);
@@ -175,13 +175,13 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   if (!common.quiet) {
     for (const std::string& text : plan.rounded) std::fprintf(stderr, "vpe: %s\n", text.c_str());
   }
-  const Ground ground = ground_below(planet, recipe);
-  place_eye(order, ground);
+  const TerrainQuery ground = ground_below(planet, recipe);
+  place_camera(order, ground);
 
   core::DrawRequest request;
   request.settings = recipe.settings.values();
-  request.sun = sun_for(request.settings, recipe.eye);
-  PictureOptions options = arguments.picture;
+  request.sun = sun_for(request.settings, recipe.camera);
+  RenderOptions options = arguments.panorama_image;
   options.backend = recipe.backend;
   options.interest = recipe.interest;
   request.interest = parse_interest(options);
@@ -273,8 +273,8 @@ void add_panorama(CLI::App& program, Common& common) {
                       "Also write rasters: any of range,lonlat,elevation,slope,incidence (.tif)");
   command->add_option("--again", arguments->again,
                       "PANO.json: make the same picture again, as it says; goes with PLANET and -o only");
-  arguments->picture.backend = kRayBackend;
-  add_picture_options(*command, arguments->picture);
+  arguments->panorama_image.backend = kRayBackend;
+  add_render_options(*command, arguments->panorama_image);
   add_eye_options(*command, arguments->stereo);
   command->callback([arguments, facets, yaw, &common] {
     arguments->has_facets = facets->count() > 0;

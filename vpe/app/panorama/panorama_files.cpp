@@ -22,12 +22,12 @@ namespace {
 
 constexpr int kJpegQuality = 92;
 
-fs::path with_end(const fs::path& picture, const std::string& end) {
-  fs::path path = picture;
+fs::path with_end(const fs::path& image, const std::string& end) {
+  fs::path path = image;
   return path.replace_extension(end);
 }
 
-// Empty for pictures that GPano cannot describe.
+// Empty for images that GPano cannot describe.
 std::string packet_of(const PanoramaJob& job) {
   if (!job.has_gpano) return {};
   try {
@@ -59,9 +59,9 @@ void copy_tiles(panorama::BigTiffWriter& writer, const PanoramaJob& job,
   }
 }
 
-std::size_t first_of_picture(const StripLayout& /*layout*/, std::size_t /*plane*/) { return 1; }
+std::size_t first_of_image(const StripLayout& /*layout*/, std::size_t /*plane*/) { return 1; }
 std::size_t first_of_plane(const StripLayout& layout, std::size_t plane) {
-  return 1 + layout.picture_blocks() + plane * layout.tiles();
+  return 1 + layout.image_blocks() + plane * layout.tiles();
 }
 
 void copy_rows(panorama::RowWriter& writer, const PanoramaJob& job,
@@ -88,10 +88,10 @@ void copy_rows(panorama::RowWriter& writer, const PanoramaJob& job,
   writer.finish();
 }
 
-void write_picture(base::OutputFile& file, const PanoramaJob& job,
+void write_image(base::OutputFile& file, const PanoramaJob& job,
                    const std::vector<panorama::StripFile>& strips, base::ThreadPool& pool,
                    const std::function<void(double)>& done) {
-  const panorama::PictureSize& size = job.size;
+  const panorama::ImageSize& size = job.size;
   const std::string packet = packet_of(job);
   if (job.format != PanoramaFormat::kTiff) {
     const auto writer =
@@ -103,7 +103,7 @@ void write_picture(base::OutputFile& file, const PanoramaJob& job,
   }
   panorama::BigTiffWriter writer(file, size.width_px, size.height_px, panorama::kRgb,
                                  {job.software, packet, false});
-  copy_tiles(writer, job, strips, first_of_picture, 0, [&](double part) { done(0.6 * part); });
+  copy_tiles(writer, job, strips, first_of_image, 0, [&](double part) { done(0.6 * part); });
   writer.add_reduced_pages(pool, [&](double part) { done(0.6 + 0.4 * part); });
   writer.finish();
 }
@@ -125,17 +125,17 @@ PanoramaFormat panorama_format(const fs::path& path) {
   return *format;
 }
 
-void check_panorama_size(const fs::path& path, const panorama::PictureSize& picture, int memory_mb) {
-  const std::string size = std::to_string(picture.width_px) + "x" + std::to_string(picture.height_px);
+void check_panorama_size(const fs::path& path, const panorama::ImageSize& image, int memory_mb) {
+  const std::string size = std::to_string(image.width_px) + "x" + std::to_string(image.height_px);
   const PanoramaFormat format = panorama_format(path);
   if (format == PanoramaFormat::kTiff) return;
   if (format == PanoramaFormat::kJpeg &&
-      std::max(picture.width_px, picture.height_px) > panorama::kMaxJpegSide_px) {
+      std::max(image.width_px, image.height_px) > panorama::kMaxJpegSide_px) {
     throw std::runtime_error(path.string() + ": cannot write " + size + " pixels: a JPEG has at most " +
                              std::to_string(panorama::kMaxJpegSide_px) + " a side; let the name end in .tif");
   }
   // A band of rows, as it is and packed.
-  const std::int64_t band_mb = 2 * StripLayout::kBandRows * picture.width_px * 3 / (1 << 20);
+  const std::int64_t band_mb = 2 * StripLayout::kBandRows * image.width_px * 3 / (1 << 20);
   if (band_mb > memory_mb) {
     throw std::runtime_error(path.string() + ": cannot write " + size + " pixels: rows this long take " +
                              std::to_string(band_mb) + " MB; let the name end in .tif or raise --memory (now " +
@@ -143,14 +143,14 @@ void check_panorama_size(const fs::path& path, const panorama::PictureSize& pict
   }
 }
 
-fs::path plane_file(const fs::path& picture, panorama::Plane plane) {
-  return with_end(picture, "." + std::string(panorama::info_of(plane).name) + ".tif");
+fs::path plane_file(const fs::path& image, panorama::Plane plane) {
+  return with_end(image, "." + std::string(panorama::info_of(plane).name) + ".tif");
 }
 
-fs::path sidecar_file(const fs::path& picture) { return with_end(picture, ".json"); }
+fs::path sidecar_file(const fs::path& image) { return with_end(image, ".json"); }
 
-void check_sidecar(const fs::path& picture) {
-  const fs::path path = sidecar_file(picture);
+void check_sidecar(const fs::path& image) {
+  const fs::path path = sidecar_file(image);
   check_output(path);
   std::error_code error;
   if (!fs::exists(path, error)) return;
@@ -160,20 +160,20 @@ void check_sidecar(const fs::path& picture) {
   if (json.is_object() && json.contains("vpe")) return;
   throw std::runtime_error(
       path.string() + ": is there, and 'vpe panorama' did not write it; move it or choose another name for " +
-      picture.filename().string());
+      image.filename().string());
 }
 
-void remove_stale_files(const fs::path& picture) {
-  std::vector<std::string> names{picture.filename().string(), sidecar_file(picture).filename().string()};
+void remove_stale_files(const fs::path& image) {
+  std::vector<std::string> names{image.filename().string(), sidecar_file(image).filename().string()};
   for (const panorama::PlaneInfo& info : panorama::all_planes())
-    names.push_back(plane_file(picture, info.plane).filename().string());
-  const fs::path folder = picture.has_parent_path() ? picture.parent_path() : fs::path(".");
+    names.push_back(plane_file(image, info.plane).filename().string());
+  const fs::path folder = image.has_parent_path() ? image.parent_path() : fs::path(".");
   remove_stale_temporaries(folder, [&](const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   });
 }
 
-fs::path strips_folder(const fs::path& picture) { return picture.string() + ".parts"; }
+fs::path strips_folder(const fs::path& image) { return image.string() + ".parts"; }
 
 StripLayout layout_of(PanoramaFormat format, std::int64_t height_px, const panorama::Strip& strip,
                       std::size_t planes) {
@@ -202,7 +202,7 @@ void join_strips(const PanoramaJob& job, const std::vector<panorama::StripFile>&
                [&](double part) { done((static_cast<double>(n) + part) / steps); });
     writer.finish();
   }
-  write_picture(make(job.output), job, strips, pool, [&](double part) { done((steps - 1.0 + part) / steps); });
+  write_image(make(job.output), job, strips, pool, [&](double part) { done((steps - 1.0 + part) / steps); });
   for (const auto& file : files) file->commit();
   write_whole(sidecar_file(job.output), job.sidecar);
 }

@@ -1,4 +1,4 @@
-// The files of a panorama: picture, planes and sidecar, joined from strips.
+// The files of a panorama: image, planes and sidecar, joined from strips.
 #pragma once
 
 #include <filesystem>
@@ -20,31 +20,31 @@ enum class PanoramaFormat : std::uint8_t { kTiff, kPng, kJpeg };
 PanoramaFormat panorama_format(const std::filesystem::path& path);
 
 // Throws std::runtime_error when the format cannot hold the size.
-void check_panorama_size(const std::filesystem::path& path, const panorama::PictureSize& size, int memory_mb);
+void check_panorama_size(const std::filesystem::path& path, const panorama::ImageSize& size, int memory_mb);
 
-std::filesystem::path plane_file(const std::filesystem::path& picture, panorama::Plane plane);
-std::filesystem::path sidecar_file(const std::filesystem::path& picture);
+std::filesystem::path plane_file(const std::filesystem::path& image, panorama::Plane plane);
+std::filesystem::path sidecar_file(const std::filesystem::path& image);
 // Throws std::runtime_error when the sidecar's name is taken by a file that this program did not write.
-void check_sidecar(const std::filesystem::path& picture);
-// Removes what killed runs left half-written of the picture, its planes and sidecar.
-void remove_stale_files(const std::filesystem::path& picture);
+void check_sidecar(const std::filesystem::path& image);
+// Removes what killed runs left half-written of the image, its planes and sidecar.
+void remove_stale_files(const std::filesystem::path& image);
 // Where strips are kept until all are there.
-std::filesystem::path strips_folder(const std::filesystem::path& picture);
+std::filesystem::path strips_folder(const std::filesystem::path& image);
 
-// What the blocks of a strip are, in this order: the report of its pieces; the picture, as tiles row by row
+// What the blocks of a strip are, in this order: the report of its pieces; the image, as tiles row by row
 // (TIFF) or as bands of rows; each plane's tiles.
 struct StripLayout {
   static constexpr std::int64_t kBandRows = 64;
 
-  bool in_tiles = false;  // of the picture
+  bool in_tiles = false;  // of the image
   std::int64_t tiles_across = 0;
   std::int64_t tiles_down = 0;
   std::int64_t bands = 0;
   std::size_t planes = 0;
 
   std::size_t tiles() const { return static_cast<std::size_t>(tiles_across * tiles_down); }
-  std::size_t picture_blocks() const { return in_tiles ? tiles() : static_cast<std::size_t>(bands); }
-  std::size_t blocks() const { return 1 + picture_blocks() + planes * tiles(); }
+  std::size_t image_blocks() const { return in_tiles ? tiles() : static_cast<std::size_t>(bands); }
+  std::size_t blocks() const { return 1 + image_blocks() + planes * tiles(); }
 };
 StripLayout layout_of(PanoramaFormat format, std::int64_t height_px, const panorama::Strip& strip,
                       std::size_t planes);
@@ -53,8 +53,8 @@ struct PanoramaJob {
   std::filesystem::path output;
   PanoramaFormat format = PanoramaFormat::kTiff;
   panorama::PanoramaMap map;   // of one eye
-  panorama::PictureSize size;  // of the file
-  bool is_red_cyan = false;    // two eyes in one picture
+  panorama::ImageSize size;  // of the file
+  bool is_red_cyan = false;    // two eyes in one image
   bool has_gpano = false;      // where GPano can describe the map
   std::vector<panorama::Strip> strips;
   std::vector<panorama::Plane> planes;
@@ -62,7 +62,7 @@ struct PanoramaJob {
   std::string sidecar;  // JSON
 };
 
-// Writes planes, picture and sidecar, each under a temporary name until all are complete. `done` is called with
+// Writes planes, image and sidecar, each under a temporary name until all are complete. `done` is called with
 // the share that is ready and may throw. Throws base::FileError.
 void join_strips(const PanoramaJob& job, const std::vector<panorama::StripFile>& strips, base::ThreadPool& pool,
                  const std::function<void(double)>& done);

@@ -39,7 +39,7 @@ class Stopwatch {
 };
 
 std::string text_of(const PanoramaFigures& figures) {
-  return nlohmann::json{{"tile_error_m", figures.tile_error_m},
+  return nlohmann::json{{"tile_error_m", figures.geometric_error_m},
                         {"shift_bound_px", figures.shift_bound_px},
                         {"tiles_substituted", figures.tiles_substituted},
                         {"tiles_missing", figures.tiles_missing}}
@@ -73,7 +73,7 @@ bool is_strip_name(const std::string& name) { return name.starts_with("strip_");
 }  // namespace
 
 void PanoramaFigures::add(const PanoramaFigures& other) {
-  tile_error_m = std::max(tile_error_m, other.tile_error_m);
+  geometric_error_m = std::max(geometric_error_m, other.geometric_error_m);
   shift_bound_px = std::max(shift_bound_px, other.shift_bound_px);
   tiles_substituted += other.tiles_substituted;
   tiles_missing += other.tiles_missing;
@@ -81,7 +81,7 @@ void PanoramaFigures::add(const PanoramaFigures& other) {
 
 namespace {
 
-// What is held of the picture comes out of the same memory: a strip, and a piece with its samples.
+// What is held of the image comes out of the same memory: a strip, and a piece with its samples.
 int free_memory_mb(const PanoramaJob& job, int memory_mb) {
   constexpr std::size_t kPieceBytes = 24;
   constexpr int kLeast_mb = 64;
@@ -107,7 +107,7 @@ int renderer_memory_mb(const PanoramaJob& job, int memory_mb) {
 struct PanoramaMaker::Canvas {
   std::int64_t width = 0;
   std::int64_t height = 0;
-  std::int64_t x = 0;  // of its left edge in the picture
+  std::int64_t x = 0;  // of its left edge in the image
   std::vector<base::Rgb> colour;
   std::vector<float> range_m;
   std::vector<Piece> pieces;
@@ -195,7 +195,7 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
   if (recipe_.stereo) {
     draw_eyes(strip, canvas, show, times);
   } else {
-    canvas.pieces = panorama::pieces_of(job_.map, standpoint(), strip, margin_px_);
+    canvas.pieces = panorama::pieces_of(job_.map, pose_on_sphere(), strip, margin_px_);
     for (std::size_t k = 0; k < canvas.pieces.size(); ++k) {
       show(static_cast<double>(k) / static_cast<double>(canvas.pieces.size()));
       draw(canvas.pieces[k], strip, canvas, times);
@@ -209,7 +209,7 @@ panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, Panor
   {
     const Stopwatch watch(times.encoding);
     writer.add(bytes_of(text_of(canvas.figures)));
-    add_picture(writer, layout, canvas);
+    add_image(writer, layout, canvas);
   }
   {
     const Stopwatch watch(times.planes);
@@ -252,9 +252,9 @@ void PanoramaMaker::lay_overlays(Canvas& canvas) {
   }
 }
 
-panorama::Standpoint PanoramaMaker::standpoint() const { return {recipe_.eye, planet_->radius_m()}; }
+panorama::PoseOnSphere PanoramaMaker::pose_on_sphere() const { return {recipe_.camera, planet_->radius_m()}; }
 
-// In columns of a tile, as cutting them all at once could take more memory than the picture.
+// In columns of a tile, as cutting them all at once could take more memory than the image.
 void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                               PanoramaTimes& times) {
   const bool is_mixed = job_.is_red_cyan;
@@ -262,7 +262,7 @@ void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::fun
   for (int begin = 0; begin < strip.width; begin += panorama::kTile_px) {
     const int width = std::min(static_cast<int>(panorama::kTile_px), strip.width - begin);
     const std::vector<Piece> pieces =
-        panorama::pair_pieces_of(job_.map, standpoint(), *recipe_.stereo, {strip.x + begin, width});
+        panorama::pair_pieces_of(job_.map, pose_on_sphere(), *recipe_.stereo, {strip.x + begin, width});
     const std::size_t of_left = is_mixed ? pieces.size() / 2 : pieces.size();
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       const double part = static_cast<double>(k) / static_cast<double>(pieces.size());
@@ -284,7 +284,7 @@ void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas,
   core::DrawRequest request = request_;
   request.view = piece.view;
   request.want_range = !job_.planes.empty();
-  PictureOptions options;
+  RenderOptions options;
   options.allow_incomplete = recipe_.allow_incomplete;
   options.wait_s = request_.paging.timeout_s;
   const core::DrawResult result = renderer_->draw(request);
@@ -300,8 +300,8 @@ void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas,
     times.casting += kMs * (stats.select_ms + stats.draw_ms);
     times.shading += kMs * stats.read_ms;
   }
-  canvas.figures.add({result.certificate.tile_error_m,
-                      result.certificate.picture_bound_px.value_or(result.certificate.shift_bound_px),
+  canvas.figures.add({result.certificate.geometric_error_m,
+                      result.certificate.image_bound_px.value_or(result.certificate.shift_bound_px),
                       stats.tiles_substituted, static_cast<std::int64_t>(result.missing.size())});
   const core::Frame& frame = result.frame;
   for (int row = 0; row < piece.height; ++row) {
@@ -318,7 +318,7 @@ void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& 
   constexpr std::int64_t kSide = panorama::kTile_px;
   const std::size_t pixel_bytes = format.pixel_bytes();
   const std::size_t row_bytes = pixel_bytes * kSide;
-  // What lies beyond the picture repeats its edge.
+  // What lies beyond the image repeats its edge.
   const auto fill_tile = [&](std::int64_t column, std::int64_t row, std::uint8_t* tile) {
     const std::int64_t columns = std::min(kSide, canvas.width - column);
     const std::int64_t rows = std::min(kSide, canvas.height - row);
@@ -349,7 +349,7 @@ void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& 
   }
 }
 
-void PanoramaMaker::add_picture(panorama::StripWriter& writer, const StripLayout& layout,
+void PanoramaMaker::add_image(panorama::StripWriter& writer, const StripLayout& layout,
                                 const Canvas& canvas) const {
   if (!layout.in_tiles) {
     for (std::int64_t band = 0; band < layout.bands; ++band) {
@@ -382,7 +382,7 @@ void PanoramaMaker::add_plane(panorama::StripWriter& writer, const StripLayout& 
         piece = &*std::find_if(canvas.pieces.begin(), canvas.pieces.end(),
                                [&](const Piece& p) { return holds(p, x, row); });
       }
-      panorama::measure(plane, *surface_, exaggeration, piece->view.eye.eye_m,
+      panorama::measure(plane, *surface_, exaggeration, piece->view.camera.position_m,
                         panorama::line_of_sight(*piece, x, row),
                         canvas.range_m[canvas.index(x - canvas.x, row)], out);
       out += format.pixel_bytes();

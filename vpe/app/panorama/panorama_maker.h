@@ -28,7 +28,7 @@ struct PanoramaTimes {
 
 // The worst of all pieces.
 struct PanoramaFigures {
-  double tile_error_m = 0;
+  double geometric_error_m = 0;
   double shift_bound_px = 0;
   std::int64_t tiles_substituted = 0;
   std::int64_t tiles_missing = 0;
@@ -68,8 +68,8 @@ class PanoramaMaker {
   void lay_overlays(Canvas& canvas);
   void draw_eyes(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                  PanoramaTimes& times);
-  panorama::Standpoint standpoint() const;
-  void add_picture(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas) const;
+  panorama::PoseOnSphere pose_on_sphere() const;
+  void add_image(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas) const;
   void add_plane(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
                  panorama::Plane plane) const;
   // Pixels of one row of the strip from a column on, as the format has them.

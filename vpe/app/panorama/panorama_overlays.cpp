@@ -16,22 +16,22 @@ namespace vpe::app {
 
 namespace {
 
-// Names that nothing hides, where the eye sees them.
-std::vector<overlay::WideName> seen_names(const PanoramaRecipe& recipe, const std::vector<core::Place>& places,
+// Names that nothing hides, where the camera sees them.
+std::vector<overlay::PanoramaName> seen_names(const PanoramaRecipe& recipe, const std::vector<core::Place>& places,
                                           const std::shared_ptr<const paging::PlanetFile>& planet,
                                           std::size_t memory_bytes, base::ThreadPool& pool) {
   const paging::Surface surface(planet, memory_bytes);
   const double exaggeration = recipe.settings.values().exaggeration;
   const double radius_m = planet->radius_m();
-  const mars::Pose& pose = recipe.eye;
-  const panorama::SkylineEye eye = panorama::skyline_eye({pose.lon_deg, pose.lat_deg}, pose.alt_m, radius_m);
+  const mars::Pose& pose = recipe.camera;
+  const panorama::SkylineCamera camera = panorama::skyline_camera({pose.lon_deg, pose.lat_deg}, pose.alt_m, radius_m);
   const double highest_m = radius_m + exaggeration * (planet->meta().highest_radius_m - radius_m);
   const double within_m = panorama::farthest_sight_m(radius_m + pose.alt_m,
                                                      planet->tree().lowest_radius_m(exaggeration), highest_m);
   const auto landmarks = panorama::landmarks(
-      eye, places, within_m, [&](const glm::dvec3& up) { return surface.at(up, exaggeration).radius_m; },
-      [&](const glm::dvec3& ray) { return surface.cast(eye.eye_m, ray, exaggeration); }, pool);
-  std::vector<overlay::WideName> names;
+      camera, places, within_m, [&](const glm::dvec3& up) { return surface.at(up, exaggeration).radius_m; },
+      [&](const glm::dvec3& ray) { return surface.cast(camera.position_m, ray, exaggeration); }, pool);
+  std::vector<overlay::PanoramaName> names;
   for (const panorama::Landmark& l : landmarks) {
     if (l.hidden_by) continue;
     names.push_back({l.feature.name, l.centre.direction.azimuth_deg, l.centre.direction.elevation_deg,
@@ -69,9 +69,9 @@ PanoramaOverlays::PanoramaOverlays(const PanoramaRecipe& recipe, const panorama:
   if (!file.empty()) places_ = core::read_gazetteer(file);
 }
 
-overlay::Decals PanoramaOverlays::lay_out() const {
+overlay::SpriteLayer PanoramaOverlays::lay_out() const {
   const core::SettingsValues& values = recipe_.settings.values();
-  overlay::WideScene scene;
+  overlay::PanoramaScene scene;
   scene.width_px = map_.width_px;
   scene.height_px = map_.height_px;
   scene.turn_px = std::llround(map_.turn_px);
@@ -86,7 +86,7 @@ overlay::Decals PanoramaOverlays::lay_out() const {
   scene.horizon_px = map_.horizon_px;
   scene.place = [this](double azimuth_deg, double elevation_deg) -> std::optional<glm::dvec2> {
     glm::dvec2 at = map_.place({azimuth_deg, elevation_deg});
-    // Its own edges belong to the picture.
+    // Its own edges belong to the image.
     constexpr double kEdge_px = 1e-6;
     if (at.x < -kEdge_px) at.x += map_.turn_px;
     if (at.x > map_.turn_px - kEdge_px) at.x -= map_.turn_px;
@@ -96,16 +96,16 @@ overlay::Decals PanoramaOverlays::lay_out() const {
   scene.appearance = values;
   scene.has_imagery = !planet_->image_keys().empty();
   if (!places_.empty()) scene.names = seen_names(recipe_, places_, planet_, memory_bytes_, pool_);
-  return overlay::lay_out_wide(values, scene);
+  return overlay::lay_out_panorama(values, scene);
 }
 
 void PanoramaOverlays::prepare() {
-  if (!decals_ && overlay::any(recipe_.settings.values())) decals_ = lay_out();
+  if (!sprites_ && overlay::any(recipe_.settings.values())) sprites_ = lay_out();
 }
 
-void PanoramaOverlays::lay(const overlay::PicturePart& part) {
+void PanoramaOverlays::lay(const overlay::ImageRegion& part) {
   prepare();
-  if (decals_) decals_->lay(part);
+  if (sprites_) sprites_->lay(part);
 }
 
 }  // namespace vpe::app

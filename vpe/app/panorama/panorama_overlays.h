@@ -20,7 +20,7 @@ namespace vpe::app {
 // throws, and std::runtime_error when the recipe has another checksum: those names are not what was drawn.
 void settle_overlays(PanoramaRecipe& recipe);
 
-// One picture of one eye. One thread at a time. References are kept.
+// One image of one eye. One thread at a time. References are kept.
 class PanoramaOverlays {
  public:
   // Reads the names; nothing else is done before it is needed. The ground is held in `memory_bytes` at most,
@@ -32,12 +32,12 @@ class PanoramaOverlays {
   // Gives everything its place, once; nothing when no overlay is set. Throws what paging::Surface throws.
   void prepare();
 
-  // Over a part of the picture. Which parts it is cut into changes no pixel. Throws what overlay::Decals and
+  // Over a part of the image. Which parts it is cut into changes no pixel. Throws what overlay::Decals and
   // paging::Surface throw.
-  void lay(const overlay::PicturePart& part);
+  void lay(const overlay::ImageRegion& part);
 
  private:
-  overlay::Decals lay_out() const;
+  overlay::SpriteLayer lay_out() const;
 
   const PanoramaRecipe& recipe_;
   const panorama::PanoramaMap& map_;
@@ -45,7 +45,7 @@ class PanoramaOverlays {
   base::ThreadPool& pool_;
   std::size_t memory_bytes_;
   std::vector<core::Place> places_;
-  std::optional<overlay::Decals> decals_;
+  std::optional<overlay::SpriteLayer> sprites_;
 };
 
 }  // namespace vpe::app

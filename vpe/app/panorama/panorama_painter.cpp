@@ -17,7 +17,7 @@ constexpr double kShownStep = 0.005;
 PanoramaPainter::PanoramaPainter(OpenEyes eyes, std::shared_ptr<window::CopyingState> copying)
     : eyes_(std::move(eyes)), copying_(std::move(copying)) {}
 
-window::Picture PanoramaPainter::paint(const window::PictureOrder& order) {
+window::DrawnImage PanoramaPainter::paint(const window::ImageRequest& order) {
   const auto copied = [this](const std::string&, double fraction) {
     if (copying_->stop) throw std::runtime_error("stopped");
     const double shown = copying_->fraction;
@@ -27,17 +27,17 @@ window::Picture PanoramaPainter::paint(const window::PictureOrder& order) {
   };
   // What cannot be copied once is not tried again with every view.
   if (!failure_.empty()) throw std::runtime_error(failure_);
-  window::Picture picture;
+  window::DrawnImage drawn;
   try {
-    picture.image = eyes_.draw(order.request.view, order.stereo, copied);
+    drawn.image = eyes_.draw(order.request.view, order.stereo, copied);
   } catch (const std::exception& e) {
     const bool copied_some = copying_->fraction.exchange(-1) >= 0;
     if (copied_some && !copying_->stop) failure_ = e.what();
     throw;
   }
-  picture.result.settled = true;
+  drawn.result.settled = true;
   copying_->fraction = -1;
-  return picture;
+  return drawn;
 }
 
 window::OverlookSetup overlook_setup(const EyesFiles& files, std::size_t budget_bytes, int threads) {

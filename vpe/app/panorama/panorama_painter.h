@@ -11,9 +11,9 @@ namespace vpe::app {
 
 class PanoramaPainter : public window::Painter {
  public:
-  // `copying` is told how far the copying of large pictures is, and stops it.
+  // `copying` is told how far the copying of large images is, and stops it.
   PanoramaPainter(OpenEyes eyes, std::shared_ptr<window::CopyingState> copying);
-  window::Picture paint(const window::PictureOrder& order) override;
+  window::DrawnImage paint(const window::ImageRequest& order) override;
 
  private:
   OpenEyes eyes_;

@@ -116,7 +116,7 @@ nlohmann::ordered_json to_json(const PanoramaRecipe& recipe) {
   nlohmann::ordered_json out;
   out["planet"] = {{"file", recipe.planet}, {"identity", recipe.identity}};
   out["backend"] = recipe.backend;
-  out["eye"] = {{"lon_deg", recipe.eye.lon_deg}, {"lat_deg", recipe.eye.lat_deg}, {"alt_m", recipe.eye.alt_m}};
+  out["eye"] = {{"lon_deg", recipe.camera.lon_deg}, {"lat_deg", recipe.camera.lat_deg}, {"alt_m", recipe.camera.alt_m}};
   out["plan"] = plan_json(recipe.plan);
   std::string planes;
   for (const panorama::Plane plane : recipe.planes)
@@ -140,11 +140,11 @@ PanoramaRecipe recipe_from(const json& from) {
   recipe.planet = needed<std::string>(planet, "file");
   recipe.identity = needed<std::string>(planet, "identity");
   recipe.backend = needed<std::string>(from, "backend");
-  const json& eye = object(from, "eye");
-  recipe.eye.lon_deg = needed<double>(eye, "lon_deg");
-  recipe.eye.lat_deg = needed<double>(eye, "lat_deg");
-  recipe.eye.alt_m = needed<double>(eye, "alt_m");
-  if (!mars::is_valid({recipe.eye.lon_deg, recipe.eye.lat_deg}) || !std::isfinite(recipe.eye.alt_m)) {
+  const json& camera = object(from, "eye");
+  recipe.camera.lon_deg = needed<double>(camera, "lon_deg");
+  recipe.camera.lat_deg = needed<double>(camera, "lat_deg");
+  recipe.camera.alt_m = needed<double>(camera, "alt_m");
+  if (!mars::is_valid({recipe.camera.lon_deg, recipe.camera.lat_deg}) || !std::isfinite(recipe.camera.alt_m)) {
     throw MetadataError("recipe: eye is no place; latitudes are -90 to 90");
   }
   recipe.plan = plan_from(object(from, "plan"));

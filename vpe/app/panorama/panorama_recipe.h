@@ -1,4 +1,4 @@
-// All that a panorama's picture depends on, as one value that its sidecar keeps.
+// All that a panorama's image depends on, as one value that its sidecar keeps.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace vpe::app {
 
 struct PanoramaRecipe {
   panorama::PlanOptions plan;
-  mars::Pose eye;  // yaw, pitch and roll 0
+  mars::Pose camera;  // yaw, pitch and roll 0
   std::string backend;
   core::Settings settings;
   std::vector<std::string> interest;  // as --interest
@@ -24,7 +24,7 @@ struct PanoramaRecipe {
   std::optional<panorama::EyePair> stereo;  // nothing: one eye
   std::string planet;                       // file, absolute; empty: the embedded Mars
   std::string identity;                     // PlanetMeta::identity
-  int memory_mb = 0;  // bounds what polygons may take; 0 for rays, whose pictures do not depend on it
+  int memory_mb = 0;  // bounds what polygons may take; 0 for rays, whose images do not depend on it
   bool allow_incomplete = false;
   std::string names_checksum;  // of the file of overlay.names, when it is set
 };

@@ -18,7 +18,7 @@ using panorama::MapKind;
 constexpr std::uintmax_t kMostSidecarBytes = std::uintmax_t{1} << 24;
 
 MapKind kind_of(const PanoramaArguments& arguments) {
-  const bool is_polygons = arguments.picture.backend == "polygon";
+  const bool is_polygons = arguments.panorama_image.backend == "polygon";
   if (arguments.projection.empty()) return is_polygons ? MapKind::kFacets : MapKind::kCylinder;
   for (const MapKind kind : {MapKind::kCylinder, MapKind::kEquirectangular, MapKind::kFacets}) {
     if (arguments.projection != panorama::to_string(kind)) continue;
@@ -96,7 +96,7 @@ void check_alone(const Common& common) {
 }  // namespace
 
 PanoramaOrder new_order(PanoramaArguments arguments, const Common& common) {
-  if (arguments.picture.backend == kAutoBackend) arguments.picture.backend = kRayBackend;
+  if (arguments.panorama_image.backend == kAutoBackend) arguments.panorama_image.backend = kRayBackend;
   if (arguments.at.empty() || arguments.output.empty())
     throw UsageError("--at LON,LAT and -o PANO are needed, or --again PANO.json");
   const auto place = parse_place(arguments.at);
@@ -107,18 +107,18 @@ PanoramaOrder new_order(PanoramaArguments arguments, const Common& common) {
   }
   PanoramaOrder order;
   PanoramaRecipe& recipe = order.recipe;
-  recipe.backend = arguments.picture.backend;
+  recipe.backend = arguments.panorama_image.backend;
   recipe.plan = plan_options(arguments);
-  recipe.eye.lon_deg = place->lon_deg;
-  recipe.eye.lat_deg = place->lat_deg;
-  recipe.eye.alt_m = arguments.altitude_m.value_or(0);
-  recipe.settings = make_settings(arguments.picture);
-  parse_interest(arguments.picture);
-  recipe.interest = arguments.picture.interest;
+  recipe.camera.lon_deg = place->lon_deg;
+  recipe.camera.lat_deg = place->lat_deg;
+  recipe.camera.alt_m = arguments.altitude_m.value_or(0);
+  recipe.settings = make_settings(arguments.panorama_image);
+  parse_interest(arguments.panorama_image);
+  recipe.interest = arguments.panorama_image.interest;
   recipe.planes = panorama::parse_planes(arguments.planes);
   recipe.planet = absolute_planet(arguments.planet);
   recipe.memory_mb = recipe.backend == "polygon" ? common.memory_mb : 0;
-  recipe.allow_incomplete = arguments.picture.allow_incomplete;
+  recipe.allow_incomplete = arguments.panorama_image.allow_incomplete;
   order.stereo = arguments.stereo;
   order.height_m = arguments.height_m;
   order.output = arguments.output;

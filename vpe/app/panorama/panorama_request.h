@@ -30,14 +30,14 @@ struct PanoramaArguments {
   std::string again;
   bool has_facets = false;
   bool has_yaw = false;
-  PictureOptions picture;
+  RenderOptions panorama_image;
   StereoArguments stereo;
 };
 
 // What a panorama is to be, but for what only the planet knows.
 struct PanoramaOrder {
   PanoramaRecipe recipe;
-  std::optional<double> height_m;  // above the ground, in place of recipe.eye.alt_m
+  std::optional<double> height_m;  // above the ground, in place of recipe.camera.alt_m
   StereoArguments stereo;          // recipe.stereo is what the planet lets become of it
   std::filesystem::path output;
   std::string again;  // sidecar that is made again, or empty

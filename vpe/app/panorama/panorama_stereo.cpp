@@ -37,7 +37,7 @@ std::optional<double> nearest_ground_m(const PanoramaRecipe& recipe, double radi
   request.settings.samples = 1;
   std::optional<double> nearest_m;
   for (const panorama::Strip& strip : panorama::strips_of(map)) {
-    for (const panorama::Piece& piece : panorama::pieces_of(map, {recipe.eye, radius_m}, strip, 0)) {
+    for (const panorama::Piece& piece : panorama::pieces_of(map, {recipe.camera, radius_m}, strip, 0)) {
       InterruptGuard::check();
       request.view = piece.view;
       const auto base_m = core::comfortable_base_m(renderer.draw(request).frame.range_m);
@@ -88,17 +88,17 @@ panorama::EyePair measure_eyes(const StereoArguments& arguments, const PanoramaR
 
 void require_eyes_above_ground(const PanoramaRecipe& recipe, const paging::Surface& surface,
                                double clearance_m) {
-  mars::Pose north = recipe.eye;
+  mars::Pose north = recipe.camera;
   north.yaw_deg = north.pitch_deg = north.roll_deg = 0.0;
-  const mars::EyePose middle = mars::to_eye(north, surface.planet_radius_m());
+  const mars::CameraPose middle = mars::to_camera(north, surface.planet_radius_m());
   const double base_m = recipe.stereo->base_m;
   for (int n = 0; n < kAzimuths; ++n) {
     // The left eye of an azimuth is the right one of the opposite.
     const double azimuth_deg = 360.0 * n / kAzimuths;
     const glm::dvec2 place_m = panorama::eye_place_m(panorama::Eye::kRight, azimuth_deg, base_m);
-    const glm::dvec3 eye_m = middle.eye_m + place_m.x * middle.axes.right + place_m.y * middle.axes.forward;
+    const glm::dvec3 camera_m = middle.position_m + place_m.x * middle.axes.right + place_m.y * middle.axes.forward;
     const double above_m =
-        glm::length(eye_m) - surface.at(eye_m, recipe.settings.values().exaggeration).radius_m;
+        glm::length(camera_m) - surface.at(camera_m, recipe.settings.values().exaggeration).radius_m;
     if (above_m >= clearance_m) continue;
     throw std::runtime_error("--stereo: with eyes " + base::format_number(std::round(1e3 * base_m) / 1e3) +
                              " m apart, the right eye of azimuth " + base::format_number(azimuth_deg) + " is " +

@@ -30,7 +30,7 @@ window::DisplayOptions display_options() {
 
 void check_window() { window::check_display(display_options()); }
 
-panorama::Viewer look_around(const LookAround& request, const Common& common) {
+panorama::Viewer view_panorama(const PanoramaViewer& request, const Common& common) {
   window::OverlookWindowSetup setup;
   setup.preferences = explore::read_preferences(explore::explore_files().preferences);
   // The rest of the memory is for views and for the window itself.
@@ -38,13 +38,13 @@ panorama::Viewer look_around(const LookAround& request, const Common& common) {
   setup.view.look = request.look;
   setup.view.fov_deg = request.fov_deg;
   setup.view.stereo = request.stereo;
-  setup.view.pictures = std::filesystem::current_path();
+  setup.view.images = std::filesystem::current_path();
   setup.display = display_options();
-  setup.display.title = "vpe - " + setup.view.panorama.picture.filename().string();
+  setup.display.title = "vpe - " + setup.view.panorama.image.filename().string();
   setup.display.width = request.size.width;
   setup.display.height = request.size.height;
   setup.display.scale = request.scale;
-  // Ctrl+C ends the copying of a large picture with nothing left over.
+  // Ctrl+C ends the copying of a large image with nothing left over.
   const InterruptGuard guard;
   window::OverlookWindow window(std::move(setup));
   while (window.step(kIdle_s)) InterruptGuard::check();
@@ -60,7 +60,7 @@ void check_window() {
       "without one: --view YAW,PITCH -o VIEW.png draws a view, --at AZIMUTH,ELEVATION says what is there");
 }
 
-panorama::Viewer look_around(const LookAround&, const Common&) {
+panorama::Viewer view_panorama(const PanoramaViewer&, const Common&) {
   check_window();
   throw std::logic_error("check_window() throws");
 }

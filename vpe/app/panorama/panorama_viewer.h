@@ -11,7 +11,7 @@
 
 namespace vpe::app {
 
-struct LookAround {
+struct PanoramaViewer {
   EyesFiles files;
   std::optional<panorama::Direction> look;  // to begin with; the middle when left out
   double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;
@@ -24,6 +24,6 @@ struct LookAround {
 void check_window();
 
 // Until the window is closed; returns where it looked then. Throws Interrupted, and as window::OverlookWindow.
-panorama::Viewer look_around(const LookAround& request, const Common& common);
+panorama::Viewer view_panorama(const PanoramaViewer& request, const Common& common);
 
 }  // namespace vpe::app

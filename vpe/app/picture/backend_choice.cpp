@@ -15,7 +15,7 @@ void set(core::Settings& settings, const char* key, const std::string& text) {
   if (const std::string trouble = settings.set(key, text); !trouble.empty()) throw std::logic_error(trouble);
 }
 
-core::Settings within_tolerance(core::Settings settings, const PictureOptions& options) {
+core::Settings within_tolerance(core::Settings settings, const RenderOptions& options) {
   const bool is_named = std::any_of(options.set.begin(), options.set.end(),
                                     [](const std::string& text) { return text.starts_with("rays."); });
   const double tolerance_px = settings.values().lod_tolerance_px;
@@ -30,19 +30,19 @@ core::Settings within_tolerance(core::Settings settings, const PictureOptions& o
 bool suits_rays(const core::DrawRequest& request) {
   const core::SettingsValues& values = request.settings;
   const core::SettingsValues defaults;
-  return voxel::why_not(request).empty() && request.interest.empty() && values.lod_rule == defaults.lod_rule &&
+  return voxel::why_not(request).empty() && request.interest.empty() && values.lod_metric == defaults.lod_metric &&
          values.lod_triangles == 0 && values.shading == defaults.shading && values.lod_centre_weight == 0;
 }
 
-BackendChoice choose_backend(const PictureOptions& options, const core::Settings& settings,
-                             std::span<const core::DrawRequest> pictures, double radius_m, bool has_gpu) {
+BackendChoice choose_backend(const RenderOptions& options, const core::Settings& settings,
+                             std::span<const core::DrawRequest> images, double radius_m, bool has_gpu) {
   if (options.backend != kAutoBackend) return {options.backend, settings};
-  const auto for_rays = std::count_if(pictures.begin(), pictures.end(), [&](const core::DrawRequest& request) {
-    return glm::length(request.view.eye.eye_m) < (1 + kFar) * radius_m &&
+  const auto for_rays = std::count_if(images.begin(), images.end(), [&](const core::DrawRequest& request) {
+    return glm::length(request.view.camera.position_m) < (1 + kFar) * radius_m &&
            core::reaches_horizon(request.view, radius_m);
   });
-  const bool is_rays = !has_gpu && 2 * static_cast<std::size_t>(for_rays) >= pictures.size() &&
-                       std::all_of(pictures.begin(), pictures.end(), suits_rays);
+  const bool is_rays = !has_gpu && 2 * static_cast<std::size_t>(for_rays) >= images.size() &&
+                       std::all_of(images.begin(), images.end(), suits_rays);
   if (!is_rays) return {kPolygonBackend, settings};
   return {kRayBackend, within_tolerance(settings, options)};
 }

@@ -15,7 +15,7 @@ nlohmann::json term_json(const char* x_name, const lod::ControlTerm& term) {
   return json;
 }
 
-nlohmann::json tile_json(const lod::TileExplanation& e, bool hitchner) {
+nlohmann::json tile_json(const lod::TileExplanation& e, bool by_distance) {
   nlohmann::json json{{"tile", lod::to_string(e.key)},
                       {"lod", e.lod},
                       {"post_spacing_m", e.post_spacing_m},
@@ -23,13 +23,13 @@ nlohmann::json tile_json(const lod::TileExplanation& e, bool hitchner) {
                       {"meshes", e.variants},
                       {"min_distance_m", e.min_distance_m},
                       {"angle_from_centre_deg", e.terms.centre_angle_rad / mars::kRadiansPerDegree},
-                      {"error_m", e.error_m},
-                      {"error_px", e.error_px},
+                      {"error_m", e.geometric_error_m},
+                      {"error_px", e.screen_space_error_px},
                       {"centre", term_json("half_heights", e.terms.centre)},
                       {"interest", term_json(nullptr, e.terms.interest)},
                       {"sum", e.terms.sum},
                       {"reason", lod::to_string(e.reason)}};
-  if (hitchner) {
+  if (by_distance) {
     json["distance"] = term_json("m", e.terms.distance);
     json["wanted_lod"] = e.wanted;
   } else {
@@ -48,17 +48,17 @@ nlohmann::json explain_lod(const core::DrawRequest& request, const paging::Plane
   lod::SelectScratch scratch;
   lod::Selection selection;
   lod::select(options, planet.tree(), view, scratch, selection);
-  const bool hitchner = options.control.rule == core::LodRule::kHitchner;
+  const bool by_distance = options.control.rule == core::LodMetric::kDistance;
   nlohmann::json tiles = nlohmann::json::array();
   for (const lod::TileExplanation& e : lod::explain(options, planet.tree(), view, selection)) {
-    tiles.push_back(tile_json(e, hitchner));
+    tiles.push_back(tile_json(e, by_distance));
   }
-  nlohmann::json json{{"rule", hitchner ? "hitchner" : "error"},
+  nlohmann::json json{{"rule", by_distance ? "hitchner" : "error"},
                       {"max_triangles", options.max_triangles},
                       {"triangles", selection.triangles},
                       {"budget_spent", selection.capped},
                       {"tiles", tiles}};
-  if (!hitchner) json["tolerance_px"] = options.tolerance_px;
+  if (!by_distance) json["tolerance_px"] = options.tolerance_px;
   return json;
 }
 

@@ -1,4 +1,4 @@
-// Why every tile of a picture has its level of detail, as JSON.
+// Why every tile of an image has its level of detail, as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 
 namespace vpe::app {
 
-// Of the picture that a renderer with as much memory draws of the request, complete: the same options go
+// Of the image that a renderer with as much memory draws of the request, complete: the same options go
 // through the same selection. Numbers that are not finite are null.
 nlohmann::json explain_lod(const core::DrawRequest& request, const paging::PlanetFile& planet,
                            std::size_t memory_bytes);

@@ -33,10 +33,10 @@ std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& requ
   digest.add(std::int64_t{view.width}).add(std::int64_t{view.height});
   digest.add(view.principal_offset_px.x).add(view.principal_offset_px.y);
   for (const int n : {view.part.x, view.part.y, view.part.width, view.part.height}) digest.add(std::int64_t{n});
-  add(digest, view.eye.eye_m);
-  add(digest, view.eye.axes.right);
-  add(digest, view.eye.axes.up);
-  add(digest, view.eye.axes.forward);
+  add(digest, view.camera.position_m);
+  add(digest, view.camera.axes.right);
+  add(digest, view.camera.axes.up);
+  add(digest, view.camera.axes.forward);
   add(digest, request.sun);
   digest.add(static_cast<std::int64_t>(request.interest.size()));
   for (const core::InterestRegion& r : request.interest) {

@@ -7,7 +7,7 @@
 
 namespace vpe::app {
 
-// What a frame's picture depends on beside its DrawRequest. The number of threads is not among it.
+// What a frame's image depends on beside its DrawRequest. The number of threads is not among it.
 struct FilmBasis {
   std::string program;  // version
   std::string planet;   // PlanetMeta::identity
@@ -15,9 +15,9 @@ struct FilmBasis {
   int memory_mb = 0;  // bounds triangles and textures
 };
 
-// Digest of everything the picture depends on, so that equal fingerprints mean equal pictures; of files that
+// Digest of everything the image depends on, so that equal fingerprints mean equal images; of files that
 // the settings name, what they hold. Neither the name of the flight nor the number of the frame counts, and its
-// time only where the picture shows it. Throws base::FileError.
+// time only where the image shows it. Throws base::FileError.
 std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& request,
                            const core::Settings& settings, double time_s = 0);
 

@@ -29,7 +29,7 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core
   scene.range_m = frame.range_m;
   scene.radius_m = planet_->radius_m();
   scene.appearance = settings;
-  scene.shift_px = certificate.picture_bound_px.value_or(certificate.shift_bound_px);
+  scene.shift_px = certificate.image_bound_px.value_or(certificate.shift_bound_px);
   scene.has_imagery = has_imagery_;
   scene.time_s = time_s;
   if (!settings.names.empty()) {

@@ -1,4 +1,4 @@
-// Overlays of pictures and films: what vpe/overlay needs of a planet and of files.
+// Overlays of images and films: what vpe/overlay needs of a planet and of files.
 #pragma once
 
 #include <map>

@@ -15,7 +15,7 @@
 
 namespace vpe::app {
 
-void add_picture_options(CLI::App& command, PictureOptions& options) {
+void add_render_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
       ->expected(1)
@@ -47,7 +47,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-std::vector<core::InterestRegion> parse_interest(const PictureOptions& options) {
+std::vector<core::InterestRegion> parse_interest(const RenderOptions& options) {
   using Limits = core::InterestLimits;
   std::vector<core::InterestRegion> regions;
   for (const std::string& text : options.interest) {
@@ -69,7 +69,7 @@ std::vector<core::InterestRegion> parse_interest(const PictureOptions& options) 
 
 std::size_t memory_bytes(const Common& common) { return static_cast<std::size_t>(common.memory_mb) << 20; }
 
-core::Settings make_settings(const PictureOptions& options) {
+core::Settings make_settings(const RenderOptions& options) {
   core::Settings settings;
   if (options.tolerance_px >= 0) {
     const std::string trouble = settings.set("lod.tolerance", base::format_number(options.tolerance_px));
@@ -86,7 +86,7 @@ core::Settings make_settings(const PictureOptions& options) {
   return settings;
 }
 
-std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, const Common& common,
+std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet) {
   // It costs a fifth of a film's time in page faults, so only who is short of memory pays.
   constexpr int kTightMemory_mb = 512;
@@ -100,7 +100,7 @@ std::unique_ptr<core::Renderer> make_renderer(const PictureOptions& options, con
   return gl::make_polygon_renderer(gl::Context::create(), std::move(planet), renderer);
 }
 
-void require_complete(const PictureOptions& options, const core::DrawResult& result) {
+void require_complete(const RenderOptions& options, const core::DrawResult& result) {
   constexpr std::size_t kNamed = 3;
   if (options.allow_incomplete || result.missing.empty()) return;
   const std::size_t count = result.missing.size();

@@ -38,7 +38,7 @@ struct RenderArguments {
   std::string overlay_layer;
   std::string size = "1280x720";
   double fov_deg = 60;
-  PictureOptions picture;
+  RenderOptions drawn;
   StereoArguments stereo;
 };
 
@@ -73,7 +73,7 @@ std::optional<core::View> cull_view(const std::optional<std::string>& text, cons
   }
   n->resize(6, 0.0);
   core::View other = view;
-  other.eye = mars::to_eye(mars::Pose{(*n)[0], (*n)[1], (*n)[2], (*n)[3], (*n)[4], (*n)[5]}, radius_m);
+  other.camera = mars::to_camera(mars::Pose{(*n)[0], (*n)[1], (*n)[2], (*n)[3], (*n)[4], (*n)[5]}, radius_m);
   return other;
 }
 
@@ -95,7 +95,7 @@ void print_levels(const core::FrameStats& stats, const paging::PlanetFile& plane
 
 void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
   if (path.empty()) return;
-  check_picture_output(path);
+  check_image_output(path);
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
   if (extension != ".png")
@@ -119,60 +119,60 @@ void check_stereo_outputs(const RenderArguments& arguments) {
 
 void render_stereo(const RenderArguments& arguments, const Common& common, const core::DrawRequest& request,
                    const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
-  const StereoPicture picture = draw_stereo(arguments.stereo, request, draw);
-  core::write_image(arguments.output, picture.image.pixels, picture.image.width, picture.image.height);
-  const nlohmann::json certificates{{"left", nlohmann::json::parse(core::to_json(picture.left.certificate))},
-                                    {"right", nlohmann::json::parse(core::to_json(picture.right.certificate))}};
+  const StereoImage drawn = draw_stereo(arguments.stereo, request, draw);
+  core::write_image(arguments.output, drawn.image.pixels, drawn.image.width, drawn.image.height);
+  const nlohmann::json certificates{{"left", nlohmann::json::parse(core::to_json(drawn.left.certificate))},
+                                    {"right", nlohmann::json::parse(core::to_json(drawn.right.certificate))}};
   if (!arguments.certificate.empty()) base::write_file(arguments.certificate, certificates.dump(1) + "\n");
   if (common.json) {
     print_json(
         {{"output", arguments.output},
-         {"backend", arguments.picture.backend},
-         {"eye_base_m", picture.eye_base_m},
+         {"backend", arguments.drawn.backend},
+         {"eye_base_m", drawn.eye_base_m},
          {"certificate", certificates},
-         {"stats", {{"left", stats_json(picture.left.stats)}, {"right", stats_json(picture.right.stats)}}}});
+         {"stats", {{"left", stats_json(drawn.left.stats)}, {"right", stats_json(drawn.right.stats)}}}});
   } else if (!common.quiet) {
     std::printf("%s: eyes %.4g m apart, geometry within %.2f px\n", arguments.output.c_str(),
-                picture.eye_base_m,
-                std::max(picture.left.certificate.shift_bound_px, picture.right.certificate.shift_bound_px));
+                drawn.eye_base_m,
+                std::max(drawn.left.certificate.shift_bound_px, drawn.right.certificate.shift_bound_px));
   }
 }
 
-// Of the picture, unless it is named; what --explain-lod tells of are triangles.
+// Of the image, unless it is named; what --explain-lod tells of are triangles.
 void choose_backend_of(RenderArguments& arguments, core::DrawRequest& request, double radius_m) {
-  PictureOptions& picture = arguments.picture;
-  if (picture.backend == kAutoBackend && !arguments.explain_lod.empty()) picture.backend = kPolygonBackend;
+  RenderOptions& drawn = arguments.drawn;
+  if (drawn.backend == kAutoBackend && !arguments.explain_lod.empty()) drawn.backend = kPolygonBackend;
   const BackendChoice chosen =
-      choose_backend(picture, make_settings(picture), {&request, 1}, radius_m, gl::has_gpu());
-  picture.backend = chosen.backend;
+      choose_backend(drawn, make_settings(drawn), {&request, 1}, radius_m, gl::has_gpu());
+  drawn.backend = chosen.backend;
   request.settings = chosen.settings.values();
 }
 
 void print_summary(const RenderArguments& arguments, const core::DrawRequest& request,
                    const core::DrawResult& result) {
   std::string what = base::format_number(static_cast<double>(result.stats.triangles)) + " triangles";
-  if (arguments.picture.backend == kRayBackend) {
+  if (arguments.drawn.backend == kRayBackend) {
     const glm::ivec2 size = core::drawn_size(request.view);
     what = base::format_number(static_cast<double>(size.x) * size.y * request.settings.samples) + " rays";
   }
   std::printf("%s: %s in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(), what.c_str(),
-              result.stats.tiles_drawn, result.certificate.shift_bound_px, result.certificate.tile_error_m);
+              result.stats.tiles_drawn, result.certificate.shift_bound_px, result.certificate.geometric_error_m);
 }
 
 void render(RenderArguments& arguments, const Common& common) {
-  const core::Settings settings = make_settings(arguments.picture);
+  const core::Settings settings = make_settings(arguments.drawn);
   const Size size = parse_size(arguments.size);
   // Wrong usage and what cannot be written are told before any work.
   core::DrawRequest request;
   request.view.width = size.width;
   request.view.height = size.height;
   request.view.fov_deg = arguments.fov_deg;
-  request.interest = parse_interest(arguments.picture);
-  request.view.eye = mars::to_eye(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
+  request.interest = parse_interest(arguments.drawn);
+  request.view.camera = mars::to_camera(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
   require_valid(request.view);
   if (const auto other = cull_view(arguments.cull_from, request.view, mars::kMarsRadius_m))
     require_valid(*other);
-  check_picture_output(arguments.output);
+  check_image_output(arguments.output);
   if (!arguments.range.empty()) check_range_output(arguments.range);
   if (!arguments.certificate.empty()) check_output(arguments.certificate);
   if (!arguments.explain_lod.empty()) check_output(arguments.explain_lod);
@@ -189,7 +189,7 @@ void render(RenderArguments& arguments, const Common& common) {
         .at(mars::direction(place), settings.values().exaggeration)
         .height_m;
   });
-  request.view.eye = mars::to_eye(pose, planet->radius_m());
+  request.view.camera = mars::to_camera(pose, planet->radius_m());
   request.settings = settings.values();
   request.sun = sun_for(request.settings, pose);
   request.want_range =
@@ -197,15 +197,15 @@ void render(RenderArguments& arguments, const Common& common) {
   require_valid(request.view);
   request.cull_view = cull_view(arguments.cull_from, request.view, planet->radius_m());
   choose_backend_of(arguments, request, planet->radius_m());
-  const auto renderer = make_renderer(arguments.picture, common, planet);
-  request.paging.timeout_s = arguments.picture.wait_s;
-  // A finished picture of one eye.
-  const auto draw = [&](const core::DrawRequest& eye) {
-    core::DrawResult result = renderer->draw(eye);
-    require_complete(arguments.picture, result);
+  const auto renderer = make_renderer(arguments.drawn, common, planet);
+  request.paging.timeout_s = arguments.drawn.wait_s;
+  // A finished image of one eye.
+  const auto draw = [&](const core::DrawRequest& camera) {
+    core::DrawResult result = renderer->draw(camera);
+    require_complete(arguments.drawn, result);
     if (!common.quiet) warn_of(result.failures);
-    if (!overlay::any(eye.settings)) return result;
-    const overlay::Layer layer = FrameOverlays(planet).layer(eye, result.frame, result.certificate, 0);
+    if (!overlay::any(camera.settings)) return result;
+    const overlay::Layer layer = FrameOverlays(planet).layer(camera, result.frame, result.certificate, 0);
     if (arguments.overlay_layer.empty()) {
       overlay::composite(layer, result.frame.colour);
     } else {
@@ -227,7 +227,7 @@ void render(RenderArguments& arguments, const Common& common) {
   }
   if (common.json) {
     nlohmann::json json{{"output", arguments.output},
-                        {"backend", arguments.picture.backend},
+                        {"backend", arguments.drawn.backend},
                         {"certificate", nlohmann::json::parse(core::to_json(result.certificate))},
                         {"stats", stats_json(result.stats)}};
     print_json(json);
@@ -263,7 +263,7 @@ void add_render(CLI::App& program, Common& common) {
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
       ->capture_default_str();
   add_stereo_options(*command, arguments->stereo);
-  add_picture_options(*command, arguments->picture);
+  add_render_options(*command, arguments->drawn);
   command->callback([arguments, height, &common] {
     arguments->has_height = height->count() > 0;
     render(*arguments, common);

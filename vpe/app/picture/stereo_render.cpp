@@ -56,26 +56,26 @@ void check_stereo(const StereoArguments& arguments) {
     throw UsageError("--eye-base and --convergence are for two eyes: add --stereo sbs, ou or anaglyph");
 }
 
-StereoPicture draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
+StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
                           const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
-  StereoPicture picture;
-  picture.eye_base_m = arguments.eye_base_m > 0 ? arguments.eye_base_m : base_of_view(request, draw);
+  StereoImage drawn;
+  drawn.eye_base_m = arguments.eye_base_m > 0 ? arguments.eye_base_m : base_of_view(request, draw);
   std::optional<double> convergence_m;
   if (arguments.convergence_m > 0) convergence_m = arguments.convergence_m;
   const auto draw_eye = [&](double aside_m) {
     core::DrawRequest eye = request;
     eye.view = core::eye_aside(request.view, aside_m, convergence_m);
     if (const std::string trouble = core::check(eye.view); !trouble.empty())
-      throw UsageError("--stereo with eyes " + base::format_number(picture.eye_base_m) +
+      throw UsageError("--stereo with eyes " + base::format_number(drawn.eye_base_m) +
                        " m apart: " + trouble);
     return draw(eye);
   };
-  picture.left = draw_eye(-0.5 * picture.eye_base_m);
-  const core::RgbImage left = take_image(picture.left);
-  picture.right = draw_eye(0.5 * picture.eye_base_m);
-  const core::RgbImage right = take_image(picture.right);
-  picture.image = core::combine_stereo(left, right, *core::parse_stereo(arguments.layout));
-  return picture;
+  drawn.left = draw_eye(-0.5 * drawn.eye_base_m);
+  const core::RgbImage left = take_image(drawn.left);
+  drawn.right = draw_eye(0.5 * drawn.eye_base_m);
+  const core::RgbImage right = take_image(drawn.right);
+  drawn.image = core::combine_stereo(left, right, *core::parse_stereo(arguments.layout));
+  return drawn;
 }
 
 }  // namespace vpe::app

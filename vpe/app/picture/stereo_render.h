@@ -1,4 +1,4 @@
-// A picture for two eyes.
+// An image for two eyes.
 #pragma once
 
 #include <functional>
@@ -25,17 +25,17 @@ void add_stereo_options(CLI::App& command, StereoArguments& arguments);
 // Wrong combinations; throws UsageError.
 void check_stereo(const StereoArguments& arguments);
 
-struct StereoPicture {
+struct StereoImage {
   core::RgbImage image;
   double eye_base_m = 0;
   core::DrawResult left;  // without the pixels
   core::DrawResult right;
 };
 
-// Draws the request from both eyes, each a request of its own; `draw` makes a finished picture of one, overlays
+// Draws the request from both eyes, each a request of its own; `draw` makes a finished image of one, overlays
 // included. Without a base it draws the range from the middle first. Throws std::runtime_error when that shows
 // sky alone.
-StereoPicture draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
+StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
                           const std::function<core::DrawResult(const core::DrawRequest&)>& draw);
 
 }  // namespace vpe::app

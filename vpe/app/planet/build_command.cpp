@@ -52,7 +52,7 @@ void build(BuildArguments& arguments, const Common& common) {
   paging::BuildOptions& options = arguments.options;
   for (const std::string& text : arguments.regions) options.regions.push_back(parse_region(text));
   options.threads = common.threads;
-  options.part = parse_part(arguments.part);
+  options.part = parse_shard(arguments.part);
   options.output = part_file_name(options.output, options.part);
   std::vector<std::string> inputs = arguments.dems;
   inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());

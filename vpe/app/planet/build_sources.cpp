@@ -87,7 +87,7 @@ std::string number(double value, const char* format = "%.4g") {
 }
 
 // Where the ground of an inset rises against its base: size in metres a kilometre, and towards where.
-std::string tilt_words(const mars::Level& level) {
+std::string tilt_words(const mars::VerticalAlignment& level) {
   const double tilt = std::hypot(level.tilt_east, level.tilt_north);
   double azimuth = std::atan2(level.tilt_east, level.tilt_north) / mars::kRadiansPerDegree;
   if (azimuth < 0) azimuth += 360;
@@ -125,7 +125,7 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
           "Width over which insets fade into what lies below, metres (default: 16 of their posts, at least 2 "
           "of what lies below)")
       ->check(number_within(0.001, 1e7));
-  command.add_flag("--mask-blunders", a.mask_blunders,
+  command.add_flag("--mask-blunders", a.reject_outliers,
                    "Drop posts that what lies below shows to be impossible");
   command
       .add_option("--blunder", a.blunder_m,
@@ -153,12 +153,12 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
     if (!areoid[0]->infos().front().datum.is_known()) name_datums(arguments, areoid);
     combine.areoid = areoid[0];
   }
-  using Level = mars::CombineOptions::Level;
-  combine.level = arguments.level == "fit"    ? Level::kFit
-                  : arguments.level == "bend" ? Level::kBend
-                                              : Level::kNone;
-  combine.mask_blunders = arguments.mask_blunders;
-  combine.blunders.floor_m = arguments.blunder_m;
+  using VerticalAlignment = mars::CombineOptions::VerticalAlignment;
+  combine.level = arguments.level == "fit"    ? VerticalAlignment::kPlane
+                  : arguments.level == "bend" ? VerticalAlignment::kEdges
+                                              : VerticalAlignment::kNone;
+  combine.reject_outliers = arguments.reject_outliers;
+  combine.outliers.floor_m = arguments.blunder_m;
   combine.stack.feather_m = arguments.feather_m;
   mars::Combined combined = mars::combine_elevation(std::move(sources), combine);
   options.true_radii = combined.true_radii;
@@ -166,7 +166,7 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
 }
 
 void say_findings(const mars::Combined& combined) {
-  for (const std::string& note : combined.notes) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
+  for (const std::string& checkpoint : combined.notes) std::fprintf(stderr, "vpe: note: %s\n", checkpoint.c_str());
   for (const mars::CombineFinding& f : combined.findings) {
     if (f.level) {
       std::fprintf(
@@ -181,12 +181,12 @@ void say_findings(const mars::Combined& combined) {
       std::fprintf(stderr, "vpe: what lies below %s is bent to meet it, by %s m RMS at its rim, over %s km\n",
                    f.name.c_str(), number(f.bend->rms_m).c_str(), number(1e-3 * f.bend->reach_m).c_str());
     }
-    if (f.blunders && f.blunders->implausible > 0) {
+    if (f.outliers && f.outliers->implausible > 0) {
       std::fprintf(
           stderr, "vpe: %s: %.2g %% of its posts cannot be right, by up to %s m at %s,%s; %s\n", f.name.c_str(),
-          100.0 * static_cast<double>(f.blunders->implausible) / static_cast<double>(f.blunders->posts),
-          number(f.blunders->worst_m).c_str(), base::format_number(f.blunders->worst_at.lon_deg).c_str(),
-          base::format_number(f.blunders->worst_at.lat_deg).c_str(),
+          100.0 * static_cast<double>(f.outliers->implausible) / static_cast<double>(f.outliers->posts),
+          number(f.outliers->worst_m).c_str(), base::format_number(f.outliers->worst_at.lon_deg).c_str(),
+          base::format_number(f.outliers->worst_at.lat_deg).c_str(),
           f.masked ? "dropped" : "--mask-blunders drops them");
     }
   }
@@ -210,12 +210,12 @@ nlohmann::json findings_json(const mars::Combined& combined) {
                        {"reach_m", f.bend->reach_m},
                        {"rim_posts", f.bend->posts}};
     }
-    if (f.blunders) {
-      entry["implausible"] = {{"posts_compared", f.blunders->posts},
-                              {"posts", f.blunders->implausible},
-                              {"worst_m", f.blunders->worst_m},
-                              {"worst_lon_deg", f.blunders->worst_at.lon_deg},
-                              {"worst_lat_deg", f.blunders->worst_at.lat_deg},
+    if (f.outliers) {
+      entry["implausible"] = {{"posts_compared", f.outliers->posts},
+                              {"posts", f.outliers->implausible},
+                              {"worst_m", f.outliers->worst_m},
+                              {"worst_lon_deg", f.outliers->worst_at.lon_deg},
+                              {"worst_lat_deg", f.outliers->worst_at.lat_deg},
                               {"dropped", f.masked}};
     }
     list.push_back(std::move(entry));

@@ -19,8 +19,8 @@ struct SourceArguments {
   std::string shape = "sphere";
   std::string level = "none";
   double feather_m = 0;
-  bool mask_blunders = false;
-  double blunder_m = mars::BlunderOptions().floor_m;
+  bool reject_outliers = false;
+  double blunder_m = mars::OutlierOptions().floor_m;
   std::string body;     // empty = as the sources
   double radius_m = 0;  // 0 = as the body
 };

@@ -76,7 +76,7 @@ void print_levels(const paging::PlanetMeta& meta) {
     std::printf("%-6d %9.4g %9lld %9lld %10.1f %12lld", l.level + 1,
                 lod::post_spacing_m(l.level, meta.tile.intervals(), meta.radius_m),
                 static_cast<long long>(l.tiles), static_cast<long long>(l.leaf_tiles),
-                1e-6 * static_cast<double>(l.bytes), static_cast<long long>(l.holes));
+                1e-6 * static_cast<double>(l.bytes), static_cast<long long>(l.nodata_posts));
     if (l.resampling.posts > 0) {
       std::printf(" %11.3g %11.3g\n", l.resampling.rms_m, l.resampling.max_m);
     } else {
@@ -162,7 +162,7 @@ void report_build(const paging::BuildSummary& summary, const std::string& output
                   const mars::Combined* combined) {
   const paging::PlanetMeta& meta = summary.meta;
   std::int64_t holes = 0;
-  for (const paging::LevelSummary& level : meta.levels) holes += level.holes;
+  for (const paging::LevelSummary& level : meta.levels) holes += level.nodata_posts;
   if (common.json) {
     nlohmann::json json = planet_json(meta);
     json["path"] = output;

@@ -36,7 +36,7 @@ constexpr std::array kSources{
     Source{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, Source{"PMI_RANK", "PMI_SIZE"},
     Source{"SLURM_PROCID", "SLURM_NTASKS"}};
 
-Part part_from(const Source& source, std::int64_t rank, const Environment& environment) {
+Shard part_from(const Source& source, std::int64_t rank, const Environment& environment) {
   const auto size = number_in(environment, source.size);
   if (!size) {
     throw UsageError(std::string("--part auto: ") + source.rank + " is set, but " + source.size +
@@ -59,7 +59,7 @@ Part part_from(const Source& source, std::int64_t rank, const Environment& envir
   return {offset / step + 1, *size};
 }
 
-Part part_from(const Environment& environment) {
+Shard part_from(const Environment& environment) {
   std::string names;
   for (const Source& source : kSources) {
     if (const auto rank = number_in(environment, source.rank)) return part_from(source, *rank, environment);
@@ -71,7 +71,7 @@ Part part_from(const Environment& environment) {
 
 }  // namespace
 
-Part parse_part(const std::string& text, const Environment& environment) {
+Shard parse_shard(const std::string& text, const Environment& environment) {
   if (text.empty()) return {};
   if (text == "auto") return part_from(environment);
   const std::size_t slash = text.find('/');
@@ -87,8 +87,8 @@ Part parse_part(const std::string& text, const Environment& environment) {
   return {*number, *of};
 }
 
-Part parse_part(const std::string& text) {
-  return parse_part(text, base::process_environment());
+Shard parse_shard(const std::string& text) {
+  return parse_shard(text, base::process_environment());
 }
 
 }  // namespace vpe::app

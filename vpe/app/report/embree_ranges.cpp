@@ -30,22 +30,22 @@ std::unique_ptr<core::Renderer> make_embree_renderer(std::shared_ptr<const pagin
 namespace {
 
 // Finest tiles that are not hidden by the ball of the lowest ground.
-std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const glm::dvec3& eye_m) {
+std::vector<lod::TileKey> tiles_in_sight(const paging::PlanetFile& planet, const glm::dvec3& camera_m) {
   const double low_m = planet.meta().lowest_radius_m;
   const auto dip_rad = [&](double radius_m) { return std::acos(std::min(1.0, low_m / radius_m)); };
-  const double reach_rad = dip_rad(glm::length(eye_m)) + dip_rad(planet.meta().highest_radius_m);
+  const double reach_rad = dip_rad(glm::length(camera_m)) + dip_rad(planet.meta().highest_radius_m);
   std::vector<lod::TileKey> keys;
   for (const lod::TileInfo& tile : planet.tree().tiles()) {
     if (tile.has_children) continue;
     const mars::Cap cap = lod::bounding_cap(tile.key);
-    if (mars::angle_between_rad(cap.centre, eye_m) <= reach_rad + cap.radius_rad) keys.push_back(tile.key);
+    if (mars::angle_between_rad(cap.centre, camera_m) <= reach_rad + cap.radius_rad) keys.push_back(tile.key);
   }
   return keys;
 }
 
 class Scene {
  public:
-  Scene(const paging::PlanetFile& planet, const glm::dvec3& eye_m, int threads) {
+  Scene(const paging::PlanetFile& planet, const glm::dvec3& camera_m, int threads) {
     const std::string config = "threads=" + std::to_string(std::max(0, threads));
     device_ = rtcNewDevice(config.c_str());
     if (device_ == nullptr) throw std::runtime_error("Embree: cannot make a device: " + config);
@@ -58,9 +58,9 @@ class Scene {
         this);
     scene_ = rtcNewScene(device_);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-    const std::vector<lod::TileKey> tiles = tiles_in_sight(planet, eye_m);
-    core::parallel_for(tiles.size(), threads,
-                       [&](std::size_t k) { add(planet, tiles[k], static_cast<unsigned>(k), eye_m); });
+    const std::vector<lod::TileKey> tiles = tiles_in_sight(planet, camera_m);
+    base::parallel_for(tiles.size(), threads,
+                       [&](std::size_t k) { add(planet, tiles[k], static_cast<unsigned>(k), camera_m); });
     rtcCommitScene(scene_);
     check("building its scene");
   }
@@ -80,7 +80,7 @@ class Scene {
       throw std::runtime_error(std::string("Embree: ") + what + ": error " + std::to_string(error));
   }
 
-  void add(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id, const glm::dvec3& eye_m) {
+  void add(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id, const glm::dvec3& camera_m) {
     const lod::Posts posts = planet.heights(key).posts;
     const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
     const auto side = static_cast<std::size_t>(posts.side());
@@ -95,7 +95,7 @@ class Scene {
       for (std::size_t i = side; i-- > 0;) {
         const glm::dvec3 p = mars::cube_point(key.face, lines.u[i], lines.v[j]);
         const double radius_m = planet.radius_m() + posts.height_m[j * side + i];
-        const glm::dvec3 at = p * (radius_m / mars::cube_length(p)) - eye_m;
+        const glm::dvec3 at = p * (radius_m / mars::cube_length(p)) - camera_m;
         for (const double x : {at.x, at.y, at.z}) *vertex++ = static_cast<float>(x);
       }
     }
@@ -120,10 +120,10 @@ class EmbreeRenderer : public core::Renderer {
     const core::View& view = request.view;
     if (view.projection != core::Projection::kPerspective || view.part.width != 0)
       throw std::runtime_error("Embree draws whole perspective pictures only");
-    if (!scene_ || view.eye.eye_m != eye_m_) {
+    if (!scene_ || view.camera.position_m != camera_m_) {
       scene_.reset();
-      eye_m_ = view.eye.eye_m;
-      scene_.emplace(*planet_, eye_m_, threads_);
+      camera_m_ = view.camera.position_m;
+      scene_.emplace(*planet_, camera_m_, threads_);
     }
     core::DrawResult result;
     core::Frame& frame = result.frame;
@@ -156,7 +156,7 @@ class EmbreeRenderer : public core::Renderer {
       for (int n = 0; n < 16; ++n) {
         const double across = (x0 + n % kBlock + 0.5 - centre.x) / focal;
         const double up = (centre.y - (y0 + n / kBlock + 0.5)) / focal;
-        const glm::dvec3 d = across * view.eye.axes.right + up * view.eye.axes.up + view.eye.axes.forward;
+        const glm::dvec3 d = across * view.camera.axes.right + up * view.camera.axes.up + view.camera.axes.forward;
         packet.ray.dir_x[n] = static_cast<float>(d.x);
         packet.ray.dir_y[n] = static_cast<float>(d.y);
         packet.ray.dir_z[n] = static_cast<float>(d.z);
@@ -180,7 +180,7 @@ class EmbreeRenderer : public core::Renderer {
   int threads_;
   base::ThreadPool pool_;
   std::optional<Scene> scene_;
-  glm::dvec3 eye_m_{0, 0, 0};
+  glm::dvec3 camera_m_{0, 0, 0};
 };
 
 }  // namespace

@@ -43,15 +43,15 @@ core::View feature_view(const std::string& pose, const std::string& size,
   const double ground_m = paging::Surface(planet, std::size_t{8} << 20).at(mars::direction(place)).height_m;
   const Size pixels = parse_size(size);
   core::View view;
-  view.eye =
-      mars::to_eye({place.lon_deg, place.lat_deg, ground_m + (*numbers)[2], (*numbers)[3], (*numbers)[4], 0},
+  view.camera =
+      mars::to_camera({place.lon_deg, place.lat_deg, ground_m + (*numbers)[2], (*numbers)[3], (*numbers)[4], 0},
                    planet->radius_m());
   view.width = pixels.width;
   view.height = pixels.height;
   return view;
 }
 
-void run_probe(const ProbeOrder& order) {
+void run_probe(const ProbeRequest& order) {
   const FeatureScene* scene = find_scene(order.scene);
   if (scene == nullptr) throw UsageError("there is no scene '" + order.scene + "'");
   Common common;
@@ -59,7 +59,7 @@ void run_probe(const ProbeOrder& order) {
   common.threads = order.threads;
   common.quiet = true;
   const auto planet = open_planet(order.planet, common);
-  PictureOptions options;
+  RenderOptions options;
   options.backend = order.backend;
   const std::unique_ptr<core::Renderer> renderer = make_renderer(options, common, planet);
   const core::DrawRequest request = scene_request(*scene, feature_view(order.pose, order.size, planet));
@@ -83,9 +83,9 @@ void run_probe(const ProbeOrder& order) {
               {"resident_mb", static_cast<double>(stats.bytes_resident) * 1e-6}});
 }
 
-report::SceneCost probe(const ProbeOrder& order) {
+report::SceneCost probe(const ProbeRequest& order) {
   const double begin_s = report::wall_clock()();
-  Child child({order.program,
+  Subprocess child({order.program,
                "report",
                "features",
                "--probe",
@@ -108,7 +108,7 @@ report::SceneCost probe(const ProbeOrder& order) {
                order.planet});
   if (!child.finish()) {
     throw std::runtime_error(order.program + " could not draw the scene '" + order.scene +
-                             "': " + child.said());
+                             "': " + child.stderr_text());
   }
   const nlohmann::json json = nlohmann::json::parse(child.output(), nullptr, false);
   if (!json.is_object() || !json.contains("finished_s")) {

@@ -9,7 +9,7 @@
 
 namespace vpe::app {
 
-struct ProbeOrder {
+struct ProbeRequest {
   std::string program;  // to run; its version may differ
   std::string scene;
   std::string backend;
@@ -27,10 +27,10 @@ core::View feature_view(const std::string& pose, const std::string& size,
                         const std::shared_ptr<const paging::PlanetFile>& planet);
 
 // Draws the scene in this process and prints {"finished_s", "peak_mb", "frame_s", "processor_s",
-// "resident_mb"}: finished_s is when the first picture was finished, on the clock that all processes share.
-void run_probe(const ProbeOrder& order);
+// "resident_mb"}: finished_s is when the first image was finished, on the clock that all processes share.
+void run_probe(const ProbeRequest& order);
 
 // The same in a child process. Throws std::runtime_error with what the child said.
-report::SceneCost probe(const ProbeOrder& order);
+report::SceneCost probe(const ProbeRequest& order);
 
 }  // namespace vpe::app

@@ -55,7 +55,7 @@ void measure_processes(const FeaturePlan& plan, std::vector<FeatureRow>& rows,
   std::vector<std::vector<report::SceneCost>> never(rows.size());
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   // One that does not count, so that program and planet lie in the system's memory.
-  ProbeOrder first = plan.order;
+  ProbeRequest first = plan.order;
   first.scene = "bare";
   first.program = self;
   static_cast<void>(probe(first));
@@ -65,7 +65,7 @@ void measure_processes(const FeaturePlan& plan, std::vector<FeatureRow>& rows,
   }
   for (int round = 0; round < plan.starts; ++round) {
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      ProbeOrder order = plan.order;
+      ProbeRequest order = plan.order;
       order.scene = rows[k].scene->name;
       order.backend = rows[k].backend;
       order.program = self;
@@ -90,17 +90,17 @@ void measure_frames(const FeaturePlan& plan, std::vector<FeatureRow>& rows, cons
                     const std::shared_ptr<const paging::PlanetFile>& planet) {
   const std::size_t bytes = std::size_t{static_cast<std::size_t>(plan.order.memory_mb)} << 20;
   const core::View view = feature_view(plan.order.pose, plan.order.size, planet);
-  struct Contestant {
+  struct BenchmarkCase {
     FeatureRow* row;
     std::unique_ptr<core::Renderer> renderer;
     std::unique_ptr<ScenePainter> painter;
     core::DrawRequest request;
     std::vector<double> rest_share;
   };
-  std::vector<Contestant> contestants;
+  std::vector<BenchmarkCase> cases;
   for (FeatureRow& row : rows) {
     if (row.backend != backend) continue;
-    Contestant& c = contestants.emplace_back();
+    BenchmarkCase& c = cases.emplace_back();
     c.row = &row;
     if (backend == kRayBackend) {
       c.renderer = voxel::make_ray_renderer(planet, {bytes, plan.order.threads});
@@ -111,9 +111,9 @@ void measure_frames(const FeaturePlan& plan, std::vector<FeatureRow>& rows, cons
     c.request = scene_request(*row.scene, view);
   }
   const report::Clock clock = report::wall_clock();
-  std::vector<std::function<void()>> turns;
-  for (Contestant& c : contestants) {
-    turns.emplace_back([&c, &clock] {
+  std::vector<std::function<void()>> interleaved;
+  for (BenchmarkCase& c : cases) {
+    interleaved.emplace_back([&c, &clock] {
       const double begin_s = clock();
       const core::FrameStats stats = c.painter->paint(*c.renderer, c.request);
       const double all_s = clock() - begin_s;
@@ -121,10 +121,10 @@ void measure_frames(const FeaturePlan& plan, std::vector<FeatureRow>& rows, cons
       c.rest_share.push_back(all_s / stages_s);
     });
   }
-  const std::vector<report::Timing> timings = report::time_in_turns(turns, plan.rounds);
-  for (std::size_t k = 0; k < contestants.size(); ++k) {
-    contestants[k].row->turns = timings[k];
-    contestants[k].row->rest_ratio = report::median(contestants[k].rest_share);
+  const std::vector<report::Timing> timings = report::time_interleaved(interleaved, plan.rounds);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    cases[k].row->interleaved = timings[k];
+    cases[k].row->rest_ratio = report::median(cases[k].rest_share);
   }
 }
 
@@ -139,7 +139,7 @@ std::vector<report::FeatureCost> feature_costs(const std::vector<FeatureRow>& ro
     cost.compared = row.scene->compared;
     cost.off = without.cost;
     cost.on = row.cost;
-    cost.frame_ratio = report::ratio(row.turns, without.turns);
+    cost.frame_ratio = report::ratio(row.interleaved, without.interleaved);
     cost.note = note_on(cost.feature, has_other);
     if (cost.feature == "overlays" && has_other) {
       cost.never = without.never;

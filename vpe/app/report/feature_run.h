@@ -15,7 +15,7 @@
 namespace vpe::app {
 
 struct FeaturePlan {
-  ProbeOrder order;     // but for program, scene and backend
+  ProbeRequest order;     // but for program, scene and backend
   std::string against;  // another program; empty: none
   int rounds = 9;       // of frames
   int starts = 3;       // of each process
@@ -29,8 +29,8 @@ struct FeatureRow {
   report::SceneCost never;          // of the other's, where it is asked
   std::vector<double> processor_s;  // of a frame, a process each
   std::vector<double> never_processor_s;
-  report::Timing turns;
-  std::optional<double> rest_ratio;  // picture to the same without what no stage of it counts
+  report::Timing interleaved;
+  std::optional<double> rest_ratio;  // image to the same without what no stage of it counts
 };
 
 // The rows that this program can draw of a planet, with nothing measured.

@@ -50,14 +50,14 @@ bool is_built_in(const FeatureScene& scene) {
 }
 
 core::DrawRequest scene_request(const FeatureScene& scene, const core::View& view) {
-  PictureOptions options;
+  RenderOptions options;
   options.set = kBare;
   options.set.insert(options.set.end(), scene.set.begin(), scene.set.end());
   core::DrawRequest request;
   request.settings = make_settings(options).values();
   request.view = view;
   request.want_range = scene.range;
-  request.sun = mars::sun_direction(mars::lon_lat(view.eye.eye_m), request.settings.sun_azimuth_deg,
+  request.sun = mars::sun_direction(mars::lon_lat(view.camera.position_m), request.settings.sun_azimuth_deg,
                                     request.settings.sun_elevation_deg);
   return request;
 }

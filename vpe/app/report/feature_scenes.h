@@ -26,7 +26,7 @@ struct FeatureScene {
 };
 
 // The bare one first: one colour, no light, no imagery, black sky, hard edges, no culling by occlusion, one
-// eye.
+// camera.
 std::span<const FeatureScene> feature_scenes();
 
 // Nothing for a name that there is not.
@@ -45,7 +45,7 @@ class ScenePainter {
   ScenePainter(const FeatureScene& scene, std::shared_ptr<const paging::PlanetFile> planet,
                const std::string& statistics_file);
 
-  // The finished picture's statistics; of two eyes the left one's.
+  // The finished image's statistics; of two eyes the left one's.
   core::FrameStats paint(core::Renderer& renderer, const core::DrawRequest& request);
 
  private:

@@ -21,7 +21,7 @@ void append(report::Page& all, report::Page part) {
   }
 }
 
-void report_all(const ReportOrder& order, const Common& common) {
+void report_all(const ReportRequest& order, const Common& common) {
   check_report_folder(order.folder);
   report::Page page;
   page.title = "Error, growth and cost";
@@ -36,7 +36,7 @@ void report_all(const ReportOrder& order, const Common& common) {
 }  // namespace
 
 void add_report_all(CLI::App& report, Common& common) {
-  auto arguments = std::make_shared<ReportOrder>();
+  auto arguments = std::make_shared<ReportRequest>();
   CLI::App* command =
       add_command(report, "all", "error-time, scaling and features with their defaults, and one page of all",
                   common, false);

@@ -64,7 +64,7 @@ class Renderers {
 
   std::unique_ptr<core::Renderer> make(const std::string& name, double share) const {
     const auto bytes = static_cast<std::size_t>(share * static_cast<double>(memory_bytes(common_)));
-    if (name == kRayPictures) return voxel::make_ray_renderer(planet_, {bytes, common_.threads});
+    if (name == kRayImages) return voxel::make_ray_renderer(planet_, {bytes, common_.threads});
     if (name == kEmbreeRanges) return make_embree_renderer(planet_, common_.threads);
     gl::RendererOptions options;
     options.memory_bytes = bytes;
@@ -118,8 +118,8 @@ void warn_of_false_statements(const std::vector<report::SubjectResult>& results)
       const report::Measured& m = result.measured[k];
       if (m.within_stated()) continue;
       std::fprintf(stderr, "vpe: warning: %s, %s, %s: a shift of %s px, but the certificate states %s px\n",
-                   result.subject.view.c_str(), result.subject.ways[k].sweep.c_str(),
-                   result.subject.ways[k].knob.c_str(), base::format_number(m.shift.forward.max_px).c_str(),
+                   result.subject.view.c_str(), result.subject.configurations[k].sweep.c_str(),
+                   result.subject.configurations[k].knob.c_str(), base::format_number(m.shift.forward.max_px).c_str(),
                    base::format_number(*m.stated_px).c_str());
     }
   }
@@ -165,13 +165,13 @@ report::Page error_time(const ErrorTimeArguments& arguments, const Common& commo
         InterruptGuard::check();
         progress.show(what, (static_cast<double>(k) + fraction) / static_cast<double>(views.size()));
       };
-      WayOptions ways;
-      ways.width = size.width;
-      ways.height = size.height;
-      ways.is_short = arguments.is_short;
-      ways.has_gpu = gl::has_gpu();
-      ways.with_embree = arguments.baseline == kEmbreeBaseline;
-      report.results.push_back(report::measure(subject_of(views[k], *planet, ways), options));
+      ConfigurationOptions configurations;
+      configurations.width = size.width;
+      configurations.height = size.height;
+      configurations.is_short = arguments.is_short;
+      configurations.has_gpu = gl::has_gpu();
+      configurations.with_embree = arguments.baseline == kEmbreeBaseline;
+      report.results.push_back(report::measure(subject_of(views[k], *planet, configurations), options));
     }
     InterruptGuard::check();
   }
@@ -189,7 +189,7 @@ report::Page error_time(const ErrorTimeArguments& arguments, const Common& commo
 
 }  // namespace
 
-report::Page error_time_report(const ReportOrder& order, const Common& common) {
+report::Page error_time_report(const ReportRequest& order, const Common& common) {
   ErrorTimeArguments arguments;
   arguments.output = order.folder.string();
   arguments.planet = order.planet;

@@ -14,7 +14,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// Kinds of pictures that show the same; names of plots.
+// Kinds of images that show the same; names of plots.
 constexpr const char* kGeometry = "geometry";
 constexpr const char* kTexture = "textures and levels";
 constexpr const char* kSamples = "samples";
@@ -39,9 +39,9 @@ std::string join(const Words& words) {
 
 class Planner {
  public:
-  Planner(const NamedView& view, const paging::PlanetFile& planet, const WayOptions& options)
+  Planner(const NamedView& view, const paging::PlanetFile& planet, const ConfigurationOptions& options)
       : view_(view), planet_(planet), options_(options) {
-    base_.view.eye = mars::to_eye(view.pose, planet.radius_m());
+    base_.view.camera = mars::to_camera(view.pose, planet.radius_m());
     base_.view.width = options.width;
     base_.view.height = options.height;
     subject_.view = view.name;
@@ -61,25 +61,25 @@ class Planner {
   }
 
  private:
-  report::Way& add(const std::string& sweep, const std::string& knob, const char* renderer,
+  report::Configuration& add(const std::string& sweep, const std::string& knob, const char* renderer,
                    std::vector<core::DrawRequest> requests) {
-    report::Way way;
-    way.sweep = sweep;
-    way.knob = knob;
-    way.renderer = renderer;
-    way.requests = std::move(requests);
-    if (renderer != std::string(kRayPictures)) way.range_error = gl::kRangeError;
-    subject_.ways.push_back(std::move(way));
-    return subject_.ways.back();
+    report::Configuration configuration;
+    configuration.sweep = sweep;
+    configuration.knob = knob;
+    configuration.renderer = renderer;
+    configuration.requests = std::move(requests);
+    if (renderer != std::string(kRayImages)) configuration.range_error = gl::kRangeError;
+    subject_.configurations.push_back(std::move(configuration));
+    return subject_.configurations.back();
   }
 
-  // A picture of the view itself, by these settings.
-  report::Way& add_picture(const std::string& sweep, const char* renderer, const Words& settings,
+  // An image of the view itself, by these settings.
+  report::Configuration& add_image(const std::string& sweep, const char* renderer, const Words& settings,
                            const std::string& knob = "") {
-    report::Way& way =
+    report::Configuration& configuration =
         add(sweep, knob.empty() ? join(settings) : knob, renderer, {with(base_, settings, view_.pose)});
-    way.rivals = way.plot = kGeometry;
-    return way;
+    configuration.comparison_group = configuration.plot = kGeometry;
+    return configuration;
   }
 
   std::vector<double> values(double first, double last, double step_short) const {
@@ -89,32 +89,32 @@ class Planner {
   }
 
   void add_reference() {
-    subject_.references.push_back({base_.view, kRayPictures, {with(base_, {}, view_.pose)}, {}, true});
+    subject_.references.push_back({base_.view, kRayImages, {with(base_, {}, view_.pose)}, {}, true});
   }
 
   void add_rays() {
-    add_picture("rays, exact", kRayPictures, {}, "rays.mode=exact").is_default = true;
-    if (!options_.is_short) add_picture("rays, plain", kRayPictures, {"rays.mode=plain"}).most_rounds = 1;
+    add_image("rays, exact", kRayImages, {}, "rays.mode=exact").is_default = true;
+    if (!options_.is_short) add_image("rays, plain", kRayImages, {"rays.mode=plain"}).most_rounds = 1;
     for (const double cell : values(core::RayLimits::kMostCell_px, core::RayLimits::kLeastCell_px, 8)) {
-      report::Way& way = add_picture("rays by cell", kRayPictures,
+      report::Configuration& configuration = add_image("rays by cell", kRayImages,
                                      {"rays.mode=multires", "rays.cell=" + base::format_number(cell)},
                                      "rays.cell=" + base::format_number(cell));
-      way.is_chosen = chosen_ == kRayBackend && cell == core::SettingsValues().lod_tolerance_px;
+      configuration.is_chosen = chosen_ == kRayBackend && cell == core::SettingsValues().lod_tolerance_px;
     }
   }
 
   void add_tolerances() {
     for (const double tolerance : values(64, 0.0625, 8)) {
-      report::Way& way = add_picture("triangles by tolerance", kTriangles,
+      report::Configuration& configuration = add_image("triangles by tolerance", kTriangles,
                                      {"lod.tolerance=" + base::format_number(tolerance)});
-      way.colour_plot = kTexture;
-      way.is_default = tolerance == core::SettingsValues().lod_tolerance_px;
-      way.is_chosen = way.is_default && chosen_ == kPolygonBackend;
+      configuration.colour_plot = kTexture;
+      configuration.is_default = tolerance == core::SettingsValues().lod_tolerance_px;
+      configuration.is_chosen = configuration.is_default && chosen_ == kPolygonBackend;
     }
   }
 
   // Levels by distance as in 1992: a level fewer for each doubling, so that triangles are about as large in all
-  // of the picture; at the finest level they are a pixel.
+  // of the image; at the finest level they are a pixel.
   void add_levels() {
     const int finest = planet_.meta().finest_level + 1;
     const double spacing_m =
@@ -130,17 +130,17 @@ class Planner {
         }
         Words settings{"lod.rule=hitchner", "lod.distance.table=" + table};
         if (!textured) settings.insert(settings.end(), {"mode=coloured", "colour=image", "shading=flat"});
-        report::Way& way = add_picture(
+        report::Configuration& configuration = add_image(
             textured ? "textured, by level" : "untextured, by level", textured ? kTriangles : kPlainTriangles,
             settings,
             "level " + std::to_string(level) + " within " + base::format_number(std::round(pixel_m)) + " m");
-        way.colour_plot = kTexture;
-        if (!textured) way.plot = way.rivals = "";
+        configuration.colour_plot = kTexture;
+        if (!textured) configuration.plot = configuration.comparison_group = "";
       }
     }
   }
 
-  // Smaller pictures, as the reference has a thousand samples a pixel.
+  // Smaller images, as the reference has a thousand samples a pixel.
   void add_samples() {
     core::DrawRequest small = base_;
     small.view.width = options_.width / 2;
@@ -149,16 +149,16 @@ class Planner {
     const core::DrawRequest hard = with(small, {"edges=hard"}, view_.pose);
     const int many = options_.is_short ? 16 : 32;
     subject_.references.push_back(
-        {small.view, kRayPictures, enlarged(hard, many), average(small.view, many), false});
-    const auto describe = [&](report::Way& way) {
-      way.kind = report::ErrorKind::kColour;
-      way.plot = way.rivals = kSamples;
-      way.reference = reference;
-      way.has_ranges = false;
+        {small.view, kRayImages, enlarged(hard, many), average(small.view, many), false});
+    const auto describe = [&](report::Configuration& configuration) {
+      configuration.kind = report::ErrorKind::kColour;
+      configuration.plot = configuration.comparison_group = kSamples;
+      configuration.reference = reference;
+      configuration.has_ranges = false;
     };
     const std::string tolerance = base::format_number(core::SettingsValues().lod_tolerance_px);
-    for (const char* renderer : {kRayPictures, kTriangles}) {
-      const bool is_rays = renderer == std::string(kRayPictures);
+    for (const char* renderer : {kRayImages, kTriangles}) {
+      const bool is_rays = renderer == std::string(kRayImages);
       // As they are drawn when nothing is named.
       const auto settings = [&](const std::string& one) {
         return is_rays ? Words{"rays.mode=multires", "rays.cell=" + tolerance, one} : Words{one};
@@ -167,22 +167,22 @@ class Planner {
       const std::string sweep = std::string(renderer) + " by resolution";
       const int step = options_.is_short ? 4 : 2;
       for (int times = options_.is_short ? 16 : 32; times > 1; times /= step) {
-        report::Way& way = add(sweep, "1/" + std::to_string(times), renderer, {reduced(plain, times)});
-        way.compose = stretch(small.view, times);
-        describe(way);
+        report::Configuration& configuration = add(sweep, "1/" + std::to_string(times), renderer, {reduced(plain, times)});
+        configuration.compose = off_axis_magnification(small.view, times);
+        describe(configuration);
       }
       for (int times = 1; times <= many / 2; times *= step) {
-        report::Way& way = add(sweep, std::to_string(times), renderer, enlarged(plain, times));
-        way.compose = average(small.view, times);
-        describe(way);
+        report::Configuration& configuration = add(sweep, std::to_string(times), renderer, enlarged(plain, times));
+        configuration.compose = average(small.view, times);
+        describe(configuration);
       }
       // Three values are no sweep.
       for (const int samples : {1, 2, 4}) {
         const std::string setting = "samples=" + std::to_string(samples);
-        report::Way& way = add(std::string(renderer) + ", " + setting, setting, renderer,
+        report::Configuration& configuration = add(std::string(renderer) + ", " + setting, setting, renderer,
                                {with(small, settings(setting), view_.pose)});
-        describe(way);
-        way.is_chosen = samples == 1 && is_rays == (chosen_ == kRayBackend);
+        describe(configuration);
+        configuration.is_chosen = samples == 1 && is_rays == (chosen_ == kRayBackend);
       }
     }
   }
@@ -193,7 +193,7 @@ class Planner {
     const panorama::PanoramaMap exact = cylinder_of(500);
     const std::size_t reference = subject_.references.size();
     subject_.references.push_back({panorama::round_view(exact, {view_.pose, planet_.radius_m()}),
-                                   kRayPictures,
+                                   kRayImages,
                                    requests_of(exact, standing),
                                    {},
                                    true});
@@ -205,25 +205,25 @@ class Planner {
       const std::string sweep = many == 0 ? "cylinder by columns" : std::to_string(many) + " facets by columns";
       for (const std::int64_t width : widths) {
         const panorama::PanoramaMap map = many == 0 ? cylinder_of(width) : facets_of(many, width);
-        report::Way& way =
-            add(sweep, std::to_string(width) + " columns", kRayPictures, requests_of(map, standing));
-        way.compose = resample(map, exact);
-        way.plot = way.rivals = kPanorama;
-        way.reference = reference;
+        report::Configuration& configuration =
+            add(sweep, std::to_string(width) + " columns", kRayImages, requests_of(map, standing));
+        configuration.compose = resample(map, exact);
+        configuration.plot = configuration.comparison_group = kPanorama;
+        configuration.reference = reference;
       }
     }
   }
 
   void add_embree() {
-    report::Way& way = add_picture("Embree, ranges alone", kEmbreeRanges, {}, "exact");
-    way.rivals = "";
-    way.has_colours = false;
-    subject_.baseline = subject_.ways.size() - 1;
+    report::Configuration& configuration = add_image("Embree, ranges alone", kEmbreeRanges, {}, "exact");
+    configuration.comparison_group = "";
+    configuration.has_colours = false;
+    subject_.baseline = subject_.configurations.size() - 1;
   }
 
   const NamedView& view_;
   const paging::PlanetFile& planet_;
-  WayOptions options_;
+  ConfigurationOptions options_;
   core::DrawRequest base_;
   std::string chosen_;  // backend, when none is named
   report::Subject subject_;
@@ -231,7 +231,7 @@ class Planner {
 
 }  // namespace
 
-report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet, const WayOptions& options) {
+report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet, const ConfigurationOptions& options) {
   return Planner(view, planet, options).plan();
 }
 

@@ -19,9 +19,9 @@ panorama::PanoramaMap plan(std::int64_t columns, int facets) {
   options.kind = facets > 0 ? panorama::MapKind::kFacets : panorama::MapKind::kCylinder;
   options.width_px = columns;
   if (facets > 0) options.facets = facets;
-  const double stretch = facets > 0 ? std::cos(mars::kPi / facets) : 1.0;
+  const double off_axis_magnification = facets > 0 ? std::cos(mars::kPi / facets) : 1.0;
   const auto stretched = [&](double elevation_deg) {
-    return std::atan(std::tan(elevation_deg * mars::kRadiansPerDegree) / stretch) / mars::kRadiansPerDegree;
+    return std::atan(std::tan(elevation_deg * mars::kRadiansPerDegree) / off_axis_magnification) / mars::kRadiansPerDegree;
   };
   options.lowest_deg = stretched(kLowest_deg);
   options.highest_deg = stretched(kHighest_deg);
@@ -29,10 +29,10 @@ panorama::PanoramaMap plan(std::int64_t columns, int facets) {
 }
 
 std::vector<panorama::Piece> pieces_of(const panorama::PanoramaMap& map,
-                                       const panorama::Standpoint& standpoint) {
+                                       const panorama::PoseOnSphere& stand) {
   std::vector<panorama::Piece> all;
   for (const panorama::Strip& strip : panorama::strips_of(map)) {
-    const std::vector<panorama::Piece> pieces = panorama::pieces_of(map, standpoint, strip, 0);
+    const std::vector<panorama::Piece> pieces = panorama::pieces_of(map, stand, strip, 0);
     all.insert(all.end(), pieces.begin(), pieces.end());
   }
   return all;
@@ -121,11 +121,11 @@ core::DrawRequest reduced(const core::DrawRequest& request, int times) {
   return small;
 }
 
-report::Compose stretch(const core::View& view, int times) {
+report::Compose off_axis_magnification(const core::View& view, int times) {
   return [size = glm::ivec2(view.width, view.height), times](std::vector<core::Frame> frames) {
     const core::Frame& small = frames.at(0);
     core::Frame large = blank(size);
-    // Both pictures' middles are one place.
+    // Both images' middles are one place.
     const auto place = [times](int k, int large_side, int small_side) {
       return std::clamp(0.5 * (small_side - 1) + (k + 0.5 - 0.5 * large_side) / times, 0.0, small_side - 1.0);
     };

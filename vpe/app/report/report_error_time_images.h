@@ -1,4 +1,4 @@
-// Pictures that are put together from others: larger ones averaged, smaller ones stretched, facets and cylinders
+// Images that are put together from others: larger ones averaged, smaller ones stretched, facets and cylinders
 // looked up.
 #pragma once
 
@@ -16,8 +16,8 @@ report::Compose average(const core::View& view, int times);
 
 // The same view with `times` fewer columns and rows, or with a few pixels more on each side where they do not divide.
 core::DrawRequest reduced(const core::DrawRequest& request, int times);
-// That picture drawn as large as the view, between its pixels linearly; without ranges.
-report::Compose stretch(const core::View& view, int times);
+// That image drawn as large as the view, between its pixels linearly; without ranges.
+report::Compose off_axis_magnification(const core::View& view, int times);
 
 // A whole turn from 25 degrees below the horizon to 15 above it.
 panorama::PanoramaMap cylinder_of(std::int64_t columns);
@@ -31,7 +31,7 @@ struct Standing {
 };
 // What draws a map: its pieces from left to right.
 std::vector<core::DrawRequest> requests_of(const panorama::PanoramaMap& map, const Standing& standing);
-// A picture of `onto` whose pixels are those of `map` that show their directions: the nearest ones, with their
+// An image of `onto` whose pixels are those of `map` that show their directions: the nearest ones, with their
 // ranges. A map that is `onto` itself is taken as it is.
 report::Compose resample(const panorama::PanoramaMap& map, const panorama::PanoramaMap& onto);
 

@@ -31,12 +31,12 @@ constexpr Place kEmbedded[] = {
     {"polar", "1500 km above the north pole", 0, 89.9995, 1.5e6, 40, -80, false},
 };
 
-struct Ground {
+struct TerrainQuery {
   mars::LonLat place;
   double height_m = 0;
 };
 
-Ground ground_at(const paging::Surface& surface, const mars::ChartRect& rect, double u, double v) {
+TerrainQuery ground_at(const paging::Surface& surface, const mars::ChartRect& rect, double u, double v) {
   const glm::dvec3 direction =
       mars::chart_direction(rect.face, std::lerp(rect.u0, rect.u1, u), std::lerp(rect.v0, rect.v1, v));
   return {mars::lon_lat(direction), surface.at(direction).height_m};
@@ -44,7 +44,7 @@ Ground ground_at(const paging::Surface& surface, const mars::ChartRect& rect, do
 
 // A finest tile of the deepest level, and what stands out on it.
 struct Landmarks {
-  Ground lowest, highest, middle;
+  TerrainQuery lowest, highest, middle;
 };
 
 Landmarks landmarks(const paging::Surface& surface, const lod::TileKey& key) {
@@ -54,7 +54,7 @@ Landmarks landmarks(const paging::Surface& surface, const lod::TileKey& key) {
   found.lowest = found.highest = found.middle = ground_at(surface, rect, 0.5, 0.5);
   for (int j = 1; j < kSteps; ++j) {
     for (int i = 1; i < kSteps; ++i) {
-      const Ground ground =
+      const TerrainQuery ground =
           ground_at(surface, rect, static_cast<double>(i) / kSteps, static_cast<double>(j) / kSteps);
       if (ground.height_m < found.lowest.height_m) found.lowest = ground;
       if (ground.height_m > found.highest.height_m) found.highest = ground;
@@ -70,15 +70,15 @@ lod::TileKey deepest_tile(const paging::Surface& surface, bool roughest) {
     if (tile.key.level == surface.planet().meta().finest_level) tiles.push_back(tile);
   }
   std::stable_sort(tiles.begin(), tiles.end(), [&](const lod::TileInfo& a, const lod::TileInfo& b) {
-    const double relief_a = a.max_height_m - a.min_height_m;
-    const double relief_b = b.max_height_m - b.min_height_m;
-    return roughest ? relief_a > relief_b : relief_a < relief_b;
+    const double height_error_a = a.max_height_m - a.min_height_m;
+    const double height_error_b = b.max_height_m - b.min_height_m;
+    return roughest ? height_error_a > height_error_b : height_error_a < height_error_b;
   });
   for (const lod::TileInfo& tile : tiles) {
     const mars::ChartRect rect = lod::chart_rect(tile.key);
     const glm::dvec3 middle =
         mars::chart_direction(rect.face, std::midpoint(rect.u0, rect.u1), std::midpoint(rect.v0, rect.v1));
-    if (!surface.at(middle).missing) return tile.key;
+    if (!surface.at(middle).nodata) return tile.key;
   }
   return tiles.front().key;
 }
@@ -102,9 +102,9 @@ std::vector<NamedView> views_of(const paging::Surface& surface) {
   const double tile_m = spacing_m * meta.tile.intervals();
   const Landmarks rough = landmarks(surface, deepest_tile(surface, true));
   const Landmarks smooth = landmarks(surface, deepest_tile(surface, false));
-  const Ground pole{{0, 89.9995}, surface.at(mars::direction({0, 89.9995})).height_m};
+  const TerrainQuery pole{{0, 89.9995}, surface.at(mars::direction({0, 89.9995})).height_m};
   std::vector<NamedView> views;
-  const auto add = [&](const char* name, const Ground& from, double height_m, double yaw_deg, double pitch_deg,
+  const auto add = [&](const char* name, const TerrainQuery& from, double height_m, double yaw_deg, double pitch_deg,
                        bool panorama) {
     const auto rounded = [](double value, double unit) {
       return base::format_number(std::round(value / unit) * unit);

@@ -44,7 +44,7 @@ class Scratch {
 };
 
 report::Page report_features(FeatureArguments& arguments, const Common& common) {
-  ProbeOrder& order = arguments.plan.order;
+  ProbeRequest& order = arguments.plan.order;
   order.memory_mb = common.memory_mb;
   order.threads = common.threads;
   if (arguments.folder.empty()) throw UsageError("-o FOLDER is missing: where the report shall be written");
@@ -106,7 +106,7 @@ report::Page report_features(FeatureArguments& arguments, const Common& common) 
 
 // A process that another report has started measures itself.
 void report_or_probe(FeatureArguments& arguments, const Common& common) {
-  ProbeOrder& order = arguments.plan.order;
+  ProbeRequest& order = arguments.plan.order;
   if (order.scene.empty()) {
     report_features(arguments, common);
     return;
@@ -118,7 +118,7 @@ void report_or_probe(FeatureArguments& arguments, const Common& common) {
 
 }  // namespace
 
-report::Page features_report(const ReportOrder& order, const Common& common) {
+report::Page features_report(const ReportRequest& order, const Common& common) {
   FeatureArguments arguments;
   arguments.folder = order.folder.string();
   arguments.plan.order.planet = order.planet;
@@ -128,7 +128,7 @@ report::Page features_report(const ReportOrder& order, const Common& common) {
 
 void add_report_features(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<FeatureArguments>();
-  ProbeOrder& order = arguments->plan.order;
+  ProbeRequest& order = arguments->plan.order;
   CLI::App* command = add_command(report, "features",
                                   "What imagery, light, shadows, overlays and the like cost: on, off, and in a "
                                   "program built without them",

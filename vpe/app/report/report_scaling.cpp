@@ -49,25 +49,25 @@ constexpr double kBuildShare = 0.6;
 
 class Steps {
  public:
-  Steps(bool quiet, double pictures) : line_(quiet), pictures_(pictures) {}
+  Steps(bool quiet, double images) : line_(quiet), images_(images) {}
 
   void building(double fraction) {
     InterruptGuard::check();
     line_.show("building planets", kBuildShare * fraction);
   }
-  void picture(const char* what) {
+  void image(const char* what) {
     InterruptGuard::check();
     drawn_ += 1;
-    line_.show(what, std::min(1.0, kBuildShare + (1 - kBuildShare) * drawn_ / pictures_));
+    line_.show(what, std::min(1.0, kBuildShare + (1 - kBuildShare) * drawn_ / images_));
   }
 
  private:
   ProgressLine line_;
-  double pictures_;
+  double images_;
   double drawn_ = 0;
 };
 
-double count_pictures(const ScalingPlan& plan) {
+double count_images(const ScalingPlan& plan) {
   const auto count = [](const auto& list) { return static_cast<double>(list.size()); };
   return (plan.rounds + 1) * (3 * count(plan.grid_sides) + 6 * count(plan.depth_sides) + 3 * count(plan.sizes) +
                               2 * count(plan.threads)) +
@@ -127,7 +127,7 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
   const InterruptGuard guard;
   const std::shared_ptr<gl::Context> context = gl::Context::create();
   facts.opengl = context->info().renderer + ", " + context->info().version;
-  Steps steps(common.quiet, count_pictures(plan));
+  Steps steps(common.quiet, count_images(plan));
 
   ScalingPlanets planets(temporary_name(folder / "planets"), common.threads);
   std::vector<PatchSpec> specs;
@@ -137,7 +137,7 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
 
   std::vector<report::Law> laws = planets.laws();
   const char* what = "";
-  const ScalingBench bench{plan, planets, context, [&] { steps.picture(what); }};
+  const ScalingBench bench{plan, planets, context, [&] { steps.image(what); }};
   const auto measure = [&](const char* name, std::vector<report::Law> (*measured)(const ScalingBench&)) {
     what = name;
     for (report::Law& law : measured(bench)) laws.push_back(std::move(law));
@@ -172,7 +172,7 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
 
 }  // namespace
 
-report::Page scaling_report(const ReportOrder& order, const Common& common) {
+report::Page scaling_report(const ReportRequest& order, const Common& common) {
   ScalingArguments arguments;
   arguments.folder = order.folder.string();
   arguments.brief = order.is_short;

@@ -53,7 +53,7 @@ class Course {
     const mars::LonLat place = mars::lon_lat(mars::slerp(from_, to_, folded));
     const mars::LonLat end = mars::lon_lat(mars::slerp(from_, to_, 1.1));
     core::View view;
-    view.eye = mars::to_eye(
+    view.camera = mars::to_camera(
         {place.lon_deg, place.lat_deg, kAltitude_m, mars::initial_bearing_deg(place, end), -15, 0}, radius_m_);
     view.width = size_.width;
     view.height = size_.height;
@@ -69,9 +69,9 @@ class Course {
 };
 
 Flown fly(const ScalingBench& bench, const PatchSpec& spec, const Course& course, double speed_m_s) {
-  const std::unique_ptr<core::Renderer> renderer = make_way(bench, kPolygons, spec);
+  const std::unique_ptr<core::Renderer> renderer = make_configuration(bench, kPolygons, spec);
   // The sun stands still, as over a film's start: another one is another look of every tile.
-  const core::DrawRequest first = way_request(kPolygons, course.at(0));
+  const core::DrawRequest first = configuration_request(kPolygons, course.at(0));
   lod::FrameBudgetOptions budget;
   budget.budget_ms = kFlightBudget_ms;
   lod::FrameBudgetState state;

@@ -60,17 +60,17 @@ void ScalingPlanets::build(const std::vector<PatchSpec>& specs, int rounds,
     PatchSpec spec;
     int round;
   };
-  std::vector<Turn> turns;
+  std::vector<Turn> interleaved;
   double all = 0;
   for (int round = 0; round < rounds; ++round) {
     for (const PatchSpec& spec : specs) {
       if (built_.contains(name(spec)) || (round > 0 && posts_about(spec) > kFewPosts)) continue;
-      turns.push_back({spec, round});
+      interleaved.push_back({spec, round});
       all += posts_about(spec);
     }
   }
   double done = 0;
-  for (const auto& [spec, round] : turns) {
+  for (const auto& [spec, round] : interleaved) {
     const double part = posts_about(spec);
     const fs::path file = folder_ / ("patch-" + std::to_string(spec.patch.level) + "-" +
                                      std::to_string(spec.side_posts()) + ".vpe");

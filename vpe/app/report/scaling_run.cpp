@@ -21,10 +21,10 @@ std::vector<int> doublings_to(int most) {
   return all;
 }
 
-// Pictures of one way, one for each x.
-class Pictures {
+// Images of one way, one for each x.
+class Images {
  public:
-  explicit Pictures(const ScalingBench& bench) : bench_(bench) {}
+  explicit Images(const ScalingBench& bench) : bench_(bench) {}
 
   void add(double x, std::unique_ptr<core::Renderer> renderer, const core::DrawRequest& request) {
     shots_.push_back({x, std::move(renderer), request, {}, {}});
@@ -33,11 +33,11 @@ class Pictures {
   // Times of frames, processor times of frames under the same law, and what was counted in each frame.
   std::vector<report::Law> measure(report::Law time, report::Law count,
                                    const std::function<double(const core::DrawResult&)>& counted) {
-    std::vector<std::function<void()>> contestants;
+    std::vector<std::function<void()>> cases;
     std::vector<double> x;
     for (Shot& shot : shots_) {
       x.push_back(shot.x);
-      contestants.emplace_back([this, &shot, &counted] {
+      cases.emplace_back([this, &shot, &counted] {
         bench_.step();
         const double begin_s = processor_s();
         shot.count = counted(shot.renderer->draw(shot.request));
@@ -46,7 +46,7 @@ class Pictures {
     }
     report::Law processor = time;
     processor.y_name = "processor_s";
-    time.samples = report::timed_samples(x, report::time_in_turns(contestants, bench_.plan.rounds));
+    time.samples = report::timed_samples(x, report::time_interleaved(cases, bench_.plan.rounds));
     for (Shot& shot : shots_) {
       shot.processor_s.erase(shot.processor_s.begin());  // the round that does not count
       processor.samples.push_back({shot.x, shot.processor_s});
@@ -71,17 +71,17 @@ double triangles(const core::DrawResult& result) { return static_cast<double>(re
 double rays(const core::DrawResult& result) { return static_cast<double>(result.frame.colour.size()); }
 double tiles(const core::DrawResult& result) { return static_cast<double>(result.stats.tiles_drawn); }
 
-std::vector<report::Law> measure_way(Pictures& pictures, const Way& way, const std::string& axis,
+std::vector<report::Law> measure_configuration(Images& images, const Configuration& configuration, const std::string& axis,
                                      const std::string& what, const std::string& x_name,
                                      std::optional<double> least, std::optional<double> most) {
   const report::Law time{axis, what, x_name, "frame_s", least, most, {}};
   report::Law count = time;
   count.least_exponent.reset();
   count.most_exponent.reset();
-  // Only of larger pictures are there more rays.
-  const bool counts_rays = !way.polygons && axis == "image";
-  count.y_name = way.polygons ? "triangles" : counts_rays ? "rays" : "tiles";
-  return pictures.measure(time, count, way.polygons ? triangles : counts_rays ? rays : tiles);
+  // Only of larger images are there more rays.
+  const bool counts_rays = !configuration.polygons && axis == "image";
+  count.y_name = configuration.polygons ? "triangles" : counts_rays ? "rays" : "tiles";
+  return images.measure(time, count, configuration.polygons ? triangles : counts_rays ? rays : tiles);
 }
 
 void append(std::vector<report::Law>& laws, std::vector<report::Law> more) {
@@ -123,21 +123,21 @@ ScalingPlan short_scaling() {
   return plan;
 }
 
-std::unique_ptr<core::Renderer> make_way(const ScalingBench& bench, const Way& way, const PatchSpec& spec,
+std::unique_ptr<core::Renderer> make_configuration(const ScalingBench& bench, const Configuration& configuration, const PatchSpec& spec,
                                          int threads) {
   const auto planet = bench.planets.planet(spec);
-  if (!way.polygons) return voxel::make_ray_renderer(planet, {bench.plan.memory_bytes, threads});
+  if (!configuration.polygons) return voxel::make_ray_renderer(planet, {bench.plan.memory_bytes, threads});
   gl::RendererOptions options;
   options.memory_bytes = bench.plan.memory_bytes;
   options.threads = threads;
   return gl::make_polygon_renderer(bench.context, planet, options);
 }
 
-core::DrawRequest way_request(const Way& way, const core::View& view) {
+core::DrawRequest configuration_request(const Configuration& configuration, const core::View& view) {
   core::DrawRequest request;
   request.view = view;
-  request.settings.ray_mode = way.rays;
-  request.sun = mars::sun_direction(mars::lon_lat(view.eye.eye_m), request.settings.sun_azimuth_deg,
+  request.settings.ray_mode = configuration.rays;
+  request.sun = mars::sun_direction(mars::lon_lat(view.camera.position_m), request.settings.sun_azimuth_deg,
                                     request.settings.sun_elevation_deg);
   return request;
 }
@@ -151,8 +151,8 @@ core::View look_at(std::shared_ptr<const paging::PlanetFile> planet, const Patch
   const double ground_m = paging::Surface(std::move(planet), std::size_t{8} << 20).at(middle).height_m;
   const mars::LonLat place = mars::lon_lat(middle);
   core::View view;
-  view.eye =
-      mars::to_eye({place.lon_deg, place.lat_deg, ground_m + look.height_m, 22.5, look.pitch_deg, 0}, radius_m);
+  view.camera =
+      mars::to_camera({place.lon_deg, place.lat_deg, ground_m + look.height_m, 22.5, look.pitch_deg, 0}, radius_m);
   view.width = size.width;
   view.height = size.height;
   return view;
@@ -160,14 +160,14 @@ core::View look_at(std::shared_ptr<const paging::PlanetFile> planet, const Patch
 
 std::vector<report::Law> measure_grid(const ScalingBench& bench) {
   std::vector<report::Law> laws;
-  for (const Way& way : {kPolygons, kExactRays, kMultiresRays}) {
-    Pictures pictures(bench);
+  for (const Configuration& configuration : {kPolygons, kExactRays, kMultiresRays}) {
+    Images images(bench);
     for (const int side : bench.plan.grid_sides) {
       const PatchSpec spec = grid_patch(side);
       const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.size);
-      pictures.add(side, make_way(bench, way, spec), way_request(way, view));
+      images.add(side, make_configuration(bench, configuration, spec), configuration_request(configuration, view));
     }
-    append(laws, measure_way(pictures, way, "grid", way.name, "posts a side, all 10 m apart", {}, {}));
+    append(laws, measure_configuration(images, configuration, "grid", configuration.name, "posts a side, all 10 m apart", {}, {}));
   }
   return laws;
 }
@@ -178,12 +178,12 @@ std::vector<report::Law> measure_depth(const ScalingBench& bench) {
   const PatchSpec deepest = depth_patch(bench.plan.depth_sides.back());
   for (const Look& look : {kNear, kFar}) {
     const core::View view = look_at(bench.planets.planet(deepest), deepest, look, bench.plan.size);
-    for (const Way& way : {kPolygons, kMultiresRays, kExactRays}) {
-      Pictures pictures(bench);
+    for (const Configuration& configuration : {kPolygons, kMultiresRays, kExactRays}) {
+      Images images(bench);
       for (const int side : bench.plan.depth_sides)
-        pictures.add(side, make_way(bench, way, depth_patch(side)), way_request(way, view));
-      const bool asked = way.polygons || way.rays == core::RayMode::kMultires;
-      append(laws, measure_way(pictures, way, "depth", way.name + " " + look.name,
+        images.add(side, make_configuration(bench, configuration, depth_patch(side)), configuration_request(configuration, view));
+      const bool asked = configuration.polygons || configuration.rays == core::RayMode::kMultires;
+      append(laws, measure_configuration(images, configuration, "depth", configuration.name + " " + look.name,
                                "posts a side, all of one patch of 42 km", {},
                                asked ? std::optional(kMostGrowth) : std::nullopt));
     }
@@ -194,14 +194,14 @@ std::vector<report::Law> measure_depth(const ScalingBench& bench) {
 std::vector<report::Law> measure_image(const ScalingBench& bench) {
   std::vector<report::Law> laws;
   const PatchSpec spec = depth_patch(bench.plan.depth_sides.back());
-  for (const Way& way : {kPolygons, kExactRays, kMultiresRays}) {
-    Pictures pictures(bench);
+  for (const Configuration& configuration : {kPolygons, kExactRays, kMultiresRays}) {
+    Images images(bench);
     for (const Size& size : bench.plan.sizes) {
       const core::View view = look_at(bench.planets.planet(spec), spec, kNear, size);
-      pictures.add(static_cast<double>(size.width) * size.height, make_way(bench, way, spec),
-                   way_request(way, view));
+      images.add(static_cast<double>(size.width) * size.height, make_configuration(bench, configuration, spec),
+                   configuration_request(configuration, view));
     }
-    append(laws, measure_way(pictures, way, "image", way.name, "pixels", {}, {}));
+    append(laws, measure_configuration(images, configuration, "image", configuration.name, "pixels", {}, {}));
   }
   return laws;
 }
@@ -213,11 +213,11 @@ std::vector<report::Law> measure_threads(const ScalingBench& bench) {
   std::vector<report::Law> laws;
   const PatchSpec spec = depth_patch(bench.plan.depth_sides.back());
   const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.thread_size);
-  for (const Way& way : {kExactRays, kMultiresRays}) {
-    Pictures pictures(bench);
+  for (const Configuration& configuration : {kExactRays, kMultiresRays}) {
+    Images images(bench);
     for (const int threads : bench.plan.threads)
-      pictures.add(threads, make_way(bench, way, spec, threads), way_request(way, view));
-    for (report::Law& law : measure_way(pictures, way, "threads", way.name, "threads", least, most)) {
+      images.add(threads, make_configuration(bench, configuration, spec, threads), configuration_request(configuration, view));
+    for (report::Law& law : measure_configuration(images, configuration, "threads", configuration.name, "threads", least, most)) {
       // All threads together are asked for no less.
       if (law.y_name == "processor_s") law.least_exponent = law.most_exponent = {};
       laws.push_back(std::move(law));

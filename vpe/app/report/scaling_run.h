@@ -15,7 +15,7 @@ namespace vpe::app {
 
 struct ScalingPlan {
   std::vector<int> grid_sides;   // posts a side, 2^n + 1
-  std::vector<int> depth_sides;  // the same; the last one is the planet of pictures, threads and flights
+  std::vector<int> depth_sides;  // the same; the last one is the planet of images, threads and flights
   std::vector<Size> sizes;
   std::vector<int> threads;
   std::vector<double> speeds_m_s;
@@ -37,7 +37,7 @@ struct ScalingBench {
   const ScalingPlan& plan;
   const ScalingPlanets& planets;
   std::shared_ptr<gl::Context> context;
-  std::function<void()> step;  // called before every picture that is measured; may throw
+  std::function<void()> step;  // called before every image that is measured; may throw
 };
 
 std::vector<report::Law> measure_grid(const ScalingBench& bench);
@@ -49,26 +49,26 @@ struct FlightFigures {
   report::Table table;
   std::vector<report::Law> laws;
 };
-// Straight over the ground, as a window would: the eye is where the clock says, nothing waits for tiles, the
+// Straight over the ground, as a window would: the camera is where the clock says, nothing waits for tiles, the
 // controller holds kFlightBudget_ms by drawing coarser.
 inline constexpr double kFlightBudget_ms = 33;
 FlightFigures measure_flights(const ScalingBench& bench);
 
-// How a picture is drawn.
-struct Way {
+// How an image is drawn.
+struct Configuration {
   std::string name;
   bool polygons = false;
   core::RayMode rays = core::RayMode::kExact;
 };
-inline const Way kPolygons{"polygons", true, core::RayMode::kExact};
-inline const Way kExactRays{"rays, exact", false, core::RayMode::kExact};
-inline const Way kMultiresRays{"rays, multires", false, core::RayMode::kMultires};
+inline const Configuration kPolygons{"polygons", true, core::RayMode::kExact};
+inline const Configuration kExactRays{"rays, exact", false, core::RayMode::kExact};
+inline const Configuration kMultiresRays{"rays, multires", false, core::RayMode::kMultires};
 
-std::unique_ptr<core::Renderer> make_way(const ScalingBench& bench, const Way& way, const PatchSpec& spec,
+std::unique_ptr<core::Renderer> make_configuration(const ScalingBench& bench, const Configuration& configuration, const PatchSpec& spec,
                                          int threads = 0);
-core::DrawRequest way_request(const Way& way, const core::View& view);
+core::DrawRequest configuration_request(const Configuration& configuration, const core::View& view);
 
-// An eye over the middle of a patch, so high over the ground there, looking down by so much.
+// A camera over the middle of a patch, so high over the ground there, looking down by so much.
 struct Look {
   std::string name;
   double height_m = 0;

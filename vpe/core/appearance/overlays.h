@@ -1,4 +1,4 @@
-// What is drawn over a picture of ground to read it by (vpe/overlay).
+// What is drawn over an image of ground to read it by (vpe/overlay).
 #pragma once
 
 #include <string>
@@ -20,22 +20,22 @@ enum class CompassStrip {
   kOff,
   kBottom,   // along the lower edge
   kTop,      // along the upper edge
-  kHorizon,  // along elevation 0; along the lower edge where the picture does not show it
+  kHorizon,  // along elevation 0; along the lower edge where the image does not show it
 };
 
 struct Overlays {
   bool legend = false;
   bool graticule = false;
-  double graticule_deg = 0;  // between lines; 0 = as suits the picture
+  double graticule_deg = 0;  // between lines; 0 = as suits the image
   bool contours = false;
-  double contour_m = 0;  // between lines; 0 = as suits the picture
+  double contour_m = 0;  // between lines; 0 = as suits the image
   bool scale_bar = false;
   bool north_arrow = false;
   bool time_code = false;
   CompassStrip compass = CompassStrip::kOff;
   std::string title;
   std::string names;       // gazetteer, a CSV file (vpe/core/appearance/gazetteer.h)
-  bool distances = false;  // from the eye, beside names
+  bool distances = false;  // from the camera, beside names
 
   bool operator==(const Overlays&) const = default;
 };

@@ -150,7 +150,7 @@ const std::vector<Key>& keys() {
        "rays.mode)"},
       {"lod.triangles", Integer{&V::lod_triangles, 0, 1'000'000'000}, "",
        "hard cap on the triangles of a frame, above the tolerance; 0 = none"},
-      {"lod.rule", choice<&V::lod_rule>({word("error", LodRule::kError), word("hitchner", LodRule::kHitchner)}),
+      {"lod.rule", choice<&V::lod_metric>({word("error", LodMetric::kError), word("hitchner", LodMetric::kDistance)}),
        "",
        "what decides how fine a tile is: its projected error, or the three control functions of 1992 alone"},
       {"lod.distance.scale", Number{&V::lod_distance_scale_m, 0, 1e12}, "m",

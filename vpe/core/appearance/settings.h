@@ -1,4 +1,4 @@
-// The settings registry: everything about how a picture is drawn that `--set KEY=VALUE`, a flight's `set` and
+// The settings registry: everything about how an image is drawn that `--set KEY=VALUE`, a flight's `set` and
 // `vpe settings` can name. Each key is declared once (settings.cpp) with its type, range, default, unit and
 // meaning; the drawing code reads the plain struct SettingsValues.
 #pragma once
@@ -16,12 +16,12 @@
 namespace vpe::core {
 
 // What decides how fine a tile is drawn (lod/control.h).
-enum class LodRule {
+enum class LodMetric {
   kError,     // its projected error, in pixels
-  kHitchner,  // its distance and place in the picture alone, as in 1992
+  kDistance,  // its distance and place in the image alone, as in 1992
 };
 
-// What is shown of how the picture is made.
+// What is shown of how the image is made.
 enum class Inspect {
   kNone,
   kBorders,  // lines along the borders of tiles
@@ -46,7 +46,7 @@ struct RayLimits {
 struct SettingsValues : Appearance, Overlays {
   double lod_tolerance_px = 1;
   int lod_triangles = 0;
-  LodRule lod_rule = LodRule::kError;
+  LodMetric lod_metric = LodMetric::kError;
   double lod_distance_scale_m = 1e6;
   double lod_distance_offset = 3;
   double lod_distance_weight = 1;

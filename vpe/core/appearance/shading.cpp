@@ -10,10 +10,10 @@ double light(double ambient, double diffuse, double incidence) {
   return std::sqrt(ambient + diffuse * std::max(0.0, incidence));
 }
 
-double air_m(double planet_radius_m, double eye_height_m, double up_sine, double distance_m) {
-  const double r = planet_radius_m + eye_height_m;
+double air_m(double planet_radius_m, double camera_height_m, double up_sine, double distance_m) {
+  const double r = planet_radius_m + camera_height_m;
   const auto height = [&](double t) {
-    const double rise = eye_height_m * (2 * planet_radius_m + eye_height_m) + t * (2 * r * up_sine + t);
+    const double rise = camera_height_m * (2 * planet_radius_m + camera_height_m) + t * (2 * r * up_sine + t);
     return rise / (std::sqrt(planet_radius_m * planet_radius_m + rise) + planet_radius_m);
   };
   // Where the ray is below the top of the air.

@@ -32,14 +32,14 @@ inline constexpr std::array<double, 3> kAirPoints{0.033765242898423987, 0.169395
 inline constexpr std::array<double, 3> kAirWeights{0.0856622461895851725, 0.1803807865240693038,
                                                    0.2339569672863455237};
 
-// How long a way through air as dense as at the sphere dims as much as the way from an eye to a point: the
+// How long a way through air as dense as at the sphere dims as much as the way from a camera to a point: the
 // integral of exp(-height / kAirScale_m) over the part of it below kAirTop_m. up_sine: of the direction over
-// the eye's horizontal. Relative error at most kAirError (and a micrometre) from eyes between -8 km and ten
+// the camera's horizontal. Relative error at most kAirError (and a micrometre) from eyes between -8 km and ten
 // radii, to any point above -8 km; over a limb (the way falls and rises again) kAirLimbError, with which no
 // colour is 1/255 off.
 inline constexpr double kAirError = 1e-5;
 inline constexpr double kAirLimbError = 0.01;
-double air_m(double planet_radius_m, double eye_height_m, double up_sine, double distance_m);
+double air_m(double planet_radius_m, double camera_height_m, double up_sine, double distance_m);
 
 // What is left of a colour's contrast behind so much air: 2 % at the visibility (exp(-kKoschmieder air / V)); 1
 // for visibility 0, clear air.

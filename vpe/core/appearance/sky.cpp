@@ -14,13 +14,13 @@ double limb_mass(double planet_radius_m) {
   return std::sqrt(std::numbers::pi * planet_radius_m / (2.0 * kSkyAir.scale_height_m));
 }
 
-glm::dvec3 sky_colour(const glm::dvec3& eye_m, const glm::dvec3& ray, const glm::dvec3& sun,
+glm::dvec3 sky_colour(const glm::dvec3& camera_m, const glm::dvec3& ray, const glm::dvec3& sun,
                       double planet_radius_m) {
   constexpr const SkyAir& kAir = kSkyAir;
-  const double eye_radius = glm::length(eye_m);
-  const glm::dvec3 up = eye_m / eye_radius;
+  const double camera_radius = glm::length(camera_m);
+  const glm::dvec3 up = camera_m / camera_radius;
   const double slope = glm::dot(ray, up);
-  const double height = std::max(eye_radius - planet_radius_m, 0.0);
+  const double height = std::max(camera_radius - planet_radius_m, 0.0);
   const double r = planet_radius_m + height;
   // Height of the lowest point of the ray ahead; written without the difference of two radii.
   double lowest = height;

@@ -1,4 +1,4 @@
-// Smooths the stair steps of a picture with one sample a pixel, where one surface ends before another.
+// Smooths the stair steps of an image with one sample a pixel, where one surface ends before another.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 namespace vpe::core {
 
 // colour, inverse_depth: width * height, top row first. inverse_depth is proportional to 1 / distance along the
-// view axis, 0 = sky: linear over the picture on every plane, at any slant, so its second difference is an edge
+// view axis, 0 = sky: linear over the image on every plane, at any slant, so its second difference is an edge
 // of the geometry and never of a texture. Where it is more than kEdgeBend of the value itself the colour is
 // averaged along the edge, found from the gradient of brightness; all other pixels keep their colour. Does not
 // depend on the number of threads. Throws std::invalid_argument when sizes do not fit.

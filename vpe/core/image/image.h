@@ -1,4 +1,4 @@
-// Pictures as files and as bytes: PNG and JPEG for colour, TIFF for range.
+// Images as files and as bytes: PNG and JPEG for colour, TIFF for range.
 //
 // Row 0 is the top; rows follow each other without gaps. Every writer is atomic (file.h). Functions
 // throw FileError (files) or ImageError (bytes in memory): what failed, the library's own words, what to do.
@@ -18,7 +18,7 @@
 namespace vpe::core {
 
 inline constexpr int kMaxImageSide_px = 32768;
-// Largest picture that a reader accepts unless told otherwise: a small file must not claim all memory.
+// Largest image that a reader accepts unless told otherwise: a small file must not claim all memory.
 inline constexpr std::int64_t kMaxReadPixels = std::int64_t{1} << 28;
 
 class ImageError : public std::runtime_error {
@@ -47,7 +47,7 @@ enum class TiffCompression : std::uint8_t { kNone, kLzw, kDeflate };
 
 struct ImageOptions {
   int jpeg_quality = 90;  // 1 to 100; chroma is halved below 90
-  // 1 to 9. On rendered pictures 3 takes 1.6 times as long as 1 for files a twentieth smaller, 6 takes 3.3 times
+  // 1 to 9. On rendered images 3 takes 1.6 times as long as 1 for files a twentieth smaller, 6 takes 3.3 times
   // as long for an eighth smaller.
   int png_compression = 1;
   TiffCompression tiff = TiffCompression::kDeflate;
@@ -69,7 +69,7 @@ void write_tiff(const std::filesystem::path& path, std::span<const float> values
                 const ImageOptions& options = {});
 
 // PNG or JPEG by content. An alpha channel is dropped, 16 bits become 8. A damaged file is an error, never a
-// half picture.
+// half image.
 RgbImage read_image(const std::filesystem::path& path, std::int64_t max_pixels = kMaxReadPixels);
 
 // One float32 band, stored in rows, as write_tiff() makes.

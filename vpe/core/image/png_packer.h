@@ -1,6 +1,6 @@
-// PNG files of pictures that fit into memory a second time, made in half the time that libpng takes.
+// PNG files of images that fit into memory a second time, made in half the time that libpng takes.
 //
-// libdeflate packs a picture in one piece. Where it was not there when the program was built, libpng does all
+// libdeflate packs an image in one piece. Where it was not there when the program was built, libpng does all
 // (image_codecs.cpp); the pixels are the same, the files are not.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace vpe::core {
 
-// Whether pack_png() is there for a picture of so many bytes.
+// Whether pack_png() is there for an image of so many bytes.
 bool can_pack_png(std::size_t pixel_bytes);
 
 // channels: 3 = RGB, 4 = RGBA, 8 bits each, sRGB; rows from the top. compression: 1 to 9. Throws ImageError

@@ -13,7 +13,7 @@ namespace vpe::core {
 // Used by one thread at a time. May be moved.
 class TiffHandle {
  public:
-  // What a description of the file may make the library allocate at once. A picture of 100 000 x 20 000 in
+  // What a description of the file may make the library allocate at once. An image of 100 000 x 20 000 in
   // tiles of 16 x 16 has tables of 60 MB.
   static constexpr tmsize_t kMaxTableBytes = tmsize_t{1} << 28;
   static constexpr tmsize_t kNoLimit = 0;

@@ -1,7 +1,7 @@
 // Named spots in the world that have a panorama.
 //
 // One spot a line, words split by blanks, `#` starts a comment; a word with blanks or # stands in double
-// quotes, where a backslash keeps the next character as it is. Degrees; the height of the eye above the ground,
+// quotes, where a backslash keeps the next character as it is. Degrees; the height of the camera above the ground,
 // metres; a path that is not absolute is relative to the file's folder.
 //
 //   spot "Glen Torridon" 137.39 -4.72 2 panoramas/torridon.json
@@ -21,79 +21,79 @@
 
 namespace vpe::explore {
 
-struct Spot {
+struct Hotspot {
   std::string name;  // of at least one character, of one line; no two are the same
   mars::LonLat place;
   double height_m = 0;
-  std::filesystem::path panorama;  // a picture or the JSON that names one (panorama::describe)
+  std::filesystem::path panorama;  // an image or the JSON that names one (panorama::describe)
 };
 
 // Either spots (perhaps none) and no errors, or what is wrong (the first kMaxErrors). Whether panoramas are
 // there is not looked at.
-struct ParsedSpots {
+struct ParsedHotspots {
   static constexpr std::size_t kMaxErrors = 20;
-  std::vector<Spot> spots;
+  std::vector<Hotspot> hotspots;
   std::vector<LineError> errors;
 };
 
 // `file` names the file in errors and gives the folder that paths are relative to.
-ParsedSpots parse_spots(std::string_view text, const std::filesystem::path& file);
+ParsedHotspots parse_hotspots(std::string_view text, const std::filesystem::path& file);
 
 // Throws base::FileError when the file cannot be read.
-ParsedSpots load_spots(const std::filesystem::path& file);
+ParsedHotspots load_hotspots(const std::filesystem::path& file);
 
-// The spot's line, with its newline: parse_spots() reads the same back.
-std::string to_line(const Spot& spot);
+// The spot's line, with its newline: parse_hotspots() reads the same back.
+std::string to_line(const Hotspot& hotspot);
 
 // Where their eyes are, body-fixed, metres from the planet's centre, over the ground as it is drawn; not a
 // number where the terrain is not known.
-std::vector<glm::dvec3> spot_eyes(std::span<const Spot> spots, double radius_m,
+std::vector<glm::dvec3> hotspot_eyes(std::span<const Hotspot> hotspots, double radius_m,
                                   const scripts::TerrainHeight& terrain_height_m, double exaggeration = 1.0);
 
-struct NearSpot {
+struct NearHotspot {
   std::size_t index = 0;
   double distance_m = 0;
 };
 
 // Nothing when none is within the distance, both ends included. The first of equal ones.
-std::optional<NearSpot> nearest_spot(std::span<const glm::dvec3> eyes_m, const glm::dvec3& eye_m,
+std::optional<NearHotspot> nearest_hotspot(std::span<const glm::dvec3> eyes_m, const glm::dvec3& camera_m,
                                      double within_m);
 
-enum class SpotStage {
+enum class HotspotStage {
   kFar,
   kApproaching,  // read its panorama ahead
   kWithinReach,  // one key steps in
 };
 
-struct SpotTrackerOptions {
+struct HotspotTrackerOptions {
   double approach_m = 3000;
   double reach_m = 150;
   double leave = 1.25;  // a stage is left at so many times the distance at which it begins; 1 or more
   double swap = 0.8;    // another spot takes over when it is nearer than this share of the distance; 0..1
 };
 
-// Follows the eye among spots. A stage that has begun does not flicker at its border, nor do two spots about
+// Follows the camera among spots. A stage that has begun does not flicker at its border, nor do two spots about
 // equally far.
-class SpotTracker {
+class HotspotTracker {
  public:
-  explicit SpotTracker(std::vector<glm::dvec3> eyes_m, const SpotTrackerOptions& options = {});
+  explicit HotspotTracker(std::vector<glm::dvec3> eyes_m, const HotspotTrackerOptions& options = {});
 
   struct State {
-    SpotStage stage = SpotStage::kFar;
-    NearSpot spot;  // meaningless when far
+    HotspotStage stage = HotspotStage::kFar;
+    NearHotspot hotspot;  // meaningless when far
 
     bool operator==(const State& other) const {
-      return stage == other.stage && (stage == SpotStage::kFar || spot.index == other.spot.index);
+      return stage == other.stage && (stage == HotspotStage::kFar || hotspot.index == other.hotspot.index);
     }
   };
 
-  // What holds now that the eye is here; comparing with the state before shows whether something is to be done.
-  State update(const glm::dvec3& eye_m);
+  // What holds now that the camera is here; comparing with the state before shows whether something is to be done.
+  State update(const glm::dvec3& camera_m);
   const State& state() const { return state_; }
 
  private:
   std::vector<glm::dvec3> eyes_m_;
-  SpotTrackerOptions options_;
+  HotspotTrackerOptions options_;
   State state_;
 };
 

@@ -24,7 +24,7 @@ struct Preferences {
   bool invert_wheel = false;   // rolling away goes away
   double fly_speed = 1;        // factor on moving, of all devices
   double turn_speed = 1;       // factor on turning, of keys, gamepad and space mouse
-  double draw_budget_ms = 40;  // lod.frame_ms while the eye moves; 0 = none
+  double draw_budget_ms = 40;  // lod.frame_ms while the camera moves; 0 = none
   double ui_scale = 0;         // of letters and panels; 0 = as the display says
   LongitudeRange longitude = LongitudeRange::kSigned;  // in the status line
   bool use_gamepad = true;
@@ -44,7 +44,7 @@ struct LastSession {
   int window_width_px = 1280;
   int window_height_px = 720;
   std::string planet;              // the last one's file as it was given; empty = none
-  std::optional<mars::Pose> pose;  // of the eye, there
+  std::optional<mars::Pose> pose;  // of the camera, there
   SessionBackend backend = SessionBackend::kPolygon;
   bool panels = true;  // map, panels and figures are shown
 };

@@ -17,11 +17,11 @@ bool same(const SavedView& a, const SavedView& b) {
 }
 
 ViewDifference difference(const SavedView& a, const SavedView& b, double radius_m) {
-  const mars::EyePose p = mars::to_eye(a.pose, radius_m);
-  const mars::EyePose q = mars::to_eye(b.pose, radius_m);
+  const mars::CameraPose p = mars::to_camera(a.pose, radius_m);
+  const mars::CameraPose q = mars::to_camera(b.pose, radius_m);
   const double turn_rad = std::max(mars::angle_between_rad(p.axes.forward, q.axes.forward),
                                    mars::angle_between_rad(p.axes.up, q.axes.up));
-  return {glm::length(p.eye_m - q.eye_m), turn_rad / mars::kRadiansPerDegree,
+  return {glm::length(p.position_m - q.position_m), turn_rad / mars::kRadiansPerDegree,
           std::max(a.fov_deg, b.fov_deg) / std::min(a.fov_deg, b.fov_deg)};
 }
 

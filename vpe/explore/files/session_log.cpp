@@ -32,7 +32,7 @@ bool same_place(const SessionLog::Frame& a, const SessionLog::Frame& b) {
   const auto pose = [](const mars::Pose& p) {
     return std::array{p.lon_deg, p.lat_deg, p.alt_m, p.yaw_deg, p.pitch_deg, p.roll_deg};
   };
-  const auto look = [](const mars::HeadLook& l) { return std::array{l.yaw_deg, l.pitch_deg, l.roll_deg}; };
+  const auto look = [](const mars::HeadAngles& l) { return std::array{l.yaw_deg, l.pitch_deg, l.roll_deg}; };
   return pose(a.pose) == pose(b.pose) && look(a.look) == look(b.look);
 }
 
@@ -105,8 +105,8 @@ std::optional<double> SessionLog::frame(const Frame& seen, const core::Settings&
   return frame.time_s;
 }
 
-void SessionLog::step_in(double time_s, const std::string& spot, const std::filesystem::path& panorama) {
-  note(time_s, "overlook in " + as_word(spot) + " " + as_word(panorama.string()));
+void SessionLog::enter(double time_s, const std::string& hotspot, const std::filesystem::path& panorama) {
+  note(time_s, "overlook in " + as_word(hotspot) + " " + as_word(panorama.string()));
 }
 
 void SessionLog::step_out(double time_s) { note(time_s, "overlook out"); }

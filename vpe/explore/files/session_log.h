@@ -1,9 +1,9 @@
 // Everything that happens in a session, as a flight that `vpe fly` renders at any size.
 //
 // scripts::FlightLog writes poses, looks, settings and regions. Added here: a window that draws only when
-// something changes leaves gaps, in which the eye must stand still and not creep to where it was next; regions
+// something changes leaves gaps, in which the camera must stand still and not creep to where it was next; regions
 // that are taken away; jumps; steps into an overlook and out of it. These last are comments (playback passes
-// over them: the log stays a flight of version 1, in which the eye stands at the spot and the head looks
+// over them: the log stays a flight of version 1, in which the camera stands at the spot and the head looks
 // around):
 //
 //   # at 12.5 overlook in "Glen Torridon" "/home/u/panoramas/torridon.json"
@@ -36,16 +36,16 @@ class SessionLog {
   struct Frame {
     double time_s = 0;
     mars::Pose pose;
-    mars::HeadLook look;  // with the head on its platform, as the picture was drawn
+    mars::HeadAngles look;  // with the head on its platform, as the image was drawn
   };
 
-  // Each picture that was drawn. `regions` are those that hold now. A time that is not after the one before
+  // Each image that was drawn. `regions` are those that hold now. A time that is not after the one before
   // counts as just after it. Returns the time written. Frames beyond the flight format (numbers that are not
   // finite, times after FlightLimits::kMaxTime_s, a tilt of more than 90 degrees) are left out: nothing.
   std::optional<double> frame(const Frame& frame, const core::Settings& settings,
                               std::span<const core::InterestRegion> regions = {});
 
-  void step_in(double time_s, const std::string& spot, const std::filesystem::path& panorama);
+  void enter(double time_s, const std::string& hotspot, const std::filesystem::path& panorama);
   void step_out(double time_s);
 
   // Whatever else is worth knowing, as a comment: a resized window, another backend.
@@ -72,7 +72,7 @@ class SessionLog {
 struct OverlookStep {
   double time_s = 0;
   bool in = false;
-  std::string spot;                // of a step in
+  std::string hotspot;                // of a step in
   std::filesystem::path panorama;  // likewise
 };
 std::vector<OverlookStep> overlook_steps(std::string_view log);

@@ -25,11 +25,11 @@ class ViewHistory {
  public:
   explicit ViewHistory(double radius_m, const ViewHistoryOptions& options = {});
 
-  // Where the eye is. Call it for every frame that is drawn: an idle window need not call, rest is seen at the
-  // next call. Times ascend, seconds. `height_m`: of the eye above the ground.
+  // Where the camera is. Call it for every frame that is drawn: an idle window need not call, rest is seen at the
+  // next call. Times ascend, seconds. `height_m`: of the camera above the ground.
   void observe(double time_s, const SavedView& view, double height_m);
 
-  // The view to fly to, or nothing at the end of the list. Where the eye is now is kept first, rested or not,
+  // The view to fly to, or nothing at the end of the list. Where the camera is now is kept first, rested or not,
   // so that the other direction leads back to it. What is observed on the way there adds nothing unless it
   // rests elsewhere; asked again before it is there, it goes on from where it was going.
   std::optional<SavedView> back();

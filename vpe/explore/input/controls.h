@@ -5,7 +5,7 @@
 
 namespace vpe::explore {
 
-// Rates, -1..1 each, in the eye's own axes. 1 is full speed: of moving, a share of the height above ground a
+// Rates, -1..1 each, in the camera's own axes. 1 is full speed: of moving, a share of the height above ground a
 // second; of turning, degrees a second (vpe/explore/motion.h).
 struct Controls {
   double right = 0;

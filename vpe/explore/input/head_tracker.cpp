@@ -140,7 +140,7 @@ void HeadTracker::recentre(double time_s) {
   ease_from(shown, now_s_);
 }
 
-mars::HeadLook HeadTracker::look(double time_s) const {
+mars::HeadAngles HeadTracker::look(double time_s) const {
   const Angles all = angles(not_before(time_s));
   return {all[0], all[1], all[2]};
 }

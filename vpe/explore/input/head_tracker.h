@@ -2,7 +2,7 @@
 //
 // A datagram is 48 bytes: x, y, z in centimetres, then yaw, pitch, roll in degrees, each an IEEE 754 double,
 // least significant byte first. As opentrack means them yaw is to the right, pitch up and roll to the right
-// when positive, which is mars::HeadLook; trackers differ, so each can be inverted. x, y, z are read and not
+// when positive, which is mars::HeadAngles; trackers differ, so each can be inverted. x, y, z are read and not
 // used: what a head moves is nothing against a planet.
 #pragma once
 
@@ -68,12 +68,12 @@ class HeadTracker {
   void recentre(double time_s);
 
   // Relative to the platform: yaw and roll in [-180, 180], pitch in [-90, 90].
-  mars::HeadLook look(double time_s) const;
+  mars::HeadAngles look(double time_s) const;
 
   // Whether a datagram came within the time-out.
   bool is_live(double time_s) const;
 
-  // Whether look() is on its way to somewhere at this time, so that the next picture is another one.
+  // Whether look() is on its way to somewhere at this time, so that the next image is another one.
   bool is_moving(double time_s) const;
 
   std::uint64_t received() const { return received_; }

@@ -1,6 +1,6 @@
 // A space mouse (a cap that can be pushed and turned in all six degrees of freedom), as controls and actions.
 //
-// The cap is the eye: pushed right, up or away it moves so; tilted back it looks up, turned clockwise (seen
+// The cap is the camera: pushed right, up or away it moves so; tilted back it looks up, turned clockwise (seen
 // from above) it looks right, tilted right it rolls right.
 #pragma once
 
@@ -50,7 +50,7 @@ struct SpaceMouseOptions {
 
   double dead_zone = 0.05;    // share of the way, of each axis
   double curve = 1.5;         // power: 1 = straight, more = finer near rest
-  bool holds_ground = false;  // the cap is the ground instead of the eye: everything the other way round
+  bool holds_ground = false;  // the cap is the ground instead of the camera: everything the other way round
   bool roll = true;           // off: the horizon stays level
 
   bool operator==(const SpaceMouseOptions&) const = default;

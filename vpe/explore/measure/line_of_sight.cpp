@@ -58,7 +58,7 @@ class Clearance {
   void include(const glm::dvec2& direction, double clearance_m) { keep({direction, clearance_m, 0.0}); }
 
   double least_m() const { return least_m_; }
-  double error_m() const { return kClearance_m + slack_m_ + rounding_m_; }
+  double deviation_m() const { return kClearance_m + slack_m_ + rounding_m_; }
   const glm::dvec2& direction() const { return direction_; }
 
  private:
@@ -140,9 +140,9 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
   const glm::dvec3 up_there = mars::direction(to.place);
   if (up == up_there) return upright(surface, from, to);
   const double ground_there_m = surface.at(up_there).radius_m;
-  const glm::dvec3 eye = (surface.at(up).radius_m + from.height_m) * up;
+  const glm::dvec3 camera = (surface.at(up).radius_m + from.height_m) * up;
   const glm::dvec3 target = (ground_there_m + to.height_m) * up_there;
-  const glm::dvec3 way = target - eye;
+  const glm::dvec3 way = target - camera;
 
   LineOfSight sight;
   sight.distance_m = glm::length(way);
@@ -150,9 +150,9 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
   const double end_m = kSightEnd_m + 1e-8 * sight.distance_m;
   const glm::dvec3 ray = way / sight.distance_m;
   if (sight.distance_m > 2 * end_m) {
-    const double hit_m = surface.cast(eye, ray, 1.0, {end_m, sight.distance_m - end_m});
+    const double hit_m = surface.cast(camera, ray, 1.0, {end_m, sight.distance_m - end_m});
     if (std::isfinite(hit_m)) {
-      const glm::dvec3 point = eye + hit_m * ray;
+      const glm::dvec3 point = camera + hit_m * ray;
       sight.obstruction = Obstruction{mars::lon_lat(point), hit_m, surface.at(point).height_m};
     }
   }
@@ -160,7 +160,7 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
 
   const glm::dvec3 ahead = up_there - glm::dot(up, up_there) * up;
   const Plane plane{up, glm::normalize(ahead)};
-  const Line line{plane.of(eye), plane.of(target) - plane.of(eye)};
+  const Line line{plane.of(camera), plane.of(target) - plane.of(camera)};
   const glm::dvec2 there = plane.of(up_there);
   Clearance clearance(line);
   clearance.include(plane.of(up), from.height_m);
@@ -184,7 +184,7 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
     if (begin != end) clearance.refine({begin, end - begin}, glm::normalize(begin), glm::normalize(end));
   });
   sight.clearance_m = clearance.least_m();
-  sight.clearance_error_m = clearance.error_m() + 4e-15 * surface.planet_radius_m();
+  sight.clearance_error_m = clearance.deviation_m() + 4e-15 * surface.planet_radius_m();
   const glm::dvec2 least = clearance.direction();
   sight.clearance_place = mars::lon_lat(least.x * plane.ahead + least.y * plane.up);
   const double radius_m = line.radius(least);

@@ -30,7 +30,7 @@ core::RgbImage MapPainter::paint(const MapView& map, MapGround ground, base::Thr
   const bool has_image = planet_->meta().finest_image_level >= 0;
   if (paging::needs_scale(appearance, has_image) && scale_ == nullptr)
     scale_ = std::make_shared<core::ColourScale>(appearance);
-  const paging::ShadeParams base = paging::shade_params(appearance, {1, 0, 0}, has_image, scale_);
+  const paging::ShadingParams base = paging::shading_params(appearance, {1, 0, 0}, has_image, scale_);
   const double footprint_m = map.degrees_per_px * mars::kRadiansPerDegree * planet_->radius_m();
 
   core::RgbImage image;
@@ -39,8 +39,8 @@ core::RgbImage MapPainter::paint(const MapView& map, MapGround ground, base::Thr
   const auto width = static_cast<std::size_t>(map.width);
   image.pixels.assign(width * static_cast<std::size_t>(map.height), kBeyond);
   pool.run(static_cast<std::size_t>(map.height), [&](std::size_t y) {
-    paging::GroundPainter::Cursor cursor;
-    paging::ShadeParams params = base;
+    paging::TerrainShader::Cursor cursor;
+    paging::ShadingParams params = base;
     for (std::size_t x = 0; x < width; ++x) {
       const auto place = map.place({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
       if (!place) continue;

@@ -23,7 +23,7 @@ class MapPainter {
 
  private:
   std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::GroundPainter painter_;
+  paging::TerrainShader painter_;
   std::shared_ptr<const core::ColourScale> scale_;
 };
 

@@ -70,15 +70,15 @@ std::vector<mars::LonLat> footprint(const core::View& view, double ground_radius
   std::vector<mars::LonLat> outline;
   if (view.projection != core::Projection::kPerspective) return outline;
   constexpr int kSide = 24;
-  const double distance_m = glm::length(view.eye.eye_m);
-  const glm::dvec3 up = view.eye.eye_m / distance_m;
+  const double distance_m = glm::length(view.camera.position_m);
+  const glm::dvec3 up = view.camera.position_m / distance_m;
   const auto add = [&](double x, double y) {
     const glm::dvec3 ray = core::pixel_ray(view, x, y);
-    const double middle_m = -glm::dot(view.eye.eye_m, ray);
-    const double off_m = glm::length(view.eye.eye_m + ray * middle_m);
+    const double middle_m = -glm::dot(view.camera.position_m, ray);
+    const double off_m = glm::length(view.camera.position_m + ray * middle_m);
     if (off_m < ground_radius_m && middle_m > 0.0 && distance_m > ground_radius_m) {
       const double half_m = std::sqrt((ground_radius_m - off_m) * (ground_radius_m + off_m));
-      outline.push_back(mars::lon_lat(view.eye.eye_m + ray * (middle_m - half_m)));
+      outline.push_back(mars::lon_lat(view.camera.position_m + ray * (middle_m - half_m)));
       return;
     }
     const glm::dvec3 side = ray - up * glm::dot(ray, up);

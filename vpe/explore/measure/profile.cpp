@@ -31,7 +31,7 @@ Profile make_profile(const paging::Surface& surface, std::span<const mars::LonLa
   for (const paging::ProfilePoint& p : profile.points) {
     profile.lowest_m = std::min(profile.lowest_m, p.lowest_m);
     profile.highest_m = std::max(profile.highest_m, p.highest_m);
-    profile.some_missing = profile.some_missing || p.missing;
+    profile.some_missing = profile.some_missing || p.nodata;
   }
   return profile;
 }
@@ -43,11 +43,11 @@ std::string profile_csv_header() {
 std::string profile_csv_line(const paging::ProfilePoint& p) {
   std::string line = fixed_text(p.distance_m, 3) + "," + fixed_text(p.ground_distance_m, 3) + "," +
                      base::format_number(p.place.lon_deg) + "," + base::format_number(p.place.lat_deg) + ",";
-  if (!p.missing) line += fixed_text(p.height_m, 3);
+  if (!p.nodata) line += fixed_text(p.height_m, 3);
   line += ",";
-  if (!p.missing) line += fixed_text(p.slope_deg, 3);
+  if (!p.nodata) line += fixed_text(p.slope_deg, 3);
   line += ",";
-  if (!p.missing) line += fixed_text(p.cross_slope_deg, 3);
+  if (!p.nodata) line += fixed_text(p.cross_slope_deg, 3);
   return line + (p.waypoint ? ",1\n" : ",0\n");
 }
 

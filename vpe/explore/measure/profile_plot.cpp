@@ -75,7 +75,7 @@ std::vector<PlotColumn> plot_columns(const Profile& profile, int count) {
         const double t = share(end - a.distance_m, b.distance_m - a.distance_m);
         include(std::lerp(a.height_m, b.height_m, t), below_m, above_m);
       }
-      column.missing = column.missing || a.missing || b.missing;
+      column.nodata = column.nodata || a.nodata || b.nodata;
     }
   }
   return columns;

@@ -24,7 +24,7 @@ struct PlotColumn {
   double high_m = 0;
   double begin_m = 0;  // the straight line, at the beginning of the column and at its end
   double end_m = 0;
-  bool missing = false;  // some of it has no data
+  bool nodata = false;  // some of it has no data
 };
 std::vector<PlotColumn> plot_columns(const Profile& profile, int count);
 

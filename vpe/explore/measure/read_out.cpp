@@ -27,11 +27,11 @@ ReadOut read_out_at(const paging::Surface& surface, mars::LonLat place, double e
   return out;
 }
 
-std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3& eye_m,
+std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3& camera_m,
                                 const glm::dvec3& direction, double exaggeration) {
-  const double range_m = surface.cast(eye_m, direction, exaggeration);
+  const double range_m = surface.cast(camera_m, direction, exaggeration);
   if (!std::isfinite(range_m)) return std::nullopt;
-  const glm::dvec3 point_m = eye_m + range_m * direction;
+  const glm::dvec3 point_m = camera_m + range_m * direction;
   ReadOut out = read_out_at(surface, mars::lon_lat(point_m), exaggeration);
   if (range_m > 0) out.point_m = point_m;
   out.range_m = range_m;
@@ -54,7 +54,7 @@ std::vector<ReadOutLine> read_out_lines(const ReadOut& r) {
   const auto add = [&](const char* label, std::string text) { lines.push_back({label, std::move(text)}); };
   add("Longitude", fixed_text(a.place.lon_deg, 5) + " (" + fixed_text(r.lon_east_deg, 5) + " E)");
   add("Latitude", fixed_text(a.place.lat_deg, 5));
-  if (a.missing) {
+  if (a.nodata) {
     add("Elevation", "no data");
   } else {
     add("Elevation", fixed_text(a.elevation_m, 1) + " m (" + r.datum + ")");

@@ -16,14 +16,14 @@ struct ReadOut {
   std::string datum;              // of the elevation, paging::describe_datum()
   bool illustration = false;      // a made-up planet
   glm::dvec3 point_m{0, 0, 0};    // on the ground as it is drawn, body-fixed, from the planet's centre
-  std::optional<double> range_m;  // from the eye to the ground as it is drawn; nothing without an eye
+  std::optional<double> range_m;  // from the camera to the ground as it is drawn; nothing without a camera
 };
 
 // Of the first ground along the unit `direction`, as it is drawn with an exaggeration (elevation, slope and
-// aspect are those of the planet, never exaggerated); nothing for the sky. For an eye below the ground the
+// aspect are those of the planet, never exaggerated); nothing for the sky. For a camera below the ground the
 // place is its own, at range 0. The place is right within the error of paging::Surface::cast() along the ray.
 // Throws paging::PlanetError. Any thread.
-std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3& eye_m,
+std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3& camera_m,
                                 const glm::dvec3& direction, double exaggeration = 1.0);
 
 // Of a place, as on a map.

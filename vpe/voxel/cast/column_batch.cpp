@@ -21,8 +21,8 @@ struct alignas(64) LaneFloats {
 
 }  // namespace
 
-struct Desk {
-  Desk(const LatticeStore& store, double exaggeration) : shelf(store, exaggeration) {}
+struct Scratch {
+  Scratch(const HeightGridStore& store, double exaggeration) : tiles(store, exaggeration) {}
 
   // Buffers for so many rows of each of `group_count` groups, the same number every time.
   void prepare(int rows, int group_count) {
@@ -37,7 +37,7 @@ struct Desk {
     }
   }
 
-  LatticeShelf shelf;
+  ThreadLocalTiles tiles;
   std::size_t prepared = 0;
   std::vector<LaneFloats> buffers;  // zero between tasks
   std::array<ColumnGroup, kMostGroups> groups{};
@@ -45,52 +45,52 @@ struct Desk {
       block{};  // of expanded rows
 };
 
-Desks::Desks(const LatticeStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
-Desks::~Desks() = default;
+ScratchPool::ScratchPool(const HeightGridStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
+ScratchPool::~ScratchPool() = default;
 
-Desks::Use::Use(Desks& desks) : desks_(desks), thrown_(std::uncaught_exceptions()) {
-  const std::lock_guard lock(desks_.mutex_);
-  if (desks_.free_.empty()) {
-    desk_ = std::make_unique<Desk>(desks_.store_, desks_.exaggeration_);
+ScratchPool::Use::Use(ScratchPool& scratches) : scratches_(scratches), thrown_(std::uncaught_exceptions()) {
+  const std::lock_guard lock(scratches_.mutex_);
+  if (scratches_.free_.empty()) {
+    scratch_ = std::make_unique<Scratch>(scratches_.store_, scratches_.exaggeration_);
   } else {
-    desk_ = std::move(desks_.free_.back());
-    desks_.free_.pop_back();
+    scratch_ = std::move(scratches_.free_.back());
+    scratches_.free_.pop_back();
   }
 }
 
-Desks::Use::~Use() {
+ScratchPool::Use::~Use() {
   if (std::uncaught_exceptions() != thrown_) return;
-  const std::lock_guard lock(desks_.mutex_);
-  desks_.free_.push_back(std::move(desk_));
+  const std::lock_guard lock(scratches_.mutex_);
+  scratches_.free_.push_back(std::move(scratch_));
 }
 
-LatticeShelf& Desks::Use::shelf() const { return desk_->shelf; }
+ThreadLocalTiles& ScratchPool::Use::tiles() const { return scratch_->tiles; }
 
-void cast_sheets(std::span<const Sheet> sheets, const ColumnWalk& walk, Desks& desks, base::ThreadPool& pool) {
+void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool) {
   const int lanes = column_lanes();
   const int task_columns = std::min(kTaskColumns, lanes * kMostGroups);
   struct Task {
-    const Sheet* sheet;
+    const ColumnBatch* batch;
     int begin;
   };
   std::vector<Task> tasks;
   int most_rows = 0;
-  for (const Sheet& sheet : sheets) {
-    most_rows = std::max(most_rows, sheet.rows.count);
-    for (int begin = 0; begin < sheet.columns; begin += task_columns) tasks.push_back({&sheet, begin});
+  for (const ColumnBatch& batch : batches) {
+    most_rows = std::max(most_rows, batch.rows.count);
+    for (int begin = 0; begin < batch.columns; begin += task_columns) tasks.push_back({&batch, begin});
   }
   pool.run(tasks.size(), [&](std::size_t t) {
-    const Desks::Use use(desks);
-    Desk* const desk = &use.desk();
-    desk->prepare(most_rows, task_columns / lanes);
-    const Sheet& sheet = *tasks[t].sheet;
+    const ScratchPool::Use use(scratches);
+    Scratch* const scratch = &use.scratch();
+    scratch->prepare(most_rows, task_columns / lanes);
+    const ColumnBatch& batch = *tasks[t].batch;
     const int begin = tasks[t].begin;
-    const int columns = std::min(task_columns, sheet.columns - begin);
+    const int columns = std::min(task_columns, batch.columns - begin);
     int groups = 0;
-    float lowest = static_cast<float>(sheet.rows.count);
+    float lowest = static_cast<float>(batch.rows.count);
     float highest = 0;
     for (int first = 0; first < columns; first += lanes, ++groups) {
-      ColumnGroup& group = desk->groups[static_cast<std::size_t>(groups)];
+      ColumnGroup& group = scratch->groups[static_cast<std::size_t>(groups)];
       group.columns = std::min(lanes, columns - first);
       std::array<glm::dvec3, kMaxLanes> azimuth{};
       for (int lane = 0; lane < kMaxLanes; ++lane) {
@@ -100,20 +100,20 @@ void cast_sheets(std::span<const Sheet> sheets, const ColumnWalk& walk, Desks& d
         group.run_gain[lane] = 0;
         group.run_slope[lane] = 0;
         if (lane >= group.columns) continue;
-        sheet.set_column(begin + first + lane, group, lane, azimuth[static_cast<std::size_t>(lane)]);
+        batch.set_column(begin + first + lane, group, lane, azimuth[static_cast<std::size_t>(lane)]);
         lowest = std::min(lowest, group.row[lane]);
         highest = std::max(highest, group.row_end[lane]);
       }
-      walk.cast(azimuth.data(), sheet.rows, desk->shelf, group);
+      walk.cast(azimuth.data(), batch.rows, scratch->tiles, group);
     }
     const int end = static_cast<int>(highest);
     for (int row = static_cast<int>(lowest); row < end; row += kBlockRows) {
       const int rows = std::min(kBlockRows, end - row);
       for (int g = 0; g < groups; ++g)
-        expand_rows(sheet.rows, desk->groups[static_cast<std::size_t>(g)], row, row + rows,
-                    desk->block[0].lane + g * lanes, task_columns);
-      copy_rows(desk->block[0].lane, task_columns, sheet.out + row * sheet.stride + begin, sheet.stride,
-                columns, rows, sheet.stream);
+        expand_rows(batch.rows, scratch->groups[static_cast<std::size_t>(g)], row, row + rows,
+                    scratch->block[0].lane + g * lanes, task_columns);
+      copy_rows(scratch->block[0].lane, task_columns, batch.out + row * batch.stride + begin, batch.stride,
+                columns, rows, batch.stream);
     }
   });
 }

@@ -14,7 +14,7 @@
 namespace vpe::voxel {
 
 // Columns side by side that share their rows, and where their ranges go.
-struct Sheet {
+struct ColumnBatch {
   Rows rows;
   int columns = 0;
   float* out = nullptr;       // of row 0, column 0
@@ -25,40 +25,40 @@ struct Sheet {
   std::function<void(int column, ColumnGroup& group, int lane, glm::dvec3& azimuth)> set_column;
 };
 
-// What a thread works with while a picture is cast.
-struct Desk;
+// What a thread works with while an image is cast.
+struct Scratch;
 
-class Desks {
+class ScratchPool {
  public:
-  Desks(const LatticeStore& store, double exaggeration);
-  ~Desks();
-  Desks(const Desks&) = delete;
-  Desks& operator=(const Desks&) = delete;
+  ScratchPool(const HeightGridStore& store, double exaggeration);
+  ~ScratchPool();
+  ScratchPool(const ScratchPool&) = delete;
+  ScratchPool& operator=(const ScratchPool&) = delete;
 
   // A desk for as long as this lives. Not handed on when it is left by an exception.
   class Use {
    public:
-    explicit Use(Desks& desks);
+    explicit Use(ScratchPool& scratches);
     ~Use();
     Use(const Use&) = delete;
     Use& operator=(const Use&) = delete;
-    LatticeShelf& shelf() const;
-    Desk& desk() const { return *desk_; }
+    ThreadLocalTiles& tiles() const;
+    Scratch& scratch() const { return *scratch_; }
 
    private:
-    Desks& desks_;
+    ScratchPool& scratches_;
     int thrown_;
-    std::unique_ptr<Desk> desk_;
+    std::unique_ptr<Scratch> scratch_;
   };
 
  private:
-  const LatticeStore& store_;
+  const HeightGridStore& store_;
   double exaggeration_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Desk>> free_;
+  std::vector<std::unique_ptr<Scratch>> free_;
 };
 
 // Columns of different sheets are cast side by side. Throws paging::PlanetError for tiles that cannot be read.
-void cast_sheets(std::span<const Sheet> sheets, const ColumnWalk& walk, Desks& desks, base::ThreadPool& pool);
+void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool);
 
 }  // namespace vpe::voxel

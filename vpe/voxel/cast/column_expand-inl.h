@@ -38,7 +38,7 @@ void UpdateLeastSlope(const Rows& rows, ColumnGroup& group) {
   switch (rows.kind) {
     case RowKind::kEven: return least_as<RowKind::kEven>(rows, group);
     case RowKind::kTable: return least_as<RowKind::kTable>(rows, group);
-    case RowKind::kFan: return least_as<RowKind::kFan>(rows, group);
+    case RowKind::kSector: return least_as<RowKind::kSector>(rows, group);
   }
 }
 
@@ -83,7 +83,7 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
     }
     const V per = hn::MulAdd(gain, hn::Sub(slope, from), start);
     V length;
-    if constexpr (kKind == RowKind::kFan) {
+    if constexpr (kKind == RowKind::kSector) {
       length = hn::Sqrt(hn::MulAdd(slope, slope, one));
     } else {
       length = hn::Set(d, rows.length[r]);
@@ -100,7 +100,7 @@ void ExpandRows(const Rows& rows, ColumnGroup& group, int first, int last, float
   switch (rows.kind) {
     case RowKind::kEven: return expand_as<RowKind::kEven>(rows, group, first, last, out, stride);
     case RowKind::kTable: return expand_as<RowKind::kTable>(rows, group, first, last, out, stride);
-    case RowKind::kFan: return expand_as<RowKind::kFan>(rows, group, first, last, out, stride);
+    case RowKind::kSector: return expand_as<RowKind::kSector>(rows, group, first, last, out, stride);
   }
 }
 

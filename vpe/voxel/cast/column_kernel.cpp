@@ -26,14 +26,14 @@ using FloatTag = hn::CappedTag<float, kMaxLanes>;
 using DoubleTag = hn::CappedTag<double, kMaxLanes / 2>;
 
 template <RowKind kKind>
-void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
+void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera, const glm::dvec3& up,
              const Rows& rows, ColumnGroup& group) {
   Paths paths;
-  find_paths(f, eye, group, paths);
+  find_paths(f, camera, group, paths);
   Foot foot;
   if (up.z > 0) {
     foot.inside = true;
-    foot.depth = 1.0 / (up.z * eye.ground_m);
+    foot.depth = 1.0 / (up.z * camera.ground_m);
     foot.x = (up.x / up.z - f.u0) / f.du;
     foot.y = (up.y / up.z - f.v0) / f.dv;
   }
@@ -43,7 +43,7 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
   }
   for (int kind = 0; kind < 2 * kFamilies; ++kind) {
     if (((kinds >> kind) & 1U) == 0) continue;
-    const auto family = static_cast<Family>(kind / 2);
+    const auto family = static_cast<LineFamily>(kind / 2);
     const bool outward_up = (kind & 1) != 0;
     double from = kHuge;
     double to = -kHuge;
@@ -52,7 +52,7 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
       from = std::min(from, paths.from[lane]);
       to = std::max(to, paths.to[lane]);
     }
-    const int least = family == Family::kDiagonals ? -f.intervals : 0;
+    const int least = family == LineFamily::kDiagonals ? -f.intervals : 0;
     // One line more on either side, so that rounding of the ends leaves out no event.
     const int low = std::clamp(static_cast<int>(std::floor(from - 1e-3)), least, f.intervals);
     const int high = std::clamp(static_cast<int>(std::ceil(to + 1e-3)), least, f.intervals);
@@ -62,18 +62,18 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
       const double at = foot.on(family);
       // Outward all lines lie on one side of the foot's.
       const double nearest = outward_up ? first - at : at - first;
-      if (nearest < kExactLines && needs_exact(f, eye)) {
+      if (nearest < kExactLines && needs_exact(f, camera)) {
         const double reach = outward_up ? at + kExactLines : at - kExactLines;
         int until = static_cast<int>(outward_up ? std::ceil(reach) : std::floor(reach));
         until = outward_up ? std::min(until, last) : std::max(until, last);
         if (until != first) {
-          const LatticeLines<double>& lines = source.exact_lines(family);
+          const HeightGridLines<double>& lines = source.exact_lines(family);
           const DepthPlane& plane = lines.reference;
-          find_bases(f, plane, eye, up, paths);
-          const double height = foot.height(plane, eye);
+          find_bases(f, plane, camera, up, paths);
+          const double height = foot.height(plane, camera);
           for (int lane0 = 0; lane0 < static_cast<int>(hn::Lanes(FloatTag()));
                lane0 += static_cast<int>(hn::Lanes(DoubleTag()))) {
-            Walk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, eye, rows, group);
+            Walk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, camera, rows, group);
             if (!walk.any()) continue;
             walk.start_at_foot(at, height, paths);
             walk.run(first, until);
@@ -84,25 +84,25 @@ void walk_as(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye,
       }
     }
     if (first == last) continue;
-    const LatticeLines<float>& lines = source.lines(family);
-    find_bases(f, lines.reference, eye, up, paths);
+    const HeightGridLines<float>& lines = source.lines(family);
+    find_bases(f, lines.reference, camera, up, paths);
     const bool begins = foot.inside && first == (outward_up ? low : high);
-    Walk<FloatTag, kKind> walk(lines, family, f.intervals, paths, kind, 0, eye, rows, group);
+    Walk<FloatTag, kKind> walk(lines, family, f.intervals, paths, kind, 0, camera, rows, group);
     if (!walk.any()) continue;
     if (begins)
       walk.start_at_foot(static_cast<float>(foot.on(family)),
-                         static_cast<float>(foot.height(lines.reference, eye)), paths);
+                         static_cast<float>(foot.height(lines.reference, camera)), paths);
     walk.run(first, last);
     walk.store();
   }
 }
 
-void WalkLattice(const LatticeFrame& f, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
+void WalkGrid(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera, const glm::dvec3& up,
                  const Rows& rows, ColumnGroup& group) {
   switch (rows.kind) {
-    case RowKind::kEven: return walk_as<RowKind::kEven>(f, source, eye, up, rows, group);
-    case RowKind::kTable: return walk_as<RowKind::kTable>(f, source, eye, up, rows, group);
-    case RowKind::kFan: return walk_as<RowKind::kFan>(f, source, eye, up, rows, group);
+    case RowKind::kEven: return walk_as<RowKind::kEven>(f, source, camera, up, rows, group);
+    case RowKind::kTable: return walk_as<RowKind::kTable>(f, source, camera, up, rows, group);
+    case RowKind::kSector: return walk_as<RowKind::kSector>(f, source, camera, up, rows, group);
   }
 }
 
@@ -116,20 +116,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vpe::voxel {
 
-bool needs_exact(const LatticeFrame& frame, const ColumnEye& eye) {
-  return eye.distance_m - eye.ground_m < kExactLines * std::max(frame.du, frame.dv) * eye.radius_m;
+bool needs_exact(const HeightGridFrame& frame, const ColumnCamera& camera) {
+  return camera.distance_m - camera.ground_m < kExactLines * std::max(frame.du, frame.dv) * camera.radius_m;
 }
 
-HWY_EXPORT(WalkLattice);
+HWY_EXPORT(WalkGrid);
 HWY_EXPORT(UpdateLeastSlope);
 HWY_EXPORT(ExpandRows);
 HWY_EXPORT(CopyRows);
 HWY_EXPORT(ColumnLanes);
 HWY_EXPORT(ColumnTarget);
 
-void walk_lattice(const LatticeFrame& frame, LatticeSource& source, const ColumnEye& eye, const glm::dvec3& up,
+void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera, const glm::dvec3& up,
                   const Rows& rows, ColumnGroup& group) {
-  HWY_DYNAMIC_DISPATCH(WalkLattice)(frame, source, eye, up, rows, group);
+  HWY_DYNAMIC_DISPATCH(WalkGrid)(frame, source, camera, up, rows, group);
 }
 void update_least_slope(const Rows& rows, ColumnGroup& group) {
   HWY_DYNAMIC_DISPATCH(UpdateLeastSlope)(rows, group);

@@ -34,7 +34,7 @@ class PathReader {
   using VI = hn::Vec<DI>;
 
   // position, turn: of the first lane.
-  PathReader(const LatticeLines<T>& lines, Family family, int intervals, V position, V turn)
+  PathReader(const HeightGridLines<T>& lines, LineFamily family, int intervals, V position, V turn)
       : lines_(lines), family_(family), n_(intervals), position_(position), turn_(turn) {
     const D d;
     // A limit keeps 0 times it from becoming NaN.
@@ -48,10 +48,10 @@ class PathReader {
 
   V position_at(int k) const { return hn::MulAdd(turn_, hn::Set(D(), static_cast<T>(k)), position_); }
   T first_position(int k) const {
-    return family_ == Family::kDiagonals ? static_cast<T>(std::max(0, k)) : T(0);
+    return family_ == LineFamily::kDiagonals ? static_cast<T>(std::max(0, k)) : T(0);
   }
   T last_position(int k) const {
-    return static_cast<T>(family_ == Family::kDiagonals ? n_ + std::min(0, k) : n_);
+    return static_cast<T>(family_ == LineFamily::kDiagonals ? n_ + std::min(0, k) : n_);
   }
 
   // What is read of one line at each lane's position.
@@ -179,8 +179,8 @@ class PathReader {
   }
 
  private:
-  const LatticeLines<T>& lines_;
-  Family family_;
+  const HeightGridLines<T>& lines_;
+  LineFamily family_;
   int n_;
   V position_, turn_, per_turn_, per_rest_;
 };

@@ -53,8 +53,8 @@ void cut(double p, double q, double n, double& from, double& to) {
   to = std::min(to, std::max(a, b));
 }
 
-void find_paths(const LatticeFrame& f, const ColumnEye& eye, const ColumnGroup& group, Paths& out) {
-  const double scale = eye.radius_m * eye.radius_m / eye.distance_m;
+void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const ColumnGroup& group, Paths& out) {
+  const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
   const double n = f.intervals;
   for (int lane = 0; lane < kMaxLanes; ++lane) {
     const double ax = group.azimuth[0][lane];
@@ -84,8 +84,8 @@ void find_paths(const LatticeFrame& f, const ColumnEye& eye, const ColumnGroup& 
     double to = kHuge;
     cut(x0, xk, n, from, to);
     cut(y0, yk, n, from, to);
-    // In front of the eye is where sigma is positive. It stays the same along paths that point straight up: those
-    // of other faces under an eye exactly over a face's middle.
+    // In front of the camera is where sigma is positive. It stays the same along paths that point straight up: those
+    // of other faces under a camera exactly over a face's middle.
     if (s1 > 0) {
       from = std::max(from, -s0 / away_from_zero(s1));
     } else if (s1 < 0) {
@@ -110,9 +110,9 @@ void find_paths(const LatticeFrame& f, const ColumnEye& eye, const ColumnGroup& 
 }
 
 // Heights along the paths, against the reference of their posts.
-void find_bases(const LatticeFrame& f, const DepthPlane& plane, const ColumnEye& eye, const glm::dvec3& up,
+void find_bases(const HeightGridFrame& f, const DepthPlane& plane, const ColumnCamera& camera, const glm::dvec3& up,
                 Paths& out) {
-  const double scale = eye.radius_m * eye.radius_m / eye.distance_m;
+  const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
   for (int lane = 0; lane < kMaxLanes; ++lane) {
     const double x0 = out.x0[lane];
     const double xk = out.xk[lane];
@@ -121,25 +121,25 @@ void find_bases(const LatticeFrame& f, const DepthPlane& plane, const ColumnEye&
     const double w = plane.w0 + plane.wx * x0 + plane.wy * y0;
     const double wk = plane.wx * xk + plane.wy * yk;
     const double along = up.x * (f.u0 + f.du * x0) + up.y * (f.v0 + f.dv * y0) + up.z;
-    out.base0[lane] = (along - eye.distance_m * w) * scale;
-    out.base1[lane] = (up.x * f.du * xk + up.y * f.dv * yk - eye.distance_m * wk) * scale;
+    out.base0[lane] = (along - camera.distance_m * w) * scale;
+    out.base1[lane] = (up.x * f.du * xk + up.y * f.dv * yk - camera.distance_m * wk) * scale;
     out.depth0[lane] = w * scale;
     out.depth1[lane] = wk * scale;
   }
 }
 
 struct Foot {
-  bool inside = false;  // the eye's foot is seen from this face
+  bool inside = false;  // the camera's foot is seen from this face
   double x = 0;
   double y = 0;
   double depth = 0;  // w of S there
 
-  double on(Family family) const {
-    return family == Family::kColumns ? x : (family == Family::kRows ? y : x - y);
+  double on(LineFamily family) const {
+    return family == LineFamily::kColumns ? x : (family == LineFamily::kRows ? y : x - y);
   }
   // As the posts of a lattice have it.
-  double height(const DepthPlane& plane, const ColumnEye& eye) const {
-    return (plane.w0 + plane.wx * x + plane.wy * y - depth) * eye.radius_m * eye.radius_m;
+  double height(const DepthPlane& plane, const ColumnCamera& camera) const {
+    return (plane.w0 + plane.wx * x + plane.wy * y - depth) * camera.radius_m * camera.radius_m;
   }
 };
 

@@ -1,4 +1,4 @@
-// Rows of a picture as vectors see them.
+// Rows of an image as vectors see them.
 #if defined(VPE_VOXEL_COLUMN_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_ROWS_INL_H_
 #undef VPE_VOXEL_COLUMN_ROWS_INL_H_
@@ -50,11 +50,11 @@ class RowModel {
       step_ = hn::Set(D(), static_cast<T>(rows.step));
       per_step_ = hn::Set(D(), static_cast<T>(1.0 / rows.step));
     }
-    if constexpr (kKind == RowKind::kFan) {
-      a0_ = load(group.fan_a0 + lane0);
-      a1_ = load(group.fan_a1 + lane0);
-      b0_ = load(group.fan_b0 + lane0);
-      b1_ = load(group.fan_b1 + lane0);
+    if constexpr (kKind == RowKind::kSector) {
+      a0_ = load(group.sector_a0 + lane0);
+      a1_ = load(group.sector_a1 + lane0);
+      b0_ = load(group.sector_b0 + lane0);
+      b1_ = load(group.sector_b1 + lane0);
     }
   }
 
@@ -63,7 +63,7 @@ class RowModel {
     const D d;
     if constexpr (kKind == RowKind::kEven) return hn::Mul(hn::Sub(row, centre_), step_);
     if constexpr (kKind == RowKind::kTable) return table(row);
-    if constexpr (kKind == RowKind::kFan) {
+    if constexpr (kKind == RowKind::kSector) {
       // Beyond the last row the direction may point anywhere.
       const V last = hn::Min(row, hn::Sub(count_, hn::Set(d, T(1))));
       return hn::Div(hn::MulAdd(a1_, last, a0_), hn::MulAdd(b1_, last, b0_));
@@ -77,7 +77,7 @@ class RowModel {
     V n;
     if constexpr (kKind == RowKind::kEven) {
       n = hn::Add(hn::Floor(hn::MulAdd(slope_now, per_step_, centre_)), one);
-    } else if constexpr (kKind == RowKind::kFan) {
+    } else if constexpr (kKind == RowKind::kSector) {
       const V above = hn::NegMulAdd(slope_now, b1_, a1_);
       const V row = hn::Div(hn::MulSub(slope_now, b0_, a0_), above);
       n = hn::Add(hn::Floor(row), one);

@@ -34,8 +34,8 @@ class Walk {
   using DI = hn::RebindToSigned<D>;
   using VI = hn::Vec<DI>;
 
-  Walk(const LatticeLines<T>& lines, Family family, int intervals, const Paths& paths, int kind, int lane0,
-       const ColumnEye& eye, const Rows& rows, ColumnGroup& group)
+  Walk(const HeightGridLines<T>& lines, LineFamily family, int intervals, const Paths& paths, int kind, int lane0,
+       const ColumnCamera& camera, const Rows& rows, ColumnGroup& group)
       : lane0_(lane0),
         reader_(lines, family, intervals, load(paths.position), load(paths.turn)),
         group_(group),
@@ -47,7 +47,7 @@ class Walk {
     base1_ = load(paths.base1);
     depth0_ = load(paths.depth0);
     depth1_ = load(paths.depth1);
-    per_distance_ = hn::Set(d, static_cast<T>(1.0 / eye.distance_m));
+    per_distance_ = hn::Set(d, static_cast<T>(1.0 / camera.distance_m));
     row_ = load(group.row);
     end_ = load(group.row_end);
     active_ = hn::Eq(load(paths.kind), hn::Set(d, static_cast<T>(kind)));
@@ -59,7 +59,7 @@ class Walk {
 
   bool any() const { return !hn::AllFalse(D(), alive_); }
 
-  // Lanes whose path begins at the eye's foot inside this lattice, at line `foot` with post value `height`.
+  // Lanes whose path begins at the camera's foot inside this lattice, at line `foot` with post value `height`.
   void start_at_foot(T foot, T height, const Paths& paths) {
     const D d;
     const V at = hn::Set(d, foot);
@@ -249,7 +249,7 @@ class Walk {
       here = hn::And(here, hn::And(hn::Ge(high_post, hn::Set(d, reader_.first_position(low_k + 1))),
                                    hn::Le(high_post, hn::Set(d, reader_.last_position(low_k + 1)))));
       here = hn::And(here, hn::And(active_, in_front(c.x)));
-      // A path that begins at the eye's foot has nothing before it.
+      // A path that begins at the camera's foot has nothing before it.
       here = hn::And(here, outward<kUp>(c.x));
       pass(here, c.x, c.height);
       const V x = hn::Set(d, static_cast<T>(next_k));

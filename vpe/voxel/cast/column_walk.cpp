@@ -27,7 +27,7 @@ struct Cell {
   double v1;
 };
 
-// Steepest slope from the eye to anything within `radius_m` of the centre at central angles [near, far].
+// Steepest slope from the camera to anything within `radius_m` of the centre at central angles [near, far].
 double steepest(double radius_m, double distance_m, double near, double far) {
   const auto slope = [&](double angle) {
     const double sine = std::sin(angle);
@@ -42,13 +42,13 @@ double steepest(double radius_m, double distance_m, double near, double far) {
 
 }  // namespace
 
-ColumnWalk::ColumnWalk(const paging::Surface& surface, const ColumnEye& eye, double exaggeration,
+ColumnWalk::ColumnWalk(const paging::Surface& surface, const ColumnCamera& camera, double exaggeration,
                        const CellRule& rule)
     : surface_(surface),
       tree_(surface.planet().tree()),
-      eye_(eye),
+      camera_(camera),
       exaggeration_(exaggeration),
-      highest_m_(eye.radius_m + exaggeration * (surface.planet().meta().highest_radius_m - eye.radius_m)),
+      highest_m_(camera.radius_m + exaggeration * (surface.planet().meta().highest_radius_m - camera.radius_m)),
       rule_(rule),
       bounds_(tree_.size()),
       ends_(tree_.size()) {
@@ -69,7 +69,7 @@ ColumnWalk::Angles ColumnWalk::angles(lod::TileTree::Index tile) const {
   }
   constexpr double kSlack = 1e-9;
   const double opening = std::acos(std::clamp(cosine, -1.0, 1.0)) + kSlack;
-  const double angle = std::atan2(glm::length(glm::cross(eye_.up, axis)), glm::dot(eye_.up, axis));
+  const double angle = std::atan2(glm::length(glm::cross(camera_.up, axis)), glm::dot(camera_.up, axis));
   return {std::max(0.0, angle - opening), angle + opening};
 }
 
@@ -77,8 +77,8 @@ float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
   const float known = bounds_[tile].load(std::memory_order_relaxed);
   if (!std::isnan(known)) return known;
   const Angles at = angles(tile);
-  const double top = (eye_.radius_m + exaggeration_ * tree_[tile].max_height_m) * (1 + 1e-12);
-  const double bound = steepest(top, eye_.distance_m, at.near, at.far);
+  const double top = (camera_.radius_m + exaggeration_ * tree_[tile].max_height_m) * (1 + 1e-12);
+  const double bound = steepest(top, camera_.distance_m, at.near, at.far);
   // Upward to float.
   const float rounded = std::nextafter(static_cast<float>(bound), std::numeric_limits<float>::infinity());
   bounds_[tile].store(rounded, std::memory_order_relaxed);
@@ -88,21 +88,21 @@ float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
 // To the shell that the tile's posts lie in.
 double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
-  const double low = eye_.radius_m + exaggeration_ * info.min_height_m;
-  const double high = eye_.radius_m + exaggeration_ * info.max_height_m;
-  const double along = eye_.distance_m * std::cos(angles(tile).near);
+  const double low = camera_.radius_m + exaggeration_ * info.min_height_m;
+  const double high = camera_.radius_m + exaggeration_ * info.max_height_m;
+  const double along = camera_.distance_m * std::cos(angles(tile).near);
   const double radius = std::clamp(along, low, high);
-  return std::sqrt(std::max(0.0, eye_.distance_m * eye_.distance_m + radius * radius - 2 * radius * along));
+  return std::sqrt(std::max(0.0, camera_.distance_m * camera_.distance_m + radius * radius - 2 * radius * along));
 }
 
 double ColumnWalk::measured_error_m(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
   if (!info.posts_terms.known()) return kInfinite;
-  return tree_.error_m(info, info.posts_terms.terms(), exaggeration_);
+  return tree_.geometric_error_m(info, info.posts_terms.terms(), exaggeration_);
 }
 
-double ColumnWalk::in_picture_px(double error_m, lod::TileTree::Index tile) const {
-  return error_m * rule_.focal_px / least_distance_m(tile);
+double ColumnWalk::in_image_px(double geometric_error_m, lod::TileTree::Index tile) const {
+  return geometric_error_m * rule_.focal_px / least_distance_m(tile);
 }
 
 bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
@@ -111,9 +111,9 @@ bool ColumnWalk::ends_at(lod::TileTree::Index tile) const {
   if (!(rule_.cell_px > 0)) return false;
   const unsigned known = ends_[tile].load(std::memory_order_relaxed);
   if ((known & kKnown) != 0) return (known & kYes) != 0;
-  const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
+  const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
   const bool fine = info.posts_terms.known()
-                        ? in_picture_px(measured_error_m(tile), tile) <= rule_.cell_px
+                        ? in_image_px(measured_error_m(tile), tile) <= rule_.cell_px
                         : spacing * rule_.focal_px <= rule_.cell_px * least_distance_m(tile);
   ends_[tile].fetch_or(static_cast<std::uint8_t>(fine ? kKnown | kYes : kKnown), std::memory_order_relaxed);
   return fine;
@@ -133,18 +133,18 @@ ColumnWalk::Used ColumnWalk::used() const {
     if (used.tiles_by_level.size() <= level) used.tiles_by_level.resize(level + 1);
     ++used.tiles_by_level[level];
     if (!info.has_children) continue;
-    double error_m = measured_error_m(tile);
-    if (!std::isfinite(error_m)) {
+    double geometric_error_m = measured_error_m(tile);
+    if (!std::isfinite(geometric_error_m)) {
       // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
       // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
       // are up to sqrt(2) times the nominal spacing apart.
-      const double spacing = lod::nominal_side_m(info.key.level, eye_.radius_m) / tree_.shape().intervals();
+      const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
       const double reach = std::sqrt(2.0) * spacing;
-      const double sag = reach * reach / (4 * eye_.radius_m);
-      error_m = 2 * exaggeration_ * info.steepest_slope * reach + sag + tree_.edge_shift_m(info, exaggeration_);
+      const double sagitta = reach * reach / (4 * camera_.radius_m);
+      geometric_error_m = 2 * exaggeration_ * info.steepest_slope * reach + sagitta + tree_.edge_shift_m(info, exaggeration_);
     }
-    used.error_m = std::max(used.error_m, error_m);
-    used.error_px = std::max(used.error_px, in_picture_px(error_m, tile));
+    used.geometric_error_m = std::max(used.geometric_error_m, geometric_error_m);
+    used.screen_space_error_px = std::max(used.screen_space_error_px, in_image_px(geometric_error_m, tile));
   }
   return used;
 }
@@ -153,23 +153,23 @@ void ColumnWalk::Used::add(const Used& other) {
   tiles_by_level.resize(std::max(tiles_by_level.size(), other.tiles_by_level.size()));
   for (std::size_t level = 0; level < other.tiles_by_level.size(); ++level)
     tiles_by_level[level] = std::max(tiles_by_level[level], other.tiles_by_level[level]);
-  error_px = std::max(error_px, other.error_px);
-  error_m = std::max(error_m, other.error_m);
+  screen_space_error_px = std::max(screen_space_error_px, other.screen_space_error_px);
+  geometric_error_m = std::max(geometric_error_m, other.geometric_error_m);
 }
 
 // One group on one face after the other.
-class GroupWalk : public LatticeSource {
+class GroupWalk : public HeightGridSource {
  public:
-  GroupWalk(const ColumnWalk& walk, const Rows& rows, LatticeShelf& shelf, ColumnGroup& group)
-      : walk_(walk), tree_(walk.tree_), rows_(rows), shelf_(shelf), group_(group) {}
+  GroupWalk(const ColumnWalk& walk, const Rows& rows, ThreadLocalTiles& tiles, ColumnGroup& group)
+      : walk_(walk), tree_(walk.tree_), rows_(rows), tiles_(tiles), group_(group) {}
 
   void go(const glm::dvec3* azimuth) {
     update_least_slope(rows_, group_);
-    // The face that the eye is above comes first, then as they are turned away (docs/rays.md).
+    // The face that the camera is above comes first, then as they are turned away (docs/rays.md).
     std::array<int, mars::kFaces> order{};
     for (int f = 0; f < mars::kFaces; ++f) order[static_cast<std::size_t>(f)] = f;
     const auto turned = [&](int f) {
-      return glm::dot(walk_.eye_.up, mars::face_axes(static_cast<mars::Face>(f)).out);
+      return glm::dot(walk_.camera_.up, mars::face_axes(static_cast<mars::Face>(f)).out);
     };
     std::sort(order.begin(), order.end(), [&](int a, int b) { return turned(a) > turned(b); });
     for (int f : order) {
@@ -180,11 +180,11 @@ class GroupWalk : public LatticeSource {
     }
   }
 
-  const LatticeLines<float>& lines(Family family) override {
-    return shelf_.lattices(tile_, family).lines(part_i_, part_j_);
+  const HeightGridLines<float>& lines(LineFamily family) override {
+    return tiles_.grids(tile_, family).lines(part_i_, part_j_);
   }
-  const LatticeLines<double>& exact_lines(Family family) override {
-    return shelf_.exact_lattices(tile_, family).lines(part_i_, part_j_);
+  const HeightGridLines<double>& exact_lines(LineFamily family) override {
+    return tiles_.exact_grids(tile_, family).lines(part_i_, part_j_);
   }
 
  private:
@@ -198,7 +198,7 @@ class GroupWalk : public LatticeSource {
     const auto in_face = [&](const glm::dvec3& x) {
       return glm::dvec3(glm::dot(x, axes.right), glm::dot(x, axes.up), glm::dot(x, axes.out));
     };
-    up_ = in_face(walk_.eye_.up);
+    up_ = in_face(walk_.camera_.up);
     for (int lane = 0; lane < kMaxLanes; ++lane) {
       const glm::dvec3 a = in_face(azimuth[std::min(lane, group_.columns - 1)]);
       const glm::dvec3 n = glm::cross(a, up_);
@@ -233,7 +233,7 @@ class GroupWalk : public LatticeSource {
     return false;
   }
 
-  // The quarters of a cell from near to far: at each of its middle lines the side of the eye's foot is nearer.
+  // The quarters of a cell from near to far: at each of its middle lines the side of the camera's foot is nearer.
   template <typename Visit>
   void quarters(const Cell& cell, double um, double vm, Visit&& visit_quarter) {
     const bool east_first = up_.x - um * up_.z >= 0;
@@ -252,7 +252,7 @@ class GroupWalk : public LatticeSource {
     if (walk_.ends_at(tile)) {
       tile_ = tile;
       walk_.mark_used(tile);
-      const int per_side = lattices_per_side(info.key.level, tree_.shape().intervals());
+      const int per_side = grids_per_side(info.key.level, tree_.shape().intervals());
       visit_parts(cell, 0, 0, per_side, per_side);
       return;
     }
@@ -271,8 +271,8 @@ class GroupWalk : public LatticeSource {
       part_i_ = i;
       part_j_ = j;
       const int n = tree_.shape().intervals() / per_side;
-      const LatticeFrame frame{n, cell.u0, (cell.u1 - cell.u0) / n, cell.v0, (cell.v1 - cell.v0) / n};
-      walk_lattice(frame, *this, walk_.eye_, up_, rows_, group_);
+      const HeightGridFrame frame{n, cell.u0, (cell.u1 - cell.u0) / n, cell.v0, (cell.v1 - cell.v0) / n};
+      walk_grid(frame, *this, walk_.camera_, up_, rows_, group_);
       update_least_slope(rows_, group_);
       return;
     }
@@ -289,7 +289,7 @@ class GroupWalk : public LatticeSource {
   const ColumnWalk& walk_;
   const lod::TileTree& tree_;
   const Rows& rows_;
-  LatticeShelf& shelf_;
+  ThreadLocalTiles& tiles_;
   ColumnGroup& group_;
   glm::dvec3 up_{0, 0, 1};
   glm::dvec3 side_[2]{};
@@ -299,9 +299,9 @@ class GroupWalk : public LatticeSource {
   int part_j_ = 0;
 };
 
-void ColumnWalk::cast(const glm::dvec3* azimuth, const Rows& rows, LatticeShelf& shelf,
+void ColumnWalk::cast(const glm::dvec3* azimuth, const Rows& rows, ThreadLocalTiles& tiles,
                       ColumnGroup& group) const {
-  GroupWalk(*this, rows, shelf, group).go(azimuth);
+  GroupWalk(*this, rows, tiles, group).go(azimuth);
 }
 
 }  // namespace vpe::voxel

@@ -11,7 +11,7 @@
 
 namespace vpe::voxel {
 
-// Which tiles are fine enough: those whose posts, drawn as a grid, are within cell_px of S in the picture
+// Which tiles are fine enough: those whose posts, drawn as a grid, are within cell_px of S in the image
 // wherever they are (so crests sink by no more than that). In planet files that do not say how far they are
 // (before 1.2): those whose posts are at most cell_px apart there.
 struct CellRule {
@@ -22,14 +22,14 @@ struct CellRule {
 // Prepared for one eye and one exaggeration. Threads may share it.
 class ColumnWalk {
  public:
-  // The eye stands above S: eye.distance_m > eye.ground_m.
-  ColumnWalk(const paging::Surface& surface, const ColumnEye& eye, double exaggeration, const CellRule& rule);
+  // The camera stands above S: camera.distance_m > camera.ground_m.
+  ColumnWalk(const paging::Surface& surface, const ColumnCamera& camera, double exaggeration, const CellRule& rule);
 
-  // A group of columns from their azimuth vectors (unit, body-fixed, normal to eye.up), neighbours in order.
+  // A group of columns from their azimuth vectors (unit, body-fixed, normal to camera.up), neighbours in order.
   // Rows, fans, and buffers of `group` are set before. Resolves all rows that see ground.
-  void cast(const glm::dvec3* azimuth, const Rows& rows, LatticeShelf& shelf, ColumnGroup& group) const;
+  void cast(const glm::dvec3* azimuth, const Rows& rows, ThreadLocalTiles& tiles, ColumnGroup& group) const;
 
-  const ColumnEye& eye() const { return eye_; }
+  const ColumnCamera& camera() const { return camera_; }
   const lod::TileTree& tree() const { return tree_; }
 
   // Whether the tile's own posts are cast: it is fine enough, or the finest there.
@@ -41,10 +41,10 @@ class ColumnWalk {
   // What the casts so far have used.
   struct Used {
     std::vector<int> tiles_by_level;  // index 0 = level 0
-    // Bound of |drawn - S| in the picture, pixels: 0 when all tiles were the finest.
-    double error_px = 0;
-    double error_m = 0;  // largest of the tiles
-    // Of several pictures of nearly one view: at least the tiles of each, and all their errors.
+    // Bound of |drawn - S| in the image, pixels: 0 when all tiles were the finest.
+    double screen_space_error_px = 0;
+    double geometric_error_m = 0;  // largest of the tiles
+    // Of several images of nearly one view: at least the tiles of each, and all their errors.
     void add(const Used& other);
   };
   Used used() const;
@@ -65,15 +65,15 @@ class ColumnWalk {
 
   // Bound of |its posts as a grid - S|; infinite where the planet file does not say.
   double measured_error_m(lod::TileTree::Index tile) const;
-  // What such an error makes in the picture at most.
-  double in_picture_px(double error_m, lod::TileTree::Index tile) const;
+  // What such an error makes in the image at most.
+  double in_image_px(double geometric_error_m, lod::TileTree::Index tile) const;
 
   // No ray into the tile is steeper than this many times upward.
   float slope_bound(lod::TileTree::Index tile) const;
 
   const paging::Surface& surface_;
   const lod::TileTree& tree_;
-  ColumnEye eye_;
+  ColumnCamera camera_;
   double exaggeration_;
   double highest_m_;
   CellRule rule_;

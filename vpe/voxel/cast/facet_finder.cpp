@@ -18,7 +18,7 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   const lod::TileTree& tree = walk_.tree();
   const mars::ChartPoint place = mars::chart_point(place_m);
   if (found_ && place.face == facets_.face) {
-    const LatticeFrame& f = facets_.frame;
+    const HeightGridFrame& f = facets_.frame;
     const double x = (place.u - f.u0) / f.du;
     const double y = (place.v - f.v0) / f.dv;
     if (x >= 0 && x <= f.intervals && y >= 0 && y <= f.intervals) return facets_;
@@ -46,29 +46,29 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
   };
   while (!walk_.ends_at(tile)) tile = tree.first_child(tile) + halve();
   const lod::TileKey& key = tree[tile].key;
-  const int per_side = lattices_per_side(key.level, tree.shape().intervals());
+  const int per_side = grids_per_side(key.level, tree.shape().intervals());
   for (int k = 1; k < per_side; k *= 2) halve();
   i -= key.i * per_side;
   j -= key.j * per_side;
   facets_.id = (std::uint64_t{tile} << 16) + static_cast<std::uint64_t>(j * per_side + i);
   facets_.face = place.face;
-  LatticeFrame& f = facets_.frame;
+  HeightGridFrame& f = facets_.frame;
   f.intervals = tree.shape().intervals() / per_side;
   f.u0 = u0;
   f.du = (u1 - u0) / f.intervals;
   f.v0 = v0;
   f.dv = (v1 - v0) / f.intervals;
   const mars::FaceAxes& axes = mars::face_axes(place.face);
-  const double z = glm::dot(walk_.eye().up, axes.out);
-  const bool exact = z > 0 && needs_exact(f, walk_.eye()) &&
-                     near((glm::dot(walk_.eye().up, axes.right) / z - f.u0) / f.du, f.intervals) &&
-                     near((glm::dot(walk_.eye().up, axes.up) / z - f.v0) / f.dv, f.intervals);
+  const double z = glm::dot(walk_.camera().up, axes.out);
+  const bool exact = z > 0 && needs_exact(f, walk_.camera()) &&
+                     near((glm::dot(walk_.camera().up, axes.right) / z - f.u0) / f.du, f.intervals) &&
+                     near((glm::dot(walk_.camera().up, axes.up) / z - f.v0) / f.dv, f.intervals);
   facets_.exact_lines = nullptr;
   if (exact) {
-    facets_.family = Family::kColumns;
-    facets_.exact_lines = &shelf_.exact_lattices(tile, facets_.family).lines(i, j);
+    facets_.family = LineFamily::kColumns;
+    facets_.exact_lines = &tiles_.exact_grids(tile, facets_.family).lines(i, j);
   } else {
-    facets_.lines = &shelf_.any_lattices(tile, facets_.family).lines(i, j);
+    facets_.lines = &tiles_.any_grids(tile, facets_.family).lines(i, j);
   }
   found_ = true;
   return facets_;

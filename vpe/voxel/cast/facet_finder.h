@@ -11,13 +11,13 @@ namespace vpe::voxel {
 class FacetFinder : public FacetSource {
  public:
   // Lattices that the walk casts.
-  FacetFinder(const ColumnWalk& walk, LatticeShelf& shelf) : walk_(walk), shelf_(shelf) {}
+  FacetFinder(const ColumnWalk& walk, ThreadLocalTiles& tiles) : walk_(walk), tiles_(tiles) {}
 
   const Facets& at(const glm::dvec3& place_m) override;
 
  private:
   const ColumnWalk& walk_;
-  LatticeShelf& shelf_;
+  ThreadLocalTiles& tiles_;
   Facets facets_;
   bool found_ = false;
 };

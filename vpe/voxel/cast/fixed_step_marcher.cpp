@@ -13,8 +13,8 @@ namespace {
 
 // H of a post, whatever kind of lattice.
 double post(const Facets& f, int x, int y) {
-  const int line = f.family == Family::kColumns ? x : (f.family == Family::kRows ? y : x - y);
-  const int position = f.family == Family::kColumns ? y : x;
+  const int line = f.family == LineFamily::kColumns ? x : (f.family == LineFamily::kRows ? y : x - y);
+  const int position = f.family == LineFamily::kColumns ? y : x;
   return f.exact_lines != nullptr ? f.exact_lines->line(line)[position]
                                   : static_cast<double>(f.lines->line(line)[position]);
 }
@@ -49,48 +49,48 @@ Sample sample(const glm::dvec3& place, FacetFinder& finder, double radius_m) {
 }
 
 // Between a place above S and one below it, by halving.
-double crossing(const glm::dvec3& eye, const glm::dvec3& ray, double above, double below, FacetFinder& finder,
+double crossing(const glm::dvec3& camera, const glm::dvec3& ray, double above, double below, FacetFinder& finder,
                 double radius_m) {
   constexpr double kEnough = 1e-8;
   while (below - above > kEnough * below) {
     const double middle = 0.5 * (above + below);
-    (sample(eye + middle * ray, finder, radius_m).rise_m <= 0 ? below : above) = middle;
+    (sample(camera + middle * ray, finder, radius_m).rise_m <= 0 ? below : above) = middle;
   }
   return below;
 }
 
 }  // namespace
 
-double march(const glm::dvec3& eye, const glm::dvec3& ray, double begin_m, double top_m, FacetFinder& finder,
+double march(const glm::dvec3& camera, const glm::dvec3& ray, double begin_m, double top_m, FacetFinder& finder,
              double radius_m) {
-  const double half = glm::dot(eye, ray);
-  const double rest = half * half - glm::dot(eye, eye) + top_m * top_m;
+  const double half = glm::dot(camera, ray);
+  const double rest = half * half - glm::dot(camera, camera) + top_m * top_m;
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (!(rest >= 0)) return kNone;
   const double end = -half + std::sqrt(rest);
   double t = std::max(begin_m, -half - std::sqrt(rest));
   double last_t = t;
   for (bool first = true; t <= end; first = false) {
-    const Sample s = sample(eye + t * ray, finder, radius_m);
-    if (s.rise_m <= 0) return first ? t : crossing(eye, ray, last_t, t, finder, radius_m);
+    const Sample s = sample(camera + t * ray, finder, radius_m);
+    if (s.rise_m <= 0) return first ? t : crossing(camera, ray, last_t, t, finder, radius_m);
     last_t = t;
     t += kPlainStep * s.spacing_m;
   }
   return kNone;
 }
 
-void cast_plain(const core::View& view, const ColumnWalk& walk, Desks& desks, base::ThreadPool& pool,
+void march_fixed_steps(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool,
                 std::span<float> range_m) {
   const core::SubRectangle part = core::drawn_part(view);
   const auto width = static_cast<std::size_t>(part.width);
   pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
-    const Desks::Use use(desks);
-    FacetFinder finder(walk, use.shelf());
+    const ScratchPool::Use use(scratches);
+    FacetFinder finder(walk, use.tiles());
     for (std::size_t x = 0; x < width; ++x) {
       const glm::dvec3 ray =
           core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);
       range_m[row * width + x] =
-          static_cast<float>(march(view.eye.eye_m, ray, 0, walk.highest_m(), finder, walk.eye().radius_m));
+          static_cast<float>(march(view.camera.position_m, ray, 0, walk.highest_m(), finder, walk.camera().radius_m));
     }
   });
 }

@@ -28,10 +28,10 @@ struct Shape {
   }
 };
 
-Shape shape_of(int intervals, Family family) {
+Shape shape_of(int intervals, LineFamily family) {
   Shape s{};
   s.side = intervals + 1;
-  s.first_line = family == Family::kDiagonals ? -intervals : 0;
+  s.first_line = family == LineFamily::kDiagonals ? -intervals : 0;
   s.last_line = intervals;
   s.first_block = floor_div(s.first_line, kBlockLines);
   s.block_rows = floor_div(s.last_line, kBlockLines) - s.first_block + 1;
@@ -44,8 +44,8 @@ struct Span {
   int begin;
   int end;  // past the last
 };
-Span span_of(int k, int intervals, Family family) {
-  if (family != Family::kDiagonals) return {0, intervals + 1};
+Span span_of(int k, int intervals, LineFamily family) {
+  if (family != LineFamily::kDiagonals) return {0, intervals + 1};
   return {std::max(0, k), intervals + std::min(0, k) + 1};
 }
 
@@ -54,14 +54,14 @@ struct Place {
   int x;
   int y;
 };
-Place place_of(int k, int p, Family family) {
-  if (family == Family::kColumns) return {k, p};
-  if (family == Family::kRows) return {p, k};
+Place place_of(int k, int p, LineFamily family) {
+  if (family == LineFamily::kColumns) return {k, p};
+  if (family == LineFamily::kRows) return {p, k};
   return {p, p - k};
 }
 
 template <typename T>
-void fill_maxima(const LatticeLines<T>& lines, const Shape& shape, int intervals, Family family, T* out) {
+void fill_maxima(const HeightGridLines<T>& lines, const Shape& shape, int intervals, LineFamily family, T* out) {
   std::fill_n(out, shape.block_rows * shape.blocks, std::numeric_limits<T>::lowest());
   for (int k = shape.first_line; k <= shape.last_line; ++k) {
     const Span span = span_of(k, intervals, family);
@@ -91,15 +91,15 @@ DepthPlane plane_of(std::size_t x0, std::size_t y0, int n, const std::vector<dou
 
 }  // namespace
 
-int lattices_per_side(int level, int intervals) {
+int grids_per_side(int level, int intervals) {
   return level >= kKnotLevel ? 1 : std::min(intervals, 1 << (kKnotLevel - level));
 }
 
 template <typename T>
-TileLattices<T>::TileLattices(const paging::TileHeights& heights, double radius_m, double exaggeration,
-                              Family family) {
+TileHeightGrids<T>::TileHeightGrids(const paging::TileHeights& heights, double radius_m, double exaggeration,
+                              LineFamily family) {
   const lod::Posts& posts = heights.posts;
-  per_side_ = lattices_per_side(posts.key.level, posts.intervals);
+  per_side_ = grids_per_side(posts.key.level, posts.intervals);
   const lod::GridLines grid = lod::grid_lines(posts.key, posts.intervals);
   const auto side = static_cast<std::size_t>(posts.side());
   std::vector<double> w(side * side);
@@ -120,7 +120,7 @@ TileLattices<T>::TileLattices(const paging::TileHeights& heights, double radius_
       const DepthPlane plane = plane_of(x0, y0, n, w, side);
       T* const first = store + 1;
       T* const maxima = store + shape.posts();
-      LatticeLines<T> lines{plane, first, maxima, shape.side, shape.first_block, shape.blocks};
+      HeightGridLines<T> lines{plane, first, maxima, shape.side, shape.first_block, shape.blocks};
       for (int k = shape.first_line; k <= shape.last_line; ++k) {
         const Span span = span_of(k, n, family);
         T* line = first + (lines.line(k) - first);
@@ -138,11 +138,11 @@ TileLattices<T>::TileLattices(const paging::TileHeights& heights, double radius_
 }
 
 template <typename T>
-std::size_t TileLattices<T>::bytes() const {
-  return sizeof(*this) + storage_.capacity() * sizeof(T) + lines_.capacity() * sizeof(LatticeLines<T>);
+std::size_t TileHeightGrids<T>::bytes() const {
+  return sizeof(*this) + storage_.capacity() * sizeof(T) + lines_.capacity() * sizeof(HeightGridLines<T>);
 }
 
-template class TileLattices<float>;
-template class TileLattices<double>;
+template class TileHeightGrids<float>;
+template class TileHeightGrids<double>;
 
 }  // namespace vpe::voxel

@@ -19,13 +19,13 @@
 
 namespace vpe::voxel {
 
-enum class Family : std::uint8_t { kColumns, kRows, kDiagonals };  // x = k, y = k, x - y = k
+enum class LineFamily : std::uint8_t { kColumns, kRows, kDiagonals };  // x = k, y = k, x - y = k
 inline constexpr int kFamilies = 3;
 
 // Lines in a block of the maximum pyramid.
 inline constexpr int kBlockLines = 16;
 
-struct LatticeFrame {
+struct HeightGridFrame {
   int intervals = 0;
   double u0 = 0;
   double du = 0;
@@ -43,7 +43,7 @@ struct DepthPlane {
 // Posts of one family. Line k holds the posts of position p (y, x and x for the three families); diagonals
 // k >= 0 share a row with k - side.
 template <typename T>
-struct LatticeLines {
+struct HeightGridLines {
   DepthPlane reference;
   const T* posts = nullptr;  // of line 0; one before and kReadAhead after all lines may be read
   const T* block_max = nullptr;
@@ -63,28 +63,28 @@ inline constexpr int kReadAhead = 64;
 
 // The lattices of one tile, in one family; lattice (i, j) of per_side^2 at j * per_side + i.
 template <typename T>
-class TileLattices {
+class TileHeightGrids {
  public:
-  TileLattices(const paging::TileHeights& heights, double radius_m, double exaggeration, Family family);
-  TileLattices(const TileLattices&) = delete;
-  TileLattices& operator=(const TileLattices&) = delete;
+  TileHeightGrids(const paging::TileHeights& heights, double radius_m, double exaggeration, LineFamily family);
+  TileHeightGrids(const TileHeightGrids&) = delete;
+  TileHeightGrids& operator=(const TileHeightGrids&) = delete;
 
   int per_side() const { return per_side_; }
-  const LatticeLines<T>& lines(int i, int j) const {
+  const HeightGridLines<T>& lines(int i, int j) const {
     return lines_[static_cast<std::size_t>(j * per_side_ + i)];
   }
   std::size_t bytes() const;
 
  private:
   int per_side_ = 1;
-  std::vector<LatticeLines<T>> lines_;
+  std::vector<HeightGridLines<T>> lines_;
   std::vector<T> storage_;
 };
 
-extern template class TileLattices<float>;
-extern template class TileLattices<double>;
+extern template class TileHeightGrids<float>;
+extern template class TileHeightGrids<double>;
 
 // Lattices along a side of a tile.
-int lattices_per_side(int level, int intervals);
+int grids_per_side(int level, int intervals);
 
 }  // namespace vpe::voxel

@@ -4,7 +4,7 @@ namespace vpe::voxel {
 
 namespace {
 
-// Few tiles are about the eye's foot.
+// Few tiles are about the camera's foot.
 constexpr double kExactShare = 0.05;
 
 std::size_t part(std::size_t bytes, double share) {
@@ -13,16 +13,16 @@ std::size_t part(std::size_t bytes, double share) {
 
 }  // namespace
 
-LatticeStore::LatticeStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
+HeightGridStore::HeightGridStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
       budget_(budget_bytes),
-      lattices_(part(budget_bytes, 1.0 - kExactShare)),
+      grids_(part(budget_bytes, 1.0 - kExactShare)),
       exact_(part(budget_bytes, kExactShare)) {}
 
 template <typename T>
-std::shared_ptr<const TileLattices<T>> LatticeStore::get(Cache<T>& cache, const Key& key) const {
+std::shared_ptr<const TileHeightGrids<T>> HeightGridStore::get(Cache<T>& cache, const Key& key) const {
   return cache.get(key, [&] {
-    auto made = std::make_shared<const TileLattices<T>>(
+    auto made = std::make_shared<const TileHeightGrids<T>>(
         planet_->heights(planet_->tree()[key.tile].key, key.exaggeration),
         planet_->radius_m(), key.exaggeration, key.family);
     const std::size_t bytes = made->bytes();
@@ -32,49 +32,49 @@ std::shared_ptr<const TileLattices<T>> LatticeStore::get(Cache<T>& cache, const 
   });
 }
 
-std::shared_ptr<const TileLattices<float>> LatticeStore::lattices(lod::TileTree::Index tile, Family family,
+std::shared_ptr<const TileHeightGrids<float>> HeightGridStore::grids(lod::TileTree::Index tile, LineFamily family,
                                                                   double exaggeration) const {
-  return get(lattices_, {tile, family, exaggeration});
+  return get(grids_, {tile, family, exaggeration});
 }
 
-std::shared_ptr<const TileLattices<double>> LatticeStore::exact_lattices(lod::TileTree::Index tile,
-                                                                         Family family,
+std::shared_ptr<const TileHeightGrids<double>> HeightGridStore::exact_grids(lod::TileTree::Index tile,
+                                                                         LineFamily family,
                                                                          double exaggeration) const {
   return get(exact_, {tile, family, exaggeration});
 }
 
-std::size_t LatticeStore::bytes_resident() const { return lattices_.bytes() + exact_.bytes(); }
+std::size_t HeightGridStore::bytes_resident() const { return grids_.bytes() + exact_.bytes(); }
 
-std::shared_ptr<const TileLattices<float>> LatticeStore::any_lattices(lod::TileTree::Index tile,
+std::shared_ptr<const TileHeightGrids<float>> HeightGridStore::any_grids(lod::TileTree::Index tile,
                                                                       double exaggeration,
-                                                                      Family& family) const {
-  for (const Family f : {Family::kColumns, Family::kRows, Family::kDiagonals}) {
+                                                                      LineFamily& family) const {
+  for (const LineFamily f : {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals}) {
     family = f;
-    if (auto found = lattices_.find({tile, f, exaggeration})) return found;
+    if (auto found = grids_.find({tile, f, exaggeration})) return found;
   }
-  family = Family::kColumns;
-  return lattices(tile, family, exaggeration);
+  family = LineFamily::kColumns;
+  return grids(tile, family, exaggeration);
 }
 
-const TileLattices<float>& LatticeShelf::lattices(lod::TileTree::Index tile, Family family) {
+const TileHeightGrids<float>& ThreadLocalTiles::grids(lod::TileTree::Index tile, LineFamily family) {
   Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
-  if (!slot.is(tile, family)) slot = {tile, family, store_.lattices(tile, family, exaggeration_)};
+  if (!slot.is(tile, family)) slot = {tile, family, store_.grids(tile, family, exaggeration_)};
   return *slot.held;
 }
 
-const TileLattices<double>& LatticeShelf::exact_lattices(lod::TileTree::Index tile, Family family) {
+const TileHeightGrids<double>& ThreadLocalTiles::exact_grids(lod::TileTree::Index tile, LineFamily family) {
   Slot<double>& slot = exact_[number(tile, family) % exact_.size()];
-  if (!slot.is(tile, family)) slot = {tile, family, store_.exact_lattices(tile, family, exaggeration_)};
+  if (!slot.is(tile, family)) slot = {tile, family, store_.exact_grids(tile, family, exaggeration_)};
   return *slot.held;
 }
 
-const TileLattices<float>& LatticeShelf::any_lattices(lod::TileTree::Index tile, Family& family) {
-  for (const Family f : {Family::kColumns, Family::kRows, Family::kDiagonals}) {
+const TileHeightGrids<float>& ThreadLocalTiles::any_grids(lod::TileTree::Index tile, LineFamily& family) {
+  for (const LineFamily f : {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals}) {
     family = f;
     const Slot<float>& slot = slots_[number(tile, f) % slots_.size()];
     if (slot.is(tile, f)) return *slot.held;
   }
-  auto found = store_.any_lattices(tile, exaggeration_, family);
+  auto found = store_.any_grids(tile, exaggeration_, family);
   Slot<float>& slot = slots_[number(tile, family) % slots_.size()];
   slot = {tile, family, std::move(found)};
   return *slot.held;

@@ -15,22 +15,22 @@
 namespace vpe::voxel {
 
 // Any thread may call any member. What is returned stays as it is for as long as it is held.
-class LatticeStore {
+class HeightGridStore {
  public:
-  LatticeStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
+  HeightGridStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
   const paging::PlanetFile& planet() const { return *planet_; }
 
   // Throw paging::PlanetError for a tile that cannot be read.
-  std::shared_ptr<const TileLattices<float>> lattices(lod::TileTree::Index tile, Family family,
+  std::shared_ptr<const TileHeightGrids<float>> grids(lod::TileTree::Index tile, LineFamily family,
                                                       double exaggeration) const;
-  // In double: for the tiles about the eye's foot.
-  std::shared_ptr<const TileLattices<double>> exact_lattices(lod::TileTree::Index tile, Family family,
+  // In double: for the tiles about the camera's foot.
+  std::shared_ptr<const TileHeightGrids<double>> exact_grids(lod::TileTree::Index tile, LineFamily family,
                                                              double exaggeration) const;
 
   // In whatever family is there; the same posts in all of them.
-  std::shared_ptr<const TileLattices<float>> any_lattices(lod::TileTree::Index tile, double exaggeration,
-                                                          Family& family) const;
+  std::shared_ptr<const TileHeightGrids<float>> any_grids(lod::TileTree::Index tile, double exaggeration,
+                                                          LineFamily& family) const;
 
   std::size_t bytes_resident() const;
   std::size_t budget_bytes() const { return budget_; }
@@ -44,7 +44,7 @@ class LatticeStore {
  private:
   struct Key {
     lod::TileTree::Index tile;
-    Family family;
+    LineFamily family;
     double exaggeration;
     bool operator==(const Key&) const = default;
   };
@@ -55,41 +55,41 @@ class LatticeStore {
     }
   };
   template <typename T>
-  using Cache = vpe::base::LruCache<Key, TileLattices<T>, KeyHash>;
+  using Cache = vpe::base::LruCache<Key, TileHeightGrids<T>, KeyHash>;
   template <typename T>
-  std::shared_ptr<const TileLattices<T>> get(Cache<T>& cache, const Key& key) const;
+  std::shared_ptr<const TileHeightGrids<T>> get(Cache<T>& cache, const Key& key) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::size_t budget_;
   mutable std::atomic<std::int64_t> tiles_made_{0};
   mutable std::atomic<std::size_t> bytes_made_{0};
-  mutable Cache<float> lattices_;
+  mutable Cache<float> grids_;
   mutable Cache<double> exact_;
 };
 
 // What one thread used last: finding it again takes no lock.
-class LatticeShelf {
+class ThreadLocalTiles {
  public:
-  LatticeShelf(const LatticeStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
+  ThreadLocalTiles(const HeightGridStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
 
   // Valid until the next call.
-  const TileLattices<float>& lattices(lod::TileTree::Index tile, Family family);
-  const TileLattices<double>& exact_lattices(lod::TileTree::Index tile, Family family);
-  const TileLattices<float>& any_lattices(lod::TileTree::Index tile, Family& family);
+  const TileHeightGrids<float>& grids(lod::TileTree::Index tile, LineFamily family);
+  const TileHeightGrids<double>& exact_grids(lod::TileTree::Index tile, LineFamily family);
+  const TileHeightGrids<float>& any_grids(lod::TileTree::Index tile, LineFamily& family);
 
  private:
   template <typename T>
   struct Slot {
     lod::TileTree::Index tile = ~lod::TileTree::Index{0};
-    Family family = Family::kColumns;
-    std::shared_ptr<const TileLattices<T>> held;
-    bool is(lod::TileTree::Index t, Family f) const { return tile == t && family == f && held; }
+    LineFamily family = LineFamily::kColumns;
+    std::shared_ptr<const TileHeightGrids<T>> held;
+    bool is(lod::TileTree::Index t, LineFamily f) const { return tile == t && family == f && held; }
   };
-  static std::size_t number(lod::TileTree::Index tile, Family family) {
+  static std::size_t number(lod::TileTree::Index tile, LineFamily family) {
     return std::size_t{tile} * kFamilies + static_cast<std::size_t>(family);
   }
 
-  const LatticeStore& store_;
+  const HeightGridStore& store_;
   double exaggeration_;
   std::array<Slot<float>, 256> slots_;
   std::array<Slot<double>, 8> exact_;

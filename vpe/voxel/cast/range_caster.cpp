@@ -20,12 +20,12 @@ std::size_t share_of(std::size_t bytes, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(bytes));
 }
 
-// Tilt up to which a round picture's columns count as vertical: below a thousandth of a pixel.
+// Tilt up to which a round image's columns count as vertical: below a thousandth of a pixel.
 constexpr double kLevel = 1e-8;
 
-// Whether the picture's columns are vertical half-planes.
+// Whether the image's columns are vertical half-planes.
 bool upright(const core::View& view, const glm::dvec3& up) {
-  if (view.projection == core::Projection::kPerspective || glm::length(view.eye.axes.up - up) > kLevel)
+  if (view.projection == core::Projection::kPerspective || glm::length(view.camera.axes.up - up) > kLevel)
     return false;
   if (view.projection == core::Projection::kCylinder) return true;
   // Rows beyond the zenith or the nadir look backward.
@@ -37,19 +37,19 @@ bool upright(const core::View& view, const glm::dvec3& up) {
   return highest < kQuarter && lowest > -kQuarter;
 }
 
-// Larger pictures are written past the caches.
+// Larger images are written past the caches.
 constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
 
-// Rows of a round picture from its lowest one, with their tables.
-struct PictureRows {
+// Rows of a round image from its lowest one, with their tables.
+struct ImageRows {
   Rows rows;
   std::vector<double> exact;
   std::vector<float> rounded;
   std::vector<float> length;
 };
 
-PictureRows picture_rows(const core::View& view, const core::SubRectangle& part) {
-  PictureRows p;
+ImageRows image_rows(const core::View& view, const core::SubRectangle& part) {
+  ImageRows p;
   p.rows.count = part.height;
   const auto finish = [&] {
     for (int r = 0; r < part.height; ++r) {
@@ -91,24 +91,24 @@ RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::
       store_(planet, share_of(budget_bytes, 1.0 - kSurfaceShare)) {}
 
 ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
-                                   std::span<float> range_m, FanCaster& fans) const {
-  const double distance = glm::length(view.eye.eye_m);
+                                   std::span<float> range_m, SectorCaster& sectors) const {
+  const double distance = glm::length(view.camera.position_m);
   if (distance > 0 && options.method != RangeOptions::Method::kEach) {
-    const glm::dvec3 up = view.eye.eye_m / distance;
-    const ColumnEye eye{up, distance, surface_.planet_radius_m(),
+    const glm::dvec3 up = view.camera.position_m / distance;
+    const ColumnCamera camera{up, distance, surface_.planet_radius_m(),
                         surface_.at(up, options.exaggeration).radius_m};
     const bool round = upright(view, up);
     const bool plain = options.method == RangeOptions::Method::kPlain;
-    if (eye.distance_m > eye.ground_m &&
+    if (camera.distance_m > camera.ground_m &&
         (plain || round || view.projection == core::Projection::kPerspective)) {
-      const ColumnWalk walk(surface_, eye, options.exaggeration, {options.cell_px, core::focal_px(view)});
-      Desks desks(store_, options.exaggeration);
+      const ColumnWalk walk(surface_, camera, options.exaggeration, {options.cell_px, core::focal_px(view)});
+      ScratchPool scratches(store_, options.exaggeration);
       if (plain) {
-        cast_plain(view, walk, desks, pool, range_m);
+        march_fixed_steps(view, walk, scratches, pool, range_m);
       } else if (round) {
-        cast_upright(view, walk, desks, pool, range_m);
+        cast_upright(view, walk, scratches, pool, range_m);
       } else {
-        fans.cast(view, walk, desks, surface_, options.exaggeration, options.cell_px == 0, pool, range_m);
+        sectors.cast(view, walk, scratches, surface_, options.exaggeration, options.cell_px == 0, pool, range_m);
       }
       return walk.used();
     }
@@ -117,24 +117,24 @@ ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& o
   return {};
 }
 
-void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, Desks& desks,
+void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
                                base::ThreadPool& pool, std::span<float> range_m) const {
   const core::SubRectangle part = core::drawn_part(view);
-  const PictureRows picture = picture_rows(view, part);
+  const ImageRows image = image_rows(view, part);
   const double level_y = 0.5 * view.height + view.principal_offset_px.y;
-  const glm::dvec3& up = walk.eye().up;
-  Sheet sheet;
-  sheet.rows = picture.rows;
-  sheet.columns = part.width;
-  sheet.stride = -static_cast<std::ptrdiff_t>(part.width);
-  sheet.out = range_m.data() - sheet.stride * (part.height - 1);
-  sheet.stream = range_m.size_bytes() > kCachedBytes;
-  sheet.set_column = [&](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+  const glm::dvec3& up = walk.camera().up;
+  ColumnBatch batch;
+  batch.rows = image.rows;
+  batch.columns = part.width;
+  batch.stride = -static_cast<std::ptrdiff_t>(part.width);
+  batch.out = range_m.data() - batch.stride * (part.height - 1);
+  batch.stream = range_m.size_bytes() > kCachedBytes;
+  batch.set_column = [&](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
     const glm::dvec3 ray = core::pixel_ray(view, part.x + column + 0.5, level_y);
     azimuth = glm::normalize(ray - glm::dot(ray, up) * up);
     group.row_end[lane] = static_cast<float>(part.height);
   };
-  cast_sheets({&sheet, 1}, walk, desks, pool);
+  cast_columns({&batch, 1}, walk, scratches, pool);
 }
 
 void RangeCaster::cast_each(const core::View& view, double exaggeration, base::ThreadPool& pool,
@@ -145,7 +145,7 @@ void RangeCaster::cast_each(const core::View& view, double exaggeration, base::T
     for (std::size_t x = 0; x < width; ++x) {
       const glm::dvec3 ray =
           core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);
-      range_m[row * width + x] = static_cast<float>(surface_.cast(view.eye.eye_m, ray, exaggeration));
+      range_m[row * width + x] = static_cast<float>(surface_.cast(view.camera.position_m, ray, exaggeration));
     }
   });
 }

@@ -11,14 +11,14 @@
 
 namespace vpe::voxel {
 
-// The facets of one lattice. Posts in float or, about the eye's foot, in double.
+// The facets of one lattice. Posts in float or, about the camera's foot, in double.
 struct Facets {
   std::uint64_t id = 0;  // of the lattice
   mars::Face face = mars::Face::kPlusX;
-  LatticeFrame frame;
-  Family family = Family::kColumns;
-  const LatticeLines<float>* lines = nullptr;
-  const LatticeLines<double>* exact_lines = nullptr;  // used where set
+  HeightGridFrame frame;
+  LineFamily family = LineFamily::kColumns;
+  const HeightGridLines<float>* lines = nullptr;
+  const HeightGridLines<double>* exact_lines = nullptr;  // used where set
 };
 
 class FacetSource {
@@ -30,7 +30,7 @@ class FacetSource {
 
 // Rays of neighbouring pixels, evenly apart: direction of pixel k is first + k step, of any length.
 struct RayRow {
-  glm::dvec3 eye_m;
+  glm::dvec3 camera_m;
   double radius_m = 0;  // of the sphere
   glm::dvec3 first;
   glm::dvec3 step;
@@ -50,7 +50,7 @@ void hints_from_row(const float* samples, int sample_count, double first, double
                     float* b, float* share);
 
 // Hints from rows of samples, one a pixel: pixel k lies at stretch[k] y + shift[k] of samples[k * lines ...].
-void hints_from_columns(const float* samples, int lines, const float* stretch, const float* shift, float y,
+void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification, const float* shift, float y,
                         int count, float* a, float* b, float* share);
 
 }  // namespace vpe::voxel

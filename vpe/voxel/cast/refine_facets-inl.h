@@ -23,9 +23,9 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kRounds = 8;
-constexpr int kLattices = 12;
+constexpr int kGrids = 12;
 
-// Neighbouring rays against facets; D a vector of float, or of double about the eye's foot.
+// Neighbouring rays against facets; D a vector of float, or of double about the camera's foot.
 template <class D>
 class RowRefiner {
  public:
@@ -38,7 +38,7 @@ class RowRefiner {
 
   RowRefiner(const RayRow& row, FacetSource& source) : row_(row), source_(source) {
     const V zero = hn::Zero(D());
-    ex_ = ey_ = ez_ = dx_ = dy_ = dz_ = eye_rise_ = ray_rise_ = last_ = zero;
+    ex_ = ey_ = ez_ = dx_ = dy_ = dz_ = camera_rise_ = ray_rise_ = last_ = zero;
     number_ = last_facet_ = hn::Zero(DI());
     not_here_ = hn::MaskFromVec(zero);
   }
@@ -64,7 +64,7 @@ class RowRefiner {
     M found = hn::MaskFromVec(hn::Zero(d));
     not_here_ = found;
     last_facet_ = hn::Set(DI(), -1);
-    for (int lattices = 0; lattices < kLattices && !hn::AllFalse(d, todo); ++lattices) {
+    for (int grids = 0; grids < kGrids && !hn::AllFalse(d, todo); ++grids) {
       Place place = place_of(t);
       M here = hn::And(todo, inside(place));
       if (facets_ == nullptr || hn::AllFalse(d, here)) {
@@ -103,7 +103,7 @@ class RowRefiner {
     hn::Store(t, d, ts);
     const glm::dvec3 ray =
         glm::normalize(row_.first + static_cast<double>(first_ + static_cast<int>(lane)) * row_.step);
-    facets_ = &source_.at(row_.eye_m + static_cast<double>(ts[lane]) * ray);
+    facets_ = &source_.at(row_.camera_m + static_cast<double>(ts[lane]) * ray);
     const Facets& f = *facets_;
     aims_ = (aims_ + 1) & 0x1fff;
     // Beside 2^8 x 2^8 cells of two facets.
@@ -117,11 +117,11 @@ class RowRefiner {
       const double y = (glm::dot(p, axes.up) - f.frame.v0 * z) / f.frame.dv;
       return glm::dvec4(x, y, z, -row_.radius_m * (plane.w0 * z + plane.wx * x + plane.wy * y));
     };
-    const glm::dvec4 eye = from(row_.eye_m);
-    ex_ = set(eye.x);
-    ey_ = set(eye.y);
-    ez_ = set(eye.z);
-    eye_rise_ = set(row_.radius_m + eye.w);
+    const glm::dvec4 camera = from(row_.camera_m);
+    ex_ = set(camera.x);
+    ey_ = set(camera.y);
+    ez_ = set(camera.z);
+    camera_rise_ = set(row_.radius_m + camera.w);
     ray0_ = from(row_.first);
     ray1_ = from(row_.step);
     turn();
@@ -161,8 +161,8 @@ class RowRefiner {
   VI index_of(VI x, VI y) const {
     const DI di;
     const VI side = hn::Set(di, facets_->frame.intervals + 1);
-    if (facets_->family == Family::kColumns) return hn::Add(hn::Mul(x, side), y);
-    if (facets_->family == Family::kRows) return hn::Add(hn::Mul(y, side), x);
+    if (facets_->family == LineFamily::kColumns) return hn::Add(hn::Mul(x, side), y);
+    if (facets_->family == LineFamily::kRows) return hn::Add(hn::Mul(y, side), x);
     VI line = hn::Sub(x, y);
     line = hn::IfThenElse(hn::Lt(line, hn::Zero(di)), hn::Add(line, side), line);
     return hn::Add(hn::Mul(line, side), x);
@@ -194,14 +194,14 @@ class RowRefiner {
     const VI one = hn::Set(di, 1);
     const auto low = hn::RebindMask(di, lower);
     const VI index = index_of(x, y);
-    if (facets_->family == Family::kDiagonals) {
+    if (facets_->family == LineFamily::kDiagonals) {
       const VI step = hn::IfThenElse(low, one, hn::Zero(di));
       return {posts_at(index), posts_at(hn::Add(index, one)),
               posts_at(index_of(hn::Add(x, step), hn::Sub(hn::Add(y, one), step)))};
     }
     const int side = facets_->frame.intervals + 1;
-    const VI east = hn::Set(di, facets_->family == Family::kColumns ? side : 1);
-    const VI north = hn::Set(di, facets_->family == Family::kColumns ? 1 : side);
+    const VI east = hn::Set(di, facets_->family == LineFamily::kColumns ? side : 1);
+    const VI north = hn::Set(di, facets_->family == LineFamily::kColumns ? 1 : side);
     return {posts_at(index), posts_at(hn::Add(index, hn::Set(di, side + 1))),
             posts_at(hn::Add(index, hn::IfThenElse(low, east, north)))};
   }
@@ -235,9 +235,9 @@ class RowRefiner {
       const V py = hn::NegMulAdd(j, z, y);
       return hn::MulAdd(per_r, hn::MulAdd(c.first, z, hn::MulAdd(p, px, hn::Mul(q, py))), reference);
     };
-    const V at_eye = below(ex_, ey_, ez_, eye_rise_);
+    const V at_camera = below(ex_, ey_, ez_, camera_rise_);
     const V slope = below(dx_, dy_, dz_, ray_rise_);
-    const V next = hn::Neg(hn::Div(at_eye, slope));
+    const V next = hn::Neg(hn::Div(at_camera, slope));
     const M good = hn::And(hn::Gt(slope, zero), hn::And(hn::Ge(next, low), hn::Le(next, high)));
     t = hn::IfThenElse(hn::And(here, good), next, t);
     // Back to back with the ray, or far from its hints: not this way.
@@ -254,7 +254,7 @@ class RowRefiner {
   V index_ = hn::Zero(D());
   V per_length_ = hn::Zero(D());
   V ex_, ey_, ez_, dx_, dy_, dz_;
-  V eye_rise_, ray_rise_;  // below the reference plane
+  V camera_rise_, ray_rise_;  // below the reference plane
   V last_;
   VI number_;      // of the lattice at hand
   VI last_facet_;  // of each lane

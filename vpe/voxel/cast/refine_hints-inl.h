@@ -34,7 +34,7 @@ hn::Vec<D> pick(D d, const float* from, hn::Vec<hn::RebindToSigned<D>> index) {
 }
 
 // Row `row` of samples [step][line] at line = stretch[k] y + shift[k], step first + k.
-void HintsFromColumns(const float* samples, int lines, const float* stretch, const float* shift, float y,
+void HintsFromColumns(const float* samples, int lines, const float* off_axis_magnification, const float* shift, float y,
                       int count, float* a, float* b, float* share) {
   const HintTag d;
   const hn::RebindToSigned<HintTag> di;
@@ -48,7 +48,7 @@ void HintsFromColumns(const float* samples, int lines, const float* stretch, con
       std::copy_n(from + k, used, room);
       return hn::Load(d, room);
     };
-    const auto line = hn::MulAdd(load(stretch, some[0]), hn::Set(d, y), load(shift, some[1]));
+    const auto line = hn::MulAdd(load(off_axis_magnification, some[0]), hn::Set(d, y), load(shift, some[1]));
     const auto before =
         hn::Min(hn::Max(hn::Floor(line), hn::Zero(d)), hn::Set(d, static_cast<float>(lines - 2)));
     const auto step = hn::Min(hn::Add(hn::Iota(di, 0), hn::Set(di, k)), hn::Set(di, count - 1));

@@ -129,7 +129,7 @@ void RefineRow(const RayRow& row, const float* a, const float* b, const float* s
     V t = hn::IfThenElse(close, hn::Div(one, inverse), near);
     const V high = hn::IfThenElse(close, hn::Add(far, reach), hn::Add(near, reach));
     M found = refiner.refine(hn::Not(sky), hn::Sub(near, reach), high, t);
-    // Rough ground may lead astray from between two samples; a sample's own facet faces the eye.
+    // Rough ground may lead astray from between two samples; a sample's own facet faces the camera.
     for (const V& start : {near, far}) {
       const M again = hn::And(close, hn::Not(hn::Or(found, sky)));
       if (hn::AllFalse(d, again)) break;
@@ -185,9 +185,9 @@ void hints_from_row(const float* samples, int sample_count, double first, double
                     float* b, float* share) {
   HWY_DYNAMIC_DISPATCH(HintsFromRow)(samples, sample_count, first, step, count, a, b, share);
 }
-void hints_from_columns(const float* samples, int lines, const float* stretch, const float* shift, float y,
+void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification, const float* shift, float y,
                         int count, float* a, float* b, float* share) {
-  HWY_DYNAMIC_DISPATCH(HintsFromColumns)(samples, lines, stretch, shift, y, count, a, b, share);
+  HWY_DYNAMIC_DISPATCH(HintsFromColumns)(samples, lines, off_axis_magnification, shift, y, count, a, b, share);
 }
 
 }  // namespace vpe::voxel

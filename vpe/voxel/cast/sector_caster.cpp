@@ -32,75 +32,75 @@ struct RowHints {
   std::vector<int> open;
 };
 
-// About the nearer hint, then from the farther one on; from the eye where either is too far (Wan 1999, section
+// About the nearer hint, then from the farther one on; from the camera where either is too far (Wan 1999, section
 // 4).
-double cast_near(const paging::Surface& surface, const glm::dvec3& eye, const glm::dvec3& ray,
+double cast_near(const paging::Surface& surface, const glm::dvec3& camera, const glm::dvec3& ray,
                  double exaggeration, float a, float b) {
   const auto near = static_cast<double>(std::min(a, b));
   const auto far = static_cast<double>(std::max(a, b));
   if (std::isfinite(near)) {
     const double begin = (1.0 - kAround) * near;
     const double end = (1.0 + kAround) * near;
-    double range = surface.cast(eye, ray, exaggeration, {begin, end});
+    double range = surface.cast(camera, ray, exaggeration, {begin, end});
     if (std::isfinite(range) && range != begin) return range;
     if (range != begin && std::isfinite(far)) {
       const double beyond = std::max((1.0 - kAround) * far, end);
-      range = surface.cast(eye, ray, exaggeration, {beyond, std::numeric_limits<double>::infinity()});
+      range = surface.cast(camera, ray, exaggeration, {beyond, std::numeric_limits<double>::infinity()});
       if (range != beyond) return range;
     }
   }
-  return surface.cast(eye, ray, exaggeration);
+  return surface.cast(camera, ray, exaggeration);
 }
 
 // The same over the walk's lattices, in steps.
-double march_near(const ColumnWalk& walk, FacetFinder& finder, const glm::dvec3& eye, const glm::dvec3& ray,
+double march_near(const ColumnWalk& walk, FacetFinder& finder, const glm::dvec3& camera, const glm::dvec3& ray,
                   float a, float b) {
   const auto near = static_cast<double>(std::min(a, b));
   const double begin = std::isfinite(near) ? (1.0 - kAround) * near : 0.0;
-  const double range = march(eye, ray, begin, walk.highest_m(), finder, walk.eye().radius_m);
-  return range == begin ? march(eye, ray, 0, walk.highest_m(), finder, walk.eye().radius_m) : range;
+  const double range = march(camera, ray, begin, walk.highest_m(), finder, walk.camera().radius_m);
+  return range == begin ? march(camera, ray, 0, walk.highest_m(), finder, walk.camera().radius_m) : range;
 }
 
 }  // namespace
 
-std::size_t FanCaster::bytes() const {
+std::size_t SectorCaster::bytes() const {
   std::size_t total = 0;
   for (const auto& s : samples_) total += s.capacity() * sizeof(float);
   return total;
 }
 
-void FanCaster::cast_fans(const FanPlan& plan, const ColumnWalk& walk, Desks& desks, base::ThreadPool& pool) {
-  std::vector<Sheet> sheets;
-  samples_.resize(std::max(samples_.size(), plan.fans().size()));
-  for (std::size_t f = 0; f < plan.fans().size(); ++f) {
-    const Fan& fan = plan.fans()[f];
-    samples_[f].resize(static_cast<std::size_t>(fan.steps) * static_cast<std::size_t>(fan.lines));
-    Sheet& sheet = sheets.emplace_back();
-    sheet.rows.kind = RowKind::kFan;
-    sheet.rows.count = fan.steps;
-    sheet.columns = fan.lines;
+void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool) {
+  std::vector<ColumnBatch> batches;
+  samples_.resize(std::max(samples_.size(), plan.sectors().size()));
+  for (std::size_t f = 0; f < plan.sectors().size(); ++f) {
+    const ViewSector& sector = plan.sectors()[f];
+    samples_[f].resize(static_cast<std::size_t>(sector.steps) * static_cast<std::size_t>(sector.lines));
+    ColumnBatch& batch = batches.emplace_back();
+    batch.rows.kind = RowKind::kSector;
+    batch.rows.count = sector.steps;
+    batch.columns = sector.lines;
     // Stored by step.
-    sheet.stride = fan.rising ? fan.lines : -static_cast<std::ptrdiff_t>(fan.lines);
-    sheet.out = samples_[f].data() + (fan.rising ? 0 : std::ptrdiff_t{fan.lines} * (fan.steps - 1));
-    sheet.set_column = [&plan, &fan](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
-      const FanLine line = plan.line(fan, column);
+    batch.stride = sector.rising ? sector.lines : -static_cast<std::ptrdiff_t>(sector.lines);
+    batch.out = samples_[f].data() + (sector.rising ? 0 : std::ptrdiff_t{sector.lines} * (sector.steps - 1));
+    batch.set_column = [&plan, &sector](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
+      const SectorLine line = plan.line(sector, column);
       azimuth = line.azimuth;
-      group.fan_a0[lane] = line.a0;
-      group.fan_a1[lane] = line.a1;
-      group.fan_b0[lane] = line.b0;
-      group.fan_b1[lane] = line.b1;
+      group.sector_a0[lane] = line.a0;
+      group.sector_a1[lane] = line.a1;
+      group.sector_b0[lane] = line.b0;
+      group.sector_b1[lane] = line.b1;
       group.row[lane] = static_cast<float>(line.row_begin);
       group.row_end[lane] = static_cast<float>(line.row_end);
     };
   }
-  cast_sheets(sheets, walk, desks, pool);
+  cast_columns(batches, walk, scratches, pool);
 }
 
 // Samples on either side of pixels [first, last) of one row, in that row or column of samples.
-void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
+void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
                            int last_pixel, float* a, float* b, float* share) const {
   const double y = part.y + row + 0.5;
-  FanPlan::Span span = plan.upright_span(row);
+  SectorPlan::Span span = plan.upright_span(row);
   span.begin = std::clamp(span.begin, first_pixel, last_pixel);
   span.end = std::clamp(span.end, span.begin, last_pixel);
   const auto none = [&](int k) {
@@ -108,17 +108,17 @@ void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, 
     b[k] = 0;
     share[k] = 0;
   };
-  const auto samples = [&](const Fan& fan) {
-    return samples_[static_cast<std::size_t>(&fan - plan.fans().data())].data();
+  const auto samples = [&](const ViewSector& sector) {
+    return samples_[static_cast<std::size_t>(&sector - plan.sectors().data())].data();
   };
   if (span.begin < span.end) {
-    if (const Fan* fan = plan.fan_of(plan.side_of(part.x + span.begin + 0.5, y))) {
-      const int step = std::clamp(part.y + row - fan->first_step, 0, fan->steps - 1);
-      const Fan::Map& map = fan->maps[static_cast<std::size_t>(step)];
+    if (const ViewSector* sector = plan.sector_of(plan.side_of(part.x + span.begin + 0.5, y))) {
+      const int step = std::clamp(part.y + row - sector->first_step, 0, sector->steps - 1);
+      const ViewSector::Map& map = sector->maps[static_cast<std::size_t>(step)];
       const double first =
-          (map.stretch * (part.x + span.begin + 0.5) + map.shift - fan->first_line) / fan->spacing;
-      hints_from_row(samples(*fan) + std::ptrdiff_t{step} * fan->lines, fan->lines, first,
-                     map.stretch / fan->spacing, span.end - span.begin, a + span.begin, b + span.begin,
+          (map.off_axis_magnification * (part.x + span.begin + 0.5) + map.shift - sector->first_line) / sector->spacing;
+      hints_from_row(samples(*sector) + std::ptrdiff_t{step} * sector->lines, sector->lines, first,
+                     map.off_axis_magnification / sector->spacing, span.end - span.begin, a + span.begin, b + span.begin,
                      share + span.begin);
     } else {
       for (int k = span.begin; k < span.end; ++k) none(k);
@@ -126,22 +126,22 @@ void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, 
   }
   const auto beside = [&](int begin, int end) {
     if (begin >= end) return;
-    const Fan* fan = plan.fan_of(plan.side_of(part.x + begin + 0.5, y));
-    if (fan == nullptr) {
+    const ViewSector* sector = plan.sector_of(plan.side_of(part.x + begin + 0.5, y));
+    if (sector == nullptr) {
       for (int k = begin; k < end; ++k) none(k);
       return;
     }
     // Pixels that the fan's steps leave out have their neighbours' samples.
-    const int first = std::clamp(fan->first_step - part.x, begin, end);
-    const int last = std::clamp(fan->first_step + fan->steps - part.x, first, end);
+    const int first = std::clamp(sector->first_step - part.x, begin, end);
+    const int last = std::clamp(sector->first_step + sector->steps - part.x, first, end);
     if (first == last) {
       for (int k = begin; k < end; ++k) none(k);
       return;
     }
-    const auto step = static_cast<std::size_t>(part.x + first - fan->first_step);
-    hints_from_columns(samples(*fan) + static_cast<std::ptrdiff_t>(step) * fan->lines, fan->lines,
-                       fan->line_stretch.data() + step, fan->line_shift.data() + step,
-                       static_cast<float>(y - fan->origin), last - first, a + first, b + first, share + first);
+    const auto step = static_cast<std::size_t>(part.x + first - sector->first_step);
+    hints_from_columns(samples(*sector) + static_cast<std::ptrdiff_t>(step) * sector->lines, sector->lines,
+                       sector->line_stretch.data() + step, sector->line_shift.data() + step,
+                       static_cast<float>(y - sector->origin), last - first, a + first, b + first, share + first);
     for (int k = begin; k < end; ++k) {
       const int from = std::clamp(k, first, last - 1);
       if (from == k) continue;
@@ -154,21 +154,21 @@ void FanCaster::find_hints(const FanPlan& plan, const core::SubRectangle& part, 
   beside(span.end, last_pixel);
 }
 
-void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desks,
+void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
                      const paging::Surface& surface, double exaggeration, bool exact, base::ThreadPool& pool,
                      std::span<float> range_m) {
-  const FanPlan plan(view, walk.eye().up, kSpacing_px);
-  cast_fans(plan, walk, desks, pool);
+  const SectorPlan plan(view, walk.camera().up, kSpacing_px);
+  cast_sectors(plan, walk, scratches, pool);
   const core::SubRectangle part = core::drawn_part(view);
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   const double focal = core::focal_px(view);
   const double cx = 0.5 * view.width + view.principal_offset_px.x;
   const double cy = 0.5 * view.height + view.principal_offset_px.y;
   const int tasks = (part.height + kTaskRows - 1) / kTaskRows;
   pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
-    const Desks::Use use(desks);
-    FacetFinder finder(walk, use.shelf());
-    FacetFinder exact_finder(walk, use.shelf());
+    const ScratchPool::Use use(scratches);
+    FacetFinder finder(walk, use.tiles());
+    FacetFinder exact_finder(walk, use.tiles());
     RowHints hints(part.width);
     const int first = static_cast<int>(task) * kTaskRows;
     const int last = std::min(first + kTaskRows, part.height);
@@ -180,8 +180,8 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
         float* const out =
             range_m.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(part.width) + begin;
         RayRow rays;
-        rays.eye_m = view.eye.eye_m;
-        rays.radius_m = walk.eye().radius_m;
+        rays.camera_m = view.camera.position_m;
+        rays.radius_m = walk.camera().radius_m;
         rays.first = (part.x + begin + 0.5 - cx) * axes.right + (cy - (part.y + row + 0.5)) * axes.up +
                      focal * axes.forward;
         rays.step = axes.right;
@@ -193,8 +193,8 @@ void FanCaster::cast(const core::View& view, const ColumnWalk& walk, Desks& desk
         refine_row(rays, a, b, share, finder, exact_finder, out, hints.open);
         for (const int k : hints.open) {
           const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-          out[k] = static_cast<float>(exact ? cast_near(surface, view.eye.eye_m, ray, exaggeration, a[k], b[k])
-                                            : march_near(walk, finder, view.eye.eye_m, ray, a[k], b[k]));
+          out[k] = static_cast<float>(exact ? cast_near(surface, view.camera.position_m, ray, exaggeration, a[k], b[k])
+                                            : march_near(walk, finder, view.camera.position_m, ray, a[k], b[k]));
         }
       }
     }

@@ -1,4 +1,4 @@
-// Range pictures of perspective views.
+// Range images of perspective views.
 #pragma once
 
 #include <span>
@@ -15,19 +15,19 @@ namespace vpe::voxel {
 // Casts fans of columns, then meets each pixel's own ray with the facet at its nearest samples. Where these
 // belong to different surfaces (ridges, the skyline) the ray is cast by itself: against S, if `exact`, else in
 // steps over the walk's lattices. One caller at a time.
-class FanCaster {
+class SectorCaster {
  public:
-  void cast(const core::View& view, const ColumnWalk& walk, Desks& desks, const paging::Surface& surface,
+  void cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches, const paging::Surface& surface,
             double exaggeration, bool exact, base::ThreadPool& pool, std::span<float> range_m);
 
   std::size_t bytes() const;
 
  private:
-  void cast_fans(const FanPlan& plan, const ColumnWalk& walk, Desks& desks, base::ThreadPool& pool);
-  void find_hints(const FanPlan& plan, const core::SubRectangle& part, int row, int first_pixel, int last_pixel,
+  void cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool);
+  void find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel, int last_pixel,
                   float* a, float* b, float* share) const;
 
-  std::vector<std::vector<float>> samples_;  // of the last picture's fans, by step
+  std::vector<std::vector<float>> samples_;  // of the last image's fans, by step
 };
 
 }  // namespace vpe::voxel

@@ -11,12 +11,12 @@ namespace {
 
 // Steps nearer than this to V have no direction.
 constexpr double kNearest_px = 0.01;
-// Pixels beyond a sector or the picture that are cast, so that a nearest sample always exists.
+// Pixels beyond a sector or the image that are cast, so that a nearest sample always exists.
 constexpr double kMargin_px = 1.0;
 
 }  // namespace
 
-FanPlan::FanPlan(const core::View& view, const glm::dvec3& up, double spacing_px)
+SectorPlan::SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px)
     : view_(view),
       part_(core::drawn_part(view)),
       up_(up),
@@ -24,7 +24,7 @@ FanPlan::FanPlan(const core::View& view, const glm::dvec3& up, double spacing_px
       cx_(0.5 * view.width + view.principal_offset_px.x),
       cy_(0.5 * view.height + view.principal_offset_px.y),
       spacing_(spacing_px) {
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   vw_ = glm::dot(up, axes.forward);
   vx_ = cx_ * vw_ + focal_ * glm::dot(up, axes.right);
   vy_ = cy_ * vw_ - focal_ * glm::dot(up, axes.up);
@@ -39,14 +39,14 @@ FanPlan::FanPlan(const core::View& view, const glm::dvec3& up, double spacing_px
   }
 }
 
-FanPlan::Side FanPlan::side_of(double x, double y) const {
+SectorPlan::Side SectorPlan::side_of(double x, double y) const {
   const double qx = x * vw_ - vx_;
   const double qy = y * vw_ - vy_;
   const bool upright = std::abs(qx) <= std::abs(qy);
   return {upright, upright ? qy >= 0 : qx >= 0};
 }
 
-FanPlan::Span FanPlan::upright_span(int row) const {
+SectorPlan::Span SectorPlan::upright_span(int row) const {
   const double y = part_.y + row + 0.5;
   const auto is_upright = [&](int k) { return side_of(part_.x + k + 0.5, y).upright; };
   if (vw_ == 0.0) return is_upright(0) ? Span{0, part_.width} : Span{0, 0};
@@ -65,7 +65,7 @@ FanPlan::Span FanPlan::upright_span(int row) const {
   return span;
 }
 
-void FanPlan::add(bool upright, bool forward) {
+void SectorPlan::add(bool upright, bool forward) {
   const int t0 = upright ? part_.y : part_.x;
   const int t_count = upright ? part_.height : part_.width;
   const double s_min = (upright ? part_.x : part_.y) - kMargin_px;
@@ -101,78 +101,78 @@ void FanPlan::add(bool upright, bool forward) {
     reach.push_back({low, high});
   }
   if (reach.empty()) return;
-  Fan fan;
-  fan.upright = upright;
-  fan.forward = forward;
-  fan.first_step = t0 + first;
-  fan.steps = static_cast<int>(reach.size());
-  fan.reference = forward ? fan.first_step + fan.steps - 0.5 : fan.first_step + 0.5;
-  fan.spacing = spacing_;
+  ViewSector sector;
+  sector.upright = upright;
+  sector.forward = forward;
+  sector.first_step = t0 + first;
+  sector.steps = static_cast<int>(reach.size());
+  sector.reference = forward ? sector.first_step + sector.steps - 0.5 : sector.first_step + 0.5;
+  sector.spacing = spacing_;
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
-  for (int k = 0; k < fan.steps; ++k) {
-    const double t = fan.first_step + k + 0.5;
-    const double lean = (fan.reference - t) / (t * vw_ - vt);
-    const Fan::Map map{1.0 + lean * vw_, -lean * vs};
-    fan.maps.push_back(map);
+  for (int k = 0; k < sector.steps; ++k) {
+    const double t = sector.first_step + k + 0.5;
+    const double lean = (sector.reference - t) / (t * vw_ - vt);
+    const ViewSector::Map map{1.0 + lean * vw_, -lean * vs};
+    sector.maps.push_back(map);
     const Reach& r = reach[static_cast<std::size_t>(k)];
-    low = std::min(low, map.stretch * r.low + map.shift);
-    high = std::max(high, map.stretch * r.high + map.shift);
+    low = std::min(low, map.off_axis_magnification * r.low + map.shift);
+    high = std::max(high, map.off_axis_magnification * r.high + map.shift);
   }
   // Where lines are parallel and upright they go through pixel centres.
-  fan.first_line = std::floor(low - 0.5) + 0.5;
-  fan.lines = static_cast<int>(std::ceil((high - fan.first_line) / spacing_)) + 1;
-  fan.origin = 0.5 * (s_min + s_max);
-  for (const Fan::Map& map : fan.maps) {
-    fan.line_stretch.push_back(static_cast<float>(map.stretch / spacing_));
-    fan.line_shift.push_back(
-        static_cast<float>((map.stretch * fan.origin + map.shift - fan.first_line) / spacing_));
+  sector.first_line = std::floor(low - 0.5) + 0.5;
+  sector.lines = static_cast<int>(std::ceil((high - sector.first_line) / spacing_)) + 1;
+  sector.origin = 0.5 * (s_min + s_max);
+  for (const ViewSector::Map& map : sector.maps) {
+    sector.line_stretch.push_back(static_cast<float>(map.off_axis_magnification / spacing_));
+    sector.line_shift.push_back(
+        static_cast<float>((map.off_axis_magnification * sector.origin + map.shift - sector.first_line) / spacing_));
   }
-  index_[upright ? 1 : 0][forward ? 1 : 0] = static_cast<int>(fans_.size());
+  index_[upright ? 1 : 0][forward ? 1 : 0] = static_cast<int>(sectors_.size());
   // Slopes rise away from the nadir, and towards the zenith.
-  fans_.push_back(std::move(fan));
-  Fan& made = fans_.back();
-  const FanLine middle = line(made, made.lines / 2);
+  sectors_.push_back(std::move(sector));
+  ViewSector& made = sectors_.back();
+  const SectorLine middle = line(made, made.lines / 2);
   const double begin = middle.a0 / middle.b0;
   const double last = made.steps - 1;
   const double end = (middle.a0 + middle.a1 * last) / (middle.b0 + middle.b1 * last);
   if (end < begin) made.rising = false;
 }
 
-FanLine FanPlan::line(const Fan& fan, int index) const {
-  const mars::Axes& axes = view_.eye.axes;
-  const double s_ref = fan.first_line + fan.spacing * index;
-  const double vt = fan.upright ? vy_ : vx_;
-  const double vs = fan.upright ? vx_ : vy_;
+SectorLine SectorPlan::line(const ViewSector& sector, int index) const {
+  const mars::Axes& axes = view_.camera.axes;
+  const double s_ref = sector.first_line + sector.spacing * index;
+  const double vt = sector.upright ? vy_ : vx_;
+  const double vs = sector.upright ? vx_ : vy_;
   // ds / dt along the line.
-  const double lean = (s_ref * vw_ - vs) / (fan.reference * vw_ - vt);
+  const double lean = (s_ref * vw_ - vs) / (sector.reference * vw_ - vt);
   const auto ray = [&](double t) {
-    const double s = s_ref + (t - fan.reference) * lean;
-    const double x = fan.upright ? s : t;
-    const double y = fan.upright ? t : s;
+    const double s = s_ref + (t - sector.reference) * lean;
+    const double x = sector.upright ? s : t;
+    const double y = sector.upright ? t : s;
     return (x - cx_) * axes.right + (cy_ - y) * axes.up + focal_ * axes.forward;
   };
-  const glm::dvec3 far = ray(fan.reference);
-  FanLine out;
+  const glm::dvec3 far = ray(sector.reference);
+  SectorLine out;
   out.azimuth = glm::normalize(far - glm::dot(far, up_) * up_);
   // The step must not turn the direction behind the vertical, which lies beyond the fan's steps.
-  const double t_first = fan.first_step + 0.5;
-  const double t_last = t_first + fan.steps - 1;
-  const glm::dvec3 begin = ray(fan.rising ? t_first : t_last);
+  const double t_first = sector.first_step + 0.5;
+  const double t_last = t_first + sector.steps - 1;
+  const glm::dvec3 begin = ray(sector.rising ? t_first : t_last);
   const glm::dvec3 step =
-      (fan.upright ? (lean * axes.right - axes.up) : (axes.right - lean * axes.up)) * (fan.rising ? 1.0 : -1.0);
+      (sector.upright ? (lean * axes.right - axes.up) : (axes.right - lean * axes.up)) * (sector.rising ? 1.0 : -1.0);
   out.a0 = glm::dot(begin, up_);
   out.a1 = glm::dot(step, up_);
   out.b0 = glm::dot(begin, out.azimuth);
   out.b1 = glm::dot(step, out.azimuth);
   // Steps at which the line is in the drawn part, and a pixel more.
-  const double s_min = (fan.upright ? part_.x : part_.y) - kMargin_px;
-  const double s_max = (fan.upright ? part_.x + part_.width : part_.y + part_.height) + kMargin_px;
+  const double s_min = (sector.upright ? part_.x : part_.y) - kMargin_px;
+  const double s_max = (sector.upright ? part_.x + part_.width : part_.y + part_.height) + kMargin_px;
   double low = 0;
-  double high = fan.steps - 1;
+  double high = sector.steps - 1;
   if (lean != 0) {
-    const double a = (s_min - s_ref) / lean + fan.reference - t_first;
-    const double b = (s_max - s_ref) / lean + fan.reference - t_first;
+    const double a = (s_min - s_ref) / lean + sector.reference - t_first;
+    const double b = (s_max - s_ref) / lean + sector.reference - t_first;
     low = std::max(low, std::min(a, b));
     high = std::min(high, std::max(a, b));
   } else if (s_ref < s_min || s_ref > s_max) {
@@ -182,8 +182,8 @@ FanLine FanPlan::line(const Fan& fan, int index) const {
   const int k0 = static_cast<int>(std::ceil(low));
   const int k1 = static_cast<int>(std::floor(high)) + 1;
   if (k1 <= k0) return out;
-  out.row_begin = fan.rising ? k0 : fan.steps - k1;
-  out.row_end = fan.rising ? k1 : fan.steps - k0;
+  out.row_begin = sector.rising ? k0 : sector.steps - k1;
+  out.row_end = sector.rising ? k1 : sector.steps - k0;
   return out;
 }
 

@@ -1,8 +1,8 @@
-// Fans: how a perspective picture of any pitch and roll is cut into columns.
+// Fans: how a perspective image of any pitch and roll is cut into columns.
 //
-// All planes through the eye and the planet's centre appear in a picture as lines through one point, the
-// vanishing point V of the vertical. Diagonals through V part the picture into up to four sectors. In a sector,
-// lines are a fixed distance apart on the picture's row (or column) farthest from V, and a line's sample r lies
+// All planes through the camera and the planet's centre appear in an image as lines through one point, the
+// vanishing point V of the vertical. Diagonals through V part the image into up to four sectors. In a sector,
+// lines are a fixed distance apart on the image's row (or column) farthest from V, and a line's sample r lies
 // where it crosses the r-th row of pixel centres; along it slopes are (a0 + a1 r) / (b0 + b1 r). So a pixel's
 // nearest sample is in its own row, half the spacing away at most, and finding it is one affine map a row.
 #pragma once
@@ -16,10 +16,10 @@
 namespace vpe::voxel {
 
 // One sector. Steps run along y where `upright`, else along x; lines cross them at `s`, the other coordinate.
-struct Fan {
+struct ViewSector {
   bool upright = true;
   bool forward = true;  // its steps grow away from V
-  int first_step = 0;   // pixels of the full picture
+  int first_step = 0;   // pixels of the full image
   int steps = 0;
   double reference = 0;   // step coordinate that lines are even at
   double first_line = 0;  // s of line 0 there
@@ -29,7 +29,7 @@ struct Fan {
 
   // s at step t of what crosses the reference at s_ref is (s_ref - shift) / stretch; s_ref = stretch s + shift.
   struct Map {
-    double stretch;
+    double off_axis_magnification;
     double shift;
   };
   std::vector<Map> maps;  // by step
@@ -40,7 +40,7 @@ struct Fan {
 };
 
 // What a line's columns need.
-struct FanLine {
+struct SectorLine {
   glm::dvec3 azimuth;  // unit, body-fixed
   double a0 = 0;       // rows counted so that slopes rise
   double a1 = 0;
@@ -50,24 +50,24 @@ struct FanLine {
   int row_end = 0;  // past the last that is in the drawn part
 };
 
-class FanPlan {
+class SectorPlan {
  public:
-  // spacing_px in (0, 1]. The view is perspective; `up` is the vertical at the eye.
-  FanPlan(const core::View& view, const glm::dvec3& up, double spacing_px);
+  // spacing_px in (0, 1]. The view is perspective; `up` is the vertical at the camera.
+  SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px);
 
-  const std::vector<Fan>& fans() const { return fans_; }
-  FanLine line(const Fan& fan, int index) const;
+  const std::vector<ViewSector>& sectors() const { return sectors_; }
+  SectorLine line(const ViewSector& sector, int index) const;
 
-  // The sector of a picture position.
+  // The sector of an image position.
   struct Side {
     bool upright;
     bool forward;
   };
   Side side_of(double x, double y) const;
   // nullptr where the drawn part has none of it.
-  const Fan* fan_of(Side side) const {
+  const ViewSector* sector_of(Side side) const {
     const int index = index_[side.upright ? 1 : 0][side.forward ? 1 : 0];
-    return index < 0 ? nullptr : &fans_[static_cast<std::size_t>(index)];
+    return index < 0 ? nullptr : &sectors_[static_cast<std::size_t>(index)];
   }
 
   // Pixels [begin, end) of the drawn part's row, counted from its left, that are in an upright sector.
@@ -86,12 +86,12 @@ class FanPlan {
   double focal_;
   double cx_;
   double cy_;
-  // V in homogeneous picture coordinates: (vx, vy) / vw.
+  // V in homogeneous image coordinates: (vx, vy) / vw.
   double vx_;
   double vy_;
   double vw_;
   double spacing_;
-  std::vector<Fan> fans_;
+  std::vector<ViewSector> sectors_;
   int index_[2][2] = {{-1, -1}, {-1, -1}};
 };
 

@@ -15,9 +15,9 @@ namespace vpe::voxel {
 namespace {
 
 // Of the budget: what threads hold on to while they paint. The caches have the rest, and in it mostly what
-// every picture takes again: heights are looked at only when tiles are new.
+// every image takes again: heights are looked at only when tiles are new.
 constexpr double kHeldShare = 0.15;
-constexpr paging::PaintShares kShares{.surface = 0.1, .heights = 0.2, .normals = 0.45, .images = 0.25};
+constexpr paging::ShaderBudgetShares kShares{.surface = 0.1, .heights = 0.2, .normals = 0.45, .images = 0.25};
 
 // Rows a thread takes at a time.
 constexpr int kBand = 16;
@@ -67,15 +67,15 @@ class HeldTiles {
   std::unordered_set<const void*> held_;
 };
 
-bool by_point(const paging::ShadeParams& look) {
-  return look.flat || look.surfacing == paging::Surfacing::kImageAtPosts;
+bool by_point(const paging::ShadingParams& shading) {
+  return shading.flat || shading.colour_source == paging::ColourSource::kImageAtPosts;
 }
 
-bool is_one_colour(const paging::ShadeParams& look, const paging::PlanetFile& planet) {
-  const PaintNeeds needs = paint_needs(look);
-  if (by_point(look) || needs.posts || needs.image) return false;
+bool is_one_colour(const paging::ShadingParams& shading, const paging::PlanetFile& planet) {
+  const PaintNeeds needs = paint_needs(shading);
+  if (by_point(shading) || needs.posts || needs.image) return false;
   for (int face = 0; face < mars::kFaces; ++face) {
-    if (planet.has_missing({static_cast<mars::Face>(face), 0, 0, 0})) return false;
+    if (planet.has_nodata({static_cast<mars::Face>(face), 0, 0, 0})) return false;
   }
   return true;
 }
@@ -92,12 +92,12 @@ double root_range(const paging::PlanetFile& planet, const core::DrawRequest& req
 
 }  // namespace
 
-PicturePainter::PicturePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
+ImagePainter::ImagePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
       budget_(budget_bytes),
       painter_(planet_, share(1 - kHeldShare, budget_bytes), kShares) {}
 
-void PicturePainter::set_look(const core::DrawRequest& request) {
+void ImagePainter::set_shading(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
   const bool has_image = planet_->meta().finest_image_level >= 0;
   if (!paging::needs_scale(appearance, has_image)) {
@@ -107,28 +107,28 @@ void PicturePainter::set_look(const core::DrawRequest& request) {
     table_ = scale_table(*scale_);
     scale_of_ = appearance;
   }
-  look_ = paging::shade_params(appearance, request.sun, has_image, scale_);
+  shading_ = paging::shading_params(appearance, request.sun, has_image, scale_);
 }
 
-std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
+std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
                                    std::span<base::Rgb> colour, std::span<float> inverse_depth,
                                    base::ThreadPool& pool) {
-  set_look(request);
+  set_shading(request);
   const glm::ivec2 size = core::drawn_size(request.view);
   PaintJob job;
   job.request = &request;
   job.painter = &painter_;
-  job.look = &look_;
-  job.scale = look_.scale ? &table_ : nullptr;
+  job.shading = &shading_;
+  job.scale = shading_.scale ? &table_ : nullptr;
   job.rays = ray_rows(request.view);
   job.radius_m = planet_->radius_m();
   job.focal_px = rays_per_radian(request);
   job.root_range_m = root_range(*planet_, request);
   job.posts_side = planet_->meta().tile.posts();
-  job.by_point = by_point(look_);
-  job.one_colour = is_one_colour(look_, *planet_);
-  job.eye_radius_m = glm::length(request.view.eye.eye_m);
-  if (job.eye_radius_m > 0.0) job.up = request.view.eye.eye_m / job.eye_radius_m;
+  job.by_point = by_point(shading_);
+  job.one_colour = is_one_colour(shading_, *planet_);
+  job.camera_radius_m = glm::length(request.view.camera.position_m);
+  if (job.camera_radius_m > 0.0) job.up = request.view.camera.position_m / job.camera_radius_m;
   job.width = size.x;
   job.height = size.y;
   job.range_m = range_m.data();
@@ -140,7 +140,7 @@ std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<c
   TilesOfThreads tiles_of_threads;
   pool.run(bands, [&](std::size_t band) {
     auto tiles = tiles_of_threads.take([&] {
-      return std::make_unique<PaintTiles>(*planet_, painter_, look_,
+      return std::make_unique<PaintTiles>(*planet_, painter_, shading_,
                                           share(kHeldShare / pool.threads(), budget_));
     });
     const int begin = static_cast<int>(band) * kBand;
@@ -150,14 +150,14 @@ std::int64_t PicturePainter::paint(const core::DrawRequest& request, std::span<c
   return without_data;
 }
 
-void PicturePainter::read_ahead(const core::DrawRequest& request, const core::View& thin,
+void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View& thin,
                                 std::span<const float> range_m, const base::ThreadPool& pool) const {
   const bool has_image = planet_->meta().finest_image_level >= 0;
   // No tile depends on the scale of colours.
-  const paging::ShadeParams look = paging::shade_params(request.settings, request.sun, has_image, nullptr);
-  if (by_point(look)) return;
+  const paging::ShadingParams shading = paging::shading_params(request.settings, request.sun, has_image, nullptr);
+  if (by_point(shading)) return;
   constexpr double kPart = 0.5 * (1 - kHeldShare);
-  PaintTiles tiles(*planet_, painter_, look, budget_);
+  PaintTiles tiles(*planet_, painter_, shading, budget_);
   HeldTiles ground(share(kPart * kShares.normals, budget_));
   HeldTiles images(share(kPart * kShares.images, budget_));
   const double root_range_m = root_range(*planet_, request);
@@ -170,7 +170,7 @@ void PicturePainter::read_ahead(const core::DrawRequest& request, const core::Vi
       if (pool.is_stopped()) return;
       const glm::dvec3 ray = core::pixel_ray(thin, part.x + x + 0.5, part.y + y + 0.5);
       const int level = static_cast<int>(std::ceil(std::log2(root_range_m / range)));
-      const PaintTile& tile = tiles.find(thin.eye.eye_m + range * ray, std::clamp(level, 0, tiles.max_level()));
+      const PaintTile& tile = tiles.find(thin.camera.position_m + range * ray, std::clamp(level, 0, tiles.max_level()));
       if (tile.ground && !ground.add(tile.ground.get(), tile.ground->bytes())) return;
       if (tile.image && !images.add(tile.image.get(), tile.image->texels.capacity() * sizeof(base::Rgb)))
         return;

@@ -1,5 +1,5 @@
 // Sky and haze over a block of pixels: core::sky_colour, core::air_m and core::haze_colour in vectors. Within
-// 0.5/255 of them (tests/voxel/picture_painter_test).
+// 0.5/255 of them (tests/voxel/image_painter_test).
 #if defined(VPE_VOXEL_PAINT_AIR_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_PAINT_AIR_INL_H_
 #undef VPE_VOXEL_PAINT_AIR_INL_H_
@@ -25,7 +25,7 @@ struct alignas(64) RayAir {
 // Puts the sky's colour where the block has sky. After ray_angles().
 inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
   const core::SkyAir& air = core::kSkyAir;
-  const double height = std::max(job.eye_radius_m - job.radius_m, 0.0);
+  const double height = std::max(job.camera_radius_m - job.radius_m, 0.0);
   const double r = job.radius_m + height;
   const double limb = core::limb_mass(job.radius_m);
   const double sun_up = glm::dot(job.request->sun, job.up);
@@ -86,8 +86,8 @@ inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
 
 // Lays haze over the block's ground. After ray_angles().
 inline HWY_NOINLINE void paint_haze(const PaintJob& job, double visibility_m, Block& block) {
-  const double r = job.eye_radius_m;
-  const double eye_height = r - job.radius_m;
+  const double r = job.camera_radius_m;
+  const double camera_height = r - job.radius_m;
   const double top = job.radius_m + core::kAirTop_m;
   const glm::dvec3& sun = job.request->sun;
   // Height above the sphere, less rounding: rise over (root of the square of the radius and rise) + radius.
@@ -121,7 +121,7 @@ inline HWY_NOINLINE void paint_haze(const PaintJob& job, double visibility_m, Bl
     const auto length = hn::Load(d, rays.a + i);
     const auto enters = hn::Gt(hn::Load(d, rays.b + i), hn::Zero(d));
     const auto first = hn::IfThenElse(enters, hn::Set(d, static_cast<float>(rise_at(core::kAirTop_m))),
-                                      hn::Set(d, static_cast<float>(rise_at(eye_height))));
+                                      hn::Set(d, static_cast<float>(rise_at(camera_height))));
     const auto twice = hn::Load(d, rays.c + i);
     auto sum = hn::Zero(d);
     for (std::size_t k = 0; k < core::kAirPoints.size(); ++k) {

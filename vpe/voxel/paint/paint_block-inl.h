@@ -31,7 +31,7 @@ struct alignas(64) Sources {
 // Arrays first: all of them are whole vectors.
 // Functions over a block are not inlined: nothing is gained by it, and compilers take minutes with sanitizers.
 struct alignas(64) Block {
-  // Set by begin_block(). Range and place are 0 and the eye where there is sky. Places and per_length only
+  // Set by begin_block(). Range and place are 0 and the camera where there is sky. Places and per_length only
   // where something is made of them.
   double place[3][kBlock];
   double per_length[kBlock];  // 1 / length of the row's direction
@@ -45,7 +45,7 @@ struct alignas(64) Block {
   // Set by take_posts(), take_texels() and take_scale().
   float post[kBlock][4];
   float texel[kBlock][4];
-  // Set by ray_angles(): cosines between the ray and the vertical of the eye, and the sun.
+  // Set by ray_angles(): cosines between the ray and the vertical of the camera, and the sun.
   double rise[kBlock];
   double sunward[kBlock];
   float red[kBlock], green[kBlock], blue[kBlock];
@@ -54,7 +54,7 @@ struct alignas(64) Block {
   const double* c0;
   const double* c1;
   int x, y, count;
-  std::uint32_t sky, ground, missing;  // bits of pixels, lowest first
+  std::uint32_t sky, ground, nodata;  // bits of pixels, lowest first
 };
 
 // Bits of a mask at its place in the block.
@@ -110,7 +110,7 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   block.x = x;
   block.y = y;
   block.count = count;
-  block.missing = 0;
+  block.nodata = 0;
   const std::uint32_t all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
   // Whole blocks are read where they are: a copy would wait for its own stores.
   const float* ranges = job.range_m + at;
@@ -150,7 +150,7 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   const Doubles dd;
   const Halves dh;
   const RowRays& row = *block.row;
-  const glm::dvec3& eye = job.request->view.eye.eye_m;
+  const glm::dvec3& camera = job.request->view.camera.position_m;
   float depth[kBlock];
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
     const auto range = hn::PromoteTo(dd, hn::Load(dh, block.range + i));
@@ -160,7 +160,7 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
     const auto scale = hn::Mul(range, per_length);
     for (int c = 0; c < 3; ++c) {
       const auto way = along_row(dd, block, i, row.a[c], row.b[c], row.c[c]);
-      hn::Store(hn::Add(hn::Set(dd, eye[c]), hn::Mul(scale, way)), dd, block.place[c] + i);
+      hn::Store(hn::Add(hn::Set(dd, camera[c]), hn::Mul(scale, way)), dd, block.place[c] + i);
     }
     if (job.inverse_depth != nullptr)
       hn::StoreU(hn::DemoteTo(dh, hn::Mul(scale, hn::Set(dd, row.forward))), dh, depth + i);

@@ -166,9 +166,9 @@ inline HWY_NOINLINE void take_rest(const paging::NormalTile& tile, std::uint32_t
     const int i = __builtin_ctz(left);
     const auto at = static_cast<std::size_t>(block.posts.at[i] - &tile.posts.data()->normal.x) / 4;
     const float x = block.posts.x[i], y = block.posts.y[i];
-    if (!tile.missing.empty()) {
+    if (!tile.nodata.empty()) {
       const std::size_t nearest = at + (x >= 0.5F ? 1 : 0) + (y >= 0.5F ? side : 0);
-      if (tile.missing[nearest]) block.missing |= std::uint32_t{1} << i;
+      if (tile.nodata[nearest]) block.nodata |= std::uint32_t{1} << i;
     }
     if (!tile.sees_sun.empty()) {
       const auto seen = [&](std::size_t k) { return static_cast<float>(tile.sees_sun[at + k]); };
@@ -200,7 +200,7 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
       const paging::NormalTile& ground = *tile->ground;
       find_sources(at, tile->ground_x, tile->ground_y, &ground.posts.data()->normal.x, ground.side, 4, here,
                    block.posts);
-      if (!ground.missing.empty() || !ground.sees_sun.empty()) take_rest(ground, here, block);
+      if (!ground.nodata.empty() || !ground.sees_sun.empty()) take_rest(ground, here, block);
     }
     if (tile->image)
       find_sources(at, tile->image_x, tile->image_y, &tile->image->texels.data()->r, kTexels, 3, here,
@@ -210,20 +210,20 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
 
 // Colours the block's ground, after locate().
 inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
-  const PaintNeeds needs = paint_needs(*job.look);
+  const PaintNeeds needs = paint_needs(*job.shading);
   if (needs.posts) take_posts(static_cast<std::size_t>(job.posts_side), block);
   if (needs.image) take_texels(block);
-  paint_look(job, block);
+  paint_shading(job, block);
 }
 
-// The same by GroundPainter::colour_at, pixel by pixel.
+// The same by TerrainShader::colour_at, pixel by pixel.
 inline void paint_by_point(const PaintJob& job, PaintTiles& tiles, Block& block) {
   for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
     const glm::dvec3 place{block.place[0][i], block.place[1][i], block.place[2][i]};
     const auto colour = job.painter->colour_at(
-        glm::normalize(place), static_cast<double>(block.range[i]) / job.focal_px, *job.look, tiles.cursor);
-    if (!colour) block.missing |= std::uint32_t{1} << i;
+        glm::normalize(place), static_cast<double>(block.range[i]) / job.focal_px, *job.shading, tiles.cursor);
+    if (!colour) block.nodata |= std::uint32_t{1} << i;
     const glm::vec3 rgb = colour ? glm::vec3(*colour) : glm::vec3(0);
     block.red[i] = rgb.x;
     block.green[i] = rgb.y;

@@ -1,4 +1,4 @@
-// A picture to paint, as the kernels take it: everything that is the same for all of its pixels.
+// An image to paint, as the kernels take it: everything that is the same for all of its pixels.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@ namespace vpe::voxel {
 
 struct PaintJob {
   const core::DrawRequest* request = nullptr;
-  const paging::GroundPainter* painter = nullptr;
-  const paging::ShadeParams* look = nullptr;
+  const paging::TerrainShader* painter = nullptr;
+  const paging::ShadingParams* shading = nullptr;
   const ScaleTable* scale = nullptr;  // where the look has one
   RayRows rays;
   double radius_m = 0;
   double focal_px = 0;      // rays a radian
   double root_range_m = 0;  // at this range pixels are as wide as the posts of level 0 are apart
   int posts_side = 0;       // lines of a tile's grid
-  bool by_point = false;    // ground is left to GroundPainter::colour_at
+  bool by_point = false;    // ground is left to TerrainShader::colour_at
   bool one_colour = false;  // all ground has the same, and data: no tile is looked at
-  glm::dvec3 up{0, 0, 1};   // at the eye
-  double eye_radius_m = 0;
+  glm::dvec3 up{0, 0, 1};   // at the camera
+  double camera_radius_m = 0;
 
   int width = 0;
   int height = 0;
   const float* range_m = nullptr;
   base::Rgb* colour = nullptr;
-  float* inverse_depth = nullptr;  // 1 / metres along the eye's axis, 0 = sky; null when not wanted
+  float* inverse_depth = nullptr;  // 1 / metres along the camera's axis, 0 = sky; null when not wanted
 };
 
 // Paints rows [begin, end) and returns how many of their pixels have no data. Any thread; one for each

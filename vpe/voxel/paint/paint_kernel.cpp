@@ -50,7 +50,7 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
       paint_ground(job, block);
     }
   }
-  for (std::uint32_t left = block.missing; left != 0; left &= left - 1) {
+  for (std::uint32_t left = block.nodata; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
     block.red[i] = block.green[i] = block.blue[i] = kGap;
   }
@@ -67,7 +67,7 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
     }
   }
   store_colours(block, job.colour + static_cast<std::ptrdiff_t>(block.y) * job.width + block.x, block.count);
-  return __builtin_popcount(block.missing);
+  return __builtin_popcount(block.nodata);
 }
 
 std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int end_row) {

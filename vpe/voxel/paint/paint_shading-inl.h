@@ -1,4 +1,4 @@
-// From normals, heights and texels of a block to colours: paging::GroundPainter's colour() in vectors.
+// From normals, heights and texels of a block to colours: paging::TerrainShader's colour() in vectors.
 #if defined(VPE_VOXEL_PAINT_LOOK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_PAINT_LOOK_INL_H_
 #undef VPE_VOXEL_PAINT_LOOK_INL_H_
@@ -97,9 +97,9 @@ inline HWY_NOINLINE void take_scale(const ScaleTable& table, const core::ColourS
 
 // The value that a surfacing shows, of pixels i and after.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V shown_value(D d, const PaintJob& job, paging::Surfacing what, const Block& block, int i,
+HWY_INLINE V shown_value(D d, const PaintJob& job, paging::ColourSource what, const Block& block, int i,
                          const Triple<V>& normal, V height) {
-  if (what == paging::Surfacing::kElevation) return height;
+  if (what == paging::ColourSource::kElevation) return height;
   // Places as floats: halves of vectors of doubles.
   const Doubles dd;
   const Halves dh;
@@ -109,37 +109,37 @@ HWY_INLINE V shown_value(D d, const PaintJob& job, paging::Surfacing what, const
       hn::Store(hn::DemoteTo(dh, hn::Load(dd, block.place[c] + i + k)), dh, place[c] + k);
   }
   const Triple<V> p{hn::Load(d, place[0]), hn::Load(d, place[1]), hn::Load(d, place[2])};
-  if (what == paging::Surfacing::kSlope) return slope(d, normal, p);
+  if (what == paging::ColourSource::kSlope) return slope(d, normal, p);
   return aspect(d, normal, p, job.scale->of_nothing);
 }
 
-inline HWY_NOINLINE void paint_look(const PaintJob& job, Block& block) {
-  const paging::ShadeParams& look = *job.look;
-  const bool of_image = look.surfacing == paging::Surfacing::kImage;
+inline HWY_NOINLINE void paint_shading(const PaintJob& job, Block& block) {
+  const paging::ShadingParams& shading = *job.shading;
+  const bool of_image = shading.colour_source == paging::ColourSource::kImage;
   const bool scaled = job.scale != nullptr;
-  const bool posts = paint_needs(look).posts;
+  const bool posts = paint_needs(shading).posts;
   const Floats d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   alignas(64) float light[kBlock];
   alignas(64) float value[kBlock];
   alignas(64) float hue[kBlock][4];
   if (posts) {
-    const auto sun = triple(d, look.sun);
+    const auto sun = triple(d, shading.sun);
     for (int i = 0; i < kBlock; i += lanes) {
       hn::Vec<Floats> x, y, z, height;
       hn::LoadInterleaved4(d, block.post[i], x, y, z, height);
       const Triple<hn::Vec<Floats>> normal{x, y, z};
       if (scaled)
-        hn::Store(shown_value(d, job, of_image ? look.hue : look.surfacing, block, i, normal, height), d,
+        hn::Store(shown_value(d, job, of_image ? shading.hue : shading.colour_source, block, i, normal, height), d,
                   value + i);
-      if (!look.lit) continue;
+      if (!shading.lit) continue;
       const auto cosine = hn::Div(dot(normal, sun), hn::Sqrt(dot(normal, normal)));
       auto incidence = hn::Max(cosine, hn::Zero(d));
-      if (look.shadows) incidence = hn::Mul(incidence, hn::Load(d, block.sun + i));
-      hn::Store(hn::Sqrt(line(d, incidence, look.ambient, look.diffuse)), d, light + i);
+      if (shading.shadows) incidence = hn::Mul(incidence, hn::Load(d, block.sun + i));
+      hn::Store(hn::Sqrt(line(d, incidence, shading.ambient, shading.diffuse)), d, light + i);
     }
   }
-  if (scaled) take_scale(*job.scale, *look.scale, value, block.ground, of_image ? hue : block.texel);
+  if (scaled) take_scale(*job.scale, *shading.scale, value, block.ground, of_image ? hue : block.texel);
   for (int i = 0; i < kBlock; i += lanes) {
     Triple<hn::Vec<Floats>> colour = triple(d, core::kPlainGround);
     auto unused = hn::Zero(d);
@@ -156,7 +156,7 @@ inline HWY_NOINLINE void paint_look(const PaintJob& job, Block& block) {
                 hn::IfThenElse(black, most, hn::Mul(tint.y, by)),
                 hn::IfThenElse(black, most, hn::Mul(tint.z, by))};
     }
-    if (look.lit) {
+    if (shading.lit) {
       const auto factor = hn::Load(d, light + i);
       colour = {hn::Mul(colour.x, factor), hn::Mul(colour.y, factor), hn::Mul(colour.z, factor)};
     }

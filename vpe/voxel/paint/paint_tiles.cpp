@@ -7,13 +7,13 @@ namespace vpe::voxel {
 
 namespace {
 
-using paging::Surfacing;
+using paging::ColourSource;
 
 // From this level on a tile lies between two knots of the warp.
 constexpr int kKnotLevel = 5;
 
-bool of_posts(Surfacing s) {
-  return s == Surfacing::kElevation || s == Surfacing::kSlope || s == Surfacing::kAspect;
+bool of_posts(ColourSource s) {
+  return s == ColourSource::kElevation || s == ColourSource::kSlope || s == ColourSource::kAspect;
 }
 
 void set_axes(mars::Face face, PaintTile& out) {
@@ -37,16 +37,16 @@ WindowAxis window(std::int32_t index, int square_level, std::int32_t tile_index,
 
 }  // namespace
 
-PaintNeeds paint_needs(const paging::ShadeParams& look) {
-  return {look.lit || of_posts(look.surfacing) || of_posts(look.hue), look.surfacing == Surfacing::kImage};
+PaintNeeds paint_needs(const paging::ShadingParams& shading) {
+  return {shading.lit || of_posts(shading.colour_source) || of_posts(shading.hue), shading.colour_source == ColourSource::kImage};
 }
 
-PaintTiles::PaintTiles(const paging::PlanetFile& planet, const paging::GroundPainter& painter,
-                       const paging::ShadeParams& look, std::size_t limit_bytes)
+PaintTiles::PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& painter,
+                       const paging::ShadingParams& shading, std::size_t limit_bytes)
     : planet_(planet),
       painter_(painter),
-      look_(look),
-      needs_(paint_needs(look)),
+      shading_(shading),
+      needs_(paint_needs(shading)),
       max_level_(planet.meta().finest_level),
       image_below_(0),
       limit_(limit_bytes) {
@@ -67,8 +67,8 @@ PaintTile PaintTiles::make(const lod::TileKey& square, int level) const {
   out.per_u = 1.0 / (rect.u1 - rect.u0);
   out.per_v = 1.0 / (rect.v1 - rect.v0);
   const lod::TileKey stored = planet_.tree().deepest(lod::ancestor(square, level)).key;
-  if (needs_.posts || planet_.has_missing(stored)) {
-    out.ground = painter_.normals(stored, look_);
+  if (needs_.posts || planet_.has_nodata(stored)) {
+    out.ground = painter_.normals(stored, shading_);
     const int n = out.ground->side - 1;
     out.ground_x = window(square.i, square.level, stored.i, stored.level, n);
     out.ground_y = window(square.j, square.level, stored.j, stored.level, n);

@@ -1,4 +1,4 @@
-// Which posts and texels colour the ground at a place: what one thread has at hand while it paints a picture.
+// Which posts and texels colour the ground at a place: what one thread has at hand while it paints an image.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct PaintNeeds {
   bool posts = false;
   bool image = false;
 };
-PaintNeeds paint_needs(const paging::ShadeParams& look);
+PaintNeeds paint_needs(const paging::ShadingParams& shading);
 
 // Places along one axis of a grid: first + share of the window's side * span, in grid lines.
 struct WindowAxis {
@@ -42,11 +42,11 @@ struct PaintTile {
 // Used by one thread at a time.
 class PaintTiles {
  public:
-  PaintTiles(const paging::PlanetFile& planet, const paging::GroundPainter& painter,
-             const paging::ShadeParams& look, std::size_t limit_bytes);
+  PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& painter,
+             const paging::ShadingParams& shading, std::size_t limit_bytes);
 
   // The square that holds a point (of any length but 0) at a level of posts: of the tile that
-  // GroundPainter::colour_at takes for it. Levels are 0 to max_level(); what is beyond shows no more. Valid
+  // TerrainShader::colour_at takes for it. Levels are 0 to max_level(); what is beyond shows no more. Valid
   // until trim() says that it let go. Throws PlanetError.
   const PaintTile& find(const glm::dvec3& point, int level);
 
@@ -55,15 +55,15 @@ class PaintTiles {
 
   int max_level() const { return max_level_; }
 
-  paging::GroundPainter::Cursor cursor;  // for GroundPainter::colour_at
+  paging::TerrainShader::Cursor cursor;  // for TerrainShader::colour_at
 
  private:
   PaintTile make(const lod::TileKey& square, int level) const;
   void hold(const void* tile, std::size_t bytes);
 
   const paging::PlanetFile& planet_;
-  const paging::GroundPainter& painter_;
-  paging::ShadeParams look_;
+  const paging::TerrainShader& painter_;
+  paging::ShadingParams shading_;
   PaintNeeds needs_;
   int max_level_;
   int image_below_;  // levels from posts to the image's tiles of equal spacing

@@ -7,7 +7,7 @@ namespace vpe::voxel {
 
 RayRows ray_rows(const core::View& view) {
   const core::SubRectangle part = core::drawn_part(view);
-  const mars::Axes& axes = view.eye.axes;
+  const mars::Axes& axes = view.camera.axes;
   const double focal = core::focal_px(view);
   const double centre_x = 0.5 * view.width + view.principal_offset_px.x;
   const double centre_y = 0.5 * view.height + view.principal_offset_px.y;

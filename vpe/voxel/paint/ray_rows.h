@@ -1,4 +1,4 @@
-// The rays of a picture row by row, as sums of a few terms: no pixel needs a sine or a whole vector.
+// The rays of an image row by row, as sums of a few terms: no pixel needs a sine or a whole vector.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -17,7 +17,7 @@ struct RowRays {
   glm::dvec3 a, b, c;
   // Square of its length: m0 + c0 (m1 + c0 m2), near 1 about the principal point.
   double m0 = 1, m1 = 0, m2 = 0;
-  double forward = 0;  // its part along the eye's axis, in perspective
+  double forward = 0;  // its part along the camera's axis, in perspective
 };
 
 // Of the drawn part of a view; directions are those of core::pixel_ray up to their length, within 1e-14 rad.
