@@ -1,0 +1,22 @@
+// Names of the two rendering backends.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace vpe::core {
+
+// A program that turns a DrawRequest into a Frame. Both draw the same reference surface.
+enum class Backend : std::uint8_t {
+  kPolygon,  // triangle meshes on OpenGL (vpe/gl)
+  kRay,      // ray casting on the CPU (vpe/voxel)
+};
+
+// Returns "polygon" or "ray".
+std::string_view to_string(Backend backend);
+
+// Returns the backend of that name; accepts former names (former_names.h). Returns nullopt for other text.
+std::optional<Backend> parse_backend(std::string_view text);
+
+}  // namespace vpe::core
