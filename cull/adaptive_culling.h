@@ -24,7 +24,8 @@ struct CullingFrame {
 // Counts frames, knows no clock. Frames in which nothing was tested say nothing and do not count as use.
 class AdaptiveCulling {
  public:
-  explicit AdaptiveCulling(const AdaptiveCullingLimits& limits = {}) : limits_(limits), wait_(limits.wait_frames) {}
+  explicit AdaptiveCulling(const AdaptiveCullingLimits& limits = {})
+      : limits_(limits), wait_(limits.wait_frames) {}
 
   // Whether to use the culler in the next frame.
   bool use() const { return state_ != State::kOff; }

@@ -19,7 +19,8 @@ Frustum make_frustum(const vpe::core::View& view) {
 
 PlaneMask all_planes(const Frustum& frustum) { return static_cast<PlaneMask>((1 << frustum.count) - 1); }
 
-std::optional<PlaneMask> planes_crossed(const Frustum& frustum, const BoundingHexahedron& volume, PlaneMask mask) {
+std::optional<PlaneMask> planes_crossed(const Frustum& frustum, const BoundingHexahedron& volume,
+                                        PlaneMask mask) {
   if (mask == 0) return mask;
   std::array<glm::dvec3, 8> corners;
   double largest = 0.0;

@@ -27,6 +27,7 @@ PlaneMask all_planes(const Frustum& frustum);
 // Nothing when the volume lies outside one of the planes of `mask`, else the planes of `mask` that it is not
 // wholly inside of: all that the parts of a tile have to be tested against. Conservative: a volume with a
 // point inside all planes is never given up; boxes near the frustum's edges may be kept though outside.
-std::optional<PlaneMask> planes_crossed(const Frustum& frustum, const BoundingHexahedron& volume, PlaneMask mask);
+std::optional<PlaneMask> planes_crossed(const Frustum& frustum, const BoundingHexahedron& volume,
+                                        PlaneMask mask);
 
 }  // namespace cull

@@ -133,7 +133,7 @@ void TerrainHorizon::add(const OccluderSegment& occluder) {
   std::array<double, OccluderSegment::kMostPieces> rise;
   for (std::size_t n = 0; n <= pieces; ++n) {
     at[n] = azimuth(occluder.column ? mars::cube_point(occluder.face, occluder.line, occluder.ends[n])
-                                : mars::cube_point(occluder.face, occluder.ends[n], occluder.line));
+                                    : mars::cube_point(occluder.face, occluder.ends[n], occluder.line));
   }
   for (std::size_t n = 0; n < pieces; ++n) {
     if (!(occluder.radius_m[n] > 0.0)) return;
@@ -230,9 +230,10 @@ bool TerrainHorizon::hidden(const BoundingRegion& region) const {
     if (c < c_near && c > c_far) highest = std::max(highest, slope_at(c, top, camera_.radius_m));
   }
   // An angle at slope s turns the azimuth by it times sqrt(1 + s^2), and the slope by its tangent.
-  const double lowest = region.min_radius_m > 0.0 ? std::min(slope_at(c_near, region.min_radius_m, camera_.radius_m),
-                                                            slope_at(c_far, region.min_radius_m, camera_.radius_m))
-                                                 : kNone;
+  const double lowest = region.min_radius_m > 0.0
+                            ? std::min(slope_at(c_near, region.min_radius_m, camera_.radius_m),
+                                       slope_at(c_far, region.min_radius_m, camera_.radius_m))
+                            : kNone;
   const double steep2 = 1.0 + std::max(highest * highest, lowest * lowest);
   const double aside = margin_rad_ * std::sqrt(steep2);
   const double rest = 1.0 - highest * margin_rad_;

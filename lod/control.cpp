@@ -106,7 +106,8 @@ double least_angle_rad(const CentreOfView& centre, const cull::BoundingHexahedro
     if (corners[k] == glm::dvec3(0.0)) return 0.0;
   }
   double least = kInfinity;
-  for (const auto& [a, b] : kHullEdges) least = std::min(least, arc_angle(centre.forward, corners[a], corners[b]));
+  for (const auto& [a, b] : kHullEdges)
+    least = std::min(least, arc_angle(centre.forward, corners[a], corners[b]));
   return least;
 }
 

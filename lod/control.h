@@ -21,8 +21,8 @@
 
 #include "cull/bounding_region.h"
 #include "lod/tree/tile_key.h"
-#include "vpe/core/interest.h"
 #include "vpe/core/appearance/settings.h"
+#include "vpe/core/interest.h"
 #include "vpe/core/view.h"
 
 namespace lod {

@@ -12,8 +12,9 @@ LevelReason reason_of(const SelectOptions& options, const TileInfo& info, const 
     const double number = lod_number(tile.key, tile.variant, static_cast<int>(info.variants.size()));
     return number >= tile.control ? LevelReason::kLevelReached : LevelReason::kBudgetSpent;
   }
-  return tile.screen_space_error_px * std::exp2(tile.control) <= options.tolerance_px ? LevelReason::kWithinTolerance
-                                                                         : LevelReason::kBudgetSpent;
+  return tile.screen_space_error_px * std::exp2(tile.control) <= options.tolerance_px
+             ? LevelReason::kWithinTolerance
+             : LevelReason::kBudgetSpent;
 }
 
 }  // namespace
@@ -44,13 +45,14 @@ std::vector<TileExplanation> explain(const SelectOptions& options, const TileTre
     e.min_distance_m = tile.min_distance_m;
     e.geometric_error_m = tile.geometric_error_m;
     e.screen_space_error_px = tile.screen_space_error_px;
-    const double coarsest_m =
-        is_full_grid(info, 0) ? 0.0 : tree.geometric_error_m(info, info.variants[0].terms, options.exaggeration);
+    const double coarsest_m = is_full_grid(info, 0)
+                                  ? 0.0
+                                  : tree.geometric_error_m(info, info.variants[0].terms, options.exaggeration);
     const cull::BoundingRegion region = tree.region(tile.index, options.exaggeration, coarsest_m);
     const double distance_m = cull::min_distance_m(camera, cull::nearest_chord2(region.rect, camera.direction),
                                                    region.min_radius_m, region.max_radius_m);
-    e.terms =
-        control_terms(options.control, view.centre, {cull::bounding_hexahedron(region), region.rect, distance_m}, true);
+    e.terms = control_terms(options.control, view.centre,
+                            {cull::bounding_hexahedron(region), region.rect, distance_m}, true);
     if (options.control.rule == vpe::core::LodMetric::kDistance) {
       e.wanted = static_cast<int>(tile.control);
     } else {

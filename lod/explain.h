@@ -22,8 +22,8 @@ struct TileExplanation {
   double post_spacing_m = 0;  // of the posts that its mesh is chosen from, at nominal size
   int variant = 0;            // 0 = the coarsest mesh of the tile
   int variants = 1;
-  double min_distance_m = 0;  // lower bound, to the tile with the mesh that is drawn
-  double geometric_error_m = 0;         // bounds, of the mesh that is drawn
+  double min_distance_m = 0;     // lower bound, to the tile with the mesh that is drawn
+  double geometric_error_m = 0;  // bounds, of the mesh that is drawn
   double screen_space_error_px = 0;
   ControlTerms terms;  // taken with the coarsest mesh, as in select()
   double shift = 0;    // rule error: levels that the error counted more

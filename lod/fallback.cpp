@@ -87,7 +87,7 @@ void drop_nested(const TileTree& tree, std::vector<TileTree::Index>& tiles) {
 }  // namespace
 
 void select_fallbacks(const SelectOptions& options, const TileTree& tree, const SelectView& view,
-                const Selection& selection, const IsResident& ready, FallbackSelection& result) {
+                      const Selection& selection, const IsResident& ready, FallbackSelection& result) {
   result.missing.clear();
   result.substituted = result.uncovered = 0;
   const Substituter substituter(tree, ready);

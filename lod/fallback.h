@@ -29,6 +29,6 @@ struct FallbackSelection {
 // without its siblings. Errors and distances of what is drawn are its own. The same arguments give the same
 // result.
 void select_fallbacks(const SelectOptions& options, const TileTree& tree, const SelectView& view,
-                const Selection& selection, const IsResident& ready, FallbackSelection& result);
+                      const Selection& selection, const IsResident& ready, FallbackSelection& result);
 
 }  // namespace lod

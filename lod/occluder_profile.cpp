@@ -113,8 +113,9 @@ class Family {
 
 }  // namespace
 
-OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh, std::span<const double> height_m,
-                     double exaggeration, double radius_m, double lower_m) {
+OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh,
+                                      std::span<const double> height_m, double exaggeration, double radius_m,
+                                      double lower_m) {
   if (mesh.intervals <= 0 || mesh.intervals % kOccluderPieces != 0) {
     throw std::invalid_argument("walls of tile " + to_string(key) + ": its grid of " +
                                 std::to_string(mesh.intervals) + " intervals does not divide into " +

@@ -26,7 +26,8 @@ struct OccluderProfile {
 // how far the surface as drawn may lie below the mesh, such as by rounding of its vertices. Exact up to
 // rounding, 1e-15 of the radius, which is taken off too. The mesh's intervals must be a multiple of
 // kWallPieces, the heights as many as the vertices, and the drawn radii positive, else std::invalid_argument.
-OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh, std::span<const double> height_m,
-                     double exaggeration, double radius_m, double lower_m = 0.0);
+OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh,
+                                      std::span<const double> height_m, double exaggeration, double radius_m,
+                                      double lower_m = 0.0);
 
 }  // namespace lod

@@ -13,7 +13,9 @@ void OcclusionPass::begin(const glm::dvec3& camera_m, bool camera_is_above_groun
   if (above_) horizon_.begin(cull::make_camera(camera_m), margin_rad);
 }
 
-bool OcclusionPass::hidden(const cull::BoundingRegion& region) const { return above_ && horizon_.hidden(region); }
+bool OcclusionPass::hidden(const cull::BoundingRegion& region) const {
+  return above_ && horizon_.hidden(region);
+}
 
 void OcclusionPass::add(const TileKey& key, const OccluderProfile& occluders, double radius_m) {
   if (!above_) return;
@@ -23,7 +25,8 @@ void OcclusionPass::add(const TileKey& key, const OccluderProfile& occluders, do
   constexpr double kPieceBins = 0.5;
   if (bins < kPieceBins) return;
   std::size_t joined = 1;
-  while (joined < kOccluderPieces && bins * static_cast<double>(joined) < kPieceBins * kOccluderPieces) joined *= 2;
+  while (joined < kOccluderPieces && bins * static_cast<double>(joined) < kPieceBins * kOccluderPieces)
+    joined *= 2;
   const std::size_t pieces = kOccluderPieces / joined;
   const std::size_t step = std::max<std::size_t>(1, joined * kOccluderStrips / kOccluderPieces);
   const GridLines lines = grid_lines(key, kOccluderPieces);

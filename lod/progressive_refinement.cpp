@@ -47,7 +47,9 @@ double image_motion_px(const vpe::core::View& before, const vpe::core::View& aft
   // Off the axis of a flat image turning moves points by up to 1 / cos^2 more.
   const double off_axis_magnification = flat ? 1.0 + corner * corner / (focal * focal) : 1.0;
   const double step_m = glm::length(after.camera.position_m - before.camera.position_m);
-  const double past = step_m == 0.0 ? 0.0 : nearest_m > 0.0 ? step_m / nearest_m * focal * off_axis_magnification : kInfinity;
+  const double past = step_m == 0.0     ? 0.0
+                      : nearest_m > 0.0 ? step_m / nearest_m * focal * off_axis_magnification
+                                        : kInfinity;
   const double zoom = std::abs(core::focal_px(after) / core::focal_px(before) - 1.0) * corner;
   return turned * focal * off_axis_magnification + rolled * corner + past + zoom;
 }

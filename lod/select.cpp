@@ -43,7 +43,8 @@ double projected(double geometric_error_m, double focal_px, double distance_m, d
 
 SelectView select_view(const vpe::core::View& view) {
   const bool perspective = view.projection == vpe::core::Projection::kPerspective;
-  return {view.camera.position_m, perspective ? vpe::core::focal_px(view) : view.width / (2.0 * std::numbers::pi),
+  return {view.camera.position_m,
+          perspective ? vpe::core::focal_px(view) : view.width / (2.0 * std::numbers::pi),
           cull::make_frustum(view), image_plane(view), centre_of_view(view)};
 }
 
@@ -56,8 +57,8 @@ class Selector {
         view_(view),
         camera_(cull::make_camera(view.camera_m)),
         horizon_(cull::make_horizon(camera_, mutated(Guard::kLowestOccluder)
-                                              ? tree.radius_m()
-                                              : tree.lowest_radius_m(options.exaggeration))),
+                                                 ? tree.radius_m()
+                                                 : tree.lowest_radius_m(options.exaggeration))),
         heap_(scratch.heap_),
         out_(out),
         by_distance_(options.control.rule == vpe::core::LodMetric::kDistance),
@@ -104,7 +105,9 @@ class Selector {
 
   static bool less_urgent(const Candidate& a, const Candidate& b) {
     if (a.urgency != b.urgency) return a.urgency < b.urgency;
-    return a.screen_space_error_px != b.screen_space_error_px ? a.screen_space_error_px < b.screen_space_error_px : a.index > b.index;
+    return a.screen_space_error_px != b.screen_space_error_px
+               ? a.screen_space_error_px < b.screen_space_error_px
+               : a.index > b.index;
   }
 
   void reset() {
@@ -123,7 +126,8 @@ class Selector {
 
   double geometric_error_m(const TileInfo& tile, int variant) const {
     if (is_full_grid(tile, variant)) return 0.0;
-    return tree_.geometric_error_m(tile, tile.variants[static_cast<std::size_t>(variant)].terms, options_.exaggeration);
+    return tree_.geometric_error_m(tile, tile.variants[static_cast<std::size_t>(variant)].terms,
+                                   options_.exaggeration);
   }
 
   // Rule hitchner: the levels that the tile lacks.
@@ -136,14 +140,16 @@ class Selector {
 
   void measure(Candidate& c, const cull::BoundingRegion& region) const {
     c.min_distance_m = cull::min_distance_m(camera_, c.chord2, region.min_radius_m, region.max_radius_m);
-    c.screen_space_error_px = projected(c.geometric_error_m, view_.focal_px, c.min_distance_m, c.off_axis_magnification);
+    c.screen_space_error_px =
+        projected(c.geometric_error_m, view_.focal_px, c.min_distance_m, c.off_axis_magnification);
     c.urgency = urgency(c);
   }
 
   double sky_stretch(const cull::BoundingRegion& region, const cull::BoundingHexahedron& volume) const {
     const bool stands_out =
-        view_.plane.flat && cull::against_sky(camera_, horizon_, cull::farthest_chord2(region.rect, camera_.direction),
-                                              region.max_radius_m);
+        view_.plane.flat &&
+        cull::against_sky(camera_, horizon_, cull::farthest_chord2(region.rect, camera_.direction),
+                          region.max_radius_m);
     return stands_out ? off_axis_magnification(view_.plane, volume) : 1.0;
   }
 
@@ -204,7 +210,8 @@ class Selector {
     Family family;
     if (tile.has_children) {
       const TileTree::Index first = tree_.first_child(worst.index);
-      for (TileTree::Index c = first; c < first + 4; ++c) visit(c, worst.mask, worst.off_axis_magnification, family);
+      for (TileTree::Index c = first; c < first + 4; ++c)
+        visit(c, worst.mask, worst.off_axis_magnification, family);
     } else {
       Candidate& next = family.members[family.size++];
       next = worst;
@@ -226,8 +233,14 @@ class Selector {
   }
 
   SelectedTile tile_of(const Candidate& c) const {
-    return {tree_[c.index].key, c.index,          c.variant, c.geometric_error_m,
-            c.screen_space_error_px,         c.min_distance_m, c.off_axis_magnification, c.control};
+    return {tree_[c.index].key,
+            c.index,
+            c.variant,
+            c.geometric_error_m,
+            c.screen_space_error_px,
+            c.min_distance_m,
+            c.off_axis_magnification,
+            c.control};
   }
   void draw(const Candidate& c) { out_.tiles.push_back(tile_of(c)); }
 
@@ -269,7 +282,8 @@ void update_totals(const TileTree& tree, Selection& selection) {
   for (const SelectedTile& tile : selection.tiles) {
     selection.triangles += tree[tile.index].variants[static_cast<std::size_t>(tile.variant)].triangles;
     selection.max_geometric_error_m = std::max(selection.max_geometric_error_m, tile.geometric_error_m);
-    selection.max_screen_space_error_px = std::max(selection.max_screen_space_error_px, tile.screen_space_error_px);
+    selection.max_screen_space_error_px =
+        std::max(selection.max_screen_space_error_px, tile.screen_space_error_px);
     const auto level = static_cast<std::size_t>(tile.key.level);
     if (selection.tiles_by_level.size() <= level) selection.tiles_by_level.resize(level + 1);
     ++selection.tiles_by_level[level];

@@ -51,11 +51,11 @@ struct SelectedTile {
   TileKey key;
   TileTree::Index index = 0;
   int variant = 0;
-  double geometric_error_m = 0;         // bound at the exaggeration selected for
-  double screen_space_error_px = 0;        // projected; infinite where the camera is within the error of the ground
-  double min_distance_m = 0;  // lower bound
-  double off_axis_magnification = 1;         // upper bound, >= 1; 1 for what cannot stand against the sky
-  double control = 0;         // rule error: levels that its error counted more; hitchner: the LOD number wanted
+  double geometric_error_m = 0;       // bound at the exaggeration selected for
+  double screen_space_error_px = 0;   // projected; infinite where the camera is within the error of the ground
+  double min_distance_m = 0;          // lower bound
+  double off_axis_magnification = 1;  // upper bound, >= 1; 1 for what cannot stand against the sky
+  double control = 0;  // rule error: levels that its error counted more; hitchner: the LOD number wanted
 };
 
 struct Selection {

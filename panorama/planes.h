@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "paging/surface/surface.h"
-#include "panorama/panorama_plan.h"
 #include "panorama/image/tile_codec.h"
+#include "panorama/panorama_plan.h"
 
 namespace panorama {
 

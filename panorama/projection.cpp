@@ -115,8 +115,7 @@ bool PanoramaMap::is_full_turn() const { return std::abs(static_cast<double>(wid
 std::string check(const PanoramaMap& map) {
   using Limits = PanoramaLimits;
   if (std::string problem = check_facets(map); !problem.empty()) return problem;
-  if (map.width_px < 1 || map.height_px < 1 || map.width_px > kMaxSide_px ||
-      map.height_px > kMaxSide_px) {
+  if (map.width_px < 1 || map.height_px < 1 || map.width_px > kMaxSide_px || map.height_px > kMaxSide_px) {
     return "picture size " + std::to_string(map.width_px) + "x" + std::to_string(map.height_px) +
            ": each side must be 1 to " + std::to_string(kMaxSide_px) + " pixels";
   }

@@ -196,8 +196,7 @@ std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const PoseOnSphere& st
     const std::int64_t begin = std::max<std::int64_t>(0, strip.x - right);
     const std::int64_t end = std::min(map.width_px, strip.x + strip.width - right);
     if (begin >= end) continue;
-    std::vector<Piece> of_eye =
-        eye_pieces_of(map, stand, bands, eye, {begin, static_cast<int>(end - begin)});
+    std::vector<Piece> of_eye = eye_pieces_of(map, stand, bands, eye, {begin, static_cast<int>(end - begin)});
     shift(of_eye, right, down);
     pieces.insert(pieces.end(), of_eye.begin(), of_eye.end());
   }

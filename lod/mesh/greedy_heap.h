@@ -53,7 +53,8 @@ class PostQueue {
   static constexpr std::size_t kNone = ~std::size_t{0};
 
   static bool before(const QueuedPost& a, const QueuedPost& b) {
-    return a.geometric_error_m > b.geometric_error_m || (a.geometric_error_m == b.geometric_error_m && a.post < b.post);
+    return a.geometric_error_m > b.geometric_error_m ||
+           (a.geometric_error_m == b.geometric_error_m && a.post < b.post);
   }
 
   void put(std::size_t at, const QueuedPost& entry) {

@@ -19,7 +19,8 @@ namespace {
 
 bool grows(const ErrorTerms& from, const ErrorTerms& to) {
   if (mutated(Guard::kErrorsNest)) return false;
-  return !(to.height_error_m <= from.height_error_m && to.sagitta_m <= from.sagitta_m && to.total_m <= from.total_m);
+  return !(to.height_error_m <= from.height_error_m && to.sagitta_m <= from.sagitta_m &&
+           to.total_m <= from.total_m);
 }
 
 void check(const TileInfo& tile, double radius_m) {
@@ -179,7 +180,8 @@ double TileTree::edge_shift_m(const TileInfo& tile, double exaggeration) const {
   if (!level) return 0.0;
   const double factor = facet_factor(*level - 1, shape_);
   const double sagitta_m = radius_m_ * (1.0 - factor);
-  const double edge_m = 2 * kCapPerSide * nominal_side_m(*level - 1 + shape_.k, 1.0) * (radius_m_ + tile.max_height_m);
+  const double edge_m =
+      2 * kCapPerSide * nominal_side_m(*level - 1 + shape_.k, 1.0) * (radius_m_ + tile.max_height_m);
   const double range_m = std::min(tile.max_height_m - tile.min_height_m, tile.steepest_slope * edge_m);
   const double post_m =
       std::abs(exaggeration - 1.0) * sagitta_m +

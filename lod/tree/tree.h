@@ -27,11 +27,14 @@ class StatedTerms {
  public:
   StatedTerms() = default;
   StatedTerms(const ErrorTerms& terms)  // NOLINT(google-explicit-constructor): what is stated of them
-      : height_error_m_(up(terms.height_error_m)), sagitta_m_(up(terms.sagitta_m)), total_m_(up(terms.total_m)) {}
+      : height_error_m_(up(terms.height_error_m)),
+        sagitta_m_(up(terms.sagitta_m)),
+        total_m_(up(terms.total_m)) {}
 
   bool known() const { return total_m_ == total_m_; }
   ErrorTerms terms() const {
-    return {static_cast<double>(height_error_m_), static_cast<double>(sagitta_m_), static_cast<double>(total_m_)};
+    return {static_cast<double>(height_error_m_), static_cast<double>(sagitta_m_),
+            static_cast<double>(total_m_)};
   }
 
  private:

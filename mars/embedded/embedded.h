@@ -21,8 +21,8 @@
 #include <memory>
 #include <span>
 
-#include "mars/sources/source.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/source.h"
 
 namespace mars {
 

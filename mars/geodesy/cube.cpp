@@ -46,8 +46,9 @@ double face_line(std::int64_t index, int grid_level) {
 
 double face_parameter(double u) {
   const double scaled = std::min(std::abs(u), 1.0) / kKnotUnit;
-  const auto* upper = std::upper_bound(kKnots.begin() + 1, kKnots.end() - 1, scaled,
-                                       [](double x, std::int64_t knot) { return x < static_cast<double>(knot); });
+  const auto* upper =
+      std::upper_bound(kKnots.begin() + 1, kKnots.end() - 1, scaled,
+                       [](double x, std::int64_t knot) { return x < static_cast<double>(knot); });
   const auto knot = static_cast<std::size_t>(upper - kKnots.begin()) - 1;
   const auto low = static_cast<double>(kKnots[knot]);
   const auto high = static_cast<double>(kKnots[knot + 1]);

@@ -34,7 +34,7 @@ CameraPose to_camera(const Pose& pose, double radius_m) { return to_camera(pose,
 CameraPose to_camera(const Pose& pose, const HeadAngles& look, double radius_m) {
   const LocalFrame frame = local_frame({pose.lon_deg, pose.lat_deg});
   CameraPose camera{frame.up * (radius_m + pose.alt_m),
-              oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, pose.roll_deg)};
+                    oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, pose.roll_deg)};
   apply(camera.axes, look.yaw_deg, look.pitch_deg, look.roll_deg);
   return camera;
 }
@@ -59,9 +59,9 @@ Pose to_pose(const CameraPose& camera, double radius_m) {
     pose.yaw_deg = std::atan2(east, north) / kRadiansPerDegree;
   } else {
     const double sign = up > 0.0 ? -1.0 : 1.0;
-    pose.yaw_deg = std::atan2(sign * glm::dot(camera.axes.up, frame.east),
-                              sign * glm::dot(camera.axes.up, frame.north)) /
-                   kRadiansPerDegree;
+    pose.yaw_deg =
+        std::atan2(sign * glm::dot(camera.axes.up, frame.east), sign * glm::dot(camera.axes.up, frame.north)) /
+        kRadiansPerDegree;
   }
   const Axes unrolled = oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, 0.0);
   pose.roll_deg = std::atan2(glm::dot(camera.axes.up, unrolled.right), glm::dot(camera.axes.up, unrolled.up)) /

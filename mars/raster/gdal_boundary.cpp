@@ -5,7 +5,7 @@
 namespace mars {
 
 BoundaryTile make_boundary_tile(const PixelGrid& grid, const TileId& id, int limit,
-                      const std::function<bool(int column, int row)>& has_data) {
+                                const std::function<bool(int column, int row)>& has_data) {
   const int side = kTileStride + 2 * limit;
   const auto index = [side](int column, int row) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(side) + static_cast<std::size_t>(column);

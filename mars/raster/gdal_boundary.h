@@ -19,13 +19,13 @@ struct BoundaryTile {
 
 // has_data(column, row) is asked for pixels inside the grid only, in row order.
 BoundaryTile make_boundary_tile(const PixelGrid& grid, const TileId& id, int limit,
-                      const std::function<bool(int column, int row)>& has_data);
+                                const std::function<bool(int column, int row)>& has_data);
 
 // Distance of a place of the grid from its border and from the holes; `fetch(TileId)` gives rim tiles. 0
 // outside.
 template <class Fetch>
 void boundary_distances(const PixelGrid& grid, std::span<const glm::dvec2> pixels, double limit_posts,
-                   const Fetch& fetch, std::span<double> posts) {
+                        const Fetch& fetch, std::span<double> posts) {
   TileCursor<BoundaryTile, Fetch> cursor(0, fetch);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     PixelPlace place;

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include "mars/sources/adjusted.h"
-#include "mars/raster/gdal_raster.h"
 #include "mars/raster/gdal_boundary.h"
+#include "mars/raster/gdal_raster.h"
 #include "mars/raster/gdal_tiles.h"
 #include "mars/raster/product_datum.h"
+#include "mars/sources/adjusted.h"
 #include "mars/sources/source.h"
 #include "mars/sources/stack.h"
 
@@ -25,7 +25,7 @@ struct BandFormat {
   double scale = 1;   // metres in a unit of the stored values
   double offset = 0;  // metres at stored value 0
   bool fits_float = false;
-  NodataValues nodata;          // stored values that are no data besides that one
+  NodataValues nodata;  // stored values that are no data besides that one
   bool masked = false;  // a mask or alpha band says where there is data
 };
 
@@ -168,7 +168,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   }
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
-                    std::span<double> posts) const override {
+                         std::span<double> posts) const override {
     const int limit = static_cast<int>(std::ceil(std::min(limit_posts, kMaxFeather_posts)));
     auto cursor = make_cursor();
     const auto fetch = [&](const TileId& id) {

@@ -10,9 +10,9 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_crs.h"
 #include "mars/raster/gdal_scope.h"
-#include "mars/geodesy/sphere.h"
 
 namespace mars {
 namespace {

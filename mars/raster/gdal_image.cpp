@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
+#include "mars/raster/gdal_boundary.h"
 #include "mars/raster/gdal_image_decode.h"
 #include "mars/raster/gdal_raster.h"
-#include "mars/raster/gdal_boundary.h"
 #include "mars/raster/gdal_tiles.h"
 #include "mars/sources/source.h"
 #include "mars/sources/stack.h"
@@ -67,7 +67,7 @@ class GdalImage final : public ImageSource, public BoundaryAware {
   }
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
-                    std::span<double> posts) const override {
+                         std::span<double> posts) const override {
     const int limit = static_cast<int>(std::ceil(std::min(limit_posts, kMaxFeather_posts)));
     auto cursor = make_cursor(0);
     const auto fetch = [&](const TileId& id) {

@@ -24,7 +24,7 @@ struct ImageFormat {
   bool bytes = false;             // stored as 8 bits, shown as they are
   double low = 0, high = 255;     // else stretched between these
   std::vector<Pixel> palette;
-  NodataValues nodata;                   // stored values that are no data, of what is not 8 bits
+  NodataValues nodata;           // stored values that are no data, of what is not 8 bits
   std::map<int, int> overviews;  // level -> GDAL overview of exactly that size
 };
 

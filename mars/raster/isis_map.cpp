@@ -4,8 +4,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "mars/raster/pds_map.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/raster/pds_map.h"
 
 namespace mars {
 

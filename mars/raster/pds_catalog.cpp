@@ -2,9 +2,9 @@
 #include <iomanip>
 #include <sstream>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_scope.h"
 #include "mars/raster/pds_map.h"
-#include "mars/geodesy/sphere.h"
 
 namespace mars {
 namespace {

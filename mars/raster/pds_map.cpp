@@ -6,8 +6,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "mars/raster/gdal_scope.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/raster/gdal_scope.h"
 
 namespace mars {
 namespace {

@@ -67,7 +67,7 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
   }
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
-                    std::span<double> posts) const override {
+                         std::span<double> posts) const override {
     if (const auto* boundary = dynamic_cast<const BoundaryAware*>(source_.get())) {
       boundary->boundary_distance(directions, limit_posts, posts);
       return;

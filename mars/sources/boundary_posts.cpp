@@ -6,8 +6,8 @@
 
 namespace mars {
 
-std::vector<BoundaryPost> boundary_posts(const ElevationSource& inset, const ElevationSource& base, double within_posts,
-                               std::size_t max_posts) {
+std::vector<BoundaryPost> boundary_posts(const ElevationSource& inset, const ElevationSource& base,
+                                         double within_posts, std::size_t max_posts) {
   std::vector<BoundaryPost> posts;
   const auto* boundary = dynamic_cast<const BoundaryAware*>(&inset);
   if (boundary == nullptr) return posts;

@@ -15,7 +15,7 @@ struct BoundaryPost {
 
 // The inset's own posts, of at most about max_posts of them, within `within_posts` of its rim where both have
 // data. None of an inset that knows of no rim (not BoundaryAware). Throws SourceError on read errors.
-std::vector<BoundaryPost> boundary_posts(const ElevationSource& inset, const ElevationSource& base, double within_posts,
-                               std::size_t max_posts);
+std::vector<BoundaryPost> boundary_posts(const ElevationSource& inset, const ElevationSource& base,
+                                         double within_posts, std::size_t max_posts);
 
 }  // namespace mars

@@ -9,8 +9,8 @@
 
 #include "mars/sources/edge_matching.h"
 #include "mars/sources/outliers.h"
-#include "mars/sources/vertical_alignment.h"
 #include "mars/sources/source.h"
+#include "mars/sources/vertical_alignment.h"
 
 namespace mars {
 
@@ -22,8 +22,8 @@ struct CombineOptions {
   std::shared_ptr<const ElevationSource> areoid;  // see converted()
   // What gives way where an inset and what lies below it disagree at its rim.
   enum class VerticalAlignment {
-    kNone,  // neither: the fade alone
-    kPlane,   // the inset, by an offset and a tilt: fit_alignment()
+    kNone,   // neither: the fade alone
+    kPlane,  // the inset, by an offset and a tilt: fit_alignment()
     kEdges,  // what lies below, around the inset: fit_edge_matching()
   };
   VerticalAlignment level = VerticalAlignment::kNone;

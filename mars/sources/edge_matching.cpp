@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "mars/sources/boundary_posts.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/boundary_posts.h"
 #include "mars/sources/stack_walk.h"
 
 namespace mars {
@@ -50,8 +50,8 @@ void gather(const std::vector<BoundaryPost>& posts, double cell, EdgeMatching& b
 
 }  // namespace
 
-std::optional<EdgeMatching> fit_edge_matching(const ElevationSource& inset, const ElevationSource& base, double radius_m,
-                             std::size_t max_posts) {
+std::optional<EdgeMatching> fit_edge_matching(const ElevationSource& inset, const ElevationSource& base,
+                                              double radius_m, std::size_t max_posts) {
   const std::vector<BoundaryPost> posts = boundary_posts(inset, base, kAtRim_posts, max_posts);
   if (posts.empty()) return std::nullopt;
   EdgeMatching bend;

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <memory>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/sources/adjusted.h"
 #include "mars/sources/source.h"
-#include "mars/geodesy/sphere.h"
 
 namespace mars {
 

@@ -36,11 +36,11 @@ struct Cap {
 
 // What a planet file records of a source.
 struct SourceInfo {
-  std::string name;          // path as given, or the name of a built-in source
-  std::int64_t size_bytes = 0;  // 0 for built-in sources
-  std::int64_t mtime_s = 0;     // seconds since 1970, 0 for built-in sources
-  double resolution_m = 0;      // post spacing at its best place
-  double quantum_m = 0;         // step of its values; 0 = floating point
+  std::string name;                  // path as given, or the name of a built-in source
+  std::int64_t size_bytes = 0;       // 0 for built-in sources
+  std::int64_t mtime_s = 0;          // seconds since 1970, 0 for built-in sources
+  double resolution_m = 0;           // post spacing at its best place
+  double quantum_m = 0;              // step of its values; 0 = floating point
   VerticalDatum datum;               // of the values that the source gives
   double body_radius_m = 0;          // equatorial radius of the body that the product is of; 0 = not said
   std::optional<double> accuracy_m;  // one sigma, vertical, where the product states it
@@ -49,7 +49,8 @@ struct SourceInfo {
 };
 
 // Called with directions and the source's own values there (metres); blocks may come in any order.
-using PostVisitor = std::function<void(std::span<const glm::dvec3> directions, std::span<const double> heights_m)>;
+using PostVisitor =
+    std::function<void(std::span<const glm::dvec3> directions, std::span<const double> heights_m)>;
 
 class ElevationSource {
  public:
@@ -111,8 +112,8 @@ struct StackOptions {
 
 // Sources stacked by resolution: at each place the finest one that has data decides, feathered at its rim.
 // Ties go to the one given first. Throws SourceError when empty, or when the datums of two sources differ.
-std::shared_ptr<const ElevationSource> stack_elevation(std::vector<std::shared_ptr<const ElevationSource>> sources,
-                                                       const StackOptions& options = {});
+std::shared_ptr<const ElevationSource> stack_elevation(
+    std::vector<std::shared_ptr<const ElevationSource>> sources, const StackOptions& options = {});
 std::shared_ptr<const ImageSource> stack_images(std::vector<std::shared_ptr<const ImageSource>> sources,
                                                 const StackOptions& options = {});
 

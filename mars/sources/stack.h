@@ -14,7 +14,7 @@ class BoundaryAware {
   // its own posts, at most `limit_posts`; 0 where it has no data. Continuous but for steps below half a post
   // at corners of holes; a function of the place alone. Throws SourceError on a read error.
   virtual void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
-                            std::span<double> posts) const = 0;
+                                 std::span<double> posts) const = 0;
 };
 
 // Widest rim that a stack feathers, posts.

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "mars/sources/source.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/source.h"
 #include "mars/sources/stack.h"
 
 namespace mars {
@@ -43,7 +43,8 @@ std::vector<std::shared_ptr<const Source>> by_resolution(std::vector<std::shared
                       " posts; give 0 to " + std::to_string(static_cast<int>(kMaxFeather_posts)));
   }
   if (!(options.feather_m >= 0 && std::isfinite(options.feather_m))) {
-    throw SourceError("stack of sources: a feather of " + std::to_string(options.feather_m) + " m; give 0 or more");
+    throw SourceError("stack of sources: a feather of " + std::to_string(options.feather_m) +
+                      " m; give 0 or more");
   }
   std::stable_sort(sources.begin(), sources.end(),
                    [](const auto& a, const auto& b) { return resolution_m(*a) < resolution_m(*b); });
@@ -91,8 +92,8 @@ struct StackRest {
 // The source's own share of each place where it has data. What is left of a place for the lowest source goes to
 // it whole unless it must fade beside one above, so its rim is asked for only there.
 template <class Source>
-void boundary_shares(const Source& source, double feather_posts, const StackRest& rest, std::span<const char> has,
-                bool lowest, std::vector<double>& shares) {
+void boundary_shares(const Source& source, double feather_posts, const StackRest& rest,
+                     std::span<const char> has, bool lowest, std::vector<double>& shares) {
   shares.assign(rest.places.size(), 1.0);
   const auto* boundary = dynamic_cast<const BoundaryAware*>(&source);
   if (boundary == nullptr || feather_posts <= 0) return;

@@ -39,7 +39,8 @@ double median(const std::vector<BoundaryPost>& posts, const auto& value) {
 }
 
 // Plane through the differences; `reach_m` scales the coordinates so that the matrix is well conditioned.
-void fit_plane(const std::vector<BoundaryPost>& posts, const LocalFrame& frame, double reach_m, VerticalAlignment& level) {
+void fit_plane(const std::vector<BoundaryPost>& posts, const LocalFrame& frame, double reach_m,
+               VerticalAlignment& level) {
   glm::dmat3 normal(0);
   glm::dvec3 right(0);
   for (const BoundaryPost& post : posts) {
@@ -72,8 +73,8 @@ constexpr std::size_t kFewest = 12;
 
 }  // namespace
 
-std::optional<VerticalAlignment> fit_alignment(const ElevationSource& inset, const ElevationSource& base, double radius_m,
-                               double within_posts, std::size_t max_posts) {
+std::optional<VerticalAlignment> fit_alignment(const ElevationSource& inset, const ElevationSource& base,
+                                               double radius_m, double within_posts, std::size_t max_posts) {
   std::vector<BoundaryPost> posts = boundary_posts(inset, base, within_posts, max_posts);
   if (posts.size() < kFewest) return std::nullopt;
   glm::dvec3 sum(0);
@@ -95,7 +96,8 @@ std::optional<VerticalAlignment> fit_alignment(const ElevationSource& inset, con
   for (int round = 0; round < 3; ++round) {
     // A perfect fit leaves rounding, which is nobody's outlier.
     const double limit = std::max(
-        kAlignmentOutlier * 1.4826 * median(posts, [&](const BoundaryPost& p) { return std::abs(after(p)); }), 1e-6);
+        kAlignmentOutlier * 1.4826 * median(posts, [&](const BoundaryPost& p) { return std::abs(after(p)); }),
+        1e-6);
     std::erase_if(posts, [&](const BoundaryPost& post) { return std::abs(after(post)) > limit; });
     if (posts.size() < kFewest) return std::nullopt;
     fit_plane(posts, frame, reach_m, level);

@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/sources/adjusted.h"
 #include "mars/sources/source.h"
-#include "mars/geodesy/sphere.h"
 
 namespace mars {
 
@@ -31,8 +31,9 @@ inline constexpr double kAlignmentOutlier = 6;
 // than kLevelOutlier times its median absolute deviation times 1.4826. Of at most about max_posts posts of the
 // inset; a function of both sources alone. Nothing when fewer than 12 posts remain, or the rim is more than 60
 // degrees across or all along one line (then only the offset is fitted). Throws SourceError on read errors.
-std::optional<VerticalAlignment> fit_alignment(const ElevationSource& inset, const ElevationSource& base, double radius_m,
-                               double within_posts = 16, std::size_t max_posts = 1'000'000);
+std::optional<VerticalAlignment> fit_alignment(const ElevationSource& inset, const ElevationSource& base,
+                                               double radius_m, double within_posts = 16,
+                                               std::size_t max_posts = 1'000'000);
 
 // Its height above the base at a direction.
 double height_m(const VerticalAlignment& level, const glm::dvec3& direction);

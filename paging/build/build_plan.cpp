@@ -35,7 +35,7 @@ bool curve_less(const lod::TileKey& a, const lod::TileKey& b) {
 }
 
 BuildPlan::BuildPlan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
-           const PlanLimits& limits) {
+                     const PlanLimits& limits) {
   std::vector<lod::TileKey> open;
   for (int f = 0; f < mars::kFaces; ++f) open.push_back({static_cast<mars::Face>(f), 0, 0, 0});
   while (!open.empty()) {

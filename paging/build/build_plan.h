@@ -24,7 +24,7 @@ class BuildPlan {
  public:
   // Throws std::runtime_error when the tree would pass the limits; names the spacing that asks for it.
   BuildPlan(const lod::TileShape& shape, double radius_m, const WantedSpacing& wanted,
-       const PlanLimits& limits = {});
+            const PlanLimits& limits = {});
 
   // The tree that has these finest tiles, in any order. Throws std::runtime_error when they do not cover the
   // planet, each place once.

@@ -9,8 +9,8 @@
 #include <span>
 #include <unordered_map>
 
-#include "paging/build/builder.h"
 #include "paging/build/build_plan.h"
+#include "paging/build/builder.h"
 #include "paging/build/planet_writer.h"
 
 namespace paging {

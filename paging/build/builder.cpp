@@ -9,11 +9,11 @@
 
 #include "paging/build/build_inputs.h"
 #include "paging/build/build_resampling.h"
-#include "paging/build/shard_plan.h"
 #include "paging/build/build_steps.h"
-#include "paging/planet/planet_file.h"
 #include "paging/build/planet_writer.h"
+#include "paging/build/shard_plan.h"
 #include "paging/build/stages.h"
+#include "paging/planet/planet_file.h"
 #include "vpe/base/parallel.h"
 
 namespace paging {

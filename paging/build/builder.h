@@ -25,22 +25,22 @@ struct Region {
 bool touches(const Region& region, const mars::Cap& cap);
 
 struct BuildOptions {
-  std::string output;                  // the planet file to make
+  std::string output;  // the planet file to make
   std::string body = "Mars";
   double radius_m = mars::kMarsRadius_m;
-  bool true_radii = false;             // the sources' heights are counted from the sphere of radius_m
-  double base_spacing_m = 3700;        // at least this fine everywhere, so that the surface is round
-  double finest_spacing_m = 0;         // not finer than this; 0 = as fine as the sources
-  std::vector<Region> regions;         // where to go beyond the base spacing, texels too; empty = wherever sources do
-  int tile_k = 7;                      // 2^k intervals a tile; docs/simplifiers.md has the measurement
-  double quantum_m = 0;                // height step stored; 0 = chosen from the sources (docs/planet-file.md)
-  double mesh_ratio = 256;             // a tile's mesh is within side / mesh_ratio of its posts
-  double finest_image_m = 0;           // texels not finer than this; 0 = as fine as the image
-  int image_quality = 90;              // JPEG
-  int threads = 0;                     // 0 = all cores
+  bool true_radii = false;       // the sources' heights are counted from the sphere of radius_m
+  double base_spacing_m = 3700;  // at least this fine everywhere, so that the surface is round
+  double finest_spacing_m = 0;   // not finer than this; 0 = as fine as the sources
+  std::vector<Region> regions;   // where to go beyond the base spacing, texels too; empty = wherever sources do
+  int tile_k = 7;                // 2^k intervals a tile; docs/simplifiers.md has the measurement
+  double quantum_m = 0;          // height step stored; 0 = chosen from the sources (docs/planet-file.md)
+  double mesh_ratio = 256;       // a tile's mesh is within side / mesh_ratio of its posts
+  double finest_image_m = 0;     // texels not finer than this; 0 = as fine as the image
+  int image_quality = 90;        // JPEG
+  int threads = 0;               // 0 = all cores
   std::size_t resampling_posts = 4'000'000;  // how many source posts to compare with S at most
-  vpe::base::Shard part;                // only this part of the tiles, into a file for merge_parts
-  double commit_s = 1.0;               // what a killed build may lose, about
+  vpe::base::Shard part;                     // only this part of the tiles, into a file for merge_parts
+  double commit_s = 1.0;                     // what a killed build may lose, about
 };
 
 struct BuildProgress {

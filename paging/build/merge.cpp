@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "paging/planet/planet_file.h"
 #include "paging/build/shard_file.h"
 #include "paging/build/stages.h"
+#include "paging/planet/planet_file.h"
 #include "vpe/base/parallel.h"
 
 namespace paging {

@@ -60,7 +60,10 @@ struct PlanetWriter::Statements {
 };
 
 PlanetWriter::PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s)
-    : path_(path), part_path_(path + ".part"), commit_every_(commit_s), part_(open_partial_file(part_path_, fingerprint)) {
+    : path_(path),
+      part_path_(path + ".part"),
+      commit_every_(commit_s),
+      part_(open_partial_file(part_path_, fingerprint)) {
   sql_ = std::make_unique<Statements>(*part_.db);
 }
 

@@ -13,16 +13,16 @@
 #include <set>
 #include <span>
 
+#include "paging/build/partial_planet_file.h"
 #include "paging/planet/codec.h"
 #include "paging/planet/planet_meta.h"
-#include "paging/build/partial_planet_file.h"
 
 namespace paging {
 
 // All that the file holds of a tile.
 struct TilePayload {
   Bytes heights;
-  Bytes nodata;              // empty: no post is missing
+  Bytes nodata;               // empty: no post is missing
   std::vector<Bytes> meshes;  // by variant
 };
 

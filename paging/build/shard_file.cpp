@@ -57,7 +57,9 @@ std::vector<NodeRow> ShardFile::nodes() const {
 std::map<lod::TileKey, SharedAncestorTerms> ShardFile::above() const {
   try {
     Statement checkpoint(*db_, "SELECT checksum, data FROM note WHERE number = ?");
-    return unpack_shared_ancestors(verified(checkpoint.bind(1, kSharedAncestorsCheckpoint), kSharedAncestorsCheckpoint, kSharedAncestorsCheckpoint, "the note of tiles above"));
+    return unpack_shared_ancestors(verified(checkpoint.bind(1, kSharedAncestorsCheckpoint),
+                                            kSharedAncestorsCheckpoint, kSharedAncestorsCheckpoint,
+                                            "the note of tiles above"));
   } catch (const CodecError& e) {
     damaged(e.what());
   } catch (const DatabaseError& e) {

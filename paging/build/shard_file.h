@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "paging/build/planet_writer.h"
 #include "paging/build/shard_plan.h"
 #include "paging/planet/planet_meta.h"
-#include "paging/build/planet_writer.h"
 #include "paging/planet/sqlite.h"
 
 namespace paging {
@@ -22,7 +22,9 @@ class ShardFile {
   const std::string& path() const { return path_; }
   const PlanetMeta& meta() const { return meta_; }  // with share
   const vpe::base::Shard& part() const { return meta_.share->part; }
-  const std::string& fingerprint() const { return fingerprint_; }  // without the line that says which part it is
+  const std::string& fingerprint() const {
+    return fingerprint_;
+  }  // without the line that says which part it is
 
   std::vector<NodeRow> nodes() const;
   std::map<lod::TileKey, SharedAncestorTerms> above() const;

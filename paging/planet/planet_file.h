@@ -15,10 +15,10 @@ namespace paging {
 
 // Everything of a finest or inner tile but its meshes.
 struct TileHeights {
-  lod::Posts posts;           // borders constrained to coarser neighbours
-  int coarser_neighbour_mask = 0;              // bit of each Edge across which a finest tile one level coarser lies
-  std::vector<bool> nodata;  // empty when no post is missing
-  std::vector<int> source;    // indices into PlanetMeta::sources that the tile draws on
+  lod::Posts posts;                // borders constrained to coarser neighbours
+  int coarser_neighbour_mask = 0;  // bit of each Edge across which a finest tile one level coarser lies
+  std::vector<bool> nodata;        // empty when no post is missing
+  std::vector<int> source;         // indices into PlanetMeta::sources that the tile draws on
 };
 
 // Puts the posts that lie on a coarser neighbour's edges onto these edges as exaggerated, so that S stays
@@ -64,7 +64,7 @@ class PlanetFile {
   std::string path_;
   PlanetMeta meta_;
   std::unique_ptr<lod::TileTree> tree_;
-  std::vector<std::int64_t> image_keys_;    // sorted
+  std::vector<std::int64_t> image_keys_;   // sorted
   std::vector<std::int64_t> nodata_keys_;  // of tiles with posts without data and of all above them, sorted
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Connection>> idle_;

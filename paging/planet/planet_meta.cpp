@@ -101,8 +101,8 @@ std::string checksum(const std::map<std::string, std::string>& rows) {
 }
 
 void check_ranges(const PlanetMeta& m, const std::string& path) {
-  const bool sane = std::isfinite(m.radius_m) && m.radius_m >= kMinRadius_m && m.radius_m < kMaxRadius_m && m.tile.k >= 3 &&
-                    m.tile.k <= 7 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 &&
+  const bool sane = std::isfinite(m.radius_m) && m.radius_m >= kMinRadius_m && m.radius_m < kMaxRadius_m &&
+                    m.tile.k >= 3 && m.tile.k <= 7 && std::isfinite(m.quantum_m) && m.quantum_m > 0.0 &&
                     std::isfinite(m.fill_m) && std::isfinite(m.lowest_radius_m) &&
                     std::isfinite(m.highest_radius_m) && (m.shape == "sphere" || m.shape == "radius");
   if (!sane)

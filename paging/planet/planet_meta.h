@@ -9,8 +9,8 @@
 
 #include "lod/tree/posts.h"
 #include "lod/tree/tree.h"
-#include "mars/sources/source.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/source.h"
 #include "paging/planet/planet_summary.h"
 
 namespace paging {
@@ -22,7 +22,7 @@ inline constexpr int kFormatMajor = 1;
 inline constexpr int kFormatMinor = 2;
 inline constexpr double kMinRadius_m = 1;     // of a planet, included
 inline constexpr double kMaxRadius_m = 1e12;  // excluded
-inline constexpr int kImageIntervals = 256;  // an image tile has 257 x 257 texels on its grid lines
+inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
 
 // A planet file that cannot be used. what() names the file, the trouble and what to do.
 class PlanetError : public std::runtime_error {
@@ -71,9 +71,9 @@ struct NodeRow {
   double min_m = 0;
   double max_m = 0;
   bool inner = false;
-  int coarser_neighbour_mask = 0;        // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
-  double slope = 0;     // TileInfo::steepest_slope
-  std::string sources;  // indices into meta.sources, comma-separated
+  int coarser_neighbour_mask = 0;  // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
+  double slope = 0;                // TileInfo::steepest_slope
+  std::string sources;             // indices into meta.sources, comma-separated
   std::vector<lod::MeshVariant> variants;
   std::optional<lod::ErrorTerms> posts_terms;  // of an inner tile; has a checksum of its own (format 1.2)
 };

@@ -36,8 +36,9 @@ struct LevelSummary {
   std::int64_t tiles = 0;
   std::int64_t leaf_tiles = 0;
   std::int64_t image_tiles = 0;
-  std::int64_t bytes = 0;      // of heights, missing masks, meshes and images, compressed
-  std::int64_t nodata_posts = 0;      // posts of finest tiles that no source has; a shared border counts in each tile
+  std::int64_t bytes = 0;  // of heights, missing masks, meshes and images, compressed
+  std::int64_t nodata_posts =
+      0;                       // posts of finest tiles that no source has; a shared border counts in each tile
   ResamplingError resampling;  // over the source posts that lie in this level's finest tiles
 
   bool operator==(const LevelSummary&) const = default;

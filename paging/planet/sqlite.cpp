@@ -15,8 +15,8 @@ Database::Database(const std::string& path, Mode mode) : path_(path) {
 void Database::fail(const std::string& operation) const {
   const char* words = db_ ? sqlite3_errmsg(db_.get()) : "out of memory";
   const int code = db_ ? sqlite3_extended_errcode(db_.get()) & 0xff : SQLITE_NOMEM;
-  throw DatabaseError(path_ + ": cannot " + operation + ": " + words + (code == SQLITE_FULL ? "; free some space" : ""),
-                      code);
+  throw DatabaseError(
+      path_ + ": cannot " + operation + ": " + words + (code == SQLITE_FULL ? "; free some space" : ""), code);
 }
 
 void Database::execute(const std::string& sql) {
@@ -48,8 +48,8 @@ Statement& Statement::bind(int index, double value) {
 }
 
 Statement& Statement::bind(int index, std::string_view value) {
-  if (sqlite3_bind_text(statement_.get(), index, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT) !=
-      SQLITE_OK) {
+  if (sqlite3_bind_text(statement_.get(), index, value.data(), static_cast<int>(value.size()),
+                        SQLITE_TRANSIENT) != SQLITE_OK) {
     db_->fail("bind a text");
   }
   return *this;

@@ -52,8 +52,8 @@ class Statement {
 
   Statement& bind(int index, std::int64_t value);
   Statement& bind(int index, double value);
-  Statement& bind(int index, std::string_view value);                  // copied by SQLite
-  Statement& bind(int index, std::span<const std::uint8_t> value);     // must live until step() returns
+  Statement& bind(int index, std::string_view value);               // copied by SQLite
+  Statement& bind(int index, std::span<const std::uint8_t> value);  // must live until step() returns
 
   // True while there is a row. A statement that is done resets itself and can be bound again.
   bool step();

@@ -194,7 +194,8 @@ TileFindings measure_tile(const PlanetFile& planet, const lod::TileInfo& leaf) {
       const auto compare = [&](const lod::ErrorTerms& found, const lod::ErrorTerms& stated,
                                const std::string& what) {
         ++out.report.measured;
-        if (found.total_m > stated.total_m || found.height_error_m > stated.height_error_m || found.sagitta_m > stated.sagitta_m) {
+        if (found.total_m > stated.total_m || found.height_error_m > stated.height_error_m ||
+            found.sagitta_m > stated.sagitta_m) {
           out.problem(tile.key,
                       what + " farther from the surface below " + lod::to_string(leaf.key) + " than it states");
         }

@@ -107,7 +107,8 @@ glm::dvec3 TerrainShader::colour(const Ground& at, const ShadingParams& params) 
 }
 
 // The image's texels over a block or a part of it, or none.
-TerrainShader::ImageBlock TerrainShader::image_block(const lod::TileKey& block, const ShadingParams& params) const {
+TerrainShader::ImageBlock TerrainShader::image_block(const lod::TileKey& block,
+                                                     const ShadingParams& params) const {
   if (!shows_image(params.colour_source)) return {};
   const auto found = planet_->image_key(block);
   if (!found) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "lod/mesh/mesh.h"
-#include "vpe/base/lru_cache.h"
 #include "paging/planet/planet_file.h"
 #include "paging/surface/surface.h"
+#include "vpe/base/lru_cache.h"
 #include "vpe/core/appearance/palette.h"
 
 namespace paging {
@@ -32,7 +32,9 @@ enum class ColourSource {
   kImageAtPosts,
 };
 
-constexpr bool shows_image(ColourSource s) { return s == ColourSource::kImage || s == ColourSource::kImageAtPosts; }
+constexpr bool shows_image(ColourSource s) {
+  return s == ColourSource::kImage || s == ColourSource::kImageAtPosts;
+}
 
 struct ShadingParams {
   ColourSource colour_source = ColourSource::kElevation;
@@ -51,7 +53,7 @@ struct ShadingParams {
 
 // What an appearance asks of ground. scale: of the appearance; null where it shows none.
 ShadingParams shading_params(const vpe::core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
-                         std::shared_ptr<const vpe::core::ColourScale> scale);
+                             std::shared_ptr<const vpe::core::ColourScale> scale);
 bool needs_scale(const vpe::core::Appearance& appearance, bool has_image);
 
 // Normals and heights at the posts of one stored tile, row 0 at the south.
@@ -65,7 +67,7 @@ struct NormalTile {
   int side = 0;
   std::vector<Post> posts;
   std::vector<std::uint8_t> sees_sun;  // 1 or 0; empty without shadows
-  std::vector<bool> nodata;           // empty when every post has data
+  std::vector<bool> nodata;            // empty when every post has data
   std::size_t bytes() const;
 };
 

@@ -48,8 +48,8 @@ void make_even(const lod::TileKey& key, ShadedTile& tile) {
 
 }  // namespace
 
-void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadingParams& params,
-                                ShadedTile& out) const {
+void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int side,
+                                const ShadingParams& params, ShadedTile& out) const {
   const int n = planet_->meta().tile.intervals();
   const lod::TileKey stored = deepest(block);
   const std::shared_ptr<const NormalTile> ground = normals(stored, params);
@@ -144,9 +144,10 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
       at.sun = sees_sun(middle, spacing_m, params) ? 1.0 : 0.0;
     if (image_block.tile) {
       const mars::ChartPoint place = mars::chart_on(key.face, middle);
-      at.image = bilinear<glm::vec3>(between_lines(place.u, image_block.key.level, image_block.key.i, kImageIntervals),
-                                     between_lines(place.v, image_block.key.level, image_block.key.j, kImageIntervals),
-                                     kImageSide, [&](std::size_t k) { return rgb(image_block.tile->texels[k]); });
+      at.image =
+          bilinear<glm::vec3>(between_lines(place.u, image_block.key.level, image_block.key.i, kImageIntervals),
+                              between_lines(place.v, image_block.key.level, image_block.key.j, kImageIntervals),
+                              kImageSide, [&](std::size_t k) { return rgb(image_block.tile->texels[k]); });
     }
     const glm::vec3 c(colour(at, params));
     bool corner_is_nodata = false;
@@ -156,11 +157,12 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
       const int finer = mesh.intervals / posts->posts.intervals;
       const auto side = static_cast<std::size_t>(posts->posts.intervals) + 1;
       const auto post = [&](int of_mesh) { return static_cast<std::size_t>((of_mesh + finer / 2) / finer); };
-      corner_is_nodata =
-          corner_is_nodata || posts->nodata[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
+      corner_is_nodata = corner_is_nodata ||
+                         posts->nodata[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
     }
     out.nodata = out.nodata || corner_is_nodata;
-    for (const std::uint8_t byte : {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(corner_is_nodata ? 0 : 255)})
+    for (const std::uint8_t byte :
+         {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(corner_is_nodata ? 0 : 255)})
       out.texels.push_back(byte);
   }
   return out;

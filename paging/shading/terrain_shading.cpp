@@ -22,7 +22,7 @@ bool shows_scale(ColourSource s) {
 }  // namespace
 
 ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& sun, bool has_image,
-                         std::shared_ptr<const vpe::core::ColourScale> scale) {
+                             std::shared_ptr<const vpe::core::ColourScale> scale) {
   using vpe::core::Mode;
   ShadingParams shading;
   const ColourSource shown = colour_source_of(a.colour, has_image);
@@ -31,8 +31,8 @@ ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& s
   shading.flat = a.shading == vpe::core::Shading::kFlat && !of_vertices;
   shading.lit = !of_vertices && a.mode != Mode::kUnlit;
   shading.colour_source = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? ColourSource::kPlain
-                   : a.mode == Mode::kTextured && has_image           ? ColourSource::kImage
-                                                                      : shown;
+                          : a.mode == Mode::kTextured && has_image           ? ColourSource::kImage
+                                                                             : shown;
   if (shading.colour_source == ColourSource::kImage && a.colourise) shading.hue = shown;
   // What is not used is not set, so that it cannot change a look.
   if (shading.lit) {

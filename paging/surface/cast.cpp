@@ -127,7 +127,7 @@ double Surface::cast(const glm::dvec3& camera_m, const glm::dvec3& direction, do
   const double rest = half * half - (glm::dot(camera_m, camera_m) - top * top);
   if (!(rest >= 0.0)) return kNone;
   const Interval region{std::max(wanted.begin_m, -half - std::sqrt(rest)),
-                       std::min(wanted.end_m, -half + std::sqrt(rest))};
+                        std::min(wanted.end_m, -half + std::sqrt(rest))};
   if (region.empty()) return kNone;
 
   struct Candidate {

@@ -18,7 +18,7 @@ struct ProfilePoint {
   double highest_m = 0;
   double slope_deg = 0;  // along the way: positive uphill; of the step before the point (after, at the start)
   double cross_slope_deg = 0;  // steepest slope of the facet there, in whatever direction
-  bool nodata = false;        // no source has data there; ground distance and slope go over the drawn ground
+  bool nodata = false;         // no source has data there; ground distance and slope go over the drawn ground
   bool waypoint = false;
 };
 

@@ -9,16 +9,16 @@
 namespace paging {
 
 struct PlaceAnswer {
-  mars::LonLat place;          // longitude in (-180, 180]
-  bool nodata = false;        // no source has data there; what follows is of the ground as it is drawn
-  double elevation_m = 0;      // of S, in PlanetMeta::datum
-  double slope_deg = 0;        // of the facet of S, 0..90
-  double aspect_deg = 0;       // of steepest descent, clockwise from north, [0, 360); 0 on level ground
-  int level = 0;               // of the finest tile there, 1 = coarsest
-  double spacing_m = 0;        // of its posts
-  std::string source;          // names of the sources that its posts come from, joined by ';'
-  double geometric_error_m = 0;     // of the finest tile as drawn: 0 where that is S
-  ResamplingError resampling;  // S against the sources' own posts, on the whole planet
+  mars::LonLat place;            // longitude in (-180, 180]
+  bool nodata = false;           // no source has data there; what follows is of the ground as it is drawn
+  double elevation_m = 0;        // of S, in PlanetMeta::datum
+  double slope_deg = 0;          // of the facet of S, 0..90
+  double aspect_deg = 0;         // of steepest descent, clockwise from north, [0, 360); 0 on level ground
+  int level = 0;                 // of the finest tile there, 1 = coarsest
+  double spacing_m = 0;          // of its posts
+  std::string source;            // names of the sources that its posts come from, joined by ';'
+  double geometric_error_m = 0;  // of the finest tile as drawn: 0 where that is S
+  ResamplingError resampling;    // S against the sources' own posts, on the whole planet
   ResamplingError
       resampling_here;  // the same over the finest tiles of this level; posts = 0 where not measured
 };

@@ -65,7 +65,8 @@ std::size_t part(std::size_t bytes, double share) {
 }  // namespace
 
 Surface::Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
-    : planet_(std::move(planet)), cache_(part(budget_bytes, 1 - kExaggeratedShare)),
+    : planet_(std::move(planet)),
+      cache_(part(budget_bytes, 1 - kExaggeratedShare)),
       exaggerated_(part(budget_bytes, kExaggeratedShare)) {
   constexpr int kTableLevels = 11;
   for (int level = 0; level < kTableLevels; ++level) {
@@ -141,9 +142,8 @@ void Surface::radius(std::span<const glm::dvec3> directions, std::span<double> r
     const bool same = held && held->data.posts.key.face == point.face &&
                       lod::tile_at(point, held->data.posts.key.level) == held->data.posts.key;
     if (!same) held = tile(finest_tile(planet_->tree(), point), exaggeration);
-    radius_m[n] = planet_radius_m() +
-                  lod::surface_height(held->data.posts, held->lines, point.u, point.v, planet_radius_m(), nullptr,
-                                      exaggeration);
+    radius_m[n] = planet_radius_m() + lod::surface_height(held->data.posts, held->lines, point.u, point.v,
+                                                          planet_radius_m(), nullptr, exaggeration);
   }
 }
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "vpe/base/lru_cache.h"
 #include "paging/planet/planet_file.h"
+#include "vpe/base/lru_cache.h"
 
 namespace paging {
 
@@ -29,7 +29,7 @@ struct SurfacePoint {
   double radius_m = 0;         // from the planet's centre
   glm::dvec3 normal{0, 0, 1};  // of the facet, outward, body-fixed
   lod::TileKey tile;           // the finest tile there
-  bool nodata = false;        // the nearest post has no source data
+  bool nodata = false;         // the nearest post has no source data
 };
 
 // Any thread may call any member. Results do not depend on the cache's state.
@@ -46,7 +46,8 @@ class Surface {
   SurfacePoint at(const glm::dvec3& direction, double exaggeration = 1.0) const;
 
   // Radius of S at many directions; neighbours in the batch should be neighbours on the ground.
-  void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m, double exaggeration = 1.0) const;
+  void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m,
+              double exaggeration = 1.0) const;
 
   // Distance along the unit `direction` from `camera_m` (metres from the planet's centre) to the first point of
   // S; infinity when there is none. Exact on the flat triangles of S up to rounding (about 1e-9 relative plus

@@ -15,7 +15,8 @@ Direction direction_of(const SkylineCamera& camera, const glm::dvec3& ray) {
   double azimuth = std::atan2(east, north) / mars::kRadiansPerDegree;
   if (azimuth < 0) azimuth += 360;
   if (azimuth >= 360) azimuth = 0;  // what was just below 0
-  return {azimuth, std::atan2(glm::dot(ray, camera.frame.up), std::hypot(east, north)) / mars::kRadiansPerDegree};
+  return {azimuth,
+          std::atan2(glm::dot(ray, camera.frame.up), std::hypot(east, north)) / mars::kRadiansPerDegree};
 }
 
 }  // namespace
@@ -53,8 +54,8 @@ std::vector<Landmark> landmarks(const SkylineCamera& camera, std::span<const vpe
     const double met_m = range(ray);
     if (met_m >= (1.0 - kLandmarkReach) * distance_m) return;
     const glm::dvec3 point = camera.position_m + met_m * ray;
-    landmark.hidden_by =
-        GroundPoint{landmark.centre.direction, met_m, mars::lon_lat(point), glm::length(point) - camera.radius_m};
+    landmark.hidden_by = GroundPoint{landmark.centre.direction, met_m, mars::lon_lat(point),
+                                     glm::length(point) - camera.radius_m};
     if (const auto* feature = smallest_feature_around(features, landmark.hidden_by->place, camera.radius_m))
       landmark.hidden_by_name = feature->name;
   });

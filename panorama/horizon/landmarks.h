@@ -15,7 +15,7 @@ namespace panorama {
 // Of a feature only its centre, on the ground, is looked at: a crater's floor may be hidden and its rim not.
 struct Landmark {
   vpe::core::Place feature;
-  GroundPoint centre;                    // its range and direction are those of the straight line from the camera
+  GroundPoint centre;  // its range and direction are those of the straight line from the camera
   std::optional<GroundPoint> hidden_by;  // the first ground on that line; nothing: the centre is visible
   std::string hidden_by_name;            // the smallest feature whose circle holds that ground; may be empty
 };

@@ -81,8 +81,7 @@ float range_in(const RangeImage& image, std::int64_t column, std::int64_t row) {
 
 }  // namespace
 
-std::vector<ElevationBracket> first_brackets(const RangeImage& image,
-                                             std::span<const double> azimuths_deg) {
+std::vector<ElevationBracket> first_brackets(const RangeImage& image, std::span<const double> azimuths_deg) {
   const PanoramaMap& map = image.map;
   std::vector<ElevationBracket> out(azimuths_deg.size());
   for (std::size_t n = 0; n < out.size(); ++n) {

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <utility>
 
-#include "panorama/image/tiled_image.h"
 #include "panorama/image/pyramid_builder.h"
+#include "panorama/image/tiled_image.h"
 #include "vpe/core/image/image.h"
 
 namespace panorama {
@@ -148,7 +148,7 @@ std::unique_ptr<TileSource> open_coded(const fs::path& path, ImageFileFormat for
 }  // namespace
 
 std::unique_ptr<TiledImage> open_tiled_image(const fs::path& path, ImageFileFormat format,
-                                      const TiledImageOptions& options) {
+                                             const TiledImageOptions& options) {
   TiledImageOptions limited = options;
   limited.budget_bytes = std::max(options.budget_bytes, TiledImageOptions::kMinBudget_bytes);
   auto source = format == ImageFileFormat::kTiff ? open_tiff(path, limited) : open_coded(path, format, limited);

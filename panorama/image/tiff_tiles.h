@@ -16,7 +16,7 @@ namespace panorama {
 struct TiffPage {
   std::filesystem::path path;
   std::uint64_t directory = 0;  // where in the file
-  ImageLevel level;           // of strips: tiles as wide as the image
+  ImageLevel level;             // of strips: tiles as wide as the image
   bool is_tiled = false;
 };
 

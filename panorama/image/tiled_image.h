@@ -64,6 +64,6 @@ struct TiledImageOptions {
 // Throws vpe::base::FileError: damaged, not readable, no room for the copies, or too large to be unpacked where
 // that is needed (interlaced PNG, progressive JPEG).
 std::unique_ptr<TiledImage> open_tiled_image(const std::filesystem::path& path, ImageFileFormat format,
-                                      const TiledImageOptions& options);
+                                             const TiledImageOptions& options);
 
 }  // namespace panorama

@@ -145,8 +145,8 @@ double slack_px(double pixels_per_degree) { return std::max(4.0, kSlack_deg * pi
 void check_span(const char* what, double stated_px, double image_px, double pixels_per_degree) {
   if (std::abs(stated_px - image_px) <= slack_px(pixels_per_degree)) return;
   throw MetadataError(std::string("the label contradicts the picture: by ") + what + " it would have " +
-                      format_number(std::round(stated_px)) + " pixels, but it has " +
-                      format_number(image_px) + "; give the label of this very picture");
+                      format_number(std::round(stated_px)) + " pixels, but it has " + format_number(image_px) +
+                      "; give the label of this very picture");
 }
 
 // The number that the label gives to the centre of the first line.

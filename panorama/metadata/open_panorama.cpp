@@ -5,8 +5,8 @@
 #include <functional>
 #include <utility>
 
-#include "panorama/metadata/gpano.h"
 #include "panorama/image/input.h"
+#include "panorama/metadata/gpano.h"
 #include "panorama/metadata/label.h"
 #include "panorama/metadata/xml.h"
 #include "vpe/base/file.h"

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "panorama/metadata/auxiliary_files.h"
-#include "panorama/projection.h"
-#include "panorama/metadata/sidecar.h"
 #include "panorama/image/xmp_file.h"
+#include "panorama/metadata/auxiliary_files.h"
+#include "panorama/metadata/sidecar.h"
+#include "panorama/projection.h"
 
 namespace panorama {
 

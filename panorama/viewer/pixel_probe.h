@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "panorama/metadata/open_panorama.h"
 #include "panorama/image/raster_plane.h"
+#include "panorama/metadata/open_panorama.h"
 
 namespace panorama {
 

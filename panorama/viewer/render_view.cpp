@@ -71,7 +71,8 @@ vpe::core::RgbImage look(const TiledImage& tiled_image, const PanoramaMap& map, 
     for (int y = begin; y < end; ++y) {
       std::swap(row, next);
       places_of_row(map, view, y + 1, next);
-      vpe::base::Rgb* out = image.pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x);
+      vpe::base::Rgb* out =
+          image.pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x);
       for (std::size_t x = 0; x + 1 < row.size(); ++x) {
         if (!is_shown(map, row[x])) continue;
         const glm::vec3 c = sampler.mean(row[x], difference(row[x], row[x + 1]), difference(row[x], next[x]));

@@ -21,7 +21,7 @@ struct ImageOrigin {
 struct RenderViewOptions {
   ImageOrigin origin;
   vpe::base::Rgb outside{38, 40, 46};  // where the image shows nothing
-  int threads = 0;                // 0 = all cores
+  int threads = 0;                     // 0 = all cores
 };
 
 // Draws a view whose axes are in the panorama's frame (viewer.h). Each pixel is a mean over about its own area:

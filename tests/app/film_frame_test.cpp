@@ -45,7 +45,9 @@ TEST(FilmFrame, EverythingThatAImageDependsOnIsInItsFingerprint) {
   });
   auto& next = std::nextafter<double, double>;
   for (int n = 0; n < 3; ++n) {
-    change("eye", [&](Inputs& i) { i.request.view.camera.position_m[n] = next(i.request.view.camera.position_m[n], 9); });
+    change("eye", [&](Inputs& i) {
+      i.request.view.camera.position_m[n] = next(i.request.view.camera.position_m[n], 9);
+    });
     change("right", [&](Inputs& i) { i.request.view.camera.axes.right[n] += 0.5; });
     change("up", [&](Inputs& i) { i.request.view.camera.axes.up[n] += 0.5; });
     change("forward", [&](Inputs& i) { i.request.view.camera.axes.forward[n] += 0.5; });

@@ -1,9 +1,9 @@
 // Looking around in panoramas, as a user does.
 #include <cmath>
 
+#include "panorama/image/xmp_file.h"
 #include "panorama/metadata/gpano.h"
 #include "panorama/metadata/sidecar.h"
-#include "panorama/image/xmp_file.h"
 #include "tests/app/support/app_fixture.h"
 #include "tests/panorama/big_tiff_file.h"
 #include "vpe/core/image/image.h"

@@ -5,8 +5,8 @@
 #include "panorama/horizon/landmarks.h"
 #include "panorama/metadata/open_panorama.h"
 #include "tests/app/support/app_fixture.h"
-#include "vpe/core/image/image.h"
 #include "vpe/core/appearance/overlays.h"
+#include "vpe/core/image/image.h"
 
 namespace app_test {
 namespace {

@@ -44,13 +44,13 @@ const std::vector<Layer>& layers() {
        true},
       {"vpe/app",
        "vpe::app",
-       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama",
-        "vpe/explore", "vpe/report", "vpe/window"},
+       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel",
+        "panorama", "vpe/explore", "vpe/report", "vpe/window"},
        true},
       {"tests",
        "",
-       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel", "panorama",
-        "vpe/explore", "vpe/report", "vpe/window", "vpe/app"},
+       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel",
+        "panorama", "vpe/explore", "vpe/report", "vpe/window", "vpe/app"},
        true,
        true},
   };
@@ -64,8 +64,8 @@ const Layer* layer_of(std::string_view path) {
 }
 
 bool is_drawing_header(const std::string& name) {
-  static const std::regex kPattern(R"((GL|GLES\d?|EGL|KHR|GLFW|OpenGL|GLUT)/.*|epoxy/.*|glad.*|glew.*|osmesa.*)",
-                                   std::regex::icase);
+  static const std::regex kPattern(
+      R"((GL|GLES\d?|EGL|KHR|GLFW|OpenGL|GLUT)/.*|epoxy/.*|glad.*|glew.*|osmesa.*)", std::regex::icase);
   return std::regex_match(name, kPattern);
 }
 
@@ -86,7 +86,8 @@ bool is_source(const fs::path& path) {
 
 // What is wrong with one include, empty when nothing is.
 std::string include_problem(const Layer& layer, const std::string& name, bool quoted) {
-  if (is_drawing_header(name) && !layer.may_draw) return "only vpe/gl, vpe/window and vpe/app may include " + name;
+  if (is_drawing_header(name) && !layer.may_draw)
+    return "only vpe/gl, vpe/window and vpe/app may include " + name;
   if (is_raster_header(name) && !layer.may_read_rasters) return "only mars may include " + name;
   if (is_lettering_header(name) && !layer.may_letter) return "only vpe/overlay may include " + name;
   if (!quoted) return "";
@@ -207,7 +208,8 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   EXPECT_NE(verdict("lod/a.cpp", "#include \"posts.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"../mars/cube.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include <paging/../GL/gl.h>\n#include <GL/gl.h>\n" + lod), "");
-  for (const char* header : {"GL/gl.h", "EGL/egl.h", "GLFW/glfw3.h", "GL/osmesa.h", "GL/glcorearb.h", "epoxy/gl.h"}) {
+  for (const char* header :
+       {"GL/gl.h", "EGL/egl.h", "GLFW/glfw3.h", "GL/osmesa.h", "GL/glcorearb.h", "epoxy/gl.h"}) {
     const std::string line = std::string("#include <") + header + ">\n";
     EXPECT_NE(verdict("vpe/core/a.cpp", line + "namespace vpe::core {}"), "") << header;
     EXPECT_EQ(verdict("vpe/gl/a.cpp", line + "namespace vpe::gl {}"), "") << header;

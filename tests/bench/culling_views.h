@@ -34,8 +34,9 @@ inline vpe::core::View view_at(const Place& place, const paging::Surface& surfac
   view.height = 720;
   view.fov_deg = 60;
   const double ground = surface.at(mars::direction({place.lon, place.lat})).height_m;
-  view.camera = mars::to_camera({place.lon, place.lat, ground + place.height_m, 360.0 * n / many, place.pitch_deg, 0},
-                          surface.planet_radius_m());
+  view.camera =
+      mars::to_camera({place.lon, place.lat, ground + place.height_m, 360.0 * n / many, place.pitch_deg, 0},
+                      surface.planet_radius_m());
   return view;
 }
 

@@ -22,8 +22,7 @@ inline scripts::Flight read_flight(const char* file) {
 
 // `surface` must outlive the path.
 inline scripts::Path path_over(const scripts::Flight& flight, const paging::Surface& surface) {
-  return {flight, surface.planet_radius_m(),
-          [&surface](mars::LonLat place, double exaggeration) {
+  return {flight, surface.planet_radius_m(), [&surface](mars::LonLat place, double exaggeration) {
             return surface.at(mars::direction(place), exaggeration).height_m;
           }};
 }

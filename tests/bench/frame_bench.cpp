@@ -19,8 +19,8 @@
 #include "scripts/path.h"
 #include "tests/bench/flight.h"
 #include "vpe/base/number.h"
-#include "vpe/gl/projection.h"
 #include "vpe/gl/polygon_renderer.h"
+#include "vpe/gl/projection.h"
 #include "vpe/gl/target.h"
 #include "vpe/gl/tile_geometry.h"
 

@@ -35,7 +35,8 @@ void measure(test_support::MeshStore& store, const paging::Surface& surface, con
     const test_support::DrawnGround drawn(store, selection, view.camera.position_m);
     std::vector<lod::OccludingTile> given;
     for (const lod::SelectedTile& t : selection.tiles) {
-      given.push_back({t.key, planet.tree().region(t.index, 1.0, t.geometric_error_m), &store.mesh(t, 1.0).occluders});
+      given.push_back(
+          {t.key, planet.tree().region(t.index, 1.0, t.geometric_error_m), &store.mesh(t, 1.0).occluders});
     }
     std::vector<std::uint8_t> out;
     const double margin_rad = margin_px / core::focal_px(view);

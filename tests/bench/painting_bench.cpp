@@ -106,8 +106,9 @@ int main(int argc, char** argv) {
     pool.run(static_cast<std::size_t>(request.view.height), [&](std::size_t y) {
       for (int x = 0; x < request.view.width; ++x)
         range_m[y * static_cast<std::size_t>(request.view.width) + static_cast<std::size_t>(x)] =
-            static_cast<float>(surface.cast(
-                request.view.camera.position_m, core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
+            static_cast<float>(
+                surface.cast(request.view.camera.position_m,
+                             core::pixel_ray(request.view, x + 0.5, static_cast<double>(y) + 0.5)));
     });
     const auto sky = static_cast<double>(std::count(range_m.begin(), range_m.end(), core::kSkyRange));
     std::printf("%s (%.0f %% sky)\n", camera.name, 100 * sky / static_cast<double>(pixels));

@@ -9,7 +9,8 @@ struct RangeCaster::State {
   vpe::base::ThreadPool pool;
 };
 
-RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::size_t memory_bytes)
+RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, int threads,
+                         std::size_t memory_bytes)
     : state_(new State{{std::move(planet), memory_bytes}, vpe::base::ThreadPool(threads)}) {}
 
 RangeCaster::~RangeCaster() = default;

@@ -166,7 +166,7 @@ EmbreeImage::EmbreeImage(const vpe::core::View& view) {
 }
 
 double EmbreeImage::cast(RTCScene scene, EmbreeMode mode, vpe::base::ThreadPool& pool,
-                           std::span<float> range_m) const {
+                         std::span<float> range_m) const {
   const auto start = std::chrono::steady_clock::now();
   pool.run(static_cast<std::size_t>(padded(tables_.height) / kBlock), [&](std::size_t row) {
     const DenormalsOff off;

@@ -13,7 +13,7 @@ struct RayBenchOptions {
   int threads = 0;
   int rounds = 5;
   double cell_px = 0;  // > 0: ours in multires, with shifts against Embree's exact image
-  int show = 0;  // pixels of a view where ours is wrong, on stderr
+  int show = 0;        // pixels of a view where ours is wrong, on stderr
   double memory_mib = 4096;
   double mesh_limit = 4e7;  // triangles; beyond it only the grid, whose structure is a sixth as large
 };

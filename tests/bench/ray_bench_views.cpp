@@ -30,9 +30,9 @@ std::vector<RayCase> ray_cases(const RayScene& scene, double scale) {
                        int height) {
     RayCase& c = cases.emplace_back();
     c.name = scene.name + "/" + std::move(name) + "/" + camera.name;
-    c.view.camera =
-        mars::to_camera({place.lon_deg, place.lat_deg, ground_m + camera.height_m, kYaw_deg, pitch_deg, roll_deg},
-                     surface.planet_radius_m());
+    c.view.camera = mars::to_camera(
+        {place.lon_deg, place.lat_deg, ground_m + camera.height_m, kYaw_deg, pitch_deg, roll_deg},
+        surface.planet_radius_m());
     c.view.width = std::max(1, static_cast<int>(std::lround(scale * width)));
     c.view.height = std::max(1, static_cast<int>(std::lround(scale * height)));
     c.view.fov_deg = 2.0 / mars::kRadiansPerDegree *

@@ -36,7 +36,8 @@ struct Scene {
     const double radius = caster.surface().planet_radius_m();
     const mars::LonLat place = mars::lon_lat(scene.middle);
     const double ground = caster.surface().at(scene.middle).height_m;
-    v.camera = mars::to_camera({place.lon_deg, place.lat_deg, ground + 1000, 22.5, pitch_deg, roll_deg}, radius);
+    v.camera =
+        mars::to_camera({place.lon_deg, place.lat_deg, ground + 1000, 22.5, pitch_deg, roll_deg}, radius);
     return v;
   }
 };

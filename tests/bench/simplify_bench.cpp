@@ -129,8 +129,8 @@ void compare_methods(const Ground& ground, double target_m) {
   }
   const std::size_t reference = greedy.mesh.triangle_count();
   print("greedy insertion, OpenMesh", greedy.mesh, greedy.geometric_error_m, reference, median(open_mesh));
-  print("greedy insertion, arrays", twin.mesh(posts, kept, greedy.tolerance_m, kRadius), greedy.geometric_error_m,
-        reference, median(array));
+  print("greedy insertion, arrays", twin.mesh(posts, kept, greedy.tolerance_m, kRadius),
+        greedy.geometric_error_m, reference, median(array));
 
   std::unique_ptr<bench::Rtin> rtin;
   const double prepare = seconds([&] { rtin = std::make_unique<bench::Rtin>(posts, kRadius); });

@@ -44,7 +44,8 @@ void Rtin::at_depth(Post a, Post b, Post c, int depth, Visit&& visit) const {
   at_depth(b, c, middle, depth - 1, visit);
 }
 
-Rtin::Rtin(const lod::Posts& posts, double radius_m) : side_(posts.side()), geometric_error_m_(posts.height_m.size()) {
+Rtin::Rtin(const lod::Posts& posts, double radius_m)
+    : side_(posts.side()), geometric_error_m_(posts.height_m.size()) {
   const int n = posts.intervals;
   const lod::EvenLines lines(n);
   lod::PostField field;
@@ -74,7 +75,8 @@ Rtin::Rtin(const lod::Posts& posts, double radius_m) : side_(posts.side()), geom
   for (int depth = 2 * std::countr_zero(static_cast<unsigned>(n)) - 1; depth >= 0; --depth) {
     const auto visit = [&](Post a, Post b, Post c) {
       const Post middle{(a.i + b.i) / 2, (a.j + b.j) / 2};
-      double worst = std::max(error(middle), field.worst(lines, corner(a), corner(b), corner(c)).geometric_error_m);
+      double worst =
+          std::max(error(middle), field.worst(lines, corner(a), corner(b), corner(c)).geometric_error_m);
       worst = std::max({worst, along_border(a, b), along_border(b, c), along_border(c, a)});
       if ((a.i + c.i) % 2 == 0 && (a.j + c.j) % 2 == 0) {
         worst = std::max(

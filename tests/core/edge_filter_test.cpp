@@ -10,10 +10,10 @@
 
 namespace {
 
-using vpe::base::Rgb;
 using test_support::Random;
-using vpe::core::smooth_edges;
+using vpe::base::Rgb;
 using vpe::base::ThreadPool;
+using vpe::core::smooth_edges;
 
 constexpr int kWidth = 67;
 constexpr int kHeight = 50;

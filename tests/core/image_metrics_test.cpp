@@ -16,7 +16,9 @@ namespace {
 constexpr float kSky = std::numeric_limits<float>::infinity();
 constexpr int kSide = 48;
 
-std::vector<vpe::base::Rgb> grey(std::size_t pixels, std::uint8_t value) { return {pixels, {value, value, value}}; }
+std::vector<vpe::base::Rgb> grey(std::size_t pixels, std::uint8_t value) {
+  return {pixels, {value, value, value}};
+}
 
 // Waves of many lengths, so that every window has structure.
 std::vector<vpe::base::Rgb> image() {

@@ -139,7 +139,8 @@ TEST_F(OnHills, ARaisedSurfaceShiftsByErrorTimesFocalOverRange) {
     // Backward: never more than the same displacement at the nearest ground, once the net's 8 % are off.
     const ImageErrors errors = measure(drawn);
     const double nearest_m = *std::min_element(drawn.begin(), drawn.end());
-    EXPECT_LE(errors.backward.p999_px, std::max(1.0, 1.09 * std::abs(deviation_m) * focal_px(view_) / nearest_m));
+    EXPECT_LE(errors.backward.p999_px,
+              std::max(1.0, 1.09 * std::abs(deviation_m) * focal_px(view_) / nearest_m));
     EXPECT_GT(errors.backward.median_px, 0);
   }
 }
@@ -149,7 +150,8 @@ TEST(Metrics, ARaisedSphereSeenFromAboveShiftsBackwardsByTheSame) {
   const View view = make_view(10000, -90, 60, 60);
   const double deviation_m = 30;
   const auto at_radius = [&](double radius_m) {
-    return draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, radius_m); });
+    return draw(view,
+                [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, radius_m); });
   };
   const std::vector<float> exact = at_radius(kRadius_m);
   const std::vector<double> shift_px = backward_shift_px(view, at_radius(kRadius_m + deviation_m), exact);
@@ -162,7 +164,8 @@ TEST(Metrics, ObliqueBackwardShiftIsThePerpendicularDistance) {
   for (const double roll_deg : {0.0, 22.5, 45.0, 70.0}) {
     const View view = make_view(10000, -45, 80, 80, roll_deg);
     const auto at_radius = [&](double radius_m) {
-      return draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, radius_m); });
+      return draw(view,
+                  [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, radius_m); });
     };
     const std::vector<float> exact = at_radius(kRadius_m);
     const double deviation_m = 60;
@@ -308,8 +311,8 @@ TEST(Metrics, RoundProjections) {
     View view = make_view(1500, 0, 360, 57);
     view.projection = projection;
     view.fov_deg = projection == Projection::kCylinder ? 53.0 : 57.0;
-    const std::vector<float> drawn =
-        draw(view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, kRadius_m + 10); });
+    const std::vector<float> drawn = draw(
+        view, [&](const glm::dvec3& ray) { return cast_sphere(view.camera.position_m, ray, kRadius_m + 10); });
     const std::vector<double> shift_px =
         forward_shift_px(view, drawn, batched([](const glm::dvec3&) { return kRadius_m; }));
     int measured = 0;

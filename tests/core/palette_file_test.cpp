@@ -8,9 +8,9 @@
 #include "tests/app/support/process.h"
 #include "tests/support/support.h"
 #include "vpe/base/file.h"
-#include "vpe/core/image/image.h"
 #include "vpe/base/number.h"
 #include "vpe/core/appearance/palette.h"
+#include "vpe/core/image/image.h"
 
 namespace vpe::core {
 namespace {

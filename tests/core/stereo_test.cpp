@@ -99,7 +99,8 @@ TEST(Stereo, EyesAreParallelOrMeetAtADistance) {
   view.height = 800;
   const double base_m = 0.5;
   const auto x_of = [&](const vpe::core::View& eye, double distance_m) {
-    const auto projected = vpe::core::project(eye, view.camera.position_m + distance_m * view.camera.axes.forward);
+    const auto projected =
+        vpe::core::project(eye, view.camera.position_m + distance_m * view.camera.axes.forward);
     EXPECT_NEAR(projected.xy.y, 400.0, 1e-4);
     return projected.xy.x;
   };

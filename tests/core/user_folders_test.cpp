@@ -17,15 +17,16 @@ base::Environment environment(const std::map<std::string, std::string>& variable
 
 TEST(UserFolders, VariablesGoBeforeHome) {
   const base::Environment set = environment({{"HOME", "/h"},
-                                       {"XDG_CACHE_HOME", "/c"},
-                                       {"XDG_CONFIG_HOME", "/f"},
-                                       {"XDG_DATA_HOME", "/d"},
-                                       {"XDG_STATE_HOME", "/s"}});
+                                             {"XDG_CACHE_HOME", "/c"},
+                                             {"XDG_CONFIG_HOME", "/f"},
+                                             {"XDG_DATA_HOME", "/d"},
+                                             {"XDG_STATE_HOME", "/s"}});
   EXPECT_EQ(base::user_folder(base::UserFolder::kCache, set), "/c/vpe");
   EXPECT_EQ(base::user_folder(base::UserFolder::kConfig, set), "/f/vpe");
   EXPECT_EQ(base::user_folder(base::UserFolder::kData, set), "/d/vpe");
   EXPECT_EQ(base::user_folder(base::UserFolder::kState, set), "/s/vpe");
-  const base::Environment home = environment({{"HOME", "/h"}, {"XDG_CACHE_HOME", ""}, {"XDG_DATA_HOME", "relative"}});
+  const base::Environment home =
+      environment({{"HOME", "/h"}, {"XDG_CACHE_HOME", ""}, {"XDG_DATA_HOME", "relative"}});
   EXPECT_EQ(base::user_folder(base::UserFolder::kCache, home), "/h/.cache/vpe");
   EXPECT_EQ(base::user_folder(base::UserFolder::kConfig, home), "/h/.config/vpe");
   EXPECT_EQ(base::user_folder(base::UserFolder::kData, home), "/h/.local/share/vpe");

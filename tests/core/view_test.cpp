@@ -16,7 +16,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 mars::CameraPose pose(double lon_deg, double lat_deg, double alt_m, double yaw_deg, double pitch_deg,
-                   double roll_deg) {
+                      double roll_deg) {
   return mars::to_camera({lon_deg, lat_deg, alt_m, yaw_deg, pitch_deg, roll_deg}, mars::kMarsRadius_m);
 }
 
@@ -24,7 +24,7 @@ View random_view(test_support::Random& random, Projection projection) {
   View view;
   view.projection = projection;
   view.camera = pose(random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(0.1, 3e7),
-                  random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180));
+                     random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180));
   view.fov_deg = random.log_uniform(0.01, projection == Projection::kEquirectangular ? 120.0 : 170.0);
   view.width = random.integer(1, 4000);
   view.height = random.integer(1, 4000);

@@ -10,9 +10,9 @@
 
 namespace {
 
-using cull::CullingFrame;
 using cull::AdaptiveCulling;
 using cull::AdaptiveCullingLimits;
+using cull::CullingFrame;
 
 // Runs frames in which the culler takes spent_ms and culls `culled` tiles of 1 ms; how many it was used in.
 int run(AdaptiveCulling& culling, int frames, double spent_ms, int culled) {

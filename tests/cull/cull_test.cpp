@@ -4,9 +4,9 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "cull/bounding_region.h"
 #include "cull/frustum.h"
 #include "cull/horizon.h"
-#include "cull/bounding_region.h"
 #include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
 #include "vpe/core/view.h"
@@ -68,7 +68,7 @@ core::View random_view(Random& random, const glm::dvec3& camera_m) {
   const glm::dvec3 east = mars::any_perpendicular(up);
   view.camera.position_m = camera_m;
   view.camera.axes = mars::oriented_axes({east, glm::cross(up, east), up}, random.uniform(-180, 180),
-                                      random.uniform(-90, 90), random.uniform(-180, 180));
+                                         random.uniform(-90, 90), random.uniform(-180, 180));
   view.fov_deg = random.integer(0, 2) == 0 ? random.uniform(1, 170) : 60.0;
   view.width = random.integer(16, 1920);
   view.height = random.integer(16, 1080);
@@ -82,7 +82,8 @@ TEST(Volume, HoldsItsShell) {
     const BoundingRegion region{random_rect(random), low, low + random.log_uniform(1e-3, 1e6)};
     const cull::BoundingHexahedron volume = cull::bounding_hexahedron(region);
     const double radius = random.integer(0, 1) == 0 ? region.min_radius_m : region.max_radius_m;
-    const glm::dvec3 point = region_point(region.rect, random.integer(0, 2) * 0.5, random.uniform(0, 1), radius);
+    const glm::dvec3 point =
+        region_point(region.rect, random.integer(0, 2) * 0.5, random.uniform(0, 1), radius);
     const double along = glm::dot(volume.centre, point);
     for (std::size_t k = 0; k < 4; ++k) {
       ASSERT_LE(glm::dot(volume.centre, volume.corners_m[k]), along + 1e-8);
@@ -167,8 +168,9 @@ TEST(Distance, IsATightLowerBoundOverTheShell) {
     const cull::Camera camera = cull::make_camera(camera_m);
     mars::ChartRect rect = random_rect(random);
     if (random.integer(0, 1) == 0) {
-      rect = rect_around(random, mars::chart_point(camera_m + random.direction() * random.log_uniform(0.1, 1e6)),
-                         random.log_uniform(1e-6, 1.0));
+      rect =
+          rect_around(random, mars::chart_point(camera_m + random.direction() * random.log_uniform(0.1, 1e6)),
+                      random.log_uniform(1e-6, 1.0));
     }
     const double low = kRadius_m + random.uniform(-8200, 15000);
     const double high = low + random.log_uniform(0.1, 1e4);
@@ -191,7 +193,8 @@ TEST(Distance, IsATightLowerBoundOverTheShell) {
     const double chord2 = inside(rect, camera.direction) ? 0.0 : searched_chord2(rect, camera.direction);
     for (int step = 0; step <= 1000; ++step) {
       const double r = low + (high - low) * step / 1000.0;
-      brute = std::min(brute, std::sqrt((camera.radius_m - r) * (camera.radius_m - r) + camera.radius_m * r * chord2));
+      brute = std::min(brute,
+                       std::sqrt((camera.radius_m - r) * (camera.radius_m - r) + camera.radius_m * r * chord2));
     }
     ASSERT_GE(bound, 0.9 * brute - (high - low) / 1000.0 - 1e-7) << trial;
     in_the_region += bound == 0.0 ? 1 : 0;
@@ -224,19 +227,21 @@ TEST(Frustum, NeverGivesUpAShellWithAPointInTheImage) {
     const mars::ChartRect rect = rect_around(random, mars::chart_point(point), random.log_uniform(1e-16, 1.0));
     // Rounding of the point itself may put it just outside its rectangle or shell: give that much.
     const BoundingRegion region{rect, r * (1 - 1e-15) - random.integer(0, 1) * random.log_uniform(0.01, 1e4),
-                      r * (1 + 1e-15) + random.integer(0, 1) * random.log_uniform(0.01, 1e4)};
+                                r * (1 + 1e-15) + random.integer(0, 1) * random.log_uniform(0.01, 1e4)};
     if (region.min_radius_m < 0.0) continue;
     const cull::Frustum frustum = cull::make_frustum(view);
-    const auto mask = cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum));
+    const auto mask =
+        cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum));
     ASSERT_TRUE(mask.has_value()) << "trial " << trial;
     crossed += *mask != 0 ? 1 : 0;
     // Planes that are not crossed are not crossed by a part either.
     mars::ChartRect part = rect;
     part.u1 = 0.5 * (rect.u0 + rect.u1);
     const auto part_mask = cull::planes_crossed(
-        frustum, cull::bounding_hexahedron({part, region.min_radius_m, region.max_radius_m}), cull::all_planes(frustum));
-    const auto inherited =
-        cull::planes_crossed(frustum, cull::bounding_hexahedron({part, region.min_radius_m, region.max_radius_m}), *mask);
+        frustum, cull::bounding_hexahedron({part, region.min_radius_m, region.max_radius_m}),
+        cull::all_planes(frustum));
+    const auto inherited = cull::planes_crossed(
+        frustum, cull::bounding_hexahedron({part, region.min_radius_m, region.max_radius_m}), *mask);
     if (part_mask) {
       ASSERT_TRUE(inherited.has_value());
       ASSERT_EQ(*inherited, *part_mask & *mask);
@@ -256,7 +261,7 @@ TEST(Frustum, GivesUpWhatIsClearlyOutside) {
     core::View view = random_view(random, camera_m);
     view.fov_deg = 60.0;
     const BoundingRegion region{rect_around(random, mars::chart_point(random.direction()), 0.05), kRadius_m,
-                      kRadius_m + 5e3};
+                                kRadius_m + 5e3};
     const glm::dvec3 middle = region_point(region.rect, 0.5, 0.5, kRadius_m);
     // Its middle is farther beyond the left or right side plane than its corners are from the middle.
     const glm::dvec3 to = middle - camera_m;
@@ -266,7 +271,8 @@ TEST(Frustum, GivesUpWhatIsClearlyOutside) {
     if (beyond < 0.05 * kRadius_m) continue;
     ++outside;
     const cull::Frustum frustum = cull::make_frustum(view);
-    culled += cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum)) ? 0 : 1;
+    culled +=
+        cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum)) ? 0 : 1;
   }
   EXPECT_GT(outside, 2000);
   EXPECT_EQ(culled, outside);
@@ -337,7 +343,7 @@ TEST(Horizon, NeverHidesATileWithAVisiblePoint) {
     hidden += gone ? 1 : 0;
     for (int sample = 0; sample < 8; ++sample) {
       const glm::dvec3 point = region_point(region.rect, random.integer(0, 4) / 4.0, random.integer(0, 4) / 4.0,
-                                           random.uniform(region.min_radius_m, region.max_radius_m));
+                                            random.uniform(region.min_radius_m, region.max_radius_m));
       const glm::dvec3 step = point - camera_m;
       const double t = std::clamp(-glm::dot(camera_m, step) / glm::dot(step, step), 0.0, 1.0);
       const bool visible = glm::length(camera_m + t * step) >= kLowest_m + 1e-6;
@@ -354,7 +360,8 @@ TEST(Horizon, WhatHasGroundBehindItIsNeverSeenAgainstTheSky) {
   int ground = 0;
   int loose = 0;
   for (int trial = 0; trial < 100000; ++trial) {
-    const cull::Camera camera = cull::make_camera(random.direction() * (kLowest_m + random.log_uniform(1, 1e8)));
+    const cull::Camera camera =
+        cull::make_camera(random.direction() * (kLowest_m + random.log_uniform(1, 1e8)));
     const cull::Horizon horizon = cull::make_horizon(camera, kLowest_m);
     const double top = kLowest_m + random.log_uniform(1, 30000);
     const double angle = random.log_uniform(1e-6, 3.0);

@@ -32,7 +32,8 @@ double slope_of(double cosine, double sine, double radius_m, double camera_m) {
 
 // Slope of the highest ray along `ahead` (horizontal) that a wall blocks, by the place where the ray's plane
 // meets it.
-double exact_slope(const std::vector<Occluder>& occluders, const cull::Camera& camera, const glm::dvec3& ahead) {
+double exact_slope(const std::vector<Occluder>& occluders, const cull::Camera& camera,
+                   const glm::dvec3& ahead) {
   double highest = kNone;
   for (const Occluder& occluder : occluders) {
     const mars::FaceAxes& axes = mars::face_axes(occluder.face);
@@ -43,8 +44,8 @@ double exact_slope(const std::vector<Occluder>& occluders, const cull::Camera& c
     const double along = glm::dot(occluder.column ? axes.up : axes.right, d) / glm::dot(axes.out, d);
     for (std::size_t n = 0; n < occluder.radius_m.size(); ++n) {
       if (along < occluder.ends[n] || along > occluder.ends[n + 1]) continue;
-      highest = std::max(
-          highest, slope_of(glm::dot(d, camera.direction), glm::dot(d, ahead), occluder.radius_m[n], camera.radius_m));
+      highest = std::max(highest, slope_of(glm::dot(d, camera.direction), glm::dot(d, ahead),
+                                           occluder.radius_m[n], camera.radius_m));
     }
   }
   return highest;
@@ -52,7 +53,7 @@ double exact_slope(const std::vector<Occluder>& occluders, const cull::Camera& c
 
 // The lines of a block of `side` x `side` tiles of one size round a chart point; neighbours share lines.
 std::vector<Occluder> block_of_occluders(Random& random, const mars::ChartPoint& centre, double size, int side,
-                                 double low, double high) {
+                                         double low, double high) {
   std::vector<Occluder> occluders;
   const double u0 = centre.u - 0.5 * side * size;
   const double v0 = centre.v - 0.5 * side * size;
@@ -65,7 +66,8 @@ std::vector<Occluder> block_of_occluders(Random& random, const mars::ChartPoint&
         occluder.line = (column ? u0 : v0) + (a * 4 + line) * (size / 4);
         for (int k = 0; k <= 4; ++k) occluder.ends.push_back((column ? v0 : u0) + (b * 4 + k) * (size / 4));
         for (int k = 0; k < 4; ++k) occluder.radius_m.push_back(kRadius_m + random.uniform(low, high));
-        if (std::abs(occluder.line) <= 1 && occluder.ends.front() >= -1 && occluder.ends.back() <= 1) occluders.push_back(occluder);
+        if (std::abs(occluder.line) <= 1 && occluder.ends.front() >= -1 && occluder.ends.back() <= 1)
+          occluders.push_back(occluder);
       }
     }
   }
@@ -88,8 +90,8 @@ Scene random_scene(Random& random) {
   for (int block = random.integer(1, 3); block > 0; --block) {
     const mars::ChartPoint near = mars::chart_point(up + reach * random.uniform(0, 2) * random.direction());
     const double size = reach * random.log_uniform(0.05, 1);
-    for (Occluder& occluder :
-         block_of_occluders(random, near, size, random.integer(1, 3), low, low + random.log_uniform(1, 20000))) {
+    for (Occluder& occluder : block_of_occluders(random, near, size, random.integer(1, 3), low,
+                                                 low + random.log_uniform(1, 20000))) {
       scene.occluders.push_back(std::move(occluder));
     }
   }
@@ -123,11 +125,11 @@ TEST(TerrainHorizon, BlocksNoRayAboveAllWalls) {
     for (int ray = 0; ray < 100; ++ray) {
       glm::dvec3 ahead = random_ahead(random, scene.camera.direction);
       if (ray % 2 == 0) {  // towards a wall
-        const Occluder& occluder =
-            scene.occluders[static_cast<std::size_t>(random.integer(0, static_cast<int>(scene.occluders.size()) - 1))];
+        const Occluder& occluder = scene.occluders[static_cast<std::size_t>(
+            random.integer(0, static_cast<int>(scene.occluders.size()) - 1))];
         const double at = random.uniform(occluder.ends.front(), occluder.ends.back());
         const glm::dvec3 to = occluder.column ? mars::cube_point(occluder.face, occluder.line, at)
-                                          : mars::cube_point(occluder.face, at, occluder.line);
+                                              : mars::cube_point(occluder.face, at, occluder.line);
         ahead = ahead_to(to, scene.camera.direction);
       }
       const double slope = horizon.blocked_slope(ahead);
@@ -160,9 +162,9 @@ TEST(TerrainHorizon, HidesNoShellWithAPointAboveAllWalls) {
           mars::chart_point(scene.camera.direction + random.log_uniform(1e-5, 1) * random.direction());
       const double size = random.log_uniform(1e-6, 0.05);
       const cull::BoundingRegion region{{at.face, std::max(-1.0, at.u - size), std::min(1.0, at.u + size),
-                               std::max(-1.0, at.v - size), std::min(1.0, at.v + size)},
-                              kRadius_m - 9000,
-                              kRadius_m + random.uniform(-9000, 5000)};
+                                         std::max(-1.0, at.v - size), std::min(1.0, at.v + size)},
+                                        kRadius_m - 9000,
+                                        kRadius_m + random.uniform(-9000, 5000)};
       if (!horizon.hidden(region)) continue;
       ++hidden;
       for (int sample = 0; sample < 30; ++sample) {
@@ -170,8 +172,8 @@ TEST(TerrainHorizon, HidesNoShellWithAPointAboveAllWalls) {
         const double t = random.integer(0, 2) == 0 ? random.integer(0, 1) : random.uniform(0, 1);
         const glm::dvec3 point =
             region.max_radius_m * mars::chart_direction(at.face,
-                                                       region.rect.u0 + s * (region.rect.u1 - region.rect.u0),
-                                                       region.rect.v0 + t * (region.rect.v1 - region.rect.v0));
+                                                        region.rect.u0 + s * (region.rect.u1 - region.rect.u0),
+                                                        region.rect.v0 + t * (region.rect.v1 - region.rect.v0));
         glm::dvec3 ray = glm::normalize(point - scene.camera.direction * scene.camera.radius_m);
         if (margin > 0 && sample % 2 == 0) {
           const glm::dvec3 off = glm::cross(ray, random.direction());
@@ -201,16 +203,18 @@ TEST(TerrainHorizon, WallsOfNeighboursCloseUp) {
     const glm::dvec3 up = mars::chart_direction(at.face, at.u + 0.03 * size, at.v + 0.0411 * size);
     const cull::Camera camera = cull::make_camera(up * (kRadius_m + 10));
     horizon.begin(camera);
-    for (const Occluder& occluder : block_of_occluders(random, at, size, 3, 1000, 1001)) horizon.add(occluder.view());
+    for (const Occluder& occluder : block_of_occluders(random, at, size, 3, 1000, 1001))
+      horizon.add(occluder.view());
     int open = 0;
     for (int ray = 0; ray < 300; ++ray) open += horizon.blocked_slope(random_ahead(random, up)) > 0.0 ? 0 : 1;
     ASSERT_EQ(open, 0) << trial;
     // What stands as high behind it is hidden, and not when it is too high.
     const glm::dvec3 far = glm::normalize(up + 4.0 * size * random_ahead(random, up));
     const mars::ChartPoint p = mars::chart_point(far);
-    const cull::BoundingRegion behind{{p.face, p.u - 0.1 * size, p.u + 0.1 * size, p.v - 0.1 * size, p.v + 0.1 * size},
-                             kRadius_m,
-                             kRadius_m + 900};
+    const cull::BoundingRegion behind{
+        {p.face, p.u - 0.1 * size, p.u + 0.1 * size, p.v - 0.1 * size, p.v + 0.1 * size},
+        kRadius_m,
+        kRadius_m + 900};
     ASSERT_TRUE(horizon.hidden(behind));
     ASSERT_FALSE(horizon.hidden({behind.rect, kRadius_m, kRadius_m + 4e5}));
   }

@@ -89,7 +89,7 @@ std::vector<glm::dvec3> row_of_hotspots(int count) {
         {"s" + std::to_string(n), {n * 1000.0 / mars::kMarsRadius_m / mars::kRadiansPerDegree, 0}, 2, "p"});
   }
   return hotspot_eyes(hotspots, mars::kMarsRadius_m,
-                   [](mars::LonLat, double exaggeration) { return 100 * exaggeration; });
+                      [](mars::LonLat, double exaggeration) { return 100 * exaggeration; });
 }
 
 glm::dvec3 camera_at(double east_m, double alt_m = 102) {

@@ -29,7 +29,7 @@ TEST_F(ReadOuts, AreThoseOfQueryWhereTheRayMeetsTheGround) {
         mars::lon_lat(n % 2 == 0 ? random.direction() : test_support::kPatch + 0.01 * random.direction());
     const glm::dvec3 ground = surface().at(mars::direction(place)).radius_m * mars::direction(place);
     const glm::dvec3 camera = ground + random.log_uniform(10, 1e6) *
-                                        glm::normalize(mars::direction(place) + 0.9 * random.direction());
+                                           glm::normalize(mars::direction(place) + 0.9 * random.direction());
     const double range_m = glm::length(ground - camera);
     const auto r = read_out(surface(), camera, (ground - camera) / range_m);
     ASSERT_TRUE(r.has_value());

@@ -18,7 +18,8 @@ inline TerrainQuery hills(double radius_m = mars::kMarsRadius_m) {
     const glm::dvec3 d = glm::normalize(direction) * 900.0;
     return 3000.0 * std::sin(d.x) * std::sin(d.y + 0.3) * std::cos(d.z);
   };
-  ground.cast_m = [height_m = ground.height_m, radius_m](const glm::dvec3& camera_m, const glm::dvec3& direction) {
+  ground.cast_m = [height_m = ground.height_m, radius_m](const glm::dvec3& camera_m,
+                                                         const glm::dvec3& direction) {
     double range_m = 0;
     for (int n = 0; n < 20000; ++n) {
       const glm::dvec3 at = camera_m + direction * range_m;

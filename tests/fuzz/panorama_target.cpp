@@ -7,18 +7,18 @@
 #include <fstream>
 
 #include "panorama/image/big_tiff.h"
+#include "panorama/image/metadata_error.h"
+#include "panorama/image/raster_plane.h"
+#include "panorama/image/row_source.h"
+#include "panorama/image/tiled_image.h"
+#include "panorama/image/xmp_file.h"
 #include "panorama/metadata/auxiliary_files.h"
 #include "panorama/metadata/gpano.h"
 #include "panorama/metadata/label.h"
-#include "panorama/viewer/render_view.h"
-#include "panorama/image/metadata_error.h"
 #include "panorama/metadata/open_panorama.h"
-#include "panorama/image/tiled_image.h"
-#include "panorama/image/raster_plane.h"
-#include "panorama/image/row_source.h"
 #include "panorama/metadata/sidecar.h"
+#include "panorama/viewer/render_view.h"
 #include "panorama/viewer/viewer.h"
-#include "panorama/image/xmp_file.h"
 #include "tests/fuzz/targets.h"
 #include "vpe/base/file.h"
 #include "vpe/core/image/image.h"
@@ -158,7 +158,8 @@ void run_sidecar(std::span<const std::uint8_t> bytes) {
     const panorama::Sidecar sidecar = panorama::read_sidecar(text);
     check_map(sidecar.map);
     const panorama::Sidecar again = panorama::read_sidecar(panorama::to_json(sidecar));
-    require(again.image == sidecar.image && again.viewpoint == sidecar.viewpoint, "stations survive being written");
+    require(again.image == sidecar.image && again.viewpoint == sidecar.viewpoint,
+            "stations survive being written");
     check_same(sidecar.map, again.map);
   } catch (const panorama::MetadataError& error) {
     check_words(error);

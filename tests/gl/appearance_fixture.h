@@ -89,8 +89,9 @@ inline double agreement(vpe::core::Renderer& draw, const paging::Surface& surfac
     for (int x = 0; x < width; ++x) {
       const auto at = static_cast<std::size_t>(y * width + x);
       if (!std::isfinite(result.frame.range_m[at])) continue;
-      const glm::dvec3 hit = request.view.camera.position_m + static_cast<double>(result.frame.range_m[at]) *
-                                                          vpe::core::pixel_ray(request.view, x + 0.5, y + 0.5);
+      const glm::dvec3 hit =
+          request.view.camera.position_m +
+          static_cast<double>(result.frame.range_m[at]) * vpe::core::pixel_ray(request.view, x + 0.5, y + 0.5);
       const auto wanted = reference.at(glm::normalize(hit));
       if (!wanted) continue;
       ++known;

@@ -25,23 +25,24 @@ inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surfac
                              const vpe::core::DrawRequest& request, const std::string& name) {
   const vpe::core::DrawResult result = renderer.draw(request);
   const std::vector<float> reference = reference_ranges(surface, request.view);
-  const vpe::core::ImageErrors errors = vpe::core::compare_to_reference(
-      request.view, result.frame.range_m, reference, radius_of(surface), {4, 2});
+  const vpe::core::ImageErrors errors = vpe::core::compare_to_reference(request.view, result.frame.range_m,
+                                                                        reference, radius_of(surface), {4, 2});
   SCOPED_TRACE(name + " " + vpe::core::to_json(errors) + " " + vpe::core::to_json(result.certificate));
   EXPECT_EQ(errors.sky_for_ground, 0);
   EXPECT_EQ(errors.false_surface, 0);
   EXPECT_EQ(errors.invalid, 0);
   const double range_px = range_error_px(request.view, result.frame.range_m);
   ASSERT_TRUE(result.certificate.image_bound_px.has_value());
-  record_worst("polygons: forward shift", errors.forward.max_px / (*result.certificate.image_bound_px + range_px), 1,
+  record_worst("polygons: forward shift",
+               errors.forward.max_px / (*result.certificate.image_bound_px + range_px), 1,
                "of the certificate");
   EXPECT_LE(*result.certificate.image_bound_px, result.certificate.shift_bound_px);
   EXPECT_LE(errors.forward.p999_px, 1.0);
   record_worst("polygons: backward shift, 99.9 % of the pixels", errors.backward.p999_px, 1.5, "px");
   const paging::PlanetMeta& meta = surface.planet().meta();
-  const auto horizon =
-      vpe::core::check_horizon(request.view, result.frame.range_m,
-                               meta.lowest_radius_m - result.certificate.geometric_error_m, meta.highest_radius_m);
+  const auto horizon = vpe::core::check_horizon(request.view, result.frame.range_m,
+                                                meta.lowest_radius_m - result.certificate.geometric_error_m,
+                                                meta.highest_radius_m);
   EXPECT_EQ(horizon.sky_below, 0);
   EXPECT_EQ(horizon.surface_above, 0);
   EXPECT_EQ(result.certificate.tiles_missing, 0);

@@ -161,13 +161,15 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
       for (int x = 0; x < 200; ++x) {
         const glm::dvec3 d = vpe::core::pixel_ray(request.view, x + 0.5, y + 0.5);
         const double half = glm::dot(request.view.camera.position_m, d);
-        const double lowest = std::sqrt(glm::dot(request.view.camera.position_m, request.view.camera.position_m) - half * half);
+        const double lowest =
+            std::sqrt(glm::dot(request.view.camera.position_m, request.view.camera.position_m) - half * half);
         const float range = result.frame.range_m[static_cast<std::size_t>(y * 200 + x)];
         // How far the ray passes below the sphere decides; facets may be lower than it by sag.
         const double outer = radius + moved * std::abs(half);
         if (half > 0 || lowest > outer) {
           ASSERT_TRUE(std::isinf(range)) << alt << " " << x << " " << y;
-        } else if (const double inner = radius - sagitta - moved * std::abs(half); lowest < inner - 1e-6 * alt) {
+        } else if (const double inner = radius - sagitta - moved * std::abs(half);
+                   lowest < inner - 1e-6 * alt) {
           ASSERT_TRUE(std::isfinite(range)) << alt << " " << x << " " << y;
           ++surface_pixels;
           // The hit lies between the two spheres.

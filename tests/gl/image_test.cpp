@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "tests/gl/gl_fixture.h"
 #include "paging/shading/terrain_shader.h"
+#include "tests/gl/gl_fixture.h"
 
 namespace {
 

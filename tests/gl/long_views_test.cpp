@@ -139,7 +139,8 @@ TEST_F(LongViews, CertificatesAreNotLazy) {
       exact_px.push_back(bound_px);
       continue;
     }
-    const double height_m = glm::length(request.view.camera.position_m) - surface.at(request.view.camera.position_m).radius_m;
+    const double height_m =
+        glm::length(request.view.camera.position_m) - surface.at(request.view.camera.position_m).radius_m;
     const auto decade = static_cast<std::size_t>(std::clamp(std::log10(height_m), 0.0, 7.0));
     ratios.push_back(bound_px / std::max(errors.forward.max_px, 1e-9));
     ratios_from[decade].push_back(ratios.back());

@@ -64,8 +64,9 @@ TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
         if (!std::isfinite(range)) continue;
         const int x = static_cast<int>(n) % w;
         const int y = static_cast<int>(n) / w;
-        const glm::dvec3 p = request.view.camera.position_m + double{range} * glm::normalize(vpe::core::pixel_ray(
-                                                                          request.view, x + 0.5, y + 0.5));
+        const glm::dvec3 p =
+            request.view.camera.position_m +
+            double{range} * glm::normalize(vpe::core::pixel_ray(request.view, x + 0.5, y + 0.5));
         const glm::dvec3 d = glm::normalize(p);
         missing[n] = surface.at(d).missing ? 1 : 0;
         // Below level 5 the rim is right to a texel, here a quarter of a post.

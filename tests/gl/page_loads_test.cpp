@@ -8,6 +8,7 @@
 namespace {
 
 using namespace std::chrono_literals;
+using paging::ShadingParams;
 using test_support::bumpy_height;
 using test_support::FakeElevation;
 using test_support::Random;
@@ -16,7 +17,6 @@ using vpe::gl::PageKey;
 using vpe::gl::PageKeyHash;
 using vpe::gl::PageKind;
 using vpe::gl::PageLoader;
-using paging::ShadingParams;
 using TilePager = paging::Pager<PageKey, Page, PageKeyHash>;
 
 // Any page that the planet has: meshes of all variants, textures in two looks, posts.

@@ -35,8 +35,8 @@ class Paging : public test_support::GlTest {
 
   DrawRequest flight_at(double t) const {
     const mars::LonLat at = mars::lon_lat(kFine);
-    const mars::Pose pose{at.lon_deg + 20 * t, at.lat_deg - 10 * t, 30000 + 1.5e6 * t * t, 40 + 90 * t, -20 - 40 * t,
-                          10 * t};
+    const mars::Pose pose{at.lon_deg + 20 * t, at.lat_deg - 10 * t, 30000 + 1.5e6 * t * t,
+                          40 + 90 * t,         -20 - 40 * t,        10 * t};
     return test_support::request_for(pose, planet_->radius_m(), 160, 96);
   }
 
@@ -95,7 +95,8 @@ TEST_F(Paging, NoFrameHasAHole) {
   const auto draw = slow_renderer(delays(2));
   Random random(3);
   for (int n = 0; n < 60; ++n) {
-    const mars::Pose pose{random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(30000, 1e6), 0, -90, 0};
+    const mars::Pose pose{
+        random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(30000, 1e6), 0, -90, 0};
     DrawRequest request = without_waiting(test_support::request_for(pose, planet_->radius_m(), 64, 64, 40));
     const DrawResult result = draw->draw(request);
     for (const float range : result.frame.range_m) ASSERT_TRUE(std::isfinite(range)) << "frame " << n;
@@ -124,7 +125,8 @@ TEST_F(Paging, CloseToTheGroundToo) {
   const mars::LonLat at = mars::lon_lat(kFine);
   const auto pose = [&](double east) {
     const mars::LonLat place{at.lon_deg + east, at.lat_deg};
-    return mars::Pose{place.lon_deg, place.lat_deg, surface.at(mars::direction(place)).height_m + 2.0, 70, -5, 0};
+    return mars::Pose{
+        place.lon_deg, place.lat_deg, surface.at(mars::direction(place)).height_m + 2.0, 70, -5, 0};
   };
   const DrawRequest last = test_support::request_for(pose(0.001), planet_->radius_m(), 160, 96);
   const DrawResult alone = renderer(planet_)->draw(last);
@@ -145,8 +147,8 @@ TEST_F(Paging, AnOldLookStandsInUntilTheNewOneIsThere) {
   request.sun = mars::sun_direction({0, 0}, 200, 20);
   const DrawResult first = draw->draw(request);
   // Nothing coarser is drawn.
-  EXPECT_TRUE(first.missing.empty()) << first.missing.size() << " missing, first " << first.missing.front().tile << ": "
-                                     << first.missing.front().why;
+  EXPECT_TRUE(first.missing.empty()) << first.missing.size() << " missing, first " << first.missing.front().tile
+                                     << ": " << first.missing.front().why;
   EXPECT_FALSE(first.settled);
   const DrawResult after = settle(*draw, request);
   request.paging.wait = true;
@@ -190,7 +192,8 @@ TEST_F(Paging, ATileThatCannotBeReadIsDrawnCoarserAndToldOnce) {
   EXPECT_NE(result.failures[0].find("is damaged"), std::string::npos);
   ASSERT_FALSE(result.missing.empty());
   bool named = false;
-  for (const auto& m : result.missing) named |= m.why == result.failures[0] && m.tile == lod::to_string(*broken.begin());
+  for (const auto& m : result.missing)
+    named |= m.why == result.failures[0] && m.tile == lod::to_string(*broken.begin());
   EXPECT_TRUE(named);
   EXPECT_GT(result.certificate.tiles_substituted, 0);
   EXPECT_LT(result.stats.tiles_drawn, whole.stats.tiles_drawn);

@@ -76,8 +76,9 @@ TEST(ControlSelection, HitchnersRuleHoldsAtEveryTile) {
   int reached = 0;
   for (int trial = 0; trial < 600; ++trial) {
     const core::View view = random_view(random);
-    SelectOptions options = by_distance({random.log_uniform(1e4, 1e7), random.uniform(-2, 6), 1, {}},
-                                     {random.uniform(0, 1), random.uniform(-2, 1), random.uniform(0, 2), {}});
+    SelectOptions options =
+        by_distance({random.log_uniform(1e4, 1e7), random.uniform(-2, 6), 1, {}},
+                    {random.uniform(0, 1), random.uniform(-2, 1), random.uniform(0, 2), {}});
     if (trial % 3 == 0) options.control.distance.table = {{0, 12}, {1e5, 8}, {1e6, 5}, {2e6, 3}};
     options.control.regions = {lod::control_region({0, 0, 1e6, random.integer(-3, 3)}, fake::kRadius_m)};
     const Selection s = selected(options, rough_tree(), view);
@@ -186,7 +187,8 @@ TEST(ControlSelection, MoreWeightOnTheCentreNeverCoarsensTheCentre) {
         fake::kRadius_m);
     // Where the ray ahead meets the ground, nearly.
     const double b = glm::dot(view.camera.position_m, view.camera.axes.forward);
-    const double root = b * b - glm::dot(view.camera.position_m, view.camera.position_m) + fake::kRadius_m * fake::kRadius_m;
+    const double root =
+        b * b - glm::dot(view.camera.position_m, view.camera.position_m) + fake::kRadius_m * fake::kRadius_m;
     RC_PRE(root > 0);
     const glm::dvec3 place = view.camera.position_m + (-b - std::sqrt(root)) * view.camera.axes.forward;
     SelectOptions options = by_distance({1e6, 1, 1, {}}, {0.25, -1, 0, {}});

@@ -139,7 +139,7 @@ TEST(ControlFunctions, TheNearestPointToTheCentreIsFound) {
         glm::normalize(view.camera.position_m / fake::kRadius_m + random.uniform(0, 1) * random.direction());
     const lod::TileKey key = lod::tile_at(mars::chart_point(near), level);
     const cull::BoundingRegion region{lod::chart_rect(key), fake::kRadius_m - random.uniform(0, 5000),
-                            fake::kRadius_m + 3000};
+                                      fake::kRadius_m + 3000};
     const cull::BoundingHexahedron v = cull::bounding_hexahedron(region);
     const double angle = lod::least_angle_rad(centre, v);
     double least = kInfinity;

@@ -23,10 +23,11 @@ const TileTree& tree() {
 
 core::View random_view(Random& random) {
   core::View view;
-  view.camera = mars::to_camera(mars::Pose{random.uniform(-180, 180), random.uniform(-90, 90),
-                                     random.log_uniform(8000, 3 * fake::kRadius_m), random.uniform(-180, 180),
-                                     random.uniform(-90, 10), random.uniform(-180, 180)},
-                          fake::kRadius_m);
+  view.camera =
+      mars::to_camera(mars::Pose{random.uniform(-180, 180), random.uniform(-90, 90),
+                                 random.log_uniform(8000, 3 * fake::kRadius_m), random.uniform(-180, 180),
+                                 random.uniform(-90, 10), random.uniform(-180, 180)},
+                      fake::kRadius_m);
   view.fov_deg = random.uniform(20, 100);
   return view;
 }
@@ -156,8 +157,9 @@ TEST(Substitute, ChildrenStandInForTheirParent) {
   core::View view;
   view.camera = mars::to_camera(mars::Pose{10, 20, 3e6, 0, -90, 0}, fake::kRadius_m);
   const Selection selection = selected(view);
-  const auto wanted = std::find_if(selection.tiles.begin(), selection.tiles.end(),
-                                   [](const auto& t) { return tree()[t.index].has_children && t.key.level > 0; });
+  const auto wanted = std::find_if(selection.tiles.begin(), selection.tiles.end(), [](const auto& t) {
+    return tree()[t.index].has_children && t.key.level > 0;
+  });
   ASSERT_NE(wanted, selection.tiles.end());
   Ready ready = roots();
   for (const lod::SelectedTile& t : selection.tiles) {

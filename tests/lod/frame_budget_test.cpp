@@ -198,7 +198,8 @@ TEST(FrameBudget, RampsAreFollowed) {
       }
     }
   }
-  test_support::record_worst("frame budget: off on a ramp of ten times in 100 frames", worst, 0.5, "ln of time to budget");
+  test_support::record_worst("frame budget: off on a ramp of ten times in 100 frames", worst, 0.5,
+                             "ln of time to budget");
 }
 
 TEST(FrameBudget, AStiffMachineAfterASoftOneIsLearned) {
@@ -299,7 +300,7 @@ TEST(FrameBudget, HoldsTheTrianglesOfARecordedFlight) {
     const double s = t / 400.0;
     const double alt_m = 9000 + 3e6 * std::pow(1 - std::min(1.0, 1.6 * s), 3);
     view.camera = mars::to_camera(mars::Pose{-20 + 40 * s, 5 * std::sin(3 * s), alt_m, 90, -60 + 50 * s, 0},
-                            fake::kRadius_m);
+                                  fake::kRadius_m);
     return lod::select_view(view);
   };
   lod::SelectScratch scratch;

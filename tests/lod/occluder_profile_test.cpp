@@ -54,7 +54,8 @@ double drawn_height(const Drawn& tile, double exaggeration, double u, double v) 
 
 // slack: by how much walls could be higher, in post spacings.
 void expect_below(const Drawn& tile, double exaggeration, int samples, std::vector<double>& slack) {
-  const lod::OccluderProfile occluders = lod::make_occluder_profile(tile.key, tile.mesh, tile.height_m, exaggeration, kRadius);
+  const lod::OccluderProfile occluders =
+      lod::make_occluder_profile(tile.key, tile.mesh, tile.height_m, exaggeration, kRadius);
   const lod::GridLines lines = lod::grid_lines(tile.key, lod::kOccluderPieces);
   const double spacing_m = lod::post_spacing_m(tile.key.level, tile.mesh.intervals, kRadius);
   for (std::size_t line = 0; line <= lod::kOccluderStrips; ++line) {
@@ -116,7 +117,8 @@ TEST(OccluderProfile, TheFullGridGivesTheLowestPostsOfALine) {
   const lod_test::Terrain terrain(3, 500, 5000);
   const lod::Posts posts = terrain.posts(key, 32);
   const lod::TileMesh mesh = lod::mesh_full(32);
-  const lod::OccluderProfile occluders = lod::make_occluder_profile(key, mesh, lod::vertex_heights(mesh, posts), 2.0, kRadius, 0.25);
+  const lod::OccluderProfile occluders =
+      lod::make_occluder_profile(key, mesh, lod::vertex_heights(mesh, posts), 2.0, kRadius, 0.25);
   for (int line = 0; line <= lod::kOccluderStrips; ++line) {
     for (int piece = 0; piece < lod::kOccluderPieces; ++piece) {
       double column = posts.at(8 * line, 4 * piece);
@@ -142,8 +144,10 @@ TEST(OccluderProfile, RefuseWhatTheyCannotBeMadeOf) {
   const std::vector<double> heights(81, 0.0);
   EXPECT_THROW(lod::make_occluder_profile(key, lod::mesh_full(4), std::vector<double>(25, 0.0), 1, kRadius),
                std::invalid_argument);
-  EXPECT_THROW(lod::make_occluder_profile(key, mesh, std::span(heights).first(80), 1, kRadius), std::invalid_argument);
-  EXPECT_THROW(lod::make_occluder_profile(key, mesh, std::vector<double>(81, -1e5), 100, kRadius), std::invalid_argument);
+  EXPECT_THROW(lod::make_occluder_profile(key, mesh, std::span(heights).first(80), 1, kRadius),
+               std::invalid_argument);
+  EXPECT_THROW(lod::make_occluder_profile(key, mesh, std::vector<double>(81, -1e5), 100, kRadius),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -111,8 +111,9 @@ TEST(Stretch, IsTheSecantAtTheSidesOfALevelView) {
   const glm::dvec3 point = view.camera.position_m + aside * middle;
   const lod::TileKey key = lod::tile_at(mars::chart_point(point), 9);
   const double t = (0.5 * view.width - 0.5) / core::focal_px(view);
-  EXPECT_NEAR(lod::off_axis_magnification(lod::image_plane(view), cull::bounding_hexahedron(bounding_region(key))), std::hypot(1.0, t),
-              0.12);
+  EXPECT_NEAR(
+      lod::off_axis_magnification(lod::image_plane(view), cull::bounding_hexahedron(bounding_region(key))),
+      std::hypot(1.0, t), 0.12);
 }
 
 }  // namespace

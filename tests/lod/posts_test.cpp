@@ -107,7 +107,8 @@ TEST(Posts, HeightAtAPostIsThePostsHeight) {
       for (int i = 0; i <= 16; ++i) {
         const double h = lod::surface_height(posts, lines, lines.u[static_cast<std::size_t>(i)],
                                              lines.v[static_cast<std::size_t>(j)], mars::kMarsRadius_m);
-        ASSERT_NEAR(h, posts.at(i, j), 1e-9 + 1e-15 * height_error) << i << " " << j << " " << lod::to_string(key);
+        ASSERT_NEAR(h, posts.at(i, j), 1e-9 + 1e-15 * height_error)
+            << i << " " << j << " " << lod::to_string(key);
       }
     }
   }
@@ -297,7 +298,8 @@ TEST(SurfaceHeight, SagIsNotExaggerated) {
   for (double& h : posts.height_m) h = 1000.0;
   lod::Posts high = posts;
   for (double& h : high.height_m) h = 3000.0;
-  EXPECT_EQ(lod::surface_height(posts, lines, u, v, kR, nullptr, 3.0), lod::surface_height(high, lines, u, v, kR));
+  EXPECT_EQ(lod::surface_height(posts, lines, u, v, kR, nullptr, 3.0),
+            lod::surface_height(high, lines, u, v, kR));
 }
 
 // Against the facets' normals as surface_height() gives them, at places all over the tile.

@@ -173,8 +173,7 @@ TEST(ImageMotion, KnownCases) {
   other.fov_deg = 2 / mars::kRadiansPerDegree * std::atan(std::tan(30 * mars::kRadiansPerDegree) / 1.01);
   EXPECT_NEAR(lod::image_motion_px(view, other, 1e5), 7.34, 0.01);
   // A degree of roll as well.
-  EXPECT_NEAR(lod::image_motion_px(view, view_at(0, 1e5, 0, 0, 1), 1e5), 734.3 * mars::kRadiansPerDegree,
-              0.1);
+  EXPECT_NEAR(lod::image_motion_px(view, view_at(0, 1e5, 0, 0, 1), 1e5), 734.3 * mars::kRadiansPerDegree, 0.1);
 }
 
 }  // namespace

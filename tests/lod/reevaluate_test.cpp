@@ -32,7 +32,8 @@ TEST(Reevaluate, TheSameViewSeesWhatSelectionSays) {
       // Another bound: selection leaves out what cannot stand against the sky, and keeps that of a coarser
       // mesh.
       ASSERT_GE(b.off_axis_magnification, 1.0);
-      ASSERT_DOUBLE_EQ(b.screen_space_error_px * a.off_axis_magnification, a.screen_space_error_px * b.off_axis_magnification);
+      ASSERT_DOUBLE_EQ(b.screen_space_error_px * a.off_axis_magnification,
+                       a.screen_space_error_px * b.off_axis_magnification);
     }
   }
 }

@@ -103,7 +103,8 @@ void expect_sound(const Selection& s, const TileTree& tree, const SelectOptions&
     if (options.exaggeration == 1.0) {
       ASSERT_EQ(t.geometric_error_m, mesh.terms.total_m);
     }
-    ASSERT_EQ(t.screen_space_error_px, projected(t.geometric_error_m, focal, t.min_distance_m, t.off_axis_magnification));
+    ASSERT_EQ(t.screen_space_error_px,
+              projected(t.geometric_error_m, focal, t.min_distance_m, t.off_axis_magnification));
     worst_m = std::max(worst_m, t.geometric_error_m);
     worst_px = std::max(worst_px, t.screen_space_error_px);
     ++levels[static_cast<std::size_t>(t.key.level)];
@@ -187,8 +188,8 @@ TEST(SelectCounts, WithoutAFrustumAtToleranceZeroAllFinestTilesAboveTheHorizonAr
         const double u = r.u0 + (r.u1 - r.u0) * k / 400.0;
         const double v = r.v0 + (r.v1 - r.v0) * k / 400.0;
         for (const auto& [x, y] : {std::pair{u, r.v0}, {u, r.v1}, {r.u0, v}, {r.u1, v}}) {
-          nearest =
-              std::min(nearest, mars::angle_between_rad(mars::chart_direction(r.face, x, y), view.camera.position_m));
+          nearest = std::min(
+              nearest, mars::angle_between_rad(mars::chart_direction(r.face, x, y), view.camera.position_m));
         }
       }
       expected += nearest <= limit ? 1 : 0;
@@ -246,7 +247,9 @@ TEST(Select, DrawsEveryVisiblePlaceExactlyOnce) {
         ++holders;
         ASSERT_LE(tile.min_distance_m, glm::length(step) + 1e-8);
         ASSERT_GE(tile.screen_space_error_px * (1 + 1e-12),
-                  tile.geometric_error_m == 0 ? 0 : tile.geometric_error_m * lod::select_view(view).focal_px / glm::length(step));
+                  tile.geometric_error_m == 0
+                      ? 0
+                      : tile.geometric_error_m * lod::select_view(view).focal_px / glm::length(step));
       }
       ASSERT_EQ(holders, 1) << "trial " << trial << " " << lod::to_string(key);
     }
@@ -324,8 +327,9 @@ TEST(Select, TheCapIsHardAndSpentOnTheWorstFirst) {
             static_cast<TileTree::Index>(rough_tree().find(lod::parent(tile.key)) - &rough_tree()[0]);
         const double geometric_error_m = rough_tree()[parent].variants[0].terms.total_m;
         const cull::BoundingRegion region = rough_tree().region(parent, 1.0, geometric_error_m);
-        const double distance_m = cull::min_distance_m(camera, cull::nearest_chord2(region.rect, camera.direction),
-                                                       region.min_radius_m, region.max_radius_m);
+        const double distance_m =
+            cull::min_distance_m(camera, cull::nearest_chord2(region.rect, camera.direction),
+                                 region.min_radius_m, region.max_radius_m);
         double off_axis_magnification = std::numeric_limits<double>::infinity();
         for (int level = 0; level < tile.key.level; ++level) {
           const auto outer = static_cast<TileTree::Index>(rough_tree().find(lod::ancestor(tile.key, level)) -
@@ -336,9 +340,14 @@ TEST(Select, TheCapIsHardAndSpentOnTheWorstFirst) {
               cull::against_sky(camera, cull::make_horizon(camera, rough_tree().lowest_radius_m(1.0)),
                                 cull::farthest_chord2(around.rect, camera.direction), around.max_radius_m);
           off_axis_magnification =
-              sky ? std::min(off_axis_magnification, lod::off_axis_magnification(lod::image_plane(view), cull::bounding_hexahedron(around))) : 1.0;
+              sky ? std::min(
+                        off_axis_magnification,
+                        lod::off_axis_magnification(lod::image_plane(view), cull::bounding_hexahedron(around)))
+                  : 1.0;
         }
-        ASSERT_GE(projected(geometric_error_m, lod::select_view(view).focal_px, distance_m, off_axis_magnification), s.max_screen_space_error_px);
+        ASSERT_GE(
+            projected(geometric_error_m, lod::select_view(view).focal_px, distance_m, off_axis_magnification),
+            s.max_screen_space_error_px);
       }
       capped += s.capped ? 1 : 0;
       if (!s.capped) {
@@ -380,7 +389,8 @@ TEST(Select, InheritedPlanesCullAsMuchAsAllPlanes) {
       const auto index = static_cast<TileTree::Index>(ball.find(key) - &ball[0]);
       const cull::BoundingRegion region = ball.region(index, 1.0, ball[index].variants[0].terms.total_m);
       return !cull::hidden(horizon, cull::nearest_chord2(region.rect, camera.direction), region.max_radius_m) &&
-             cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum)).has_value();
+             cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum))
+                 .has_value();
     };
     std::vector<TileKey> expected;
     for (const TileInfo& tile : ball.tiles()) {
@@ -400,8 +410,9 @@ TEST(Select, InheritedPlanesCullAsMuchAsAllPlanes) {
 }
 
 bool operator==(const lod::SelectedTile& a, const lod::SelectedTile& b) {
-  return a.key == b.key && a.index == b.index && a.variant == b.variant && a.geometric_error_m == b.geometric_error_m &&
-         a.screen_space_error_px == b.screen_space_error_px && a.min_distance_m == b.min_distance_m;
+  return a.key == b.key && a.index == b.index && a.variant == b.variant &&
+         a.geometric_error_m == b.geometric_error_m && a.screen_space_error_px == b.screen_space_error_px &&
+         a.min_distance_m == b.min_distance_m;
 }
 
 TEST(Select, IsTheSameWhateverWasSelectedBefore) {

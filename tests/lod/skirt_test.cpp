@@ -53,7 +53,7 @@ Selection random_selection(Random& random, const TileTree& tree, double exaggera
   const glm::dvec3 place = random.integer(0, 3) == 0 ? glm::dvec3(1, 1, -1) : random.direction();
   const mars::LonLat at = mars::lon_lat(place);
   view.camera = mars::to_camera(mars::Pose{at.lon_deg, at.lat_deg, random.log_uniform(1e4, 1e7), 30, -70, 0},
-                          fake::kRadius_m);
+                                fake::kRadius_m);
   if (random.integer(0, 1) == 0) view.projection = vpe::core::Projection::kEquirectangular;
   lod::SelectOptions options;
   options.tolerance_px = random.log_uniform(0.05, 50);
@@ -124,7 +124,8 @@ TEST(Skirt, TheFootOfAStraightEdgeReachesBelowTheGapEverywhere) {
       double gap = 0;
       for (int k = 0; k < 64; ++k) {
         const SelectedTile* other = drawn_at(s, across(tile.key, Edge::kEast, (k + 0.5) / 64));
-        if (other != nullptr && !exact(tree, tile, *other)) gap = std::max(gap, tile.geometric_error_m + other->geometric_error_m);
+        if (other != nullptr && !exact(tree, tile, *other))
+          gap = std::max(gap, tile.geometric_error_m + other->geometric_error_m);
       }
       // One straight piece of the eastern border, as long as the error allows it to sag.
       const double v0 = region.rect.v0;

@@ -160,7 +160,8 @@ TEST(Tree, ShellsAndTheLowestRadiusHoldTheFacets) {
       const auto constrain = [&](double x) {
         for (const lod::Edge edge : lod::kEdges) {
           const TileKey beside = tree.deepest(lod::neighbour(tile.key, edge).key).key;
-          if (beside.level + 1 == tile.key.level) lod::constrain_edge(posts, lines, edge, 2, fake::kRadius_m, x);
+          if (beside.level + 1 == tile.key.level)
+            lod::constrain_edge(posts, lines, edge, 2, fake::kRadius_m, x);
         }
       };
       // A file states the heights of posts as they are at exaggeration 1.

@@ -5,10 +5,10 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "mars/geodesy/cube.h"
-#include "mars/embedded/embedded.h"
 #include "mars/embedded/craters.h"
+#include "mars/embedded/embedded.h"
 #include "mars/embedded/math.h"
+#include "mars/geodesy/cube.h"
 #include "tests/support/support.h"
 
 namespace mars {

@@ -8,11 +8,11 @@
 #include <thread>
 #include <vector>
 
-#include "mars/geodesy/cube.h"
 #include "mars/embedded/embedded.h"
 #include "mars/embedded/math.h"
 #include "mars/embedded/noise.h"
 #include "mars/embedded/surface.h"
+#include "mars/geodesy/cube.h"
 #include "tests/mars/patch.h"
 #include "tests/support/support.h"
 

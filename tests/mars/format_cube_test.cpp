@@ -11,9 +11,9 @@
 #include <map>
 #include <sstream>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/sources/source.h"
-#include "mars/geodesy/sphere.h"
 #include "tests/mars/pds_files.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"

@@ -8,10 +8,10 @@
 #include <iomanip>
 #include <sstream>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/raster/pds_map.h"
 #include "mars/sources/source.h"
-#include "mars/geodesy/sphere.h"
 #include "tests/mars/pds_files.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"

@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "mars/raster/gdal_raster.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/raster/gdal_raster.h"
 
 namespace pds_files {
 

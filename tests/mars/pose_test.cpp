@@ -85,8 +85,9 @@ TEST(Pose, CameraIsWithinItsBounds) {
     const CameraPose camera = to_camera(pose, look, radius_m);
     const ExactAxes want = exact_axes(pose, look);
     expect_orthonormal(camera.axes, orthonormal);
-    for (const auto& [got, twin] :
-         {std::pair{camera.axes.right, want.right}, {camera.axes.up, want.up}, {camera.axes.forward, want.forward}}) {
+    for (const auto& [got, twin] : {std::pair{camera.axes.right, want.right},
+                                    {camera.axes.up, want.up},
+                                    {camera.axes.forward, want.forward}}) {
       direction_bound.add(exact::angle(vec(got), twin), kAxesError);
     }
     const Real distance = static_cast<Real>(radius_m) + pose.alt_m;

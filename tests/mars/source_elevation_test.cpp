@@ -8,9 +8,9 @@
 #include <sstream>
 #include <thread>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/sources/source.h"
-#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 
-#include "mars/sources/source.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/source.h"
 
 namespace source_files {
 

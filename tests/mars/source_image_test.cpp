@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <thread>
 
-#include "mars/sources/source.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/source.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 

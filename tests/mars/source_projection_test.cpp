@@ -4,9 +4,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/sources/source.h"
-#include "mars/geodesy/sphere.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
 

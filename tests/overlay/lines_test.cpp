@@ -12,11 +12,11 @@ namespace {
 using vpe::overlay::Canvas;
 using vpe::overlay::draw_contours;
 using vpe::overlay::draw_graticule;
-using vpe::overlay::VisibleTerrain;
 using vpe::overlay::Isoline;
 using vpe::overlay::IsolineOptions;
 using vpe::overlay::isolines;
 using vpe::overlay::LabelLayout;
+using vpe::overlay::VisibleTerrain;
 
 // The lines alone: labels are what draw_*() returns.
 template <class Draw>
@@ -75,8 +75,9 @@ TEST(Graticule, PixelsLieWithinAPixelOfTheLines) {
   for (const mars::Pose& pose :
        {mars::Pose{-70, -13, 9e5, 30, -70, 10}, mars::Pose{179.5, 40, 4e5, 0, -90, 0}}) {
     const Sight sight({}, view_at(pose, 200, 120));
-    const Layer layer =
-        lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_graticule(layout, ground, 2); });
+    const Layer layer = lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) {
+      return draw_graticule(layout, ground, 2);
+    });
     const auto place = [&](double x, double y) {
       const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, x, y);
       const double range_m = sight.ball.cast(sight.view.camera.position_m, ray);
@@ -96,8 +97,9 @@ TEST(Contours, PixelsLieWithinAPixelOfTheirElevation) {
   for (const double exaggeration : {1.0, 2.5}) {
     const Ball ball{{20, 10}, 20000, 0.08, exaggeration};
     const Sight sight(ball, view_at({20, 9, 6e5, 0, -80, 0}, 200, 150));
-    const Layer layer =
-        lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_contours(layout, ground, 5000); });
+    const Layer layer = lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) {
+      return draw_contours(layout, ground, 5000);
+    });
     const auto elevation = [&](double x, double y) {
       const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, x, y);
       const glm::dvec3 p = sight.view.camera.position_m + ray * ball.cast(sight.view.camera.position_m, ray);
@@ -115,7 +117,9 @@ TEST(Contours, EveryFifthIsHeavierAndLabelledWithItsElevation) {
   const Sight sight(ball, view_at({20, 10, 5e5, 0, -90, 0}, 640, 480));
   std::vector<vpe::overlay::LineLabel> labels;
   const Layer layer = lines_of(
-      sight, [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_contours(layout, ground, 1000); }, &labels);
+      sight,
+      [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_contours(layout, ground, 1000); },
+      &labels);
   std::set<std::string> texts;
   for (const auto& label : labels) {
     texts.insert(label.text);
@@ -180,7 +184,8 @@ TEST(Isolines, CloseRoundThePoles) {
       if (!line.closed) continue;
       for (const glm::dvec2& p : line.points) {
         const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, p.x, p.y);
-        const glm::dvec3 ground_m = sight.view.camera.position_m + ray * sight.ball.cast(sight.view.camera.position_m, ray);
+        const glm::dvec3 ground_m =
+            sight.view.camera.position_m + ray * sight.ball.cast(sight.view.camera.position_m, ray);
         // The grid's pixels are 0.03 degrees; straight between them.
         EXPECT_NEAR(mars::lon_lat(ground_m).lat_deg, static_cast<double>(line.multiple), 2e-3);
       }
@@ -201,7 +206,8 @@ TEST(VisibleTerrain, PointsAreThoseOfTheViewsRays) {
   const VisibleTerrain ground(scene);
   for (const glm::ivec2 p : {glm::ivec2{0, 0}, {199, 0}, {0, 119}, {120, 60}}) {
     const glm::dvec3 ray = vpe::core::pixel_ray(view, 40 + p.x + 0.5, 30 + p.y + 0.5);
-    const glm::dvec3 wanted = view.camera.position_m + ray * static_cast<double>(sight.range_m[ground.index(p.x, p.y)]);
+    const glm::dvec3 wanted =
+        view.camera.position_m + ray * static_cast<double>(sight.range_m[ground.index(p.x, p.y)]);
     EXPECT_LT(glm::length(ground.point(p.x, p.y) - wanted), 1e-6);
     EXPECT_LT(glm::length(ground.to_image(wanted).value() - glm::dvec2(p) - 0.5), 1e-6);
   }
@@ -264,8 +270,12 @@ TEST(Isolines, APlainIsWholeUpToItsHorizon) {
 TEST(Isolines, FlatGroundHasNoContours) {
   // All of it is at 0 m, a multiple of every step, but for rounding.
   const Sight sight({}, view_at({0, 0, 3e5, 0, -60, 0}));
-  EXPECT_EQ(painted(lines_of(sight, [](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, 0); })), 0U);
-  EXPECT_EQ(painted(lines_of(sight, [](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, 10); })), 0U);
+  EXPECT_EQ(
+      painted(lines_of(sight, [](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, 0); })),
+      0U);
+  EXPECT_EQ(
+      painted(lines_of(sight, [](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, 10); })),
+      0U);
 }
 
 TEST(Contours, FadeWhereTheDrawnGroundIsTooFarOff) {
@@ -315,10 +325,12 @@ TEST(Graticule, AutomaticStepsPutSomeLinesIntoAnyImage) {
 TEST(Graticule, AbsurdStepsDrawNothingAndEndSoon) {
   const Sight sight({}, view_at({10, 20, 1e6, 0, -60, 0}));
   for (const double step : {1e-300, 1e-12, 1e-6}) {
-    EXPECT_EQ(painted(lines_of(sight, [&](LabelLayout& s, const VisibleTerrain& g) { return draw_graticule(s, g, step); })),
+    EXPECT_EQ(painted(lines_of(
+                  sight, [&](LabelLayout& s, const VisibleTerrain& g) { return draw_graticule(s, g, step); })),
               0U);
     const Sight cone(Ball{{10, 22}, 9000, 0.05, 1}, sight.view);
-    EXPECT_EQ(painted(lines_of(cone, [&](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, step); })),
+    EXPECT_EQ(painted(lines_of(
+                  cone, [&](LabelLayout& s, const VisibleTerrain& g) { return draw_contours(s, g, step); })),
               0U);
   }
 }

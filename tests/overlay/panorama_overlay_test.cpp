@@ -12,10 +12,10 @@ namespace {
 
 using vpe::base::Rgb;
 using vpe::core::CompassStrip;
-using vpe::overlay::SpriteLayer;
 using vpe::overlay::lay_out_panorama;
 using vpe::overlay::PanoramaName;
 using vpe::overlay::PanoramaScene;
+using vpe::overlay::SpriteLayer;
 
 constexpr vpe::base::Rgb kGround{40, 60, 80};
 
@@ -59,7 +59,8 @@ Image whole(const SpriteLayer& sprites, const PanoramaScene& scene) {
 }
 
 // In parts of some size, each by itself.
-Image in_parts(const SpriteLayer& sprites, const PanoramaScene& scene, std::int64_t width, std::int64_t height) {
+Image in_parts(const SpriteLayer& sprites, const PanoramaScene& scene, std::int64_t width,
+               std::int64_t height) {
   Image image = whole(SpriteLayer(scene.width_px, scene.height_px, 0), scene);
   for (std::int64_t y = 0; y < scene.height_px; y += height) {
     for (std::int64_t x = 0; x < scene.width_px; x += width) {
@@ -193,7 +194,8 @@ TEST(Wide, NamesStandAtTheirPlacesAndNoTextOverAnother) {
   EXPECT_EQ(crowded_once.pixels, alone.pixels);
   // At the end of an arc the text moves inwards: all of it is there.
   const auto painted = [](const Image& p) {
-    return std::count_if(p.pixels.begin(), p.pixels.end(), [](const vpe::base::Rgb& c) { return c != kGround; });
+    return std::count_if(p.pixels.begin(), p.pixels.end(),
+                         [](const vpe::base::Rgb& c) { return c != kGround; });
   };
   scene.names = {{"A long name, at the very end", 119.5, 0, 3000, 0}};
   const auto at_end = painted(whole(lay_out_panorama(overlays, scene), scene));

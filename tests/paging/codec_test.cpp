@@ -25,13 +25,16 @@ paging::PackedMesh random_mesh(Random& random, int intervals) {
   packed.mesh.intervals = intervals;
   for (int j = 0; j <= intervals; ++j) {
     for (int i = 0; i <= intervals; ++i) {
-      if (random.integer(0, 9) < 3) packed.mesh.vertices.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)});
+      if (random.integer(0, 9) < 3)
+        packed.mesh.vertices.push_back({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j)});
     }
   }
   const int count = static_cast<int>(packed.mesh.vertices.size());
-  for (std::size_t v = 0; v < packed.mesh.vertices.size(); ++v) packed.height_q.push_back(random.integer(-400000, 400000));
+  for (std::size_t v = 0; v < packed.mesh.vertices.size(); ++v)
+    packed.height_q.push_back(random.integer(-400000, 400000));
   for (int t = 0; t < count; ++t) {
-    std::array<int, 3> corner{random.integer(0, count - 1), random.integer(0, count - 1), random.integer(0, count - 1)};
+    std::array<int, 3> corner{random.integer(0, count - 1), random.integer(0, count - 1),
+                              random.integer(0, count - 1)};
     std::sort(corner.begin(), corner.end());
     if (corner[0] == corner[1] || corner[1] == corner[2]) continue;
     for (const int c : corner) packed.mesh.triangles.push_back(static_cast<std::uint16_t>(c));
@@ -58,14 +61,16 @@ TEST(Codec, HeightsSurviveAllValues) {
   }
   std::vector<std::int32_t> extreme(81);
   for (std::size_t n = 0; n < extreme.size(); ++n) {
-    extreme[n] = n % 2 == 0 ? std::numeric_limits<std::int32_t>::min() : std::numeric_limits<std::int32_t>::max();
+    extreme[n] =
+        n % 2 == 0 ? std::numeric_limits<std::int32_t>::min() : std::numeric_limits<std::int32_t>::max();
   }
   EXPECT_EQ(paging::decode_heights(paging::encode_heights(extreme, 9), 9), extreme);
 }
 
 TEST(Codec, SmoothHeightsAreSmall) {
   std::vector<std::int32_t> plane(129 * 129);
-  for (std::size_t n = 0; n < plane.size(); ++n) plane[n] = static_cast<std::int32_t>(7 * (n % 129) + 3 * (n / 129));
+  for (std::size_t n = 0; n < plane.size(); ++n)
+    plane[n] = static_cast<std::int32_t>(7 * (n % 129) + 3 * (n / 129));
   EXPECT_LT(paging::encode_heights(plane, 129).size(), 1000U);
 }
 
@@ -96,7 +101,8 @@ TEST(Codec, DamagedBytesThrowOrDecode) {
   int refused = 0;
   for (int round = 0; round < 2000; ++round) {
     Bytes damaged = round % 2 == 0 ? heights : mesh;
-    if (round % 3 == 0) damaged.resize(static_cast<std::size_t>(random.integer(0, static_cast<int>(damaged.size()))));
+    if (round % 3 == 0)
+      damaged.resize(static_cast<std::size_t>(random.integer(0, static_cast<int>(damaged.size()))));
     for (int flips = random.integer(1, 4); flips > 0 && !damaged.empty(); --flips) {
       damaged[static_cast<std::size_t>(random.integer(0, static_cast<int>(damaged.size()) - 1))] ^=
           static_cast<std::uint8_t>(1 << random.integer(0, 7));

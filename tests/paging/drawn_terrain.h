@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "lod/select.h"
 #include "lod/occluder_profile.h"
+#include "lod/select.h"
 #include "paging/planet/planet_file.h"
 
 namespace test_support {

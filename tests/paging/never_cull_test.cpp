@@ -47,7 +47,7 @@ core::View look(Random& random, const glm::dvec3& camera_m, double pitch) {
   const glm::dvec3 east = mars::any_perpendicular(up);
   view.camera.position_m = camera_m;
   view.camera.axes = mars::oriented_axes({east, glm::cross(up, east), up}, random.uniform(-180, 180), pitch,
-                                      random.uniform(-30, 30));
+                                         random.uniform(-30, 30));
   view.width = 640;
   view.height = 400;
   view.fov_deg = random.integer(0, 3) == 0 ? random.log_uniform(5, 150) : 60.0;
@@ -169,8 +169,9 @@ void check_frustum_and_horizon(Random& random, const core::View& view, const lod
     glm::dvec3 d = core::pixel_ray(view, x, y);
     if (ray == 2 && view.projection == core::Projection::kEquirectangular) {
       // Just below where rays pass over the planet.
-      const double down = mars::horizon_dip_rad(glm::length(camera) - ground().radius_m(), ground().radius_m()) -
-                          random.uniform(-0.02, 0.01);
+      const double down =
+          mars::horizon_dip_rad(glm::length(camera) - ground().radius_m(), ground().radius_m()) -
+          random.uniform(-0.02, 0.01);
       const glm::dvec3 up = glm::normalize(camera);
       const glm::dvec3 ahead = glm::normalize(d - glm::dot(d, up) * up);
       d = std::cos(down) * ahead - std::sin(down) * up;
@@ -184,8 +185,8 @@ void check_frustum_and_horizon(Random& random, const core::View& view, const lod
     // Off by rounding it may lie in the next tile.
     const glm::dvec3 back = camera + distance * (1 - 1e-9) * glm::normalize(d);
     ASSERT_TRUE(drawn_at(selection, hit) || drawn_at(selection, back))
-        << "eye " << update_totals.eyes << " at " << glm::length(camera) - ground().radius_m() << " m, hit at " << distance
-        << " m";
+        << "eye " << update_totals.eyes << " at " << glm::length(camera) - ground().radius_m() << " m, hit at "
+        << distance << " m";
   }
 }
 
@@ -195,11 +196,12 @@ void check_occlusion(Random& random, const core::View& view, const lod::Selectio
   const DrawnGround drawn(ground().store(), selection, camera);
   // Where the ground under the camera is not in the image, S stands for it, with room for the error.
   const bool above = drawn.camera_is_above().value_or(
-      glm::length(camera) > ground().radius_m() + selection.exaggeration * (ground().surface().at(camera).height_m) +
-                             selection.max_geometric_error_m);
+      glm::length(camera) > ground().radius_m() +
+                                selection.exaggeration * (ground().surface().at(camera).height_m) +
+                                selection.max_geometric_error_m);
   update_totals.above += above ? 1 : 0;
-  const Occlusion found =
-      occlude(selection, camera, above, 0.0, pass, static_cast<std::size_t>(std::max(0, random.integer(-6, 3))));
+  const Occlusion found = occlude(selection, camera, above, 0.0, pass,
+                                  static_cast<std::size_t>(std::max(0, random.integer(-6, 3))));
   std::vector<std::size_t> hidden;
   for (std::size_t n = 0; n < found.hidden.size(); ++n) {
     if (found.hidden[n] != 0) hidden.push_back(n);
@@ -236,8 +238,9 @@ void expect_never_culled(std::uint64_t seed, int eyes) {
       "eyes %d (0.5 m up %d, 10 radii %d, poles %d, above ground %d, below the datum %d), rays %d, hits %d, at "
       "the limb %d, tiles %d, hidden %d, "
       "points %d\n",
-      update_totals.eyes, update_totals.half_metre, update_totals.ten_radii, update_totals.poles, update_totals.above, update_totals.below_datum, update_totals.rays,
-      update_totals.hits, update_totals.limb, update_totals.tiles, update_totals.hidden, update_totals.points);
+      update_totals.eyes, update_totals.half_metre, update_totals.ten_radii, update_totals.poles,
+      update_totals.above, update_totals.below_datum, update_totals.rays, update_totals.hits,
+      update_totals.limb, update_totals.tiles, update_totals.hidden, update_totals.points);
   EXPECT_GT(update_totals.above, eyes * 9 / 10);
   EXPECT_GT(update_totals.below_datum, eyes / 10);
   EXPECT_GT(update_totals.half_metre, eyes / 8);

@@ -127,8 +127,7 @@ TEST(PlanetFile, OlderFilesOpen) {
   };
   const auto stated = [](const PlanetFile& planet) {
     const auto tiles = planet.tree().tiles();
-    return std::count_if(tiles.begin(), tiles.end(),
-                         [](const auto& tile) { return tile.posts_terms.known(); });
+    return std::count_if(tiles.begin(), tiles.end(), [](const auto& tile) { return tile.posts_terms.known(); });
   };
   {
     const auto planet = PlanetFile::open(path.string());

@@ -10,8 +10,9 @@
 
 namespace test_support {
 
-inline std::shared_ptr<const paging::PlanetFile> build_fake(const std::filesystem::path& path, const FakeElevation& source,
-                                                            double base_spacing_m, int threads = 2) {
+inline std::shared_ptr<const paging::PlanetFile> build_fake(const std::filesystem::path& path,
+                                                            const FakeElevation& source, double base_spacing_m,
+                                                            int threads = 2) {
   paging::BuildOptions options;
   options.output = path.string();
   options.base_spacing_m = base_spacing_m;

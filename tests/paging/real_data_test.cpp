@@ -37,16 +37,17 @@ TEST(LongRealData, QueryAgreesWithBilinearSampling) {
     worst = std::max(worst, std::abs(surface.at(places[n]).height_m - direct[n]));
   }
   RecordProperty("worst_m", std::to_string(worst));
-  std::printf("worst of %zu places: %.2f m; stated resampling error: maximum %.2f m, RMS %.2f m\n", places.size(), worst,
-              built.meta.resampling.max_m, built.meta.resampling.rms_m);
+  std::printf("worst of %zu places: %.2f m; stated resampling error: maximum %.2f m, RMS %.2f m\n",
+              places.size(), worst, built.meta.resampling.max_m, built.meta.resampling.rms_m);
   EXPECT_LE(worst, built.meta.resampling.max_m);
 
   // Known elevations (nearest sample of the source), within the stated error.
   const struct {
     mars::LonLat place;
     double elevation_m;
-  } known[] = {{{226.875, 17.375}, 21128}, {{226.2, 18.65}, 19963}, {{70, -42.5}, -6200}, {{62.19, -32.81}, -8130},
-               {{137.8, -5.4}, -1591},     {{137.4417, -4.5895}, -4476}, {{312.05, 22.27}, -3635}};
+  } known[] = {{{226.875, 17.375}, 21128}, {{226.2, 18.65}, 19963}, {{70, -42.5}, -6200},
+               {{62.19, -32.81}, -8130},   {{137.8, -5.4}, -1591},  {{137.4417, -4.5895}, -4476},
+               {{312.05, 22.27}, -3635}};
   for (const auto& k : known) {
     EXPECT_NEAR(surface.at(mars::direction(k.place)).height_m, k.elevation_m, built.meta.resampling.max_m)
         << k.place.lon_deg << " " << k.place.lat_deg;

@@ -12,8 +12,8 @@ namespace {
 
 using test_support::build_fake;
 using test_support::bumpy_height;
-using test_support::fine_around;
 using test_support::FakeElevation;
+using test_support::fine_around;
 using test_support::Random;
 using test_support::TempDir;
 
@@ -31,7 +31,8 @@ std::vector<Facet> all_facets(const paging::PlanetFile& planet) {
     const paging::TileHeights heights = planet.heights(info.key);
     const lod::GridLines lines = lod::grid_lines(info.key, heights.posts.intervals);
     const auto post = [&](int i, int j) {
-      return mars::chart_direction(info.key.face, lines.u[static_cast<std::size_t>(i)], lines.v[static_cast<std::size_t>(j)]) *
+      return mars::chart_direction(info.key.face, lines.u[static_cast<std::size_t>(i)],
+                                   lines.v[static_cast<std::size_t>(j)]) *
              (planet.radius_m() + heights.posts.at(i, j));
     };
     for (int j = 0; j < heights.posts.intervals; ++j) {
@@ -144,7 +145,9 @@ TEST(Surface, IsClosedAtEveryExaggeration) {
         for (int n = 0; n < 40; ++n) {
           const bool vertical = edge == lod::Edge::kWest || edge == lod::Edge::kEast;
           const bool far = edge == lod::Edge::kEast || edge == lod::Edge::kNorth;
-          const auto ends = [&](const std::vector<double>& lines) { return far ? lines.back() : lines.front(); };
+          const auto ends = [&](const std::vector<double>& lines) {
+            return far ? lines.back() : lines.front();
+          };
           const auto along = [&](const std::vector<double>& lines) {
             return random.uniform(lines.front(), lines.back());
           };

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "panorama/metadata/open_panorama.h"
 #include "panorama/image/raster_plane.h"
+#include "panorama/metadata/open_panorama.h"
 #include "tests/panorama/test_images.h"
 #include "vpe/base/file.h"
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "panorama/viewer/render_view.h"
 #include "panorama/image/tiled_image.h"
+#include "panorama/viewer/render_view.h"
 #include "panorama/viewer/viewer.h"
 #include "tests/panorama/big_tiff_file.h"
 #include "tests/panorama/test_images.h"

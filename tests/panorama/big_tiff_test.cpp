@@ -9,10 +9,10 @@
 #include <memory>
 #include <random>
 
-#include "panorama/metadata/gpano.h"
 #include "panorama/image/row_file.h"
 #include "panorama/image/strip_file.h"
 #include "panorama/image/xmp_file.h"
+#include "panorama/metadata/gpano.h"
 #include "tests/support/support.h"
 #include "vpe/core/image/image.h"
 

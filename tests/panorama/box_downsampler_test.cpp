@@ -36,8 +36,9 @@ TEST(BoxDownsampler, IsTheMeanOverTheArea) {
     for (std::size_t n = 0; n < pixels.size(); ++n)
       pixels[n] = {0, static_cast<std::uint8_t>((n * n * 37 + n * 11) % 256), 255};
     std::vector<vpe::base::Rgb> half;
-    BoxDownsampler downsampler(width, height,
-                  [&](std::span<const vpe::base::Rgb> row) { half.insert(half.end(), row.begin(), row.end()); });
+    BoxDownsampler downsampler(width, height, [&](std::span<const vpe::base::Rgb> row) {
+      half.insert(half.end(), row.begin(), row.end());
+    });
     for (int y = 0; y < height; ++y)
       downsampler.take(
           std::span(pixels).subspan(static_cast<std::size_t>(y * width), static_cast<std::size_t>(width)));

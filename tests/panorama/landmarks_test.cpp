@@ -13,8 +13,8 @@ namespace {
 
 using panorama::Landmark;
 using panorama::SkylineCamera;
-using vpe::core::Place;
 using vpe::base::ThreadPool;
+using vpe::core::Place;
 
 constexpr double kR = mars::kMarsRadius_m;
 

@@ -11,10 +11,10 @@
 namespace {
 
 using panorama::Direction;
-using panorama::PanoramaMap;
-using panorama::TiledImage;
 using panorama::ImageLevel;
+using panorama::PanoramaMap;
 using panorama::Tile;
+using panorama::TiledImage;
 
 constexpr double kDeg = mars::kRadiansPerDegree;
 
@@ -185,7 +185,8 @@ TEST(Look, FineStripesFadeWhenTheyAreFarOff) {
       panorama::look(tiled_image, map, panorama::view_of(33.0, 0.0, 90.0, 80, 65), {});
   for (const vpe::base::Rgb& p : image.pixels) EXPECT_NEAR(p.g, 127.5, 6.0);
   // Towards the zenith a row of the image is a point; it is still the mean.
-  const vpe::core::RgbImage up = panorama::look(tiled_image, map, panorama::view_of(33.0, 90.0, 40.0, 64, 64), {});
+  const vpe::core::RgbImage up =
+      panorama::look(tiled_image, map, panorama::view_of(33.0, 90.0, 40.0, 64, 64), {});
   for (const vpe::base::Rgb& p : up.pixels) EXPECT_NEAR(p.g, 127.5, 20.0);
 }
 
@@ -305,7 +306,8 @@ TEST(Look, OtherViewsAndBadOnes) {
   EXPECT_THROW(panorama::look(tiled_image, map, view, {}), std::invalid_argument);
   PanoramaMap bad = map;
   bad.focal_px = NAN;
-  EXPECT_THROW(panorama::look(tiled_image, bad, panorama::view_of(0, 0, 60, 64, 48), {}), std::invalid_argument);
+  EXPECT_THROW(panorama::look(tiled_image, bad, panorama::view_of(0, 0, 60, 64, 48), {}),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -199,7 +199,9 @@ TEST_F(SkylineOfS, IsTheHighestGround) {
     const mars::LonLat place{random.uniform(-180, 180), n % 6 == 0 ? 90.0 : random.uniform(-90, 90)};
     const double alt = surface.at(mars::direction(place)).height_m + random.log_uniform(0.5, 1e7);
     const SkylineCamera camera = panorama::skyline_camera(place, alt, kR);
-    const panorama::GroundRange range = [&](const glm::dvec3& ray) { return surface.cast(camera.position_m, ray); };
+    const panorama::GroundRange range = [&](const glm::dvec3& ray) {
+      return surface.cast(camera.position_m, ray);
+    };
     const double azimuth = random.uniform(0, 360);
     const GroundPoint p = panorama::skyline_at(camera, azimuth, range);
     EXPECT_NEAR(surface.at(mars::direction(p.place)).height_m, p.elevation_m, 1e-2 + 1e-8 * p.range_m);

@@ -194,7 +194,8 @@ TEST(StereoPieces, CoverTheFileOnceForEachEye) {
                              : layout == StereoLayout::kSideBySide ? piece.x < map.width_px
                                                                    : piece.y < map.height_px;
         // It stands on that side of the middle.
-        const glm::dvec3 aside_m = piece.view.camera.position_m - mars::to_camera(kStand.pose, kStand.radius_m).camera_m;
+        const glm::dvec3 aside_m =
+            piece.view.camera.position_m - mars::to_camera(kStand.pose, kStand.radius_m).camera_m;
         const glm::dvec3 right =
             glm::cross(line_of_sight(piece, piece.x + piece.width / 2, piece.y), piece.view.camera.axes.up);
         EXPECT_EQ(glm::dot(aside_m, right) < 0, is_left);

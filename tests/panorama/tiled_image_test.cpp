@@ -15,10 +15,10 @@
 namespace {
 
 namespace fs = std::filesystem;
-using panorama::TiledImage;
 using panorama::ImageFileFormat;
 using panorama::ImageLevel;
 using panorama::Tile;
+using panorama::TiledImage;
 using panorama_test::message_of;
 
 // Tiles of 64 x 64 that know where they are, of an image of any size.
@@ -141,7 +141,8 @@ TEST(OpenImage, SmallOnesLieInMemory) {
   const test_support::TempDir folder;
   const vpe::core::RgbImage image = pattern(701, 301);
   vpe::core::write_image(folder / "a.png", image.pixels, 701, 301);
-  const auto tiled_image = panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 1 << 26));
+  const auto tiled_image =
+      panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 1 << 26));
   expect_pattern(*tiled_image, 701, 301);
   EXPECT_EQ(tiled_image->levels().size(), 3U);
   EXPECT_FALSE(fs::exists(folder / "cache"));
@@ -157,14 +158,17 @@ TEST(OpenImage, LargePngIsCopiedOnce) {
     EXPECT_LE(fraction, 1.0);
     ++steps;
   };
-  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth, kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth,
+                 kHeight);
   EXPECT_GT(steps, 5);
   steps = 0;
-  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth, kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth,
+                 kHeight);
   EXPECT_EQ(steps, 0);
   // Another image under that name is another one.
   vpe::core::write_image(folder / "a.png", pattern(kWidth + 4, kHeight).pixels, kWidth + 4, kHeight);
-  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth + 4, kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, opening), kWidth + 4,
+                 kHeight);
 }
 
 TEST(OpenImage, CopiesThatLostALevelAreMadeAgain) {
@@ -173,8 +177,8 @@ TEST(OpenImage, CopiesThatLostALevelAreMadeAgain) {
   panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 0));
   for (const char* name : {"level-0.tif", "level-1.tif"}) {
     for (const auto& entry : fs::directory_iterator(folder / "cache")) fs::remove(entry.path() / name);
-    expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 0)), kWidth,
-                   kHeight);
+    expect_pattern(*panorama::open_tiled_image(folder / "a.png", ImageFileFormat::kPng, options(folder, 0)),
+                   kWidth, kHeight);
   }
 }
 
@@ -183,8 +187,8 @@ TEST(OpenImage, LargeJpegIsTheSameAsInMemory) {
   vpe::core::write_image(folder / "a.jpg", pattern(kWidth, kHeight).pixels, kWidth, kHeight);
   const auto small = panorama::open_tiled_image(folder / "a.jpg", ImageFileFormat::kJpeg, options(folder, 0));
   EXPECT_TRUE(fs::exists(folder / "cache"));
-  const auto large =
-      panorama::open_tiled_image(folder / "a.jpg", ImageFileFormat::kJpeg, options(folder, std::size_t{1} << 28));
+  const auto large = panorama::open_tiled_image(folder / "a.jpg", ImageFileFormat::kJpeg,
+                                                options(folder, std::size_t{1} << 28));
   ASSERT_EQ(small->levels().size(), large->levels().size());
   for (int level = 0; level < static_cast<int>(small->levels().size()); ++level) {
     const ImageLevel& size = small->levels()[static_cast<std::size_t>(level)];
@@ -213,10 +217,12 @@ TEST(OpenImage, DamagedOnesAreNamed) {
   for (const char* name : {"a.png", "a.jpg"}) {
     vpe::core::write_image(folder / name, image.pixels, kWidth, kHeight);
     fs::resize_file(folder / name, fs::file_size(folder / name) / 2);
-    const ImageFileFormat format = name == std::string("a.png") ? ImageFileFormat::kPng : ImageFileFormat::kJpeg;
+    const ImageFileFormat format =
+        name == std::string("a.png") ? ImageFileFormat::kPng : ImageFileFormat::kJpeg;
     for (const std::size_t budget : {std::size_t{0}, std::size_t{1} << 28}) {
-      EXPECT_SAYS(message_of([&] { panorama::open_tiled_image(folder / name, format, options(folder, budget)); }),
-                  name, "cannot read", "damaged");
+      EXPECT_SAYS(
+          message_of([&] { panorama::open_tiled_image(folder / name, format, options(folder, budget)); }), name,
+          "cannot read", "damaged");
     }
   }
   EXPECT_TRUE(!fs::exists(folder / "cache") || fs::is_empty(folder / "cache"));
@@ -236,7 +242,8 @@ void write_tiled(const fs::path& path, const vpe::core::RgbImage& image) {
 TEST(OpenImage, TiledTiffWithoutCopiesKeepsItsOwnPixels) {
   const test_support::TempDir folder;
   write_tiled(folder / "a.tif", pattern(kWidth, kHeight));
-  const auto tiled_image = panorama::open_tiled_image(folder / "a.tif", ImageFileFormat::kTiff, options(folder, 0));
+  const auto tiled_image =
+      panorama::open_tiled_image(folder / "a.tif", ImageFileFormat::kTiff, options(folder, 0));
   expect_pattern(*tiled_image, kWidth, kHeight);
   for (const auto& entry : fs::recursive_directory_iterator(folder / "cache"))
     EXPECT_NE(entry.path().filename(), "level-0.tif");
@@ -254,13 +261,13 @@ TEST(OpenImage, TiffOfOtherProgramsWithReducedPages) {
   panorama_test::output_of("gdal_translate",
                            {"-q", "-ot", "UInt16", "-scale", "0", "255", "0", "65535", "-of", "COG", "-co",
                             "BLOCKSIZE=128", (folder / "a.png").string(), (folder / "deep.tif").string()});
-  expect_pattern(*panorama::open_tiled_image(folder / "deep.tif", ImageFileFormat::kTiff, options(folder, 0)), kWidth,
-                 kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "deep.tif", ImageFileFormat::kTiff, options(folder, 0)),
+                 kWidth, kHeight);
   // In rows: all of it is copied.
   panorama_test::output_of("gdal_translate",
                            {"-q", (folder / "a.png").string(), (folder / "rows.tif").string()});
-  expect_pattern(*panorama::open_tiled_image(folder / "rows.tif", ImageFileFormat::kTiff, options(folder, 0)), kWidth,
-                 kHeight);
+  expect_pattern(*panorama::open_tiled_image(folder / "rows.tif", ImageFileFormat::kTiff, options(folder, 0)),
+                 kWidth, kHeight);
   EXPECT_TRUE(fs::exists(folder / "cache"));
 }
 
@@ -288,9 +295,10 @@ TEST(OpenImage, KindsThatCannotBeReadAreToldWithWhatToDo) {
               }),
               "float.tif", "8 or 16 bits", "gdal_translate");
   std::ofstream(folder / "no.tif") << "II*\0 and nothing else";
-  EXPECT_SAYS(
-      message_of([&] { panorama::open_tiled_image(folder / "no.tif", ImageFileFormat::kTiff, options(folder, 0)); }),
-      "no.tif", "cannot read");
+  EXPECT_SAYS(message_of([&] {
+                panorama::open_tiled_image(folder / "no.tif", ImageFileFormat::kTiff, options(folder, 0));
+              }),
+              "no.tif", "cannot read");
 }
 
 }  // namespace

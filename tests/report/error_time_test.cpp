@@ -62,7 +62,8 @@ class FakeRenderer : public core::Renderer {
         const core::SubRectangle part = core::drawn_part(request.view);
         const glm::dvec3 ray = core::pixel_ray(request.view, part.x + x + 0.5, part.y + y + 0.5);
         const double along = -glm::dot(request.view.camera.position_m, ray);
-        const double deep2 = glm::dot(request.view.camera.position_m, request.view.camera.position_m) - along * along;
+        const double deep2 =
+            glm::dot(request.view.camera.position_m, request.view.camera.position_m) - along * along;
         const double r = kRadius_m + high_m;
         result.frame.range_m.push_back(static_cast<float>(along - std::sqrt(r * r - deep2)));
       }

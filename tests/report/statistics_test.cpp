@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "tests/support/support.h"
-#include "vpe/report/pareto_front.h"
 #include "vpe/report/growth.h"
 #include "vpe/report/interleaved_timing.h"
+#include "vpe/report/pareto_front.h"
 
 namespace vpe::report {
 namespace {
@@ -104,13 +104,13 @@ TEST(InterleavedTiming, AreTakenInTurnsAndTheFirstDoesNotCount) {
   double now_s = 0;
   std::string order;
   const std::vector<std::function<void()>> cases{[&] {
-                                                         order += 'a';
-                                                         now_s += order.size() < 3 ? 100 : 2;
-                                                       },
-                                                       [&] {
-                                                         order += 'b';
-                                                         now_s += static_cast<double>(order.size());
-                                                       }};
+                                                   order += 'a';
+                                                   now_s += order.size() < 3 ? 100 : 2;
+                                                 },
+                                                 [&] {
+                                                   order += 'b';
+                                                   now_s += static_cast<double>(order.size());
+                                                 }};
   const std::vector<Timing> timings = time_interleaved(cases, 3, [&] { return now_s; });
   EXPECT_EQ(order, "abababab");
   EXPECT_EQ(timings[0].round_s, (std::vector<double>{2, 2, 2}));

@@ -226,7 +226,8 @@ TEST(Path, CrossesThePolesWithoutSpin) {
                                    "at 10 pose lon=180 lat=80 alt=1000 yaw=180 pitch=-10\n");
     for (int k = 0; k <= 1000; ++k) {
       ASSERT_LT(glm::length(with_pole.at(k / 100.0).camera.axes.up - path.at(k / 100.0).camera.axes.up), 1e-8);
-      ASSERT_LT(glm::length(with_pole.at(k / 100.0).camera.position_m - path.at(k / 100.0).camera.position_m), 1e-2);
+      ASSERT_LT(glm::length(with_pole.at(k / 100.0).camera.position_m - path.at(k / 100.0).camera.position_m),
+                1e-2);
     }
   }
 }

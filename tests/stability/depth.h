@@ -29,8 +29,8 @@ inline vpe::core::View deep_view(const paging::Surface& surface, double yaw_deg)
       mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
   const mars::LonLat at = mars::lon_lat(top);
   vpe::core::View view;
-  view.camera =
-      mars::to_camera({at.lon_deg, at.lat_deg, surface.at(top).height_m + 0.1, yaw_deg, -55, 10}, kDeepRadius_m);
+  view.camera = mars::to_camera({at.lon_deg, at.lat_deg, surface.at(top).height_m + 0.1, yaw_deg, -55, 10},
+                                kDeepRadius_m);
   view.width = 160;
   view.height = 120;
   view.fov_deg = 110;

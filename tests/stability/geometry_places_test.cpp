@@ -81,7 +81,8 @@ TEST(GeometryPlaces, NothingJumpsBetweenNeighbours) {
   constexpr double kStep_deg = 1e-9;
   double jump = 0;
   for (const mars::LonLat& place : hostile_places()) {
-    const mars::CameraPose camera = mars::to_camera({place.lon_deg, place.lat_deg, 10, 30, -10, 5}, mars::kMarsRadius_m);
+    const mars::CameraPose camera =
+        mars::to_camera({place.lon_deg, place.lat_deg, 10, 30, -10, 5}, mars::kMarsRadius_m);
     const glm::dvec3 up = glm::normalize(camera.position_m);
     for (int n = 0; n < 16; ++n) {
       const mars::LonLat next =
@@ -110,8 +111,8 @@ TEST(GeometryPlaces, PixelsComeBackAtAnyFieldOfView) {
         view.height = 1080;
         const double height_m = random.log_uniform(0.1, 3e7);
         view.camera = mars::to_camera({place.lon_deg, place.lat_deg, height_m, random.uniform(0, 360),
-                                 random.uniform(-90, 90), random.uniform(-180, 180)},
-                                mars::kMarsRadius_m);
+                                       random.uniform(-90, 90), random.uniform(-180, 180)},
+                                      mars::kMarsRadius_m);
         ASSERT_EQ(core::check(view), "");
         const glm::dvec2 at(random.uniform(0, 1920), random.uniform(0, 1080));
         const glm::dvec3 ray = core::pixel_ray(view, at.x, at.y);

@@ -50,13 +50,15 @@ Ray random_ray(Random& random, const paging::Surface& surface, double exaggerati
     case 0: return {camera, -up};
     case 1: return {camera, up};
     case 2:
-      return {camera, glm::normalize(post * surface.at(post, exaggeration).radius_m - camera)};  // through a post
+      return {camera,
+              glm::normalize(post * surface.at(post, exaggeration).radius_m - camera)};  // through a post
     case 3: {  // in the plane of a grid line, where two neighbours share all they are asked
       const mars::Face face = mars::chart_point(up).face;
       const double u = mars::face_line(random.integer(0, kFacePosts), 6);
       const glm::dvec3 on = mars::chart_direction(face, u, random.uniform(-1, 1));
       const glm::dvec3 to = mars::chart_direction(face, u, random.uniform(-1, 1)) * (0.9 * radius_m);
-      const glm::dvec3 from = on * std::max(glm::length(camera), 1.0001 * surface.at(on, exaggeration).radius_m);
+      const glm::dvec3 from =
+          on * std::max(glm::length(camera), 1.0001 * surface.at(on, exaggeration).radius_m);
       return {from, glm::normalize(to - from)};
     }
     case 4: {  // touching the sphere, or about to

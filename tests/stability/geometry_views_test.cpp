@@ -43,7 +43,8 @@ bool seen_beside(const paging::Surface& surface, const core::View& view, glm::dv
   for (int n = 0; n < 24; ++n) {
     const double size = 0.25 * (n / 8 + 1);
     const glm::dvec2 moved = at + size * glm::dvec2(std::cos(0.785398 * n), std::sin(0.785398 * n));
-    const double other = surface.cast(view.camera.position_m, core::pixel_ray(view, moved.x, moved.y), exaggeration);
+    const double other =
+        surface.cast(view.camera.position_m, core::pixel_ray(view, moved.x, moved.y), exaggeration);
     low = std::min(low, other);
     high = std::max(high, other);
   }
@@ -68,7 +69,8 @@ void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& v
       update_totals.pixels += 1;
       if (same(seen, exact)) {
         if (!std::isfinite(exact) || exact <= 0) continue;
-        const glm::dvec3 normal = caster.surface().at(view.camera.position_m + exact * ray, exaggeration).normal;
+        const glm::dvec3 normal =
+            caster.surface().at(view.camera.position_m + exact * ray, exaggeration).normal;
         double& range_error = wide ? update_totals.wide : update_totals.range;
         range_error = std::max(range_error, std::abs(glm::dot(normal, ray)) * std::abs(seen - exact) / exact);
       } else if (seen_beside(caster.surface(), view, at, seen, exaggeration)) {
@@ -102,8 +104,8 @@ core::View random_view(Random& random, const paging::Surface& surface, double ex
   view.width = 32;
   view.height = 24;
   view.camera = mars::to_camera({place.lon_deg, place.lat_deg, ground_m + height_m, random.uniform(-180, 180),
-                           std::max(-90.0, pitch), flat ? random.uniform(-180, 180) : 0},
-                          radius_m);
+                                 std::max(-90.0, pitch), flat ? random.uniform(-180, 180) : 0},
+                                radius_m);
   return view;
 }
 

@@ -64,8 +64,8 @@ TEST(StiffFlight, NeverSwingsOut) {
       for (int k = 1; k <= kSteps; ++k) {
         const FlightState state =
             path.at(k == kSteps ? b.time_s : a.time_s + (b.time_s - a.time_s) * k / kSteps);
-        for (const glm::dvec3& v :
-             {state.camera.position_m, state.camera.axes.right, state.camera.axes.up, state.camera.axes.forward})
+        for (const glm::dvec3& v : {state.camera.position_m, state.camera.axes.right, state.camera.axes.up,
+                                    state.camera.axes.forward})
           ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
         ASSERT_TRUE(state.pose.alt_m >= low && state.pose.alt_m <= high);
         const glm::dvec3 up = up_of(state);

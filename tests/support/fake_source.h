@@ -15,7 +15,8 @@ class FakeElevation : public mars::ElevationSource {
   using Height = std::function<double(const glm::dvec3& direction)>;
   using Spacing = std::function<double(const mars::Cap& cap)>;
 
-  explicit FakeElevation(Height height, Spacing spacing = [](const mars::Cap&) { return 1e9; })
+  explicit FakeElevation(
+      Height height, Spacing spacing = [](const mars::Cap&) { return 1e9; })
       : height_(std::move(height)), spacing_(std::move(spacing)) {}
 
   std::vector<mars::SourceInfo> infos() const override {
@@ -29,7 +30,8 @@ class FakeElevation : public mars::ElevationSource {
     for (std::size_t n = 0; n < directions.size(); ++n) heights_m[n] = height_(directions[n]);
   }
   void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
-    for (std::size_t n = 0; n < directions.size(); ++n) source_index[n] = std::isfinite(height_(directions[n])) ? 0 : -1;
+    for (std::size_t n = 0; n < directions.size(); ++n)
+      source_index[n] = std::isfinite(height_(directions[n])) ? 0 : -1;
   }
   double spacing_in(const mars::Cap& cap) const override { return spacing_(cap); }
   void visit_posts(std::size_t max_posts, const mars::PostVisitor& visit) const override {

@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 
 fs::path shared_data(const std::string& relative) {
   const char* root = std::getenv("VPE_SHARED_DATA");
-  const fs::path path = (root != nullptr ? fs::path(root) : fs::path(VPE_SOURCE_DIR) / ".." / "shared" / "data") / relative;
+  const fs::path path =
+      (root != nullptr ? fs::path(root) : fs::path(VPE_SOURCE_DIR) / ".." / "shared" / "data") / relative;
   std::error_code error;
   return fs::exists(path, error) ? fs::weakly_canonical(path) : fs::path();
 }
@@ -34,7 +35,9 @@ Random::Random(std::uint64_t seed) {
   engine_.seed(seed);
 }
 
-double Random::uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+double Random::uniform(double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(engine_);
+}
 
 double Random::log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
 

@@ -44,6 +44,6 @@ class Random {
 }  // namespace test_support
 
 // Skips the current test, with the reason, when the data file is absent.
-#define VPE_NEED_SHARED(variable, relative)                               \
+#define VPE_NEED_SHARED(variable, relative)                                   \
   const std::filesystem::path variable = test_support::shared_data(relative); \
   if (variable.empty()) GTEST_SKIP() << "skipped: no data " << (relative)

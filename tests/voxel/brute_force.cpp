@@ -147,8 +147,8 @@ double BruteForce::deepest_m(const glm::dvec3& camera_m, const glm::dvec3& direc
   return deepest;
 }
 
-Verdict judge(const BruteForce& truth, const glm::dvec3& camera_m, const glm::dvec3& direction, double claimed_m,
-              const Tie& tie) {
+Verdict judge(const BruteForce& truth, const glm::dvec3& camera_m, const glm::dvec3& direction,
+              double claimed_m, const Tie& tie) {
   const double exact_m = truth.cast(camera_m, direction);
   if (claimed_m == exact_m) return Verdict::kSame;  // none, too
   if (std::isfinite(exact_m) && std::abs(claimed_m - exact_m) <= kSameRange * exact_m) return Verdict::kSame;

@@ -67,7 +67,7 @@ struct Tie {
   double share = 1e-6;
   double metres = 0;
 };
-Verdict judge(const BruteForce& truth, const glm::dvec3& camera_m, const glm::dvec3& direction, double claimed_m,
-              const Tie& tie = {});
+Verdict judge(const BruteForce& truth, const glm::dvec3& camera_m, const glm::dvec3& direction,
+              double claimed_m, const Tie& tie = {});
 
 }  // namespace test_support

@@ -34,8 +34,8 @@ std::int64_t triangle_count(const paging::PlanetFile& planet, const std::vector<
 class EmbreeScene {
  public:
   // Throws paging::PlanetError, and std::runtime_error with Embree's words.
-  EmbreeScene(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles, const glm::dvec3& camera_m,
-              const EmbreeOptions& options = {});
+  EmbreeScene(const paging::PlanetFile& planet, const std::vector<lod::TileKey>& tiles,
+              const glm::dvec3& camera_m, const EmbreeOptions& options = {});
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -49,8 +49,8 @@ class EmbreeScene {
   double cast(const glm::dvec3& direction) const;
 
  private:
-  void add_tile(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id, const glm::dvec3& camera_m,
-                const EmbreeOptions& options);
+  void add_tile(const paging::PlanetFile& planet, const lod::TileKey& key, unsigned id,
+                const glm::dvec3& camera_m, const EmbreeOptions& options);
   void check(const char* what) const;
 
   RTCDevice device_ = nullptr;

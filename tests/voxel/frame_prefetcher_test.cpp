@@ -10,8 +10,8 @@
 
 #include "tests/gl/appearance_fixture.h"
 #include "tests/gl/gl_fixture.h"
-#include "vpe/voxel/ray_renderer.h"
 #include "vpe/voxel/downsampled_view.h"
+#include "vpe/voxel/ray_renderer.h"
 
 namespace {
 

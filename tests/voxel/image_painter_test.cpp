@@ -262,9 +262,9 @@ TEST(RayRows, AreThePixelsRays) {
   Random random(3);
   for (int n = 0; n < 60; ++n) {
     core::View view;
-    view.camera =
-        mars::to_camera({10, 20, 1000, random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180)},
-                     mars::kMarsRadius_m);
+    view.camera = mars::to_camera(
+        {10, 20, 1000, random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180)},
+        mars::kMarsRadius_m);
     view.projection = static_cast<core::Projection>(n % 3);
     view.width = 201;
     view.height = 99;

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "paging/shading/terrain_shader.h"
-#include "vpe/core/frame.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/shading.h"
 #include "vpe/core/appearance/sky.h"
+#include "vpe/core/frame.h"
 
 namespace test_support {
 
@@ -22,7 +22,7 @@ class PaintedByPoint {
       : planet_(std::move(planet)), painter_(planet_, memory_bytes) {}
 
   std::vector<vpe::base::Rgb> paint(const vpe::core::DrawRequest& request, const std::vector<float>& range_m,
-                               vpe::base::ThreadPool& pool) const {
+                                    vpe::base::ThreadPool& pool) const {
     namespace core = vpe::core;
     const core::Appearance& appearance = request.settings;
     const bool has_image = planet_->meta().finest_image_level >= 0;
@@ -66,7 +66,8 @@ class PaintedByPoint {
         0.0, 255.0);
     if (!(request.settings.haze_visibility_m > 0.0)) return ground;
     const double camera_radius = glm::length(camera);
-    const double air = core::air_m(radius, camera_radius - radius, glm::dot(ray, camera) / camera_radius, range_m);
+    const double air =
+        core::air_m(radius, camera_radius - radius, glm::dot(ray, camera) / camera_radius, range_m);
     return glm::mix(core::haze_colour(glm::dot(up, request.sun)), ground,
                     core::transmittance(air, request.settings.haze_visibility_m));
   }

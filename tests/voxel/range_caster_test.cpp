@@ -204,7 +204,8 @@ TEST_F(Columns, FlatPlanetIsTheSphere) {
       for (int x = 0; x < view.width; ++x) {
         const glm::dvec3 ray = core::pixel_ray(view, x + 0.5, y + 0.5);
         const double half = glm::dot(ray, view.camera.position_m);
-        const double closest = std::sqrt(glm::dot(view.camera.position_m, view.camera.position_m) - half * half);
+        const double closest =
+            std::sqrt(glm::dot(view.camera.position_m, view.camera.position_m) - half * half);
         const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * view.width + x)]);
         // The limb, but for the sagitta and one millionth.
         if (half >= 0 || closest > radius * (1 + 1e-6)) {
@@ -259,7 +260,8 @@ TEST_F(Columns, VectorUnitsAndThreadsAgree) {
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
-  test_support::record_worst("columns: other vector units differ beyond 2e-6, all ties", ties, compared / 100, "pixels");
+  test_support::record_worst("columns: other vector units differ beyond 2e-6, all ties", ties, compared / 100,
+                             "pixels");
 }
 
 TEST_F(Columns, ResultsDoNotDependOnWhatWasCastBefore) {

@@ -82,8 +82,9 @@ TEST_F(Rays, FlatPlanetIsTheSphere) {
       for (int x = 0; x < 80; ++x) {
         const glm::dvec3 ray = core::pixel_ray(request.view, x + 0.5, y + 0.5);
         const double half = glm::dot(ray, request.view.camera.position_m);
-        const double under =
-            half * half - glm::dot(request.view.camera.position_m, request.view.camera.position_m) + radius * radius;
+        const double under = half * half -
+                             glm::dot(request.view.camera.position_m, request.view.camera.position_m) +
+                             radius * radius;
         const float drawn = result.frame.range_m[static_cast<std::size_t>(y * 80 + x)];
         const double closest = std::sqrt(std::max(0.0, radius * radius - under));
         if (std::abs(closest - radius) < 2 * sagitta_m) continue;  // the limb
@@ -300,8 +301,8 @@ struct Worst {
 // Shift between both backends' images of one view: at most 1 px on all but 0.5 % of the pixels (skylines).
 // $VPE_PICTURES names a folder for images of the differences.
 core::ImageErrors expect_agreement(core::Renderer& polygons, core::Renderer& rays,
-                                     const paging::Surface& surface, core::DrawRequest request,
-                                     const std::string& name) {
+                                   const paging::Surface& surface, core::DrawRequest request,
+                                   const std::string& name) {
   request.settings.lod_tolerance_px = 0.5;
   request.settings.smooth_edges = false;
   const core::DrawResult a = polygons.draw(request);

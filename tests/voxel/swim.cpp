@@ -43,7 +43,8 @@ bool one_surface(const RangeImage& p, int x, int y) {
 
 // Metres from the planet's centre.
 glm::dvec3 place_of(const RangeImage& p, int x, int y) {
-  return p.view.camera.position_m + static_cast<double>(p.range(x, y)) * core::pixel_ray(p.view, x + 0.5, y + 0.5);
+  return p.view.camera.position_m +
+         static_cast<double>(p.range(x, y)) * core::pixel_ray(p.view, x + 0.5, y + 0.5);
 }
 
 double pop_px(const RangeImage& before, const RangeImage& now, int x, int y) {

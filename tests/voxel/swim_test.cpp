@@ -237,7 +237,7 @@ TEST_F(Swimming, MeterFindsAKnownPop) {
     const auto range = static_cast<double>(now.range_m[k]);
     const glm::dvec3 place =
         now.view.camera.position_m + range * core::pixel_ray(now.view, static_cast<double>(k % 160) + 0.5,
-                                                     static_cast<double>(k / 160) + 0.5);
+                                                             static_cast<double>(k / 160) + 0.5);
     const double raised_m = surface.at(place, 1.2).radius_m - surface.at(place, 1).radius_m;
     const double expected = raised_m * core::focal_px(now.view) / range;
     // What is left are pixels on other triangles.

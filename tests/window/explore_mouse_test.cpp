@@ -23,7 +23,9 @@ class ExploreMouseTest : public ExploreWindowTest {
   glm::dvec2 place_of_ground(const glm::dvec3& at_m) {
     return glm::dvec2(core::project(window_->session().view(), at_m).xy) + glm::dvec2{kSide_px, 0};
   }
-  double distance_to(const glm::dvec3& at_m) { return glm::length(window_->session().view().camera.position_m - at_m); }
+  double distance_to(const glm::dvec3& at_m) {
+    return glm::length(window_->session().view().camera.position_m - at_m);
+  }
 
   // As the window system hands over files: GLFW's own callback, which is put back.
   void drop(const std::string& file) {

@@ -69,7 +69,8 @@ TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
   ASSERT_NE(window_->session().pose().alt_m, pose.alt_m);
   // The turn that took the event has ordered the image; it is the next one shown.
   for (int n = 0; n < 100 && window_->images() == before; ++n) window_->step(0.01);
-  EXPECT_EQ(glm::length(window_->drawn()->order.request.view.camera.position_m - window_->session().view().camera.position_m),
+  EXPECT_EQ(glm::length(window_->drawn()->order.request.view.camera.position_m -
+                        window_->session().view().camera.position_m),
             0.0);
 }
 

@@ -12,8 +12,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "panorama/viewer/render_view.h"
 #include "panorama/metadata/sidecar.h"
+#include "panorama/viewer/render_view.h"
 #include "tests/support/support.h"
 #include "tests/window/window_fixture.h"
 #include "vpe/app/panorama/overlook_places.h"
@@ -319,7 +319,7 @@ TEST_F(OverlookWindowTest, AHeadTrackerTurnsItAndComesBack) {
   };
   turn_until(130, 8, true);
   EXPECT_EQ(window_->view().viewer().view().camera.axes.right.z, 0.0);  // level: the head's roll is left out
-  turn_until(100, 0, false);                                         // nothing is sent any more
+  turn_until(100, 0, false);                                            // nothing is sent any more
   close(out);
 }
 

@@ -11,11 +11,11 @@
 #include <optional>
 
 #include "mars/sources/source.h"
-#include "vpe/app/cli/subprocess.h"
 #include "vpe/app/cli/config_file.h"
-#include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
 #include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/cli/subprocess.h"
+#include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/parallel.h"
 #include "vpe/gl/context.h"
 

@@ -7,18 +7,18 @@
 #include <memory>
 #include <string>
 
+#include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
-#include "vpe/app/cli/json_output.h"
 #include "vpe/base/number.h"
 #ifdef VPE_HAS_WINDOW
-#include "vpe/app/film/flight_file.h"
 #include "vpe/app/cli/output.h"
+#include "vpe/app/film/flight_file.h"
 #include "vpe/app/panorama/panorama_painter.h"
 #include "vpe/app/window_painter.h"
-#include "vpe/explore/files/preferences.h"
 #include "vpe/explore/files/hotspots.h"
+#include "vpe/explore/files/preferences.h"
 #include "vpe/window/explore_window.h"
 #endif
 

@@ -7,10 +7,10 @@
 #include <iostream>
 #include <memory>
 
+#include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
-#include "vpe/app/cli/json_output.h"
 
 namespace vpe::app {
 

@@ -8,10 +8,10 @@
 #include <numeric>
 
 #include "paging/surface/query.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
-#include "vpe/app/cli/json_output.h"
 #include "vpe/base/number.h"
 #include "vpe/base/parallel.h"
 

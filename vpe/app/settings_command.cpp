@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "vpe/app/cli/program.h"
 #include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/base/number.h"
 #include "vpe/core/appearance/settings.h"
 

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "paging/planet/planet_file.h"
-#include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/picture/frame_overlays.h"
 #include "vpe/window/painter.h"
 
 namespace vpe::app {

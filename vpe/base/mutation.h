@@ -18,7 +18,7 @@ namespace vpe::base {
 
 enum class Guard : std::uint8_t {
   kLowestOccluder,  // what hides is a sphere below all terrain, not the datum
-  kFacetSagitta,        // flat facets lie below the posts that they are drawn through
+  kFacetSagitta,    // flat facets lie below the posts that they are drawn through
   kSkirtNeighbour,  // a skirt covers the neighbour's error too
   kSecondOrder,     // what exaggeration makes of a facet's harmonic mean
   kCellVariation,   // error terms hold between the vertices at which they are measured

@@ -41,7 +41,8 @@ fs::path user_folder(UserFolder folder, const Environment& environment) {
 
 std::vector<fs::path> config_folders(const Environment& environment) {
   std::vector<fs::path> folders;
-  if (fs::path user = user_folder(UserFolder::kConfig, environment); !user.empty()) folders.push_back(std::move(user));
+  if (fs::path user = user_folder(UserFolder::kConfig, environment); !user.empty())
+    folders.push_back(std::move(user));
   const char* listed = environment("XDG_CONFIG_DIRS");
   const std::string system = listed != nullptr && *listed != '\0' ? listed : "/etc/xdg";
   for (std::size_t begin = 0; begin <= system.size();) {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "mars/sources/source.h"
+#include "vpe/core/appearance/settings.h"
 #include "vpe/core/certificate.h"
 #include "vpe/core/interest.h"
-#include "vpe/core/appearance/settings.h"
 #include "vpe/core/view.h"
 
 namespace vpe::core {
@@ -23,7 +23,7 @@ struct Frame {
   int width = 0;
   int height = 0;
   std::vector<base::Rgb> colour;  // width * height
-  std::vector<float> range_m;     // width * height when asked for, else empty; camera to surface; kSkyRange = sky
+  std::vector<float> range_m;  // width * height when asked for, else empty; camera to surface; kSkyRange = sky
 };
 
 // Counts of one frame (design: every frame reports).

@@ -166,7 +166,8 @@ std::vector<double> forward_shift_px(const View& view, std::span<const float> ra
     std::vector<double> drawn_radius_m;
     for (int x = 0; x < drawn.width; ++x) {
       if (!is_surface(drawn.at(x, y))) continue;
-      const glm::dvec3 point = view.camera.position_m + centre_ray(view, x, y) * static_cast<double>(drawn.at(x, y));
+      const glm::dvec3 point =
+          view.camera.position_m + centre_ray(view, x, y) * static_cast<double>(drawn.at(x, y));
       places.push_back(drawn.index(x, y));
       drawn_radius_m.push_back(glm::length(point));
       directions.push_back(point / drawn_radius_m.back());
@@ -224,8 +225,8 @@ ShiftSummary summarize(std::span<const double> shift_px, int width) {
 }
 
 ImageErrors compare_to_reference(const View& view, std::span<const float> range_m,
-                                   std::span<const float> reference_m, const SurfaceRadius& surface,
-                                   const MetricOptions& options) {
+                                 std::span<const float> reference_m, const SurfaceRadius& surface,
+                                 const MetricOptions& options) {
   const Image drawn = image_of(view, range_m, "the drawn picture");
   const Image reference = image_of(view, reference_m, "the reference picture");
   ImageErrors errors;
@@ -256,7 +257,8 @@ HorizonErrors check_horizon(const View& view, std::span<const float> range_m, do
                             double highest_radius_m) {
   const Image drawn = image_of(view, range_m, "the drawn picture");
   const double camera_distance_m = glm::length(view.camera.position_m);
-  const glm::dvec3 down = camera_distance_m > 0.0 ? -view.camera.position_m / camera_distance_m : glm::dvec3(0, 0, 1);
+  const glm::dvec3 down =
+      camera_distance_m > 0.0 ? -view.camera.position_m / camera_distance_m : glm::dvec3(0, 0, 1);
   constexpr double kRim_rad = 1e-12;
   // A ray meets a sphere when its angle from straight down is at most that of the sphere's rim.
   const auto rim_rad = [camera_distance_m](double radius_m) {

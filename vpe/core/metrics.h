@@ -72,15 +72,16 @@ ShiftSummary summarize(std::span<const double> shift_px, int width);
 struct ImageErrors {
   ShiftSummary forward;
   ShiftSummary backward;
-  std::int64_t sky_for_ground = 0;          // drawn sky where the reference is surface in the pixel and its 8 neighbours
+  std::int64_t sky_for_ground =
+      0;                           // drawn sky where the reference is surface in the pixel and its 8 neighbours
   std::int64_t false_surface = 0;  // drawn surface where the reference is sky in all nine
   // Neither is counted in the outermost pixels: an outline may pass within a pixel of them outside the image.
-  std::int64_t invalid = 0;        // drawn ranges that are NaN or <= 0: no renderer should make them
+  std::int64_t invalid = 0;  // drawn ranges that are NaN or <= 0: no renderer should make them
 };
 
 ImageErrors compare_to_reference(const View& view, std::span<const float> range_m,
-                                   std::span<const float> reference_m, const SurfaceRadius& surface,
-                                   const MetricOptions& options = {});
+                                 std::span<const float> reference_m, const SurfaceRadius& surface,
+                                 const MetricOptions& options = {});
 
 // One JSON object, keys as the fields.
 std::string to_json(const ImageErrors& errors);

@@ -47,11 +47,13 @@ std::string check_part(const View& view) {
 }  // namespace
 
 std::string check(const View& view) {
-  if (!is_finite(view.camera.position_m) || glm::length(view.camera.position_m) > ViewLimits::kMaxCameraDistance_m) {
-    return "the eye's position is not finite or farther than " + base::format_number(ViewLimits::kMaxCameraDistance_m) +
-           " m from the planet's centre";
+  if (!is_finite(view.camera.position_m) ||
+      glm::length(view.camera.position_m) > ViewLimits::kMaxCameraDistance_m) {
+    return "the eye's position is not finite or farther than " +
+           base::format_number(ViewLimits::kMaxCameraDistance_m) + " m from the planet's centre";
   }
-  if (!is_orthonormal(view.camera.axes)) return "the eye's axes are not orthonormal; make them with mars::to_eye";
+  if (!is_orthonormal(view.camera.axes))
+    return "the eye's axes are not orthonormal; make them with mars::to_eye";
   const int max_side_px = has_part(view) ? ViewLimits::kMaxFullSide_px : ViewLimits::kMaxSide_px;
   if (view.width < 1 || view.height < 1 || view.width > max_side_px || view.height > max_side_px) {
     return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
@@ -70,8 +72,9 @@ std::string check(const View& view) {
   }
   const double farthest_deg = (0.5 * view.height + std::abs(offset.y)) * view.fov_deg / view.height;
   if (is_equirectangular && farthest_deg > 90.0 + 1e-9) {
-    return "an equirectangular picture of " + base::format_number(view.fov_deg) + " degrees with an offset of " +
-           base::format_number(offset.y) + " rows goes past the zenith or nadir";
+    return "an equirectangular picture of " + base::format_number(view.fov_deg) +
+           " degrees with an offset of " + base::format_number(offset.y) +
+           " rows goes past the zenith or nadir";
   }
   return check_part(view);
 }

@@ -161,7 +161,8 @@ Pose zoomed(const Pose& pose, const Screen& screen, glm::dvec2 xy, double factor
   return kept_clear(held_under(next, screen, *point, xy, ground.radius_m), ground);
 }
 
-Pose tilted(const Pose& pose, const Screen& screen, double around_deg, double up_deg, const TerrainQuery& ground) {
+Pose tilted(const Pose& pose, const Screen& screen, double around_deg, double up_deg,
+            const TerrainQuery& ground) {
   if (!(std::isfinite(around_deg) && std::isfinite(up_deg))) return pose;
   const std::optional<glm::dvec3> pivot = ground_at(pose, screen, middle(screen), ground);
   if (!pivot) return kept_clear(turned(pose, around_deg, -up_deg, 0.0), ground);
@@ -197,7 +198,8 @@ Pose looking_at(const Pose& pose, const glm::dvec3& point_m, double distance_m, 
   const mars::SinCos e = mars::sin_cos_deg(down_deg);
   const glm::dvec3 ahead = frame.north * h.cos + frame.east * h.sin;
   mars::CameraPose next;
-  next.position_m = point_m + (frame.up * e.sin - ahead * e.cos) * std::max(distance_m, MouseLimits::kNearest_m);
+  next.position_m =
+      point_m + (frame.up * e.sin - ahead * e.cos) * std::max(distance_m, MouseLimits::kNearest_m);
   next.axes = mars::oriented_axes(frame, pose.yaw_deg, -down_deg, 0.0);
   return kept_clear(mars::to_pose(next, ground.radius_m), ground);
 }

@@ -52,7 +52,8 @@ core::View Session::view() const {
 }
 
 mars::Pose Session::seen() const {
-  return is_ahead(look_) ? pose_ : mars::to_pose(mars::to_camera(pose_, look_, ground_.radius_m), ground_.radius_m);
+  return is_ahead(look_) ? pose_
+                         : mars::to_pose(mars::to_camera(pose_, look_, ground_.radius_m), ground_.radius_m);
 }
 
 // The head's axes in those of its platform, right, ahead and up, taken off the camera's.
@@ -62,7 +63,8 @@ mars::Pose Session::platform_of(const mars::Pose& seen) const {
   const mars::Axes head =
       mars::oriented_axes({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, look_.yaw_deg, look_.pitch_deg, look_.roll_deg);
   const auto axis = [&](int k) {
-    return camera.axes.right * head.right[k] + camera.axes.up * head.up[k] + camera.axes.forward * head.forward[k];
+    return camera.axes.right * head.right[k] + camera.axes.up * head.up[k] +
+           camera.axes.forward * head.forward[k];
   };
   return mars::to_pose({camera.position_m, {axis(0), axis(2), axis(1)}}, ground_.radius_m);
 }
@@ -256,8 +258,7 @@ void Session::drag(glm::dvec2 xy) {
     // As the sky is held: to the left shows what is right.
     const mars::Pose turned_by = looked({0, 0, 0, 0, 0, 0}, screen_, begun_xy_, xy);
     flight->view_panorama({begun_look_.yaw_deg + mouse_speed_ * turned_by.yaw_deg,
-                         begun_look_.pitch_deg + mouse_speed_ * turned_by.pitch_deg,
-                         begun_look_.roll_deg});
+                           begun_look_.pitch_deg + mouse_speed_ * turned_by.pitch_deg, begun_look_.roll_deg});
     take_flight_state(tracker_);
     return;
   }

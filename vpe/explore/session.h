@@ -12,14 +12,14 @@
 
 #include "mars/geodesy/pose.h"
 #include "paging/surface/surface.h"
-#include "vpe/core/interest.h"
 #include "vpe/core/appearance/settings.h"
+#include "vpe/core/interest.h"
 #include "vpe/core/view.h"
-#include "vpe/explore/input/controls.h"
 #include "vpe/explore/flight_controller.h"
 #include "vpe/explore/fly_to.h"
-#include "vpe/explore/terrain_query.h"
+#include "vpe/explore/input/controls.h"
 #include "vpe/explore/mouse.h"
+#include "vpe/explore/terrain_query.h"
 
 namespace vpe::explore {
 
@@ -128,7 +128,7 @@ class Session {
   double gone_s_ = 0;
   MouseUse use_ = MouseUse::kNone;
   mars::HeadAngles begun_look_;  // when the button was pressed, in a flight
-  mars::Pose begun_;           // what was seen when the button was pressed
+  mars::Pose begun_;             // what was seen when the button was pressed
   glm::dvec2 begun_xy_{0, 0};
   std::optional<glm::dvec3> held_m_;  // ground under it then
 };

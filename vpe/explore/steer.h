@@ -35,7 +35,8 @@ mars::Pose kept_clear(const mars::Pose& pose, const TerrainQuery& ground,
 
 // Moves by metres in the camera's level frame (right and forward horizontal, up), in steps short enough that the
 // ground between is met: the camera rides over what stands in its way and never passes through it.
-mars::Pose moved(const mars::Pose& pose, double right_m, double up_m, double forward_m, const TerrainQuery& ground);
+mars::Pose moved(const mars::Pose& pose, double right_m, double up_m, double forward_m,
+                 const TerrainQuery& ground);
 
 // Turns in the camera's place. Pitch ends at straight up and straight down; yaw and roll go on for ever.
 mars::Pose turned(const mars::Pose& pose, double yaw_deg, double pitch_deg, double roll_deg);

@@ -74,7 +74,7 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
 }
 
 double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
-                        const DrawnPixels& pixels, const FrameOptics& optics) {
+                      const DrawnPixels& pixels, const FrameOptics& optics) {
   std::vector<std::array<float, kTileParts>> nearest(tiles.size(),
                                                      {core::kSkyRange, core::kSkyRange, core::kSkyRange});
   float nearest_m = core::kSkyRange;
@@ -97,7 +97,8 @@ double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree&
       const double distance_m =
           std::max(range_m * (1.0 - pixels.range_error * (1.0 + range_m / nearest_m)), double{nearest_m});
       const bool skirt = part == static_cast<std::size_t>(TilePart::kSkirt);
-      const double geometric_error_m = tiles[k].tile->geometric_error_m + (skirt ? tiles[k].deepest_skirt_m : 0.0);
+      const double geometric_error_m =
+          tiles[k].tile->geometric_error_m + (skirt ? tiles[k].deepest_skirt_m : 0.0);
       bound_px =
           std::max(bound_px, geometric_error_m * optics.focal_px / distance_m +
                                  storage_px(tiles[k], distance_m, optics.focal_px) + optics.snap_px * steep);

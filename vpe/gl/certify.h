@@ -50,6 +50,6 @@ struct DrawnPixels {
 // Certificate::image_bound_px: the bound above with the ranges at which tiles appear, each of a tile's parts
 // by itself. What is seen of a skirt is at most the skirt's depth below the border of its tile.
 double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
-                        const DrawnPixels& pixels, const FrameOptics& optics);
+                      const DrawnPixels& pixels, const FrameOptics& optics);
 
 }  // namespace vpe::gl

@@ -8,11 +8,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vpe/core/image/edge_filter.h"
-#include "vpe/core/appearance/inspect.h"
 #include "vpe/base/mutation.h"
 #include "vpe/base/parallel.h"
+#include "vpe/core/appearance/inspect.h"
 #include "vpe/core/appearance/shading.h"
+#include "vpe/core/image/edge_filter.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/shaders.h"
 #include "vpe/gl/target.h"
@@ -70,7 +70,8 @@ class PolygonRenderer : public core::Renderer {
   void read_range(const core::DrawRequest& request, ClipProjection clip, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
   std::optional<double> nodata_share(core::Mode mode, const Target& image) const;
-  core::Certificate certify(const core::DrawRequest& request, const ClipProjection& clip, const core::Frame& frame);
+  core::Certificate certify(const core::DrawRequest& request, const ClipProjection& clip,
+                            const core::Frame& frame);
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -197,7 +198,8 @@ void PolygonRenderer::set_paint(const core::DrawRequest& request) {
   if (appearance.background != core::Background::kSky) sky_program_ = {};
 }
 
-void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProjection& clip, Target& to, bool image) {
+void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProjection& clip, Target& to,
+                                bool image) {
   const bool wireframe = request.settings.mode == core::Mode::kWireframe;
   const bool markers = request.settings.mode == core::Mode::kMarkers;
   const bool white = image && request.settings.background == core::Background::kWhite;

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lod/tree/tile_key.h"
 #include "lod/occluder_profile.h"
+#include "lod/tree/tile_key.h"
 #include "paging/shading/terrain_shader.h"
 #include "vpe/gl/objects.h"
 #include "vpe/gl/tile_geometry.h"
@@ -41,7 +41,7 @@ struct GpuTexture {
   int intervals = 0;     // 0: facets
   bool light = false;    // one channel: ShadedTile::channels
   double brightest = 1;  // of light
-  bool nodata = false;     // ShadedTile::nodata
+  bool nodata = false;   // ShadedTile::nodata
   std::size_t bytes = 0;
 };
 GpuTexture upload(const ShadedTile& tile);

@@ -13,7 +13,7 @@ struct TilePaint {
   bool texture = false;  // baked colours, or light times a colour
   bool facets = false;   // a baked colour for each triangle
   bool palette = false;  // colour of the height of what is drawn
-  bool nodata = false;     // ground without data is striped and has alpha 0
+  bool nodata = false;   // ground without data is striped and has alpha 0
   bool haze = false;
   bool placed = false;  // texture coordinates from positions, not from vertices: within 1e-7 of the face
   auto operator<=>(const TilePaint&) const = default;
@@ -42,12 +42,12 @@ enum TileUniform : int {
   kTexel = 8,       // vec2: scale and shift from tile coordinates to texture coordinates
   kFlatColour = 9,  // vec4: alpha > 0: this colour instead of the texture, else a factor on it
   kRibbon = 10,     // vec3: half the image's sides, half a ribbon's width; pixels
-  kSteps = 11,  // vec2: steps of the rasteriser in half the image's sides; 0 = vertices stay where they are
-  kTileSides = 12,     // vec3: of the tile in its face's chart, u and v; log2 of how fine its stripes get, in
-                       // periods to a unit of the chart. with_nodata() only, as the next
-  kTilePhase = 13,     // uint: u + v at the tile's southwest corner, its fraction in 2^-32
-  kTint = 14,          // vec4: this colour takes the share alpha
-  kSnapFrom = 15,      // float: depth from which no vertex shares a triangle with one behind the near plane
+  kSteps = 11,      // vec2: steps of the rasteriser in half the image's sides; 0 = vertices stay where they are
+  kTileSides = 12,  // vec3: of the tile in its face's chart, u and v; log2 of how fine its stripes get, in
+                    // periods to a unit of the chart. with_nodata() only, as the next
+  kTilePhase = 13,  // uint: u + v at the tile's southwest corner, its fraction in 2^-32
+  kTint = 14,       // vec4: this colour takes the share alpha
+  kSnapFrom = 15,   // float: depth from which no vertex shares a triangle with one behind the near plane
   kHeightTerms = 16,   // vec3: |centre|^2 - radius^2, radius, 1 / exaggeration
   kPaletteTerms = 17,  // vec2: palette coordinate = height * x + y
   kHaze = 18,          // vec4: colour by day, extinction per metre
@@ -62,11 +62,11 @@ enum TileUniform : int {
 
 // Uniform locations of the sky program.
 enum SkyUniform : int {
-  kSkyRotation = 0,  // mat3: right, up, backward -> body-fixed
-  kSkyProjection = 1,      // vec4
-  kSkyUp = 2,        // vec3: local vertical at the camera
-  kSkyAltitude = 3,  // vec2: camera above the sphere, radius; m
-  kSkySun = 4,       // vec3: towards the sun
+  kSkyRotation = 0,    // mat3: right, up, backward -> body-fixed
+  kSkyProjection = 1,  // vec4
+  kSkyUp = 2,          // vec3: local vertical at the camera
+  kSkyAltitude = 3,    // vec2: camera above the sphere, radius; m
+  kSkySun = 4,         // vec3: towards the sun
 };
 
 }  // namespace vpe::gl

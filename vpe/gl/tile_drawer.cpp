@@ -225,7 +225,8 @@ void TileDrawer::draw_part(const TileDraw& tile, const TilePaint& paint, TilePar
   }
 }
 
-void TileDrawer::draw(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles) {
+void TileDrawer::draw(const core::View& view, const ClipProjection& projection,
+                      std::span<const TileDraw> tiles) {
   glBindVertexArray(array_.name());
   std::map<TilePaint, std::vector<const TileDraw*>> by_paint;
   for (const TileDraw& tile : tiles) by_paint[paint_of(tile)].push_back(&tile);
@@ -242,8 +243,8 @@ void TileDrawer::draw(const core::View& view, const ClipProjection& projection, 
 }
 
 template <typename DrawOne>
-void TileDrawer::draw_before_ground(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
-                                    const DrawOne& draw_one) {
+void TileDrawer::draw_before_ground(const core::View& view, const ClipProjection& projection,
+                                    std::span<const TileDraw> tiles, const DrawOne& draw_one) {
   ClipProjection nearer = projection;
   nearer.near_m *= kNearer;
   glBindVertexArray(array_.name());
@@ -255,8 +256,8 @@ void TileDrawer::draw_before_ground(const core::View& view, const ClipProjection
   }
 }
 
-void TileDrawer::draw_vertices(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
-                               float size_px) {
+void TileDrawer::draw_vertices(const core::View& view, const ClipProjection& projection,
+                               std::span<const TileDraw> tiles, float size_px) {
   glPointSize(size_px);
   draw_before_ground(view, projection, tiles, [](const GpuMesh& mesh) {
     glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(mesh.first_foot));
@@ -264,21 +265,23 @@ void TileDrawer::draw_vertices(const core::View& view, const ClipProjection& pro
   glPointSize(1.0F);
 }
 
-void TileDrawer::draw_edges(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles) {
+void TileDrawer::draw_edges(const core::View& view, const ClipProjection& projection,
+                            std::span<const TileDraw> tiles) {
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   draw_before_ground(view, projection, tiles,
                      [this](const GpuMesh& mesh) { draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface); });
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
-void TileDrawer::draw_tile_ids(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles) {
+void TileDrawer::draw_tile_ids(const core::View& view, const ClipProjection& projection,
+                               std::span<const TileDraw> tiles) {
   numbered_from_ = tiles.data();
   draw(view, projection, tiles);
   numbered_from_ = nullptr;
 }
 
-void TileDrawer::draw_borders(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
-                              const glm::vec3& colour) {
+void TileDrawer::draw_borders(const core::View& view, const ClipProjection& projection,
+                              std::span<const TileDraw> tiles, const glm::vec3& colour) {
   constexpr float kHalfWidth_px = 0.75F;
   ClipProjection nearer = projection;
   nearer.near_m *= kNearer;  // depth is the near plane's over the distance

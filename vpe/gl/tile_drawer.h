@@ -65,7 +65,8 @@ class TileDrawer {
   void draw_edges(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles);
 
   // A square dot at each vertex, likewise.
-  void draw_vertices(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles, float size_px);
+  void draw_vertices(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
+                     float size_px);
 
   // Lines along the borders of tiles over what draw() drew with the same view, lens and tiles. Depth and alpha
   // stay as they are; a line is before the ground by a five-hundredth of its distance, so that its own tile
@@ -98,8 +99,8 @@ class TileDrawer {
   void draw_part(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
                  float near_m);
   template <typename DrawOne>
-  void draw_before_ground(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
-                          const DrawOne& draw_one);
+  void draw_before_ground(const core::View& view, const ClipProjection& projection,
+                          std::span<const TileDraw> tiles, const DrawOne& draw_one);
   void draw_indices(const GpuMesh& mesh, GLenum what, std::uint32_t begin, std::uint32_t end);
 
   double radius_m_;

@@ -32,15 +32,15 @@ int origin(const lod::SelectedTile& tile, const core::View& view, const paging::
 }  // namespace
 
 TileMaterial material(const core::Appearance& a, const glm::dvec3& sun, bool has_image,
-                  std::shared_ptr<const core::ColourScale> scale) {
+                      std::shared_ptr<const core::ColourScale> scale) {
   TileMaterial out;
   out.shows_nodata = a.mode != core::Mode::kWireframe && a.mode != core::Mode::kMarkers;
   out.shading = paging::shading_params(a, sun, has_image, std::move(scale));
   const ShadingParams& shading = out.shading;
-  out.by = shading.lit                                                        ? PaintMethod::kTexture
-           : shading.colour_source == paging::ColourSource::kPlain                   ? PaintMethod::kColour
+  out.by = shading.lit                                                                  ? PaintMethod::kTexture
+           : shading.colour_source == paging::ColourSource::kPlain                      ? PaintMethod::kColour
            : shading.colour_source == paging::ColourSource::kElevation && !shading.flat ? PaintMethod::kPalette
-                                                                           : PaintMethod::kTexture;
+                                                                                        : PaintMethod::kTexture;
   if (out.by == PaintMethod::kPalette && shading.scale)
     out.palette_error_m = std::abs(shading.scale->high() - shading.scale->low()) / 256;
   return out;

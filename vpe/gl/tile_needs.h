@@ -21,15 +21,15 @@ enum class PaintMethod {
 
 struct TileMaterial {
   PaintMethod by = PaintMethod::kTexture;
-  bool shows_nodata = true;      // ground without data looks different: such tiles have textures in any case
+  bool shows_nodata = true;    // ground without data looks different: such tiles have textures in any case
   double palette_error_m = 0;  // relief that a palette may be off: a 256th of its range
-  ShadingParams shading;            // of textures
+  ShadingParams shading;       // of textures
   bool operator==(const TileMaterial&) const = default;
 };
 
 // scale: of the appearance; null where it shows none (paging::needs_scale).
 TileMaterial material(const core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
-                  std::shared_ptr<const core::ColourScale> scale);
+                      std::shared_ptr<const core::ColourScale> scale);
 
 inline constexpr int kSmallestTexture = 128;
 

@@ -24,13 +24,14 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
   switch (key.kind) {
     case PageKind::kMesh: {
       const double radius_m = planet_->radius_m();
-      with_mesh(key.tile, key.detail, key.exaggeration, [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
-        page.geometry =
-            make_geometry(key.tile, mesh, height_m, radius_m, {key.exaggeration, key.origin, key.charts});
-        if (!key.occluders) return;
-        page.occluders = std::make_shared<const lod::OccluderProfile>(
-            lod::make_occluder_profile(key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m));
-      });
+      with_mesh(key.tile, key.detail, key.exaggeration,
+                [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
+                  page.geometry = make_geometry(key.tile, mesh, height_m, radius_m,
+                                                {key.exaggeration, key.origin, key.charts});
+                  if (!key.occluders) return;
+                  page.occluders = std::make_shared<const lod::OccluderProfile>(lod::make_occluder_profile(
+                      key.tile, mesh, height_m, key.exaggeration, radius_m, page.geometry.quantisation_m));
+                });
       const std::size_t bytes = page.geometry.bytes();
       return {std::move(page), bytes};
     }

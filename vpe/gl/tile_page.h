@@ -6,15 +6,15 @@
 #include <utility>
 
 #include "lod/occluder_profile.h"
-#include "paging/shading/terrain_shader.h"
 #include "paging/planet/planet_file.h"
+#include "paging/shading/terrain_shader.h"
 #include "vpe/gl/tile_geometry.h"
 
 namespace vpe::gl {
 
-using paging::TerrainShader;
 using paging::ShadedTile;
 using paging::ShadingParams;
+using paging::TerrainShader;
 
 enum class PageKind : std::uint8_t {
   kMesh,     // of a variant, relative to an origin, at an exaggeration
@@ -27,10 +27,10 @@ struct PageKey {
   lod::TileKey tile;
   int detail = 0;  // variant, or TileNeed::paint
   int origin = kTileCentre;
-  bool charts = true;                       // of meshes
-  double exaggeration = 1;                  // of meshes and posts
+  bool charts = true;                            // of meshes
+  double exaggeration = 1;                       // of meshes and posts
   std::shared_ptr<const ShadingParams> shading;  // of textures; equal looks are one object
-  bool occluders = false;                       // of meshes: with them
+  bool occluders = false;                        // of meshes: with them
   bool operator==(const PageKey&) const = default;
 };
 struct PageKeyHash {

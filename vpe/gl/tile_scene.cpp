@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "lod/reevaluate.h"
 #include "lod/options.h"
+#include "lod/reevaluate.h"
 #include "vpe/base/parallel.h"
 
 namespace vpe::gl {
@@ -88,8 +88,8 @@ void TileScene::set_shading(const core::DrawRequest& request) {
   if (shading_ && material_ == now) return;
   // Meshes of two exaggerations do not meet; what is painted in another way needs other vertices and programs.
   const bool other_meshes = !shading_ || shading_->exaggeration != now.shading.exaggeration;
-  const bool other_paint =
-      material_.by != now.by || material_.shows_nodata != now.shows_nodata || material_.shading.flat != now.shading.flat;
+  const bool other_paint = material_.by != now.by || material_.shows_nodata != now.shows_nodata ||
+                           material_.shading.flat != now.shading.flat;
   if (other_meshes) ground_.clear();
   if (other_meshes || other_paint) meshes_.clear();
   if (other_paint) textures_.clear();
@@ -109,8 +109,8 @@ std::vector<TileNeed> TileScene::needs_of(const lod::Selection& selection, const
 }
 
 PageKey TileScene::mesh_page(const lod::TileKey& tile, const MeshDetail& mesh) const {
-  return {PageKind::kMesh, tile, mesh.variant, mesh.origin, mesh.charts, shading_->exaggeration, nullptr,
-          needs_occluders_};
+  return {PageKind::kMesh,        tile,    mesh.variant,    mesh.origin, mesh.charts,
+          shading_->exaggeration, nullptr, needs_occluders_};
 }
 PageKey TileScene::texture_page(const lod::TileKey& tile, int paint) const {
   return {PageKind::kTexture, tile, paint, kTileCentre, true, 1, shading_};
@@ -118,13 +118,18 @@ PageKey TileScene::texture_page(const lod::TileKey& tile, int paint) const {
 TileNeed TileScene::coarse_need(const lod::TileKey& tile) const {
   const bool textured = is_textured(tile, *planet_, material_);
   return {{0, kTileCentre, needs_charts(tile, *planet_, material_)},
-          !textured     ? 0
+          !textured        ? 0
           : shading_->flat ? facet_paint(0)
-                        : kSmallestTexture};
+                           : kSmallestTexture};
 }
 PageKey TileScene::ground_page(const glm::dvec3& camera_m) const {
   const lod::TileKey finest = lod::tile_at(mars::chart_point(camera_m), lod::kMaxLevel);
-  return {PageKind::kGround, planet_->tree().deepest(finest).key, 0, kTileCentre, true, shading_->exaggeration,
+  return {PageKind::kGround,
+          planet_->tree().deepest(finest).key,
+          0,
+          kTileCentre,
+          true,
+          shading_->exaggeration,
           nullptr};
 }
 
@@ -155,7 +160,8 @@ void TileScene::upload(TilePager::Loaded page) {
   switch (key.kind) {
     case PageKind::kMesh:
       // Asked for before a change.
-      if (key.exaggeration != shading_->exaggeration || key.charts != needs_charts(key.tile, *planet_, material_))
+      if (key.exaggeration != shading_->exaggeration ||
+          key.charts != needs_charts(key.tile, *planet_, material_))
         return;
       if (needs_occluders_ && !key.occluders) return;
       {
@@ -184,8 +190,10 @@ void TileScene::trim() {
 
 bool TileScene::has_room() const {
   std::size_t record_frame = 0;
-  for (const SceneTile& t : tiles_) record_frame += t.mesh->bytes + (t.texture != nullptr ? t.texture->bytes : 0);
-  return static_cast<double>(record_frame) < kRoomForLater * static_cast<double>(share(kMeshShare + kTextureShare));
+  for (const SceneTile& t : tiles_)
+    record_frame += t.mesh->bytes + (t.texture != nullptr ? t.texture->bytes : 0);
+  return static_cast<double>(record_frame) <
+         kRoomForLater * static_cast<double>(share(kMeshShare + kTextureShare));
 }
 
 // What a selection needs and is not resident, nearest tiles first; what is resident counts as used in `frame`.

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cull/adaptive_culling.h"
-#include "lod/occlusion.h"
 #include "lod/fallback.h"
+#include "lod/occlusion.h"
 #include "paging/pager.h"
 #include "vpe/core/frame.h"
 #include "vpe/gl/polygon_renderer.h"
@@ -111,8 +111,8 @@ class TileScene {
   std::vector<std::pair<lod::TileKey, std::shared_ptr<const paging::TileHeights>>> ground_;  // latest last
   TileMaterial material_;
   std::shared_ptr<const ShadingParams> shading_;  // material_.look, one object while it stays the same
-  bool other_shadings_ = false;                 // may be resident
-  core::Appearance scale_of_;                // whose scale this is
+  bool other_shadings_ = false;                   // may be resident
+  core::Appearance scale_of_;                     // whose scale this is
   std::shared_ptr<const core::ColourScale> scale_;
   std::uint64_t frame_ = 0;
 

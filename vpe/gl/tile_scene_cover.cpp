@@ -129,7 +129,8 @@ TileScene::Load TileScene::load_cover(const core::DrawRequest& request, Deadline
   }
   const auto hidden = [&](std::uint32_t n) {
     if (hidden_[n] == 0 && occluding_ &&
-        pass_.hidden(planet_->tree().region(cover.tiles[n].index, cover.exaggeration, cover.tiles[n].geometric_error_m))) {
+        pass_.hidden(planet_->tree().region(cover.tiles[n].index, cover.exaggeration,
+                                            cover.tiles[n].geometric_error_m))) {
       hidden_[n] = 1;
     }
     return hidden_[n] != 0;
@@ -282,8 +283,8 @@ void TileScene::drawn_in(double draw_ms) {
     return;
   }
   culling_.record_frame({stats_.occlude_ms, static_cast<int>(hidden_.size()),
-               static_cast<int>(std::count(hidden_.begin(), hidden_.end(), 1)),
-               draw_ms / std::max<double>(1.0, static_cast<double>(tiles_.size()))});
+                         static_cast<int>(std::count(hidden_.begin(), hidden_.end(), 1)),
+                         draw_ms / std::max<double>(1.0, static_cast<double>(tiles_.size()))});
 }
 
 }  // namespace vpe::gl

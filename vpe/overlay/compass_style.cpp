@@ -66,7 +66,7 @@ void draw_compass(LabelLayout& layout, const Scene& scene, core::CompassStrip wh
     const double height_px = std::ceil(style.height_px());
     if (2 * height_px > area.bottom - area.top) return;
     const Box band = style.is_up ? Box{area.left, area.top, area.right, area.top + height_px}
-                                : Box{area.left, area.bottom - height_px, area.right, area.bottom};
+                                 : Box{area.left, area.bottom - height_px, area.right, area.bottom};
     const std::array<glm::dvec2, 4> corners{glm::dvec2{band.left, band.top}, glm::dvec2{band.right, band.top},
                                             glm::dvec2{band.right, band.bottom},
                                             glm::dvec2{band.left, band.bottom}};

@@ -13,7 +13,8 @@ Box Box::about(glm::dvec2 centre, TextSize size, double angle_rad) {
   return {centre.x - x, centre.y - y, centre.x + x, centre.y + y};
 }
 
-LabelLayout::LabelLayout(Canvas& canvas) : LabelLayout(canvas, std::min(canvas.width(), canvas.height()) / 720.0) {}
+LabelLayout::LabelLayout(Canvas& canvas)
+    : LabelLayout(canvas, std::min(canvas.width(), canvas.height()) / 720.0) {}
 
 LabelLayout::LabelLayout(Canvas& canvas, double unit)
     : canvas_(canvas),
@@ -37,7 +38,8 @@ void LabelLayout::label(std::string_view text, glm::dvec2 centre, const Font& fo
   canvas_.text(text, centre, 0, {font, kWhite, kShade});
 }
 
-void LabelLayout::outlined(const std::vector<glm::dvec2>& points, double width_px, const Ink& ink, const Ink& halo) {
+void LabelLayout::outlined(const std::vector<glm::dvec2>& points, double width_px, const Ink& ink,
+                           const Ink& halo) {
   canvas_.line(points, false, width_px + 2 * line_px(1), halo);
   canvas_.line(points, false, width_px, ink);
 }

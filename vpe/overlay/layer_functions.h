@@ -1,8 +1,8 @@
 // The overlays one by one. Each takes the room it uses on the sheet; what finds none is left out.
 #pragma once
 
-#include "vpe/overlay/visible_terrain.h"
 #include "vpe/overlay/label_layout.h"
+#include "vpe/overlay/visible_terrain.h"
 
 namespace vpe::overlay {
 

@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <set>
 
-#include "vpe/overlay/number_format.h"
 #include "vpe/overlay/isolines.h"
 #include "vpe/overlay/layer_functions.h"
+#include "vpe/overlay/number_format.h"
 
 namespace vpe::overlay {
 
@@ -106,7 +106,8 @@ void label_graticule(std::vector<LineLabel>& labels, LabelLayout& layout, const 
     const std::string text = text_of(line.multiple);
     const TextSize box = layout.canvas().measure(text, style.font);
     // No stub of the line remains between its label and the border.
-    const glm::dvec2 room(0.5 * (box.width + label_room_px(layout)) + kInside_px, 0.5 * box.height + kInside_px);
+    const glm::dvec2 room(0.5 * (box.width + label_room_px(layout)) + kInside_px,
+                          0.5 * box.height + kInside_px);
     if (2 * room.x > size.x || 2 * room.y > size.y) return;
     labels.push_back({text, glm::clamp(at, room, size - room), 0, style});
     labelled.insert(line.multiple);
@@ -131,7 +132,8 @@ struct Hotspot {
   glm::dvec2 at;
   double angle_rad;
 };
-std::vector<Hotspot> hotspots_on(const Isoline& line, double length_px, double apart_px, const LabelLayout& layout) {
+std::vector<Hotspot> hotspots_on(const Isoline& line, double length_px, double apart_px,
+                                 const LabelLayout& layout) {
   constexpr double kStraight = 0.93;  // of the way along the line, as the crow flies
   std::vector<double> along(line.points.size(), 0.0);
   for (std::size_t n = 1; n < along.size(); ++n) {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "vpe/overlay/number_format.h"
 #include "vpe/overlay/layer_functions.h"
+#include "vpe/overlay/number_format.h"
 
 namespace vpe::overlay {
 
@@ -61,7 +61,9 @@ void draw_title(LabelLayout& layout, const std::string& title) {
   draw_middle(layout, title, layout.font(24, true), true);
 }
 
-void draw_time(LabelLayout& layout, double time_s) { draw_middle(layout, time_text(time_s), layout.font(18), false); }
+void draw_time(LabelLayout& layout, double time_s) {
+  draw_middle(layout, time_text(time_s), layout.font(18), false);
+}
 
 void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& ground) {
   Canvas& canvas = layout.canvas();

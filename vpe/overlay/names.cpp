@@ -3,8 +3,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "vpe/overlay/number_format.h"
 #include "vpe/overlay/layer_functions.h"
+#include "vpe/overlay/number_format.h"
 
 namespace vpe::overlay {
 

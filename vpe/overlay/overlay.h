@@ -13,12 +13,12 @@
 #include <span>
 #include <vector>
 
-#include "mars/sources/source.h"
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/source.h"
 #include "vpe/core/appearance/appearance.h"
 #include "vpe/core/appearance/gazetteer.h"
-#include "vpe/core/image/image.h"
 #include "vpe/core/appearance/overlays.h"
+#include "vpe/core/image/image.h"
 #include "vpe/core/view.h"
 
 namespace vpe::overlay {
@@ -32,8 +32,8 @@ struct Scene {
   std::span<const float> range_m;  // core::Frame::range_m; needed where needs_range() says so
   double radius_m = mars::kMarsRadius_m;
   core::Appearance appearance;  // its exaggeration, and for the legend
-  double shift_px = 0;      // by which the ground in the image may be off (core::Certificate); for contours
-  bool has_imagery = true;  // mode textured shows imagery
+  double shift_px = 0;          // by which the ground in the image may be off (core::Certificate); for contours
+  bool has_imagery = true;      // mode textured shows imagery
   double time_s = 0;
   // North and up of the compass at the camera; left out: those of the ground below it.
   std::optional<mars::LocalFrame> frame;

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "vpe/overlay/compass_style.h"
+#include "vpe/overlay/layer_functions.h"
 #include "vpe/overlay/number_format.h"
 #include "vpe/overlay/overlay.h"
-#include "vpe/overlay/layer_functions.h"
 
 namespace vpe::overlay {
 
@@ -127,7 +127,7 @@ class Layout {
     const Box& b = layout.taken().front();
     const Box taken{b.left + box.left, b.top + box.top, b.right + box.left, b.bottom + box.top};
     if (!sprites_.is_free({std::max(taken.left, 0.0), std::max(taken.top, 0.0), std::min(taken.right, size_.x),
-                          std::min(taken.bottom, size_.y)}))
+                           std::min(taken.bottom, size_.y)}))
       return;
     sprites_.take(taken);
     sprites_.add(box, [unit = unit_, draw](Canvas& part, glm::dvec2) {

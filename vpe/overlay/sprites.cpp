@@ -15,11 +15,11 @@ void SpriteLayer::add(const Box& box, Paint paint) {
   const auto x = static_cast<std::int64_t>(std::floor(box.left));
   const auto y = static_cast<std::int64_t>(std::floor(box.top));
   sprites_.push_back({x,
-                     y,
-                     static_cast<std::int64_t>(std::ceil(box.right)) - x,
-                     static_cast<std::int64_t>(std::ceil(box.bottom)) - y,
-                     std::move(paint),
-                     {}});
+                      y,
+                      static_cast<std::int64_t>(std::ceil(box.right)) - x,
+                      static_cast<std::int64_t>(std::ceil(box.bottom)) - y,
+                      std::move(paint),
+                      {}});
 }
 
 void SpriteLayer::fill(const Box& box, const core::Rgba& colour) {
@@ -72,7 +72,7 @@ void SpriteLayer::lay(const Sprite& sprite, std::int64_t shift, const ImageRegio
     for (std::int64_t column = left; column < right; ++column) {
       const core::Rgba over =
           sprite.paint ? layer.pixels[static_cast<std::size_t>((row - sprite.y) * sprite.width + column - x)]
-                      : sprite.colour;
+                       : sprite.colour;
       if (over.a == 0) continue;
       base::Rgb& pixel = part.pixels[static_cast<std::size_t>((row - part.y) * part.width + column - part.x)];
       pixel = blend(over, pixel);

@@ -62,7 +62,8 @@ glm::dvec3 VisibleTerrain::point(int x, int y) const {
     const glm::dvec3 along = corner_ + right_ * static_cast<double>(x) + down_ * static_cast<double>(y);
     return scene_.view.camera.position_m + along * (range_m / glm::length(along));
   }
-  return scene_.view.camera.position_m + core::pixel_ray(scene_.view, part_.x + x + 0.5, part_.y + y + 0.5) * range_m;
+  return scene_.view.camera.position_m +
+         core::pixel_ray(scene_.view, part_.x + x + 0.5, part_.y + y + 0.5) * range_m;
 }
 
 std::optional<glm::dvec2> VisibleTerrain::to_image(const glm::dvec3& point_m) const {

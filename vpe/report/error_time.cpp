@@ -152,10 +152,12 @@ double Measured::error(ErrorKind kind) const {
 bool Measured::within_stated() const { return !stated_px || shift.forward.max_px <= *stated_px + slack_px; }
 
 SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options) {
-  if (subject.configurations.empty() || subject.baseline >= subject.configurations.size() || subject.references.empty())
+  if (subject.configurations.empty() || subject.baseline >= subject.configurations.size() ||
+      subject.references.empty())
     throw std::invalid_argument("measure: a subject without ways, baseline or reference");
   const double configurations = static_cast<double>(subject.configurations.size());
-  const double steps = static_cast<double>(subject.references.size()) + 2 * configurations + (options.rounds + 1) * configurations;
+  const double steps = static_cast<double>(subject.references.size()) + 2 * configurations +
+                       (options.rounds + 1) * configurations;
   double done = 0;
   const auto step = [&](const std::string& what, double many) {
     options.progress(subject.view + ", " + what, std::min(1.0, done / steps));
@@ -171,8 +173,8 @@ SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options) {
   SubjectResult result{subject, {}};
   for (const Configuration& configuration : subject.configurations) {
     step(configuration.sweep, 2);
-    result.measured.push_back(
-        measure_errors(configuration, subject.references.at(configuration.reference).view, truths.at(configuration.reference), options));
+    result.measured.push_back(measure_errors(configuration, subject.references.at(configuration.reference).view,
+                                             truths.at(configuration.reference), options));
   }
   measure_times(subject, options, result.measured, [&](const std::string& what) { step(what, 1); });
   return result;

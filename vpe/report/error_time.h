@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "vpe/core/frame.h"
-#include "vpe/core/metrics.h"
 #include "vpe/core/image_metrics.h"
+#include "vpe/core/metrics.h"
 #include "vpe/report/interleaved_timing.h"
 
 namespace vpe::report {
@@ -36,10 +36,10 @@ struct Configuration {
   bool is_default = false;  // what is drawn when no more than the backend is named
   bool is_chosen = false;   // what is drawn when nothing is named
   ErrorKind kind = ErrorKind::kShift;
-  std::string comparison_group;       // ways of equal name show the same and may stand on one front; empty: on none
-  std::string plot;         // of the view, by its kind of error, on which it stands; empty: on none
-  std::string colour_plot;  // by its colours, likewise
-  std::string renderer;     // name for MakeRenderer
+  std::string comparison_group;  // ways of equal name show the same and may stand on one front; empty: on none
+  std::string plot;              // of the view, by its kind of error, on which it stands; empty: on none
+  std::string colour_plot;       // by its colours, likewise
+  std::string renderer;          // name for MakeRenderer
   std::vector<core::DrawRequest> requests;  // drawn one after another: what is timed
   Compose compose;                          // left out: the image of the only request
   std::size_t reference = 0;                // which of Subject::references

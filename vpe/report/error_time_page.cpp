@@ -17,7 +17,9 @@ Series& series_of(Plot& plot, const std::string& name) {
 }
 
 std::string label(const Configuration& configuration) {
-  return configuration.knob + (configuration.is_chosen ? " (default)" : configuration.is_default ? " (default of its backend)" : "");
+  return configuration.knob + (configuration.is_chosen    ? " (default)"
+                               : configuration.is_default ? " (default of its backend)"
+                                                          : "");
 }
 
 class Plots {
@@ -28,7 +30,8 @@ class Plots {
     for (std::size_t k = 0; k < result_.measured.size(); ++k) {
       const Configuration& configuration = result_.subject.configurations[k];
       const Measured& measured = result_.measured[k];
-      if (!configuration.plot.empty()) add(k, configuration.plot, configuration.kind, measured.error(configuration.kind));
+      if (!configuration.plot.empty())
+        add(k, configuration.plot, configuration.kind, measured.error(configuration.kind));
       if (!configuration.colour_plot.empty() && measured.colour_rms)
         add(k, configuration.colour_plot, ErrorKind::kColour, *measured.colour_rms);
     }
@@ -75,7 +78,8 @@ Plot summary_plot(const std::vector<SubjectResult>& results) {
   plot.x_label = "time, to that of " + baseline.sweep + ", " + baseline.knob;
   for (const ConfigurationOverViews& w : over_views(results)) {
     if (w.configuration.plot != baseline.plot || w.configuration.kind != ErrorKind::kShift) continue;
-    Point point{w.ratio, w.error, label(w.configuration), {}, w.configuration.is_default || w.configuration.is_chosen};
+    Point point{
+        w.ratio, w.error, label(w.configuration), {}, w.configuration.is_default || w.configuration.is_chosen};
     if (std::isfinite(w.stated_px)) point.bound = w.stated_px;
     series_of(plot, w.configuration.sweep).points.push_back(point);
   }

@@ -16,7 +16,8 @@ std::vector<CostAndError> costs(const SubjectResult& result, const std::string& 
   std::vector<CostAndError> points;
   for (std::size_t k = 0; k < result.measured.size(); ++k) {
     const Configuration& configuration = result.subject.configurations[k];
-    const bool counts = configuration.comparison_group == comparison_group && (renderer.empty() || configuration.renderer == renderer);
+    const bool counts = configuration.comparison_group == comparison_group &&
+                        (renderer.empty() || configuration.renderer == renderer);
     points.push_back(
         {counts ? 1e3 * result.measured[k].timing.median_s() : std::numeric_limits<double>::infinity(),
          std::max(result.measured[k].error(configuration.kind), rounding_floor(configuration.kind))});
@@ -37,8 +38,8 @@ std::vector<SweepSummary> summarize_sweeps(const SubjectResult& result) {
     const Measured& measured = result.measured[k];
     const double error = measured.error(configuration.kind);
     const double counted = std::max(error, error_floor(configuration.kind));
-    const auto found =
-        std::find_if(sweeps.begin(), sweeps.end(), [&](const auto& s) { return s.sweep == configuration.sweep; });
+    const auto found = std::find_if(sweeps.begin(), sweeps.end(),
+                                    [&](const auto& s) { return s.sweep == configuration.sweep; });
     const auto at = static_cast<std::size_t>(found - sweeps.begin());
     if (found == sweeps.end()) {
       SweepSummary first;
@@ -71,7 +72,8 @@ std::vector<DefaultPlace> place_defaults(const SubjectResult& result) {
   std::vector<DefaultPlace> places;
   for (std::size_t k = 0; k < result.measured.size(); ++k) {
     const Configuration& configuration = result.subject.configurations[k];
-    if (!(configuration.is_default || configuration.is_chosen) || configuration.comparison_group.empty()) continue;
+    if (!(configuration.is_default || configuration.is_chosen) || configuration.comparison_group.empty())
+      continue;
     const std::vector<CostAndError> all = costs(result, configuration.comparison_group, "");
     const std::vector<CostAndError> own = costs(result, configuration.comparison_group, configuration.renderer);
     DefaultPlace place;
@@ -117,9 +119,10 @@ std::vector<ConfigurationOverViews> over_views(const std::vector<SubjectResult>&
     for (std::size_t k = 0; k < result.measured.size(); ++k) {
       const Configuration& configuration = result.subject.configurations[k];
       const Measured& measured = result.measured[k];
-      const auto found = std::find_if(configurations.begin(), configurations.end(), [&](const ConfigurationOverViews& w) {
-        return w.configuration.sweep == configuration.sweep && w.configuration.knob == configuration.knob;
-      });
+      const auto found =
+          std::find_if(configurations.begin(), configurations.end(), [&](const ConfigurationOverViews& w) {
+            return w.configuration.sweep == configuration.sweep && w.configuration.knob == configuration.knob;
+          });
       const auto at = static_cast<std::size_t>(found - configurations.begin());
       if (found == configurations.end()) {
         configurations.emplace_back();

@@ -42,7 +42,7 @@ std::vector<Timing> time_interleaved(std::span<const BenchmarkCase> cases, int r
 }
 
 std::vector<Timing> time_interleaved(std::span<const std::function<void()>> cases, int rounds,
-                                  const Clock& clock) {
+                                     const Clock& clock) {
   std::vector<BenchmarkCase> all;
   for (const std::function<void()>& run : cases) all.push_back({run, {}});
   return time_interleaved(all, rounds, clock);

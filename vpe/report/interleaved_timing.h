@@ -29,9 +29,9 @@ struct BenchmarkCase {
 // Runs every contestant once a round, in turns: first one round that does not count, then `rounds` that do. The
 // clock is read right before and right after each. Throws std::invalid_argument for rounds < 1.
 std::vector<Timing> time_interleaved(std::span<const BenchmarkCase> cases, int rounds,
-                                  const Clock& clock = wall_clock());
+                                     const Clock& clock = wall_clock());
 std::vector<Timing> time_interleaved(std::span<const std::function<void()>> cases, int rounds,
-                                  const Clock& clock = wall_clock());
+                                     const Clock& clock = wall_clock());
 
 // How many times as long as the other, in the median of the rounds that both have: what disturbs a round
 // disturbs both. Throws std::invalid_argument where one has none.

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "vpe/report/growth.h"
+#include "vpe/report/interleaved_timing.h"
 #include "vpe/report/plot.h"
 #include "vpe/report/table.h"
-#include "vpe/report/interleaved_timing.h"
 
 namespace vpe::report {
 

@@ -61,7 +61,7 @@ struct FramePrefetcher::Job {
 };
 
 FramePrefetcher::FramePrefetcher(const RangeCaster& caster, const ImagePainter& painter, base::ThreadPool& pool,
-                           std::size_t budget_bytes)
+                                 std::size_t budget_bytes)
     : caster_(caster), painter_(painter), pool_(pool), budget_(budget_bytes) {}
 
 FramePrefetcher::~FramePrefetcher() {
@@ -123,7 +123,7 @@ void FramePrefetcher::wait() {
 }
 
 std::optional<ColumnWalk::Used> FramePrefetcher::take(const core::View& view, const RangeOptions& options,
-                                                   std::vector<float>& range_m) {
+                                                      std::vector<float>& range_m) {
   {
     std::unique_lock lock(mutex_);
     const auto is_cast = [this] { return job_->state == State::kCast; };

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "vpe/voxel/paint/image_painter.h"
 #include "vpe/voxel/cast/range_caster.h"
+#include "vpe/voxel/paint/image_painter.h"
 
 namespace vpe::voxel {
 
@@ -25,7 +25,7 @@ class FramePrefetcher {
   // All three must outlive this. Nothing is cast beforehand with a pool of one thread, nor images whose
   // ranges take more than an eighth of `budget_bytes`, nor such with several samples.
   FramePrefetcher(const RangeCaster& caster, const ImagePainter& painter, base::ThreadPool& pool,
-               std::size_t budget_bytes);
+                  std::size_t budget_bytes);
   ~FramePrefetcher();  // stops
   FramePrefetcher(const FramePrefetcher&) = delete;
   FramePrefetcher& operator=(const FramePrefetcher&) = delete;

@@ -12,13 +12,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "vpe/core/image/edge_filter.h"
-#include "vpe/core/appearance/inspect.h"
 #include "vpe/base/parallel.h"
+#include "vpe/core/appearance/inspect.h"
 #include "vpe/core/appearance/shading.h"
+#include "vpe/core/image/edge_filter.h"
+#include "vpe/voxel/cast/range_caster.h"
 #include "vpe/voxel/frame_prefetcher.h"
 #include "vpe/voxel/paint/image_painter.h"
-#include "vpe/voxel/cast/range_caster.h"
 
 namespace vpe::voxel {
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "mars/geodesy/pose.h"
+#include "vpe/explore/files/preferences.h"
 #include "vpe/explore/input/actions.h"
 #include "vpe/explore/input/controls.h"
 #include "vpe/explore/input/gamepad.h"
 #include "vpe/explore/input/head_tracker.h"
 #include "vpe/explore/input/keyboard.h"
-#include "vpe/explore/files/preferences.h"
 #include "vpe/explore/input/space_mouse.h"
 #include "vpe/explore/input/udp_receiver.h"
 #include "vpe/window/display.h"

@@ -26,8 +26,8 @@ struct DisplayOptions {
   int width = 1280;  // of the window, screen coordinates
   int height = 720;
   bool scales_size = false;  // on a dense monitor the window is so much larger; else exactly of that size
-  double scale = 0;     // of letters and panels; 0: as the monitor has it
-  std::string instead;  // what to do without a display, for messages
+  double scale = 0;          // of letters and panels; 0: as the monitor has it
+  std::string instead;       // what to do without a display, for messages
 };
 
 // Throws DisplayError when there is no display, before any work is done for a window.

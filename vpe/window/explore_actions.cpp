@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "vpe/base/file.h"
-#include "vpe/core/image/image.h"
 #include "vpe/base/number.h"
+#include "vpe/core/image/image.h"
 #include "vpe/explore/input/keyboard.h"
 #include "vpe/window/explore_window.h"
 
@@ -109,7 +109,8 @@ void ExploreWindow::log_overlook() {
   mars::CameraPose camera;
   camera.position_m = guide_.inside_camera_m();
   const mars::LonLat place = mars::lon_lat(camera.position_m);
-  const mars::Pose stand{place.lon_deg, place.lat_deg, glm::length(camera.position_m) - session_.ground().radius_m, 0, 0, 0};
+  const mars::Pose stand{
+      place.lon_deg, place.lat_deg, glm::length(camera.position_m) - session_.ground().radius_m, 0, 0, 0};
   try {
     log_->frame({now_s() - log_begun_s_, stand, {std::remainder(look.first, 360.0), look.second, 0}},
                 session_.settings(), session_.all_interest());

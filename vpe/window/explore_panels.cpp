@@ -95,10 +95,12 @@ void ExploreWindow::measure_panel() {
 }
 
 void ExploreWindow::draw_map(int width, int height) {
-  const MapActions wish = map_.draw(session_, state_.map_ground, measure_.points(), guide_.hotspots(), width, height, widgets_);
+  const MapActions wish =
+      map_.draw(session_, state_.map_ground, measure_.points(), guide_.hotspots(), width, height, widgets_);
   if (wish.under_cursor) under_cursor_ = wish.under_cursor;
   if (guide_.inside() != nullptr) {
-    if (wish.go_to || wish.new_waypoint || wish.new_region || wish.drag) say("Esc steps out of the panorama first", true);
+    if (wish.go_to || wish.new_waypoint || wish.new_region || wish.drag)
+      say("Esc steps out of the panorama first", true);
     return;
   }
   if (wish.go_to) session_.go_to(*wish.go_to);
@@ -197,14 +199,13 @@ void ExploreWindow::draw_status() {
   const bool from_zero = setup_.preferences.longitude == explore::LongitudeRange::kPositive;
   const double lon_deg = from_zero && pose.lon_deg < 0 ? pose.lon_deg + 360 : pose.lon_deg;
   std::string place =
-      print("%.5f°, %.5f°   altitude %s, %s above ground   heading %.1f°  pitch %.1f°  roll %.1f°", lon_deg, pose.lat_deg,
-            metres(pose.alt_m).c_str(), metres(session_.height_m()).c_str(),
+      print("%.5f°, %.5f°   altitude %s, %s above ground   heading %.1f°  pitch %.1f°  roll %.1f°", lon_deg,
+            pose.lat_deg, metres(pose.alt_m).c_str(), metres(session_.height_m()).c_str(),
             pose.yaw_deg < 0 ? pose.yaw_deg + 360 : pose.yaw_deg, pose.pitch_deg, pose.roll_deg);
   if (const OverlookView* inside = guide_.inside(); inside != nullptr)
-    place = guide_.inside_hotspot()->name +
-            print("   azimuth %.2f°  elevation %.2f°  field of view %.1f°",
-                  std::fmod(inside->viewer().yaw_deg() + 720.0, 360.0), inside->viewer().pitch_deg(),
-                  inside->viewer().fov_deg());
+    place = guide_.inside_hotspot()->name + print("   azimuth %.2f°  elevation %.2f°  field of view %.1f°",
+                                                  std::fmod(inside->viewer().yaw_deg() + 720.0, 360.0),
+                                                  inside->viewer().pitch_deg(), inside->viewer().fov_deg());
   status_line(place, ImGui::GetStyleColorVec4(ImGuiCol_Text));
   if (!state_.message.empty()) {
     status_line(state_.message, state_.message_is_trouble ? kTrouble : kGood);
@@ -218,9 +219,8 @@ void ExploreWindow::draw_status() {
       if (r.stats.tiles_by_level[n] > 0) finest = static_cast<int>(n);
     const double spacing_m =
         lod::post_spacing_m(finest, setup_.planet->meta().tile.intervals(), setup_.planet->radius_m());
-    std::string line = session_.settings().get("mode").value_or("") +
-                       (rays ? " by rays" : " by triangles") + "   level " +
-                       std::to_string(core::shown_level(finest)) + " (" + metres(spacing_m) +
+    std::string line = session_.settings().get("mode").value_or("") + (rays ? " by rays" : " by triangles") +
+                       "   level " + std::to_string(core::shown_level(finest)) + " (" + metres(spacing_m) +
                        " posts)   within " + print("%.2f px", r.certificate.shift_bound_px);
     const core::View& drawn = drawn_->order.request.view;
     line += "   " + (rays ? print("%.0f k rays", drawn.width * drawn.height / 1e3)

@@ -118,7 +118,7 @@ std::optional<glm::dvec2> ExploreWindow::camera_xy(glm::dvec2 cursor) const {
   const double wide = state_.stereo == core::StereoLayout::kSideBySide ? 2 : 1;
   const double tall = state_.stereo == core::StereoLayout::kOverUnder ? 2 : 1;
   const glm::dvec2 camera{(cursor.x - area.x) * wide * view_area_.width / area.width,
-                       (cursor.y - area.y) * tall * view_area_.height / area.height};
+                          (cursor.y - area.y) * tall * view_area_.height / area.height};
   return glm::dvec2{std::fmod(camera.x, view_area_.width), std::fmod(camera.y, view_area_.height)};
 }
 

@@ -19,7 +19,7 @@ constexpr double kShortestFrame_s = 1.0 / 120;
 constexpr double kDoubleClick_s = 0.35;
 constexpr double kDoubleClick_px = 6;
 constexpr double kIdle_s = 0.5;
-constexpr double kMessage_s = 6;      // for which one is shown
+constexpr double kMessage_s = 6;  // for which one is shown
 constexpr double kTrouble_s = 30;
 constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
 
@@ -57,9 +57,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   if (!troubles.empty()) say(troubles, true);
 }
 
-ExploreWindow::~ExploreWindow() {
-  stop_log();
-}
+ExploreWindow::~ExploreWindow() { stop_log(); }
 
 double ExploreWindow::now_s() const { return seconds(Clock::now() - begun_); }
 
@@ -71,13 +69,13 @@ void ExploreWindow::run() {
 bool ExploreWindow::is_at_rest() const {
   if (guide_.inside() != nullptr) return guide_.inside()->is_at_rest() && frames_due_ <= 0;
   return maker_->is_idle() && (!shows_map() || map_.is_at_rest()) && measure_.is_at_rest() &&
-         !session_.is_going() &&
-         frames_due_ <= 0 && live_.state() == lod::RefinementState::kWaiting;
+         !session_.is_going() && frames_due_ <= 0 && live_.state() == lod::RefinementState::kWaiting;
 }
 
 bool ExploreWindow::shows_final_image() const {
-  return drawn_ && state_.image_error.empty() && drawn_->result.settled && drawn_->order.request.coarsening == 1.0 &&
-         maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting;
+  return drawn_ && state_.image_error.empty() && drawn_->result.settled &&
+         drawn_->order.request.coarsening == 1.0 && maker_->is_idle() &&
+         live_.state() == lod::RefinementState::kWaiting;
 }
 
 bool ExploreWindow::step(double wait_s) {
@@ -206,7 +204,8 @@ void ExploreWindow::forget_message() {
 
 void ExploreWindow::forget_old_message() {
   const double shown_s = now_s() - state_.message_since_s;
-  if (!state_.message.empty() && shown_s > (state_.message_is_trouble ? kTrouble_s : kMessage_s)) forget_message();
+  if (!state_.message.empty() && shown_s > (state_.message_is_trouble ? kTrouble_s : kMessage_s))
+    forget_message();
 }
 
 void ExploreWindow::say(std::string words, bool is_trouble) {

@@ -13,18 +13,18 @@
 
 #include "paging/planet/planet_file.h"
 #include "vpe/explore/files/bookmarks.h"
-#include "vpe/explore/live_image.h"
 #include "vpe/explore/files/preferences.h"
-#include "vpe/explore/session.h"
 #include "vpe/explore/files/session_log.h"
 #include "vpe/explore/files/view_history.h"
+#include "vpe/explore/live_image.h"
+#include "vpe/explore/session.h"
 #include "vpe/window/devices.h"
 #include "vpe/window/display.h"
+#include "vpe/window/hotspot_guide.h"
+#include "vpe/window/image_maker.h"
 #include "vpe/window/map_panel.h"
 #include "vpe/window/measure_panel.h"
 #include "vpe/window/painter.h"
-#include "vpe/window/image_maker.h"
-#include "vpe/window/hotspot_guide.h"
 #include "vpe/window/view_area.h"
 #include "vpe/window/widgets.h"
 
@@ -41,7 +41,7 @@ struct ExploreSetup {
   // A planet file, or a raster to make one of, that was dropped on the window. Called on a thread of its own.
   std::function<std::shared_ptr<const paging::PlanetFile>(const std::string& file)> open_planet;
   std::vector<explore::Hotspot> hotspots;  // that have panoramas
-  OpenOverlook open_overlook;        // of one; needed with spots
+  OpenOverlook open_overlook;              // of one; needed with spots
   DisplayOptions display;
   explore::Preferences preferences;
   DeviceSources devices;
@@ -112,8 +112,8 @@ class ExploreWindow {
   std::string act(const explore::Action& action);  // as a key would; what went wrong, empty when all is well
 
  private:
-  static constexpr double kImageWait_s = 0.1;  // for which a turn waits for its image
-  static constexpr int kFramesAfterChange = 3;   // ImGui settles within so many
+  static constexpr double kImageWait_s = 0.1;   // for which a turn waits for its image
+  static constexpr int kFramesAfterChange = 3;  // ImGui settles within so many
 
   using Area = ViewArea;
 
@@ -178,7 +178,8 @@ class ExploreWindow {
   Area view_area_;
   glm::dvec2 cursor_{0, 0};
   std::optional<std::pair<double, glm::dvec2>> last_press_;  // for double clicks
-  glm::dvec2 held_half_{0, 0};  // of a pair's image: where the camera's own begins that the button was pressed in
+  glm::dvec2 held_half_{0,
+                        0};  // of a pair's image: where the camera's own begins that the button was pressed in
   Devices devices_;
   explore::ViewHistory history_;
   std::unique_ptr<explore::SessionLog> log_;
@@ -186,7 +187,7 @@ class ExploreWindow {
   double log_begun_s_ = 0;
   std::string log_note_;
   std::pair<double, double> logged_look_{0, 0};  // in a panorama
-  core::RgbImage last_image_;  // of the image shown
+  core::RgbImage last_image_;                    // of the image shown
   std::future<std::shared_ptr<const paging::PlanetFile>> opening_;
   std::string opening_file_;
   std::shared_ptr<const paging::PlanetFile> next_planet_;

@@ -61,7 +61,7 @@ std::string HotspotGuide::follow(const explore::Session& session, const ViewArea
 
 const explore::Hotspot* HotspotGuide::within_reach() const {
   return state_.stage == explore::HotspotStage::kWithinReach && ahead_ != nullptr ? &hotspots_[ahead_index_]
-                                                                               : nullptr;
+                                                                                  : nullptr;
 }
 
 std::string HotspotGuide::enter() {
@@ -83,7 +83,8 @@ void HotspotGuide::draw_marks(ImDrawList& list, const explore::Session& session,
     if (!(distance_m < kShownWithin_m) || distance_m < 1.0) continue;
     const core::Projected at = core::project(view, eyes_m_[n]);
     if (at.behind || at.xy.x < 0 || at.xy.y < 0 || at.xy.x > view.width || at.xy.y > view.height) continue;
-    if (session.ground().cast_m(view.camera.position_m, way / distance_m) < distance_m * (1.0 - kHiddenShare)) continue;
+    if (session.ground().cast_m(view.camera.position_m, way / distance_m) < distance_m * (1.0 - kHiddenShare))
+      continue;
     const ImVec2 p{static_cast<float>(x0 + at.xy.x), static_cast<float>(y0 + at.xy.y)};
     const ImVec2 corners[4] = {{p.x, p.y - size}, {p.x + size, p.y}, {p.x, p.y + size}, {p.x - size, p.y}};
     list.AddConvexPolyFilled(corners, 4, kMark);

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "vpe/explore/session.h"
 #include "vpe/explore/files/hotspots.h"
+#include "vpe/explore/session.h"
 #include "vpe/window/overlook_view.h"
 
 namespace vpe::window {

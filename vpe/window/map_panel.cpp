@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kBudget_bytes = std::size_t{96} << 20;
 constexpr double kDragBegins_px = 4;
-constexpr std::size_t kMostMarks = 200;     // of waypoints, and of spots that are named
+constexpr std::size_t kMostMarks = 200;        // of waypoints, and of spots that are named
 constexpr double kHotspotNames_deg_px = 0.05;  // from afar names would lie over each other
 constexpr ImU32 kEye = IM_COL32(255, 214, 90, 255);
 constexpr ImU32 kOutline = IM_COL32(255, 214, 90, 190);
@@ -75,8 +75,8 @@ void MapPanel::run() {
 }
 
 MapActions MapPanel::draw(const explore::Session& session, explore::MapGround ground,
-                       std::span<const mars::LonLat> way, std::span<const explore::Hotspot> hotspots, int width,
-                       int height, Widgets& widgets) {
+                          std::span<const mars::LonLat> way, std::span<const explore::Hotspot> hotspots,
+                          int width, int height, Widgets& widgets) {
   MapActions wish;
   if (is_fresh_) {
     map_ = explore::whole_map(width, height);

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "vpe/core/interest.h"
+#include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/measure/map_painter.h"
 #include "vpe/explore/measure/map_view.h"
 #include "vpe/explore/session.h"
-#include "vpe/explore/files/hotspots.h"
 #include "vpe/window/display.h"
 #include "vpe/window/widgets.h"
 
@@ -42,7 +42,7 @@ class MapPanel {
 
   // Inside an ImGui window: takes so many pixels of it. `way`: points that are measured. `spots`: that have panoramas.
   MapActions draw(const explore::Session& session, explore::MapGround ground, std::span<const mars::LonLat> way,
-               std::span<const explore::Hotspot> hotspots, int width, int height, Widgets& widgets);
+                  std::span<const explore::Hotspot> hotspots, int width, int height, Widgets& widgets);
 
   const explore::MapView& map() const { return map_; }
   bool is_at_rest() const;

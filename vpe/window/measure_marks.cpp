@@ -113,7 +113,8 @@ void Marker::line(const explore::Profile& profile) const {
     if (!crosses(n)) continue;
     const std::size_t begin = n - 1;
     while (n < all.size() && crosses(n)) ++n;
-    off_axis_magnification({all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(n)});
+    off_axis_magnification(
+        {all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(n)});
   }
 }
 

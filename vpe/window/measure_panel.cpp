@@ -72,7 +72,7 @@ void MeasurePanel::take() {
 }
 
 MeasureActions MeasurePanel::draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
-                               Widgets& widgets) {
+                                  Widgets& widgets) {
   take();
   MeasureActions wish;
   ImGui::BeginChild("measure");
@@ -232,8 +232,8 @@ void MeasurePanel::draw_profile(MeasureActions& wish, Widgets& widgets) {
     marked_ = point.place;
     ImGui::TextUnformatted((explore::length_text(point.distance_m) + ": " +
                             (point.nodata ? std::string("no data")
-                                           : explore::fixed_text(point.height_m, 1) + " m, slope " +
-                                                 explore::fixed_text(point.slope_deg, 1) + "\u00b0"))
+                                          : explore::fixed_text(point.height_m, 1) + " m, slope " +
+                                                explore::fixed_text(point.slope_deg, 1) + "\u00b0"))
                                .c_str());
     ImGui::TextUnformatted(coordinates(point.place).c_str());
   } else {

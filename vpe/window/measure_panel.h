@@ -30,7 +30,8 @@ class MeasurePanel {
 
   // Inside the tab "Measure". The place under the cursor, in view or map; nothing where there is none: then the
   // last one stays.
-  MeasureActions draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor, Widgets& widgets);
+  MeasureActions draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
+                      Widgets& widgets);
 
   // Another point of the way. Places that are none are ignored.
   void add(mars::LonLat place);

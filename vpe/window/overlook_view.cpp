@@ -187,7 +187,8 @@ void OverlookView::set_fov(double fov_deg) {
 }
 
 bool OverlookView::is_at_rest() const {
-  return maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting && !turns_ && !is_new_ && !save_due_;
+  return maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting && !turns_ && !is_new_ &&
+         !save_due_;
 }
 
 bool OverlookView::update(double wait_s) {

@@ -33,8 +33,8 @@
 #include "vpe/explore/live_image.h"
 #include "vpe/overlay/compass.h"
 #include "vpe/window/display.h"
-#include "vpe/window/painter.h"
 #include "vpe/window/image_maker.h"
+#include "vpe/window/painter.h"
 #include "vpe/window/view_area.h"
 
 namespace vpe::window {
@@ -54,8 +54,8 @@ struct OverlookSetup {
   std::optional<panorama::Direction> look;                   // to begin with; the middle when left out
   double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;  // vertical, of one eye
   std::optional<core::StereoLayout> stereo;                  // only with a pair
-  double budget_ms = 40;           // of an image while the view moves; 0: always full images
-  bool invert_wheel = false;       // rolling away zooms out
+  double budget_ms = 40;         // of an image while the view moves; 0: always full images
+  bool invert_wheel = false;     // rolling away zooms out
   std::filesystem::path images;  // folder of saved views
 };
 

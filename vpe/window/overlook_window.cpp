@@ -14,9 +14,9 @@ using Clock = std::chrono::steady_clock;
 using explore::ActionKind;
 
 constexpr double kShortestFrame_s = 1.0 / 120;
-constexpr double kPoll_s = 1.0 / 60;    // of devices that send no events
-constexpr double kImageWait_s = 0.1;  // for which a frame waits for its image
-constexpr int kFramesAfterChange = 3;   // ImGui settles within so many
+constexpr double kPoll_s = 1.0 / 60;   // of devices that send no events
+constexpr double kImageWait_s = 0.1;   // for which a frame waits for its image
+constexpr int kFramesAfterChange = 3;  // ImGui settles within so many
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 

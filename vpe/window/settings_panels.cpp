@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "lod/tree/posts.h"
-#include "vpe/core/appearance/inspect.h"
 #include "vpe/base/number.h"
+#include "vpe/core/appearance/inspect.h"
 #include "vpe/window/explore_window.h"
 #include "vpe/window/words.h"
 

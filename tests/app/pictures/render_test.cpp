@@ -3,9 +3,9 @@
 
 #include "mars/geodesy/mars_time.h"
 #include "tests/app/support/app_fixture.h"
+#include "vpe/base/number.h"
 #include "vpe/core/frame.h"
 #include "vpe/core/image/image.h"
-#include "vpe/base/number.h"
 #include "vpe/gl/context.h"
 
 namespace app_test {
@@ -149,7 +149,7 @@ TEST_F(Render, TheSunOfADateOrASeason) {
       mars::sun_place(below, mars::direction({time.subsolar_lon_deg, time.subsolar_lat_deg}));
   const auto dated = panorama_image({"--sun", "2026-11-20T14:00+02:00"});
   const auto put = panorama_image({"--set", "sun.azimuth=" + vpe::base::format_number(at.azimuth_deg), "--set",
-                            "sun.elevation=" + vpe::base::format_number(at.elevation_deg)});
+                                   "sun.elevation=" + vpe::base::format_number(at.elevation_deg)});
   ASSERT_EQ(dated.size(), put.size());
   for (std::size_t n = 0; n < put.size(); ++n) ASSERT_NEAR(dated[n].r, put[n].r, 1) << n;
   EXPECT_GT(brightness(dated), 1.3 * brightness(night));

@@ -14,8 +14,8 @@
 #include "lod/control.h"
 #include "lod/frame_budget.h"
 #include "lod/mesh/mesh.h"
-#include "lod/tree/posts.h"
 #include "lod/off_axis_magnification.h"
+#include "lod/tree/posts.h"
 #include "mars/geodesy/pose.h"
 #include "panorama/projection.h"
 #include "scripts/path.h"
@@ -59,8 +59,8 @@ vpe::core::View random_view() {
   view.width = integer(10, 4000);
   view.height = integer(10, 3000);
   view.camera = mars::to_camera({at.lon_deg, at.lat_deg, std::exp(uniform(-2, 17)), uniform(-180, 180),
-                           uniform(-90, 90), uniform(-180, 180)},
-                          mars::kMarsRadius_m);
+                                 uniform(-90, 90), uniform(-180, 180)},
+                                mars::kMarsRadius_m);
   return view;
 }
 
@@ -80,7 +80,8 @@ void planet(int n) {
   const double alt_m = std::exp(uniform(-3, 18));
   print("horizon", n, {mars::horizon_dip_rad(alt_m, 3.4e6), mars::horizon_distance_m(alt_m, 3.4e6)});
   const mars::Pose pose{a.lon_deg, a.lat_deg, alt_m, uniform(-400, 400), uniform(-90, 90), uniform(-200, 200)};
-  const mars::CameraPose camera = mars::to_camera(pose, {uniform(-90, 90), uniform(-90, 90), 3}, mars::kMarsRadius_m);
+  const mars::CameraPose camera =
+      mars::to_camera(pose, {uniform(-90, 90), uniform(-90, 90), 3}, mars::kMarsRadius_m);
   print("eye", n, camera.position_m);
   print("eye forward", n, camera.axes.forward);
   print("eye up", n, camera.axes.up);
@@ -161,7 +162,8 @@ void ground(int n) {
   const std::vector<double> heights{posts.at(0, 0), posts.at(16, 0), posts.at(16, 16), posts.at(0, 16)};
   const lod::ErrorTerms terms = lod::measure_error(key, mesh, heights, posts, radius_m);
   print("error", n,
-        {terms.height_error_m, terms.sagitta_m, terms.total_m, lod::error_bound(terms, 3.7, -5000, 8000, radius_m)});
+        {terms.height_error_m, terms.sagitta_m, terms.total_m,
+         lod::error_bound(terms, 3.7, -5000, 8000, radius_m)});
 }
 
 void light(int n) {

@@ -90,8 +90,7 @@ void FilmFolder::prepare() {
 void FilmFolder::add(std::int64_t /*group*/, FilmFrame& frame, const core::Frame& image) {
   const std::vector<core::PngText> texts{{kFingerprintKey, frame.fingerprint},
                                          {kFiguresKey, to_json(frame.figures).dump()}};
-  const auto bytes =
-      core::with_png_text(core::encode_png(image.colour, image.width, image.height), texts);
+  const auto bytes = core::with_png_text(core::encode_png(image.colour, image.width, image.height), texts);
   write_whole(folder_ / frame_file_name(frame.index), bytes);
   frame.checksum = checksum_of(bytes);
   frame.state = FilmFrame::State::kMade;

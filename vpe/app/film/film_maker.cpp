@@ -5,8 +5,8 @@
 #include <new>
 #include <utility>
 
-#include "vpe/app/film/frame_sink.h"
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/film/frame_sink.h"
 
 namespace vpe::app {
 

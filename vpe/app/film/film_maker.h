@@ -10,11 +10,11 @@
 
 #include "scripts/log.h"
 #include "scripts/stats.h"
+#include "vpe/app/cli/progress.h"
 #include "vpe/app/film/film_plan.h"
 #include "vpe/app/film/film_target.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/cli/progress.h"
 
 namespace vpe::app {
 

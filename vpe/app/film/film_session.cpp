@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <new>
 
-#include "vpe/app/film/film_folder.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
+#include "vpe/app/film/film_folder.h"
 
 namespace vpe::app {
 

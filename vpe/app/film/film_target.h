@@ -8,8 +8,8 @@
 #include <span>
 
 #include "vpe/app/film/film_frame.h"
-#include "vpe/core/frame.h"
 #include "vpe/base/parallel.h"
+#include "vpe/core/frame.h"
 
 namespace vpe::app {
 

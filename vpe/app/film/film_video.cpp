@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "vpe/app/cli/digest.h"
-#include "vpe/app/film/film_manifest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/temporary.h"
+#include "vpe/app/film/film_manifest.h"
 #include "vpe/base/file.h"
 
 namespace vpe::app {

@@ -10,15 +10,15 @@
 #include <sstream>
 
 #include "paging/surface/surface.h"
-#include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/app/film/film_session.h"
 #include "vpe/app/film/flight_file.h"
-#include "vpe/app/cli/interrupt.h"
-#include "vpe/app/cli/output.h"
+#include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
-#include "vpe/app/cli/json_output.h"
 #include "vpe/gl/context.h"
 
 namespace vpe::app {
@@ -140,8 +140,7 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   const std::int64_t looked = std::min(count, kMostLooked);
   std::vector<core::DrawRequest> images;
-  for (std::int64_t k = 0; k < looked; ++k)
-    images.push_back(films.front().plan.at(k * count / looked).request);
+  for (std::int64_t k = 0; k < looked; ++k) images.push_back(films.front().plan.at(k * count / looked).request);
   const BackendChoice rays = choose_backend(image, base, images, planet.radius_m(), false);
   if (rays.backend != kRayBackend) return films;
   films.push_back(plan_of(rays));

@@ -8,17 +8,17 @@
 #include <memory>
 #include <optional>
 
-#include "vpe/app/panorama/horizon_files.h"
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/picture/image_options.h"
-#include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/progress.h"
-#include "vpe/app/cli/json_output.h"
+#include "vpe/app/panorama/horizon_files.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
-#include "vpe/core/appearance/gazetteer.h"
 #include "vpe/base/number.h"
+#include "vpe/core/appearance/gazetteer.h"
 #include "vpe/voxel/cast/range_caster.h"
 
 namespace vpe::app {
@@ -46,7 +46,7 @@ constexpr double kLeastHeight_m = 0.001;
 // The image that finds where to look: as wide as there are azimuths, within these.
 constexpr double kLeastColumns = 720;
 constexpr double kMostColumns = 14400;
-constexpr int kRows = 1800;            // a tenth of a degree each
+constexpr int kRows = 1800;          // a tenth of a degree each
 constexpr double kImageShare = 0.3;  // of the work, about
 
 bool is_full_turn(const HorizonArguments& a) { return a.to_deg - a.from_deg >= 360.0; }
@@ -97,7 +97,7 @@ struct DrawnImage {
 };
 
 DrawnImage cast_image(const voxel::RangeCaster& caster, const HorizonArguments& a, const mars::Pose& pose,
-                     base::ThreadPool& pool) {
+                      base::ThreadPool& pool) {
   DrawnImage out;
   core::View& view = out.view;
   view.projection = core::Projection::kEquirectangular;
@@ -119,8 +119,8 @@ DrawnImage cast_image(const voxel::RangeCaster& caster, const HorizonArguments& 
   return out;
 }
 
-std::vector<panorama::GroundPoint> trace(const panorama::SkylineCamera& viewer, const std::vector<double>& azimuths,
-                                         const panorama::RangeImage& image,
+std::vector<panorama::GroundPoint> trace(const panorama::SkylineCamera& viewer,
+                                         const std::vector<double>& azimuths, const panorama::RangeImage& image,
                                          const panorama::GroundRange& range, base::ThreadPool& pool,
                                          ProgressLine& progress) {
   constexpr std::size_t kPieces = 50;
@@ -160,13 +160,15 @@ struct Viewer {
 Viewer viewer_of(const HorizonArguments& a, const paging::Surface& surface) {
   const mars::LonLat place = place_of(a);
   const double ground_m = surface.at(mars::direction(place)).height_m;
-  Viewer viewer{{place.lon_deg, place.lat_deg, 0, 0, 0, 0}, a.height_m ? *a.height_m : *a.altitude_m - ground_m};
+  Viewer viewer{{place.lon_deg, place.lat_deg, 0, 0, 0, 0},
+                a.height_m ? *a.height_m : *a.altitude_m - ground_m};
   viewer.pose.alt_m = a.altitude_m ? *a.altitude_m : ground_m + viewer.height_m;
   if (viewer.height_m < kLeastHeight_m) {
-    throw std::runtime_error(
-        "the eye at " + a.at + " is " + short_number(viewer.height_m, 0.01) + " m above the ground, which lies " +
-        short_number(ground_m, 0.01) + " m above the sphere there; put it at least " +
-        base::format_number(kLeastHeight_m) + " m above the ground (--height, --altitude)");
+    throw std::runtime_error("the eye at " + a.at + " is " + short_number(viewer.height_m, 0.01) +
+                             " m above the ground, which lies " + short_number(ground_m, 0.01) +
+                             " m above the sphere there; put it at least " +
+                             base::format_number(kLeastHeight_m) +
+                             " m above the ground (--height, --altitude)");
   }
   return viewer;
 }
@@ -184,7 +186,9 @@ void horizon(const HorizonArguments& a, const Common& common) {
   const auto [pose, height_m] = viewer_of(a, surface);
   const mars::LonLat place{pose.lon_deg, pose.lat_deg};
   const panorama::SkylineCamera viewer = panorama::skyline_camera(place, pose.alt_m, planet->radius_m());
-  const panorama::GroundRange range = [&](const glm::dvec3& ray) { return surface.cast(viewer.position_m, ray); };
+  const panorama::GroundRange range = [&](const glm::dvec3& ray) {
+    return surface.cast(viewer.position_m, ray);
+  };
   base::ThreadPool pool(common.threads);
 
   std::vector<panorama::GroundPoint> points;

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "vpe/app/cli/output.h"
 #include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/output.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "panorama/metadata/open_panorama.h"
 #include "panorama/image/tiled_image.h"
+#include "panorama/metadata/open_panorama.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
 #include "vpe/core/view.h"

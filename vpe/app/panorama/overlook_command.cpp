@@ -7,15 +7,15 @@
 
 #include "panorama/viewer/viewer.h"
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/panorama/panorama_viewer.h"
-#include "vpe/app/panorama/open_stereo.h"
+#include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/panorama/overlook_places.h"
-#include "vpe/app/picture/image_options.h"
-#include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/progress.h"
-#include "vpe/app/cli/json_output.h"
+#include "vpe/app/panorama/open_stereo.h"
+#include "vpe/app/panorama/overlook_places.h"
+#include "vpe/app/panorama/panorama_viewer.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/heap.h"
 #include "vpe/base/number.h"
 #include "vpe/core/stereo.h"
@@ -170,8 +170,9 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   for (const ShownPlace& place : places) json["places"].push_back(to_json(place));
 
   if (in_window) {
-    PanoramaViewer request{files_of(arguments), {}, arguments.fov_deg, core::parse_stereo(arguments.stereo), size,
-                       arguments.scale};
+    PanoramaViewer request{
+        files_of(arguments), {}, arguments.fov_deg, core::parse_stereo(arguments.stereo), size,
+        arguments.scale};
     if (arguments.view) request.look = parse_direction("--view", *arguments.view);
     const panorama::Viewer viewer = view_panorama(request, common);
     json["view"] = describe_view(viewer, viewer.size().x, viewer.size().y);

@@ -9,17 +9,17 @@
 #include "paging/surface/surface.h"
 #include "panorama/metadata/sidecar.h"
 #include "vpe/app/cli/digest.h"
-#include "vpe/app/picture/fingerprint.h"
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/panorama/panorama_maker.h"
 #include "vpe/app/panorama/panorama_request.h"
 #include "vpe/app/panorama/panorama_stereo.h"
+#include "vpe/app/picture/fingerprint.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
-#include "vpe/app/cli/json_output.h"
 #include "vpe/base/number.h"
 
 namespace vpe::app {
@@ -45,7 +45,8 @@ struct TerrainQuery {
   double height_m = 0;
 };
 
-TerrainQuery ground_below(const std::shared_ptr<const paging::PlanetFile>& planet, const PanoramaRecipe& recipe) {
+TerrainQuery ground_below(const std::shared_ptr<const paging::PlanetFile>& planet,
+                          const PanoramaRecipe& recipe) {
   const paging::Surface surface(planet, std::size_t{8} << 20);
   const glm::dvec3 direction = mars::direction({recipe.camera.lon_deg, recipe.camera.lat_deg});
   return {surface.at(direction, recipe.settings.values().exaggeration).height_m,
@@ -69,8 +70,9 @@ std::string sidecar_text(const PanoramaOrder& order, const PanoramaJob& job, con
   sidecar.image = job.output.filename().string();
   sidecar.map = job.map;
   const mars::Pose& camera = order.recipe.camera;
-  sidecar.viewpoint = panorama::Viewpoint{mars::normalize_lon_deg(camera.lon_deg), camera.lat_deg,     camera.alt_m,
-                                      camera.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
+  sidecar.viewpoint =
+      panorama::Viewpoint{mars::normalize_lon_deg(camera.lon_deg), camera.lat_deg,  camera.alt_m,
+                          camera.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
   auto json = nlohmann::ordered_json::parse(panorama::to_json(sidecar));
   if (const auto& eyes = order.recipe.stereo) {
     if (eyes->layout != core::StereoLayout::kAnaglyph) json["stereo"] = core::to_string(eyes->layout);

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "panorama/image/big_tiff.h"
-#include "panorama/metadata/gpano.h"
 #include "panorama/image/row_file.h"
 #include "panorama/image/tile_codec.h"
+#include "panorama/metadata/gpano.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/temporary.h"
 #include "vpe/base/file.h"
@@ -88,9 +88,8 @@ void copy_rows(panorama::RowWriter& writer, const PanoramaJob& job,
   writer.finish();
 }
 
-void write_image(base::OutputFile& file, const PanoramaJob& job,
-                   const std::vector<panorama::StripFile>& strips, base::ThreadPool& pool,
-                   const std::function<void(double)>& done) {
+void write_image(base::OutputFile& file, const PanoramaJob& job, const std::vector<panorama::StripFile>& strips,
+                 base::ThreadPool& pool, const std::function<void(double)>& done) {
   const panorama::ImageSize& size = job.size;
   const std::string packet = packet_of(job);
   if (job.format != PanoramaFormat::kTiff) {

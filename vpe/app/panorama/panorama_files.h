@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "panorama/image/strip_file.h"
 #include "panorama/planes.h"
 #include "panorama/projection.h"
 #include "panorama/stereo_pieces.h"
-#include "panorama/image/strip_file.h"
 #include "vpe/base/parallel.h"
 
 namespace vpe::app {
@@ -52,10 +52,10 @@ StripLayout layout_of(PanoramaFormat format, std::int64_t height_px, const panor
 struct PanoramaJob {
   std::filesystem::path output;
   PanoramaFormat format = PanoramaFormat::kTiff;
-  panorama::PanoramaMap map;   // of one eye
-  panorama::ImageSize size;  // of the file
-  bool is_red_cyan = false;    // two eyes in one image
-  bool has_gpano = false;      // where GPano can describe the map
+  panorama::PanoramaMap map;  // of one eye
+  panorama::ImageSize size;   // of the file
+  bool is_red_cyan = false;   // two eyes in one image
+  bool has_gpano = false;     // where GPano can describe the map
   std::vector<panorama::Strip> strips;
   std::vector<panorama::Plane> planes;
   std::string software;

@@ -11,8 +11,8 @@
 #include "panorama/image/tile_codec.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/picture/image_options.h"
 #include "vpe/app/cli/temporary.h"
+#include "vpe/app/picture/image_options.h"
 
 namespace vpe::app {
 
@@ -350,7 +350,7 @@ void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& 
 }
 
 void PanoramaMaker::add_image(panorama::StripWriter& writer, const StripLayout& layout,
-                                const Canvas& canvas) const {
+                              const Canvas& canvas) const {
   if (!layout.in_tiles) {
     for (std::int64_t band = 0; band < layout.bands; ++band) {
       const std::size_t begin = canvas.index(0, band * StripLayout::kBandRows);

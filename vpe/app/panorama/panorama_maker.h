@@ -8,10 +8,10 @@
 
 #include "paging/surface/surface.h"
 #include "panorama/panorama_plan.h"
+#include "vpe/app/cli/progress.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/panorama/panorama_overlays.h"
 #include "vpe/app/panorama/panorama_recipe.h"
-#include "vpe/app/cli/progress.h"
 #include "vpe/core/frame.h"
 
 namespace vpe::app {

@@ -17,14 +17,16 @@ namespace vpe::app {
 namespace {
 
 // Names that nothing hides, where the camera sees them.
-std::vector<overlay::PanoramaName> seen_names(const PanoramaRecipe& recipe, const std::vector<core::Place>& places,
-                                          const std::shared_ptr<const paging::PlanetFile>& planet,
-                                          std::size_t memory_bytes, base::ThreadPool& pool) {
+std::vector<overlay::PanoramaName> seen_names(const PanoramaRecipe& recipe,
+                                              const std::vector<core::Place>& places,
+                                              const std::shared_ptr<const paging::PlanetFile>& planet,
+                                              std::size_t memory_bytes, base::ThreadPool& pool) {
   const paging::Surface surface(planet, memory_bytes);
   const double exaggeration = recipe.settings.values().exaggeration;
   const double radius_m = planet->radius_m();
   const mars::Pose& pose = recipe.camera;
-  const panorama::SkylineCamera camera = panorama::skyline_camera({pose.lon_deg, pose.lat_deg}, pose.alt_m, radius_m);
+  const panorama::SkylineCamera camera =
+      panorama::skyline_camera({pose.lon_deg, pose.lat_deg}, pose.alt_m, radius_m);
   const double highest_m = radius_m + exaggeration * (planet->meta().highest_radius_m - radius_m);
   const double within_m = panorama::farthest_sight_m(radius_m + pose.alt_m,
                                                      planet->tree().lowest_radius_m(exaggeration), highest_m);

@@ -9,8 +9,8 @@
 #include "paging/planet/planet_file.h"
 #include "panorama/projection.h"
 #include "vpe/app/panorama/panorama_recipe.h"
-#include "vpe/core/appearance/gazetteer.h"
 #include "vpe/base/parallel.h"
+#include "vpe/core/appearance/gazetteer.h"
 #include "vpe/overlay/sprites.h"
 
 namespace vpe::app {

@@ -116,7 +116,8 @@ nlohmann::ordered_json to_json(const PanoramaRecipe& recipe) {
   nlohmann::ordered_json out;
   out["planet"] = {{"file", recipe.planet}, {"identity", recipe.identity}};
   out["backend"] = recipe.backend;
-  out["eye"] = {{"lon_deg", recipe.camera.lon_deg}, {"lat_deg", recipe.camera.lat_deg}, {"alt_m", recipe.camera.alt_m}};
+  out["eye"] = {
+      {"lon_deg", recipe.camera.lon_deg}, {"lat_deg", recipe.camera.lat_deg}, {"alt_m", recipe.camera.alt_m}};
   out["plan"] = plan_json(recipe.plan);
   std::string planes;
   for (const panorama::Plane plane : recipe.planes)

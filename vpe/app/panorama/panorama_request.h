@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "vpe/app/cli/program.h"
 #include "vpe/app/panorama/panorama_recipe.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/cli/program.h"
 #include "vpe/app/picture/stereo_render.h"
 
 namespace vpe::app {

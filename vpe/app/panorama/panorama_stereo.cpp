@@ -96,7 +96,8 @@ void require_eyes_above_ground(const PanoramaRecipe& recipe, const paging::Surfa
     // The left eye of an azimuth is the right one of the opposite.
     const double azimuth_deg = 360.0 * n / kAzimuths;
     const glm::dvec2 place_m = panorama::eye_place_m(panorama::Eye::kRight, azimuth_deg, base_m);
-    const glm::dvec3 camera_m = middle.position_m + place_m.x * middle.axes.right + place_m.y * middle.axes.forward;
+    const glm::dvec3 camera_m =
+        middle.position_m + place_m.x * middle.axes.right + place_m.y * middle.axes.forward;
     const double above_m =
         glm::length(camera_m) - surface.at(camera_m, recipe.settings.values().exaggeration).radius_m;
     if (above_m >= clearance_m) continue;

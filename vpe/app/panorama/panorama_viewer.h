@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "panorama/viewer/viewer.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/app/panorama/open_stereo.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/cli/program.h"
 #include "vpe/core/stereo.h"
 
 namespace vpe::app {

@@ -30,8 +30,9 @@ core::Settings within_tolerance(core::Settings settings, const RenderOptions& op
 bool suits_rays(const core::DrawRequest& request) {
   const core::SettingsValues& values = request.settings;
   const core::SettingsValues defaults;
-  return voxel::why_not(request).empty() && request.interest.empty() && values.lod_metric == defaults.lod_metric &&
-         values.lod_triangles == 0 && values.shading == defaults.shading && values.lod_centre_weight == 0;
+  return voxel::why_not(request).empty() && request.interest.empty() &&
+         values.lod_metric == defaults.lod_metric && values.lod_triangles == 0 &&
+         values.shading == defaults.shading && values.lod_centre_weight == 0;
 }
 
 BackendChoice choose_backend(const RenderOptions& options, const core::Settings& settings,

@@ -7,18 +7,18 @@
 #include <optional>
 
 #include "paging/surface/surface.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
-#include "vpe/app/cli/output.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
-#include "vpe/app/cli/json_output.h"
 #include "vpe/app/picture/stereo_render.h"
-#include "vpe/core/image/image.h"
-#include "vpe/core/appearance/inspect.h"
+#include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
+#include "vpe/core/appearance/inspect.h"
+#include "vpe/core/image/image.h"
 #include "vpe/gl/context.h"
 
 namespace vpe::app {
@@ -125,15 +125,13 @@ void render_stereo(const RenderArguments& arguments, const Common& common, const
                                     {"right", nlohmann::json::parse(core::to_json(drawn.right.certificate))}};
   if (!arguments.certificate.empty()) base::write_file(arguments.certificate, certificates.dump(1) + "\n");
   if (common.json) {
-    print_json(
-        {{"output", arguments.output},
-         {"backend", arguments.drawn.backend},
-         {"eye_base_m", drawn.eye_base_m},
-         {"certificate", certificates},
-         {"stats", {{"left", stats_json(drawn.left.stats)}, {"right", stats_json(drawn.right.stats)}}}});
+    print_json({{"output", arguments.output},
+                {"backend", arguments.drawn.backend},
+                {"eye_base_m", drawn.eye_base_m},
+                {"certificate", certificates},
+                {"stats", {{"left", stats_json(drawn.left.stats)}, {"right", stats_json(drawn.right.stats)}}}});
   } else if (!common.quiet) {
-    std::printf("%s: eyes %.4g m apart, geometry within %.2f px\n", arguments.output.c_str(),
-                drawn.eye_base_m,
+    std::printf("%s: eyes %.4g m apart, geometry within %.2f px\n", arguments.output.c_str(), drawn.eye_base_m,
                 std::max(drawn.left.certificate.shift_bound_px, drawn.right.certificate.shift_bound_px));
   }
 }
@@ -156,7 +154,8 @@ void print_summary(const RenderArguments& arguments, const core::DrawRequest& re
     what = base::format_number(static_cast<double>(size.x) * size.y * request.settings.samples) + " rays";
   }
   std::printf("%s: %s in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(), what.c_str(),
-              result.stats.tiles_drawn, result.certificate.shift_bound_px, result.certificate.geometric_error_m);
+              result.stats.tiles_drawn, result.certificate.shift_bound_px,
+              result.certificate.geometric_error_m);
 }
 
 void render(RenderArguments& arguments, const Common& common) {
@@ -168,7 +167,8 @@ void render(RenderArguments& arguments, const Common& common) {
   request.view.height = size.height;
   request.view.fov_deg = arguments.fov_deg;
   request.interest = parse_interest(arguments.drawn);
-  request.view.camera = mars::to_camera(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
+  request.view.camera =
+      mars::to_camera(parse_pose(arguments, [](mars::LonLat) { return 0.0; }), mars::kMarsRadius_m);
   require_valid(request.view);
   if (const auto other = cull_view(arguments.cull_from, request.view, mars::kMarsRadius_m))
     require_valid(*other);

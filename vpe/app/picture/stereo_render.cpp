@@ -57,7 +57,7 @@ void check_stereo(const StereoArguments& arguments) {
 }
 
 StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
-                          const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
+                        const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
   StereoImage drawn;
   drawn.eye_base_m = arguments.eye_base_m > 0 ? arguments.eye_base_m : base_of_view(request, draw);
   std::optional<double> convergence_m;
@@ -66,8 +66,7 @@ StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawReques
     core::DrawRequest eye = request;
     eye.view = core::eye_aside(request.view, aside_m, convergence_m);
     if (const std::string trouble = core::check(eye.view); !trouble.empty())
-      throw UsageError("--stereo with eyes " + base::format_number(drawn.eye_base_m) +
-                       " m apart: " + trouble);
+      throw UsageError("--stereo with eyes " + base::format_number(drawn.eye_base_m) + " m apart: " + trouble);
     return draw(eye);
   };
   drawn.left = draw_eye(-0.5 * drawn.eye_base_m);

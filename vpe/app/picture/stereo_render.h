@@ -36,6 +36,6 @@ struct StereoImage {
 // included. Without a base it draws the range from the middle first. Throws std::runtime_error when that shows
 // sky alone.
 StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
-                          const std::function<core::DrawResult(const core::DrawRequest&)>& draw);
+                        const std::function<core::DrawResult(const core::DrawRequest&)>& draw);
 
 }  // namespace vpe::app

@@ -4,11 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "vpe/app/cli/program.h"
 #include "vpe/app/planet/build_sources.h"
-#include "vpe/app/planet/shard_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/planet/planet_build.h"
-#include "vpe/app/cli/program.h"
+#include "vpe/app/planet/shard_option.h"
 
 namespace vpe::app {
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "mars/sources/adjusted.h"
 #include "mars/geodesy/bodies.h"
+#include "mars/sources/adjusted.h"
 #include "vpe/base/number.h"
 
 namespace vpe::app {
@@ -166,7 +166,8 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
 }
 
 void say_findings(const mars::Combined& combined) {
-  for (const std::string& checkpoint : combined.notes) std::fprintf(stderr, "vpe: note: %s\n", checkpoint.c_str());
+  for (const std::string& checkpoint : combined.notes)
+    std::fprintf(stderr, "vpe: note: %s\n", checkpoint.c_str());
   for (const mars::CombineFinding& f : combined.findings) {
     if (f.level) {
       std::fprintf(

@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include "paging/surface/query.h"
-#include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/program.h"
 #include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/program.h"
+#include "vpe/app/planet/planet_argument.h"
 
 namespace vpe::app {
 

@@ -5,8 +5,8 @@
 
 #include "paging/build/merge.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/planet/planet_build.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/planet/planet_build.h"
 
 namespace vpe::app {
 

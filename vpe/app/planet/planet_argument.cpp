@@ -84,7 +84,8 @@ std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const 
 
 fs::path cache_folder() {
   const fs::path folder = base::user_folder(base::UserFolder::kCache);
-  if (folder.empty()) throw std::runtime_error("no cache folder: set HOME or XDG_CACHE_HOME to an absolute path");
+  if (folder.empty())
+    throw std::runtime_error("no cache folder: set HOME or XDG_CACHE_HOME to an absolute path");
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(folder.string() + ": cannot make the cache folder: " + error.message());

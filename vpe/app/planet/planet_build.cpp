@@ -4,12 +4,12 @@
 #include <filesystem>
 
 #include "mars/raster/raster_memory.h"
-#include "vpe/app/planet/build_sources.h"
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/cli/output.h"
-#include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/progress.h"
 #include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/output.h"
+#include "vpe/app/cli/progress.h"
+#include "vpe/app/planet/build_sources.h"
+#include "vpe/app/planet/planet_argument.h"
 
 namespace vpe::app {
 

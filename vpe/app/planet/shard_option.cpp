@@ -87,8 +87,6 @@ Shard parse_shard(const std::string& text, const Environment& environment) {
   return {*number, *of};
 }
 
-Shard parse_shard(const std::string& text) {
-  return parse_shard(text, base::process_environment());
-}
+Shard parse_shard(const std::string& text) { return parse_shard(text, base::process_environment()); }
 
 }  // namespace vpe::app

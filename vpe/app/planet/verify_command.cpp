@@ -6,9 +6,9 @@
 
 #include "paging/planet/verify.h"
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/progress.h"
-#include "vpe/app/cli/json_output.h"
 
 namespace vpe::app {
 

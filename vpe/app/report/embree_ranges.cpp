@@ -156,7 +156,8 @@ class EmbreeRenderer : public core::Renderer {
       for (int n = 0; n < 16; ++n) {
         const double across = (x0 + n % kBlock + 0.5 - centre.x) / focal;
         const double up = (centre.y - (y0 + n / kBlock + 0.5)) / focal;
-        const glm::dvec3 d = across * view.camera.axes.right + up * view.camera.axes.up + view.camera.axes.forward;
+        const glm::dvec3 d =
+            across * view.camera.axes.right + up * view.camera.axes.up + view.camera.axes.forward;
         packet.ray.dir_x[n] = static_cast<float>(d.x);
         packet.ray.dir_y[n] = static_cast<float>(d.y);
         packet.ray.dir_z[n] = static_cast<float>(d.z);

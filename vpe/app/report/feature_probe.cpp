@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "paging/surface/surface.h"
+#include "vpe/app/cli/json_output.h"
+#include "vpe/app/cli/processor_time.h"
 #include "vpe/app/cli/subprocess.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/processor_time.h"
-#include "vpe/app/cli/json_output.h"
 #include "vpe/report/interleaved_timing.h"
 
 namespace vpe::app {
@@ -45,7 +45,7 @@ core::View feature_view(const std::string& pose, const std::string& size,
   core::View view;
   view.camera =
       mars::to_camera({place.lon_deg, place.lat_deg, ground_m + (*numbers)[2], (*numbers)[3], (*numbers)[4], 0},
-                   planet->radius_m());
+                      planet->radius_m());
   view.width = pixels.width;
   view.height = pixels.height;
   return view;
@@ -86,26 +86,26 @@ void run_probe(const ProbeRequest& order) {
 report::SceneCost probe(const ProbeRequest& order) {
   const double begin_s = report::wall_clock()();
   Subprocess child({order.program,
-               "report",
-               "features",
-               "--probe",
-               order.scene,
-               "--backend",
-               order.backend,
-               "--pose",
-               order.pose,
-               "--size",
-               order.size,
-               "--memory",
-               std::to_string(order.memory_mb),
-               "--threads",
-               std::to_string(order.threads),
-               "--frames",
-               std::to_string(order.frames),
-               "--statistics",
-               order.statistics_file,
-               "--",
-               order.planet});
+                    "report",
+                    "features",
+                    "--probe",
+                    order.scene,
+                    "--backend",
+                    order.backend,
+                    "--pose",
+                    order.pose,
+                    "--size",
+                    order.size,
+                    "--memory",
+                    std::to_string(order.memory_mb),
+                    "--threads",
+                    std::to_string(order.threads),
+                    "--frames",
+                    std::to_string(order.frames),
+                    "--statistics",
+                    order.statistics_file,
+                    "--",
+                    order.planet});
   if (!child.finish()) {
     throw std::runtime_error(order.program + " could not draw the scene '" + order.scene +
                              "': " + child.stderr_text());

@@ -15,7 +15,7 @@
 namespace vpe::app {
 
 struct FeaturePlan {
-  ProbeRequest order;     // but for program, scene and backend
+  ProbeRequest order;   // but for program, scene and backend
   std::string against;  // another program; empty: none
   int rounds = 9;       // of frames
   int starts = 3;       // of each process

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "vpe/app/cli/output.h"
-#include "vpe/app/report/report_folder.h"
-#include "vpe/app/report/report_commands.h"
 #include "vpe/app/cli/temporary.h"
+#include "vpe/app/report/report_commands.h"
+#include "vpe/app/report/report_folder.h"
 
 namespace vpe::app {
 

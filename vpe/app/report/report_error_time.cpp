@@ -4,17 +4,17 @@
 #include <memory>
 #include <stdexcept>
 
-#include "vpe/app/report/embree_ranges.h"
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
+#include "vpe/app/cli/progress.h"
+#include "vpe/app/cli/temporary.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/progress.h"
-#include "vpe/app/cli/json_output.h"
+#include "vpe/app/report/embree_ranges.h"
+#include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_error_time_configurations.h"
 #include "vpe/app/report/report_folder.h"
-#include "vpe/app/report/report_commands.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/base/number.h"
 #include "vpe/base/parallel.h"
 #include "vpe/gl/polygon_renderer.h"
@@ -119,7 +119,8 @@ void warn_of_false_statements(const std::vector<report::SubjectResult>& results)
       if (m.within_stated()) continue;
       std::fprintf(stderr, "vpe: warning: %s, %s, %s: a shift of %s px, but the certificate states %s px\n",
                    result.subject.view.c_str(), result.subject.configurations[k].sweep.c_str(),
-                   result.subject.configurations[k].knob.c_str(), base::format_number(m.shift.forward.max_px).c_str(),
+                   result.subject.configurations[k].knob.c_str(),
+                   base::format_number(m.shift.forward.max_px).c_str(),
                    base::format_number(*m.stated_px).c_str());
     }
   }

@@ -62,7 +62,7 @@ class Planner {
 
  private:
   report::Configuration& add(const std::string& sweep, const std::string& knob, const char* renderer,
-                   std::vector<core::DrawRequest> requests) {
+                             std::vector<core::DrawRequest> requests) {
     report::Configuration configuration;
     configuration.sweep = sweep;
     configuration.knob = knob;
@@ -75,7 +75,7 @@ class Planner {
 
   // An image of the view itself, by these settings.
   report::Configuration& add_image(const std::string& sweep, const char* renderer, const Words& settings,
-                           const std::string& knob = "") {
+                                   const std::string& knob = "") {
     report::Configuration& configuration =
         add(sweep, knob.empty() ? join(settings) : knob, renderer, {with(base_, settings, view_.pose)});
     configuration.comparison_group = configuration.plot = kGeometry;
@@ -96,17 +96,17 @@ class Planner {
     add_image("rays, exact", kRayImages, {}, "rays.mode=exact").is_default = true;
     if (!options_.is_short) add_image("rays, plain", kRayImages, {"rays.mode=plain"}).most_rounds = 1;
     for (const double cell : values(core::RayLimits::kMostCell_px, core::RayLimits::kLeastCell_px, 8)) {
-      report::Configuration& configuration = add_image("rays by cell", kRayImages,
-                                     {"rays.mode=multires", "rays.cell=" + base::format_number(cell)},
-                                     "rays.cell=" + base::format_number(cell));
+      report::Configuration& configuration = add_image(
+          "rays by cell", kRayImages, {"rays.mode=multires", "rays.cell=" + base::format_number(cell)},
+          "rays.cell=" + base::format_number(cell));
       configuration.is_chosen = chosen_ == kRayBackend && cell == core::SettingsValues().lod_tolerance_px;
     }
   }
 
   void add_tolerances() {
     for (const double tolerance : values(64, 0.0625, 8)) {
-      report::Configuration& configuration = add_image("triangles by tolerance", kTriangles,
-                                     {"lod.tolerance=" + base::format_number(tolerance)});
+      report::Configuration& configuration =
+          add_image("triangles by tolerance", kTriangles, {"lod.tolerance=" + base::format_number(tolerance)});
       configuration.colour_plot = kTexture;
       configuration.is_default = tolerance == core::SettingsValues().lod_tolerance_px;
       configuration.is_chosen = configuration.is_default && chosen_ == kPolygonBackend;
@@ -167,12 +167,14 @@ class Planner {
       const std::string sweep = std::string(renderer) + " by resolution";
       const int step = options_.is_short ? 4 : 2;
       for (int times = options_.is_short ? 16 : 32; times > 1; times /= step) {
-        report::Configuration& configuration = add(sweep, "1/" + std::to_string(times), renderer, {reduced(plain, times)});
+        report::Configuration& configuration =
+            add(sweep, "1/" + std::to_string(times), renderer, {reduced(plain, times)});
         configuration.compose = off_axis_magnification(small.view, times);
         describe(configuration);
       }
       for (int times = 1; times <= many / 2; times *= step) {
-        report::Configuration& configuration = add(sweep, std::to_string(times), renderer, enlarged(plain, times));
+        report::Configuration& configuration =
+            add(sweep, std::to_string(times), renderer, enlarged(plain, times));
         configuration.compose = average(small.view, times);
         describe(configuration);
       }
@@ -180,7 +182,7 @@ class Planner {
       for (const int samples : {1, 2, 4}) {
         const std::string setting = "samples=" + std::to_string(samples);
         report::Configuration& configuration = add(std::string(renderer) + ", " + setting, setting, renderer,
-                               {with(small, settings(setting), view_.pose)});
+                                                   {with(small, settings(setting), view_.pose)});
         describe(configuration);
         configuration.is_chosen = samples == 1 && is_rays == (chosen_ == kRayBackend);
       }
@@ -231,7 +233,8 @@ class Planner {
 
 }  // namespace
 
-report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet, const ConfigurationOptions& options) {
+report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet,
+                           const ConfigurationOptions& options) {
   return Planner(view, planet, options).plan();
 }
 

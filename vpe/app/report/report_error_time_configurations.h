@@ -22,6 +22,7 @@ struct ConfigurationOptions {
 };
 
 // All sweeps of one view. The baseline is rays in mode exact, or Embree's ranges.
-report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet, const ConfigurationOptions& options);
+report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet,
+                           const ConfigurationOptions& options);
 
 }  // namespace vpe::app

@@ -21,15 +21,15 @@ panorama::PanoramaMap plan(std::int64_t columns, int facets) {
   if (facets > 0) options.facets = facets;
   const double off_axis_magnification = facets > 0 ? std::cos(mars::kPi / facets) : 1.0;
   const auto stretched = [&](double elevation_deg) {
-    return std::atan(std::tan(elevation_deg * mars::kRadiansPerDegree) / off_axis_magnification) / mars::kRadiansPerDegree;
+    return std::atan(std::tan(elevation_deg * mars::kRadiansPerDegree) / off_axis_magnification) /
+           mars::kRadiansPerDegree;
   };
   options.lowest_deg = stretched(kLowest_deg);
   options.highest_deg = stretched(kHighest_deg);
   return panorama::plan_panorama(options).map;
 }
 
-std::vector<panorama::Piece> pieces_of(const panorama::PanoramaMap& map,
-                                       const panorama::PoseOnSphere& stand) {
+std::vector<panorama::Piece> pieces_of(const panorama::PanoramaMap& map, const panorama::PoseOnSphere& stand) {
   std::vector<panorama::Piece> all;
   for (const panorama::Strip& strip : panorama::strips_of(map)) {
     const std::vector<panorama::Piece> pieces = panorama::pieces_of(map, stand, strip, 0);

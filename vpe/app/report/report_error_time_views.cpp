@@ -104,8 +104,8 @@ std::vector<NamedView> views_of(const paging::Surface& surface) {
   const Landmarks smooth = landmarks(surface, deepest_tile(surface, false));
   const TerrainQuery pole{{0, 89.9995}, surface.at(mars::direction({0, 89.9995})).height_m};
   std::vector<NamedView> views;
-  const auto add = [&](const char* name, const TerrainQuery& from, double height_m, double yaw_deg, double pitch_deg,
-                       bool panorama) {
+  const auto add = [&](const char* name, const TerrainQuery& from, double height_m, double yaw_deg,
+                       double pitch_deg, bool panorama) {
     const auto rounded = [](double value, double unit) {
       return base::format_number(std::round(value / unit) * unit);
     };

@@ -3,14 +3,14 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "vpe/app/report/feature_run.h"
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/planet/planet_argument.h"
-#include "vpe/app/cli/progress.h"
 #include "vpe/app/cli/json_output.h"
-#include "vpe/app/report/report_folder.h"
-#include "vpe/app/report/report_commands.h"
+#include "vpe/app/cli/progress.h"
 #include "vpe/app/cli/temporary.h"
+#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/report/feature_run.h"
+#include "vpe/app/report/report_commands.h"
+#include "vpe/app/report/report_folder.h"
 
 namespace vpe::app {
 namespace {

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/cli/progress.h"
 #include "vpe/app/cli/json_output.h"
-#include "vpe/app/report/report_folder.h"
-#include "vpe/app/report/report_commands.h"
-#include "vpe/app/report/scaling_run.h"
+#include "vpe/app/cli/progress.h"
 #include "vpe/app/cli/temporary.h"
+#include "vpe/app/report/report_commands.h"
+#include "vpe/app/report/report_folder.h"
+#include "vpe/app/report/scaling_run.h"
 
 namespace vpe::app {
 namespace {

@@ -71,9 +71,10 @@ double triangles(const core::DrawResult& result) { return static_cast<double>(re
 double rays(const core::DrawResult& result) { return static_cast<double>(result.frame.colour.size()); }
 double tiles(const core::DrawResult& result) { return static_cast<double>(result.stats.tiles_drawn); }
 
-std::vector<report::Law> measure_configuration(Images& images, const Configuration& configuration, const std::string& axis,
-                                     const std::string& what, const std::string& x_name,
-                                     std::optional<double> least, std::optional<double> most) {
+std::vector<report::Law> measure_configuration(Images& images, const Configuration& configuration,
+                                               const std::string& axis, const std::string& what,
+                                               const std::string& x_name, std::optional<double> least,
+                                               std::optional<double> most) {
   const report::Law time{axis, what, x_name, "frame_s", least, most, {}};
   report::Law count = time;
   count.least_exponent.reset();
@@ -123,8 +124,9 @@ ScalingPlan short_scaling() {
   return plan;
 }
 
-std::unique_ptr<core::Renderer> make_configuration(const ScalingBench& bench, const Configuration& configuration, const PatchSpec& spec,
-                                         int threads) {
+std::unique_ptr<core::Renderer> make_configuration(const ScalingBench& bench,
+                                                   const Configuration& configuration, const PatchSpec& spec,
+                                                   int threads) {
   const auto planet = bench.planets.planet(spec);
   if (!configuration.polygons) return voxel::make_ray_renderer(planet, {bench.plan.memory_bytes, threads});
   gl::RendererOptions options;
@@ -151,8 +153,8 @@ core::View look_at(std::shared_ptr<const paging::PlanetFile> planet, const Patch
   const double ground_m = paging::Surface(std::move(planet), std::size_t{8} << 20).at(middle).height_m;
   const mars::LonLat place = mars::lon_lat(middle);
   core::View view;
-  view.camera =
-      mars::to_camera({place.lon_deg, place.lat_deg, ground_m + look.height_m, 22.5, look.pitch_deg, 0}, radius_m);
+  view.camera = mars::to_camera(
+      {place.lon_deg, place.lat_deg, ground_m + look.height_m, 22.5, look.pitch_deg, 0}, radius_m);
   view.width = size.width;
   view.height = size.height;
   return view;
@@ -165,9 +167,11 @@ std::vector<report::Law> measure_grid(const ScalingBench& bench) {
     for (const int side : bench.plan.grid_sides) {
       const PatchSpec spec = grid_patch(side);
       const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.size);
-      images.add(side, make_configuration(bench, configuration, spec), configuration_request(configuration, view));
+      images.add(side, make_configuration(bench, configuration, spec),
+                 configuration_request(configuration, view));
     }
-    append(laws, measure_configuration(images, configuration, "grid", configuration.name, "posts a side, all 10 m apart", {}, {}));
+    append(laws, measure_configuration(images, configuration, "grid", configuration.name,
+                                       "posts a side, all 10 m apart", {}, {}));
   }
   return laws;
 }
@@ -181,11 +185,12 @@ std::vector<report::Law> measure_depth(const ScalingBench& bench) {
     for (const Configuration& configuration : {kPolygons, kMultiresRays, kExactRays}) {
       Images images(bench);
       for (const int side : bench.plan.depth_sides)
-        images.add(side, make_configuration(bench, configuration, depth_patch(side)), configuration_request(configuration, view));
+        images.add(side, make_configuration(bench, configuration, depth_patch(side)),
+                   configuration_request(configuration, view));
       const bool asked = configuration.polygons || configuration.rays == core::RayMode::kMultires;
       append(laws, measure_configuration(images, configuration, "depth", configuration.name + " " + look.name,
-                               "posts a side, all of one patch of 42 km", {},
-                               asked ? std::optional(kMostGrowth) : std::nullopt));
+                                         "posts a side, all of one patch of 42 km", {},
+                                         asked ? std::optional(kMostGrowth) : std::nullopt));
     }
   }
   return laws;
@@ -199,7 +204,7 @@ std::vector<report::Law> measure_image(const ScalingBench& bench) {
     for (const Size& size : bench.plan.sizes) {
       const core::View view = look_at(bench.planets.planet(spec), spec, kNear, size);
       images.add(static_cast<double>(size.width) * size.height, make_configuration(bench, configuration, spec),
-                   configuration_request(configuration, view));
+                 configuration_request(configuration, view));
     }
     append(laws, measure_configuration(images, configuration, "image", configuration.name, "pixels", {}, {}));
   }
@@ -216,8 +221,10 @@ std::vector<report::Law> measure_threads(const ScalingBench& bench) {
   for (const Configuration& configuration : {kExactRays, kMultiresRays}) {
     Images images(bench);
     for (const int threads : bench.plan.threads)
-      images.add(threads, make_configuration(bench, configuration, spec, threads), configuration_request(configuration, view));
-    for (report::Law& law : measure_configuration(images, configuration, "threads", configuration.name, "threads", least, most)) {
+      images.add(threads, make_configuration(bench, configuration, spec, threads),
+                 configuration_request(configuration, view));
+    for (report::Law& law :
+         measure_configuration(images, configuration, "threads", configuration.name, "threads", least, most)) {
       // All threads together are asked for no less.
       if (law.y_name == "processor_s") law.least_exponent = law.most_exponent = {};
       laws.push_back(std::move(law));

@@ -23,7 +23,7 @@ struct ScalingPlan {
   Size thread_size{1280, 720};
   int rounds = 7;
   int build_rounds = 3;
-  double flight_s = 6;  // a quarter of it before anything counts
+  double flight_s = 6;                              // a quarter of it before anything counts
   std::size_t memory_bytes = std::size_t{1} << 30;  // of each renderer
 };
 
@@ -64,8 +64,9 @@ inline const Configuration kPolygons{"polygons", true, core::RayMode::kExact};
 inline const Configuration kExactRays{"rays, exact", false, core::RayMode::kExact};
 inline const Configuration kMultiresRays{"rays, multires", false, core::RayMode::kMultires};
 
-std::unique_ptr<core::Renderer> make_configuration(const ScalingBench& bench, const Configuration& configuration, const PatchSpec& spec,
-                                         int threads = 0);
+std::unique_ptr<core::Renderer> make_configuration(const ScalingBench& bench,
+                                                   const Configuration& configuration, const PatchSpec& spec,
+                                                   int threads = 0);
 core::DrawRequest configuration_request(const Configuration& configuration, const core::View& view);
 
 // A camera over the middle of a patch, so high over the ground there, looking down by so much.

@@ -141,8 +141,8 @@ Place place_of(const Reader& reader, const Columns& columns, const std::vector<s
   const auto number = [&](std::size_t n, const char* what, double min, double max) {
     const std::optional<double> value = base::parse_number(field(n));
     if (value && *value >= min && *value <= max) return *value;
-    reader.fail(std::string(what) + " from " + base::format_number(min) + " to " + base::format_number(max) + ", found " +
-                shown_text(field(n)));
+    reader.fail(std::string(what) + " from " + base::format_number(min) + " to " + base::format_number(max) +
+                ", found " + shown_text(field(n)));
   };
   Place place;
   place.name = field(columns.name);

@@ -9,8 +9,9 @@ namespace vpe::core {
 
 std::string level_table_grammar() {
   return "\"none\" or X:LEVELS,X:LEVELS,... with x >= 0 rising, levels from " +
-         base::format_number(-LevelTableLimits::kMaxLevels) + " to " + base::format_number(LevelTableLimits::kMaxLevels) +
-         ", at most " + std::to_string(LevelTableLimits::kMaxRows) + " rows";
+         base::format_number(-LevelTableLimits::kMaxLevels) + " to " +
+         base::format_number(LevelTableLimits::kMaxLevels) + ", at most " +
+         std::to_string(LevelTableLimits::kMaxRows) + " rows";
 }
 
 std::optional<LevelTable> parse_level_table(std::string_view text) {

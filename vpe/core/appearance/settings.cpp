@@ -6,8 +6,8 @@
 #include <variant>
 
 #include "mars/geodesy/mars_time.h"
-#include "vpe/core/appearance/gazetteer.h"
 #include "vpe/base/number.h"
+#include "vpe/core/appearance/gazetteer.h"
 #include "vpe/core/appearance/palette.h"
 
 namespace vpe::core {
@@ -150,8 +150,8 @@ const std::vector<Key>& keys() {
        "rays.mode)"},
       {"lod.triangles", Integer{&V::lod_triangles, 0, 1'000'000'000}, "",
        "hard cap on the triangles of a frame, above the tolerance; 0 = none"},
-      {"lod.rule", choice<&V::lod_metric>({word("error", LodMetric::kError), word("hitchner", LodMetric::kDistance)}),
-       "",
+      {"lod.rule",
+       choice<&V::lod_metric>({word("error", LodMetric::kError), word("hitchner", LodMetric::kDistance)}), "",
        "what decides how fine a tile is: its projected error, or the three control functions of 1992 alone"},
       {"lod.distance.scale", Number{&V::lod_distance_scale_m, 0, 1e12}, "m",
        "rule hitchner: a tile at distance x from the eye gets scale / x + offset levels"},

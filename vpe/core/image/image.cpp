@@ -64,12 +64,13 @@ bool is_image_path(const std::filesystem::path& path) { return is_png(path) || i
 void write_image(const std::filesystem::path& path, std::span<const base::Rgb> pixels, int width, int height,
                  const ImageOptions& options) {
   if (!is_image_path(path)) {
-    throw base::file_error("write", path, "no known image extension", "let the name end in .png, .jpg or .jpeg");
+    throw base::file_error("write", path, "no known image extension",
+                           "let the name end in .png, .jpg or .jpeg");
   }
   base::write_file(path, with_path("write", path, [&] {
-               return is_png(path) ? encode_png(pixels, width, height, options.png_compression)
-                                   : encode_jpeg(pixels, width, height, options.jpeg_quality);
-             }));
+                     return is_png(path) ? encode_png(pixels, width, height, options.png_compression)
+                                         : encode_jpeg(pixels, width, height, options.jpeg_quality);
+                   }));
 }
 
 void write_image(const std::filesystem::path& path, std::span<const Rgba> pixels, int width, int height,
@@ -78,7 +79,7 @@ void write_image(const std::filesystem::path& path, std::span<const Rgba> pixels
     throw base::file_error("write", path, "a picture with alpha fits PNG only", "let the name end in .png");
   }
   base::write_file(path, with_path("write", path,
-                             [&] { return encode_png(pixels, width, height, options.png_compression); }));
+                                   [&] { return encode_png(pixels, width, height, options.png_compression); }));
 }
 
 RgbImage read_image(const std::filesystem::path& path, std::int64_t max_pixels) {

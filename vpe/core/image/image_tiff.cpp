@@ -92,7 +92,7 @@ FloatImage read_tiff(const std::filesystem::path& path, std::int64_t max_pixels)
   TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLEFORMAT, &format);
   if (bits != 32 || samples != 1 || format != SAMPLEFORMAT_IEEEFP || TIFFIsTiled(tiff.get()) != 0) {
     throw base::file_error("read", path, "not one float32 band in rows",
-                     "convert it, e.g. gdal_translate -ot Float32");
+                           "convert it, e.g. gdal_translate -ot Float32");
   }
   try {
     check_read_size(width, height, max_pixels);

@@ -82,7 +82,7 @@ std::string to_line(const Hotspot& hotspot) {
 }
 
 std::vector<glm::dvec3> hotspot_eyes(std::span<const Hotspot> hotspots, double radius_m,
-                                  const scripts::TerrainHeight& terrain_height_m, double exaggeration) {
+                                     const scripts::TerrainHeight& terrain_height_m, double exaggeration) {
   std::vector<glm::dvec3> eyes;
   eyes.reserve(hotspots.size());
   for (const Hotspot& hotspot : hotspots) {
@@ -93,7 +93,7 @@ std::vector<glm::dvec3> hotspot_eyes(std::span<const Hotspot> hotspots, double r
 }
 
 std::optional<NearHotspot> nearest_hotspot(std::span<const glm::dvec3> eyes_m, const glm::dvec3& camera_m,
-                                     double within_m) {
+                                           double within_m) {
   std::optional<NearHotspot> nearest;
   for (std::size_t n = 0; n < eyes_m.size(); ++n) {
     const double distance_m = glm::length(eyes_m[n] - camera_m);

@@ -48,7 +48,7 @@ std::string to_line(const Hotspot& hotspot);
 // Where their eyes are, body-fixed, metres from the planet's centre, over the ground as it is drawn; not a
 // number where the terrain is not known.
 std::vector<glm::dvec3> hotspot_eyes(std::span<const Hotspot> hotspots, double radius_m,
-                                  const scripts::TerrainHeight& terrain_height_m, double exaggeration = 1.0);
+                                     const scripts::TerrainHeight& terrain_height_m, double exaggeration = 1.0);
 
 struct NearHotspot {
   std::size_t index = 0;
@@ -57,7 +57,7 @@ struct NearHotspot {
 
 // Nothing when none is within the distance, both ends included. The first of equal ones.
 std::optional<NearHotspot> nearest_hotspot(std::span<const glm::dvec3> eyes_m, const glm::dvec3& camera_m,
-                                     double within_m);
+                                           double within_m);
 
 enum class HotspotStage {
   kFar,

@@ -8,24 +8,24 @@
 
 #include "mars/geodesy/pose.h"
 #include "vpe/base/user_folders.h"
+#include "vpe/explore/files/key_file.h"
+#include "vpe/explore/files/user_files.h"
 #include "vpe/explore/input/gamepad.h"
 #include "vpe/explore/input/head_tracker.h"
-#include "vpe/explore/files/key_file.h"
 #include "vpe/explore/input/space_mouse.h"
 #include "vpe/explore/input/udp_receiver.h"
-#include "vpe/explore/files/user_files.h"
 
 namespace vpe::explore {
 
 enum class LongitudeRange { kSigned, kPositive };  // -180..180, 0..360; east is positive in both
 
 struct Preferences {
-  double mouse_speed = 1;      // factor on what a drag turns and tilts
-  bool invert_wheel = false;   // rolling away goes away
-  double fly_speed = 1;        // factor on moving, of all devices
-  double turn_speed = 1;       // factor on turning, of keys, gamepad and space mouse
-  double draw_budget_ms = 40;  // lod.frame_ms while the camera moves; 0 = none
-  double ui_scale = 0;         // of letters and panels; 0 = as the display says
+  double mouse_speed = 1;                              // factor on what a drag turns and tilts
+  bool invert_wheel = false;                           // rolling away goes away
+  double fly_speed = 1;                                // factor on moving, of all devices
+  double turn_speed = 1;                               // factor on turning, of keys, gamepad and space mouse
+  double draw_budget_ms = 40;                          // lod.frame_ms while the camera moves; 0 = none
+  double ui_scale = 0;                                 // of letters and panels; 0 = as the display says
   LongitudeRange longitude = LongitudeRange::kSigned;  // in the status line
   bool use_gamepad = true;
   PadOptions gamepad;

@@ -72,7 +72,7 @@ class SessionLog {
 struct OverlookStep {
   double time_s = 0;
   bool in = false;
-  std::string hotspot;                // of a step in
+  std::string hotspot;             // of a step in
   std::filesystem::path panorama;  // likewise
 };
 std::vector<OverlookStep> overlook_steps(std::string_view log);

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "paging/shading/terrain_shader.h"
-#include "vpe/core/image/image.h"
 #include "vpe/base/parallel.h"
+#include "vpe/core/image/image.h"
 #include "vpe/explore/measure/map_view.h"
 
 namespace vpe::explore {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "vpe/base/number.h"
-#include "vpe/explore/measure/digits.h"
 #include "vpe/explore/files/text_lines.h"
+#include "vpe/explore/measure/digits.h"
 
 namespace vpe::explore {
 

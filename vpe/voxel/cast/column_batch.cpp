@@ -45,7 +45,8 @@ struct Scratch {
       block{};  // of expanded rows
 };
 
-ScratchPool::ScratchPool(const HeightGridStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
+ScratchPool::ScratchPool(const HeightGridStore& store, double exaggeration)
+    : store_(store), exaggeration_(exaggeration) {}
 ScratchPool::~ScratchPool() = default;
 
 ScratchPool::Use::Use(ScratchPool& scratches) : scratches_(scratches), thrown_(std::uncaught_exceptions()) {
@@ -66,7 +67,8 @@ ScratchPool::Use::~Use() {
 
 ThreadLocalTiles& ScratchPool::Use::tiles() const { return scratch_->tiles; }
 
-void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool) {
+void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, ScratchPool& scratches,
+                  base::ThreadPool& pool) {
   const int lanes = column_lanes();
   const int task_columns = std::min(kTaskColumns, lanes * kMostGroups);
   struct Task {

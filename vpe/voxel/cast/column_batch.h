@@ -59,6 +59,7 @@ class ScratchPool {
 };
 
 // Columns of different sheets are cast side by side. Throws paging::PlanetError for tiles that cannot be read.
-void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool);
+void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, ScratchPool& scratches,
+                  base::ThreadPool& pool);
 
 }  // namespace vpe::voxel

@@ -26,8 +26,8 @@ using FloatTag = hn::CappedTag<float, kMaxLanes>;
 using DoubleTag = hn::CappedTag<double, kMaxLanes / 2>;
 
 template <RowKind kKind>
-void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera, const glm::dvec3& up,
-             const Rows& rows, ColumnGroup& group) {
+void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera,
+             const glm::dvec3& up, const Rows& rows, ColumnGroup& group) {
   Paths paths;
   find_paths(f, camera, group, paths);
   Foot foot;
@@ -97,8 +97,8 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
   }
 }
 
-void WalkGrid(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera, const glm::dvec3& up,
-                 const Rows& rows, ColumnGroup& group) {
+void WalkGrid(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera,
+              const glm::dvec3& up, const Rows& rows, ColumnGroup& group) {
   switch (rows.kind) {
     case RowKind::kEven: return walk_as<RowKind::kEven>(f, source, camera, up, rows, group);
     case RowKind::kTable: return walk_as<RowKind::kTable>(f, source, camera, up, rows, group);
@@ -127,8 +127,8 @@ HWY_EXPORT(CopyRows);
 HWY_EXPORT(ColumnLanes);
 HWY_EXPORT(ColumnTarget);
 
-void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera, const glm::dvec3& up,
-                  const Rows& rows, ColumnGroup& group) {
+void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera,
+               const glm::dvec3& up, const Rows& rows, ColumnGroup& group) {
   HWY_DYNAMIC_DISPATCH(WalkGrid)(frame, source, camera, up, rows, group);
 }
 void update_least_slope(const Rows& rows, ColumnGroup& group) {

@@ -110,8 +110,8 @@ void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const Colu
 }
 
 // Heights along the paths, against the reference of their posts.
-void find_bases(const HeightGridFrame& f, const DepthPlane& plane, const ColumnCamera& camera, const glm::dvec3& up,
-                Paths& out) {
+void find_bases(const HeightGridFrame& f, const DepthPlane& plane, const ColumnCamera& camera,
+                const glm::dvec3& up, Paths& out) {
   const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
   for (int lane = 0; lane < kMaxLanes; ++lane) {
     const double x0 = out.x0[lane];

@@ -34,8 +34,8 @@ class Walk {
   using DI = hn::RebindToSigned<D>;
   using VI = hn::Vec<DI>;
 
-  Walk(const HeightGridLines<T>& lines, LineFamily family, int intervals, const Paths& paths, int kind, int lane0,
-       const ColumnCamera& camera, const Rows& rows, ColumnGroup& group)
+  Walk(const HeightGridLines<T>& lines, LineFamily family, int intervals, const Paths& paths, int kind,
+       int lane0, const ColumnCamera& camera, const Rows& rows, ColumnGroup& group)
       : lane0_(lane0),
         reader_(lines, family, intervals, load(paths.position), load(paths.turn)),
         group_(group),

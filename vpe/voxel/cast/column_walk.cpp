@@ -92,7 +92,8 @@ double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
   const double high = camera_.radius_m + exaggeration_ * info.max_height_m;
   const double along = camera_.distance_m * std::cos(angles(tile).near);
   const double radius = std::clamp(along, low, high);
-  return std::sqrt(std::max(0.0, camera_.distance_m * camera_.distance_m + radius * radius - 2 * radius * along));
+  return std::sqrt(
+      std::max(0.0, camera_.distance_m * camera_.distance_m + radius * radius - 2 * radius * along));
 }
 
 double ColumnWalk::measured_error_m(lod::TileTree::Index tile) const {
@@ -141,7 +142,8 @@ ColumnWalk::Used ColumnWalk::used() const {
       const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
       const double reach = std::sqrt(2.0) * spacing;
       const double sagitta = reach * reach / (4 * camera_.radius_m);
-      geometric_error_m = 2 * exaggeration_ * info.steepest_slope * reach + sagitta + tree_.edge_shift_m(info, exaggeration_);
+      geometric_error_m =
+          2 * exaggeration_ * info.steepest_slope * reach + sagitta + tree_.edge_shift_m(info, exaggeration_);
     }
     used.geometric_error_m = std::max(used.geometric_error_m, geometric_error_m);
     used.screen_space_error_px = std::max(used.screen_space_error_px, in_image_px(geometric_error_m, tile));

@@ -23,7 +23,8 @@ struct CellRule {
 class ColumnWalk {
  public:
   // The camera stands above S: camera.distance_m > camera.ground_m.
-  ColumnWalk(const paging::Surface& surface, const ColumnCamera& camera, double exaggeration, const CellRule& rule);
+  ColumnWalk(const paging::Surface& surface, const ColumnCamera& camera, double exaggeration,
+             const CellRule& rule);
 
   // A group of columns from their azimuth vectors (unit, body-fixed, normal to camera.up), neighbours in order.
   // Rows, fans, and buffers of `group` are set before. Resolves all rows that see ground.

@@ -20,9 +20,9 @@ inline constexpr int kMaxLanes = 16;
 
 // Slopes tan(e) of an image's rows, rising with the row.
 enum class RowKind : std::uint8_t {
-  kEven,   // slope = (row - centre) step
-  kTable,  // from a table; rows are about even in elevation
-  kSector,    // slope = (a0 + a1 row) / (b0 + b1 row), for each column its own
+  kEven,    // slope = (row - centre) step
+  kTable,   // from a table; rows are about even in elevation
+  kSector,  // slope = (a0 + a1 row) / (b0 + b1 row), for each column its own
 };
 
 struct Rows {
@@ -79,8 +79,8 @@ class HeightGridSource {
 // it, as seen from the camera. up: of the camera, in the face's axes. Lines within kExactLines of the camera's foot are
 // read in double, where needs_exact() says so. Every crossing with an edge counts, so that facets are exact but
 // for rounding (RangeCaster::range_error). Results of a column do not depend on the others of its group.
-void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera, const glm::dvec3& up,
-                  const Rows& rows, ColumnGroup& group);
+void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera,
+               const glm::dvec3& up, const Rows& rows, ColumnGroup& group);
 inline constexpr int kExactLines = 24;
 
 // Whether the camera is so low that the cells about its foot need double.

@@ -49,8 +49,8 @@ Sample sample(const glm::dvec3& place, FacetFinder& finder, double radius_m) {
 }
 
 // Between a place above S and one below it, by halving.
-double crossing(const glm::dvec3& camera, const glm::dvec3& ray, double above, double below, FacetFinder& finder,
-                double radius_m) {
+double crossing(const glm::dvec3& camera, const glm::dvec3& ray, double above, double below,
+                FacetFinder& finder, double radius_m) {
   constexpr double kEnough = 1e-8;
   while (below - above > kEnough * below) {
     const double middle = 0.5 * (above + below);
@@ -79,8 +79,8 @@ double march(const glm::dvec3& camera, const glm::dvec3& ray, double begin_m, do
   return kNone;
 }
 
-void march_fixed_steps(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool,
-                std::span<float> range_m) {
+void march_fixed_steps(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
+                       base::ThreadPool& pool, std::span<float> range_m) {
   const core::SubRectangle part = core::drawn_part(view);
   const auto width = static_cast<std::size_t>(part.width);
   pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
@@ -89,8 +89,8 @@ void march_fixed_steps(const core::View& view, const ColumnWalk& walk, ScratchPo
     for (std::size_t x = 0; x < width; ++x) {
       const glm::dvec3 ray =
           core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);
-      range_m[row * width + x] =
-          static_cast<float>(march(view.camera.position_m, ray, 0, walk.highest_m(), finder, walk.camera().radius_m));
+      range_m[row * width + x] = static_cast<float>(
+          march(view.camera.position_m, ray, 0, walk.highest_m(), finder, walk.camera().radius_m));
     }
   });
 }

@@ -61,7 +61,8 @@ Place place_of(int k, int p, LineFamily family) {
 }
 
 template <typename T>
-void fill_maxima(const HeightGridLines<T>& lines, const Shape& shape, int intervals, LineFamily family, T* out) {
+void fill_maxima(const HeightGridLines<T>& lines, const Shape& shape, int intervals, LineFamily family,
+                 T* out) {
   std::fill_n(out, shape.block_rows * shape.blocks, std::numeric_limits<T>::lowest());
   for (int k = shape.first_line; k <= shape.last_line; ++k) {
     const Span span = span_of(k, intervals, family);
@@ -97,7 +98,7 @@ int grids_per_side(int level, int intervals) {
 
 template <typename T>
 TileHeightGrids<T>::TileHeightGrids(const paging::TileHeights& heights, double radius_m, double exaggeration,
-                              LineFamily family) {
+                                    LineFamily family) {
   const lod::Posts& posts = heights.posts;
   per_side_ = grids_per_side(posts.key.level, posts.intervals);
   const lod::GridLines grid = lod::grid_lines(posts.key, posts.intervals);

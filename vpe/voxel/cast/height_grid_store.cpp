@@ -23,8 +23,8 @@ template <typename T>
 std::shared_ptr<const TileHeightGrids<T>> HeightGridStore::get(Cache<T>& cache, const Key& key) const {
   return cache.get(key, [&] {
     auto made = std::make_shared<const TileHeightGrids<T>>(
-        planet_->heights(planet_->tree()[key.tile].key, key.exaggeration),
-        planet_->radius_m(), key.exaggeration, key.family);
+        planet_->heights(planet_->tree()[key.tile].key, key.exaggeration), planet_->radius_m(),
+        key.exaggeration, key.family);
     const std::size_t bytes = made->bytes();
     ++tiles_made_;
     bytes_made_ += bytes;
@@ -32,22 +32,23 @@ std::shared_ptr<const TileHeightGrids<T>> HeightGridStore::get(Cache<T>& cache, 
   });
 }
 
-std::shared_ptr<const TileHeightGrids<float>> HeightGridStore::grids(lod::TileTree::Index tile, LineFamily family,
-                                                                  double exaggeration) const {
+std::shared_ptr<const TileHeightGrids<float>> HeightGridStore::grids(lod::TileTree::Index tile,
+                                                                     LineFamily family,
+                                                                     double exaggeration) const {
   return get(grids_, {tile, family, exaggeration});
 }
 
 std::shared_ptr<const TileHeightGrids<double>> HeightGridStore::exact_grids(lod::TileTree::Index tile,
-                                                                         LineFamily family,
-                                                                         double exaggeration) const {
+                                                                            LineFamily family,
+                                                                            double exaggeration) const {
   return get(exact_, {tile, family, exaggeration});
 }
 
 std::size_t HeightGridStore::bytes_resident() const { return grids_.bytes() + exact_.bytes(); }
 
 std::shared_ptr<const TileHeightGrids<float>> HeightGridStore::any_grids(lod::TileTree::Index tile,
-                                                                      double exaggeration,
-                                                                      LineFamily& family) const {
+                                                                         double exaggeration,
+                                                                         LineFamily& family) const {
   for (const LineFamily f : {LineFamily::kColumns, LineFamily::kRows, LineFamily::kDiagonals}) {
     family = f;
     if (auto found = grids_.find({tile, f, exaggeration})) return found;

@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "lod/tree/tree.h"
-#include "vpe/base/lru_cache.h"
 #include "paging/planet/planet_file.h"
+#include "vpe/base/lru_cache.h"
 #include "vpe/voxel/cast/height_grid.h"
 
 namespace vpe::voxel {
@@ -70,7 +70,8 @@ class HeightGridStore {
 // What one thread used last: finding it again takes no lock.
 class ThreadLocalTiles {
  public:
-  ThreadLocalTiles(const HeightGridStore& store, double exaggeration) : store_(store), exaggeration_(exaggeration) {}
+  ThreadLocalTiles(const HeightGridStore& store, double exaggeration)
+      : store_(store), exaggeration_(exaggeration) {}
 
   // Valid until the next call.
   const TileHeightGrids<float>& grids(lod::TileTree::Index tile, LineFamily family);

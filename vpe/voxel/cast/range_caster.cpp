@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "vpe/voxel/cast/column_batch.h"
 #include "vpe/voxel/cast/column_walk.h"
 #include "vpe/voxel/cast/fixed_step_marcher.h"
-#include "vpe/voxel/cast/column_batch.h"
 
 namespace vpe::voxel {
 
@@ -96,7 +96,7 @@ ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& o
   if (distance > 0 && options.method != RangeOptions::Method::kEach) {
     const glm::dvec3 up = view.camera.position_m / distance;
     const ColumnCamera camera{up, distance, surface_.planet_radius_m(),
-                        surface_.at(up, options.exaggeration).radius_m};
+                              surface_.at(up, options.exaggeration).radius_m};
     const bool round = upright(view, up);
     const bool plain = options.method == RangeOptions::Method::kPlain;
     if (camera.distance_m > camera.ground_m &&
@@ -108,7 +108,8 @@ ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& o
       } else if (round) {
         cast_upright(view, walk, scratches, pool, range_m);
       } else {
-        sectors.cast(view, walk, scratches, surface_, options.exaggeration, options.cell_px == 0, pool, range_m);
+        sectors.cast(view, walk, scratches, surface_, options.exaggeration, options.cell_px == 0, pool,
+                     range_m);
       }
       return walk.used();
     }

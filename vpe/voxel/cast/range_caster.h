@@ -8,8 +8,8 @@
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
-#include "vpe/voxel/cast/sector_caster.h"
 #include "vpe/voxel/cast/height_grid_store.h"
+#include "vpe/voxel/cast/sector_caster.h"
 
 namespace vpe::voxel {
 
@@ -60,8 +60,8 @@ class RangeCaster {
   }
 
  private:
-  void cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool,
-                    std::span<float> range_m) const;
+  void cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
+                    base::ThreadPool& pool, std::span<float> range_m) const;
   void cast_each(const core::View& view, double exaggeration, base::ThreadPool& pool,
                  std::span<float> range_m) const;
 

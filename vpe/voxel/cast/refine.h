@@ -50,7 +50,7 @@ void hints_from_row(const float* samples, int sample_count, double first, double
                     float* b, float* share);
 
 // Hints from rows of samples, one a pixel: pixel k lies at stretch[k] y + shift[k] of samples[k * lines ...].
-void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification, const float* shift, float y,
-                        int count, float* a, float* b, float* share);
+void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification,
+                        const float* shift, float y, int count, float* a, float* b, float* share);
 
 }  // namespace vpe::voxel

@@ -34,8 +34,8 @@ hn::Vec<D> pick(D d, const float* from, hn::Vec<hn::RebindToSigned<D>> index) {
 }
 
 // Row `row` of samples [step][line] at line = stretch[k] y + shift[k], step first + k.
-void HintsFromColumns(const float* samples, int lines, const float* off_axis_magnification, const float* shift, float y,
-                      int count, float* a, float* b, float* share) {
+void HintsFromColumns(const float* samples, int lines, const float* off_axis_magnification, const float* shift,
+                      float y, int count, float* a, float* b, float* share) {
   const HintTag d;
   const hn::RebindToSigned<HintTag> di;
   const int lanes = static_cast<int>(hn::Lanes(d));

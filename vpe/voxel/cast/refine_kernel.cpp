@@ -185,8 +185,8 @@ void hints_from_row(const float* samples, int sample_count, double first, double
                     float* b, float* share) {
   HWY_DYNAMIC_DISPATCH(HintsFromRow)(samples, sample_count, first, step, count, a, b, share);
 }
-void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification, const float* shift, float y,
-                        int count, float* a, float* b, float* share) {
+void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification,
+                        const float* shift, float y, int count, float* a, float* b, float* share) {
   HWY_DYNAMIC_DISPATCH(HintsFromColumns)(samples, lines, off_axis_magnification, shift, y, count, a, b, share);
 }
 

@@ -69,7 +69,8 @@ std::size_t SectorCaster::bytes() const {
   return total;
 }
 
-void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool) {
+void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches,
+                                base::ThreadPool& pool) {
   std::vector<ColumnBatch> batches;
   samples_.resize(std::max(samples_.size(), plan.sectors().size()));
   for (std::size_t f = 0; f < plan.sectors().size(); ++f) {
@@ -98,7 +99,7 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, 
 
 // Samples on either side of pixels [first, last) of one row, in that row or column of samples.
 void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
-                           int last_pixel, float* a, float* b, float* share) const {
+                              int last_pixel, float* a, float* b, float* share) const {
   const double y = part.y + row + 0.5;
   SectorPlan::Span span = plan.upright_span(row);
   span.begin = std::clamp(span.begin, first_pixel, last_pixel);
@@ -116,10 +117,11 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
       const int step = std::clamp(part.y + row - sector->first_step, 0, sector->steps - 1);
       const ViewSector::Map& map = sector->maps[static_cast<std::size_t>(step)];
       const double first =
-          (map.off_axis_magnification * (part.x + span.begin + 0.5) + map.shift - sector->first_line) / sector->spacing;
+          (map.off_axis_magnification * (part.x + span.begin + 0.5) + map.shift - sector->first_line) /
+          sector->spacing;
       hints_from_row(samples(*sector) + std::ptrdiff_t{step} * sector->lines, sector->lines, first,
-                     map.off_axis_magnification / sector->spacing, span.end - span.begin, a + span.begin, b + span.begin,
-                     share + span.begin);
+                     map.off_axis_magnification / sector->spacing, span.end - span.begin, a + span.begin,
+                     b + span.begin, share + span.begin);
     } else {
       for (int k = span.begin; k < span.end; ++k) none(k);
     }
@@ -141,7 +143,8 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
     const auto step = static_cast<std::size_t>(part.x + first - sector->first_step);
     hints_from_columns(samples(*sector) + static_cast<std::ptrdiff_t>(step) * sector->lines, sector->lines,
                        sector->line_stretch.data() + step, sector->line_shift.data() + step,
-                       static_cast<float>(y - sector->origin), last - first, a + first, b + first, share + first);
+                       static_cast<float>(y - sector->origin), last - first, a + first, b + first,
+                       share + first);
     for (int k = begin; k < end; ++k) {
       const int from = std::clamp(k, first, last - 1);
       if (from == k) continue;
@@ -155,8 +158,8 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
 }
 
 void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
-                     const paging::Surface& surface, double exaggeration, bool exact, base::ThreadPool& pool,
-                     std::span<float> range_m) {
+                        const paging::Surface& surface, double exaggeration, bool exact, base::ThreadPool& pool,
+                        std::span<float> range_m) {
   const SectorPlan plan(view, walk.camera().up, kSpacing_px);
   cast_sectors(plan, walk, scratches, pool);
   const core::SubRectangle part = core::drawn_part(view);
@@ -193,8 +196,9 @@ void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchP
         refine_row(rays, a, b, share, finder, exact_finder, out, hints.open);
         for (const int k : hints.open) {
           const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
-          out[k] = static_cast<float>(exact ? cast_near(surface, view.camera.position_m, ray, exaggeration, a[k], b[k])
-                                            : march_near(walk, finder, view.camera.position_m, ray, a[k], b[k]));
+          out[k] = static_cast<float>(
+              exact ? cast_near(surface, view.camera.position_m, ray, exaggeration, a[k], b[k])
+                    : march_near(walk, finder, view.camera.position_m, ray, a[k], b[k]));
         }
       }
     }

@@ -7,8 +7,8 @@
 #include "paging/surface/surface.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
-#include "vpe/voxel/cast/view_sector.h"
 #include "vpe/voxel/cast/column_batch.h"
+#include "vpe/voxel/cast/view_sector.h"
 
 namespace vpe::voxel {
 
@@ -17,15 +17,17 @@ namespace vpe::voxel {
 // steps over the walk's lattices. One caller at a time.
 class SectorCaster {
  public:
-  void cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches, const paging::Surface& surface,
-            double exaggeration, bool exact, base::ThreadPool& pool, std::span<float> range_m);
+  void cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
+            const paging::Surface& surface, double exaggeration, bool exact, base::ThreadPool& pool,
+            std::span<float> range_m);
 
   std::size_t bytes() const;
 
  private:
-  void cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches, base::ThreadPool& pool);
-  void find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel, int last_pixel,
-                  float* a, float* b, float* share) const;
+  void cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches,
+                    base::ThreadPool& pool);
+  void find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
+                  int last_pixel, float* a, float* b, float* share) const;
 
   std::vector<std::vector<float>> samples_;  // of the last image's fans, by step
 };

@@ -125,8 +125,8 @@ void SectorPlan::add(bool upright, bool forward) {
   sector.origin = 0.5 * (s_min + s_max);
   for (const ViewSector::Map& map : sector.maps) {
     sector.line_stretch.push_back(static_cast<float>(map.off_axis_magnification / spacing_));
-    sector.line_shift.push_back(
-        static_cast<float>((map.off_axis_magnification * sector.origin + map.shift - sector.first_line) / spacing_));
+    sector.line_shift.push_back(static_cast<float>(
+        (map.off_axis_magnification * sector.origin + map.shift - sector.first_line) / spacing_));
   }
   index_[upright ? 1 : 0][forward ? 1 : 0] = static_cast<int>(sectors_.size());
   // Slopes rise away from the nadir, and towards the zenith.
@@ -159,8 +159,8 @@ SectorLine SectorPlan::line(const ViewSector& sector, int index) const {
   const double t_first = sector.first_step + 0.5;
   const double t_last = t_first + sector.steps - 1;
   const glm::dvec3 begin = ray(sector.rising ? t_first : t_last);
-  const glm::dvec3 step =
-      (sector.upright ? (lean * axes.right - axes.up) : (axes.right - lean * axes.up)) * (sector.rising ? 1.0 : -1.0);
+  const glm::dvec3 step = (sector.upright ? (lean * axes.right - axes.up) : (axes.right - lean * axes.up)) *
+                          (sector.rising ? 1.0 : -1.0);
   out.a0 = glm::dot(begin, up_);
   out.a1 = glm::dot(step, up_);
   out.b0 = glm::dot(begin, out.azimuth);

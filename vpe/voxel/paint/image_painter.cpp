@@ -111,8 +111,8 @@ void ImagePainter::set_shading(const core::DrawRequest& request) {
 }
 
 std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<const float> range_m,
-                                   std::span<base::Rgb> colour, std::span<float> inverse_depth,
-                                   base::ThreadPool& pool) {
+                                 std::span<base::Rgb> colour, std::span<float> inverse_depth,
+                                 base::ThreadPool& pool) {
   set_shading(request);
   const glm::ivec2 size = core::drawn_size(request.view);
   PaintJob job;
@@ -151,10 +151,11 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
 }
 
 void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View& thin,
-                                std::span<const float> range_m, const base::ThreadPool& pool) const {
+                              std::span<const float> range_m, const base::ThreadPool& pool) const {
   const bool has_image = planet_->meta().finest_image_level >= 0;
   // No tile depends on the scale of colours.
-  const paging::ShadingParams shading = paging::shading_params(request.settings, request.sun, has_image, nullptr);
+  const paging::ShadingParams shading =
+      paging::shading_params(request.settings, request.sun, has_image, nullptr);
   if (by_point(shading)) return;
   constexpr double kPart = 0.5 * (1 - kHeldShare);
   PaintTiles tiles(*planet_, painter_, shading, budget_);
@@ -170,7 +171,8 @@ void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View
       if (pool.is_stopped()) return;
       const glm::dvec3 ray = core::pixel_ray(thin, part.x + x + 0.5, part.y + y + 0.5);
       const int level = static_cast<int>(std::ceil(std::log2(root_range_m / range)));
-      const PaintTile& tile = tiles.find(thin.camera.position_m + range * ray, std::clamp(level, 0, tiles.max_level()));
+      const PaintTile& tile =
+          tiles.find(thin.camera.position_m + range * ray, std::clamp(level, 0, tiles.max_level()));
       if (tile.ground && !ground.add(tile.ground.get(), tile.ground->bytes())) return;
       if (tile.image && !images.add(tile.image.get(), tile.image->texels.capacity() * sizeof(base::Rgb)))
         return;

@@ -11,8 +11,8 @@
 #include <span>
 
 #include "paging/shading/terrain_shader.h"
-#include "vpe/core/frame.h"
 #include "vpe/base/parallel.h"
+#include "vpe/core/frame.h"
 #include "vpe/voxel/paint/scale_table.h"
 
 namespace vpe::voxel {

@@ -130,8 +130,8 @@ inline HWY_NOINLINE void paint_shading(const PaintJob& job, Block& block) {
       hn::LoadInterleaved4(d, block.post[i], x, y, z, height);
       const Triple<hn::Vec<Floats>> normal{x, y, z};
       if (scaled)
-        hn::Store(shown_value(d, job, of_image ? shading.hue : shading.colour_source, block, i, normal, height), d,
-                  value + i);
+        hn::Store(shown_value(d, job, of_image ? shading.hue : shading.colour_source, block, i, normal, height),
+                  d, value + i);
       if (!shading.lit) continue;
       const auto cosine = hn::Div(dot(normal, sun), hn::Sqrt(dot(normal, normal)));
       auto incidence = hn::Max(cosine, hn::Zero(d));

@@ -38,7 +38,8 @@ WindowAxis window(std::int32_t index, int square_level, std::int32_t tile_index,
 }  // namespace
 
 PaintNeeds paint_needs(const paging::ShadingParams& shading) {
-  return {shading.lit || of_posts(shading.colour_source) || of_posts(shading.hue), shading.colour_source == ColourSource::kImage};
+  return {shading.lit || of_posts(shading.colour_source) || of_posts(shading.hue),
+          shading.colour_source == ColourSource::kImage};
 }
 
 PaintTiles::PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& painter,
