@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "vpe/base/nice_ticks.h"
+
 namespace vpe::base {
 
 namespace {
@@ -19,6 +21,18 @@ std::optional<Number> parse(std::string_view text) {
   const auto [rest, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc{} || rest != end) return std::nullopt;
   return value;
+}
+
+// The longest plain number has 309 digits before the point; callers ask for a few behind it.
+constexpr int kMostDecimals = 100;
+
+std::string print(double value, std::chars_format format, int precision) {
+  std::array<char, 512> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value, format,
+                                    precision < 0               ? 0
+                                    : precision > kMostDecimals ? kMostDecimals
+                                                                : precision);
+  return {text.data(), result.ptr};
 }
 
 }  // namespace
@@ -38,6 +52,34 @@ std::string format_number(double value) {
       plain ? std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed)
             : std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), result.ptr};
+}
+
+std::string format_shortest(double value) {
+  std::array<char, 64> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), result.ptr};
+}
+
+std::string format_fixed(double value, int decimals) {
+  return print(value, std::chars_format::fixed, decimals);
+}
+
+std::string format_general(double value, int digits) {
+  return print(value, std::chars_format::general, digits);
+}
+
+std::string format_rounded(double value, int decimals) {
+  const double unit = power_of_ten(decimals);
+  return format_number(std::round(value * unit) / unit);
+}
+
+std::string format_display(double value, int decimals) {
+  constexpr double kMostPlain = 1e15;
+  const bool is_plain = std::abs(value) < kMostPlain;
+  std::string text =
+      print(value, is_plain ? std::chars_format::fixed : std::chars_format::scientific, decimals);
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  return is_zero && text.starts_with('-') ? text.substr(1) : text;
 }
 
 }  // namespace vpe::base

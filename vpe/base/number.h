@@ -17,4 +17,22 @@ std::optional<std::int64_t> parse_integer(std::string_view text);
 // "nan", "inf" or "-inf" for what is not finite.
 std::string format_number(double value);
 
+// Returns the shortest text that parse_number() reads back to the same bits, with an exponent where that is
+// shorter: "3e+06". Use it in identifiers that must not change; use format_number() in texts for people.
+std::string format_shortest(double value);
+
+// Returns the number with this many decimals, as printf's "%.*f" does in the "C" locale: "-0.00" keeps its
+// sign.
+std::string format_fixed(double value, int decimals);
+
+// Returns the number with at most this many significant digits, as printf's "%.*g" does in the "C" locale.
+std::string format_general(double value, int digits);
+
+// Returns the number rounded to at most this many decimals, without trailing zeros: "12.5", "0.35".
+std::string format_rounded(double value, int decimals);
+
+// Returns the number for display, with this many decimals: "-12.50". A value that rounds to zero has no sign.
+// Numbers of 1e15 and more get an exponent; what is not finite is named.
+std::string format_display(double value, int decimals);
+
 }  // namespace vpe::base
