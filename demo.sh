@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From nothing to a film over Mars: installs what is missing, builds, draws the embedded Mars into out/.
+# Installs missing packages, builds vpe, and draws images and a film of the embedded Mars into out/.
 set -euo pipefail
 cd "$(dirname "$0")"
 .ci/install.sh
@@ -25,12 +25,12 @@ cat <<'TEXT'
 Made in out/:
   valles-marineris.mp4   a flight from orbit down into Valles Marineris and along it
   globe.png olympus.png valles.png noctis.png hellas.png gale.png jezero.png boreum.png
-  valles-marineris.csv   what every frame cost and how wrong it can be
+  valles-marineris.csv   time and error bound of every frame
 
 The embedded Mars is an illustration of published landforms, not data. With real data:
   build/release/vpe build DEM --image IMAGE -o mars.vpe
   build/release/vpe fly scripts/flights/valles-marineris.flight mars.vpe -o real.mp4
   build/release/vpe query mars.vpe -59.2,-13.7
   build/release/vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 -o view.png
-'build/release/vpe doctor' says what of this machine was used. See README.md for more, 'vpe --help' for all.
+'build/release/vpe doctor' shows what vpe uses of this machine. README.md and 'build/release/vpe --help' tell more.
 TEXT

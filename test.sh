@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs the tests.
 #   ./test.sh                    the default tests
-#   ./test.sh --all              also the long ones, clang, both sanitizer builds, floating-point traps and mutants
+#   ./test.sh --all              also the long ones, with planets made for them; clang; clang-tidy; the API reference;
+#                                both sanitizer builds, floating-point traps and mutants
 #   ./test.sh --fuzz [SECONDS]   the fuzzers alone, each for so long (600)
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -17,9 +18,10 @@ jobs=${JOBS:-$(nproc)}
 
 # build PRESET [TARGETS ...]
 build() {
-  local targets=("${@:2}")
+  local targets=("${@:2}") folder=build/$1
+  [ "$1" != ci ] || folder=build/release
   cmake --preset "$1" -DVPE_TESTS=ON >/dev/null &&
-    cmake --build "build/$1" ${targets[0]:+--target "${targets[@]}"} -- -j"$jobs"
+    cmake --build "$folder" ${targets[0]:+--target "${targets[@]}"} -- -j"$jobs"
 }
 
 # Runs ctest in a build folder and says how many tests ran and which were skipped, and why. One test more at a time than
@@ -40,7 +42,7 @@ run() {
 
 if [ "$what" = --fuzz ]; then
   seconds=${2:-600}
-  targets=(flight payload planet label rover gpano sidecar picture)
+  targets=(flight payload planet label rover gpano sidecar image)
   cmake --preset fuzz >/dev/null
   cmake --build build/fuzz --target vpe_fuzz_seeds "${targets[@]/#/vpe_fuzz_}" -- -j"$jobs"
   for target in "${targets[@]}"; do
@@ -53,16 +55,22 @@ if [ "$what" = --fuzz ]; then
   done
   exit
 fi
-build release
+tools/check_format.sh
+# In CI warnings are errors; a newer compiler's new warnings stop nobody else.
+if [ "${CI:-}" = true ]; then build ci; else build release; fi
 if [ "$what" = default ]; then
   run release -L default
   exit
 fi
+eval "$(tests/make_planets.sh)"
 run release
+cmake --preset release -DVPE_DOCS_WARN_AS_ERROR=FAIL_ON_WARNINGS >/dev/null
+cmake --build build/release --target docs
 # Sanitizers: everything but pictures (drivers are not instrumented), then threads.
 export ASAN_OPTIONS=detect_leaks=1 TSAN_OPTIONS=detect_deadlocks=0 UBSAN_OPTIONS=print_stacktrace=1
 build clang
 run clang -L default
+tools/check_tidy.sh --preset clang
 build asan
 run asan -L default -LE gl
 build tsan
