@@ -36,7 +36,7 @@ fi
 files=()
 while IFS= read -r -d '' file; do
   [ -f "$file" ] && files+=("$file")
-done < <(git ls-files -z --cached --others --exclude-standard -- "${paths[@]}" | sort -zu)
+done < <(git ls-files -z -- "${paths[@]}")
 if [ ${#files[@]} -eq 0 ]; then
   echo "check_format.sh: no C++ files match ${paths[*]}" >&2
   exit 2
