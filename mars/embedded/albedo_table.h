@@ -1,4 +1,4 @@
-// Brightness of the bumps of embedded_albedo.h, in steps of kAlbedoStep, in the order of bump_centre().
+// Brightness of the bumps of albedo() in colour.cpp, in steps of kAlbedoStep, in the order of bump_centre().
 #pragma once
 
 #include <array>

@@ -1,7 +1,8 @@
-// A handful of nearby directions that are worked on together, and what is found out about them.
+// Blocks of nearby directions that are processed together, the terrain at them, and loops for several
+// instruction sets.
 //
-// Arrays are filled up to a multiple of kLanes with copies of the last direction, so that loops need no tail.
-// Every field is a function of its own direction alone; bounds serve only to skip what contributes exactly 0.
+// Arrays are padded to a multiple of kLanes with copies of the last direction, so that loops need no tail.
+// Every value is a function of its own direction alone; bounds only serve to skip what contributes exactly 0.
 #pragma once
 
 #include <array>
@@ -17,13 +18,17 @@ static_assert(kBlock % kLanes == 0);
 template <typename T>
 using Lane = std::array<T, kBlock>;
 
+// Instruction sets. All give equal bits.
 enum class Simd { kPlain, kAvx2, kAvx512 };
-// The best that this processor has. All give equal bits.
+
+// Returns the fastest instruction set of this processor.
 Simd best_simd();
+
+// Returns true if this processor has the instruction set.
 bool has_simd(Simd simd);
 
 struct Block {
-  std::size_t count = 0;       // directions asked for
+  std::size_t count = 0;       // number of directions
   std::size_t padded = 0;      // rounded up to kLanes
   glm::dvec3 centre{1, 0, 0};  // some point (not unit); all directions are within `reach` of it
   double reach = 0;            // chord on the unit sphere
@@ -32,10 +37,10 @@ struct Block {
 
   glm::dvec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
 
-  // Fills up and finds the bounds; requires 1 <= count <= kBlock and unit x, y, z.
+  // Pads the arrays and computes the bounds. Requires 1 <= count <= kBlock and unit x, y, z.
   void finish();
 
-  // True when some direction may lie within `chord` (unit sphere) of the point.
+  // Returns true if some direction may lie within `chord` (unit sphere) of the point.
   bool near(const glm::dvec3& point, double chord) const {
     const double dx = centre.x - point.x;
     const double dy = centre.y - point.y;
@@ -45,7 +50,7 @@ struct Block {
   }
 };
 
-// The ground before craters and roughness, and what kind of ground it is. Factors are 0..1 unless said.
+// Holds the ground before craters and roughness, and its kind. Factors are 0..1 unless noted.
 struct Terrain {
   alignas(64) Lane<double> height_m;
   alignas(64) Lane<float> cratered;  // density of craters, relative to the southern highlands
@@ -58,5 +63,38 @@ struct Terrain {
   alignas(64) Lane<float> mound;     // layered mounds in troughs
   alignas(64) Lane<float> ice;       // polar caps
 };
+
+#if defined(__x86_64__) && defined(__GNUC__)
+
+// "flatten" inlines the work and all that it calls into a function compiled for the wider registers. Without
+// contraction and reassociation each lane performs the operations of the plain code.
+template <class Work>
+[[gnu::noinline, gnu::flatten, gnu::target("avx2")]] void run_with_avx2(const Work& work) {
+  work();
+}
+template <class Work>
+[[gnu::noinline, gnu::flatten, gnu::target("avx512f,avx512bw,avx512dq,avx512vl")]] void run_with_avx512(
+    const Work& work) {
+  work();
+}
+
+// Runs work(), a function object of loops over lanes, compiled for `simd`. All choices give equal bits.
+template <class Work>
+void with_simd(Simd simd, const Work& work) {
+  switch (simd) {
+    case Simd::kAvx512: return run_with_avx512(work);
+    case Simd::kAvx2: return run_with_avx2(work);
+    case Simd::kPlain: return work();
+  }
+}
+
+#else
+
+template <class Work>
+void with_simd(Simd, const Work& work) {
+  work();
+}
+
+#endif
 
 }  // namespace mars::embedded

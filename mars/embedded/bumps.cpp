@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/math.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
@@ -43,8 +43,8 @@ void sum(const Block& block, const Bumps<Coefficient>& bumps, Lane<double>& out)
 glm::dvec3 bump_centre(int k, int count) {
   constexpr double kGolden = 0.61803398874989484820;
   const double z = 1.0 - (2.0 * k + 1.0) / count;
-  const double turns = k * kGolden;
-  const SinCos lon = exact_sin_cos_deg((turns - floor_int(turns)) * 360.0);
+  const double circles = k * kGolden;
+  const SinCos lon = exact_sin_cos_deg((circles - floor_int(circles)) * 360.0);
   const double r = std::sqrt(1.0 - z * z);
   return {r * lon.cos, r * lon.sin, z};
 }

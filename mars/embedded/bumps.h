@@ -1,4 +1,5 @@
-// Fields made of many equal bumps on a Fibonacci lattice: what is broader than about three of its steps.
+// Smooth fields on the sphere, made of many equal bumps on a Fibonacci lattice. They show what is broader than
+// about three lattice steps.
 //
 // value = step * sum coefficient_k (1 - chord^2 / reach^2)^3 over the bumps within `reach`.
 #pragma once
@@ -19,11 +20,13 @@ struct Bumps {
   double step;
 };
 
-// Centre of bump k of `count`, unit.
+// Returns the unit centre of bump k of `count`.
 glm::dvec3 bump_centre(int k, int count);
+
+// Returns the centres of all bumps.
 std::vector<glm::dvec3> bump_centres(int count);
 
-// Sets out[i] to the field at each direction. Sums run in the order of k.
+// Set out[i] to the field at each direction. Terms are added in the order of k.
 void sum_bumps(const Block& block, const Bumps<std::int16_t>& bumps, Lane<double>& out);
 void sum_bumps(const Block& block, const Bumps<std::int8_t>& bumps, Lane<double>& out);
 

@@ -10,21 +10,22 @@ namespace mars::embedded {
 
 namespace {
 
-// A dome of layered ice about a point near the pole, with troughs that spiral outwards.
+// Describes a dome of layered ice around a point near the pole, with troughs that spiral outwards.
 struct Cap {
   glm::dvec3 middle;
   double radius_km;
   double thickness_m;
   double flatness;              // 1 parabolic dome; less = flatter with a steeper edge
-  double turn;                  // sense of the spiral
+  double sense;                 // of the spiral, +-1
   double between_km, groove_m;  // of its troughs
   double grooved;               // 0..1: share of the cap that has them
 };
 constexpr Cap kCaps[] = {{place(20.0, 87.8), 535, 3150, 0.45, 1.0, 47, 620, 0.9},
                          {place(160.0, -85.3), 680, 2900, 1.0, -1.0, 58, 420, 0.55}};
 
-// Angle of (x, y) in turns, -0.5..0.5, within 2e-3; own polynomial for equal bits.
-double turns_of(double x, double y) {
+// Returns the angle of (x, y) in full circles, -0.5..0.5, within 2e-3. A polynomial, because libm differs in
+// bits.
+double angle_in_circles(double x, double y) {
   const double ax = x < 0.0 ? -x : x;
   const double ay = y < 0.0 ? -y : y;
   const double big = std::max(ax, ay) + 1e-300;
@@ -48,7 +49,7 @@ constexpr Reach kChasmata[] = {
     {place(141.0, -82.3), place(134.0, -80.3), 20, 36},
 };
 
-// The canyons near a block.
+// Holds the canyons near a block.
 struct Near {
   std::array<const Reach*, std::size(kChasmata)> reaches;
   std::size_t count = 0;
@@ -61,7 +62,7 @@ struct Near {
     }
   }
 
-  // Kilometres inside the nearest rim; -30 and less is far enough.
+  // Returns kilometres inside the nearest rim, negative outside, at least -30.
   double inside_km(const glm::dvec3& here) const {
     double inside = -30.0;
     for (std::size_t k = 0; k < count; ++k) {
@@ -78,11 +79,11 @@ struct Near {
 
 }  // namespace
 
-void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
+void lay_caps(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t) {
   for (const Cap& c : kCaps) {
     if (!block.near(c.middle, km_chord(c.radius_km * 1.3))) continue;
-    Lane<float> bend;
-    noise(block, 150e3, 0x417, bend);
+    Lane<float> distortion;
+    noise(block, 150e3, 0x417, distortion);
     const Near canyons(block);
     for (std::size_t i = 0; i < block.padded; ++i) {
       const glm::dvec3 v = block.at(i) - c.middle;
@@ -93,14 +94,14 @@ void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t)
                           0.012 * static_cast<double>(w.km40[i]),
                       0.2));
       if (r >= 1.0) continue;
-      // Chart about the pole itself, so that the troughs wind round it.
+      // The chart is centred at the pole itself, so that the troughs wind around it.
       const double e = block.x[i] * (kRadius_m / 1000.0);
       const double n = block.y[i] * (kRadius_m / 1000.0);
       const double polar_km = std::sqrt(e * e + n * n);
       const double dome = 1.0 - r * r;
       const double thick = c.thickness_m * dome / (c.flatness + (1.0 - c.flatness) * dome);
-      const double wind = turns_of(e, n) * 5.0 * c.turn + polar_km / c.between_km +
-                          0.34 * static_cast<double>(bend[i]) + 0.04 * static_cast<double>(w.km40[i]);
+      const double wind = angle_in_circles(e, n) * 5.0 * c.sense + polar_km / c.between_km +
+                          0.34 * static_cast<double>(distortion[i]) + 0.04 * static_cast<double>(w.km40[i]);
       const double phase = wind - floor_int(wind);
       // Steep towards the equator, gentle towards the pole.
       const double groove = ramp(0.0, 0.34, phase) * ramp(0.56, 0.42, phase);
@@ -114,7 +115,7 @@ void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t)
       h = mix(h, std::min(h, 160.0 + 0.12 * h), cut);
       const double steep = std::max(groove * (1.0 - groove) * 4.0 * where, 4.0 * cut * (1.0 - cut));
       if (spacing_m <= 256.0) {
-        // Layers stand out as ledges where they are cut.
+        // Layers show as ledges where they are cut.
         const double bed = h * (1.0 / 85.0);
         const double layer = bed - floor_int(bed);
         h += 85.0 * 0.5 * (layer * layer * (3.0 - 2.0 * layer) - layer) * std::min(1.0, steep * 1.5);

@@ -6,7 +6,7 @@
 
 namespace mars::embedded {
 
-// sRGB of a block's ground; out has room for kBlock.
+// Sets out[i] to the sRGB colour of the ground of a block. `out` must have room for kBlock colours.
 void colour(const Block& block, const Surface& surface, vpe::base::Rgb* out);
 
 }  // namespace mars::embedded

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/landforms.h"
 #include "mars/embedded/math.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
@@ -12,13 +12,15 @@ namespace {
 
 constexpr double kCellsPerDiameter = 2.5;
 
-// Share of the highlands that craters of one level cover, and how much of it survives on the youngest ground.
+// Holds the share of the highlands that craters of one level cover, and the part of it that the youngest ground
+// has.
 struct Share {
   double covered;
   double young;
 };
 constexpr Share share_of(int level) {
-  // From 2 km up about the cumulative numbers of Noachian highlands; below, what erosion and saturation leave.
+  // From 2 km up these follow the cumulative numbers of Noachian highlands; below, erosion and saturation leave
+  // less.
   if (level >= 17) return {0.045, 0.0};  // above 131 km most are named
   if (level >= 15) return {0.100, 0.0};  // 33 km
   if (level >= 14) return {0.065, 0.0};
@@ -27,10 +29,11 @@ constexpr Share share_of(int level) {
   if (level >= 9) return {0.042, 0.05};
   if (level >= 6) return {0.050, 0.16};
   if (level >= 3) return {0.030, 0.35};
-  return {0.010, 0.30};  // 2 to 8 m: the air stops what would make them
+  return {0.010, 0.30};  // 2 to 8 m: the atmosphere stops most impactors of that size
 }
 
-// Mean of D^2 over a level is 1.848 of its smallest; a cell's candidate is in the shell with chance 1 per c^2.
+// The mean of D^2 over a level is 1.848 times the smallest D^2. With cells of c diameters, a candidate lies in
+// the surface layer with a probability that makes one per area of c^2.
 constexpr double kept_per_candidate(int level) {
   return share_of(level).covered * kCellsPerDiameter * kCellsPerDiameter / (0.7853981633974483 * 1.848);
 }
@@ -94,7 +97,7 @@ Crater shape(const glm::dvec3& centre, double diameter_m, int level, std::uint64
     c.floor = 0.10F * (1.0F - c.sharp) + 0.05F * other;
     if (diameter_m > 2500.0 && c.sharp > 0.55F) c.lobe_m = 0.008F * d * other;
   } else {
-    // Depth near 0.36 D^0.49 km (Garvin et al. 2003), here a square root.
+    // The depth is about 0.36 D^0.49 km (Garvin et al. 2003), approximated by a square root.
     const float fresh_m = 340.0F * root(diameter_m * 1e-3);
     c.sharp = 0.12F + 0.88F * age * age;
     c.depth_m = fresh_m * (0.20F + 0.62F * c.sharp) * (0.85F + 0.3F * other);
@@ -108,7 +111,7 @@ Crater shape(const glm::dvec3& centre, double diameter_m, int level, std::uint64
   return c;
 }
 
-// Triangle wave of period 1 between -0.5 and 0.5, for x >= -8.
+// Returns a triangle wave of period 1 between -0.5 and 0.5, for x >= -8.
 [[gnu::always_inline]] inline float triangle(float x) {
   const float f = x - static_cast<float>(static_cast<std::int32_t>(x + 8.0F) - 8);
   const float up = f < 0.5F ? f : 1.0F - f;
@@ -135,13 +138,13 @@ Crater shape(const glm::dvec3& centre, double diameter_m, int level, std::uint64
     const double dy = (block.y[i] - c.centre.y) * scale;
     const double dz = (block.z[i] - c.centre.z) * scale;
     const auto round = static_cast<float>(dx * dx + dy * dy + dz * dz);
-    // Squared radius, bent by noise. Beyond the reach the bending must not bring anything back.
+    // Noise distorts the squared radius, but must not add anything beyond the extent of the ejecta.
     const float n = std::max(-2.5F, std::min(2.5F, ragged[i]));
     const float q = round * (1.0F + wobble * n);
     const float window = std::max(0.0F, 1.0F - (std::max(1.0F, q) - 1.0F) * kWindow);
     const float cut = std::max(0.0F, std::min(1.0F, (kReach2 - round) * 2.0F));
 
-    // Fresh: flat floor, wall that steepens to a sharp crest.
+    // Fresh craters have a flat floor and a wall that steepens to a sharp crest.
     const float w = std::max(0.0F, std::min(1.0F, (q - c.floor) * inner));
     // Slumped blocks make terraces in the walls of the larger ones.
     const float step = w * 3.0F + 0.25F * n;
@@ -152,7 +155,7 @@ Crater shape(const glm::dvec3& centre, double diameter_m, int level, std::uint64
     const float outside = c.rim_m * fall * window * window * (1.0F + 0.45F * n * std::min(1.0F, safe - 1.0F));
     const float crisp = q < 1.0F ? inside : outside;
 
-    // Worn: a smooth hollow with a broad swell around it.
+    // Worn craters are a smooth hollow with a broad swell around it.
     const float s = std::max(0.0F, 1.0F - q * (1.0F / 1.5F));
     const float lip = std::max(0.0F, 1.0F - (q - 1.3F) * (q - 1.3F));
     const float worn = -c.depth_m * std::min(0.62F, s * s * (3.0F - 2.0F * s)) * 1.25F + c.rim_m * 0.8F * lip;
@@ -249,7 +252,7 @@ void keep_craters(std::span<const Candidate> candidates, Simd simd, std::vector<
     }
     block.finish();
     Octaves octaves;
-    for (int k = kWanderOctave; k <= kLastOctave; ++k) add_octave(block, k, octaves);
+    for (int k = kOutlineOctave; k <= kLastOctave; ++k) add_octave(block, k, octaves);
     Terrain ground;
     terrain(block, octaves, kAnySpacing_m, ground);
     for (std::size_t i = 0; i < block.count; ++i) {

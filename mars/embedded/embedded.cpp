@@ -23,7 +23,7 @@ SourceInfo info_of(double resolution_m) {
   return info;
 }
 
-// What a planet for everything is built with, or, where a finest spacing is given, that everywhere.
+// Holds the default spacings, or one spacing everywhere if a finest one is given.
 class Spacings {
  public:
   Spacings(const EmbeddedSpacings& built, double finest_m) : built_(built), finest_m_(finest_m) {}
@@ -55,7 +55,7 @@ class EmbeddedElevation final : public ElevationSource {
 
   double spacing_in(const Cap& cap) const override { return spacings_.in(cap); }
 
-  // A Fibonacci lattice over the planet, each post at the spacing wanted there.
+  // Visits a Fibonacci lattice over the planet, each post with the spacing of its place.
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
     constexpr double kGolden = 0.61803398874989484820;
     constexpr std::size_t kBatch = 4096;
@@ -70,8 +70,8 @@ class EmbeddedElevation final : public ElevationSource {
     };
     for (std::size_t k = 0; k < max_posts; ++k) {
       const double z = 1.0 - (2.0 * static_cast<double>(k) + 1.0) / static_cast<double>(max_posts);
-      const double turns = static_cast<double>(k) * kGolden;
-      const double part = turns - static_cast<double>(static_cast<std::int64_t>(turns));
+      const double circles = static_cast<double>(k) * kGolden;
+      const double part = circles - static_cast<double>(static_cast<std::int64_t>(circles));
       const SinCos lon = embedded::exact_sin_cos_deg(part * 360.0);
       const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
       const glm::dvec3 direction{r * lon.cos, r * lon.sin, z};

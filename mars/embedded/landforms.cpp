@@ -2,18 +2,29 @@
 
 #include <algorithm>
 
+#include "mars/embedded/block.h"
+#include "mars/embedded/bumps.h"
 #include "mars/embedded/math.h"
 #include "mars/embedded/noise.h"
-#include "mars/embedded/relief.h"
-#include "mars/embedded/simd.h"
+#include "mars/embedded/relief_table.h"
 
 namespace mars::embedded {
 
 namespace {
 
+// Sets out[i] to the broad height of Mars in metres: dichotomy, Tharsis, Hellas and everything longer than
+// about 600 km. The rounded coefficients of 2000 bumps (bumps.h) were fitted to the MOLA topography (Smith et
+// al. 2001) without troughs and shields; the root-mean-square difference of the fit is 365 m.
+void broad_relief(const Block& block, Lane<double>& out) {
+  constexpr double kReach = 0.165;  // chord on the unit sphere: 560 km
+  static const Bumps<std::int16_t> bumps{bump_centres(static_cast<int>(kReliefTable.size())), kReliefTable,
+                                         kReach, kReliefStep_m};
+  sum_bumps(block, bumps, out);
+}
+
 enum class Kind : std::uint8_t { kLava, kRidgedPlain, kHummocks, kMassifs };
 
-// A disc of one kind of ground with a ragged edge; massifs stand in the ring inner_km..radius_km.
+// Describes a disc of one kind of ground with a ragged edge; massifs stand in the ring inner_km..radius_km.
 struct Province {
   Kind kind;
   glm::dvec3 centre;
@@ -46,7 +57,7 @@ constexpr Province kProvinces[] = {
     {Kind::kMassifs, place(275.0, -38.0), 900, 500},    // Thaumasia highlands
 };
 
-// A broad swell or hollow along a line, too narrow for the bumps of embedded_relief.h.
+// Describes a broad swell or hollow along a line, too narrow for broad_relief().
 struct Swell {
   glm::dvec3 a, b;
   double half_km, height_m;
@@ -66,7 +77,7 @@ constexpr Swell kSwells[] = {
     {place(285.0, -31.0), place(270.0, -37.0), 160, 500},  // the rise of southern Thaumasia
 };
 
-// Lays a province over the ground; d_km are distances from its centre, bent.
+// Applies a province to the ground. d_km is the distorted distance from its centre.
 void cover_with(const Block& block, const Province& p, const Lane<double>& d_km, const Lane<float>& cover,
                 Terrain& t) {
   const auto lay = [&](float volcanic, float cratered, float rough) {
@@ -106,9 +117,9 @@ void add_octave(const Block& block, int k, Octaves& out) {
         out.n[static_cast<std::size_t>(k)]);
 }
 
-void lay_provinces(const Block& block, const Wander& w, Terrain& t) {
+void lay_provinces(const Block& block, const OutlineNoise& w, Terrain& t) {
   Lane<double>& h = t.height_m;
-  relief(block, h);
+  broad_relief(block, h);
   for (const Swell& s : kSwells) {
     const double half = km_chord(s.half_km);
     const double length2 = chord2(s.a, s.b);
@@ -124,7 +135,7 @@ void lay_provinces(const Block& block, const Wander& w, Terrain& t) {
       }
     });
   }
-  // Slopes between plains and highlands that are not the dichotomy's.
+  // Basins have slopes between plains and highlands that do not belong to the dichotomy.
   struct Basin {
     glm::dvec3 centre;
     double radius_km;
@@ -141,7 +152,7 @@ void lay_provinces(const Block& block, const Wander& w, Terrain& t) {
   }
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
-      // The dichotomy: steepen the broad slope between plains and highlands, and fray it where it is steep.
+      // At the dichotomy the broad slope between plains and highlands becomes steeper and irregular.
       constexpr double kMiddle_m = -2000.0;
       constexpr double kHalf_m = 1900.0;
       const double x0 = (h[i] - kMiddle_m) * (1.0 / kHalf_m);
@@ -156,7 +167,7 @@ void lay_provinces(const Block& block, const Wander& w, Terrain& t) {
       const auto highland =
           static_cast<float>(ramp(-2700.0, -1200.0, h[i] + 250.0 * static_cast<double>(w.km250[i])));
       t.lowland[i] = 1.0F - highland;
-      // The broad relief is a mean with craters; ours are still to be dug.
+      // The broad relief is a mean that includes craters, which are subtracted later.
       h[i] += 210.0 * static_cast<double>(highland);
       t.cratered[i] = 0.04F + 0.96F * highland;
       t.rugged[i] = 0.10F + 0.90F * highland * (1.0F + 0.25F * std::max(-1.5F, std::min(1.5F, w.km600[i])));
@@ -189,7 +200,7 @@ void lay_provinces(const Block& block, const Wander& w, Terrain& t) {
 }
 
 void terrain(const Block& block, const Octaves& octaves, double spacing_m, Terrain& out) {
-  const Wander w(octaves);
+  const OutlineNoise w(octaves);
   lay_provinces(block, w, out);
   raise_shields(block, w, spacing_m, out);
   crack_noctis(block, w, spacing_m, out);

@@ -1,5 +1,5 @@
 // Terrain of the embedded Mars: broad relief, provinces, shields, basins and polar caps. Positions and heights
-// are the published ones (IAU gazetteer, MOLA); shapes are simple profiles made irregular by noise.
+// are published values (IAU gazetteer, MOLA); shapes are simple profiles made irregular by noise.
 #pragma once
 
 #include "mars/embedded/block.h"
@@ -7,46 +7,53 @@
 
 namespace mars::embedded {
 
-// The octaves of noise that landforms and roughness share: wavelengths of 2^k metres, standard deviation 1.
-// Those from kWanderOctave on are there at every spacing.
+// Holds the octaves of noise that landforms and roughness share: wavelengths of 2^k metres, standard deviation
+// 1. Those from kOutlineOctave on are present at every spacing.
 inline constexpr int kLastOctave = 19;
-inline constexpr int kWanderOctave = 14;
+inline constexpr int kOutlineOctave = 14;
 struct Octaves {
-  int first = kWanderOctave;
+  int first = kOutlineOctave;
   std::array<Lane<float>, kLastOctave + 1> n;
 };
+
+// Adds octave k.
 void add_octave(const Block& block, int k, Octaves& out);
 
-// Names for what makes outlines wander, by wavelength.
-struct Wander {
-  explicit Wander(const Octaves& o)
+// Names the octaves that make outlines irregular by their wavelength.
+struct OutlineNoise {
+  explicit OutlineNoise(const Octaves& o)
       : km600(o.n[19]), km250(o.n[18]), km100(o.n[17]), km40(o.n[15]), km16(o.n[14]) {}
   const Lane<float>&km600, &km250, &km100, &km40, &km16;
 };
 
-// Everything of Terrain, without detail shorter than 2 * spacing_m. `octaves` needs those from kWanderOctave
-// on. Crater densities are asked for at one spacing always, so that the same craters are there at every one.
+// Sets all of Terrain, without detail shorter than 2 * spacing_m. `octaves` must contain those from
+// kOutlineOctave on. Callers evaluate crater densities at one spacing always, so that the same craters exist at
+// every spacing.
 void terrain(const Block& block, const Octaves& octaves, double spacing_m, Terrain& out);
 
-// The parts of terrain(), in the order in which they are applied.
-void lay_provinces(const Block& block, const Wander& w, Terrain& t);
-void raise_shields(const Block& block, const Wander& w, double spacing_m, Terrain& t);  // embedded_shields.cpp
-void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t);   // embedded_noctis.cpp
-void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_troughs.cpp
-void carve_valleys(const Block& block, double spacing_m, Terrain& t);                   // embedded_valleys.cpp
-void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t);    // embedded_mounds.cpp
-void lay_caps(const Block& block, const Wander& w, double spacing_m, Terrain& t);       // embedded_caps.cpp
+// Parts of terrain(), in the order in which they are applied.
+void lay_provinces(const Block& block, const OutlineNoise& w, Terrain& t);
+void raise_shields(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t);  // shields.cpp
+void crack_noctis(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t);   // noctis.cpp
+void cut_troughs(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t);    // troughs.cpp
+void carve_valleys(const Block& block, double spacing_m, Terrain& t);                         // valleys.cpp
+void pile_mounds(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t);    // mounds.cpp
+void lay_caps(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t);       // caps.cpp
 
-// Parts of raise_shields(), in embedded_slides.cpp.
-// Landslides at the foot of a scarp: lobes that run out radially over the plain, grooved along their way.
-// `bent_km` are distances from the middle, bent as the scarp is.
+// Describes the foot of a scarp.
 struct Foot {
   const PlaceFrame& frame;
   double radius_km;
 };
-void spread_aprons(const Block& block, double spacing_m, const Foot& foot, const Lane<double>& bent_km,
+
+// Part of raise_shields(), in slides.cpp. Adds landslides at the foot of a scarp: lobes that run out radially
+// over the plain, with radial grooves. `distorted_km` is the distance from the middle, distorted like the
+// scarp.
+void spread_aprons(const Block& block, double spacing_m, const Foot& foot, const Lane<double>& distorted_km,
                    Terrain& t);
-// The aureole: lobes of ridged ground about Olympus, farthest to the north-west.
-void lay_aureole(const Block& block, const Wander& w, double spacing_m, Terrain& t);
+
+// Part of raise_shields(), in slides.cpp. Adds the aureole: lobes of ridged ground around Olympus, widest to
+// the north-west.
+void lay_aureole(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t);
 
 }  // namespace mars::embedded

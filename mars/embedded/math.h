@@ -1,5 +1,5 @@
-// Arithmetic of the embedded Mars: only + - * / sqrt of IEEE 754 and integers, so that every compiler and
-// machine gives the same bits (no libm; the build sets -ffp-contract=off).
+// Arithmetic of the embedded Mars. It uses only integers and + - * / sqrt of IEEE 754, so that every compiler
+// and machine gives the same bits (no libm; the build sets -ffp-contract=off).
 #pragma once
 
 #include <array>
@@ -13,11 +13,12 @@ namespace mars::embedded {
 
 inline constexpr double kRadius_m = kMarsRadius_m;
 
-// Sine and cosine of an angle in degrees by their power series; |error| <= 2e-15 for |angle| <= 720.
+// Returns sine and cosine of an angle in degrees by their power series; |error| <= 2e-15 for |angle| <= 720.
 constexpr SinCos exact_sin_cos_deg(double angle_deg) {
   while (angle_deg > 180.0) angle_deg -= 360.0;
   while (angle_deg < -180.0) angle_deg += 360.0;
-  // A quarter of the angle, then two doublings: 12 terms suffice below 45 degrees.
+  // The series is evaluated for a quarter of the angle, where 12 terms suffice (45 degrees), and then doubled
+  // twice.
   const double x = angle_deg * (kPi / 180.0) / 4.0;
   const double xx = x * x;
   double s = 0.0;
@@ -36,13 +37,14 @@ constexpr SinCos exact_sin_cos_deg(double angle_deg) {
   return {sine, cosine};
 }
 
+// Returns the unit vector of a place.
 constexpr glm::dvec3 place(double lon_deg, double lat_deg) {
   const SinCos lon = exact_sin_cos_deg(lon_deg);
   const SinCos lat = exact_sin_cos_deg(lat_deg);
   return {lat.cos * lon.cos, lat.cos * lon.sin, lat.sin};
 }
 
-// East, north and up of a place, from constants alone.
+// Holds up, east and north at a place.
 struct PlaceFrame {
   glm::dvec3 up, east, north;
 };
@@ -59,7 +61,7 @@ constexpr T clamp01(T t) {
   return t < T(0) ? T(0) : (t > T(1) ? T(1) : t);
 }
 
-// 0 below `low`, 1 above `high`, C1 between.
+// Returns 0 below `low`, 1 above `high`, and a C1 transition between. low > high gives a falling ramp.
 template <typename T>
 constexpr T ramp(T low, T high, T x) {
   const T t = clamp01((x - low) / (high - low));
@@ -73,13 +75,13 @@ constexpr T mix(T a, T b, T t) {
 
 constexpr float magnitude(float x) { return x < 0.0F ? -x : x; }
 
-// Largest integer <= x, |x| < 2^31.
+// Returns the largest integer <= x, |x| < 2^31.
 inline std::int32_t floor_int(double x) {
   const auto truncated = static_cast<std::int32_t>(x);
   return truncated - static_cast<std::int32_t>(x < static_cast<double>(truncated));
 }
 
-// 64 well mixed bits of a 64-bit key (splitmix64's finaliser).
+// Returns 64 well mixed bits of a 64-bit key (finaliser of splitmix64).
 constexpr std::uint64_t mix_bits(std::uint64_t h) {
   h ^= h >> 30;
   h *= 0xbf58476d1ce4e5b9ULL;
@@ -88,20 +90,20 @@ constexpr std::uint64_t mix_bits(std::uint64_t h) {
   return h ^ (h >> 31);
 }
 
-// Fraction in [0, 1) of 16 of the bits, from bit `shift` on.
+// Returns a fraction in [0, 1) made of 16 of the bits, from bit `shift` on.
 constexpr double fraction16(std::uint64_t bits, int shift) {
   return static_cast<double>((bits >> shift) & 0xffff) * (1.0 / 65536.0);
 }
 
-// Noise held within +-limit, so that what it frays stays within known bounds.
+// Returns the noise clamped to +-limit, so that outlines stay within known bounds.
 constexpr double held(double noise, double limit) {
   return noise < -limit ? -limit : (noise > limit ? limit : noise);
 }
 
-// Kilometres as a chord of the unit sphere.
+// Converts kilometres to a chord of the unit sphere.
 constexpr double km_chord(double length_km) { return length_km * 1000.0 / kRadius_m; }
 
-// Square of the distance.
+// Returns the square of the distance.
 constexpr double chord2(const glm::dvec3& a, const glm::dvec3& b) {
   const double x = a.x - b.x;
   const double y = a.y - b.y;

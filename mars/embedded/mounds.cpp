@@ -10,10 +10,10 @@ namespace mars::embedded {
 
 namespace {
 
-// Layered mounds inside the chasmata, and the one in Gale.
+// Describes a layered mound inside the chasmata, or the one in Gale.
 struct Mound {
   double lon_deg, lat_deg, long_km, short_km, azimuth_deg, height_m;
-  bool layered;  // else of the rock of the walls
+  bool layered;  // else made of the rock of the walls
 };
 constexpr Mound kMounds[] = {
     {285.6, -6.4, 62, 30, 82, 4300, true},   // Ceti Mensa, western Candor
@@ -33,10 +33,10 @@ constexpr Mound kMounds[] = {
 
 }  // namespace
 
-void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
+void pile_mounds(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t) {
   struct Placed {
     PlaceFrame frame;
-    SinCos turn;
+    SinCos azimuth;
   };
   static const auto places = [] {
     std::array<Placed, std::size(kMounds)> all;
@@ -47,7 +47,7 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
   }();
   for (std::size_t k = 0; k < places.size(); ++k) {
     const Mound& m = kMounds[k];
-    const auto& [f, turn] = places[k];
+    const auto& [f, azimuth] = places[k];
     constexpr double kFrayed = 0.3;
     const double outer = km_chord(m.long_km / (1.0 - kFrayed));
     if (!block.near(f.up, outer)) continue;
@@ -57,8 +57,8 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
       const glm::dvec3 v = block.at(i) - f.up;
       const double e = (v.x * f.east.x + v.y * f.east.y) * (kRadius_m / 1000.0);
       const double n = (v.x * f.north.x + v.y * f.north.y + v.z * f.north.z) * (kRadius_m / 1000.0);
-      const double a = (e * turn.sin + n * turn.cos) / m.long_km;
-      const double b = (e * turn.cos - n * turn.sin) / m.short_km;
+      const double a = (e * azimuth.sin + n * azimuth.cos) / m.long_km;
+      const double b = (e * azimuth.cos - n * azimuth.sin) / m.short_km;
       round[i] = std::sqrt(a * a + b * b);
       any = any || round[i] * (0.999 - kFrayed) < 1.0;
     }
@@ -67,7 +67,7 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
     flutes.fill(kMeanNoise);
     fine.fill(kMeanNoise);
     if (spacing_m <= 2048.0) {
-      // Wind and slope have fluted them downhill.
+      // Flutes run downhill.
       Points drawn;
       for (std::size_t i = 0; i < block.padded; ++i) {
         const glm::dvec3 v = block.at(i) - f.up;
@@ -92,7 +92,7 @@ void pile_mounds(const Block& block, const Wander& w, double spacing_m, Terrain&
       double h = 0.8 * m.height_m * s * (1.4 - 0.4 * s);
       h += 0.05 * m.height_m * (crest(flutes[i]) - 0.4) * 4.0 * s * r + 26.0 * (crest(fine[i]) - 0.4);
       if (spacing_m <= 512.0) {
-        // Terraces of the layers.
+        // Layers form terraces.
         const double bed = h * (1.0 / 190.0);
         const double phase = bed - floor_int(bed);
         h += 190.0 * 0.55 * (phase * phase * (3.0 - 2.0 * phase) - phase) * clamp01(s * 8.0);

@@ -15,10 +15,10 @@ namespace {
 constexpr double kBlock_km = 52.0;   // mean size of the blocks between the grabens
 constexpr double kWidest_km = 22.0;  // from the middle of a graben to its rim, fringe included
 constexpr double kReach_km = 640.0;
-constexpr double kCoarsest_m = 6000.0;  // beyond, the grabens are too narrow to be told apart
+constexpr double kCoarsest_m = 6000.0;  // largest spacing that resolves the grabens
 constexpr PlaceFrame kFrame = place_frame(259.5, -7.5);
 
-// Where the ground is broken: capsules in kilometres east and north of the frame's place.
+// Describes broken ground: a capsule in kilometres east and north of kFrame.
 struct Zone {
   double e0, n0, e1, n1, half_km;
 };
@@ -37,8 +37,8 @@ Seed seed_at(std::int64_t i, std::int64_t j) {
           (static_cast<double>(j) + fraction16(bits, 16)) * kBlock_km * 0.8, bits};
 }
 
-// 0 outside .. 1 well inside the zones.
-double broken(double e, double n, double bend_km) {
+// Returns 0 outside the zones and 1 well inside.
+double broken(double e, double n, double distortion_km) {
   double inside = -1e9;
   for (const Zone& z : kZones) {
     const double de = z.e1 - z.e0, dn = z.n1 - z.n0;
@@ -46,10 +46,10 @@ double broken(double e, double n, double bend_km) {
     const double x = e - z.e0 - t * de, y = n - z.n0 - t * dn;
     inside = std::max(inside, z.half_km - std::sqrt(x * x + y * y));
   }
-  return clamp01((inside + bend_km + 30.0) * (1.0 / 95.0));
+  return clamp01((inside + distortion_km + 30.0) * (1.0 / 95.0));
 }
 
-// The blocks about one cell of their lattice: neighbouring posts ask for the same.
+// Caches the blocks around one cell of their lattice, because neighbouring posts need the same.
 struct Blocks {
   std::int64_t i = 1 << 20, j = 0;
   std::array<Seed, 25> seeds;
@@ -63,7 +63,7 @@ struct Blocks {
   }
 };
 
-// Kilometres inside the nearest graben's rim, negative outside; `share` scales the widths.
+// Returns kilometres inside the nearest graben's rim, negative outside. `share` scales the widths.
 double inside_km(double e, double n, double share, Blocks& blocks) {
   blocks.about(floor_int(e / kBlock_km), floor_int(n / (kBlock_km * 0.8)));
   std::array<Seed, 25> seeds;
@@ -82,7 +82,7 @@ double inside_km(double e, double n, double share, Blocks& blocks) {
     seeds[close] = blocks.seeds[k];
     d[close++] = std::sqrt(square[k]);
   }
-  // Every pair of blocks has a graben between them, along the line midway, where no third one is nearer.
+  // Every pair of blocks has a graben between them, along their bisector, where no third block is nearer.
   double best = -kWidest_km;
   for (std::size_t a = 0; a < close; ++a) {
     for (std::size_t b = a + 1; b < close; ++b) {
@@ -93,7 +93,7 @@ double inside_km(double e, double n, double share, Blocks& blocks) {
       if (off + std::max(0.0, beyond) * 1.2 > kWidest_km) continue;
       const std::uint64_t pair = mix_bits(seeds[a].bits + seeds[b].bits);
       const double open = fraction16(pair, 0);
-      // Those along the parallels are the wider ones, as the crust was pulled apart northwards.
+      // Grabens along the parallels are wider, because the crust was extended northwards.
       const double lie = 0.75 + 0.5 * y * y / (apart * apart);
       const double half = share * lie * (open < 0.2 ? 1.2 : 3.0 + 8.3 * open * open) - (open < 0.2 ? 2.0 : 0.0);
       best = std::max(best, half - off - std::max(0.0, beyond) * 1.2);
@@ -104,7 +104,7 @@ double inside_km(double e, double n, double share, Blocks& blocks) {
 
 }  // namespace
 
-void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
+void crack_noctis(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t) {
   if (!block.near(kFrame.up, km_chord(kReach_km))) return;
   Lane<float> ragged, nicks;
   ragged.fill(kMeanNoise);
@@ -127,15 +127,15 @@ void crack_noctis(const Block& block, const Wander& w, double spacing_m, Terrain
       if (spacing_m <= 512.0) noise(block, 1.7e3, 0x3d4, nicks);
       drawn = true;
     }
-    const double bent_e = e + 20.0 * static_cast<double>(w.km250[i]) + 4.0 * static_cast<double>(w.km40[i]) +
-                          1.7 * static_cast<double>(w.km16[i]);
-    const double bent_n = n + 9.0 * static_cast<double>(w.km100[i]) - 1.9 * static_cast<double>(w.km16[i]) +
-                          2.0 * static_cast<double>(w.km40[i]);
+    const double distorted_e = e + 20.0 * static_cast<double>(w.km250[i]) +
+                               4.0 * static_cast<double>(w.km40[i]) + 1.7 * static_cast<double>(w.km16[i]);
+    const double distorted_n = n + 9.0 * static_cast<double>(w.km100[i]) -
+                               1.9 * static_cast<double>(w.km16[i]) + 2.0 * static_cast<double>(w.km40[i]);
     const double fringe = 1.1 * (crest(ragged[i]) - 0.4) + 0.35 * (crest(nicks[i]) - 0.4);
     const double share = (0.42 + 1.08 * ramp(-300.0, 150.0, e)) * region;
-    const double in_km = inside_km(bent_e, bent_n, share, blocks) - fringe;
+    const double in_km = inside_km(distorted_e, distorted_n, share, blocks) - fringe;
     if (in_km <= -0.5) continue;
-    // Walls of some 30 degrees, a foot of talus, a flat floor.
+    // Walls have about 30 degrees, with talus at the foot and a flat floor.
     const double deep_m = (1300.0 + 2900.0 * ramp(-250.0, 350.0, e)) * (0.35 + 0.65 * region);
     const double wall_km = deep_m * (1.0 / 520.0);
     const double s = clamp01(in_km / wall_km);

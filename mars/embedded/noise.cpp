@@ -1,18 +1,18 @@
 #include "mars/embedded/noise.h"
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/math.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
 namespace {
 
-struct Turn {
+struct Rotation {
   double m[9];
 };
 
-// Rotation of an integer quaternion.
-constexpr Turn turn_of(int wi, int xi, int yi, int zi) {
+// Returns the rotation of an integer quaternion.
+constexpr Rotation rotation_of(int wi, int xi, int yi, int zi) {
   const double w = wi, x = xi, y = yi, z = zi;
   const double n = w * w + x * x + y * y + z * z;
   return {{(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n,
@@ -20,16 +20,16 @@ constexpr Turn turn_of(int wi, int xi, int yi, int zi) {
            2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n}};
 }
 
-// The lattice of each seed lies askew to the body's axes and to the next one's.
-constexpr Turn kTurns[8] = {turn_of(5, 2, 1, 3),  turn_of(4, -3, 2, 1), turn_of(3, 1, -2, 4),
-                            turn_of(6, 2, -3, 1), turn_of(2, 3, 1, -5), turn_of(7, -1, -3, -2),
-                            turn_of(3, -4, 2, 2), turn_of(5, 3, 4, -1)};
+// The lattices of consecutive seeds are rotated against the body's axes and each other.
+constexpr Rotation kRotations[8] = {
+    rotation_of(5, 2, 1, 3),  rotation_of(4, -3, 2, 1),   rotation_of(3, 1, -2, 4), rotation_of(6, 2, -3, 1),
+    rotation_of(2, 3, 1, -5), rotation_of(7, -1, -3, -2), rotation_of(3, -4, 2, 2), rotation_of(5, 3, 4, -1)};
 
 // Scale that makes the standard deviation 1 for gradients with components uniform in +-511.5.
 constexpr double kUnit = 1.0 / 97.9;
 
 template <typename Real>
-struct Lattice {
+struct NoiseLattice {
   alignas(64) Lane<std::int32_t> ix, iy, iz;
   alignas(64) Lane<Real> fx, fy, fz;
 };
@@ -54,7 +54,7 @@ template <typename Real>
           static_cast<Real>(static_cast<std::int32_t>((h >> 2) & 1023U)) - Real(511.5)};
 }
 
-// Hashes of a cell's corners, by their bits: 1 upper x, 2 upper y, 4 upper z.
+// Holds hashes of a cell's corners. The bits of the index mean: 1 upper x, 2 upper y, 4 upper z.
 struct Corners {
   std::uint32_t h[8];
 };
@@ -73,7 +73,7 @@ struct Corners {
            x1 ^ y1 ^ z1}};
 }
 
-// The noise at a place of a cell, of the gradients at its corners.
+// Returns the noise at a place of a cell, from the gradients at its corners.
 template <typename Real, typename GradientAt>
 [[gnu::always_inline]] inline Real blend(Real fx, Real fy, Real fz, const GradientAt& gradient_at) {
   const auto slope = [&](int k, Real x, Real y, Real z) {
@@ -94,9 +94,9 @@ template <typename Real>
                                               const double* __restrict z, std::size_t padded, double scale,
                                               std::uint32_t seed, Real* __restrict out) {
   if (padded == 0) return;
-  const Turn& t = kTurns[seed & 7U];
+  const Rotation& t = kRotations[seed & 7U];
   const double shift = static_cast<double>(seed & 0xffffU) * 0.618;
-  Lattice<Real> cell;
+  NoiseLattice<Real> cell;
   for (std::size_t i = 0; i < padded; ++i) {
     const double u = (t.m[0] * x[i] + t.m[1] * y[i] + t.m[2] * z[i]) * scale + shift;
     const double v = (t.m[3] * x[i] + t.m[4] * y[i] + t.m[5] * z[i]) * scale - shift;
@@ -114,7 +114,7 @@ template <typename Real>
     apart |= (cell.ix[i] ^ cell.ix[0]) | (cell.iy[i] ^ cell.iy[0]) | (cell.iz[i] ^ cell.iz[0]);
   }
   if (apart == 0) {
-    // A block within one cell, the rule for long waves: its gradients are found once.
+    // The block lies within one cell, as is usual for long wavelengths: the gradients are computed once.
     const Corners all = corners(cell.ix[0], cell.iy[0], cell.iz[0], salt);
     Gradient<Real> gradients[8];
     for (int k = 0; k < 8; ++k) gradients[k] = gradient<Real>(all.h[k]);

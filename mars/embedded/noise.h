@@ -7,19 +7,21 @@
 
 namespace mars::embedded {
 
-// Noise of wavelength `wavelength_m` on the sphere of kRadius_m at the block's directions: mean 0, standard
-// deviation about 1, |value| < 8, C2. Each `seed` turns the lattice its own way (one of 8) and shifts it.
-// Values depend on direction, wavelength and seed alone.
+// Sets `out` to noise of wavelength `wavelength_m` on the sphere of kRadius_m at the block's directions: mean
+// 0, standard deviation about 1, |value| < 8, C2. Each `seed` rotates the lattice (one of 8 rotations) and
+// shifts it. Values depend on direction, wavelength and seed alone.
 void noise(const Block& block, double wavelength_m, std::uint32_t seed, Lane<float>& out);
 
-// The same in double: where kilometres of relief hang on a noise, the steps of a float (1e-7 of the amplitude)
-// would show at a metre.
+// Does the same in double precision. Use it where noise is multiplied by kilometres of height: the steps of a
+// float (1e-7 of the amplitude) would show at a post spacing of a metre.
 void noise(const Block& block, double wavelength_m, std::uint32_t seed, Lane<double>& out);
 
-// The same at any points, in metres from the planet's centre (|coordinate| / wavelength < 2^30).
+// Holds points in metres from the planet's centre.
 struct Points {
   alignas(64) Lane<double> x, y, z;
 };
+
+// Does the same at any points (|coordinate| / wavelength < 2^30).
 void noise(const Points& points_m, std::size_t padded, Simd simd, double wavelength_m, std::uint32_t seed,
            Lane<float>& out);
 

@@ -31,7 +31,7 @@ struct Disc {
   double radius;      // chord
 };
 
-// A region as a union of discs; `step_m` apart along its lines.
+// Adds discs along a line, `step_m` apart. A region is a union of discs.
 void add_line(const glm::dvec3& a, const glm::dvec3& b, double radius_a_m, double radius_b_m, double step_m,
               std::vector<Disc>& discs) {
   const double length_m = std::sqrt(chord2(a, b)) * kRadius_m;
@@ -46,7 +46,7 @@ void add_line(const glm::dvec3& a, const glm::dvec3& b, double radius_a_m, doubl
 
 std::vector<Disc> make_landmarks() {
   constexpr double kMargin_m = 3e3;
-  // Olympus Mons; Gale; Jezero with its valleys.
+  // Olympus Mons; Gale; Jezero with its valleys
   std::vector<Disc> discs{{place(226.20, 18.65), 310e3 / kRadius_m},
                           {place(137.81, -5.37), 95e3 / kRadius_m},
                           {place(77.4, 18.4), 55e3 / kRadius_m}};
@@ -58,7 +58,7 @@ std::vector<Disc> make_landmarks() {
 }
 
 std::vector<Disc> make_demo() {
-  // Discs this close together cover the whole corridor when they are a little larger.
+  // Discs a little larger than the corridor cover it completely when they are this close together.
   constexpr double kStep_m = 3000.0;
   constexpr double kDisc_m = 12100.0;
   static_assert(kDisc_m * kDisc_m > kDemoHalfWidth_m * kDemoHalfWidth_m + kStep_m * kStep_m / 4.0);
@@ -70,7 +70,7 @@ std::vector<Disc> make_demo() {
   return discs;
 }
 
-// Chords are shorter than arcs, so that a cap of that chord holds the cap.
+// Returns true if a disc may touch the cap. Chords are shorter than arcs, so the test is conservative.
 bool touches(const std::vector<Disc>& discs, const Cap& cap) {
   return std::any_of(discs.begin(), discs.end(), [&cap](const Disc& d) {
     const double limit = d.radius + cap.radius_rad;

@@ -1,4 +1,4 @@
-// Heights of the bumps of embedded_relief.h, in steps of kReliefStep_m, in the order of bump_centre().
+// Heights of the bumps of broad_relief() in landforms.cpp in steps of kReliefStep_m, in order of bump_centre().
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
-#include "mars/embedded/rocks.h"
+#include "mars/embedded/detail.h"
 
 #include <algorithm>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/math.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
@@ -11,15 +11,15 @@ namespace {
 
 constexpr double kCellsPerDiameter = 2.5;
 constexpr double kLongest = 1.5;  // radii from the middle that a rock of mean length reaches
-constexpr double kSpread = 1.25;  // the faces cut away so much of the outline
+constexpr double kSpread = 1.25;  // compensates for the part of the outline that the faces cut away
 
-// One size class: diameters from smallest_m to twice that.
+// Describes a size class: diameters from smallest_m to twice that.
 struct Class {
   double smallest_m;
-  double chance;  // that a cell of the lattice (edge kCellsPerDiameter * smallest_m) holds one
+  double chance;  // probability that a cell of the lattice (edge kCellsPerDiameter * smallest_m) has one
 };
-// Areas covered are F(D) - F(2 D); a cell's rock covers 0.23 of it in the mean. Beyond 2 m the formula leaves
-// none: what there is fell from walls or was thrown out of craters.
+// The covered areas are F(D) - F(2 D); the rock of a cell covers 0.23 of it on average. The formula gives no
+// rocks beyond 2 m; those here fell from walls or were ejected from craters.
 constexpr Class kClasses[] = {{4.0, 0.010}, {2.0, 0.030},  {1.0, 0.147},  {0.5, 0.336},
                               {0.25, 0.37}, {0.125, 0.28}, {0.0625, 0.17}};
 
@@ -38,7 +38,7 @@ Rock shape(const glm::dvec3& centre, double diameter_m, std::uint64_t bits, floa
   r.keep = keep;
   const std::uint64_t more = mix_bits(bits + 0x632be59bd9b4e019ULL);
   const std::uint64_t most = mix_bits(more + 0x9e3779b97f4a7c15ULL);
-  // Two directions along the ground, turned at random.
+  // The axes along the ground have a random azimuth.
   const glm::dvec3 q{fraction16(more, 0) - 0.5, fraction16(more, 16) - 0.5, fraction16(more, 32) - 0.5001};
   glm::dvec3 a{centre.y * q.z - centre.z * q.y, centre.z * q.x - centre.x * q.z,
                centre.x * q.y - centre.y * q.x};
@@ -68,7 +68,7 @@ Rock shape(const glm::dvec3& centre, double diameter_m, std::uint64_t bits, floa
     const double dz = block.z[i] - r.centre.z;
     const auto p = static_cast<float>(dx * r.e1.x + dy * r.e1.y + dz * r.e1.z);
     const auto q = static_cast<float>(dx * r.e2.x + dy * r.e2.y + dz * r.e2.z);
-    // The least of five sloping faces, a slanting top and a skirt that ends it.
+    // The height is the minimum of five sloping faces, a slanting top and a paraboloid that bounds the rock.
     float h = std::min(0.62F + 0.26F * p - 0.12F * q, 1.9F * (1.0F - 0.75F * (p * p + q * q)));
     for (int k = 0; k < 5; ++k) h = std::min(h, r.offset[k] - r.steep[k] * (kCos[k] * p + kSin[k] * q));
     const float out = std::min(1.0F, (bare[i] - r.keep) * 5.0F);
@@ -84,7 +84,7 @@ void strew_rocks(const Block& block, double detail_m, const Lane<float>& bare, c
                  Rocks& out) {
   out.height_m.fill(0.0F);
   out.tone.fill(0.0F);
-  // Cells are sought in columns along the axis nearest to the vertical.
+  // Cells are visited in columns along the axis nearest to the vertical.
   const glm::dvec3 size{std::abs(block.centre.x), std::abs(block.centre.y), std::abs(block.centre.z)};
   const int w = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
   const int u = (w + 1) % 3, v = (w + 2) % 3;

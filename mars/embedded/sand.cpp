@@ -1,25 +1,25 @@
-#include "mars/embedded/sand.h"
+#include "mars/embedded/detail.h"
 
 #include <algorithm>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/math.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
 namespace {
 
-// A set of ridges. Their lines of equal phase run across the wind and are bent by three octaves of the common
-// noise, so that they fork, sway and end. They die out towards the two places where that direction is upright,
-// in western Acidalia and in Promethei Terra.
+// Describes a set of ridges. Their lines of equal phase run across the wind and are distorted by three octaves
+// of the common noise, so that they fork, sway and end. They vanish towards the two places where that direction
+// is vertical, in western Acidalia and in Promethei Terra.
 struct Ridges {
   double wavelength_m;
   float height_m;
   float lee;  // share of a wavelength under the lee slope; half = symmetric
   double coarsest_m;
-  int bend[3];
-  float bent[3];  // waves
-  int patch;      // octave that lets them die out
+  int octave[3];       // that distort the lines
+  float amplitude[3];  // of the distortion, in waves
+  int patch;           // octave that makes them vanish in places
 };
 constexpr Ridges kRidges[] = {
     {640.0, 26.0F, 0.14F, 128.0, {12, 11, 10}, {0.5F, 0.28F, 0.12F}, 11},
@@ -43,7 +43,7 @@ bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const
     for (std::size_t i = 0; i < block.padded; ++i) {
       const float where = 0.8F * n[13][i] + 0.5F * n[11][i] - 0.25F;
       const float open = std::max(ground.trough[i], 0.7F * std::max(craters.buried[i], craters.filled[i]));
-      // The erg about the northern ice.
+      // The erg around the northern ice.
       const auto z = static_cast<float>(block.z[i]);
       const float erg =
           std::max(0.0F, std::min(1.0F, (0.0117F - magnitude(z - 0.9838F)) * 200.0F)) * (1.0F - ground.ice[i]);
@@ -58,20 +58,21 @@ bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const
   out.crest.fill(0.0F);
   for (const Ridges& r : kRidges) {
     if (detail_m > r.coarsest_m) break;
-    const auto& b0 = n[static_cast<std::size_t>(r.bend[0])];
-    const auto& b1 = n[static_cast<std::size_t>(r.bend[1])];
-    const auto& b2 = n[static_cast<std::size_t>(r.bend[2])];
+    const auto& b0 = n[static_cast<std::size_t>(r.octave[0])];
+    const auto& b1 = n[static_cast<std::size_t>(r.octave[1])];
+    const auto& b2 = n[static_cast<std::size_t>(r.octave[2])];
     const auto& patch = n[static_cast<std::size_t>(r.patch)];
     const double inverse = 1.0 / r.wavelength_m;
     const float rise = 1.0F / (1.0F - r.lee);
     const float fall = 1.0F / r.lee;
     with_simd(block.simd, [&] {
       for (std::size_t i = 0; i < block.padded; ++i) {
-        // Winds sway over some ten kilometres.
+        // The wind direction varies over tens of kilometres.
         const double across = (0.30 * block.x[i] - 0.52 * block.y[i] + 0.80 * block.z[i]) * kRadius_m +
                               4500.0 * static_cast<double>(n[15][i]);
         const double phase =
-            across * inverse + static_cast<double>(r.bent[0] * b0[i] + r.bent[1] * b1[i] + r.bent[2] * b2[i]);
+            across * inverse +
+            static_cast<double>(r.amplitude[0] * b0[i] + r.amplitude[1] * b1[i] + r.amplitude[2] * b2[i]);
         const auto f = static_cast<float>(phase - floor_int(phase));
         const float up = std::min(f * rise, (1.0F - f) * fall);
         const float ridge = up * (0.45F + 0.55F * up);

@@ -1,34 +1,34 @@
-// What the floods of the outflow channels left: grooves, braids, islands, and chaos at the heads.
+// Landforms that the floods of the outflow channels left: grooves, braids, islands, and chaos at the heads.
 #include <algorithm>
 #include <array>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/math.h"
 #include "mars/embedded/noise.h"
-#include "mars/embedded/simd.h"
 #include "mars/embedded/troughs.h"
 
 namespace mars::embedded {
 
 namespace {
 
-// The broken ground of one patch: a jittered square lattice of blocks in a chart about its middle.
-struct Broken {
+// Describes one region of broken ground.
+struct ChaosRegion {
   PlaceFrame frame;
   double radius_km;
 };
 
-struct Shard {
-  double gap;     // 0 on the line between two blocks, growing inwards, in lattice steps
+struct BrokenBlock {
+  double gap;     // 0 on the line between two blocks, increasing inwards, in lattice steps
   double height;  // 0..1 of this block
 };
 
-// Points are kept in the middle 0.6 of their cells, so that the two nearest are among the nine about a place.
-// Neighbouring posts ask for the same nine.
-class Shards {
+// Jittered square lattice of blocks. Points lie in the middle 0.6 of their cells, so that the two nearest are
+// among the nine around a place. The nine are cached, because neighbouring posts need the same.
+class BlockLattice {
  public:
-  explicit Shards(std::uint64_t salt) : salt_(salt) {}
+  explicit BlockLattice(std::uint64_t salt) : salt_(salt) {}
 
-  Shard at(double u, double v) {
+  BrokenBlock at(double u, double v) {
     about(floor_int(u), floor_int(v));
     double nearest = 1e9, second = 1e9;
     std::size_t own = 0;
@@ -70,7 +70,7 @@ class Shards {
 
 void scour(const Block& block, double spacing_m, const Inside& in, const Lane<float>& inside,
            const Lane<double>& broken, Lane<double>& kept, Lane<double>& texture) {
-  // Fine across the flow, drawn out along it.
+  // The noise is stretched along the flow.
   Points drawn;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
@@ -100,20 +100,21 @@ void scour(const Block& block, double spacing_m, const Inside& in, const Lane<fl
 }
 
 void lay_chaos(const Block& block, const Chaos& on, Lane<double>& broken, Lane<double>& texture) {
-  static constexpr std::array<Broken, 8> kPatches{{{place_frame(317.5, -10.5), 560},  // Capri, Eos, Aurorae
-                                                   {place_frame(325.0, 0.6), 230},    // Hydraotes
-                                                   {place_frame(332.6, 3.4), 150},    // Hydaspis
-                                                   {place_frame(332.5, -4.2), 220},   // Aureum
-                                                   {place_frame(338.5, -9.0), 200},   // Margaritifer
-                                                   {place_frame(342.2, -1.8), 210},   // Iani
-                                                   {place_frame(338.9, 2.65), 150},   // Aram
-                                                   {place_frame(299.0, 2.6), 120}}};  // Juventae
+  static constexpr std::array<ChaosRegion, 8> kPatches{
+      {{place_frame(317.5, -10.5), 560},  // Capri, Eos, Aurorae
+       {place_frame(325.0, 0.6), 230},    // Hydraotes
+       {place_frame(332.6, 3.4), 150},    // Hydaspis
+       {place_frame(332.5, -4.2), 220},   // Aureum
+       {place_frame(338.5, -9.0), 200},   // Margaritifer
+       {place_frame(342.2, -1.8), 210},   // Iani
+       {place_frame(338.9, 2.65), 150},   // Aram
+       {place_frame(299.0, 2.6), 120}}};  // Juventae
   std::uint64_t salt = 0;
-  for (const Broken& p : kPatches) {
+  for (const ChaosRegion& p : kPatches) {
     ++salt;
     const double reach = km_chord(p.radius_km);
     if (!block.near(p.frame.up, reach)) continue;
-    Shards mesas(salt), knobs(salt);
+    BlockLattice mesas(salt), knobs(salt);
     for (std::size_t i = 0; i < block.padded; ++i) {
       if (on.inside[i] <= 0.0F) continue;
       const double x = block.x[i] - p.frame.up.x, y = block.y[i] - p.frame.up.y, z = block.z[i] - p.frame.up.z;
@@ -122,10 +123,12 @@ void lay_chaos(const Block& block, const Chaos& on, Lane<double>& broken, Lane<d
       if (chaos <= 0.0) continue;
       const double e = (x * p.frame.east.x + y * p.frame.east.y) * (kRadius_m / 1000.0);
       const double n = (x * p.frame.north.x + y * p.frame.north.y + z * p.frame.north.z) * (kRadius_m / 1000.0);
-      // Mesas of some ten kilometres and knobs of three; not every block still stands.
-      const double bend = 1.3 * static_cast<double>(on.coves[i]) + 0.5 * static_cast<double>(on.nicks[i]);
-      const Shard mesa = mesas.at((e + bend) * (1.0 / 11.0), (n - bend) * (1.0 / 9.5));
-      const Shard knob = knobs.at((0.8 * e + 0.6 * n + bend) * (1.0 / 4.1), (0.8 * n - 0.6 * e) * (1.0 / 4.1));
+      // Mesas are about ten kilometres wide and knobs three to four; some blocks are eroded completely.
+      const double distortion_km =
+          1.3 * static_cast<double>(on.coves[i]) + 0.5 * static_cast<double>(on.nicks[i]);
+      const BrokenBlock mesa = mesas.at((e + distortion_km) * (1.0 / 11.0), (n - distortion_km) * (1.0 / 9.5));
+      const BrokenBlock knob =
+          knobs.at((0.8 * e + 0.6 * n + distortion_km) * (1.0 / 4.1), (0.8 * n - 0.6 * e) * (1.0 / 4.1));
       const double tall =
           ramp(0.16, 0.36, mesa.gap) *
           std::min(0.85, std::max(0.0, mesa.height - 0.25 + 0.2 * static_cast<double>(on.km16[i])));

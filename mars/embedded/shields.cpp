@@ -2,17 +2,17 @@
 #include <algorithm>
 #include <array>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/landforms.h"
 #include "mars/embedded/math.h"
 #include "mars/embedded/noise.h"
-#include "mars/embedded/simd.h"
 #include "mars/embedded/spurs.h"
 
 namespace mars::embedded {
 
 namespace {
 
-// Shields whose edge is narrower than this end in a cliff.
+// Width of the edge below which a shield ends in a cliff.
 constexpr double kScarp_km = 25.0;
 constexpr double kFrayed = 0.15;
 
@@ -25,7 +25,7 @@ struct Shield {
   double summit_m;      // rim of the caldera
   double foot_m;        // where the flank ends
   double summit_km;     // radius of the flat top
-  double edge_km;       // width over which the flank gives way to the plain; small = a scarp
+  double edge_km;       // width of the transition from flank to plain; small = a scarp
   double convexity;     // 0 cone .. 1 dome
   Caldera calderas[6];  // radius 0 = none
 };
@@ -72,14 +72,15 @@ constexpr Shield kShields[] = {
 
 constexpr std::size_t kShieldCount = sizeof(kShields) / sizeof(kShields[0]);
 
-void raise(const Block& block, const Wander& w, double spacing_m, const Shield& s, const PlaceFrame& frame,
-           Terrain& t) {
+void raise(const Block& block, const OutlineNoise& w, double spacing_m, const Shield& s,
+           const PlaceFrame& frame, Terrain& t) {
   const bool scarp = s.edge_km < kScarp_km;
-  // Beyond it nothing is covered: the radius is frayed by kFrayed at most, and the edge has its largest width.
+  // The shield covers nothing beyond: noise changes the radius by kFrayed at most, and the edge has its largest
+  // width.
   const double outer = km_chord((s.radius_km + (scarp ? 3.0 : 0.9) * s.edge_km + 6.0) / (1.0 - kFrayed));
   if (!block.near(frame.up, outer)) return;
 
-  Lane<double> east_km, north_km, radius_km, wobble, bent_km, edge_km;
+  Lane<double> east_km, north_km, radius_km, wobble, distorted_km, edge_km;
   std::int32_t any = 0;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
@@ -92,17 +93,17 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
       wobble[i] = held(0.035 * static_cast<double>(w.km250[i]) + 0.03 * static_cast<double>(w.km100[i]) +
                            0.016 * static_cast<double>(w.km40[i]) + 0.006 * static_cast<double>(w.km16[i]),
                        kFrayed);
-      // The summit keeps its published place and height: the outline frays only further out.
+      // The summit keeps its published place and height, because the distortion grows outwards.
       const double out = clamp01(radius_km[i] / s.radius_km);
-      bent_km[i] = radius_km[i] * (1.0 + wobble[i] * out * out);
+      distorted_km[i] = radius_km[i] * (1.0 + wobble[i] * out * out);
       edge_km[i] = s.edge_km * (1.2 + held(0.12 * static_cast<double>(w.km250[i]), 0.5));
       any |= static_cast<std::int32_t>(x * x + y * y + z * z <= outer * outer);
     }
   });
   if (any == 0) return;
 
-  if (scarp) spread_aprons(block, spacing_m, {frame, s.radius_km}, bent_km, t);
-  // A cliff that eases off into talus; in places lava has poured over it and made a ramp.
+  if (scarp) spread_aprons(block, spacing_m, {frame, s.radius_km}, distorted_km, t);
+  // A cliff becomes talus at its foot; in places lava has flowed over it and made a ramp.
   Lane<double> draped{}, down{};
   bool on_cliff = false;
   if (scarp) {
@@ -111,8 +112,8 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
     for (std::size_t i = 0; i < block.padded; ++i) {
       draped[i] = ramp(0.7, 1.5, static_cast<double>(w.km250[i]));
       const double width = edge_km[i] * (0.75 + 2.5 * draped[i]);
-      down[i] =
-          clamp01((bent_km[i] - s.radius_km - held(1.1 * static_cast<double>(nicks[i]), 4.0)) / width + 0.5);
+      down[i] = clamp01(
+          (distorted_km[i] - s.radius_km - held(1.1 * static_cast<double>(nicks[i]), 4.0)) / width + 0.5);
       on_cliff = on_cliff || (down[i] > 0.0 && down[i] < 1.0);
     }
   }
@@ -132,7 +133,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
     }
   }
 
-  // Flows run down the flank: noise on a cylinder about the axis, stretched along the radius.
+  // Lava flows run down the flank: noise on a cylinder around the axis is stretched along the radius.
   Lane<float> flows{};
   Lane<float> fine{};
   Lane<float> finest{};
@@ -151,7 +152,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
 
   for (std::size_t i = 0; i < block.padded; ++i) {
     if (chord2(block.at(i), frame.up) > outer * outer) continue;
-    const double r = bent_km[i];
+    const double r = distorted_km[i];
     const double cover = scarp ? (1.0 - down[i]) * (1.0 - down[i])
                                : ramp(s.radius_km + 0.5 * edge_km[i], s.radius_km - 0.5 * edge_km[i], r);
     if (cover <= 0.0) continue;
@@ -162,7 +163,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
     h += bench * (60.0 * static_cast<double>(flows[i]) + 34.0 * static_cast<double>(fine[i]) +
                   14.0 * static_cast<double>(finest[i]) + 90.0 * static_cast<double>(w.km40[i]) +
                   40.0 * static_cast<double>(w.km16[i]));
-    // Slumps have stacked the upper flanks of the great ones into terraces.
+    // Slumping formed terraces on the upper flanks of the large shields.
     if (s.radius_km > 150.0 && s.convexity > 0.0) {
       const double step =
           r * (1.0 / 31.0) + 0.35 * static_cast<double>(w.km100[i]) + 0.5 * static_cast<double>(w.km250[i]);
@@ -175,7 +176,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
       t.wall[i] = std::max(t.wall[i], static_cast<float>(steep));
       t.height_m[i] += rills[i];
     }
-    // A scarp stands clear of the plain; gentler flanks lie upon it and run out.
+    // A scarp ends at its own height; gentler flanks are added to the plain and fade out.
     const double above = std::max(0.0, h - t.height_m[i]);
     t.height_m[i] =
         scarp ? mix(t.height_m[i], h, cover) : t.height_m[i] + cover * above * above / (above + 120.0);
@@ -199,7 +200,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
       const double rim =
           c.radius_km * (1.0 + held(0.05 * static_cast<double>(w.km16[i]) + 0.6 * wobble[i], 0.2));
       const double out = std::max(0.0, d - rim);
-      // Walls at about 30 degrees with a gentler foot.
+      // Walls have about 30 degrees with a gentler foot.
       const double wall =
           c.floor_m + 560.0 * out * out / (out + 0.6) + 6.0 * static_cast<double>(flows[i]) * clamp01(out);
       if (wall < t.height_m[i]) {
@@ -214,7 +215,7 @@ void raise(const Block& block, const Wander& w, double spacing_m, const Shield& 
 
 }  // namespace
 
-void raise_shields(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
+void raise_shields(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t) {
   lay_aureole(block, w, spacing_m, t);
   static const auto frames = [] {
     std::array<PlaceFrame, kShieldCount> all;

@@ -6,26 +6,38 @@
 
 namespace mars::embedded {
 
-// A noise that is left out counts as this, so that crest() and valley() keep their means.
+// Value that replaces an omitted noise, so that crest() and valley() keep their means.
 inline constexpr float kMeanNoise = 0.75F;
 
-// 1 on sharp crests, falling to 0 on both sides; 0.4 in the mean.
+// Returns 1 on sharp crests, falling to 0 on both sides; 0.4 on average.
 inline double crest(float n) {
   const double a = n < 0.0F ? static_cast<double>(-n) : static_cast<double>(n);
   return a < 1.25 ? 1.0 - 0.8 * a : 0.0;
 }
-// 0 in sharp valleys, rising to 1; 0.6 in the mean.
+
+// Returns 0 in sharp valleys, rising to 1; 0.6 on average.
 inline double valley(float n) { return 1.0 - crest(n); }
 
+// Computes the pattern of spurs and gullies on walls.
 class Spurs {
  public:
-  // `drawn_m`: each post pulled back along the wall's fall line, so that the pattern is stretched downhill.
-  Spurs(const Points& drawn_m, std::size_t padded, Simd simd, double spacing_m, std::uint32_t seed);
+  // `drawn_m` are the posts, moved back along the fall line of the wall so that the pattern is stretched
+  // downhill.
+  Spurs(const Points& drawn_m, std::size_t padded, Simd simd, double spacing_m, std::uint32_t seed) {
+    constexpr double kWavelengths_m[kSizes] = {17e3, 8.5e3, 4.1e3, 2.0e3, 0.93e3, 0.41e3, 0.17e3};
+    for (std::size_t k = 0; k < kSizes; ++k) {
+      if (2.0 * spacing_m <= kWavelengths_m[k]) {
+        noise(drawn_m, padded, simd, kWavelengths_m[k], seed + static_cast<std::uint32_t>(k) * 0x11U, n_[k]);
+      } else {
+        n_[k].fill(kMeanNoise);
+      }
+    }
+  }
 
-  // Share of the wall's width by which post i is moved towards the rim, where `s` is how far down the wall
-  // the post lies (0 rim .. 1 foot): spurs stand out, gullies are cut back. Zero at both ends.
+  // Returns the share of the wall's width by which post i is moved towards the rim: spurs stand out, gullies
+  // are cut back. `s` is the position on the wall, 0 at the rim and 1 at the foot. Zero at both ends.
   double shift(std::size_t i, double s) const {
-    // Spurs branch: each size rides on the crests of the one above.
+    // Spurs branch: each size is strongest on the crests of the next larger one.
     const double c0 = crest(n_[0][i]);
     const double c1 = crest(n_[1][i]);
     const double c2 = valley(n_[2][i]);
@@ -34,7 +46,7 @@ class Spurs {
     return 0.27 * 4.0 * s * (1.0 - s) * (spur - 0.42);
   }
 
-  // Relief of the rills, metres; fades out towards the foot. Zero at both ends.
+  // Returns the height of the rills in metres. It fades out towards the foot and is zero at both ends.
   double rills_m(std::size_t i, double s) const {
     const double c3 = crest(n_[3][i]);
     const double c4 = valley(n_[4][i]);

@@ -4,11 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "mars/embedded/close.h"
+#include "mars/embedded/block.h"
+#include "mars/embedded/detail.h"
 #include "mars/embedded/landforms.h"
 #include "mars/embedded/math.h"
-#include "mars/embedded/sand.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
@@ -16,9 +15,10 @@ namespace {
 
 // Octaves have wavelengths of 2^k metres.
 constexpr int kFirstOctave = 1;
-constexpr int kFirstRugged = 13;  // 8 km and longer go with Terrain::rugged, shorter with Terrain::rough
+constexpr int kFirstRugged =
+    13;  // Terrain::rugged scales wavelengths of 8 km and more, Terrain::rough shorter ones
 
-// Standard deviation of each octave in the highlands, metres.
+// Returns the standard deviation of an octave in the highlands, in metres.
 constexpr float amplitude_m(int octave) {
   constexpr float kLong[] = {18, 28, 42, 56, 60, 45, 30};
   if (octave >= kFirstRugged) return kLong[octave - kFirstRugged];
@@ -27,7 +27,7 @@ constexpr float amplitude_m(int octave) {
   return a;
 }
 
-// The noise that bends the outlines of craters of a level: about their own radius.
+// Returns the octave that distorts the outlines of craters of a level: about their radius.
 int ragged_octave(int level, int first) {
   return std::max(std::max(first, kFirstOctave), std::min(level, kLastOctave));
 }
@@ -57,14 +57,14 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
       if (k >= kFirstRugged) {
         for (std::size_t i = 0; i < block.padded; ++i) {
           const float r = out.ground.rugged[i];
-          // Beyond 1 the ground is mountains: crests instead of swells, and more of the shorter ones.
+          // Ruggedness above 1 means mountains: crests instead of swells, with more of the shorter ones.
           const float crag = std::max(0.0F, r - 1.2F);
           const float crest = (0.75F - magnitude(n[i])) * crag * (k <= 16 ? 3.2F : 0.5F);
           const float keep = 1.0F - out.craters.filled[i] * (k <= kBasinLevel ? 0.8F : 0.0F);
           sum[i] += a * (r * n[i] + crest) * keep;
         }
       } else {
-        // Craters and sand smooth it; stones and dust even out the shortest.
+        // Craters and sand smooth the roughness; stones and dust equalise the shortest octaves.
         const Lane<float>& amount = k >= 8 ? uncovered : (k > 5 ? bare : even);
         for (std::size_t i = 0; i < block.padded; ++i) {
           const float crest = (0.72F - magnitude(n[i])) * 0.5F;
@@ -73,7 +73,7 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
         }
       }
     }
-    // Lava flows: terraces with steep lobate fronts.
+    // Lava flows form terraces with steep lobate fronts.
     if (detail_m <= 2048.0) {
       for (std::size_t i = 0; i < block.padded; ++i) {
         const float x = 1.7F * octaves.n[16][i] + 0.7F * octaves.n[14][i] + 0.35F * octaves.n[12][i] + 64.0F;
@@ -83,14 +83,14 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
                   (1.0F - out.ground.wall[i]);
       }
     }
-    // Valley networks in the highlands and wrinkle ridges on the plains, along zero lines of the longer
+    // Valley networks in the highlands and wrinkle ridges on the plains follow zero lines of the longer
     // octaves.
     if (detail_m <= 2048.0) {
       for (std::size_t i = 0; i < block.padded; ++i) {
-        const float bend = 0.26F * octaves.n[15][i] + 0.10F * octaves.n[13][i];
-        const float bed = std::max(0.0F, 1.0F - magnitude(octaves.n[17][i] + bend) * (1.0F / 0.11F));
+        const float distortion = 0.26F * octaves.n[15][i] + 0.10F * octaves.n[13][i];
+        const float bed = std::max(0.0F, 1.0F - magnitude(octaves.n[17][i] + distortion) * (1.0F / 0.11F));
         const float ridge =
-            std::max(0.0F, 1.0F - magnitude(octaves.n[16][i] + 0.5F * bend + 0.35F) * (1.0F / 0.085F));
+            std::max(0.0F, 1.0F - magnitude(octaves.n[16][i] + 0.5F * distortion + 0.35F) * (1.0F / 0.085F));
         const float old = std::max(0.0F, out.ground.cratered[i] - 0.5F) * 2.0F * (1.0F - buried[i]);
         const float plain = std::max(out.ground.lowland[i], out.ground.volcanic[i] * 0.8F) *
                             (1.0F - out.ground.ice[i]) * (1.0F - out.ground.trough[i]) *
@@ -106,9 +106,9 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
   } else {
     sand.crest.fill(0.0F);
   }
-  if (detail_m <= kCoarsestClose_m) {
+  if (detail_m <= kCoarsestDetail_m) {
     for (std::size_t i = 0; i < block.padded; ++i) patch[i] *= out.ground.rough[i];
-    look_closely(block, detail_m, sand, patch, out, sum, fine);
+    add_detail(block, detail_m, sand, patch, out, sum, fine);
   } else {
     out.rock.fill(0.0F);
     out.rock_tone.fill(0.0F);
@@ -117,7 +117,8 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
   out.crest = sand.crest;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
-      // Large craters stop where a younger trough or the ice begins, and are filled in on the deepest floors.
+      // Large craters end where a younger trough or the ice begins, and are partly filled on the deepest
+      // floors.
       const double young = std::max({out.ground.trough[i], out.ground.wall[i], out.ground.ice[i]});
       const double open = (1.0 - young) * (0.35 + 0.65 * ramp(-7600.0, -5200.0, out.ground.height_m[i]));
       const double craters =
@@ -129,7 +130,7 @@ void roughen(const Block& block, double detail_m, const Octaves& octaves, Surfac
   });
 }
 
-// Directions being sorted into blocks, in place.
+// Sorts directions into blocks, in place, and evaluates the blocks.
 class Splitter {
  public:
   Splitter(std::span<const glm::dvec3> directions, double detail_m, Simd simd, const SurfaceSink& sink)
@@ -150,7 +151,7 @@ class Splitter {
     std::uint32_t index;
   };
 
-  // Cells of a level's lattice to look through are worth it for this many posts or cells.
+  // Returns true if searching the lattice cells of a level now costs little relative to the number of posts.
   static bool affordable(double reach, int level, std::size_t posts) {
     const double cells = 2.0 * reach * kRadius_m / crater_cell_m(level) + 3.5;
     return posts == 1 || cells * cells * cells <= 1200.0 + 2.0 * static_cast<double>(posts);
@@ -169,7 +170,7 @@ class Splitter {
     const glm::dvec3 size = high - low;
     const double reach = 0.5 * std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z) + 1e-14;
 
-    // Craters are kept in one list; a node has the numbers of those that may touch it.
+    // All craters are in one list; a node has the indices of those that may touch it.
     const std::size_t known = craters_.size();
     if (root) find_named_craters(centre, reach, 4.0 * detail_m_, craters_);
     candidates_.clear();
@@ -186,8 +187,9 @@ class Splitter {
     const std::size_t end = touching_.size();
 
     const double longest = std::max({size.x, size.y, size.z});
-    // Rocks are sought over the whole of a block: near the ground it must not be much wider than its posts.
-    const bool compact = detail_m_ > kCoarsestClose_m || reach * kRadius_m <= 32.0 * detail_m_;
+    // Rocks are searched over the whole extent of a block, so at fine spacings it must not be much wider than
+    // its posts.
+    const bool compact = detail_m_ > kCoarsestDetail_m || reach * kRadius_m <= 32.0 * detail_m_;
     if ((posts.size() <= kBlock && level < smallest_ && compact) || longest == 0.0) {
       for (std::size_t first = 0; first < posts.size(); first += kBlock) {
         leaf(posts.subspan(first, std::min(kBlock, posts.size() - first)), begin, end);
@@ -201,7 +203,7 @@ class Splitter {
     const auto cut = std::partition(posts.begin(), posts.end(),
                                     [axis, middle](const Post& p) { return p.direction[axis] < middle; });
     const auto count = static_cast<std::size_t>(cut - posts.begin());
-    // Rounding may put the middle on an end when the extent is a single step.
+    // Rounding may put the middle on an end if the extent is a single step.
     const std::size_t left = std::clamp<std::size_t>(count, 1, posts.size() - 1);
     split(posts.first(left), level, begin, end, false);
     split(posts.subspan(left), level, begin, end, false);
@@ -230,7 +232,7 @@ class Splitter {
     return posts;
   }
 
-  // Kept from call to call: fresh pages for each tile would cost more than sorting it.
+  // Reused by later calls: allocating fresh pages for each tile would cost more than sorting it.
   std::vector<Post>& posts_ = scratch();
   std::vector<Crater> craters_;
   std::vector<std::uint32_t> touching_;
@@ -254,7 +256,7 @@ void evaluate(const Block& block, double detail_m, std::span<const Crater> crate
               std::span<const std::uint32_t> touching, Surface& out) {
   Octaves& octaves = out.octaves;
   octaves.first = kFirstOctave;
-  while (octaves.first < kWanderOctave && static_cast<double>(1 << octaves.first) < 2.0 * detail_m)
+  while (octaves.first < kOutlineOctave && static_cast<double>(1 << octaves.first) < 2.0 * detail_m)
     ++octaves.first;
   for (int k = octaves.first; k <= kLastOctave; ++k) add_octave(block, k, octaves);
   terrain(block, octaves, detail_m, out.ground);

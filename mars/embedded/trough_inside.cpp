@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/math.h"
-#include "mars/embedded/simd.h"
 #include "mars/embedded/troughs.h"
 
 namespace mars::embedded {
@@ -13,13 +13,14 @@ namespace {
 constexpr double kJoin_m = 18e3;
 constexpr double kMargin_m = 45e3;
 
-// One piece as seen from the posts.
-struct Seen {
+// Holds the distances of the posts to one piece.
+struct PieceDistances {
   const TroughPiece* piece = nullptr;
   Lane<double> depth_m, half_km, floor_m, gx, gy, gz, across_m;
 };
 
-void look_at(const Block& block, Seen& out) {
+// Fills `out` for out.piece.
+void measure(const Block& block, PieceDistances& out) {
   const TroughPiece& p = *out.piece;
   const glm::dvec3 ab = p.b - p.a;
   const double length2 = ab.x * ab.x + ab.y * ab.y + ab.z * ab.z;
@@ -30,7 +31,7 @@ void look_at(const Block& block, Seen& out) {
     for (std::size_t i = 0; i < block.padded; ++i) {
       const double hx = block.x[i], hy = block.y[i], hz = block.z[i];
       const double t = clamp01(((hx - p.a.x) * ab.x + (hy - p.a.y) * ab.y + (hz - p.a.z) * ab.z) / length2);
-      // Measured along the ground where the piece is near: the part of the offset that is not radial.
+      // Near the piece distances are measured along the ground, i.e. without the radial part of the offset.
       const double vx = p.a.x + t * ab.x - hx, vy = p.a.y + t * ab.y - hy, vz = p.a.z + t * ab.z - hz;
       const double radial = vx * hx + vy * hy + vz * hz;
       const double up = (radial < 0.0 ? -radial : radial) < 0.01 ? radial : 0.0;
@@ -47,7 +48,7 @@ void look_at(const Block& block, Seen& out) {
   });
 }
 
-// Its depth alone, at one place.
+// Returns the depth inside a piece at one place.
 double depth_at(const glm::dvec3& here, const TroughPiece& p) {
   const glm::dvec3 ab = p.b - p.a;
   const glm::dvec3 ap = here - p.a;
@@ -61,7 +62,7 @@ double depth_at(const glm::dvec3& here, const TroughPiece& p) {
 }  // namespace
 
 bool find_inside(const Block& block, std::span<const TroughPiece> pieces, Inside& out) {
-  // Bounds over a small block tell which pieces can matter: within kJoin_m of the deepest.
+  // A piece contributes only within kJoin_m of the deepest one; bounds over a small block exclude the others.
   const double size = std::sqrt(chord2(block.centre, {0, 0, 0}));
   const glm::dvec3 middle = block.reach < 0.02 ? block.centre / size : block.at(0);
   const double reach_m = block.reach < 0.02 ? (block.reach + 1.0 - size) * kRadius_m : 1e12;
@@ -82,26 +83,26 @@ bool find_inside(const Block& block, std::span<const TroughPiece> pieces, Inside
     close[close_count++] = {&p, depth_m + change_m};
     least_m = std::max(least_m, depth_m - change_m);
   }
-  static thread_local std::vector<Seen> seen(kMostPieces);
+  static thread_local std::vector<PieceDistances> near(kMostPieces);
   std::size_t n = 0;
   bool inside = false;
   for (std::size_t k = 0; k < close_count; ++k) {
     if (close[k].most_m < least_m - kJoin_m) continue;
     inside = inside || close[k].most_m > -kMargin_m;
-    seen[n++].piece = close[k].piece;
+    near[n++].piece = close[k].piece;
   }
   if (!inside) return false;
-  for (std::size_t k = 0; k < n; ++k) look_at(block, seen[k]);
+  for (std::size_t k = 0; k < n; ++k) measure(block, near[k]);
 
   Lane<double> deepest, sum{}, half{};
   deepest.fill(-1e9);
   out = {};
   with_simd(block.simd, [&] {
     for (std::size_t k = 0; k < n; ++k) {
-      for (std::size_t i = 0; i < block.padded; ++i) deepest[i] = std::max(deepest[i], seen[k].depth_m[i]);
+      for (std::size_t i = 0; i < block.padded; ++i) deepest[i] = std::max(deepest[i], near[k].depth_m[i]);
     }
     for (std::size_t k = 0; k < n; ++k) {
-      const Seen& s = seen[k];
+      const PieceDistances& s = near[k];
       for (std::size_t i = 0; i < block.padded; ++i) {
         const double w = std::max(0.0, 1.0 - (deepest[i] - s.depth_m[i]) / kJoin_m);
         const double ww = w * w;

@@ -20,7 +20,8 @@ constexpr TroughPiece piece(const Node& a, const Node& b) {
           b.floor_m};
 }
 
-// Joins consecutive nodes of several lines; a node of negative width starts a new line.
+// Return the pieces between consecutive nodes of several lines, and their number. A node of negative width
+// starts a new line.
 template <std::size_t kNodes>
 constexpr std::size_t count_pieces(const Node (&nodes)[kNodes]) {
   std::size_t n = 0;

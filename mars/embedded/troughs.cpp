@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/landforms.h"
 #include "mars/embedded/math.h"
 #include "mars/embedded/noise.h"
-#include "mars/embedded/simd.h"
 #include "mars/embedded/spurs.h"
 
 namespace mars::embedded {
@@ -14,16 +14,16 @@ namespace {
 
 struct System {
   std::span<const TroughPiece> pieces;
-  double scallop_m;  // how far the rim wanders, and no more than
-  double scallop;    // this share of the half-width
-  double slope;      // depth over width of the wall
-  double shallow_m;  // less deep than this nothing is cut away but height
+  double scallop_m;  // largest irregularity of the rim
+  double scallop;    // and its largest share of the half-width
+  double slope;      // ratio of depth to width of the wall
+  double shallow_m;  // depth below which only heights change
   bool spurs;        // walls with spurs and gullies, floors with landslides
 };
 
-constexpr double kMasked_m = -4e3;  // depth from which on the masks of the ground may change
+constexpr double kMasked_m = -4e3;  // depth_m from which on the factors of Terrain may change
 
-// True when a trough may change the ground of some post, given its depth inside the smooth rim.
+// Returns true if a trough may change the ground of some post, given its depth inside the smooth rim.
 bool any_cut(const Block& block, const Inside& in, const Lane<double>& smooth_m, const Terrain& t) {
   for (std::size_t i = 0; i < block.padded; ++i) {
     if (t.height_m[i] > in.floor_m[i] && smooth_m[i] > kMasked_m) return true;
@@ -31,13 +31,13 @@ bool any_cut(const Block& block, const Inside& in, const Lane<double>& smooth_m,
   return false;
 }
 
-// What lies on the floors is placed by these.
+// Holds the fields that place landslides on the floors.
 struct Litter {
   const Lane<double>&depth_m, &width_m;
   const Lane<float>&floor, &coves, &nicks;
 };
 
-// Landslides run out over the floor from some alcoves, with a toe and grooves along the run.
+// Adds landslides, which run out over the floor from some alcoves, with a toe and grooves along the run.
 void lay_landslides(const Block& block, double spacing_m, const Inside& in, const Litter& on,
                     Lane<double>& texture) {
   Points far;
@@ -74,7 +74,7 @@ void lay_landslides(const Block& block, double spacing_m, const Inside& in, cons
   });
 }
 
-void cut(const Block& block, const Wander& w, double spacing_m, const System& system, Terrain& t) {
+void cut(const Block& block, const OutlineNoise& w, double spacing_m, const System& system, Terrain& t) {
   Inside in;
   if (!find_inside(block, system.pieces, in)) return;
 
@@ -86,7 +86,7 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
   }
   if (!any_cut(block, in, plain, t)) return;
 
-  // The rim: rounded alcoves between cusps, at several sizes.
+  // The rim has rounded alcoves between cusps, at several sizes.
   Lane<float> bays, coves, nicks, notches;
   noise(block, 52e3, 0x311, bays);
   noise(block, 21e3, 0x322, coves);
@@ -113,7 +113,7 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
           plain[i] - scallop_m[i] * (0.065 * (crest(nicks[i]) - 0.4) + 0.018 * (crest(notches[i]) - 0.4));
       const double drop = t.height_m[i] - in.floor_m[i];
       width[i] = std::max(2500.0, drop / system.slope);
-      // Masks follow the smooth rim, so that they are the same at every spacing.
+      // The factors follow the smooth rim, so that they are the same at every spacing.
       const bool changed = drop > 0.0 && plain[i] > kMasked_m;
       const float inside = changed ? static_cast<float>(ramp(-1500.0, 1500.0, plain[i]) *
                                                         ramp(system.shallow_m, 8.0 * system.shallow_m, drop))
@@ -137,7 +137,7 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
   Lane<double> along = depth;
   Lane<double> texture{}, kept{}, broken{};
   if (system.spurs && on_wall != 0) {
-    Points drawn;  // each post pulled back to its rim: noise there makes spurs and gullies that run downhill
+    Points drawn;  // each post moved back to its rim, where noise makes spurs and gullies that run downhill
     with_simd(block.simd, [&] {
       for (std::size_t i = 0; i < block.padded; ++i) {
         const double back = 0.8 * std::max(0.0, std::min(22e3, in.depth_m[i] + 9e3));
@@ -166,7 +166,7 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
     for (std::size_t i = 0; i < block.padded; ++i) {
       const double drop = t.height_m[i] - in.floor_m[i];
       const double s = clamp01(along[i] / width[i]);
-      // A steep upper cliff, a talus slope that eases off, and a floor that still falls a little.
+      // A steep upper cliff, a talus slope that becomes gentler, and a floor that still falls a little.
       const double wall = s * (2.0 - s);
       const double basin = ramp(0.0, 4.0 * width[i], depth[i]);
       const double shallow = ramp(0.0, 500.0, drop);
@@ -185,7 +185,7 @@ void cut(const Block& block, const Wander& w, double spacing_m, const System& sy
 
 }  // namespace
 
-void cut_troughs(const Block& block, const Wander& w, double spacing_m, Terrain& t) {
+void cut_troughs(const Block& block, const OutlineNoise& w, double spacing_m, Terrain& t) {
   cut(block, w, spacing_m, {channel_pieces(), 26e3, 0.75, 0.25, 30.0, false}, t);
   cut(block, w, spacing_m, {valles_pieces(), 17e3, 10.0, 0.37, 200.0, true}, t);
 }

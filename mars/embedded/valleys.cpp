@@ -1,11 +1,11 @@
-// Small valleys by name, and the delta that one of them built in Jezero.
+// Named small valleys, and the deltas that two of them built in Jezero.
 #include <algorithm>
 #include <iterator>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/landforms.h"
 #include "mars/embedded/math.h"
 #include "mars/embedded/noise.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
@@ -35,15 +35,15 @@ constexpr Valley kValleys[] = {
     {place(136.95, -6.75), place(137.10, -6.20), 0.8, 1.3, 120, 330},
 };
 
-struct Fan {
+struct SedimentFan {
   PlaceFrame apex;
   SinCos towards;  // azimuth of its middle
   double radius_km, height_m;
 };
-constexpr Fan kFans[] = {{place_frame(77.29, 18.565), exact_sin_cos_deg(122.0), 9.5, 105.0},
-                         {place_frame(77.42, 18.79), exact_sin_cos_deg(160.0), 5.0, 60.0}};
+constexpr SedimentFan kFans[] = {{place_frame(77.29, 18.565), exact_sin_cos_deg(122.0), 9.5, 105.0},
+                                 {place_frame(77.42, 18.79), exact_sin_cos_deg(160.0), 5.0, 60.0}};
 
-// Noises that the pieces near a block share, made when the first one asks.
+// Holds the noises that the pieces near a block share, computed at first use.
 struct Sway {
   bool made = false;
   Lane<float> sway, fray;
@@ -66,7 +66,7 @@ void carve(const Block& block, const Valley& v, Sway& s, Terrain& t) {
   const glm::dvec3 side = normal * (1.0 / std::sqrt(chord2(normal, {0, 0, 0})));
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
-      // Meanders: the place is shifted across the line.
+      // Shifting the place across the line makes meanders.
       const double shift = km_chord(0.32 * std::max(-2.5, std::min(2.5, static_cast<double>(sway[i]))) +
                                     0.12 * std::max(-2.5, std::min(2.5, static_cast<double>(fray[i]))));
       const double x = block.x[i] + shift * side.x - v.a.x;
@@ -78,13 +78,13 @@ void carve(const Block& block, const Valley& v, Sway& s, Terrain& t) {
       const double u = std::max(0.0, 1.0 - (dx * dx + dy * dy + dz * dz) / (half * half));
       const double down = std::min(1.0, 1.6 * u);
       t.height_m[i] -= mix(v.depth_a_m, v.depth_b_m, along) * down;
-      // Not a wall to the masks: those cut the large crater away that the valley runs into.
+      // Terrain::wall is not set here: it would remove the large crater that the valley enters.
       t.cratered[i] *= 1.0F - 0.8F * static_cast<float>(down);
     }
   });
 }
 
-void build_fan(const Block& block, const Fan& f, Terrain& t) {
+void build_fan(const Block& block, const SedimentFan& f, Terrain& t) {
   const double reach = km_chord(f.radius_km * 1.5);
   if (!block.near(f.apex.up, reach)) return;
   Lane<float> lobes, ridges;
@@ -102,7 +102,7 @@ void build_fan(const Block& block, const Fan& f, Terrain& t) {
     const double front = f.radius_km * (0.85 + 0.09 * held(static_cast<double>(lobes[i]), 2.5)) +
                          0.25 * held(static_cast<double>(ridges[i]), 2.5);
     const double open = ramp(0.30, 0.62, (ahead + 0.6) / (r + 0.3));
-    // Nearly flat on top, a scarp at the front.
+    // The delta is nearly flat on top, with a scarp at the front.
     const double body = ramp(0.0, 0.55, front - r) * open;
     if (body <= 0.0) continue;
     const double fallen = 1.0 - 0.45 * r / f.radius_km;
@@ -119,7 +119,7 @@ void carve_valleys(const Block& block, double spacing_m, Terrain& t) {
   if (spacing_m > 1024.0) return;
   Sway sway;
   for (const Valley& v : kValleys) carve(block, v, sway, t);
-  for (const Fan& f : kFans) build_fan(block, f, t);
+  for (const SedimentFan& f : kFans) build_fan(block, f, t);
 }
 
 }  // namespace mars::embedded

@@ -9,7 +9,7 @@
 namespace mars {
 namespace {
 
-// Mars first: Mars it is when a body is not named.
+// Mars comes first: it is the default where no body is named.
 constexpr std::array kBodies{
     Body{"Mars", kMarsRadius_m}, Body{"Moon", 1'737'400},     Body{"Mercury", 2'439'400},
     Body{"Venus", 6'051'800},    Body{"Earth", 6'371'008.8},  Body{"Ceres", 470'000},

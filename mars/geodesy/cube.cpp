@@ -16,7 +16,7 @@ constexpr std::array<FaceAxes, kFaces> kAxes{{
     {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
 }};
 
-// tan(k pi / 64) in units of 2^-20, rounded once and for all: part of the file format.
+// tan(k pi / 64) in units of 2^-20, rounded. The values are part of the file format.
 constexpr std::array<std::int64_t, 17> kKnots{0,      51513,  103276, 155542, 208575, 262655,
                                               318082, 375186, 434334, 495940, 560476, 628492,
                                               700636, 777677, 860544, 950374, 1048576};

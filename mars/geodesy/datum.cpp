@@ -2,32 +2,26 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
+
+#include "vpe/base/number.h"
 
 namespace mars {
 
 namespace {
 
-std::string shortest(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  return {text, end.ptr};
+// Parses a radius. A leading + is refused: to_string() never writes one.
+std::optional<double> parse_radius(std::string_view text) {
+  if (text.starts_with('+')) return std::nullopt;
+  const auto value = vpe::base::parse_number(text);
+  return value && *value >= 100 && *value <= 1e9 ? value : std::nullopt;
 }
 
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!(value >= 100 && value <= 1e9)) return std::nullopt;
-  return value;
-}
-
-// Height along the normal of an ellipsoid and sine of the normal's latitude, of a point in the meridian plane.
+// Returns the height above an ellipsoid, along its normal, of a point of the meridian plane.
 double ellipsoidal_height(double a, double b, double p, double z) {
   const double e2 = 1 - (b * b) / (a * a);
-  // Bowring's parametric latitude converges by about e^4 h / a a step; three steps are beyond double precision
-  // for flattenings of planets.
+  // Each step of Bowring's iteration of the parametric latitude reduces the error by a factor of about
+  // e^4 h / a; three steps exceed double precision for the flattening of planets.
   if (p <= 1e-150 * std::abs(z)) return std::abs(z) - b;  // over a pole
   double t = z * a / (p * b);
   for (int step = 0; step < 6; ++step) {
@@ -52,9 +46,10 @@ std::string to_string(const VerticalDatum& datum) {
   switch (datum.kind) {
     case DatumKind::kUnknown: return "unknown";
     case DatumKind::kAreoid: return "areoid";
-    case DatumKind::kSphere: return "sphere:" + shortest(datum.equatorial_m);
+    case DatumKind::kSphere: return "sphere:" + vpe::base::format_shortest(datum.equatorial_m);
     case DatumKind::kEllipsoid:
-      return "ellipsoid:" + shortest(datum.equatorial_m) + "," + shortest(datum.polar_m);
+      return "ellipsoid:" + vpe::base::format_shortest(datum.equatorial_m) + "," +
+             vpe::base::format_shortest(datum.polar_m);
     case DatumKind::kRadius: return "radius";
   }
   return "unknown";
@@ -66,7 +61,7 @@ std::optional<VerticalDatum> parse_datum(std::string_view text, double default_r
   if (text == "radius") return VerticalDatum::radius();
   if (text == "sphere") return VerticalDatum::sphere(default_radius_m);
   if (text.starts_with("sphere:")) {
-    const auto radius = number(text.substr(7));
+    const auto radius = parse_radius(text.substr(7));
     if (!radius) return std::nullopt;
     return VerticalDatum::sphere(*radius);
   }
@@ -74,8 +69,8 @@ std::optional<VerticalDatum> parse_datum(std::string_view text, double default_r
     text.remove_prefix(10);
     const std::size_t comma = text.find(',');
     if (comma == std::string_view::npos) return std::nullopt;
-    const auto equatorial = number(text.substr(0, comma));
-    const auto polar = number(text.substr(comma + 1));
+    const auto equatorial = parse_radius(text.substr(0, comma));
+    const auto polar = parse_radius(text.substr(comma + 1));
     if (!equatorial || !polar || *polar > *equatorial || *polar < *equatorial / 2) return std::nullopt;
     return VerticalDatum::ellipsoid(*equatorial, *polar);
   }
@@ -91,8 +86,8 @@ double height_at(const VerticalDatum& datum, const glm::dvec3& direction, double
 double radius_at(const VerticalDatum& datum, const glm::dvec3& direction, double height_m) {
   if (datum.kind != DatumKind::kEllipsoid) return datum.equatorial_m + height_m;
   const double p = std::hypot(direction.x, direction.y);
-  // The ellipsoid's own radius there; height grows with radius by the cosine between normal and direction,
-  // which is within 1e-3 of one for flattenings of planets: steps of slope one end below rounding.
+  // Starts at the ellipsoid's radius. The height grows with the radius by the cosine between normal and
+  // direction, which is within 1e-3 of one for the flattening of planets, so steps of slope one converge.
   double radius = 1 / std::hypot(p / datum.equatorial_m, direction.z / datum.polar_m) + height_m;
   for (int step = 0; step < 12; ++step) {
     radius += height_m - height_at(datum, direction, radius);

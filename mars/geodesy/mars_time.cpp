@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 
 namespace mars {
 
@@ -14,8 +13,8 @@ constexpr double kUnixJulianDate = 2440587.5;
 constexpr double kJ2000JulianDate = 2451545.0;
 constexpr double kDaysPerSol = 1.0274912517;
 
-// First instants (UTC) from which TAI - UTC has one second more; 10 s before the first but one. IERS, Bulletin
-// C.
+// First instants (UTC) from which TAI - UTC is one second longer (IERS, Bulletin C). It is 10 s before the
+// second of them.
 constexpr std::array<UnixSeconds, 28> kLeaps{
     63072000,  78796800,  94694400,   126230400,  157766400,  189302400,  220924800,
     252460800, 283996800, 315532800,  362793600,  394329600,  425865600,  489024000,
@@ -25,9 +24,10 @@ constexpr std::array<UnixSeconds, 28> kLeaps{
 double sin_deg(double angle_deg) { return sin_cos_deg(angle_deg).sin; }
 double cos_deg(double angle_deg) { return sin_cos_deg(angle_deg).cos; }
 
-double within(double value, double turn) {
-  const double rest = value - turn * std::floor(value / turn);
-  return rest < turn ? rest : 0.0;
+// Reduces a value to [0, period).
+double reduced(double value, double period) {
+  const double rest = value - period * std::floor(value / period);
+  return rest < period ? rest : 0.0;
 }
 
 double perturbers_deg(double days) {
@@ -62,7 +62,7 @@ double tt_minus_utc_s(UnixSeconds time_s) {
 MarsTime mars_time(UnixSeconds time_s) {
   MarsTime out;
   out.julian_date_tt = kUnixJulianDate + (time_s + tt_minus_utc_s(time_s)) / kSecondsPerDay;
-  // The same without the rounding of so large a number: a Julian date holds 40 microseconds.
+  // Not computed from the Julian date, whose rounding in a double is 40 microseconds.
   const double days =
       (time_s + tt_minus_utc_s(time_s) - (kJ2000JulianDate - kUnixJulianDate) * kSecondsPerDay) /
       kSecondsPerDay;
@@ -73,12 +73,12 @@ MarsTime mars_time(UnixSeconds time_s) {
   out.equation_of_centre_deg = (10.691 + 3e-7 * days) * sin_deg(m) + 0.623 * sin_deg(2 * m) +
                                0.050 * sin_deg(3 * m) + 0.005 * sin_deg(4 * m) + 0.0005 * sin_deg(5 * m) +
                                out.perturbers_deg;
-  const double ls = within(out.fictitious_mean_sun_deg + out.equation_of_centre_deg, 360);
+  const double ls = reduced(out.fictitious_mean_sun_deg + out.equation_of_centre_deg, 360);
   out.solar_longitude_deg = ls;
   out.equation_of_time_deg =
       2.861 * sin_deg(2 * ls) - 0.071 * sin_deg(4 * ls) + 0.002 * sin_deg(6 * ls) - out.equation_of_centre_deg;
   out.sol_date = (days - 4.5) / kDaysPerSol + 44796.0 - 0.0009626;
-  out.coordinated_time_h = within(24 * out.sol_date, 24);
+  out.coordinated_time_h = reduced(24 * out.sol_date, 24);
   out.subsolar_lon_deg = normalize_lon_deg(180 - 15 * out.coordinated_time_h - out.equation_of_time_deg);
   out.subsolar_lat_deg = subsolar_lat_deg(ls);
   out.subsolar_graphic_lat_deg = out.subsolar_lat_deg + 0.25 * sin_deg(ls);
@@ -88,18 +88,18 @@ MarsTime mars_time(UnixSeconds time_s) {
 }
 
 double local_mean_time_h(const MarsTime& time, double lon_deg) {
-  return within(time.coordinated_time_h + lon_deg / 15, 24);
+  return reduced(time.coordinated_time_h + lon_deg / 15, 24);
 }
 
 double local_true_time_h(const MarsTime& time, double lon_deg) {
-  return within(time.coordinated_time_h + (lon_deg + time.equation_of_time_deg) / 15, 24);
+  return reduced(time.coordinated_time_h + (lon_deg + time.equation_of_time_deg) / 15, 24);
 }
 
 double subsolar_lat_deg(double solar_longitude_deg) {
   return std::asin(declination_sine(solar_longitude_deg)) / kRadiansPerDegree;
 }
 
-std::optional<glm::dvec3> sun_direction(const SunSpec& sun, LonLat at) {
+std::optional<glm::dvec3> sun_direction(const SunSpec& sun, LonLat place) {
   if (const auto* date = std::get_if<SunDate>(&sun)) {
     const MarsTime time = mars_time(date->time_s);
     return direction({time.subsolar_lon_deg, time.subsolar_lat_deg});
@@ -107,20 +107,9 @@ std::optional<glm::dvec3> sun_direction(const SunSpec& sun, LonLat at) {
   if (const auto* season = std::get_if<SunSeason>(&sun)) {
     const double hour_angle_deg = 15 * (season->true_time_h - 12);
     return direction(
-        {normalize_lon_deg(at.lon_deg - hour_angle_deg), subsolar_lat_deg(season->solar_longitude_deg)});
+        {normalize_lon_deg(place.lon_deg - hour_angle_deg), subsolar_lat_deg(season->solar_longitude_deg)});
   }
   return std::nullopt;
-}
-
-SunPlace sun_place(LonLat at, const glm::dvec3& direction) {
-  const LocalFrame frame = local_frame(at);
-  const double east = glm::dot(direction, frame.east);
-  const double north = glm::dot(direction, frame.north);
-  const double up = glm::dot(direction, frame.up);
-  SunPlace out;
-  out.elevation_deg = std::atan2(up, std::hypot(east, north)) / kRadiansPerDegree;
-  if (east != 0 || north != 0) out.azimuth_deg = within(std::atan2(east, north) / kRadiansPerDegree, 360);
-  return out;
 }
 
 }  // namespace mars

@@ -1,9 +1,16 @@
-// The sun and the clock on Mars, after the algorithm of Mars24 (NASA GISS; M. Allison and M. McEwen 2000,
-// Planet. Space Sci. 48, 215), whose published test cases come out in every printed digit. A time is a moment
-// on Mars: light time is no part of it.
+// Computes the season, the local time and the direction of the sun on Mars for a date.
 //
-// Longitude is east here as everywhere in this program (Mars24 counts west), latitude planetocentric. Pure
-// functions, for any thread.
+// The algorithm is that of Mars24 (NASA GISS; M. Allison and M. McEwen 2000, Planet. Space Sci. 48, 215). The
+// results agree with its published test cases in every printed digit. A time is a moment on Mars: light time is
+// not included.
+//
+// Longitudes are east-positive as everywhere in this program (Mars24 counts west), latitudes are
+// planetocentric. All functions are pure and may be called from any thread.
+//
+// Typical usage:
+//   const MarsTime time = mars_time(1795176000);  // 2026-11-20T12:00Z
+//   const double hour = local_true_time_h(time, 137.4);
+//   if (const auto sun = parse_sun("Ls90,15:00")) light(sun_direction(*sun, {137.4, -4.6}));
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -13,43 +20,45 @@
 #include <variant>
 
 #include "mars/geodesy/sphere.h"
+#include "mars/geodesy/sun.h"
 
 namespace mars {
 
-// Seconds from 1970-01-01T00:00 UTC, leap seconds not counted (POSIX).
+// Seconds since 1970-01-01T00:00 UTC without leap seconds (POSIX).
 using UnixSeconds = double;
 
-// TT - UTC, seconds: 32.184 and the leap seconds so far. Before 1972 the 10 s of then, after the last one known
-// (2017-01-01) as today.
+// Returns TT - UTC in seconds: 32.184 plus TAI - UTC. Before 1972 TAI - UTC is 10 s, after the last known leap
+// second (2017-01-01) it stays as it is then.
 double tt_minus_utc_s(UnixSeconds time_s);
 
 struct MarsTime {
   double julian_date_tt = 0;
-  double mean_anomaly_deg = 0;          // not reduced to a turn
+  double mean_anomaly_deg = 0;          // not reduced to [0, 360)
   double fictitious_mean_sun_deg = 0;   // angle of the fictitious mean sun, not reduced
-  double perturbers_deg = 0;            // of the planets on the true anomaly
+  double perturbers_deg = 0;            // perturbation of the true anomaly by the planets
   double equation_of_centre_deg = 0;    // true minus mean anomaly
   double solar_longitude_deg = 0;       // Ls, [0, 360)
-  double equation_of_time_deg = 0;      // true solar time is this much (15 degrees an hour) ahead of mean
+  double equation_of_time_deg = 0;      // true minus mean solar time; 15 degrees are an hour
   double sol_date = 0;                  // MSD
   double coordinated_time_h = 0;        // MTC, mean solar time at longitude 0, [0, 24)
   double subsolar_lon_deg = 0;          // east, (-180, 180]
-  double subsolar_lat_deg = 0;          // planetocentric: what a sphere is lit by
-  double subsolar_graphic_lat_deg = 0;  // planetographic, as almanacs have it
+  double subsolar_lat_deg = 0;          // planetocentric; use it to light a sphere
+  double subsolar_graphic_lat_deg = 0;  // planetographic, as in almanacs
   double distance_au = 0;               // from the sun
 };
 
+// Returns everything that depends on the date alone.
 MarsTime mars_time(UnixSeconds time_s);
 
-// Local mean and true solar time at a longitude, hours, [0, 24).
+// Return local mean and local true solar time at a longitude, in hours, [0, 24).
 double local_mean_time_h(const MarsTime& time, double lon_deg);
 double local_true_time_h(const MarsTime& time, double lon_deg);
 
-// Latitude below the sun, planetocentric, for a solar longitude.
+// Returns the planetocentric latitude of the subsolar point at a solar longitude.
 double subsolar_lat_deg(double solar_longitude_deg);
 
-// A sun as people write it.
-struct LocalSun {  // "local": azimuth and elevation given apart, at a place
+// Describes a sun that is given as text, see parse_sun().
+struct LocalSun {  // "local": azimuth and elevation are given separately, for a place
   bool operator==(const LocalSun&) const = default;
 };
 struct SunDate {  // "2026-11-20T12:00Z"
@@ -63,28 +72,23 @@ struct SunSeason {  // "Ls90,15:00"
 };
 using SunSpec = std::variant<LocalSun, SunDate, SunSeason>;
 
+// Parses one of these texts, in upper or lower case, or returns nullopt:
 // - local
-// - a date from 1900 to 2199: YYYY-MM-DD, then T and HH:MM, HH:MM:SS or HH:MM:SS.sss, then Z or an offset as
-//   +02:00 (neither: UTC). A date alone is its first instant. 23:59:60 is the second after 23:59:59.
-// - LsDEGREES,HH:MM[:SS[.sss]]: solar longitude 0 to 360 and local true solar time 00:00 to 24:00.
-// Upper and lower case alike. Nothing for any other text.
+// - A date from 1900 to 2199: YYYY-MM-DD, then T and HH:MM, HH:MM:SS or HH:MM:SS.sss, then Z or an offset such
+//   as +02:00 (without either: UTC). A date without a time means its first instant. 23:59:60 is the second
+//   after 23:59:59.
+// - LsDEGREES,HH:MM[:SS[.sss]]: a solar longitude from 0 to 360 and a local true solar time from 00:00 to
+//   24:00.
 std::optional<SunSpec> parse_sun(std::string_view text);
 
-// Empty when parse_sun() takes it, else what is wrong.
+// Returns a message that says what is wrong with the text, or "" if parse_sun() accepts it.
 std::string sun_problem(std::string_view text);
 
-// What parse_sun() takes, in words.
+// Returns a short description of the texts that parse_sun() accepts.
 std::string sun_grammar();
 
-// Unit direction to the sun, body-fixed; `at`: the place whose local time a season is given in. Nothing for
-// "local".
-std::optional<glm::dvec3> sun_direction(const SunSpec& sun, LonLat at);
-
-// Where a sun in this direction stands at a place.
-struct SunPlace {
-  double azimuth_deg = 0;    // clockwise from north, [0, 360); 0 with the sun in the zenith or nadir
-  double elevation_deg = 0;  // above the horizontal
-};
-SunPlace sun_place(LonLat at, const glm::dvec3& direction);
+// Returns the unit direction of the sun in the body-fixed frame. `place` is where the local time of a season
+// holds. Returns nullopt for LocalSun.
+std::optional<glm::dvec3> sun_direction(const SunSpec& sun, LonLat place);
 
 }  // namespace mars

@@ -8,17 +8,17 @@ namespace mars {
 
 namespace {
 
-// Turns `from` towards `to` (both unit, perpendicular) by an angle given by sine and cosine.
-void turn(glm::dvec3& from, glm::dvec3& to, SinCos angle) {
-  const glm::dvec3 turned = from * angle.cos + to * angle.sin;
+// Rotates the perpendicular unit vectors `from` and `to` in their plane, `from` towards `to`.
+void rotate(glm::dvec3& from, glm::dvec3& to, SinCos angle) {
+  const glm::dvec3 rotated = from * angle.cos + to * angle.sin;
   to = to * angle.cos - from * angle.sin;
-  from = turned;
+  from = rotated;
 }
 
 void apply(Axes& axes, double yaw_deg, double pitch_deg, double roll_deg) {
-  turn(axes.forward, axes.right, sin_cos_deg(yaw_deg));
-  turn(axes.forward, axes.up, sin_cos_deg(pitch_deg));
-  turn(axes.up, axes.right, sin_cos_deg(roll_deg));
+  rotate(axes.forward, axes.right, sin_cos_deg(yaw_deg));
+  rotate(axes.forward, axes.up, sin_cos_deg(pitch_deg));
+  rotate(axes.up, axes.right, sin_cos_deg(roll_deg));
 }
 
 }  // namespace
@@ -31,11 +31,11 @@ Axes oriented_axes(const LocalFrame& frame, double yaw_deg, double pitch_deg, do
 
 CameraPose to_camera(const Pose& pose, double radius_m) { return to_camera(pose, HeadAngles{}, radius_m); }
 
-CameraPose to_camera(const Pose& pose, const HeadAngles& look, double radius_m) {
+CameraPose to_camera(const Pose& pose, const HeadAngles& head, double radius_m) {
   const LocalFrame frame = local_frame({pose.lon_deg, pose.lat_deg});
   CameraPose camera{frame.up * (radius_m + pose.alt_m),
                     oriented_axes(frame, pose.yaw_deg, pose.pitch_deg, pose.roll_deg)};
-  apply(camera.axes, look.yaw_deg, look.pitch_deg, look.roll_deg);
+  apply(camera.axes, head.yaw_deg, head.pitch_deg, head.roll_deg);
   return camera;
 }
 
@@ -53,7 +53,7 @@ Pose to_pose(const CameraPose& camera, double radius_m) {
   pose.lat_deg = place.lat_deg;
   pose.alt_m = glm::length(camera.position_m) - radius_m;
   pose.pitch_deg = std::atan2(up, level) / kRadiansPerDegree;
-  // At the zenith or nadir the heading of `forward` is noise; take it from the camera's up axis.
+  // Towards zenith or nadir the heading of `forward` is rounding noise; the camera's up axis has it then.
   constexpr double kNoise = 2e-15;
   if (level > kNoise) {
     pose.yaw_deg = std::atan2(east, north) / kRadiansPerDegree;

@@ -7,10 +7,10 @@
 namespace mars {
 
 SinCos sin_cos_deg(double angle_deg) {
-  // Reduce in degrees, where multiples of 90 are exact, and only then go to radians.
-  const double turn = std::remainder(angle_deg, 360.0);
-  const double quarter = std::nearbyint(turn / 90.0);
-  const double rest_rad = (turn - quarter * 90.0) * kRadiansPerDegree;
+  // Multiples of 90 are exact in degrees, so the angle is reduced before it is converted to radians.
+  const double reduced = std::remainder(angle_deg, 360.0);
+  const double quarter = std::nearbyint(reduced / 90.0);
+  const double rest_rad = (reduced - quarter * 90.0) * kRadiansPerDegree;
   const double s = std::sin(rest_rad);
   const double c = std::cos(rest_rad);
   if (quarter == 0.0) return {s, c};
@@ -78,8 +78,8 @@ glm::dvec3 any_perpendicular(const glm::dvec3& v) {
 
 glm::dvec3 slerp(const glm::dvec3& a, const glm::dvec3& b, double t) {
   const double angle = angle_between_rad(a, b);
-  // The unit vector at right angles to a in the plane of a and b; cross products keep it accurate for
-  // close and for nearly opposite ends, where b - a (a . b) would cancel.
+  // `ahead` is perpendicular to a in the plane of a and b. Cross products keep it accurate for close and for
+  // nearly opposite ends, where b - a (a . b) would cancel.
   const glm::dvec3 normal = glm::cross(a, b);
   const double size = glm::length(normal);
   if (size < 1e-300) {

@@ -1,4 +1,4 @@
-// A sun as people write it.
+// Parser of the texts that describe a sun.
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDaySeconds = 86400;
 
-// Reads from the front of a text; all that it takes is right, or it has failed.
+// Consumes a text from its front. A failed call consumes nothing.
 class Reader {
  public:
   explicit Reader(std::string_view text) : rest_(text) {}
@@ -24,7 +24,7 @@ class Reader {
     return is_there;
   }
 
-  // So many digits.
+  // Reads a number of exactly `count` digits.
   std::optional<int> digits(std::size_t count) {
     if (rest_.size() < count) return std::nullopt;
     int value = 0;
@@ -36,7 +36,7 @@ class Reader {
     return value;
   }
 
-  // Digits and at most one point; no sign, no exponent.
+  // Reads digits and at most one point, without sign and exponent.
   std::optional<double> number() {
     const std::string_view text = rest_.substr(0, rest_.find_first_not_of("0123456789."));
     double value = 0;
@@ -61,7 +61,7 @@ struct Clock {
   double seconds() const { return 3600.0 * hour + 60.0 * minute + second; }
 };
 
-// HH:MM[:SS[.sss]], hours to 24, seconds below 61.
+// Reads HH:MM[:SS[.sss]] with hours to 24 and seconds below 61.
 std::optional<Clock> read_clock(Reader& in) {
   const auto hour = in.digits(2);
   if (!hour || !in.skip(':')) return std::nullopt;
@@ -82,13 +82,13 @@ std::optional<Clock> read_clock(Reader& in) {
   return is_good ? std::optional(clock) : std::nullopt;
 }
 
-// What is wrong, or the sun.
-struct Read {
+// Holds the sun, or else a message.
+struct Parsed {
   std::optional<SunSpec> sun;
   std::string problem;
 };
 
-Read read_season(Reader in) {
+Parsed read_season(Reader in) {
   const auto longitude = in.number();
   if (!longitude || !(*longitude <= 360)) {
     return {{}, "expected a solar longitude from 0 to 360 after Ls"};
@@ -101,7 +101,7 @@ Read read_season(Reader in) {
   return {SunSeason{*longitude, clock->seconds() / 3600}, {}};
 }
 
-Read read_date(Reader in) {
+Parsed read_date(Reader in) {
   const auto year = in.digits(4);
   const bool has_year = year && in.skip('-');
   const auto month = has_year ? in.digits(2) : std::nullopt;
@@ -135,7 +135,7 @@ Read read_date(Reader in) {
   return {SunDate{seconds - sign * (3600.0 * *hours + 60.0 * *minutes)}, {}};
 }
 
-Read read_sun(std::string_view text) {
+Parsed read_sun(std::string_view text) {
   std::string small;
   for (const char c : text.substr(0, 64)) small += Reader::lower(c);
   if (text.size() <= 64 && small == "local") return {LocalSun{}, {}};

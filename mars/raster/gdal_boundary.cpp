@@ -10,9 +10,10 @@ BoundaryTile make_boundary_tile(const PixelGrid& grid, const TileId& id, int lim
   const auto index = [side](int column, int row) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(side) + static_cast<std::size_t>(column);
   };
-  // Beyond the border there are no holes: the border's own distance is exact already.
+  // Pixels beyond the border do not count as nodata: boundary_distances() computes the distance of the border
+  // itself.
   std::vector<unsigned char> nodata(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 0);
-  bool any = false;
+  bool has_nodata = false;
   for (int r = 0; r < side; ++r) {
     const int row = id.row * kTileSide + r - limit;
     if (row < 0 || row >= grid.height) continue;
@@ -21,13 +22,13 @@ BoundaryTile make_boundary_tile(const PixelGrid& grid, const TileId& id, int lim
       if (grid.wraps) column = ((column % grid.width) + grid.width) % grid.width;
       if (column < 0 || column >= grid.width || has_data(column, row)) continue;
       nodata[index(c, r)] = 1;
-      any = true;
+      has_nodata = true;
     }
   }
   BoundaryTile tile;
-  if (!any) return tile;
+  if (!has_nodata) return tile;
 
-  // Distance to the nearest hole of the same column, then the nearest over columns: exact Euclidean distance.
+  // The distance to nodata of the same column, minimised over the columns, is the exact Euclidean distance.
   const int far = limit + 1;
   std::vector<int> along(nodata.size(), far);
   for (int c = 0; c < side; ++c) {

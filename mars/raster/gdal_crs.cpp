@@ -12,13 +12,14 @@
 namespace mars {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotProjected = std::numeric_limits<double>::quiet_NaN();
 
 bool contains_ignoring_case(const std::string& text, const char* word) {
   return CPLString(text).ifind(word) != std::string::npos;
 }
 
-void run(LeasePool<OGRCoordinateTransformation>& pool, std::vector<glm::dvec2>& points) {
+// Transforms points in place.
+void run(GdalPool<OGRCoordinateTransformation>& pool, std::vector<glm::dvec2>& points) {
   const GdalScope scope;
   std::vector<double> x(points.size());
   std::vector<double> y(points.size());
@@ -27,18 +28,18 @@ void run(LeasePool<OGRCoordinateTransformation>& pool, std::vector<glm::dvec2>& 
     x[i] = points[i].x;
     y[i] = points[i].y;
   }
-  const auto transformation = pool.lend();
+  const auto transformation = pool.acquire();
   transformation->Transform(static_cast<int>(points.size()), x.data(), y.data(), nullptr, good.data());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool usable = good[i] != 0 && std::isfinite(x[i]) && std::isfinite(y[i]);
-    points[i] = usable ? glm::dvec2(x[i], y[i]) : glm::dvec2(kNaN);
+    points[i] = usable ? glm::dvec2(x[i], y[i]) : glm::dvec2(kNotProjected);
   }
 }
 
 }  // namespace
 
 CrsTransformer::CrsTransformer(const std::string& path, const OGRSpatialReference& crs,
-                               const std::array<double, 6>& to_map, double lon_turn_deg)
+                               const std::array<double, 6>& to_map, double lon_shift_deg)
     : target_(crs),
       to_map_(to_map),
       forward_([this] { return make(false); }),
@@ -58,10 +59,10 @@ CrsTransformer::CrsTransformer(const std::string& path, const OGRSpatialReferenc
   source_ = *geographic;
   read_axes();
   // PROJ refuses longitudes beyond 10 radians.
-  meridian_deg_ += std::remainder(lon_turn_deg, 360.0);
+  meridian_deg_ += std::remainder(lon_shift_deg, 360.0);
   try {
-    forward_.lend();
-    inverse_.lend();
+    forward_.acquire();
+    inverse_.acquire();
   } catch (const SourceError& error) {
     throw source_error(path, cannot, error.what(), advice);
   }
@@ -104,15 +105,15 @@ void CrsTransformer::inverse(std::vector<glm::dvec2>& points) const {
 }
 
 void CrsTransformer::read_axes() {
-  // GDAL's traditional axis order knows no axis that points west (planetographic CRSs of the IAU).
+  // GDAL's traditional axis order does not support axes that point west (planetographic CRSs of the IAU).
   int lon_axis = 2;
   int lat_axis = 1;
   for (int i = 0; i < 2; ++i) {
-    OGRAxisOrientation way = OAO_Other;
-    const char* axis = source_.GetAxis(nullptr, i, &way);
-    if (way == OAO_North || way == OAO_South) lat_axis = i + 1;
-    if (way == OAO_East || way == OAO_West) lon_axis = i + 1;
-    if (way == OAO_West) lon_sign_ = -1;
+    OGRAxisOrientation orientation = OAO_Other;
+    const char* axis = source_.GetAxis(nullptr, i, &orientation);
+    if (orientation == OAO_North || orientation == OAO_South) lat_axis = i + 1;
+    if (orientation == OAO_East || orientation == OAO_West) lon_axis = i + 1;
+    if (orientation == OAO_West) lon_sign_ = -1;
     if (axis != nullptr && contains_ignoring_case(axis, "planetocentric")) centric_ = true;
   }
   if (lon_axis == lat_axis) return;
@@ -130,7 +131,7 @@ CrsTransformer::Pool::Pointer CrsTransformer::make(bool inverse) const {
                        const GdalScope quiet;
                        OGRCoordinateTransformation::DestroyCT(t);
                      });
-  if (!made) throw SourceError(scope.message().empty() ? "PROJ knows no way" : scope.message());
+  if (!made) throw SourceError(scope.message().empty() ? "PROJ has no transformation" : scope.message());
   return made;
 }
 

@@ -16,17 +16,16 @@ namespace mars {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kBatch = 1024;
-constexpr double kLargestHeight_m = 1e6;  // beyond it a value is a distance from the planet's centre
+constexpr double kLargestHeight_m = 1e6;  // larger values are distances from the planet's centre
 
 struct BandFormat {
   GDALDataType type = GDT_Unknown;
-  std::optional<double> no_data;
-  double scale = 1;   // metres in a unit of the stored values
+  std::optional<double> nodata_value;
+  double scale = 1;   // metres per unit of the stored values
   double offset = 0;  // metres at stored value 0
   bool fits_float = false;
-  NodataValues nodata;  // stored values that are no data besides that one
-  bool masked = false;  // a mask or alpha band says where there is data
+  NodataValues special_values;  // other stored values that mean nodata
+  bool masked = false;          // a mask or alpha band marks pixels with data
 };
 
 double metres_per_unit(const std::string& unit) {
@@ -40,7 +39,7 @@ double metres_per_unit(const std::string& unit) {
 
 BandFormat band_format(const GdalRaster& raster) {
   const GdalScope scope;
-  const auto dataset = raster.lend();
+  const auto dataset = raster.acquire();
   GDALRasterBand* band = dataset->GetRasterBand(1);
   const GDALColorInterp colour = band->GetColorInterpretation();
   if (band->GetColorTable() != nullptr || colour == GCI_RedBand) {
@@ -50,19 +49,19 @@ BandFormat band_format(const GdalRaster& raster) {
   format.type = band->GetRasterDataType();
   format.fits_float = format.type == GDT_Byte || format.type == GDT_Int16 || format.type == GDT_UInt16 ||
                       format.type == GDT_Float32;
-  int has_no_data = 0;
+  int has_nodata = 0;
   if (format.type == GDT_Int64) {
-    const auto value = static_cast<double>(band->GetNoDataValueAsInt64(&has_no_data));
-    if (has_no_data != 0) format.no_data = value;
+    const auto value = static_cast<double>(band->GetNoDataValueAsInt64(&has_nodata));
+    if (has_nodata != 0) format.nodata_value = value;
   } else if (format.type == GDT_UInt64) {
-    const auto value = static_cast<double>(band->GetNoDataValueAsUInt64(&has_no_data));
-    if (has_no_data != 0) format.no_data = value;
+    const auto value = static_cast<double>(band->GetNoDataValueAsUInt64(&has_nodata));
+    if (has_nodata != 0) format.nodata_value = value;
   } else {
-    const double value = band->GetNoDataValue(&has_no_data);
-    if (has_no_data != 0) format.no_data = value;
+    const double value = band->GetNoDataValue(&has_nodata);
+    if (has_nodata != 0) format.nodata_value = value;
   }
-  format.nodata = raster.nodata();
-  // The mask of a no-data value says nothing new.
+  format.special_values = raster.nodata();
+  // A mask derived from the nodata value adds nothing.
   const int mask = band->GetMaskFlags();
   format.masked = (mask & (GMF_ALL_VALID | GMF_NODATA)) == 0;
   const double unit_m = metres_per_unit(band->GetUnitType());
@@ -77,7 +76,7 @@ BandFormat band_format(const GdalRaster& raster) {
 
 template <class T>
 struct HeightTile {
-  std::vector<T> values;  // as stored; NaN = no data
+  std::vector<T> values;  // as stored; NaN: nodata
   std::size_t bytes() const { return sizeof(HeightTile) + values.size() * sizeof(T); }
 };
 
@@ -89,7 +88,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     info_.quantum_m = GDALDataTypeIsFloating(format.type) != 0 ? 0.0 : std::abs(format.scale);
     const double some_height_m = first_height();
     {
-      const auto dataset = raster_->lend();
+      const auto dataset = raster_->acquire();
       info_.datum = product_datum(raster_->path(), *dataset, raster_->label());
       info_.body_radius_m = body_radius_m(*dataset);
     }
@@ -118,14 +117,14 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   void sample(std::span<const glm::dvec3> directions, double /*spacing_m*/,
               std::span<double> heights_m) const override {
     auto cursor = make_cursor();
-    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
+    for_pixels(raster_->georeference(), directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
       for (std::size_t i = 0; i < pixels.size(); ++i) heights_m[start + i] = height(cursor, pixels[i]);
     });
   }
 
   void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
     auto cursor = make_cursor();
-    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
+    for_pixels(raster_->georeference(), directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         source_index[start + i] = std::isnan(height(cursor, pixels[i])) ? -1 : 0;
       }
@@ -169,20 +168,11 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                          std::span<double> posts) const override {
-    const int limit = static_cast<int>(std::ceil(std::min(limit_posts, kMaxFeather_posts)));
     auto cursor = make_cursor();
-    const auto fetch = [&](const TileId& id) {
-      // The limit takes the place of the level in the key: tiles of several limits may live side by side.
-      return boundaries_.get({limit, id.column, id.row}, [&](const TileId& key) {
-        return std::make_shared<const BoundaryTile>(
-            make_boundary_tile(grid_, {0, key.column, key.row}, limit, [&](int column, int row) {
-              return !std::isnan(cursor.at(column, row).values[cursor.offset(column, row)]);
-            }));
-      });
+    const auto has_data = [&cursor](int column, int row) {
+      return !std::isnan(cursor.at(column, row).values[Cursor::offset(column, row)]);
     };
-    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
-      boundary_distances(grid_, pixels, limit_posts, fetch, posts.subspan(start, pixels.size()));
-    });
+    raster_boundary_distance(raster_->georeference(), boundaries_, directions, limit_posts, has_data, posts);
   }
 
  private:
@@ -197,16 +187,6 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   using Cursor = TileCursor<Tile, Fetch>;
   Cursor make_cursor() const { return Cursor(0, Fetch{this}); }
 
-  template <class Use>
-  void for_pixels(std::span<const glm::dvec3> directions, const Use& use) const {
-    std::array<glm::dvec2, kBatch> pixels;
-    for (std::size_t start = 0; start < directions.size(); start += kBatch) {
-      const std::size_t count = std::min(kBatch, directions.size() - start);
-      raster_->georeference().to_pixels(directions.subspan(start, count), std::span(pixels).first(count));
-      use(start, std::span<const glm::dvec2>(pixels).first(count));
-    }
-  }
-
   std::shared_ptr<const Tile> load(const TileId& id) const {
     auto tile = std::make_shared<Tile>();
     tile->values.resize(static_cast<std::size_t>(kTileStride) * kTileStride);
@@ -217,15 +197,16 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
       first_column.resize(static_cast<std::size_t>(window.rows));
       raster_->read(1, -1, {0, window.row, 1, window.rows}, 1, first_column.data());
     }
-    mask_out(window, kTileStride, tile->values);
-    if (!first_column.empty()) mask_out({0, window.row, 1, window.rows}, 1, first_column);
+    apply_mask(window, kTileStride, tile->values);
+    if (!first_column.empty()) apply_mask({0, window.row, 1, window.rows}, 1, first_column);
     complete_tile(window, first_column.empty() ? nullptr : first_column.data(), tile->values.data());
-    mark_missing(tile->values);
+    mark_nodata(tile->values);
     if (mask_) drop_masked(id, tile->values);
     return tile;
   }
 
-  // The mask judges the pixels of the tile and of a margin around it, so that every tile drops the same ones.
+  // Removes the posts that mask_ rejects and their neighbours. Tests the pixels of a margin around the tile
+  // too, so that all tiles remove the same posts.
   void drop_masked(const TileId& id, std::span<T> values) const {
     const int column = std::max(0, id.column * kTileSide - mask_margin_);
     const int row = std::max(0, id.row * kTileSide - mask_margin_);
@@ -234,8 +215,8 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
                              std::min(grid_.height, (id.row + 1) * kTileSide + 1 + mask_margin_) - row};
     std::vector<T> stored(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows));
     raster_->read(1, -1, window, window.columns, stored.data());
-    mask_out(window, window.columns, stored);
-    mark_missing(stored);
+    apply_mask(window, window.columns, stored);
+    mark_nodata(stored);
     std::vector<glm::dvec2> pixels;
     std::vector<double> heights_m;
     for (int r = 0; r < window.rows; ++r) {
@@ -257,6 +238,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     }
   }
 
+  // Removes a post and its neighbours, at a position relative to the tile.
   void drop_around(int column, int row, std::span<T> values) const {
     for (int r = std::max(0, row - mask_margin_); r <= std::min(kTileStride - 1, row + mask_margin_); ++r) {
       for (int c = std::max(0, column - mask_margin_); c <= std::min(kTileStride - 1, column + mask_margin_);
@@ -266,20 +248,20 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     }
   }
 
-  void mark_missing(std::span<T> values) const {
-    const T no_data = format_.no_data ? static_cast<T>(*format_.no_data) : static_cast<T>(kNaN);
+  void mark_nodata(std::span<T> values) const {
+    const T nodata = format_.nodata_value ? static_cast<T>(*format_.nodata_value) : static_cast<T>(kNaN);
     for (T& value : values) {
-      // Magnitudes that no height has: infinities, and the special pixels of ISIS beside its no-data value.
-      if (value == no_data || !(std::abs(value) < static_cast<T>(1e30))) value = static_cast<T>(kNaN);
+      // Rejects infinities, and the special pixels of ISIS other than its nodata value.
+      if (value == nodata || !(std::abs(value) < static_cast<T>(1e30))) value = static_cast<T>(kNaN);
     }
-    if (!format_.nodata.any()) return;
+    if (!format_.special_values.any()) return;
     for (T& value : values) {
-      if (format_.nodata.has(static_cast<double>(value))) value = static_cast<T>(kNaN);
+      if (format_.special_values.has(static_cast<double>(value))) value = static_cast<T>(kNaN);
     }
   }
 
-  // What the mask or alpha band hides, in values of a window whose rows are `stride` apart.
-  void mask_out(const PixelWindow& window, int stride, std::span<T> values) const {
+  // Sets pixels that the mask or alpha band hides to NaN, in a window whose rows are `stride` apart.
+  void apply_mask(const PixelWindow& window, int stride, std::span<T> values) const {
     if (!format_.masked) return;
     std::vector<unsigned char> mask(static_cast<std::size_t>(window.columns) *
                                     static_cast<std::size_t>(window.rows));
@@ -298,7 +280,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   double metres(double stored) const { return format_.offset + format_.scale * stored; }
 
   double height(Cursor& cursor, const glm::dvec2& pixel) const {
-    PixelPlace place;
+    PixelNeighbourhood place;
     if (!locate(grid_, pixel.x, pixel.y, place)) return kNaN;
     const T* p = cursor.at(place.column, place.row).values.data() + Cursor::offset(place.column, place.row);
     const double v00 = p[0], v10 = p[1], v01 = p[kTileStride], v11 = p[kTileStride + 1];
@@ -342,8 +324,8 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   double row_mean(int row) const {
     std::vector<T> values(static_cast<std::size_t>(grid_.width));
     raster_->read(1, -1, {0, row, grid_.width, 1}, grid_.width, values.data());
-    mask_out({0, row, grid_.width, 1}, grid_.width, values);
-    mark_missing(values);
+    apply_mask({0, row, grid_.width, 1}, grid_.width, values);
+    mark_nodata(values);
     double sum = 0;
     int count = 0;
     for (const T value : values) {
@@ -354,7 +336,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     return count == 0 ? kNaN : sum / count;
   }
 
-  // Some valid height; a raster without any is refused. Reads no more than it needs.
+  // Returns the first valid height found. Reads no more than it needs. Throws SourceError if there is none.
   double first_height() const {
     auto cursor = make_cursor();
     for (int row = 0; row < grid_.height; row += kTileSide) {
@@ -369,19 +351,19 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
         }
       }
     }
-    throw source_error(raster_->path(), "holds no elevation", "every pixel is no-data or not a number",
-                       "check its no-data value with gdalinfo -stats");
+    throw source_error(raster_->path(), "holds no elevation", "every pixel is nodata or not a number",
+                       "check its nodata value with gdalinfo -stats");
   }
 
   std::shared_ptr<const GdalRaster> raster_;
   PixelGrid grid_;
   BandFormat format_;
   SourceInfo info_;
-  PostMask mask_;  // none: all posts are used
+  PostMask mask_;  // empty: all posts are used
   int mask_margin_ = 0;
   mutable TileCache<Tile> tiles_;
   mutable TileCache<BoundaryTile> boundaries_;
-  std::array<double, 2> pole_{kNaN, kNaN};  // stored values at the first and the last pole
+  std::array<double, 2> pole_{kNaN, kNaN};  // stored values at the first and at the last pole
 };
 
 }  // namespace

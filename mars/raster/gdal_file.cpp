@@ -16,7 +16,7 @@
 namespace mars {
 namespace {
 
-using Pointer = LeasePool<GDALDataset>::Pointer;
+using Pointer = GdalPool<GDALDataset>::Pointer;
 
 constexpr std::size_t kLabelBytes = std::size_t{1} << 18;
 
@@ -39,7 +39,8 @@ bool exists(const std::string& path) {
   return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
 }
 
-// A server that fails for a moment must not hide a label. Within a GdalScope, as first_bytes().
+// Returns true if the file exists. Retries, because a transient failure of a server must not hide a label. Must
+// be called inside a GdalScope, like first_bytes().
 bool is_there(const std::string& path) {
   if (exists(path)) return true;
   return is_remote(path) && attempt_with_retries(path, [&] { return try_open(path) != nullptr; });
@@ -47,7 +48,7 @@ bool is_there(const std::string& path) {
 
 std::string first_bytes(const std::string& path, std::size_t size) {
   std::string text;
-  // The file is there: a label that a server failed to send must not be taken for none.
+  // The file exists, so a failed read must not be taken for an absent label.
   attempt_with_retries(path, [&] {
     VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
     if (file == nullptr) return false;
@@ -59,7 +60,7 @@ std::string first_bytes(const std::string& path, std::size_t size) {
   return text;
 }
 
-// The PDS label in a file, if it looks like one.
+// Returns the PDS label of a file, if it has one.
 std::optional<PdsLabel> label_in(const std::string& path) {
   const std::string start = first_bytes(path, 1024);
   bool is_label = false;
@@ -75,7 +76,7 @@ bool is_pds(const GDALDataset& dataset) {
   return driver != nullptr && std::strcmp(GDALGetDriverShortName(driver), "PDS") == 0;
 }
 
-// The raster of a label, if it is one of an image.
+// Returns the raster that a label describes, if it is one.
 std::optional<RasterFile> by_label(const std::string& path) {
   auto label = label_in(path);
   if (!label) return std::nullopt;
@@ -89,19 +90,19 @@ std::optional<RasterFile> by_label(const std::string& path) {
     file.files = {path};
     if (image.data_path != path) file.files.push_back(image.data_path);
   }
-  file.place = has_pds_catalog_map(*label) ? pds_catalog_map(path, *label) : pds_map(path, *label);
-  if (!file.place && dataset && file.gdal_name != path) {
-    // The pixels are ours, the place is GDAL's.
+  file.georeference = has_pds_catalog_map(*label) ? pds_catalog_map(path, *label) : pds_map(path, *label);
+  if (!file.georeference && dataset && file.gdal_name != path) {
+    // The pixels are read by the label, but GDAL's georeference is right.
     std::array<double, 6> to_map{};
-    LabelPlace place;
-    if (dataset->GetGeoTransform(to_map.data()) == CE_None) place.to_map = to_map;
+    LabelGeoreference georeference;
+    if (dataset->GetGeoTransform(to_map.data()) == CE_None) georeference.to_map = to_map;
     if (const OGRSpatialReference* crs = dataset->GetSpatialRef()) {
       char* wkt = nullptr;
       const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
-      if (crs->exportToWkt(&wkt, options) == OGRERR_NONE) place.crs = wkt;
+      if (crs->exportToWkt(&wkt, options) == OGRERR_NONE) georeference.crs = wkt;
       CPLFree(wkt);
     }
-    file.place = place;
+    file.georeference = georeference;
   }
   return file;
 }

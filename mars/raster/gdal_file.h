@@ -1,4 +1,5 @@
-// Which file, and which of GDAL's drivers or our own readers, a raster is opened by.
+// Selects the file and the reader by which a raster is opened: a driver of GDAL, or a virtual dataset of its
+// label.
 #pragma once
 
 #include <optional>
@@ -14,19 +15,19 @@ class GDALDataset;
 namespace mars {
 
 struct RasterFile {
-  std::string path;                 // the file given, or the label beside it
-  std::string gdal_name;            // what GDAL opens: the path, or a virtual dataset over the raw image
-  std::vector<std::string> files;   // all that it is made of, where GDAL does not know
-  std::optional<PdsLabel> label;    // of PDS images
-  std::optional<LabelPlace> place;  // by that label
+  std::string path;                // the given file, or the label beside it
+  std::string gdal_name;           // what GDAL opens: the path, or a virtual dataset of a raw image
+  std::vector<std::string> files;  // all files of the raster; empty: GDAL knows them
+  std::optional<PdsLabel> label;   // of PDS images
+  std::optional<LabelGeoreference> georeference;  // by that label
 };
 
-// What GDAL opens is opened by GDAL. A PDS image that has its label beside it (.lbl) is opened by that. Images
-// that GDAL cannot read, or reads wrongly (see gdal_misreads), are raw rasters described by their label. Throws
-// SourceError.
+// Finds how to open a raster. Files that GDAL opens are opened by GDAL. A PDS image with a label beside it
+// (.lbl) is opened by the label. Images that GDAL cannot read or misreads (see gdal_misreads()) are described
+// as raw rasters by their label. Throws SourceError.
 RasterFile find_raster(const std::string& path);
 
-// A new handle. Throws SourceError.
-LeasePool<GDALDataset>::Pointer open_raster(const RasterFile& file);
+// Opens a new handle. Throws SourceError.
+GdalPool<GDALDataset>::Pointer open_raster(const RasterFile& file);
 
 }  // namespace mars

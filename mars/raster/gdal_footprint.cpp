@@ -13,8 +13,9 @@ namespace {
 constexpr int kParts = 16;  // along a side
 constexpr int kPoints = 5;  // along a side of a part, both ends included
 
-// Cap round the points that are on the planet; none -> negative radius. Between two sampled points the edge of
-// the part may bulge and the rim of the map may run: the longest step covers both.
+// Returns a cap around the points that are on the planet; its radius is negative if there are none. It is
+// larger by the longest step between points, because between them the edge of the part may bulge and the map
+// may end.
 Cap enclose(const std::array<glm::dvec3, kPoints * kPoints>& points) {
   glm::dvec3 sum(0);
   const auto on_planet = [](const glm::dvec3& p) { return std::isfinite(p.x); };
@@ -43,9 +44,10 @@ Cap enclose(const std::array<glm::dvec3, kPoints * kPoints>& points) {
   return {centre, radius + step};
 }
 
-bool meet(const Cap& a, const Cap& b) {
+// Returns true if two caps overlap.
+bool overlap(const Cap& a, const Cap& b) {
   const double reach = a.radius_rad + b.radius_rad;
-  // The chord tells small angles apart, unlike the dot product, but not those close to pi.
+  // The chord resolves small angles, unlike the dot product, but not those close to pi.
   return reach > 3.1 || glm::length(a.centre - b.centre) <= 2 * std::sin(reach / 2) * (1 + 1e-12);
 }
 
@@ -82,8 +84,8 @@ Footprint::Footprint(const Georeference& georeference) {
 }
 
 bool Footprint::touches(const Cap& cap) const {
-  return meet(whole_, cap) &&
-         std::any_of(parts_.begin(), parts_.end(), [&](const Cap& part) { return meet(part, cap); });
+  return overlap(whole_, cap) &&
+         std::any_of(parts_.begin(), parts_.end(), [&](const Cap& part) { return overlap(part, cap); });
 }
 
 }  // namespace mars

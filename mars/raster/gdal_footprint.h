@@ -1,4 +1,4 @@
-// Where on the planet a raster lies, coarsely and never too small.
+// Coarse, conservative extent of a raster on the planet.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -16,7 +16,7 @@ class Footprint {
 
   bool is_empty() const { return parts_.empty(); }
 
-  // True when the cap may hold a place of the raster; false only when it holds none.
+  // Returns true if the cap may contain a place of the raster, false only if it contains none.
   bool touches(const Cap& cap) const;
 
  private:

@@ -17,9 +17,9 @@
 namespace mars {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotOnPlanet = std::numeric_limits<double>::quiet_NaN();
 
-// Longitude and latitude of the CRS's kind, degrees.
+// Returns longitude and latitude of the kind that the CRS uses, in degrees.
 glm::dvec2 crs_lon_lat(const glm::dvec3& d, double centric_scale) {
   const double horizontal = std::sqrt(d.x * d.x + d.y * d.y);
   return {std::atan2(d.y, d.x) / kRadiansPerDegree,
@@ -29,7 +29,7 @@ glm::dvec2 crs_lon_lat(const glm::dvec3& d, double centric_scale) {
 glm::dvec3 crs_direction(glm::dvec2 p, double centric_scale) {
   // Rounding may carry the edge of a map over the pole.
   if (std::abs(p.y) < 90 + 1e-9) p.y = std::clamp(p.y, -90.0, 90.0);
-  if (!is_valid({p.x, p.y})) return glm::dvec3(kNaN);
+  if (!is_valid({p.x, p.y})) return glm::dvec3(kNotOnPlanet);
   const glm::dvec3 d = direction({p.x, p.y});
   return centric_scale == 1.0 ? d : glm::normalize(glm::dvec3(d.x, d.y, d.z * centric_scale));
 }
@@ -39,22 +39,22 @@ const char* const kNoGeoreference =
 
 }  // namespace
 
-Georeference::Georeference(const std::string& path, GDALDataset& dataset, const LabelPlace& place) {
+Georeference::Georeference(const std::string& path, GDALDataset& dataset, const LabelGeoreference& label) {
   const GdalScope scope;
   grid_.width = dataset.GetRasterXSize();
   grid_.height = dataset.GetRasterYSize();
   std::array<double, 6> to_map{};
-  if (place.to_map) {
-    to_map = *place.to_map;
+  if (label.to_map) {
+    to_map = *label.to_map;
   } else if (dataset.GetGeoTransform(to_map.data()) != CE_None) {
     const bool points = dataset.GetGCPCount() > 0;
     throw source_error(path, "has no georeference", points ? "only ground control points" : "",
                        points ? "warp it first with gdalwarp -t_srs" : kNoGeoreference);
   }
   OGRSpatialReference crs;
-  if (!place.crs.empty()) {
-    if (crs.SetFromUserInput(place.crs.c_str()) != OGRERR_NONE) {
-      throw source_error(path, "its label has a map that PROJ does not know", scope.message(),
+  if (!label.crs.empty()) {
+    if (crs.SetFromUserInput(label.crs.c_str()) != OGRERR_NONE) {
+      throw source_error(path, "PROJ does not support the map of its label", scope.message(),
                          "check the label's IMAGE_MAP_PROJECTION");
     }
   } else if (dataset.GetSpatialRef() != nullptr) {
@@ -64,16 +64,16 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     throw source_error(path, "has a geotransform but no coordinate system", "",
                        "name the body's, e.g. gdal_edit.py -a_srs IAU_2015:49900 FILE");
   }
-  transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, place.lon_turn_deg);
-  centric_scale_ = place.centric_scale.value_or(transformer_->centric_scale());
+  transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, label.lon_shift_deg);
+  centric_scale_ = label.centric_scale.value_or(transformer_->centric_scale());
 
   const double to_m = crs.IsGeographic() || !crs.IsProjected()
                           ? crs.GetAngularUnits() * transformer_->semi_major_m()
                           : crs.GetLinearUnits();
   resolution_m_ = std::min(std::hypot(to_map[1], to_map[4]), std::hypot(to_map[2], to_map[5])) * to_m;
 
-  if (place.grid) {
-    const DegreeGrid& g = *place.grid;
+  if (label.grid) {
+    const DegreeGrid& g = *label.grid;
     linear_ = Linear{{-g.west_deg * g.pixels_per_degree - 0.5, g.north_deg * g.pixels_per_degree - 0.5},
                      {g.pixels_per_degree, 0},
                      {0, -g.pixels_per_degree}};
@@ -98,7 +98,7 @@ void Georeference::find_linear() {
   std::vector<glm::dvec2> base{{middle, 0}, {middle + kStep_deg, 0}, {middle, kStep_deg}};
   transformer_->forward(base);
   Linear linear{base[0], (base[1] - base[0]) / kStep_deg, (base[2] - base[0]) / kStep_deg};
-  // Rounding of large map coordinates leaves crumbs that would pass for a rotation.
+  // Rounding of large map coordinates leaves small terms that must not be taken for a rotation.
   for (glm::dvec2* slope : {&linear.per_lon, &linear.per_lat}) {
     for (int i = 0; i < 2; ++i) {
       if (std::abs((*slope)[i]) * 360 < kLinearError_px / 4) (*slope)[i] = 0;
@@ -128,7 +128,8 @@ glm::dvec2 Georeference::pixel_at(double lon_deg, double lat_deg) const {
 }
 
 void Georeference::find_wrap() {
-  // Any cylindrical map in normal aspect: columns linear in longitude alone, rows from latitude alone.
+  // True for any cylindrical map in normal aspect: columns are linear in longitude, rows depend on latitude
+  // alone.
   const double middle = linear_ ? 0.0 : transformer_->central_lon_deg();
   const double per_degree = (pixel_at(middle + 64, 0).x - pixel_at(middle, 0).x) / 64;
   for (const double lat : {-60.0, 0.0, 60.0}) {
@@ -148,7 +149,7 @@ void Georeference::find_wrap() {
   const double south = pixel_at(middle, -90).y;
   const double first = std::min(north, south);
   const double last = std::max(north, south);
-  // A raster that ends a whole pixel short of a pole does not hold it.
+  // A raster that ends a whole pixel before a pole does not include it.
   if (first >= -1 && first < grid_.height - 1) grid_.first_pole_row = first;
   if (last <= grid_.height && last > 0 && last > first) grid_.last_pole_row = last;
 }
@@ -191,13 +192,14 @@ void Georeference::to_directions(std::span<const glm::dvec2> pixels, std::span<g
   }
   std::vector<glm::dvec2> places(pixels.begin(), pixels.end());
   transformer_->inverse(places);
-  // PROJ's inverses go on past the rim of some projections: only what comes back is on the planet.
+  // PROJ's inverse also returns places for pixels outside the outline of some projections. Only places that map
+  // back to their pixels are on the planet.
   std::vector<glm::dvec2> back = places;
   transformer_->forward(back);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const glm::dvec2 off = glm::abs(back[i] - pixels[i]);
-    const bool there = off.x < 1e-2 && off.y < 1e-2;
-    directions[i] = there ? crs_direction(places[i], centric_scale_) : glm::dvec3(kNaN);
+    const bool on_planet = off.x < 1e-2 && off.y < 1e-2;
+    directions[i] = on_planet ? crs_direction(places[i], centric_scale_) : glm::dvec3(kNotOnPlanet);
   }
 }
 

@@ -1,6 +1,9 @@
-// From directions to pixels of a raster in any CRS that PROJ knows, and back.
+// Maps directions to pixels of a raster in any CRS that PROJ supports, and back.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -17,39 +20,41 @@ namespace mars {
 
 class CrsTransformer;
 
-// Pixel coordinates are those of PixelGrid. The raster's longitudes and latitudes are on its own body: its
-// CRS's geographic part, whatever it is called, with planetocentric latitudes turned into that CRS's kind.
-// Where columns and rows are linear in longitude and latitude (all plain cylindrical maps) PROJ is asked only
-// at opening, to prove that. Every const member may be called from any number of threads at once.
+// Uses the pixel coordinates of PixelGrid. Longitudes and latitudes are those of the raster's own body, i.e. of
+// the geographic part of its CRS; planetocentric latitudes are converted to the kind of that CRS. Where columns
+// and rows are linear in longitude and latitude (all plain cylindrical maps), PROJ is used only at opening, to
+// prove that. Any number of threads may call const members at once.
 class Georeference {
  public:
-  // `place` overrides what GDAL says. `path` is for messages. Throws SourceError when there is no georeference
-  // or it cannot be transformed.
-  Georeference(const std::string& path, GDALDataset& dataset, const LabelPlace& place);
+  // `label` overrides GDAL's georeference. `path` is for messages. Throws SourceError if there is no
+  // georeference or it cannot be transformed.
+  Georeference(const std::string& path, GDALDataset& dataset, const LabelGeoreference& label);
   ~Georeference();
   Georeference(Georeference&&) noexcept;
 
   const PixelGrid& grid() const { return grid_; }
 
-  // Side of a pixel in metres where the map is true to scale; the smaller of the two.
+  // Returns the smaller side of a pixel in metres where the map is true to scale.
   double resolution_m() const { return resolution_m_; }
 
-  // True when pixels are linear in longitude and latitude.
+  // Returns true if pixels are linear in longitude and latitude.
   bool is_linear() const { return linear_.has_value(); }
 
-  // Pixel of each direction, not reduced by the grid's period; NaN where the projection has no place for it.
-  // On linear maps within kLinearError_px of what PROJ says.
+  // Bounds the difference between to_pixels() and PROJ on linear maps.
   static constexpr double kLinearError_px = 1e-5;
+
+  // Sets the pixel position of each direction, not reduced by the grid's period; NaN if the projection does not
+  // include it.
   void to_pixels(std::span<const glm::dvec3> directions, std::span<glm::dvec2> pixels) const;
 
-  // The same through PROJ at every point, for checks; not for grids from labels (LabelPlace::grid).
+  // Does the same with PROJ at every point, for tests. Ignores grids from labels (LabelGeoreference::grid).
   void to_pixels_by_proj(std::span<const glm::dvec3> directions, std::span<glm::dvec2> pixels) const;
 
-  // Unit direction of each pixel; NaN off the planet (beyond the rim of a sinusoidal map).
+  // Sets the unit direction of each pixel; NaN off the planet (outside the outline of a sinusoidal map).
   void to_directions(std::span<const glm::dvec2> pixels, std::span<glm::dvec3> directions) const;
 
  private:
-  // column = column0 + dx_column lon + dy_column lat, degrees; rows likewise.
+  // pixel = origin + per_lon * longitude + per_lat * latitude, in degrees.
   struct Linear {
     glm::dvec2 origin{0};
     glm::dvec2 per_lon{0};
@@ -63,9 +68,22 @@ class Georeference {
   std::unique_ptr<CrsTransformer> transformer_;
   PixelGrid grid_;
   double resolution_m_ = 0;
-  double centric_scale_ = 1;  // tan(centric latitude) = centric_scale_ tan(latitude of the CRS)
+  double centric_scale_ = 1;  // k in: tan(planetocentric latitude) = k tan(latitude of the CRS)
   std::optional<Linear> linear_;
-  std::optional<double> middle_lon_deg_;  // of turned linear maps, which have no period in columns
+  std::optional<double> middle_lon_deg_;  // of rotated linear maps, which have no period in columns
 };
+
+// Calls use(start, pixels) for consecutive parts of `directions`: pixels[i] is the position of directions[start
+// + i]. Works in small parts, so that no buffer grows with the batch.
+template <class Use>
+void for_pixels(const Georeference& georeference, std::span<const glm::dvec3> directions, const Use& use) {
+  constexpr std::size_t kPart = 1024;
+  std::array<glm::dvec2, kPart> pixels;
+  for (std::size_t start = 0; start < directions.size(); start += kPart) {
+    const std::size_t count = std::min(kPart, directions.size() - start);
+    georeference.to_pixels(directions.subspan(start, count), std::span(pixels).first(count));
+    use(start, std::span<const glm::dvec2>(pixels).first(count));
+  }
+}
 
 }  // namespace mars

@@ -1,4 +1,4 @@
-// Which pixels decide the value at a place of a raster that may wrap round the planet and reach its poles.
+// Pixel grid of a raster that may wrap around the planet and reach its poles, and interpolation in it.
 #pragma once
 
 #include <algorithm>
@@ -7,27 +7,28 @@
 
 namespace mars {
 
-// Pixel coordinates: (0, 0) is the centre of the first pixel. Rows may run either way.
+// Describes the grid. Pixel coordinates (0, 0) are the centre of the first pixel. Rows may run north or south.
 struct PixelGrid {
   int width = 0;
   int height = 0;
   double period = 0;   // columns in 360 degrees where columns are even in longitude, else 0
-  bool wraps = false;  // the first column is the last one's neighbour
-  // Rows where a pole lies, beyond the first and last row centres, for maps that wrap; infinite where none.
+  bool wraps = false;  // the first column follows the last one
+  // Rows of the poles, beyond the first and last row centres, for maps that wrap; infinite if a pole is not
+  // included.
   double first_pole_row = -std::numeric_limits<double>::infinity();
   double last_pole_row = std::numeric_limits<double>::infinity();
 
   bool has_first_pole() const { return std::isfinite(first_pole_row); }
   bool has_last_pole() const { return std::isfinite(last_pole_row); }
-  // The row whose mean is the value of a pole.
+  // Return the row whose mean is the value at a pole.
   int first_polar_row() const { return std::max(0, static_cast<int>(std::lround(first_pole_row))); }
   int last_polar_row() const { return std::min(height - 1, static_cast<int>(std::lround(last_pole_row))); }
 
-  // The grid of 2^level x 2^level averages.
+  // Returns the grid of averages of 2^level x 2^level pixels.
   PixelGrid reduced(int level) const;
 };
 
-// Pixels column .. column + columns - 1, rows likewise.
+// Describes the pixels column .. column + columns - 1, rows likewise.
 struct PixelWindow {
   int column = 0;
   int row = 0;
@@ -37,9 +38,10 @@ struct PixelWindow {
 
 enum class Pole { kNone, kFirst, kLast };
 
-// The 2x2 neighbours start at (column, row); fx, fy in [0, 1). Next to a pole the row is interpolated along the
-// longitude alone and blended with the pole's one value, so that all longitudes meet there.
-struct PixelPlace {
+// Describes the 2x2 pixels from which a value is interpolated. They start at (column, row); fx and fy are in
+// [0, 1). Next to a pole the value is interpolated along the row alone and blended with the one value at the
+// pole, so that all longitudes agree there.
+struct PixelNeighbourhood {
   int column = 0;
   int row = 0;
   double fx = 0;
@@ -62,8 +64,9 @@ inline PixelGrid PixelGrid::reduced(int level) const {
   return grid;
 }
 
-// False outside the raster: farther than half a pixel from the outer pixel centres, or NaN.
-inline bool locate(const PixelGrid& grid, double x, double y, PixelPlace& place) {
+// Finds the pixels for a position. Returns false outside the raster, i.e. more than half a pixel from the outer
+// pixel centres, and for NaN.
+inline bool locate(const PixelGrid& grid, double x, double y, PixelNeighbourhood& place) {
   if (!std::isfinite(x) || !std::isfinite(y)) return false;
   const double last_column = grid.width - 1;
   const double last_row = grid.height - 1;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
 #include "mars/raster/gdal_boundary.h"
 #include "mars/raster/gdal_image_decode.h"
@@ -12,8 +13,7 @@
 namespace mars {
 namespace {
 
-constexpr std::size_t kBatch = 1024;
-constexpr int kMaxTaps = 32;  // along a parallel near a pole
+constexpr int kMaxTaps = 32;  // samples along a parallel near a pole
 constexpr std::size_t kTilePixels = static_cast<std::size_t>(kTileStride) * kTileStride;
 
 struct ImageTile {
@@ -45,11 +45,11 @@ class GdalImage final : public ImageSource, public BoundaryAware {
     const double texel_px = ratio * scale;
     const bool poles = grid.wraps && (grid.has_first_pole() || grid.has_last_pole());
     auto cursor = make_cursor(level);
-    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
+    for_pixels(raster_->georeference(), directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         const glm::dvec2 p = (pixels[i] + 0.5) * scale - 0.5;
         const glm::dvec3& d = directions[start + i];
-        // Columns of a cylindrical map converge: a texel near a pole covers many of them.
+        // Columns of a cylindrical map converge at the poles, where a texel covers many of them.
         const double cos_lat = poles ? std::sqrt(d.x * d.x + d.y * d.y) : 1.0;
         const int taps =
             static_cast<int>(std::clamp(texel_px / std::max(cos_lat, 1e-9), 1.0, double{kMaxTaps}));
@@ -68,19 +68,11 @@ class GdalImage final : public ImageSource, public BoundaryAware {
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                          std::span<double> posts) const override {
-    const int limit = static_cast<int>(std::ceil(std::min(limit_posts, kMaxFeather_posts)));
     auto cursor = make_cursor(0);
-    const auto fetch = [&](const TileId& id) {
-      return boundaries_.get({limit, id.column, id.row}, [&](const TileId& key) {
-        return std::make_shared<const BoundaryTile>(
-            make_boundary_tile(grids_[0], {0, key.column, key.row}, limit, [&](int column, int row) {
-              return cursor.at(column, row).pixels[cursor.offset(column, row)].alpha >= 128;
-            }));
-      });
+    const auto has_data = [&cursor](int column, int row) {
+      return cursor.at(column, row).pixels[Cursor::offset(column, row)].alpha >= 128;
     };
-    for_pixels(directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
-      boundary_distances(grids_[0], pixels, limit_posts, fetch, posts.subspan(start, pixels.size()));
-    });
+    raster_boundary_distance(raster_->georeference(), boundaries_, directions, limit_posts, has_data, posts);
   }
 
  private:
@@ -91,7 +83,7 @@ class GdalImage final : public ImageSource, public BoundaryAware {
   using Cursor = TileCursor<ImageTile, Fetch>;
   Cursor make_cursor(int level) const { return Cursor(level, Fetch{this}); }
 
-  // Weighted colours; alpha is the weight that has data, of the whole weight.
+  // Accumulates weighted colours. alpha is the sum of the weights that have data.
   struct Sum {
     std::array<double, 3> weighted{};
     double alpha = 0;
@@ -113,18 +105,8 @@ class GdalImage final : public ImageSource, public BoundaryAware {
     return tiles_.get(id, [this](const TileId& key) { return load(key); });
   }
 
-  template <class Use>
-  void for_pixels(std::span<const glm::dvec3> directions, const Use& use) const {
-    std::array<glm::dvec2, kBatch> pixels;
-    for (std::size_t start = 0; start < directions.size(); start += kBatch) {
-      const std::size_t count = std::min(kBatch, directions.size() - start);
-      raster_->georeference().to_pixels(directions.subspan(start, count), std::span(pixels).first(count));
-      use(start, std::span<const glm::dvec2>(pixels).first(count));
-    }
-  }
-
   void add(Cursor& cursor, int level, double x, double y, Sum& sum) const {
-    PixelPlace place;
+    PixelNeighbourhood place;
     if (!locate(grids_[static_cast<std::size_t>(level)], x, y, place)) return;
     const Pixel* p = cursor.at(place.column, place.row).pixels.data() + Cursor::offset(place.column, place.row);
     const double row = 1 - place.pole_share;
@@ -177,9 +159,9 @@ class GdalImage final : public ImageSource, public BoundaryAware {
     return made;
   }
 
-  // Means of 2x2 pixels of the level below.
+  // Computes means of 2x2 pixels of the next finer level.
   void average(int level, const PixelWindow& window, int stride, Pixel* pixels) const {
-    const PixelGrid& below = grids_[static_cast<std::size_t>(level - 1)];
+    const PixelGrid& finer = grids_[static_cast<std::size_t>(level - 1)];
     auto cursor = make_cursor(level - 1);
     for (int r = 0; r < window.rows; ++r) {
       for (int c = 0; c < window.columns; ++c) {
@@ -191,7 +173,7 @@ class GdalImage final : public ImageSource, public BoundaryAware {
         for (int i = 0; i < 4; ++i) {
           const int x = column + (i & 1);
           const int y = row + (i >> 1);
-          if (x >= below.width || y >= below.height) continue;
+          if (x >= finer.width || y >= finer.height) continue;
           const Pixel& p = cursor.at(x, y).pixels[cursor.offset(x, y)];
           for (std::size_t k = 0; k < 3; ++k) colour[k] += p.colour[k] * p.alpha;
           alpha += p.alpha;

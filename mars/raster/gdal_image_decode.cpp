@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vpe/base/quantile.h"
+
 namespace mars {
 namespace {
 
-constexpr int kStretchSide = 512;  // pixels a side of the sample that sets the stretch
+constexpr int kStretchSide = 512;  // side in pixels of the sample that sets the stretch
 constexpr double kStretchTail = 0.005;
 
 ImageFormat read_format(const GdalRaster& raster) {
   const GdalScope scope;
-  const auto dataset = raster.lend();
+  const auto dataset = raster.acquire();
   ImageFormat format;
   std::array<int, 3> rgb{};
   const int bands = dataset->GetRasterCount();
@@ -52,7 +54,7 @@ ImageFormat read_format(const GdalRaster& raster) {
         GDALRasterBand* overview = dataset->GetRasterBand(band)->GetOverview(i);
         return overview != nullptr && overview->GetXSize() == grid.width && overview->GetYSize() == grid.height;
       });
-      // Averages of palette numbers are no colours, and overviews of masks are not always there.
+      // Averages of palette indices are no colours, and masks need not have overviews.
       if (all && format.palette.empty() && !format.masked && format.alpha_band == 0)
         format.overviews.emplace(level, i);
     }
@@ -60,7 +62,8 @@ ImageFormat read_format(const GdalRaster& raster) {
   return format;
 }
 
-// Percentiles of a coarse sample of the whole image, over all colour bands so that hues stay.
+// Sets the stretch from percentiles of a coarse sample of the whole image, over all colour bands so that hues
+// are kept.
 void find_stretch(const GdalRaster& raster, ImageFormat& format) {
   const PixelGrid& grid = raster.grid();
   const int columns = std::min(grid.width, kStretchSide);
@@ -81,13 +84,8 @@ void find_stretch(const GdalRaster& raster, ImageFormat& format) {
     }
   }
   if (values.empty()) return;
-  const auto percentile = [&](double share) {
-    const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
-  format.low = percentile(kStretchTail);
-  format.high = percentile(1 - kStretchTail);
+  format.low = vpe::base::quantile_round(values, kStretchTail);
+  format.high = vpe::base::quantile_round(values, 1 - kStretchTail);
   if (format.high <= format.low) format.high = format.low + 1;
 }
 
@@ -95,7 +93,7 @@ void find_stretch(const GdalRaster& raster, ImageFormat& format) {
 
 ImageFormat image_format(const GdalRaster& raster) {
   ImageFormat format = read_format(raster);
-  // Special pixels of 8 bits are black and white: saturated ones look right as they are.
+  // Special pixels of 8 bits are black and white, which is right for saturated ones.
   if (!format.bytes) format.nodata = raster.nodata();
   if (!format.bytes) find_stretch(raster, format);
   return format;
@@ -122,7 +120,7 @@ void decode(const GdalRaster& raster, const ImageFormat& format, int overview, c
       }
     };
     if (format.masked) {
-      // Data in any band is data: no-data values such as 0 are common within colours.
+      // A pixel has data if any band has: nodata values such as 0 are common in single bands of colours.
       raster.read_mask(band, overview, window, window.columns, bytes.data());
       for (std::size_t i = 0; i < count; ++i) {
         if (bytes[i] != 0) at(i).alpha = 255;

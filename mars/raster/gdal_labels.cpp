@@ -19,12 +19,12 @@
 namespace mars {
 namespace {
 
-// What a label says of its longitudes and latitudes.
+// Describes how a label counts longitudes and latitudes.
 struct Counting {
   bool west = false;
   bool graphic = false;
   double centre_lon_deg = 0;   // as counted by the label
-  double a = 0, b = 0, c = 0;  // one unit
+  double a = 0, b = 0, c = 0;  // axes of the body, all in one unit
 };
 
 std::string driver_of(GDALDataset& dataset) {
@@ -94,7 +94,7 @@ Counting pds4_counting(GDALDataset& dataset) {
     CPLXMLNode* node = CPLSearchXMLNode(root, (std::string("=") + key).c_str());
     return node == nullptr ? "" : CPLGetXMLValue(node, "", "");
   };
-  // Longitudes that count west GDAL has right here.
+  // GDAL reads longitudes that count west correctly here.
   counting.graphic = same(value("latitude_type"), "Planetographic");
   const auto axis = [&](const char* now, const char* before) {
     const std::string found = value(now);
@@ -115,7 +115,7 @@ Counting isis2_counting(const std::string& path) {
   text.resize(VSIFReadL(text.data(), 1, text.size(), file));
   VSIFCloseL(file);
   const PdsLabel label = parse_pds_label(text);
-  const PdsPlacement placement = place_pds(label);
+  const PdsPlacement placement = pds_placement(label);
   const auto number = [&](const char* key) {
     return label.number(std::string("IMAGE_MAP_PROJECTION.") + key).value_or(0.0);
   };
@@ -160,36 +160,37 @@ NodataValues nodata_values(GDALDataset& dataset, const std::optional<PdsLabel>& 
       nodata.at_least = 4294967294.0;
       break;
     case GDT_Int32: nodata.values = {-8388614, -8388613, -8388612, -8388611, -8388610}; break;
-    default: break;  // floating point: magnitudes that no height has
+    default: break;  // floating point: recognised by their magnitude
   }
   return nodata;
 }
 
-LabelPlace place_of(const std::string& path, GDALDataset& dataset) {
-  LabelPlace place;
+LabelGeoreference label_georeference(const std::string& path, GDALDataset& dataset) {
+  LabelGeoreference georeference;
   if (driver_of(dataset) == "ISIS3") {
     const auto mapping = isis3_mapping(dataset);
-    if (!mapping) return place;
+    if (!mapping) return georeference;
     if (auto by_label = isis_map(*mapping)) return *by_label;
-    if (!mapping->west_positive) return place;
+    if (!mapping->west_positive) return georeference;
     if (mapping->projection == "ObliqueCylindrical") {
-      throw source_error(path, "its label counts longitudes to the west in a map that cannot be placed by it",
-                         mapping->projection, "map it to a PositiveEast one first, with ISIS");
+      throw source_error(path, "its label counts longitudes to the west in an unsupported projection",
+                         mapping->projection, "map it to PositiveEast longitudes first, with ISIS");
     }
-    place.lon_turn_deg = -2 * mapping->centre_lon_deg;
-    return place;
+    georeference.lon_shift_deg = -2 * mapping->centre_lon_deg;
+    return georeference;
   }
   const Counting counting = counting_of(path, dataset);
-  if (counting.west) place.lon_turn_deg = -2 * counting.centre_lon_deg;
-  if (!counting.graphic || !(counting.a > 0) || !(counting.c > 0)) return place;
+  if (counting.west) georeference.lon_shift_deg = -2 * counting.centre_lon_deg;
+  if (!counting.graphic || !(counting.a > 0) || !(counting.c > 0)) return georeference;
   if (counting.b > 0 && counting.a != counting.b) {
-    throw source_error(path, "its latitudes are planetographic on a body with three axes", "",
+    throw source_error(path, "its latitudes are planetographic on a triaxial body", "",
                        "convert it to planetocentric latitudes first, e.g. with ISIS");
   }
   const OGRSpatialReference* crs = dataset.GetSpatialRef();
   const bool sphere = crs != nullptr && crs->GetInvFlattening() == 0;
-  if (sphere && counting.a != counting.c) place.centric_scale = squared_axis_ratio(counting.a, counting.c);
-  return place;
+  if (sphere && counting.a != counting.c)
+    georeference.centric_scale = squared_axis_ratio(counting.a, counting.c);
+  return georeference;
 }
 
 }  // namespace mars

@@ -30,7 +30,7 @@ void check_bands(const std::string& path, GDALDataset& dataset) {
   }
 }
 
-// GDAL reads zeros beyond the end of some raw files, as if they were sparse.
+// Throws if a raw file is too short. GDAL reads zeros beyond the end of some, as if they were sparse.
 void check_raw_size(const std::string& path, GDALDataset& dataset) {
   for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
     const auto* raw = dynamic_cast<RawRasterBand*>(dataset.GetRasterBand(i));
@@ -54,12 +54,13 @@ void check_raw_size(const std::string& path, GDALDataset& dataset) {
 GdalRaster::GdalRaster(const std::string& path)
     : file_(find_raster(raster_name(path))), handles_([this] { return open_raster(file_); }) {
   const GdalScope scope;
-  const auto dataset = handles_.lend();
+  const auto dataset = handles_.acquire();
   check_bands(file_.path, *dataset);
   check_raw_size(file_.path, *dataset);
   nodata_ = nodata_values(*dataset, file_.label);
-  const LabelPlace place = file_.place ? *file_.place : place_of(file_.path, *dataset);
-  georeference_.emplace(file_.path, *dataset, place);
+  const LabelGeoreference label =
+      file_.georeference ? *file_.georeference : label_georeference(file_.path, *dataset);
+  georeference_.emplace(file_.path, *dataset, label);
   footprint_.emplace(*georeference_);
   if (footprint_->is_empty()) {
     throw source_error(file_.path, "lies nowhere on the planet",
@@ -75,7 +76,7 @@ SourceInfo GdalRaster::info() const {
   info.resolution_m = georeference_->resolution_m();
   std::vector<std::string> files = file_.files;
   if (files.empty()) {
-    const CPLStringList known(lend()->GetFileList());
+    const CPLStringList known(acquire()->GetFileList());
     for (int i = 0; i < known.size(); ++i) files.emplace_back(known[i]);
   }
   for (const std::string& each : files) {
@@ -121,14 +122,14 @@ GDALRasterBand* band_of(GDALDataset& dataset, int band, int overview) {
 template <class T>
 void GdalRaster::read(int band, int overview, const PixelWindow& window, int stride, T* values) const {
   const GdalScope scope;
-  const auto dataset = lend();
+  const auto dataset = acquire();
   read_pixels(file_.path, band_of(*dataset, band, overview), window, stride, values, scope);
 }
 
 void GdalRaster::read_mask(int band, int overview, const PixelWindow& window, int stride,
                            unsigned char* values) const {
   const GdalScope scope;
-  const auto dataset = lend();
+  const auto dataset = acquire();
   GDALRasterBand* source = band_of(*dataset, band, overview);
   read_pixels(file_.path, source == nullptr ? nullptr : source->GetMaskBand(), window, stride, values, scope);
 }

@@ -1,4 +1,9 @@
-// A raster file open for reading: handles, place, and what is known of it. Never writes.
+// A raster file open for reading: handles, georeference and metadata. Never writes.
+//
+// Typical usage:
+//   const GdalRaster raster("mola.img");
+//   raster.georeference().to_pixels(directions, pixels);
+//   raster.read(1, -1, {0, row, raster.grid().width, 1}, raster.grid().width, line.data());
 #pragma once
 
 #include <memory>
@@ -17,10 +22,10 @@ class GDALDataset;
 
 namespace mars {
 
-// Every const member may be called from any number of threads at once.
+// Any number of threads may call const members at once.
 class GdalRaster {
  public:
-  // Opens anything GDAL reads, and what find_raster() adds to that. Throws SourceError.
+  // Opens anything that find_raster() finds. Throws SourceError.
   explicit GdalRaster(const std::string& path);
 
   const std::string& path() const { return file_.path; }
@@ -30,21 +35,22 @@ class GdalRaster {
   const std::optional<PdsLabel>& label() const { return file_.label; }
   const NodataValues& nodata() const { return nodata_; }
 
-  // Name, size and time of all its files, resolution.
+  // Returns name, size and time of all its files, and the resolution.
   SourceInfo info() const;
 
-  // A handle of one's own, for as long as the lease lives.
-  LeasePool<GDALDataset>::Lease lend() const { return handles_.lend(); }
+  // Lends a handle that the caller does not share with other threads.
+  GdalPool<GDALDataset>::Lease acquire() const { return handles_.acquire(); }
 
-  // Reads pixels of a band (1-based; overview < 0 = full resolution) as T, rows `stride` values apart, and of
-  // a band's mask (255 = valid, 0 = not). Throw SourceError.
+  // read() reads pixels of a band (counted from 1) as T into rows that are `stride` values apart; read_mask()
+  // reads the mask of a band (255 = valid, 0 = nodata). overview < 0 selects full resolution. Throw
+  // SourceError.
   template <class T>
   void read(int band, int overview, const PixelWindow& window, int stride, T* values) const;
   void read_mask(int band, int overview, const PixelWindow& window, int stride, unsigned char* values) const;
 
  private:
   RasterFile file_;
-  mutable LeasePool<GDALDataset> handles_;
+  mutable GdalPool<GDALDataset> handles_;
   NodataValues nodata_;
   std::optional<Georeference> georeference_;
   std::optional<Footprint> footprint_;

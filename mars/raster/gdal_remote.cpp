@@ -21,7 +21,7 @@ constexpr std::array kSettings{
     Setting{"GDAL_DISABLE_READDIR_ON_OPEN", "TRUE"}, Setting{"GDAL_HTTP_CONNECTTIMEOUT", "20"},
     Setting{"GDAL_HTTP_LOW_SPEED_TIME", "60"}, Setting{"GDAL_HTTP_LOW_SPEED_LIMIT", "1"}};
 
-// An answer that will be the same the next time: 4xx but "timeout" and "too many requests".
+// Returns true for answers that another attempt cannot change: 4xx except "timeout" and "too many requests".
 bool is_final(const std::string& message) {
   for (const char* words : {"response code: ", "error code : ", "HTTP error code: "}) {
     const std::size_t at = message.find(words);

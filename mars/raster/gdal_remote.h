@@ -6,19 +6,20 @@
 
 namespace mars {
 
-// "http://...", "https://..." and "ftp://..." as GDAL names them ("/vsicurl/http://..."); any other name as it
-// is.
+// Returns GDAL's name of a URL: "/vsicurl/http://..." for "http://...", likewise for "https://" and "ftp://".
+// Returns any other path unchanged.
 std::string raster_name(const std::string& path);
 
-// Whether reading it goes over the network ("/vsicurl/", also inside "/vsizip/" and the like).
+// Returns true if reading the raster uses the network ("/vsicurl/", also inside "/vsizip/" and the like).
 bool is_remote(const std::string& path);
 
-// What to do about a raster that cannot be opened or read.
+// Returns advice for a raster that cannot be opened or read: about the network for remote rasters, else
+// `advice_for_files`.
 std::string advice_for(const std::string& path, const std::string& advice_for_files);
 
-// While it lives, GDAL opens a remote raster on this thread without listing the server's folder, and waits no
-// longer than a minute for a server that sends nothing. Settings of the user (GDAL_HTTP_TIMEOUT, ...) come
-// first. Nothing is changed for local files.
+// Changes how GDAL opens a remote raster on this thread, during its lifetime: without listing the server's
+// folder, and with a limit of a minute for a server that sends nothing. The user's own settings
+// (GDAL_HTTP_TIMEOUT, ...) take precedence. Changes nothing for local files.
 class RemoteScope {
  public:
   explicit RemoteScope(const std::string& path);
@@ -30,11 +31,13 @@ class RemoteScope {
   bool remote_;
 };
 
-// Calls attempt() until it returns true, for a remote raster up to kRemoteTries times: after a failure that may
-// pass (anything but an answer such as 403 or 404) it waits, twice as long each time, and drops what GDAL
-// remembers of the file. The first wait is GDAL_HTTP_RETRY_DELAY seconds, half a second when that is not set.
-// Must be called inside a GdalScope, whose message() then says what went wrong the last time.
+// Largest number of attempts for a remote raster.
 inline constexpr int kRemoteTries = 7;
+
+// Calls attempt() until it returns true; a local raster gets one attempt. After a transient failure (anything
+// but an answer such as 403 or 404) it waits, twice as long each time, and drops what GDAL has cached of the
+// file. The first wait is GDAL_HTTP_RETRY_DELAY seconds, half a second by default. Must be called inside a
+// GdalScope, whose message() then describes the last failure. Returns false if all attempts failed.
 bool attempt_with_retries(const std::string& path, const std::function<bool()>& attempt);
 
 }  // namespace mars

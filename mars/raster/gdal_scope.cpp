@@ -4,6 +4,7 @@
 #include <gdal.h>
 
 #include <algorithm>
+#include <mutex>
 
 namespace mars {
 

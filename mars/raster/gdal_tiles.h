@@ -1,23 +1,21 @@
-// Decoded pieces of rasters, kept while they are in use or fit a budget that all rasters share.
+// Decoded tiles of rasters, kept while they are in use or fit into the budget that all rasters share.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <list>
 #include <memory>
-#include <mutex>
-#include <unordered_map>
-#include <vector>
+#include <utility>
 
 #include "mars/raster/gdal_grid.h"
+#include "vpe/base/lru_cache.h"
 
 namespace mars {
 
-// Tiles of kTileSide^2 pixels plus the next column and row, so that a 2x2 neighbourhood lies in one tile: the
-// next tile's, the first column again where the raster wraps, or the last one again at its end.
+// A tile holds kTileSide^2 pixels plus the next column and row, so that 2x2 neighbours lie in one tile. These
+// are the next tile's first ones; where the raster wraps, its first column; at its end, a copy of the last
+// ones.
 inline constexpr int kTileSide = 256;
 inline constexpr int kTileStride = kTileSide + 1;
 
@@ -28,8 +26,8 @@ struct TileId {
   bool operator==(const TileId&) const = default;
 };
 
-// Tiles of all rasters, least recently used ones leave first: a raster that is not asked for any more makes
-// room for others. Tiles that are held live on outside. Any thread may call any member.
+// Holds tiles of all rasters within one budget. The least recently used tiles leave first, so rasters no longer
+// in use make room for others. A tile stays alive as long as somebody holds it. Any thread may call any member.
 class TileStore {
  public:
   using Pointer = std::shared_ptr<const void>;
@@ -39,18 +37,26 @@ class TileStore {
     bool operator==(const Key&) const = default;
   };
 
-  explicit TileStore(std::size_t limit_bytes) : limit_(limit_bytes) {}
-  static TileStore& common();  // of the process; see mars/raster/raster_memory.h
+  explicit TileStore(std::size_t limit_bytes) : tiles_(limit_bytes, kEntryBytes) {}
 
-  // A number that no cache has yet, of whatever kind its tiles are.
+  // Returns the store of the process; mars/raster/raster_memory.h sets its limit.
+  static TileStore& common();
+
+  // Returns a number that no other cache has, whatever the type of its tiles.
   static std::uint64_t next_cache();
 
-  Pointer find(const Key& key);
-  // The tile that the store now holds: an earlier one wins. The newest is kept whatever its size.
-  Pointer insert(const Key& key, Pointer tile, std::size_t bytes);
-  void forget(std::uint64_t cache);
-  void set_limit(std::size_t bytes);
-  std::size_t bytes() const;
+  // Returns a tile and marks it as used, or returns null.
+  Pointer find(const Key& key) { return tiles_.find(key); }
+  // Returns the tile that the store now holds: an earlier one wins. The newest is kept whatever its size.
+  Pointer insert(const Key& key, Pointer tile, std::size_t bytes) {
+    return tiles_.insert(key, std::move(tile), bytes);
+  }
+  // Removes all tiles of a cache.
+  void forget(std::uint64_t cache) {
+    tiles_.erase_if([cache](const Key& key) { return key.cache == cache; });
+  }
+  void set_limit(std::size_t bytes) { tiles_.set_limit(bytes); }
+  std::size_t bytes() const { return tiles_.bytes(); }
 
  private:
   struct Hash {
@@ -61,26 +67,13 @@ class TileStore {
       return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 7);
     }
   };
-  struct Entry {
-    Key key;
-    Pointer tile;
-    std::size_t bytes;
-  };
-  using Order = std::list<Entry>;
   static constexpr std::size_t kEntryBytes = 160;  // list and map nodes
 
-  void remove(Order::iterator at);
-  void shrink();
-
-  mutable std::mutex mutex_;
-  std::size_t limit_;
-  std::size_t bytes_ = 0;
-  Order order_;
-  std::unordered_map<Key, Order::iterator, Hash> places_;
+  vpe::base::LruCache<Key, void, Hash> tiles_;
 };
 
-// One raster's tiles in the common store. Tile needs `std::size_t bytes() const`. Two threads that miss the
-// same tile at once both make it; the first one's is kept.
+// Holds one raster's tiles in the common store. Tile needs `std::size_t bytes() const`. If two threads need the
+// same absent tile at once, both make it and the first result is kept.
 template <class Tile>
 class TileCache {
  public:
@@ -91,6 +84,7 @@ class TileCache {
   TileCache(const TileCache&) = delete;
   TileCache& operator=(const TileCache&) = delete;
 
+  // Returns a tile, made by make(id) if it is absent.
   template <class Make>
   Pointer get(const TileId& id, const Make& make) {
     const TileStore::Key key{number_, id};
@@ -108,12 +102,14 @@ class TileCache {
   std::uint64_t number_;
 };
 
-// The tiles a batch has just used, so that neighbouring posts cost no lock. For one thread and one level.
+// Holds the tiles that a batch has used last, so that neighbouring posts need no lock. Serves one thread and
+// one level. fetch(TileId) returns a tile.
 template <class Tile, class Fetch>
 class TileCursor {
  public:
   TileCursor(int level, Fetch fetch) : level_(level), fetch_(std::move(fetch)) {}
 
+  // Returns the tile that contains a pixel.
   const Tile& at(int column, int row) {
     const int tile_column = column / kTileSide;
     const int tile_row = row / kTileSide;
@@ -124,6 +120,7 @@ class TileCursor {
     return *slot.tile;
   }
 
+  // Returns the index of a pixel in its tile.
   static std::size_t offset(int column, int row) {
     return static_cast<std::size_t>((row % kTileSide) * kTileStride + column % kTileSide);
   }
@@ -139,16 +136,16 @@ class TileCursor {
   std::array<Slot, 16> slots_;
 };
 
-// The part of a tile that lies inside the raster.
+// Returns the part of a tile that lies inside the raster.
 inline PixelWindow tile_window(const PixelGrid& grid, const TileId& id) {
   const int column = id.column * kTileSide;
   const int row = id.row * kTileSide;
   return {column, row, std::min(kTileStride, grid.width - column), std::min(kTileStride, grid.height - row)};
 }
 
-// Completes a tile at the raster's right and lower end, whose pixels of tile_window() are set, rows kTileStride
-// apart: the next column is `next_column` (values of the raster's first column, where it wraps) or a copy of
-// the last one, the next row a copy.
+// Completes a tile at the right and lower end of the raster. The pixels of tile_window() must be set, in rows
+// that are kTileStride apart. Sets the next column to `next_column` (the raster's first column, where it wraps)
+// or, if that is null, to a copy of the last column; sets the next row to a copy of the last row.
 template <class T>
 void complete_tile(const PixelWindow& window, const T* next_column, T* values) {
   if (window.columns < kTileStride) {

@@ -9,7 +9,7 @@
 
 namespace mars {
 
-std::optional<LabelPlace> isis_map(const IsisMapping& mapping) {
+std::optional<LabelGeoreference> isis_map(const IsisMapping& mapping) {
   const double a = mapping.equatorial_radius_m;
   const double c = mapping.polar_radius_m;
   const double centre = mapping.centre_lat_deg;
@@ -59,10 +59,10 @@ std::optional<LabelPlace> isis_map(const IsisMapping& mapping) {
   } else {
     crs << " +a=" << a << " +b=" << c;
   }
-  LabelPlace place;
-  place.crs = crs.str() + " +units=m +no_defs";
-  if (spherical && mapping.planetographic && a != c) place.centric_scale = ratio;
-  return place;
+  LabelGeoreference georeference;
+  georeference.crs = crs.str() + " +units=m +no_defs";
+  if (spherical && mapping.planetographic && a != c) georeference.centric_scale = ratio;
+  return georeference;
 }
 
 }  // namespace mars

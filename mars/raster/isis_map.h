@@ -1,4 +1,4 @@
-// The map of an ISIS3 cube's label (group Mapping): its coordinate system as ISIS means it.
+// Derives the coordinate system of an ISIS3 cube from its label (group Mapping), as ISIS defines it.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace mars {
 
-// Values of the group, angles in degrees, as counted by the label; radii in metres.
+// Holds the values of the group: angles in degrees as the label counts them, radii in metres.
 struct IsisMapping {
   std::string projection;
   double equatorial_radius_m = 0;
@@ -22,13 +22,17 @@ struct IsisMapping {
   double scale_factor = 1;
 };
 
-// ISIS (its projection classes) puts latitudes of either kind as they are into the equations of the sphere for
-// SimpleCylindrical, Sinusoidal, Orthographic and Equirectangular (that one with the local radius at its
-// centre), and planetographic latitudes, converted where need be, into those of the ellipsoid for
+// Returns the coordinate system, or nullopt for other projections and if a radius or a needed parallel is
+// missing.
+//
+// ISIS (its projection classes) uses latitudes of either kind unchanged in the equations of the sphere for
+// SimpleCylindrical, Sinusoidal, Orthographic and Equirectangular (the last with the local radius at its
+// centre). It uses planetographic latitudes, converted if necessary, in the equations of the ellipsoid for
 // PolarStereographic, Mercator, TransverseMercator, LambertConformal and LambertAzimuthalEqualArea.
-// West-positive longitudes change sign. GDAL 3.6.2 leaves the sign (the planet is turned), the planetographic
-// latitudes on spheres (20 km at 45 degrees on Mars), and takes a sphere for planetocentric latitudes on the
-// ellipsoid. Nothing for other projections, or where a radius or a needed parallel is missing.
-std::optional<LabelPlace> isis_map(const IsisMapping& mapping);
+// West-positive longitudes change sign.
+//
+// GDAL 3.6.2 ignores the sign (the planet is rotated) and planetographic latitudes on spheres (20 km at 45
+// degrees on Mars), and takes a sphere for planetocentric latitudes on the ellipsoid.
+std::optional<LabelGeoreference> isis_map(const IsisMapping& mapping);
 
 }  // namespace mars

@@ -9,7 +9,7 @@
 namespace mars {
 namespace {
 
-constexpr double kAgree_px = 0.25;
+constexpr double kEdgeAgreement_px = 0.25;
 constexpr double kRefuse_px = 2;
 
 }  // namespace
@@ -18,7 +18,7 @@ bool has_pds_catalog_map(const PdsLabel& label) {
   return !label.text("IMAGE_MAP_PROJECTION_CATALOG.MAP_PROJECTION_TYPE").empty();
 }
 
-LabelPlace pds_catalog_map(const std::string& path, const PdsLabel& label) {
+LabelGeoreference pds_catalog_map(const std::string& path, const PdsLabel& label) {
   const std::string object = "IMAGE_MAP_PROJECTION_CATALOG.";
   const auto needed = [&](const char* key) {
     const auto value = label.number(object + key);
@@ -44,14 +44,13 @@ LabelPlace pds_catalog_map(const std::string& path, const PdsLabel& label) {
     throw source_error(path, "its label has no usable radii or MAP_RESOLUTION", "", "check the label");
   }
 
-  // The outer edge of the first pixel is at line coordinate `edge` of line = X_AXIS_PROJECTION_OFFSET - lat
-  // RES.
+  // `edge` is the coordinate X_AXIS_PROJECTION_OFFSET - lat RES of the outer edge of the first pixel.
   const double bound = line - north * resolution;
   const bool second = label.text("DATA_SET_ID").find("V2.0") != std::string::npos;
   double edge = second ? 1.0 : 0.0;
   bool agrees = false;
   for (const double each : {0.0, 0.5, 1.0}) {
-    if (std::abs(bound - each) >= kAgree_px) continue;
+    if (std::abs(bound - each) >= kEdgeAgreement_px) continue;
     edge = each;
     agrees = true;
   }
@@ -67,11 +66,11 @@ LabelPlace pds_catalog_map(const std::string& path, const PdsLabel& label) {
   std::ostringstream crs;
   crs << std::setprecision(17) << "+proj=sinu +lon_0=" << (west ? -centre : centre) << " +R=" << *a_m
       << " +units=m +no_defs";
-  LabelPlace place;
-  place.crs = crs.str();
-  place.to_map = {-(sample - edge) * scale_m, scale_m, 0, (line - edge) * scale_m, 0, -scale_m};
-  if (*a_m != c_m && west) place.centric_scale = squared_axis_ratio(*a_m, c_m);
-  return place;
+  LabelGeoreference georeference;
+  georeference.crs = crs.str();
+  georeference.to_map = {-(sample - edge) * scale_m, scale_m, 0, (line - edge) * scale_m, 0, -scale_m};
+  if (*a_m != c_m && west) georeference.centric_scale = squared_axis_ratio(*a_m, c_m);
+  return georeference;
 }
 
 }  // namespace mars

@@ -23,7 +23,7 @@ std::string upper(std::string text) {
   return result.toupper();
 }
 
-// A value that must be a whole number from `least` to `most`; the default where the label has none.
+// Returns a whole number from `least` to `most`, or the default if the label has none. Throws SourceError.
 std::int64_t whole(const std::string& path, const PdsLabel& label, const std::string& key, std::int64_t least,
                    std::int64_t most, std::optional<std::int64_t> otherwise = std::nullopt) {
   if (label.text(key).empty() && otherwise) return *otherwise;
@@ -36,12 +36,12 @@ std::int64_t whole(const std::string& path, const PdsLabel& label, const std::st
 }
 
 struct Pointer {
-  std::string file;  // empty: the label's own
+  std::string file;  // empty: the label's file
   std::int64_t place = 1;
   bool in_bytes = false;
 };
 
-// 14, 5594 <BYTES>, "A.IMG", A.IMG, ("A.IMG", 3), ("A.IMG", 5 <BYTES>)
+// Parses 14, 5594 <BYTES>, "A.IMG", A.IMG, ("A.IMG", 3), ("A.IMG", 5 <BYTES>).
 std::optional<Pointer> parse_pointer(std::string text) {
   Pointer pointer;
   if (text.size() >= 2 && text.front() == '(' && text.back() == ')') text = text.substr(1, text.size() - 2);
@@ -79,8 +79,8 @@ std::string find_beside(const std::string& label_path, const std::string& name) 
     VSIStatBufL stat{};
     if (VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0) return path;
   }
-  throw source_error(label_path, "its label names an image that is not there", name,
-                     "put the two side by side");
+  throw source_error(label_path, "its label names an image that does not exist", name,
+                     "put both into one folder");
 }
 
 std::int64_t file_size(const std::string& path) {
@@ -106,7 +106,7 @@ std::string data_type(const std::string& path, const std::string& sample_type, s
   throw source_error(path, "holds samples that cannot be read", advice, kConvert);
 }
 
-// 12, -1.5E3, 16#FF7FFFFB# (the bits of a sample)
+// Parses 12, -1.5E3, 16#FF7FFFFB# (the bits of a sample).
 std::optional<double> constant(const PdsLabel& label, const std::string& key) {
   if (const auto value = label.number(key)) return value;
   const std::string text = label.text(key);
@@ -117,7 +117,7 @@ std::optional<double> constant(const PdsLabel& label, const std::string& key) {
   if (error != std::errc() || rest != end) return std::nullopt;
   const auto sample_bits = label.number("IMAGE.SAMPLE_BITS");
   const std::string type = upper(label.text("IMAGE.SAMPLE_TYPE"));
-  // Bits of floating point stand for magnitudes that no height has; those need no list.
+  // Bit patterns of floating point stand for magnitudes beyond any height, which readers reject anyway.
   if (says(type, "REAL") || says(type, "FLOAT") || bits > std::numeric_limits<std::uint32_t>::max())
     return std::nullopt;
   if (sample_bits == 16.0 && !says(type, "UNSIGNED")) return static_cast<std::int16_t>(bits);
@@ -182,7 +182,7 @@ PdsImage pds_image(const std::string& path, const PdsLabel& label) {
   image.sample_step = size * (by_sample ? image.bands : 1);
   image.line_step = prefix + samples * size + suffix;
   const std::int64_t length = file_size(image.data_path);
-  // Lines may be filled up to whole records.
+  // Lines may be padded to whole records.
   if (record > image.line_step &&
       length == start + record * image.rows * (by_line || by_sample ? 1 : image.bands)) {
     image.line_step = record;

@@ -1,4 +1,4 @@
-// Raw images with a PDS label, and those that GDAL cannot read or reads wrongly.
+// Raw images described by a PDS label, including those that GDAL cannot read or misreads.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace mars {
 
-// Where the samples of a label's IMAGE object are and what they mean. Steps and offset in bytes.
+// Describes location and meaning of the samples of a label's IMAGE object. Steps and offset are in bytes.
 struct PdsImage {
   std::string data_path;
   std::int64_t offset = 0;
@@ -28,25 +28,27 @@ struct PdsImage {
   std::optional<double> nodata;  // stored
 };
 
-// True for a label (its own or a detached one) of a plain, uncompressed IMAGE.
+// Returns true for an attached or detached label of a plain, uncompressed IMAGE.
 bool has_pds_image(const PdsLabel& label);
 
-// Whether GDAL 3.6.2 cannot read the image: labels without PDS_VERSION_ID = PDS3 (all of 1991: SFDU_LABEL); or
-// reads it wrongly: LINE_PREFIX_BYTES and LINE_SUFFIX_BYTES (the suffix is left out), integers of 32 bits
-// (taken for floating point), UNSIGNED_INTEGER of 16 bits (PDS: most significant byte first; taken for the
-// other way round), VAX_REAL (taken for IEEE).
+// Returns true if GDAL 3.6.2 cannot read the image: labels without PDS_VERSION_ID = PDS3 (all of 1991:
+// SFDU_LABEL); or if it misreads the image: LINE_PREFIX_BYTES and LINE_SUFFIX_BYTES (it ignores the suffix),
+// integers of 32 bits (taken for floating point), UNSIGNED_INTEGER of 16 bits (most significant byte first in
+// PDS; taken for the opposite), VAX_REAL (taken for IEEE).
 bool gdal_misreads(const PdsLabel& label);
 
-// `path` is the label's file. Names in ^IMAGE are looked for beside it, in any case of letters. SAMPLE_TYPE
-// means what the PDS Standards Reference says: without a word for it, the most significant byte comes first.
-// Missing samples: MISSING_CONSTANT or MISSING, else 0 in 8 bits and -32768 in signed 16 bits, as GDAL has it.
-// Throws SourceError: compressed, of a type without a reader (VAX_REAL, signed 8 bits), cut short, not there.
+// Describes the image of a label. `path` is the label's file; names in ^IMAGE are searched beside it, in upper
+// and lower case. SAMPLE_TYPE is read by the PDS Standards Reference: unless it says otherwise, the most
+// significant byte comes first. Nodata is MISSING_CONSTANT or MISSING, else 0 for 8 bits and -32768 for signed
+// 16 bits, as in GDAL. Throws SourceError if the image is compressed, of an unsupported type (VAX_REAL, signed
+// 8 bits), cut short or absent.
 PdsImage pds_image(const std::string& path, const PdsLabel& label);
 
-// A virtual dataset of the image for GDALOpenEx, without georeference.
+// Returns a virtual dataset of the image for GDALOpenEx, without georeference.
 std::string pds_vrt(const PdsImage& image);
 
-// Stored values that stand for missing samples, by the label: MISSING_CONSTANT, MISSING, the DTM group of HRSC.
+// Returns the stored values that the label declares missing: MISSING_CONSTANT, MISSING, INVALID_CONSTANT, and
+// the DTM group of HRSC.
 std::vector<double> pds_nodata(const PdsLabel& label);
 
 }  // namespace mars

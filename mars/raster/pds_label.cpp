@@ -23,7 +23,8 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-// An object's name stands before each of its keywords: a long one, which nobody asks for, is cut.
+// Longest name of an object. It is stored with each keyword of the object, so a hostile label must not make it
+// long.
 constexpr std::size_t kMaxName = 100;
 
 class Reader {
@@ -124,7 +125,7 @@ bool same_lon(double a_deg, double b_deg, double pixels_per_degree) {
   return std::abs(std::remainder(a_deg - b_deg, 360.0)) * pixels_per_degree <= kAgree_px;
 }
 
-// Lines of the map are even in latitude.
+// Returns true if the lines of the map are even in latitude.
 bool has_even_lines(const std::string& type) {
   return type == "SIMPLE CYLINDRICAL" || type == "EQUIRECTANGULAR" || type == "EQUIDISTANT" ||
          type == "SINUSOIDAL";
@@ -170,7 +171,7 @@ std::string pds_projection(const PdsLabel& label, const std::string& object) {
   return type;
 }
 
-PdsPlacement place_pds(const PdsLabel& label) {
+PdsPlacement pds_placement(const PdsLabel& label) {
   const auto number = [&](const char* key) { return label.number(std::string("IMAGE_MAP_PROJECTION.") + key); };
   PdsPlacement placement;
   placement.west_positive = upper(label.text("IMAGE_MAP_PROJECTION.POSITIVE_LONGITUDE_DIRECTION")) == "WEST";
@@ -193,7 +194,7 @@ PdsPlacement place_pds(const PdsLabel& label) {
     return placement.east(*centre_lon) - (*sample + edge_offset) / *resolution;
   };
 
-  // Bounds of the data instead of the pixels' edges prove nothing.
+  // Bounds of the data, instead of the edges of the pixels, confirm nothing.
   const auto south = number("MINIMUM_LATITUDE");
   const bool bounds_are_edges =
       north && resolution && *resolution > 0 &&
@@ -212,7 +213,7 @@ PdsPlacement place_pds(const PdsLabel& label) {
   for (const double edge_offset : {kCountsFromOne, kCountsFromZero, kCountsFromHalf}) {
     if (!lines_agree(edge_offset) || !samples_agree(edge_offset)) continue;
     placement.edge_offset_px = edge_offset;
-    placement.edge_is_proved = true;
+    placement.edge_is_confirmed = true;
     if (even) {
       placement.grid = DegreeGrid{west_edge(edge_offset), (*line + edge_offset) / *resolution, *resolution};
     }

@@ -13,7 +13,7 @@ namespace mars {
 namespace {
 
 const std::string kObject = "IMAGE_MAP_PROJECTION.";
-constexpr double kTrust = 0.01;  // how far MAP_SCALE may be from MAP_RESOLUTION to be taken for its rounding
+constexpr double kRounding = 0.01;  // relative difference of MAP_SCALE and MAP_RESOLUTION taken for rounding
 
 struct Axes {
   double a_m = 0;
@@ -33,7 +33,7 @@ std::optional<Axes> axes(const PdsLabel& label) {
 enum class Body { kSphere, kPolarSphere, kEither };  // kEither: the ellipsoid with planetographic latitudes
 
 struct Projection {
-  std::string words;  // of a PROJ string, without the body and the central meridian
+  std::string words;  // PROJ string without the body and the central meridian
   Body body = Body::kSphere;
 };
 
@@ -56,11 +56,11 @@ std::optional<Projection> projection(const PdsLabel& label, const PdsPlacement& 
   const std::string at_centre = " +lat_0=" + text_of(centre);
   const std::string type = pds_projection(label);
   if (type == "SIMPLE CYLINDRICAL") {
-    // By its definition true to scale at the equator; lines count from CENTER_LATITUDE where the bounds say so.
+    // True to scale at the equator by definition. Lines count from CENTER_LATITUDE if the bounds confirm that.
     const auto line = number("LINE_PROJECTION_OFFSET");
     const auto north = number("MAXIMUM_LATITUDE");
     const auto resolution = number("MAP_RESOLUTION");
-    const bool from_centre = centre != 0 && !placement.edge_is_proved && line && north && resolution &&
+    const bool from_centre = centre != 0 && !placement.edge_is_confirmed && line && north && resolution &&
                              std::abs(*line - (*north - centre) * *resolution) <= 1;
     return Projection{from_centre ? "eqc +lat_ts=0" + at_centre : "eqc +lat_ts=0"};
   }
@@ -88,7 +88,7 @@ std::optional<Projection> projection(const PdsLabel& label, const PdsPlacement& 
   return std::nullopt;
 }
 
-// One unit of the last digit written of MAP_SCALE, metres.
+// Returns the value of one unit in the last digit of MAP_SCALE, in metres.
 double last_digit_m(const PdsLabel& label) {
   const std::string name = kObject + "MAP_SCALE";
   const std::string text = label.text(name);
@@ -99,8 +99,8 @@ double last_digit_m(const PdsLabel& label) {
   return std::pow(10.0, -digits) * pds_metres(label, name).value_or(0.0) / label.number(name).value_or(1.0);
 }
 
-// Metres a pixel on a sphere of that radius. Where several radii are in question (`unsure`), MAP_RESOLUTION
-// counts only if MAP_SCALE is its rounding.
+// Returns metres per pixel on a sphere of this radius. If the label may mean another radius (`unsure`),
+// MAP_RESOLUTION is used only if MAP_SCALE is its rounding.
 std::optional<double> pixel_m(const PdsLabel& label, double radius_m, bool unsure) {
   const auto scale = pds_metres(label, kObject + "MAP_SCALE");
   const auto resolution = label.number(kObject + "MAP_RESOLUTION");
@@ -108,7 +108,7 @@ std::optional<double> pixel_m(const PdsLabel& label, double radius_m, bool unsur
   const double by_resolution = radius_m * kRadiansPerDegree / *resolution;
   if (!scale || !(*scale > 0)) return by_resolution;
   const bool whole = std::abs(*resolution - std::round(*resolution)) < 1e-9;
-  const double slack_m = unsure ? last_digit_m(label) : kTrust * by_resolution;
+  const double slack_m = unsure ? last_digit_m(label) : kRounding * by_resolution;
   return whole && std::abs(*scale - by_resolution) <= slack_m ? by_resolution : *scale;
 }
 
@@ -128,8 +128,8 @@ std::optional<double> pds_metres(const PdsLabel& label, const std::string& name)
 
 double squared_axis_ratio(double a_m, double c_m) { return c_m / a_m * (c_m / a_m); }
 
-std::optional<LabelPlace> pds_map(const std::string& path, const PdsLabel& label) {
-  const PdsPlacement placement = place_pds(label);
+std::optional<LabelGeoreference> pds_map(const std::string& path, const PdsLabel& label) {
+  const PdsPlacement placement = pds_placement(label);
   const auto number = [&](const char* key) { return label.number(kObject + key); };
   const auto line = number("LINE_PROJECTION_OFFSET");
   const auto sample = number("SAMPLE_PROJECTION_OFFSET");
@@ -138,33 +138,33 @@ std::optional<LabelPlace> pds_map(const std::string& path, const PdsLabel& label
   const bool turned = number("MAP_PROJECTION_ROTATION").value_or(0.0) != 0;
   if (!line || !sample || !body || !projected || turned) {
     if (!placement.west_positive) return std::nullopt;
-    throw source_error(path, "its label counts longitudes to the west in a map that cannot be placed by it",
+    throw source_error(path, "its label counts longitudes to the west in an unsupported projection",
                        turned ? "MAP_PROJECTION_ROTATION" : pds_projection(label),
                        "convert it to POSITIVE_LONGITUDE_DIRECTION = EAST first, e.g. with ISIS");
   }
   const bool flattened = body->a_m != body->c_m;
   if (placement.planetographic && body->a_m != body->b_m) {
-    throw source_error(path, "its latitudes are planetographic on a body with three axes", "",
+    throw source_error(path, "its latitudes are planetographic on a triaxial body", "",
                        "convert it to planetocentric latitudes first, e.g. with ISIS");
   }
 
-  LabelPlace place;
+  LabelGeoreference georeference;
   const bool ellipsoid = flattened && placement.planetographic && projected->body != Body::kSphere;
   const double radius_m = projected->body == Body::kPolarSphere && !ellipsoid ? body->c_m : body->a_m;
   const auto scale_m = pixel_m(label, radius_m, projected->body == Body::kPolarSphere || ellipsoid);
   if (!scale_m) return std::nullopt;
-  place.crs =
+  georeference.crs =
       "+proj=" + projected->words +
       " +lon_0=" + text_of(placement.east(number("CENTER_LONGITUDE").value_or(0.0))) +
       (ellipsoid ? " +a=" + text_of(body->a_m) + " +b=" + text_of(body->c_m) : " +R=" + text_of(radius_m)) +
       " +units=m +no_defs";
-  place.to_map = {-(*sample + placement.edge_offset_px) * *scale_m, *scale_m, 0,
-                  (*line + placement.edge_offset_px) * *scale_m,    0,        -*scale_m};
-  place.grid = placement.grid;
+  georeference.to_map = {-(*sample + placement.edge_offset_px) * *scale_m, *scale_m, 0,
+                         (*line + placement.edge_offset_px) * *scale_m,    0,        -*scale_m};
+  georeference.grid = placement.grid;
   if (flattened && placement.planetographic && !ellipsoid) {
-    place.centric_scale = squared_axis_ratio(body->a_m, body->c_m);
+    georeference.centric_scale = squared_axis_ratio(body->a_m, body->c_m);
   }
-  return place;
+  return georeference;
 }
 
 }  // namespace mars

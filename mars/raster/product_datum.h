@@ -1,4 +1,4 @@
-// What a product's heights are counted from, where it says so.
+// Vertical datum and body of a product, as far as it states them.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,16 @@ class GDALDataset;
 
 namespace mars {
 
-// In this order: a PDS3 label's own words; a vertical or three-dimensional coordinate system (WKT); names by
-// which archives tell their products apart (a HiRISE DTM named DTE.. is above the areoid, DTR.. a radius,
-// USGS's MOLA and HRSC-MOLA mosaics are above the areoid, an HRSC DTM named ..da4.. is above the areoid,
-// ..dt4.. above the sphere of 3396 km; HRSC archive SIS, HiRISE DTM README). Unknown otherwise: a plain GeoTIFF
-// does not say.
+// Returns the datum that the first of these states, else unknown (a plain GeoTIFF states none):
+// - the text of a PDS3 label, see pds_datum();
+// - a vertical or three-dimensional coordinate system (WKT);
+// - the file name, where an archive distinguishes its products by it: a HiRISE DTM named DTE.. is above the
+//   areoid, DTR.. a radius; USGS's MOLA and HRSC-MOLA mosaics are above the areoid; an HRSC DTM named ..da4..
+//   is above the areoid, ..dt4.. above the sphere of 3396 km (HRSC archive SIS, HiRISE DTM README).
 VerticalDatum product_datum(const std::string& path, GDALDataset& dataset,
                             const std::optional<PdsLabel>& label);
 
-// Equatorial radius of the body of its coordinate system; 0 when it has none.
+// Returns the equatorial radius of the body of the dataset's coordinate system, 0 if it has none.
 double body_radius_m(GDALDataset& dataset);
 
 }  // namespace mars

@@ -10,36 +10,37 @@ namespace {
 
 class AdjustedElevation final : public ElevationSource, public BoundaryAware, public Maskable {
  public:
-  AdjustedElevation(std::shared_ptr<const ElevationSource> source, Adjust adjust, const VerticalDatum& datum,
-                    const std::string& treatment)
-      : source_(std::move(source)), adjust_(std::move(adjust)), infos_(source_->infos()) {
+  AdjustedElevation(std::shared_ptr<const ElevationSource> source, HeightAdjustment adjustment,
+                    const VerticalDatum& datum, const std::string& treatment)
+      : source_(std::move(source)), adjustment_(std::move(adjustment)), infos_(source_->infos()) {
     for (SourceInfo& info : infos_) {
       info.datum = datum;
       info.treatment = add_treatment(info.treatment, treatment);
     }
   }
-  AdjustedElevation(std::shared_ptr<const ElevationSource> source, Adjust adjust, std::vector<SourceInfo> infos)
-      : source_(std::move(source)), adjust_(std::move(adjust)), infos_(std::move(infos)) {}
+  AdjustedElevation(std::shared_ptr<const ElevationSource> source, HeightAdjustment adjustment,
+                    std::vector<SourceInfo> infos)
+      : source_(std::move(source)), adjustment_(std::move(adjustment)), infos_(std::move(infos)) {}
 
-  // The mask judges adjusted heights, but drops the inner source's own posts.
+  // The mask tests adjusted heights, but removes posts of the inner source, whose boundary then changes too.
   std::shared_ptr<const ElevationSource> with_mask(PostMask mask, int margin,
                                                    const std::string& treatment) const override {
     const auto* inner = dynamic_cast<const Maskable*>(source_.get());
     if (inner == nullptr) return nullptr;
-    const PostMask judged = [mask = std::move(mask), adjust = adjust_](std::span<const glm::dvec3> directions,
-                                                                       std::span<double> heights_m) {
+    const PostMask own_mask = [mask = std::move(mask), adjustment = adjustment_](
+                                  std::span<const glm::dvec3> directions, std::span<double> heights_m) {
       std::vector<double> own_m(heights_m.begin(), heights_m.end());
-      adjust(directions, own_m);
+      adjustment(directions, own_m);
       mask(directions, own_m);
       for (std::size_t i = 0; i < own_m.size(); ++i) {
         if (std::isnan(own_m[i])) heights_m[i] = own_m[i];
       }
     };
-    auto masked = inner->with_mask(judged, margin, "");
+    auto masked = inner->with_mask(own_mask, margin, "");
     if (masked == nullptr) return nullptr;
     std::vector<SourceInfo> infos = infos_;
     for (SourceInfo& info : infos) info.treatment = add_treatment(info.treatment, treatment);
-    return std::make_shared<const AdjustedElevation>(std::move(masked), adjust_, std::move(infos));
+    return std::make_shared<const AdjustedElevation>(std::move(masked), adjustment_, std::move(infos));
   }
 
   std::vector<SourceInfo> infos() const override { return infos_; }
@@ -47,7 +48,7 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
   void sample(std::span<const glm::dvec3> directions, double spacing_m,
               std::span<double> heights_m) const override {
     source_->sample(directions, spacing_m, heights_m);
-    adjust_(directions, heights_m);
+    adjustment_(directions, heights_m);
   }
 
   void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
@@ -61,7 +62,7 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
     source_->visit_posts(max_posts,
                          [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
                            own_m.assign(heights_m.begin(), heights_m.end());
-                           adjust_(directions, own_m);
+                           adjustment_(directions, own_m);
                            visit(directions, own_m);
                          });
   }
@@ -72,7 +73,7 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
       boundary->boundary_distance(directions, limit_posts, posts);
       return;
     }
-    // No rim to fade at.
+    // A source without a known boundary is not faded.
     std::vector<int> origin(directions.size());
     source_->origin(directions, origin);
     for (std::size_t i = 0; i < posts.size(); ++i) posts[i] = origin[i] < 0 ? 0.0 : limit_posts;
@@ -80,7 +81,7 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
 
  private:
   std::shared_ptr<const ElevationSource> source_;
-  Adjust adjust_;
+  HeightAdjustment adjustment_;
   std::vector<SourceInfo> infos_;
 };
 
@@ -91,9 +92,10 @@ std::string add_treatment(const std::string& before, const std::string& treatmen
   return before + "; " + treatment;
 }
 
-std::shared_ptr<const ElevationSource> adjusted(std::shared_ptr<const ElevationSource> source, Adjust adjust,
-                                                const VerticalDatum& datum, const std::string& treatment) {
-  return std::make_shared<AdjustedElevation>(std::move(source), std::move(adjust), datum, treatment);
+std::shared_ptr<const ElevationSource> adjusted(std::shared_ptr<const ElevationSource> source,
+                                                HeightAdjustment adjustment, const VerticalDatum& datum,
+                                                const std::string& treatment) {
+  return std::make_shared<AdjustedElevation>(std::move(source), std::move(adjustment), datum, treatment);
 }
 
 }  // namespace mars

@@ -1,4 +1,4 @@
-// A source whose heights pass through a function.
+// Wraps an elevation source so that a function changes its heights.
 #pragma once
 
 #include <functional>
@@ -10,27 +10,31 @@
 
 namespace mars {
 
-// Changes heights (NaN stays NaN) by their places alone: the same for any batch, from any thread.
-using Adjust = std::function<void(std::span<const glm::dvec3> directions, std::span<double> heights_m)>;
+// Changes heights in place; NaN stays NaN. The result at a place depends on the place and its height alone, not
+// on the batch. Any thread may call it.
+using HeightAdjustment =
+    std::function<void(std::span<const glm::dvec3> directions, std::span<double> heights_m)>;
 
-// The source with its heights adjusted and its infos given the datum and, where it is not empty, the treatment
-// (added to what has been done before). Rims and places of data stay as they are.
-std::shared_ptr<const ElevationSource> adjusted(std::shared_ptr<const ElevationSource> source, Adjust adjust,
-                                                const VerticalDatum& datum, const std::string& treatment);
+// Returns the source with its heights adjusted. Its infos get the datum, and the treatment is appended to them
+// unless it is empty. Boundaries and origins stay as they are.
+std::shared_ptr<const ElevationSource> adjusted(std::shared_ptr<const ElevationSource> source,
+                                                HeightAdjustment adjustment, const VerticalDatum& datum,
+                                                const std::string& treatment);
 
-// "a" and "b" as "a; b".
+// Joins two treatments: "a" and "b" give "a; b".
 std::string add_treatment(const std::string& before, const std::string& treatment);
 
-// Sets heights to NaN that are not to be used, by place and height alone.
-using PostMask = Adjust;
+// Sets heights that must not be used to NaN, by place and height alone.
+using PostMask = HeightAdjustment;
 
-// What a source may do that has posts of its own.
+// Optional interface of a source that has posts of its own and can leave some of them out.
 class Maskable {
  public:
   virtual ~Maskable() = default;
 
-  // The same source without the posts that the mask drops and without their neighbours up to `margin` posts
-  // away. Rims know of the holes. Null when this source cannot after all.
+  // Returns the same source without the posts that the mask rejects and without their neighbours up to `margin`
+  // posts away. Its boundary distances take these posts for nodata. Returns null if this source cannot be
+  // masked.
   virtual std::shared_ptr<const ElevationSource> with_mask(PostMask mask, int margin,
                                                            const std::string& treatment) const = 0;
 };

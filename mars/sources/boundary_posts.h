@@ -1,4 +1,4 @@
-// What an inset lies above its base along its rim.
+// Differences between an inset and its base along the boundary of the inset's data.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,12 @@ namespace mars {
 
 struct BoundaryPost {
   glm::dvec3 direction;
-  double off_m = 0;  // inset less base
+  double off_m = 0;  // inset minus base
 };
 
-// The inset's own posts, of at most about max_posts of them, within `within_posts` of its rim where both have
-// data. None of an inset that knows of no rim (not BoundaryAware). Throws SourceError on read errors.
+// Returns the inset's own posts within `within_posts` of its data boundary where both sources have data. Looks
+// at most at about max_posts posts of the inset. Returns none if the inset is not BoundaryAware. Throws
+// SourceError on read errors.
 std::vector<BoundaryPost> boundary_posts(const ElevationSource& inset, const ElevationSource& base,
                                          double within_posts, std::size_t max_posts);
 

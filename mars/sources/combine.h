@@ -1,5 +1,11 @@
-// Opened elevation rasters -> the one source that a planet is built from: one datum, insets levelled and
-// checked against what lies below them, stacked.
+// Combines opened elevation rasters into the one source from which a planet is built: converts them to one
+// datum, aligns insets to the coarser rasters below them, finds outliers, and stacks the results.
+//
+// Typical usage:
+//   CombineOptions options;
+//   options.alignment = CombineOptions::Alignment::kPlane;
+//   const Combined combined = combine_elevation({open_elevation(base), open_elevation(inset)}, options);
+//   combined.source->sample(directions, spacing_m, heights_m);
 #pragma once
 
 #include <memory>
@@ -15,44 +21,52 @@
 namespace mars {
 
 struct CombineOptions {
+  // Selects what changes where an inset and its base disagree at the boundary of the inset.
+  enum class Alignment {
+    kNone,   // nothing: the stack fades one into the other
+    kPlane,  // the inset, by an offset and a tilt: fit_alignment()
+    kEdges,  // the base around the inset: fit_edge_matching()
+  };
+
   double radius_m = kMarsRadius_m;  // of the planet's sphere
   bool true_radii = false;          // --shape radius: the datum becomes the sphere of radius_m
-  bool convert = false;             // sources of other datums are converted, else refused
-  VerticalDatum datum;              // to convert to; unknown = that of the coarsest source that says its own
-  std::shared_ptr<const ElevationSource> areoid;  // see converted()
-  // What gives way where an inset and what lies below it disagree at its rim.
-  enum class VerticalAlignment {
-    kNone,   // neither: the fade alone
-    kPlane,  // the inset, by an offset and a tilt: fit_alignment()
-    kEdges,  // what lies below, around the inset: fit_edge_matching()
-  };
-  VerticalAlignment level = VerticalAlignment::kNone;
-  bool check_outliers = true;
-  bool reject_outliers = false;
+  // Converts sources of other datums. Without it they are refused, because mixing datums shifts the ground by
+  // up to kilometres.
+  bool convert = false;
+  // Target of the conversion. Unknown: the datum of the coarsest source that states its own.
+  VerticalDatum datum;
+  std::shared_ptr<const ElevationSource> areoid;  // see conversion()
+  Alignment alignment = Alignment::kNone;
+  bool check_outliers = true;    // costs one more look at a subset of the posts
+  bool reject_outliers = false;  // leaves outliers out; implies check_outliers
   OutlierOptions outliers;
+  // Two posts of the base: a narrower fade is finer than the base can show, a wider one hides more of the
+  // inset.
   StackOptions stack{.feather_base_posts = 2};
 };
 
-// What was found out of one source.
+// Reports what was found about one source.
 struct CombineFinding {
   std::string name;
-  std::optional<VerticalAlignment> level;
-  std::optional<EdgeMatching> bend;  // of what lies below it
+  std::optional<VerticalAlignment> alignment;
+  std::optional<EdgeMatching> edge_matching;  // of the base below it
   std::optional<OutlierReport> outliers;
-  bool masked = false;
+  bool masked = false;  // its outliers were left out
 };
 
 struct Combined {
   std::shared_ptr<const ElevationSource> source;
   VerticalDatum datum;
-  bool true_radii = false;               // also set when all that was given are radii
-  std::vector<CombineFinding> findings;  // the coarsest first
-  std::vector<std::string> notes;        // what a user should know, as sentences
+  bool true_radii = false;               // also true if all given sources are radii
+  std::vector<CombineFinding> findings;  // the coarsest source first
+  std::vector<std::string> notes;        // sentences for the user
 };
 
-// Throws SourceError: none given, a datum that does not fit (with the median difference where both sources have
-// data), a body whose radius is more than kBodyMismatch off radius_m.
+// Largest accepted difference between the radius of a source's body and radius_m, relative.
 inline constexpr double kBodyMismatch = 0.2;
+
+// Combines the sources. Throws SourceError if there are none, if a datum does not fit (the message states the
+// median difference where both sources have data), or if a body's radius differs by more than kBodyMismatch.
 Combined combine_elevation(std::vector<std::shared_ptr<const ElevationSource>> sources,
                            const CombineOptions& options);
 

@@ -7,7 +7,7 @@
 namespace mars {
 namespace {
 
-// Radii of the areoid at directions.
+// Sets `radii` to the radii of the areoid at directions.
 void areoid_radii(const ElevationSource& areoid, const VerticalDatum& datum,
                   std::span<const glm::dvec3> directions, std::vector<double>& radii) {
   radii.resize(directions.size());
@@ -30,21 +30,22 @@ Conversion conversion(const SourceInfo& info, const VerticalDatum& to,
   if (from.kind == DatumKind::kAreoid || to.kind == DatumKind::kAreoid) {
     if (areoid == nullptr) {
       throw SourceError(info.name + ": converting its heights from '" + to_string(from) + "' to '" +
-                        to_string(to) + "' takes a grid of the areoid; give one, e.g. MOLA's MEGA product " +
+                        to_string(to) + "' needs a raster of the areoid; give one, e.g. MOLA's MEGA product " +
                         "(--areoid FILE)");
     }
     const SourceInfo grid = areoid->infos().front();
     areoid_datum = grid.datum;
     if (!areoid_datum.is_geometric()) {
-      throw SourceError(grid.name + ": a grid of the areoid must give radii, or heights above a sphere or an " +
+      throw SourceError(grid.name +
+                        ": a raster of the areoid must give radii, or heights above a sphere or an " +
                         "ellipsoid, but its datum is '" + to_string(areoid_datum) + "'; name it (--datum)");
     }
     through = " through " + grid.name + " (" + std::to_string(grid.size_bytes) + " bytes of " +
               std::to_string(grid.mtime_s) + ")";
   }
   Conversion made;
-  made.adjust = [from, to, areoid, areoid_datum](std::span<const glm::dvec3> directions,
-                                                 std::span<double> heights_m) {
+  made.adjustment = [from, to, areoid, areoid_datum](std::span<const glm::dvec3> directions,
+                                                     std::span<double> heights_m) {
     std::vector<double> base;
     if (areoid_datum.is_known()) areoid_radii(*areoid, areoid_datum, directions, base);
     for (std::size_t i = 0; i < directions.size(); ++i) {

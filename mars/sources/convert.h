@@ -1,4 +1,4 @@
-// From one vertical datum to another.
+// Converts heights from one vertical datum to another.
 #pragma once
 
 #include <memory>
@@ -8,15 +8,16 @@
 
 namespace mars {
 
-// How a source's heights come into datum `to`. `areoid` gives the areoid's radii, or its heights above a sphere
-// or an ellipsoid, and is needed when one of both datums is the areoid and the other is not; null when there is
-// none. Where the areoid has no value the result has none. Rounding error <= 1e-8 m; between the areoid and
-// anything else, the areoid's own. Without `adjust` when nothing is to be done. Throws SourceError: a datum is
-// unknown, or the areoid is missing or of unknown datum.
 struct Conversion {
-  Adjust adjust;
+  HeightAdjustment adjustment;  // empty if nothing is to be done
   std::string treatment;
 };
+
+// Returns the conversion of a source's heights to datum `to`. `areoid` gives the areoid's radii, or its heights
+// above a sphere or an ellipsoid. It is needed if exactly one of the two datums is the areoid; else it may be
+// null. Where the areoid is nodata, so is the result. The rounding error is at most 1e-8 m, plus the areoid's
+// own error where it is used. Throws SourceError if a datum is unknown, or if the areoid is not given or of
+// unknown datum.
 Conversion conversion(const SourceInfo& source, const VerticalDatum& to,
                       const std::shared_ptr<const ElevationSource>& areoid);
 

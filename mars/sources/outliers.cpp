@@ -11,21 +11,21 @@
 namespace mars {
 namespace {
 
-// How far each height lies from the base, less what is taken as terrain: > 0 is implausible; NaN where it
-// cannot be told.
-class Judge {
+// Compares heights with the base.
+class Comparison {
  public:
-  Judge(const ElevationSource& base, double radius_m, const OutlierOptions& options)
+  Comparison(const ElevationSource& base, double radius_m, const OutlierOptions& options)
       : base_(base), radius_m_(radius_m), options_(options) {}
 
-  // base heights come out too.
+  // Sets `excess_m` to how much the magnitude of the difference exceeds what is accepted as terrain: positive
+  // for outliers, NaN where either is nodata. Sets `base_m` to the heights of the base.
   void excess(std::span<const glm::dvec3> directions, std::span<const double> heights_m,
               std::vector<double>& excess_m, std::vector<double>& base_m) const {
     const std::size_t n = directions.size();
     base_m.resize(n);
     base_.sample(directions, 0, base_m);
     excess_m.assign(n, std::numeric_limits<double>::quiet_NaN());
-    // The base's relief is asked for only where the floor does not settle it.
+    // The surroundings are sampled only for posts that exceed the floor.
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < n; ++i) {
       excess_m[i] = std::abs(heights_m[i] - base_m[i]) - options_.floor_m;
@@ -61,12 +61,12 @@ class Judge {
   }
 
   void add_ring(const glm::dvec3& d, std::vector<glm::dvec3>& out) const {
-    const double angle = base_spacing_m(d) / radius_m_;
+    const double radius_rad = base_spacing_m(d) / radius_m_;
     const glm::dvec3 u = any_perpendicular(d);
     const glm::dvec3 v = glm::cross(d, u);
     for (std::size_t j = 0; j < kAround; ++j) {
-      const double turn = 2 * std::numbers::pi * static_cast<double>(j) / kAround;
-      out.push_back(glm::normalize(d + angle * (std::cos(turn) * u + std::sin(turn) * v)));
+      const double angle_rad = 2 * std::numbers::pi * static_cast<double>(j) / kAround;
+      out.push_back(glm::normalize(d + radius_rad * (std::cos(angle_rad) * u + std::sin(angle_rad) * v)));
     }
   }
 
@@ -77,14 +77,14 @@ class Judge {
 
 }  // namespace
 
-OutlierReport find_blunders(const ElevationSource& inset, const ElevationSource& base, double radius_m,
+OutlierReport find_outliers(const ElevationSource& inset, const ElevationSource& base, double radius_m,
                             const OutlierOptions& options, std::size_t max_posts) {
-  const Judge judge(base, radius_m, options);
+  const Comparison comparison(base, radius_m, options);
   OutlierReport report;
   std::vector<double> excess_m;
   std::vector<double> base_m;
   inset.visit_posts(max_posts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
-    judge.excess(directions, heights_m, excess_m, base_m);
+    comparison.excess(directions, heights_m, excess_m, base_m);
     for (std::size_t i = 0; i < directions.size(); ++i) {
       if (std::isnan(excess_m[i])) continue;
       ++report.posts;
@@ -100,13 +100,13 @@ OutlierReport find_blunders(const ElevationSource& inset, const ElevationSource&
   return report;
 }
 
-PostMask blunder_mask(std::shared_ptr<const ElevationSource> base, double radius_m,
+PostMask outlier_mask(std::shared_ptr<const ElevationSource> base, double radius_m,
                       const OutlierOptions& options) {
   return [base = std::move(base), radius_m, options](std::span<const glm::dvec3> directions,
                                                      std::span<double> heights_m) {
     std::vector<double> excess_m;
     std::vector<double> base_m;
-    Judge(*base, radius_m, options).excess(directions, heights_m, excess_m, base_m);
+    Comparison(*base, radius_m, options).excess(directions, heights_m, excess_m, base_m);
     for (std::size_t i = 0; i < heights_m.size(); ++i) {
       if (excess_m[i] > 0) heights_m[i] = std::numeric_limits<double>::quiet_NaN();
     }

@@ -1,4 +1,4 @@
-// Posts of an inset that cannot be right by what lies below it.
+// Outliers: posts of an inset that contradict the base below it, as blunders of stereo correlation do.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +10,33 @@
 
 namespace mars {
 
+// Defines an outlier: a post that differs from the base by more than each of the three bounds below. Smaller
+// values find more outliers, but also take steep ground for them; larger values miss blunders. Where the base
+// has nodata, no post is an outlier.
 struct OutlierOptions {
-  double floor_m = 150;     // differences up to this are always taken as terrain,
-  double relief_share = 1;  // and up to this share of the base's relief around the place,
-  double slope = 0.6;       // and up to what such a slope makes of half a base post
+  double floor_m = 150;  // difference that is always accepted
+  // Accepted difference relative to the range of the base's heights within one base post of the place (eight
+  // samples around it).
+  double relief_share = 1;
+  // Slope of the ground that is accepted over half a base post: a base with posts 7 km apart cannot contradict
+  // a peak of 2 km.
+  double slope = 0.6;
 };
 
-// A post is implausible when it lies farther from the base than floor_m, than relief_share times the range of the
-// base's heights within one base post of it (eight places around), and than a slope of `slope` over half a base
-// post: a base with posts 7 km apart cannot contradict a peak of 2 km. Where the base has no data nothing is.
 struct OutlierReport {
-  std::int64_t posts = 0;  // compared
-  std::int64_t implausible = 0;
-  double worst_m = 0;  // inset less base, the largest by size
+  std::int64_t posts = 0;        // number of posts compared
+  std::int64_t implausible = 0;  // number of outliers
+  double worst_m = 0;            // inset minus base at the largest outlier by magnitude
   LonLat worst_at;
 };
 
-// Both in the same datum. Compares at most about max_posts posts. Throws SourceError on read errors.
-OutlierReport find_blunders(const ElevationSource& inset, const ElevationSource& base, double radius_m,
+// Compares at most about max_posts posts of the inset with the base. Both must have the same datum. Throws
+// SourceError on read errors.
+OutlierReport find_outliers(const ElevationSource& inset, const ElevationSource& base, double radius_m,
                             const OutlierOptions& options = {}, std::size_t max_posts = 400'000);
 
-// Sets implausible heights to NaN. `base` is kept alive by the mask.
-PostMask blunder_mask(std::shared_ptr<const ElevationSource> base, double radius_m,
+// Returns a mask that sets the heights of outliers to NaN. The mask keeps `base` alive.
+PostMask outlier_mask(std::shared_ptr<const ElevationSource> base, double radius_m,
                       const OutlierOptions& options);
 
 }  // namespace mars

@@ -23,8 +23,9 @@ class ElevationStack final : public ElevationSource {
     for (const SourceInfo& info : infos_) {
       if (!info.datum.is_known()) continue;
       if (known != nullptr && !(known->datum == info.datum)) {
-        throw SourceError(known->name + " holds heights of datum '" + to_string(known->datum) + "' but " +
-                          info.name + " of '" + to_string(info.datum) + "'; convert one of them first");
+        throw SourceError(known->name + " has heights of datum '" + to_string(known->datum) + "', but " +
+                          info.name + " has heights of datum '" + to_string(info.datum) +
+                          "'; convert one of them first");
       }
       known = &info;
     }
@@ -42,20 +43,20 @@ class ElevationStack final : public ElevationSource {
   void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
     std::vector<Blend> blends(directions.size());
     blend(directions, resolution_m_, blends);
-    std::vector<std::vector<std::size_t>> parts(sources_.size());
+    std::vector<std::vector<std::size_t>> by_source(sources_.size());
     for (std::size_t i = 0; i < blends.size(); ++i) {
       source_index[i] = -1;
-      if (blends[i].main >= 0) parts[static_cast<std::size_t>(blends[i].main)].push_back(i);
+      if (blends[i].main >= 0) by_source[static_cast<std::size_t>(blends[i].main)].push_back(i);
     }
     std::vector<glm::dvec3> places;
     std::vector<int> own;
-    for (std::size_t s = 0; s < parts.size(); ++s) {
+    for (std::size_t s = 0; s < by_source.size(); ++s) {
       places.clear();
-      for (const std::size_t i : parts[s]) places.push_back(directions[i]);
+      for (const std::size_t i : by_source[s]) places.push_back(directions[i]);
       own.resize(places.size());
       if (!places.empty()) sources_[s]->origin(places, own);
       for (std::size_t k = 0; k < places.size(); ++k) {
-        if (own[k] >= 0) source_index[parts[s][k]] = own[k] + static_cast<int>(first_info_[s]);
+        if (own[k] >= 0) source_index[by_source[s][k]] = own[k] + static_cast<int>(first_info_[s]);
       }
     }
   }
@@ -92,11 +93,10 @@ class ElevationStack final : public ElevationSource {
   struct Blend {
     double weighted_m = 0;
     double weight = 0;
-    double finest_m = kNaN;  // the value where every share is zero
+    double finest_m = kNaN;  // the value of the finest source, used where every share is zero
     double largest = -1;     // share of `main`
     int main = -1;
     bool single = true;  // one source alone makes the value
-    double only_m = kNaN;
 
     double height_m() const { return single ? finest_m : weighted_m / weight; }
   };
@@ -135,7 +135,7 @@ class ElevationStack final : public ElevationSource {
   StackOptions options_;
   double resolution_m_ = std::numeric_limits<double>::infinity();
   std::vector<SourceInfo> infos_;
-  std::vector<std::size_t> first_info_;  // index into infos_ of each source's first
+  std::vector<std::size_t> first_info_;  // index into infos_ of the first info of each source
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What a source may tell of its own rim, so that a stack can fade it into what lies below.
+// Optional interface of a source that knows the boundary of its data, so that a stack can feather it into the
+// coarser sources below.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -10,14 +11,15 @@ class BoundaryAware {
  public:
   virtual ~BoundaryAware() = default;
 
-  // Distance of each place from the rim of the source's data (its border, and places without data inside), in
-  // its own posts, at most `limit_posts`; 0 where it has no data. Continuous but for steps below half a post
-  // at corners of holes; a function of the place alone. Throws SourceError on a read error.
+  // Sets posts[i] to the distance of each place from the boundary of the source's data (its border, and nodata
+  // inside), in posts of the source, at most `limit_posts`. It is 0 where the source has nodata. It is a
+  // function of the place alone, continuous except for steps below half a post at corners of nodata areas.
+  // Throws SourceError on a read error.
   virtual void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                                  std::span<double> posts) const = 0;
 };
 
-// Widest rim that a stack feathers, posts.
+// Widest boundary that a stack feathers, in posts of the finer source.
 inline constexpr double kMaxFeather_posts = 256;
 
 }  // namespace mars

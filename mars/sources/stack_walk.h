@@ -1,4 +1,5 @@
-// What stacks of elevation and of images share: order, rims, and who has which share of a place.
+// Shared parts of the stacks of elevation and of images: order of the sources, feathering, shares of each
+// place.
 #pragma once
 
 #include <algorithm>
@@ -18,11 +19,13 @@
 
 namespace mars {
 
+// Returns 3 t^2 - 2 t^3 for t clamped to [0, 1].
 inline double smooth_step(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
+// Returns the finest resolution of a source.
 template <class Source>
 double resolution_m(const Source& source) {
   double finest = std::numeric_limits<double>::infinity();
@@ -30,7 +33,8 @@ double resolution_m(const Source& source) {
   return finest;
 }
 
-// Sources by resolution, the finest first, ties as given.
+// Returns the sources by resolution, the finest first; ties keep their order. Throws SourceError if there are
+// none, one is null, or the options are out of range.
 template <class Source>
 std::vector<std::shared_ptr<const Source>> by_resolution(std::vector<std::shared_ptr<const Source>> sources,
                                                          const StackOptions& options) {
@@ -51,7 +55,7 @@ std::vector<std::shared_ptr<const Source>> by_resolution(std::vector<std::shared
   return sources;
 }
 
-// Width of the fade of source s, in its posts.
+// Returns the width of the fade of source s in its posts.
 template <class Source>
 double feather_posts(const std::vector<std::shared_ptr<const Source>>& sources, std::size_t s,
                      const StackOptions& options) {
@@ -62,18 +66,18 @@ double feather_posts(const std::vector<std::shared_ptr<const Source>>& sources, 
   return std::min(std::max(options.feather_posts, base_m / own_m), kMaxFeather_posts);
 }
 
-// Places, their numbers in the batch, and what is left of each for the sources further down.
+// Holds the places of a batch that coarser sources still contribute to.
 struct StackRest {
   std::vector<glm::dvec3> directions;
-  std::vector<std::size_t> places;
-  std::vector<double> share;
+  std::vector<std::size_t> places;  // index of each in the batch
+  std::vector<double> share;        // what the finer sources have left of each, 0..1
 
   explicit StackRest(std::span<const glm::dvec3> batch)
       : directions(batch.begin(), batch.end()), places(batch.size()), share(batch.size(), 1.0) {
     std::iota(places.begin(), places.end(), std::size_t{0});
   }
 
-  // Drops places with nothing left.
+  // Removes places whose share is used up.
   void compact() {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -89,28 +93,28 @@ struct StackRest {
   }
 };
 
-// The source's own share of each place where it has data. What is left of a place for the lowest source goes to
-// it whole unless it must fade beside one above, so its rim is asked for only there.
+// Sets `shares` to the source's own share of each place where it has data. The lowest source gets all that is
+// left of a place unless a finer one has a part of it, so its boundary is evaluated only there.
 template <class Source>
 void boundary_shares(const Source& source, double feather_posts, const StackRest& rest,
                      std::span<const char> has, bool lowest, std::vector<double>& shares) {
   shares.assign(rest.places.size(), 1.0);
   const auto* boundary = dynamic_cast<const BoundaryAware*>(&source);
   if (boundary == nullptr || feather_posts <= 0) return;
-  std::vector<glm::dvec3> asked;
+  std::vector<glm::dvec3> near;
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < rest.places.size(); ++i) {
     if (has[i] == 0 || (lowest && rest.share[i] >= 1)) continue;
-    asked.push_back(rest.directions[i]);
+    near.push_back(rest.directions[i]);
     numbers.push_back(i);
   }
-  if (asked.empty()) return;
-  std::vector<double> distances(asked.size());
-  boundary->boundary_distance(asked, feather_posts, distances);
-  for (std::size_t k = 0; k < asked.size(); ++k) shares[numbers[k]] = smooth_step(distances[k] / feather_posts);
+  if (near.empty()) return;
+  std::vector<double> distances(near.size());
+  boundary->boundary_distance(near, feather_posts, distances);
+  for (std::size_t k = 0; k < near.size(); ++k) shares[numbers[k]] = smooth_step(distances[k] / feather_posts);
 }
 
-// A cap that holds all of a batch.
+// Returns a cap that contains a whole batch.
 inline Cap enclosing_cap(std::span<const glm::dvec3> directions) {
   glm::dvec3 sum(0);
   for (const glm::dvec3& d : directions) sum += d;
@@ -121,9 +125,9 @@ inline Cap enclosing_cap(std::span<const glm::dvec3> directions) {
   return {centre, 2 * std::asin(std::min(1.0, chord / 2)) + 1e-12};
 }
 
-// Walks down the stack. For each source, over the places that the finer ones have not used up:
-// sample(source index, directions, has) must say in `has` where the source has data; then
-// visit(source index, places = numbers in the batch, has, shares of the value).
+// Walks down the stack. For each source, over the places that the finer ones have not used up, calls
+// sample(source index, directions, has), which must set `has` to 1 where the source has data and to 0
+// elsewhere; then visit(source index, places = indices in the batch, has, shares of the value).
 template <class Source, class Sample, class Visit>
 void walk_stack(const std::vector<std::shared_ptr<const Source>>& sources, const StackOptions& options,
                 std::span<const glm::dvec3> directions, const Sample& sample, const Visit& visit) {

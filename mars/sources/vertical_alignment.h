@@ -1,4 +1,5 @@
-// Taking offset and tilt out of an inset, by its rim.
+// Vertical alignment: removes offset and tilt of an inset relative to its base, fitted along the inset's data
+// boundary.
 #pragma once
 
 #include <memory>
@@ -10,36 +11,42 @@
 
 namespace mars {
 
-// What an inset lies above its base: offset_m at `centre`, growing by tilt_east and tilt_north metres a metre
-// of arc along the great circles east and north there (an azimuthal equidistant plane).
+// Describes how an inset lies above its base: by offset_m at `centre`, growing by tilt_east and tilt_north
+// metres per metre of arc along the great circles east and north there (a plane in azimuthal equidistant
+// coordinates).
 struct VerticalAlignment {
   LonLat centre;
   double offset_m = 0;
   double tilt_east = 0;
   double tilt_north = 0;
-  double radius_m = 0;      // of the sphere that arcs are measured on
-  double rms_before_m = 0;  // inset less base over the rim
-  double rms_after_m = 0;
-  std::int64_t posts = 0;     // of the rim that were used
-  std::int64_t left_out = 0;  // farther from the fit than kLevelOutlier robust deviations
+  double radius_m = 0;        // of the sphere on which arcs are measured
+  double rms_before_m = 0;    // inset minus base over the boundary
+  double rms_after_m = 0;     // the same after the alignment
+  std::int64_t posts = 0;     // number of boundary posts used
+  std::int64_t left_out = 0;  // number of posts that kAlignmentOutlier excluded
 };
 
+// Number of robust standard deviations (1.4826 times the median absolute deviation) beyond which a post is left
+// out of the fit.
 inline constexpr double kAlignmentOutlier = 6;
 
-// Least squares of inset - base over the inset's posts within `within_posts` of its rim where the base has
-// data, in three rounds, each without the posts that lie farther from the last one (at first: from the median)
-// than kLevelOutlier times its median absolute deviation times 1.4826. Of at most about max_posts posts of the
-// inset; a function of both sources alone. Nothing when fewer than 12 posts remain, or the rim is more than 60
-// degrees across or all along one line (then only the offset is fitted). Throws SourceError on read errors.
+// Fits inset - base by least squares over the inset's posts within `within_posts` of its data boundary where
+// the base has data. Three rounds are made; each leaves out the posts that lie farther from the last fit (at
+// first: from the median) than kAlignmentOutlier robust deviations. Looks at most at about max_posts posts of
+// the inset. The result is a function of both sources alone. If the boundary lies along one line, only the
+// offset is fitted. Returns nullopt if fewer than 12 posts remain or if the boundary is more than 60 degrees
+// across. Throws SourceError on read errors.
 std::optional<VerticalAlignment> fit_alignment(const ElevationSource& inset, const ElevationSource& base,
                                                double radius_m, double within_posts = 16,
                                                std::size_t max_posts = 1'000'000);
 
-// Its height above the base at a direction.
-double height_m(const VerticalAlignment& level, const glm::dvec3& direction);
+// Returns the height of the inset above the base at a direction.
+double misalignment_m(const VerticalAlignment& alignment, const glm::dvec3& direction);
 
-// Takes that from heights, and says so in words.
-Adjust aligning(const VerticalAlignment& level);
-std::string to_string(const VerticalAlignment& level);
+// Returns the adjustment of the inset: it subtracts misalignment_m() from heights.
+HeightAdjustment alignment_adjustment(const VerticalAlignment& alignment);
+
+// Returns the treatment that planet files store. The text identifies the planet: it must not change.
+std::string to_string(const VerticalAlignment& alignment);
 
 }  // namespace mars

@@ -1,4 +1,4 @@
-// One datum, levelled insets, blunders: what becomes of rasters before a planet is built from them.
+// Tests of datum conversion, vertical alignment, edge matching, outliers and feathering.
 #include "mars/sources/combine.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using source_files::height_at;
 using source_files::Raster;
 using Source = std::shared_ptr<const ElevationSource>;
 
-// Gentle hills, the same in every raster.
+// Returns gentle hills, the same in every raster.
 double hills(LonLat p) {
   return 800 * std::sin(0.7 * p.lon_deg) * std::cos(0.9 * p.lat_deg) +
          90 * std::sin(9 * p.lon_deg + 7 * p.lat_deg);
@@ -80,22 +80,22 @@ class Combine : public ::testing::Test {
   test_support::TempDir dir_;
 };
 
-TEST_F(Combine, OtherDatumsAreRefusedWithWhatIsAtStake) {
+TEST_F(Combine, OtherDatumsAreRefusedWithTheirDifference) {
   const Source base = raster("base", kBase, hills);
   const Source inset = raster(
       "inset", kInset, [](LonLat p) { return hills(p) - 556; }, VerticalDatum::sphere(3396190));
   expect_parts(message({base, inset}),
-               {"base.tif", "'areoid'", "inset.tif", "'sphere:3396190'", "556.", "--convert"});
+               {"base.tif", "'areoid'", "inset.tif", "'sphere:3396190'", "556.", "--to-datum"});
   expect_parts(message({base, inset}, converting()), {"inset.tif", "areoid", "--areoid"});
-  // The 190 m between two spheres are no matter of taste either.
+  // Spheres that differ by 190 m are other datums too.
   const Source sphere = raster("s", kBase, hills, VerticalDatum::sphere(3396000));
   expect_parts(message({sphere, inset}), {"'sphere:3396000'", "'sphere:3396190'"});
-  // Somewhere else on the planet: nothing to compare, still refused.
+  // A raster elsewhere on the planet has nothing to compare, and is refused all the same.
   const Source far = raster("far", {100, 20, 110, 10, 50, 50}, hills, VerticalDatum::radius());
   expect_parts(message({base, far}), {"no place in common"});
 }
 
-TEST_F(Combine, UnknownDatumsAreSaid) {
+TEST_F(Combine, UnknownDatumsAreReported) {
   const Source base = raster("base", kBase, hills);
   const Source inset = raster("inset", kInset, hills, {});
   const Combined combined = mars::combine_elevation({base, inset}, {});
@@ -120,7 +120,7 @@ TEST_F(Combine, ConvertsThroughTheAreoid) {
   EXPECT_EQ(combined.datum, VerticalDatum::areoid());
   const LonLat middle = kInset.at(300, 300);
   EXPECT_NEAR(height_at(*combined.source, middle), hills(middle), 1e-6);
-  // The other way, to true radii: both.
+  // To true radii both are converted.
   options.true_radii = true;
   combined = mars::combine_elevation({inset, base}, options);
   EXPECT_TRUE(combined.true_radii);
@@ -131,7 +131,7 @@ TEST_F(Combine, ConvertsThroughTheAreoid) {
   for (const mars::SourceInfo& info : combined.source->infos()) {
     EXPECT_EQ(info.treatment.empty(), info.name.find("inset") != std::string::npos) << info.treatment;
   }
-  // Its grid of the areoid says what it is.
+  // The raster of the areoid must state radii or heights above a known surface.
   options.areoid = raster("heights", kBase, hills);
   expect_parts(message({inset, base}, options), {"heights.tif", "areoid", "radii"});
 }
@@ -155,7 +155,7 @@ TEST_F(Combine, OtherBodiesAreRefused) {
   EXPECT_EQ(message({moon}, options), "");
 }
 
-// 30 m apart and tilted by 0.1 %: both come out within 1 %, and nothing of them is left in the planet.
+// An offset of 30 m and a tilt of 0.1 % are found within 1 %, and the planet shows neither.
 TEST_F(Combine, OffsetAndTiltAreRecovered) {
   const LonLat centre{-0.5, 0.9};
   const mars::LocalFrame frame = mars::local_frame(centre);
@@ -169,18 +169,18 @@ TEST_F(Combine, OffsetAndTiltAreRecovered) {
   const Source base = raster("base", kBase, hills);
   const Source inset = raster("inset", kInset, [&](LonLat p) { return hills(p) + off(p); });
   CombineOptions options;
-  options.level = CombineOptions::VerticalAlignment::kPlane;
+  options.alignment = CombineOptions::Alignment::kPlane;
   const Combined combined = mars::combine_elevation({base, inset}, options);
   ASSERT_EQ(combined.findings.size(), 2U);
-  EXPECT_FALSE(combined.findings[0].level);
-  ASSERT_TRUE(combined.findings[1].level);
-  const mars::VerticalAlignment& level = *combined.findings[1].level;
-  EXPECT_NEAR(level.offset_m, off(level.centre), 0.01 * 30);
-  EXPECT_NEAR(std::hypot(level.tilt_east, level.tilt_north), 0.001, 1e-5);
-  EXPECT_NEAR(std::atan2(level.tilt_east, level.tilt_north), azimuth, 0.01);
-  EXPECT_GT(level.rms_before_m, 30);
-  EXPECT_LT(level.rms_after_m, 3);  // the base's own interpolation of the small hills
-  EXPECT_GT(level.posts, 10000);
+  EXPECT_FALSE(combined.findings[0].alignment);
+  ASSERT_TRUE(combined.findings[1].alignment);
+  const mars::VerticalAlignment& alignment = *combined.findings[1].alignment;
+  EXPECT_NEAR(alignment.offset_m, off(alignment.centre), 0.01 * 30);
+  EXPECT_NEAR(std::hypot(alignment.tilt_east, alignment.tilt_north), 0.001, 1e-5);
+  EXPECT_NEAR(std::atan2(alignment.tilt_east, alignment.tilt_north), azimuth, 0.01);
+  EXPECT_GT(alignment.rms_before_m, 30);
+  EXPECT_LT(alignment.rms_after_m, 3);  // the base's own interpolation of the small hills
+  EXPECT_GT(alignment.posts, 10000);
   for (const auto& [column, row] : {std::pair{20, 30}, {580, 20}, {300, 300}, {15, 590}}) {
     const LonLat p = kInset.at(column, row);
     EXPECT_NEAR(height_at(*combined.source, p), hills(p), 2) << column << "," << row;
@@ -188,9 +188,9 @@ TEST_F(Combine, OffsetAndTiltAreRecovered) {
   expect_parts(combined.source->infos()[0].treatment, {"levelled by", "tilt"});
 }
 
-// The inset keeps its heights, and there is no step at its rim: heights along lines over it are as smooth as
-// the ground itself.
-TEST_F(Combine, BendsWhatLiesBelow) {
+// The inset keeps its heights and there is no step at its boundary: heights along lines across it are as smooth
+// as the ground.
+TEST_F(Combine, EdgeMatchingChangesTheBase) {
   const auto broad = [](LonLat p) { return 800 * std::sin(0.7 * p.lon_deg) * std::cos(0.9 * p.lat_deg); };
   const auto off = [](LonLat p) { return 25 + 8 * p.lon_deg + 5 * std::sin(3 * p.lat_deg); };
   const Source base = raster("base", kBase, broad);
@@ -207,48 +207,49 @@ TEST_F(Combine, BendsWhatLiesBelow) {
     }
     return worst;
   };
-  // Over the fade, 6 km, the step of about 10 m is a slope of up to 1 m a post.
+  // The fade of 6 km turns a step of about 10 m into a slope of up to 1 m per post.
   const double before = worst_step(mars::combine_elevation({base, inset}, options).source);
-  options.level = CombineOptions::VerticalAlignment::kEdges;
+  options.alignment = CombineOptions::Alignment::kEdges;
   const Combined combined = mars::combine_elevation({base, inset}, options);
-  ASSERT_TRUE(combined.findings[1].bend);
-  EXPECT_NEAR(combined.findings[1].bend->rms_m, 22, 5);
+  ASSERT_TRUE(combined.findings[1].edge_matching);
+  EXPECT_NEAR(combined.findings[1].edge_matching->rms_m, 22, 5);
   EXPECT_GT(before, 2 * worst_step(combined.source));
   for (const auto& [column, row] : {std::pair{100, 100}, {300, 300}, {500, 420}}) {
     const LonLat p = kInset.at(column, row);
     EXPECT_NEAR(height_at(*combined.source, p), broad(p) + off(p), 1e-6);
   }
-  // Far away nothing is bent.
+  // Far away nothing changes.
   const LonLat far = kBase.at(100, 100);
   EXPECT_EQ(height_at(*combined.source, far), height_at(*base, far));
 }
 
-TEST_F(Combine, LevelStandsUpToBlunders) {
+TEST_F(Combine, AlignmentIsRobustAgainstOutliers) {
   const Source base = raster("base", kBase, hills);
   const Source inset =
       raster("inset", kInset, [](LonLat p) { return hills(p) + 12 - (p.lat_deg < -0.3 ? 1000 : 0); });
   CombineOptions options;
-  options.level = CombineOptions::VerticalAlignment::kPlane;
+  options.alignment = CombineOptions::Alignment::kPlane;
   const Combined combined = mars::combine_elevation({base, inset}, options);
-  ASSERT_TRUE(combined.findings[1].level);
-  EXPECT_NEAR(combined.findings[1].level->offset_m, 12, 0.5);
-  EXPECT_LT(std::hypot(combined.findings[1].level->tilt_east, combined.findings[1].level->tilt_north), 1e-4);
-  EXPECT_GT(combined.findings[1].level->left_out, 1000);
+  ASSERT_TRUE(combined.findings[1].alignment);
+  EXPECT_NEAR(combined.findings[1].alignment->offset_m, 12, 0.5);
+  EXPECT_LT(std::hypot(combined.findings[1].alignment->tilt_east, combined.findings[1].alignment->tilt_north),
+            1e-4);
+  EXPECT_GT(combined.findings[1].alignment->left_out, 1000);
 }
 
-TEST_F(Combine, RimsWithoutGroundBelowAreNotLevelled) {
+TEST_F(Combine, InsetsWithoutABaseAreNotAligned) {
   const Source base = raster("base", {10, 20, 20, 10, 200, 200}, hills);
   const Source inset = raster("inset", kInset, hills);
   CombineOptions options;
-  options.level = CombineOptions::VerticalAlignment::kPlane;
+  options.alignment = CombineOptions::Alignment::kPlane;
   const Combined combined = mars::combine_elevation({base, inset}, options);
-  EXPECT_FALSE(combined.findings[1].level);
+  EXPECT_FALSE(combined.findings[1].alignment);
   ASSERT_EQ(combined.notes.size(), 1U);
-  expect_parts(combined.notes[0], {"inset.tif", "not levelled"});
+  expect_parts(combined.notes[0], {"inset.tif", "not aligned"});
 }
 
-// A terrace a kilometre too low and a spike, as stereo correlation leaves them.
-TEST_F(Combine, BlundersAreFoundAndDropped) {
+// The inset has a terrace that is a kilometre too low and a spike, as stereo correlation makes them.
+TEST_F(Combine, OutliersAreFoundAndRejected) {
   const auto is_terrace = [](LonLat p) {
     return p.lon_deg > 0.2 && p.lon_deg < 0.5 && p.lat_deg > 0 && p.lat_deg < 0.4;
   };
@@ -270,7 +271,7 @@ TEST_F(Combine, BlundersAreFoundAndDropped) {
   EXPECT_NEAR(height_at(*combined.source, {0.35, 0.2}), hills({0.35, 0.2}) - 1000, 1);
 
   options.reject_outliers = true;
-  options.level = CombineOptions::VerticalAlignment::kPlane;  // the mask judges levelled heights
+  options.alignment = CombineOptions::Alignment::kPlane;  // the mask tests aligned heights
   combined = mars::combine_elevation({base, inset}, options);
   EXPECT_TRUE(combined.findings[1].masked);
   double worst = 0;
@@ -280,12 +281,12 @@ TEST_F(Combine, BlundersAreFoundAndDropped) {
   }
   EXPECT_LT(worst, 60);  // the base's interpolation of the small hills
   expect_parts(combined.source->infos()[0].treatment, {"dropped"});
-  // What is good stays the inset's own.
+  // Good posts keep their heights.
   EXPECT_NEAR(height_at(*combined.source, {-1, 1}), hills({-1, 1}), 1);
 }
 
-TEST_F(Combine, SteepGroundIsNoBlunder) {
-  // A cliff that the base only knows as a ramp.
+TEST_F(Combine, SteepGroundIsNoOutlier) {
+  // The base shows the cliff as a ramp.
   const auto cliff = [](LonLat p) { return p.lon_deg < 0.013 ? 0.0 : 2000.0; };
   const Source base = raster("base", kBase, cliff);
   const Source inset = raster("inset", kInset, cliff);

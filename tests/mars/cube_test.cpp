@@ -49,7 +49,7 @@ Real exact_warp(Real s) {
   return value(knot) + (value(knot + 1) - value(knot)) * (steps - knot);
 }
 
-TEST(Cube, AxesAreRightHandedAndFacesPartTheSphere) {
+TEST(Cube, AxesAreRightHandedAndFacesPartitionTheSphere) {
   std::set<std::tuple<double, double, double>> outs;
   for (const Face face : kAllFaces) {
     const FaceAxes& a = face_axes(face);

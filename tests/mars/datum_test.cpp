@@ -22,9 +22,10 @@ TEST(Datum, Text) {
   }
   EXPECT_EQ(mars::parse_datum("geoid", 1), VerticalDatum::areoid());
   EXPECT_EQ(mars::parse_datum("sphere", 3396000), VerticalDatum::sphere(3396000));
-  for (const char* bad : {"", "Areoid", "sphere:", "sphere:x", "sphere:-1", "sphere:nan", "sphere:1e99",
-                          "sphere:3396190m", "ellipsoid", "ellipsoid:1000", "ellipsoid:1000,2000",
-                          "ellipsoid:1000,100", "ellipsoid:1000,900,800", "radius:1", "areoid:mola"}) {
+  for (const char* bad :
+       {"", "Areoid", "sphere:", "sphere:x", "sphere:-1", "sphere:nan", "sphere:1e99", "sphere:+3396190",
+        "sphere:3396190m", "ellipsoid", "ellipsoid:1000", "ellipsoid:1000,2000", "ellipsoid:1000,100",
+        "ellipsoid:1000,900,800", "radius:1", "areoid:mola"}) {
     EXPECT_FALSE(mars::parse_datum(bad, 3396190)) << bad;
   }
 }

@@ -1,11 +1,11 @@
-// The embedded Mars from nearby: rocks, sand and what differs from ground to ground.
+// The embedded Mars from nearby: rocks, sand, and differences between kinds of ground.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "mars/embedded/detail.h"
 #include "mars/embedded/embedded.h"
-#include "mars/embedded/rocks.h"
 #include "mars/embedded/surface.h"
 #include "tests/mars/patch.h"
 #include "tests/support/support.h"
@@ -21,7 +21,7 @@ std::vector<double> heights(const std::vector<glm::dvec3>& directions, double sp
   return out;
 }
 
-// Share of the ground under rocks of `detail_m` and more, where all stand out.
+// Returns the share of the ground under rocks of `detail_m` and more if all stand out.
 double rock_cover(double detail_m) {
   Random random(91);
   double covered = 0.0, posts = 0.0;
@@ -46,7 +46,7 @@ double rock_cover(double detail_m) {
 }
 
 TEST(EmbeddedClose, RocksFollowThePublishedSizes) {
-  // F(D) = k exp(-q D) at k = 0.35; what counts is the shape: facets and burial take a fixed share.
+  // F(D) = k exp(-q D) at k = 0.35. Only the shape is compared: facets and burial remove a fixed share.
   const auto published = [](double d) { return 0.35 * std::exp(-2.22 * d); };
   const double all = rock_cover(0.25) / published(0.25);
   EXPECT_GT(all, 0.4);
@@ -100,27 +100,27 @@ TEST(EmbeddedClose, ValleysIntoCratersAreCutAndNotBuilt) {
 }
 
 TEST(EmbeddedClose, GroundsDifferFromCameraLevel) {
-  // Mean bend between neighbouring posts a quarter of a metre apart, and how lopsided it is: rocks stick out,
+  // Mean curvature between neighbouring posts a quarter of a metre apart, and its skewness: rocks stand out,
   // ripples have sharp crests, ice has neither.
-  struct Look {
+  struct Texture {
     double bend_m, skew;
   };
-  const auto look = [](LonLat p) {
+  const auto texture_at = [](LonLat p) {
     const auto h = heights(patch(p, 160, 0.25), 0.25);
-    double bend = 0.0, square = 0.0, cube = 0.0, n = 0.0;
+    double curvature = 0.0, square = 0.0, cube = 0.0, n = 0.0;
     for (std::size_t i = 1; i + 1 < h.size(); ++i) {
       if (i % 160 == 0 || i % 160 == 159) continue;
       const double c = 2.0 * h[i] - h[i - 1] - h[i + 1];
-      bend += std::abs(c);
+      curvature += std::abs(c);
       square += c * c;
       cube += c * c * c;
       n += 1.0;
     }
-    return Look{bend / n, cube / n / std::pow(square / n, 1.5)};
+    return Texture{curvature / n, cube / n / std::pow(square / n, 1.5)};
   };
-  const Look rocky = look({-33.25, 19.1});
-  const Look sandy = look({-66.2333, -12.56});
-  const Look ice = look({20, 88});
+  const Texture rocky = texture_at({-33.25, 19.1});
+  const Texture sandy = texture_at({-66.2333, -12.56});
+  const Texture ice = texture_at({20, 88});
   EXPECT_GT(rocky.bend_m, 0.005);
   EXPECT_GT(rocky.bend_m, 3.0 * ice.bend_m);
   EXPECT_GT(sandy.bend_m, 1.5 * ice.bend_m);

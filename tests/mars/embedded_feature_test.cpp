@@ -1,5 +1,5 @@
-// Widths and places of the largest features of the embedded Mars, measured on sampled heights as one would
-// measure them on MOLA, against the published figures.
+// Widths and places of the largest features of the embedded Mars, measured on sampled heights with the methods
+// used on MOLA, against published figures.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -69,9 +69,9 @@ double break_km(LonLat p, double least_km, double most_km, double span_km) {
   std::size_t at = 0;
   for (std::size_t k = std::max(span, static_cast<std::size_t>(least_km / kStep_km)); k + span < profile.size();
        ++k) {
-    const double bend = profile[k - span] + profile[k + span] - 2.0 * profile[k];
-    if (bend > sharpest) {
-      sharpest = bend;
+    const double curvature = profile[k - span] + profile[k + span] - 2.0 * profile[k];
+    if (curvature > sharpest) {
+      sharpest = curvature;
       at = k;
     }
   }
@@ -119,9 +119,9 @@ TEST(EmbeddedFeatures, HellasHasARimAsWideAsPublished) {
   double sharpest = -1e9;
   double rim_km = 0.0;
   for (std::size_t k = 120; k + 30 < profile.size(); ++k) {
-    const double bend = 2.0 * profile[k] - profile[k - 30] - profile[k + 30];
-    if (bend > sharpest) {
-      sharpest = bend;
+    const double curvature = 2.0 * profile[k] - profile[k - 30] - profile[k + 30];
+    if (curvature > sharpest) {
+      sharpest = curvature;
       rim_km = 10.0 * static_cast<double>(k);
     }
   }

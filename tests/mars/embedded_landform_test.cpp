@@ -1,4 +1,4 @@
-// The embedded Mars against published places and heights, against MOLA, and against its own promises.
+// The embedded Mars against published places and heights, against MOLA, and against its own contracts.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -81,7 +81,7 @@ TEST(EmbeddedLandforms, SummitsAreAsHighAndWhereTheyAre) {
 }
 
 TEST(EmbeddedLandforms, OlympusHasAScarpAndANestedCaldera) {
-  // From the plain up to the top of the scarp within 40 km, all round where no lava drapes it.
+  // From the plain to the top of the scarp within 40 km, at all azimuths where no lava covers it.
   int cliffs = 0;
   for (int bearing = 0; bearing < 360; bearing += 10) {
     std::vector<glm::dvec3> line;
@@ -249,7 +249,7 @@ TEST(EmbeddedCraters, EveryCandidateIsFoundFromEveryPlaceItTouches) {
   EXPECT_GT(checked, 200);
 }
 
-TEST(EmbeddedRegions, CapsNameTheFinestSpacingOfAllTheirPlaces) {
+TEST(EmbeddedRegions, CapsReturnTheFinestSpacingOfTheirPlaces) {
   Random random(82);
   const auto source = embedded_elevation();
   const auto image = embedded_image();
@@ -299,7 +299,7 @@ TEST(EmbeddedRegions, DemoPathLiesOnTheFloorInsideItsCorridor) {
   }
 }
 
-TEST(EmbeddedSources, SayThatTheyAreAnIllustration) {
+TEST(EmbeddedSources, StateThatTheyAreAnIllustration) {
   for (const auto& infos : {embedded_elevation()->infos(), embedded_image()->infos()}) {
     ASSERT_EQ(infos.size(), 1U);
     EXPECT_EQ(infos[0].name, "embedded Mars (illustration)");

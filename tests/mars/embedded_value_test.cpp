@@ -1,5 +1,5 @@
-// The embedded Mars as a function: equal bits however it is asked, finite, continuous, the same planet at every
-// spacing.
+// The embedded Mars as a function: equal bits for every batch and thread, finite, continuous, the same planet
+// at every spacing.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -37,7 +37,7 @@ std::vector<double> heights(const std::vector<glm::dvec3>& directions, double sp
   return out;
 }
 
-// One of everything: walls, floors, scarps, calderas, caps, plains, highlands, channels; rocks, ripples, a
+// Places of every kind: walls, floors, scarps, calderas, caps, plains, highlands, channels; rocks, ripples, a
 // delta, a polar canyon, chaos, islands, dunes, polygons.
 const LonLat kPlaces[] = {
     {-74, -10.5}, {-63, -12.2}, {-74, -6.3},   {-42, -9}, {-133.8, 18.65}, {-138.5, 18.6},     {-101, -7},
@@ -45,7 +45,7 @@ const LonLat kPlaces[] = {
     {-120, -8.3}, {147.2, 25},  {179.99, -20}, {88, 13},  {-33.25, 19.1},  {-66.2333, -12.56}, {77.2, 18.58},
     {-48, 83},    {-35.5, 1},   {-62, 25.5},   {178, 81}, {134.3, 47.7}};
 
-TEST(EmbeddedValue, EqualBitsHoweverTheBatchIsCut) {
+TEST(EmbeddedValue, EqualBitsForEveryBatch) {
   Random random(71);
   for (const double spacing_m : {2600.0, 160.0, 40.0, 2.0, 0.125}) {
     for (const LonLat& p : kPlaces) {
@@ -104,7 +104,7 @@ TEST(EmbeddedValue, VectorAndScalarPathsGiveEqualBits) {
   }
 }
 
-// What skips work for whole blocks must not show: posts of walls, floors and rims, together and alone.
+// Skipping work for whole blocks must not change values: posts of walls, floors and rims, together and alone.
 TEST(EmbeddedValue, EqualBitsAloneAndTogetherWhereLandformsEnd) {
   for (const LonLat& p : {LonLat{-72.5, -9.0}, LonLat{-66.0, -11.9}, LonLat{-44.0, -9.5}, LonLat{-133.8, 13.6},
                           LonLat{-138.5, 18.6}, LonLat{-74.4, -6.4}, LonLat{-100.0, -6.0}}) {
@@ -129,8 +129,8 @@ TEST(EmbeddedValue, EqualBitsFromEveryThread) {
   for (const auto& f : found) EXPECT_EQ(f, expected);
 }
 
-// The planet itself, whatever the compiler and machine: a change of this number is a change of the planet, and
-// the planet files of older builds do not fit the new one.
+// The hash is the same for every compiler and machine. If it changes, the planet has changed, and planet files
+// of older builds do not fit the new one.
 TEST(EmbeddedValue, GoldenHash) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   std::uint64_t state = 1;
@@ -224,7 +224,7 @@ TEST(EmbeddedValue, ContinuousEverywhere) {
   }
 }
 
-TEST(EmbeddedValue, SpacingOnlyLeavesOutDetail) {
+TEST(EmbeddedValue, SpacingOnlyRemovesDetail) {
   EXPECT_EQ(embedded::detail_spacing_m(250.0), 128.0);
   EXPECT_EQ(embedded::detail_spacing_m(128.0), 128.0);
   EXPECT_EQ(embedded::detail_spacing_m(127.9), 64.0);

@@ -1,4 +1,4 @@
-// Long double twins of the geometry, straight from the definitions, to measure rounding errors with.
+// Long double implementations of the geometry, directly from the definitions, to measure rounding errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,19 +28,20 @@ inline Vec cross(const Vec& a, const Vec& b) {
 inline Real length(const Vec& a) { return std::sqrt(dot(a, a)); }
 inline Real angle(const Vec& a, const Vec& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
-// Whole quarter turns come off exactly before degrees become radians, so that small values keep all digits.
+// Multiples of 90 degrees are subtracted exactly before degrees become radians, so that small values keep all
+// digits.
 inline Real sin_deg(double deg) {
-  const Real turn = std::remainder(static_cast<Real>(deg), 360.0L);
-  const Real quarter = std::nearbyint(turn / 90);
-  const Real rest = (turn - 90 * quarter) * kPi / 180;
+  const Real reduced = std::remainder(static_cast<Real>(deg), 360.0L);
+  const Real quarter = std::nearbyint(reduced / 90);
+  const Real rest = (reduced - 90 * quarter) * kPi / 180;
   if (quarter == 0) return std::sin(rest);
   if (quarter == 1) return std::cos(rest);
   return quarter == -1 ? -std::cos(rest) : -std::sin(rest);
 }
 inline Real cos_deg(double deg) {
-  const Real turn = std::remainder(static_cast<Real>(deg), 360.0L);
-  const Real quarter = std::nearbyint(turn / 90);
-  const Real rest = (turn - 90 * quarter) * kPi / 180;
+  const Real reduced = std::remainder(static_cast<Real>(deg), 360.0L);
+  const Real quarter = std::nearbyint(reduced / 90);
+  const Real rest = (reduced - 90 * quarter) * kPi / 180;
   if (quarter == 0) return std::cos(rest);
   if (quarter == 1) return -std::sin(rest);
   return quarter == -1 ? std::sin(rest) : -std::cos(rest);
@@ -50,8 +51,8 @@ inline Vec direction(LonLat p) {
   return {cos_deg(p.lat_deg) * cos_deg(p.lon_deg), cos_deg(p.lat_deg) * sin_deg(p.lon_deg), sin_deg(p.lat_deg)};
 }
 
-// Checks a stated bound over many cases, and in the end that it is not lazy: the worst case uses at least a
-// twentieth of it.
+// Checks a stated bound over many cases, and at the end that it is not too loose: the worst case must reach at
+// least a twentieth of it.
 class Bound {
  public:
   explicit Bound(const char* name) : name_(name) {}

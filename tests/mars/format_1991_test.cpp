@@ -1,4 +1,4 @@
-// Raw images that only their label describes: the Viking maps of 1991, and PDS3 that GDAL misreads.
+// Raw images that only their label describes: the Viking maps of 1991, and PDS3 images that GDAL misreads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,7 +73,7 @@ glm::dvec2 by_equation(double graphic_lat, double west_lon, double edge) {
 }
 
 TEST(Mdim, RealLabelsBoundsAreTheRastersEdges) {
-  // What makes us read the equation as we do: the label's own bounds in both axes.
+  // The label's own bounds confirm in both axes how the equation is read.
   EXPECT_NEAR(by_equation(-27.5, 320.0, 0).y, -0.5, 1e-9);
   EXPECT_NEAR(by_equation(-27.5, 320.0, 0).x, -0.5, 1e-3);
   EXPECT_NEAR(by_equation(-32.5, 317.5, 0).y, 319.5, 1e-9);
@@ -82,7 +82,7 @@ TEST(Mdim, RealLabelsBoundsAreTheRastersEdges) {
 
 class MdimVersion : public ::testing::TestWithParam<std::tuple<double, bool>> {};
 
-TEST_P(MdimVersion, EveryPixelWhereTheEquationSays) {
+TEST_P(MdimVersion, EveryPixelAgreesWithTheEquation) {
   const auto [edge, attached] = GetParam();
   const test_support::TempDir folder;
   Label label = mdim();
@@ -149,11 +149,11 @@ TEST_P(MdimVersion, EveryPixelWhereTheEquationSays) {
 INSTANTIATE_TEST_SUITE_P(EdgeAt, MdimVersion,
                          ::testing::Combine(::testing::Values(0.0, 0.5, 1.0), ::testing::Bool()));
 
-TEST(Mdim, SecondVersionIsToldByItsNameWhereBoundsAreRough) {
+TEST(Mdim, NameTellsTheSecondVersionWhereBoundsAreRough) {
   Label label = mdim();
   label.map["MAXIMUM_LATITUDE"] = "-27.4941";  // 0.38 lines off: neither
   const auto edge = [&] {
-    const mars::LabelPlace place = mars::pds_catalog_map("x", mars::parse_pds_label(label.text()));
+    const mars::LabelGeoreference place = mars::pds_catalog_map("x", mars::parse_pds_label(label.text()));
     return -1760 - (*place.to_map)[3] / (*place.to_map)[1];
   };
   EXPECT_NEAR(edge(), 0, 1e-9);
@@ -289,7 +289,7 @@ INSTANTIATE_TEST_SUITE_P(
                                          Sample{"MSB_UNSIGNED_INTEGER", 32, true, 1, 2000000}),
                        ::testing::Bool()));
 
-TEST(RawImage, PrefixSuffixRecordsAndHoles) {
+TEST(RawImage, PrefixSuffixRecordsAndNodata) {
   const test_support::TempDir folder;
   for (const bool old : {false, true}) {
     Label label = cylinder(6, 4);
@@ -360,7 +360,7 @@ TEST(RawImage, ThreeBandsInEveryOrder) {
   }
 }
 
-TEST(RawImage, UnusableOnesAreRefusedByName) {
+TEST(RawImage, UnusableImagesAreRefused) {
   const test_support::TempDir folder;
   const auto error = [&](const std::map<std::string, std::string>& image,
                          const std::map<std::string, std::string>& file) {
@@ -386,7 +386,7 @@ TEST(RawImage, UnusableOnesAreRefusedByName) {
   expect(error({{"LINES", "5"}}, {}), "is cut short: 48 of 60 bytes");
   expect(error({{"LINES", "2000000000"}, {"LINE_SAMPLES", "2000000000"}}, {}), "is cut short");
   expect(error({{"LINES", "-4"}}, {}), "no usable IMAGE.LINES: -4");
-  expect(error({}, {{"^IMAGE", "\"none.img\""}}), "names an image that is not there: none.img");
+  expect(error({}, {{"^IMAGE", "\"none.img\""}}), "names an image that does not exist: none.img");
   expect(error({}, {{"^IMAGE", "(\"u.img\", 0)"}}), "no usable ^IMAGE");
   expect(error({}, {{"^IMAGE", "9223372036854775807"}}), "no usable ^IMAGE");
   expect(error({}, {{"^IMAGE", "2"}, {"RECORD_BYTES", "\"N/A\""}}), "no usable RECORD_BYTES");

@@ -1,4 +1,4 @@
-// ISIS cubes, VICAR and PDS4: values, special pixels, and places by the equations of those who define them.
+// ISIS cubes, VICAR and PDS4: values, special pixels, and places by the equations of their definitions.
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 
@@ -81,7 +81,7 @@ std::string write_flat(const std::filesystem::path& path, const Cube& cube) {
   return write_cube(path, cube, std::vector<float>(kSide * kSide, 5));
 }
 
-// The pixel that ISIS gives a place: from the upper left corner, in kilometres.
+// Returns the pixel position by ISIS's equations, from the upper left corner in kilometres.
 glm::dvec2 isis_pixel(double x_m, double y_m) {
   return {(x_m + 10000) / 1000 - 0.5, (10000 - y_m) / 1000 - 0.5};
 }
@@ -93,7 +93,7 @@ struct Counted {
 
 class IsisPlace : public ::testing::TestWithParam<Counted> {
  protected:
-  // The east longitude, and the planetocentric latitude, of what the cube calls `lat`.
+  // Returns the east longitude and the planetocentric latitude of a latitude as the cube counts it.
   mars::LonLat place(double east_lon, double lat) const {
     return {east_lon, GetParam().planetographic ? centric(lat) : lat};
   }
@@ -114,7 +114,7 @@ class IsisPlace : public ::testing::TestWithParam<Counted> {
   test_support::TempDir folder_;
 };
 
-TEST_P(IsisPlace, SphericalEquationsTakeLatitudesAsTheyAre) {
+TEST_P(IsisPlace, SphericalEquationsUseLatitudesUnchanged) {
   const double lat = 45.1;
   const double dlon = 0.05 * kRadian;
   Cube sinusoidal = cube("Sinusoidal");
@@ -132,7 +132,7 @@ TEST_P(IsisPlace, SphericalEquationsTakeLatitudesAsTheyAre) {
          local * (lat - 45) * kRadian);
 }
 
-TEST_P(IsisPlace, EllipsoidalEquationsTakePlanetographicOnes) {
+TEST_P(IsisPlace, EllipsoidalEquationsUsePlanetographicLatitudes) {
   for (const bool south : {false, true}) {
     Cube polar = cube("PolarStereographic");
     polar.mapping["CenterLatitude"] = south ? "-90.0" : "90.0";
@@ -161,7 +161,7 @@ TEST_P(IsisPlace, EllipsoidalEquationsTakePlanetographicOnes) {
   expect(mercator, place(40.1, lat), kA * 0.1 * kRadian, y - 1860000 + 10000);
 }
 
-TEST_P(IsisPlace, ConesAndTransverseOnesAreProjs) {
+TEST_P(IsisPlace, ConicAndTransverseMapsAgreeWithProj) {
   const std::string body = " +lon_0=40 +a=3396190 +b=3376200";
   const auto own = [&](double lat) { return GetParam().planetographic ? lat : graphic(lat); };
   const auto text = [](double value) {
@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(Labels, IsisPlace,
                          ::testing::Values(Counted{false, false}, Counted{false, true}, Counted{true, false},
                                            Counted{true, true}));
 
-TEST(IsisCube, WestPositivePerspectiveIsTurnedAndObliqueRefused) {
+TEST(IsisCube, WestPositivePerspectiveIsShiftedAndObliqueRefused) {
   const test_support::TempDir folder;
   Cube cube;
   cube.mapping["ProjectionName"] = "PointPerspective";
@@ -318,7 +318,7 @@ TEST(Isis2, WestPlanetographicLabelBaseMultiplierAndSpecialPixels) {
 
 // ---- VICAR and PDS4, as GDAL writes them
 
-// GDAL's writers grumble about templates.
+// GDAL's writers warn about templates.
 class Quiet {
  public:
   Quiet() { CPLPushErrorHandler(CPLQuietErrorHandler); }
@@ -353,7 +353,7 @@ TEST(Vicar, WestAndPlanetographicLabels) {
   const glm::dvec2 turned = pds_files::pixel_of(mars::GdalRaster(west), {-20 + 1.5, 44});
   EXPECT_NEAR(turned.x, east.x, 1e-6);
   EXPECT_NEAR(turned.y, east.y, 1e-6);
-  // The same with planetographic latitudes, on a body that a hand has flattened in the label.
+  // The same with planetographic latitudes, on a body whose radii in the label are edited to be flattened.
   std::string text;
   {
     const std::string graphic_path =
@@ -371,7 +371,7 @@ TEST(Vicar, WestAndPlanetographicLabels) {
   EXPECT_NEAR(flat.y, east.y, 1e-6);
 }
 
-TEST(Pds4, RawAndTiffInEitherCountingWithHolesAndScale) {
+TEST(Pds4, RawAndTiffInEitherDirectionWithNodataAndScale) {
   const Quiet quiet;
   const test_support::TempDir folder;
   const std::string sphere = "+proj=sinu +lon_0=20 +R=3396190";
@@ -382,7 +382,7 @@ TEST(Pds4, RawAndTiffInEitherCountingWithHolesAndScale) {
         // RADII flattens the body in the label; centric latitudes then stay as they are.
         source_files::Raster raster = made("PDS4", sphere, {format, way, kind, "RADII=3396190,3376200"});
         raster.type = GDT_Int16;
-        raster.no_data = -32768;
+        raster.nodata = -32768;
         raster.scale = 0.25;
         raster.offset = -100;
         raster.value = [](int, int column, int row) {
@@ -409,7 +409,7 @@ TEST(Pds4, RawAndTiffInEitherCountingWithHolesAndScale) {
   }
 }
 
-TEST(ThreeAxes, PlanetographicLatitudesAreRefused) {
+TEST(TriaxialBody, PlanetographicLatitudesAreRefused) {
   const test_support::TempDir folder;
   const std::string path = source_files::write(
       folder / "v.vic",
@@ -420,7 +420,7 @@ TEST(ThreeAxes, PlanetographicLatitudesAreRefused) {
   text.replace(text.find("B_AXIS_RADIUS=3396.19"), 21, "B_AXIS_RADIUS=3390.00");
   source_files::write_text(folder / "v.vic", text);
   const std::string message = source_files::elevation_error(path);
-  EXPECT_NE(message.find("three axes"), std::string::npos) << message;
+  EXPECT_NE(message.find("triaxial body"), std::string::npos) << message;
 }
 
 }  // namespace

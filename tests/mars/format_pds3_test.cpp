@@ -37,7 +37,7 @@ std::string number(double value) {
   return out.str();
 }
 
-// A file of the right length that takes no room; its values are not read.
+// Makes a sparse file of the right length; its values are not read.
 std::string write_empty(const std::filesystem::path& folder, const std::string& name, Label label) {
   const auto size = std::stoull(label.image.at("LINES")) * std::stoull(label.image.at("LINE_SAMPLES")) *
                     (std::stoull(label.image.at("SAMPLE_BITS")) / 8);
@@ -85,7 +85,7 @@ TEST_P(Megdr, EveryTileAtItsPlaceInBothConventions) {
         expect_pixel(raster, {west + half, north - tall + half}, 0, t.lines - 1);
         expect_pixel(raster, {west + wide - half, north - tall + half}, t.samples - 1, t.lines - 1);
         expect_pixel(raster, {west + wide / 2 + half, north - tall / 2 - half}, t.samples / 2, t.lines / 2);
-        // The whole turn wraps; parts of it do not, and no tile up to 88 degrees holds a pole.
+        // Tiles of 360 degrees wrap, others do not, and no tile up to 88 degrees includes a pole.
         EXPECT_EQ(raster.grid().wraps, wide == 360);
         EXPECT_EQ(raster.grid().has_first_pole(), wide == 360);
         EXPECT_DOUBLE_EQ(raster.georeference().resolution_m(), 3396000 * kRadian / t.per_degree);
@@ -264,7 +264,7 @@ Label label_of(const Map& map, double centre_lon, bool west) {
 
 class PdsProjection : public ::testing::TestWithParam<Map> {};
 
-TEST_P(PdsProjection, AgreesWithProjWhicheverWayLongitudesCount) {
+TEST_P(PdsProjection, AgreesWithProjForEastAndWestLongitudes) {
   const Map& map = GetParam();
   const test_support::TempDir folder;
   for (const double centre_lon : {70.0, 337.5}) {
@@ -399,16 +399,15 @@ TEST(PdsHirise, TerrainModelsOfTheArchive) {
   EXPECT_NEAR(source->infos().at(0).resolution_m, 2, 1e-9);
 }
 
-TEST(PdsMapErrors, WhatNobodyCanPlaceIsRefused) {
+TEST(PdsMapErrors, UnsupportedMapsAreRefused) {
   const test_support::TempDir folder;
   const auto error = [&](const std::map<std::string, std::string>& changes, const char* type) {
     Label l = label_of({type, "", 0}, 70, true);
     for (const auto& [key, text] : changes) l.map[key] = text;
     return source_files::elevation_error(pds_files::write(folder.path(), "e", l, [](int, int) { return 1; }));
   };
-  EXPECT_NE(
-      error({}, "OBLIQUE CYLINDRICAL").find("counts longitudes to the west in a map that cannot be placed"),
-      std::string::npos);
+  EXPECT_NE(error({}, "OBLIQUE CYLINDRICAL").find("counts longitudes to the west in an unsupported projection"),
+            std::string::npos);
   EXPECT_NE(error({{"MAP_PROJECTION_ROTATION", "90.0"}}, "SINUSOIDAL").find("MAP_PROJECTION_ROTATION"),
             std::string::npos);
   const std::string vesta = error({{"A_AXIS_RADIUS", "284.5"},
@@ -416,7 +415,7 @@ TEST(PdsMapErrors, WhatNobodyCanPlaceIsRefused) {
                                    {"C_AXIS_RADIUS", "226.43"},
                                    {"COORDINATE_SYSTEM_NAME", "PLANETOGRAPHIC"}},
                                   "SINUSOIDAL");
-  EXPECT_NE(vesta.find("three axes"), std::string::npos) << vesta;
+  EXPECT_NE(vesta.find("triaxial body"), std::string::npos) << vesta;
   EXPECT_NE(vesta.find("e.lbl"), std::string::npos) << vesta;
   EXPECT_EQ(error({{"A_AXIS_RADIUS", "284.5"},
                    {"B_AXIS_RADIUS", "277.3"},

@@ -24,7 +24,7 @@ using source_files::Proj;
 
 constexpr double kRadian = mars::kRadiansPerDegree;
 
-// Without symmetry that could hide a mirrored planet; second derivatives along great circles below kBend.
+// Without symmetry that could hide a mirrored planet; second derivatives along great circles below kCurvature.
 constexpr double kEdges = 20000;
 double relief(const glm::dvec3& d) {
   return 3000 * d.z + 2000 * d.x - 1000 * d.y + 1500 * d.x * d.y + 800 * d.z * d.y + 2500 * d.x * d.x * d.z;
@@ -38,7 +38,7 @@ const Region kGale{"Gale", 130, 146, -12, 4};
 const Region kDateLine{"DateLine", 168, 196, 58, 72};
 const Region kPrimeMeridian{"PrimeMeridian", -9, 14, -33, -18};
 
-struct Way {
+struct Case {
   const char* name;
   const char* crs;  // of the file
   const char*
@@ -56,7 +56,7 @@ constexpr double kMarsF = 169.894447223612;
 constexpr double kEarthF = 298.257223563;
 #define MARS " +R=3396190"
 #define FLAT " +a=3396190 +rf=169.894447223612"
-const Way kWays[] = {
+const Case kCases[] = {
     {"Degrees", "IAU_2015:49900", nullptr},
     {"DegreesFrom0To360", "IAU_2015:49900", nullptr, 3396190, 0, false, 360},
     {"DegreesBelowMinus180", "+proj=longlat" MARS, nullptr, 3396190, 0, false, -360},
@@ -95,12 +95,12 @@ const Way kWays[] = {
 #undef MARS
 #undef FLAT
 
-void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
+void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
 
-class SamePlanet : public ::testing::TestWithParam<Way> {
+class SamePlanet : public ::testing::TestWithParam<Case> {
  protected:
   static double centric_scale() {
-    const Way& w = GetParam();
+    const Case& w = GetParam();
     if (w.centric || w.inverse_f == 0) return 1;
     return (1 - 1 / w.inverse_f) * (1 - 1 / w.inverse_f);
   }
@@ -172,7 +172,7 @@ class SamePlanet : public ::testing::TestWithParam<Way> {
         EXPECT_NEAR(ours.x, pixel.x, 2e-5) << place.lon_deg << " " << place.lat_deg;
         EXPECT_NEAR(ours.y, pixel.y, 2e-5) << place.lon_deg << " " << place.lat_deg;
       }
-      // Bilinear interpolation is off by the bend over a pixel's diagonals on the ground.
+      // Bilinear interpolation is off by the curvature over a pixel's diagonals on the ground.
       const double h = std::max(glm::distance(at_pixel(pixel.x, pixel.y), at_pixel(pixel.x + 1, pixel.y + 1)),
                                 glm::distance(at_pixel(pixel.x + 1, pixel.y), at_pixel(pixel.x, pixel.y + 1)));
       const glm::dvec3 d = mars::direction(place);
@@ -238,7 +238,7 @@ TEST(WestDegrees, WrittenByHandAndImpossibleAreRefused) {
   EXPECT_NE(message.find("lies nowhere on the planet"), std::string::npos) << message;
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, SamePlanet, ::testing::ValuesIn(kWays),
+INSTANTIATE_TEST_SUITE_P(CoordinateSystems, SamePlanet, ::testing::ValuesIn(kCases),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Holes by masks, alpha bands and overviews of GeoTIFF and COG; extents beyond a whole turn; every real file.
+// Nodata by masks, alpha bands and overviews of GeoTIFF and COG; extents beyond 360 degrees; every real file.
 #include <cpl_conv.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ TEST(Tiff, CogWithOverviewsAndAMaskBand) {
   const std::string path = masked_cog(folder);
   const mars::GdalRaster raster(path);
   {
-    const auto dataset = raster.lend();
+    const auto dataset = raster.acquire();
     ASSERT_GE(dataset->GetRasterBand(1)->GetOverviewCount(), 1);
     ASSERT_EQ(dataset->GetRasterBand(1)->GetMaskFlags(), GMF_PER_DATASET);
   }
@@ -112,7 +112,7 @@ TEST(Tiff, AlphaBandOfElevation) {
   EXPECT_NEAR(height_at(*source, {4.5, 3.5}), 42, 1e-6);
 }
 
-TEST(Tiff, GlobalMaskKeepsPolesAndSeamHonest) {
+TEST(Tiff, GlobalMaskAppliesAtPolesAndSeam) {
   const test_support::TempDir folder;
   Raster raster;
   raster.width = 36;
@@ -139,8 +139,9 @@ TEST(Tiff, GlobalMaskKeepsPolesAndSeamHonest) {
   EXPECT_NEAR(height_at(*source, {-1, 5}), 20, 1e-9);
 }
 
-TEST(Tiff, MoreThanAWholeTurnReadsItsFirstTurn) {
-  // 1.5 turns, the second with other values: what is there twice is decided, and nothing is missing.
+TEST(Tiff, MoreThan360DegreesReadTheFirst360) {
+  // 540 degrees, the second 360 with other values: the first decides where both have data, and there is no
+  // nodata.
   const test_support::TempDir folder;
   Raster raster;
   raster.width = 54;
@@ -153,7 +154,7 @@ TEST(Tiff, MoreThanAWholeTurnReadsItsFirstTurn) {
   }
 }
 
-TEST(RealFiles, EveryOneOpensOrSaysWhatToDo) {
+TEST(RealFiles, EveryFileOpensOrExplainsWhatToDo) {
   VPE_NEED_SHARED(index, "INDEX.md");
   const std::set<std::string> rasters{".img", ".lbl", ".tif", ".vrt", ".cub", ".bin", ".jpg"};
   std::set<std::string> refused;

@@ -47,10 +47,10 @@ TEST(MarsTime, GissVectorsToThePrintedDigits) {
     EXPECT_NEAR(t.distance_au, v.distance, kSix);
     // Their angles at longitude 0, latitude 0 take the planetographic latitude of the sun.
     const glm::dvec3 sun = direction({t.subsolar_lon_deg, t.subsolar_graphic_lat_deg});
-    const SunPlace place = sun_place({0, 0}, sun);
+    const SunPosition place = sun_position({0, 0}, sun);
     EXPECT_NEAR(90 - place.elevation_deg, v.zenith, kFive);
     EXPECT_NEAR(place.azimuth_deg, v.azimuth, kFive);
-    // And mars/geodesy/sun.h puts the sun back where it came from.
+    // sun_direction() inverts sun_position().
     EXPECT_LT(glm::length(sun_direction(LonLat{0, 0}, place.azimuth_deg, place.elevation_deg) - sun), 1e-14);
   }
   EXPECT_NEAR(local_mean_time_h(mars_time(1073137591), -184.702), 0.85190, kFive);
@@ -63,13 +63,13 @@ TEST(MarsTime, DirectionsComeBackAtAnyPlace) {
     const LonLat at = trial % 10 == 0 ? LonLat{random.uniform(-180, 180), trial % 20 == 0 ? 90.0 : -90.0}
                                       : lon_lat(random.direction());
     const glm::dvec3 sun = random.direction();
-    const SunPlace place = sun_place(at, sun);
+    const SunPosition place = sun_position(at, sun);
     EXPECT_GE(place.azimuth_deg, 0);
     EXPECT_LT(place.azimuth_deg, 360);
     EXPECT_LT(glm::length(sun_direction(at, place.azimuth_deg, place.elevation_deg) - sun), 1e-14);
   }
-  EXPECT_EQ(sun_place({0, 0}, {1, 0, 0}).elevation_deg, 90);
-  EXPECT_EQ(sun_place({0, 0}, {1, 0, 0}).azimuth_deg, 0);
+  EXPECT_EQ(sun_position({0, 0}, {1, 0, 0}).elevation_deg, 90);
+  EXPECT_EQ(sun_position({0, 0}, {1, 0, 0}).azimuth_deg, 0);
 }
 
 TEST(MarsTime, LeapSeconds) {
@@ -96,7 +96,7 @@ TEST(MarsTime, TheSunIsInTheZenithBelowItAndOnTheHorizonAQuarterAway) {
     EXPECT_NEAR(local_true_time_h(t, below.lon_deg), 12, 1e-9);
     EXPECT_LE(std::abs(below.lat_deg), 25.2);
     const LonLat edge = destination(below, random.uniform(0, 360), kPi / 2);
-    EXPECT_NEAR(sun_place(edge, sun).elevation_deg, 0, 1e-9 / kRadiansPerDegree);
+    EXPECT_NEAR(sun_position(edge, sun).elevation_deg, 0, 1e-9 / kRadiansPerDegree);
     // The same sun from its season and the hour of any place.
     const LonLat at = lon_lat(random.direction());
     const SunSeason season{t.solar_longitude_deg, local_true_time_h(t, at.lon_deg)};
@@ -107,12 +107,13 @@ TEST(MarsTime, TheSunIsInTheZenithBelowItAndOnTheHorizonAQuarterAway) {
 TEST(MarsTime, SeasonsAndHours) {
   const LonLat at{-74, -13};
   // Northern summer, noon: the sun is north, 25.19 - -13 degrees from the zenith.
-  const SunPlace noon = sun_place(at, *sun_direction(SunSeason{90, 12}, at));
+  const SunPosition noon = sun_position(at, *sun_direction(SunSeason{90, 12}, at));
   EXPECT_NEAR(noon.azimuth_deg, 0, 1e-9);
   EXPECT_NEAR(noon.elevation_deg, 90 - (25.19181 + 13), 1e-4);
   // The equinox, on the equator: 15 degrees an hour, rising in the east.
   for (int hour = 0; hour <= 24; ++hour) {
-    const SunPlace sun = sun_place({10, 0}, *sun_direction(SunSeason{0, static_cast<double>(hour)}, {10, 0}));
+    const SunPosition sun =
+        sun_position({10, 0}, *sun_direction(SunSeason{0, static_cast<double>(hour)}, {10, 0}));
     EXPECT_NEAR(sun.elevation_deg, 90 - std::abs(15.0 * hour - 180), 1e-9);
     if (hour % 12 != 0) {
       EXPECT_NEAR(sun.azimuth_deg, hour < 12 ? 90 : 270, 1e-9);
@@ -123,7 +124,7 @@ TEST(MarsTime, SeasonsAndHours) {
   EXPECT_FALSE(sun_direction(LocalSun{}, at).has_value());
 }
 
-TEST(MarsTime, TheClockTurnsOnceASol) {
+TEST(MarsTime, TheClockRepeatsEverySol) {
   const double sol_s = 88775.244;
   const MarsTime a = mars_time(1.6e9);
   const MarsTime b = mars_time(1.6e9 + sol_s);
@@ -164,7 +165,7 @@ TEST(SunText, ReadsSeasonsAndLocal) {
   EXPECT_EQ(parse_sun("Local"), SunSpec(LocalSun{}));
 }
 
-TEST(SunText, SaysWhatIsWrong) {
+TEST(SunText, ExplainsErrors) {
   const auto expect = [](std::string text, const char* part) {
     EXPECT_FALSE(parse_sun(text).has_value()) << text;
     EXPECT_NE(sun_problem(text).find(part), std::string::npos) << text << ": " << sun_problem(text);

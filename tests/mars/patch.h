@@ -7,7 +7,7 @@
 
 namespace mars {
 
-// A patch of side x side posts, `spacing_m` apart, about a place.
+// Returns a patch of side x side posts, `spacing_m` apart, around a place.
 inline std::vector<glm::dvec3> patch(LonLat p, int side, double spacing_m) {
   const LocalFrame f = local_frame(p);
   std::vector<glm::dvec3> directions;

@@ -1,4 +1,4 @@
-// PDS3 labels and raw images made on the spot.
+// Makes PDS3 labels and raw images for tests.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace pds_files {
 
-// A label from its keywords. Those of `image` and `map` go into the objects of that name; values are written as
-// given, so quotes and units belong to them. Lines end with CR LF.
+// Holds the keywords of a label. Those of `image` and `map` go into the objects of these names. Values are
+// written as given, including quotes and units. Lines end with CR LF.
 struct Label {
   std::string first = "PDS_VERSION_ID = PDS3";
   std::map<std::string, std::string> file;
@@ -25,7 +25,8 @@ struct Label {
   std::string text() const;
 };
 
-// A 16-bit map of Mars by MOLA's conventions, SAMPLE_TYPE MSB_INTEGER, with what all projections need.
+// Returns a 16-bit map of Mars by MOLA's conventions, SAMPLE_TYPE MSB_INTEGER, with the keywords that all
+// projections need.
 Label label(const std::string& projection, int columns, int rows);
 
 // Writes NAME.lbl and NAME.img (the values, row by row, as `bits` big-endian or little-endian integers);
@@ -33,7 +34,8 @@ Label label(const std::string& projection, int columns, int rows);
 std::string write(const std::filesystem::path& folder, const std::string& name, Label label,
                   const std::function<std::int64_t(int column, int row)>& value, bool big_endian = true);
 
-// Where the planetocentric place lies in the raster, in the turn that begins at its first column.
+// Returns the position of a planetocentric place in the raster, in the 360 degrees that begin at its first
+// column.
 glm::dvec2 pixel_of(const mars::GdalRaster& raster, mars::LonLat place);
 
 }  // namespace pds_files

@@ -16,12 +16,13 @@
 namespace {
 
 using mars::parse_pds_label;
-using mars::place_pds;
+using mars::pds_placement;
 
 constexpr int kWidth = 90;
 constexpr int kHeight = 45;
 
-// A global 1/4 pixel per degree map as MOLA's, its offsets counted from `first` at the first pixel's centre.
+// Returns the label of a global map of 1/4 pixel per degree like MOLA's. `first` is the offset at the first
+// pixel's centre.
 std::string global_label(double first, const std::string& more = "", const std::string& scale = "237.098") {
   return "PDS_VERSION_ID = PDS3\r\n/* a comment = with \"quotes\" */\r\nRECORD_TYPE = FIXED_LENGTH\r\n"
          "RECORD_BYTES = 180\r\nFILE_RECORDS = 45\r\n^IMAGE = \"m.img\"\r\nTARGET_NAME = MARS\r\n"
@@ -84,7 +85,7 @@ TEST(PdsLabel, SurvivesAnyBytes) {
       const int at = random.integer(0, static_cast<int>(text.size()) - 1);
       text[static_cast<std::size_t>(at)] = "\"'(){}=<>/* \n\rAZ09\xff"[random.integer(0, 19)];
     }
-    const mars::PdsPlacement placement = place_pds(parse_pds_label(text));
+    const mars::PdsPlacement placement = pds_placement(parse_pds_label(text));
     if (placement.grid) {
       EXPECT_GT(placement.grid->pixels_per_degree, 0);
     }
@@ -94,24 +95,24 @@ TEST(PdsLabel, SurvivesAnyBytes) {
   EXPECT_EQ(parse_pds_label("KEY = \"").text("KEY"), "");
 }
 
-TEST(PdsLabel, BoundsTellTheConvention) {
+TEST(PdsLabel, BoundsShowTheConvention) {
   const mars::DegreeGrid expected{0, 90, 0.25};
-  const mars::PdsPlacement from_one = place_pds(parse_pds_label(global_label(1)));
+  const mars::PdsPlacement from_one = pds_placement(parse_pds_label(global_label(1)));
   EXPECT_EQ(from_one.edge_offset_px, mars::kCountsFromOne);
   EXPECT_EQ(from_one.grid, expected);
-  const mars::PdsPlacement from_zero = place_pds(parse_pds_label(global_label(0)));
+  const mars::PdsPlacement from_zero = pds_placement(parse_pds_label(global_label(0)));
   EXPECT_EQ(from_zero.edge_offset_px, mars::kCountsFromZero);
   EXPECT_EQ(from_zero.grid, expected);
-  // Neither: left to GDAL.
-  const mars::PdsPlacement other = place_pds(parse_pds_label(global_label(7)));
+  // Neither convention: left to GDAL.
+  const mars::PdsPlacement other = pds_placement(parse_pds_label(global_label(7)));
   EXPECT_EQ(other.edge_offset_px, mars::kCountsFromZero);
-  EXPECT_FALSE(other.edge_is_proved);
+  EXPECT_FALSE(other.edge_is_confirmed);
   EXPECT_FALSE(other.grid.has_value());
 }
 
 TEST(PdsLabel, ArchiveTilesOfMegdr128) {
   // MEGT00N090HB: 5632 lines, 11520 samples, rounded MAP_SCALE; numbers of the archive's label.
-  const mars::PdsPlacement p = place_pds(parse_pds_label(
+  const mars::PdsPlacement p = pds_placement(parse_pds_label(
       "OBJECT = IMAGE_MAP_PROJECTION\nMAP_PROJECTION_TYPE = \"SIMPLE CYLINDRICAL\"\nCENTER_LATITUDE = 0.0 "
       "<DEGREE>\n"
       "CENTER_LONGITUDE = 180.0 <DEGREE>\nMAP_RESOLUTION = 128.0 <PIXEL/DEGREE>\nMAP_SCALE = 0.463 <KM/PIXEL>\n"
@@ -124,7 +125,7 @@ TEST(PdsLabel, ArchiveTilesOfMegdr128) {
   EXPECT_EQ(p.grid, (mars::DegreeGrid{90, 0, 128}));
 }
 
-TEST(PdsLabel, SaysTheDatum) {
+TEST(PdsLabel, StatesTheDatum) {
   const auto datum = [](const std::string& words) {
     return mars::pds_datum(parse_pds_label("OBJECT = IMAGE\n" + words + "\nEND_OBJECT\nEND\n"));
   };
@@ -169,7 +170,7 @@ TEST_P(PdsConvention, EveryPixelAtItsPlaceToTheBit) {
 INSTANTIATE_TEST_SUITE_P(OffsetsCountedFrom, PdsConvention, ::testing::Values(0.0, 1.0));
 
 TEST(PdsSource, GdalAloneMisplacesTheArchiveLabel) {
-  // The reason for all this; if GDAL mends it one day, this test says so.
+  // The reason for pds_placement(). Fails if a version of GDAL corrects it.
   const test_support::TempDir folder;
   const std::string path = write_map(folder, global_label(1, "", "237.07911"));
   GDALAllRegister();

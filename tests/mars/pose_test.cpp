@@ -35,12 +35,12 @@ void apply(ExactAxes& a, double yaw_deg, double pitch_deg, double roll_deg) {
   turn(a.up, a.right, roll_deg);
 }
 
-ExactAxes exact_axes(const Pose& pose, const HeadAngles& look) {
+ExactAxes exact_axes(const Pose& pose, const HeadAngles& head) {
   const exact::Vec up = exact::direction({pose.lon_deg, pose.lat_deg});
   const exact::Vec east{-exact::sin_deg(pose.lon_deg), exact::cos_deg(pose.lon_deg), 0};
   ExactAxes axes{east, up, exact::cross(up, east)};
   apply(axes, pose.yaw_deg, pose.pitch_deg, pose.roll_deg);
-  apply(axes, look.yaw_deg, look.pitch_deg, look.roll_deg);
+  apply(axes, head.yaw_deg, head.pitch_deg, head.roll_deg);
   return axes;
 }
 
@@ -75,15 +75,15 @@ void expect_orthonormal(const Axes& axes, Bound& bound) {
 
 TEST(Pose, CameraIsWithinItsBounds) {
   test_support::Random random(1);
-  Bound position("to_eye: position");
-  Bound orthonormal("to_eye: orthonormal");
-  Bound direction_bound("to_eye: axes");
+  Bound position("to_camera: position");
+  Bound orthonormal("to_camera: orthonormal");
+  Bound direction_bound("to_camera: axes");
   for (int n = 0; n < 40000; ++n) {
     const Pose pose = random_pose(random);
-    const HeadAngles look{hostile_angle(random), hostile_angle(random), hostile_angle(random)};
+    const HeadAngles head{hostile_angle(random), hostile_angle(random), hostile_angle(random)};
     const double radius_m = random.log_uniform(1e3, 1e8);
-    const CameraPose camera = to_camera(pose, look, radius_m);
-    const ExactAxes want = exact_axes(pose, look);
+    const CameraPose camera = to_camera(pose, head, radius_m);
+    const ExactAxes want = exact_axes(pose, head);
     expect_orthonormal(camera.axes, orthonormal);
     for (const auto& [got, twin] : {std::pair{camera.axes.right, want.right},
                                     {camera.axes.up, want.up},
@@ -96,13 +96,13 @@ TEST(Pose, CameraIsWithinItsBounds) {
   }
 }
 
-TEST(Pose, NoLookIsTheLookAhead) {
+TEST(Pose, NoHeadAnglesIsTheViewAhead) {
   test_support::Random random(2);
   for (int n = 0; n < 1000; ++n) {
     const Pose pose = random_pose(random);
     const CameraPose a = to_camera(pose, kMarsRadius_m);
     const CameraPose b = to_camera(pose, HeadAngles{}, kMarsRadius_m);
-    EXPECT_EQ(a.camera_m, b.camera_m);
+    EXPECT_EQ(a.position_m, b.position_m);
     EXPECT_EQ(a.axes.forward, b.axes.forward);
     EXPECT_EQ(a.axes.up, b.axes.up);
   }
@@ -164,7 +164,7 @@ TEST(Pose, ToPoseInvertsToCameraWithinItsBounds) {
     axes_bound.add(exact::angle(vec(again.axes.right), vec(camera.axes.right)), kToPoseAxesError_rad);
     axes_bound.add(exact::angle(vec(again.axes.up), vec(camera.axes.up)), kToPoseAxesError_rad);
     axes_bound.add(exact::angle(vec(again.axes.forward), vec(camera.axes.forward)), kToPoseAxesError_rad);
-    position.add(exact::length(vec(again.camera_m) - vec(camera.position_m)),
+    position.add(exact::length(vec(again.position_m) - vec(camera.position_m)),
                  kToPosePositionError * (radius_m + pose.alt_m));
   }
 }
@@ -198,9 +198,9 @@ TEST(Pose, StraightUpAndDownHaveNoRoll) {
 
 TEST(Pose, NoNumberIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(to_camera({nan, 0, 0, 0, 0, 0}, 1).camera_m.x));
+  EXPECT_TRUE(std::isnan(to_camera({nan, 0, 0, 0, 0, 0}, 1).position_m.x));
   EXPECT_TRUE(std::isnan(to_camera({0, 0, 0, nan, 0, 0}, 1).axes.forward.x));
-  EXPECT_TRUE(std::isnan(to_camera({0, 0, nan, 0, 0, 0}, 1).camera_m.x));
+  EXPECT_TRUE(std::isnan(to_camera({0, 0, nan, 0, 0, 0}, 1).position_m.x));
 }
 
 }  // namespace

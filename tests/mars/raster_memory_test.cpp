@@ -1,4 +1,4 @@
-// Decoded pieces of all rasters share one budget.
+// Decoded tiles of all rasters share one budget.
 #include "mars/raster/raster_memory.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using mars::TileStore;
 
 TileStore::Pointer some(int value) { return std::make_shared<const int>(value); }
 
-TEST(RasterMemory, WhatIsNotAskedForMakesRoomForOthers) {
+TEST(RasterMemory, UnusedTilesMakeRoomForOthers) {
   TileStore store(10'000);
   for (int n = 0; n < 9; ++n) store.insert({1, {0, n, 0}}, some(n), 800);
   EXPECT_LE(store.bytes(), 10'000u);
@@ -20,7 +20,7 @@ TEST(RasterMemory, WhatIsNotAskedForMakesRoomForOthers) {
   for (int n = 0; n < 9; ++n) {
     store.insert({2, {0, n, 0}}, some(n), 800);
     EXPECT_LE(store.bytes(), 10'000u);
-    EXPECT_NE(store.find({1, {0, 0, 0}}), nullptr);  // asked for again and again
+    EXPECT_NE(store.find({1, {0, 0, 0}}), nullptr);  // used again and again
   }
   for (int n = 1; n < 9; ++n) EXPECT_EQ(store.find({1, {0, n, 0}}), nullptr) << n;
   EXPECT_NE(store.find({2, {0, 8, 0}}), nullptr);
@@ -55,7 +55,7 @@ TEST(RasterMemory, AClosedRasterLeavesNothing) {
   EXPECT_EQ(TileStore::common().bytes(), before);
 }
 
-// Caches of different kinds of tiles must never give each other's.
+// Caches of different types of tiles must never return each other's.
 TEST(RasterMemory, EveryCacheHasItsOwnTiles) {
   struct Heights {
     int value;

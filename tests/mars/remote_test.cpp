@@ -1,4 +1,4 @@
-// Rasters on a web server that fails now and then.
+// Rasters on a web server that fails at times.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -25,7 +25,7 @@ class Remote : public testing::Test {
   void SetUp() override { write_hills(dir_ / "x.tif"); }
   static void write_hills(const std::filesystem::path& path);
 
-  // Heights over the whole raster, in its own order.
+  // Returns heights over the whole raster, in its own order.
   static std::vector<double> heights(const std::string& name) {
     const auto source = mars::open_elevation(name);
     std::vector<glm::dvec3> directions;
@@ -61,7 +61,7 @@ void Remote::write_hills(const std::filesystem::path& path) {
   source_files::write(path, raster);
 }
 
-TEST_F(Remote, NamesOfServersBecomeGdals) {
+TEST_F(Remote, UrlsBecomeGdalNames) {
   EXPECT_EQ(mars::raster_name("http://a/b.tif"), "/vsicurl/http://a/b.tif");
   EXPECT_EQ(mars::raster_name("https://a/b.tif"), "/vsicurl/https://a/b.tif");
   EXPECT_EQ(mars::raster_name("/vsicurl/http://a/b.tif"), "/vsicurl/http://a/b.tif");
@@ -79,7 +79,7 @@ TEST_F(Remote, EqualsTheLocalFile) {
   EXPECT_GT(info.mtime_s, 0);
 }
 
-TEST_F(Remote, FailuresThatPassAreWaitedFor) {
+TEST_F(Remote, TransientFailuresAreRetried) {
   const auto local = heights((dir_ / "x.tif").string());
   for (const Fate fate : {Fate::kUnavailable, Fate::kHangUp, Fate::kCut}) {
     SCOPED_TRACE(static_cast<int>(fate));
@@ -92,7 +92,7 @@ TEST_F(Remote, FailuresThatPassAreWaitedFor) {
   }
 }
 
-TEST_F(Remote, FailuresThatStayNameTheAddress) {
+TEST_F(Remote, PermanentFailuresNameTheAddress) {
   for (const Fate fate : {Fate::kUnavailable, Fate::kHangUp, Fate::kForbidden}) {
     SCOPED_TRACE(static_cast<int>(fate));
     bool well = true;
@@ -112,7 +112,7 @@ TEST_F(Remote, FailuresThatStayNameTheAddress) {
   EXPECT_NE(said.find("404"), std::string::npos) << said;
 }
 
-TEST_F(Remote, AServerThatStaysAwayEndsTheReading) {
+TEST_F(Remote, AServerThatStaysUnavailableEndsTheReading) {
   std::atomic<bool> well{true};
   HttpServer server(dir_.path(),
                     [&](int, const std::string&) { return well ? Fate::kServe : Fate::kUnavailable; });

@@ -197,7 +197,7 @@ TEST(GdalElevation, RegionalEdgeReachesHalfAPixelBeyondTheOuterCentres) {
   EXPECT_TRUE(std::isnan(height_at(*source, {0, 1})));
 }
 
-TEST(GdalElevation, TurnedAndSouthUpRasters) {
+TEST(GdalElevation, RotatedAndSouthUpRasters) {
   const test_support::TempDir folder;
   Raster raster;
   raster.width = 6;
@@ -217,14 +217,14 @@ TEST(GdalElevation, TurnedAndSouthUpRasters) {
   }
 }
 
-TEST(GdalElevation, NoDataNaNAndInfinityLeaveTheValidNeighbours) {
+TEST(GdalElevation, NodataNaNAndInfinityLeaveTheValidNeighbours) {
   const test_support::TempDir folder;
   for (const double nodata : {-9999.0, kNaN, std::numeric_limits<double>::infinity(), -3.4028226e38}) {
     Raster raster;
     raster.width = 4;
     raster.height = 4;
     raster.geotransform = box(0, 4, 4, 0, 4, 4);
-    raster.no_data = -9999;
+    raster.nodata = -9999;
     raster.value = [&](int, int column, int row) {
       return column == 1 && row == 1 ? nodata : 10.0 * column + row;
     };

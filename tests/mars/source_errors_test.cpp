@@ -1,4 +1,4 @@
-// Every way a raster can be unusable gives one message: the file, what went wrong, and what to do.
+// Every unusable raster gives one message that names the file, the failure and what to do.
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -126,11 +126,11 @@ TEST_F(SourceErrors, ColourGivenAsElevation) {
   expect_words(elevation_error(file(raster)), {"f.tif", "colour image, not elevation", "--image"});
 }
 
-TEST_F(SourceErrors, NothingButNoData) {
+TEST_F(SourceErrors, NothingButNodata) {
   Raster raster = small();
   raster.value = [](int, int, int) { return std::numeric_limits<double>::quiet_NaN(); };
-  expect_words(elevation_error(file(raster)), {"f.tif", "holds no elevation", "no-data"});
-  raster.no_data = 7;
+  expect_words(elevation_error(file(raster)), {"f.tif", "holds no elevation", "nodata"});
+  raster.nodata = 7;
   raster.value = [](int, int, int) { return 7; };
   expect_words(elevation_error(file(raster)), {"f.tif", "holds no elevation"});
 }
@@ -182,7 +182,7 @@ TEST_F(SourceErrors, RawImageCutShort) {
   expect_words(elevation_error(path), {"raw.dat", "is cut short", "980000 of 1960000 bytes"});
 }
 
-TEST_F(SourceErrors, SaysNothingOnStderr) {
+TEST_F(SourceErrors, WritesNothingToStderr) {
   ::testing::internal::CaptureStderr();
   source_files::write_text(folder_ / "bad.tif", "II*\0garbage that looks like a TIFF");
   elevation_error((folder_ / "bad.tif").string());

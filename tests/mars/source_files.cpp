@@ -40,7 +40,7 @@ std::string write(const std::filesystem::path& path, const Raster& raster) {
   std::vector<double> line(static_cast<std::size_t>(raster.width));
   for (int band = 1; band <= raster.bands; ++band) {
     GDALRasterBand* out = dataset->GetRasterBand(band);
-    if (raster.no_data) out->SetNoDataValue(*raster.no_data);
+    if (raster.nodata) out->SetNoDataValue(*raster.nodata);
     if (raster.scale) out->SetScale(*raster.scale);
     if (raster.offset) out->SetOffset(*raster.offset);
     if (!raster.unit.empty()) out->SetUnitType(raster.unit.c_str());

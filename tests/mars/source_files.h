@@ -1,4 +1,4 @@
-// Small rasters made on the spot, so that tests know every pixel.
+// Makes small rasters whose every pixel is known to the test.
 #pragma once
 
 #include <gdal.h>
@@ -25,7 +25,7 @@ struct Raster {
   GDALDataType type = GDT_Float32;
   std::string crs = kSphere;  // anything SetFromUserInput takes; empty = none
   std::optional<std::array<double, 6>> geotransform;
-  std::optional<double> no_data;
+  std::optional<double> nodata;
   std::optional<double> scale;
   std::optional<double> offset;
   std::string unit;
@@ -33,25 +33,25 @@ struct Raster {
   std::vector<std::array<short, 4>> palette;
   std::string driver = "GTiff";
   std::vector<std::string> options;
-  // Stored value of a pixel; band from 1.
+  // Returns the stored value of a pixel; bands count from 1.
   std::function<double(int band, int column, int row)> value = [](int, int, int) { return 0.0; };
 };
 
-// North-up geotransform of a box in the units of the CRS.
+// Returns the north-up geotransform of a box in the units of the CRS.
 std::array<double, 6> box(double west, double north, double east, double south, int width, int height);
 
-// Writes it; returns the path as a string.
+// Writes a raster. Returns the path as a string.
 std::string write(const std::filesystem::path& path, const Raster& raster);
 
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-// One value of a source.
+// Returns one value of a source.
 double height_at(const mars::ElevationSource& source, mars::LonLat place);
 
-// what() of the SourceError that opening throws; empty when it opens.
+// Returns what() of the SourceError that opening throws, or "" if the raster opens.
 std::string elevation_error(const std::string& path);
 
-// Projection by PROJ itself, degrees to metres and back: an oracle that shares no code with GDAL's CRS classes.
+// Projects with PROJ, degrees to metres and back: an oracle that shares no code with GDAL's CRS classes.
 class Proj {
  public:
   explicit Proj(const std::string& definition);

@@ -92,10 +92,10 @@ TEST(GdalImage, Palette) {
   EXPECT_EQ(look(*image, {2, 2}, 4 * one_degree_m()).colour, (vpe::base::Rgb{105, 60, 40}));
 }
 
-TEST(GdalImage, NoDataInAllBandsIsTransparent) {
+TEST(GdalImage, NodataInAllBandsIsTransparent) {
   const test_support::TempDir folder;
   Raster raster = patch(3, GDT_Byte);
-  raster.no_data = 0;
+  raster.nodata = 0;
   raster.options = {"PHOTOMETRIC=RGB"};
   raster.value = [](int band, int column, int) { return column == 0 ? 0 : band == 1 ? 0 : 90; };
   const auto image = mars::open_image(source_files::write(folder / "n.tif", raster));
@@ -111,7 +111,7 @@ TEST(GdalImage, WideValuesAreStretchedBetweenPercentiles) {
     raster.width = 100;
     raster.height = 100;
     raster.geotransform = box(0, 100 - 50, 100, -50, 100, 100);
-    raster.no_data = 0;
+    raster.nodata = 0;
     // 1000 .. 10999 in order, with the last ones (0.1 %) blown up and a hole.
     raster.value = [](int, int column, int row) {
       const int i = row * 100 + column;
@@ -173,7 +173,7 @@ TEST(GdalImage, IsSeamlessAndRoundThePoleAtEveryLevel) {
       EXPECT_EQ(look(*image, {static_cast<double>(lon), 90}, texels * pixel_m).alpha, 255);
     }
   }
-  // The lowest levels still know east from west.
+  // The coarsest levels still distinguish east and west.
   EXPECT_GT(look(*image, {0, 0}, 32 * pixel_m).colour.r, 200);
   EXPECT_LT(look(*image, {180, 0}, 32 * pixel_m).colour.r, 60);
 }

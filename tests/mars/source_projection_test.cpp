@@ -16,7 +16,7 @@ using source_files::Proj;
 using source_files::Raster;
 
 // Smooth, without symmetry that could hide a swapped axis or a mirrored planet. Its second derivative along any
-// great circle is at most kBend.
+// great circle is at most kCurvature.
 constexpr double kEdges = 20000;
 double relief(const glm::dvec3& d) {
   return 3000 * d.z + 2000 * d.x - 1000 * d.y + 1500 * d.x * d.y + 800 * d.z * d.y + 2500 * d.x * d.x * d.z;
@@ -80,7 +80,7 @@ TEST_P(Projection, SamplesAgreeWithTheFunction) {
   raster.type = GDT_Float64;
   raster.crs = m.crs;
   raster.geotransform = source_files::box(m.west, m.north, m.east, m.south, m.width, m.height);
-  raster.no_data = -1e9;
+  raster.nodata = -1e9;
   raster.value = [&](int, int column, int row) {
     const mars::LonLat place = proj.inverse({m.west + (column + 0.5) * dx, m.north + (row + 0.5) * dy});
     return mars::is_valid(place) ? relief(centric(place)) : -1e9;

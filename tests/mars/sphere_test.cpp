@@ -89,7 +89,7 @@ double ulps(double got, Real want) {
   return static_cast<double>(std::abs(got - want) / std::ldexp(1.0L, exponent - 52));
 }
 
-TEST(Sphere, SinCosIsExactAtQuarterTurnsAndWithinItsBoundElsewhere) {
+TEST(Sphere, SinCosIsExactAtMultiplesOf90AndWithinItsBoundElsewhere) {
   for (const double turn : {0.0, 360.0, -360.0, 3.6e17, -720.0}) {
     EXPECT_EQ(sin_cos_deg(turn + 0).sin, 0.0);
     EXPECT_EQ(sin_cos_deg(turn + 0).cos, 1.0);
@@ -152,7 +152,7 @@ TEST(Sphere, ValidPlaces) {
   EXPECT_FALSE(is_valid({0, 91}));
 }
 
-TEST(Sphere, LongitudesAreNormalised) {
+TEST(Sphere, LongitudesAreNormalized) {
   const std::array<std::pair<double, double>, 12> cases{{{0, 0},
                                                          {180, 180},
                                                          {-180, 180},

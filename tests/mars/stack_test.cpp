@@ -20,7 +20,7 @@ using Sources = std::vector<std::shared_ptr<const ElevationSource>>;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// One height everywhere, or north of the equator only; knows nothing of rims.
+// Has one height everywhere, or north of the equator only; not BoundaryAware.
 class Flat : public ElevationSource {
  public:
   Flat(std::string name, double resolution_m, double height_m, const std::string& datum = "unknown",
@@ -58,13 +58,13 @@ std::shared_ptr<const ElevationSource> flat(const char* name, double resolution_
   return std::make_shared<Flat>(name, resolution_m, height_m, datum, north_only);
 }
 
-// 100 m high, 60 x 60 posts of 0.1 degree from (10, 16) to (16, 10), with a hole of 5 x 5 posts.
+// Returns a raster 100 m high, 60 x 60 posts of 0.1 degree from (10, 16) to (16, 10), with 5 x 5 nodata posts.
 Raster inset_raster() {
   Raster raster;
   raster.width = 60;
   raster.height = 60;
   raster.geotransform = box(10, 16, 16, 10, 60, 60);
-  raster.no_data = -1;
+  raster.nodata = -1;
   raster.value = [](int, int column, int row) {
     return column >= 40 && column < 45 && row >= 40 && row < 45 ? -1.0 : 100.0;
   };
@@ -129,7 +129,7 @@ TEST(Stack, RefusesWhatCannotBeStacked) {
 
 class Feather : public ::testing::TestWithParam<double> {};
 
-TEST_P(Feather, RampsSmoothlyFromTheRim) {
+TEST_P(Feather, RampsSmoothlyFromTheBoundary) {
   const double feather = GetParam();
   const test_support::TempDir folder;
   const auto inset = mars::open_elevation(source_files::write(folder / "i.tif", inset_raster()));
@@ -184,7 +184,7 @@ TEST_P(FeatherSteps, AreNone) {
 INSTANTIATE_TEST_SUITE_P(Posts, Feather, ::testing::Values(0.0, 3.0, 16.0, 25.0));
 INSTANTIATE_TEST_SUITE_P(Posts, FeatherSteps, ::testing::Values(3.0, 16.0, 25.0));
 
-TEST(Stack, WithNothingBelowTheRimKeepsItsValue) {
+TEST(Stack, WithNothingBelowTheBoundaryKeepsItsValue) {
   const test_support::TempDir folder;
   const auto stack =
       mars::stack_elevation({mars::open_elevation(source_files::write(folder / "i.tif", inset_raster()))});
@@ -195,7 +195,7 @@ TEST(Stack, WithNothingBelowTheRimKeepsItsValue) {
 }
 
 TEST(Stack, FadesInsideAnOverlapThatHasNoBase) {
-  // Two insets side by side: the coarser one's own border inside the finer one's rim must not show.
+  // Two insets side by side: the border of the coarser one inside the fade of the finer one must not show.
   const test_support::TempDir folder;
   Raster raster = inset_raster();
   raster.value = [](int, int, int) { return 100; };

@@ -1,16 +1,16 @@
-#include "mars/embedded/close.h"
+#include "mars/embedded/detail.h"
 
 #include <algorithm>
 
+#include "mars/embedded/block.h"
 #include "mars/embedded/math.h"
 #include "mars/embedded/noise.h"
-#include "mars/embedded/simd.h"
 
 namespace mars::embedded {
 
 namespace {
 
-// Beds of rock crop out as ledges: the smooth ground is cut into steps.
+// Cuts smooth ground into steps where beds of rock crop out.
 void cut_ledges(const Block& block, const Surface& s, const Sand& sand, Lane<float>& sum, Lane<float>& ledge) {
   const auto& n = s.octaves.n;
   with_simd(block.simd, [&] {
@@ -30,14 +30,14 @@ void cut_ledges(const Block& block, const Surface& s, const Sand& sand, Lane<flo
 
 }  // namespace
 
-void look_closely(const Block& block, double detail_m, const Sand& sand, const Lane<float>& rough, Surface& out,
-                  Lane<float>& sum, Lane<float>& grain) {
+void add_detail(const Block& block, double detail_m, const Sand& sand, const Lane<float>& rough, Surface& out,
+                Lane<float>& sum, Lane<float>& grain) {
   const auto& n = out.octaves.n;
   const Terrain& g = out.ground;
   Lane<float> ledge;
   cut_ledges(block, out, sand, sum, ledge);
 
-  // Polygons of frost cracks in the ground ice of high latitudes.
+  // Frost cracks form polygons in the ground ice of high latitudes.
   bool frozen = false;
   for (std::size_t i = 0; i < block.padded; ++i)
     frozen = frozen || magnitude(static_cast<float>(block.z[i])) > 0.76F;
@@ -78,7 +78,7 @@ void look_closely(const Block& block, double detail_m, const Sand& sand, const L
       const float amplitude = (0.25F + 0.75F * rough[i]) * open * (1.0F - 0.6F * g.ice[i]);
       sum[i] += amplitude * gravel[i];
       grain[i] = 0.7F * grain[i] + 2.4F * open * speckle[i];
-      // Rocks lie about where the ground is rough, around fresh craters and below walls, in drifts.
+      // Rocks are frequent on rough ground, around fresh craters and below walls, in clusters.
       const float many = 0.24F + 0.28F * rough[i] + 0.45F * g.wall[i] + 0.5F * out.craters.fresh[i] +
                          0.30F * g.lowland[i] + 0.16F * g.trough[i] - 0.25F * g.volcanic[i] - 0.9F * g.ice[i] +
                          0.20F * n[11][i] + 0.18F * n[8][i] + 0.14F * n[6][i] + 0.12F * n[4][i] +
