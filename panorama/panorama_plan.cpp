@@ -30,7 +30,7 @@ Elevations elevations_of(const PlanOptions& options) {
   const Elevations e{options.lowest_deg.value_or(-usual_deg), options.highest_deg.value_or(usual_deg)};
   if (!(e.lowest_deg >= -most_deg && e.highest_deg <= most_deg)) {
     throw PlanError("elevations " + text_of(e.lowest_deg) + " to " + text_of(e.highest_deg) +
-                    " degrees: a picture of kind " + to_string(options.kind) + " holds -" + text_of(most_deg) +
+                    " degrees: an image of kind " + to_string(options.kind) + " holds -" + text_of(most_deg) +
                     " to " + text_of(most_deg));
   }
   if (!(e.highest_deg - e.lowest_deg >= Limits::kMinSpan_deg)) {
@@ -76,7 +76,7 @@ void check_facets(const PlanOptions& options) {
                   " to " + std::to_string(MapLimits::kMaxFacets));
 }
 
-// Columns of 360 degrees that were asked for, not yet whole.
+// Returns the columns of 360 degrees that the options demand, not yet rounded.
 double wanted_turn_px(const PlanOptions& options, double span_deg) {
   if (options.width_px && options.degrees_per_pixel) {
     throw PlanError("both a width and degrees a pixel are given; leave one out");
@@ -86,7 +86,7 @@ double wanted_turn_px(const PlanOptions& options, double span_deg) {
     const double scale_deg = *options.degrees_per_pixel;
     if (!(scale_deg >= 360.0 / most_px && scale_deg <= span_deg)) {
       throw PlanError(text_of(scale_deg) + " degrees a pixel: must be " + text_of(360.0 / most_px) + " to " +
-                      text_of(span_deg) + " (the picture's arc)");
+                      text_of(span_deg) + " (the image's arc)");
     }
     return 360.0 / scale_deg;
   }
@@ -98,13 +98,13 @@ double wanted_turn_px(const PlanOptions& options, double span_deg) {
   const double turn_px = static_cast<double>(width_px) * 360.0 / span_deg;
   if (turn_px > most_px) {
     throw PlanError("width of " + std::to_string(width_px) + " pixels for " + text_of(span_deg) +
-                    " degrees: a whole turn would have " + text_of(std::round(turn_px)) +
+                    " degrees: a full circle would have " + text_of(std::round(turn_px)) +
                     " columns, more than " + text_of(most_px));
   }
   return turn_px;
 }
 
-// Rows from the horizon up to an elevation.
+// Returns the number of rows from the horizon up to an elevation.
 double rows_to(const PanoramaMap& map, double elevation_deg) {
   const double elevation_rad = elevation_deg * kRadiansPerDegree;
   if (map.kind != MapKind::kEquirectangular) return std::round(map.focal_px * std::tan(elevation_rad));
@@ -132,7 +132,7 @@ PanoramaPlan plan_panorama(const PlanOptions& options) {
     const auto facet_px = static_cast<std::int64_t>(std::max(1.0, std::round(wanted_px / options.facets)));
     map = faceted_map(options.facets, facet_px, 1, options.yaw_deg, 0.0);
     const double x = map.place({azimuths.left_deg, 0.0}).x;
-    // The left edge of a turn may come out as its right one.
+    // Rounding may make the left edge of the full circle its right one.
     map.crop_left_px = std::fmod(std::round(x), map.turn_px);
     map.width_px =
         static_cast<std::int64_t>(std::max(1.0, std::round(map.turn_px * azimuths.span_deg / 360.0)));
@@ -151,7 +151,7 @@ PanoramaPlan plan_panorama(const PlanOptions& options) {
                     " degrees are less than a row; ask for more columns or more elevation");
   }
   if (map.height_px > Limits::kMaxHeight_px) {
-    throw PlanError("the picture would be " + std::to_string(map.height_px) + " rows high, more than " +
+    throw PlanError("the image would be " + std::to_string(map.height_px) + " rows high, more than " +
                     std::to_string(Limits::kMaxHeight_px) + "; ask for fewer columns or less elevation");
   }
   if (const std::string problem = check(map); !problem.empty()) throw PlanError(problem);
@@ -169,12 +169,10 @@ PanoramaPlan plan_panorama(const PlanOptions& options) {
 
 namespace {
 
-View facet_view(const PanoramaMap& map, const PoseOnSphere& stand, std::int64_t facet, int margin_px) {
+View facet_view(const PanoramaMap& map, const Viewpoint& viewpoint, std::int64_t facet, int margin_px) {
   View view;
-  mars::Pose pose = stand.pose;
-  pose.yaw_deg = map.turn_azimuth_deg + 360.0 * (static_cast<double>(facet) + 0.5) / map.facets;
-  pose.pitch_deg = pose.roll_deg = 0.0;
-  view.camera = mars::to_camera(pose, stand.radius_m);
+  view.camera =
+      level_camera(viewpoint, map.turn_azimuth_deg + 360.0 * (static_cast<double>(facet) + 0.5) / map.facets);
   view.width = static_cast<int>(map.facet_px()) + 2 * margin_px;
   view.height = static_cast<int>(map.height_px) + 2 * margin_px;
   view.principal_offset_px.y = map.horizon_px + margin_px - 0.5 * view.height;
@@ -182,7 +180,7 @@ View facet_view(const PanoramaMap& map, const PoseOnSphere& stand, std::int64_t 
   return view;
 }
 
-// How many columns of the strip's rows a piece has: whole groups of the ray backend's vectors.
+// Returns the number of columns of a piece with so many rows: whole groups of the ray backend's vectors.
 std::int64_t piece_columns(std::int64_t rows) {
   constexpr std::int64_t kGroup_px = 16;
   return std::clamp<std::int64_t>(PlanLimits::kPiecePixels / rows / kGroup_px * kGroup_px, kGroup_px,
@@ -191,12 +189,9 @@ std::int64_t piece_columns(std::int64_t rows) {
 
 }  // namespace
 
-View round_view(const PanoramaMap& map, const PoseOnSphere& stand) {
+View round_view(const PanoramaMap& map, const Viewpoint& viewpoint) {
   View view;
-  mars::Pose pose = stand.pose;
-  pose.yaw_deg = map.turn_azimuth_deg + 180.0;
-  pose.pitch_deg = pose.roll_deg = 0.0;
-  view.camera = mars::to_camera(pose, stand.radius_m);
+  view.camera = level_camera(viewpoint, map.turn_azimuth_deg + 180.0);
   view.width = static_cast<int>(map.turn_px);
   view.height = static_cast<int>(map.height_px);
   view.principal_offset_px.y = map.horizon_px - 0.5 * view.height;
@@ -225,13 +220,13 @@ std::vector<Strip> strips_of(std::int64_t image_width_px, std::int64_t height_px
   return strips;
 }
 
-std::vector<Piece> pieces_of(const PanoramaMap& map, const PoseOnSphere& stand, const Strip& strip,
+std::vector<Piece> pieces_of(const PanoramaMap& map, const Viewpoint& viewpoint, const Strip& strip,
                              int margin_px) {
   const bool has_facets = map.kind == MapKind::kFacets;
   const auto crop_px = static_cast<std::int64_t>(map.crop_left_px);
   const auto turn_px = static_cast<std::int64_t>(map.turn_px);
   const std::int64_t unit_px = has_facets ? static_cast<std::int64_t>(map.facet_px()) : turn_px;
-  // The ray backend casts whole columns, at the cost of the part of it that is asked for.
+  // The ray backend casts whole columns, and its time depends only on the part of them that is drawn.
   const std::int64_t rows = std::min<std::int64_t>(
       map.height_px, has_facets ? PlanLimits::kMaxPieceSide_px : vpe::core::ViewLimits::kMaxSide_px);
   std::vector<Piece> pieces;
@@ -245,7 +240,7 @@ std::vector<Piece> pieces_of(const PanoramaMap& map, const PoseOnSphere& stand, 
     piece.x = x;
     piece.width = static_cast<int>(width);
     piece.margin_px = has_facets ? margin_px : 0;
-    piece.view = has_facets ? facet_view(map, stand, unit, margin_px) : round_view(map, stand);
+    piece.view = has_facets ? facet_view(map, viewpoint, unit, margin_px) : round_view(map, viewpoint);
     for (std::int64_t y = 0; y < map.height_px; y += rows) {
       piece.y = y;
       piece.height = static_cast<int>(std::min(rows, map.height_px - y));

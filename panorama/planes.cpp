@@ -14,6 +14,7 @@ namespace panorama {
 
 namespace {
 
+// The meanings are part of sidecars and stay as they are.
 constexpr std::array kPlanes{
     PlaneInfo{Plane::kRange, "range", "m", "distance from the eye along the line of sight", {1, 4}},
     PlaneInfo{Plane::kLonLat, "lonlat", "deg", "longitude east and planetocentric latitude", {2, 8}},
@@ -48,7 +49,7 @@ std::vector<Plane> parse_planes(std::string_view text) {
     if (found == kPlanes.end()) {
       std::string names;
       for (const PlaneInfo& info : kPlanes) names += (names.empty() ? "" : ", ") + std::string(info.name);
-      throw PlanError("plane '" + std::string(name) + "' is not known: there are " + names);
+      throw PlanError("auxiliary layer '" + std::string(name) + "' is not known: there are " + names);
     }
     wanted[static_cast<std::size_t>(found->plane)] = true;
     begin = end + 1;
@@ -94,7 +95,7 @@ void measure(Plane plane, const paging::Surface& surface, double exaggeration, c
       const glm::dvec3 normal = glm::normalize(surface.at(at, exaggeration).normal);
       const double out_of_ground = -glm::dot(normal, sight);
       const double along = glm::length(glm::cross(normal, sight));
-      // On an edge between facets the one found may face away by what the range is off.
+      // On an edge between facets the error of the range may lead to a facet that faces away.
       store(std::max(0.0, std::atan2(out_of_ground, along) / mars::kRadiansPerDegree), out);
       return;
     }

@@ -1,4 +1,4 @@
-// Measurements registered to a panorama's image: what stands behind each pixel's centre.
+// Auxiliary layers of a panorama: measurements at the centre of each pixel of its image.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,26 @@
 
 namespace panorama {
 
-// kRange       distance from the camera to S as it is drawn, metres, float32; within 1e-6 / sin(incidence),
-// relative kLonLat      place: longitude east (-180, 180] and planetocentric latitude, degrees, two float64; as
-// far off as
-//              the range is, along the line of sight
-// kElevation   of S there without exaggeration, metres in the planet file's vertical datum, float32
-// kSlope       of its facet there, without exaggeration, degrees, float32
-// kIncidence   angle between the line of sight and the facet as drawn, degrees, float32: 90 straight on, 0
-// along
-//              it; not that of the sun
-// The sky, and ground without data in kElevation and kSlope, is NaN.
-enum class Plane : std::uint8_t { kRange, kLonLat, kElevation, kSlope, kIncidence };
+// Identifies an auxiliary layer. Layers describe the reference surface as it is drawn (with exaggeration) where
+// nothing else is said. The sky is NaN in all of them; kElevation and kSlope are NaN at nodata, too.
+enum class Plane : std::uint8_t {
+  // Distance from the camera to the reference surface along the line of sight, in metres; float32. Error by
+  // exact rays: at most 1e-6 / sin(incidence), relative.
+  kRange,
+  // Place of that point: longitude east (-180, 180] and planetocentric latitude, in degrees; two float64.
+  // Error: that of the range, along the line of sight.
+  kLonLat,
+  // Elevation of the reference surface there without exaggeration, in metres in the planet file's vertical
+  // datum; float32.
+  kElevation,
+  // Slope of its facet there without exaggeration, in degrees; float32.
+  kSlope,
+  // Angle between the line of sight and the facet as drawn, in degrees; float32. 90: the line of sight is
+  // perpendicular to the facet, 0: parallel. It has nothing to do with the sun.
+  kIncidence,
+};
 
+// Describes a layer for the command line and for files.
 struct PlaneInfo {
   Plane plane = Plane::kRange;
   std::string_view name;  // "range", "lonlat", ...: on the command line and in file names
@@ -33,17 +41,20 @@ struct PlaneInfo {
   std::string_view meaning;
   SampleFormat format;
 };
+// Returns all layers, in the order of the enumeration.
 std::span<const PlaneInfo> all_planes();
 const PlaneInfo& info_of(Plane plane);
 
-// "range,lonlat"; each once, in the order of the enumeration. Throws PlanError naming what is unknown.
+// Parses names separated by commas, as in "range,lonlat". Returns each layer once, in the order of the
+// enumeration. Throws PlanError that names an unknown layer.
 std::vector<Plane> parse_planes(std::string_view text);
 
-// Where a pixel's line of sight goes: unit, body-fixed. x, y in the image, inside the piece.
+// Returns the direction of a pixel's line of sight: unit, body-fixed. x and y are pixels of the image inside
+// the piece.
 glm::dvec3 line_of_sight(const Piece& piece, std::int64_t x, std::int64_t y);
 
-// One pixel of a plane: format.samples numbers, as the format has them, into `out`. Any thread. Throws
-// paging::PlanetError.
+// Computes one pixel of a layer: writes format.samples numbers of the layer's format to `out`. `camera_m` and
+// `sight` are body-fixed; range_m is infinite for the sky. Any thread. Throws paging::PlanetError.
 void measure(Plane plane, const paging::Surface& surface, double exaggeration, const glm::dvec3& camera_m,
              const glm::dvec3& sight, float range_m, std::uint8_t* out);
 

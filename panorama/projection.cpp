@@ -17,10 +17,10 @@ using mars::kPi;
 using mars::kRadiansPerDegree;
 using vpe::base::format_number;
 
-// What rounding may push a place over an edge.
+// Bounds the distance by which rounding may push a place over an edge.
 constexpr double kEdge_px = 1e-8;
 
-// In [0, period).
+// Returns a value in [0, period).
 double wrap(double value, double period) {
   double rest = std::fmod(value, period);
   if (rest < 0.0) rest += period;
@@ -30,13 +30,13 @@ double wrap(double value, double period) {
 double facet_focal_px(double facet_px, int facets) { return 0.5 * facet_px / std::tan(kPi / facets); }
 
 std::string check_facets(const PanoramaMap& map) {
-  if (map.kind != MapKind::kFacets) return map.facets == 0 ? "" : "facets given for a picture that has none";
+  if (map.kind != MapKind::kFacets) return map.facets == 0 ? "" : "facets given for an image that has none";
   if (map.facets < PanoramaLimits::kMinFacets || map.facets > PanoramaLimits::kMaxFacets) {
     return std::to_string(map.facets) + " facets: must be " + std::to_string(PanoramaLimits::kMinFacets) +
            " to " + std::to_string(PanoramaLimits::kMaxFacets);
   }
   if (map.facet_px() != std::round(map.facet_px())) {
-    return format_number(map.turn_px) + " columns to a turn do not make " + std::to_string(map.facets) +
+    return format_number(map.turn_px) + " columns to a full circle do not make " + std::to_string(map.facets) +
            " facets of whole columns";
   }
   const double focal_px = facet_focal_px(map.facet_px(), map.facets);
@@ -59,7 +59,7 @@ const char* to_string(MapKind kind) {
 }
 
 Direction PanoramaMap::to_direction(double x, double y) const {
-  // Whole turns come off before anything is rounded.
+  // Full circles are removed before anything is rounded.
   const double column = wrap(x + crop_left_px, turn_px);
   const double rise_px = horizon_px - y;
   Direction direction;
@@ -116,13 +116,13 @@ std::string check(const PanoramaMap& map) {
   using Limits = PanoramaLimits;
   if (std::string problem = check_facets(map); !problem.empty()) return problem;
   if (map.width_px < 1 || map.height_px < 1 || map.width_px > kMaxSide_px || map.height_px > kMaxSide_px) {
-    return "picture size " + std::to_string(map.width_px) + "x" + std::to_string(map.height_px) +
+    return "image size " + std::to_string(map.width_px) + "x" + std::to_string(map.height_px) +
            ": each side must be 1 to " + std::to_string(kMaxSide_px) + " pixels";
   }
   const double width_px = static_cast<double>(map.width_px);
   const double height_px = static_cast<double>(map.height_px);
   if (!(map.turn_px >= width_px / Limits::kMaxTurns && map.turn_px <= Limits::kMaxTurn_px)) {
-    return format_number(map.turn_px) + " columns to a turn of 360 degrees: a picture of " +
+    return format_number(map.turn_px) + " columns to a full circle of 360 degrees: an image of " +
            std::to_string(map.width_px) + " columns needs at least half as many, and at most " +
            format_number(Limits::kMaxTurn_px) + " are allowed";
   }
@@ -131,8 +131,9 @@ std::string check(const PanoramaMap& map) {
            format_number(Limits::kMaxAzimuth_deg);
   }
   if (!(map.crop_left_px >= 0.0 && map.crop_left_px < map.turn_px)) {
-    return format_number(map.crop_left_px) + " columns cut at the left: must be 0 to less than a turn (" +
-           format_number(map.turn_px) + ")";
+    return format_number(map.crop_left_px) +
+           " columns cut at the left: must be 0 to less than a full circle (" + format_number(map.turn_px) +
+           ")";
   }
   if (!(map.focal_px > 0.0 && map.focal_px <= Limits::kMaxTurn_px)) {
     return "focal length of " + format_number(map.focal_px) + " pixels: must be more than 0 and at most " +
@@ -190,7 +191,7 @@ PanoramaMap map_of(const vpe::core::View& view) {
   const mars::Pose pose = mars::to_pose(view.camera, mars::kMarsRadius_m);
   constexpr double kLevel_deg = 1e-9;
   if (std::abs(pose.pitch_deg) > kLevel_deg || std::abs(pose.roll_deg) > kLevel_deg) {
-    throw std::invalid_argument("a panorama's eye must be level, not pitched or rolled");
+    throw std::invalid_argument("a panorama's camera must be level, not pitched or rolled");
   }
   const vpe::core::SubRectangle part = vpe::core::drawn_part(view);
   PanoramaMap map;

@@ -29,7 +29,7 @@ double least_range_m(const EyePair& eyes) {
   return eyes.nearest_m ? *eyes.nearest_m - 0.5 * eyes.base_m : std::numeric_limits<double>::infinity();
 }
 
-// Whether ground at this range keeps its place in a piece of so many columns.
+// Returns whether ground at this range keeps its place in a piece of so many columns.
 bool fits(const PanoramaMap& map, double base_m, double range_m, double elevation_rad, int columns) {
   const double angle_rad = kPi * (columns - 1) / map.turn_px;
   const double away_m = base_m * std::sin(0.5 * angle_rad);
@@ -51,12 +51,12 @@ int columns_at(const PanoramaMap& map, const EyePair& eyes, double elevation_rad
   return columns;
 }
 
-// An eye's place, and the round image from there.
+// Returns the round image as seen from an eye's place.
 View eye_view(const View& middle, const PanoramaMap& map, Eye eye, double base_m, double azimuth_deg,
               double steepest) {
   View view = middle;
   const mars::Axes& axes = middle.camera.axes;
-  // The image's axes look along its middle.
+  // The view's axes point to the middle of the image.
   const mars::SinCos turn = mars::sin_cos_deg(azimuth_deg - (map.turn_azimuth_deg + 180.0));
   const glm::dvec3 forward = turn.cos * axes.forward + turn.sin * axes.right;
   const glm::dvec3 right = turn.cos * axes.right - turn.sin * axes.forward;
@@ -64,7 +64,7 @@ View eye_view(const View& middle, const PanoramaMap& map, Eye eye, double base_m
   view.camera.position_m += aside_m * right;
   const double height_m = glm::length(middle.camera.position_m);
   if (map.turn_px / (2.0 * kPi) * steepest * std::abs(aside_m) / height_m > kStereoTilt_px) return view;
-  // Turned about the line of sight until up is away from the planet's centre.
+  // Rotates about the line of sight until up points away from the planet's centre.
   const double length = std::hypot(height_m, aside_m);
   const double cosine = height_m / length;
   const double sine = aside_m / length;
@@ -75,7 +75,7 @@ View eye_view(const View& middle, const PanoramaMap& map, Eye eye, double base_m
   return view;
 }
 
-// For messages.
+// Rounds to three significant digits, without an exponent, for messages.
 std::string three_digits(double number) {
   if (!(number > 0)) return vpe::base::format_number(number);
   const double parts = std::pow(10.0, 2.0 - std::floor(std::log10(number)));
@@ -136,7 +136,7 @@ std::vector<StereoBand> stereo_bands(const PanoramaMap& map, const EyePair& eyes
       const double least = std::min(least_m, row.base_m);
       const double most = std::max(most_m, row.base_m);
       const double least_cosine = std::min(cosine, row.cosine);
-      // Both ends are half of what they differ from the base, and an eye is half a base from the middle.
+      // Each end differs from the band's base by half of the range, and an eye is half a base from the middle.
       if (pixels_per_radian * 0.25 * (most - least) / (least_range_m(eyes) * least_cosine) > kStereoFadeOff_px)
         break;
       least_m = least;
@@ -150,9 +150,9 @@ std::vector<StereoBand> stereo_bands(const PanoramaMap& map, const EyePair& eyes
   return bands;
 }
 
-std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const PoseOnSphere& stand,
+std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const Viewpoint& viewpoint,
                                  const std::vector<StereoBand>& bands, Eye eye, const Strip& strip) {
-  const View middle = round_view(map, stand);
+  const View middle = round_view(map, viewpoint);
   const auto crop_px = static_cast<std::int64_t>(map.crop_left_px);
   const auto turn_px = static_cast<std::int64_t>(map.turn_px);
   const std::int64_t end = strip.x + strip.width;
@@ -163,7 +163,7 @@ std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const PoseOnSphere& sta
                  std::abs(std::tan(elevation_rad(map, static_cast<double>(band.y + band.height) - 0.5))));
     for (std::int64_t x = strip.x; x < end;) {
       const std::int64_t column = (x + crop_px) % turn_px;
-      // The cell, from the image's edge or the start of the turn on, decides the eye; the strip may have a
+      // The cell, counted from the image's edge or from t = 0, decides the eye; the strip may have a
       // part of it.
       const std::int64_t cell = x - std::min(x % band.columns, column);
       const std::int64_t cell_end =
@@ -185,7 +185,7 @@ std::vector<Piece> eye_pieces_of(const PanoramaMap& map, const PoseOnSphere& sta
   return pieces;
 }
 
-std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const PoseOnSphere& stand, const EyePair& eyes,
+std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const Viewpoint& viewpoint, const EyePair& eyes,
                                   const Strip& strip) {
   const std::vector<StereoBand> bands = stereo_bands(map, eyes);
   std::vector<Piece> pieces;
@@ -196,7 +196,8 @@ std::vector<Piece> pair_pieces_of(const PanoramaMap& map, const PoseOnSphere& st
     const std::int64_t begin = std::max<std::int64_t>(0, strip.x - right);
     const std::int64_t end = std::min(map.width_px, strip.x + strip.width - right);
     if (begin >= end) continue;
-    std::vector<Piece> of_eye = eye_pieces_of(map, stand, bands, eye, {begin, static_cast<int>(end - begin)});
+    std::vector<Piece> of_eye =
+        eye_pieces_of(map, viewpoint, bands, eye, {begin, static_cast<int>(end - begin)});
     shift(of_eye, right, down);
     pieces.insert(pieces.end(), of_eye.begin(), of_eye.end());
   }

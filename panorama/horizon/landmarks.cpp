@@ -9,14 +9,14 @@ namespace panorama {
 
 namespace {
 
-Direction direction_of(const SkylineCamera& camera, const glm::dvec3& ray) {
-  const double east = glm::dot(ray, camera.frame.east);
-  const double north = glm::dot(ray, camera.frame.north);
+Direction direction_of(const Viewpoint& viewpoint, const glm::dvec3& ray) {
+  const double east = glm::dot(ray, viewpoint.frame.east);
+  const double north = glm::dot(ray, viewpoint.frame.north);
   double azimuth = std::atan2(east, north) / mars::kRadiansPerDegree;
   if (azimuth < 0) azimuth += 360;
   if (azimuth >= 360) azimuth = 0;  // what was just below 0
   return {azimuth,
-          std::atan2(glm::dot(ray, camera.frame.up), std::hypot(east, north)) / mars::kRadiansPerDegree};
+          std::atan2(glm::dot(ray, viewpoint.frame.up), std::hypot(east, north)) / mars::kRadiansPerDegree};
 }
 
 }  // namespace
@@ -31,32 +31,32 @@ const vpe::core::Place* smallest_feature_around(std::span<const vpe::core::Place
   return best;
 }
 
-std::vector<Landmark> landmarks(const SkylineCamera& camera, std::span<const vpe::core::Place> features,
+std::vector<Landmark> landmarks(const Viewpoint& viewpoint, std::span<const vpe::core::Place> features,
                                 double within_m, const GroundRadius& radius, const GroundRange& range,
                                 vpe::base::ThreadPool& pool) {
   std::vector<std::optional<Landmark>> found(features.size());
   pool.run(features.size(), [&](std::size_t n) {
     const glm::dvec3 up = mars::direction({features[n].lon_deg, features[n].lat_deg});
-    // No point of that direction, at whatever radius, is nearer than this.
-    const double half_angle = 0.5 * mars::angle_between_rad(up, camera.position_m);
-    if (std::sin(half_angle) * glm::length(camera.position_m) > within_m) return;
+    // No point in that direction, at any radius, is nearer than this.
+    const double half_angle = 0.5 * mars::angle_between_rad(up, viewpoint.position_m);
+    if (std::sin(half_angle) * glm::length(viewpoint.position_m) > within_m) return;
     const double ground_m = radius(up);
-    const glm::dvec3 line = ground_m * up - camera.position_m;
+    const glm::dvec3 line = ground_m * up - viewpoint.position_m;
     const double distance_m = glm::length(line);
     if (distance_m > within_m || distance_m == 0) return;
     Landmark& landmark = found[n].emplace();
     landmark.feature = features[n];
     const glm::dvec3 ray = line / distance_m;
-    landmark.centre = {direction_of(camera, ray),
+    landmark.centre = {direction_of(viewpoint, ray),
                        distance_m,
                        {features[n].lon_deg, features[n].lat_deg},
-                       ground_m - camera.radius_m};
+                       ground_m - viewpoint.radius_m};
     const double met_m = range(ray);
     if (met_m >= (1.0 - kLandmarkReach) * distance_m) return;
-    const glm::dvec3 point = camera.position_m + met_m * ray;
+    const glm::dvec3 point = viewpoint.position_m + met_m * ray;
     landmark.hidden_by = GroundPoint{landmark.centre.direction, met_m, mars::lon_lat(point),
-                                     glm::length(point) - camera.radius_m};
-    if (const auto* feature = smallest_feature_around(features, landmark.hidden_by->place, camera.radius_m))
+                                     glm::length(point) - viewpoint.radius_m};
+    if (const auto* feature = smallest_feature_around(features, landmark.hidden_by->place, viewpoint.radius_m))
       landmark.hidden_by_name = feature->name;
   });
   std::vector<Landmark> out;

@@ -1,4 +1,4 @@
-// Places with names, as seen from one eye: visible, or hidden by what.
+// Named features as seen from a viewpoint: visible, or hidden by nearer ground.
 #pragma once
 
 #include <functional>
@@ -12,31 +12,32 @@
 
 namespace panorama {
 
-// Of a feature only its centre, on the ground, is looked at: a crater's floor may be hidden and its rim not.
+// Describes a feature by its centre on the ground alone: a crater's floor may be hidden while its rim is
+// visible.
 struct Landmark {
   vpe::core::Place feature;
-  GroundPoint centre;  // its range and direction are those of the straight line from the camera
-  std::optional<GroundPoint> hidden_by;  // the first ground on that line; nothing: the centre is visible
+  GroundPoint centre;  // range and direction are those of the straight line from the viewpoint
+  std::optional<GroundPoint> hidden_by;  // the first ground on that line; absent: the centre is visible
   std::string hidden_by_name;            // the smallest feature whose circle holds that ground; may be empty
 };
 
-// Radius of the ground in a direction (any length but 0), metres from the planet's centre.
+// Returns the radius of the ground in a direction (any length but 0), in metres from the planet's centre.
 using GroundRadius = std::function<double(const glm::dvec3& direction)>;
 
-// The features whose centres are at most `within_m` away in a straight line, nearest first. Ground that a line
-// meets nearer than kLandmarkReach of its length before the centre hides it; where the line only grazes the
-// ground about the centre, rounding is less than that.
+// Returns the features whose centres are at most `within_m` away in a straight line, nearest first. A centre is
+// hidden by ground that its line meets nearer than it by more than kLandmarkReach of the line's length; where
+// the line only grazes the ground about the centre, rounding is less than that.
 inline constexpr double kLandmarkReach = 1e-6;
-std::vector<Landmark> landmarks(const SkylineCamera& camera, std::span<const vpe::core::Place> features,
+std::vector<Landmark> landmarks(const Viewpoint& viewpoint, std::span<const vpe::core::Place> features,
                                 double within_m, const GroundRadius& radius, const GroundRange& range,
                                 vpe::base::ThreadPool& pool);
 
-// The smallest feature whose circle holds a place; null when none does.
+// Returns the smallest feature whose circle holds a place, or null.
 const vpe::core::Place* smallest_feature_around(std::span<const vpe::core::Place> features, mars::LonLat place,
                                                 double radius_m);
 
-// How far a camera at `camera_radius_m` can ever see ground between two radii, straight: past the sphere of the
-// lowest to a top of the highest beyond its horizon.
+// Returns the largest distance at which ground between two radii can be seen along a straight line from
+// `camera_radius_m`: past the sphere of the lowest radius to a summit of the highest beyond its horizon.
 double farthest_sight_m(double camera_radius_m, double lowest_radius_m, double highest_radius_m);
 
 }  // namespace panorama

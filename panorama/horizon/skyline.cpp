@@ -7,40 +7,37 @@
 
 namespace panorama {
 
-SkylineCamera skyline_camera(mars::LonLat place, double alt_m, double radius_m) {
-  const mars::LocalFrame frame = mars::local_frame(place);
-  return {(radius_m + alt_m) * frame.up, frame, radius_m};
-}
-
-glm::dvec3 ray_of(const SkylineCamera& camera, const Direction& direction) {
+glm::dvec3 ray_of(const Viewpoint& viewpoint, const Direction& direction) {
   const mars::SinCos azimuth = mars::sin_cos_deg(direction.azimuth_deg);
   const mars::SinCos elevation = mars::sin_cos_deg(direction.elevation_deg);
-  const glm::dvec3 level = azimuth.sin * camera.frame.east + azimuth.cos * camera.frame.north;
-  return glm::normalize(elevation.cos * level + elevation.sin * camera.frame.up);
+  const glm::dvec3 level = azimuth.sin * viewpoint.frame.east + azimuth.cos * viewpoint.frame.north;
+  return glm::normalize(elevation.cos * level + elevation.sin * viewpoint.frame.up);
 }
 
-GroundPoint ground_point(const SkylineCamera& camera, const Direction& direction, double range_m) {
-  const glm::dvec3 point = camera.position_m + range_m * ray_of(camera, direction);
-  return {direction, range_m, mars::lon_lat(point), glm::length(point) - camera.radius_m};
+GroundPoint ground_point(const Viewpoint& viewpoint, const Direction& direction, double range_m) {
+  const glm::dvec3 point = viewpoint.position_m + range_m * ray_of(viewpoint, direction);
+  return {direction, range_m, mars::lon_lat(point), glm::length(point) - viewpoint.radius_m};
 }
 
-GroundPoint skyline_at(const SkylineCamera& camera, double azimuth_deg, const GroundRange& range,
+GroundPoint skyline_at(const Viewpoint& viewpoint, double azimuth_deg, const GroundRange& range,
                        const ElevationBracket& first) {
-  const auto cast = [&](double elevation_deg) { return range(ray_of(camera, {azimuth_deg, elevation_deg})); };
+  const auto cast = [&](double elevation_deg) {
+    return range(ray_of(viewpoint, {azimuth_deg, elevation_deg}));
+  };
   double low = std::clamp(first.low_deg, -90.0, 90.0);
   double high = std::clamp(first.high_deg, low, 90.0);
   double step = std::max(high - low, 1e-3);
   double range_m = cast(low);
   if (std::isinf(range_m)) {
     while (std::isinf(range_m)) {
-      if (low <= -90.0) throw std::invalid_argument("no ground below the eye");
+      if (low <= -90.0) throw std::invalid_argument("no ground below the viewpoint");
       high = low;
       low = std::max(-90.0, low - step);
       step *= 2;
       range_m = cast(low);
     }
   } else {
-    // Straight up is sky for every camera above the ground.
+    // Straight up is sky for every viewpoint above the ground.
     while (high < 90.0) {
       const double higher_m = cast(high);
       if (std::isinf(higher_m)) break;
@@ -60,15 +57,15 @@ GroundPoint skyline_at(const SkylineCamera& camera, double azimuth_deg, const Gr
       range_m = middle_m;
     }
   }
-  return ground_point(camera, {azimuth_deg, low}, range_m);
+  return ground_point(viewpoint, {azimuth_deg, low}, range_m);
 }
 
-std::vector<GroundPoint> skyline(const SkylineCamera& camera, std::span<const double> azimuths_deg,
+std::vector<GroundPoint> skyline(const Viewpoint& viewpoint, std::span<const double> azimuths_deg,
                                  const GroundRange& range, vpe::base::ThreadPool& pool,
                                  std::span<const ElevationBracket> first) {
   std::vector<GroundPoint> out(azimuths_deg.size());
   pool.run(out.size(), [&](std::size_t n) {
-    out[n] = skyline_at(camera, azimuths_deg[n], range, first.empty() ? ElevationBracket() : first[n]);
+    out[n] = skyline_at(viewpoint, azimuths_deg[n], range, first.empty() ? ElevationBracket() : first[n]);
   });
   return out;
 }
@@ -87,7 +84,7 @@ std::vector<ElevationBracket> first_brackets(const RangeImage& image, std::span<
   for (std::size_t n = 0; n < out.size(); ++n) {
     const double x = map.place({azimuths_deg[n], 0}).x;
     const auto column = std::clamp(static_cast<std::int64_t>(std::floor(x)), std::int64_t{0}, map.width_px - 1);
-    // Sky above, ground below: halved down to the first row of ground.
+    // Sky is above, ground below: bisection finds the first row of ground.
     std::int64_t sky = -1;
     std::int64_t ground = map.height_px;
     while (ground - sky > 1) {
@@ -100,7 +97,7 @@ std::vector<ElevationBracket> first_brackets(const RangeImage& image, std::span<
   return out;
 }
 
-GroundPoint farthest_ground(const SkylineCamera& camera, const RangeImage& image,
+GroundPoint farthest_ground(const Viewpoint& viewpoint, const RangeImage& image,
                             std::span<const GroundPoint> skyline, const GroundRange& range,
                             vpe::base::ThreadPool& pool) {
   const PanoramaMap& map = image.map;
@@ -117,7 +114,7 @@ GroundPoint farthest_ground(const SkylineCamera& camera, const RangeImage& image
     if (farthest_m == 0) continue;
     GroundPoint point;
     point.direction = map.to_direction(static_cast<double>(column) + 0.5, static_cast<double>(at) + 0.5);
-    point.range_m = range(ray_of(camera, point.direction));
+    point.range_m = range(ray_of(viewpoint, point.direction));
     if (std::isfinite(point.range_m)) candidates.push_back(point);
   }
   if (candidates.empty()) throw std::invalid_argument("no ground is seen");
@@ -138,11 +135,11 @@ GroundPoint farthest_ground(const SkylineCamera& camera, const RangeImage& image
     }
   }
   GroundPoint best = candidates.front();
-  for (const GroundPoint& p : panorama::skyline(camera, azimuths, range, pool, first)) {
+  for (const GroundPoint& p : panorama::skyline(viewpoint, azimuths, range, pool, first)) {
     if (p.range_m > best.range_m) best = p;
   }
   best.direction.azimuth_deg -= 360.0 * std::floor(best.direction.azimuth_deg / 360.0);
-  return ground_point(camera, best.direction, best.range_m);
+  return ground_point(viewpoint, best.direction, best.range_m);
 }
 
 }  // namespace panorama

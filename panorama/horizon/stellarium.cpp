@@ -2,24 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "vpe/base/number.h"
 
 namespace panorama {
 
 namespace {
+
+using vpe::base::format_fixed;
 
 std::string one_line(std::string text) {
   for (char& c : text) c = c == '\n' || c == '\r' ? ' ' : c;
   return text;
 }
 
-std::string fixed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-// Below the lowest point of the skyline, so that a horizon far below the horizontal stays ground.
+// Used unless the skyline is lower, so that a horizon far below the horizontal stays ground.
 constexpr double kDefaultMinimum_deg = -2;
 
 }  // namespace
@@ -27,7 +24,7 @@ constexpr double kDefaultMinimum_deg = -2;
 std::string stellarium_list(std::span<const GroundPoint> skyline) {
   std::string out = "# azimuth (clockwise from north) and elevation, degrees\n";
   for (const GroundPoint& p : skyline)
-    out += fixed(p.direction.azimuth_deg, 6) + " " + fixed(p.direction.elevation_deg, 6) + "\n";
+    out += format_fixed(p.direction.azimuth_deg, 6) + " " + format_fixed(p.direction.elevation_deg, 6) + "\n";
   return out;
 }
 
@@ -47,7 +44,7 @@ std::string stellarium_ini(const StellariumPlace& place, std::span<const GroundP
          "polygonal_horizon_list_mode = azDeg_altDeg\n"
          "polygonal_angle_rotatez = 0\n"
          "minimal_altitude = " +
-         fixed(lowest, 0) +
+         format_fixed(lowest, 0) +
          "\n"
          "ground_color = 0.35,0.2,0.12\n"
          "horizon_line_color = 0.9,0.55,0.3\n"
@@ -60,13 +57,13 @@ std::string stellarium_ini(const StellariumPlace& place, std::span<const GroundP
          one_line(place.name) +
          "\n"
          "latitude = " +
-         fixed(place.place.lat_deg, 8) +
+         format_fixed(place.place.lat_deg, 8) +
          "\n"
          "longitude = " +
-         fixed(place.place.lon_deg, 8) +
+         format_fixed(place.place.lon_deg, 8) +
          "\n"
          "altitude = " +
-         fixed(place.alt_m, 0) + "\n";
+         format_fixed(place.alt_m, 0) + "\n";
 }
 
 }  // namespace panorama

@@ -1,8 +1,8 @@
-// A skyline as a landscape of Stellarium: a folder with landscape.ini and the list of points it names.
+// A skyline as a landscape of Stellarium: a folder with landscape.ini and the list of points that it names.
 //
-// The words are those that Stellarium's Landscape.cpp reads. It calls the list polygonal_horizon_list; comments
-// in the list begin with #; altitudes of places are whole metres; what lies below minimal_altitude (-2 degrees
-// when left out) is not taken for ground.
+// Keys and values are those that Stellarium's Landscape.cpp reads. It names the list polygonal_horizon_list.
+// Comments in the list begin with #. Altitudes of places are whole metres. What lies below minimal_altitude (-2
+// degrees by default) is not taken for ground.
 #pragma once
 
 #include <span>
@@ -21,10 +21,10 @@ struct StellariumPlace {
   double alt_m = 0;
 };
 
-// "azimuth elevation" a line, degrees. The points go once round.
+// Returns lines of "azimuth elevation" in degrees. The points go once round the horizon.
 std::string stellarium_list(std::span<const GroundPoint> skyline);
 
-// landscape.ini. Line ends in names become spaces.
+// Returns the content of landscape.ini. Line ends in names become spaces.
 std::string stellarium_ini(const StellariumPlace& place, std::span<const GroundPoint> skyline);
 
 }  // namespace panorama

@@ -12,85 +12,85 @@ namespace panorama {
 
 namespace {
 
-constexpr std::uint64_t kFirstLink = 8;  // of the header's link to the first directory
+constexpr char kDiskAdvice[] = "check the free space and the permissions there";
 
-enum Type : std::uint16_t { kByte = 1, kAscii = 2, kShort = 3, kLong = 4, kLong8 = 16 };
+// GDAL's tag for the value that means nodata, which libtiff does not know by itself.
+constexpr std::uint32_t kNodataTag = 42113;
 
-void put_number(std::vector<std::uint8_t>& out, std::uint64_t value, int bytes) {
-  for (int n = 0; n < bytes; ++n) out.push_back(static_cast<std::uint8_t>(value >> (8 * n)));
-}
-
-struct Entry {
-  std::uint16_t tag = 0;
-  Type type = kShort;
-  std::uint64_t count = 0;
-  std::vector<std::uint8_t> data;
-};
-
-int size_of(Type type) {
-  switch (type) {
-    case kByte:
-    case kAscii: return 1;
-    case kShort: return 2;
-    case kLong: return 4;
-    case kLong8: return 8;
-  }
-  return 1;
-}
-
-Entry numbers(std::uint16_t tag, Type type, std::span<const std::uint64_t> values) {
-  Entry entry{tag, type, values.size(), {}};
-  for (const std::uint64_t value : values) put_number(entry.data, value, size_of(type));
-  return entry;
-}
-
-Entry number(std::uint16_t tag, Type type, std::uint64_t value, int count = 1) {
-  return numbers(tag, type, std::vector<std::uint64_t>(static_cast<std::size_t>(count), value));
-}
-
-Entry text(std::uint16_t tag, Type type, const std::string& value) {
-  Entry entry{tag, type, value.size(), {value.begin(), value.end()}};
-  if (type == kAscii) {
-    entry.data.push_back(0);
-    ++entry.count;
-  }
-  return entry;
+bool set_nodata(TIFF* tiff, const char* text) {
+  char name[] = "GDALNoDataValue";
+  const TIFFFieldInfo field{kNodataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
+  return TIFFMergeFieldInfo(tiff, &field, 1) == 0 && TIFFSetField(tiff, kNodataTag, text) == 1;
 }
 
 }  // namespace
 
-BigTiffWriter::Page BigTiffWriter::page_of(std::int64_t width_px, std::int64_t height_px) {
-  Page page{width_px, height_px, (width_px + kTile_px - 1) / kTile_px, (height_px + kTile_px - 1) / kTile_px,
-            {},       {}};
-  page.offset.resize(static_cast<std::size_t>(page.across * page.down));
-  page.bytes.resize(page.offset.size());
-  return page;
-}
-
 BigTiffWriter::BigTiffWriter(vpe::base::OutputFile& file, std::int64_t width_px, std::int64_t height_px,
                              const SampleFormat& format, BigTiffTags tags)
-    : file_(file), format_(format), tags_(std::move(tags)) {
-  pages_.push_back(page_of(width_px, height_px));
-  std::vector<std::uint8_t> header{'I', 'I', 43, 0, 8, 0, 0, 0};
-  put_number(header, 0, 8);
-  append(header);
+    : file_(file), format_(format), tags_(std::move(tags)), tiff_(file.stream(), file.path(), "w8") {
+  if (tiff_.get() == nullptr) fail();
+  begin_page(width_px, height_px, false);
 }
 
-void BigTiffWriter::append(std::span<const std::uint8_t> bytes) {
-  file_.write(bytes);
-  end_ += bytes.size();
+void BigTiffWriter::fail() const {
+  // The library says that writing failed, and the system why.
+  const bool is_system = errno != 0 && std::ferror(file_.stream()) != 0;
+  throw vpe::base::file_error("write", file_.path(), is_system ? std::strerror(errno) : tiff_.words(),
+                              kDiskAdvice);
 }
 
-void BigTiffWriter::put(Page& page, std::size_t tile, std::span<const std::uint8_t> packed) {
-  page.offset.at(tile) = end_;
-  page.bytes[tile] = packed.size();
-  append(packed);
+void BigTiffWriter::begin_page(std::int64_t width_px, std::int64_t height_px, bool is_reduced) {
+  page_ = {width_px, height_px, (width_px + kTile_px - 1) / kTile_px, (height_px + kTile_px - 1) / kTile_px,
+           {},       {}};
+  vpe::core::TiffLayout layout;
+  layout.width_px = static_cast<std::uint32_t>(width_px);
+  layout.height_px = static_cast<std::uint32_t>(height_px);
+  layout.samples = static_cast<std::uint16_t>(format_.samples);
+  layout.bits = static_cast<std::uint16_t>(8 * format_.bytes);
+  layout.compression = COMPRESSION_ADOBE_DEFLATE;
+  layout.tile_width_px = layout.tile_height_px = kTile_px;
+  TIFF* tiff = tiff_.get();
+  bool ok = set_layout(tiff, layout) &&
+            TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, is_reduced ? FILETYPE_REDUCEDIMAGE : 0) == 1;
+  if (format_ != kRgb && format_.samples > 1) {
+    const std::vector<std::uint16_t> unspecified(layout.samples - 1U, EXTRASAMPLE_UNSPECIFIED);
+    ok = ok && TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<std::uint16_t>(unspecified.size()),
+                            unspecified.data()) == 1;
+  }
+  if (!tags_.software.empty()) ok = ok && TIFFSetField(tiff, TIFFTAG_SOFTWARE, tags_.software.c_str()) == 1;
+  if (!tags_.xmp.empty() && !is_reduced) {
+    ok = ok && TIFFSetField(tiff, TIFFTAG_XMLPACKET, static_cast<std::uint32_t>(tags_.xmp.size()),
+                            tags_.xmp.data()) == 1;
+  }
+  if (tags_.nodata) ok = ok && set_nodata(tiff, "nan");
+  if (!ok) fail();
+}
+
+void BigTiffWriter::end_page() {
+  const auto tiles = static_cast<std::uint32_t>(page_.across * page_.down);
+  std::vector<std::uint64_t> offset;
+  std::vector<std::uint64_t> bytes;
+  for (std::uint32_t tile = 0; tile < tiles; ++tile) {
+    bytes.push_back(TIFFGetStrileByteCount(tiff_.get(), tile));
+    offset.push_back(TIFFGetStrileOffset(tiff_.get(), tile));
+    if (bytes.back() == 0) throw std::logic_error("tiles are missing");
+  }
+  page_.offset = std::move(offset);
+  page_.bytes = std::move(bytes);
+  if (TIFFWriteDirectory(tiff_.get()) != 1) fail();
+}
+
+void BigTiffWriter::put(std::size_t tile, std::span<const std::uint8_t> packed) {
+  // The library does not change raw data in this machine's order of bits.
+  auto* data = const_cast<std::uint8_t*>(packed.data());
+  if (TIFFWriteRawTile(tiff_.get(), static_cast<std::uint32_t>(tile), data,
+                       static_cast<tmsize_t>(packed.size())) < 0)
+    fail();
 }
 
 void BigTiffWriter::put(std::int64_t across, std::int64_t down, std::span<const std::uint8_t> packed) {
-  Page& page = pages_.front();
-  if (across < 0 || down < 0 || across >= page.across || down >= page.down) throw std::out_of_range("tile");
-  put(page, static_cast<std::size_t>(down * page.across + across), packed);
+  if (across < 0 || down < 0 || across >= page_.across || down >= page_.down) throw std::out_of_range("tile");
+  put(static_cast<std::size_t>(down * page_.across + across), packed);
 }
 
 std::vector<std::uint8_t> BigTiffWriter::read(const Page& page, std::size_t tile) const {
@@ -144,92 +144,31 @@ void BigTiffWriter::add_reduced_pages(vpe::base::ThreadPool& pool, const std::fu
   if (format_ != kRgb) throw std::logic_error("reduced pages are for colours");
   constexpr std::size_t kBatch = 64;
   std::size_t made = 0;
-  const std::size_t all = std::max<std::size_t>(1, pages_.front().offset.size() / 3);
-  while (pages_.back().across > 1 || pages_.back().down > 1) {
+  const std::size_t all = std::max<std::size_t>(1, static_cast<std::size_t>(page_.across * page_.down) / 3);
+  while (page_.across > 1 || page_.down > 1) {
+    end_page();
+    const Page fine = std::move(page_);
+    begin_page((fine.width_px + 1) / 2, (fine.height_px + 1) / 2, true);
     if (std::fflush(file_.stream()) != 0) {
-      throw vpe::base::file_error("write", file_.path(), std::strerror(errno), "check the free space there");
+      throw vpe::base::file_error("write", file_.path(), std::strerror(errno), kDiskAdvice);
     }
-    const Page& fine = pages_.back();
-    Page page = page_of((fine.width_px + 1) / 2, (fine.height_px + 1) / 2);
-    for (std::size_t begin = 0; begin < page.offset.size(); begin += kBatch) {
-      std::vector<std::vector<std::uint8_t>> packed(std::min(kBatch, page.offset.size() - begin));
+    const auto tiles = static_cast<std::size_t>(page_.across * page_.down);
+    for (std::size_t begin = 0; begin < tiles; begin += kBatch) {
+      std::vector<std::vector<std::uint8_t>> packed(std::min(kBatch, tiles - begin));
       pool.run(packed.size(), [&](std::size_t n) {
         const auto tile = static_cast<std::int64_t>(begin + n);
-        packed[n] = reduced(fine, tile % page.across, tile / page.across);
+        packed[n] = reduced(fine, tile % page_.across, tile / page_.across);
       });
-      for (std::size_t n = 0; n < packed.size(); ++n) put(page, begin + n, packed[n]);
+      for (std::size_t n = 0; n < packed.size(); ++n) put(begin + n, packed[n]);
       made += packed.size();
       done(std::min(1.0, static_cast<double>(made) / static_cast<double>(all)));
     }
-    pages_.push_back(std::move(page));
   }
-}
-
-std::uint64_t BigTiffWriter::write_directory(const Page& page, bool is_reduced, std::uint64_t link) {
-  const auto bits = static_cast<std::uint64_t>(8 * format_.bytes);
-  const bool is_float = format_.bytes > 1;
-  const bool is_rgb = format_ == kRgb;
-  std::vector<Entry> entries{number(254, kLong, is_reduced ? 1 : 0),
-                             number(256, kLong, static_cast<std::uint64_t>(page.width_px)),
-                             number(257, kLong, static_cast<std::uint64_t>(page.height_px)),
-                             number(258, kShort, bits, format_.samples),
-                             number(259, kShort, 8),               // Deflate
-                             number(262, kShort, is_rgb ? 2 : 1),  // RGB, or black is the least
-                             number(277, kShort, static_cast<std::uint64_t>(format_.samples)),
-                             number(284, kShort, 1)};  // samples of a pixel together
-  if (!tags_.software.empty()) entries.push_back(text(305, kAscii, tags_.software));
-  entries.push_back(number(317, kShort, is_float ? 3 : 2));
-  entries.push_back(number(322, kLong, kTile_px));
-  entries.push_back(number(323, kLong, kTile_px));
-  entries.push_back(numbers(324, kLong8, page.offset));
-  entries.push_back(numbers(325, kLong8, page.bytes));
-  if (!is_rgb && format_.samples > 1) entries.push_back(number(338, kShort, 0, format_.samples - 1));
-  entries.push_back(number(339, kShort, is_float ? 3 : 1, format_.samples));
-  if (!tags_.xmp.empty() && !is_reduced) entries.push_back(text(700, kByte, tags_.xmp));
-  if (tags_.no_data) entries.push_back(text(42113, kAscii, "nan"));
-
-  // What does not fit into an entry stands before the directory.
-  std::vector<std::uint8_t> directory;
-  put_number(directory, entries.size(), 8);
-  for (Entry& entry : entries) {
-    put_number(directory, entry.tag, 2);
-    put_number(directory, entry.type, 2);
-    put_number(directory, entry.count, 8);
-    if (entry.data.size() > 8) {
-      const std::uint64_t at = end_;
-      append(entry.data);
-      put_number(directory, at, 8);
-    } else {
-      entry.data.resize(8);
-      directory.insert(directory.end(), entry.data.begin(), entry.data.end());
-    }
-  }
-  const std::uint64_t begin = end_;
-  const std::uint64_t next_link = begin + directory.size();
-  put_number(directory, 0, 8);
-  append(directory);
-
-  std::vector<std::uint8_t> pointer;
-  put_number(pointer, begin, 8);
-  if (fseeko(file_.stream(), static_cast<off_t>(link), SEEK_SET) != 0) {
-    throw vpe::base::file_error("write", file_.path(), std::strerror(errno), "check the disk");
-  }
-  file_.write(pointer);
-  if (fseeko(file_.stream(), static_cast<off_t>(end_), SEEK_SET) != 0) {
-    throw vpe::base::file_error("write", file_.path(), std::strerror(errno), "check the disk");
-  }
-  return next_link;
 }
 
 void BigTiffWriter::finish() {
-  std::uint64_t link = kFirstLink;
-  for (std::size_t n = 0; n < pages_.size(); ++n) {
-    const Page& page = pages_[n];
-    if (std::find(page.offset.begin(), page.offset.end(), 0) != page.offset.end()) {
-      throw std::logic_error("tiles are missing");
-    }
-    link = write_directory(page, n > 0, link);
-  }
+  end_page();
+  tiff_.close();
 }
 
 }  // namespace panorama

@@ -7,8 +7,8 @@ namespace panorama {
 
 namespace {
 
-// Lengths are counted in parts: a pixel taken has `taken` parts, a pixel given `given` of them, so that both
-// rows have equally many.
+// Counts lengths in parts: a pixel taken has `taken` parts, a pixel given has `given` of them, so that both
+// rows have the same number of parts.
 struct Parts {
   std::int64_t taken;
   std::int64_t given;
@@ -53,7 +53,7 @@ void BoxDownsampler::take(Row row) {
   const Parts down = parts_of(height_px_);
   std::int64_t at = row_ * down.taken;
   const std::int64_t end = at + down.taken;
-  // A row may be part of two.
+  // A row may contribute to two rows of the output.
   while (at < end) {
     const std::int64_t until = std::min(end, (out_row_ + 1) * down.given);
     const auto weight = static_cast<std::uint64_t>(until - at);

@@ -1,4 +1,4 @@
-// Images half as large, row by row.
+// Reduction of images to half their size, row by row.
 #pragma once
 
 #include <cstdint>
@@ -6,22 +6,25 @@
 #include <span>
 #include <vector>
 
-#include "mars/sources/source.h"
+#include "vpe/base/rgb.h"
 
 namespace panorama {
 
-// Size of the next smaller level: half, rounded up.
+// Returns the side of the next smaller level: half, rounded up.
 inline std::int64_t half_px(std::int64_t side_px) { return (side_px + 1) / 2; }
 
-// Takes the rows of an image from above, gives those of one of half_px() of both sides. Each pixel is the mean
-// over its area, so that odd sizes shift nothing: places keep to the ratio of the sizes. Means are of the
-// stored values, rounded to the nearest. The same bytes everywhere.
+// Takes the rows of an image from the top, and gives those of an image whose sides are half_px() of its own.
+// Each pixel is the mean over its area, so odd sizes shift nothing: places keep to the ratio of the sizes.
+// Means are of the stored values, rounded to the nearest. The same bytes on every machine. For one thread.
 class BoxDownsampler {
  public:
   using Row = std::span<const vpe::base::Rgb>;
+  // `give` receives each finished row.
   BoxDownsampler(std::int64_t width_px, std::int64_t height_px, std::function<void(Row)> give);
 
+  // Returns the width of the rows given.
   std::int64_t width_px() const { return static_cast<std::int64_t>(out_.size()); }
+  // Takes the next row.
   void take(Row row);
 
  private:
@@ -33,7 +36,7 @@ class BoxDownsampler {
   std::int64_t row_ = 0;      // next to be taken
   std::int64_t out_row_ = 0;  // next to be given
   std::function<void(Row)> give_;
-  std::vector<std::uint64_t> sums_;  // of the given row so far, three a pixel
+  std::vector<std::uint64_t> sums_;  // of the row to be given so far, three a pixel
   std::vector<std::uint64_t> across_;
   std::vector<vpe::base::Rgb> out_;
 };

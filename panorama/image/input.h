@@ -1,4 +1,4 @@
-// Bytes of a file or of memory, read where asked for.
+// Random access to the bytes of a file or of memory.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,17 @@
 
 namespace panorama {
 
+// Reads bytes where they are needed. For one thread at a time.
 class Input {
  public:
-  // Throws vpe::base::FileError when the file cannot be opened, as for a folder.
+  // Opens a file. Throws vpe::base::FileError when that fails, as for a folder.
   explicit Input(const std::filesystem::path& path);
-  // The bytes must outlive it.
+  // Reads memory, which must outlive the object.
   explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes), size_(bytes.size()) {}
 
   std::uint64_t size() const { return size_; }
 
-  // Fills `out` from byte `at` on. Throws MetadataError when there are not so many. By one thread at a time.
+  // Fills `out` with the bytes from `at` on. Throws MetadataError when there are too few.
   void read(std::uint64_t at, std::span<std::uint8_t> out) const;
   std::string read_text(std::uint64_t at, std::size_t size) const;
 

@@ -1,4 +1,4 @@
-// What is wrong with a panorama's metadata.
+// The error that readers and writers of a panorama's metadata throw.
 #pragma once
 
 #include <stdexcept>
@@ -7,13 +7,14 @@
 
 namespace panorama {
 
-// Says what is wrong and what to do, without the name of a file: who reads files adds it (vpe/base/file.h).
+// Says what is wrong and what to do, without the name of a file; functions that read files add it
+// (vpe/base/file.h).
 class MetadataError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// What a file says, for a message: as much of its start as a message may have, in whole characters of UTF-8.
+// Returns the start of a text from a file for a message, cut to at most max_bytes in whole characters of UTF-8.
 std::string excerpt(std::string_view text, std::size_t max_bytes = 80);
 
 }  // namespace panorama

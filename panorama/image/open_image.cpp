@@ -14,18 +14,18 @@ namespace {
 namespace fs = std::filesystem;
 using vpe::base::file_error;
 
-// Raised when copies would be made in another way.
+// Increase it when copies are made in another way.
 constexpr int kCopyGeneration = 1;
-// Tiles of this size and more would make looking slow.
+// Larger tiles would make views slow.
 constexpr std::size_t kMaxTileBytes = std::size_t{4} << 20;
-// The smallest level that may be drawn from when all of an image is looked at.
+// Limits the smallest level, which is read whole when all of an image is in view.
 constexpr std::int64_t kMaxCoarsestPixels = std::int64_t{1} << 23;
-// While unpacking PNG: the file, RGBA and RGB at once, then the smaller copies.
+// Memory while a PNG is decoded: the file, RGBA and RGB at once, then the smaller copies.
 constexpr std::int64_t kUnpackBytesAPixel = 9;
 
 std::int64_t pixels_of(const ImageLevel& level) { return level.width_px * level.height_px; }
 
-// Rows of an image that lies in memory.
+// Reads rows of an image in memory.
 class ImageRows : public RowSource {
  public:
   explicit ImageRows(vpe::core::RgbImage image) : image_(std::move(image)) {}
@@ -41,7 +41,7 @@ class ImageRows : public RowSource {
   std::ptrdiff_t next_ = 0;
 };
 
-// FNV-1a: the same name in every run and version.
+// Returns a name that is the same in every run and version, by FNV-1a.
 std::string name_of_copies(const fs::path& path) {
   const std::string text = fs::canonical(path).string() + "|" + std::to_string(fs::file_size(path)) + "|" +
                            std::to_string(fs::last_write_time(path).time_since_epoch().count()) + "|" +
@@ -53,7 +53,7 @@ std::string name_of_copies(const fs::path& path) {
   return std::string(digits.data()) + ".levels";
 }
 
-// Whether copies begin with the level that they should and each is half of the one before.
+// Returns whether copies begin with the right level and each is half of the one before.
 bool are_whole(const std::vector<TiffPage>& pages, const ImageLevel& size, int first_level) {
   std::int64_t width_px = first_level > 0 ? half_px(size.width_px) : size.width_px;
   std::int64_t height_px = first_level > 0 ? half_px(size.height_px) : size.height_px;
@@ -65,7 +65,7 @@ bool are_whole(const std::vector<TiffPage>& pages, const ImageLevel& size, int f
   return !pages.empty();
 }
 
-// What killed processes left of copies.
+// Removes unfinished copies of killed processes.
 void remove_old_drafts(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -76,7 +76,7 @@ void remove_old_drafts(const fs::path& folder) {
   }
 }
 
-// The pages of the copies, which are made when they are not there.
+// Returns the pages of the copies, and makes them when they are not there.
 std::vector<TiffPage> copies(const fs::path& path, ImageFileFormat format, const ImageLevel& size,
                              int first_level, const TiledImageOptions& options) {
   if (!options.cache_folder) {
@@ -89,7 +89,7 @@ std::vector<TiffPage> copies(const fs::path& path, ImageFileFormat format, const
     fs::remove_all(folder);
   }
   remove_old_drafts(options.cache_folder());
-  // Lossless copies of photographs take up to what the pixels take, and a third more for the smaller levels.
+  // Lossless copies of photographs take at most as much as the pixels, and a third more for the smaller levels.
   const std::int64_t needed_bytes = pixels_of(size) * (first_level > 0 ? 1 : 4);
   std::error_code error;
   const fs::space_info space = fs::space(options.cache_folder(), error);
@@ -98,7 +98,7 @@ std::vector<TiffPage> copies(const fs::path& path, ImageFileFormat format, const
                      "tiled copies of it may take " + std::to_string(needed_bytes >> 20) + " MB in '" +
                          options.cache_folder().string() + "', where " + std::to_string(space.available >> 20) +
                          " MB are free",
-                     "make room, set XDG_CACHE_HOME to another disk, or convert the picture: "
+                     "make room, set XDG_CACHE_HOME to another disk, or convert the image: "
                      "gdal_translate -of COG IN OUT.tif");
   }
   const std::size_t share = options.budget_bytes / 2;
@@ -107,7 +107,7 @@ std::vector<TiffPage> copies(const fs::path& path, ImageFileFormat format, const
   return pyramid_pages(folder);
 }
 
-// The image and its reduced copies, as far as they can be drawn from as they are.
+// Returns whether the image and its reduced copies can be read tile by tile as they are.
 bool has_usable_levels(const std::vector<TiffPage>& pages) {
   return pixels_of(pages.back().level) <= kMaxCoarsestPixels &&
          std::all_of(pages.begin(), pages.end(), [](const TiffPage& page) {
@@ -152,7 +152,7 @@ std::unique_ptr<TiledImage> open_tiled_image(const fs::path& path, ImageFileForm
   TiledImageOptions limited = options;
   limited.budget_bytes = std::max(options.budget_bytes, TiledImageOptions::kMinBudget_bytes);
   auto source = format == ImageFileFormat::kTiff ? open_tiff(path, limited) : open_coded(path, format, limited);
-  // Threads hold some tiles more.
+  // The other half is for tiles that threads hold.
   return std::make_unique<TiledImage>(std::move(source), limited.budget_bytes / 2);
 }
 

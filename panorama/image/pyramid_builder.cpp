@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 std::string level_name(int level) { return "level-" + std::to_string(level) + ".tif"; }
 
-// Removed with all that is in it unless it has been renamed.
+// Removes the folder with everything in it unless it has been renamed.
 class DraftFolder {
  public:
   explicit DraftFolder(fs::path path) : path_(std::move(path)) {
@@ -72,7 +72,7 @@ void PyramidBuilder::pass(std::size_t level, std::span<const vpe::base::Rgb> row
 
 std::unique_ptr<TileSource> memory_pyramid(RowSource& rows) {
   std::vector<std::shared_ptr<Tile>> tiles;
-  PyramidBuilder chain(
+  PyramidBuilder pyramid(
       rows.width_px(), rows.height_px(),
       [&tiles](int /*level*/, std::int64_t width_px, std::int64_t height_px) {
         auto tile = std::make_shared<Tile>();
@@ -87,7 +87,7 @@ std::unique_ptr<TileSource> memory_pyramid(RowSource& rows) {
   std::vector<vpe::base::Rgb> row(static_cast<std::size_t>(rows.width_px()));
   for (std::int64_t y = 0; y < rows.height_px(); ++y) {
     rows.read(row);
-    chain.take(row);
+    pyramid.take(row);
   }
   return std::make_unique<MemoryTiles>(std::vector<std::shared_ptr<const Tile>>(tiles.begin(), tiles.end()));
 }
@@ -101,7 +101,7 @@ void write_pyramid(const fs::path& folder, RowSource& rows, int first_level, std
     tile_height_px /= 2;
   const DraftFolder draft(folder.string() + "." + std::to_string(::getpid()) + ".tmp");
   std::vector<std::unique_ptr<TileWriter>> writers;
-  PyramidBuilder chain(
+  PyramidBuilder pyramid(
       rows.width_px(), rows.height_px(),
       [&](int level, std::int64_t width_px, std::int64_t height_px) -> PyramidBuilder::Sink {
         if (level < first_level) return {};
@@ -113,13 +113,13 @@ void write_pyramid(const fs::path& folder, RowSource& rows, int first_level, std
   for (std::int64_t y = 0; y < rows.height_px(); ++y) {
     if (progress && y % 64 == 0) progress(static_cast<double>(y) / static_cast<double>(rows.height_px()));
     rows.read(row);
-    chain.take(row);
+    pyramid.take(row);
   }
   for (auto& writer : writers) writer->finish();
   writers.clear();
   std::error_code error;
   fs::rename(draft.path(), folder, error);
-  // Another process may have been quicker.
+  // Another process may have made it first.
   if (error && !fs::is_directory(folder))
     throw vpe::base::file_error("write", folder, error.message(), "check the permissions there");
 }

@@ -1,4 +1,4 @@
-// Smaller copies of an image: in memory, or in a folder of files. Private to panorama.
+// Smaller copies of an image, in memory or in a folder of files. Private to panorama.
 #pragma once
 
 #include <filesystem>
@@ -13,20 +13,22 @@
 
 namespace panorama {
 
-// Said now and then with what is done, 0 to 1; may throw to stop the work.
+// Receives the finished fraction now and then; may throw to stop the work.
 using TiledImageProgress = std::function<void(double fraction)>;
 
-// Levels down to one whose sides are at most this.
+// Sides of the smallest level are at most this.
 inline constexpr std::int64_t kCoarsestSide_px = 256;
 
-// Rows of level 0 in, rows of every level out, as soon as they are known.
+// Takes the rows of level 0 and passes the rows of every level on as soon as they are known. For one thread.
 class PyramidBuilder {
  public:
   using Sink = std::function<void(std::span<const vpe::base::Rgb>)>;
-  // Called for level 0, 1, ...; an empty sink is a level that nobody wants.
+  // Returns the receiver of a level's rows; an empty function when the level is not needed. Called for level 0,
+  // 1, ...
   using MakeSink = std::function<Sink(int level, std::int64_t width_px, std::int64_t height_px)>;
 
   PyramidBuilder(std::int64_t width_px, std::int64_t height_px, const MakeSink& make);
+  // Takes the next row of level 0.
   void take(std::span<const vpe::base::Rgb> row) { pass(0, row); }
 
  private:
@@ -36,16 +38,17 @@ class PyramidBuilder {
   std::vector<std::unique_ptr<BoxDownsampler>> downsamplers_;
 };
 
-// All levels in memory, each of them one tile: 4 bytes a pixel of the image.
+// Returns all levels in memory, each as one tile: 4 bytes a pixel of the image.
 std::unique_ptr<TileSource> memory_pyramid(RowSource& rows);
 
-// Writes level first_level and all smaller ones as `folder`/level-K.tif, tiled, lossless. What is written
-// appears under that name only when it is complete; a folder that is there by then is left as it is. Memory:
-// max_bytes and the rows' own. Throws vpe::base::FileError, as for a full disk.
+// Writes level first_level and all smaller ones as `folder`/level-K.tif, tiled, lossless. The folder appears
+// only when it is complete; one that another process has made by then is left as it is. Memory: max_bytes and
+// that of `rows`. Throws vpe::base::FileError, as for a full disk.
 void write_pyramid(const std::filesystem::path& folder, RowSource& rows, int first_level, std::size_t max_bytes,
                    const TiledImageProgress& progress);
 
-// The pages of such a folder, largest first; empty when it is not there. Throws vpe::base::FileError.
+// Returns the pages of such a folder, largest first; none when the folder is not there. Throws
+// vpe::base::FileError.
 std::vector<TiffPage> pyramid_pages(const std::filesystem::path& folder);
 
 }  // namespace panorama

@@ -11,7 +11,7 @@ namespace {
 
 using vpe::base::file_error;
 
-// One tile or strip is unpacked whole.
+// Limits one tile or strip, which is decoded whole.
 constexpr tmsize_t kMaxPartBytes = tmsize_t{1} << 28;
 
 struct Layout {
@@ -66,8 +66,8 @@ RasterPlane::RasterPlane(std::filesystem::path path, std::int64_t width_px, std:
   if (layout.width_px == width_px && layout.height_px == height_px) return;
   throw file_error("use", path_,
                    "it has " + std::to_string(layout.width_px) + "x" + std::to_string(layout.height_px) +
-                       " pixels, the picture " + std::to_string(width_px) + "x" + std::to_string(height_px),
-                   "a plane has to have the picture's size; remove it from the JSON or make it again");
+                       " pixels, the image " + std::to_string(width_px) + "x" + std::to_string(height_px),
+                   "an auxiliary layer must have the image's size; remove it from the JSON or make it again");
 }
 
 std::vector<double> RasterPlane::at(std::int64_t column, std::int64_t row) const {

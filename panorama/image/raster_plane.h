@@ -1,4 +1,4 @@
-// Rasters that are registered to a panorama's image: range, place, elevation of what each pixel shows.
+// Files of auxiliary layers, which are registered to a panorama's image: range, place, elevation of each pixel.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,19 @@
 
 namespace panorama {
 
-// A TIFF or BigTIFF, tiled or in rows, with one band or more of 32- or 64-bit floating point numbers that lie
-// together. NaN stands for sky and everything else that has no value.
+// Reads a TIFF or BigTIFF, tiled or in rows, with one band or more of 32- or 64-bit floating point numbers that
+// lie together. NaN stands for the sky and everything else without a value. Any thread may call any const
+// member.
+//
+// at() opens the file, reads one tile or strip and closes it again, so that no file stays open and calls need
+// no locks. That suits single queries, as below a cursor. To read many pixels, use a reader that keeps the file
+// open.
 class RasterPlane {
  public:
   // Reads the header. Throws vpe::base::FileError: damaged, another kind, or not of this size.
   RasterPlane(std::filesystem::path path, std::int64_t width_px, std::int64_t height_px);
 
-  // The bands' values at a pixel of the image. Reads one tile or strip. Throws vpe::base::FileError.
+  // Returns the values of all bands at a pixel of the image. Throws vpe::base::FileError.
   std::vector<double> at(std::int64_t column, std::int64_t row) const;
 
  private:

@@ -6,26 +6,27 @@
 #include <span>
 #include <string>
 
-#include "mars/sources/source.h"
 #include "vpe/base/file.h"
 #include "vpe/base/parallel.h"
+#include "vpe/base/rgb.h"
 
 namespace panorama {
 
-inline constexpr std::int64_t kMaxJpegSide_px = 65500;  // libjpeg's
+inline constexpr std::int64_t kMaxJpegSide_px = 65500;  // libjpeg's own limit
 
+// Writes the rows of one image. For one thread.
 class RowWriter {
  public:
   virtual ~RowWriter() = default;
-  // Whole rows. Throws vpe::base::FileError.
+  // Adds whole rows. Throws vpe::base::FileError, std::logic_error for rows that the image does not have.
   virtual void write(std::span<const vpe::base::Rgb> rows) = 0;
-  // After the last row. Throws vpe::base::FileError, std::logic_error when rows are missing.
+  // Ends the file. Throws vpe::base::FileError, std::logic_error when rows are missing.
   virtual void finish() = 0;
 };
 
-// 8-bit sRGB, into a file that is empty and stays open; the caller commits it. An XMP packet goes before the
-// pixels unless it is empty. PNG rows are packed by all threads of the pool; the same rows in the same calls
-// make the same bytes for any number of threads. Throw vpe::base::FileError.
+// Return writers of 8-bit sRGB into a file that is empty and stays open; the caller commits it. An XMP packet
+// is written before the pixels unless it is empty. PNG rows are packed by all threads of the pool: the same
+// rows in the same calls make the same bytes for any number of threads. Throw vpe::base::FileError.
 std::unique_ptr<RowWriter> make_png_writer(vpe::base::OutputFile& file, std::int64_t width_px,
                                            std::int64_t height_px, const std::string& xmp,
                                            vpe::base::ThreadPool& pool);

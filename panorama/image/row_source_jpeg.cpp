@@ -21,7 +21,7 @@ class JpegRows : public RowSource {
   explicit JpegRows(const std::filesystem::path& path) : JpegRows(path, Closed()) {
     if (!start()) fail();
     if (jpeg_has_multiple_scans(&codec_) != 0) {
-      throw file_error("read", path, "it is progressive, so that it has to be unpacked in memory whole",
+      throw file_error("read", path, "it is progressive, so that it has to be decoded in memory whole",
                        "give more --memory, or convert it: gdal_translate -of COG IN.jpg OUT.tif");
     }
     if (!begin()) fail();
@@ -37,7 +37,7 @@ class JpegRows : public RowSource {
   }
 
  private:
-  // What it makes is destroyed when the constructor that goes on from it throws.
+  // Completes the object, so that its destructor runs when the delegating constructor throws.
   struct Closed {};
   JpegRows(const std::filesystem::path& path, Closed)
       : path_(path), stream_(std::fopen(path.c_str(), "rb"), std::fclose) {

@@ -22,7 +22,7 @@ class PngRows : public RowSource {
   explicit PngRows(const std::filesystem::path& path) : PngRows(path, Closed()) {
     if (!start()) fail();
     if (is_interlaced_) {
-      throw file_error("read", path, "it is interlaced, so that it has to be unpacked in memory whole",
+      throw file_error("read", path, "it is interlaced, so that it has to be decoded in memory whole",
                        "give more --memory, or convert it: gdal_translate -of COG IN.png OUT.tif");
     }
   }
@@ -37,7 +37,7 @@ class PngRows : public RowSource {
   }
 
  private:
-  // What it makes is destroyed when the constructor that goes on from it throws.
+  // Completes the object, so that its destructor runs when the delegating constructor throws.
   struct Closed {};
   PngRows(const std::filesystem::path& path, Closed)
       : path_(path), stream_(std::fopen(path.c_str(), "rb"), std::fclose) {

@@ -1,7 +1,7 @@
-// A finished strip of a panorama on disk, until the whole is there.
+// Files of finished strips of a panorama, kept until the whole image is complete.
 //
-// Numbered blocks of bytes under a fingerprint of all that they depend on, with a checksum. A file private to
-// this program: another version's or machine's is simply not taken.
+// A file holds numbered blocks of bytes under a fingerprint of everything that they depend on, with a checksum.
+// The format is private to this program: files of another version or machine are ignored.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,10 @@
 
 namespace panorama {
 
+// Writes one strip. For one thread.
 class StripWriter {
  public:
-  // Into a file that is empty; the caller commits it. Throws vpe::base::FileError.
+  // Writes into a file that is empty; the caller commits it. Throws vpe::base::FileError, as all members do.
   StripWriter(vpe::base::OutputFile& file, const std::string& fingerprint);
   void add(std::span<const std::uint8_t> block);
   void finish();
@@ -30,13 +31,15 @@ class StripWriter {
   std::int64_t sum_ = 0;
 };
 
+// Reads one strip. Any thread may call any const member.
 class StripFile {
  public:
-  // Reads all of it once. Nothing when it is not there, of another fingerprint or number of blocks, or damaged.
+  // Opens a file and reads all of it once. Returns nullopt when it is not there, has another fingerprint or
+  // number of blocks, or is damaged.
   static std::optional<StripFile> open(const std::filesystem::path& path, const std::string& fingerprint,
                                        std::size_t blocks);
 
-  // Throws vpe::base::FileError. The file is open only during the call.
+  // Reads a block. Throws vpe::base::FileError. The file is open only during the call.
   std::vector<std::uint8_t> block(std::size_t n) const;
 
  private:

@@ -1,4 +1,4 @@
-// A TIFF or BigTIFF that is read in parts. Private to panorama.
+// TIFF and BigTIFF files that are read in parts. Private to panorama.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,24 @@
 
 namespace panorama {
 
-// One handle, used by one thread at a time. Messages of the library are kept, not printed; memory maps are not
-// used; tables of tiles are read where they are needed.
+// Holds one open file, for one thread at a time. Messages of the library are kept, not printed; memory maps are
+// not used; tables of tiles are read where they are needed.
 class TiffFile {
  public:
-  // Throws vpe::base::FileError.
+  // Opens a file. Throws vpe::base::FileError.
   explicit TiffFile(std::filesystem::path path);
 
   TIFF* get() const { return tiff_.get(); }
   const std::filesystem::path& path() const { return path_; }
 
+  // Returns a field of the current directory, or the library's default for it, or `otherwise`.
   template <class Value>
   Value field(std::uint32_t tag, Value otherwise) const {
     Value value = otherwise;
     return TIFFGetFieldDefaulted(get(), tag, &value) == 1 ? value : otherwise;
   }
 
-  // "cannot read 'PATH': " with the library's last words.
+  // Returns the error "cannot read 'PATH': " with the library's last words.
   vpe::base::FileError damaged() const;
 
  private:

@@ -11,7 +11,6 @@ namespace panorama {
 
 namespace {
 
-// What a page that can be read has; other kinds are told to be converted.
 constexpr char kConvert[] = "convert it: gdal_translate -ot Byte -expand rgb -co TILED=YES IN.tif OUT.tif";
 constexpr int kMaxPages = 64;
 
@@ -59,7 +58,7 @@ TiffPage page_of(const TiffFile& file) {
   return page;
 }
 
-// Reduced by the same factor both ways, as far as rounding lets one see.
+// Returns whether a level is reduced by the same factor in both directions, as far as rounding shows it.
 bool is_reduced(const ImageLevel& full, const ImageLevel& level) {
   if (level.width_px >= full.width_px || level.height_px > full.height_px) return false;
   const double factor = static_cast<double>(full.width_px) / static_cast<double>(level.width_px);
@@ -77,7 +76,7 @@ void add_reduced(const TiffFile& file, std::vector<TiffPage>& pages) {
 vpe::base::Rgb pixel_at(const std::uint8_t* bytes, int samples, int bytes_a_sample) {
   const auto sample = [&](int n) {
     if (bytes_a_sample == 1) return bytes[n];
-    // As the machine has them; the library has turned them.
+    // The library has converted them to the machine's order of bytes.
     std::uint16_t value = 0;
     std::copy_n(bytes + 2 * n, 2, reinterpret_cast<std::uint8_t*>(&value));
     return static_cast<std::uint8_t>((value * 255U + 32767U) / 65535U);
@@ -114,36 +113,28 @@ std::vector<TiffPage> list_pages(const std::filesystem::path& path) {
   return pages;
 }
 
-TiffTiles::TiffTiles(std::vector<TiffPage> pages) : pages_(std::move(pages)), idle_(pages_.size()) {
-  for (const TiffPage& page : pages_) levels_.push_back(page.level);
+TiffTiles::TiffTiles(std::vector<TiffPage> pages) : pages_(std::move(pages)) {
+  for (const TiffPage& page : pages_) {
+    levels_.push_back(page.level);
+    // A handle whose reading failed is closed: what it had begun to read is unknown.
+    handles_.emplace_back([&page] { return open(page); },
+                          vpe::base::ObjectPoolOptions<Handle>{.discard_on_exception = true});
+  }
 }
 
-std::unique_ptr<TiffTiles::Handle> TiffTiles::take(std::size_t page) const {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!idle_[page].empty()) {
-      auto handle = std::move(idle_[page].back());
-      idle_[page].pop_back();
-      return handle;
-    }
-  }
-  auto handle = std::make_unique<Handle>(pages_[page].path);
+std::unique_ptr<TiffTiles::Handle> TiffTiles::open(const TiffPage& page) {
+  auto handle = std::make_unique<Handle>(page.path);
   TIFF* tiff = handle->file.get();
-  if (TIFFSetSubDirectory(tiff, pages_[page].directory) != 1) throw handle->file.damaged();
+  if (TIFFSetSubDirectory(tiff, page.directory) != 1) throw handle->file.damaged();
   if (handle->file.field<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_JPEG)
     TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
   return handle;
 }
 
-void TiffTiles::put_back(std::size_t page, std::unique_ptr<Handle> handle) const {
-  const std::lock_guard lock(mutex_);
-  idle_[page].push_back(std::move(handle));
-}
-
 std::shared_ptr<const Tile> TiffTiles::read(int level, std::int64_t column, std::int64_t row) const {
   const auto index = static_cast<std::size_t>(level);
   const ImageLevel& size = levels_[index];
-  auto handle = take(index);
+  const auto handle = handles_[index].acquire();
   TIFF* tiff = handle->file.get();
   const auto number = static_cast<std::uint32_t>(row * size.tile_columns() + column);
   auto tile = std::make_shared<Tile>();
@@ -167,7 +158,6 @@ std::shared_ptr<const Tile> TiffTiles::read(int level, std::int64_t column, std:
     for (std::size_t n = 0; n < tile->pixels.size(); ++n)
       tile->pixels[n] = pixel_at(handle->bytes.data() + n * step, samples, sample_bytes);
   }
-  put_back(index, std::move(handle));
   return tile;
 }
 

@@ -13,10 +13,10 @@ static_assert(std::endian::native == std::endian::little, "the predictors below 
 
 namespace {
 
-// Level 1 packs images of ground almost as well as the others, several times as fast.
+// Level 1 packs images of ground almost as well as the others and is several times as fast.
 constexpr int kLevel = 1;
 
-// Each byte less the one a pixel before it, from the end.
+// Subtracts from each byte the one a pixel before it, from the end on.
 void difference(std::uint8_t* row, std::size_t bytes, std::size_t step) {
   for (std::size_t n = bytes; n-- > step;) row[n] = static_cast<std::uint8_t>(row[n] - row[n - step]);
 }
@@ -25,7 +25,7 @@ void add_up(std::uint8_t* row, std::size_t bytes, std::size_t step) {
   for (std::size_t n = step; n < bytes; ++n) row[n] = static_cast<std::uint8_t>(row[n] + row[n - step]);
 }
 
-// Highest bytes of all numbers first.
+// Orders bytes so that the highest bytes of all numbers come first.
 void split_bytes(const std::uint8_t* row, std::uint8_t* out, std::size_t numbers, std::size_t bytes) {
   for (std::size_t n = 0; n < numbers; ++n) {
     for (std::size_t b = 0; b < bytes; ++b) out[(bytes - 1 - b) * numbers + n] = row[n * bytes + b];
@@ -38,8 +38,8 @@ void join_bytes(const std::uint8_t* row, std::uint8_t* out, std::size_t numbers,
   }
 }
 
-// What packing takes, kept by a thread from tile to tile: under a tight --memory, blocks this large are asked
-// of the system one by one, and zeroing them costs a tenth of the time.
+// Holds the memory that packing needs; each thread keeps one from tile to tile. Under a tight --memory, blocks
+// this large come from the system one by one, and zeroing them costs a tenth of the time.
 class Packer {
  public:
   Packer() {

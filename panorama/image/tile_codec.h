@@ -1,5 +1,5 @@
-// Tiles of TIFF files, packed: a predictor (TIFF 6, section 14; TIFF technical note 3 for floating point), then
-// Deflate. Pure functions for any thread; the same bytes for the same samples and the same zlib.
+// Packing of tiles for TIFF files: a predictor (TIFF 6, section 14; TIFF technical note 3 for floating point),
+// then Deflate. Pure functions for any thread; the same bytes for the same samples and the same zlib.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace panorama {
 
 inline constexpr int kTile_px = 256;
 
-// Of a pixel. Samples of 1 byte are whole numbers, of 4 and 8 bytes IEEE floating point in this machine's
-// order.
+// Describes a pixel. Samples of 1 byte are whole numbers; samples of 4 and 8 bytes are IEEE floating point in
+// this machine's byte order.
 struct SampleFormat {
   int samples = 3;
   int bytes = 1;
@@ -24,10 +24,10 @@ struct SampleFormat {
 };
 inline constexpr SampleFormat kRgb{3, 1};
 
-// `tile` has tile_bytes(), row by row.
+// Packs a tile of tile_bytes(), row by row.
 std::vector<std::uint8_t> pack_tile(std::span<const std::uint8_t> tile, const SampleFormat& format);
 
-// Inverse. Throws std::runtime_error for bytes that pack_tile() did not make.
+// Unpacks a tile. Throws std::runtime_error for bytes that pack_tile() did not make.
 std::vector<std::uint8_t> unpack_tile(std::span<const std::uint8_t> packed, const SampleFormat& format);
 
 }  // namespace panorama

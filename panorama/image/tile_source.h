@@ -1,16 +1,15 @@
-// Pixels of an image and of smaller copies of it, by tiles.
+// The pixels of an image and of smaller copies of it, by tiles.
 //
-// Level 0 is the image. Every level shows all of it: column x of level 0 is x * width(k) / width(0) of level
-// k, likewise rows, whatever the sizes. Tile (column, row) begins at pixel (column * tile_width, row *
-// tile_height) of its level; the last of a row or column may reach beyond the level, where its pixels are
-// undefined.
+// Level 0 is the image. Every level shows all of it: column x of level 0 is x * width(k) / width(0) of level k,
+// likewise rows, for any sizes. Tile (column, row) begins at pixel (column * tile_width, row * tile_height) of
+// its level; the last tile of a row or column may reach beyond the level, where its pixels are undefined.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "mars/sources/source.h"
+#include "vpe/base/rgb.h"
 
 namespace panorama {
 
@@ -30,12 +29,12 @@ struct Tile {
   std::vector<vpe::base::Rgb> pixels;  // in rows
 };
 
-// Any number of threads may read at a time.
+// Reads tiles. Any number of threads may read at a time.
 class TileSource {
  public:
   virtual ~TileSource() = default;
   virtual const std::vector<ImageLevel>& levels() const = 0;
-  // Throws vpe::base::FileError. Never null.
+  // Returns a tile, never null. Throws vpe::base::FileError.
   virtual std::shared_ptr<const Tile> read(int level, std::int64_t column, std::int64_t row) const = 0;
 };
 

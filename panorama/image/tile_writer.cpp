@@ -7,21 +7,16 @@ namespace panorama {
 
 TileWriter::TileWriter(std::filesystem::path path, const ImageLevel& level)
     : path_(std::move(path)), level_(level), tiff_(path_, "w8") {
-  TIFF* tiff = tiff_.get();
+  vpe::core::TiffLayout layout;
+  layout.width_px = static_cast<std::uint32_t>(level.width_px);
+  layout.height_px = static_cast<std::uint32_t>(level.height_px);
+  layout.samples = 3;
+  layout.compression = COMPRESSION_ADOBE_DEFLATE;
+  layout.tile_width_px = static_cast<std::uint32_t>(level.tile_width_px);
+  layout.tile_height_px = static_cast<std::uint32_t>(level.tile_height_px);
   // Speed counts more than size: the copies are made once and can be made again.
-  const bool ok =
-      tiff != nullptr &&
-      TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(level.width_px)) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(level.height_px)) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_TILEWIDTH, static_cast<std::uint32_t>(level.tile_width_px)) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_TILELENGTH, static_cast<std::uint32_t>(level.tile_height_px)) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 3) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL) == 1 &&
-      TIFFSetField(tiff, TIFFTAG_ZIPQUALITY, 1) == 1;
+  const bool ok = tiff_.get() != nullptr && set_layout(tiff_.get(), layout) &&
+                  TIFFSetField(tiff_.get(), TIFFTAG_ZIPQUALITY, 1) == 1;
   if (!ok) fail();
   rows_.resize(static_cast<std::size_t>(level.width_px) * static_cast<std::size_t>(level.tile_height_px));
   tile_.resize(static_cast<std::size_t>(level.tile_width_px) * static_cast<std::size_t>(level.tile_height_px));

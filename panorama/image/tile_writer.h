@@ -1,4 +1,4 @@
-// One image as a tiled BigTIFF, written row by row. Private to panorama.
+// Tiled BigTIFF files written row by row, for copies of images. Private to panorama.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,18 @@
 
 namespace panorama {
 
-// RGB, deflated, under its final name from the start: for files in a folder that nobody sees yet. Keeps one row
-// of tiles. All throw vpe::base::FileError.
+// Writes RGB, deflated, under its final name from the start; use it in a folder that is renamed when all files
+// are complete. Holds one row of tiles. For one thread. All members throw vpe::base::FileError.
+//
+// BigTiffWriter takes packed tiles in any order instead, of 256 x 256 pixels. Copies need rows, since all
+// levels are written at once, and lower tiles where memory is short.
 class TileWriter {
  public:
-  // Sides of tiles: multiples of 16.
+  // Opens the file. Sides of tiles are multiples of 16.
   TileWriter(std::filesystem::path path, const ImageLevel& level);
+  // Takes the next row.
   void take(std::span<const vpe::base::Rgb> row);
-  // After the last row.
+  // Ends the file after the last row.
   void finish();
 
  private:

@@ -15,7 +15,7 @@ void copy_with_xmp(const Input& input, std::string_view packet, const Sink& sink
     throw MetadataError("an XMP packet of " + std::to_string(packet.size()) + " bytes is too large");
   if (is_png(input)) return copy_png_with_xmp(input, packet, sink);
   if (is_jpeg(input)) return copy_jpeg_with_xmp(input, packet, sink);
-  throw MetadataError("neither PNG nor JPEG, and XMP is put into those only; write the picture as one of them");
+  throw MetadataError("neither PNG nor JPEG, and XMP is put into those only; write the image as one of them");
 }
 
 vpe::base::FileError with_path(const char* operation, const std::filesystem::path& path,

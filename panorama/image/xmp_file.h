@@ -1,4 +1,4 @@
-// An image's size and XMP packet, read and written without touching its pixels.
+// The size and the XMP packet of an image file, read and written without decoding its pixels.
 //
 // PNG: iTXt chunk XML:com.adobe.xmp, plain or compressed, before or behind the pixels; JPEG: APP1 segment;
 // TIFF and BigTIFF: tag 700 of the first image (read only). Sources: PNG specification (third edition), XMP
@@ -27,23 +27,24 @@ struct ImageFileHeader {
   std::optional<std::string> xmp;
 };
 
-// Packets larger than this are refused.
+// Larger packets are refused.
 inline constexpr std::size_t kMaxXmpBytes = std::size_t{1} << 24;
 inline constexpr std::size_t kMaxJpegXmpBytes = 65502;
 
-// By content. PNG is followed to its end, which shows a file that is cut short; JPEG up to its pixels. Reads
-// and keeps little besides the packet, whatever the file's size. Throws FileError: damaged, or not readable.
+// Reads the header of a file; the format is found from its content. A PNG is followed to its end, which shows a
+// file that is cut short; a JPEG up to its pixels. Keeps little besides the packet, for files of any size.
+// Throws FileError: damaged, or not readable.
 ImageFileHeader read_image_header(const std::filesystem::path& path);
-// The same in memory, PNG and JPEG; throws MetadataError.
+// Reads the header of a PNG or JPEG in memory. Throws MetadataError.
 ImageFileHeader read_image_header(std::span<const std::uint8_t> bytes);
 
-// The same PNG or JPEG with the packet in place of any that it has, before the pixels; nothing else changes.
+// Returns the PNG or JPEG with the packet in place of any that it has, before the pixels; nothing else changes.
 // Throws MetadataError: damaged, another format, or a packet that does not fit (kMaxJpegXmpBytes,
 // kMaxXmpBytes).
 std::vector<std::uint8_t> with_xmp(std::span<const std::uint8_t> image, std::string_view packet);
 
-// The same for a file, which is replaced when all has been written; memory does not grow with it. Throws
-// FileError.
+// Puts a packet into a PNG or JPEG file, which is replaced when everything has been written. Memory does not
+// grow with the file. Throws FileError.
 void write_xmp(const std::filesystem::path& path, std::string_view packet);
 
 }  // namespace panorama

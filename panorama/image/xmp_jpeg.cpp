@@ -36,7 +36,7 @@ std::uint8_t read_u8(const Input& input, std::uint64_t at) {
   return bytes[0];
 }
 
-// The segments between the start of the image and its first scan, that one included.
+// Visits the segments from the start of the image to its first scan, including the scan's.
 void visit_segments(const Input& input, const std::function<void(const Segment&)>& visit) {
   for (std::uint64_t at = 2;;) {
     Segment segment;
@@ -50,7 +50,7 @@ void visit_segments(const Input& input, const std::function<void(const Segment&)
     const bool stands_alone =
         segment.marker == 0x01 || (segment.marker >= 0xD0 && segment.marker <= kEndOfImage);
     if (stands_alone || segment.marker == 0x00) {
-      throw MetadataError("JPEG has no picture before byte " + std::to_string(at) + "; the file is damaged");
+      throw MetadataError("JPEG has no image before byte " + std::to_string(at) + "; the file is damaged");
     }
     const std::uint32_t length = read_u16(input, at);
     segment.data = at + 2;

@@ -8,7 +8,8 @@ namespace {
 
 using nlohmann::json;
 
-// Without what arrays and objects have in them, at any depth.
+// Returns a value for a message; leaves the content of arrays and objects out, which may be nested to any
+// depth.
 std::string shown(const json& value) {
   return value.is_structured() ? "an " + std::string(value.type_name()) : excerpt(value.dump());
 }
@@ -38,24 +39,23 @@ std::optional<PairLayout> parse_pair_layout(std::string_view name) {
 }
 
 AuxiliaryFiles read_auxiliary_files(std::string_view text) {
-  AuxiliaryFiles auxiliary_files;
+  AuxiliaryFiles files;
   try {
     const json root = json::parse(text);
     if (!root.is_object()) throw MetadataError("JSON without an object {...} of keys");
     if (const auto stereo = root.find("stereo"); stereo != root.end() && !stereo->is_null()) {
       const auto pair = parse_pair_layout(stereo->is_string() ? stereo->get<std::string>() : "");
       if (!pair) throw MetadataError("stereo is " + shown(*stereo) + R"(; give "sbs", "ou" or "none")");
-      auxiliary_files.pair = *pair;
+      files.pair = *pair;
     }
     if (const auto planes = root.find("planes"); planes != root.end() && !planes->is_null()) {
       if (!planes->is_object()) throw MetadataError("planes is not an object {...} of names and files");
-      for (const auto& [name, value] : planes->items())
-        auxiliary_files.planes.push_back({name, file_of(name, value)});
+      for (const auto& [name, value] : planes->items()) files.planes.push_back({name, file_of(name, value)});
     }
   } catch (const json::exception& e) {
     throw MetadataError("not well-formed JSON: " + excerpt(e.what(), 300));
   }
-  return auxiliary_files;
+  return files;
 }
 
 }  // namespace panorama

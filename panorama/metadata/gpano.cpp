@@ -18,7 +18,7 @@ using vpe::base::format_number;
 
 constexpr std::string_view kNamespace = "http://ns.google.com/photos/1.0/panorama/";
 
-// One column a type: what is needed first, then what may be absent.
+// Required fields come first, then those that may be absent.
 using Member = std::variant<std::string GPano::*, std::int64_t GPano::*, std::optional<double> GPano::*,
                             std::optional<std::int64_t> GPano::*, std::optional<bool> GPano::*,
                             std::optional<std::string> GPano::*>;
@@ -117,7 +117,8 @@ bool is_true_cylinder(const PanoramaMap& map) {
   return std::abs(map.focal_px - true_focal_px) <= 1e-6 * true_focal_px;
 }
 
-// From the start of the turn if that leaves whole columns inside a turn, else from the image's left edge.
+// Counts columns from t = 0 if the image then begins at a whole column and ends within the full circle, else
+// from its left edge.
 void set_columns(GPano& gpano, const PanoramaMap& map) {
   const auto left_px = std::llround(map.crop_left_px);
   double start_deg = map.turn_azimuth_deg;
@@ -190,12 +191,13 @@ GPano gpano_of(const PanoramaMap& map, double max_shift_px) {
   if (const std::string problem = check(map); !problem.empty()) throw MetadataError(problem);
   if (map.kind == MapKind::kFacets) {
     throw MetadataError(
-        "GPano has no faceted cylinder; use a true cylinder or an equirectangular picture for it");
+        "GPano has no faceted cylinder; use a true cylinder or an equirectangular image for it");
   }
   if (map.kind == MapKind::kCylinder && !is_true_cylinder(map)) {
     throw MetadataError("GPano has true cylinders only: focal length " +
                         format_number(map.turn_px / (2 * mars::kPi)) + " pixels for " +
-                        format_number(map.turn_px) + " columns to a turn, not " + format_number(map.focal_px));
+                        format_number(map.turn_px) + " columns to a full circle, not " +
+                        format_number(map.focal_px));
   }
   GPano gpano;
   gpano.use_viewer = true;
@@ -216,9 +218,9 @@ GPano gpano_of(const PanoramaMap& map, double max_shift_px) {
   }
   const double shift_px = largest_difference_px(map, map_of(gpano));
   if (shift_px > max_shift_px) {
-    throw MetadataError("GPano counts in whole pixels, which would shift this picture by " +
-                        format_number(shift_px) +
-                        " pixels; choose a whole number of columns to the turn and rows to the horizon");
+    throw MetadataError(
+        "GPano counts in whole pixels, which would shift this image by " + format_number(shift_px) +
+        " pixels; choose whole numbers of columns for the full circle and of rows to the horizon");
   }
   return gpano;
 }
@@ -233,7 +235,7 @@ PanoramaMap map_of(const GPano& gpano) {
        {std::pair{"PosePitchDegrees", gpano.pitch_deg}, std::pair{"PoseRollDegrees", gpano.roll_deg}}) {
     if (angle_deg.value_or(0.0) != 0.0) {
       throw MetadataError(std::string("GPano:") + name + " is " + format_number(*angle_deg) +
-                          "; only level panoramas are read: reproject the picture to a level horizon");
+                          "; only level panoramas are read: reproject the image to a level horizon");
     }
   }
   if (gpano.full_width_px < 1 || gpano.full_height_px < 1) {

@@ -1,9 +1,13 @@
-// GPano: Google's XMP fields for panoramas, of cylinders and equirectangular images.
+// GPano: Google's XMP fields for panoramas, for cylinders and equirectangular images.
 //
 // Source: the namespace's public description. Lengths are whole pixels. The full image has 360 degrees
 // across; the file is the part of it at cropped_left, cropped_top. For equirectangular images cropped_top is
 // counted from the zenith (the full image is 180 degrees high); for cylinders from the horizon, negative
 // above it. The heading is that of the full image's middle.
+//
+// Typical usage:
+//   write_xmp(path, to_xmp(gpano_of(map)));
+//   if (const auto gpano = read_gpano(packet)) map = map_of(*gpano);
 #pragma once
 
 #include <cstdint>
@@ -16,6 +20,7 @@
 
 namespace panorama {
 
+// Holds the fields of a packet, as GPano counts them.
 struct GPano {
   std::string projection_type;  // "cylindrical" or "equirectangular"
   std::int64_t cropped_width_px = 0;
@@ -25,7 +30,7 @@ struct GPano {
   std::int64_t cropped_left_px = 0;
   std::int64_t cropped_top_px = 0;
 
-  std::optional<double> heading_deg;  // 0 to less than 360; without it azimuths are counted as if it were 0
+  std::optional<double> heading_deg;  // 0 to less than 360; absent: azimuths are counted as if it were 0
   std::optional<double> pitch_deg;
   std::optional<double> roll_deg;
   std::optional<std::int64_t> initial_heading_deg;
@@ -41,7 +46,7 @@ struct GPano {
   std::optional<std::string> first_photo_date;
   std::optional<std::string> last_photo_date;
   std::optional<std::int64_t> source_photos;
-  std::optional<std::int64_t> interior_left_px;  // of the largest rectangle without holes
+  std::optional<std::int64_t> interior_left_px;  // of the largest rectangle without nodata
   std::optional<std::int64_t> interior_top_px;
   std::optional<std::int64_t> interior_width_px;
   std::optional<std::int64_t> interior_height_px;
@@ -49,20 +54,21 @@ struct GPano {
   bool operator==(const GPano&) const = default;
 };
 
-// A whole XMP packet, the fields as elements. Characters that XML cannot hold are left out.
+// Returns a whole XMP packet with the fields as elements. Leaves out characters that XML cannot hold.
 std::string to_xmp(const GPano& gpano);
 
-// The fields of a packet, whatever the prefix, as elements or attributes. Nothing when it has none of GPano's.
+// Returns the fields of a packet, elements or attributes with any prefix; nullopt when it has none of GPano's.
 // Throws MetadataError for XML that is not well-formed, a value of the wrong type, one field given twice with
-// different values, and needed ones that are missing.
+// different values, and required fields that are absent.
 std::optional<GPano> read_gpano(std::string_view xmp);
 
-// The fields in whole pixels nearest to a map. Throws MetadataError for facets (which GPano cannot express),
-// cylinders that are not true ones (focal_px = turn_px / 2 pi), and where rounding to whole pixels would move a
-// place of the image by more than max_shift_px.
+// Returns the fields in whole pixels that are nearest to a map. Throws MetadataError for facets (which GPano
+// cannot express), cylinders that are not true ones (focal_px = turn_px / 2 pi), and where rounding to whole
+// pixels would move a place of the image by more than max_shift_px.
 GPano gpano_of(const PanoramaMap& map, double max_shift_px = 1.0);
 
-// Throws MetadataError for other projections, a pitched or rolled image, and fields that make no map.
+// Returns the map of the fields. Throws MetadataError for other projections, a pitched or rolled image, and
+// fields that make no map.
 PanoramaMap map_of(const GPano& gpano);
 
 }  // namespace panorama

@@ -15,7 +15,7 @@ namespace {
 
 using vpe::base::format_number;
 
-// Lower case without what separates words: "PIXELS/DEGREE" and "pix_deg" alike.
+// Converts to lower case and removes separators of words, for "PIXELS/DEGREE" and "pix_deg" alike.
 std::string bare(std::string_view text) {
   std::string result;
   for (const char c : lower_case(text)) {
@@ -55,7 +55,7 @@ bool is_pixel(std::string_view unit) {
 [[noreturn]] void refuse_unit(std::string_view key, const LabelValue& value) {
   throw MetadataError(std::string(key) + " is in '" + excerpt(value.unit) +
                       "', which is no unit of angles that is read here" +
-                      "; describe the picture in a JSON file instead");
+                      "; describe the image in a JSON file instead");
 }
 
 double number_of(std::string_view key, const LabelValue& value) {
@@ -97,7 +97,7 @@ class Values {
     return static_cast<std::int64_t>(*value);
   }
 
-  // Pixels per degree, of pixels per angle or angle per pixel.
+  // Returns pixels per degree for a value in pixels per angle or in angle per pixel.
   std::optional<double> resolution(std::string_view key) const {
     const std::optional<LabelValue> value = look_up_(key);
     if (!value) return std::nullopt;
@@ -128,28 +128,29 @@ class Values {
 template <class Value>
 Value needed(std::string_view key, const std::optional<Value>& value) {
   if (value) return *value;
-  throw MetadataError("the label has no " + std::string(key) + "; describe the picture in a JSON file instead");
+  throw MetadataError("the label has no " + std::string(key) + "; describe the image in a JSON file instead");
 }
 
-// Azimuth is counted from north in these; in others it turns with the rover, its mast or its arm.
+// Returns whether azimuth is counted from north in a frame. In others it turns with the rover, its mast or its
+// arm.
 bool is_level_frame(std::string_view frame) {
   const std::string name = bare(frame);
   return name.empty() || name.starts_with("site") || name.starts_with("locallevel");
 }
 
-// Half a degree: stated limits are rounded and cut in many ways, but other images' are farther off.
+// Stated limits are rounded and cut in many ways; those of other images are farther off than half a degree.
 constexpr double kSlack_deg = 0.5;
 
 double slack_px(double pixels_per_degree) { return std::max(4.0, kSlack_deg * pixels_per_degree); }
 
 void check_span(const char* what, double stated_px, double image_px, double pixels_per_degree) {
   if (std::abs(stated_px - image_px) <= slack_px(pixels_per_degree)) return;
-  throw MetadataError(std::string("the label contradicts the picture: by ") + what + " it would have " +
+  throw MetadataError(std::string("the label contradicts the image: by ") + what + " it would have " +
                       format_number(std::round(stated_px)) + " pixels, but it has " + format_number(image_px) +
-                      "; give the label of this very picture");
+                      "; give the label of this very image");
 }
 
-// The number that the label gives to the centre of the first line.
+// Returns the number that the label gives to the centre of the first line.
 double first_line(const RoverLabel& label) {
   if (!label.maximum_elevation_deg) return 1.0;
   const double number = label.zero_elevation_line - *label.maximum_elevation_deg * label.rows_per_degree;
@@ -194,15 +195,15 @@ RoverLabel label_of(const LabelLookup& look_up) {
 
 PanoramaMap map_of(const RoverLabel& label, std::int64_t width_px, std::int64_t height_px) {
   if (label.lines.value_or(height_px) != height_px || label.samples.value_or(width_px) != width_px) {
-    throw MetadataError("the label is of a picture of " + std::to_string(label.samples.value_or(width_px)) +
+    throw MetadataError("the label is of an image of " + std::to_string(label.samples.value_or(width_px)) +
                         "x" + std::to_string(label.lines.value_or(height_px)) + " pixels, this one has " +
                         std::to_string(width_px) + "x" + std::to_string(height_px) +
-                        "; give the label of this very picture");
+                        "; give the label of this very image");
   }
   const double first = first_line(label);
   const double turn_px = 360.0 * label.columns_per_degree;
   if (label.stop_azimuth_deg) {
-    // The same azimuth at both ends is a whole turn.
+    // Equal azimuths at both ends mean the full circle.
     double span_deg = std::fmod(*label.stop_azimuth_deg - label.start_azimuth_deg, 360.0);
     if (span_deg <= 0.0) span_deg += 360.0;
     const auto width = static_cast<double>(width_px);

@@ -1,12 +1,12 @@
-// Labels of rover mosaics: which azimuth and elevation their lines and samples show.
+// Labels of rover mosaics: the azimuths and elevations of their lines and samples.
 //
-// Read: the group SURFACE_PROJECTION_PARMS of JPL's PDS3 and VICAR labels (detached, or at the start of the
-// image's file), and cart:Cylindrical of PDS4. JPL's CYLINDRICAL is even in angle both ways: lines are of
-// constant elevation, so its map is kEquirectangular. By the label's own equations
-//   azimuth = START_AZIMUTH + sample / columns_per_degree,  elevation = (ZERO_ELEVATION_LINE - line) /
-//   rows_per_degree
-// whole samples and lines are pixel centres. Samples count from 0. Lines count from where MAXIMUM_ELEVATION,
-// that of the first line, says (1 or 0), else from 1.
+// Read are the group SURFACE_PROJECTION_PARMS of JPL's PDS3 and VICAR labels (detached, or at the start of the
+// image's file), and cart:Cylindrical of PDS4. JPL's CYLINDRICAL is even in angle in both directions: lines
+// have constant elevation, so its map is kEquirectangular. By the label's own equations
+//   azimuth = START_AZIMUTH + sample / columns_per_degree
+//   elevation = (ZERO_ELEVATION_LINE - line) / rows_per_degree
+// whole samples and lines are pixel centres. Samples count from 0. Lines count from the number that
+// MAXIMUM_ELEVATION gives to the first line (1 or 0), else from 1.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@
 
 namespace panorama {
 
+// Holds what a label states of its projection.
 struct RoverLabel {
   double columns_per_degree = 0;
   double rows_per_degree = 0;
@@ -32,17 +33,16 @@ struct RoverLabel {
   std::string frame;  // REFERENCE_COORD_SYSTEM_NAME, empty when the label does not name it
 };
 
-// Whether a file that starts with this text has a label of PDS3 or VICAR there.
+// Returns whether a file that starts with this text has a label of PDS3 or VICAR there.
 bool is_label_start(std::string_view text);
 
-// Each returns nothing for text that has no such group, and throws MetadataError for one that cannot be used:
-// other projections (by name), frames that turn with the rover, units that are not angles, values that are
-// missing.
+// Read a label. Return nullopt for text that has no such group. Throw MetadataError for a label that cannot be
+// used: other projections (by name), frames that turn with the rover, units that are not angles, absent values.
 std::optional<RoverLabel> read_text_label(std::string_view text);
 std::optional<RoverLabel> read_pds4_label(std::string_view xml);
 
-// The map of an image of the label's size. Throws MetadataError when label and size contradict each other
-// or the label contradicts itself.
+// Returns the map of an image of the label's size. Throws MetadataError when label and size contradict each
+// other or the label contradicts itself.
 PanoramaMap map_of(const RoverLabel& label, std::int64_t width_px, std::int64_t height_px);
 
 }  // namespace panorama

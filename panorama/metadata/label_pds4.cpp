@@ -1,4 +1,4 @@
-// PDS4: class Map_Projection_Lander of the cartography dictionary, and the array's own size.
+// Labels of PDS4: class Map_Projection_Lander of the cartography dictionary, and the array's own size.
 #include <array>
 #include <pugixml.hpp>
 #include <utility>
@@ -23,7 +23,7 @@ pugi::xml_node child_local(pugi::xml_node of, std::string_view name) {
   return {};
 }
 
-// PDS3's words for the same values.
+// Keys of PDS3 for the same values.
 constexpr std::array kNames{std::pair{"MAP_RESOLUTION_X", "pixel_scale_x"},
                             std::pair{"MAP_RESOLUTION_Y", "pixel_scale_y"},
                             std::pair{"START_AZIMUTH", "start_azimuth"},
@@ -37,7 +37,7 @@ std::optional<LabelValue> value_of(pugi::xml_node node) {
   return LabelValue{std::string(trim(node.child_value())), node.attribute("unit").value()};
 }
 
-// Elements of the axis "Line" or "Sample" of the array.
+// Returns the number of elements of the array's axis "Line" or "Sample".
 std::optional<LabelValue> axis_length(pugi::xml_node document, std::string_view axis) {
   const pugi::xml_node found = document.find_node([axis](pugi::xml_node node) {
     return local_name(node.name()) == "Axis_Array" &&
@@ -54,7 +54,7 @@ struct DepthCheck : pugi::xml_tree_walker {
 
 std::optional<RoverLabel> read_pds4_label(std::string_view xml) {
   pugi::xml_document document = parse_xml(xml, "label");
-  // What follows calls itself for each level.
+  // The search below recurses for each level.
   if (DepthCheck check; !document.traverse(check)) {
     throw MetadataError("XML nested deeper than " + std::to_string(kMaxDepth));
   }

@@ -15,7 +15,7 @@ constexpr std::array<const char*, 2> kGroups{"SURFACE_PROJECTION_PARMS", "SURFAC
 
 constexpr std::size_t kMaxName = 100;
 
-// Keys as "SECTION.KEY"; of equal keys the first counts.
+// Holds values by "SECTION.KEY"; of equal keys the first counts.
 using VicarLabel = std::map<std::string, std::string, std::less<>>;
 
 bool is_vicar(std::string_view text) { return text.starts_with("LBLSIZE="); }
@@ -35,7 +35,7 @@ class VicarReader {
       at_ = equals + 1;
       const std::string value = read_value();
       // A new property, or a task of the history that follows the properties, begins a section. Its name stands
-      // before all of its keys: a long one, which nobody asks for, is cut.
+      // before all of its keys: a long one, which no reader needs, is cut.
       if (key == "PROPERTY" || key == "TASK") section = value.substr(0, kMaxName) + ".";
       label.emplace(section + key, value);
     }
@@ -46,7 +46,7 @@ class VicarReader {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\n' || text_[at_] == '\r')) ++at_;
   }
 
-  // Quotes double inside of strings.
+  // Inside of strings, quotes are doubled.
   std::string read_string() {
     std::string value;
     for (++at_; at_ < text_.size(); ++at_) {
@@ -84,7 +84,7 @@ std::string_view unquoted(std::string_view text) {
   return trim(text);
 }
 
-// Item `index` of "(a, b)"; the value itself when it is no list.
+// Returns item `index` of "(a, b)"; the value itself when it is no list.
 std::string item(std::string_view text, std::size_t index) {
   text = trim(text);
   if (!text.starts_with('(')) return std::string(unquoted(text));
@@ -98,7 +98,7 @@ std::string item(std::string_view text, std::size_t index) {
   return std::string(unquoted(text.substr(0, text.find(','))));
 }
 
-// "21.4 <pix/deg>".
+// Splits "21.4 <pix/deg>" into value and unit.
 LabelValue with_unit(const std::string& text) {
   const std::size_t open = text.find('<');
   if (open == std::string::npos) return {text, ""};
@@ -106,7 +106,7 @@ LabelValue with_unit(const std::string& text) {
   return {std::string(trim(std::string_view(text).substr(0, open))), text.substr(open + 1, close - open - 1)};
 }
 
-// Which item of the label's value a key means.
+// Returns the key in the label and the item of its value that a key of LabelLookup means.
 std::pair<std::string, std::size_t> key_and_index(std::string_view key) {
   if (key == "MAP_RESOLUTION_X") return {"MAP_RESOLUTION", 0};
   if (key == "MAP_RESOLUTION_Y") return {"MAP_RESOLUTION", 1};

@@ -29,13 +29,13 @@ struct Found {
   std::string source;
   PanoramaMap map;
   bool heading_is_known = true;
-  std::optional<Viewpoint> viewpoint;
-  AuxiliaryFiles auxiliary_files;
+  std::optional<RecordedViewpoint> viewpoint;
+  AuxiliaryFiles auxiliary;
 };
 
 std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
 
-// What a reader of metadata says, with the name of what it read.
+// Calls a reader of metadata, and adds the name of its source to its errors.
 template <class Reader>
 auto reading(const std::string& source, const Reader& reader) {
   try {
@@ -59,7 +59,7 @@ std::string size_text(std::int64_t width_px, std::int64_t height_px) {
   return std::to_string(width_px) + "x" + std::to_string(height_px);
 }
 
-// One camera of a pair, when the description is of both.
+// Reduces a description of both eyes of a pair to one of them.
 void take_one_eye(Found& found, const ImageFileHeader& header, PairLayout pair) {
   if (found.map.width_px != header.width_px || found.map.height_px != header.height_px) return;
   if (pair == PairLayout::kSideBySide) found.map.width_px /= 2;
@@ -73,7 +73,7 @@ void require_size(const Found& found, const fs::path& image, const ImageFileHead
   throw FileError("cannot use " + quoted(image) + ": it has " + size_text(header.width_px, header.height_px) +
                   " pixels, but " + found.source + " describes " +
                   size_text(found.map.width_px, found.map.height_px) +
-                  "; give the description of this very picture, or remove the wrong one");
+                  "; give the description of this very image, or remove the wrong one");
 }
 
 void require_agreement(const Found& a, const Found& b) {
@@ -92,7 +92,7 @@ std::optional<Found> find_sidecar(const fs::path& image) {
     const Sidecar sidecar = reading(quoted(path), [&] { return read_sidecar(text); });
     const bool is_of_this = sidecar.image.empty() || sidecar.image == image.filename();
     if (path == beside && !is_of_this) {
-      throw file_error("use", path, "it describes the picture '" + sidecar.image + "', not " + quoted(image),
+      throw file_error("use", path, "it describes the image '" + sidecar.image + "', not " + quoted(image),
                        "correct its \"image\" or rename it");
     }
     if (path == of_folder && path != beside && (!is_of_this || sidecar.image.empty())) continue;
@@ -102,7 +102,7 @@ std::optional<Found> find_sidecar(const fs::path& image) {
   return std::nullopt;
 }
 
-// The start of the image's file if that is a label, with what it says of its length.
+// Returns the start of the image's file if it begins with a label.
 std::optional<std::string> attached_label(const Input& input) {
   const std::string start =
       input.read_text(0, static_cast<std::size_t>(std::min<std::uint64_t>(64, input.size())));
@@ -139,12 +139,12 @@ std::optional<Found> find_gpano(const fs::path& image, const ImageFileHeader& he
   });
 }
 
-// A description's own image, when `path` is JSON.
+// Returns the image that a JSON file describes, or `path` itself for other files.
 fs::path image_of(const fs::path& path) {
   if (lower_case(path.extension().string()) != ".json") return path;
   const Sidecar sidecar = reading(quoted(path), [&] { return read_sidecar(text_of(path)); });
   if (sidecar.image.empty()) {
-    throw file_error("use", path, "it names no picture", "give the picture, or add \"image\" to it");
+    throw file_error("use", path, "it names no image", "give the image, or add \"image\" to it");
   }
   return path.parent_path() / fs::path(sidecar.image).filename();
 }
@@ -158,7 +158,7 @@ PanoramaDescription describe(const fs::path& path, std::optional<PairLayout> pai
   if (const auto found = find_sidecar(image)) all.push_back(*found);
   if (const auto found = find_label(image)) {
     const auto& [source, label] = *found;
-    // A raw raster has the size that its label says.
+    // A raw raster has no header but its label.
     if (header.format == ImageFileFormat::kOther && label.lines && label.samples) {
       header.width_px = *label.samples;
       header.height_px = *label.lines;
@@ -174,7 +174,7 @@ PanoramaDescription describe(const fs::path& path, std::optional<PairLayout> pai
   }
   if (header.width_px < 1) {
     throw file_error("read", image, "it is neither PNG, JPEG nor TIFF, and no label gives its size",
-                     "convert the picture to one of them");
+                     "convert the image to one of them");
   }
   if (const auto found = find_gpano(image, header)) all.push_back(*found);
   if (all.empty()) {
@@ -189,8 +189,8 @@ PanoramaDescription describe(const fs::path& path, std::optional<PairLayout> pai
                                   {},
                                   all.front().heading_is_known,
                                   {},
-                                  pair.value_or(all.front().auxiliary_files.pair),
-                                  all.front().auxiliary_files.planes};
+                                  pair.value_or(all.front().auxiliary.pair),
+                                  all.front().auxiliary.planes};
   for (Found& found : all) {
     take_one_eye(found, header, description.pair);
     require_size(found, image, header, description.pair);

@@ -1,4 +1,8 @@
-// What a panorama's image shows, from whatever describes it.
+// Descriptions of panorama images, found in their metadata.
+//
+// Typical usage:
+//   const PanoramaDescription description = describe("lookout.png");
+//   const Direction direction = description.map.to_direction(x, y);
 #pragma once
 
 #include <filesystem>
@@ -17,22 +21,23 @@ struct PanoramaDescription {
   std::filesystem::path image;
   ImageFileFormat format = ImageFileFormat::kOther;
   PanoramaMap map;  // of the image's size; of one eye's when it holds a pair
-  std::vector<std::string>
-      sources;  // what described it, the one that counts first: "'x.json'", "GPano in 'x.jpg'"
-  bool heading_is_known =
-      true;  // false: GPano without a heading, azimuths are counted from the full image's middle
-  std::optional<Viewpoint> viewpoint;
+  // Everything that describes the image, that which counts first: "'x.json'", "GPano in 'x.jpg'".
+  std::vector<std::string> sources;
+  // False for GPano without a heading: azimuths are counted from the full image's middle.
+  bool heading_is_known = true;
+  std::optional<RecordedViewpoint> viewpoint;
   PairLayout pair = PairLayout::kNone;
-  std::vector<PlaneName> planes;  // beside the image; of the map's size
+  std::vector<PlaneName> planes;  // auxiliary layers in the image's folder, of the map's size
 };
 
-// `path` is an image, or the JSON that names one. Looked for, and the first found counts:
+// Finds the description of an image. `path` is an image, or the JSON that names one. The first found of these
+// counts:
 //   1. NAME.json, or pano.json in the same folder when its "image" is this image (sidecar.h)
 //   2. a label: NAME.lbl or NAME.xml (in either case), or at the start of the file (label.h)
 //   3. GPano inside of PNG, JPEG or TIFF (gpano.h)
-// Sizes are read without unpacking pixels. Throws vpe::base::FileError: nothing found; a description that
-// cannot be used; two that differ by more than a pixel, or one that does not fit the image, naming both.
-// `pair` says which eyes the image holds, whatever its JSON says.
+// Sizes are read without decoding pixels. `pair` overrides the JSON's statement about eyes. Throws
+// vpe::base::FileError: nothing found; a description that cannot be used; two that differ by more than a pixel,
+// or one that does not fit the image, naming both.
 PanoramaDescription describe(const std::filesystem::path& path, std::optional<PairLayout> pair = std::nullopt);
 
 }  // namespace panorama

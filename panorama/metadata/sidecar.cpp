@@ -15,10 +15,10 @@ namespace {
 using nlohmann::json;
 using vpe::base::format_number;
 
-// Samples and lines are counted by pixel centres from 0: so the graticule of the MSL mosaics is drawn.
+// Samples and lines count pixel centres from 0, as the graticule of the MSL mosaics shows.
 constexpr double kFirstCentre_px = 0.5;
 
-// An object's values by key; a value of another type than asked for is an error that names the key.
+// Returns values of an object by key. A value of another type is an error that names the key.
 class Keys {
  public:
   explicit Keys(const json& object) : object_(object) {}
@@ -30,7 +30,7 @@ class Keys {
     return found->get<double>();
   }
 
-  // The first of two names.
+  // Returns the value of the first of two keys that is there.
   std::optional<double> number(const char* key, const char* other) const {
     const std::optional<double> value = number(key);
     return value ? value : number(other);
@@ -79,7 +79,7 @@ MapKind kind_of(const Keys& keys) {
   for (const MapKind kind : {MapKind::kCylinder, MapKind::kEquirectangular, MapKind::kFacets}) {
     if (name == to_string(kind)) return kind;
   }
-  // JPL's name for what is even in angle; elsewhere it means rows even in tangent.
+  // JPL calls rows even in angle cylindrical; elsewhere the name means rows even in tangent.
   const bool is_cylindrical = name.starts_with("cylindrical") && !name.starts_with("cylindrical-perspective");
   if (is_cylindrical && keys.number("degrees_per_row", "elevation_deg_per_line"))
     return MapKind::kEquirectangular;
@@ -106,7 +106,7 @@ double turn_of(const Keys& keys, double width_px, std::optional<double> left_deg
   throw MetadataError("it needs columns_per_turn, degrees_per_pixel or azimuth_deg_at_right");
 }
 
-// Rows from the horizon to an elevation, for a focal length of 1.
+// Returns the number of rows from the horizon to an elevation for a focal length of 1.
 double rise_of(MapKind kind, double elevation_deg) {
   const double elevation_rad = elevation_deg * mars::kRadiansPerDegree;
   return kind == MapKind::kEquirectangular ? elevation_rad : std::tan(elevation_rad);
@@ -119,7 +119,7 @@ std::optional<double> row_scale_deg(const Keys& keys) {
   return positive(-*per_line_deg, "elevation_deg_per_line with its sign changed");
 }
 
-// Overwrites the scale of rows, which the columns have given, with what the keys say of it.
+// Replaces the scale of rows, which is that of the columns so far, by the one that the keys state.
 void set_rows(PanoramaMap& map, const Keys& keys) {
   const auto top_deg = keys.number("elevation_deg_at_top", "elevation_deg_at_line_0");
   const double top_px = keys.number("elevation_deg_at_top") ? 0.0 : kFirstCentre_px;
@@ -145,7 +145,7 @@ void set_rows(PanoramaMap& map, const Keys& keys) {
   }
 }
 
-// What the keys say a second time has to agree with the map that the others made.
+// Compares keys that state something a second time with the map that the others made.
 void check_agreement(const PanoramaMap& map, const Keys& keys) {
   constexpr double kSlack_px = 1.0;
   const auto compare = [](const char* key, std::optional<double> stated, double is, double pixels_per_unit) {
@@ -186,7 +186,7 @@ PanoramaMap map_of(const Keys& keys) {
   const std::string sense = lower_case(keys.text("azimuth_increases"));
   if (sense.find("counter") != std::string::npos || sense.find("anti") != std::string::npos) {
     throw MetadataError("azimuth_increases is '" + excerpt(sense) +
-                        "'; only pictures with azimuth to the right are read");
+                        "'; only images with azimuth to the right are read");
   }
   const auto facets = keys.count("facets");
   if (kind == MapKind::kFacets &&
@@ -226,12 +226,12 @@ mars::VerticalDatum datum_of(const Keys& keys) {
   return *datum;
 }
 
-std::optional<Viewpoint> viewpoint_of(const Keys& keys) {
+std::optional<RecordedViewpoint> viewpoint_of(const Keys& keys) {
   const json* pose = keys.object("pose");
   const json* rover = keys.object("rover");
   if (pose == nullptr && rover == nullptr) return std::nullopt;
   const Keys place(pose != nullptr ? *pose : *rover);
-  Viewpoint viewpoint;
+  RecordedViewpoint viewpoint;
   viewpoint.lon_deg = needed(place.number("lon_deg", "lon_deg_east"), "lon_deg of the pose");
   viewpoint.lat_deg = needed(place.number("lat_deg"), "lat_deg of the pose");
   if (!mars::is_valid({viewpoint.lon_deg, viewpoint.lat_deg})) {
@@ -269,7 +269,7 @@ Sidecar read_sidecar(std::string_view text) {
   return {keys.text("image"), map_of(keys), viewpoint_of(keys)};
 }
 
-std::string to_json(const Sidecar& sidecar) {
+nlohmann::ordered_json to_json(const Sidecar& sidecar) {
   const PanoramaMap& map = sidecar.map;
   nlohmann::ordered_json root;
   if (!sidecar.image.empty()) root["image"] = sidecar.image;
@@ -287,7 +287,7 @@ std::string to_json(const Sidecar& sidecar) {
   root["horizon_row"] = map.horizon_px;
   root["focal_px"] = map.focal_px;
   if (sidecar.viewpoint) {
-    const Viewpoint& viewpoint = *sidecar.viewpoint;
+    const RecordedViewpoint& viewpoint = *sidecar.viewpoint;
     nlohmann::ordered_json pose;
     pose["lon_deg"] = viewpoint.lon_deg;
     pose["lat_deg"] = viewpoint.lat_deg;
@@ -297,7 +297,11 @@ std::string to_json(const Sidecar& sidecar) {
     if (viewpoint.datum.is_known()) pose["datum"] = mars::to_string(viewpoint.datum);
     root["pose"] = pose;
   }
-  return root.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return root;
+}
+
+std::string to_text(const Sidecar& sidecar) {
+  return to_json(sidecar).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace panorama

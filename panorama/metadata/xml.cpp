@@ -9,12 +9,12 @@ namespace {
 
 constexpr int kMaxDepth = 100;
 
-// Which prefixes stand for one namespace, from the root to the element that is visited.
+// Knows which prefixes stand for one namespace, from the root to the visited element.
 class Scopes {
  public:
   explicit Scopes(std::string_view uri) : uri_(uri) {}
 
-  // At an element that has `depth` others around it.
+  // Enters an element that is nested in `depth` others.
   void enter(pugi::xml_node element, std::size_t depth) {
     declared_.resize(depth + 1);
     Declarations& here = declared_.back();
@@ -120,7 +120,7 @@ pugi::xml_document parse_xml(std::string_view text, std::string_view what) {
 std::map<std::string, std::string> fields_of_namespace(const pugi::xml_document& document,
                                                        std::string_view uri) {
   Collector collector(uri);
-  // traverse() is not const, though it changes nothing by itself.
+  // traverse() is not const, but changes nothing by itself.
   const_cast<pugi::xml_document&>(document).traverse(collector);
   return std::move(collector.found);
 }

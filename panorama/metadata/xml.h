@@ -1,4 +1,4 @@
-// Small helps around pugixml, which knows no namespaces.
+// Helpers for pugixml, which does not know namespaces.
 #pragma once
 
 #include <map>
@@ -10,24 +10,25 @@
 
 namespace panorama {
 
-// ASCII letters to lower case.
+// Converts ASCII letters to lower case.
 std::string lower_case(std::string_view text);
 
-// UTF-8 or what the document declares. Throws MetadataError: what ("XMP", "label") is not well-formed, the
-// library's words, where. Entities other than XML's own are never expanded.
+// Parses UTF-8 or the encoding that the document declares. Never expands entities other than XML's own. Throws
+// MetadataError when `what` ("XMP", "label") is not well-formed, with the library's words and the place.
 pugi::xml_document parse_xml(std::string_view text, std::string_view what);
 
-// Text without the control characters that XML 1.0 has no way to write.
+// Returns the text without the control characters that XML 1.0 cannot hold.
 std::string xml_text(std::string_view text);
 
-// All attributes and all elements without child elements that belong to a namespace, by local name, values
-// trimmed. Throws MetadataError when one is given twice with different values.
+// Returns all attributes and all elements without child elements that belong to a namespace, by local name,
+// values trimmed. Throws MetadataError when one is given twice with different values.
 std::map<std::string, std::string> fields_of_namespace(const pugi::xml_document& document,
                                                        std::string_view uri);
 
-// "pixel_scale_x" of "cart:pixel_scale_x".
+// Returns "pixel_scale_x" for "cart:pixel_scale_x".
 std::string_view local_name(std::string_view name);
 
+// Removes spaces, tabs and line ends from both ends.
 std::string_view trim(std::string_view text);
 
 }  // namespace panorama

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kBand_px = 16;
 
-// Whether the map's image has the place, x in [0, turn_px).
+// Returns whether the map's image has the place, x in [0, turn_px).
 bool is_shown(const PanoramaMap& map, const glm::dvec2& place) {
   const bool is_closed = static_cast<double>(map.width_px) > map.turn_px - 1.0;
   return (is_closed || place.x <= static_cast<double>(map.width_px)) && place.y >= 0.0 &&
          place.y <= static_cast<double>(map.height_px);
 }
 
-// Of the image of a whole turn that begins where the map's does.
+// Returns the place in an image of the full circle that begins where the map's does.
 glm::dvec2 place_of(const PanoramaMap& map, const Direction& direction) {
   glm::dvec2 place = map.place(direction);
   if (place.x < 0.0) place.x += map.turn_px;
@@ -49,8 +49,8 @@ std::optional<glm::dvec2> shown_place(const PanoramaMap& map, const Direction& d
   return place;
 }
 
-vpe::core::RgbImage look(const TiledImage& tiled_image, const PanoramaMap& map, const vpe::core::View& view,
-                         const RenderViewOptions& options) {
+vpe::core::RgbImage render_view(const TiledImage& tiled_image, const PanoramaMap& map,
+                                const vpe::core::View& view, const RenderViewOptions& options) {
   for (const std::string& trouble : {check(map), vpe::core::check(view)}) {
     if (!trouble.empty()) throw std::invalid_argument(trouble);
   }

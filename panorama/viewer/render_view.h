@@ -1,4 +1,4 @@
-// What somebody sees who looks into a panorama: a view of any projection drawn from its image.
+// Views of any projection, resampled from the image of a panorama.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@
 
 namespace panorama {
 
-// Where the map's image begins in the file's: the right or lower camera of a stored pair does not begin at 0.
+// Describes where the map's image begins in the file's. The right or lower image of a stored stereo pair does
+// not begin at 0.
 struct ImageOrigin {
   std::int64_t x_px = 0;
   std::int64_t y_px = 0;
@@ -20,20 +21,21 @@ struct ImageOrigin {
 
 struct RenderViewOptions {
   ImageOrigin origin;
-  vpe::base::Rgb outside{38, 40, 46};  // where the image shows nothing
+  vpe::base::Rgb outside{38, 40, 46};  // colour of directions that the image does not show
   int threads = 0;                     // 0 = all cores
 };
 
 // Draws a view whose axes are in the panorama's frame (viewer.h). Each pixel is a mean over about its own area:
-// taken along the longer axis of its footprint at up to 16 places, each between four pixels and two levels.
-// Across the seam of 360 degrees and of facets the neighbours are those of the directions; the image's upper
-// and lower edge, and its sides when it is no full turn, are sharp. The same bytes for any number of threads.
-// Throws std::invalid_argument for a view or map that check() refuses, and what reading tiles throws.
-vpe::core::RgbImage look(const TiledImage& tiled_image, const PanoramaMap& map, const vpe::core::View& view,
-                         const RenderViewOptions& options);
+// of up to 16 samples along the longer axis of its footprint, each interpolated between four pixels and two
+// levels. Across the seam of 360 degrees and between facets the neighbours are those of the directions; the
+// image's upper and lower edge, and its sides when it is no full circle, are sharp. The same bytes for any
+// number of threads. Throws std::invalid_argument for a view or map that check() refuses, and what reading
+// tiles throws.
+vpe::core::RgbImage render_view(const TiledImage& tiled_image, const PanoramaMap& map,
+                                const vpe::core::View& view, const RenderViewOptions& options);
 
-// Column of an image without gaps that shows what the map has at place(); nothing where the image shows
-// nothing. Images of a full turn within a pixel have no gap.
+// Returns the place where the image shows a direction, x in [0, turn_px); nullopt where it shows none. Images
+// of a full circle within a pixel have no gap.
 std::optional<glm::dvec2> shown_place(const PanoramaMap& map, const Direction& direction);
 
 }  // namespace panorama

@@ -9,7 +9,7 @@ namespace panorama {
 
 namespace {
 
-// Places along the longer axis of a footprint.
+// Limits the samples along the longer axis of a footprint.
 constexpr double kMaxPlaces = 16;
 
 glm::vec3 colour(const vpe::base::Rgb& p) {

@@ -9,13 +9,13 @@
 
 namespace panorama {
 
-// For one thread. Keeps the tiles that it used last.
+// Filters an image. Keeps the tiles that it used last. For one thread.
 class Sampler {
  public:
   Sampler(const TiledImage& image, const PanoramaMap& map, const ImageOrigin& origin);
 
-  // Mean over the parallelogram of `across` and `down` about `at`, all in pixels of the map's image; each
-  // channel 0 to 255.
+  // Returns the mean over the parallelogram of `across` and `down` about `at`, all in pixels of the map's
+  // image; each channel is 0 to 255.
   glm::vec3 mean(const glm::dvec2& at, const glm::dvec2& across, const glm::dvec2& down);
 
  private:
@@ -23,7 +23,7 @@ class Sampler {
     ImageLevel size;
     glm::dvec2 scale;   // pixels of this level to one of the image
     double reduction;   // pixels of the image to one of this level, the larger of both sides
-    std::int64_t turn;  // columns; 0 when the image is no full turn
+    std::int64_t turn;  // columns of a full circle; 0 when the image is none
     std::int64_t left;  // the part that the map describes, both ends included
     std::int64_t right;
     std::int64_t top;

@@ -14,7 +14,7 @@ namespace {
 using mars::kPi;
 using mars::kRadiansPerDegree;
 
-// Above this an image counts as closed at the zenith: mosaics state their rows at pixel centres.
+// From here on an image counts as closed at the zenith: mosaics state their rows at pixel centres.
 constexpr double kClosed_deg = 89.9;
 
 double tangent_of_half(double fov_deg) { return std::tan(0.5 * fov_deg * kRadiansPerDegree); }
@@ -59,7 +59,7 @@ vpe::core::View view_of(double yaw_deg, double pitch_deg, double fov_deg, int wi
 }
 
 Viewer::Viewer(const PanoramaMap& map, int width_px, int height_px) : map_(map), size_(width_px, height_px) {
-  // Written so that images wider than a turn start inside of their first one.
+  // Images wider than a full circle start inside their first one.
   const double middle_px = 0.5 * std::min(static_cast<double>(map.width_px), map.turn_px);
   yaw_deg_ = map.to_direction(middle_px, map.horizon_px).azimuth_deg;
   set_fov(fov_deg_);
@@ -124,7 +124,7 @@ void Viewer::hold(const Direction& direction, double x, double y) {
   const double sine =
       std::sin(direction.elevation_deg * kRadiansPerDegree) * std::sqrt((1.0 + u * u + v * v) / (1.0 + v * v));
   const double rise_rad = std::asin(std::clamp(sine, -1.0, 1.0));
-  // Of the two pitches, one with the ray beyond the zenith or nadir, that which turns less.
+  // Two pitches fulfil this, one with the ray beyond the zenith or nadir; the nearer one counts.
   const double here_rad = pitch_deg_ * kRadiansPerDegree + std::atan(v);
   const double beyond_rad = (rise_rad < 0.0 ? -kPi : kPi) - rise_rad;
   const bool is_beyond = std::abs(beyond_rad - here_rad) < std::abs(rise_rad - here_rad);
@@ -133,7 +133,7 @@ void Viewer::hold(const Direction& direction, double x, double y) {
   const double pitch_deg = std::clamp(pitch_rad / kRadiansPerDegree, range.low_deg, range.high_deg);
   const double pitch = pitch_deg * kRadiansPerDegree;
   const double aside_deg = std::atan2(u, std::cos(pitch) - v * std::sin(pitch)) / kRadiansPerDegree;
-  // The nearest of all turns, so that yaw goes on where it was.
+  // The nearest of all equivalent yaws, so that yaw continues where it was.
   look_at(yaw_deg_ + std::remainder(direction.azimuth_deg - aside_deg - yaw_deg_, 360.0), pitch_deg);
 }
 

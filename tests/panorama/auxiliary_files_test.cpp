@@ -1,4 +1,4 @@
-// What belongs to a panorama: planes beside it, and eyes in it.
+// Files that belong to a panorama: auxiliary layers beside it, and pairs of eyes in it.
 #include "panorama/metadata/auxiliary_files.h"
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(AuxiliaryFiles, APairIsDescribedByOneEye) {
   const test_support::TempDir folder;
   const auto camera = panorama::equirectangular_map(360, 180, 360, 0.0, 90.0);
   vpe::core::write_image(folder / "ou.png", panorama_test::pixels(360, 360), 360, 360);
-  std::string json = panorama::to_json({"ou.png", camera, {}});
+  std::string json = panorama::to_text({"ou.png", camera, {}});
   json.insert(json.find('{') + 1, R"("stereo": "ou",)");
   vpe::base::write_file(folder / "ou.json", json);
   const auto described = panorama::describe(folder / "ou.png");
@@ -58,7 +58,7 @@ TEST(AuxiliaryFiles, APairIsDescribedByOneEye) {
   // The whole image's size is as good, where the projection allows it.
   vpe::core::write_image(folder / "sbs.png", panorama_test::pixels(720, 60), 720, 60);
   vpe::base::write_file(folder / "sbs.json",
-                        panorama::to_json({"sbs.png", panorama::cylinder_map(720, 60, 360, 0.0, 30.0), {}}));
+                        panorama::to_text({"sbs.png", panorama::cylinder_map(720, 60, 360, 0.0, 30.0), {}}));
   EXPECT_EQ(panorama::describe(folder / "sbs.png").map.width_px, 720);
   const auto sbs = panorama::describe(folder / "sbs.png", PairLayout::kSideBySide);
   EXPECT_EQ(sbs.map.width_px, 360);

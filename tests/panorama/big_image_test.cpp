@@ -1,4 +1,4 @@
-// Looking around in images that are far larger than memory.
+// Views of images that are far larger than memory.
 #include <cmath>
 #include <fstream>
 
@@ -40,17 +40,17 @@ void view_panorama(const fs::path& path, int requests) {
   const panorama::PanoramaMap map =
       panorama::equirectangular_map(kWidth, kHeight, static_cast<double>(kWidth), 0.0, 0.5 * kHeight);
   test_support::Random random(42);
-  panorama::RenderViewOptions look;
-  look.outside = {1, 2, 3};
+  panorama::RenderViewOptions view_options;
+  view_options.outside = {1, 2, 3};
   [[maybe_unused]] const std::int64_t resident_kib = of_process("status", "VmRSS:");
   for (int n = 0; n < requests; ++n) {
     panorama::Viewer viewer(map, 64, 36);
     viewer.look_at(random.uniform(-1e4, 1e4), random.uniform(-90.0, 90.0));
     viewer.set_fov(random.log_uniform(0.05, 120.0));
-    look.threads = 1;
-    const vpe::core::RgbImage image = panorama::look(*tiled_image, map, viewer.view(), look);
+    view_options.threads = 1;
+    const vpe::core::RgbImage image = panorama::render_view(*tiled_image, map, viewer.view(), view_options);
     for (const vpe::base::Rgb& p : image.pixels) {
-      ASSERT_TRUE(p == look.outside || (p.r >= 100 && p.r <= 107 && p.g == p.r && p.b == p.r));
+      ASSERT_TRUE(p == view_options.outside || (p.r >= 100 && p.r <= 107 && p.g == p.r && p.b == p.r));
     }
     ASSERT_LE(tiled_image->bytes(), kBudget / 2);
   }
@@ -82,12 +82,12 @@ TEST(BigImage, TilesAreWhereTheyBelong) {
   const panorama::PanoramaMap map =
       panorama::equirectangular_map(kWidth, kHeight, static_cast<double>(kWidth), 0.0, 0.5 * kHeight);
   for (const auto& [column, row] : {std::pair(0, 39), {1, 40}, {390, 39}, {200, 20}, {13, 60}}) {
-    // The last column of tiles is not whole: the turn begins again behind it.
+    // The last column of tiles is not whole: the full circle begins again behind it.
     const panorama::Direction middle =
         map.to_direction(std::min(256.0 * column + 128.0, kWidth - 80.0), 256.0 * row + 128.0);
     const vpe::core::View view = panorama::view_of(middle.azimuth_deg, middle.elevation_deg, 0.05, 16, 16);
     const auto grey = static_cast<std::uint8_t>(panorama_test::SharedTiles::grey(column, row));
-    for (const vpe::base::Rgb& p : panorama::look(*tiled_image, map, view, {}).pixels)
+    for (const vpe::base::Rgb& p : panorama::render_view(*tiled_image, map, view, {}).pixels)
       ASSERT_EQ(p, (vpe::base::Rgb{grey, grey, grey})) << column << "," << row;
   }
 }

@@ -1,19 +1,22 @@
-// Files that are written piece by piece, read back by the libraries of others.
+// Files written piece by piece, read back by the libraries of others.
 #include "panorama/image/big_tiff.h"
 
 #include <gtest/gtest.h>
 #include <tiffio.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <random>
 
 #include "panorama/image/row_file.h"
 #include "panorama/image/strip_file.h"
 #include "panorama/image/xmp_file.h"
 #include "panorama/metadata/gpano.h"
-#include "tests/support/support.h"
+#include "tests/panorama/test_images.h"
 #include "vpe/core/image/image.h"
 
 namespace panorama {
@@ -162,6 +165,114 @@ TEST_F(BigTiff, NumbersKeepTheirBits) {
   expect_numbers<double>(path, 2);
 }
 
+// A small image that needs several tiles, each of one colour: the number of the tile.
+std::vector<std::uint8_t> plain_tile(std::int64_t number) {
+  return pack_tile(std::vector<std::uint8_t>(kRgb.tile_bytes(), static_cast<std::uint8_t>(number)), kRgb);
+}
+
+void expect_plain_tiles(const std::filesystem::path& path, std::uint32_t tiles) {
+  const Tiff tiff = open(path);
+  ASSERT_NE(tiff, nullptr);
+  ASSERT_EQ(TIFFNumberOfTiles(tiff.get()), tiles);
+  std::vector<std::uint8_t> is(kRgb.tile_bytes());
+  for (std::uint32_t n = 0; n < tiles; ++n) {
+    ASSERT_EQ(TIFFReadEncodedTile(tiff.get(), n, is.data(), static_cast<tmsize_t>(is.size())),
+              static_cast<tmsize_t>(is.size()));
+    EXPECT_EQ(is.front(), n);
+    EXPECT_EQ(is.back(), n);
+  }
+}
+
+TEST_F(BigTiff, TilesArePackedByManyThreadsAndPutInAnyOrder) {
+  constexpr std::int64_t kAcross = 13;
+  constexpr std::int64_t kDown = 7;
+  test_support::Random random(12);
+  for (int round = 0; round < 3; ++round) {
+    std::vector<std::int64_t> order(kAcross * kDown);
+    for (std::size_t n = 0; n < order.size(); ++n) order[n] = static_cast<std::int64_t>(n);
+    for (std::size_t n = order.size() - 1; n > 0; --n)
+      std::swap(order[n], order[static_cast<std::size_t>(random.integer(0, static_cast<int>(n)))]);
+    OutputFile file(path);
+    BigTiffWriter writer(file, kAcross * kTile_px, kDown * kTile_px, kRgb, {});
+    vpe::base::ThreadPool many(8);
+    std::mutex mutex;
+    many.run(order.size(), [&](std::size_t n) {
+      const std::vector<std::uint8_t> packed = plain_tile(order[n]);
+      const std::lock_guard lock(mutex);
+      writer.put(order[n] % kAcross, order[n] / kAcross, packed);
+    });
+    EXPECT_THROW(writer.put(kAcross, 0, plain_tile(0)), std::out_of_range);
+    EXPECT_THROW(writer.put(0, -1, plain_tile(0)), std::out_of_range);
+    writer.finish();
+    file.commit();
+    expect_plain_tiles(path, kAcross * kDown);
+  }
+}
+
+TEST_F(BigTiff, TilesAndDirectoriesLieBeyondFourGigabytes) {
+  {
+    OutputFile file(path);
+    BigTiffWriter writer(file, 3 * kTile_px, kTile_px, kRgb, {"someone", "<x/>"});
+    writer.put(2, 0, plain_tile(2));
+    // Sparse: takes no room on the disk.
+    constexpr off_t kFiveGigabytes = off_t{5} << 30;
+    ASSERT_EQ(std::fflush(file.stream()), 0);
+    ASSERT_EQ(::ftruncate(::fileno(file.stream()), kFiveGigabytes), 0);
+    writer.put(0, 0, plain_tile(0));
+    writer.put(1, 0, plain_tile(1));
+    writer.add_reduced_pages(pool, [](double) {});
+    writer.finish();
+    file.commit();
+  }
+  EXPECT_GT(std::filesystem::file_size(path), std::uintmax_t{5} << 30);
+  expect_plain_tiles(path, 3);
+  EXPECT_EQ(read_image_header(path).xmp, "<x/>");
+  const Tiff tiff = open(path);
+  EXPECT_GE(TIFFGetStrileOffset(tiff.get(), 0), std::uint64_t{5} << 30);
+  ASSERT_EQ(TIFFReadDirectory(tiff.get()), 1);
+  EXPECT_EQ(TIFFReadDirectory(tiff.get()), 1);  // 768, 384 and 192 columns
+  EXPECT_EQ(TIFFReadDirectory(tiff.get()), 0);
+}
+
+TEST_F(BigTiff, TagsSayWhatThePixelsAre) {
+  for (const SampleFormat format : {kRgb, SampleFormat{1, 4}, SampleFormat{2, 8}}) {
+    {
+      OutputFile file(path);
+      BigTiffWriter writer(file, 10, 20, format, {"someone", "<x/>", format != kRgb});
+      writer.put(0, 0, pack_tile(std::vector<std::uint8_t>(format.tile_bytes()), format));
+      writer.finish();
+      file.commit();
+    }
+    const std::vector<std::uint8_t> start = vpe::base::read_file(path, 1 << 24);
+    EXPECT_EQ(start[2], 43);  // BigTIFF
+    const Tiff tiff = open(path);
+    ASSERT_NE(tiff, nullptr);
+    const auto number = [&](std::uint32_t tag) {
+      std::uint16_t value = 0;
+      EXPECT_EQ(TIFFGetField(tiff.get(), tag, &value), 1) << tag;
+      return value;
+    };
+    EXPECT_EQ(number(TIFFTAG_BITSPERSAMPLE), 8 * format.bytes);
+    EXPECT_EQ(number(TIFFTAG_SAMPLESPERPIXEL), format.samples);
+    EXPECT_EQ(number(TIFFTAG_COMPRESSION), COMPRESSION_ADOBE_DEFLATE);
+    EXPECT_EQ(number(TIFFTAG_PLANARCONFIG), PLANARCONFIG_CONTIG);
+    const bool is_rgb = format == kRgb;
+    EXPECT_EQ(number(TIFFTAG_PHOTOMETRIC), is_rgb ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
+    EXPECT_EQ(number(TIFFTAG_PREDICTOR), is_rgb ? PREDICTOR_HORIZONTAL : PREDICTOR_FLOATINGPOINT);
+    EXPECT_EQ(number(TIFFTAG_SAMPLEFORMAT), is_rgb ? SAMPLEFORMAT_UINT : SAMPLEFORMAT_IEEEFP);
+    std::uint16_t extra = 0;
+    const std::uint16_t* kinds = nullptr;
+    EXPECT_EQ(TIFFGetField(tiff.get(), TIFFTAG_EXTRASAMPLES, &extra, &kinds), format.samples == 2 ? 1 : 0);
+    EXPECT_EQ(extra, format.samples == 2 ? 1 : 0);
+    const char* text = nullptr;
+    ASSERT_EQ(TIFFGetField(tiff.get(), TIFFTAG_SOFTWARE, &text), 1);
+    EXPECT_STREQ(text, "someone");
+    EXPECT_EQ(read_image_header(path).xmp, "<x/>");
+    const std::string info = panorama_test::output_of("gdalinfo", {path.string()});
+    EXPECT_EQ(info.find("NoData Value=nan") != std::string::npos, !is_rgb) << info;
+  }
+}
+
 TEST_F(BigTiff, ADamagedTileIsAnError) {
   std::vector<std::uint8_t> packed = pack_tile(tile_of(0, 0, 256, 256), kRgb);
   packed.resize(packed.size() / 2);
@@ -225,7 +336,7 @@ TEST_F(BigTiff, RowsMakeTheJpegThatOthersRead) {
   EXPECT_EQ(vpe::core::read_image(path).pixels, whole.pixels);
 }
 
-TEST_F(BigTiff, StripsAreTakenOnlyWhole) {
+TEST_F(BigTiff, StripsAreReadOnlyWhole) {
   const std::vector<std::vector<std::uint8_t>> blocks{{1, 2, 3}, {}, std::vector<std::uint8_t>(100000, 7)};
   const auto write = [&] {
     OutputFile file(path);

@@ -159,7 +159,7 @@ TEST(GPano, PrefixesStandForWhatTheNearestElementSays) {
 }
 
 TEST(GPano, GivesTheMapOfTheDescribedImage) {
-  // 3600 columns to the turn, heading 90 in its middle, 200 columns cut at the left, top 150 rows above the
+  // 3600 columns to the full circle, heading 90 in its middle, 200 columns cut at the left, top 150 rows above the
   // horizon.
   GPano g = needed_fields("cylindrical", 1000, 400, 3600, 400, 200, -150);
   g.heading_deg = 90.0;
@@ -192,7 +192,7 @@ TEST(GPano, RefusesFieldsThatMakeNoMap) {
   EXPECT_SAYS(of([](GPano& g) { g.full_width_px = 0; }), "at least 1");
   EXPECT_SAYS(of([](GPano& g) { g.cropped_width_px = 0; }), "size");
   EXPECT_SAYS(of([](GPano& g) { g.cropped_width_px = -1000000000000; }), "size");
-  EXPECT_SAYS(of([](GPano& g) { g.full_width_px = 1000000000000000; }), "turn");
+  EXPECT_SAYS(of([](GPano& g) { g.full_width_px = 1000000000000000; }), "full circle");
   EXPECT_SAYS(of([](GPano& g) { g.heading_deg = 1e30; }), "azimuth");
 }
 

@@ -12,7 +12,7 @@
 namespace {
 
 using panorama::Landmark;
-using panorama::SkylineCamera;
+using panorama::Viewpoint;
 using vpe::base::ThreadPool;
 using vpe::core::Place;
 
@@ -25,7 +25,7 @@ double sphere_range(const glm::dvec3& camera_m, const glm::dvec3& ray) {
   return along - std::sqrt(half2);
 }
 
-std::vector<Landmark> seen(const SkylineCamera& camera, const std::vector<Place>& features, double within_m) {
+std::vector<Landmark> seen(const Viewpoint& camera, const std::vector<Place>& features, double within_m) {
   ThreadPool pool(2);
   return panorama::landmarks(
       camera, features, within_m, [](const glm::dvec3&) { return kR; },
@@ -35,7 +35,7 @@ std::vector<Landmark> seen(const SkylineCamera& camera, const std::vector<Place>
 TEST(Landmarks, VisibleUpToTheHorizonAndHiddenByTheGroundBefore) {
   const mars::LonLat at{170, 30};
   constexpr double kAlt = 5000;
-  const SkylineCamera camera = panorama::skyline_camera(at, kAlt, kR);
+  const Viewpoint camera = panorama::viewpoint_at(at, kAlt, kR);
   const double dip = mars::horizon_dip_rad(kAlt, kR);
   std::vector<Place> features;
   for (int n = 40; n >= 1; --n) {
@@ -67,7 +67,7 @@ TEST(Landmarks, VisibleUpToTheHorizonAndHiddenByTheGroundBefore) {
 
 TEST(Landmarks, TheDistanceLimitIsStraightAndNamesWhatHides) {
   const mars::LonLat at{0, 0};
-  const SkylineCamera camera = panorama::skyline_camera(at, 100, kR);  // horizon at 26 km
+  const Viewpoint camera = panorama::viewpoint_at(at, 100, kR);  // horizon at 26 km
   const std::vector<Place> features{{"planet", 0, 0, 3e7},
                                     {"plain", 0.3, 0, 100000},
                                     {"hill", 0.43, 0, 6000},

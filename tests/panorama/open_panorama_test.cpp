@@ -1,4 +1,4 @@
-// What describes an image, and what contradicts it.
+// Descriptions of images, and their contradictions.
 #include "panorama/metadata/open_panorama.h"
 
 #include <cmath>
@@ -50,9 +50,9 @@ TEST(OpenPanorama, FindsGPanoInside) {
 TEST(OpenPanorama, JsonComesFirstAndAgrees) {
   const test_support::TempDir folder;
   const fs::path path = image_with_gpano(folder, "a.png");
-  panorama::Sidecar sidecar{"a.png", kMap, panorama::Viewpoint{137.0, -4.5, {}, 2.0, {}, {}}};
+  panorama::Sidecar sidecar{"a.png", kMap, panorama::RecordedViewpoint{137.0, -4.5, {}, 2.0, {}, {}}};
   sidecar.map.horizon_px += 0.4;  // what GPano rounds
-  write(folder / "a.json", panorama::to_json(sidecar));
+  write(folder / "a.json", panorama::to_text(sidecar));
   for (const fs::path& given : {path, folder / "a.json"}) {
     const PanoramaDescription d = describe(given);
     EXPECT_EQ(d.image, path);
@@ -69,13 +69,13 @@ TEST(OpenPanorama, ContradictionsNameBoth) {
   const fs::path path = image_with_gpano(folder, "a.png");
   panorama::Sidecar sidecar{"a.png", kMap, {}};
   sidecar.map.turn_azimuth_deg += 5.0;
-  write(folder / "a.json", panorama::to_json(sidecar));
+  write(folder / "a.json", panorama::to_text(sidecar));
   EXPECT_SAYS(said(path), "a.json", "GPano in", "5", "remove");
   sidecar.map = panorama::cylinder_map(361, 60, 361, 15.0, 30.0);
-  write(folder / "a.json", panorama::to_json(sidecar));
+  write(folder / "a.json", panorama::to_text(sidecar));
   EXPECT_SAYS(said(path), "a.json", "a.png", "361x60", "360x60");
   sidecar = {"other.png", kMap, {}};
-  write(folder / "a.json", panorama::to_json(sidecar));
+  write(folder / "a.json", panorama::to_text(sidecar));
   EXPECT_SAYS(said(path), "a.json", "other.png");
   fs::remove(folder / "a.json");
   // GPano of another size than the file's.
@@ -99,13 +99,13 @@ TEST(OpenPanorama, NothingFoundSaysWhatToGive) {
   write(folder / "c.json",
         "{\"projection\": \"cylinder\", \"width\": 1, \"height\": 1, \"azimuth_deg_at_left\": 0, "
         "\"columns_per_turn\": 1, \"horizon_row\": 0}");
-  EXPECT_SAYS(said(folder / "c.json"), "c.json", "names no picture");
+  EXPECT_SAYS(said(folder / "c.json"), "c.json", "names no image");
   write(folder / "a.json", "{\"projection\": ");
   EXPECT_SAYS(said(folder / "a.png"), "a.json", "JSON");
   // A JSON never names images in other folders.
   panorama::Sidecar sidecar{"../../a.png", panorama::cylinder_map(20, 10, 20, 0, 5), {}};
-  write(folder / "d.json", panorama::to_json(sidecar));
-  write(folder / "a.json", panorama::to_json({"a.png", sidecar.map, {}}));
+  write(folder / "d.json", panorama::to_text(sidecar));
+  write(folder / "a.json", panorama::to_text({"a.png", sidecar.map, {}}));
   EXPECT_EQ(describe(folder / "d.json").image, folder / "a.png");
 }
 

@@ -1,4 +1,4 @@
-// Plans: sizes as asked for, and pieces whose pixels look where the map says.
+// Plans: sizes of the options, and pieces whose pixels show the directions of the map.
 #include "panorama/panorama_plan.h"
 
 #include <gtest/gtest.h>
@@ -15,12 +15,12 @@ namespace {
 using mars::kPi;
 using mars::kRadiansPerDegree;
 
-const PoseOnSphere kStand{{137.4, -4.6, 2000, 77, 0, 0}, mars::kMarsRadius_m};
+const Viewpoint kViewpoint = viewpoint_at({137.4, -4.6}, 2000, mars::kMarsRadius_m);
 
 // The map's direction at a place, in the body-fixed frame, without any View.
-glm::dvec3 ray_of(const PanoramaMap& map, const PoseOnSphere& stand, double x, double y) {
+glm::dvec3 ray_of(const PanoramaMap& map, const Viewpoint& viewpoint, double x, double y) {
   const Direction d = map.to_direction(x, y);
-  const mars::LocalFrame frame = mars::local_frame({stand.pose.lon_deg, stand.pose.lat_deg});
+  const mars::LocalFrame frame = mars::local_frame(viewpoint.place);
   const mars::SinCos a = mars::sin_cos_deg(d.azimuth_deg);
   const mars::SinCos e = mars::sin_cos_deg(d.elevation_deg);
   return frame.east * (e.cos * a.sin) + frame.north * (e.cos * a.cos) + frame.up * e.sin;
@@ -29,7 +29,7 @@ glm::dvec3 ray_of(const PanoramaMap& map, const PoseOnSphere& stand, double x, d
 double angle_rad(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(glm::cross(a, b)); }
 
 // Every pixel of the image belongs to one piece, and looks where the map says.
-void expect_covered(const PanoramaMap& map, const PoseOnSphere& stand, int margin_px) {
+void expect_covered(const PanoramaMap& map, const Viewpoint& viewpoint, int margin_px) {
   std::int64_t pixels = 0;
   std::int64_t next = 0;
   std::mt19937 random(5);
@@ -37,7 +37,7 @@ void expect_covered(const PanoramaMap& map, const PoseOnSphere& stand, int margi
     ASSERT_EQ(strip.x, next);
     next += strip.width;
     std::int64_t in_strip = 0;
-    for (const Piece& piece : pieces_of(map, stand, strip, margin_px)) {
+    for (const Piece& piece : pieces_of(map, viewpoint, strip, margin_px)) {
       ASSERT_EQ(vpe::core::check(piece.view), "");
       const glm::ivec2 size = vpe::core::drawn_size(piece.view);
       ASSERT_EQ(size.x, piece.width + 2 * piece.margin_px);
@@ -53,8 +53,8 @@ void expect_covered(const PanoramaMap& map, const PoseOnSphere& stand, int margi
         const int j = n < 2 ? 0 : n < 4 ? piece.height - 1 : row(random);
         const glm::dvec3 drawn = vpe::core::pixel_ray(piece.view, piece.view.part.x + piece.margin_px + i + 0.5,
                                                       piece.view.part.y + piece.margin_px + j + 0.5);
-        const glm::dvec3 wanted =
-            ray_of(map, stand, static_cast<double>(piece.x) + i + 0.5, static_cast<double>(piece.y) + j + 0.5);
+        const glm::dvec3 wanted = ray_of(map, viewpoint, static_cast<double>(piece.x) + i + 0.5,
+                                         static_cast<double>(piece.y) + j + 0.5);
         ASSERT_LT(angle_rad(drawn, wanted), 3e-14) << to_string(map.kind) << " " << piece.x + i;
       }
     }
@@ -72,26 +72,25 @@ PlanOptions options_of(MapKind kind, std::int64_t width_px) {
   return options;
 }
 
-TEST(PanoramaPlan, PiecesLookWhereTheMapSays) {
+TEST(PanoramaPlan, PiecesShowTheDirectionsOfTheMap) {
   for (const MapKind kind : {MapKind::kCylinder, MapKind::kEquirectangular, MapKind::kFacets}) {
     for (const std::int64_t width_px : {37, 1000, 6000, 100000}) {
       PlanOptions options = options_of(kind, width_px);
       options.yaw_deg = 33;
       if (width_px > 10000) options.lowest_deg = -20;
       if (width_px > 10000) options.highest_deg = 30;
-      expect_covered(plan_panorama(options).map, kStand, 6);
+      expect_covered(plan_panorama(options).map, kViewpoint, 6);
       options.arc = {{300, 70.5}};
-      expect_covered(plan_panorama(options).map, kStand, 0);
+      expect_covered(plan_panorama(options).map, kViewpoint, 0);
     }
   }
 }
 
 TEST(PanoramaPlan, AtThePolesNorthIsAlongTheMeridian) {
   for (const double lat_deg : {90.0, -90.0}) {
-    PoseOnSphere stand = kStand;
-    stand.pose.lat_deg = lat_deg;
-    expect_covered(plan_panorama(options_of(MapKind::kCylinder, 900)).map, stand, 0);
-    expect_covered(plan_panorama(options_of(MapKind::kFacets, 900)).map, stand, 6);
+    const Viewpoint viewpoint = viewpoint_at({137.4, lat_deg}, 2000, mars::kMarsRadius_m);
+    expect_covered(plan_panorama(options_of(MapKind::kCylinder, 900)).map, viewpoint, 0);
+    expect_covered(plan_panorama(options_of(MapKind::kFacets, 900)).map, viewpoint, 6);
   }
 }
 
@@ -118,7 +117,7 @@ TEST(PanoramaPlan, FacetsFollowTheContract) {
   }
 }
 
-TEST(PanoramaPlan, SizesAreAsAskedFor) {
+TEST(PanoramaPlan, SizesAreThoseOfTheOptions) {
   PlanOptions options = options_of(MapKind::kCylinder, 6000);
   options.lowest_deg = -20;
   options.highest_deg = 40;
@@ -172,7 +171,7 @@ TEST(PanoramaPlan, AreaOfWhatIsHeldIsBounded) {
     EXPECT_GT(map.height_px, 19000);
     for (const Strip& strip : strips_of(map)) {
       EXPECT_LE(strip.width * map.height_px, 2 * PlanLimits::kStripPixels);
-      for (const Piece& piece : pieces_of(map, kStand, strip, 6)) {
+      for (const Piece& piece : pieces_of(map, kViewpoint, strip, 6)) {
         EXPECT_LE(std::int64_t{piece.width} * piece.height, PlanLimits::kPiecePixels);
       }
     }

@@ -17,7 +17,7 @@ using panorama::PanoramaMap;
 
 constexpr double kDegrees = 180.0 / mars::kPi;
 
-// Any kind, whole turns and arcs, the seam anywhere, elevations within 85 degrees.
+// Any kind, full circles and arcs, the seam anywhere, elevations within 85 degrees.
 PanoramaMap any_map(test_support::Random& random) {
   const int kind = random.integer(0, 2);
   const int height = random.integer(1, 20000);
@@ -48,7 +48,7 @@ TEST(PanoramaMap, PlacesComeBackFromTheirDirections) {
     const PanoramaMap map = any_map(random);
     ASSERT_EQ(check(map), "");
     for (int k = 0; k < 10; ++k) {
-      // The edges themselves are among them; the right edge of a whole turn is its left one.
+      // The edges themselves are among them; the right edge of a full circle is its left one.
       const double across = k == 0 ? 0.0 : k == 1 ? 1.0 : random.uniform(0.0, 1.0);
       const double x = across * static_cast<double>(map.width_px);
       const double y = random.uniform(0.0, 1.0) * static_cast<double>(map.height_px);
@@ -145,7 +145,7 @@ TEST(PanoramaMap, HasNoPlaceForWhatItDoesNotShow) {
   ASSERT_EQ(check(below), "");
   EXPECT_FALSE(below.to_pixel({5.0, 0.0}));
   EXPECT_TRUE(below.to_pixel({5.0, -5.1}));
-  // More than a turn: the left of two places.
+  // More than a full circle: the left of two places.
   const PanoramaMap more = panorama::cylinder_map(4000, 100, 3600, 0.0, 50.0);
   EXPECT_NEAR(more.to_pixel({39.0, 0.0})->x, 390.0, 1e-9);
   EXPECT_NEAR(more.to_direction(3990.0, 50.0).azimuth_deg, 39.0, 1e-11);
@@ -231,7 +231,8 @@ TEST(PanoramaMap, ChecksEveryField) {
   refused([](auto& m) { m.width_px = 0; }, "size");
   refused([](auto& m) { m.height_px = 1000001; }, "size");
   refused([](auto& m) { m.width_px = -5; }, "size");
-  for (const double bad : {nan, 0.0, -1.0, 1799.0, 1e300}) refused([&](auto& m) { m.turn_px = bad; }, "turn");
+  for (const double bad : {nan, 0.0, -1.0, 1799.0, 1e300})
+    refused([&](auto& m) { m.turn_px = bad; }, "full circle");
   for (const double bad : {nan, -1.0, 3600.0})
     refused([&](auto& m) { m.crop_left_px = bad; }, "cut at the left");
   for (const double bad : {nan, 1e7}) refused([&](auto& m) { m.turn_azimuth_deg = bad; }, "azimuth");

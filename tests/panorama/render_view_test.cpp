@@ -96,13 +96,13 @@ const std::vector<PanoramaMap>& maps() {
   return kMaps;
 }
 
-TEST(Look, ShowsWhatIsThereAcrossEverySeam) {
+TEST(RenderView, ShowsWhatIsThereAcrossEverySeam) {
   for (const PanoramaMap& map : maps()) {
     const TiledImage tiled_image = image_of(map, smooth);
     for (double yaw_deg = 0; yaw_deg < 360; yaw_deg += 45) {
       for (const double fov_deg : {20.0, 60.0}) {
         const vpe::core::View view = panorama::view_of(yaw_deg, 3.0, fov_deg, 160, 90);
-        const vpe::core::RgbImage image = panorama::look(tiled_image, map, view, {});
+        const vpe::core::RgbImage image = panorama::render_view(tiled_image, map, view, {});
         double worst = 0;
         for (int y = 0; y < 90; ++y) {
           for (int x = 0; x < 160; ++x) {
@@ -122,7 +122,7 @@ TEST(Look, ShowsWhatIsThereAcrossEverySeam) {
 }
 
 // The marks of 20 directions are where the viewer says, and their pixels lead back to them.
-TEST(Look, MarksAreFoundWhereTheViewerSays) {
+TEST(RenderView, MarksAreFoundWhereTheViewerSays) {
   const std::vector<PanoramaMap> large{panorama::cylinder_map(1800, 400, 1800, 100.0, 200.0),
                                        panorama::equirectangular_map(1800, 400, 1800, 100.0, 200.0),
                                        panorama::faceted_map(8, 225, 400, 100.0, 200.0)};
@@ -147,7 +147,7 @@ TEST(Look, MarksAreFoundWhereTheViewerSays) {
       panorama::Viewer viewer(map, 240, 180);
       viewer.set_fov(20.0);
       viewer.look_at(mark.azimuth_deg + 4.0, mark.elevation_deg - 3.0);
-      const vpe::core::RgbImage image = panorama::look(tiled_image, map, viewer.view(), {});
+      const vpe::core::RgbImage image = panorama::render_view(tiled_image, map, viewer.view(), {});
       const auto said = viewer.screen(mark);
       ASSERT_TRUE(said);
       glm::dvec2 sum(0.0);
@@ -171,7 +171,7 @@ TEST(Look, MarksAreFoundWhereTheViewerSays) {
   }
 }
 
-TEST(Look, FineStripesFadeWhenTheyAreFarOff) {
+TEST(RenderView, FineStripesFadeWhenTheyAreFarOff) {
   const PanoramaMap map = panorama::equirectangular_map(2048, 1024, 2048, 0.0, 512.0);
   const TiledImage tiled_image = image_of(
       map,
@@ -182,23 +182,23 @@ TEST(Look, FineStripesFadeWhenTheyAreFarOff) {
       5);
   // Eight pixels of the image fall into one of the view.
   const vpe::core::RgbImage image =
-      panorama::look(tiled_image, map, panorama::view_of(33.0, 0.0, 90.0, 80, 65), {});
+      panorama::render_view(tiled_image, map, panorama::view_of(33.0, 0.0, 90.0, 80, 65), {});
   for (const vpe::base::Rgb& p : image.pixels) EXPECT_NEAR(p.g, 127.5, 6.0);
   // Towards the zenith a row of the image is a point; it is still the mean.
   const vpe::core::RgbImage up =
-      panorama::look(tiled_image, map, panorama::view_of(33.0, 90.0, 40.0, 64, 64), {});
+      panorama::render_view(tiled_image, map, panorama::view_of(33.0, 90.0, 40.0, 64, 64), {});
   for (const vpe::base::Rgb& p : up.pixels) EXPECT_NEAR(p.g, 127.5, 20.0);
 }
 
-TEST(Look, PartsOfATurnEndSharply) {
-  // A third of a turn, from azimuth 300 to 60.
+TEST(RenderView, PartsOfACircleEndSharply) {
+  // A third of a circle, from azimuth 300 to 60.
   const PanoramaMap map = panorama::cylinder_map(600, 300, 1800, 300.0, 150.0);
   const TiledImage tiled_image = image_of(
       map, [](const Direction&) { return glm::dvec3(200.0); }, 3);
   panorama::RenderViewOptions options;
   options.outside = {0, 0, 255};
   const vpe::core::View view = panorama::view_of(60.0, 0.0, 30.0, 200, 100);
-  const vpe::core::RgbImage image = panorama::look(tiled_image, map, view, options);
+  const vpe::core::RgbImage image = panorama::render_view(tiled_image, map, view, options);
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 200; ++x) {
       const Direction d = panorama::to_direction(vpe::core::pixel_ray(view, x + 0.5, y + 0.5));
@@ -211,24 +211,24 @@ TEST(Look, PartsOfATurnEndSharply) {
   }
 }
 
-TEST(Look, AlmostATurnHasNoGap) {
+TEST(RenderView, AlmostAFullCircleHasNoGap) {
   // As rover mosaics: whole degrees a pixel do not make whole columns.
   const PanoramaMap map = panorama::equirectangular_map(770, 300, 770.45, 0.0, 150.0);
   const TiledImage tiled_image = image_of(
       map, [](const Direction&) { return glm::dvec3(200.0); }, 3);
   for (const double fov_deg : {0.5, 5.0, 60.0}) {
     const vpe::core::RgbImage image =
-        panorama::look(tiled_image, map, panorama::view_of(0.0, 0.0, fov_deg, 120, 80), {});
+        panorama::render_view(tiled_image, map, panorama::view_of(0.0, 0.0, fov_deg, 120, 80), {});
     for (const vpe::base::Rgb& p : image.pixels) EXPECT_EQ(p, (vpe::base::Rgb{200, 200, 200}));
   }
 }
 
-TEST(Look, MoreThanATurnIsSeamless) {
+TEST(RenderView, MoreThanAFullCircleIsSeamless) {
   const PanoramaMap map = panorama::cylinder_map(1000, 300, 800, 0.0, 150.0);
   const TiledImage tiled_image = image_of(map, smooth, 3);
   for (double yaw_deg = 0; yaw_deg < 360; yaw_deg += 20) {
     const vpe::core::View view = panorama::view_of(yaw_deg, 0.0, 40.0, 90, 60);
-    const vpe::core::RgbImage image = panorama::look(tiled_image, map, view, {});
+    const vpe::core::RgbImage image = panorama::render_view(tiled_image, map, view, {});
     for (int x = 0; x < 90; ++x) {
       const glm::dvec3 is = smooth(panorama::to_direction(vpe::core::pixel_ray(view, x + 0.5, 30.5)));
       EXPECT_NEAR(image.pixels[static_cast<std::size_t>(30 * 90 + x)].r, is.x, 3.0) << yaw_deg;
@@ -236,7 +236,7 @@ TEST(Look, MoreThanATurnIsSeamless) {
   }
 }
 
-TEST(Look, TheEyesOfAPairStayApart) {
+TEST(RenderView, TheEyesOfAPairStayApart) {
   // The left eye is green, the right eye blue; nothing of one comes into the other, at any distance.
   class Halves : public panorama::TileSource {
    public:
@@ -267,46 +267,46 @@ TEST(Look, TheEyesOfAPairStayApart) {
         const vpe::core::View view = panorama::view_of(yaw_deg, 0.0, fov_deg, 2 * height, height);
         panorama::RenderViewOptions options;
         options.outside = {0, 255, 0};
-        for (const vpe::base::Rgb& p : panorama::look(pair, camera, view, options).pixels)
+        for (const vpe::base::Rgb& p : panorama::render_view(pair, camera, view, options).pixels)
           EXPECT_EQ(p, (vpe::base::Rgb{0, 255, 0}));
         options.outside = {0, 0, 255};
         options.origin.x_px = 512;
-        for (const vpe::base::Rgb& p : panorama::look(pair, camera, view, options).pixels)
+        for (const vpe::base::Rgb& p : panorama::render_view(pair, camera, view, options).pixels)
           EXPECT_EQ(p, (vpe::base::Rgb{0, 0, 255}));
       }
     }
   }
 }
 
-TEST(Look, TheSameBytesForAnyNumberOfThreads) {
+TEST(RenderView, TheSameBytesForAnyNumberOfThreads) {
   const PanoramaMap map = maps()[2];
   const vpe::core::View view = panorama::view_of(7.0, 5.0, 70.0, 241, 153);
   panorama::RenderViewOptions one;
   one.threads = 1;
   const TiledImage tiled_image = image_of(map, smooth);
-  const vpe::core::RgbImage alone = panorama::look(tiled_image, map, view, one);
+  const vpe::core::RgbImage alone = panorama::render_view(tiled_image, map, view, one);
   for (const int threads : {2, 8}) {
     panorama::RenderViewOptions many;
     many.threads = threads;
     // A budget of two tiles only: what is kept changes nothing either.
     const TiledImage tight(std::make_unique<FormulaTiles>(map, 4, smooth), 25000);
-    EXPECT_EQ(panorama::look(tight, map, view, many).pixels, alone.pixels);
+    EXPECT_EQ(panorama::render_view(tight, map, view, many).pixels, alone.pixels);
   }
 }
 
-TEST(Look, OtherViewsAndBadOnes) {
+TEST(RenderView, OtherViewsAndBadOnes) {
   const PanoramaMap map = maps()[0];
   const TiledImage tiled_image = image_of(map, smooth);
   vpe::core::View view = panorama::view_of(0.0, 0.0, 60.0, 64, 48);
   view.projection = vpe::core::Projection::kEquirectangular;
-  const vpe::core::RgbImage round = panorama::look(tiled_image, map, view, {});
+  const vpe::core::RgbImage round = panorama::render_view(tiled_image, map, view, {});
   const Direction d = panorama::to_direction(vpe::core::pixel_ray(view, 20.5, 24.5));
   EXPECT_NEAR(round.pixels[24 * 64 + 20].r, smooth(d).x, 12.0);  // a pixel is 6 degrees wide
   view.fov_deg = 0;
-  EXPECT_THROW(panorama::look(tiled_image, map, view, {}), std::invalid_argument);
+  EXPECT_THROW(panorama::render_view(tiled_image, map, view, {}), std::invalid_argument);
   PanoramaMap bad = map;
   bad.focal_px = NAN;
-  EXPECT_THROW(panorama::look(tiled_image, bad, panorama::view_of(0, 0, 60, 64, 48), {}),
+  EXPECT_THROW(panorama::render_view(tiled_image, bad, panorama::view_of(0, 0, 60, 64, 48), {}),
                std::invalid_argument);
 }
 

@@ -35,7 +35,7 @@ TEST(Sidecar, ComesBackFromItsText) {
     if (n % 5 != 0)
       sidecar.viewpoint = {random.uniform(-180, 180), -4.6, 1.5, 2.0, -4446.5, mars::VerticalDatum::areoid()};
     ASSERT_EQ(panorama::check(sidecar.map), "");
-    const Sidecar back = panorama::read_sidecar(panorama::to_json(sidecar));
+    const Sidecar back = panorama::read_sidecar(panorama::to_text(sidecar));
     EXPECT_EQ(back.image, sidecar.image);
     EXPECT_EQ(back.map.kind, sidecar.map.kind);
     EXPECT_EQ(back.viewpoint, sidecar.viewpoint);
@@ -92,7 +92,7 @@ TEST(Sidecar, RefusesWhatIsMissingOrContradictory) {
   EXPECT_SAYS(said(left + "\"horizon_row\": 5"), "columns_per_turn");
   EXPECT_SAYS(said(left + "\"degrees_per_pixel\": 0.1"), "horizon_row");
   EXPECT_SAYS(said(left + "\"degrees_per_pixel\": 0, \"horizon_row\": 5"), "degrees_per_pixel");
-  EXPECT_SAYS(said(left + "\"degrees_per_pixel\": 1e-300, \"horizon_row\": 5"), "turn");
+  EXPECT_SAYS(said(left + "\"degrees_per_pixel\": 1e-300, \"horizon_row\": 5"), "full circle");
   EXPECT_SAYS(said(good + ", \"azimuth_deg_at_right\": 200"), "azimuth_deg_at_right", "200", "20");
   EXPECT_SAYS(said(good + ", \"columns_per_turn\": 3700"), "degrees_per_pixel");
   EXPECT_SAYS(said(good + ", \"elevation_deg_at_top\": 21"), "elevation_deg_at_top");

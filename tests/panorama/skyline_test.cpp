@@ -1,4 +1,4 @@
-// The skyline over ground with a known horizon, and over S.
+// The skyline over ground with a known horizon, and over the reference surface.
 #include "panorama/horizon/skyline.h"
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 using panorama::Direction;
 using panorama::GroundPoint;
-using panorama::SkylineCamera;
+using panorama::Viewpoint;
 using test_support::Random;
 using vpe::base::ThreadPool;
 
@@ -19,7 +19,7 @@ constexpr double kR = mars::kMarsRadius_m;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Where a ray meets a sphere, in extended precision: near the horizon the root is a small difference.
-panorama::GroundRange sphere_range(const SkylineCamera& camera, double radius_m) {
+panorama::GroundRange sphere_range(const Viewpoint& camera, double radius_m) {
   return [=](const glm::dvec3& ray) {
     const auto dot = [](const glm::dvec3& a, const glm::dvec3& b) {
       return static_cast<long double>(a.x) * b.x + static_cast<long double>(a.y) * b.y +
@@ -35,7 +35,7 @@ panorama::GroundRange sphere_range(const SkylineCamera& camera, double radius_m)
 }
 
 // Ground up to an elevation that is a function of azimuth, 1 km away.
-panorama::GroundRange wall_range(const SkylineCamera& camera, const std::function<double(double)>& top_deg) {
+panorama::GroundRange wall_range(const Viewpoint& camera, const std::function<double(double)>& top_deg) {
   return [=](const glm::dvec3& ray) {
     const double east = glm::dot(ray, camera.frame.east);
     const double north = glm::dot(ray, camera.frame.north);
@@ -54,7 +54,7 @@ TEST(Skyline, OfTheSphereFromTenCentimetresToOrbitAlsoAtPoles) {
     mars::LonLat place{random.uniform(-180, 180), random.uniform(-90, 90)};
     if (n % 4 == 0) place.lat_deg = n % 8 == 0 ? 90 : -90;
     const double alt = random.log_uniform(0.1, 1e9);
-    const SkylineCamera camera = panorama::skyline_camera(place, alt, kR);
+    const Viewpoint camera = panorama::viewpoint_at(place, alt, kR);
     const double azimuth = random.uniform(0, 360);
     const GroundPoint p = panorama::skyline_at(camera, azimuth, sphere_range(camera, kR));
     const double dip = mars::horizon_dip_rad(alt, kR) / mars::kRadiansPerDegree;
@@ -76,7 +76,7 @@ TEST(Skyline, OfTheSphereFromTenCentimetresToOrbitAlsoAtPoles) {
 
 TEST(Skyline, WrongBracketsCostOnlyTime) {
   Random random(2);
-  const SkylineCamera camera = panorama::skyline_camera({30, 40}, 2, kR);
+  const Viewpoint camera = panorama::viewpoint_at({30, 40}, 2, kR);
   for (int n = 0; n < 300; ++n) {
     const double top = n % 5 == 0 ? random.uniform(-89.999, 89.999) : random.uniform(-20, 20);
     const auto range = wall_range(camera, [&](double) { return top; });
@@ -91,7 +91,7 @@ TEST(Skyline, WrongBracketsCostOnlyTime) {
 }
 
 TEST(Skyline, DeepPitsAndNoGround) {
-  const SkylineCamera camera = panorama::skyline_camera({0, 0}, -3000, kR);
+  const Viewpoint camera = panorama::viewpoint_at({0, 0}, -3000, kR);
   const auto pit = [](double azimuth) { return 80 + 9.9 * std::cos(azimuth * mars::kRadiansPerDegree); };
   ThreadPool pool(2);
   const std::vector<double> azimuths{0, 90, 180, 270, 359.9};
@@ -103,8 +103,8 @@ TEST(Skyline, DeepPitsAndNoGround) {
 }
 
 // The brackets of an image hold the skyline where it is even, so that nothing is cast in vain.
-TEST(Skyline, BracketsOfAImage) {
-  const SkylineCamera camera = panorama::skyline_camera({10, 20}, 100, kR);
+TEST(Skyline, BracketsOfAnImage) {
+  const Viewpoint camera = panorama::viewpoint_at({10, 20}, 100, kR);
   const auto top = [](double azimuth) { return 5 * std::sin(2 * azimuth * mars::kRadiansPerDegree); };
   const auto range = wall_range(camera, top);
   panorama::PanoramaMap map = panorama::equirectangular_map(720, 360, 720, 123.0, 180);
@@ -125,7 +125,7 @@ TEST(Skyline, BracketsOfAImage) {
 
 // A gap low in the image through which ground far away is seen, below nearer ground.
 TEST(Skyline, TheFarthestGroundIsFoundBelowTheSkylineToo) {
-  const SkylineCamera camera = panorama::skyline_camera({10, 20}, 100, kR);
+  const Viewpoint camera = panorama::viewpoint_at({10, 20}, 100, kR);
   const auto flat = wall_range(camera, [](double) { return 3.0; });
   const panorama::GroundRange range = [&](const glm::dvec3& ray) {
     const Direction gap{200.1, -1.0};
@@ -157,14 +157,14 @@ TEST(Skyline, TheFarthestGroundIsFoundBelowTheSkylineToo) {
   EXPECT_EQ(panorama::farthest_ground(camera, {map, same}, skyline, notch, pool).range_m, 9000);
 }
 
-class SkylineOfS : public testing::Test {
+class SkylineOfTheSurface : public testing::Test {
  protected:
   test_support::TempDir dir_;
 };
 
-// Heights are all 0, but S is flat between posts: 100 m apart about the horizon, so sag is below 1 mm (2e-7
+// Heights are all 0, but the surface is flat between posts: 100 m apart, so the sagitta is below 1 mm (2e-7
 // degrees from 261 km) and an edge is never farther from the horizon than 0.1 %.
-TEST_F(SkylineOfS, OfAPlanetWithoutRelief) {
+TEST_F(SkylineOfTheSurface, OfAPlanetWithoutRelief) {
   const mars::LonLat place{12, 34};
   constexpr double kAlt = 10000;
   const double dip = mars::horizon_dip_rad(kAlt, kR);
@@ -175,7 +175,7 @@ TEST_F(SkylineOfS, OfAPlanetWithoutRelief) {
                                   test_support::fine_around(mars::direction(horizon), 5000 / kR, 100)),
       400000);
   const paging::Surface surface(planet, std::size_t{64} << 20);
-  const SkylineCamera camera = panorama::skyline_camera(place, kAlt, kR);
+  const Viewpoint camera = panorama::viewpoint_at(place, kAlt, kR);
   ThreadPool pool(2);
   std::vector<double> azimuths;
   for (int n = -10; n <= 10; ++n) azimuths.push_back(70 + 0.05 * n);
@@ -189,8 +189,8 @@ TEST_F(SkylineOfS, OfAPlanetWithoutRelief) {
   }
 }
 
-// Nothing of S is seen a little above the skyline, whatever the relief.
-TEST_F(SkylineOfS, IsTheHighestGround) {
+// No ray a little above the skyline meets the reference surface, for any relief.
+TEST_F(SkylineOfTheSurface, IsTheHighestGround) {
   const auto planet =
       test_support::build_fake(dir_ / "p.vpe", test_support::FakeElevation(test_support::bumpy_height), 60000);
   const paging::Surface surface(planet, std::size_t{64} << 20);
@@ -198,7 +198,7 @@ TEST_F(SkylineOfS, IsTheHighestGround) {
   for (int n = 0; n < 60; ++n) {
     const mars::LonLat place{random.uniform(-180, 180), n % 6 == 0 ? 90.0 : random.uniform(-90, 90)};
     const double alt = surface.at(mars::direction(place)).height_m + random.log_uniform(0.5, 1e7);
-    const SkylineCamera camera = panorama::skyline_camera(place, alt, kR);
+    const Viewpoint camera = panorama::viewpoint_at(place, alt, kR);
     const panorama::GroundRange range = [&](const glm::dvec3& ray) {
       return surface.cast(camera.position_m, ray);
     };

@@ -1,4 +1,4 @@
-// Where eyes that turn with the azimuth are.
+// Places of eyes that turn with the azimuth.
 #include "panorama/stereo_eyes.h"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@ namespace test_support {
 class TwoEyes {
  public:
   TwoEyes(const mars::Pose& middle, double radius_m, double base_m)
-      : origin_m_(mars::to_camera(middle, radius_m).camera_m),
+      : origin_m_(mars::to_camera(middle, radius_m).position_m),
         axes_(mars::local_frame({middle.lon_deg, middle.lat_deg})),
         base_m_(base_m) {}
 

@@ -19,7 +19,8 @@ namespace {
 using test_support::TwoEyes;
 using vpe::core::StereoLayout;
 
-const PoseOnSphere kStand{{137.4, -4.6, 2000, 0, 0, 0}, mars::kMarsRadius_m};
+const mars::Pose kPose{137.4, -4.6, 2000, 0, 0, 0};
+const Viewpoint kViewpoint = viewpoint_of(kPose, mars::kMarsRadius_m);
 
 PanoramaMap map_with(MapKind kind, std::int64_t width_px, double lowest_deg, double highest_deg) {
   PlanOptions options;
@@ -53,12 +54,12 @@ struct Worst {
 };
 
 Worst worst_of(const PanoramaMap& map, const EyePair& pair, Eye eye, double range_m) {
-  const TwoEyes eyes(kStand.pose, kStand.radius_m, pair.base_m);
+  const TwoEyes eyes(kPose, mars::kMarsRadius_m, pair.base_m);
   std::mt19937 random(7);
   Worst worst;
-  // The whole turn at once, so that neighbours across strips are found.
+  // The full circle at once, so that neighbours across strips are found.
   const auto pieces =
-      eye_pieces_of(map, kStand, stereo_bands(map, pair), eye, {0, static_cast<int>(map.width_px)});
+      eye_pieces_of(map, kViewpoint, stereo_bands(map, pair), eye, {0, static_cast<int>(map.width_px)});
   const auto off = [&](const Piece& piece, std::int64_t x, std::int64_t y) {
     return off_px(map, eyes, eye, piece, x, y, range_m);
   };
@@ -136,13 +137,13 @@ TEST(StereoPieces, NearerGroundIsShiftedInwardsAndTheHorizonIsNot) {
   const auto bands = stereo_bands(map, pair);
   const auto column_of = [&](Eye eye, const glm::dvec3& point_m) {
     // The piece in whose middle column the point is.
-    const TwoEyes eyes(kStand.pose, kStand.radius_m, pair.base_m);
+    const TwoEyes eyes(kPose, mars::kMarsRadius_m, pair.base_m);
     const glm::dvec2 at = map.place(eyes.seen(eye, point_m));
-    const auto pieces = eye_pieces_of(map, kStand, bands, eye, {0, 6000});
+    const auto pieces = eye_pieces_of(map, kViewpoint, bands, eye, {0, 6000});
     const Piece* piece = piece_at(pieces, static_cast<std::int64_t>(at.x), static_cast<std::int64_t>(at.y));
     return vpe::core::project(piece->view, point_m).xy.x;
   };
-  const TwoEyes middle(kStand.pose, kStand.radius_m, 0);
+  const TwoEyes middle(kPose, mars::kMarsRadius_m, 0);
   for (const double azimuth_deg : {40.0, 130.0, 250.0}) {
     for (const double elevation_deg : {0.0, -30.0}) {
       for (const double range_m : {3.0, 30.0, 1e9}) {
@@ -161,10 +162,10 @@ TEST(StereoPieces, EyesStandUprightUnlessThatShows) {
   const PanoramaMap map = map_with(MapKind::kCylinder, 4096, -45, 45);
   const auto tilt = [&](double base_m) {
     const EyePair pair{StereoLayout::kSideBySide, base_m, 30 * base_m};
-    const auto pieces = eye_pieces_of(map, kStand, stereo_bands(map, pair), Eye::kRight, {0, 256});
+    const auto pieces = eye_pieces_of(map, kViewpoint, stereo_bands(map, pair), Eye::kRight, {0, 256});
     const mars::CameraPose& eye = pieces.back().view.camera;
     EXPECT_NEAR(glm::dot(eye.axes.up, eye.axes.forward), 0, 1e-15);
-    return glm::length(glm::cross(eye.axes.up, glm::normalize(camera.position_m)));
+    return glm::length(glm::cross(eye.axes.up, glm::normalize(eye.position_m)));
   };
   EXPECT_LT(tilt(0.1), 1e-15);
   EXPECT_LT(tilt(300), 1e-15);
@@ -186,7 +187,7 @@ TEST(StereoPieces, CoverTheFileOnceForEachEye) {
     std::vector<int> by_left(covered.size());
     for (std::int64_t x = 0; x < size.width_px; x += 512) {
       const Strip strip{x, static_cast<int>(std::min<std::int64_t>(512, size.width_px - x))};
-      const auto pieces = pair_pieces_of(map, kStand, pair, strip);
+      const auto pieces = pair_pieces_of(map, kViewpoint, pair, strip);
       for (std::size_t k = 0; k < pieces.size(); ++k) {
         const Piece& piece = pieces[k];
         ASSERT_EQ(vpe::core::check(piece.view), "");
@@ -195,7 +196,7 @@ TEST(StereoPieces, CoverTheFileOnceForEachEye) {
                                                                    : piece.y < map.height_px;
         // It stands on that side of the middle.
         const glm::dvec3 aside_m =
-            piece.view.camera.position_m - mars::to_camera(kStand.pose, kStand.radius_m).camera_m;
+            piece.view.camera.position_m - mars::to_camera(kPose, mars::kMarsRadius_m).position_m;
         const glm::dvec3 right =
             glm::cross(line_of_sight(piece, piece.x + piece.width / 2, piece.y), piece.view.camera.axes.up);
         EXPECT_EQ(glm::dot(aside_m, right) < 0, is_left);

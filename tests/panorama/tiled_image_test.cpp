@@ -1,4 +1,4 @@
-// Pages of images: what is read, when, and how much of it is kept.
+// Tiled images: the tiles that are read, and those that are kept.
 #include "panorama/image/tiled_image.h"
 
 #include <tiffio.h>
@@ -55,7 +55,7 @@ TEST(TiledImage, KeepsWithinItsBudgetTheLastUsed) {
   for (int n = 0; n < 10; ++n) tiled_image.tile(0, n, 0);
   EXPECT_EQ(fake.reads, 10);
   tiled_image.tile(0, 0, 0);
-  tiled_image.tile(0, 50, 0);  // puts out the tile that was used longest ago: 1
+  tiled_image.tile(0, 50, 0);  // removes the least recently used tile: 1
   tiled_image.tile(0, 0, 0);
   EXPECT_EQ(fake.reads, 11);
   tiled_image.tile(0, 1, 0);
@@ -83,7 +83,7 @@ TEST(TiledImage, ThreadsThatWantOneTileReadItOnce) {
   EXPECT_EQ(fake.reads, 1000);
 }
 
-TEST(TiledImage, AFailureIsToldAndTriedAgain) {
+TEST(TiledImage, AFailureIsReportedAndTriedAgain) {
   auto source = std::make_unique<FakeTiles>(640, 640, 1);
   FakeTiles& fake = *source;
   const TiledImage tiled_image(std::move(source), std::size_t{1} << 20);
@@ -228,7 +228,7 @@ TEST(OpenImage, DamagedOnesAreNamed) {
   EXPECT_TRUE(!fs::exists(folder / "cache") || fs::is_empty(folder / "cache"));
 }
 
-// A tiled TIFF, and how many bytes this process has asked the system for.
+// Writes a tiled TIFF.
 void write_tiled(const fs::path& path, const vpe::core::RgbImage& image) {
   panorama::TileWriter writer(path, {image.width, image.height, 64, 64});
   for (int y = 0; y < image.height; ++y) {
@@ -287,7 +287,7 @@ TEST(OpenRows, RefusedImagesLeaveNothingBehind) {
               "--memory");
 }
 
-TEST(OpenImage, KindsThatCannotBeReadAreToldWithWhatToDo) {
+TEST(OpenImage, KindsThatCannotBeReadAreNamedWithAdvice) {
   const test_support::TempDir folder;
   vpe::core::write_tiff(folder / "float.tif", std::vector<float>(64, 1.0F), 8, 8);
   EXPECT_SAYS(message_of([&] {

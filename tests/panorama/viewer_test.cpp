@@ -1,4 +1,4 @@
-// Who looks around: directions and screen positions, limits, turning and zooming.
+// The viewer: directions and screen positions, limits, turning and zooming.
 #include "panorama/viewer/viewer.h"
 
 #include <cmath>

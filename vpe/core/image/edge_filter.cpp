@@ -13,9 +13,9 @@ namespace vpe::core {
 
 namespace {
 
-constexpr int kRows = 16;  // an item of work
+constexpr int kRows = 16;  // of an item of work
 
-struct Image {
+struct ColourPixels {
   std::span<const base::Rgb> pixels;
   int width;
   int height;
@@ -25,7 +25,7 @@ struct Image {
     const base::Rgb p = pixels[row + static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
     return {p.r, p.g, p.b};
   }
-  // Bilinear; pixel centres at whole numbers.
+  // Returns a bilinear mean; pixel centres are at whole numbers.
   glm::vec3 between(const glm::vec2& p) const {
     const glm::vec2 base = glm::floor(p);
     const glm::vec2 t = p - base;
@@ -34,14 +34,14 @@ struct Image {
     return (at(x, y) * (1 - t.x) + at(x + 1, y) * t.x) * (1 - t.y) +
            (at(x, y + 1) * (1 - t.x) + at(x + 1, y + 1) * t.x) * t.y;
   }
-  // Brightness of four pixels about a corner.
+  // Returns the brightness of the four pixels about a corner.
   float luma(int x, int y) const {
     return 0.25F *
            glm::dot(at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1), glm::vec3(0.30F, 0.59F, 0.11F));
   }
 };
 
-base::Rgb smoothed(const Image& image, int x, int y) {
+base::Rgb smoothed(const ColourPixels& image, int x, int y) {
   const float upper_left = image.luma(x - 1, y - 1);
   const float upper_right = image.luma(x, y - 1);
   const float lower_left = image.luma(x - 1, y);
@@ -64,8 +64,8 @@ base::Rgb smoothed(const Image& image, int x, int y) {
   return {byte(mixed.x), byte(mixed.y), byte(mixed.z)};
 }
 
-// 1 where the surface bends between a pixel and its four neighbours. No branches: the compiler makes vectors of
-// it.
+// Sets `edge` to 1 where the surface bends between a pixel and its four neighbours. Has no branches, so that
+// the compiler vectorizes it.
 void find_edges(const float* above, const float* row, const float* below, int width, std::uint8_t* edge) {
   const auto bends = [&](int x, int west, int east) {
     const float c = row[x];
@@ -85,10 +85,10 @@ void smooth_edges(std::span<base::Rgb> colour, std::span<const float> inverse_de
   const auto columns = static_cast<std::size_t>(std::max(width, 0));
   const std::size_t pixels = columns * static_cast<std::size_t>(std::max(height, 0));
   if (colour.size() != pixels || inverse_depth.size() != pixels) {
-    throw std::invalid_argument("smooth_edges: the picture and its depth are not of the stated size");
+    throw std::invalid_argument("smooth_edges: the image and its depth are not of the stated size");
   }
   const std::vector<base::Rgb> before(colour.begin(), colour.end());
-  const Image image{before, width, height};
+  const ColourPixels image{before, width, height};
   pool.run(static_cast<std::size_t>((height + kRows - 1) / kRows), [&](std::size_t item) {
     std::vector<std::uint8_t> edge(columns);
     const int first = static_cast<int>(item) * kRows;

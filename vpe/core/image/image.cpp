@@ -23,7 +23,7 @@ bool is_jpeg(const std::filesystem::path& path) {
   return extension == ".jpg" || extension == ".jpeg";
 }
 
-// Runs a codec; what it says is passed on with the name of the file.
+// Runs a codec, and adds the name of the file to its errors.
 template <class Codec>
 auto with_path(const char* operation, const std::filesystem::path& path, const Codec& codec) {
   try {
@@ -76,7 +76,7 @@ void write_image(const std::filesystem::path& path, std::span<const base::Rgb> p
 void write_image(const std::filesystem::path& path, std::span<const Rgba> pixels, int width, int height,
                  const ImageOptions& options) {
   if (!is_png(path)) {
-    throw base::file_error("write", path, "a picture with alpha fits PNG only", "let the name end in .png");
+    throw base::file_error("write", path, "an image with alpha fits PNG only", "let the name end in .png");
   }
   base::write_file(path, with_path("write", path,
                                    [&] { return encode_png(pixels, width, height, options.png_compression); }));

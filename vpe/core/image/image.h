@@ -1,8 +1,12 @@
 // Images as files and as bytes: PNG and JPEG for colour, TIFF for range.
 //
-// Row 0 is the top; rows follow each other without gaps. Every writer is atomic (file.h). Functions
-// throw FileError (files) or ImageError (bytes in memory): what failed, the library's own words, what to do.
-// All may be called from any thread; none depends on the locale.
+// Row 0 is the top; rows follow each other without gaps. Every writer is atomic (vpe/base/file.h). Functions
+// throw FileError (files) or ImageError (bytes in memory), with what failed, the library's own words and what
+// to do. All functions may be called from any thread; none depends on the locale.
+//
+// Typical usage:
+//   const RgbImage image = read_image("a.png");
+//   write_image("b.jpg", image.pixels, image.width, image.height, {.jpeg_quality = 95});
 #pragma once
 
 #include <cstdint>
@@ -12,15 +16,16 @@
 #include <string>
 #include <vector>
 
-#include "mars/sources/source.h"
 #include "vpe/base/file.h"
+#include "vpe/base/rgb.h"
 
 namespace vpe::core {
 
 inline constexpr int kMaxImageSide_px = 32768;
-// Largest image that a reader accepts unless told otherwise: a small file must not claim all memory.
+// Limits the images that readers accept by default, so that a small file cannot claim all memory.
 inline constexpr std::int64_t kMaxReadPixels = std::int64_t{1} << 28;
 
+// Reports bytes that cannot be encoded or decoded.
 class ImageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -46,36 +51,38 @@ using FloatImage = Image<float>;
 enum class TiffCompression : std::uint8_t { kNone, kLzw, kDeflate };
 
 struct ImageOptions {
-  int jpeg_quality = 90;  // 1 to 100; chroma is halved below 90
-  // 1 to 9. On rendered images 3 takes 1.6 times as long as 1 for files a twentieth smaller, 6 takes 3.3 times
-  // as long for an eighth smaller.
+  // 1 to 100. Larger: closer to the image, larger files. Chroma has half the resolution below 90.
+  int jpeg_quality = 90;
+  // 1 to 9. Larger: smaller files, slower. On rendered images 3 takes 1.6 times as long as 1 for files a
+  // twentieth smaller, 6 takes 3.3 times as long for an eighth smaller.
   int png_compression = 1;
+  // kNone: fastest, largest files.
   TiffCompression tiff = TiffCompression::kDeflate;
 };
 
-// Whether write_image() knows the extension of a path: .png, .jpg or .jpeg, in any case.
+// Returns whether write_image() knows the extension of a path: .png, .jpg or .jpeg, in any case.
 bool is_image_path(const std::filesystem::path& path);
 
-// 8-bit sRGB, in the format of the extension. Throws FileError, also for another extension, a size that does
-// not fit the pixels, or a side over kMaxImageSide_px.
+// Writes 8-bit sRGB in the format of the extension. Throws FileError, also for another extension, a size that
+// does not fit the pixels, or a side over kMaxImageSide_px.
 void write_image(const std::filesystem::path& path, std::span<const base::Rgb> pixels, int width, int height,
                  const ImageOptions& options = {});
-// PNG only.
+// Writes 8-bit sRGB with alpha; PNG only.
 void write_image(const std::filesystem::path& path, std::span<const Rgba> pixels, int width, int height,
                  const ImageOptions& options = {});
 
-// One float32 band (.tif, .tiff), every value kept to the bit, infinities and NaN included.
+// Writes one float32 band (.tif, .tiff). Every value keeps its bits, infinities and NaN included.
 void write_tiff(const std::filesystem::path& path, std::span<const float> values, int width, int height,
                 const ImageOptions& options = {});
 
-// PNG or JPEG by content. An alpha channel is dropped, 16 bits become 8. A damaged file is an error, never a
-// half image.
+// Reads a PNG or JPEG; the format is found from the content. An alpha channel is dropped, 16 bits become 8.
+// Throws FileError for a damaged file, and never returns a part of an image.
 RgbImage read_image(const std::filesystem::path& path, std::int64_t max_pixels = kMaxReadPixels);
 
-// One float32 band, stored in rows, as write_tiff() makes.
+// Reads one float32 band that is stored in rows, as write_tiff() writes it.
 FloatImage read_tiff(const std::filesystem::path& path, std::int64_t max_pixels = kMaxReadPixels);
 
-// The same in memory.
+// Encode and decode in memory. Throw ImageError.
 std::vector<std::uint8_t> encode_jpeg(std::span<const base::Rgb> pixels, int width, int height, int quality);
 std::vector<std::uint8_t> encode_png(std::span<const base::Rgb> pixels, int width, int height,
                                      int compression = 1);

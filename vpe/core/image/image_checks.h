@@ -1,4 +1,4 @@
-// Size checks that every image reader and writer makes before it allocates. Private to vpe/core.
+// Size checks that every reader and writer of images makes before it allocates. Private to vpe/core.
 #pragma once
 
 #include <cstddef>

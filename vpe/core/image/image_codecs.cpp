@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <new>
 #include <utility>
 
 // libjpeg's header needs <cstdio> before it.
@@ -11,7 +10,7 @@
 
 #include "vpe/core/image/image.h"
 #include "vpe/core/image/image_checks.h"
-#include "vpe/core/image/png_packer.h"
+#include "vpe/core/image/png_stream.h"
 
 namespace vpe::core {
 
@@ -28,75 +27,30 @@ struct PngImage : png_image {
   PngImage& operator=(const PngImage&) = delete;
 };
 
-// libpng and libjpeg report errors by a call that must not return. The functions that are left by longjmp hold
-// nothing that needs destroying; their callers own everything.
-struct PngEncoder {
-  std::vector<std::uint8_t> bytes;
-  std::jmp_buf escape{};
-  char words[128] = "unknown error";
-  png_structp codec = nullptr;
-  png_infop info = nullptr;
-
-  ~PngEncoder() { png_destroy_write_struct(&codec, &info); }
-
-  static PngEncoder& self(png_structp codec) { return *static_cast<PngEncoder*>(png_get_error_ptr(codec)); }
-
-  [[noreturn]] static void leave(png_structp codec, png_const_charp message) {
-    std::snprintf(self(codec).words, sizeof words, "%s", message);
-    std::longjmp(self(codec).escape, 1);
-  }
-
-  static void ignore(png_structp /*codec*/, png_const_charp /*message*/) {}
-  static void flush(png_structp /*codec*/) {}
-
-  static void append(png_structp codec, png_bytep data, std::size_t size) {
-    // No exception may pass through the library.
-    try {
-      self(codec).bytes.insert(self(codec).bytes.end(), data, data + size);
-      return;
-    } catch (const std::bad_alloc&) {
-    }
-    png_error(codec, "out of memory");
-  }
-
-  bool run(const std::uint8_t* pixels, int color_type, int width, int height, int compression) {
-    if (setjmp(escape) != 0) return false;
-    codec = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, leave, ignore);
-    if (codec == nullptr) return false;
-    info = png_create_info_struct(codec);
-    if (info == nullptr) return false;
-    png_set_write_fn(codec, nullptr, append, flush);
-    png_set_IHDR(codec, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8, color_type,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(codec, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_filter(codec, PNG_FILTER_TYPE_BASE, PNG_FAST_FILTERS);
-    png_set_compression_level(codec, compression);
-    png_write_info(codec, info);
-    const std::size_t row_bytes = png_get_rowbytes(codec, info);
-    for (int y = 0; y < height; ++y) png_write_row(codec, pixels + static_cast<std::size_t>(y) * row_bytes);
-    png_write_end(codec, nullptr);
-    return true;
-  }
-};
-
-std::vector<std::uint8_t> encode_png(const void* pixels, int color_type, int width, int height,
+std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> pixels, int channels, int width, int height,
                                      int compression) {
   if (compression < 1 || compression > 9) {
     throw ImageError("PNG compression " + std::to_string(compression) + ": must be 1 to 9");
   }
-  const bool has_alpha = color_type == PNG_COLOR_TYPE_RGBA;
-  const std::size_t channels = has_alpha ? 4 : 3;
-  if (can_pack_png(channels * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))) {
-    return pack_png(static_cast<const std::uint8_t*>(pixels), static_cast<int>(channels), width, height,
-                    compression);
-  }
-  const auto encoder = std::make_unique<PngEncoder>();
-  if (!encoder->run(static_cast<const std::uint8_t*>(pixels), color_type, width, height, compression)) {
-    throw ImageError(std::string("cannot encode a PNG: ") + encoder->words + "; make the picture smaller");
-  }
-  return std::move(encoder->bytes);
+  std::vector<std::uint8_t> out;
+  constexpr std::size_t kOtherBytes = 128;
+  // Few large pieces come, so that memory for each of them and the rest of the file saves copies.
+  const auto sink = [&out](std::span<const std::uint8_t> bytes) {
+    if (bytes.size() > kOtherBytes) out.reserve(out.size() + bytes.size() + kOtherBytes);
+    out.insert(out.end(), bytes.begin(), bytes.end());
+  };
+  PngStreamOptions options;
+  options.channels = channels;
+  options.compression = compression;
+  options.packing = PngPacking::kWhole;
+  PngStream stream(width, height, options, sink);
+  stream.write(pixels);
+  stream.finish();
+  return out;
 }
 
+// libjpeg reports errors by a call that must not return. The functions that are left by longjmp hold nothing
+// that needs destroying; their callers own everything.
 struct JpegErrors {
   jpeg_error_mgr manager{};
   std::jmp_buf escape{};
@@ -194,12 +148,14 @@ struct JpegDecoder {
 std::vector<std::uint8_t> encode_png(std::span<const base::Rgb> pixels, int width, int height,
                                      int compression) {
   check_image_size(pixels.size(), width, height);
-  return encode_png(pixels.data(), PNG_COLOR_TYPE_RGB, width, height, compression);
+  return encode_png({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size_bytes()}, 3, width,
+                    height, compression);
 }
 
 std::vector<std::uint8_t> encode_png(std::span<const Rgba> pixels, int width, int height, int compression) {
   check_image_size(pixels.size(), width, height);
-  return encode_png(pixels.data(), PNG_COLOR_TYPE_RGBA, width, height, compression);
+  return encode_png({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size_bytes()}, 4, width,
+                    height, compression);
 }
 
 RgbImage decode_png(std::span<const std::uint8_t> bytes, std::int64_t max_pixels) {
@@ -228,13 +184,13 @@ std::vector<std::uint8_t> encode_jpeg(std::span<const base::Rgb> pixels, int wid
   const auto encoder = std::make_unique<JpegEncoder>();
   if (!encoder->run(pixels.data(), width, height, quality)) {
     throw ImageError(std::string("cannot encode a JPEG: ") + encoder->errors.words +
-                     "; make the picture smaller");
+                     "; make the image smaller");
   }
   return {encoder->bytes, encoder->bytes + encoder->size};
 }
 
 RgbImage decode_jpeg(std::span<const std::uint8_t> bytes, std::int64_t max_pixels) {
-  // libjpeg calls an empty input a fatal misuse.
+  // libjpeg treats an empty input as a fatal misuse.
   if (bytes.empty()) throw_damaged("JPEG", "no data");
   const auto decoder = std::make_unique<JpegDecoder>();
   if (!decoder->read_header(bytes)) throw_damaged("JPEG", decoder->errors.words);

@@ -13,7 +13,7 @@ namespace vpe::core {
 namespace {
 
 constexpr char kDiskAdvice[] = "check the free space and the permissions there";
-constexpr char kDamagedAdvice[] = "the file is damaged or was not made by write_tiff";
+constexpr char kTiffAdvice[] = "the file is damaged or was not made by write_tiff";
 constexpr std::size_t kStripBytes = std::size_t{1} << 18;
 // Classic TIFF holds 4 GiB; leave room for what compression may add.
 constexpr std::size_t kMaxClassicBytes = std::size_t{3} << 30;
@@ -30,19 +30,14 @@ std::uint16_t tag_of(TiffCompression compression) {
 bool write_rows(TIFF* tiff, std::span<const float> values, int width, int height, TiffCompression compression) {
   const auto columns = static_cast<std::size_t>(width);
   const std::size_t rows_a_strip = std::max(std::size_t{1}, kStripBytes / (columns * sizeof(float)));
-  bool ok = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(width)) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(height)) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, static_cast<std::uint32_t>(rows_a_strip)) == 1 &&
-            TIFFSetField(tiff, TIFFTAG_COMPRESSION, tag_of(compression)) == 1;
-  if (compression != TiffCompression::kNone) {
-    ok = ok && TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_FLOATINGPOINT) == 1;
-  }
-  // The library transforms the rows where they lie: give it copies.
+  TiffLayout layout;
+  layout.width_px = static_cast<std::uint32_t>(width);
+  layout.height_px = static_cast<std::uint32_t>(height);
+  layout.bits = 32;
+  layout.compression = tag_of(compression);
+  layout.tile_height_px = static_cast<std::uint32_t>(rows_a_strip);
+  bool ok = set_layout(tiff, layout);
+  // The library changes the rows that it is given.
   std::vector<float> strip;
   std::uint32_t index = 0;
   for (std::size_t begin = 0; ok && begin < values.size(); begin += rows_a_strip * columns, ++index) {
@@ -78,7 +73,7 @@ FloatImage read_tiff(const std::filesystem::path& path, std::int64_t max_pixels)
     throw base::file_error("read", path, std::strerror(errno), "check the name and the permissions");
   }
   const TiffHandle tiff(stream.get(), path, "r");
-  if (tiff.get() == nullptr) throw base::file_error("read", path, tiff.words(), kDamagedAdvice);
+  if (tiff.get() == nullptr) throw base::file_error("read", path, tiff.words(), kTiffAdvice);
 
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -103,7 +98,7 @@ FloatImage read_tiff(const std::filesystem::path& path, std::int64_t max_pixels)
   image.pixels.resize(std::size_t{width} * height);
   for (std::uint32_t row = 0; row < height; ++row) {
     if (TIFFReadScanline(tiff.get(), image.pixels.data() + std::size_t{row} * width, row) != 1) {
-      throw base::file_error("read", path, tiff.words(), kDamagedAdvice);
+      throw base::file_error("read", path, tiff.words(), kTiffAdvice);
     }
   }
   return image;

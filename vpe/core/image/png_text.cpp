@@ -1,12 +1,7 @@
 #include "vpe/core/image/png_text.h"
 
-#include <zlib.h>
-
-#include <algorithm>
-#include <array>
-#include <string_view>
-
 #include "vpe/core/image/image.h"
+#include "vpe/core/image/png_chunks.h"
 
 namespace vpe::core {
 
@@ -14,65 +9,43 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// PNG specification, section 5: signature, then chunks of length, type, data and checksum, big-endian.
-constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-constexpr std::size_t kFrame = 12;  // of a chunk around its data
-constexpr std::size_t kHeader = kSignature.size() + kFrame + 13;
-
-std::uint32_t read_u32(Bytes bytes) {
-  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 |
-         bytes[3];
-}
-
-void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value) {
-  for (const int shift : {24, 16, 8, 0}) out.push_back(static_cast<std::uint8_t>(value >> shift));
-}
-
-std::uint32_t checksum(Bytes type_and_data) {
-  return static_cast<std::uint32_t>(::crc32(0, type_and_data.data(), static_cast<uInt>(type_and_data.size())));
-}
-
-bool has_signature(Bytes bytes) {
-  return bytes.size() >= kSignature.size() && std::equal(kSignature.begin(), kSignature.end(), bytes.begin());
-}
+constexpr std::size_t kHeaderEnd = kPngSignature.size() + kPngChunkFrame + kPngHeaderLength;
 
 }  // namespace
 
 std::vector<std::uint8_t> with_png_text(Bytes png, std::span<const PngText> texts) {
-  if (!has_signature(png) || png.size() < kHeader) throw ImageError("no PNG to put text into");
-  std::vector<std::uint8_t> out(png.begin(), png.begin() + kHeader);
+  if (!has_png_signature(png) || png.size() < kHeaderEnd) throw ImageError("no PNG to put text into");
+  std::vector<std::uint8_t> out(png.begin(), png.begin() + kHeaderEnd);
   for (const PngText& t : texts) {
-    put_u32(out, static_cast<std::uint32_t>(t.keyword.size() + 1 + t.text.size()));
-    const std::size_t type = out.size();
-    for (const std::string_view part : {std::string_view("tEXt"), std::string_view(t.keyword),
-                                        std::string_view("\0", 1), std::string_view(t.text)}) {
-      out.insert(out.end(), part.begin(), part.end());
-    }
-    put_u32(out, checksum(Bytes(out).subspan(type)));
+    const std::vector<std::uint8_t> chunk = png_chunk("tEXt", t.keyword + '\0' + t.text);
+    out.insert(out.end(), chunk.begin(), chunk.end());
   }
-  out.insert(out.end(), png.begin() + kHeader, png.end());
+  out.insert(out.end(), png.begin() + kHeaderEnd, png.end());
   return out;
 }
 
 std::optional<std::vector<PngText>> read_png_text(Bytes bytes) {
-  if (!has_signature(bytes)) return std::nullopt;
-  std::vector<PngText> texts;
-  Bytes rest = bytes.subspan(kSignature.size());
-  while (rest.size() >= kFrame) {
-    const std::size_t length = read_u32(rest);
-    if (length > rest.size() - kFrame) return std::nullopt;
-    const Bytes type_and_data = rest.subspan(4, 4 + length);
-    if (checksum(type_and_data) != read_u32(rest.subspan(8 + length))) return std::nullopt;
-    const std::string_view type(reinterpret_cast<const char*>(type_and_data.data()), 4);
-    const std::string_view data(reinterpret_cast<const char*>(type_and_data.data()) + 4, length);
-    rest = rest.subspan(kFrame + length);
-    if (type == "IEND") return rest.empty() ? std::optional(texts) : std::nullopt;
-    if (type != "tEXt") continue;
-    const std::size_t end = data.find('\0');
-    if (end == std::string_view::npos) return std::nullopt;
-    texts.push_back({std::string(data.substr(0, end)), std::string(data.substr(end + 1))});
+  if (!has_png_signature(bytes)) return std::nullopt;
+  try {
+    std::vector<PngText> texts;
+    std::uint64_t end = 0;
+    PngChunks chunks(bytes);
+    while (const auto chunk = chunks.next()) {
+      end = chunk->end();
+      if (chunk->type != "tEXt") {
+        if (!chunks.has_right_checksum(*chunk)) return std::nullopt;
+        continue;
+      }
+      const std::string data = chunks.checked_data(*chunk);
+      const std::size_t keyword_end = data.find('\0');
+      if (keyword_end == std::string::npos) return std::nullopt;
+      texts.push_back({data.substr(0, keyword_end), data.substr(keyword_end + 1)});
+    }
+    if (end != bytes.size()) return std::nullopt;
+    return texts;
+  } catch (const ImageError&) {
+    return std::nullopt;
   }
-  return std::nullopt;
 }
 
 }  // namespace vpe::core

@@ -1,4 +1,4 @@
-// Text inside a PNG file, and whether the file is whole.
+// Text inside a PNG file, and a check that the file is complete.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace vpe::core {
 
-// A tEXt chunk: keyword of 1 to 79 characters, text; both printable ASCII.
+// Holds a tEXt chunk: a keyword of 1 to 79 characters and a text, both printable ASCII.
 struct PngText {
   std::string keyword;
   std::string text;
@@ -17,11 +17,11 @@ struct PngText {
   bool operator==(const PngText&) const = default;
 };
 
-// The file with the texts in front of its pixels. Throws ImageError when the bytes are no PNG.
+// Returns the file with the texts inserted before its pixels. Throws ImageError when the bytes are no PNG.
 std::vector<std::uint8_t> with_png_text(std::span<const std::uint8_t> png, std::span<const PngText> texts);
 
-// The texts of a file that is whole: every chunk there with the right checksum, and nothing after the last one.
-// Nothing for any other bytes. Pixels are not unpacked: decode_png() does that.
+// Returns the texts of a complete file: every chunk is there with the right checksum, and nothing follows the
+// last one. Returns nullopt for any other bytes. Does not decode pixels: decode_png() does.
 std::optional<std::vector<PngText>> read_png_text(std::span<const std::uint8_t> bytes);
 
 }  // namespace vpe::core

@@ -69,4 +69,20 @@ TiffHandle::TiffHandle(std::FILE* stream, const std::filesystem::path& path, con
                                 no_map, no_unmap, options.get()));
 }
 
+bool set_layout(TIFF* tiff, const TiffLayout& layout) {
+  const auto set = [tiff](std::uint32_t tag, auto value) { return TIFFSetField(tiff, tag, value) == 1; };
+  const bool is_float = layout.bits != 8;
+  const bool is_rgb = layout.samples == 3 && !is_float;
+  bool ok = set(TIFFTAG_IMAGEWIDTH, layout.width_px) && set(TIFFTAG_IMAGELENGTH, layout.height_px) &&
+            set(TIFFTAG_BITSPERSAMPLE, layout.bits) && set(TIFFTAG_SAMPLESPERPIXEL, layout.samples) &&
+            set(TIFFTAG_SAMPLEFORMAT, is_float ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT) &&
+            set(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
+            set(TIFFTAG_PHOTOMETRIC, is_rgb ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK) &&
+            set(TIFFTAG_COMPRESSION, layout.compression);
+  if (layout.compression != COMPRESSION_NONE)
+    ok = ok && set(TIFFTAG_PREDICTOR, is_float ? PREDICTOR_FLOATINGPOINT : PREDICTOR_HORIZONTAL);
+  if (layout.tile_width_px == 0) return ok && set(TIFFTAG_ROWSPERSTRIP, layout.tile_height_px);
+  return ok && set(TIFFTAG_TILEWIDTH, layout.tile_width_px) && set(TIFFTAG_TILELENGTH, layout.tile_height_px);
+}
+
 }  // namespace vpe::core

@@ -1,5 +1,13 @@
-// A TIFF opened through libtiff: what the library says of a failure is kept with the handle, and nothing is
-// printed or shared with the process's other users of it.
+// TIFF files opened through libtiff, for reading and writing.
+//
+// Messages of the library are kept with the handle. Nothing is printed, and nothing is shared with the
+// process's other users of libtiff.
+//
+// Typical usage:
+//   TiffHandle tiff(file.stream(), path, "w8");
+//   if (tiff.get() == nullptr || !set_layout(tiff.get(), layout)) {
+//     throw base::file_error("write", path, tiff.words(), advice);
+//   }
 #pragma once
 
 #include <tiffio.h>
@@ -10,24 +18,24 @@
 
 namespace vpe::core {
 
-// Used by one thread at a time. May be moved.
+// Owns an open file. May be moved. For one thread at a time.
 class TiffHandle {
  public:
-  // What a description of the file may make the library allocate at once. An image of 100 000 x 20 000 in
-  // tiles of 16 x 16 has tables of 60 MB.
+  // Limits what a description of the file may make the library allocate at once. An image of 100 000 x 20 000
+  // in tiles of 16 x 16 has tables of 60 MB.
   static constexpr tmsize_t kMaxTableBytes = tmsize_t{1} << 28;
   static constexpr tmsize_t kNoLimit = 0;
 
   TiffHandle() = default;  // closed
-  // `mode` is TIFFOpen()'s. get() is null when that fails; words() says why.
+  // Opens a file. `mode` is TIFFOpen()'s. get() is null when that fails; words() says why.
   TiffHandle(const std::filesystem::path& path, const char* mode, tmsize_t max_bytes = kNoLimit);
-  // On a stream that stays open and outlives the handle: full disks show there, and paths are bytes.
+  // Opens a stream that stays open and outlives the handle: full disks show there, and paths are bytes.
   TiffHandle(std::FILE* stream, const std::filesystem::path& path, const char* mode);
 
   TIFF* get() const { return tiff_.get(); }
-  // The library's last words of error.
+  // Returns the library's last error message.
   const char* words() const { return words_->text; }
-  // words() stay.
+  // Closes the file; words() stay.
   void close() { tiff_.reset(); }
 
  private:
@@ -37,5 +45,21 @@ class TiffHandle {
   std::unique_ptr<Words> words_ = std::make_unique<Words>();  // before the handle, which writes there
   std::unique_ptr<TIFF, void (*)(TIFF*)> tiff_{nullptr, TIFFClose};
 };
+
+// Describes the pixels of a page that is written. Samples of a pixel lie together. Samples of 8 bits are whole
+// numbers, others IEEE floating point.
+struct TiffLayout {
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  std::uint16_t samples = 1;                     // 3 of 8 bits are RGB, others have no colour meaning
+  std::uint16_t bits = 8;                        // of a sample
+  std::uint16_t compression = COMPRESSION_NONE;  // libtiff's number; all but COMPRESSION_NONE get a predictor
+  // Rows of a strip when tile_width_px is 0, else the height of a tile. Sides of tiles are multiples of 16.
+  std::uint32_t tile_width_px = 0;
+  std::uint32_t tile_height_px = 0;
+};
+
+// Sets the fields of a page. Returns false when the library refuses one.
+bool set_layout(TIFF* tiff, const TiffLayout& layout);
 
 }  // namespace vpe::core

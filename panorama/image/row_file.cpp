@@ -1,3 +1,5 @@
+#include "panorama/image/row_file.h"
+
 #include <csetjmp>
 #include <cstdio>
 #include <stdexcept>
@@ -5,15 +7,15 @@
 // libjpeg's header needs <cstdio> before it.
 #include <jpeglib.h>
 
-#include "panorama/image/row_file.h"
 #include "panorama/image/xmp_file.h"
+#include "vpe/core/image/png_stream.h"
 
 namespace panorama {
 
 namespace {
 
-// libjpeg reports errors by a call that must not return. The functions left by longjmp hold nothing that needs
-// destroying.
+// libjpeg reports errors by a call that must not return. The functions that are left by longjmp hold nothing
+// that needs destroying.
 struct Errors {
   jpeg_error_mgr manager{};
   std::jmp_buf escape{};
@@ -25,6 +27,29 @@ struct Errors {
   codec->err->format_message(codec, errors->words);
   std::longjmp(errors->escape, 1);
 }
+
+class PngWriter : public RowWriter {
+ public:
+  PngWriter(vpe::base::OutputFile& file, std::int64_t width_px, std::int64_t height_px, const std::string& xmp,
+            vpe::base::ThreadPool& pool)
+      : stream_(width_px, height_px, options_for(xmp, pool),
+                [&file](std::span<const std::uint8_t> bytes) { file.write(bytes); }) {}
+
+  void write(std::span<const vpe::base::Rgb> rows) override {
+    stream_.write({reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size_bytes()});
+  }
+  void finish() override { stream_.finish(); }
+
+ private:
+  static vpe::core::PngStreamOptions options_for(const std::string& xmp, vpe::base::ThreadPool& pool) {
+    vpe::core::PngStreamOptions options;
+    options.xmp = xmp;
+    options.pool = &pool;
+    return options;
+  }
+
+  vpe::core::PngStream stream_;
+};
 
 class JpegWriter : public RowWriter {
  public:
@@ -46,7 +71,7 @@ class JpegWriter : public RowWriter {
   void write(std::span<const vpe::base::Rgb> rows) override {
     const std::size_t count = rows.size() / width_px_;
     if (count * width_px_ != rows.size() || count > codec_.image_height - codec_.next_scanline) {
-      throw std::logic_error("not the rows of this picture");
+      throw std::logic_error("not the rows of this image");
     }
     if (!write(rows.data(), count)) fail();
   }
@@ -103,6 +128,12 @@ class JpegWriter : public RowWriter {
 };
 
 }  // namespace
+
+std::unique_ptr<RowWriter> make_png_writer(vpe::base::OutputFile& file, std::int64_t width_px,
+                                           std::int64_t height_px, const std::string& xmp,
+                                           vpe::base::ThreadPool& pool) {
+  return std::make_unique<PngWriter>(file, width_px, height_px, xmp, pool);
+}
 
 std::unique_ptr<RowWriter> make_jpeg_writer(vpe::base::OutputFile& file, std::int64_t width_px,
                                             std::int64_t height_px, const std::string& xmp, int quality) {
