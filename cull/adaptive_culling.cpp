@@ -16,7 +16,7 @@ void AdaptiveCulling::record_frame(const CullingFrame& frame) {
                       frame.tile_ms >= 0.0 && frame.tested > 0;
   if (state_ == State::kOff || !counts) return;
   ++frames_;
-  // A plain mean of a trial's frames, then a sliding one.
+  // The mean of a trial's frames, then an exponential moving average.
   const int memory = state_ == State::kTrial ? frames_ : std::max(1, limits_.memory_frames);
   const double share = 1.0 / memory;
   spent_ms_ += share * (frame.spent_ms - spent_ms_);

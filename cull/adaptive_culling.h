@@ -1,37 +1,51 @@
-// Whether a culler earns its time. What is culled is invisible, so images do not depend on the answer.
+// Decides whether a culling test saves more time than it costs. Culled tiles are invisible, so images do not
+// depend on the decision.
+//
+// Typical usage, once per frame:
+//   if (culling.use()) {
+//     const CullingFrame frame = cull_and_measure();
+//     culling.record_frame(frame);
+//   } else {
+//     culling.skip_frame();
+//   }
 #pragma once
 
 namespace cull {
 
 struct AdaptiveCullingLimits {
-  int memory_frames = 8;    // what is weighed is a mean over about this many frames of use
-  double keep_ratio = 0.8;  // goes off when the time saved falls below this times the time spent,
-  double accept_ratio =
-      1.25;              // and after a trial stays on only when it is above this: between both nothing changes
-  int trial_frames = 4;  // the first frames, and those of a later try
-  int wait_frames = 30;  // off, until it is tried again; twice as long after every trial that fails,
+  // Number of frames over which costs and savings are averaged. Larger: steadier, slower to react.
+  int memory_frames = 8;
+  // Culling is switched off if the saved time falls below keep_ratio times the spent time, and after a trial it
+  // stays on only if the saved time is above accept_ratio times the spent time. Nothing changes between both
+  // ratios: the farther apart, the fewer changes.
+  double keep_ratio = 0.8;
+  double accept_ratio = 1.25;
+  int trial_frames = 4;  // length of the first trial and of later ones
+  // Frames without culling until the next trial. The wait doubles after each failed trial, up to the longest
+  // one.
+  int wait_frames = 30;
   int longest_wait_frames = 960;
 };
 
-// What a culler did in one frame in which it was used.
+// Measurements of one frame in which culling was used.
 struct CullingFrame {
   double spent_ms = 0;
   int tested = 0;
   int culled = 0;
-  double tile_ms = 0;  // mean time that a tile takes to be drawn
+  double tile_ms = 0;  // mean drawing time of one tile
 };
 
-// Counts frames, knows no clock. Frames in which nothing was tested say nothing and do not count as use.
+// Counts frames; does not read a clock. Frames in which nothing was tested are ignored.
 class AdaptiveCulling {
  public:
   explicit AdaptiveCulling(const AdaptiveCullingLimits& limits = {})
       : limits_(limits), wait_(limits.wait_frames) {}
 
-  // Whether to use the culler in the next frame.
+  // Returns true if culling should be used in the next frame.
   bool use() const { return state_ != State::kOff; }
 
-  // After every frame: what it did, if it was used. Times must be finite and not negative; others are not
-  // counted.
+  // Call one of these after every frame, depending on whether culling was used. Frames with times that are
+  // negative or not finite are ignored.
   void record_frame(const CullingFrame& frame);
   void skip_frame();
 

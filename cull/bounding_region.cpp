@@ -8,7 +8,7 @@ namespace cull {
 
 namespace {
 
-// Direction in the axes of a face.
+// A direction in the axes of a face.
 struct FaceDirection {
   double x, y, z;
 };
@@ -31,9 +31,9 @@ std::array<double, 4> corner_chords2(const FaceDirection& d, const mars::ChartRe
           corner_chord2(d, rect.u0, rect.v1), corner_chord2(d, rect.u1, rect.v1)};
 }
 
-// Squared chord from a direction to the arc of the chart line x / z = line between y / z = low and high, for
-// a direction outside it (side < 0 is the signed distance x - line z, towards the rectangle positive). Returns
-// `otherwise` when the foot of the perpendicular is not on the arc.
+// Returns the smaller of `otherwise` and the squared chord from a direction to the arc of the chart line x / z
+// = line between y / z = low and high. Returns `otherwise` for a direction on the rectangle's side of the line
+// (side >= 0, the signed distance x - line z), and if the foot of the perpendicular is not on the arc.
 double arc_chord2(double x, double y, double z, double line, double low, double high, double side,
                   double otherwise) {
   const double size2 = 1.0 + line * line;
@@ -54,7 +54,7 @@ BoundingHexahedron bounding_hexahedron(const BoundingRegion& region) {
   volume.centre = glm::normalize(rays[0] + rays[1] + rays[2] + rays[3]);
   std::array<double, 4> cosines;
   for (std::size_t k = 0; k < 4; ++k) cosines[k] = glm::dot(volume.centre, rays[k]);
-  // The directions of the rectangle are at least as close to its centre as its farthest corner is.
+  // No direction of the rectangle is farther from its centre than the farthest corner.
   const double inner_m = region.min_radius_m * *std::min_element(cosines.begin(), cosines.end());
   for (std::size_t k = 0; k < 4; ++k) {
     volume.corners_m[k] = rays[k] * (inner_m / cosines[k]);
@@ -70,7 +70,7 @@ Camera make_camera(const glm::dvec3& camera_m) {
 
 double nearest_chord2(const mars::ChartRect& rect, const glm::dvec3& direction) {
   const FaceDirection d = on_face(rect.face, direction);
-  // Behind the face (z < 0) low z > high z: no direction is between, here and on the arcs.
+  // Behind the face (z < 0) low z > high z, so that no direction lies between, here and on the arcs.
   const double west = d.x - rect.u0 * d.z;
   const double east = rect.u1 * d.z - d.x;
   const double south = d.y - rect.v0 * d.z;
@@ -86,8 +86,8 @@ double nearest_chord2(const mars::ChartRect& rect, const glm::dvec3& direction) 
 }
 
 double farthest_chord2(const mars::ChartRect& rect, const glm::dvec3& direction) {
-  // Beyond 90 degrees the farthest is the antipode's nearest, and 4 - x loses nothing. Within them caps are
-  // convex, so that a corner is farthest.
+  // Beyond 90 degrees the farthest point is the antipode's nearest, and 4 - x loses no precision. Within 90
+  // degrees caps are convex, so that a corner is farthest.
   const double opposite = nearest_chord2(rect, -direction);
   if (opposite < 2.0) return 4.0 - opposite;
   const std::array<double, 4> corners = corner_chords2(on_face(rect.face, direction), rect);
@@ -102,7 +102,7 @@ double min_distance_m(const Camera& camera, double chord2, double min_radius_m, 
 }
 
 double max_distance_m(const Camera& camera, double chord2, double min_radius_m, double max_radius_m) {
-  // Convex in the radius: one of the ends is farthest.
+  // The distance is convex in the radius, so one of the ends is farthest.
   const auto squared = [&](double radius) {
     const double radial = camera.radius_m - radius;
     return radial * radial + camera.radius_m * radius * chord2;

@@ -29,7 +29,7 @@ std::optional<PlaneMask> planes_crossed(const Frustum& frustum, const BoundingHe
     largest = std::max({largest, std::abs(corners[k].x), std::abs(corners[k].y), std::abs(corners[k].z)});
   }
   const auto reach = [](const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
-  // Rounding of the corners, of the camera, of the differences and of the products.
+  // Covers the rounding of the corners, the camera, the differences and the products.
   const double slack = 4.0 * kVolumeError * (reach(frustum.camera_m) + largest);
   PlaneMask crossed = 0;
   for (std::size_t plane = 0; plane < static_cast<std::size_t>(frustum.count); ++plane) {

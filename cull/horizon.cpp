@@ -7,8 +7,8 @@ namespace cull {
 
 namespace {
 
-// tan(a / 2) of the angle a = acos(occluder / radius), without the cancellation of acos near 1. The radii
-// come rounded: the difference is widened by that.
+// Returns tan(a / 2) of the angle a = acos(occluder / radius), without the cancellation of acos near 1. The
+// difference is widened by the rounding of the radii.
 double half_tangent(double occluder_m, double radius_m) {
   const double sum = radius_m + occluder_m;
   return std::sqrt((radius_m - occluder_m) / sum + 1e-15);
@@ -25,7 +25,7 @@ bool hidden(const Horizon& horizon, double chord2, double max_radius_m) {
   if (!horizon.hides) return false;
   const double a = horizon.half_tangent;
   const double b = half_tangent(horizon.occluder_m, std::max(max_radius_m, horizon.occluder_m));
-  // Both angles are below 90 degrees, so their halves add to less than that: sin((A + B) / 2) from tangents.
+  // Both angles are below 90 degrees, so the sum of their halves is too: sin((A + B) / 2) from tangents.
   const double numerator = a + b;
   const double rest = 1.0 - a * b;
   const double limit = 2.0 * numerator / std::sqrt(numerator * numerator + rest * rest);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-
 #include <limits>
 
 #include "mars/geodesy/sphere.h"
@@ -14,11 +13,13 @@ namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 constexpr double kBinsInHalf = TerrainHorizon::kBins / 2;
-// Azimuths of two points closer than this may be the other way round, in bins; twice what kNearest_rad leaves.
+// Two azimuths closer than this, in bins, may be in the wrong order; twice the rounding that kNearest_rad
+// leaves.
 constexpr double kSame = 1e-8 * TerrainHorizon::kBinsPerSide;
 
-// Slopes of rays to points at one ground angle t > 0 with c = cot t > 0: rise over run to radius r is
-// (r cos t - camera) / (r sin t) = (r - camera) / r * sqrt(1 + c^2) - (sqrt(1 + c^2) - c), without that difference.
+// Computes slopes of rays to points at one ground angle t > 0 with c = cot t > 0. Rise over run to radius r is
+// (r cos t - camera) / (r sin t) = (r - camera) / r * sqrt(1 + c^2) - (sqrt(1 + c^2) - c); the last difference
+// is computed without cancellation.
 struct SlopesAt {
   double per_rise;
   double fall;
@@ -28,7 +29,7 @@ struct SlopesAt {
 double rise_of(double r, double camera) { return (r - camera) / r; }
 double slope_at(double c, double r, double camera) { return SlopesAt(c)(rise_of(r, camera)); }
 
-// Difference of two azimuths, in [-kBins / 2, kBins / 2).
+// Wraps the difference of two azimuths into [-kBins / 2, kBins / 2).
 double wrapped(double d) {
   if (d >= kBinsInHalf) return d - TerrainHorizon::kBins;
   if (d < -kBinsInHalf) return d + TerrainHorizon::kBins;
@@ -61,11 +62,11 @@ void TerrainHorizon::begin(const Camera& camera, double margin_rad) {
   b_ = glm::cross(camera.direction, a_);
   std::fill(slope_.begin(), slope_.end(), kNone);
   for (auto* side : {&low_, &high_}) {
-    for (Parts& parts : *side) parts.count = 0;
+    for (BinParts& parts : *side) parts.count = 0;
   }
 }
 
-// Summed in body order, so that a point shared by two tiles or faces has the same bits from both.
+// Sums in body-fixed order, so that a point shared by two tiles or faces has the same bits from both.
 double TerrainHorizon::azimuth(const glm::dvec3& p) const {
   const double x = p.x * a_.x + p.y * a_.y + p.z * a_.z;
   const double y = p.x * b_.x + p.y * b_.y + p.z * b_.z;
@@ -87,29 +88,29 @@ void TerrainHorizon::raise(int bin, double slope) {
   at = std::max(at, slope);
 }
 
-void TerrainHorizon::add_part(int bin, bool from_low_end, const Part& part) {
+void TerrainHorizon::add_part(int bin, bool from_low_end, const BinPart& part) {
   const auto n = static_cast<std::size_t>(bin);
   if (part.slope <= slope_[n]) return;
-  const Parts& others = from_low_end ? high_[n] : low_[n];
+  const BinParts& others = from_low_end ? high_[n] : low_[n];
   for (std::size_t k = 0; k < others.count; ++k) {
-    const Part& other = others.entry[k];
+    const BinPart& other = others.entry[k];
     const double overlap = from_low_end ? part.end - other.end : other.end - part.end;
     if (overlap == 0.0 || overlap > kSame) raise(bin, std::min(part.slope, other.slope));
   }
   if (part.slope <= slope_[n]) return;
-  Parts& own = from_low_end ? low_[n] : high_[n];
-  const auto covers = [&](const Part& x, const Part& y) {
+  BinParts& own = from_low_end ? low_[n] : high_[n];
+  const auto covers = [&](const BinPart& x, const BinPart& y) {
     return x.slope >= y.slope && (from_low_end ? x.end >= y.end : x.end <= y.end);
   };
   std::size_t kept = 0;
   for (std::size_t k = 0; k < own.count; ++k) {
-    const Part& old = own.entry[k];
+    const BinPart& old = own.entry[k];
     if (covers(old, part)) return;
     if (!covers(part, old) && old.slope > slope_[n]) own.entry[kept++] = old;
   }
   if (kept == kParts) {
     auto* lowest = std::min_element(own.entry.begin(), own.entry.end(),
-                                    [](const Part& x, const Part& y) { return x.slope < y.slope; });
+                                    [](const BinPart& x, const BinPart& y) { return x.slope < y.slope; });
     if (lowest->slope < part.slope) *lowest = part;
   } else {
     own.entry[kept++] = part;
@@ -121,14 +122,14 @@ void TerrainHorizon::add(const OccluderSegment& occluder) {
   const std::size_t pieces = occluder.radius_m.size();
   if (pieces == 0 || pieces > OccluderSegment::kMostPieces) return;
   const mars::FaceAxes& face = mars::face_axes(occluder.face);
-  // Normal of the line's plane; the plane passes the camera's vertical at `beside`.
+  // The normal of the line's plane; the camera's direction is at `beside` from the plane.
   const glm::dvec3 normal = (occluder.column ? face.right : face.up) - occluder.line * face.out;
   const double beside = glm::dot(normal, camera_.direction);
   if (std::abs(beside) < kNearest_rad * (1.0 + std::abs(occluder.line))) return;
-  // cot of the ground angle along the line, as a function of azimuth: the scalar product with this.
+  // The cotangent of the ground angle along the line is the scalar product of this with the azimuth vector.
   const glm::dvec2 cot(-glm::dot(normal, a_) / beside, -glm::dot(normal, b_) / beside);
 
-  // In the order of azimuths, from `first` on without a step back.
+  // Azimuths and rises in ascending order of azimuth from `first` on.
   std::array<double, OccluderSegment::kMostPieces + 1> at;
   std::array<double, OccluderSegment::kMostPieces> rise;
   for (std::size_t n = 0; n <= pieces; ++n) {
@@ -147,7 +148,7 @@ void TerrainHorizon::add(const OccluderSegment& occluder) {
   const double end = at[pieces];
   for (std::size_t n = 1; n <= pieces; ++n) {
     if (at[n] < first) at[n] += kBins;
-    if (!(at[n] >= at[n - 1])) return;  // as good as straight away from the camera
+    if (!(at[n] >= at[n - 1])) return;  // points almost straight away from the camera
   }
   const double last = at[pieces];
   if (last - first >= kBinsInHalf) return;
@@ -170,8 +171,8 @@ void TerrainHorizon::add(const OccluderSegment& occluder) {
     while (piece + 1 < pieces && at[piece + 1] < bin) ++piece;
     double lowest = rise[piece];
     for (std::size_t n = piece + 1; n < pieces && at[n] <= bin + 1; ++n) lowest = std::min(lowest, rise[n]);
-    // Along an arc the slope has one maximum and no minimum but at its ends: those of the bin, and where the
-    // arc is nearest to the camera and turns.
+    // Along an arc the slope has one maximum, and its minima are at the ends: those of the bin, and the point
+    // where the arc is nearest to the camera.
     if (c0 > 0.0 && c1 > 0.0) {
       const int index = bin % kBins;
       double slope = std::min(slopes0(lowest), slopes1(lowest));
@@ -200,7 +201,7 @@ TerrainHorizon::Span TerrainHorizon::span(const mars::ChartRect& rect) const {
     low = std::min(low, d);
     high = std::max(high, d);
   }
-  // A convex region that leaves out the vertical spans less than half the circle.
+  // A convex region that excludes the vertical spans less than half the circle.
   if (high - low >= kBinsInHalf) return {0, 0, false};
   low += first;
   high += first;
@@ -224,12 +225,13 @@ bool TerrainHorizon::hidden(const BoundingRegion& region) const {
   const double c_far = cot(far2);
   const double top = region.max_radius_m;
   double highest = std::max(slope_at(c_near, top, camera_.radius_m), slope_at(c_far, top, camera_.radius_m));
-  // Seen from above, a sphere's slope is greatest where rays touch it: cot = top / sqrt(camera^2 - top^2).
+  // Seen from above, a sphere's slope is greatest where rays are tangent to it: cot = top / sqrt(camera^2 -
+  // top^2).
   if (camera_.radius_m > top) {
     const double c = top / std::sqrt((camera_.radius_m - top) * (camera_.radius_m + top));
     if (c < c_near && c > c_far) highest = std::max(highest, slope_at(c, top, camera_.radius_m));
   }
-  // An angle at slope s turns the azimuth by it times sqrt(1 + s^2), and the slope by its tangent.
+  // An angle at slope s changes the azimuth by the angle times sqrt(1 + s^2), and the slope by its tangent.
   const double lowest = region.min_radius_m > 0.0
                             ? std::min(slope_at(c_near, region.min_radius_m, camera_.radius_m),
                                        slope_at(c_far, region.min_radius_m, camera_.radius_m))

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Whether the ray ahead meets the volume: the part of it inside all six planes.
+// Returns true if the ray ahead meets the volume: if a part of it is inside all six planes.
 bool meets(const CentreOfView& ray, const cull::BoundingHexahedron& v) {
   double from = 0.0;
   double to = kInfinity;
@@ -43,7 +43,7 @@ bool meets(const CentreOfView& ray, const cull::BoundingHexahedron& v) {
   return from <= to;
 }
 
-// Angle to the nearest point of a segment, seen from the origin.
+// Returns the angle from `forward` to the nearest point of a segment, seen from the origin.
 double arc_angle(const glm::dvec3& forward, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 across = glm::cross(a, b);
   const double size = glm::length(across);
@@ -54,7 +54,7 @@ double arc_angle(const glm::dvec3& forward, const glm::dvec3& a, const glm::dvec
   return std::min(mars::angle_between_rad(forward, a), mars::angle_between_rad(forward, b));
 }
 
-bool is_good(const ControlFunction& f) {
+bool is_in_range(const ControlFunction& f) {
   return std::isfinite(f.scale) && f.scale >= 0.0 && std::isfinite(f.offset) && std::isfinite(f.weight) &&
          f.weight >= 0.0 && std::isfinite(f.x_factor) && f.x_factor > 0.0;
 }
@@ -97,7 +97,7 @@ CentreOfView centre_of_view(const core::View& view) {
 
 double least_angle_rad(const CentreOfView& centre, const cull::BoundingHexahedron& volume) {
   if (meets(centre, volume)) return 0.0;
-  // Else the nearest direction is on the outline, and that is made of edges.
+  // Otherwise the nearest direction is on the outline, which consists of edges.
   constexpr std::array<std::array<std::size_t, 2>, 12> kHullEdges{
       {{0, 1}, {1, 3}, {3, 2}, {2, 0}, {4, 5}, {5, 7}, {7, 6}, {6, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
   std::array<glm::dvec3, 8> corners;
@@ -116,40 +116,40 @@ double centre_distance(const CentreOfView& centre, double angle_rad) {
   return angle_rad < 0.5 * mars::kPi ? std::tan(angle_rad) / centre.half_height : kInfinity;
 }
 
-ControlTerms control_terms(const LevelControl& control, const CentreOfView& centre, const ControlPlace& place,
+ControlTerms control_terms(const LevelControl& control, const CentreOfView& centre, const ControlInput& input,
                            bool evaluate_all) {
   ControlTerms terms;
-  const bool by_distance = control.rule == core::LodMetric::kDistance;
-  terms.distance = term(control.distance, place.min_distance_m);
+  const bool by_distance = control.metric == core::LodMetric::kDistance;
+  terms.distance = term(control.distance, input.min_distance_m);
   terms.centre.weight = control.centre.weight;
   if (evaluate_all || control.centre.weight > 0.0) {
-    terms.centre_angle_rad = least_angle_rad(centre, place.volume);
+    terms.centre_angle_rad = least_angle_rad(centre, input.volume);
     terms.centre = term(control.centre, centre_distance(centre, terms.centre_angle_rad));
   }
   terms.interest.weight = control.interest_weight;
-  if (control.interest_weight > 0.0) terms.interest.levels = interest_levels(control.regions, place.rect);
+  if (control.interest_weight > 0.0) terms.interest.levels = interest_levels(control.regions, input.rect);
   terms.sum =
       (by_distance ? terms.distance.weighted() : 0.0) + terms.centre.weighted() + terms.interest.weighted();
   return terms;
 }
 
 bool is_neutral(const LevelControl& control) {
-  return control.rule == core::LodMetric::kError && control.centre.weight == 0.0 &&
+  return control.metric == core::LodMetric::kError && control.centre.weight == 0.0 &&
          (control.regions.empty() || control.interest_weight == 0.0);
 }
 
 double level_shift(double sum) { return std::clamp(sum, -kMaxShift, kMaxShift); }
 
-int wanted_lod(double sum) { return static_cast<int>(std::clamp(sum, 1.0, kMaxLevel + 1.0)); }
+int wanted_level_count(double sum) { return static_cast<int>(std::clamp(sum, 1.0, kMaxLevel + 1.0)); }
 
-double lod_number(const TileKey& key, int variant, int variants) {
+double level_count(const TileKey& key, int variant, int variants) {
   return key.level + (variant + 1.0) / variants;
 }
 
 void check(const LevelControl& control) {
-  const bool good = is_good(control.distance) && is_good(control.centre) &&
-                    std::isfinite(control.interest_weight) && control.interest_weight >= 0.0;
-  if (!good) {
+  const bool is_good = is_in_range(control.distance) && is_in_range(control.centre) &&
+                       std::isfinite(control.interest_weight) && control.interest_weight >= 0.0;
+  if (!is_good) {
     throw std::invalid_argument(
         "select: scale, offset and weight of level control must be finite, scale and weight not negative");
   }

@@ -1,18 +1,21 @@
-// Composite level control (Hitchner 1992, section 3.3): how many levels of detail a tile should have, as the
-// weighted sum of three functions. Pure functions.
+// Composite level control (Hitchner 1992, section 3.3): the number of levels of detail that a tile should have,
+// as the weighted sum of three functions. All functions are pure.
 //
 //   distance   scale / x + offset, x = metres from the camera to the nearest point of the tile's terrain
-//   centre     scale / x + offset, x = distance from the image's centre in halves of the image's height
-//   interest   the sum of the levels of the regions that the tile is in
+//   centre     scale / x + offset, x = distance from the image centre in halves of the image's height
+//   interest   the sum of the levels of the regions that contain the tile
 //
-// The first two may be lookup tables instead (vpe::core::LevelTable). Rule hitchner draws a tile whose number
-// (1 = the roots, one more a level down) is the integer part of weight * distance + weight * centre + weight *
-// interest, taken once, of the sum. Rule error counts a tile's projected error 2^(weight * centre + weight *
-// interest) times; distance is in the projection already and does not count again.
+// The first two may be lookup tables instead (vpe::core::LevelTable). With the metric kDistance, the functions
+// select the level alone: the paper's LOD number is the integer part of weight * distance + weight * centre +
+// weight * interest, truncated once, after the sum. It counts levels: a tile of level n has the LOD number n +
+// 1, because levels count from 0 and the coarsest tile has one level of detail. With the metric kError, a
+// tile's screen-space error counts as 2^(weight * centre + weight * interest) times itself; the distance is
+// already part of that error and is not used.
 //
-// A tile is no point. It is taken at its best place: nearest to the camera, nearest to the centre, in each finer
-// region that it touches, in a coarser region only when it lies in it as a whole. So no place gets less than
-// the functions give it, and parts of a tile that deserve less get it when it is refined.
+// A tile is not a point, so its best point counts: the one nearest to the camera, the one nearest to the
+// centre; a finer region counts if the tile touches it, a coarser region only if it contains the whole tile. So
+// no point gets less detail than the functions give it, and parts of a tile that deserve less get it when the
+// tile is refined.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -27,15 +30,16 @@
 
 namespace lod {
 
+// One function of x. Larger values of scale, offset and weight give finer tiles.
 struct ControlFunction {
   double scale = 0;             // >= 0, in the unit of x
   double offset = 0;            // levels
   double weight = 0;            // >= 0; 0: the function is not evaluated
-  vpe::core::LevelTable table;  // in place of scale and offset when it has rows
-  double x_factor = 1;          // > 0; x counts this many times: what a time budget turns
+  vpe::core::LevelTable table;  // replaces scale and offset if it has rows
+  double x_factor = 1;          // > 0, factor on x; a time budget raises it, which makes tiles coarser
 };
 
-// Not weighted. Infinite at x = 0 when the scale is not 0.
+// Returns the levels at x, not weighted. Infinite at x = 0 if the scale is not 0.
 double levels(const ControlFunction& function, double x);
 
 // A circle on the planet as a cap of directions.
@@ -46,21 +50,22 @@ struct ControlRegion {
 };
 ControlRegion control_region(const vpe::core::InterestRegion& region, double planet_radius_m);
 
-// Levels of all regions at a tile, added up.
+// Returns the sum of the levels of all regions at a tile.
 int interest_levels(std::span<const ControlRegion> regions, const mars::ChartRect& rect);
 
-// Without any effect by default: rule error, and weights and regions that do nothing.
+// Describes the control of one view. The default has no effect: metric kError, weights and regions that do
+// nothing.
 struct LevelControl {
-  vpe::core::LodMetric rule = vpe::core::LodMetric::kError;
+  vpe::core::LodMetric metric = vpe::core::LodMetric::kError;
   ControlFunction distance;
   ControlFunction centre;
   double interest_weight = 1;
   std::vector<ControlRegion> regions;
 };
 
-// Where the centre of the field of view is: the direction straight ahead of the full image, so that the parts
-// of an image agree; not the middle of a shifted one. In flat images the distance from it is that in the
-// image, infinite 90 degrees off; in panoramas the angle over half the vertical field of view.
+// The centre of the field of view: the direction straight ahead of the full image, so that the parts of an
+// image agree; not the middle of a shifted image. In flat images the distance from it is the distance in the
+// image, infinite at 90 degrees; in panoramas it is the angle divided by half the vertical field of view.
 struct CentreOfView {
   glm::dvec3 camera_m{0, 0, 0};
   glm::dvec3 forward{1, 0, 0};  // unit
@@ -69,17 +74,17 @@ struct CentreOfView {
 };
 CentreOfView centre_of_view(const vpe::core::View& view);
 
-// Least angle between forward and the directions from the camera to the points of a volume, radians, right within
-// 1e-7; 0 for a camera inside and where forward meets the volume.
+// Returns the least angle between forward and the directions from the camera to the points of a volume, in
+// radians, with an error of at most 1e-7. Returns 0 for a camera inside and where forward meets the volume.
 double least_angle_rad(const CentreOfView& centre, const cull::BoundingHexahedron& volume);
 
-// Distance from the centre at an angle, in halves of the image's height.
+// Returns the distance from the centre at an angle, in halves of the image's height.
 double centre_distance(const CentreOfView& centre, double angle_rad);
 
-// What control found for a tile.
+// The value of one function at a tile.
 struct ControlTerm {
-  double x = 0;       // metres; halves of the height; regions have none
-  double levels = 0;  // not weighted; 0 when the weight is
+  double x = 0;       // metres, or halves of the image's height; 0 for regions
+  double levels = 0;  // not weighted; 0 if the weight is 0
   double weight = 0;
   double weighted() const { return weight == 0.0 ? 0.0 : weight * levels; }
 };
@@ -88,31 +93,35 @@ struct ControlTerms {
   ControlTerm centre;
   ControlTerm interest;
   double centre_angle_rad = 0;
-  double sum = 0;  // of what the rule counts; may be infinite
+  double sum = 0;  // of the terms that the metric uses; may be infinite
 };
-struct ControlPlace {
+
+// The properties of a tile that the functions use.
+struct ControlInput {
   cull::BoundingHexahedron volume;
   mars::ChartRect rect;
   double min_distance_m = 0;
 };
-// evaluate_all: also the x of functions without weight.
-ControlTerms control_terms(const LevelControl& control, const CentreOfView& centre, const ControlPlace& place,
+
+// Evaluates the functions at a tile. With `evaluate_all` it also computes the x of functions without weight.
+ControlTerms control_terms(const LevelControl& control, const CentreOfView& centre, const ControlInput& input,
                            bool evaluate_all = false);
 
-// Whether the sum is 0 in rule error, everywhere.
+// Returns true if the metric is kError and the sum is 0 everywhere.
 bool is_neutral(const LevelControl& control);
 
-// Rule error: levels that a tile's error counts more, at most this many either way.
+// Metric kError: returns the levels by which a tile's error counts more, at most kMaxShift either way.
 inline constexpr double kMaxShift = vpe::core::InterestLimits::kMaxLevels;
 double level_shift(double sum);
 
-// Rule hitchner: the LOD number wanted, 1 .. kMaxLevel + 1.
-int wanted_lod(double sum);
+// Metric kDistance: returns the paper's LOD number of a sum, 1 .. kMaxLevel + 1. The wanted level is one less.
+int wanted_level_count(double sum);
 
-// The number of 1992 of a tile, and of its mesh. Inner tiles have one mesh. A finest tile's data in full is its
-// full grid; its coarser meshes count as parts of a level, so that budgets can stop between.
-inline int lod_number(const TileKey& key) { return key.level + 1; }
-double lod_number(const TileKey& key, int variant, int variants);
+// Return the paper's LOD number of a tile (its level + 1), and of one of its meshes. Inner tiles have one mesh.
+// The full grid of a finest tile has the number of the tile; its coarser meshes count as fractions of a level,
+// so that budgets can stop between them.
+inline int level_count(const TileKey& key) { return key.level + 1; }
+double level_count(const TileKey& key, int variant, int variants);
 
 // Throws std::invalid_argument for numbers out of range.
 void check(const LevelControl& control);

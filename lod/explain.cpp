@@ -8,8 +8,8 @@ namespace {
 
 LevelReason reason_of(const SelectOptions& options, const TileInfo& info, const SelectedTile& tile) {
   if (is_full_grid(info, tile.variant)) return LevelReason::kFinestThere;
-  if (options.control.rule == vpe::core::LodMetric::kDistance) {
-    const double number = lod_number(tile.key, tile.variant, static_cast<int>(info.variants.size()));
+  if (options.control.metric == vpe::core::LodMetric::kDistance) {
+    const double number = level_count(tile.key, tile.variant, static_cast<int>(info.variants.size()));
     return number >= tile.control ? LevelReason::kLevelReached : LevelReason::kBudgetSpent;
   }
   return tile.screen_space_error_px * std::exp2(tile.control) <= options.tolerance_px
@@ -38,7 +38,6 @@ std::vector<TileExplanation> explain(const SelectOptions& options, const TileTre
     const TileInfo& info = tree[tile.index];
     TileExplanation e;
     e.key = tile.key;
-    e.lod = lod_number(tile.key);
     e.post_spacing_m = nominal_side_m(tile.key.level, tree.radius_m()) / tree.shape().intervals();
     e.variant = tile.variant;
     e.variants = static_cast<int>(info.variants.size());
@@ -53,8 +52,8 @@ std::vector<TileExplanation> explain(const SelectOptions& options, const TileTre
                                                    region.min_radius_m, region.max_radius_m);
     e.terms = control_terms(options.control, view.centre,
                             {cull::bounding_hexahedron(region), region.rect, distance_m}, true);
-    if (options.control.rule == vpe::core::LodMetric::kDistance) {
-      e.wanted = static_cast<int>(tile.control);
+    if (options.control.metric == vpe::core::LodMetric::kDistance) {
+      e.wanted_level = static_cast<int>(tile.control) - 1;
     } else {
       e.shift = tile.control;
     }

@@ -1,4 +1,10 @@
-// Why every drawn tile has its level: select()'s reasons, worked out again from its result. Pure.
+// Explains why every drawn tile has its level: computes the reasons of select() again from its result. Pure.
+//
+// Typical usage:
+//   select(options, tree, view, scratch, selection);
+//   for (const TileExplanation& e : explain(options, tree, view, selection)) {
+//     print(to_string(e.key), e.screen_space_error_px, to_string(e.reason));
+//   }
 #pragma once
 
 #include <vector>
@@ -8,31 +14,32 @@
 namespace lod {
 
 enum class LevelReason {
-  kFinestThere,      // its full grid is drawn: nothing finer is there
-  kWithinTolerance,  // rule error: its error, shifted by control, is within the tolerance
-  kLevelReached,     // rule hitchner: its number is the LOD wanted, or above it
+  kFinestThere,      // its full grid is drawn; the planet file has nothing finer
+  kWithinTolerance,  // metric kError: its error, shifted by control, is within the tolerance
+  kLevelReached,     // metric kDistance: it has the wanted level or a finer one
   kBudgetSpent,      // the triangles were spent before it could be refined
 };
-const char* to_string(
-    LevelReason reason);  // "finest there", "within tolerance", "level reached", "budget spent"
 
+// Returns "finest there", "within tolerance", "level reached" or "budget spent".
+const char* to_string(LevelReason reason);
+
+// Explains one tile.
 struct TileExplanation {
-  TileKey key;
-  int lod = 1;                // the number of 1992: 1 = coarsest
-  double post_spacing_m = 0;  // of the posts that its mesh is chosen from, at nominal size
+  TileKey key;                // with its level, which counts from 0
+  double post_spacing_m = 0;  // nominal spacing of the posts from which its mesh is chosen
   int variant = 0;            // 0 = the coarsest mesh of the tile
   int variants = 1;
-  double min_distance_m = 0;     // lower bound, to the tile with the mesh that is drawn
-  double geometric_error_m = 0;  // bounds, of the mesh that is drawn
-  double screen_space_error_px = 0;
-  ControlTerms terms;  // taken with the coarsest mesh, as in select()
-  double shift = 0;    // rule error: levels that the error counted more
-  int wanted = 0;      // rule hitchner: the LOD number wanted
+  double min_distance_m = 0;         // lower bound of the distance to the tile with the drawn mesh
+  double geometric_error_m = 0;      // bound for the drawn mesh
+  double screen_space_error_px = 0;  // bound for the drawn mesh
+  ControlTerms terms;                // for the coarsest mesh, as in select()
+  double shift = 0;                  // metric kError: levels by which the error counted more
+  int wanted_level = 0;              // metric kDistance: the level that control asks for
   LevelReason reason = LevelReason::kWithinTolerance;
 };
 
-// One for every tile of the selection, in its order; the first three arguments are those that it was made with.
-// The terms have their x also where the weight is 0.
+// Returns an explanation for every tile of the selection, in its order. The first three arguments must be those
+// of select(). The terms include the x of functions whose weight is 0.
 std::vector<TileExplanation> explain(const SelectOptions& options, const TileTree& tree, const SelectView& view,
                                      const Selection& selection);
 

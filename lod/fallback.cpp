@@ -9,17 +9,18 @@ namespace {
 
 constexpr int kLevelsDown = 2;
 
-struct Stand {
+// A tile and mesh that replaces another.
+struct Replacement {
   TileTree::Index index;
   int variant;
 };
 
-class Substituter {
+class ReplacementFinder {
  public:
-  Substituter(const TileTree& tree, const IsResident& ready) : tree_(tree), ready_(ready) {}
+  ReplacementFinder(const TileTree& tree, const IsResident& resident) : tree_(tree), resident_(resident) {}
 
-  // What takes a tile's place without touching others; false when nothing does.
-  bool stand_in(const SelectedTile& tile, std::vector<Stand>& out) const {
+  // Finds a replacement that does not affect other tiles. Returns false if there is none.
+  bool replace(const SelectedTile& tile, std::vector<Replacement>& out) const {
     const TileInfo& info = tree_[tile.index];
     const int variants = static_cast<int>(info.variants.size());
     for (int v = tile.variant + 1; v < variants; ++v) {
@@ -31,12 +32,12 @@ class Substituter {
     return by_children(tile.index, kLevelsDown, out);
   }
 
-  // Nearest ready tile above.
+  // Returns the nearest resident ancestor.
   std::optional<TileTree::Index> ancestor(const TileKey& key) const {
     std::optional<TileTree::Index> nearest;
     TileTree::Index at = static_cast<TileTree::Index>(key.face);
     for (int level = 0; level < key.level; ++level) {
-      if (ready_(tree_[at], 0)) nearest = at;
+      if (resident_(tree_[at], 0)) nearest = at;
       const int down = key.level - level - 1;
       at = tree_.first_child(at) + static_cast<TileTree::Index>((key.i >> down & 1) + 2 * (key.j >> down & 1));
     }
@@ -44,14 +45,15 @@ class Substituter {
   }
 
  private:
-  bool take(TileTree::Index index, int variant, std::vector<Stand>& out) const {
-    if (!ready_(tree_[index], variant)) return false;
+  bool take(TileTree::Index index, int variant, std::vector<Replacement>& out) const {
+    if (!resident_(tree_[index], variant)) return false;
     out.push_back({index, variant});
     return true;
   }
 
-  // All four children, each by any mesh or by its own children; `out` is as before when one fails.
-  bool by_children(TileTree::Index index, int levels, std::vector<Stand>& out) const {
+  // Replaces a tile by all four children, each by any mesh or by its own children. Leaves `out` unchanged if
+  // one of them has no replacement.
+  bool by_children(TileTree::Index index, int levels, std::vector<Replacement>& out) const {
     if (levels == 0 || !tree_[index].has_children) return false;
     const std::size_t before = out.size();
     const TileTree::Index first = tree_.first_child(index);
@@ -67,14 +69,14 @@ class Substituter {
   }
 
   const TileTree& tree_;
-  const IsResident& ready_;
+  const IsResident& resident_;
 };
 
-// Tiles that replace all that was selected below them, none inside another, along the Z curve.
+// Sorts tiles in Morton order and removes those inside others.
 void drop_nested(const TileTree& tree, std::vector<TileTree::Index>& tiles) {
   std::sort(tiles.begin(), tiles.end(), [&](TileTree::Index a, TileTree::Index b) {
-    const std::int64_t za = z_position(tree[a].key);
-    const std::int64_t zb = z_position(tree[b].key);
+    const std::int64_t za = morton_position(tree[a].key);
+    const std::int64_t zb = morton_position(tree[b].key);
     return za != zb ? za < zb : tree[a].key.level < tree[b].key.level;
   });
   std::size_t kept = 0;
@@ -87,20 +89,20 @@ void drop_nested(const TileTree& tree, std::vector<TileTree::Index>& tiles) {
 }  // namespace
 
 void select_fallbacks(const SelectOptions& options, const TileTree& tree, const SelectView& view,
-                      const Selection& selection, const IsResident& ready, FallbackSelection& result) {
+                      const Selection& selection, const IsResident& resident, FallbackSelection& result) {
   result.missing.clear();
   result.substituted = result.uncovered = 0;
-  const Substituter substituter(tree, ready);
+  const ReplacementFinder finder(tree, resident);
 
-  // Ancestors first: they decide which of the others are drawn at all.
+  // Finds ancestors first: they decide which of the other tiles are drawn at all.
   std::vector<TileTree::Index> ancestors;
-  std::vector<std::vector<Stand>> stands(selection.tiles.size());
+  std::vector<std::vector<Replacement>> replacements(selection.tiles.size());
   for (std::size_t n = 0; n < selection.tiles.size(); ++n) {
     const SelectedTile& tile = selection.tiles[n];
-    if (ready(tree[tile.index], tile.variant)) continue;
+    if (resident(tree[tile.index], tile.variant)) continue;
     result.missing.push_back(n);
-    if (substituter.stand_in(tile, stands[n])) continue;
-    if (const auto above = substituter.ancestor(tile.key)) {
+    if (finder.replace(tile, replacements[n])) continue;
+    if (const auto above = finder.ancestor(tile.key)) {
       ancestors.push_back(*above);
     } else {
       ++result.uncovered;
@@ -113,8 +115,8 @@ void select_fallbacks(const SelectOptions& options, const TileTree& tree, const 
   drop_nested(tree, ancestors);
 
   std::vector<SelectedTile> drawn;
-  const auto draw = [&](const Stand& stand) {
-    drawn.push_back(measure_tile(options, tree, view, stand.index, stand.variant));
+  const auto draw = [&](const Replacement& replacement) {
+    drawn.push_back(measure_tile(options, tree, view, replacement.index, replacement.variant));
     ++result.substituted;
   };
   std::size_t next_missing = 0;
@@ -126,7 +128,8 @@ void select_fallbacks(const SelectOptions& options, const TileTree& tree, const 
     const bool is_missing = next_missing < result.missing.size() && result.missing[next_missing] == n;
     if (is_missing) ++next_missing;
     while (above != ancestors.end() &&
-           z_position(tree[*above].key) + z_extent(tree[*above].key.level) <= z_position(tile.key)) {
+           morton_position(tree[*above].key) + morton_extent(tree[*above].key.level) <=
+               morton_position(tile.key)) {
       ++above;
       above_is_drawn = false;
     }
@@ -135,7 +138,7 @@ void select_fallbacks(const SelectOptions& options, const TileTree& tree, const 
       above_is_drawn = true;
       missing.push_back(n);
     } else if (is_missing) {
-      for (const Stand& stand : stands[n]) draw(stand);
+      for (const Replacement& replacement : replacements[n]) draw(replacement);
       missing.push_back(n);
     } else {
       drawn.push_back(tile);

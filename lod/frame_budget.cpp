@@ -8,18 +8,19 @@ namespace lod {
 
 namespace {
 
-// All in natural logarithms. Chosen by simulation over slopes, delays, noise and steps (docs/lod.md).
+// All constants are in natural logarithms. They were chosen by simulation over slopes, delays, noise and steps
+// (docs/design/level-of-detail.md).
 constexpr double kNear = 0.4;    // times up to half as long again, or a third less, are noise
-constexpr double kPart = 0.35;   // of what is off that moves the load each frame
-constexpr double kFar = 0.3;     // moves of the multiplier that tell the slope at once
-constexpr double kTells = 0.15;  // moves that tell something of it
+constexpr double kPart = 0.35;   // fraction of the error that corrects the load each frame
+constexpr double kFar = 0.3;     // moves of the multiplier that determine the slope at once
+constexpr double kTells = 0.15;  // moves that contribute to the slope
 constexpr double kNoiseVariance = 0.015;
-constexpr double kForgetting = 0.02;  // a frame: slopes change from place to place
-constexpr double kSwing = 0.5;        // from the budget, to count as far above or below it
-constexpr double kManySwings = 3;     // more than a step of the load makes
+constexpr double kForgetting = 0.02;  // per frame: slopes change from place to place
+constexpr double kSwing = 0.5;        // distance from the budget that counts as far above or below it
+constexpr double kManySwings = 3;     // more than a step of the load causes
 constexpr double kMostSwings = 6;
-constexpr double kSwingFrames = 30;    // until one is forgotten
-constexpr double kLeastChange = 0.08;  // of the expected time; less is not worth other tiles
+constexpr double kSwingFrames = 30;    // after which one is forgotten
+constexpr double kLeastChange = 0.08;  // of the expected time; smaller changes do not justify other tiles
 
 void check(const FrameBudgetOptions& o) {
   const bool good = std::isfinite(o.budget_ms) && o.budget_ms > 0.0 && std::isfinite(o.max_multiplier) &&
@@ -52,12 +53,12 @@ class Estimate {
       s_.doubted_at = u_;
       return;
     }
-    note_side();
+    record_side();
   }
 
  private:
   double innovation() const { return y_ - (s_.log_load - s_.slope * u_); }
-  void note_side() {
+  void record_side() {
     if (std::abs(y_) <= kSwing) return;
     const int side = y_ > 0.0 ? 1 : -1;
     if (side == -s_.side) s_.swings = std::min(kMostSwings, s_.swings + 1.0);
@@ -72,14 +73,15 @@ class Estimate {
     return slope >= options_.min_slope && slope <= options_.max_slope;
   }
 
-  // `part` of what is off goes into the line.
+  // Corrects the line by the fraction `part` of the error.
   void turn_or_lift(double off, double part) {
     if (std::abs(moved()) < kTells) {
       s_.log_load += part * off;
       s_.anchor = u_;
       return;
     }
-    // About the anchor, as far as the slope is open (a Kalman filter of one number); then lifted by the rest.
+    // Turns the line about the anchor, as far as the slope is uncertain (a Kalman filter of one number); then
+    // lifts it by the rest.
     const double information = moved() * moved() * s_.slope_variance;
     const double gain = information / (information + kNoiseVariance);
     const double slope = std::clamp(s_.slope - gain * off / moved(), options_.min_slope, options_.max_slope);

@@ -13,10 +13,10 @@ class Walk {
   Walk(std::span<const TileKey> tiles, const glm::dvec3& nadir, std::vector<std::uint32_t>& order)
       : tiles_(tiles), nadir_(nadir), order_(order) {
     position_.reserve(tiles.size());
-    for (const TileKey& tile : tiles) position_.push_back(z_position(tile));
+    for (const TileKey& tile : tiles) position_.push_back(morton_position(tile));
   }
 
-  // Tiles [begin, end) are `node` itself or below it.
+  // Visits tiles [begin, end), which are `node` itself or below it.
   void visit(const TileKey& node, std::size_t begin, std::size_t end) {
     if (begin == end) return;
     if (end - begin == 1) {
@@ -41,7 +41,7 @@ class Walk {
   std::size_t first_from(const TileKey& key, std::size_t begin, std::size_t end) const {
     const auto from = position_.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto to = position_.begin() + static_cast<std::ptrdiff_t>(end);
-    return static_cast<std::size_t>(std::lower_bound(from, to, z_position(key)) - position_.begin());
+    return static_cast<std::size_t>(std::lower_bound(from, to, morton_position(key)) - position_.begin());
   }
 
  private:

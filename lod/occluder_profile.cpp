@@ -12,10 +12,10 @@ namespace lod {
 
 namespace {
 
-// A vertex of the mesh as one family of lines sees it: `across` counts grid lines, `along` is the chart
+// A vertex of the mesh relative to one family of lines: `across` counts grid lines, `along` is the chart
 // coordinate that runs along them. In the plane of a line a point of the surface is z (along, size), where z is
 // its depth along the face's axis and size = sqrt(1 + line^2).
-struct Post {
+struct GridVertex {
   int across;
   double across_chart;
   double along;
@@ -34,17 +34,17 @@ double distance_to_centre(const PlanePoint& a, const PlanePoint& b) {
   return std::hypot(a.x + t * dx, a.y + t * dy);
 }
 
-// One of the two families of lines of a tile.
-class Family {
+// One of the two families of lines of a tile, with the lowest radius over each piece.
+class LineFamily {
  public:
-  Family(int intervals, const std::vector<double>& across, const std::vector<double>& along)
+  LineFamily(int intervals, const std::vector<double>& across, const std::vector<double>& along)
       : step_(intervals / kOccluderStrips), across_(across) {
     for (int n = 0; n <= kOccluderPieces; ++n)
       ends_[static_cast<std::size_t>(n)] = along[static_cast<std::size_t>(n * (intervals / kOccluderPieces))];
     for (auto& line : lowest_m_) line.fill(std::numeric_limits<double>::infinity());
   }
 
-  void add(const std::array<Post, 3>& corner) {
+  void add(const std::array<GridVertex, 3>& corner) {
     const auto [low, high] = std::minmax({corner[0].across, corner[1].across, corner[2].across});
     for (int line = (low + step_ - 1) / step_; line * step_ <= high; ++line) cut(corner, line);
   }
@@ -65,8 +65,8 @@ class Family {
   }
 
  private:
-  // The triangle's points on a line are a straight segment, or a corner alone.
-  void cut(const std::array<Post, 3>& corner, int line) {
+  // Intersects a triangle with a line: a straight segment, or a single corner.
+  void cut(const std::array<GridVertex, 3>& corner, int line) {
     const int at = line * step_;
     const double fixed = across_[static_cast<std::size_t>(at)];
     const double size = std::sqrt(1.0 + fixed * fixed);
@@ -79,8 +79,8 @@ class Family {
       if (along > to) to = along, b = p;
     };
     for (std::size_t k = 0; k < 3; ++k) {
-      const Post& p = corner[k];
-      const Post& q = corner[(k + 1) % 3];
+      const GridVertex& p = corner[k];
+      const GridVertex& q = corner[(k + 1) % 3];
       if (p.across == at) meet(p.along, p.depth);
       if ((p.across < at) == (q.across < at) || p.across == at || q.across == at) continue;
       // Inverse depth and chart coordinates are affine along an edge.
@@ -117,16 +117,17 @@ OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh,
                                       std::span<const double> height_m, double exaggeration, double radius_m,
                                       double lower_m) {
   if (mesh.intervals <= 0 || mesh.intervals % kOccluderPieces != 0) {
-    throw std::invalid_argument("walls of tile " + to_string(key) + ": its grid of " +
+    throw std::invalid_argument("occluder profile of tile " + to_string(key) + ": its grid of " +
                                 std::to_string(mesh.intervals) + " intervals does not divide into " +
                                 std::to_string(kOccluderPieces) + " pieces");
   }
   if (height_m.size() != mesh.vertices.size()) {
-    throw std::invalid_argument("walls of tile " + to_string(key) + ": " + std::to_string(height_m.size()) +
-                                " heights for " + std::to_string(mesh.vertices.size()) + " vertices");
+    throw std::invalid_argument("occluder profile of tile " + to_string(key) + ": " +
+                                std::to_string(height_m.size()) + " heights for " +
+                                std::to_string(mesh.vertices.size()) + " vertices");
   }
   const GridLines lines = grid_lines(key, mesh.intervals);
-  std::vector<Post> by_column, by_row;
+  std::vector<GridVertex> by_column, by_row;
   by_column.reserve(mesh.vertices.size());
   by_row.reserve(mesh.vertices.size());
   for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
@@ -135,15 +136,15 @@ OccluderProfile make_occluder_profile(const TileKey& key, const TileMesh& mesh,
     const double v = lines.v[vertex.j];
     const double radius = radius_m + exaggeration * height_m[n];
     if (!(radius > 0.0)) {
-      throw std::invalid_argument("walls of tile " + to_string(key) +
+      throw std::invalid_argument("occluder profile of tile " + to_string(key) +
                                   ": a vertex at or below the planet's centre");
     }
     const double depth = radius / std::sqrt(u * u + v * v + 1.0);
     by_column.push_back({vertex.i, u, v, depth});
     by_row.push_back({vertex.j, v, u, depth});
   }
-  Family columns(mesh.intervals, lines.u, lines.v);
-  Family rows(mesh.intervals, lines.v, lines.u);
+  LineFamily columns(mesh.intervals, lines.u, lines.v);
+  LineFamily rows(mesh.intervals, lines.v, lines.u);
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     const std::size_t a = mesh.triangles[t], b = mesh.triangles[t + 1], c = mesh.triangles[t + 2];
     columns.add({by_column[a], by_column[b], by_column[c]});

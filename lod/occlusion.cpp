@@ -20,7 +20,7 @@ bool OcclusionPass::hidden(const cull::BoundingRegion& region) const {
 void OcclusionPass::add(const TileKey& key, const OccluderProfile& occluders, double radius_m) {
   if (!above_) return;
   const mars::ChartRect rect = chart_rect(key);
-  // Pieces much narrower than a bin are joined, and with them strips.
+  // Joins pieces that are much narrower than a bin, and strips with them.
   const double bins = horizon_.bins_spanned(rect);
   constexpr double kPieceBins = 0.5;
   if (bins < kPieceBins) return;

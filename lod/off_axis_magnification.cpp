@@ -26,11 +26,11 @@ ImagePlane image_plane(const vpe::core::View& view) {
 }
 
 // At image tangents t and depth z a displacement e n moves the point by e / z (n.xy - t n.z), with n in the
-// image's axes. That is convex in t, so over a rectangle it is largest in a corner, and it changes by at most
-// sec(t) times the angle that n turns.
+// image's axes. The length is convex in t, so over a rectangle it is largest in a corner; it changes by at most
+// sec(t) times the angle by which n changes.
 double off_axis_magnification(const ImagePlane& plane, const cull::BoundingHexahedron& volume) {
   if (!plane.flat) return 1.0;
-  // The rectangle of the image that the volume can be in.
+  // The rectangle of the image in which the volume can be.
   constexpr double kFar = std::numeric_limits<double>::infinity();
   glm::dvec2 low(kFar);
   glm::dvec2 high(-kFar);

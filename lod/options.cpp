@@ -9,7 +9,7 @@ namespace core = vpe::core;
 LevelControl level_control(const core::DrawRequest& request, double planet_radius_m) {
   const core::SettingsValues& s = request.settings;
   LevelControl control;
-  control.rule = s.lod_metric;
+  control.metric = s.lod_metric;
   control.distance = {s.lod_distance_scale_m, s.lod_distance_offset, s.lod_distance_weight,
                       s.lod_distance_table, request.coarsening};
   control.centre = {s.lod_centre_scale, s.lod_centre_offset, s.lod_centre_weight, s.lod_centre_table, 1.0};

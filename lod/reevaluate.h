@@ -1,13 +1,12 @@
-// The tiles that one view needs, seen from another.
+// Evaluates the tiles of one view's selection for another view.
 #pragma once
 
 #include "lod/select.h"
 
 namespace lod {
 
-// Distances, stretch and projected errors of a selection's tiles, as select() gives them for the view that it
-// selects for, made anew for a view that looks at the same tiles: each bounds what is drawn there. Tiles stay
-// as they are, also those outside of the view.
+// Recomputes distances, off-axis magnifications and screen-space errors of the selected tiles for another view.
+// They are bounds of what is drawn there. Does not add or remove tiles, also not those outside the view.
 void reevaluate_for_view(const SelectView& view, const TileTree& tree, Selection& selection);
 
 }  // namespace lod

@@ -18,7 +18,7 @@ namespace {
 
 void check(const SelectOptions& options, const SelectView& view) {
   if (!std::isfinite(view.camera_m.x) || !std::isfinite(view.camera_m.y) || !std::isfinite(view.camera_m.z)) {
-    throw std::invalid_argument("select: the eye's position is not finite");
+    throw std::invalid_argument("select: the camera's position is not finite");
   }
   if (!std::isfinite(view.focal_px) || view.focal_px <= 0.0) {
     throw std::invalid_argument("select: the focal length is not a positive number of pixels");
@@ -33,7 +33,8 @@ void check(const SelectOptions& options, const SelectView& view) {
   check(options.control);
 }
 
-double projected(double geometric_error_m, double focal_px, double distance_m, double off_axis_magnification) {
+double screen_space_error(double geometric_error_m, double focal_px, double distance_m,
+                          double off_axis_magnification) {
   if (geometric_error_m == 0.0) return 0.0;
   return distance_m > 0.0 ? off_axis_magnification * (geometric_error_m * focal_px / distance_m)
                           : std::numeric_limits<double>::infinity();
@@ -61,17 +62,17 @@ class Selector {
                                                  : tree.lowest_radius_m(options.exaggeration))),
         heap_(scratch.heap_),
         out_(out),
-        by_distance_(options.control.rule == vpe::core::LodMetric::kDistance),
+        by_distance_(options.control.metric == vpe::core::LodMetric::kDistance),
         controlled_(!is_neutral(options.control)),
-        enough_(by_distance_ ? 0.0 : options.tolerance_px) {}
+        accepted_urgency_(by_distance_ ? 0.0 : options.tolerance_px) {}
 
   void run() {
     heap_.clear();
     reset();
-    Family family;
+    Replacement replacement;
     for (TileTree::Index root = 0; root < mars::kFaces; ++root)
-      visit(root, cull::all_planes(view_.frustum), std::numeric_limits<double>::infinity(), family);
-    commit(family);
+      visit(root, cull::all_planes(view_.frustum), std::numeric_limits<double>::infinity(), replacement);
+    commit(replacement);
     while (!heap_.empty() && refine_worst()) {
     }
     for (const Candidate& rest : heap_) draw(rest);
@@ -85,7 +86,7 @@ class Selector {
     c.geometric_error_m = geometric_error_m(tree_[index], variant);
     const cull::BoundingRegion region = tree_.region(index, options_.exaggeration, c.geometric_error_m);
     c.chord2 = cull::nearest_chord2(region.rect, camera_.direction);
-    c.off_axis_magnification = sky_stretch(region, cull::bounding_hexahedron(region));
+    c.off_axis_magnification = sky_magnification(region, cull::bounding_hexahedron(region));
     measure(c, region);
     return tile_of(c);
   }
@@ -93,8 +94,8 @@ class Selector {
  private:
   using Candidate = SelectScratch::Candidate;
 
-  // What takes a tile's place, and what was found out on the way.
-  struct Family {
+  // The tiles that replace a tile, with the counts of visiting them.
+  struct Replacement {
     std::array<Candidate, mars::kFaces> members;
     std::size_t size = 0;
     std::int64_t triangles = 0;
@@ -130,72 +131,74 @@ class Selector {
                                    options_.exaggeration);
   }
 
-  // Rule hitchner: the levels that the tile lacks.
+  // Returns the screen-space error that counts, or with the metric kDistance the number of levels that the tile
+  // lacks.
   double urgency(const Candidate& c) const {
     if (!controlled_) return c.screen_space_error_px;
     if (!by_distance_) return c.screen_space_error_px * std::exp2(c.control);
     const TileInfo& tile = tree_[c.index];
-    return c.control - lod_number(tile.key, c.variant, static_cast<int>(tile.variants.size()));
+    return c.control - level_count(tile.key, c.variant, static_cast<int>(tile.variants.size()));
   }
 
   void measure(Candidate& c, const cull::BoundingRegion& region) const {
     c.min_distance_m = cull::min_distance_m(camera_, c.chord2, region.min_radius_m, region.max_radius_m);
     c.screen_space_error_px =
-        projected(c.geometric_error_m, view_.focal_px, c.min_distance_m, c.off_axis_magnification);
+        screen_space_error(c.geometric_error_m, view_.focal_px, c.min_distance_m, c.off_axis_magnification);
     c.urgency = urgency(c);
   }
 
-  double sky_stretch(const cull::BoundingRegion& region, const cull::BoundingHexahedron& volume) const {
-    const bool stands_out =
+  double sky_magnification(const cull::BoundingRegion& region, const cull::BoundingHexahedron& volume) const {
+    const bool may_be_against_sky =
         view_.plane.flat &&
         cull::against_sky(camera_, horizon_, cull::farthest_chord2(region.rect, camera_.direction),
                           region.max_radius_m);
-    return stands_out ? off_axis_magnification(view_.plane, volume) : 1.0;
+    return may_be_against_sky ? off_axis_magnification(view_.plane, volume) : 1.0;
   }
 
-  // mask and stretch: what the parent is known to keep to, and so its children.
-  void visit(TileTree::Index index, cull::PlaneMask mask, double most_stretch, Family& family) const {
+  // Visits a tile. `mask` and `most_magnification` are bounds of the parent, which hold for its children too.
+  void visit(TileTree::Index index, cull::PlaneMask mask, double most_magnification,
+             Replacement& replacement) const {
     const TileInfo& tile = tree_[index];
     Candidate c{};
     c.index = index;
     c.geometric_error_m = geometric_error_m(tile, 0);
     const cull::BoundingRegion region = tree_.region(index, options_.exaggeration, c.geometric_error_m);
-    ++family.visited;
+    ++replacement.visited;
     c.chord2 = cull::nearest_chord2(region.rect, camera_.direction);
     if (options_.cull_horizon && cull::hidden(horizon_, c.chord2, region.max_radius_m)) {
-      ++family.culled_horizon;
+      ++replacement.culled_horizon;
       return;
     }
     const cull::BoundingHexahedron volume = cull::bounding_hexahedron(region);
     if (mask != 0) {
       const auto crossed = cull::planes_crossed(view_.frustum, volume, mask);
       if (!crossed) {
-        ++family.culled_frustum;
+        ++replacement.culled_frustum;
         return;
       }
       mask = *crossed;
     }
     c.mask = mask;
-    c.off_axis_magnification = std::min(most_stretch, sky_stretch(region, volume));
+    c.off_axis_magnification = std::min(most_magnification, sky_magnification(region, volume));
     measure(c, region);
     if (controlled_) {
       const double sum =
           control_terms(options_.control, view_.centre, {volume, region.rect, c.min_distance_m}).sum;
-      c.control = by_distance_ ? wanted_lod(sum) : lod::level_shift(sum);
+      c.control = by_distance_ ? wanted_level_count(sum) : lod::level_shift(sum);
       c.urgency = urgency(c);
     }
-    family.triangles += triangles(c);
-    family.members[family.size++] = c;
+    replacement.triangles += triangles(c);
+    replacement.members[replacement.size++] = c;
   }
 
-  void commit(const Family& family) {
-    out_.visited += family.visited;
-    out_.culled_frustum += family.culled_frustum;
-    out_.culled_horizon += family.culled_horizon;
-    out_.triangles += family.triangles;
-    for (std::size_t n = 0; n < family.size; ++n) {
-      const Candidate& c = family.members[n];
-      if (is_full_grid(tree_[c.index], c.variant) || !(c.urgency > enough_)) {
+  void commit(const Replacement& replacement) {
+    out_.visited += replacement.visited;
+    out_.culled_frustum += replacement.culled_frustum;
+    out_.culled_horizon += replacement.culled_horizon;
+    out_.triangles += replacement.triangles;
+    for (std::size_t n = 0; n < replacement.size; ++n) {
+      const Candidate& c = replacement.members[n];
+      if (is_full_grid(tree_[c.index], c.variant) || !(c.urgency > accepted_urgency_)) {
         draw(c);
       } else {
         heap_.push_back(c);
@@ -207,28 +210,28 @@ class Selector {
   bool refine_worst() {
     const Candidate worst = heap_.front();
     const TileInfo& tile = tree_[worst.index];
-    Family family;
+    Replacement replacement;
     if (tile.has_children) {
       const TileTree::Index first = tree_.first_child(worst.index);
       for (TileTree::Index c = first; c < first + 4; ++c)
-        visit(c, worst.mask, worst.off_axis_magnification, family);
+        visit(c, worst.mask, worst.off_axis_magnification, replacement);
     } else {
-      Candidate& next = family.members[family.size++];
+      Candidate& next = replacement.members[replacement.size++];
       next = worst;
       ++next.variant;
       next.geometric_error_m = geometric_error_m(tile, next.variant);
       measure(next, tree_.region(worst.index, options_.exaggeration, next.geometric_error_m));
-      family.triangles = triangles(next);
+      replacement.triangles = triangles(next);
     }
-    family.triangles -= triangles(worst);
-    if (options_.max_triangles > 0 && out_.triangles + family.triangles > options_.max_triangles) {
+    replacement.triangles -= triangles(worst);
+    if (options_.max_triangles > 0 && out_.triangles + replacement.triangles > options_.max_triangles) {
       out_.capped = true;
       return false;
     }
     std::pop_heap(heap_.begin(), heap_.end(), less_urgent);
     heap_.pop_back();
     out_.refined += tile.has_children ? 1 : 0;
-    commit(family);
+    commit(replacement);
     return true;
   }
 
@@ -246,7 +249,7 @@ class Selector {
 
   void finish() {
     std::sort(out_.tiles.begin(), out_.tiles.end(),
-              [](const auto& a, const auto& b) { return z_position(a.key) < z_position(b.key); });
+              [](const auto& a, const auto& b) { return morton_position(a.key) < morton_position(b.key); });
     update_totals(tree_, out_);
   }
 
@@ -259,7 +262,7 @@ class Selector {
   Selection& out_;
   bool by_distance_;
   bool controlled_;
-  double enough_;  // urgency up to which a tile is drawn
+  double accepted_urgency_;  // urgency up to which a tile is not refined
 };
 
 void select(const SelectOptions& options, const TileTree& tree, const SelectView& view, SelectScratch& scratch,

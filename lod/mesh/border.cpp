@@ -15,7 +15,7 @@ std::vector<int> choose_border(std::span<const double> height_m, std::span<const
     length[k] = std::sqrt(line[k] * line[k] + (across * across + 1.0));
     w[k] = length[k] / (radius_m + height_m[k]);
   }
-  // Symmetric under exchange of the ends to the last bit.
+  // Symmetric under exchange of the ends, to the last bit.
   const auto geometric_error_m = [&](std::size_t a, std::size_t b, std::size_t k) {
     const double blend = w[a] * (line[b] - line[k]) + w[b] * (line[k] - line[a]);
     return std::abs(length[k] * (line[b] - line[a]) / blend - (radius_m + height_m[k]));

@@ -1,4 +1,4 @@
-// Greedy insertion over any half-edge structure (internal to lod; lod/mesh/mesh.h is the way in).
+// Greedy insertion over any half-edge structure. Internal to lod; use lod/mesh/mesh.h.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace lod {
 
-// A TileMesh in its canonical form, from triangles of posts j * (intervals + 1) + i.
+// Returns a TileMesh in its canonical form, from triangles of posts j * (intervals + 1) + i.
 TileMesh canonical_mesh(int intervals, std::vector<std::uint32_t> posts,
                         const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
@@ -23,7 +23,7 @@ void check_borders(const BorderPosts& borders, int intervals);
 
 inline constexpr std::size_t kMaxVertices = 65536;
 
-// Scratch memory lives as long as the mesher. Topology: see OpenMeshTopology.
+// Implements Mesher. Keeps its scratch memory. OpenMeshTopology shows the interface of Topology.
 template <class Topology>
 class GreedyMesher {
  public:
@@ -36,7 +36,7 @@ class GreedyMesher {
     return with_lines([&](const auto& lines) { return run(lines, borders); });
   }
 
-  // Goes on from the last mesh.
+  // Continues from the last mesh.
   TileMesh refine(const BorderPosts& borders, double tolerance_m) {
     check_borders(borders, intervals_);
     set_tolerance(tolerance_m);
@@ -78,7 +78,7 @@ class GreedyMesher {
         insert(lines, worst.face, worst.post);
         for (const int f : star_) touch(lines, f);
       }
-    } while (mend_edges(lines));
+    } while (repair_edges(lines));
     return result(intervals_);
   }
 
@@ -92,15 +92,15 @@ class GreedyMesher {
     unchecked_.push_back(face);
   }
 
-  // Posts within tolerance do not make edges so: a long edge may cut a crest between two posts. Inserts a post
-  // against every such edge of the triangles made since the last call; false when there was none.
+  // Although all posts are within tolerance, a long edge may cut a crest between two posts. Inserts a post
+  // against each such edge of the triangles made since the last call. Returns false if there was none.
   template <class Lines>
-  bool mend_edges(const Lines& lines) {
+  bool repair_edges(const Lines& lines) {
     wanted_.clear();
     for (const int f : unchecked_) {
       int h = topology_.first_halfedge(f);
       for (int side = 0; side < 3; ++side, h = topology_.next(h)) {
-        // An edge between two such triangles is looked at from the first of them.
+        // An edge between two such triangles is checked from the first of them.
         const int other = topology_.across(h);
         const int beyond = other < 0 ? -1 : topology_.face(other);
         if (beyond >= 0 && beyond < f && is_unchecked_[static_cast<std::size_t>(beyond)] != 0) continue;
@@ -127,7 +127,7 @@ class GreedyMesher {
     unchecked_.clear();
   }
 
-  // The triangle that holds a post, by walking towards it.
+  // Returns the triangle that contains a post, by walking towards it.
   template <class Lines>
   int locate(const Lines& lines, int face, std::uint32_t post) const {
     const Corner p = corner(lines, post);
@@ -209,7 +209,7 @@ class GreedyMesher {
     legalise(lines, v, topology_.split_face(face, v));
   }
 
-  // Restores the Delaunay property round the new vertex v; star_ becomes the triangles round it.
+  // Restores the Delaunay property around the new vertex v. star_ becomes the triangles around it.
   template <class Lines>
   void legalise(const Lines& lines, int v, const StarLinks& links) {
     stack_.assign(links.halfedge.begin(), links.halfedge.begin() + links.count);
@@ -224,9 +224,9 @@ class GreedyMesher {
     }
   }
 
-  // Triangle v a b (h runs from a to b) against d on the other side of a b. Of four posts on a circle the
-  // first in (j, i) order keeps its diagonal: an infinitesimal lift of earlier posts, hence one result
-  // whatever the order of insertion.
+  // Tests triangle v a b (h runs from a to b) against d on the other side of a b. Of four posts on a circle the
+  // first in (j, i) order keeps its diagonal. That is an infinitesimal lift of earlier posts, so the result
+  // does not depend on the order of insertion.
   template <class Lines>
   bool wants_flip(const Lines&, int v, int h, int d) const {
     const Corner& pv = vertex(v);
@@ -281,7 +281,7 @@ class GreedyMesher {
   std::vector<Corner> vertices_;
   std::vector<int> star_;
   std::vector<int> stack_;
-  std::vector<int> unchecked_;  // triangles whose edges mend_edges() has not seen
+  std::vector<int> unchecked_;  // triangles whose edges repair_edges() has not checked
   std::vector<std::uint8_t> is_unchecked_;
   std::vector<std::pair<std::uint32_t, int>> wanted_;
   // Border vertices of the sides south, east, north, west, counter-clockwise, by their distance along the side.

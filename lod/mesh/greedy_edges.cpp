@@ -1,4 +1,4 @@
-// Errors along an edge of the mesh, where it crosses the lines of S between posts.
+// The errors of an edge of the mesh where it crosses the lines of the reference surface S between posts.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,7 +9,7 @@ namespace lod {
 
 namespace {
 
-// A post of S's line p q at `fraction` from p, with the error there.
+// A point on the line of S from post p to post q, at `fraction` from p.
 struct Crossing {
   std::size_t p, q;
   double fraction;
@@ -21,7 +21,7 @@ WorstPost PostField::worst_crossing(const Corner& from, const Corner& to) const 
   const Corner& a = from.post < to.post ? from : to;
   const Corner& b = from.post < to.post ? to : from;
   WorstPost worst;
-  if (a.i == b.i || a.j == b.j) return worst;  // along a line of the grid: its posts have been looked at
+  if (a.i == b.i || a.j == b.j) return worst;  // along a line of the grid, whose posts have been visited
   if (b.i == a.i + 1 && b.j == a.j + 1) return worst;  // S's own diagonal
   const auto ax = static_cast<double>(a.x);
   const auto ay = static_cast<double>(a.y);
@@ -33,13 +33,14 @@ WorstPost PostField::worst_crossing(const Corner& from, const Corner& to) const 
     const double surface = w_[at.p] + at.fraction * (w_[at.q] - w_[at.p]);
     const double error = lowest_radius_m_ * std::abs(1.0 - (wa + t * dw) / surface);
     if (error <= worst.geometric_error_m) return;
-    // The nearer end of the line, unless it is a vertex or on the border.
+    // Prefers the nearer end of the line, unless it is a vertex or on the border.
     std::size_t post = at.fraction < 0.5 ? at.p : at.q;
     if (weight_[post] == 0) post = post == at.p ? at.q : at.p;
     if (weight_[post] == 0) return;
     worst = {error, static_cast<std::uint32_t>(post)};
   };
-  // Cell by cell from a to b: the diagonal inside each cell, then the side by which the edge leaves it.
+  // Visits cell by cell from a to b: the diagonal inside each cell, then the side through which the edge leaves
+  // it.
   const auto row = static_cast<std::size_t>(side_);
   const bool east = dx > 0;
   const bool north = dy > 0;

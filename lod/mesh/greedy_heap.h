@@ -1,4 +1,4 @@
-// The worst post of every triangle, worst first (internal to lod).
+// A priority queue of the worst post of each triangle. Internal to lod.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace lod {
 
-// A post and how far it lies from the triangle over it; error 0 = none.
+// A post with its distance from the triangle over it; error 0: none.
 struct WorstPost {
   double geometric_error_m = 0;
   std::uint32_t post = 0;
@@ -19,7 +19,7 @@ struct QueuedPost {
   int face = 0;
 };
 
-// Binary heap with at most one entry a face, ordered by (error, then lowest post).
+// A binary heap with at most one entry for each face, ordered by error, then by lowest post.
 class PostQueue {
  public:
   void clear() {
@@ -29,7 +29,7 @@ class PostQueue {
   bool empty() const { return heap_.empty(); }
   const QueuedPost& top() const { return heap_.front(); }
 
-  // Replaces the face's entry; an error within the tolerance is no entry.
+  // Replaces the face's entry, or removes it if the error is within the tolerance.
   void set(int face, const WorstPost& worst, double tolerance_m) {
     const auto f = static_cast<std::size_t>(face);
     if (f >= place_.size()) place_.resize(f + 1, kNone);
@@ -62,7 +62,7 @@ class PostQueue {
     place_[static_cast<std::size_t>(entry.face)] = at;
   }
 
-  // Writes the entry into the free place `at` and restores the heap.
+  // Writes the entry into the free slot `at` and restores the heap.
   void settle(std::size_t at, const QueuedPost& entry) {
     while (at > 0 && before(entry, heap_[(at - 1) / 2])) {
       put(at, heap_[(at - 1) / 2]);

@@ -1,4 +1,4 @@
-// Integer coordinates of a tile's grid lines: exact predicates and exact row spans (internal to lod).
+// Integer coordinates of a tile's grid lines, for exact predicates and exact row spans. Internal to lod.
 #pragma once
 
 #include <algorithm>
@@ -9,18 +9,18 @@
 
 namespace lod {
 
-// An edge of a triangle walked row by row, (x0, y0) to (x1, y1) with y0 < y1.
+// An edge of a triangle from (x0, y0) to (x1, y1), y0 < y1, to be walked row by row.
 struct RowEdge {
   std::int64_t x0, y0, x1, y1;
 };
 
-// A vertex of a triangulation: its post, and where that is in grid and integer coordinates.
+// A vertex of a triangulation: its post with grid and integer coordinates.
 struct Corner {
   std::uint32_t post, i, j;
   std::int64_t x, y;
 };
 
-// From level 5 on a tile's lines are even along either axis, and the chart is the grid itself up to a
+// The lines of a tile of level 5 or finer. They are even along both axes, so that the chart is the grid up to a
 // scale: the coordinate of a line is its index.
 class EvenLines {
  public:
@@ -28,7 +28,7 @@ class EvenLines {
   const std::vector<std::int64_t>& x() const { return index_; }
   const std::vector<std::int64_t>& y() const { return index_; }
 
-  // First line at or beyond the edge, in each row in turn.
+  // Returns the first line at or beyond an edge, row by row.
   class Walk {
    public:
     Walk(const EvenLines&, const RowEdge& e)
@@ -42,12 +42,13 @@ class EvenLines {
     double base_;
   };
 
-  // True when a counter-clockwise triangle holds no post but its corners (Pick's theorem).
+  // Returns true if a counter-clockwise triangle contains no post except its corners (Pick's theorem).
   static bool has_no_post(const Corner& a, const Corner& b, const Corner& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) == 1;
   }
 
-  // Sign of the in-circle determinant of a counter-clockwise triangle a b c and d: > 0 inside.
+  // Returns the sign of the in-circle determinant of a counter-clockwise triangle a b c and d: > 0 inside.
+  // Arguments are relative to d.
   static int in_circle(std::int64_t adx, std::int64_t ady, std::int64_t bdx, std::int64_t bdy, std::int64_t cdx,
                        std::int64_t cdy) {
     const std::int64_t det = (adx * adx + ady * ady) * (bdx * cdy - bdy * cdx) +
@@ -60,9 +61,9 @@ class EvenLines {
   std::vector<std::int64_t> index_;
 };
 
-// Levels 0 to 4 span several knots of the warp. Lines are multiples of a power of two (mars::face_line);
-// in units of it, from the tile's first line, they stay below 2^27 for grids of up to 2^14 lines a face:
-// orientation fits 64 bits, in-circle needs 128.
+// The lines of a tile of level 0 to 4, which spans several knots of the warp. Lines are multiples of a power of
+// two (mars::face_line). In units of it, from the tile's first line, they stay below 2^27 for grids of up to
+// 2^14 lines a face, so that orientation fits 64 bits and in-circle needs 128.
 class WarpedLines {
  public:
   WarpedLines(const TileKey& key, int intervals);
@@ -81,7 +82,7 @@ class WarpedLines {
       const auto at = static_cast<std::size_t>(std::max(0.0, (x - 1.0) * lines_.buckets_per_unit_));
       int i = lines_.first_in_bucket_[std::min(at, lines_.first_in_bucket_.size() - 1)];
       const auto before = [&] { return (lines_.x_[static_cast<std::size_t>(i)] - e_.x0) * dy < reach; };
-      i += before() ? 1 : 0;  // nearly always the only step, and not worth a branch
+      i += before() ? 1 : 0;  // nearly always the only step; avoids a branch
       while (before()) ++i;
       return i;
     }
@@ -92,7 +93,7 @@ class WarpedLines {
     double slope_;
   };
 
-  // Half of a cell has none; thin triangles are not told.
+  // Recognizes half cells only; returns false for thin triangles without posts.
   static bool has_no_post(const Corner& a, const Corner& b, const Corner& c) {
     return std::max({a.i, b.i, c.i}) - std::min({a.i, b.i, c.i}) == 1 &&
            std::max({a.j, b.j, c.j}) - std::min({a.j, b.j, c.j}) == 1;
@@ -111,7 +112,7 @@ class WarpedLines {
  private:
   std::vector<std::int64_t> x_;
   std::vector<std::int64_t> y_;
-  std::vector<int> first_in_bucket_;  // buckets no wider than the narrowest interval
+  std::vector<int> first_in_bucket_;  // buckets are at most as wide as the narrowest interval
   double buckets_per_unit_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Errors at the posts under a flat triangle, row by row (internal to lod).
+// The errors of the posts under a flat triangle, scanned row by row. Internal to lod.
 #pragma once
 
 #include <cmath>
@@ -13,9 +13,9 @@
 
 namespace lod {
 
-// The posts of a tile as inverse depths w = n / r with r = R + h; a flat triangle is a plane in them. A post
-// is off by r (1 - w / w_post), the radial distance to first order: it differs from the distance n / w - r
-// by the relative amount distance / r only.
+// Holds the posts of a tile as inverse depths w = n / r with r = R + h; a flat triangle is a plane in them. The
+// error of a post is r (1 - w / w_post), the radial distance to first order. It differs from the distance n / w
+// - r by the relative amount distance / r only.
 class PostField {
  public:
   void load(const Posts& posts, double radius_m);
@@ -24,13 +24,14 @@ class PostField {
   void ignore_borders();
   double lowest_radius_m() const { return lowest_radius_m_; }
 
-  // Worst post under a counter-clockwise triangle; the lowest in (j, i) order of equals. Posts on an edge
-  // belong to the triangle on its right or upper side, so that each post is looked at once.
+  // Returns the worst post under a counter-clockwise triangle, of equals the lowest in (j, i) order. Posts on
+  // an edge belong to the triangle on its right or upper side, so that each post is visited once.
   template <class Lines>
   WorstPost worst(const Lines& lines, const Corner& a, const Corner& b, const Corner& c) const;
 
-  // Largest error where an edge of the mesh crosses the lines of S, and the post to insert against it; no
-  // error where that post is a vertex or on the border. The same for both directions of the edge.
+  // Returns the largest error where an edge of the mesh crosses the lines of the reference surface, and the
+  // post to insert against it. Crossings whose post is a vertex or on the border have no error. The result is
+  // the same for both directions of the edge.
   WorstPost worst_crossing(const Corner& from, const Corner& to) const;
 
  private:
@@ -84,7 +85,7 @@ WorstPost PostField::worst(const Lines& lines, const Corner& a, const Corner& b,
 }
 
 inline PostField::Plane PostField::plane(const Corner& a, const Corner& b, const Corner& c) const {
-  // Always from the lowest post, so that the bits do not depend on where the triangle's corners start.
+  // Starts at the lowest post, so that the bits do not depend on the order of the corners.
   const Corner* o = &a;
   const Corner* p = &b;
   const Corner* q = &c;

@@ -1,4 +1,4 @@
-// Half-edges of OpenMesh behind the few operations that greedy insertion needs (internal to lod).
+// The few half-edge operations that greedy insertion needs, on OpenMesh. Internal to lod.
 #pragma once
 
 #include <OpenMesh/Core/Mesh/TriConnectivity.hh>
@@ -6,25 +6,25 @@
 
 namespace lod {
 
-// Links of a star: the halfedges of its triangles that lie opposite the star's centre.
+// The links of a star: the halfedges of its triangles that lie opposite the star's centre.
 struct StarLinks {
   std::array<int, 4> halfedge{};
   int count = 0;
   void add(int h) { halfedge[static_cast<std::size_t>(count++)] = h; }
 };
 
-// What lod::GreedyMesher asks of a half-edge structure; vertices, halfedges and faces are indices.
-// OpenMesh's connectivity alone: a tile's vertices are posts, so no points, normals or status are stored.
+// Holds a triangulation for lod::GreedyMesher. Vertices, halfedges and faces are indices. Uses only OpenMesh's
+// connectivity: a tile's vertices are posts, so no points, normals or status are stored.
 class OpenMeshTopology {
  public:
-  // Square of vertices 0 1 2 3 as faces 0 1 2 and 0 2 3.
+  // Starts with a square of vertices 0 1 2 3 as faces 0 1 2 and 0 2 3.
   void start() {
     mesh_.clear();
     for (int v = 0; v < 4; ++v) mesh_.new_vertex();
     mesh_.add_face(vertex(0), vertex(1), vertex(2));
     mesh_.add_face(vertex(0), vertex(2), vertex(3));
   }
-  // The border edge between two vertices, inner side; flips may rename it.
+  // Returns the inner halfedge of the border edge between two vertices; flips may change its index.
   int border_halfedge(int from, int to) const { return mesh_.find_halfedge(vertex(from), vertex(to)).idx(); }
 
   int face_count() const { return static_cast<int>(mesh_.n_faces()); }
@@ -33,12 +33,12 @@ class OpenMeshTopology {
   int to(int h) const { return mesh_.to_vertex_handle(halfedge(h)).idx(); }
   int from(int h) const { return to(h ^ 1); }
   int face(int h) const { return mesh_.face_handle(halfedge(h)).idx(); }
-  // The same edge seen from the other triangle, -1 at the border.
+  // Returns the same edge seen from the other triangle, or -1 at the border.
   int across(int h) const { return mesh_.is_boundary(halfedge(h ^ 1)) ? -1 : h ^ 1; }
   int add_vertex() { return mesh_.new_vertex().idx(); }
 
-  // The operations below are OpenMesh's own (split, split, flip), written out on its kernel: in the library
-  // they check every handle at run time, which is a fifth of the meshing.
+  // The operations below repeat OpenMesh's own (split, split, flip) on its kernel: the library checks each
+  // handle at run time, which takes a fifth of the meshing.
 
   // Splits face f at vertex v.
   StarLinks split_face(int f, int v) {
@@ -83,7 +83,7 @@ class OpenMeshTopology {
     return links;
   }
 
-  // Turns the edge of link h; returns the two links that replace it.
+  // Flips the edge of link h. Returns the two links that replace it.
   std::array<int, 2> flip(int h) {
     const OpenMesh::HalfedgeHandle a = halfedge(h);
     const OpenMesh::HalfedgeHandle b = opposite(a);
@@ -119,7 +119,7 @@ class OpenMeshTopology {
     mesh_.set_halfedge_handle(face, a);
   }
 
-  // One side of a split edge: `in` ends at v, `out` starts there, `first` and `second` follow the old edge.
+  // Splits one side of an edge: `in` ends at v, `out` starts there, `first` and `second` follow the old edge.
   void split_side(OpenMesh::FaceHandle face, OpenMesh::HalfedgeHandle in, OpenMesh::HalfedgeHandle out,
                   int first, int second, int v) {
     const OpenMesh::HalfedgeHandle spoke = mesh_.new_edge(vertex(to(first)), vertex(v));

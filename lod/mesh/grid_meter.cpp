@@ -10,7 +10,7 @@ namespace lod {
 
 namespace {
 
-// Largest distances at posts so far.
+// The largest distances at posts so far.
 struct Largest {
   double total = 0;
   double sagitta = 0;
@@ -43,7 +43,7 @@ struct GridMeter::Prepared : FineGrid {
     least_depth = *std::min_element(depth.begin(), depth.end());
   }
 
-  // Steepest of all facets; each has an edge along u and one along v.
+  // The steepest slopes of all facets; each facet has an edge along u and one along v.
   double depth_du = 0;
   double depth_dv = 0;
   double length_du = 0;
@@ -59,7 +59,7 @@ GridMeter& GridMeter::operator=(GridMeter&&) noexcept = default;
 
 namespace {
 
-// One facet's plane over a cell, of depth and of length: value at the cell's low corner and slopes.
+// A plane over a cell, of depth or of length: the value at the cell's low corner and the slopes.
 struct Plane {
   double at;
   double du;
@@ -71,7 +71,7 @@ struct Facet {
   Plane length;
 };
 
-// Facets below and above the diagonal of cell (i, j).
+// Computes the facets below and above the diagonal of cell (i, j).
 void facets_of(const FineGrid& grid, std::size_t i, std::size_t j, Facet& low, Facet& high) {
   const auto side = static_cast<std::size_t>(grid.u.count());
   const std::size_t at = j * side + i;
@@ -100,12 +100,12 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
                                 std::to_string(fine.intervals) + " intervals is not below tile " +
                                 to_string(coarse.key) + " of " + std::to_string(coarse.intervals));
   }
-  if (fine.radius_m != coarse.radius_m) throw std::invalid_argument("GridMeter: posts have other radii");
+  if (fine.radius_m != coarse.radius_m)
+    throw std::invalid_argument("GridMeter: posts have different planet radii");
 
   const auto side = static_cast<std::size_t>(fine.u.count());
   const auto n = static_cast<std::int64_t>(fine.intervals);
-  // First coarse cell under the fine tile, and how many of its posts, at most, from one coarse line to the
-  // next.
+  // The first coarse cell under the fine tile, and the largest number of fine posts between two coarse lines.
   const auto first = [&](std::int32_t index, std::int32_t coarse_index) {
     return ((index - (std::int64_t{coarse_index} << below)) * n) >> below;
   };
@@ -113,7 +113,7 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
   const auto cj0 = static_cast<std::size_t>(first(fine.key.j, coarse.key.j));
   const std::size_t step =
       below < 30 && (std::int64_t{1} << below) < n ? std::size_t{1} << below : static_cast<std::size_t>(n);
-  // Widest edges of S along u and along v.
+  // The widest edges of S along u and along v.
   const double margin_u = fine.u.widest();
   const double margin_v = fine.v.widest();
 
@@ -128,7 +128,7 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
       const std::size_t ci = ci0 + i0 / step;
       const double u0 = coarse.u.data()[ci];
       const double per_u = 1.0 / (coarse.u.data()[ci + 1] - u0);
-      // In cells off the diagonal: posts that count with both facets, by a hair more than half an edge.
+      // Posts this close to the diagonal, in cells, count with both facets: slightly more than half an edge.
       const double margin = 0.501 * std::max(margin_u * per_u, margin_v * per_v);
       facets_of(coarse, ci, cj, low, high);
       for (std::size_t j = j0; j <= j0 + step; ++j) {
@@ -146,7 +146,7 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
             const double du = fine.u.data()[i] - u0;
             const double w = w_row + facet.depth.du * du;
             const double l = n_row + facet.length.du * du;
-            // As Overlay::add, where the direction's length is that of S's post.
+            // The formulas of Overlay::add() in error_meter.cpp; the direction's length is that of S's post.
             const double scale = fine.radius_m / (w * depth[i] * l);
             const double total = (depth[i] - w) * (l * length[i]) * scale;
             const double sagitta = (length[i] - l) * (w * depth[i]) * scale;
@@ -167,7 +167,7 @@ ErrorTerms GridMeter::measure(const FinePosts& posts) const {
     }
   }
 
-  // As Overlay::terms.
+  // The formulas of Overlay::terms() in error_meter.cpp.
   const double coarse_depth = (coarse.depth_du * margin_u + coarse.depth_dv * margin_v) / coarse.least_depth;
   const double coarse_length = coarse.length_du * margin_u + coarse.length_dv * margin_v;  // lengths are >= 1
   const double kappa = (1.0 + fine.length_variation) * (1.0 + fine.depth_variation) *

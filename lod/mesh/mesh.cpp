@@ -32,7 +32,7 @@ TileMesh canonical_mesh(int intervals, std::vector<std::uint32_t> posts,
     index[post] = static_cast<std::uint16_t>(mesh.vertices.size());
     mesh.vertices.push_back({static_cast<std::uint16_t>(post % side), static_cast<std::uint16_t>(post / side)});
   }
-  // Sorted by the first vertex with a count of each, then the few of each vertex.
+  // Counting sort by the first vertex, then a sort of the few triangles of each vertex.
   std::vector<std::uint64_t> rotated;
   rotated.reserve(triangles.size());
   std::vector<std::uint32_t> end(mesh.vertices.size() + 1);

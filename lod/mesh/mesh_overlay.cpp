@@ -124,7 +124,7 @@ CoarseMesh::CoarseMesh(const TileKey& tile, const TileMesh& mesh, std::span<cons
       const std::uint16_t b = corner[(k + 1) % 3];
       const Box ab = box({a, b});
       const bool slanting = ab.i0 != ab.i1 && ab.j0 != ab.j1;
-      // Counter-clockwise: an inner edge is seen once in either direction.
+      // Triangles are counter-clockwise, so an inner edge occurs once in each direction.
       if (slanting ? a < b : ab.i0 == intervals || ab.j0 == intervals) {
         segments.push_back({vertex(a), vertex(b)});
         segment_boxes.push_back(ab);

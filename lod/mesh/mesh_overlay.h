@@ -1,4 +1,5 @@
-// Overlay of a mesh with S over one finest tile (internal to lod; ErrorMeter is the way in).
+// Both sides of the overlay of a mesh with the reference surface S over one finest tile. Internal to lod; use
+// lod/mesh/error_meter.h.
 //
 // Depths are scaled: W = R w = R n / (R + h), and n for heights 0. Both are affine in the chart over a flat
 // triangle.
@@ -12,7 +13,7 @@
 
 namespace lod {
 
-// Ascending lines with a table that finds a line in constant time.
+// Holds ascending lines, with a table that finds a line in constant time.
 class LineTable {
  public:
   explicit LineTable(std::vector<double> lines);
@@ -21,7 +22,7 @@ class LineTable {
   const double* data() const { return line_.data(); }
   double widest() const { return widest_; }
 
-  // First line at or beyond x; count() when there is none.
+  // Returns the first line at or beyond x, or count() if there is none.
   int first(double x) const {
     const double at = (x - line_.front()) * buckets_per_unit_ - 0.5;
     if (!(at > 0.0)) return x <= line_.front() ? 0 : 1;
@@ -30,12 +31,12 @@ class LineTable {
     while (line_[i] < x) ++i;
     return static_cast<int>(i);
   }
-  // Interval that holds x, clamped.
+  // Returns the interval that contains x, clamped.
   int interval(double x) const {
     const int i = first(x);
     return i == 0 ? 0 : i >= count() ? count() - 2 : i - 1;
   }
-  // Position in an interval, 0..1, clamped.
+  // Returns the position of x in an interval, 0..1, clamped.
   double fraction(int interval, double x) const {
     const double f = (x - (*this)[interval]) * inverse_width_[static_cast<std::size_t>(interval)];
     return f < 0.0 ? 0.0 : f > 1.0 ? 1.0 : f;
@@ -44,11 +45,12 @@ class LineTable {
  private:
   std::vector<double> line_;
   std::vector<double> inverse_width_;
-  std::vector<int> first_in_bucket_;  // buckets no wider than the narrowest interval
+  std::vector<int> first_in_bucket_;  // buckets are at most as wide as the narrowest interval
   double buckets_per_unit_ = 0;
   double widest_ = 0;
 };
 
+// The posts of a finest tile as depths.
 struct FineGrid {
   FineGrid(const Posts& posts, double radius_m);
 
@@ -59,10 +61,11 @@ struct FineGrid {
   LineTable v;
   std::vector<double> depth;   // W
   std::vector<double> length;  // n
-  double depth_variation = 0;  // most that W varies over a cell, relative to its least value
+  double depth_variation = 0;  // largest variation of W over a cell, relative to its least value
   double length_variation = 0;
 };
 
+// A mesh as planes of depth over its triangles.
 struct CoarseMesh {
   CoarseMesh(const TileKey& key, const TileMesh& mesh, std::span<const double> vertex_height_m,
              double radius_m);
@@ -71,7 +74,7 @@ struct CoarseMesh {
     double u, v;
     double depth, length;
   };
-  // In units of the mesh's grid.
+  // Bounds in units of the mesh's grid.
   struct Box {
     std::uint16_t i0, i1, j0, j1;
   };
@@ -89,13 +92,10 @@ struct CoarseMesh {
   double radius_m;
   std::vector<Triangle> triangles;
   std::vector<Box> triangle_boxes;
-  // Edges that can cross grid lines between posts, and the north and east borders, whose posts belong to no
+  // The edges that can cross grid lines between posts, and the north and east borders, whose posts belong to no
   // triangle.
   std::vector<Segment> segments;
   std::vector<Box> segment_boxes;
 };
-
-// Throws std::invalid_argument where ErrorMeter::measure() does.
-ErrorTerms measure_overlay(const CoarseMesh& mesh, const FineGrid& fine);
 
 }  // namespace lod

@@ -13,7 +13,8 @@ using vpe::base::mutated;
 
 namespace {
 
-// One vertex of a facet: R w = length - deficit, with the deficit |p| h / (R + h) small beside the length.
+// One vertex of a facet: R w = length - deficit, where the deficit |p| h / (R + h) is small compared with the
+// length.
 struct Vertex {
   double u, v;
   double length;
@@ -25,24 +26,25 @@ Vertex vertex(double u, double v, double height_m, double radius_m) {
   return {u, v, length, length * (height_m / (radius_m + height_m))};
 }
 
-// |b| - |a| without cancellation.
+// Returns |b| - |a| without cancellation.
 double length_difference(const Vertex& a, const Vertex& b) {
   return ((b.u - a.u) * (b.u + a.u) + (b.v - a.v) * (b.v + a.v)) / (b.length + a.length);
 }
 
-// R w(b) - R w(a).
+// Returns R w(b) - R w(a).
 double depth_difference(const Vertex& a, const Vertex& b) {
   return length_difference(a, b) - (b.deficit - a.deficit);
 }
 
-// Height at (u, v) where R w has grown by `growth` since vertex a: R (|p| - R w) / (R w).
+// Returns the height at (u, v), where R w exceeds that of vertex a by `growth`: R (|p| - R w) / (R w).
 double height_at(const Vertex& a, double u, double v, double growth, double radius_m) {
   const Vertex here{u, v, std::sqrt(u * u + v * v + 1.0), 0.0};
   const double above = length_difference(a, here) + a.deficit - growth;
   return radius_m * above / (here.length - above);
 }
 
-// Index of the interval of ascending lines that holds x (clamped); x = last line belongs to the last one.
+// Returns the index of the interval of ascending lines that contains x (clamped). The last line belongs to the
+// last interval.
 int interval_of(const std::vector<double>& lines, double x) {
   const int last = static_cast<int>(lines.size()) - 2;
   const double t = (x - lines.front()) / (lines.back() - lines.front()) * (last + 1);
@@ -94,7 +96,7 @@ double surface_height(const Posts& posts, const GridLines& lines, double u, doub
   const double slope_u = (lower ? depth_difference(a, b) : depth_difference(b, c)) / du;
   const double slope_v = (lower ? depth_difference(b, c) : depth_difference(a, b)) / dv;
   if (normal != nullptr) {
-    // R w = n . (u, v, 1) on the facet, that is n . P = R: n is its normal in the face's axes.
+    // On the facet R w = n . (u, v, 1), hence n . P = R: n is its normal in the face's axes.
     const double constant = a.length - a.deficit - slope_u * a.u - slope_v * a.v;
     *normal = glm::normalize(mars::face_axes(posts.key.face).right * slope_u +
                              mars::face_axes(posts.key.face).up * slope_v +
@@ -164,7 +166,7 @@ double steepest_slope(const Posts& posts, const GridLines& lines, double radius_
     }
     std::swap(low, high);
   }
-  // The vertical turns over a facet by no more than the angle of its longest side.
+  // Over a facet the vertical changes by at most the angle of its longest side.
   const double turn =
       std::sqrt(longest2) / (radius_m + *std::min_element(posts.height_m.begin(), posts.height_m.end()));
   const double tangent = std::sqrt(largest2);

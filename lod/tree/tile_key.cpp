@@ -15,7 +15,7 @@ constexpr int kLevelBits = 5;
 constexpr std::int64_t kMortonMask = (std::int64_t{1} << kMortonBits) - 1;
 static_assert(2 * kMaxLevel <= kMortonBits && kMaxLevel < (1 << kLevelBits));
 
-// Bit n moves to bit 2n.
+// Moves bit n to bit 2n.
 std::uint64_t spread(std::uint32_t x) {
   std::uint64_t v = x;
   v = (v | (v << 16)) & 0x0000ffff0000ffffULL;
@@ -87,11 +87,11 @@ bool is_valid(const TileKey& key) {
   return key.i >= 0 && key.i < n && key.j >= 0 && key.j < n;
 }
 
-std::int64_t z_position(const TileKey& key) {
+std::int64_t morton_position(const TileKey& key) {
   return (static_cast<std::int64_t>(key.face) << kMortonBits) | morton(key);
 }
 
-std::int64_t z_extent(int level) { return std::int64_t{1} << (kMortonBits - 2 * level); }
+std::int64_t morton_extent(int level) { return std::int64_t{1} << (kMortonBits - 2 * level); }
 
 std::int64_t pack(const TileKey& key) {
   const std::int64_t high = (static_cast<std::int64_t>(key.face) << kLevelBits) | key.level;
@@ -103,8 +103,8 @@ std::optional<TileKey> unpack(std::int64_t packed) {
   const auto level = static_cast<std::int32_t>((packed >> kMortonBits) & ((1 << kLevelBits) - 1));
   if (packed < 0 || face >= mars::kFaces || level > kMaxLevel) return std::nullopt;
   const std::int64_t code = packed & kMortonMask;
-  if (code % z_extent(level) != 0) return std::nullopt;
-  const auto bits = static_cast<std::uint64_t>(code / z_extent(level));
+  if (code % morton_extent(level) != 0) return std::nullopt;
+  const auto bits = static_cast<std::uint64_t>(code / morton_extent(level));
   return TileKey{static_cast<mars::Face>(face), level, static_cast<std::int32_t>(gather(bits)),
                  static_cast<std::int32_t>(gather(bits >> 1))};
 }
@@ -138,8 +138,9 @@ Neighbour neighbour(const TileKey& key, Edge edge) {
     return {next, opposite, false};
   }
 
-  // Over the cube's edge, with cell centres in half cells on the cube [-n, n]^3: the coordinate that leaves
-  // the face is pinned to the edge and becomes the new face's out, the old out goes half a cell inwards.
+  // Crosses the cube's edge. Cell centres are in half cells on the cube [-n, n]^3. The coordinate that leaves
+  // the face is clamped to the edge and becomes the new face's out axis; the old out coordinate moves half a
+  // cell inwards.
   const IntegerAxes from = integer_axes(key.face);
   const std::int64_t a = std::clamp<std::int64_t>(2 * std::int64_t{next.i} + 1 - n, -n, n);
   const std::int64_t b = std::clamp<std::int64_t>(2 * std::int64_t{next.j} + 1 - n, -n, n);

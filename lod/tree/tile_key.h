@@ -1,4 +1,9 @@
-// Quadtree addressing: six faces, level 0 = one tile a face, children 2 x 2.
+// Addresses of tiles in the quadtree: six faces, level 0 has one tile for each face, children are 2 x 2.
+//
+// Typical usage:
+//   const TileKey key = tile_at(mars::chart_point(direction), 12);
+//   const std::int64_t id = pack(key);  // the primary key in planet files
+//   const TileKey up = parent(key);
 #pragma once
 
 #include <array>
@@ -13,9 +18,9 @@
 
 namespace lod {
 
-inline constexpr int kMaxLevel = 26;  // 63-bit keys; 128-post tiles of 0.1 mm posts on Mars
+inline constexpr int kMaxLevel = 26;  // limit of 63-bit keys; tiles of 128 posts 0.1 mm apart on Mars
 
-// Tile column i runs along the face's right axis, row j along its up axis; 0 <= i, j < 2^level.
+// Column i runs along the face's right axis, row j along its up axis; 0 <= i, j < 2^level.
 struct TileKey {
   mars::Face face = mars::Face::kPlusX;
   std::int32_t level = 0;
@@ -29,51 +34,57 @@ struct TileKey {
 enum class Edge : std::uint8_t { kWest, kEast, kSouth, kNorth };
 inline constexpr std::array<Edge, 4> kEdges{Edge::kWest, Edge::kEast, Edge::kSouth, Edge::kNorth};
 
+// Returns true if the quadtree has a tile of this key.
 bool is_valid(const TileKey& key);
 
-// Position of the tile's first corner along the Z curve through all faces: face (3 bits) | Morton code of
-// (i, j), j above i, shifted to the top of 54 bits. The tiles of a subtree are the positions
-// [z_position(key), z_position(key) + z_extent(key.level)); of disjoint tiles the order is total.
-std::int64_t z_position(const TileKey& key);
-std::int64_t z_extent(int level);
+// Returns the position of the tile's first corner in Morton order over all faces: face (3 bits) | Morton code
+// of (i, j), j above i, shifted to the top of 54 bits. The tiles of a subtree have the positions
+// [morton_position(key), morton_position(key) + morton_extent(key.level)). For disjoint tiles the order is
+// total.
+std::int64_t morton_position(const TileKey& key);
+std::int64_t morton_extent(int level);
 
-// face (3 bits) | level (5 bits) | Morton code of (i, j), shifted to the top of 54 bits so that ascending
-// keys of one face and level run in Morton order. Positive 63-bit number; unpack() is the exact inverse and
-// returns nothing for a number that no tile has.
+// Returns face (3 bits) | level (5 bits) | Morton code of (i, j), shifted to the top of 54 bits so that the
+// ascending keys of one face and level are in Morton order. The result is a positive 63-bit number.
 std::int64_t pack(const TileKey& key);
+
+// Returns the exact inverse of pack(), or nullopt for a number that no tile has.
 std::optional<TileKey> unpack(std::int64_t packed);
 
 TileKey parent(const TileKey& key);                         // key.level > 0
 TileKey child(const TileKey& key, int index);               // index = column + 2 row, 0..3
 TileKey ancestor(const TileKey& key, int level);            // 0 <= level <= key.level
-bool contains(const TileKey& outer, const TileKey& inner);  // outer is inner or an ancestor of it
+bool contains(const TileKey& outer, const TileKey& inner);  // true if outer is inner or an ancestor of it
 
-// The tile of the same level across an edge, also over cube edges, and the edge of it that is shared. In
-// integers; applied twice it leads back, with the same `reversed`.
-// `reversed`: positions along the edge (west/east edges run along j, south/north along i) run the other way.
+// The tile of the same level across an edge.
 struct Neighbour {
   TileKey key;
-  Edge edge;
+  Edge edge;  // the edge of `key` that is shared
+  // True if positions along the edge (west/east edges run along j, south/north along i) run in opposite
+  // directions.
   bool reversed = false;
 };
+
+// Returns the neighbour across an edge, also over the edges of the cube. Uses integers only. Applied twice it
+// returns to the first tile, with the same `reversed`.
 Neighbour neighbour(const TileKey& key, Edge edge);
 
-// Tile of a level that holds a chart point (right and upper borders belong to the next tile, at the face's
-// far border to the last; points outside [-1, 1] are clamped). Exact: agrees with chart_rect().
+// Returns the tile of a level that contains a chart point. Right and upper borders belong to the next tile, at
+// the face's far border to the last; points outside [-1, 1] are clamped. Exact: agrees with chart_rect().
 TileKey tile_at(const mars::ChartPoint& point, int level);
 
-// Chart rectangle of a tile, exact.
+// Returns the chart rectangle of a tile, exactly.
 mars::ChartRect chart_rect(const TileKey& key);
 
-// Cap around a tile: unit centre direction and the angle to its farthest corner, rounded up by 1e-15 rad. On a
-// sphere of any radius the angle's arc is at most kCapPerSide nominal sides.
+// Returns a cap around a tile: unit centre direction and the angle to its farthest corner, rounded up by 1e-15
+// rad. On a sphere of any radius the arc of this angle is at most kCapPerSide nominal sides.
 inline constexpr double kCapPerSide = 0.83;
 mars::Cap bounding_cap(const TileKey& key);
 
-// Length of a quarter great circle / 2^level: the tile's nominal side.
+// Returns the tile's nominal side: the length of a quarter great circle / 2^level.
 double nominal_side_m(int level, double radius_m);
 
-// "face/level/i/j", e.g. "+x/4/3/12".
+// Returns "face/level/i/j", for example "+x/4/3/12".
 std::string to_string(const TileKey& key);
 
 struct TileKeyHash {

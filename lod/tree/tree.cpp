@@ -65,11 +65,11 @@ void check(const TileInfo& tile, const TileInfo& child) {
 }
 
 bool before(const TileKey& a, const TileKey& b) {
-  return a.level != b.level ? a.level < b.level : z_position(a) < z_position(b);
+  return a.level != b.level ? a.level < b.level : morton_position(a) < morton_position(b);
 }
 
-// A flat facet over posts of radius >= r stays above r times this: the cosine of the half-width of the widest
-// cell of a level, from below.
+// Returns a factor f such that a flat facet over posts of radius >= r stays above f r: a lower bound of the
+// cosine of the half-width of the widest cell of a level.
 double facet_factor(int level, const TileShape& shape) {
   if (mutated(Guard::kFacetSagitta)) return 1.0;
   const double half_width = kCapPerSide * nominal_side_m(level + shape.k, 1.0);
@@ -90,7 +90,7 @@ TileTree::TileTree(std::vector<TileInfo> tiles, const TileShape& shape, double r
   tiles_.shrink_to_fit();
   first_child_.resize(tiles_.size());
 
-  // Parents are met in the order of their children, so one walk finds every gap and every stray tile.
+  // Parents have the order of their children, so one pass finds every missing and every stray tile.
   std::size_t next = 0;
   const auto refuse_stray = [&] {
     const bool twice = next > 0 && tiles_[next].key == tiles_[next - 1].key;
@@ -144,7 +144,8 @@ const TileInfo& TileTree::deepest(const TileKey& key) const { return tiles_[desc
 cull::BoundingRegion TileTree::region(Index tile, double exaggeration, double geometric_error_m) const {
   const TileInfo& info = tiles_[tile];
   const double facets = facet_factor(info.has_children ? info.key.level + 1 : info.key.level, shape_);
-  // At another exaggeration posts on a coarser neighbour's edge stay on it: below its ends by that edge's sag.
+  // At another exaggeration posts on a coarser neighbour's edge stay on it: below its ends by that edge's
+  // sagitta.
   const auto finer = exaggeration == 1.0 ? std::nullopt : coarsest_beside_coarser(info);
   const double edges = finer ? facet_factor(*finer - 1, shape_) : 1.0;
   const double lowest = (radius_m_ + exaggeration * info.min_height_m) * edges * facets - geometric_error_m;
@@ -170,10 +171,10 @@ double TileTree::geometric_error_m(const TileInfo& tile, const ErrorTerms& terms
          edge_shift_m(tile, exaggeration);
 }
 
-// On an edge between posts of radius R + x h the radius is r(x) = 1 / sum(m / (R + x h)). A post kept on it is at
-// r(x), one exaggerated by itself at R + x (r(1) - R). They agree at x = 1 and differ by the edge's sag at x = 0;
-// between and beyond, by the line through both and a second order that error_bound has too. A facet moves by no
-// more than its posts do, but for the ratio of their radii squared.
+// On an edge between posts of radius R + x h the radius is r(x) = 1 / sum(m / (R + x h)). A post kept on the
+// edge is at r(x), a post exaggerated by itself at R + x (r(1) - R). They agree at x = 1 and differ by the
+// edge's sagitta at x = 0; elsewhere they differ by the line through both and a second order that error_bound()
+// has too. A facet moves by at most the movement of its posts times the squared ratio of their radii.
 double TileTree::edge_shift_m(const TileInfo& tile, double exaggeration) const {
   if (exaggeration == 1.0) return 0.0;
   const std::optional<int> level = coarsest_beside_coarser(tile);

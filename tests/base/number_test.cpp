@@ -1,4 +1,4 @@
-// Number text: parsing and formatting.
+// Numbers as text: parsing and formatting.
 
 #include "vpe/base/number.h"
 
@@ -13,11 +13,51 @@
 // After GoogleTest, which it does not include.
 #include <rapidcheck/gtest.h>
 
+#include "tests/support/support.h"
+
 namespace vpe::base {
 namespace {
 
 const double kNaN = std::nan("");
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using test_support::Random;
+
+TEST(Number, ReadsWhatItWritesToTheBit) {
+  Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const double sign = random.integer(0, 1) == 0 ? -1.0 : 1.0;
+    const double value = sign * random.log_uniform(1e-300, 1e300);
+    const std::optional<double> read = parse_number(format_number(value));
+    ASSERT_TRUE(read.has_value()) << format_number(value);
+    ASSERT_EQ(*read, value);
+  }
+  for (const double value : {0.0, -0.0, 1e-6, 1e16, 123456789.0, std::numeric_limits<double>::denorm_min(),
+                             std::numeric_limits<double>::max()}) {
+    EXPECT_EQ(parse_number(format_number(value)), value);
+  }
+}
+
+TEST(Number, IsPlainWherePeopleRead) {
+  EXPECT_EQ(format_number(1000000), "1000000");
+  EXPECT_EQ(format_number(-74.25), "-74.25");
+  EXPECT_EQ(format_number(0.1), "0.1");
+  EXPECT_EQ(format_number(0), "0");
+  EXPECT_EQ(format_number(1e20), "1e+20");
+}
+
+TEST(Number, TakesOnlyWholeFiniteDecimals) {
+  EXPECT_EQ(parse_number("+1.5"), 1.5);
+  EXPECT_EQ(parse_number("-.5e1"), -5.0);
+  for (const char* text : {"", "+", "-", "+-1", "-+1", "++1", "1 ", " 1", "1,5", "1.5m", "nan", "inf", "-inf",
+                           "infinity", "0x10", "1e999", "1e", "--1", "1_000"}) {
+    EXPECT_FALSE(parse_number(text).has_value()) << text;
+  }
+  EXPECT_EQ(parse_integer("+3"), 3);
+  for (const char* text : {"", "3.0", "1e3", "99999999999999999999", "0x1"}) {
+    EXPECT_FALSE(parse_integer(text).has_value()) << text;
+  }
+}
 
 TEST(FormatShortest, PrefersAnExponentWhereThatIsShorter) {
   EXPECT_EQ(format_shortest(3396190), "3396190");

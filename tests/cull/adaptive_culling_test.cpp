@@ -1,5 +1,5 @@
-// Counted frames: a culler that costs more than it saves goes off, is tried again, ever more rarely, and one
-// that pays stays.
+// Counted frames: a culler that costs more than it saves is switched off and tried again, more and more rarely;
+// one that saves time stays.
 #include "cull/adaptive_culling.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,8 @@ using cull::AdaptiveCulling;
 using cull::AdaptiveCullingLimits;
 using cull::CullingFrame;
 
-// Runs frames in which the culler takes spent_ms and culls `culled` tiles of 1 ms; how many it was used in.
+// Runs frames in which the culler takes spent_ms and culls `culled` tiles of 1 ms. Returns the number of frames
+// in which it was used.
 int run(AdaptiveCulling& culling, int frames, double spent_ms, int culled) {
   int record_frame = 0;
   for (int n = 0; n < frames; ++n) {
@@ -67,7 +68,7 @@ TEST(AdaptiveCulling, FollowsTheScene) {
   EXPECT_TRUE(culling.use());
 }
 
-// Between both ratios whatever is, stays: no switching to and fro at the edge.
+// Between both ratios nothing changes, so that it does not switch to and fro.
 TEST(AdaptiveCulling, DoesNotFlicker) {
   AdaptiveCulling on;
   run(on, 50, 1.0, 2);

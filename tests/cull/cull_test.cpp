@@ -1,4 +1,4 @@
-// What can be seen is never culled, and distances are tight lower bounds: random and hostile views.
+// Visible ground is never culled, and distances are tight lower bounds, for random and hostile views.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -25,7 +25,7 @@ glm::dvec3 region_point(const mars::ChartRect& rect, double s, double t, double 
          mars::chart_direction(rect.face, rect.u0 + s * (rect.u1 - rect.u0), rect.v0 + t * (rect.v1 - rect.v0));
 }
 
-// A rectangle of `size` about a chart point that holds it, cut off at the face's borders.
+// Returns a rectangle of `size` that contains a chart point, clipped at the face's borders.
 mars::ChartRect rect_around(Random& random, const mars::ChartPoint& point, double size) {
   const double u = point.u - random.uniform(0, size);
   const double v = point.v - random.uniform(0, size);
@@ -33,7 +33,7 @@ mars::ChartRect rect_around(Random& random, const mars::ChartPoint& point, doubl
                        std::min(1.0, v + size)};
   rect.u1 = std::max(rect.u1, std::nextafter(rect.u0, 2.0));
   rect.v1 = std::max(rect.v1, std::nextafter(rect.v0, 2.0));
-  // Now and then the point is on the rectangle's own border.
+  // Sometimes the point is on the rectangle's own border.
   if (random.integer(0, 4) == 0 && point.u < rect.u1) rect.u0 = point.u;
   if (random.integer(0, 4) == 0 && point.v < rect.v1) rect.v0 = point.v;
   return rect;
@@ -43,7 +43,7 @@ mars::ChartRect random_rect(Random& random) {
   return rect_around(random, mars::chart_point(random.direction()), random.log_uniform(1e-6, 2.0));
 }
 
-// Directions that matter: anywhere, poles, the antimeridian, the cube's edges and corners.
+// Returns critical directions: random ones, poles, the antimeridian, the cube's edges and corners.
 glm::dvec3 hostile_direction(Random& random) {
   glm::dvec3 d = random.direction();
   switch (random.integer(0, 5)) {
@@ -56,7 +56,7 @@ glm::dvec3 hostile_direction(Random& random) {
   return d;
 }
 
-// From below the datum, over half a metre above ground, to ten radii away.
+// Returns heights from below the datum, over half a metre above ground, to ten radii.
 double hostile_radius(Random& random) {
   const double ground = kRadius_m + random.uniform(-8000, 21000);
   return random.integer(0, 3) == 0 ? ground + 0.5 : ground + random.log_uniform(0.1, 10 * kRadius_m);
@@ -75,7 +75,7 @@ core::View random_view(Random& random, const glm::dvec3& camera_m) {
   return view;
 }
 
-TEST(Volume, HoldsItsShell) {
+TEST(Volume, ContainsItsRegion) {
   Random random(21);
   for (int trial = 0; trial < 20000; ++trial) {
     const double low = kRadius_m + random.uniform(-1e5, 1e4);
@@ -97,7 +97,8 @@ TEST(Volume, HoldsItsShell) {
   }
 }
 
-// Squared chord to the rectangle's border by search along its four sides, independent of shell.cpp.
+// Returns the squared chord to the rectangle's border by search along its four sides, independent of
+// bounding_region.cpp.
 double searched_chord2(const mars::ChartRect& rect, const glm::dvec3& d) {
   double best = 4.0;
   for (int side = 0; side < 4; ++side) {
@@ -160,7 +161,7 @@ TEST(Chord, NearestAndFarthestAgreeWithASearch) {
   EXPECT_GT(on_side, 5000);
 }
 
-TEST(Distance, IsATightLowerBoundOverTheShell) {
+TEST(Distance, IsATightLowerBoundOverTheRegion) {
   Random random(23);
   int in_the_region = 0;
   for (int trial = 0; trial < 10000; ++trial) {
@@ -205,7 +206,7 @@ TEST(Distance, IsATightLowerBoundOverTheShell) {
   EXPECT_NEAR(cull::max_distance_m(centre, 4.0, 5.0, 7.0), 7.0, 1e-12);
 }
 
-TEST(Frustum, NeverGivesUpAShellWithAPointInTheImage) {
+TEST(Frustum, NeverRejectsARegionWithAPointInTheImage) {
   Random random(24);
   int crossed = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -225,7 +226,7 @@ TEST(Frustum, NeverGivesUpAShellWithAPointInTheImage) {
     const glm::dvec3 point = camera_m + ray * random.log_uniform(0.01, 2 * glm::length(camera_m));
     const double r = glm::length(point);
     const mars::ChartRect rect = rect_around(random, mars::chart_point(point), random.log_uniform(1e-16, 1.0));
-    // Rounding of the point itself may put it just outside its rectangle or shell: give that much.
+    // Rounding of the point itself may put it just outside its rectangle or region: give that much.
     const BoundingRegion region{rect, r * (1 - 1e-15) - random.integer(0, 1) * random.log_uniform(0.01, 1e4),
                                 r * (1 + 1e-15) + random.integer(0, 1) * random.log_uniform(0.01, 1e4)};
     if (region.min_radius_m < 0.0) continue;
@@ -234,7 +235,7 @@ TEST(Frustum, NeverGivesUpAShellWithAPointInTheImage) {
         cull::planes_crossed(frustum, cull::bounding_hexahedron(region), cull::all_planes(frustum));
     ASSERT_TRUE(mask.has_value()) << "trial " << trial;
     crossed += *mask != 0 ? 1 : 0;
-    // Planes that are not crossed are not crossed by a part either.
+    // Planes that do not intersect a volume do not intersect its parts.
     mars::ChartRect part = rect;
     part.u1 = 0.5 * (rect.u0 + rect.u1);
     const auto part_mask = cull::planes_crossed(
@@ -252,7 +253,7 @@ TEST(Frustum, NeverGivesUpAShellWithAPointInTheImage) {
   EXPECT_GT(crossed, 5000);
 }
 
-TEST(Frustum, GivesUpWhatIsClearlyOutside) {
+TEST(Frustum, RejectsWhatIsClearlyOutside) {
   Random random(25);
   int outside = 0;
   int culled = 0;

@@ -1,4 +1,5 @@
-// The horizon by azimuth blocks no ray that passes above all walls, and not many fewer than the walls do.
+// The horizon over azimuth blocks no ray that passes above all occluders, and almost all rays that the
+// occluders block.
 #include "cull/terrain_horizon.h"
 
 #include <algorithm>
@@ -30,8 +31,8 @@ double slope_of(double cosine, double sine, double radius_m, double camera_m) {
   return (radius_m * cosine - camera_m) / (radius_m * sine);
 }
 
-// Slope of the highest ray along `ahead` (horizontal) that a wall blocks, by the place where the ray's plane
-// meets it.
+// Slope of the highest ray along `ahead` (horizontal) that an occluder blocks, by the place where the ray's
+// plane meets it.
 double exact_slope(const std::vector<Occluder>& occluders, const cull::Camera& camera,
                    const glm::dvec3& ahead) {
   double highest = kNone;
@@ -112,7 +113,7 @@ glm::dvec3 random_ahead(Random& random, const glm::dvec3& up) {
 
 double angle_between(double high, double low) { return std::atan((high - low) / (1.0 + high * low)); }
 
-TEST(TerrainHorizon, BlocksNoRayAboveAllWalls) {
+TEST(TerrainHorizon, BlocksNoRayAboveAllOccluders) {
   Random random(81);
   cull::TerrainHorizon horizon;
   int blocked = 0;
@@ -124,7 +125,7 @@ TEST(TerrainHorizon, BlocksNoRayAboveAllWalls) {
     if (scene.occluders.empty()) continue;
     for (int ray = 0; ray < 100; ++ray) {
       glm::dvec3 ahead = random_ahead(random, scene.camera.direction);
-      if (ray % 2 == 0) {  // towards a wall
+      if (ray % 2 == 0) {  // towards an occluder
         const Occluder& occluder = scene.occluders[static_cast<std::size_t>(
             random.integer(0, static_cast<int>(scene.occluders.size()) - 1))];
         const double at = random.uniform(occluder.ends.front(), occluder.ends.back());
@@ -143,11 +144,11 @@ TEST(TerrainHorizon, BlocksNoRayAboveAllWalls) {
   }
   EXPECT_GT(blocked, 8000);
   std::sort(lost.begin(), lost.end());
-  // Bins are 2 to 3 mrad wide, and these walls jump up and down from piece to piece.
+  // Bins are 2 to 3 mrad wide, and these occluders jump up and down from piece to piece.
   EXPECT_LT(lost[lost.size() / 2], 0.01) << lost.size();
 }
 
-TEST(TerrainHorizon, HidesNoShellWithAPointAboveAllWalls) {
+TEST(TerrainHorizon, HidesNoRegionWithAPointAboveAllOccluders) {
   Random random(82);
   cull::TerrainHorizon horizon;
   int hidden = 0;
@@ -191,8 +192,8 @@ TEST(TerrainHorizon, HidesNoShellWithAPointAboveAllWalls) {
   EXPECT_GT(aside, 1000);
 }
 
-// Where the walls of neighbours meet no azimuth may be left open: a ridge of many tiles hides like one.
-TEST(TerrainHorizon, WallsOfNeighboursCloseUp) {
+// Where the occluders of neighbours meet there must be no gap in azimuth: a ridge of many tiles hides like one.
+TEST(TerrainHorizon, OccludersOfNeighboursLeaveNoGap) {
   Random random(83);
   cull::TerrainHorizon horizon;
   for (int trial = 0; trial < 200; ++trial) {
@@ -208,7 +209,7 @@ TEST(TerrainHorizon, WallsOfNeighboursCloseUp) {
     int open = 0;
     for (int ray = 0; ray < 300; ++ray) open += horizon.blocked_slope(random_ahead(random, up)) > 0.0 ? 0 : 1;
     ASSERT_EQ(open, 0) << trial;
-    // What stands as high behind it is hidden, and not when it is too high.
+    // Ground of the same height behind it is hidden, higher ground is not.
     const glm::dvec3 far = glm::normalize(up + 4.0 * size * random_ahead(random, up));
     const mars::ChartPoint p = mars::chart_point(far);
     const cull::BoundingRegion behind{
@@ -220,7 +221,7 @@ TEST(TerrainHorizon, WallsOfNeighboursCloseUp) {
   }
 }
 
-TEST(TerrainHorizon, NothingIsHiddenUnderTheCameraOrWithoutWalls) {
+TEST(TerrainHorizon, NothingIsHiddenUnderTheCameraOrWithoutOccluders) {
   cull::TerrainHorizon horizon;
   const cull::Camera camera = cull::make_camera({kRadius_m + 10, 0, 0});
   const mars::ChartRect here{mars::Face::kPlusX, -0.01, 0.01, -0.01, 0.01};
@@ -236,7 +237,7 @@ TEST(TerrainHorizon, NothingIsHiddenUnderTheCameraOrWithoutWalls) {
   EXPECT_EQ(horizon.bins_spanned(here), cull::TerrainHorizon::kBins);
   EXPECT_LT(horizon.bins_spanned(there), 100);
   horizon.begin(camera);
-  EXPECT_FALSE(horizon.hidden({there, kRadius_m - 9000, kRadius_m - 5000})) << "walls of the frame before";
+  EXPECT_FALSE(horizon.hidden({there, kRadius_m - 9000, kRadius_m - 5000})) << "occluders of the frame before";
 }
 
 }  // namespace

@@ -44,13 +44,13 @@ inline Selection selected(const SelectOptions& options, const TileTree& tree, co
 
 inline SelectOptions by_distance(const ControlFunction& distance, const ControlFunction& centre = {}) {
   SelectOptions options;
-  options.control.rule = core::LodMetric::kDistance;
+  options.control.metric = core::LodMetric::kDistance;
   options.control.distance = distance;
   options.control.centre = centre;
   return options;
 }
 
-// Of a tile that is in a selection or was refined for it.
+// Returns the terms of a tile that is in a selection or was refined for it.
 inline lod::ControlTerms terms_of(const SelectOptions& options, const TileTree& tree, const core::View& view,
                                   const lod::TileKey& key) {
   const auto index = static_cast<TileTree::Index>(tree.find(key) - &tree[0]);

@@ -1,4 +1,4 @@
-// Both rules over whole selections, and what control may never do to one.
+// Both metrics over whole selections, and the properties of a selection that control must not break.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -18,20 +18,20 @@ using namespace control_fixture;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Disjoint, and every finest tile that the same view sees at tolerance 0 is in one.
+// Expects disjoint tiles, and each finest tile that the same view sees at tolerance 0 in one of them.
 void expect_cover(const Selection& s, const core::View& view) {
   std::vector<std::int64_t> begins;
   std::int64_t end = -1;
   for (const lod::SelectedTile& t : s.tiles) {
-    ASSERT_GE(lod::z_position(t.key), end);
-    begins.push_back(lod::z_position(t.key));
-    end = lod::z_position(t.key) + lod::z_extent(t.key.level);
+    ASSERT_GE(lod::morton_position(t.key), end);
+    begins.push_back(lod::morton_position(t.key));
+    end = lod::morton_position(t.key) + lod::morton_extent(t.key.level);
   }
   ASSERT_EQ(s.visited, s.culled_frustum + s.culled_horizon + s.refined + static_cast<int>(s.tiles.size()));
   SelectOptions all;
   all.tolerance_px = 0;
   for (const lod::SelectedTile& leaf : selected(all, rough_tree(), view).tiles) {
-    const auto after = std::upper_bound(begins.begin(), begins.end(), lod::z_position(leaf.key));
+    const auto after = std::upper_bound(begins.begin(), begins.end(), lod::morton_position(leaf.key));
     ASSERT_NE(after, begins.begin());
     ASSERT_TRUE(lod::contains(s.tiles[static_cast<std::size_t>(after - begins.begin()) - 1].key, leaf.key))
         << lod::to_string(leaf.key);
@@ -47,7 +47,7 @@ const lod::SelectedTile* holder(const Selection& s, const glm::dvec3& place) {
 }
 
 TEST(ControlSelection, ByDefaultNothingChanges) {
-  // To the bit: what a request with default settings asks for, and the plain options.
+  // A request with default settings and default options give the same selection, to the bit.
   rc::check([] {
     Random random(*rc::gen::arbitrary<std::uint32_t>());
     const core::View view = random_view(random);
@@ -70,7 +70,7 @@ TEST(ControlSelection, ByDefaultNothingChanges) {
   });
 }
 
-TEST(ControlSelection, HitchnersRuleHoldsAtEveryTile) {
+TEST(ControlSelection, TheDistanceMetricHoldsAtEveryTile) {
   Random random(62);
   int finest = 0;
   int reached = 0;
@@ -87,19 +87,20 @@ TEST(ControlSelection, HitchnersRuleHoldsAtEveryTile) {
     ASSERT_FALSE(s.capped);
     for (const lod::SelectedTile& t : s.tiles) {
       const lod::TileInfo& info = rough_tree()[t.index];
-      const int wanted = lod::wanted_lod(terms_of(options, rough_tree(), view, t.key).sum);
+      const int wanted = lod::wanted_level_count(terms_of(options, rough_tree(), view, t.key).sum);
       ASSERT_EQ(t.control, wanted);
       if (lod::is_full_grid(info, t.variant)) {
-        ASSERT_GE(wanted, lod::lod_number(t.key));
+        ASSERT_GE(wanted, lod::level_count(t.key));
         ++finest;
       } else {
         ASSERT_EQ(t.variant, 0);
-        ASSERT_LE(wanted, lod::lod_number(t.key) - (info.has_children ? 0 : 1));
+        ASSERT_LE(wanted, lod::level_count(t.key) - (info.has_children ? 0 : 1));
         ++reached;
       }
       if (t.key.level > 0) {
         const lod::TileKey above = lod::parent(t.key);
-        ASSERT_GT(lod::wanted_lod(terms_of(options, rough_tree(), view, above).sum), lod::lod_number(above));
+        ASSERT_GT(lod::wanted_level_count(terms_of(options, rough_tree(), view, above).sum),
+                  lod::level_count(above));
       }
     }
   }
@@ -109,7 +110,7 @@ TEST(ControlSelection, HitchnersRuleHoldsAtEveryTile) {
 
 TEST(ControlSelection, FromAFarCameraTheNumbersAreThoseOfTheFormula) {
   // 10 radii up over the middle of +X all tiles are 34 000 to 38 000 km away: 1e8 / x is 2.6 to 2.9, so that
-  // LOD 2 + 2 = 4 is wanted everywhere, level 3 in our numbers.
+  // LOD number 2 + 2 = 4 is wanted everywhere, which is level 3.
   const TileTree ball = fake::tree(fake::uniform(5));
   const core::View view = view_at(0, 0, 10 * fake::kRadius_m, 0, -90);
   const Selection s = selected(by_distance({1e8, 2, 1, {}}), ball, view);
@@ -118,7 +119,7 @@ TEST(ControlSelection, FromAFarCameraTheNumbersAreThoseOfTheFormula) {
   for (const lod::SelectedTile& t : s.tiles) EXPECT_EQ(t.control, 4);
   // Half the weight: int(0.5 * (2.6 .. 2.9 + 2)) = 2.
   EXPECT_EQ(selected(by_distance({1e8, 2, 0.5, {}}), ball, view).tiles_by_level.size(), 2U);
-  // One more in a region: there alone.
+  // One level more in a region affects that region only.
   SelectOptions options = by_distance({1e8, 2, 1, {}});
   options.control.regions = {lod::control_region({0, 0, 1e5, 1}, fake::kRadius_m)};
   const Selection with = selected(options, ball, view);
@@ -126,13 +127,13 @@ TEST(ControlSelection, FromAFarCameraTheNumbersAreThoseOfTheFormula) {
   EXPECT_EQ(holder(with, {1, 0.5, 0})->key.level, 3);
 }
 
-TEST(ControlSelection, TheCapIsHardInBothRules) {
+TEST(ControlSelection, TheTriangleLimitHoldsWithBothMetrics) {
   Random random(63);
   int capped = 0;
   for (int trial = 0; trial < 120; ++trial) {
     const core::View view = random_view(random);
     SelectOptions options = by_distance({1e6, 3, 1, {}}, {0.25, -1, random.integer(0, 1) * 1.0, {}});
-    if (trial % 2 == 0) options.control.rule = core::LodMetric::kError;
+    if (trial % 2 == 0) options.control.metric = core::LodMetric::kError;
     options.control.regions = {lod::control_region({0, 0, 2e6, random.integer(-2, 2)}, fake::kRadius_m)};
     const Selection free = selected(options, rough_tree(), view);
     std::int64_t before = 0;
@@ -155,19 +156,20 @@ TEST(ControlSelection, TheCapIsHardInBothRules) {
         continue;
       }
       ++capped;
-      if (options.control.rule == core::LodMetric::kDistance) {
+      if (options.control.metric == core::LodMetric::kDistance) {
         // Coarsest first: whatever was refined lacked as many levels as all that is left, or more.
         double most = 0;
         for (const auto& t : s.tiles) {
           const lod::TileInfo& info = rough_tree()[t.index];
           if (lod::is_full_grid(info, t.variant)) continue;
           most = std::max(
-              most, t.control - lod::lod_number(t.key, t.variant, static_cast<int>(info.variants.size())));
+              most, t.control - lod::level_count(t.key, t.variant, static_cast<int>(info.variants.size())));
         }
         for (const auto& t : s.tiles) {
           if (t.key.level == 0) continue;
           const lod::TileKey above = lod::parent(t.key);
-          ASSERT_GE(lod::wanted_lod(terms_of(options, rough_tree(), view, above).sum) - lod::lod_number(above),
+          ASSERT_GE(lod::wanted_level_count(terms_of(options, rough_tree(), view, above).sum) -
+                        lod::level_count(above),
                     most);
         }
       }
@@ -185,14 +187,14 @@ TEST(ControlSelection, MoreWeightOnTheCentreNeverCoarsensTheCentre) {
         mars::Pose{random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(1e4, 2e6),
                    random.uniform(0, 360), random.uniform(-90, -50), 0},
         fake::kRadius_m);
-    // Where the ray ahead meets the ground, nearly.
+    // About the point where the ray ahead meets the ground.
     const double b = glm::dot(view.camera.position_m, view.camera.axes.forward);
     const double root =
         b * b - glm::dot(view.camera.position_m, view.camera.position_m) + fake::kRadius_m * fake::kRadius_m;
     RC_PRE(root > 0);
     const glm::dvec3 place = view.camera.position_m + (-b - std::sqrt(root)) * view.camera.axes.forward;
     SelectOptions options = by_distance({1e6, 1, 1, {}}, {0.25, -1, 0, {}});
-    if (random.integer(0, 1) == 0) options.control.rule = core::LodMetric::kError;
+    if (random.integer(0, 1) == 0) options.control.metric = core::LodMetric::kError;
     static const TileTree ball = fake::tree(fake::uniform(7));
     int level = 0;
     int variant = 0;
@@ -216,7 +218,7 @@ TEST(ControlSelection, MoreInterestNeverCoarsens) {
     Random random(*rc::gen::arbitrary<std::uint32_t>());
     const core::View view = random_view(random);
     SelectOptions options = by_distance({1e6, 2, 1, {}});
-    if (random.integer(0, 1) == 0) options.control.rule = core::LodMetric::kError;
+    if (random.integer(0, 1) == 0) options.control.metric = core::LodMetric::kError;
     const mars::LonLat at = mars::lon_lat(view.camera.position_m);
     for (int n = random.integer(0, 2); n > 0; --n) {
       options.control.regions.push_back(

@@ -1,4 +1,4 @@
-// The three control functions of 1992, by hand.
+// The three level control functions of Hitchner 1992, computed by hand.
 #include "lod/control.h"
 
 #include <algorithm>
@@ -15,24 +15,24 @@ using namespace control_fixture;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(ControlFunctions, ByDistanceFromTheEye) {
+TEST(ControlFunctions, ByDistanceFromTheCamera) {
   // A thousand kilometres over x, and three more.
   const ControlFunction f{1e6, 3, 1, {}};
   EXPECT_EQ(lod::levels(f, 1e5), 13.0);
   EXPECT_EQ(lod::levels(f, 4e5), 5.5);
   EXPECT_EQ(lod::levels(f, 1e7), 3.1);
   EXPECT_EQ(lod::levels(f, 0), kInfinity);
-  EXPECT_EQ(lod::wanted_lod(lod::levels(f, 1e5)), 13);
-  EXPECT_EQ(lod::wanted_lod(lod::levels(f, 4e5)), 5);  // (int) 5.5
-  EXPECT_EQ(lod::wanted_lod(lod::levels(f, 1e7)), 3);
-  EXPECT_EQ(lod::wanted_lod(kInfinity), lod::kMaxLevel + 1);
-  EXPECT_EQ(lod::wanted_lod(0.9), 1);  // nothing is coarser than the roots
-  EXPECT_EQ(lod::wanted_lod(-7), 1);
-  // The scale is the knob of reach, the offset moves all.
+  EXPECT_EQ(lod::wanted_level_count(lod::levels(f, 1e5)), 13);
+  EXPECT_EQ(lod::wanted_level_count(lod::levels(f, 4e5)), 5);  // (int) 5.5
+  EXPECT_EQ(lod::wanted_level_count(lod::levels(f, 1e7)), 3);
+  EXPECT_EQ(lod::wanted_level_count(kInfinity), lod::kMaxLevel + 1);
+  EXPECT_EQ(lod::wanted_level_count(0.9), 1);  // nothing is coarser than the roots
+  EXPECT_EQ(lod::wanted_level_count(-7), 1);
+  // The scale changes the reach, the offset changes all levels.
   EXPECT_EQ(lod::levels({2e6, 3, 1, {}}, 4e5), 8.0);
   EXPECT_EQ(lod::levels({1e6, 4, 1, {}}, 4e5), 6.5);
   EXPECT_EQ(lod::levels({0, 4, 1, {}}, 0), 4.0);
-  // What a time budget does to it: twice as far.
+  // A time budget doubles the distance.
   EXPECT_EQ(lod::levels({1e6, 3, 1, {}, 2}, 4e5), 4.25);
 }
 
@@ -50,7 +50,7 @@ TEST(ControlFunctions, ByLookupTable) {
 }
 
 TEST(ControlFunctions, ByDistanceFromTheCentre) {
-  // 90 degrees high: half the image's height is a tangent of 1.
+  // At 90 degrees, half the image's height is a tangent of 1.
   core::View view = view_at(0, 0, 1e5, 0, -90);
   view.fov_deg = 90;
   const lod::CentreOfView centre = lod::centre_of_view(view);
@@ -67,7 +67,7 @@ TEST(ControlFunctions, ByDistanceFromTheCentre) {
   view.fov_deg = 20;
   view.width = view.height = 99;
   EXPECT_NEAR(lod::centre_distance(lod::centre_of_view(view), 10 * mars::kRadiansPerDegree), 1.0, 1e-15);
-  // Parts, and images that are shifted for stereo, have the centre of the whole.
+  // Parts, and images that are shifted for stereo, have the centre of the whole image.
   view.part = {3, 4, 5, 6};
   view.principal_offset_px = {7, 8};
   EXPECT_EQ(lod::centre_of_view(view).forward, view.camera.axes.forward);
@@ -100,18 +100,18 @@ TEST(ControlFunctions, ByInterest) {
 }
 
 TEST(ControlFunctions, TheSumIsWeightedAndCutToAWholeNumberOnce) {
-  // Straight down from 400 km at the middle of a flat tile's corner: distance 400 km, centre 0 is avoided by a
-  // look aside, so that all three terms are finite.
+  // 400 km above the corner of a flat tile: the distance is 400 km. The view is horizontal, so the centre is
+  // not at 0 and all three terms are finite.
   const TileTree ball = fake::tree(fake::uniform(5));
   SelectOptions options = by_distance({1e6, 3, 1, {}}, {0.25, -1, 2, {}});
   options.control.interest_weight = 0.5;
   options.control.regions = {lod::control_region({0, 0, 1e6, 3}, fake::kRadius_m)};
   core::View view = view_at(0, 0, 4e5, 0, 0);
   const lod::ControlTerms t = terms_of(options, ball, view, {mars::Face::kPlusX, 5, 16, 16});
-  // Distance: the shell's outer rim is at the mesh's error above the ground at the most.
+  // Distance: the region's outer rim is at the mesh's error above the ground at the most.
   EXPECT_NEAR(t.distance.x, 4e5, 1);
   EXPECT_NEAR(t.distance.levels, 5.5, 1e-4);
-  // Straight ahead is the horizontal: the tile's nearest direction lies below it by some 67 degrees, that is
+  // Straight ahead is horizontal: the tile's nearest direction lies below it by some 67 degrees, that is
   // tan(67) / tan(30) = 4 halves of the height off.
   const double share = std::tan(t.centre_angle_rad) / std::tan(30 * mars::kRadiansPerDegree);
   EXPECT_EQ(t.centre.x, share);
@@ -120,13 +120,14 @@ TEST(ControlFunctions, TheSumIsWeightedAndCutToAWholeNumberOnce) {
   EXPECT_EQ(t.centre.levels, 0.25 / share - 1);
   EXPECT_EQ(t.interest.levels, 3.0);
   EXPECT_EQ(t.sum, t.distance.levels + 2 * t.centre.levels + 0.5 * 3);
-  EXPECT_EQ(lod::wanted_lod(t.sum), static_cast<int>(t.sum));
-  // The error-bounded rule counts the last two.
-  options.control.rule = core::LodMetric::kError;
+  EXPECT_EQ(lod::wanted_level_count(t.sum), static_cast<int>(t.sum));
+  // The metric kError counts the last two.
+  options.control.metric = core::LodMetric::kError;
   EXPECT_EQ(terms_of(options, ball, view, {mars::Face::kPlusX, 5, 16, 16}).sum, 2 * t.centre.levels + 1.5);
 }
 
-// Against directions to dense samples of the volume: never more than the least of them, and not much less.
+// Compares with directions to dense samples of the volume: never more than the least of them, and not much
+// less.
 TEST(ControlFunctions, TheNearestPointToTheCentreIsFound) {
   Random random(61);
   int inside = 0;

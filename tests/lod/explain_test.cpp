@@ -1,4 +1,4 @@
-// Every drawn tile's reason is the rule's own.
+// The explanation of each drawn tile is that of the selection.
 #include "lod/explain.h"
 
 #include <cmath>
@@ -44,7 +44,7 @@ Explained explained(const SelectOptions& options, const core::View& view) {
   return out;
 }
 
-TEST(Explain, EveryReasonIsTheRulesOwn) {
+TEST(Explain, EveryReasonIsThatOfSelection) {
   Random random(81);
   std::map<LevelReason, int> seen;
   for (int trial = 0; trial < 400; ++trial) {
@@ -67,13 +67,12 @@ TEST(Explain, EveryReasonIsTheRulesOwn) {
       const lod::SelectedTile& t = all.selection.tiles[n];
       const lod::TileInfo& info = rough_tree()[t.index];
       ASSERT_EQ(e.key, t.key);
-      ASSERT_EQ(e.lod, t.key.level + 1);
       ASSERT_EQ(e.screen_space_error_px, t.screen_space_error_px);
       ASSERT_EQ(e.variants, static_cast<int>(info.variants.size()));
       // The terms, worked out again, are those that the selection went by, to the bit.
       if (s.lod_metric == core::LodMetric::kDistance) {
-        ASSERT_EQ(lod::wanted_lod(e.terms.sum), e.wanted);
-        ASSERT_EQ(e.wanted, t.control);
+        ASSERT_EQ(lod::wanted_level_count(e.terms.sum), e.wanted_level + 1);
+        ASSERT_EQ(e.wanted_level + 1, t.control);
         ASSERT_EQ(e.terms.sum,
                   e.terms.distance.weighted() + e.terms.centre.weighted() + e.terms.interest.weighted());
       } else {
@@ -89,7 +88,7 @@ TEST(Explain, EveryReasonIsTheRulesOwn) {
           break;
         case LevelReason::kLevelReached:
           ASSERT_EQ(s.lod_metric, core::LodMetric::kDistance);
-          ASSERT_LE(e.wanted, e.lod);
+          ASSERT_LE(e.wanted_level, e.key.level);
           break;
         case LevelReason::kBudgetSpent: spent = true; break;
       }
@@ -102,14 +101,14 @@ TEST(Explain, EveryReasonIsTheRulesOwn) {
 }
 
 TEST(Explain, PostSpacingIsThatOfTheLevel) {
-  // A quarter of the equator over 128 posts is 41.7 km at LOD 1, and halves from level to level.
+  // A quarter of the equator over 128 posts is 41.7 km at level 0, and halves from level to level.
   for (const TileExplanation& e : explained({}, view_at(10, 20, 1e6, 0, -70)).tiles) {
-    EXPECT_NEAR(e.post_spacing_m, 41677.8 / std::exp2(e.lod - 1), 0.1);
+    EXPECT_NEAR(e.post_spacing_m, 41677.8 / std::exp2(e.key.level), 0.1);
   }
 }
 
 TEST(Explain, AskingChangesNothing) {
-  // The same tiles with and without weights of 0: x is told all the same.
+  // The same tiles with and without weights of 0: x is reported all the same.
   const Explained all = explained({}, view_at(10, 20, 1e6, 0, -70));
   double farthest = 0;
   for (const TileExplanation& e : all.tiles) {

@@ -1,4 +1,4 @@
-// Planets without data: trees of tiles whose depth, heights and errors are functions of the key.
+// Synthetic planets: trees of tiles whose depth, heights and errors are functions of the key.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,10 @@ inline constexpr double kRadius_m = mars::kMarsRadius_m;
 struct Planet {
   std::function<bool(const lod::TileKey&)> splits;  // has children?
   std::function<double(const lod::TileKey&)> height_m = [](const lod::TileKey&) { return 0.0; };  // middle
-  double half_range_m = 0;      // of a finest tile's heights about its middle
-  double error_ratio = 512.0;   // a tile's error is its nominal side / this, sag that squared / (8 R) besides
-  int finest_variants = 1;      // meshes of a finest tile besides the full grid, each of half the error,
+  double half_range_m = 0;  // of a finest tile's heights about its middle
+  double error_ratio =
+      512.0;                // a tile's error is its nominal side / this, sagitta that squared / (8 R) besides
+  int finest_variants = 1;  // meshes of a finest tile besides the full grid, each of half the error,
   bool mixed_variants = false;  // one more for every second
 };
 
@@ -63,12 +64,13 @@ inline std::vector<lod::TileInfo> tiles(const Planet& planet) {
 
 inline lod::TileTree tree(const Planet& planet) { return lod::TileTree(tiles(planet), {7}, kRadius_m); }
 
-// Every tile of the levels 0..depth, a smooth ball.
+// Returns a smooth ball with all tiles of the levels 0..depth.
 inline Planet uniform(int depth) {
   return {[depth](const lod::TileKey& key) { return key.level < depth; }};
 }
 
-// A mountainous planet, deeper around a few places: a pole, a cube corner, the antimeridian, the middle of +X.
+// Returns a mountainous planet that is deeper around a pole, a cube corner, the antimeridian and the middle of
+// +X.
 inline Planet rough(int base, int deep) {
   Planet planet;
   planet.splits = [base, deep](const lod::TileKey& key) {

@@ -38,13 +38,13 @@ struct PageHash {
     return lod::TileKeyHash()(page.first) + static_cast<std::size_t>(page.second);
   }
 };
-using Ready = std::set<Page>;
+using Resident = std::set<Page>;
 
-lod::IsResident readiness(const Ready& ready) {
+lod::IsResident is_resident(const Resident& resident) {
   return {[](const void* set, const TileInfo& tile, int variant) {
-            return static_cast<const Ready*>(set)->count({tile.key, variant}) != 0;
+            return static_cast<const Resident*>(set)->count({tile.key, variant}) != 0;
           },
-          &ready};
+          &resident};
 }
 
 Selection selected(const core::View& view) {
@@ -54,32 +54,34 @@ Selection selected(const core::View& view) {
   return selection;
 }
 
-lod::FallbackSelection substituted(const core::View& view, const Selection& selection, const Ready& ready) {
+lod::FallbackSelection substituted(const core::View& view, const Selection& selection,
+                                   const Resident& resident) {
   lod::FallbackSelection out;
-  lod::select_fallbacks({}, tree(), lod::select_view(view), selection, readiness(ready), out);
+  lod::select_fallbacks({}, tree(), lod::select_view(view), selection, is_resident(resident), out);
   return out;
 }
 
-// Drawn tiles are ready, disjoint, ascend, and fill every selected tile wholly: in one piece from above, or by pieces.
-void expect_cover(const Selection& selection, const lod::FallbackSelection& s, const Ready& ready) {
+// Expects drawn tiles that are resident, disjoint and ascending, and that cover each selected tile: by one
+// ancestor, or by several tiles inside.
+void expect_cover(const Selection& selection, const lod::FallbackSelection& s, const Resident& resident) {
   const auto& drawn = s.drawn.tiles;
   std::int64_t end = 0;
   std::int64_t triangles = 0;
   for (const lod::SelectedTile& t : drawn) {
-    ASSERT_EQ(ready.count({t.key, t.variant}), 1U) << to_string(t.key);
-    ASSERT_GE(lod::z_position(t.key), end) << to_string(t.key) << " overlaps";
-    end = lod::z_position(t.key) + lod::z_extent(t.key.level);
+    ASSERT_EQ(resident.count({t.key, t.variant}), 1U) << to_string(t.key);
+    ASSERT_GE(lod::morton_position(t.key), end) << to_string(t.key) << " overlaps";
+    end = lod::morton_position(t.key) + lod::morton_extent(t.key.level);
     triangles += tree()[t.index].variants[static_cast<std::size_t>(t.variant)].triangles;
     ASSERT_EQ(tree()[t.index].key, t.key);
   }
   EXPECT_EQ(triangles, s.drawn.triangles);
   std::size_t as_selected = 0;
   for (const lod::SelectedTile& t : selection.tiles) {
-    const std::int64_t begin = lod::z_position(t.key);
+    const std::int64_t begin = lod::morton_position(t.key);
     std::int64_t filled = 0;
     for (const lod::SelectedTile& d : drawn) {
-      if (lod::contains(d.key, t.key)) filled = lod::z_extent(t.key.level);
-      if (d.key != t.key && lod::contains(t.key, d.key)) filled += lod::z_extent(d.key.level);
+      if (lod::contains(d.key, t.key)) filled = lod::morton_extent(t.key.level);
+      if (d.key != t.key && lod::contains(t.key, d.key)) filled += lod::morton_extent(d.key.level);
       if (d.key == t.key && d.variant == t.variant) {
         ++as_selected;
         EXPECT_EQ(d.geometric_error_m, t.geometric_error_m);
@@ -87,34 +89,34 @@ void expect_cover(const Selection& selection, const lod::FallbackSelection& s, c
         EXPECT_EQ(d.min_distance_m, t.min_distance_m);
       }
     }
-    ASSERT_EQ(filled, lod::z_extent(t.key.level)) << to_string(t.key) << " at " << begin;
+    ASSERT_EQ(filled, lod::morton_extent(t.key.level)) << to_string(t.key) << " at " << begin;
   }
   EXPECT_EQ(selection.tiles.size() - as_selected, s.missing.size());
   EXPECT_EQ(drawn.size() - as_selected, static_cast<std::size_t>(s.substituted));
 }
 
-Ready roots() {
-  Ready ready;
-  for (TileTree::Index root = 0; root < mars::kFaces; ++root) ready.insert({tree()[root].key, 0});
-  return ready;
+Resident roots() {
+  Resident resident;
+  for (TileTree::Index root = 0; root < mars::kFaces; ++root) resident.insert({tree()[root].key, 0});
+  return resident;
 }
 
-TEST(Substitute, AllReadyIsTheSelectionItself) {
+TEST(Fallback, AllResidentIsTheSelectionItself) {
   Random random(1);
   for (int n = 0; n < 20; ++n) {
     const core::View view = random_view(random);
     const Selection selection = selected(view);
-    Ready ready;
-    for (const lod::SelectedTile& t : selection.tiles) ready.insert({t.key, t.variant});
-    const lod::FallbackSelection s = substituted(view, selection, ready);
+    Resident resident;
+    for (const lod::SelectedTile& t : selection.tiles) resident.insert({t.key, t.variant});
+    const lod::FallbackSelection s = substituted(view, selection, resident);
     EXPECT_TRUE(s.missing.empty());
     EXPECT_EQ(s.substituted, 0);
     ASSERT_EQ(s.drawn.tiles.size(), selection.tiles.size());
-    expect_cover(selection, s, ready);
+    expect_cover(selection, s, resident);
   }
 }
 
-TEST(Substitute, OnlyRootsReadyDrawsRoots) {
+TEST(Fallback, OnlyRootsResidentDrawsRoots) {
   Random random(2);
   const core::View view = random_view(random);
   const Selection selection = selected(view);
@@ -123,7 +125,7 @@ TEST(Substitute, OnlyRootsReadyDrawsRoots) {
   expect_cover(selection, s, roots());
 }
 
-TEST(Substitute, NothingReadyIsSaid) {
+TEST(Fallback, NothingResidentIsReported) {
   Random random(3);
   const core::View view = random_view(random);
   const Selection selection = selected(view);
@@ -132,28 +134,28 @@ TEST(Substitute, NothingReadyIsSaid) {
   EXPECT_EQ(static_cast<std::size_t>(s.uncovered), selection.tiles.size());
 }
 
-TEST(Substitute, CoversWhateverIsReady) {
+TEST(Fallback, CoversWithWhateverIsResident) {
   Random random(4);
   for (int n = 0; n < 150; ++n) {
     const core::View view = random_view(random);
     const Selection selection = selected(view);
-    Ready ready = roots();
+    Resident resident = roots();
     const double share = random.uniform(0, 1);
     for (const TileInfo& tile : tree().tiles()) {
       for (int v = 0; v < static_cast<int>(tile.variants.size()); ++v) {
-        if (random.uniform(0, 1) < share) ready.insert({tile.key, v});
+        if (random.uniform(0, 1) < share) resident.insert({tile.key, v});
       }
     }
     for (const lod::SelectedTile& t : selection.tiles) {
-      if (random.uniform(0, 1) < 0.7) ready.insert({t.key, t.variant});
+      if (random.uniform(0, 1) < 0.7) resident.insert({t.key, t.variant});
     }
-    expect_cover(selection, substituted(view, selection, ready), ready);
+    expect_cover(selection, substituted(view, selection, resident), resident);
     if (testing::Test::HasFatalFailure()) FAIL() << "view " << n;
   }
 }
 
-// Zooming out: the tile wanted is not there, what was drawn before is.
-TEST(Substitute, ChildrenStandInForTheirParent) {
+// Zooming out: the selected tile is not resident, but the tiles drawn before are.
+TEST(Fallback, ChildrenReplaceTheirParent) {
   core::View view;
   view.camera = mars::to_camera(mars::Pose{10, 20, 3e6, 0, -90, 0}, fake::kRadius_m);
   const Selection selection = selected(view);
@@ -161,36 +163,36 @@ TEST(Substitute, ChildrenStandInForTheirParent) {
     return tree()[t.index].has_children && t.key.level > 0;
   });
   ASSERT_NE(wanted, selection.tiles.end());
-  Ready ready = roots();
+  Resident resident = roots();
   for (const lod::SelectedTile& t : selection.tiles) {
-    if (t.key != wanted->key) ready.insert({t.key, t.variant});
+    if (t.key != wanted->key) resident.insert({t.key, t.variant});
   }
-  for (int c = 0; c < 4; ++c) ready.insert({lod::child(wanted->key, c), 0});
-  const lod::FallbackSelection s = substituted(view, selection, ready);
-  expect_cover(selection, s, ready);
+  for (int c = 0; c < 4; ++c) resident.insert({lod::child(wanted->key, c), 0});
+  const lod::FallbackSelection s = substituted(view, selection, resident);
+  expect_cover(selection, s, resident);
   EXPECT_EQ(s.substituted, 4);
-  // One child less: the root takes the place of all.
-  ready.erase({lod::child(wanted->key, 2), 0});
-  const lod::FallbackSelection without = substituted(view, selection, ready);
-  expect_cover(selection, without, ready);
+  // Without one of the children the root replaces all.
+  resident.erase({lod::child(wanted->key, 2), 0});
+  const lod::FallbackSelection without = substituted(view, selection, resident);
+  expect_cover(selection, without, resident);
   EXPECT_EQ(without.substituted, 1);
 }
 
-// Counted frames with a source that loads one page now and then, pages that are lost again, a camera that jumps: every
-// frame is in full cover, and a rest ends in the selection.
-TEST(Substitute, FramesAreNeverWithoutCover) {
+// Counted frames with a source that loads one page now and then, pages that are lost again, a camera that
+// jumps: every frame covers its view, and at rest the selection itself is drawn in the end.
+TEST(Fallback, FramesAreNeverWithoutCover) {
   Random random(5);
   using Pager = paging::Pager<Page, int, PageHash>;
   Pager pager([](const Page&) { return std::pair(0, std::size_t{1}); }, 0, 1000);
-  Ready ready = roots();
+  Resident resident = roots();
   core::View view = random_view(random);
   const auto frame = [&](int loads) {
     for (int k = 0; k < loads; ++k) {
-      for (const Pager::Loaded& page : pager.take(10)) ready.insert(page.key);
+      for (const Pager::Loaded& page : pager.take(10)) resident.insert(page.key);
     }
     const Selection selection = selected(view);
-    const lod::FallbackSelection s = substituted(view, selection, ready);
-    expect_cover(selection, s, ready);
+    const lod::FallbackSelection s = substituted(view, selection, resident);
+    expect_cover(selection, s, resident);
     std::vector<Pager::Want> wants;
     for (const std::size_t n : s.missing) {
       wants.push_back({{selection.tiles[n].key, selection.tiles[n].variant}, random.uniform(0, 1)});
@@ -202,7 +204,7 @@ TEST(Substitute, FramesAreNeverWithoutCover) {
     if (random.integer(0, 3) == 0) view = random_view(random);
     frame(random.integer(0, 20));
     if (random.integer(0, 20) == 0) {
-      std::erase_if(ready, [&](const Page& p) { return p.first.level > 0 && random.integer(0, 2) == 0; });
+      std::erase_if(resident, [&](const Page& p) { return p.first.level > 0 && random.integer(0, 2) == 0; });
     }
   }
   std::size_t missing = 1;

@@ -24,7 +24,7 @@ constexpr double kBudget_ms = 16;
 constexpr double kMost = 1e4;
 constexpr double kSettled = 0.15;
 
-// ms of frame t with multiplier m, without noise.
+// Returns the time of frame t in ms with multiplier m, without noise.
 using Plant = std::function<double(int, double)>;
 
 struct Trace {
@@ -37,14 +37,14 @@ struct Disturbance {
   std::map<int, double> factors;  // single frames
 };
 
-// Nearly normal, the same in every standard library.
+// Returns nearly normal noise, the same with every standard library.
 double normal(Random& random) {
   double sum = -6;
   for (int n = 0; n < 12; ++n) sum += random.uniform(0, 1);
   return sum;
 }
 
-// What frame t took is known when frame t + delay is to be drawn.
+// The time of frame t is known when frame t + delay is drawn.
 Trace simulate(const Plant& plant, int delay, int frames, const Disturbance& disturbance = {}) {
   FrameBudgetOptions options;
   options.budget_ms = kBudget_ms;
@@ -83,7 +83,7 @@ bool in_band(const Trace& run, std::size_t t, double band = kSettled) {
          (run.multiplier[t] >= kMost && off >= -band);
 }
 
-// Frames after `from` until the last one that is neither near the budget nor at a limit.
+// Returns the number of frames from `from` to the last one that is neither near the budget nor at a limit.
 int frames_to_settle(const Trace& run, int from, double band = kSettled) {
   int last = from;
   for (auto t = static_cast<std::size_t>(from); t < run.ms.size(); ++t) {
@@ -237,7 +237,8 @@ TEST(FrameBudget, StairsAreNotRunUpAndDown) {
 }
 
 // The loop with its slope estimate held at 1, from a line that is right at the budget, after the load has grown
-// by a quarter. docs/lod.md derives that it comes back for every true slope below 2, at any delay.
+// by a quarter. docs/design/level-of-detail.md derives that it returns for every true slope below 2, at any
+// delay.
 TEST(FrameBudget, TheGainMarginIsTwo) {
   const auto comes_back = [](double slope, int delay) {
     FrameBudgetOptions options;
@@ -271,7 +272,7 @@ TEST(FrameBudget, TheGainMarginIsTwo) {
   }
 }
 
-// A tile that is worth more than the budget is in or out, and nothing lies between: 40 ms or 7.
+// A tile that takes longer than the budget is drawn or not, without a step between: 40 ms or 7 ms.
 TEST(FrameBudget, ACliffIsNotJumpedUpAndDown) {
   for (int delay = 1; delay <= 3; ++delay) {
     const Plant plant = [](int t, double m) {
@@ -285,14 +286,14 @@ TEST(FrameBudget, ACliffIsNotJumpedUpAndDown) {
       above += trace.ms[t] > kBudget_ms ? 1 : 0;
       turns += (trace.ms[t] > kBudget_ms) != (trace.ms[t - 1] > kBudget_ms) ? 1 : 0;
     }
-    // A trial now and then, every second or two.
+    // The controller may try again every second or two.
     EXPECT_LE(above, 75) << delay;
     EXPECT_LE(turns, 40) << delay;
   }
 }
 
-// A dive from orbit to the ground and along it, over a made-up planet: the triangles of the real selection are
-// the cost, the same on every machine. In the middle the load is four times as large.
+// A dive from orbit to the ground and along it, over a synthetic planet: the triangles of the real selection
+// are the cost, the same on every machine. In the middle the load is four times as large.
 TEST(FrameBudget, HoldsTheTrianglesOfARecordedFlight) {
   const lod::TileTree tree = fake::tree(fake::rough(4, 9));
   const auto view_at = [](int t) {

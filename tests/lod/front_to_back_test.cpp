@@ -32,7 +32,7 @@ TEST(FrontToBack, NearerTilesComeFirstAlongEveryHalfCircle) {
     for (int face = 0; face < mars::kFaces; ++face)
       split(random, {static_cast<mars::Face>(face), 0, 0, 0}, focus, tiles);
     std::sort(tiles.begin(), tiles.end(),
-              [](const auto& a, const auto& b) { return z_position(a) < z_position(b); });
+              [](const auto& a, const auto& b) { return morton_position(a) < morton_position(b); });
     glm::dvec3 nadir = random.integer(0, 1) == 0 ? focus : random.direction();
     if (random.integer(0, 5) == 0) nadir = {0, 0, 1};
     if (random.integer(0, 5) == 0) nadir = glm::normalize(glm::dvec3(1, 1, random.integer(0, 1)));
@@ -51,13 +51,13 @@ TEST(FrontToBack, NearerTilesComeFirstAlongEveryHalfCircle) {
       std::size_t last = tiles.size();
       for (double angle = 1e-4; angle < 3.14; angle += random.uniform(0, 0.01)) {
         const mars::ChartPoint p = mars::chart_point(std::cos(angle) * nadir + std::sin(angle) * ahead);
-        const std::int64_t z = lod::z_position(lod::tile_at(p, lod::kMaxLevel));
-        const auto after =
-            std::upper_bound(tiles.begin(), tiles.end(), z,
-                             [](std::int64_t at, const lod::TileKey& t) { return at < lod::z_position(t); });
+        const std::int64_t z = lod::morton_position(lod::tile_at(p, lod::kMaxLevel));
+        const auto after = std::upper_bound(
+            tiles.begin(), tiles.end(), z,
+            [](std::int64_t at, const lod::TileKey& t) { return at < lod::morton_position(t); });
         if (after == tiles.begin()) continue;
         const auto n = static_cast<std::size_t>(after - tiles.begin() - 1);
-        if (z >= lod::z_position(tiles[n]) + lod::z_extent(tiles[n].level) || n == last) continue;
+        if (z >= lod::morton_position(tiles[n]) + lod::morton_extent(tiles[n].level) || n == last) continue;
         if (last < tiles.size()) {
           ASSERT_LT(rank[last], rank[n])
               << lod::to_string(tiles[last]) << " hides " << lod::to_string(tiles[n]);

@@ -18,7 +18,7 @@ Posts ground(const TileKey& key, int intervals, std::uint64_t seed, double spaci
   const double side = nominal_side_m(3, kRadius);
   lod_test::Terrain terrain(seed, 0.01 * side, side, 0.8);
   Posts posts = terrain.posts(key, intervals);
-  // The finer, the rougher, as real ground: noise of the posts' own scale.
+  // Finer levels add noise at the scale of their posts, as real ground does.
   test_support::Random random(seed + static_cast<std::uint64_t>(pack(key)) % 1000);
   for (double& h : posts.height_m) h += random.uniform(-0.1, 0.1) * spacing_m;
   return posts;
@@ -51,14 +51,14 @@ TEST(GridMeter, StatesWhatTheOverlayOfTheFullGridHas) {
       if (true_m > 1e-3) loosest = std::max(loosest, stated / true_m);
     };
     check(got.total_m, want.total_m, "total");
-    check(got.height_error_m, want.height_error_m, "relief");
-    check(got.sagitta_m, want.sagitta_m, "sag");
+    check(got.height_error_m, want.height_error_m, "height error");
+    check(got.sagitta_m, want.sagitta_m, "sagitta");
   }
   EXPECT_LE(loosest, 1.1);
   RecordProperty("loosest", std::to_string(loosest));
 }
 
-// A ridge between the coarse posts, on S only: as high as it was made.
+// A ridge between the coarse posts, on S only, has the measured height.
 TEST(GridMeter, FindsARidgeBetweenPosts) {
   const TileKey key{mars::Face::kPlusX, 9, 100, 300};
   const Posts flat = lod_test::make_posts(key, 64, [](int, int) { return 0.0; });

@@ -1,4 +1,4 @@
-// Border posts are a function of the edge alone.
+// Border posts depend on the edge only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ TEST(MeshBorder, ReversingTheEdgeMirrorsTheChoice) {
     const int n = 1 << random.integer(1, 8);
     const TileKey key{mars::Face::kPlusX, level, random.integer(0, (1 << level) - 1), 0};
     std::vector<double> line = grid_lines(key, n).u;
-    // Few distinct heights, symmetric ones too: many ties.
+    // Few distinct heights, symmetric ones included, give many ties.
     const int steps = random.integer(0, 4);
     std::vector<double> height(line.size());
     for (double& h : height) h = 500.0 * random.integer(0, steps);
@@ -71,7 +71,8 @@ TEST(MeshBorder, EveryPostWithinToleranceAndNoneForNothing) {
   }
 }
 
-// All tiles of levels 0 to 2, and of 5 along the faces' rims: every cube edge and corner of both kinds.
+// All tiles of levels 0 to 2, and of 5 along the borders of the faces: every cube edge and corner of both
+// kinds.
 TEST(MeshBorder, NeighboursChooseTheSamePosts) {
   Terrain terrain(4, 4000, 2e6);
   terrain.add_craters({0.577, 0.577, 0.577}, 0.3, 40, 1e5, 4e5);

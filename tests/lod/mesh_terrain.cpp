@@ -5,36 +5,9 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "vpe/report/value_noise.h"
+
 namespace lod_test {
-
-namespace {
-
-double lattice(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
-  std::uint64_t h = seed;
-  for (const std::int64_t c : {x, y, z}) {
-    h = (h ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15ULL;
-    h ^= h >> 29;
-  }
-  return static_cast<double>(h >> 11) * 0x1p-52 - 1.0;
-}
-
-double noise(const glm::dvec3& p, std::uint64_t seed) {
-  const glm::dvec3 cell(std::floor(p.x), std::floor(p.y), std::floor(p.z));
-  const glm::dvec3 f = p - cell;
-  const glm::dvec3 s = f * f * (3.0 - 2.0 * f);
-  double sum = 0.0;
-  for (int k = 0; k < 8; ++k) {
-    const int dx = k & 1;
-    const int dy = k >> 1 & 1;
-    const int dz = k >> 2;
-    const double weight = (dx ? s.x : 1.0 - s.x) * (dy ? s.y : 1.0 - s.y) * (dz ? s.z : 1.0 - s.z);
-    sum += weight * lattice(static_cast<std::int64_t>(cell.x) + dx, static_cast<std::int64_t>(cell.y) + dy,
-                            static_cast<std::int64_t>(cell.z) + dz, seed);
-  }
-  return sum;
-}
-
-}  // namespace
 
 Terrain::Terrain(std::uint64_t seed, double height_error_m, double longest_m, double hurst)
     : seed_(seed), height_error_m_(height_error_m), longest_m_(longest_m), hurst_(hurst) {}
@@ -57,7 +30,8 @@ double Terrain::height_m(const glm::dvec3& direction, double spacing_m) const {
   double height = 0.0;
   std::uint64_t seed = seed_;
   for (double wave = longest_m_; wave >= 2.0 * spacing_m; wave *= 0.5) {
-    height += std::pow(wave / longest_m_, hurst_) * noise(direction * (kRadius / wave), seed++);
+    height +=
+        std::pow(wave / longest_m_, hurst_) * vpe::report::value_noise(direction * (kRadius / wave), seed++);
   }
   height *= height_error_m_;
   for (const Crater& crater : craters_) {

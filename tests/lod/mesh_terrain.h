@@ -32,7 +32,7 @@ class Terrain {
   std::vector<Crater> craters_;
 };
 
-// Posts by a function of (i, j).
+// Returns posts whose heights are a function of (i, j).
 template <class Height>
 lod::Posts make_posts(const lod::TileKey& key, int intervals, Height&& height) {
   lod::Posts posts{key, intervals, {}};

@@ -33,7 +33,7 @@ BorderPosts corners(int intervals) {
   return {ends, ends, ends, ends};
 }
 
-// Exact chart coordinates, from the public face_line alone; grid indices where the grid is even.
+// Returns exact chart coordinates from the public face_line() alone, or grid indices where the grid is even.
 struct Exact {
   std::vector<std::int64_t> x, y;
   Exact(const TileKey& key, int intervals) {
@@ -64,7 +64,7 @@ Wide in_circle(const Exact& e, MeshVertex a, MeshVertex b, MeshVertex c, MeshVer
   return aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx);
 }
 
-// Everything that a mesh has to be whatever its heights.
+// Expects all properties that a mesh must have for any heights.
 void expect_valid(const TileKey& key, const TileMesh& mesh, const BorderPosts& borders) {
   const int n = mesh.intervals;
   const Exact e(key, n);
@@ -119,7 +119,7 @@ void expect_valid(const TileKey& key, const TileMesh& mesh, const BorderPosts& b
   EXPECT_EQ(2 * mesh.vertices.size(), mesh.triangle_count() + border_edges + 2);
 }
 
-// Largest distance of interior posts from the triangles over them, by barycentric coordinates.
+// Returns the largest distance of interior posts from the triangles over them, by barycentric coordinates.
 double worst_post_m(const TileMesh& mesh, const Posts& posts) {
   const GridLines lines = grid_lines(posts.key, posts.intervals);
   const auto depth = [&](int i, int j) {
@@ -182,7 +182,7 @@ TEST(MeshGreedy, IsValidDelaunayAndWithinTolerance) {
 }
 
 TEST(MeshGreedy, StopsAsSoonAsItMay) {
-  // The last post put in was worse than the tolerance, so a slightly larger one leaves it out.
+  // The last inserted post was worse than the tolerance, so a slightly larger tolerance omits it.
   const Posts posts = rough(middle_tile(mars::Face::kPlusX, 6), 64, 5);
   std::size_t vertices = 65 * 65 + 1;
   for (double tolerance = 1; tolerance < 2000; tolerance *= 1.3) {

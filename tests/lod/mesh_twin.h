@@ -1,5 +1,5 @@
 // A second half-edge structure for GreedyMesher: plain arrays, halfedge 3 f + k is edge k of face f. It shares
-// no code with OpenMesh, so equal meshes from both say that neither has broken the topology.
+// no code with OpenMesh, so equal meshes from both show that neither breaks the topology.
 #pragma once
 
 #include <array>

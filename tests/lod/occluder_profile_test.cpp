@@ -1,4 +1,4 @@
-// Walls stand nowhere above the triangles that are drawn, and not far below them.
+// Occluder profiles lie nowhere above the drawn triangles, and not far below them.
 #include "lod/occluder_profile.h"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ Drawn meshed(const lod::Posts& posts, double tolerance_m) {
   return {posts.key, std::move(mesh), std::move(heights)};
 }
 
-// Height of the drawn triangles at a chart point, over all triangles: inverse depth is affine in the chart.
+// Returns the height of the drawn triangles at a chart point, over all triangles: inverse depth is affine in
+// the chart.
 double drawn_height(const Drawn& tile, double exaggeration, double u, double v) {
   const lod::GridLines lines = lod::grid_lines(tile.key, tile.mesh.intervals);
   double lowest = std::numeric_limits<double>::infinity();
@@ -52,7 +53,7 @@ double drawn_height(const Drawn& tile, double exaggeration, double u, double v) 
   return lowest;
 }
 
-// slack: by how much walls could be higher, in post spacings.
+// slack: how much higher the profile could be, in post spacings.
 void expect_below(const Drawn& tile, double exaggeration, int samples, std::vector<double>& slack) {
   const lod::OccluderProfile occluders =
       lod::make_occluder_profile(tile.key, tile.mesh, tile.height_m, exaggeration, kRadius);
@@ -81,7 +82,7 @@ void expect_below(const Drawn& tile, double exaggeration, int samples, std::vect
   }
 }
 
-TEST(OccluderProfile, StandBelowTheDrawnTrianglesAndNotFar) {
+TEST(OccluderProfile, LiesBelowTheDrawnTrianglesAndNotFar) {
   const lod_test::Terrain terrain(7, 3000, 200000);
   test_support::Random random(71);
   std::vector<double> slack;
@@ -96,8 +97,8 @@ TEST(OccluderProfile, StandBelowTheDrawnTrianglesAndNotFar) {
   EXPECT_LT(slack[slack.size() / 2], 1e-3);  // kinks that lie between the samples
 }
 
-// Few triangles, so that one wall is under a long flat edge: the sag must be in it.
-TEST(OccluderProfile, HoldTheSagOfWideTriangles) {
+// Few triangles, so that one piece is under a long flat edge: the profile must include the sagitta.
+TEST(OccluderProfile, IncludesTheSagittaOfWideTriangles) {
   const lod::TileKey key{mars::Face::kPlusY, 1, 1, 0};
   const lod::Posts posts = lod_test::make_posts(key, 8, [](int, int) { return 100.0; });
   lod::TileMesh mesh;
@@ -138,7 +139,7 @@ TEST(OccluderProfile, TheFullGridGivesTheLowestPostsOfALine) {
   }
 }
 
-TEST(OccluderProfile, RefuseWhatTheyCannotBeMadeOf) {
+TEST(OccluderProfile, RefusesMeshesThatDoNotFit) {
   const lod::TileKey key{mars::Face::kPlusX, 2, 1, 1};
   const lod::TileMesh mesh = lod::mesh_full(8);
   const std::vector<double> heights(81, 0.0);

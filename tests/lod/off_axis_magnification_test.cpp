@@ -43,7 +43,7 @@ glm::dvec3 point_in(const cull::BoundingRegion& region, Random& random) {
          random.uniform(region.min_radius_m, region.max_radius_m);
 }
 
-TEST(Stretch, BoundsWhatIsDrawn) {
+TEST(OffAxisMagnification, BoundsWhatIsDrawn) {
   Random random(91);
   int seen = 0;
   int whole_tiles = 0;
@@ -93,7 +93,7 @@ TEST(Stretch, BoundsWhatIsDrawn) {
   EXPECT_LE(bounds, 1.05 * drawn);
 }
 
-TEST(Stretch, IsOneAboutTheAxisAndForPanoramas) {
+TEST(OffAxisMagnification, IsOneAboutTheAxisAndForPanoramas) {
   const cull::BoundingHexahedron below =
       cull::bounding_hexahedron(bounding_region(lod::tile_at(mars::chart_point(mars::direction({10, 20})), 9)));
   core::View view = view_of({10, 20, 5e5, 0, -90, 0}, 60);
@@ -104,7 +104,7 @@ TEST(Stretch, IsOneAboutTheAxisAndForPanoramas) {
 }
 
 // A limb far off axis: upright there, so the secant of the angle is all there is.
-TEST(Stretch, IsTheSecantAtTheSidesOfALevelView) {
+TEST(OffAxisMagnification, IsTheSecantAtTheSidesOfALevelView) {
   core::View view = view_of({0, 0, 20000, 90, 0, 0}, 60);
   const glm::dvec3 aside = core::pixel_ray(view, view.width - 0.5, 0.5 * view.height + 60);
   const double middle = -glm::dot(view.camera.position_m, aside);

@@ -285,8 +285,8 @@ TEST(Posts, SurfaceIsWatertightAcrossAChangeOfDepth) {
   }
 }
 
-// A facet through exaggerated posts is not the exaggerated facet: its sag is what it was.
-TEST(SurfaceHeight, SagIsNotExaggerated) {
+// A facet through exaggerated posts is not the exaggerated facet: its sagitta is what it was.
+TEST(SurfaceHeight, SagittaIsNotExaggerated) {
   constexpr double kR = 1e6;
   lod::Posts posts{{mars::Face::kPlusX, 3, 2, 5}, 4, std::vector<double>(25, 0.0)};
   const lod::GridLines lines = lod::grid_lines(posts.key, 4);

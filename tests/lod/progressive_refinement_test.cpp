@@ -1,4 +1,4 @@
-// Look and wait, by counted frames.
+// Progressive refinement, by counted frames.
 #include "lod/progressive_refinement.h"
 
 #include <algorithm>
@@ -61,7 +61,7 @@ TEST(ProgressiveRefinement, FastIsCoarseAtOnceAndRestIsRefinedByHalves) {
   const RefinementOutput fast = look.next({1000, false, true, 1});
   EXPECT_EQ(fast.multiplier, 8.0);
   EXPECT_EQ(fast.state, RefinementState::kMoving);
-  // Stop: 4, 2, 1, then nothing.
+  // At rest: multipliers 4, 2, 1, then no drawing.
   for (const double wanted : {4.0, 2.0, 1.0}) {
     const RefinementOutput out = look.next(kRest);
     EXPECT_TRUE(out.draw);
@@ -69,7 +69,7 @@ TEST(ProgressiveRefinement, FastIsCoarseAtOnceAndRestIsRefinedByHalves) {
     EXPECT_EQ(out.state, RefinementState::kRefining);
   }
   EXPECT_FALSE(look.next(kRest).draw);
-  // A touch of the mouse: drawn again, sharp.
+  // After a small motion of the mouse the image is drawn again, in full.
   const RefinementOutput touch = look.next({1, false, true, 1});
   EXPECT_TRUE(touch.draw);
   EXPECT_EQ(touch.multiplier, 1.0);

@@ -38,7 +38,7 @@ TEST(Reevaluate, TheSameViewSeesWhatSelectionSays) {
   }
 }
 
-TEST(Reevaluate, DistancesBoundThoseFromTheOtherEye) {
+TEST(Reevaluate, DistancesBoundThoseFromTheOtherCamera) {
   const lod::TileTree tree = fake::tree(fake::rough(3, 8));
   test_support::Random random(32);
   for (int trial = 0; trial < 50; ++trial) {

@@ -50,7 +50,7 @@ const TileTree& rough_tree() {
   return tree;
 }
 
-// Places and attitudes that matter, heights from below the datum to ten radii away.
+// Returns critical positions and attitudes, at heights from below the datum to ten radii.
 core::View hostile_view(Random& random, double exaggeration) {
   double lon = random.uniform(-180, 180);
   double lat = std::asin(random.uniform(-1, 1)) / mars::kRadiansPerDegree;
@@ -95,8 +95,8 @@ void expect_sound(const Selection& s, const TileTree& tree, const SelectOptions&
   double worst_px = 0;
   std::vector<int> levels(lod::kMaxLevel + 1);
   for (const lod::SelectedTile& t : s.tiles) {
-    ASSERT_GE(lod::z_position(t.key), end) << "overlap at " << lod::to_string(t.key);
-    end = lod::z_position(t.key) + lod::z_extent(t.key.level);
+    ASSERT_GE(lod::morton_position(t.key), end) << "overlap at " << lod::to_string(t.key);
+    end = lod::morton_position(t.key) + lod::morton_extent(t.key.level);
     ASSERT_EQ(tree[t.index].key, t.key);
     const lod::MeshVariant& mesh = tree[t.index].variants.at(static_cast<std::size_t>(t.variant));
     triangles += mesh.triangles;
@@ -135,7 +135,7 @@ std::ostream& operator<<(std::ostream& out, const Counts& c) {
 }
 
 TEST(SelectCounts, FromTenRadiiFiveRootsAreSeen) {
-  // 1800 km tiles' 10 km errors from 34 000 km: half a pixel. The sixth face is behind the planet.
+  // Errors of 10 km of 1800 km tiles at 34 000 km are half a pixel. The sixth face is behind the planet.
   const TileTree ball = fake::tree(fake::uniform(5));
   const core::View down = view_at(0, 0, 10 * fake::kRadius_m, 0, -90);
   EXPECT_EQ(counts(selected(tolerance(1), ball, down)), (Counts{6, 1, 0, 0, 5}));
@@ -144,8 +144,8 @@ TEST(SelectCounts, FromTenRadiiFiveRootsAreSeen) {
 }
 
 TEST(SelectCounts, HalfAMetreUpOverFourTilesCornersFourAreDrawn) {
-  // The horizon is 1.8 km away, a finest tile 167 km wide; the camera stands over the middle of +X. Hidden: five
-  // roots but the camera's, 12 of the 16 tiles at each of the levels 2 to 5.
+  // The horizon is 1.8 km away, a finest tile 167 km wide; the camera stands over the middle of +X. Hidden:
+  // five roots but the camera's, 12 of the 16 tiles at each of the levels 2 to 5.
   const TileTree ball = fake::tree(fake::uniform(5));
   const Selection s = selected(tolerance(1), ball, view_at(0, 0, 0.5, 90, -1));
   EXPECT_EQ(counts(s), (Counts{74, 5 + 4 * 12, 0, 17, 4}));
@@ -161,7 +161,7 @@ TEST(SelectCounts, AtTheEastPoleOfThreeFacesThreeTilesAreDrawn) {
 }
 
 TEST(SelectCounts, APoleAndTheAntimeridianAreLikeThePlanetsFront) {
-  // Middles of faces: alike up to the turn of the cube.
+  // The middles of faces are equal up to a rotation of the cube.
   const TileTree ball = fake::tree(fake::uniform(5));
   for (const double alt : {0.5, 1e5, 3e6}) {
     const Counts front = counts(selected(tolerance(0.5), ball, panorama_at(0, 0, alt)));
@@ -176,7 +176,7 @@ TEST(SelectCounts, WithoutAFrustumAtToleranceZeroAllFinestTilesAboveTheHorizonAr
   for (const double alt : {1e4, 1e6, 3e7}) {
     const core::View view = panorama_at(33, -12, alt);
     const Selection s = selected(tolerance(0), ball, view);
-    // By angles to a dense border of each tile, in another arithmetic than the program's.
+    // Computes angles to a dense border of each tile, in other arithmetic than the program's.
     const double limit = std::acos(ball.lowest_radius_m(1) / (fake::kRadius_m + alt)) +
                          std::acos(ball.lowest_radius_m(1) / fake::kRadius_m);
     int expected = 0;
@@ -257,7 +257,7 @@ TEST(Select, DrawsEveryVisiblePlaceExactlyOnce) {
   EXPECT_GT(seen, 10000);
 }
 
-// Triangles themselves may become fewer: a tile's children need not all be seen.
+// The number of triangles may fall: not all children of a tile need be visible.
 TEST(Select, FinerToleranceOnlyRefines) {
   Random random(42);
   for (int trial = 0; trial < 200; ++trial) {
@@ -360,7 +360,7 @@ TEST(Select, TheCapIsHardAndSpentOnTheWorstFirst) {
 }
 
 TEST(Select, OfEquallyBadTilesTheFirstOfTheTreeIsRefined) {
-  // Half a metre over the corner of four finest tiles, all infinitely bad; room for one full grid.
+  // Half a metre over the corner of four finest tiles, all with infinite error; the limit allows one full grid.
   const TileTree ball = fake::tree(fake::uniform(5));
   SelectOptions options = tolerance(1);
   options.max_triangles = 40000;
@@ -373,7 +373,7 @@ TEST(Select, OfEquallyBadTilesTheFirstOfTheTreeIsRefined) {
   }
 }
 
-// Culling each tile and all that it lies in by itself, against all planes, gives the same tiles.
+// Culling each tile and all of its ancestors separately, against all planes, gives the same tiles.
 TEST(Select, InheritedPlanesCullAsMuchAsAllPlanes) {
   Random random(47);
   const TileTree ball = fake::tree(fake::uniform(4));
@@ -449,7 +449,7 @@ TEST(Select, ALevelsShiftIsAFactorTwoOfTheTolerance) {
 }
 
 TEST(Select, ExaggerationMovesTheGroundAndItsError) {
-  // A plateau of +7 km: at x = 10 a camera 20 km up is below it, and looks at its inside from within.
+  // A plateau of +7 km: at exaggeration 10 a camera at 20 km is below it.
   fake::Planet plateau = fake::uniform(4);
   plateau.height_m = [](const TileKey&) { return 7000.0; };
   const TileTree tree = fake::tree(plateau);

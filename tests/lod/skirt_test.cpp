@@ -32,7 +32,7 @@ bool exact(const TileTree& tree, const SelectedTile& a, const SelectedTile& b) {
   return full == lod::is_full_grid(tree[b.index], b.variant) && (full || a.variant == b.variant);
 }
 
-// Just outside the tile across an edge, `t` along it.
+// Returns a point just outside the tile across an edge, at `t` along it.
 glm::dvec3 across(const lod::TileKey& key, Edge edge, double t) {
   const mars::ChartRect r = lod::chart_rect(key);
   const double step = 1e-9;
@@ -47,7 +47,7 @@ glm::dvec3 across(const lod::TileKey& key, Edge edge, double t) {
   return {};
 }
 
-// A random selection: a panorama or a view down, any tolerance, with or without a cap.
+// Returns a random selection: a panorama or a view down, any tolerance, with or without a limit of triangles.
 Selection random_selection(Random& random, const TileTree& tree, double exaggeration) {
   vpe::core::View view;
   const glm::dvec3 place = random.integer(0, 3) == 0 ? glm::dvec3(1, 1, -1) : random.direction();
@@ -127,7 +127,7 @@ TEST(Skirt, TheFootOfAStraightEdgeReachesBelowTheGapEverywhere) {
         if (other != nullptr && !exact(tree, tile, *other))
           gap = std::max(gap, tile.geometric_error_m + other->geometric_error_m);
       }
-      // One straight piece of the eastern border, as long as the error allows it to sag.
+      // One straight piece of the eastern border, as long as the error allows it to sagitta.
       const double v0 = region.rect.v0;
       const double v1 = v0 + (region.rect.v1 - v0) * std::pow(0.5, random.integer(0, 5));
       const double r0 = random.uniform(region.min_radius_m, region.max_radius_m);
@@ -154,7 +154,7 @@ TEST(Skirt, TheFootOfAStraightEdgeReachesBelowTheGapEverywhere) {
 }
 
 TEST(Skirt, AlikeTilesNeedNone) {
-  // A ball of which all is drawn at one level.
+  // A ball that is drawn at one level.
   const TileTree ball = fake::tree(fake::uniform(3));
   vpe::core::View view;
   view.camera = mars::to_camera(mars::Pose{10, 20, 3e7, 0, -90, 0}, fake::kRadius_m);

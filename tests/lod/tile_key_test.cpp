@@ -29,7 +29,7 @@ TileKey random_tile(test_support::Random& random, int level) {
           random.integer(0, last)};
 }
 
-// Cube point at grid line `t` of `n` along an edge.
+// Returns the cube point at grid line `t` of `n` along an edge.
 glm::dvec3 edge_point(const TileKey& key, Edge edge, int t, int log_n) {
   const std::int64_t n = std::int64_t{1} << log_n;
   const bool vertical = edge == Edge::kWest || edge == Edge::kEast;
@@ -83,7 +83,8 @@ TEST(TileKey, NeighboursAtTheDeepestLevelsSharePosts) {
 }
 
 TEST(TileKey, ReversedEdgesAreThoseOfTheCubesTurns) {
-  // Eastern faces are a ring; each pole's face meets four of them, two of its edges run against theirs.
+  // The equatorial faces form a ring. The face of each pole meets four of them; two of its edges run against
+  // theirs.
   int reversed = 0;
   for (const TileKey& key : all_tiles(0)) {
     for (const Edge edge : lod::kEdges) reversed += lod::neighbour(key, edge).reversed ? 1 : 0;
@@ -125,7 +126,7 @@ TEST(TileKey, UnpackRefusesWhatNoTileHas) {
   EXPECT_FALSE(lod::unpack(lod::pack(key) + 1));                        // bits below the level
   EXPECT_FALSE(lod::unpack((std::int64_t{6} << 59)));                   // seventh face
   EXPECT_FALSE(lod::unpack((std::int64_t{lod::kMaxLevel + 1} << 54)));  // too deep
-  // Whatever is accepted is exactly what pack() makes.
+  // Each accepted number is exactly one that pack() makes.
   test_support::Random random(3);
   int accepted = 0;
   for (int trial = 0; trial < 200000; ++trial) {
@@ -153,17 +154,17 @@ TEST(TileKey, FamilyRelationsAgree) {
   test_support::Random random(4);
   for (int trial = 0; trial < 10000; ++trial) {
     const TileKey key = random_tile(random, random.integer(0, lod::kMaxLevel - 1));
-    const std::int64_t begin = lod::z_position(key);
+    const std::int64_t begin = lod::morton_position(key);
     std::int64_t next = begin;
     for (int index = 0; index < 4; ++index) {
       const TileKey below = lod::child(key, index);
       ASSERT_EQ(lod::parent(below), key);
-      ASSERT_EQ(lod::z_position(below), next);
-      next += lod::z_extent(below.level);
+      ASSERT_EQ(lod::morton_position(below), next);
+      next += lod::morton_extent(below.level);
       ASSERT_TRUE(lod::contains(key, below));
       ASSERT_FALSE(lod::contains(below, key));
     }
-    ASSERT_EQ(next, begin + lod::z_extent(key.level));
+    ASSERT_EQ(next, begin + lod::morton_extent(key.level));
     const int level = random.integer(0, key.level);
     ASSERT_TRUE(lod::contains(lod::ancestor(key, level), key));
     const TileKey other = random_tile(random, level);
@@ -184,7 +185,7 @@ TEST(TileKey, TileAtAgreesWithTheRectangles) {
     ASSERT_TRUE(point.u < rect.u1 || rect.u1 == 1.0);
     ASSERT_TRUE(point.v < rect.v1 || rect.v1 == 1.0);
   }
-  // Lines belong to the tile that begins there, the face's far border to the last tile.
+  // Lines belong to the tile that begins there, the far border of the face to the last tile.
   for (int trial = 0; trial < 20000; ++trial) {
     const int level = random.integer(0, lod::kMaxLevel);
     const TileKey key = random_tile(random, level);

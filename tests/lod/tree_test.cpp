@@ -51,7 +51,7 @@ TEST(Tree, FindsNothingWhereNothingIs) {
   EXPECT_EQ(tree.find({static_cast<mars::Face>(7), 0, 0, 0}), nullptr);
 }
 
-// The message that a damaged list of tiles is refused with.
+// Returns the message with which a damaged list of tiles is refused.
 template <typename Damage>
 std::string refusal(const Damage& damage) {
   std::vector<TileInfo> tiles = fake::tiles(fake::uniform(2));
@@ -139,8 +139,8 @@ TEST(Tree, RefusesAPlanetWithoutRadius) {
   }
 }
 
-// S over finest tiles: flat facets over random posts, sampled, at several exaggerations.
-TEST(Tree, ShellsAndTheLowestRadiusHoldTheFacets) {
+// Samples S over finest tiles, flat facets over random posts, at several exaggerations.
+TEST(Tree, RegionsAndTheLowestRadiusContainTheFacets) {
   test_support::Random random(32);
   constexpr lod::TileShape kShape{2};
   fake::Planet planet = fake::rough(1, 3);
@@ -151,7 +151,7 @@ TEST(Tree, ShellsAndTheLowestRadiusHoldTheFacets) {
     for (const double exaggeration : {0.1, 1.0, 7.0}) {
       lod::Posts posts{tile.key, kShape.intervals(), {}};
       for (int k = 0; k < kShape.post_count(); ++k) {
-        // Mostly the lowest: the facets sag most there.
+        // Mostly the lowest: the facets sagitta most there.
         const double h = random.integer(0, 3) == 0 ? random.uniform(tile.min_height_m, tile.max_height_m)
                                                    : tile.min_height_m;
         posts.height_m.push_back(h);
@@ -190,7 +190,8 @@ TEST(Tree, ShellsAndTheLowestRadiusHoldTheFacets) {
       }
     }
   }
-  // Not lazily low: a uniform ball of cells 1/32 of a right angle sags by that chord, times at most 2.8.
+  // Not lazily low: a uniform ball of cells 1/32 of a right angle has the sagitta by that chord, times at most
+  // 2.8.
   const TileTree ball(fake::tiles(fake::uniform(3)), kShape, 1.0e6);
   const double half_diagonal = mars::kPi / 2 / 32 * std::sqrt(0.5);
   const double sagitta = 1.0e6 * (1 - std::cos(half_diagonal));

@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::string_view kDiskAdvice = "check the free space and the permissions there";
 
-std::string system_words(int error) { return std::generic_category().message(error); }
+std::string system_message(int error) { return std::generic_category().message(error); }
 
 }  // namespace
 
-FileError file_error(std::string_view operation, const std::filesystem::path& path, std::string_view words,
+FileError file_error(std::string_view operation, const std::filesystem::path& path, std::string_view reason,
                      std::string_view advice) {
   std::string message = "cannot ";
-  message.append(operation).append(" '").append(path.string()).append("': ").append(words);
+  message.append(operation).append(" '").append(path.string()).append("': ").append(reason);
   return FileError(message.append("; ").append(advice));
 }
 
@@ -28,11 +28,12 @@ OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path tempora
     : path_(std::move(path)), temporary_(std::move(temporary)) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path_, ignored)) {
-    throw file_error("write", path_, system_words(EISDIR), "give the name of a file");
+    throw file_error("write", path_, system_message(EISDIR), "give the name of a file");
   }
   stream_ = std::fopen(temporary_.c_str(), "w+b");
   if (stream_ == nullptr) {
-    throw file_error("write", path_, system_words(errno), "check that the folder exists and may be written to");
+    throw file_error("write", path_, system_message(errno),
+                     "check that the folder exists and may be written to");
   }
 }
 
@@ -43,14 +44,14 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::span<const std::uint8_t> bytes) {
-  if (bytes.empty()) return;  // fwrite wants a place also for nothing
+  if (bytes.empty()) return;  // fwrite requires a pointer even for no bytes
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) {
-    throw file_error("write", path_, system_words(errno), kDiskAdvice);
+    throw file_error("write", path_, system_message(errno), kDiskAdvice);
   }
 }
 
 void OutputFile::commit() {
-  // What fwrite buffered reaches the disk here at the latest, so a full disk may show only now.
+  // fwrite buffers: a full disk may not be noticed before this.
   const bool was_flushed = std::fflush(stream_) == 0 && std::ferror(stream_) == 0;
   const int flush_error = errno;
   const bool was_closed = std::fclose(std::exchange(stream_, nullptr)) == 0;
@@ -88,11 +89,11 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path, std::uint
                      "choose a smaller file");
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), std::fclose);
-  if (stream == nullptr) throw file_error("read", path, system_words(errno), kAdvice);
+  if (stream == nullptr) throw file_error("read", path, system_message(errno), kAdvice);
   std::vector<std::uint8_t> bytes(size);
   if (std::fread(bytes.data(), 1, bytes.size(), stream.get()) != bytes.size()) {
     const bool has_failed = std::ferror(stream.get()) != 0;
-    throw file_error("read", path, has_failed ? system_words(errno) : "it ends early", kAdvice);
+    throw file_error("read", path, has_failed ? system_message(errno) : "it ends early", kAdvice);
   }
   return bytes;
 }

@@ -1,4 +1,11 @@
-// Whole files: read at once, and written so that they appear under their name only when complete.
+// Reading and writing of whole files. A file that is written appears under its name only when it is complete.
+//
+// Typical usage:
+//   write_file("settings.toml", text);
+//
+//   OutputFile file("image.png");  // for output in pieces
+//   while (has_more()) file.write(next_bytes());
+//   file.commit();  // without this the destructor removes what was written
 #pragma once
 
 #include <cstdint>
@@ -12,22 +19,23 @@
 
 namespace vpe::base {
 
-// A file that cannot be read or written. what() names the file, the operation, the system's or library's own
-// words, and what to do.
+// Reports a file that cannot be read or written. what() names the file, the operation, the message of the
+// system or the library, and what to do.
 class FileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// "cannot OPERATION 'PATH': WORDS; ADVICE"
-FileError file_error(std::string_view operation, const std::filesystem::path& path, std::string_view words,
+// Returns the error "cannot OPERATION 'PATH': REASON; ADVICE".
+FileError file_error(std::string_view operation, const std::filesystem::path& path, std::string_view reason,
                      std::string_view advice);
 
-// Writes to PATH.tmp, or to the name given for that; commit() renames it to PATH, replacing what was there.
-// Without commit() the destructor removes it and leaves PATH as it was. One writer a temporary name at a time.
+// Writes a file under a temporary name, PATH.tmp unless another is given. commit() renames it to PATH and
+// replaces the former file. Without commit() the destructor removes the temporary file and leaves PATH
+// unchanged. Only one writer at a time may use a temporary name.
 class OutputFile {
  public:
-  // Throws FileError when the file cannot be made.
+  // Throws FileError if the file cannot be made.
   explicit OutputFile(std::filesystem::path path);
   OutputFile(std::filesystem::path path, std::filesystem::path temporary);
   ~OutputFile();
@@ -36,9 +44,9 @@ class OutputFile {
 
   const std::filesystem::path& path() const { return path_; }
   const std::filesystem::path& temporary() const { return temporary_; }
-  std::FILE* stream() const { return stream_; }  // may be read and written
+  std::FILE* stream() const { return stream_; }  // open for reading and writing
 
-  // Throws FileError, as for a full disk.
+  // Throw FileError, for example if the disk is full.
   void write(std::span<const std::uint8_t> bytes);
   void commit();
 
@@ -48,11 +56,11 @@ class OutputFile {
   std::FILE* stream_ = nullptr;
 };
 
-// A whole file at once, by way of OutputFile.
+// Writes a whole file by means of OutputFile. Throws FileError.
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-// Throws FileError, also for a folder and for more than max_bytes.
+// Returns the bytes of a whole file. Throws FileError, also for a folder and for more than max_bytes.
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes);
 
 }  // namespace vpe::base

@@ -8,7 +8,7 @@ namespace vpe::base {
 
 void keep_heap_compact() {
 #if defined(__GLIBC__)
-  // Said once, the threshold no longer rises with the blocks that are freed.
+  // Setting the threshold also stops the C library from raising it with the blocks that are freed.
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(kOwnBlockBytes));
 #endif
 }

@@ -1,4 +1,4 @@
-// Runs the newest of many requests on a thread of its own, so that a user interface never waits for slow work.
+// A thread that runs the newest of many requests, so that a user interface never waits for slow work.
 //
 // Typical usage:
 //   LatestWorker<Request, Image> worker([painter = Painter()](Request r) mutable { return painter.paint(r); },

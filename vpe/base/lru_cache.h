@@ -1,7 +1,14 @@
-// Holds values within a budget of bytes. The least recently used ones leave first.
+// Containers that hold values within a budget of bytes and evict the least recently used ones first.
 //
-// LruList keeps order, sizes and eviction alone, for one thread; its owner keeps an index of handles.
+// LruList keeps only order and sizes, for one thread; its owner keeps an index of handles.
 // LruCache holds shared, immutable values by key, for any number of threads.
+//
+// Typical usage:
+//   LruCache<TileKey, Tile, TileKeyHash> tiles(64 << 20);
+//   const auto tile = tiles.get(key, [&] {
+//     auto loaded = std::make_shared<const Tile>(load(key));
+//     return std::pair(loaded, loaded->bytes());
+//   });
 #pragma once
 
 #include <condition_variable>
@@ -82,17 +89,19 @@ class LruList {
   std::size_t bytes_ = 0;
 };
 
-// Any thread may call any member. A value stays alive as long as somebody holds it, also after it has left the
-// cache. bytes() counts what the cache itself holds, including `entry_bytes` for each entry, and stays within
-// the limit except that the newest value is always kept. Values are destroyed outside the lock.
+// Shares immutable values by key. Any thread may call any member. A value stays alive as long as a caller holds
+// its pointer, also after it has left the cache. bytes() counts what the cache itself holds, including
+// `entry_bytes` for each entry, and stays within the limit except that the newest value is always kept. Values
+// are destroyed outside the lock.
 //
 // `Value` may be void for a cache of values of several types.
 template <typename Key, typename Value, typename Hash>
 class LruCache {
  public:
   using Pointer = std::shared_ptr<const Value>;
-  static constexpr std::size_t kEntryBytes = 128;  // list and map nodes
+  static constexpr std::size_t kEntryBytes = 128;  // memory of list and map nodes
 
+  // A smaller limit saves memory and loads values more often. `entry_bytes` is added to the size of each value.
   explicit LruCache(std::size_t limit_bytes, std::size_t entry_bytes = kEntryBytes)
       : limit_(limit_bytes), entry_bytes_(entry_bytes) {}
   LruCache(const LruCache&) = delete;
@@ -172,6 +181,7 @@ class LruCache {
     }
   }
 
+  // Removes all values.
   void clear() {
     Entries gone;
     const std::lock_guard lock(mutex_);

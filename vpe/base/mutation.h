@@ -1,7 +1,9 @@
-// Guards that a build of its own can switch off, one a run, to see that a test fails for it: a guard without
-// such a test can be lost unseen. Only in builds with VPE_MUTATIONS; in all others mutated() is the constant
-// false and leaves no code. docs/numerics.md lists the guards, why they are there, and the tests
-// (tests/stability/mutants.sh runs them).
+// Guards of correctness that a special build can switch off, one at a time, to prove that a test fails without
+// them. A guard without such a test could be lost unnoticed.
+//
+// Only builds with VPE_MUTATIONS have the switches. In all others mutated() is the constant false and leaves no
+// code. docs/design/numerics.md lists the guards, their reasons and their tests; tests/stability/mutants.sh
+// runs them.
 #pragma once
 
 #include <array>
@@ -17,10 +19,10 @@
 namespace vpe::base {
 
 enum class Guard : std::uint8_t {
-  kLowestOccluder,  // what hides is a sphere below all terrain, not the datum
-  kFacetSagitta,    // flat facets lie below the posts that they are drawn through
+  kLowestOccluder,  // the occluder is a sphere below all terrain, not the datum
+  kFacetSagitta,    // flat facets lie below the posts through which they are drawn
   kSkirtNeighbour,  // a skirt covers the neighbour's error too
-  kSecondOrder,     // what exaggeration makes of a facet's harmonic mean
+  kSecondOrder,     // effect of exaggeration on the harmonic mean of a facet's radii
   kCellVariation,   // error terms hold between the vertices at which they are measured
   kErrorsNest,      // a file whose errors grow downwards is refused
   kBorderPosts,     // border posts lie on the coarser neighbour's edge
@@ -28,15 +30,15 @@ enum class Guard : std::uint8_t {
   kFaceOrder,       // a ray meets the faces of the cube in its own order
   kNearOrigin,      // vertices are relative to a post near the camera, where rounding would show
   kReversedDepth,   // depth runs from 1 at the near plane to 0, where floats are dense
-  kMissingHeights,  // no height that is none is ever stored
+  kNodataHeights,   // an invalid height is never stored
 };
 
 inline constexpr std::array<std::string_view, 12> kGuardNames{
-    "lowest-occluder", "facet-sag", "skirt-neighbour", "second-order", "cell-variation", "errors-nest",
-    "border-posts",    "short-way", "face-order",      "near-origin",  "reversed-depth", "missing-heights"};
+    "lowest-occluder", "facet-sagitta", "skirt-neighbour", "second-order", "cell-variation", "errors-nest",
+    "border-posts",    "short-way",     "face-order",      "near-origin",  "reversed-depth", "nodata-heights"};
 
 #ifdef VPE_MUTATIONS
-// Whether $VPE_MUTATION names this guard. Ends the program for a name that is none.
+// Returns true if $VPE_MUTATION names this guard. Ends the program if it names no guard.
 inline bool mutated(Guard guard) {
   static const int chosen = [] {
     const char* name = std::getenv("VPE_MUTATION");

@@ -1,4 +1,4 @@
-// Computes round numbers for scales: steps of 1, 2 or 5 times a power of ten, and ticks at their multiples.
+// Round numbers for scales: steps of 1, 2 or 5 times a power of ten, and ticks at their multiples.
 #pragma once
 
 #include <vector>
@@ -18,12 +18,14 @@ double nice_step_below(double x);
 // returns less than x with slack 0.
 double nice_step_above(double x, double slack = kNiceSlack);
 
-// Returns how many decimals tell multiples of a step apart: 0 for 20, 1 for 0.5. At most 9. Expects step > 0.
+// Returns the number of decimals that distinguishes multiples of a step: 0 for 20, 1 for 0.5. At most 9.
+// Expects step > 0.
 int step_decimals(double step);
 
+// Holds the ticks of a scale.
 struct NiceTicks {
   std::vector<double> values;  // ascending
-  int decimals = 0;            // that tell the values apart
+  int decimals = 0;            // number of decimals that distinguish the values
 };
 
 // Returns the multiples, within [low, high], of the smallest nice step that gives at most `most` of them. Use

@@ -1,4 +1,4 @@
-// Numbers as text, the same in every locale.
+// Numbers as text, independent of the locale.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,14 @@
 
 namespace vpe::base {
 
-// The whole text as a finite decimal number; a leading + is allowed. Nothing for anything else: empty text,
-// spaces, trailing characters, hexadecimal, inf, nan, and numbers that a double cannot hold.
+// Return the value of a text that is a finite decimal number as a whole; a leading + is allowed. Return nullopt
+// for anything else: empty text, spaces, trailing characters, hexadecimal, inf, nan, and numbers that the type
+// cannot hold.
 std::optional<double> parse_number(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 
-// The shortest text that parse_number() reads back to the same bits; without exponent between 1e-6 and 1e16.
-// "nan", "inf" or "-inf" for what is not finite.
+// Returns the shortest text that parse_number() reads back to the same bits, without an exponent between 1e-6
+// and 1e16. Returns "nan", "inf" or "-inf" for a value that is not finite. Use it in texts for people.
 std::string format_number(double value);
 
 // Returns the shortest text that parse_number() reads back to the same bits, with an exponent where that is
@@ -32,7 +33,7 @@ std::string format_general(double value, int digits);
 std::string format_rounded(double value, int decimals);
 
 // Returns the number for display, with this many decimals: "-12.50". A value that rounds to zero has no sign.
-// Numbers of 1e15 and more get an exponent; what is not finite is named.
+// Numbers of 1e15 and more get an exponent. Returns "nan", "inf" or "-inf" for a value that is not finite.
 std::string format_display(double value, int decimals);
 
 }  // namespace vpe::base

@@ -1,4 +1,4 @@
-// Keeps objects that are costly to make and that only one thread may use at a time: file handles, database
+// A pool of objects that are costly to make and that only one thread may use at a time: file handles, database
 // connections, coordinate transformations, scratch memory.
 //
 // Typical usage:
@@ -20,6 +20,7 @@
 
 namespace vpe::base {
 
+// Describes how a pool treats objects that are returned.
 template <class T>
 struct ObjectPoolOptions {
   // Destroys an object instead of keeping it when its lease ends because an exception propagates. Set it for

@@ -36,7 +36,7 @@ struct ThreadPool::Job {
            pool->stopped_.load(std::memory_order_relaxed);
   }
 
-  // Nobody will begin another item.
+  // Returns true if no further item will begin.
   bool has_ended() const { return next.load() >= count || lowest_failure.load() != kNone || is_cancelled(); }
 
   void fail(std::size_t index) {
@@ -46,9 +46,10 @@ struct ThreadPool::Job {
     failure = std::current_exception();
   }
 
-  // A range of items nobody has taken yet; smaller towards the end, so that all threads finish together.
+  // Takes the next range of items. Ranges shrink towards the end, so that all threads finish together. Returns
+  // false if none is left.
   bool take(std::size_t threads, std::size_t& begin, std::size_t& end) {
-    const std::size_t largest = pool->waits_behind() ? 1 : kMaxChunk;
+    const std::size_t largest = pool->yields_to_foreground() ? 1 : kMaxChunk;
     begin = next.load();
     do {
       if (begin >= count) return false;
@@ -58,14 +59,14 @@ struct ThreadPool::Job {
   }
 };
 
-// The threads, and what they have to do.
+// The threads of a foreground pool, with the loops of it and of its background pools.
 struct ThreadPool::Crew {
   std::mutex mutex;
   std::condition_variable job_posted;
-  std::condition_variable changed;  // a helper has left a job, or somebody is in a hurry
+  std::condition_variable changed;  // a helper has left a job, or a pool was promoted or stopped
   std::deque<Job*> jobs;
-  std::deque<Job*> jobs_behind;
-  std::atomic<std::size_t> job_count{0};  // of `jobs`; written under the mutex
+  std::deque<Job*> background_jobs;
+  std::atomic<std::size_t> job_count{0};  // size of `jobs`; written under the mutex
   bool stopping = false;
   std::vector<std::thread> workers;
 
@@ -89,19 +90,19 @@ struct ThreadPool::Crew {
     for (std::thread& worker : workers) worker.join();
   }
 
-  // These three under the mutex.
+  // Expect a locked mutex.
   void post(Job& job) {
     jobs.push_back(&job);
     job_count = jobs.size();
   }
   void withdraw(Job& job) {
     std::erase(jobs, &job);
-    std::erase(jobs_behind, &job);
+    std::erase(background_jobs, &job);
     job_count = jobs.size();
   }
   Job* next_job() const {
     if (!jobs.empty()) return jobs.front();
-    return jobs_behind.empty() ? nullptr : jobs_behind.front();
+    return background_jobs.empty() ? nullptr : background_jobs.front();
   }
 
   void serve() {
@@ -120,7 +121,7 @@ struct ThreadPool::Crew {
     }
   }
 
-  // Until the job has ended, or until it has to wait for others: then returns false.
+  // Works until the job has ended; returns true then. Returns false if a background job has to give way first.
   bool work(Job& job) const {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -136,18 +137,18 @@ struct ThreadPool::Crew {
       }
       job.made += index - begin;
       if (index < end) return true;
-      if (job_count.load() > 0 && job.pool->waits_behind()) return job.has_ended();
+      if (job_count.load() > 0 && job.pool->yields_to_foreground()) return job.has_ended();
     }
     return true;
   }
 
-  // Waits until others have done the job, or until its turn has come.
-  void wait_behind(Job& job, const ThreadPool& pool) {
+  // Waits until idle threads have done the job, or until its pool is promoted.
+  void wait_for_idle_threads(Job& job, const ThreadPool& pool) {
     std::unique_lock lock(mutex);
-    if (pool.waits_behind() && !job.is_cancelled()) {
-      jobs_behind.push_back(&job);
+    if (pool.yields_to_foreground() && !job.is_cancelled()) {
+      background_jobs.push_back(&job);
       job_posted.notify_all();
-      changed.wait(lock, [&] { return !pool.waits_behind() || (job.helpers == 0 && job.has_ended()); });
+      changed.wait(lock, [&] { return !pool.yields_to_foreground() || (job.helpers == 0 && job.has_ended()); });
     }
     withdraw(job);
     if (job.has_ended()) return;
@@ -164,18 +165,18 @@ int default_threads() {
 ThreadPool::ThreadPool(int threads)
     : crew_(std::make_shared<Crew>(threads > 0 ? std::min(threads, kMaxThreads) : default_threads())) {}
 
-ThreadPool::ThreadPool(Behind behind) : crew_(behind.front.crew_), is_behind_(true) {}
+ThreadPool::ThreadPool(Background background) : crew_(background.foreground.crew_), is_background_(true) {}
 
 ThreadPool::~ThreadPool() {
-  if (!is_behind_) crew_->dismiss();
+  if (!is_background_) crew_->dismiss();
 }
 
 int ThreadPool::threads() const { return static_cast<int>(crew_->workers.size()) + 1; }
 
-void ThreadPool::hurry() {
+void ThreadPool::promote() {
   {
     const std::lock_guard lock(crew_->mutex);
-    hurried_ = true;
+    promoted_ = true;
   }
   crew_->changed.notify_all();
 }
@@ -195,8 +196,8 @@ bool ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& 
   job.count = count;
   job.item = &item;
   job.cancel = cancel;
-  if (waits_behind() && count > 0) {
-    crew_->wait_behind(job, *this);
+  if (yields_to_foreground() && count > 0) {
+    crew_->wait_for_idle_threads(job, *this);
   } else if (!crew_->workers.empty() && count > 1) {
     {
       const std::lock_guard lock(crew_->mutex);

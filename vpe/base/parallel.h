@@ -1,10 +1,13 @@
 // Loops over independent items on several threads.
 //
-// Items are handed out in ascending order, in shrinking chunks, to whoever is free, so results must not
-// depend on who runs what: write each item's result to its own place. No globals: a pool is an object.
+// Items are handed out in ascending order, in shrinking chunks, to the threads that are free. Results must not
+// depend on which thread runs which item: write each item's result to its own element. There are no global
+// variables: a pool is an object.
 //
-// A pool behind another has no threads of its own. Its loops get those of the other that find nothing to do in
-// loops of theirs, an item at a time, so they hold up the other's by one item at most.
+// Typical usage:
+//   ThreadPool pool(0);  // one thread for each core
+//   std::vector<double> sums(rows.size());
+//   pool.run(rows.size(), [&](std::size_t n) { sums[n] = sum_of(rows[n]); });
 #pragma once
 
 #include <atomic>
@@ -16,36 +19,47 @@ namespace vpe::base {
 
 inline constexpr int kMaxThreads = 256;
 
-// Threads that the machine runs at once, 1 to kMaxThreads.
+// Returns the number of threads that the machine runs at once, 1 to kMaxThreads.
 int default_threads();
 
+// Runs loops on a fixed set of threads.
+//
+// A background pool has no threads. It runs on idle threads of its foreground pool, one item at a time, so it
+// delays foreground work by at most one item. Use it for work that may turn out to be in vain, such as
+// prefetching.
 class ThreadPool {
  public:
-  // `threads` counts the caller of run() as one; <= 0 means default_threads(), more than kMaxThreads means
-  // kMaxThreads. Works with fewer when the system refuses to start that many.
+  // `threads` includes the caller of run(). Values <= 0 mean default_threads(), values above kMaxThreads mean
+  // kMaxThreads. Works with fewer threads if the system refuses to start that many.
   explicit ThreadPool(int threads);
-  // Behind `front`, which must outlive this.
-  struct Behind {
-    ThreadPool& front;
+
+  // Makes a background pool of `foreground`, which must outlive it.
+  struct Background {
+    ThreadPool& foreground;
   };
-  explicit ThreadPool(Behind behind);
+  explicit ThreadPool(Background background);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   int threads() const;
 
-  // Calls item(0) ... item(count - 1), each at most once, and returns when no call runs any more: true when
-  // all were made, false when *cancel became true first, or after stop(). When calls throw, no later items are
-  // begun, all earlier ones are made, and the exception of the lowest item is rethrown: the same one for any
-  // number of threads (unless cancelled). May be called from many threads at once, and from inside an item.
-  // Behind another pool the caller only waits; where that has one thread alone, until hurry().
+  // Calls item(0) ... item(count - 1), each at most once, and returns after the last call has ended. Returns
+  // true if all were called, false if *cancel became true or stop() was called first.
+  //
+  // If calls throw, no later items begin, all earlier ones run, and the exception of the lowest item is
+  // rethrown: the same one for any number of threads, unless the loop is cancelled. Any number of threads may
+  // call run() at once, also from inside an item. In a background pool the caller only waits; if the foreground
+  // pool has a single thread, it waits until promote().
   bool run(std::size_t count, const std::function<void(std::size_t)>& item,
            const std::atomic<bool>* cancel = nullptr);
 
-  // From now on loops are run like those of the front pool, also those under way. Any thread.
-  void hurry();
-  // No items are begun any more; loops under way return when those in hand are done. Any thread.
+  // Makes a background pool run its loops like those of the foreground pool, including the loops in progress.
+  // Any thread may call it.
+  void promote();
+
+  // Prevents any further item from beginning. Loops in progress return when their current items end. Any thread
+  // may call it.
   void stop();
   bool is_stopped() const { return stopped_; }
 
@@ -53,15 +67,15 @@ class ThreadPool {
   struct Job;
   struct Crew;
 
-  bool waits_behind() const { return is_behind_ && !hurried_; }
+  bool yields_to_foreground() const { return is_background_ && !promoted_; }
 
   std::shared_ptr<Crew> crew_;
-  bool is_behind_ = false;
-  std::atomic<bool> hurried_{false};
+  bool is_background_ = false;
+  std::atomic<bool> promoted_{false};
   std::atomic<bool> stopped_{false};
 };
 
-// The same with a pool for this one loop, of at most `count` threads.
+// Does the same as ThreadPool::run() with a pool of at most `count` threads for this one loop.
 bool parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& item,
                   const std::atomic<bool>* cancel = nullptr);
 

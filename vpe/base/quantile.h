@@ -1,5 +1,7 @@
-// Computes medians and quantiles. Several rules exist for ranks that fall between two values. Each has its own
-// function, so that a caller states its rule and its results never change to another one.
+// Medians and quantiles.
+//
+// Several rules exist for ranks that fall between two values. Each has its own function, so that a caller
+// states its rule and its results never change to another one.
 //
 //   rule                      element of the sorted values          median of 1 2 3 4
 //   median_upper()            n / 2                                 3

@@ -5,7 +5,7 @@
 
 namespace vpe::base {
 
-// Red, green and blue, sRGB encoded.
+// Holds red, green and blue, encoded as sRGB.
 struct Rgb {
   std::uint8_t r = 0;
   std::uint8_t g = 0;

@@ -11,15 +11,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Place {
+struct FolderSource {
   const char* variable;
   const char* in_home;
 };
 
-constexpr std::array<Place, 4> kPlaces{{{"XDG_CACHE_HOME", ".cache"},
-                                        {"XDG_CONFIG_HOME", ".config"},
-                                        {"XDG_DATA_HOME", ".local/share"},
-                                        {"XDG_STATE_HOME", ".local/state"}}};
+constexpr std::array<FolderSource, 4> kSources{{{"XDG_CACHE_HOME", ".cache"},
+                                                {"XDG_CONFIG_HOME", ".config"},
+                                                {"XDG_DATA_HOME", ".local/share"},
+                                                {"XDG_STATE_HOME", ".local/state"}}};
 
 fs::path absolute(const Environment& environment, const char* name) {
   const char* value = environment(name);
@@ -33,9 +33,9 @@ Environment process_environment() {
 }
 
 fs::path user_folder(UserFolder folder, const Environment& environment) {
-  const Place& place = kPlaces[static_cast<std::size_t>(folder)];
-  if (const fs::path set = absolute(environment, place.variable); !set.empty()) return set / "vpe";
-  if (const fs::path home = absolute(environment, "HOME"); !home.empty()) return home / place.in_home / "vpe";
+  const FolderSource& source = kSources[static_cast<std::size_t>(folder)];
+  if (const fs::path set = absolute(environment, source.variable); !set.empty()) return set / "vpe";
+  if (const fs::path home = absolute(environment, "HOME"); !home.empty()) return home / source.in_home / "vpe";
   return {};
 }
 

@@ -1,4 +1,4 @@
-// Where a user's own files are kept: the XDG Base Directory Specification 0.8, in one place.
+// Folders for the files of a user, by the XDG Base Directory Specification 0.8.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,10 @@
 
 namespace vpe::base {
 
-// The value of an environment variable, null when it is not set.
+// Returns the value of an environment variable, or null if it is not set.
 using Environment = std::function<const char*(const char* name)>;
+
+// Returns the environment of this process.
 Environment process_environment();
 
 enum class UserFolder : std::uint8_t {
@@ -19,12 +21,13 @@ enum class UserFolder : std::uint8_t {
   kState,   // $XDG_STATE_HOME/vpe or ~/.local/state/vpe
 };
 
-// A variable that is empty or a relative path counts as not set; then it is the folder in HOME. Empty when that is
-// not set either: then nothing is kept. The folder need not exist.
+// Returns the path of a folder, which need not exist. A variable that is empty or holds a relative path counts
+// as not set; then the folder lies in HOME. Returns an empty path if HOME is not set either; then nothing can
+// be kept.
 std::filesystem::path user_folder(UserFolder folder, const Environment& environment = process_environment());
 
-// Where settings are looked for: the user's folder, then vpe in each of $XDG_CONFIG_DIRS (/etc/xdg when not set)
-// that is an absolute path.
+// Returns the folders to search for configuration files, in this order: the user's folder, then vpe in each
+// absolute path of $XDG_CONFIG_DIRS (/etc/xdg if that is not set).
 std::vector<std::filesystem::path> config_folders(const Environment& environment = process_environment());
 
 }  // namespace vpe::base

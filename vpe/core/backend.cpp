@@ -1,6 +1,6 @@
 #include "vpe/core/backend.h"
 
-#include "vpe/core/former_names.h"
+#include "vpe/core/registry/former_names.h"
 
 namespace vpe::core {
 

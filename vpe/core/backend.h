@@ -1,4 +1,4 @@
-// Names of the two rendering backends.
+// The two rendering backends and their names.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,8 @@
 
 namespace vpe::core {
 
-// A program that turns a DrawRequest into a Frame. Both draw the same reference surface.
+// The method that turns a DrawRequest into a Frame. Both draw the same reference surface. Without a GPU, kRay
+// is usually faster for single images and panoramas.
 enum class Backend : std::uint8_t {
   kPolygon,  // triangle meshes on OpenGL (vpe/gl)
   kRay,      // ray casting on the CPU (vpe/voxel)

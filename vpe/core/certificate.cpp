@@ -1,6 +1,9 @@
 #include "vpe/core/certificate.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "mars/sources/source.h"
 
 namespace vpe::core {
 
@@ -9,10 +12,8 @@ namespace {
 std::string meaning(const Certificate& c) {
   std::string text =
       "shift_bound_px: no surface pixel of this picture is off by more than this against the exact surface of "
-      "the "
-      "planet file; picture_bound_px: the same, tighter, where the picture's ranges are known. resampling_*: "
-      "that surface against the posts of its own sources. source_accuracy_m: the "
-      "sources "
+      "the planet file; picture_bound_px: the same, tighter, where the picture's ranges are known. "
+      "resampling_*: that surface against the posts of its own sources. source_accuracy_m: the sources "
       "against the planet, one sigma, null where unknown.";
   if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped.";
   if (c.illustration) text += " The elevations are an illustration, not data.";
@@ -24,7 +25,20 @@ std::string meaning(const Certificate& c) {
 
 }  // namespace
 
-std::string to_json(const Certificate& c) {
+void state_data(Certificate& certificate, const DataStatement& data,
+                std::span<const mars::SourceInfo> sources) {
+  certificate.tolerance_px = data.tolerance_px;
+  certificate.resampling_max_m = data.resampling_max_m;
+  certificate.resampling_rms_m = data.resampling_rms_m;
+  certificate.illustration = data.illustration;
+  certificate.source_accuracy_m.reset();
+  for (const mars::SourceInfo& source : sources) {
+    if (source.accuracy_m)
+      certificate.source_accuracy_m = std::max(certificate.source_accuracy_m.value_or(0.0), *source.accuracy_m);
+  }
+}
+
+nlohmann::ordered_json to_json(const Certificate& c) {
   nlohmann::ordered_json json;
   json["what_this_means"] = meaning(c);
   json["tile_error_m"] = c.geometric_error_m;
@@ -47,7 +61,7 @@ std::string to_json(const Certificate& c) {
   if (c.source_accuracy_m) json["source_accuracy_m"] = *c.source_accuracy_m;
   json["illustration"] = c.illustration;
   json["exaggeration"] = c.exaggeration;
-  return json.dump(2) + "\n";
+  return json;
 }
 
 }  // namespace vpe::core

@@ -1,38 +1,56 @@
-// What a frame states about its own geometric error.
+// The certificate of a frame: its statement about its own geometric error.
 #pragma once
 
-#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <string>
+#include <span>
+
+namespace mars {
+struct SourceInfo;
+}
 
 namespace vpe::core {
 
-// Bounds over the drawn tiles of one frame, against the surface S of the planet file (docs/architecture.md).
+// Holds bounds over the drawn tiles of one frame, against the reference surface of the planet file
+// (docs/design/numbers-and-errors.md).
 struct Certificate {
-  double geometric_error_m = 0;      // largest tile error bound among the drawn tiles
-  double screen_space_error_px = 0;  // largest projected bound: error * focal length / distance
+  double geometric_error_m = 0;      // largest geometric error among the drawn tiles
+  double screen_space_error_px = 0;  // largest screen-space error: geometric error * focal length / distance
   double quantisation_m = 0;         // largest displacement of a vertex by float storage
-  double quantisation_px = 0;        // projected likewise, with float arithmetic and the rasteriser's grid
-  double shift_bound_px = 0;  // every pixel's shift is at most this: tile error + quantisation, projected
-  // The same from the ranges at which tiles appear in the image: tighter, as tiles need not show where they
-  // are nearest. Absent without a range image.
+  double quantisation_px = 0;        // the same in the image, with float arithmetic and the rasteriser's grid
+  double shift_bound_px = 0;         // bound of all pixel shifts: geometric error + quantisation, in the image
+  // The same bound from the ranges at which tiles appear in the image. It is tighter, because a tile need not
+  // be visible where it is nearest. Absent without a range image.
   std::optional<double> image_bound_px;
-  double tolerance_px = 0;  // what was asked for
+  double tolerance_px = 0;  // of the request
   int tiles_drawn = 0;
   int tiles_missing = 0;
   int tiles_substituted = 0;
-  double share_at_data_limit =
-      0;  // share of surface pixels drawn from finest tiles at error 0 (estimate by tile)
-  std::optional<double> nodata_share;  // share of the image that shows ground without data; absent: not known
-  double resampling_max_m = 0;         // S against the sources' own posts
+  // Share of surface pixels drawn from finest tiles at error 0 (estimated by tile).
+  double share_at_data_limit = 0;
+  std::optional<double> nodata_share;  // share of the image that shows nodata ground; absent: unknown
+  double resampling_max_m = 0;         // reference surface against the posts of the sources
   double resampling_rms_m = 0;
-  std::optional<double> source_accuracy_m;
-  bool illustration = false;
+  std::optional<double> source_accuracy_m;  // of the least accurate source; absent: unknown
+  bool illustration = false;                // the elevations are invented, not data
   double exaggeration = 1;
 };
 
-// One JSON object, a line a field, ending in a newline; keys are the names of the fields and what_this_means.
-// null for what is absent or not finite. The same text in every locale.
-std::string to_json(const Certificate& certificate);
+// Describes what every backend states alike: the tolerance of the request and the errors of the planet file.
+struct DataStatement {
+  double tolerance_px = 0;
+  double resampling_max_m = 0;
+  double resampling_rms_m = 0;
+  bool illustration = false;
+};
+
+// Copies the statement into the certificate, and the accuracy of the least accurate source (nullopt if no
+// source states one).
+void state_data(Certificate& certificate, const DataStatement& data, std::span<const mars::SourceInfo> sources);
+
+// Returns one JSON object: what_this_means, then the fields in their order. Some keys keep their names of
+// earlier versions (docs/design/numbers-and-errors.md), so that readers of old files work. Absent values are
+// null; dump() writes null for values that are not finite, and the same text in every locale.
+nlohmann::ordered_json to_json(const Certificate& certificate);
 
 }  // namespace vpe::core

@@ -1,4 +1,15 @@
-// A finished image: colour and range, and the interface of what draws it.
+// The contract of both backends: a DrawRequest goes into a Renderer, a DrawResult with its Frame comes out.
+//
+// Typical usage:
+//   const std::unique_ptr<Renderer> renderer = voxel::make_ray_renderer(paging::PlanetFile::open("mars.vpe"));
+//   DrawRequest request;
+//   request.view = view;
+//   request.settings = settings.values();
+//   request.sun = sun;
+//   request.want_range = true;
+//   const DrawResult result = renderer->draw(request);
+//   write_image("out.png", result.frame.colour, result.frame.width, result.frame.height);
+//   if (!result.missing.empty()) warn(result.missing.front().why);
 #pragma once
 
 #include <cstdint>
@@ -8,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "mars/sources/source.h"
+#include "vpe/base/rgb.h"
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/certificate.h"
 #include "vpe/core/interest.h"
@@ -18,66 +29,73 @@ namespace vpe::core {
 
 inline constexpr float kSkyRange = std::numeric_limits<float>::infinity();
 
-// Row 0 is the top; rows follow each other without gaps.
+// Holds the drawn part of an image, row by row, row 0 at the top.
 struct Frame {
   int width = 0;
   int height = 0;
   std::vector<base::Rgb> colour;  // width * height
-  std::vector<float> range_m;  // width * height when asked for, else empty; camera to surface; kSkyRange = sky
+  // Distance from the camera to the surface along the ray, metres; kSkyRange for sky. width * height if the
+  // request wants it, else empty.
+  std::vector<float> range_m;
 };
 
-// Counts of one frame (design: every frame reports).
+// Counts and times of one frame.
 struct FrameStats {
   int tiles_visited = 0;
   int tiles_culled_frustum = 0;
   int tiles_culled_horizon = 0;
   int tiles_culled_occlusion = 0;  // hidden behind nearer ground
   int tiles_drawn = 0;
-  int tiles_missing = 0;       // wanted for this view, but not drawn
-  int tiles_substituted = 0;   // drawn in place of what is missing
-  std::int64_t triangles = 0;  // of the drawn meshes, skirts not counted
+  int tiles_missing = 0;       // selected for this view, but not loaded and so not drawn
+  int tiles_substituted = 0;   // drawn in place of missing ones
+  std::int64_t triangles = 0;  // of the drawn meshes, without skirts
   std::int64_t skirt_triangles = 0;
-  std::int64_t bytes_resident = 0;  // CPU and GPU payloads held
+  std::int64_t bytes_resident = 0;  // payloads in CPU and GPU memory
   std::vector<int> tiles_by_level;  // index 0 = level 0
-  std::int64_t pages_wanted = 0;    // asked of the loaders and not begun when the frame was done
+  std::int64_t pages_wanted = 0;    // requested from the loaders, not begun at the end of the frame
   std::int64_t pages_loading = 0;
   std::int64_t pages_uploaded = 0;  // for this frame
   std::int64_t pages_evicted = 0;
   double select_ms = 0;
-  double occlude_ms = 0;  // finding what nearer ground hides; part of load_ms
+  double occlude_ms = 0;  // for occlusion culling; part of load_ms
   double load_ms = 0;     // waiting for loaders, and uploading
   double draw_ms = 0;
-  double read_ms = 0;
+  double read_ms = 0;  // reading the image back from the GPU
 };
 
 struct DrawRequest;
 
-// How a frame deals with tiles that are not there yet.
+// Describes how a frame treats tiles that are not loaded yet.
 struct PagingRequest {
-  // True: the frame waits for all that its view needs, so that its image does not depend on what was drawn
-  // before. False: it is drawn at once with what is there, in full cover from the first frame on.
+  // True: the frame waits for all tiles of its view, so that its image does not depend on earlier frames; for
+  // images and films. False: the frame is drawn at once with loaded tiles, coarser ones where finer ones are
+  // missing; for windows.
   bool wait = true;
-  double timeout_s = std::numeric_limits<double>::infinity();  // of waiting; then what is there is drawn
-  double upload_ms = 4;  // time for new tiles in a frame that does not wait; one is taken in any case
-  // Where the camera is expected soon, nearest first: loaded after all that the view itself needs. Never changes
-  // what is drawn of a complete frame.
+  // Longest wait; then the loaded tiles are drawn. Shorter: frames may be incomplete.
+  double timeout_s = std::numeric_limits<double>::infinity();
+  // Time for uploads in a frame that does not wait; one tile is uploaded in any case. Smaller: steadier frame
+  // times, later refinement.
+  double upload_ms = 4;
+  // Views where the camera is expected soon, nearest first. Their tiles are loaded after all tiles of the view
+  // itself. Does not affect a complete frame.
   std::vector<View> upcoming;
-  // What is drawn next, where that is known: may be begun while this frame is drawn. When something else comes
-  // next, that work was in vain, no more.
+  // Hint: the next request, if known. The renderer may start it early; a wrong hint only wastes work.
   std::shared_ptr<const DrawRequest> next;
 };
 
+// Describes an image to draw.
 struct DrawRequest {
   View view;
   SettingsValues settings;
   glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun (mars::sun_direction)
-  bool want_range = false;
-  // Tiles are chosen and culled for this view, and drawn as `view` sees them: to look at culling from outside.
-  // What this view cannot see is not there. Nothing: for `view`.
+  bool want_range = false;  // also returns Frame::range_m
+  // If set, tiles are selected and culled for this view, but drawn as `view` sees them. Shows culling from
+  // outside: ground that cull_view cannot see is absent.
   std::optional<View> cull_view;
   std::vector<InterestRegion> interest;  // where regions overlap, their levels add up
-  // >= 1: what is given up for speed (lod/frame_budget.h, lod/progressive_refinement.h). The tolerance counts times
-  // this, in rule hitchner every distance. 1 in single images and films.
+  // Factor, >= 1, on the tolerance (metric error) or on all distances (metric distance). Larger: coarser,
+  // faster. 1 in single images and films; windows raise it while the camera moves (lod/frame_budget.h,
+  // lod/progressive_refinement.h).
   double coarsening = 1;
   PagingRequest paging;
 };
@@ -92,16 +110,20 @@ struct DrawResult {
   Frame frame;
   FrameStats stats;
   Certificate certificate;
-  bool settled = true;                // nothing is under way that would change this view's image
-  std::vector<MissingTile> missing;   // empty when the image is complete
-  std::vector<std::string> failures;  // of tiles that cannot be read, each told once by a renderer
+  bool settled = true;                // no work is in progress that would change the image of this view
+  std::vector<MissingTile> missing;   // empty if the image is complete
+  std::vector<std::string> failures;  // tiles that cannot be read; a renderer reports each once
 };
 
+// Draws images of one planet. gl::make_polygon_renderer() makes one that draws triangle meshes with OpenGL,
+// voxel::make_ray_renderer() one that casts rays on the CPU. Both draw the same reference surface.
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  // Tiles that cannot be read are drawn as their nearest readable ancestor, and are missing. One caller at a
-  // time, on the thread that made the renderer. Throws std::runtime_error with what, why, and what to do.
+
+  // Draws one image. A tile that cannot be read is replaced by its nearest readable ancestor and listed as
+  // missing. Has one caller at a time, on the thread that made the renderer. Throws std::runtime_error with
+  // what failed, why, and what to do.
   virtual DrawResult draw(const DrawRequest& request) = 0;
 };
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vpe/base/quantile.h"
+
 namespace vpe::core {
 
 namespace {
@@ -16,7 +18,7 @@ constexpr double kSigma_px = 1.5;
 
 void require_size(std::size_t a, std::size_t b, const char* what) {
   if (a != b)
-    throw std::invalid_argument(std::string(what) + ": pictures of " + std::to_string(a) + " and " +
+    throw std::invalid_argument(std::string(what) + ": images of " + std::to_string(a) + " and " +
                                 std::to_string(b) + " pixels");
 }
 
@@ -39,7 +41,7 @@ std::array<double, kWindow> gaussian() {
   return weights;
 }
 
-// Means under the window, of windows that lie inside: kWindow - 1 fewer columns and rows.
+// Returns the means under the windows that lie inside the image: kWindow - 1 fewer columns and rows.
 std::vector<double> windowed(const std::vector<double>& values, std::size_t width, std::size_t height) {
   static const std::array<double, kWindow> kWeights = gaussian();
   const std::size_t columns = width - kWindow + 1;
@@ -76,19 +78,15 @@ std::vector<double> product(const std::vector<double>& a, const std::vector<doub
   return values;
 }
 
-bool is_surface(float range_m) { return range_m > 0.0F && std::isfinite(range_m); }
+bool is_ground(float range_m) { return range_m > 0.0F && std::isfinite(range_m); }
 
 Spread spread_of(std::vector<double> values) {
   Spread spread;
   if (values.empty()) return spread;
   std::sort(values.begin(), values.end());
-  const auto quantile = [&](double share) {
-    const double rank = std::ceil(share * static_cast<double>(values.size()));
-    return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-  };
   spread.count = static_cast<std::int64_t>(values.size());
-  spread.median = quantile(0.5);
-  spread.p99 = quantile(0.99);
+  spread.median = base::sorted_quantile_rank(values, 0.5);
+  spread.p99 = base::sorted_quantile_rank(values, 0.99);
   spread.max = values.back();
   return spread;
 }
@@ -139,7 +137,7 @@ Spread range_error(std::span<const float> range_m, std::span<const float> refere
   require_size(range_m.size(), reference_m.size(), "range_error");
   std::vector<double> errors;
   for (std::size_t k = 0; k < range_m.size(); ++k) {
-    if (!is_surface(range_m[k]) || !is_surface(reference_m[k])) continue;
+    if (!is_ground(range_m[k]) || !is_ground(reference_m[k])) continue;
     const auto truth = static_cast<double>(reference_m[k]);
     errors.push_back(std::abs(static_cast<double>(range_m[k]) - truth) / truth);
   }
@@ -153,7 +151,7 @@ Spread skyline_shift_px(std::span<const float> range_m, std::span<const float> r
   const auto w = static_cast<std::size_t>(width);
   const auto skyline = [&](std::span<const float> range, std::size_t x) {
     int y = 0;
-    while (y < height && !is_surface(range[static_cast<std::size_t>(y) * w + x])) ++y;
+    while (y < height && !is_ground(range[static_cast<std::size_t>(y) * w + x])) ++y;
     return y;
   };
   std::vector<double> shifts;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "vpe/base/parallel.h"
+#include "vpe/base/quantile.h"
 
 namespace vpe::core {
 
@@ -21,7 +22,7 @@ bool is_surface(float range_m) { return is_valid_range(range_m) && std::isfinite
 bool is_sky(float range_m) { return range_m == std::numeric_limits<float>::infinity(); }
 
 // A range image with its size.
-struct Image {
+struct RangePixels {
   std::span<const float> range_m;
   int width;
   int height;
@@ -33,9 +34,9 @@ struct Image {
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
 };
 
-Image image_of(const View& view, std::span<const float> range_m, const char* name) {
+RangePixels image_of(const View& view, std::span<const float> range_m, const char* name) {
   const glm::ivec2 size = drawn_size(view);
-  const Image image{range_m, size.x, size.y};
+  const RangePixels image{range_m, size.x, size.y};
   if (range_m.size() != static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y)) {
     throw std::invalid_argument(std::string(name) + " has " + std::to_string(range_m.size()) +
                                 " pixels, the view " + std::to_string(size.x) + "x" + std::to_string(size.y));
@@ -58,10 +59,10 @@ double distance_to_segment(const glm::dvec3& from, const glm::dvec3& to) {
 // The drawn image about one reference hit, in its pixel space with the hit at the origin.
 class PixelSpace {
  public:
-  PixelSpace(const Image& drawn, int x, int y, double range_m, double focal)
+  PixelSpace(const RangePixels& drawn, int x, int y, double range_m, double focal)
       : drawn_(drawn), x_(x), y_(y), range_m_(range_m), focal_(focal) {}
 
-  // Distance to the nearest edge of the drawn net within `reach` columns and rows.
+  // Returns the distance to the nearest edge of the drawn net within `reach` columns and rows.
   double distance(int reach) const {
     double nearest = std::numeric_limits<double>::infinity();
     for (int dy = -reach; dy <= reach; ++dy) {
@@ -80,7 +81,7 @@ class PixelSpace {
   }
 
  private:
-  // Half of the eight neighbours, so that every edge is met once.
+  // Half of the eight neighbours, so that each edge is measured once.
   static constexpr std::array<glm::ivec2, 4> kForwardSteps{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
 
   glm::dvec3 point(int dx, int dy) const {
@@ -89,15 +90,15 @@ class PixelSpace {
     return {dx, dy, focal_ * (nearness - 1.0)};
   }
 
-  const Image& drawn_;
+  const RangePixels& drawn_;
   int x_;
   int y_;
   double range_m_;
   double focal_;
 };
 
-// An edge outside a window of `reach` is at least `reach` away, so a smaller distance is final.
-double surface_shift(const Image& drawn, int x, int y, float reference_m, double focal, int search) {
+// An edge outside a window of `reach` pixels is at least that far away, so a smaller distance is final.
+double surface_shift(const RangePixels& drawn, int x, int y, float reference_m, double focal, int search) {
   const PixelSpace space(drawn, x, y, static_cast<double>(reference_m), focal);
   double shift = space.distance(1);
   for (int reach = 1; shift > reach && reach < search;) {
@@ -107,7 +108,7 @@ double surface_shift(const Image& drawn, int x, int y, float reference_m, double
   return shift;
 }
 
-double sky_shift(const Image& drawn, int x, int y, int search) {
+double sky_shift(const RangePixels& drawn, int x, int y, int search) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int reach = 0; reach <= search && nearest > reach; ++reach) {
     for (int dy = -reach; dy <= reach; ++dy) {
@@ -120,12 +121,12 @@ double sky_shift(const Image& drawn, int x, int y, int search) {
   return nearest;
 }
 
-bool is_inner(const Image& image, int x, int y) {
+bool is_inner(const RangePixels& image, int x, int y) {
   return x > 0 && y > 0 && x < image.width - 1 && y < image.height - 1;
 }
 
 template <class Predicate>
-bool all_nine(const Image& image, int x, int y, const Predicate& predicate) {
+bool all_nine(const RangePixels& image, int x, int y, const Predicate& predicate) {
   if (x < 1 || y < 1 || x + 1 >= image.width || y + 1 >= image.height) return false;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -133,11 +134,6 @@ bool all_nine(const Image& image, int x, int y, const Predicate& predicate) {
     }
   }
   return true;
-}
-
-double quantile(const std::vector<double>& sorted, double share) {
-  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
-  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
 nlohmann::ordered_json as_json(const ShiftSummary& s) {
@@ -156,27 +152,27 @@ nlohmann::ordered_json as_json(const ShiftSummary& s) {
 
 std::vector<double> forward_shift_px(const View& view, std::span<const float> range_m,
                                      const SurfaceRadius& surface, const MetricOptions& options) {
-  const Image drawn = image_of(view, range_m, "the drawn picture");
+  const RangePixels drawn = image_of(view, range_m, "the drawn image");
   const double focal = focal_px(view);
   std::vector<double> shift_px(range_m.size(), kNotMeasured);
   base::parallel_for(static_cast<std::size_t>(drawn.height), options.threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);
-    std::vector<std::size_t> places;
+    std::vector<std::size_t> pixels;
     std::vector<glm::dvec3> directions;
     std::vector<double> drawn_radius_m;
     for (int x = 0; x < drawn.width; ++x) {
       if (!is_surface(drawn.at(x, y))) continue;
       const glm::dvec3 point =
           view.camera.position_m + centre_ray(view, x, y) * static_cast<double>(drawn.at(x, y));
-      places.push_back(drawn.index(x, y));
+      pixels.push_back(drawn.index(x, y));
       drawn_radius_m.push_back(glm::length(point));
       directions.push_back(point / drawn_radius_m.back());
     }
     std::vector<double> radius_m(directions.size());
     surface(directions, radius_m);
-    for (std::size_t n = 0; n < places.size(); ++n) {
-      shift_px[places[n]] =
-          std::abs(drawn_radius_m[n] - radius_m[n]) * focal / static_cast<double>(range_m[places[n]]);
+    for (std::size_t n = 0; n < pixels.size(); ++n) {
+      shift_px[pixels[n]] =
+          std::abs(drawn_radius_m[n] - radius_m[n]) * focal / static_cast<double>(range_m[pixels[n]]);
     }
   });
   return shift_px;
@@ -184,8 +180,8 @@ std::vector<double> forward_shift_px(const View& view, std::span<const float> ra
 
 std::vector<double> backward_shift_px(const View& view, std::span<const float> range_m,
                                       std::span<const float> reference_m, const MetricOptions& options) {
-  const Image drawn = image_of(view, range_m, "the drawn picture");
-  const Image reference = image_of(view, reference_m, "the reference picture");
+  const RangePixels drawn = image_of(view, range_m, "the drawn image");
+  const RangePixels reference = image_of(view, reference_m, "the reference image");
   const double focal = focal_px(view);
   const int search = std::max(1, options.search_px);
   std::vector<double> shift_px(range_m.size(), kNotMeasured);
@@ -210,10 +206,10 @@ ShiftSummary summarize(std::span<const double> shift_px, int width) {
   if (sorted.empty()) return summary;
   std::sort(sorted.begin(), sorted.end());
   summary.pixels = static_cast<std::int64_t>(sorted.size());
-  summary.median_px = quantile(sorted, 0.5);
-  summary.p90_px = quantile(sorted, 0.9);
-  summary.p99_px = quantile(sorted, 0.99);
-  summary.p999_px = quantile(sorted, 0.999);
+  summary.median_px = base::sorted_quantile_rank(sorted, 0.5);
+  summary.p90_px = base::sorted_quantile_rank(sorted, 0.9);
+  summary.p99_px = base::sorted_quantile_rank(sorted, 0.99);
+  summary.p999_px = base::sorted_quantile_rank(sorted, 0.999);
   summary.max_px = sorted.back();
   const auto over = sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), 1.0);
   summary.share_over_1px = static_cast<double>(over) / static_cast<double>(sorted.size());
@@ -227,8 +223,8 @@ ShiftSummary summarize(std::span<const double> shift_px, int width) {
 ImageErrors compare_to_reference(const View& view, std::span<const float> range_m,
                                  std::span<const float> reference_m, const SurfaceRadius& surface,
                                  const MetricOptions& options) {
-  const Image drawn = image_of(view, range_m, "the drawn picture");
-  const Image reference = image_of(view, reference_m, "the reference picture");
+  const RangePixels drawn = image_of(view, range_m, "the drawn image");
+  const RangePixels reference = image_of(view, reference_m, "the reference image");
   ImageErrors errors;
   errors.forward = summarize(forward_shift_px(view, range_m, surface, options), drawn.width);
   errors.backward = summarize(backward_shift_px(view, range_m, reference_m, options), drawn.width);
@@ -255,25 +251,26 @@ std::string to_json(const ImageErrors& errors) {
 
 HorizonErrors check_horizon(const View& view, std::span<const float> range_m, double lowest_radius_m,
                             double highest_radius_m) {
-  const Image drawn = image_of(view, range_m, "the drawn picture");
+  const RangePixels drawn = image_of(view, range_m, "the drawn image");
   const double camera_distance_m = glm::length(view.camera.position_m);
   const glm::dvec3 down =
       camera_distance_m > 0.0 ? -view.camera.position_m / camera_distance_m : glm::dvec3(0, 0, 1);
-  constexpr double kRim_rad = 1e-12;
-  // A ray meets a sphere when its angle from straight down is at most that of the sphere's rim.
-  const auto rim_rad = [camera_distance_m](double radius_m) {
+  constexpr double kTolerance_rad = 1e-12;
+  // A ray meets a sphere if its angle from straight down is at most that of the sphere's outline.
+  const auto outline_rad = [camera_distance_m](double radius_m) {
     if (camera_distance_m <= radius_m) return 2.0 * mars::kPi;
     // asin(radius / distance) by its tangent, which does not cancel close to the sphere.
     return std::atan2(radius_m, std::sqrt((camera_distance_m - radius_m) * (camera_distance_m + radius_m)));
   };
-  const double lowest_rim_rad = rim_rad(lowest_radius_m);
-  const double highest_rim_rad = rim_rad(highest_radius_m);
+  const double lowest_outline_rad = outline_rad(lowest_radius_m);
+  const double highest_outline_rad = outline_rad(highest_radius_m);
   HorizonErrors errors;
   for (int y = 0; y < drawn.height; ++y) {
     for (int x = 0; x < drawn.width; ++x) {
       const double angle_rad = mars::angle_between_rad(down, centre_ray(view, x, y));
-      if (!is_surface(drawn.at(x, y)) && angle_rad < lowest_rim_rad - kRim_rad) ++errors.sky_below;
-      if (is_surface(drawn.at(x, y)) && angle_rad > highest_rim_rad + kRim_rad) ++errors.surface_above;
+      if (!is_surface(drawn.at(x, y)) && angle_rad < lowest_outline_rad - kTolerance_rad) ++errors.sky_below;
+      if (is_surface(drawn.at(x, y)) && angle_rad > highest_outline_rad + kTolerance_rad)
+        ++errors.surface_above;
     }
   }
   return errors;

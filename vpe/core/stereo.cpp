@@ -40,7 +40,7 @@ std::optional<StereoLayout> parse_stereo(std::string_view name) {
 
 RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayout layout) {
   if (left.width != right.width || left.height != right.height) {
-    throw ImageError("the left eye's picture has " + std::to_string(left.width) + "x" +
+    throw ImageError("the left eye's image has " + std::to_string(left.width) + "x" +
                      std::to_string(left.height) + " pixels, the right eye's " + std::to_string(right.width) +
                      "x" + std::to_string(right.height) + "; both must be equal");
   }
@@ -78,10 +78,10 @@ void mix_red_cyan(std::span<base::Rgb> left, std::span<const base::Rgb> right) {
   }
 }
 
-View eye_aside(const View& view, double aside_m, std::optional<double> convergence_m) {
+View eye_view(const View& view, double aside_m, std::optional<double> convergence_m) {
   View eye = view;
   eye.camera.position_m += aside_m * view.camera.axes.right;
-  // A point straight ahead is seen to the left by an eye on the right: the principal point goes right.
+  // An eye on the right sees a point straight ahead to the left, so the principal point moves right.
   if (convergence_m) eye.principal_offset_px.x += focal_px(view) * aside_m / *convergence_m;
   return eye;
 }

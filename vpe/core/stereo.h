@@ -1,4 +1,9 @@
-// Two eyes in one image.
+// Stereo pairs: the views of two eyes, and both images combined into one.
+//
+// Typical usage:
+//   const RgbImage left = draw(eye_view(view, -base_m / 2, convergence_m));
+//   const RgbImage right = draw(eye_view(view, base_m / 2, convergence_m));
+//   const RgbImage pair = combine_stereo(left, right, StereoLayout::kAnaglyph);
 #pragma once
 
 #include <cstdint>
@@ -17,26 +22,28 @@ enum class StereoLayout : std::uint8_t {
   kAnaglyph,    // for red glass before the left eye, cyan before the right
 };
 
-// "sbs", "ou", "anaglyph"; nothing for other words.
+// Returns the layout named "sbs", "ou" or "anaglyph", or nullopt for other words.
 std::optional<StereoLayout> parse_stereo(std::string_view name);
 const char* to_string(StereoLayout layout);
 
-// Both images in full size, so that sbs is twice as wide and ou twice as high. Red-cyan is made by Dubois's
-// matrix for such glasses in the rounding of ffmpeg's stereo3d (arcd; within 1/255 of it), on the stored
-// values. Throws ImageError when the images differ in size or the result has a side over kMaxImageSide_px.
+// Combines both images in full size: kSideBySide is twice as wide, kOverUnder twice as high. The anaglyph uses
+// Dubois's matrix for red-cyan glasses with the rounding of ffmpeg's stereo3d (arcd; within 1/255 of it), on
+// the stored values. Throws ImageError if the images differ in size or a side of the result exceeds
+// kMaxImageSide_px.
 RgbImage combine_stereo(const RgbImage& left, const RgbImage& right, StereoLayout layout);
 
-// Red-cyan in place of the left eye's pixels; both as long as each other.
+// Replaces the left eye's pixels by the red-cyan anaglyph. Both spans must have the same length.
 void mix_red_cyan(std::span<base::Rgb> left, std::span<const base::Rgb> right);
 
-// The view of an eye that is aside_m to the right (negative: left) along the view's right axis, the axes
-// parallel. With a convergence distance the principal point moves so that what is at that distance in front
-// of the middle between both eyes is at the same pixel in each; without, what is infinitely far.
-View eye_aside(const View& view, double aside_m, std::optional<double> convergence_m);
+// Returns the view of an eye that is shifted by aside_m along the view's right axis (negative: to the left),
+// with parallel axes. With a convergence distance the principal point moves, so that objects at that distance
+// in front of the middle between both eyes are at the same pixel in each; without, objects at infinity are.
+View eye_view(const View& view, double aside_m, std::optional<double> convergence_m);
 
-// Eyes apart by this part of the distance of what is nearest show depth without strain.
+// A base of the nearest distance divided by this shows depth without strain.
 inline constexpr double kNearestToBase = 30.0;
-// The base for a range image: its smallest finite range / kNearestToBase; nothing when it is all sky.
+
+// Returns the base for a range image: its smallest finite range / kNearestToBase, or nullopt if it is all sky.
 std::optional<double> comfortable_base_m(std::span<const float> range_m);
 
 }  // namespace vpe::core

@@ -40,7 +40,7 @@ std::string check_part(const View& view) {
   }
   if (inside) return {};
   return "the part (x " + std::to_string(p.x) + ", y " + std::to_string(p.y) + ", " + std::to_string(p.width) +
-         "x" + std::to_string(p.height) + ") does not lie inside the picture of " + std::to_string(view.width) +
+         "x" + std::to_string(p.height) + ") does not lie inside the image of " + std::to_string(view.width) +
          "x" + std::to_string(view.height) + " pixels";
 }
 
@@ -49,14 +49,14 @@ std::string check_part(const View& view) {
 std::string check(const View& view) {
   if (!is_finite(view.camera.position_m) ||
       glm::length(view.camera.position_m) > ViewLimits::kMaxCameraDistance_m) {
-    return "the eye's position is not finite or farther than " +
+    return "the camera's position is not finite or farther than " +
            base::format_number(ViewLimits::kMaxCameraDistance_m) + " m from the planet's centre";
   }
   if (!is_orthonormal(view.camera.axes))
-    return "the eye's axes are not orthonormal; make them with mars::to_eye";
+    return "the camera's axes are not orthonormal; make them with mars::to_camera";
   const int max_side_px = has_part(view) ? ViewLimits::kMaxFullSide_px : ViewLimits::kMaxSide_px;
   if (view.width < 1 || view.height < 1 || view.width > max_side_px || view.height > max_side_px) {
-    return "picture size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
+    return "image size " + std::to_string(view.width) + "x" + std::to_string(view.height) +
            ": each side must be 1 to " + std::to_string(max_side_px) + " pixels";
   }
   const bool is_equirectangular = view.projection == Projection::kEquirectangular;
@@ -72,9 +72,8 @@ std::string check(const View& view) {
   }
   const double farthest_deg = (0.5 * view.height + std::abs(offset.y)) * view.fov_deg / view.height;
   if (is_equirectangular && farthest_deg > 90.0 + 1e-9) {
-    return "an equirectangular picture of " + base::format_number(view.fov_deg) +
-           " degrees with an offset of " + base::format_number(offset.y) +
-           " rows goes past the zenith or nadir";
+    return "an equirectangular image of " + base::format_number(view.fov_deg) + " degrees with an offset of " +
+           base::format_number(offset.y) + " rows goes past the zenith or nadir";
   }
   return check_part(view);
 }
@@ -95,7 +94,7 @@ glm::dvec3 pixel_ray(const View& view, double x, double y) {
   if (view.projection == Projection::kPerspective) {
     return in_axes(from_principal.x, -from_principal.y, focal_px(view));
   }
-  // Whole turns come off exactly before anything is rounded.
+  // Full circles are removed exactly, before anything is rounded.
   const mars::SinCos azimuth =
       mars::sin_cos_deg(std::remainder(from_principal.x, view.width) * 360.0 / view.width);
   if (view.projection == Projection::kCylinder) {
@@ -122,8 +121,8 @@ Projected project(const View& view, const glm::dvec3& point_m) {
   const bool is_cylinder = view.projection == Projection::kCylinder;
   result.behind = is_cylinder ? !(level > 0.0) : !(level > 0.0 || up != 0.0);
   if (result.behind) return result;
-  const double turns = std::atan2(right, forward) / (2.0 * mars::kPi);
-  double x = std::fmod(principal.x + turns * view.width, view.width);
+  const double circles = std::atan2(right, forward) / (2.0 * mars::kPi);
+  double x = std::fmod(principal.x + circles * view.width, view.width);
   if (x < 0.0) x += view.width;
   if (x >= view.width) x = 0.0;
   const double rise = is_cylinder ? up / level : std::atan2(up, level);
@@ -163,7 +162,7 @@ bool reaches_horizon(const View& view, double radius_m) {
   const glm::dvec3 down = -view.camera.position_m / distance_m;
   const double sine = radius_m / distance_m;
   const double least_cosine = std::sqrt((1 - sine) * (1 + sine));
-  // What lies below the horizon is a convex cone: the image is within it when its corners are.
+  // The directions below the horizon form a convex cone: the image lies within it if its corners do.
   const SubRectangle part = drawn_part(view);
   for (const int x : {part.x, part.x + part.width}) {
     for (const int y : {part.y, part.y + part.height}) {

@@ -1,38 +1,40 @@
-// How ground is drawn: one value that every backend draws the same (Hitchner 1992, 2.4; docs/appearance.md).
+// The appearance of ground: one value that both backends draw the same (Hitchner 1992, section 2.4;
+// docs/design/appearance.md).
 #pragma once
 
 #include <string>
 
 namespace vpe::core {
 
-// How the surface is painted. Lit modes shade by the sun.
+// The way the surface is painted. Lit modes are shaded by the sun.
 enum class Mode {
   kWireframe,  // edges of the drawn triangles
   kMarkers,    // a dot at each of their vertices
-  kUnlit,      // `colour`, no light
+  kUnlit,      // `colour` without light
   kLit,        // one colour, shaded
   kColoured,   // `colour`, shaded
   kTextured,   // imagery, shaded; as kColoured where the planet file has none
 };
 
-// What light and slope are computed from.
+// The elements for which light and slope are computed.
 enum class Shading {
   kFlat,     // each drawn triangle
-  kGouraud,  // each post of the surface; between posts interpolated
+  kGouraud,  // each post of the surface; interpolated between posts
 };
 
+// The value that the colour of the ground shows.
 enum class Colour {
-  kNone,       // one colour
+  kNone,       // one colour everywhere
   kElevation,  // metres above the sphere, without exaggeration
-  kSlope,      // degrees between the normal and the vertical, of the ground as exaggerated
-  kAspect,     // degrees clockwise from north of the way down, of the same
-  kImage,      // the planet file's imagery at each post: colours of vertices
+  kSlope,      // degrees between the normal and the vertical, of the exaggerated ground
+  kAspect,     // degrees clockwise from north of the direction of descent, of the exaggerated ground
+  kImage,      // the planet file's imagery at each post, as colours of vertices
 };
 
 enum class Background { kBlack, kWhite, kSky };
 
-// Both ends of palette=hsv; hue runs from one to the other without going round through 0, unless they are given
-// so.
+// Holds both ends of palette=hsv. Hue runs from one to the other; it passes through 0 only if the values are
+// given so that it does (for example 350 to 370).
 struct HsvRamp {
   double low_hue_deg = 240;
   double low_saturation = 0.9;
@@ -43,25 +45,26 @@ struct HsvRamp {
   bool operator==(const HsvRamp&) const = default;
 };
 
+// Holds all settings of the appearance of ground and sky. The keys are in settings.cpp.
 struct Appearance : HsvRamp {
   Mode mode = Mode::kTextured;
   Shading shading = Shading::kGouraud;
   Colour colour = Colour::kElevation;
   std::string palette = "auto";  // a name, hsv, or a file; vpe/core/appearance/palette.h
-  double palette_low = 0;        // values at the palette's ends; both equal: as suits `colour`
+  double palette_low = 0;        // values at the palette's ends; if both are equal, a range that suits `colour`
   double palette_high = 0;
-  bool colourise = false;  // imagery keeps its brightness and takes hue and saturation from `colour`
-  double exaggeration = 1;
-  // Where the light comes from: "local" (azimuth and elevation at a place), a date, or Ls and local time;
-  // mars/geodesy/mars_time.h.
+  bool colourise = false;   // imagery keeps its brightness and takes hue and saturation from `colour`
+  double exaggeration = 1;  // factor on elevations; larger: steeper ground and larger errors
+  // Position of the sun: "local" (azimuth and elevation at the ground below the camera), a date, or Ls and
+  // local time; mars/geodesy/mars_time.h.
   std::string sun = "local";
   double sun_azimuth_deg = 315;
   double sun_elevation_deg = 35;
-  double sun_ambient = 0.05;
-  double sun_diffuse = 1.235;
-  bool shadows = false;
-  double gamma = 1;
-  double haze_visibility_m = 0;  // shading.h, transmittance(); 0 = clear air
+  double sun_ambient = 0.05;     // larger: brighter shadows
+  double sun_diffuse = 1.235;    // larger: brighter slopes that face the sun
+  bool shadows = false;          // ground casts shadows; slower
+  double gamma = 1;              // larger: brighter
+  double haze_visibility_m = 0;  // shading.h, transmittance(); 0: clear air, else smaller: denser haze
   double marker_px = 3;
   Background background = Background::kSky;
 

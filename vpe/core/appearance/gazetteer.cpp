@@ -36,7 +36,7 @@ class Reader {
     if (text_.starts_with("\xef\xbb\xbf")) text_.remove_prefix(3);
   }
 
-  // The next record with anything in it; false at the end.
+  // Reads the next record that is not empty. Returns false at the end.
   bool next(std::vector<std::string>& fields) {
     while (at_ < text_.size()) {
       record_line_ = line_;
@@ -53,7 +53,7 @@ class Reader {
   }
 
  private:
-  // Reads one field and what ends it; true when a comma did.
+  // Reads one field and its separator. Returns true if that was a comma.
   bool field(std::vector<std::string>& fields) {
     std::string& value = fields.emplace_back();
     if (peek() == '"') {

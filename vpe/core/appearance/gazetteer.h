@@ -1,4 +1,7 @@
-// Places with names, from a CSV file.
+// Named places from a CSV file.
+//
+// Typical usage:
+//   for (const Place& place : read_gazetteer("mars.csv")) mark(place.lon_deg, place.lat_deg, place.name);
 #pragma once
 
 #include <filesystem>
@@ -8,29 +11,32 @@
 
 namespace vpe::core {
 
+// A place with a name.
 struct Place {
   std::string name;  // UTF-8 as in the file
   double lon_deg = 0;
   double lat_deg = 0;
-  double diameter_m = 0;  // 0 = not known
+  double diameter_m = 0;  // 0: unknown
 
   bool operator==(const Place&) const = default;
 };
 
-// CSV as RFC 4180 has it (quotes, also around commas and line ends; LF or CRLF; a byte order mark is skipped),
-// UTF-8. The first record names the columns, in any order and case; other columns are not used:
-//   name, lon, lat              degrees, east-positive (-360 to 360), planetocentric; diameter_km may be there
+// Reads CSV by RFC 4180: quotes, also around commas and line ends; LF or CRLF; UTF-8, a byte order mark is
+// skipped. The first record names the columns, in any order and case; other columns are ignored:
+//   name, lon, lat              degrees, east-positive (-360 to 360), planetocentric; diameter_km is optional
 //   Feature_Name, Center_Longitude, Center_Latitude, Diameter (km), Coordinate_System
-//                               as the gazetteer of the IAU has them; west-positive where the last one says
+//                               the columns of the gazetteer of the IAU; west-positive if the last one says
 //                               +West
-// Larger places first; those of the same or no diameter in the order of the file. Empty lines are skipped.
-// `file` is what errors call it. Throws std::runtime_error: file, line, what was expected and found.
+// Returns larger places first, and those of the same or no diameter in the order of the file. Empty lines are
+// skipped. `file` is the name in messages. Throws std::runtime_error with file, line, what was expected and
+// what was found.
 std::vector<Place> parse_gazetteer(std::string_view text, const std::string& file);
 
-// The same of a file. Throws FileError too.
+// Does the same for a file. Throws FileError too.
 std::vector<Place> read_gazetteer(const std::filesystem::path& path);
 
-// A value of Overlays::names: empty when the file is there and may be read. Its content is not looked at.
+// Returns "" if the file of Overlays::names exists and can be read, else what is wrong. Does not check its
+// content.
 std::string gazetteer_problem(const std::string& path);
 
 }  // namespace vpe::core

@@ -1,22 +1,21 @@
-// How the inspector paints levels of detail.
+// The colours of levels of detail for `inspect=levels`.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 
-#include "mars/sources/source.h"
+#include "vpe/base/rgb.h"
 
 namespace vpe::core {
-
-// People count levels as in 1992: 1 is the coarsest (a whole cube face), N the finest.
-constexpr int shown_level(int level) { return level + 1; }
 
 struct LevelColour {
   std::string_view name;
   base::Rgb colour;
 };
 
-// Neighbouring levels differ in hue and in brightness; the order starts again after the last.
+// The colours of levels 0, 1, ...; after the last the first follows again. Neighbouring levels differ in hue
+// and in brightness. Levels count from 0, one tile for each face of the cube.
 inline constexpr std::array<LevelColour, 8> kLevelColours{{{"red", {230, 50, 40}},
                                                            {"yellow", {250, 225, 70}},
                                                            {"blue", {40, 90, 220}},
@@ -26,6 +25,7 @@ inline constexpr std::array<LevelColour, 8> kLevelColours{{{"red", {230, 50, 40}
                                                            {"purple", {130, 50, 170}},
                                                            {"cyan", {100, 230, 230}}}};
 
+// Returns the colour of a level >= 0.
 constexpr const LevelColour& level_colour(int level) {
   return kLevelColours[static_cast<std::size_t>(level) % kLevelColours.size()];
 }

@@ -1,4 +1,4 @@
-// What is drawn over an image of ground to read it by (vpe/overlay).
+// Overlays: lines, scales and texts over an image of ground that make it readable (drawn by vpe/overlay).
 #pragma once
 
 #include <string>
@@ -6,7 +6,8 @@
 
 namespace vpe::core {
 
-// Why this program draws no overlay, and every key overlay.* keeps its default; empty when it does.
+// Returns "" if this program draws overlays, else the reason why not; then every key overlay.* keeps its
+// default.
 constexpr std::string_view overlays_refused() {
 #ifdef VPE_WITHOUT_CAIRO
   return "this program was built without Cairo, which draws overlays; install libcairo2-dev and build it again";
@@ -15,26 +16,27 @@ constexpr std::string_view overlays_refused() {
 #endif
 }
 
-// Where azimuths are marked.
+// The place of the marks of azimuth.
 enum class CompassStrip {
   kOff,
   kBottom,   // along the lower edge
   kTop,      // along the upper edge
-  kHorizon,  // along elevation 0; along the lower edge where the image does not show it
+  kHorizon,  // along elevation 0; along the lower edge if the image does not show it
 };
 
+// Holds all settings of overlays. The keys are in settings.cpp.
 struct Overlays {
   bool legend = false;
   bool graticule = false;
-  double graticule_deg = 0;  // between lines; 0 = as suits the image
+  double graticule_deg = 0;  // between lines; 0: a step that suits the image
   bool contours = false;
-  double contour_m = 0;  // between lines; 0 = as suits the image
+  double contour_m = 0;  // between lines; 0: a step that suits the image
   bool scale_bar = false;
   bool north_arrow = false;
   bool time_code = false;
   CompassStrip compass = CompassStrip::kOff;
   std::string title;
-  std::string names;       // gazetteer, a CSV file (vpe/core/appearance/gazetteer.h)
+  std::string names;       // path of a gazetteer, a CSV file (vpe/core/appearance/gazetteer.h)
   bool distances = false;  // from the camera, beside names
 
   bool operator==(const Overlays&) const = default;

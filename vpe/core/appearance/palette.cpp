@@ -49,7 +49,7 @@ Range range_of(const Appearance& a, const Palette& palette) {
   return {palette.stops().front().at, palette.stops().back().at};
 }
 
-// First stop at low, last at high; in rising order.
+// Returns the palette with its first stop at low and its last at high, in rising order.
 Palette stretched(const Palette& palette, const Range& range) {
   const bool has_values = palette.scale() == Palette::Scale::kValue;
   if (has_values && palette.stops().front().at == range.low && palette.stops().back().at == range.high) {
@@ -64,7 +64,7 @@ Palette stretched(const Palette& palette, const Range& range) {
   }
   if (range.low > range.high) std::reverse(stops.begin(), stops.end());
   for (std::size_t n = 1; n < stops.size(); ++n) stops[n].at = std::max(stops[n].at, stops[n - 1].at);
-  // Stops that rounding has put on one place: the outer two make the same step.
+  // Rounding may put several stops at one value: the outer two make the same step.
   std::vector<PaletteStop> kept;
   for (const PaletteStop& stop : stops) {
     if (kept.size() >= 2 && kept[kept.size() - 2].at == stop.at) kept.pop_back();
@@ -96,7 +96,7 @@ Palette::Palette(Scale scale, std::vector<PaletteStop> stops) : scale_(scale), s
   for (std::size_t b = 1; b <= kBuckets; ++b) before_[b] += before_[b - 1];
 }
 
-// Never falls as `at` rises, so a stop in an earlier bucket is below, one in a later bucket above.
+// The bucket never falls as `at` rises, so a stop in an earlier bucket is below, one in a later bucket above.
 std::size_t Palette::bucket(double at) const {
   const double x = (at - stops_.front().at) * buckets_per_unit_;
   return x < static_cast<double>(kBuckets - 1) ? static_cast<std::size_t>(x) : kBuckets - 1;
@@ -168,8 +168,8 @@ Hsv to_hsv(const glm::dvec3& rgb) {
 
 glm::dvec3 to_rgb(const Hsv& hsv) {
   const auto component = [&](double offset) {
-    const double turns = hsv.hue_deg / 360 + offset;
-    const double sixths = 6 * (turns - std::floor(turns));
+    const double circles = hsv.hue_deg / 360 + offset;
+    const double sixths = 6 * (circles - std::floor(circles));
     const double away = std::clamp(2 - std::abs(sixths - 3), 0.0, 1.0);
     return 255 * hsv.value * (1 - hsv.saturation * away);
   };

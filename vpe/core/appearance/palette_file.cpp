@@ -1,4 +1,4 @@
-// Palettes as text.
+// Reader of palette files.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,7 +13,7 @@ namespace vpe::core {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
-constexpr double kFarthest = 1e12;  // of Palette
+constexpr double kFarthestStop = 1e12;  // of Palette
 
 struct Line {
   std::size_t number;
@@ -76,7 +76,7 @@ class Parser {
     const bool is_percent = !at.empty() && at.back() == '%';
     if (is_percent) at.remove_suffix(1);
     const std::optional<double> value = is_nodata ? 0.0 : base::parse_number(at);
-    if (!value || !(std::abs(*value) <= kFarthest)) {
+    if (!value || !(std::abs(*value) <= kFarthestStop)) {
       fail(number, "expected a value, a fraction, a percentage or nv, found " + quoted(words[0]));
     }
     if (is_percent && !(*value >= 0 && *value <= 100)) {

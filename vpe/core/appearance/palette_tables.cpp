@@ -8,7 +8,7 @@ namespace vpe::core {
 
 namespace {
 
-// Stops at n of `of`, colours in whole steps of 255.
+// Stop at n / of, with a colour in whole steps of 255.
 struct Knot {
   int at;
   int r;
@@ -16,8 +16,8 @@ struct Knot {
   int b;
 };
 
-// Published tables have 256 colours. Kept here are knots of each, chosen so that straight lines between them
-// stay within 1/255 of the published table, a tenth of the size.
+// Published tables have 256 colours. The knots here are chosen so that straight lines between them stay within
+// 1/255 of the published table; they are a tenth of its size.
 
 // viridis: S. van der Walt and N. Smith, 2015, matplotlib; CC0.
 constexpr Knot kViridis[] = {{0, 68, 1, 84},      {13, 72, 20, 103},   {26, 72, 37, 118},   {41, 69, 56, 130},
@@ -56,7 +56,7 @@ constexpr Knot kTurbo[] = {
     {186, 254, 144, 41}, {198, 246, 108, 25}, {208, 235, 80, 14},  {215, 225, 65, 9},   {225, 206, 45, 4},
     {235, 183, 29, 2},   {246, 152, 14, 1},   {255, 122, 4, 3}};
 
-// black-body, as visualization programs have it: black, red, yellow, white in straight lines.
+// black-body, as in visualization programs: straight lines between black, red, yellow and white.
 constexpr Knot kBlackBody[] = {{0, 0, 0, 0}, {2, 230, 0, 0}, {4, 230, 230, 0}, {5, 255, 255, 255}};
 
 constexpr Knot kGrey[] = {{0, 0, 0, 0}, {1, 255, 255, 255}};
@@ -72,22 +72,23 @@ constexpr Knot kAspect[] = {
     {25, 198, 151, 233}, {26, 210, 147, 221}, {27, 221, 143, 208}, {28, 229, 141, 193}, {29, 236, 139, 178},
     {30, 240, 139, 161}, {31, 243, 140, 144}, {32, 243, 142, 128}};
 
-// relief: our own, hypsometric, in metres.
+// relief: made for this program, hypsometric, in metres.
 constexpr Knot kRelief[] = {{-8200, 42, 26, 90},    {-6000, 58, 60, 148},   {-4500, 62, 110, 168},
                             {-3000, 84, 150, 150},  {-1500, 128, 172, 118}, {0, 186, 186, 108},
                             {1500, 206, 160, 88},   {3500, 190, 116, 72},   {7000, 160, 84, 68},
                             {12000, 204, 174, 160}, {21500, 250, 248, 244}};
 
-// mola: our own, in the order of colours that people know from maps of the Mars Orbiter Laser Altimeter: purple
-// and blue basins, green and yellow about the datum, red highlands, brown to white volcanoes. Metres.
+// mola: made for this program, in metres, with the order of colours that is familiar from maps of the Mars
+// Orbiter Laser Altimeter: purple and blue basins, green and yellow about the datum, red highlands, brown to
+// white volcanoes.
 constexpr Knot kMola[] = {{-8200, 110, 0, 170},   {-6000, 40, 20, 230},  {-4500, 0, 110, 255},
                           {-3000, 0, 215, 225},   {-2000, 0, 200, 90},   {-1000, 110, 220, 40},
                           {0, 250, 240, 50},      {1000, 255, 190, 30},  {2000, 255, 120, 20},
                           {3500, 220, 30, 20},    {5500, 150, 50, 30},   {8000, 150, 110, 90},
                           {12000, 205, 195, 190}, {21300, 255, 255, 255}};
 
-// diverging: our own, metres. At s = |z| / 8000 m: OKLab lightness 0.97 - 0.55 s, chroma 0.155 s^0.85, hue 262
-// degrees below and 29 above 0; equally light at equal distances from 0.
+// diverging: made for this program, in metres. At s = |z| / 8000 m: OKLab lightness 0.97 - 0.55 s, chroma 0.155
+// s^0.85, hue 262 degrees below and 29 above 0; equally light at equal distances from 0.
 constexpr Knot kDiverging[] = {{-8000, 24, 70, 160},   {-7000, 50, 92, 173},   {-6000, 75, 114, 186},
                                {-5000, 101, 136, 199}, {-4000, 128, 157, 211}, {-3000, 155, 179, 222},
                                {-2000, 183, 201, 232}, {-1000, 213, 223, 241}, {0, 245, 245, 245},
@@ -123,7 +124,7 @@ const Palette* built_in_palette(std::string_view name) {
 
 Palette hsv_palette(const HsvRamp& ramp) {
   constexpr int kSteps = 256;
-  constexpr double kCornerDeg = 60;  // a component of RGB turns where hue is a multiple of this
+  constexpr double kCornerDeg = 60;  // the RGB components have corners where hue is a multiple of this
   std::vector<double> places;
   for (int n = 0; n <= kSteps; ++n) places.push_back(static_cast<double>(n) / kSteps);
   const double turn = ramp.high_hue_deg - ramp.low_hue_deg;

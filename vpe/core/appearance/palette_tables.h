@@ -1,4 +1,4 @@
-// The palettes that are always there; for palette.cpp.
+// The built-in palettes (for palette.cpp).
 #pragma once
 
 #include <string_view>
@@ -7,11 +7,11 @@
 
 namespace vpe::core {
 
-// Null for a name that is not one of palette_names().
+// Returns a built-in palette, or null for a name that is not one of palette_names().
 const Palette* built_in_palette(std::string_view name);
 
-// HSV, straight in hue, saturation and value, from 0 to 1: stops at the corners of its curve and 256 times in
-// between, which keeps the error below 0.1 of 255.
+// Returns the palette from 0 to 1 that is linear in hue, saturation and value. It has stops at the corners of
+// the HSV curve and 256 between them, which keeps the error below 0.1 of 255.
 Palette hsv_palette(const HsvRamp& ramp);
 
 }  // namespace vpe::core

@@ -1,6 +1,13 @@
-// The settings registry: everything about how an image is drawn that `--set KEY=VALUE`, a flight's `set` and
-// `vpe settings` can name. Each key is declared once (settings.cpp) with its type, range, default, unit and
-// meaning; the drawing code reads the plain struct SettingsValues.
+// The settings registry: all properties of an image that `--set KEY=VALUE`, a flight's `set` and the panels of
+// the window can change.
+//
+// settings.cpp declares each key once, with its type, range, unit and meaning; the default is the initial value
+// of the member in SettingsValues. The drawing code reads the plain struct SettingsValues.
+//
+// Typical usage:
+//   Settings settings;
+//   if (const std::string problem = settings.assign("sun.azimuth=90"); !problem.empty()) report(problem);
+//   draw(settings.values().sun_azimuth_deg);
 #pragma once
 
 #include <optional>
@@ -10,58 +17,67 @@
 #include <vector>
 
 #include "vpe/core/appearance/appearance.h"
-#include "vpe/core/appearance/level_table.h"
+#include "vpe/core/registry/level_table.h"
 #include "vpe/core/appearance/overlays.h"
 
 namespace vpe::core {
 
-// What decides how fine a tile is drawn (lod/control.h).
+// The measure that selects the level of a tile (lod/control.h).
 enum class LodMetric {
-  kError,     // its projected error, in pixels
-  kDistance,  // its distance and place in the image alone, as in 1992
+  kError,     // its screen-space error
+  kDistance,  // only its distance and place in the image, by the level control functions of Hitchner 1992
 };
 
-// What is shown of how the image is made.
+// Properties of the selected tiles that an image can show.
 enum class Inspect {
   kNone,
   kBorders,  // lines along the borders of tiles
   kLevels,   // tiles tinted by their level (vpe/core/appearance/inspect.h)
 };
 
-// How the ray backend looks for the ground.
+// The method by which the ray backend finds the ground.
 enum class RayMode {
-  kExact,     // the exact surface
-  kMultires,  // cells about as wide as a pixel, far away
-  kPlain,     // each ray by itself in fixed steps, as in the papers: what the others are measured against
+  kExact,      // intersects the reference surface exactly
+  kMultires,   // intersects cells about as wide as a pixel, far away
+  kReference,  // follows each ray by itself in fixed steps, as the papers do: the baseline of comparisons
 };
 
 enum class Occlusion { kAuto, kOff, kOn };
 
-// Of rays.cell.
+// Limits of rays.cell.
 struct RayLimits {
   static constexpr double kLeastCell_px = 1.0 / 64;
   static constexpr double kMostCell_px = 64;
 };
 
+// The values of all settings. The keys of the inherited members are in settings.cpp too.
 struct SettingsValues : Appearance, Overlays {
+  // Largest screen-space error of a drawn tile. Smaller: finer, slower; 0: the reference surface itself. At 1
+  // the error is not visible in a still image.
   double lod_tolerance_px = 1;
+  // Upper limit of the triangles of a frame; 0: none. Smaller: coarser where the tolerance asks for more.
   int lod_triangles = 0;
   LodMetric lod_metric = LodMetric::kError;
+  // Levels by distance: scale / x + offset, or the table where it has rows. Used with LodMetric::kDistance.
+  // Larger values give finer tiles.
   double lod_distance_scale_m = 1e6;
   double lod_distance_offset = 3;
   double lod_distance_weight = 1;
   LevelTable lod_distance_table;
+  // Levels by distance from the image centre, in halves of the image's height. The weight 0 switches them off.
   double lod_centre_scale = 0.25;
   double lod_centre_offset = -1;
   double lod_centre_weight = 0;
   LevelTable lod_centre_table;
-  double lod_interest_weight = 1;
+  double lod_interest_weight = 1;  // factor on the levels of regions of interest
+  // Time of a frame while the camera moves; 0: no limit. Smaller: smoother motion, coarser images.
   double lod_frame_ms = 0;
   Occlusion occlusion = Occlusion::kAuto;
   RayMode ray_mode = RayMode::kExact;
+  // RayMode::kMultires: largest distance between a cell and the surface, in the image. Smaller: finer, slower.
   double ray_cell_px = 1;
-  int samples = 1;
-  bool smooth_edges = true;
+  int samples = 1;           // colour samples in each pixel; more: smoother edges, slower
+  bool smooth_edges = true;  // smooths stair steps where there is one sample in each pixel
   Inspect inspect = Inspect::kNone;
 
   bool operator==(const SettingsValues&) const = default;
@@ -69,11 +85,11 @@ struct SettingsValues : Appearance, Overlays {
 
 enum class SettingType { kNumber, kInteger, kChoice, kTable, kText };
 
-// What `vpe settings` shows of a key.
+// Describes a key for lists, help texts and panels.
 struct SettingInfo {
   std::string_view key;
   SettingType type = SettingType::kNumber;
-  double min = 0;  // numbers and integers, both ends allowed
+  double min = 0;  // numbers and integers; both ends are allowed
   double max = 0;
   std::vector<std::string_view> choices;  // words allowed, for kChoice
   std::string grammar;                    // what is allowed, for kTable and kText
@@ -82,20 +98,23 @@ struct SettingInfo {
   std::string_view meaning;
 };
 
-// A value of every key. Regular type; functions of one object follow the usual const rule for threads.
+// Holds a value of every key. Regular type. Different threads may use different objects, and the const members
+// of one object.
 class Settings {
  public:
-  // All keys in the order in which people should read them.
+  // Returns all keys by their current names, in the order in which people should read them.
   static std::span<const SettingInfo> list();
 
-  // Sets one key from text. Returns what is wrong, empty when all is well; on an error nothing changes.
-  // An unknown key's error names the keys that are spelled nearly so, a bad value's error what is allowed.
+  // Sets one key from text. Accepts former names of keys and values (former_names.h). Returns "", or what is
+  // wrong; then nothing changes. The message for an unknown key names the keys that are spelled nearly like it,
+  // the message for a bad value what is allowed.
   [[nodiscard]] std::string set(std::string_view key, std::string_view text);
 
-  // The same from "KEY=VALUE".
+  // Does the same from "KEY=VALUE".
   [[nodiscard]] std::string assign(std::string_view assignment);
 
-  // The value as text that set() reads back to the same bits; nothing for an unknown key.
+  // Returns the value as text that set() reads back to the same bits, or nullopt for an unknown key. Accepts
+  // former names of keys; values have their current names.
   std::optional<std::string> get(std::string_view key) const;
 
   const SettingsValues& values() const { return values_; }

@@ -16,7 +16,7 @@ double air_m(double planet_radius_m, double camera_height_m, double up_sine, dou
     const double rise = camera_height_m * (2 * planet_radius_m + camera_height_m) + t * (2 * r * up_sine + t);
     return rise / (std::sqrt(planet_radius_m * planet_radius_m + rise) + planet_radius_m);
   };
-  // Where the ray is below the top of the air.
+  // The part of the ray below the top of the air.
   const double top = planet_radius_m + kAirTop_m;
   const double half = -r * up_sine;
   const double under = half * half - (r * r - top * top);

@@ -1,4 +1,4 @@
-// What light and air do to colours: the definition that every backend draws. Pure.
+// Light, haze and gamma: the definitions that both backends draw. All functions are pure.
 #pragma once
 
 #include <array>
@@ -6,58 +6,59 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "mars/sources/source.h"
+#include "vpe/base/rgb.h"
 #include "vpe/core/appearance/appearance.h"
 
 namespace vpe::core {
 
-// Colour, 0 to 255, of ground that shows no other.
+// The colour, 0 to 255, of ground that shows no value and no imagery.
 inline constexpr glm::dvec3 kPlainGround{178, 142, 112};
 
-// Factor on a colour: the square root, which stands for a display's gamma, of ambient + diffuse * incidence,
-// where incidence is the cosine between normal and sun, 0 where that is negative or the sun is hidden. More
-// than 1 is possible; colours are cut at 255 at the very end.
+// Returns the factor on a colour: the square root, which stands for a display's gamma, of ambient + diffuse *
+// incidence. `incidence` is the cosine between normal and sun, or 0 if that is negative or the sun is hidden.
+// The factor may exceed 1; colours are clipped at 255 at the very end.
 double light(double ambient, double diffuse, double incidence);
 
-// Of Koschmieder's law: -ln 0.02.
+// The constant of Koschmieder's law, -ln 0.02.
 inline constexpr double kKoschmieder = 3.912;
 
-// Dust thins out with height: by e every kAirScale_m above the sphere.
+// The density of dust falls by e for every kAirScale_m above the sphere, and is 0 above kAirTop_m.
 inline constexpr double kAirScale_m = 11000;
-inline constexpr double kAirTop_m = 6 * kAirScale_m;  // nothing above
+inline constexpr double kAirTop_m = 6 * kAirScale_m;
 
-// Six points and weights of Gauss and Legendre on [0, 1] carry air_m(); the other half lies opposite.
+// Points and weights of the six-point Gauss-Legendre rule on [0, 1] that air_m() uses; the other half is
+// symmetric.
 inline constexpr std::array<double, 3> kAirPoints{0.033765242898423987, 0.169395306766867743,
                                                   0.380690406958401546};
 inline constexpr std::array<double, 3> kAirWeights{0.0856622461895851725, 0.1803807865240693038,
                                                    0.2339569672863455237};
 
-// How long a way through air as dense as at the sphere dims as much as the way from a camera to a point: the
-// integral of exp(-height / kAirScale_m) over the part of it below kAirTop_m. up_sine: of the direction over
-// the camera's horizontal. Relative error at most kAirError (and a micrometre) from eyes between -8 km and ten
-// radii, to any point above -8 km; over a limb (the way falls and rises again) kAirLimbError, with which no
-// colour is 1/255 off.
+// Returns the length of a path through air as dense as at the sphere that dims as much as the path from a
+// camera to a point: the integral of exp(-height / kAirScale_m) over the part below kAirTop_m. up_sine is the
+// sine of the direction's elevation at the camera. The relative error is at most kAirError (and a micrometre)
+// for cameras between -8 km and ten radii and points above -8 km; over a limb, where the path falls and rises
+// again, it is at most kAirLimbError, which changes no colour by 1/255.
 inline constexpr double kAirError = 1e-5;
 inline constexpr double kAirLimbError = 0.01;
 double air_m(double planet_radius_m, double camera_height_m, double up_sine, double distance_m);
 
-// What is left of a colour's contrast behind so much air: 2 % at the visibility (exp(-kKoschmieder air / V)); 1
-// for visibility 0, clear air.
+// Returns the share of a colour's contrast that is left behind this much air: exp(-kKoschmieder air /
+// visibility), which is 2 % at the visibility. Returns 1 for visibility 0, clear air.
 double transmittance(double air_m, double visibility_m);
 
-// Colour of dust in full light.
+// The colour of dust in full light.
 inline constexpr glm::dvec3 kDust{212, 173, 135};
 
-// Dust is dark where the sun stands below kDawnSine, in full light above kDaySine (sines of its height); kNight
-// of the light is always left.
+// Dust is dark if the sine of the sun's elevation is below kDawnSine, and in full light above kDaySine. The
+// share kNight of the light always remains.
 inline constexpr double kDawnSine = -0.15;
 inline constexpr double kDaySine = 0.3;
 inline constexpr double kNight = 0.08;
 
-// Colour that haze puts over ground where the sun stands so high (sine).
+// Returns the colour that haze adds to ground for this sine of the sun's elevation.
 glm::dvec3 haze_colour(double sun_sine);
 
-// x^(1 / gamma) on every channel, in place.
+// Replaces each channel x by x^(1 / gamma).
 void apply_gamma(std::span<base::Rgb> colours, double gamma);
 
 }  // namespace vpe::core

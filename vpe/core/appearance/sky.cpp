@@ -22,7 +22,7 @@ glm::dvec3 sky_colour(const glm::dvec3& camera_m, const glm::dvec3& ray, const g
   const double slope = glm::dot(ray, up);
   const double height = std::max(camera_radius - planet_radius_m, 0.0);
   const double r = planet_radius_m + height;
-  // Height of the lowest point of the ray ahead; written without the difference of two radii.
+  // The lowest height of the ray ahead, computed without the difference of two radii.
   double lowest = height;
   if (slope < 0.0) {
     const double drop = slope * slope * r / (1.0 + std::sqrt(std::max(1.0 - slope * slope, 0.0)));

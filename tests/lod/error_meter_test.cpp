@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "lod/mesh/mesh.h"
+#include "lod/mesh/error_meter.h"
 #include "tests/lod/mesh_terrain.h"
 #include "tests/support/support.h"
 
@@ -52,7 +52,8 @@ Posts exaggerated(Posts posts, double x) {
   return posts;
 }
 
-// Largest |mesh - S| over points of all mesh triangles on the fine tile: corners, edges and insides.
+// Returns the largest |mesh - S| over points of all mesh triangles on the fine tile: corners, edges and
+// interiors.
 double brute_m(const Case& c, double x, int steps) {
   const Posts mesh_posts = exaggerated(c.posts, x);
   const Posts fine = exaggerated(c.fine, x);
@@ -85,7 +86,7 @@ double brute_m(const Case& c, double x, int steps) {
   return worst;
 }
 
-TEST(MeshMeasure, BoundsEveryDirectionAndIsNotLazy) {
+TEST(ErrorMeter, BoundsEveryDirectionAndIsNotLazy) {
   test_support::Random random(17);
   std::vector<double> ratios;
   for (int round = 0; round < 40; ++round) {
@@ -103,7 +104,7 @@ TEST(MeshMeasure, BoundsEveryDirectionAndIsNotLazy) {
   RecordProperty("median_percent", static_cast<int>(100 * ratios[ratios.size() / 2]));
 }
 
-TEST(MeshMeasure, BoundHoldsAtEveryExaggeration) {
+TEST(ErrorMeter, BoundHoldsAtEveryExaggeration) {
   test_support::Random random(23);
   std::vector<double> ratios;
   for (int round = 0; round < 24; ++round) {
@@ -130,7 +131,7 @@ TEST(MeshMeasure, BoundHoldsAtEveryExaggeration) {
   EXPECT_GE(ratios[ratios.size() / 2], 0.5);
 }
 
-TEST(MeshMeasure, ErrorBoundAtItsFixedPoints) {
+TEST(ErrorMeter, ErrorBoundAtItsFixedPoints) {
   const ErrorTerms terms{10.0, 4.0, 12.0};
   EXPECT_EQ(error_bound(terms, 1.0, -5000, 5000, kRadius), 12.0);
   EXPECT_EQ(error_bound(terms, 0.0, -5000, 5000, kRadius), 4.0);
@@ -139,8 +140,8 @@ TEST(MeshMeasure, ErrorBoundAtItsFixedPoints) {
   EXPECT_TRUE(std::isinf(error_bound(terms, 1000.0, -8000, 0, kRadius)));
 }
 
-// One long hump that second order alone makes: relief at exaggeration 1 says little, the bound must hold.
-TEST(MeshMeasure, SecondOrderIsNeeded) {
+// One long hump that second order alone makes: height error at exaggeration 1 says little, the bound must hold.
+TEST(ErrorMeter, SecondOrderIsNeeded) {
   const TileKey key{mars::Face::kPlusX, 5, 16, 16};
   Case c;
   c.key = key;
@@ -172,7 +173,7 @@ TEST(MeshMeasure, SecondOrderIsNeeded) {
   EXPECT_GT(truth, 0.2 * bound);
 }
 
-TEST(MeshMeasure, SmoothSphereHasTheClosedFormOfAChord) {
+TEST(ErrorMeter, SmoothSphereHasTheClosedFormOfAChord) {
   for (const int level : {0, 1, 2, 4, 6, 8, 11}) {
     const TileKey key{mars::Face::kPlusY, level, (1 << level) / 3, (1 << level) / 2};
     const Posts fine = lod_test::make_posts(key, 64, [](int, int) { return 0.0; });
@@ -201,7 +202,7 @@ TEST(MeshMeasure, SmoothSphereHasTheClosedFormOfAChord) {
   }
 }
 
-TEST(MeshMeasure, FullGridHasNoError) {
+TEST(ErrorMeter, FullGridHasNoError) {
   for (const int level : {0, 4, 9}) {
     const TileKey key{mars::Face::kMinusZ, level, (1 << level) / 2, 0};
     const Posts posts = ground(key, 32, 2);
@@ -213,8 +214,8 @@ TEST(MeshMeasure, FullGridHasNoError) {
   }
 }
 
-// One post moved on the full grid: the error is that move, seen by every tile that holds the post.
-TEST(MeshMeasure, FindsAKnownError) {
+// One post is moved on the full grid: every tile that contains the post measures that displacement.
+TEST(ErrorMeter, FindsAKnownError) {
   const TileKey key{mars::Face::kPlusX, 7, 40, 80};
   const Posts posts = ground(key, 64, 9);
   const TileMesh mesh = mesh_full(64);
@@ -235,8 +236,8 @@ TEST(MeshMeasure, FindsAKnownError) {
   }
 }
 
-// What a parent's terms are made of: over all tiles below, and S over a tile is the same from any of them.
-TEST(MeshMeasure, TermsOverATileIncludeThoseOverItsParts) {
+// A parent's terms are those over all tiles below it, and S over a tile is the same from any of them.
+TEST(ErrorMeter, TermsOverATileIncludeThoseOverItsParts) {
   const TileKey key{mars::Face::kPlusZ, 5, 13, 20};
   const Posts coarse = ground(key, 64, 12);
   const TileMesh mesh = mesh_greedy(coarse, choose_borders(coarse, 200.0, kRadius), 200.0, kRadius);
@@ -255,7 +256,7 @@ TEST(MeshMeasure, TermsOverATileIncludeThoseOverItsParts) {
   EXPECT_NEAR(parts.sagitta_m, whole.sagitta_m, 1e-3 * whole.sagitta_m);
 }
 
-TEST(MeshMeasure, RefusesWhatDoesNotFit) {
+TEST(ErrorMeter, RefusesWhatDoesNotFit) {
   const TileKey key{mars::Face::kPlusX, 3, 2, 2};
   const TileMesh mesh = mesh_full(16);
   const std::vector<double> heights(mesh.vertices.size(), 0.0);

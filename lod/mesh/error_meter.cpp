@@ -1,3 +1,5 @@
+#include "lod/mesh/error_meter.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -29,6 +31,7 @@ void raise(T& largest, T value) {
   largest = size > largest ? size : largest;
 }
 
+// Visits the vertices of the overlay of a mesh with S over one finest tile.
 class Overlay {
  public:
   Overlay(const CoarseMesh& mesh, const FineGrid& fine) : mesh_(mesh), fine_(fine), side_(fine.u.count()) {}
@@ -43,7 +46,7 @@ class Overlay {
     const int turn = fine_.v.first(middle.v);
     const int end = fine_.v.first(high.v);
     const auto rows = [&](int from, int to, const CoarseMesh::Vertex& a, const CoarseMesh::Vertex& b) {
-      if (from >= to) return;  // level edges have no slope
+      if (from >= to) return;  // horizontal edges have no slope
       const double half = (b.u - a.u) / (b.v - a.v);
       for (int j = from; j < to; ++j) {
         const double v = fine_.v[j];
@@ -60,8 +63,8 @@ class Overlay {
     rows(turn, end, middle, high);
   }
 
-  // Where a mesh edge crosses lines and diagonals, cell by cell. Ends of slanting edges are posts of S, which
-  // the triangles round them or the north and east borders have looked at.
+  // Visits the points where a mesh edge crosses lines and diagonals, cell by cell. The ends of slanting edges
+  // are posts of S, which the triangles around them or the north and east borders have visited.
   void add_crossings(const CoarseMesh::Segment& s) {
     const LineTable& u = fine_.u;
     const LineTable& v = fine_.v;
@@ -150,7 +153,7 @@ class Overlay {
 
   static double largest(Pair pair) { return std::max(pair[0], pair[1]); }
 
-  // Distance total and sag of depths W (mesh) and W (S), lengths n (mesh) and n (S) in a direction of length n.
+  // Adds the distances in a direction of length n, from the depths W of mesh and S and their lengths n.
   template <class T>
   void add(T n, T mesh_depth, T depth, T mesh_length, T length, T& total_most, T& sagitta_most,
            T& height_error_most) const {
@@ -194,7 +197,7 @@ class Overlay {
     }
   }
 
-  // A point of a mesh edge at (x, y) of cell (i, j).
+  // Adds a point of a mesh edge at (x, y) of cell (i, j).
   void add_point(const CoarseMesh::Segment& s, const Point& p, int i, int j, double x, double y) {
     const std::size_t at =
         static_cast<std::size_t>(j) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(i);
@@ -210,7 +213,7 @@ class Overlay {
         facet(fine_.depth), s.from.length + p.t * (s.to.length - s.from.length), facet(fine_.length));
   }
 
-  // How much a mesh triangle's depths vary over one cell.
+  // Records how much a mesh triangle's depths vary over one cell.
   void vary(const CoarseMesh::Triangle& t) {
     const auto& [a, b, c] = t.corner;
     const auto variation = [&](double du, double dv, double fa, double fb, double fc) {
@@ -233,8 +236,6 @@ class Overlay {
   double length_variation_ = 0;
 };
 
-}  // namespace
-
 ErrorTerms measure_overlay(const CoarseMesh& mesh, const FineGrid& fine) {
   const int depth = fine.key.level - mesh.key.level;
   const auto bits = [](int intervals) { return std::countr_zero(static_cast<unsigned>(intervals)); };
@@ -245,9 +246,9 @@ ErrorTerms measure_overlay(const CoarseMesh& mesh, const FineGrid& fine) {
                                 " over " + std::to_string(mesh.intervals));
   }
   if (fine.radius_m != mesh.radius_m)
-    throw std::invalid_argument("ErrorMeter: mesh and posts have other radii");
+    throw std::invalid_argument("ErrorMeter: mesh and posts have different planet radii");
 
-  // The fine tile in units of the mesh's grid, rounded outwards.
+  // The extent of the fine tile in units of the mesh's grid, rounded outwards.
   const auto span = [&](std::int32_t fine_index, std::int32_t index) {
     const std::int64_t at =
         (static_cast<std::int64_t>(fine_index) - (static_cast<std::int64_t>(index) << depth)) * mesh.intervals;
@@ -270,11 +271,48 @@ ErrorTerms measure_overlay(const CoarseMesh& mesh, const FineGrid& fine) {
     if (!touches(box)) continue;
     const CoarseMesh::Segment& s = mesh.segments[k];
     const bool ascending = (s.to.u - s.from.u) * (s.to.v - s.from.v) > 0.0;
-    // A diagonal of S itself.
+    // Such an edge is a diagonal of S itself.
     if (same_grid && ascending && box.i1 - box.i0 == 1 && box.j1 - box.j0 == 1) continue;
     overlay.add_crossings(s);
   }
   return overlay.terms();
+}
+
+}  // namespace
+
+struct FinePosts::Prepared : FineGrid {
+  using FineGrid::FineGrid;
+};
+
+FinePosts::FinePosts(const Posts& posts, double radius_m)
+    : prepared_(std::make_unique<const Prepared>(posts, radius_m)) {}
+FinePosts::~FinePosts() = default;
+FinePosts::FinePosts(FinePosts&&) noexcept = default;
+FinePosts& FinePosts::operator=(FinePosts&&) noexcept = default;
+const FineGrid& FinePosts::grid() const { return *prepared_; }
+
+struct ErrorMeter::Prepared : CoarseMesh {
+  using CoarseMesh::CoarseMesh;
+};
+
+ErrorMeter::ErrorMeter(const TileKey& key, const TileMesh& mesh, std::span<const double> vertex_height_m,
+                       double radius_m)
+    : prepared_(std::make_unique<const Prepared>(key, mesh, vertex_height_m, radius_m)) {}
+ErrorMeter::~ErrorMeter() = default;
+ErrorMeter::ErrorMeter(ErrorMeter&&) noexcept = default;
+ErrorMeter& ErrorMeter::operator=(ErrorMeter&&) noexcept = default;
+
+ErrorTerms ErrorMeter::measure(const FinePosts& fine) const {
+  return measure_overlay(*prepared_, *fine.prepared_);
+}
+
+ErrorTerms ErrorMeter::measure(const Posts& fine) const {
+  return measure(FinePosts(fine, prepared_->radius_m));
+}
+
+ErrorTerms measure_error(const TileKey& key, const TileMesh& mesh, std::span<const double> vertex_height_m,
+                         const Posts& fine, double radius_m) {
+  return ErrorMeter(key, mesh, vertex_height_m, radius_m).measure(fine);
 }
 
 }  // namespace lod

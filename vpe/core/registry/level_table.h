@@ -1,10 +1,11 @@
 // A lookup table from a distance to levels of detail, and its text: "X:LEVELS,X:LEVELS,...".
 //
-// Each row holds from its x on, up to the next row's; the first holds below its x too. x rises strictly from
+// Each row holds from its x up to the next row's x; the first row holds below its x too. x rises strictly from
 // row to row and is finite and not negative; levels are within -kMaxLevels..kMaxLevels. "none" is the table
 // without rows.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@ struct LevelTableLimits {
   static constexpr double kMaxLevels = 30;
 };
 
+// One row of a table.
 struct LevelStep {
   double from_x = 0;
   double levels = 0;
@@ -25,16 +27,16 @@ struct LevelStep {
 };
 using LevelTable = std::vector<LevelStep>;
 
-// What a bad table's error says is allowed.
+// Returns what is allowed, for messages.
 std::string level_table_grammar();
 
-// Nothing for any other text.
+// Returns the table of a text, or nullopt if the text is not one.
 std::optional<LevelTable> parse_level_table(std::string_view text);
 
-// parse_level_table(format_level_table(table)) == table, to the bit.
+// Returns the text of a table: parse_level_table(format_level_table(table)) == table, to the bit.
 std::string format_level_table(const LevelTable& table);
 
-// The table has rows; x >= 0.
+// Returns the levels at x >= 0. Expects a table with rows.
 double levels_at(const LevelTable& table, double x);
 
 }  // namespace vpe::core

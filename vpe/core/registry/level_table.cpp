@@ -1,4 +1,4 @@
-#include "vpe/core/appearance/level_table.h"
+#include "vpe/core/registry/level_table.h"
 
 #include <algorithm>
 #include <cmath>
