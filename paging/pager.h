@@ -1,4 +1,4 @@
-// Loads what is wanted, on threads of its own, best first.
+// Loads pages on threads of its own, the most urgent first.
 #pragma once
 
 #include <algorithm>
@@ -21,28 +21,36 @@
 namespace paging {
 
 struct PagerCounts {
-  std::size_t wanted = 0;  // asked for last, not begun
+  std::size_t wanted = 0;  // in the last request list, not started
   std::size_t loading = 0;
   std::size_t loaded = 0;  // not taken yet
   std::size_t bytes = 0;   // of what is loaded
   std::size_t failed = 0;  // ever
 };
 
-// A page is in one of these states, or in none (absent): wanted -> loading -> loaded -> (taken by the owner);
-// or failed. The owner says again and again all that it wants; what it wants no longer is not begun. Loaders
-// take what is most urgent at the moment they are free, and rest while `limit_bytes` of loaded pages wait to be
-// taken (one page may pass the limit). A load that throws makes its page failed, with the exception's words,
-// until the pager ends; std::bad_alloc is thrown again by take() and wait().
+// Loads pages in the background for one owner. A page is in one of these states, or in none (absent): wanted
+// -> loading -> loaded -> (taken by the owner); or failed. Each call to want() replaces the request list.
+// Requests no longer listed are dropped unless already started. A free loader starts the most urgent request,
+// and waits while `limit_bytes` of loaded pages are not taken yet (one page may exceed the limit). A load that
+// throws makes its page failed, with the exception's message, until the pager ends; std::bad_alloc is thrown
+// again by take() and wait().
 //
-// Thread rule: one owner; `load` is called by any number of threads at once, never under the pager's lock. The
-// destructor waits for the loads that have begun. Where the system refuses threads, wait() and take() load
+// Thread rule: one owner; any number of threads call `load` at once, never under the pager's lock. The
+// destructor waits for loads that have started. Where the system refuses threads, wait() and take() load
 // themselves.
+//
+// Typical usage:
+//   Pager<TileKey, Page, TileKeyHash> pager(load, 2, 64 << 20);
+//   for (;;) {  // each frame
+//     pager.want(requests);
+//     for (auto& loaded : pager.take(8 << 20)) upload(loaded.key, std::move(loaded.value));
+//   }
 template <typename Key, typename Value, typename Hash>
 class Pager {
  public:
   struct Want {
     Key key;
-    double urgency = 0;  // larger is sooner; of equal ones the earlier in the list
+    double urgency = 0;  // larger is sooner; equal ones load in the order of the list
   };
   struct Loaded {
     Key key;
@@ -56,7 +64,7 @@ class Pager {
     try {
       for (int n = 0; n < threads; ++n) threads_.emplace_back([this] { serve(); });
     } catch (const std::system_error&) {
-      // Fewer will do.
+      // The threads that exist are enough.
     }
   }
   ~Pager() {
@@ -70,7 +78,7 @@ class Pager {
   Pager(const Pager&) = delete;
   Pager& operator=(const Pager&) = delete;
 
-  // Replaces all that was wanted before.
+  // Replaces the request list.
   void want(std::vector<Want> wants) {
     std::stable_sort(wants.begin(), wants.end(),
                      [](const Want& a, const Want& b) { return a.urgency > b.urgency; });
@@ -83,7 +91,7 @@ class Pager {
     work_.notify_all();
   }
 
-  // What has been loaded, in the order of its completion, up to max_bytes (at least one page if there is any).
+  // Returns loaded pages in the order of their completion, up to max_bytes (at least one page if there is any).
   std::vector<Loaded> take(std::size_t max_bytes) {
     std::vector<Loaded> out;
     {
@@ -96,12 +104,12 @@ class Pager {
         bytes += loaded_[count++].bytes;
       }
       for (std::size_t n = 0; n < count; ++n) {
-        begun_.erase(loaded_[n].key);
+        started_.erase(loaded_[n].key);
         out.push_back(std::move(loaded_[n]));
       }
       loaded_.erase(loaded_.begin(), loaded_.begin() + static_cast<std::ptrdiff_t>(count));
       bytes_ -= bytes;
-      // A taken page is the owner's; it says so by not wanting it.
+      // A taken page belongs to the owner, who does not request it again while it is kept.
       drop_taken(out);
     }
     work_.notify_all();
@@ -110,14 +118,14 @@ class Pager {
 
   enum class Outcome { kSomething, kNothingLeft, kTimeout };
 
-  // Until something can be taken or has failed since the last call, nothing is under way or wanted any more, or
-  // the deadline has passed.
+  // Waits until a page can be taken or has failed since the last call, nothing is loading or wanted any more,
+  // or the deadline has passed.
   Outcome wait(Clock::time_point deadline) {
     std::unique_lock lock(mutex_);
     for (;;) {
       rethrow();
-      if (!loaded_.empty() || news_of_failure_) {
-        news_of_failure_ = false;
+      if (!loaded_.empty() || has_new_failure_) {
+        has_new_failure_ = false;
         return Outcome::kSomething;
       }
       if (loading_ == 0 && next_ >= wants_.size()) return Outcome::kNothingLeft;
@@ -127,13 +135,13 @@ class Pager {
       } else if (deadline == Clock::time_point::max()) {
         done_.wait(lock);
       } else if (done_.wait_until(lock, deadline) == std::cv_status::timeout && loaded_.empty() &&
-                 !news_of_failure_) {
+                 !has_new_failure_) {
         return Outcome::kTimeout;
       }
     }
   }
 
-  // Why a page could not be loaded; nothing when it has not failed.
+  // Returns why a page could not be loaded, or nullopt when it has not failed.
   std::optional<std::string> failure(const Key& key) const {
     const std::lock_guard lock(mutex_);
     const auto at = failed_.find(key);
@@ -150,11 +158,11 @@ class Pager {
   }
 
  private:
-  bool known(const Key& key) const { return begun_.count(key) != 0 || failed_.count(key) != 0; }
+  bool known(const Key& key) const { return started_.count(key) != 0 || failed_.count(key) != 0; }
   void skip_known() {
     while (next_ < wants_.size() && known(wants_[next_].key)) ++next_;
   }
-  bool can_begin() const { return next_ < wants_.size() && bytes_ < limit_; }
+  bool can_start() const { return next_ < wants_.size() && bytes_ < limit_; }
 
   void drop_taken(const std::vector<Loaded>& taken) {
     if (taken.empty()) return;
@@ -171,24 +179,24 @@ class Pager {
     if (fatal_) std::rethrow_exception(std::exchange(fatal_, nullptr));
   }
 
-  // Loads what is most urgent; the lock is held before and after.
+  // Loads the most urgent page; the lock is held before and after.
   void load_one(std::unique_lock<std::mutex>& lock) {
     skip_known();
-    if (!can_begin()) return;
+    if (!can_start()) return;
     const Key key = wants_[next_++].key;
-    begun_.insert(key);
+    started_.insert(key);
     skip_known();
     ++loading_;
     lock.unlock();
     std::optional<std::pair<Value, std::size_t>> value;
-    std::string trouble;
+    std::string problem;
     std::exception_ptr fatal;
     try {
       value = load_(key);
     } catch (const std::bad_alloc&) {
       fatal = std::current_exception();
     } catch (const std::exception& e) {
-      trouble = e.what();
+      problem = e.what();
     }
     lock.lock();
     --loading_;
@@ -196,12 +204,12 @@ class Pager {
       bytes_ += value->second;
       loaded_.push_back({key, std::move(value->first), value->second});
     } else {
-      begun_.erase(key);
+      started_.erase(key);
       if (fatal) {
         fatal_ = fatal;
       } else {
-        failed_.emplace(key, std::move(trouble));
-        news_of_failure_ = true;
+        failed_.emplace(key, std::move(problem));
+        has_new_failure_ = true;
       }
     }
     done_.notify_all();
@@ -210,7 +218,7 @@ class Pager {
   void serve() {
     std::unique_lock lock(mutex_);
     for (;;) {
-      work_.wait(lock, [this] { return stopping_ || (skip_known(), can_begin()); });
+      work_.wait(lock, [this] { return stopping_ || (skip_known(), can_start()); });
       if (stopping_) return;
       load_one(lock);
     }
@@ -222,14 +230,14 @@ class Pager {
   std::condition_variable work_;
   std::condition_variable done_;
   std::vector<Want> wants_;
-  std::size_t next_ = 0;                 // the first that nobody has begun
-  std::unordered_set<Key, Hash> begun_;  // loading or loaded
+  std::size_t next_ = 0;                   // the first one that has not been started
+  std::unordered_set<Key, Hash> started_;  // loading or loaded
   std::vector<Loaded> loaded_;
   std::unordered_map<Key, std::string, Hash> failed_;
   std::exception_ptr fatal_;
   std::size_t bytes_ = 0;
   std::size_t loading_ = 0;
-  bool news_of_failure_ = false;
+  bool has_new_failure_ = false;
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };

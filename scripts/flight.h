@@ -1,4 +1,4 @@
-// Flights as text: waypoints, where the head looks, settings and regions of interest at times.
+// Flights as text: waypoints, head angles, settings and regions of interest at times.
 //
 // One command a line, `#` starts a comment, words are split by blanks, lines end with LF or CRLF, UTF-8 (a byte
 // order mark is skipped). Degrees, metres, seconds from the start; numbers are the same in every locale.
@@ -8,15 +8,19 @@
 //   at 0   pose lon=-74 lat=-13.5 alt=12000 yaw=90 pitch=-15 roll=0
 //   at 8   pose lon=-68 lat=-13.2 height=3000 yaw=100 pitch=-10 roll=-20
 //   at 8   set mode=textured exaggeration=2   keys of the settings registry (vpe/core/appearance/settings.h)
-//   at 9   set overlay.title="West of it"     a value with blanks or # stands in quotes; inside, a backslash keeps the
-//                                            next character as it is
-//   at 10  look yaw=40 pitch=5                head on its platform
+//   at 9   set overlay.title="West of it"     a value with blanks or # needs quotes; inside them, a backslash
+//                                             keeps the next character unchanged
+//   at 10  look yaw=40 pitch=5                head angles relative to the platform
 //   at 12  interest lon=-67 lat=-13 radius=40000 levels=+1
-//   at 20  end                                the last command; left out: the flight ends at the last time
-//   given
+//   at 20  end                                the last command; without it, the flight ends at its last time
 //
 // `pose` needs lon, lat and one of alt (above the sphere) and height (above the terrain); angles left out are
-// 0. Times never run backwards; there is one pose and one look a time, and at least one pose in all.
+// 0. Times never run backwards. There is at most one pose and one look at a time, and at least one pose in all.
+//
+// Typical usage:
+//   const ParsedFlight parsed = parse_flight(text, "tour.flight");
+//   for (const FlightError& error : parsed.errors) print(to_string(error));
+//   if (parsed.flight) write(to_text(*parsed.flight));
 #pragma once
 
 #include <optional>
@@ -38,6 +42,7 @@ struct FlightLimits {
   static constexpr int kMaxLevels = vpe::core::InterestLimits::kMaxLevels;
 };
 
+// Holds the `view` line: how the flight is filmed.
 struct FlightView {
   double fov_deg = 60;  // vertical
   int width = 1280;
@@ -47,11 +52,12 @@ struct FlightView {
   bool operator==(const FlightView&) const = default;
 };
 
+// Holds a `pose` line.
 struct Waypoint {
   double time_s = 0;
   double lon_deg = 0;
   double lat_deg = 0;
-  double up_m = 0;  // alt, or height when above_terrain
+  double up_m = 0;  // alt, or height if above_terrain
   bool above_terrain = false;
   double yaw_deg = 0;
   double pitch_deg = 0;
@@ -60,15 +66,17 @@ struct Waypoint {
   bool operator==(const Waypoint&) const = default;
 };
 
-struct Look {
+// Holds a `look` line: the angles of the head (mars::HeadAngles) at a time.
+struct HeadCommand {
   double time_s = 0;
   double yaw_deg = 0;
   double pitch_deg = 0;
   double roll_deg = 0;
 
-  bool operator==(const Look&) const = default;
+  bool operator==(const HeadCommand&) const = default;
 };
 
+// Holds one setting of a `set` line.
 struct SetCommand {
   double time_s = 0;
   std::string key;
@@ -77,60 +85,59 @@ struct SetCommand {
   bool operator==(const SetCommand&) const = default;
 };
 
-// From a time on, a region of interest (core::InterestRegion).
-struct Interest {
+// Holds an `interest` line: a region of interest from a time on.
+struct InterestCommand {
   double time_s = 0;
-  double lon_deg = 0;
-  double lat_deg = 0;
-  double radius_m = 0;
-  int levels = 0;
+  vpe::core::InterestRegion region;
 
-  bool operator==(const Interest&) const = default;
+  bool operator==(const InterestCommand&) const = default;
 };
 
-// Each list is in ascending order of time; parse_flight() gives nothing else.
+// Holds a whole flight. Each list is in ascending order of time; parse_flight() ensures it.
 struct Flight {
   FlightView view;
   std::vector<Waypoint> waypoints;
-  std::vector<Look> looks;
+  std::vector<HeadCommand> heads;
   std::vector<SetCommand> sets;
-  std::vector<Interest> interests;
+  std::vector<InterestCommand> interests;
   std::optional<double> end_s;
 
   bool operator==(const Flight&) const = default;
 };
 
-// The end, or the last time given.
+// Returns the time of the end, or the last time in the flight.
 double duration_s(const Flight& flight);
 
+// Describes one bad line.
 struct FlightError {
   std::string file;
   int line = 0;          // from 1
   std::string expected;  // what was expected and what was found
 };
 
-// "FILE:LINE: expected ..."
+// Returns "FILE:LINE: expected ...".
 std::string to_string(const FlightError& error);
 
-// Either a flight and no errors, or no flight and at least one error (the first kMaxErrors of them).
+// Holds either a flight and no errors, or no flight and at least one error (the first kMaxErrors of them).
 struct ParsedFlight {
   static constexpr int kMaxErrors = 20;
   std::optional<Flight> flight;
   std::vector<FlightError> errors;
 };
 
-// Any text is allowed, also binary rubbish. `name` is what errors call the file.
+// Parses any text, also binary data. `name` is the file's name in errors.
 ParsedFlight parse_flight(std::string_view text, const std::string& name);
 
-// parse_flight(to_text(flight)) == flight, for every flight that parse_flight() can give.
+// Writes a flight as text. parse_flight(to_text(flight)) == flight for every flight that parse_flight()
+// returns.
 std::string to_text(const Flight& flight);
 
-// Single lines of the format, with their newline: what to_text() and logs are made of.
+// Return single lines of the format, with their newline. to_text() and logs consist of them.
 std::string to_line(const FlightView& view);
 std::string to_line(const Waypoint& waypoint);
-std::string to_line(const Look& look);
+std::string to_line(const HeadCommand& head);
 std::string to_line(const SetCommand& set);
-std::string to_line(const Interest& interest);
+std::string to_line(const InterestCommand& interest);
 std::string end_line(double time_s);
 std::string version_line();
 

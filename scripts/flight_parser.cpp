@@ -20,7 +20,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// What was found, fit for a terminal whatever bytes it holds.
+// Quotes what was found. Bytes that a terminal might interpret are replaced.
 std::string quote(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string quoted = "\"";
@@ -33,7 +33,7 @@ std::string quote(std::string_view text) {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
 
-// The words of a line, without quotes; `fault` says what was expected where a quote is wrong.
+// Splits a line into words without their quotes. Sets `fault` to what was expected when a quote is wrong.
 Words split_words(std::string_view line, std::string& fault) {
   Words words;
   for (;;) {
@@ -78,7 +78,7 @@ std::optional<KeyValue> split_key_value(std::string_view word) {
   return KeyValue{word.substr(0, equals), word.substr(equals + 1)};
 }
 
-// A number that a command may carry.
+// Describes a number that a command may have.
 struct Field {
   std::string_view key;
   double min = 0;
@@ -267,10 +267,10 @@ class Parser {
     if (!read_fields(words, fields)) return;
     const auto& [yaw, pitch, roll] = fields;
     if (words.empty()) return fail("at least one of yaw, pitch, roll after \"look\"");
-    if (!flight_.looks.empty() && flight_.looks.back().time_s == time_s_) {
+    if (!flight_.heads.empty() && flight_.heads.back().time_s == time_s_) {
       return fail("one look at " + format_number(time_s_) + " s, found a second one");
     }
-    flight_.looks.push_back({time_s_, yaw.value, pitch.value, roll.value});
+    flight_.heads.push_back({time_s_, yaw.value, pitch.value, roll.value});
   }
 
   void set(const Words& words) {
@@ -297,7 +297,8 @@ class Parser {
     if (!lon.given || !lat.given || !radius.given || !levels.given) {
       return fail("lon, lat, radius and levels in a region of interest");
     }
-    flight_.interests.push_back({time_s_, lon.value, lat.value, radius.value, static_cast<int>(levels.value)});
+    flight_.interests.push_back(
+        {time_s_, {lon.value, lat.value, radius.value, static_cast<int>(levels.value)}});
   }
 
   void end(const Words& words) {
@@ -306,7 +307,7 @@ class Parser {
     ended_ = true;
   }
 
-  // Reads KEY=NUMBER words into `fields`. False when one of them is wrong.
+  // Reads KEY=NUMBER words into `fields`. Returns false when one of them is wrong.
   bool read_fields(const Words& words, std::span<Field> fields, const char* other_keys = "") {
     const std::size_t errors_before = errors_.size();
     for (const std::string_view word : words) {
@@ -357,7 +358,7 @@ double duration_s(const Flight& flight) {
     if (!commands.empty()) last_s = std::max(last_s, commands.back().time_s);
   };
   include(flight.waypoints);
-  include(flight.looks);
+  include(flight.heads);
   include(flight.sets);
   include(flight.interests);
   return last_s;

@@ -19,7 +19,7 @@ std::string at_line(double time_s, const char* command, Fields fields) {
   return line + "\n";
 }
 
-// In quotes where it would not be read back as one word.
+// Adds quotes where the value would not be read back as one word.
 std::string value_text(const std::string& text) {
   if (text.find_first_of(" \t\r\v\f#\"") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -49,21 +49,21 @@ std::string to_line(const Waypoint& w) {
                   {"roll", w.roll_deg}});
 }
 
-std::string to_line(const Look& look) {
-  return at_line(look.time_s, "look",
-                 {{"yaw", look.yaw_deg}, {"pitch", look.pitch_deg}, {"roll", look.roll_deg}});
+std::string to_line(const HeadCommand& head) {
+  return at_line(head.time_s, "look",
+                 {{"yaw", head.yaw_deg}, {"pitch", head.pitch_deg}, {"roll", head.roll_deg}});
 }
 
 std::string to_line(const SetCommand& set) {
   return "at " + format_number(set.time_s) + " set " + set.key + "=" + value_text(set.text) + "\n";
 }
 
-std::string to_line(const Interest& interest) {
+std::string to_line(const InterestCommand& interest) {
   return at_line(interest.time_s, "interest",
-                 {{"lon", interest.lon_deg},
-                  {"lat", interest.lat_deg},
-                  {"radius", interest.radius_m},
-                  {"levels", interest.levels}});
+                 {{"lon", interest.region.lon_deg},
+                  {"lat", interest.region.lat_deg},
+                  {"radius", interest.region.radius_m},
+                  {"levels", interest.region.levels}});
 }
 
 std::string end_line(double time_s) { return at_line(time_s, "end", {}); }
@@ -74,7 +74,7 @@ std::string to_text(const Flight& flight) {
     for (const auto& command : commands) lines.emplace_back(command.time_s, to_line(command));
   };
   add(flight.waypoints);
-  add(flight.looks);
+  add(flight.heads);
   add(flight.sets);
   add(flight.interests);
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

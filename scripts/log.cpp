@@ -33,17 +33,17 @@ FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view) 
   file_.write(version_line() + to_line(view));
 }
 
-void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& look,
+void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& head,
                       const vpe::core::Settings& settings,
                       std::span<const vpe::core::InterestRegion> interest) {
-  const Look turned{time_s, look.yaw_deg, look.pitch_deg, look.roll_deg};
+  const HeadCommand turned{time_s, head.yaw_deg, head.pitch_deg, head.roll_deg};
   const bool moved =
-      look.yaw_deg != look_.yaw_deg || look.pitch_deg != look_.pitch_deg || look.roll_deg != look_.roll_deg;
+      head.yaw_deg != head_.yaw_deg || head.pitch_deg != head_.pitch_deg || head.roll_deg != head_.roll_deg;
   std::string lines;
-  if (moved && last_frame_s_ && look_.time_s != *last_frame_s_) {
+  if (moved && last_frame_s_ && head_.time_s != *last_frame_s_) {
     // Playback interpolates between look lines: hold the head still up to the frame before it moved.
-    look_.time_s = *last_frame_s_;
-    lines += to_line(look_);
+    head_.time_s = *last_frame_s_;
+    lines += to_line(head_);
   }
   lines += to_line(Waypoint{.time_s = time_s,
                             .lon_deg = pose.lon_deg,
@@ -53,8 +53,8 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAng
                             .pitch_deg = pose.pitch_deg,
                             .roll_deg = pose.roll_deg});
   if (moved) {
-    look_ = turned;
-    lines += to_line(look_);
+    head_ = turned;
+    lines += to_line(head_);
   }
   if (settings != settings_) {
     for (const vpe::core::SettingInfo& info : vpe::core::Settings::list()) {
@@ -64,8 +64,7 @@ void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAng
     settings_ = settings;
   }
   for (; regions_ < interest.size(); ++regions_) {
-    const vpe::core::InterestRegion& r = interest[regions_];
-    lines += to_line(Interest{time_s, r.lon_deg, r.lat_deg, r.radius_m, r.levels});
+    lines += to_line(InterestCommand{time_s, interest[regions_]});
   }
   file_.write(lines);
   last_frame_s_ = time_s;

@@ -1,4 +1,4 @@
-// Writes what happens as a flight: a log that replays.
+// Logs of flights that are flights themselves, so that they can be replayed.
 #pragma once
 
 #include <cstdio>
@@ -15,14 +15,16 @@
 
 namespace scripts {
 
-// A text file that is written line by line. Each line reaches the operating system at once, so that what was
-// written survives a crash. Throws std::runtime_error that names the file, the operation and the system's
-// words.
+// Writes a text file line by line. Each line reaches the operating system at once, so that it survives a crash
+// of the program. Members throw std::runtime_error; the message names the file, the operation and the system's
+// message.
 class LineFile {
  public:
   explicit LineFile(std::filesystem::path path);
-  void write(std::string_view lines);  // with their newlines
-  void close();                        // the destructor closes too, but cannot report
+  // Writes lines that end with newlines.
+  void write(std::string_view lines);
+  // Closes the file. The destructor closes it too, but cannot report errors.
+  void close();
 
  private:
   [[noreturn]] void fail(const char* operation) const;
@@ -31,21 +33,26 @@ class LineFile {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
-// A flight with one pose a frame (`--log F.flight`). At any moment the file is a valid flight, also without
-// end(), once the first frame is written. Played back at the same times it gives the same poses to the bit
-// (scripts/path.h). Errors as LineFile.
+// Writes a flight with one pose for each frame (`--log F.flight`). Once the first frame is written, the file
+// is a valid flight at any moment, also without end(). Replayed at the same times it gives the same poses to
+// the bit (scripts/path.h). Members throw what LineFile throws.
+//
+// Typical usage:
+//   FlightLog log("flight.flight", flight.view);
+//   for (const Frame& f : frames) log.frame(f.time_s, f.state.pose, f.state.head, f.settings);
+//   log.end(duration_s);
 class FlightLog {
  public:
   FlightLog(const std::filesystem::path& path, const FlightView& view);
 
-  // Times ascend. Writes the pose; the head and the settings only where they changed since the last frame.
-  // `interest` are all regions so far: those beyond the last frame's are written. (A flight cannot take a
-  // region back.)
-  void frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& look,
+  // Writes the pose, and head and settings where they have changed since the last frame. Times must ascend.
+  // `interest` are all regions so far; those that the last frame did not have are written. (A flight cannot
+  // remove a region.)
+  void frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& head,
              const vpe::core::Settings& settings, std::span<const vpe::core::InterestRegion> interest = {});
 
-  // A comment line, for people and for programs that know how to read it; playback passes over it. Line ends
-  // become blanks.
+  // Writes a comment line, for people and for programs that can read it. Replay ignores it. Line ends become
+  // blanks.
   void note(std::string_view text);
 
   // Writes the end, at or after the last frame, and closes the file.
@@ -54,9 +61,9 @@ class FlightLog {
  private:
   LineFile file_;
   std::optional<double> last_frame_s_;
-  Look look_{.time_s = -1};       // last one written, or straight ahead
-  vpe::core::Settings settings_;  // last ones written
-  std::size_t regions_ = 0;       // written so far
+  HeadCommand head_{.time_s = -1};  // last one written, or straight ahead
+  vpe::core::Settings settings_;    // last ones written
+  std::size_t regions_ = 0;         // written so far
 };
 
 }  // namespace scripts

@@ -9,7 +9,7 @@ namespace scripts {
 
 namespace {
 
-// Weighted harmonic mean of the two neighbouring slopes; zero at an extremum.
+// Returns the weighted harmonic mean of the two neighbouring slopes; zero at an extremum.
 double inner_slope(double before_s, double after_s, double before, double after) {
   if (!(before * after > 0.0)) return 0.0;
   const double weight_before = 2.0 * after_s + before_s;
@@ -17,7 +17,8 @@ double inner_slope(double before_s, double after_s, double before, double after)
   return (weight_before + weight_after) / (weight_before / before + weight_after / after);
 }
 
-// Three-point estimate at an end, kept monotone. `near` is the slope of the segment at the end.
+// Returns the three-point estimate at an end, limited to keep the curve monotone. `near` is the slope of the
+// segment at the end.
 double end_slope(double near_s, double far_s, double near, double far) {
   const double slope = ((2.0 * near_s + far_s) * near - near_s * far) / (near_s + far_s);
   if (!(slope * near > 0.0)) return 0.0;

@@ -30,7 +30,7 @@ mars::Pose resolve(const Waypoint& w, double radius_m, const TerrainHeight& terr
     if (!std::isfinite(terrain_m)) {
       throw std::runtime_error(pose_at(w.time_s) + " has height=, but the terrain's height at lon " +
                                format_number(w.lon_deg) + " lat " + format_number(w.lat_deg) +
-                               " is not known: use alt= there");
+                               " is unknown: use alt= there");
     }
     pose.alt_m += terrain_m;
   }
@@ -60,11 +60,12 @@ bool same(const mars::Pose& a, const mars::Pose& b) {
          a.pitch_deg == b.pitch_deg && a.roll_deg == b.roll_deg;
 }
 
-bool same(const Look& a, const Look& b) {
+bool same(const HeadCommand& a, const HeadCommand& b) {
   return a.yaw_deg == b.yaw_deg && a.pitch_deg == b.pitch_deg && a.roll_deg == b.roll_deg;
 }
 
-// What is held from the start and to the end becomes knots of its own, so that motion starts and ends smoothly.
+// Adds knots for the states that are held from the start and to the end, so that motion starts and ends
+// smoothly.
 template <class Timed>
 std::vector<Timed> held_at_ends(std::vector<Timed> knots, double end_s) {
   if (knots.back().time_s < end_s) {
@@ -91,7 +92,7 @@ std::vector<double> times_of(const std::vector<Timed>& knots) {
   return map(knots, [](const Timed& knot) { return knot.time_s; });
 }
 
-// A quaternion and its negative are one attitude: takes the one nearer to the attitude before.
+// Selects the sign of each quaternion that is nearer to the attitude before: both signs are one attitude.
 std::vector<glm::dvec4> aligned(std::vector<glm::dvec4> attitudes) {
   for (std::size_t i = 1; i < attitudes.size(); ++i) {
     if (glm::dot(attitudes[i - 1], attitudes[i]) < 0.0) attitudes[i] = -attitudes[i];
@@ -99,16 +100,16 @@ std::vector<glm::dvec4> aligned(std::vector<glm::dvec4> attitudes) {
   return attitudes;
 }
 
-MonotoneSpline angle_spline(const std::vector<Look>& looks, double Look::*angle_deg) {
-  std::vector<double> values = map(looks, [&](const Look& look) { return look.*angle_deg; });
+MonotoneSpline angle_spline(const std::vector<HeadCommand>& heads, double HeadCommand::*angle_deg) {
+  std::vector<double> values = map(heads, [&](const HeadCommand& head) { return head.*angle_deg; });
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (!mutated(Guard::kShortWay))
       values[i] = values[i - 1] + std::remainder(values[i] - values[i - 1], 360.0);
   }
-  return {times_of(looks), std::move(values)};
+  return {times_of(heads), std::move(values)};
 }
 
-// Index of the first knot at or after a time that lies within the knots.
+// Returns the index of the first knot at or after a time, which must lie within the knots.
 template <class Timed>
 std::size_t knot_at_or_after(const std::vector<Timed>& knots, double time_s) {
   const auto found = std::lower_bound(knots.begin(), knots.end(), time_s,
@@ -134,7 +135,7 @@ std::vector<Path::Knot> Path::knots_of(const Flight& flight, const TerrainHeight
     if (!knots.empty() &&
         mars::angle_between_rad(place_of(knots.back().pose), place_of(knot.pose)) > mars::kPi - kOpposite_rad) {
       throw std::runtime_error(pose_at(w.time_s) +
-                               " is opposite to the pose before it, so the way between them is not defined: "
+                               " is opposite to the pose before it, so the path between them is not defined: "
                                "add a pose between the two");
     }
     knots.push_back(knot);
@@ -148,15 +149,16 @@ Path::Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_h
       exaggeration_(exaggeration),
       sets_(flight.sets),
       knots_(knots_of(flight, terrain_height_m)),
-      looks_(held_at_ends(flight.looks.empty() ? std::vector<Look>{Look{}} : flight.looks, duration_s_)),
+      heads_(held_at_ends(flight.heads.empty() ? std::vector<HeadCommand>{HeadCommand{}} : flight.heads,
+                          duration_s_)),
       interests_(flight.interests),
       place_(times_of(knots_), map(knots_, [](const Knot& knot) { return place_of(knot.pose); })),
       attitude_(times_of(knots_),
                 aligned(map(knots_, [](const Knot& knot) { return attitude_of(knot.pose); }))),
       alt_m_(times_of(knots_), map(knots_, [](const Knot& knot) { return knot.pose.alt_m; })),
-      look_yaw_deg_(angle_spline(looks_, &Look::yaw_deg)),
-      look_pitch_deg_(angle_spline(looks_, &Look::pitch_deg)),
-      look_roll_deg_(angle_spline(looks_, &Look::roll_deg)) {}
+      head_yaw_deg_(angle_spline(heads_, &HeadCommand::yaw_deg)),
+      head_pitch_deg_(angle_spline(heads_, &HeadCommand::pitch_deg)),
+      head_roll_deg_(angle_spline(heads_, &HeadCommand::roll_deg)) {}
 
 FlightState Path::at(double time_s) const {
   const double t = time_s > 0.0 ? std::min(time_s, duration_s_) : 0.0;
@@ -170,16 +172,16 @@ FlightState Path::at(double time_s) const {
     state.pose.alt_m = alt_m_.at(t);
   }
 
-  const std::size_t l = knot_at_or_after(looks_, t);
-  const Look& look = looks_[l];
-  // A head that is held is held to the bit: its angles went through no unwrapping.
-  if (look.time_s == t || same(look, looks_[l - 1])) {
-    state.look = {look.yaw_deg, look.pitch_deg, look.roll_deg};
+  const std::size_t h = knot_at_or_after(heads_, t);
+  const HeadCommand& head = heads_[h];
+  // A head that is held keeps its angles to the bit: they bypass the spline, which unwraps angles.
+  if (head.time_s == t || same(head, heads_[h - 1])) {
+    state.head = {head.yaw_deg, head.pitch_deg, head.roll_deg};
   } else {
-    state.look = {mars::normalize_lon_deg(look_yaw_deg_.at(t)), look_pitch_deg_.at(t),
-                  mars::normalize_lon_deg(look_roll_deg_.at(t))};
+    state.head = {mars::normalize_lon_deg(head_yaw_deg_.at(t)), head_pitch_deg_.at(t),
+                  mars::normalize_lon_deg(head_roll_deg_.at(t))};
   }
-  state.camera = mars::to_camera(state.pose, state.look, radius_m_);
+  state.camera = mars::to_camera(state.pose, state.head, radius_m_);
   return state;
 }
 
@@ -200,7 +202,7 @@ double Path::exaggeration(double time_s) const {
   return value;
 }
 
-std::span<const Interest> Path::interests(double time_s) const { return up_to(interests_, time_s); }
+std::span<const InterestCommand> Path::interests(double time_s) const { return up_to(interests_, time_s); }
 
 std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rate,
                                           const TerrainHeight& terrain_height_m) {

@@ -1,13 +1,22 @@
-// Playback of a flight: where the platform is, where the head looks and what is set, at any time.
+// Playback of a flight: pose of the platform, angles of the head, and settings at any time.
 //
-//   - Position: a smooth curve on the sphere (spherical_spline.h): great circles between two poses, continuous
+//   - Position: a smooth curve on the sphere (spherical_spline.h): a great circle between two poses, continuous
 //     velocity at every pose. Altitude: monotone between poses (monotone_spline.h).
-//   - Attitude: the same curve on quaternions of the body-fixed frame, the short way round. So nothing spins at
-//     the poles or the antimeridian, and a straight flight at constant pitch keeps it.
-//   - Head: monotone in each angle between `look` lines, the short way round; held before the first and after
-//     the last; straight ahead when there is none.
-//   - Before the first pose (look) and between the last one and the end all is held, as by a pose of its own.
-//   - At the time of a pose or look line the state is what the line says, to the bit: a log replays exactly.
+//   - Attitude: the same curve on quaternions of the body-fixed frame, in the shorter direction of rotation. So
+//     nothing spins at the poles or the antimeridian, and a straight flight at constant pitch keeps its pitch.
+//   - Head: monotone in each angle between `look` lines, in the shorter direction of rotation; straight ahead
+//     when there are no such lines.
+//   - Before the first pose (or `look` line), and between the last one and the end, the state is held, as if a
+//     line with the same values stood at the start (or the end).
+//   - At the time of a pose or `look` line the state is that of the line, to the bit: a log replays exactly.
+//
+// Typical usage:
+//   const Path path(flight, radius_m, terrain_height_m, exaggeration);
+//   for (std::int64_t k = 0; k < frame_count(flight.view.fps, path.duration_s()); ++k) {
+//     const double time_s = frame_time(flight.view.fps, k);
+//     path.apply_settings(time_s, settings);
+//     draw(path.at(time_s).camera, settings, path.interests(time_s));
+//   }
 #pragma once
 
 #include <functional>
@@ -24,37 +33,41 @@
 
 namespace scripts {
 
-// Height above the sphere of the terrain as it is drawn with an exaggeration, metres; NaN where it is not known.
+// Returns the height above the sphere of the terrain as drawn with an exaggeration, metres; NaN where it is
+// unknown.
 using TerrainHeight = std::function<double(mars::LonLat place, double exaggeration)>;
 
+// Holds the state of a flight at a time.
 struct FlightState {
   mars::Pose pose;  // of the platform
-  mars::HeadAngles look;
-  mars::CameraPose camera;  // both together: mars::to_camera(pose, look, radius)
+  mars::HeadAngles head;
+  mars::CameraPose camera;  // mars::to_camera(pose, head, radius)
 };
 
-// Immutable; every const member may be called from any number of threads at once.
+// Plays a flight back. Immutable; any number of threads may call its const members at once.
 class Path {
  public:
-  // Calls terrain_height_m once for every pose given by its height; it may be empty when there is none. The terrain
-  // counts with the exaggeration at the pose's time: the flight's, before its first `set` the given one.
-  // Throws std::runtime_error, naming the time, when a terrain height is not known, when a camera is not above
-  // the planet's centre, and when two successive poses are opposite, so that no great circle is defined.
+  // Calls terrain_height_m once for every pose given by its height; it may be empty when there is none. The
+  // terrain is exaggerated as exaggeration() returns for the pose's time: by what the flight has set up to
+  // then, and by `exaggeration` before the flight sets it for the first time. Throws std::runtime_error,
+  // naming the time, when a terrain height is unknown, when a camera is not above the planet's centre, and
+  // when two successive poses are opposite, so that no great circle is defined.
   Path(const Flight& flight, double radius_m, const TerrainHeight& terrain_height_m, double exaggeration = 1);
 
   double duration_s() const { return duration_s_; }
 
-  // Of heights, at a time.
+  // Returns the exaggeration of heights at a time.
   double exaggeration(double time_s) const;
 
-  // State at a time; at the start for times before it, at the end for times after it.
+  // Returns the state at a time; that of the start before it, that of the end after it.
   FlightState at(double time_s) const;
 
-  // Brings settings up to a time: all `set` commands up to and including it, in order.
+  // Applies all `set` commands up to and including a time, in order. Throws std::runtime_error for a value
+  // that the settings refuse.
   void apply_settings(double time_s, vpe::core::Settings& settings) const;
 
-  // Regions of interest given up to and including a time.
-  std::span<const Interest> interests(double time_s) const;
+  // Returns the regions of interest given up to and including a time.
+  std::span<const InterestCommand> interests(double time_s) const;
 
  private:
   struct Knot {
@@ -67,18 +80,18 @@ class Path {
   double duration_s_;
   double exaggeration_;  // before the first `set` of it
   std::vector<SetCommand> sets_;
-  std::vector<Knot> knots_;  // the poses with their heights resolved, and what is held at both ends
-  std::vector<Look> looks_;  // likewise
-  std::vector<Interest> interests_;
+  std::vector<Knot> knots_;         // the poses with resolved heights, and those held at both ends
+  std::vector<HeadCommand> heads_;  // likewise
+  std::vector<InterestCommand> interests_;
   SphericalSpline<glm::dvec3> place_;
   SphericalSpline<glm::dvec4> attitude_;
   MonotoneSpline alt_m_;
-  MonotoneSpline look_yaw_deg_;
-  MonotoneSpline look_pitch_deg_;
-  MonotoneSpline look_roll_deg_;
+  MonotoneSpline head_yaw_deg_;
+  MonotoneSpline head_pitch_deg_;
+  MonotoneSpline head_roll_deg_;
 };
 
-// The frame of a film that comes closest to the ground as drawn, straight down.
+// Describes the frame of a film whose platform is least high above the terrain as drawn.
 struct Clearance {
   std::int64_t frame = 0;
   double time_s = 0;
@@ -86,7 +99,8 @@ struct Clearance {
   mars::LonLat place;
 };
 
-// Nothing when the film has no frames or the terrain is not known under any of them.
+// Returns the frame with the lowest clearance, or nullopt when the film has no frames or the terrain is
+// unknown under all of them.
 std::optional<Clearance> lowest_clearance(const Path& path, const FrameRate& rate,
                                           const TerrainHeight& terrain_height_m);
 

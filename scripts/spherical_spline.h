@@ -1,11 +1,15 @@
-// A smooth curve through unit vectors at given times: places on the sphere (dvec3), attitudes as quaternions
+// A smooth curve through unit vectors at given times: positions on the sphere (dvec3), attitudes as quaternions
 // (dvec4).
 //
+// Typical usage:
+//   const SphericalSpline<glm::dvec3> ground_track(times_s, directions);
+//   const glm::dvec3 direction = ground_track.at(12.5);
+//
 // Between two knots the curve is a cubic Bezier whose linear steps are great-circle steps (de Casteljau by
-// slerp, Shoemake 1985). Its velocity at a knot is the non-uniform Catmull-Rom one, no faster than twice the
-// slower of the two segments beside it, so it never swings out, and it is zero beside a segment that does not
-// move: a hold holds, and motion into and out of it is smooth. At both ends it is the segment's own velocity.
-// Hence:
+// slerp, Shoemake 1985). Its velocity at a knot is the non-uniform Catmull-Rom one, limited to twice the speed
+// of the slower of the two adjacent segments, so that the curve does not overshoot. It is zero beside a
+// segment that does not move: a hold stays still, and motion into and out of it is smooth. At both ends it is
+// the segment's own velocity. Therefore:
 //   - the curve and its velocity are continuous;
 //   - two knots give the great circle at constant speed;
 //   - knots on one great circle give a curve that stays on it;
@@ -21,8 +25,8 @@
 
 namespace scripts {
 
-// Tangent at unit p that leads to unit q along the shorter great circle; its length is the angle between them.
-// Zero for equal and for opposite points.
+// Returns the tangent at unit p towards unit q along the shorter great circle; its length is the angle between
+// them. Zero for equal and for opposite points.
 template <class Vec>
 Vec tangent_towards(const Vec& p, const Vec& q) {
   const Vec chord = q - p;
@@ -34,7 +38,7 @@ Vec tangent_towards(const Vec& p, const Vec& q) {
   return across * (angle_rad / size);
 }
 
-// The unit vector reached from unit p along a tangent at p whose length is the angle.
+// Returns the unit vector reached from unit p along a tangent at p whose length is the angle.
 template <class Vec>
 Vec follow(const Vec& p, const Vec& tangent) {
   const double angle_rad = glm::length(tangent);
@@ -42,10 +46,12 @@ Vec follow(const Vec& p, const Vec& tangent) {
   return glm::normalize(p * std::cos(angle_rad) + tangent * (std::sin(angle_rad) / angle_rad));
 }
 
+// Holds the curve. Immutable; any thread may call at().
 template <class Vec>
 class SphericalSpline {
  public:
-  // Same number of times (strictly ascending) and unit points, at least one. Neighbours are not opposite.
+  // Requires as many times (strictly ascending) as unit points, at least one. Successive points must not be
+  // opposite.
   SphericalSpline(std::vector<double> times_s, std::vector<Vec> points)
       : times_s_(std::move(times_s)), points_(std::move(points)), velocities_(points_.size(), Vec(0.0)) {
     const std::size_t last = points_.size() - 1;
@@ -56,7 +62,7 @@ class SphericalSpline {
     for (std::size_t i = 1; i < last; ++i) velocities_[i] = inner_velocity(i);
   }
 
-  // Unit vector at a time; the first and last point outside the times. Exact at the knots.
+  // Returns the unit vector at a time; the first or last point outside the times. Exact at the knots.
   Vec at(double time_s) const {
     if (!(time_s > times_s_.front())) return points_.front();
     if (time_s >= times_s_.back()) return points_.back();

@@ -30,7 +30,7 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
   field("tiles_missing", stats.tiles_missing);
   field("triangles", stats.triangles);
   field("skirt_triangles", stats.skirt_triangles);
-  // A count that depends on what was drawn before is not known of a frame that was not drawn now.
+  // A count that depends on earlier frames is unknown for a frame that was not drawn now.
   const auto count = [&](std::string_view name, std::int64_t value) {
     if (value < 0) {
       field(name, std::numeric_limits<double>::quiet_NaN());
@@ -55,7 +55,7 @@ void visit_columns(std::int64_t frame, double time_s, const FrameStats& stats, c
   field("tiles_substituted", certificate.tiles_substituted);
 }
 
-// Format of values: integers, numbers (with the word for what is not finite), lists.
+// Formats values: integers, numbers (with the word for one that is not finite), lists.
 struct Format {
   std::string_view not_finite;
   std::string_view open, between, close;

@@ -1,4 +1,8 @@
-// One row of figures a frame (`--stats F.csv` or `F.jsonl`).
+// Statistics of a film: one row for each frame (`--stats F.csv` or `F.jsonl`).
+//
+// Typical usage:
+//   StatsWriter stats("frames.csv");
+//   stats.row(frame, time_s, result.stats, result.certificate);
 #pragma once
 
 #include <cstdint>
@@ -10,14 +14,14 @@
 
 namespace scripts {
 
-// Columns (CSV, RFC 4180 with a header) or keys (one JSON object a line): frame, t_s, the fields of
-// core::FrameStats, then geometric_error_m, screen_space_error_px, shift_bound_px and tiles_substituted of the certificate.
-// tiles_by_level is "3;5;0" in CSV and an array in JSON. What is not finite, and a negative bytes_resident or
-// number of pages (not known), is an empty field or null.
-// Numbers are the same in every locale. Rows are flushed; errors as LineFile.
+// Writes columns (CSV, RFC 4180 with a header) or keys (one JSON object a line): frame, t_s, the fields of
+// core::FrameStats, then of the certificate "tile_error_m" (Certificate::geometric_error_m), "tile_error_px"
+// (screen_space_error_px), shift_bound_px and tiles_substituted. tiles_by_level is "3;5;0" in CSV and an array
+// in JSON. A value that is not finite, and a negative bytes_resident or number of pages (unknown), is an empty
+// field or null. Numbers are the same in every locale. Each row is flushed. Members throw what LineFile throws.
 class StatsWriter {
  public:
-  // The format follows the extension; throws std::runtime_error for another one.
+  // Selects the format by the extension. Throws std::runtime_error for any other extension.
   explicit StatsWriter(const std::filesystem::path& path);
 
   void row(std::int64_t frame, double time_s, const vpe::core::FrameStats& stats,

@@ -21,7 +21,7 @@ namespace {
   }
   throw PlanetError("the height" + place + " is " + format_number(height_m) +
                     " m, which cannot be stored in steps of " + format_number(quantum_m) +
-                    " m: mark such values as no data in the raster (gdal_edit.py -a_nodata)");
+                    " m: mark such values as nodata in the raster (gdal_edit.py -a_nodata)");
 }
 
 bool along_j(lod::Edge edge) { return edge == lod::Edge::kWest || edge == lod::Edge::kEast; }
@@ -101,24 +101,24 @@ std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m) {
   return heights;
 }
 
-lod::Posts read_posts(const BuildContext& context, const lod::TileKey& key) {
-  const auto quanta = decode_heights(context.writer.heights(key), context.meta.tile.posts());
-  lod::Posts posts{key, context.meta.tile.intervals(), std::vector<double>(quanta.size())};
+lod::Posts read_posts(const StoredTiles& stored, const lod::TileKey& key) {
+  const auto quanta = decode_heights(stored.writer.heights(key), stored.meta.tile.posts());
+  lod::Posts posts{key, stored.meta.tile.intervals(), std::vector<double>(quanta.size())};
   std::transform(quanta.begin(), quanta.end(), posts.height_m.begin(),
-                 [q = context.meta.quantum_m](std::int32_t n) { return n * q; });
-  const int coarser_neighbour_mask = context.nodes.at(key).coarser_neighbour_mask;
+                 [q = stored.meta.quantum_m](std::int32_t n) { return n * q; });
+  const int coarser_neighbour_mask = stored.nodes.at(key).coarser_neighbour_mask;
   if (coarser_neighbour_mask != 0) {
     const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
     for (const lod::Edge edge : lod::kEdges) {
       if ((coarser_neighbour_mask >> static_cast<int>(edge) & 1) != 0)
-        lod::constrain_edge(posts, lines, edge, 2, context.meta.radius_m);
+        lod::constrain_edge(posts, lines, edge, 2, stored.meta.radius_m);
     }
   }
   return posts;
 }
 
-double mesh_tolerance_m(const BuildOptions& options, int level) {
-  return lod::nominal_side_m(level, options.radius_m) / options.mesh_ratio;
+double mesh_tolerance_m(const MeshInputs& meshing, int level) {
+  return lod::nominal_side_m(level, meshing.meta.radius_m) / meshing.mesh_ratio;
 }
 
 }  // namespace paging

@@ -20,7 +20,7 @@ void put_child(lod::Posts& posts, int child, const lod::Posts& fine) {
   }
 }
 
-// An inner tile's own posts, of those that it is meshed over.
+// Returns an inner tile's own posts out of those that it is meshed over.
 std::vector<double> every_second(const lod::Posts& posts) {
   std::vector<double> own;
   for (int j = 0; j < posts.side(); j += 2) {
@@ -29,7 +29,7 @@ std::vector<double> every_second(const lod::Posts& posts) {
   return own;
 }
 
-// Of the child's posts, every second one is a post of its parent: marks those without data.
+// Marks the nodata posts of a child that are posts of its parent: every second one is.
 void put_child_mask(std::vector<bool>& nodata, int child, const Bytes& packed, std::size_t side) {
   if (packed.empty()) return;
   const std::vector<bool> below = decode_mask(packed, side * side);
@@ -42,24 +42,25 @@ void put_child_mask(std::vector<bool>& nodata, int child, const Bytes& packed, s
   }
 }
 
-// An inner tile's own posts as the finest tiles below it have them: they are posts of those that no border
-// moves.
-lod::Posts sample_inner(const BuildContext& context, const lod::TileKey& key) {
-  const PlanetMeta& meta = context.meta;
+// Returns an inner tile's own posts as the finest tiles below it have them: they are posts of these tiles that
+// no border moves.
+lod::Posts sample_inner(const SampleInputs& sampling, const lod::TileKey& key) {
+  const PlanetMeta& meta = sampling.meta;
   const int n = meta.tile.intervals();
   const lod::GridLines lines = lod::grid_lines(key, n);
   const std::vector<glm::dvec3> directions = post_directions(key, lines);
   lod::Posts posts{key, n, std::vector<double>(directions.size())};
   std::map<int, std::vector<std::size_t>> by_level;
   for (std::size_t p = 0; p < directions.size(); ++p) {
-    by_level[context.plan.coarsest_level_at(key.face, lines.u[p % lines.u.size()], lines.v[p / lines.u.size()])]
+    by_level[sampling.plan.coarsest_level_at(key.face, lines.u[p % lines.u.size()],
+                                             lines.v[p / lines.u.size()])]
         .push_back(p);
   }
   for (const auto& [level, some] : by_level) {
     std::vector<glm::dvec3> at;
     for (const std::size_t p : some) at.push_back(directions[p]);
     std::vector<double> heights(at.size());
-    context.elevation->sample(at, lod::post_spacing_m(level, n, meta.radius_m), heights);
+    sampling.elevation.sample(at, lod::post_spacing_m(level, n, meta.radius_m), heights);
     for (std::size_t m = 0; m < some.size(); ++m)
       posts.height_m[some[m]] = std::isfinite(heights[m]) ? heights[m] : meta.fill_m;
   }
@@ -70,35 +71,37 @@ lod::Posts sample_inner(const BuildContext& context, const lod::TileKey& key) {
 
 }  // namespace
 
-SharedAncestor sample_above(const BuildContext& context, const lod::TileKey& key) {
-  const int n = 2 * context.meta.tile.intervals();
+SharedAncestor sample_shared_ancestor(const SampleInputs& sampling, const MeshInputs& meshing,
+                                      const lod::TileKey& key) {
+  const int n = 2 * sampling.meta.tile.intervals();
   lod::Posts posts{key, n,
                    std::vector<double>(static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(n + 1))};
   for (int c = 0; c < 4; ++c) {
     const lod::TileKey child = lod::child(key, c);
-    put_child(posts, c,
-              context.plan.is_inner(child) ? sample_inner(context, child) : sample_leaf(context, child).posts);
+    put_child(
+        posts, c,
+        sampling.plan.is_inner(child) ? sample_inner(sampling, child) : sample_leaf(sampling, child).posts);
   }
-  return {mesh_inner(context, posts), {key, n / 2, every_second(posts)}};
+  return {mesh_inner(meshing, posts), {key, n / 2, every_second(posts)}};
 }
 
-PackedMesh mesh_inner(const BuildContext& context, const lod::Posts& posts) {
+PackedMesh mesh_inner(const MeshInputs& meshing, const lod::Posts& posts) {
   // A finest tile beside this one has only every second of these border posts.
   std::array<int, 4> border_step{1, 1, 1, 1};
   for (const lod::Edge edge : lod::kEdges) {
-    if (!context.plan.is_inner(lod::neighbour(posts.key, edge).key))
+    if (!meshing.plan.is_inner(lod::neighbour(posts.key, edge).key))
       border_step[static_cast<std::size_t>(edge)] = 2;
   }
-  const MesherPool::Lease mesher = context.meshers.borrow();
-  const double tolerance = mesh_tolerance_m(context.options, posts.key.level);
+  const auto mesher = meshing.meshers.acquire();
+  const double tolerance = mesh_tolerance_m(meshing, posts.key.level);
   const lod::GridLines lines = lod::grid_lines(posts.key, posts.intervals);
-  const lod::BorderPosts borders = borders_of(posts, lines, border_step, tolerance, context.meta.radius_m);
-  return pack_mesh(mesher->mesh(posts, borders, tolerance, context.meta.radius_m), posts,
-                   context.meta.quantum_m);
+  const lod::BorderPosts borders = borders_of(posts, lines, border_step, tolerance, meshing.meta.radius_m);
+  return pack_mesh(mesher->mesh(posts, borders, tolerance, meshing.meta.radius_m), posts,
+                   meshing.meta.quantum_m);
 }
 
-Node build_inner(const BuildContext& context, const lod::TileKey& key) {
-  const PlanetMeta& meta = context.meta;
+Node build_inner(const MeshInputs& meshing, const StoredTiles& stored, const lod::TileKey& key) {
+  const PlanetMeta& meta = stored.meta;
   const int n = meta.tile.intervals();
   const auto wide = static_cast<std::size_t>(2 * n + 1);
   Node node;
@@ -107,10 +110,10 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   std::vector<bool> nodata(static_cast<std::size_t>(meta.tile.post_count()));
   for (int c = 0; c < 4; ++c) {
     const lod::TileKey child = lod::child(key, c);
-    const lod::Posts fine = read_posts(context, child);
+    const lod::Posts fine = read_posts(stored, child);
     put_child(posts, c, fine);
-    put_child_mask(nodata, c, context.writer.nodata(child), static_cast<std::size_t>(n + 1));
-    const Node& below = context.nodes.at(child);
+    put_child_mask(nodata, c, stored.writer.nodata(child), static_cast<std::size_t>(n + 1));
+    const Node& below = stored.nodes.at(child);
     node.sources.insert(below.sources.begin(), below.sources.end());
     node.min_m = c == 0 ? below.min_m : std::min(node.min_m, below.min_m);
     node.lowest_m = c == 0 ? below.lowest_m : std::min(node.lowest_m, below.lowest_m);
@@ -122,10 +125,10 @@ Node build_inner(const BuildContext& context, const lod::TileKey& key) {
   payload.heights = encode_heights(to_quanta(own, meta.quantum_m), n + 1);
   if (std::find(nodata.begin(), nodata.end(), true) != nodata.end()) payload.nodata = encode_mask(nodata);
 
-  const PackedMesh mesh = mesh_inner(context, posts);
+  const PackedMesh mesh = mesh_inner(meshing, posts);
   payload.meshes.push_back(encode_mesh(mesh));
   node.variants.push_back({{}, static_cast<std::uint32_t>(mesh.mesh.triangle_count())});
-  context.writer.put_tile(to_row(key, node), payload);
+  stored.writer.put_tile(to_row(key, node), payload);
   return node;
 }
 

@@ -14,7 +14,8 @@ namespace paging {
 
 namespace {
 
-// Raised whenever equal sources and options give other tiles than before within a version of the program.
+// Must be raised whenever equal sources and options give other tiles than before within a version of the
+// program.
 constexpr int kBuilderRevision = 4;
 
 // A power of two well below what the sources resolve: heights between their posts are interpolated, and a
@@ -83,15 +84,14 @@ std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::I
         std::max(image.spacing_in(cap), is_wanted_fine(options, cap)
                                             ? options.finest_image_m
                                             : std::max(options.finest_image_m, options.base_spacing_m));
-    // A texel up to a fifth coarser than asked for is not worth four times the tiles.
+    // A texel up to a fifth coarser than requested does not justify four times the tiles.
     if (!(spacing > 1.2 * wanted) || key.level >= 20) continue;
     for (int c = 0; c < 4; ++c) tiles.push_back(lod::child(key, c));
   }
   return tiles;
 }
 
-// Everything that a planet file's content is a function of, as text.
-std::string recipe_of(const BuildOptions& options, const PlanetMeta& meta) {
+std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& meta) {
   const auto rows = to_rows(meta);  // sources with size and time among them
   std::ostringstream text;
   text << std::hexfloat;
@@ -105,12 +105,16 @@ std::string recipe_of(const BuildOptions& options, const PlanetMeta& meta) {
   for (const Region& r : options.regions) {
     text << "region " << r.west_deg << " " << r.south_deg << " " << r.east_deg << " " << r.north_deg << "\n";
   }
-  if (!options.part.is_all()) text << recipe_part(options.part);
+  if (!options.shard.is_all()) text << fingerprint_line(options.shard);
   return text.str();
 }
 
-std::string recipe_part(const vpe::base::Shard& part) {
-  return "part " + std::to_string(part.number) + " of " + std::to_string(part.of) + "\n";
+std::string fingerprint_line(const vpe::base::Shard& shard) {
+  return "part " + std::to_string(shard.number) + " of " + std::to_string(shard.of) + "\n";
+}
+
+BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& elevation) {
+  return {lod::TileShape{options.tile_k}, options.radius_m, wanted_elevation(options, elevation)};
 }
 
 PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,

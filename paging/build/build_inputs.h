@@ -1,4 +1,4 @@
-// What a build finds out of its options and sources before it makes the first tile.
+// Derives what a build needs from its options and sources before it makes the first tile.
 #pragma once
 
 #include <string>
@@ -9,21 +9,23 @@
 
 namespace paging {
 
-// Meta as far as it is known before the build: body, shape, sources, quantum, fill. Throws PlanetError when
-// there is no source. image may be null.
+// Returns meta as far as it is known before the build: body, shape, sources, quantum, fill. `image` may be
+// null. Throws PlanetError when there is no source.
 PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
                            const mars::ImageSource* image);
 
-// Everything that a planet file's content is a function of, as text: equal recipes make equal tiles.
-std::string recipe_of(const BuildOptions& options, const PlanetMeta& described);
+// Returns the build fingerprint: everything that the content of a planet file is a function of, as text. Equal
+// fingerprints make equal tiles.
+std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& described);
 
-// Its last line where a build is divided; the rest is that of the undivided build.
-std::string recipe_part(const vpe::base::Shard& part);
+// Returns the last line of the fingerprint of a divided build. The lines before it are those of the undivided
+// one.
+std::string fingerprint_line(const vpe::base::Shard& shard);
 
-// Both arguments must outlive the function.
+// Returns the wanted post spacing as a function of the place. Both arguments must outlive the function.
 WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source);
 
-// The image's tiles, coarsest first.
+// Returns the image's tiles, coarsest first.
 std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::ImageSource& image);
 
 }  // namespace paging

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lod/mesh/error_meter.h"
 #include "paging/build/build_grid.h"
 #include "vpe/base/mutation.h"
 
@@ -11,43 +12,43 @@ using vpe::base::mutated;
 
 namespace {
 
-// Finest tiles carry ever finer meshes, each a quarter of the error and so about four times the triangles,
-// until the next one would come close to the full grid, which is the last.
+// Finest tiles have meshes of decreasing error, each a quarter of the one before and so about four times the
+// triangles, until the next one would come close to the full grid, which is the last.
 constexpr double kLastMeshShare = 0.1;
 constexpr double kVariantStep = 0.25;
 constexpr int kMaxMeshVariants = 12;
 
 // Border posts take the spacing of the coarsest tile that has them, so that both sides sample the same.
-void resample_borders(const BuildContext& context, const lod::TileKey& key, int coarser_neighbour_mask,
+void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int coarser_neighbour_mask,
                       const std::vector<glm::dvec3>& directions, std::vector<double>& heights) {
-  const int n = context.meta.tile.intervals();
+  const int n = sampling.meta.tile.intervals();
   const int side = n + 1;
-  const auto spacing = [&](int level) { return lod::post_spacing_m(level, n, context.meta.radius_m); };
+  const auto spacing = [&](int level) { return lod::post_spacing_m(level, n, sampling.meta.radius_m); };
   for (const lod::Edge edge : lod::kEdges) {
     if ((coarser_neighbour_mask >> static_cast<int>(edge) & 1) == 0) continue;
     std::vector<glm::dvec3> at;
     for (int a = 0; a <= n; a += 2) at.push_back(directions[edge_post(edge, a, side)]);
     std::vector<double> values(at.size());
-    context.elevation->sample(at, spacing(key.level - 1), values);
+    sampling.elevation.sample(at, spacing(key.level - 1), values);
     for (int a = 0; a <= n; a += 2) heights[edge_post(edge, a, side)] = values[static_cast<std::size_t>(a / 2)];
   }
   for (int corner = 0; corner < 4; ++corner) {
     const bool east = (corner & 1) != 0;
     const bool north = (corner & 2) != 0;
     const std::size_t post = edge_post(north ? lod::Edge::kNorth : lod::Edge::kSouth, east ? n : 0, side);
-    const int level = context.plan.coarsest_level_at_corner(key, east, north);
+    const int level = sampling.plan.coarsest_level_at_corner(key, east, north);
     if (level == key.level) continue;
-    context.elevation->sample(std::span(&directions[post], 1), spacing(level), std::span(&heights[post], 1));
+    sampling.elevation.sample(std::span(&directions[post], 1), spacing(level), std::span(&heights[post], 1));
   }
 }
 
-std::set<int> sources_of(const BuildContext& context, const std::vector<glm::dvec3>& directions) {
-  if (context.meta.sources.size() == 1) return {0};
+std::set<int> sources_of(const SampleInputs& sampling, const std::vector<glm::dvec3>& directions) {
+  if (sampling.meta.sources.size() == 1) return {0};
   // Every seventh post: rows of 2^k + 1 posts make this a scattered pattern.
   std::vector<glm::dvec3> some;
   for (std::size_t n = 0; n < directions.size(); n += 7) some.push_back(directions[n]);
   std::vector<int> origin(some.size());
-  context.elevation->origin(some, origin);
+  sampling.elevation.origin(some, origin);
   std::set<int> found(origin.begin(), origin.end());
   found.erase(-1);
   return found;
@@ -55,23 +56,23 @@ std::set<int> sources_of(const BuildContext& context, const std::vector<glm::dve
 
 }  // namespace
 
-SampledLeaf sample_leaf(const BuildContext& context, const lod::TileKey& key) {
-  const PlanetMeta& meta = context.meta;
+SampledLeaf sample_leaf(const SampleInputs& sampling, const lod::TileKey& key) {
+  const PlanetMeta& meta = sampling.meta;
   const int n = meta.tile.intervals();
   SampledLeaf leaf;
   for (const lod::Edge edge : lod::kEdges) {
-    if (context.plan.edge_step(key, edge) != 0) leaf.coarser_neighbour_mask |= 1 << static_cast<int>(edge);
+    if (sampling.plan.edge_step(key, edge) != 0) leaf.coarser_neighbour_mask |= 1 << static_cast<int>(edge);
   }
   leaf.lines = lod::grid_lines(key, n);
   leaf.directions = post_directions(key, leaf.lines);
   leaf.posts = {key, n, std::vector<double>(leaf.directions.size())};
   std::vector<double>& heights = leaf.posts.height_m;
-  context.elevation->sample(leaf.directions, lod::post_spacing_m(key.level, n, meta.radius_m), heights);
-  resample_borders(context, key, leaf.coarser_neighbour_mask, leaf.directions, heights);
+  sampling.elevation.sample(leaf.directions, lod::post_spacing_m(key.level, n, meta.radius_m), heights);
+  resample_borders(sampling, key, leaf.coarser_neighbour_mask, leaf.directions, heights);
 
   leaf.nodata.resize(heights.size());
   for (std::size_t p = 0; p < heights.size(); ++p) {
-    if (std::isfinite(heights[p]) || mutated(Guard::kMissingHeights)) continue;
+    if (std::isfinite(heights[p]) || mutated(Guard::kNodataHeights)) continue;
     leaf.nodata[p] = leaf.any_nodata = true;
     heights[p] = meta.fill_m;
   }
@@ -85,27 +86,28 @@ SampledLeaf sample_leaf(const BuildContext& context, const lod::TileKey& key) {
   return leaf;
 }
 
-Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
-  const PlanetMeta& meta = context.meta;
+Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, PlanetWriter& writer,
+                const lod::TileKey& key) {
+  const PlanetMeta& meta = sampling.meta;
   const int n = meta.tile.intervals();
-  const SampledLeaf leaf = sample_leaf(context, key);
+  const SampledLeaf leaf = sample_leaf(sampling, key);
   const lod::Posts& posts = leaf.posts;
   Node node;
   node.coarser_neighbour_mask = leaf.coarser_neighbour_mask;
-  node.sources = sources_of(context, leaf.directions);
+  node.sources = sources_of(sampling, leaf.directions);
   TilePayload payload;
   payload.heights = encode_heights(leaf.quanta, n + 1);
   if (leaf.any_nodata) payload.nodata = encode_mask(leaf.nodata);
   const auto [low, high] = std::minmax_element(posts.height_m.begin(), posts.height_m.end());
   node.min_m = *low;
-  node.lowest_m = *low - facet_sag_m(lod::post_spacing_m(key.level, n, meta.radius_m), meta.radius_m);
+  node.lowest_m = *low - facet_sagitta_m(lod::post_spacing_m(key.level, n, meta.radius_m), meta.radius_m);
   node.max_m = *high;
   node.slope = lod::steepest_slope(posts, leaf.lines, meta.radius_m);
 
-  const MesherPool::Lease mesher = context.meshers.borrow();
+  const auto mesher = meshing.meshers.acquire();
   const auto full = static_cast<std::uint32_t>(2 * n * n);
   const lod::FinePosts fine(posts, meta.radius_m);
-  double tolerance = mesh_tolerance_m(context.options, key.level);
+  double tolerance = mesh_tolerance_m(meshing, key.level);
   for (int variant = 0; variant < kMaxMeshVariants; ++variant, tolerance *= kVariantStep) {
     const lod::BorderPosts borders = borders_of(posts, leaf.lines, leaf.border_step, tolerance, meta.radius_m);
     const PackedMesh mesh = pack_mesh(variant == 0 ? mesher->mesh(posts, borders, tolerance, meta.radius_m)
@@ -123,7 +125,7 @@ Node build_leaf(const BuildContext& context, const lod::TileKey& key) {
   for (std::size_t v = node.variants.size() - 1; v > 0; --v) {
     node.variants[v - 1].terms.include(node.variants[v].terms);
   }
-  context.writer.put_tile(to_row(key, node), payload);
+  writer.put_tile(to_row(key, node), payload);
   return node;
 }
 

@@ -8,40 +8,42 @@ namespace paging {
 
 namespace {
 
-// An inner tile ready to be measured.
+// Measures an inner tile.
 struct Meters {
   lod::ErrorMeter mesh;
   lod::GridMeter posts;
 };
 
-std::unique_ptr<Meters> meters_of(const BuildContext& context, const lod::TileKey& key) {
-  const double radius_m = context.meta.radius_m;
+std::unique_ptr<Meters> meters_of(const StoredTiles& stored, const SharedAncestors& shared_ancestors,
+                                  const lod::TileKey& key) {
+  const double radius_m = stored.meta.radius_m;
   const auto meters = [&](const PackedMesh& mesh, const lod::Posts& posts) {
     return std::make_unique<Meters>(
-        Meters{lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, context.meta.quantum_m), radius_m),
+        Meters{lod::ErrorMeter(key, mesh.mesh, vertex_heights(mesh, stored.meta.quantum_m), radius_m),
                lod::GridMeter(posts, radius_m)});
   };
-  if (const auto above = context.above.find(key); above != context.above.end())
-    return meters(above->second.mesh, above->second.posts);
-  return meters(decode_mesh(context.writer.mesh(key, 0)), read_posts(context, key));
+  if (const auto shared = shared_ancestors.find(key); shared != shared_ancestors.end())
+    return meters(shared->second.mesh, shared->second.posts);
+  return meters(decode_mesh(stored.writer.mesh(key, 0)), read_posts(stored, key));
 }
 
 }  // namespace
 
-std::map<lod::TileKey, InnerTerms> measure_chunk(const BuildContext& context,
+std::map<lod::TileKey, InnerTerms> measure_chunk(const StoredTiles& stored,
+                                                 const SharedAncestors& shared_ancestors,
                                                  std::span<const lod::TileKey> leaves) {
   std::map<lod::TileKey, InnerTerms> found;
-  // Neighbours on the curve share most ancestors: keep the meters of the last leaf's ancestors, by level.
+  // Neighbours in Morton order share most ancestors: keep the meters of the last leaf's ancestors, by level.
   std::vector<std::unique_ptr<Meters>> meters;
   lod::TileKey last = leaves.front();
   for (const lod::TileKey& leaf : leaves) {
-    const lod::FinePosts posts(read_posts(context, leaf), context.meta.radius_m);
+    const lod::FinePosts posts(read_posts(stored, leaf), stored.meta.radius_m);
     meters.resize(std::max(meters.size(), static_cast<std::size_t>(leaf.level)));
     for (int level = 0; level < leaf.level; ++level) {
       const lod::TileKey key = lod::ancestor(leaf, level);
       auto& meter = meters[static_cast<std::size_t>(level)];
       const bool same = meter && level <= last.level && lod::ancestor(last, level) == key;
-      if (!same) meter = meters_of(context, key);
+      if (!same) meter = meters_of(stored, shared_ancestors, key);
       found[key].include({meter->mesh.measure(posts), meter->posts.measure(posts)});
     }
     // Meters below this leaf's level belong to other branches.
@@ -70,13 +72,13 @@ Bytes pack_terms(const std::map<lod::TileKey, InnerTerms>& terms) {
 
 std::map<lod::TileKey, InnerTerms> unpack_terms(std::span<const std::uint8_t> packed) {
   constexpr std::size_t kRow = 56;
-  if (packed.size() % kRow != 0) throw CodecError("error terms of a wrong size");
+  if (packed.size() % kRow != 0) throw CodecError("error terms of the wrong size");
   std::map<lod::TileKey, InnerTerms> out;
   for (std::size_t at = 0; at < packed.size(); at += kRow) {
     std::array<std::uint64_t, 7> bits{};
     for (std::size_t b = 0; b < kRow; ++b) bits[b / 8] |= std::uint64_t{packed[at + b]} << (8 * (b % 8));
     const auto key = lod::unpack(static_cast<std::int64_t>(bits[0]));
-    if (!key) throw CodecError("error terms of no tile");
+    if (!key) throw CodecError("error terms of a tile that does not exist");
     const auto terms = [&](std::size_t at_bits) {
       return lod::ErrorTerms{std::bit_cast<double>(bits[at_bits]), std::bit_cast<double>(bits[at_bits + 1]),
                              std::bit_cast<double>(bits[at_bits + 2])};
@@ -86,11 +88,11 @@ std::map<lod::TileKey, InnerTerms> unpack_terms(std::span<const std::uint8_t> pa
   return out;
 }
 
-void nest_errors(BuildContext& context, std::span<const lod::TileKey> inner) {
+void nest_errors(Nodes& nodes, std::span<const lod::TileKey> inner) {
   for (const lod::TileKey& key : inner) {
-    Node& node = context.nodes.at(key);
+    Node& node = nodes.at(key);
     for (int c = 0; c < 4; ++c) {
-      const Node& below = context.nodes.at(lod::child(key, c));
+      const Node& below = nodes.at(lod::child(key, c));
       node.variants.front().terms.include(below.variants.front().terms);
       if (below.inner) node.posts_terms.include(below.posts_terms);
     }

@@ -8,29 +8,9 @@
 
 namespace paging {
 
-namespace {
-
-std::uint64_t spread_bits(std::uint64_t x) {
-  x &= 0xffffffffULL;
-  x = (x | x << 16) & 0x0000ffff0000ffffULL;
-  x = (x | x << 8) & 0x00ff00ff00ff00ffULL;
-  x = (x | x << 4) & 0x0f0f0f0f0f0f0f0fULL;
-  x = (x | x << 2) & 0x3333333333333333ULL;
-  return (x | x << 1) & 0x5555555555555555ULL;
-}
-
-std::uint64_t curve_position(const lod::TileKey& key) {
-  const int shift = lod::kMaxLevel - key.level;
-  return spread_bits(static_cast<std::uint64_t>(key.i) << shift) |
-         spread_bits(static_cast<std::uint64_t>(key.j) << shift) << 1;
-}
-
-}  // namespace
-
-bool curve_less(const lod::TileKey& a, const lod::TileKey& b) {
-  if (a.face != b.face) return a.face < b.face;
-  const std::uint64_t pa = curve_position(a);
-  const std::uint64_t pb = curve_position(b);
+bool morton_less(const lod::TileKey& a, const lod::TileKey& b) {
+  const std::int64_t pa = lod::morton_position(a);
+  const std::int64_t pb = lod::morton_position(b);
   return pa != pb ? pa < pb : a.level < b.level;
 }
 
@@ -42,12 +22,13 @@ BuildPlan::BuildPlan(const lod::TileShape& shape, double radius_m, const WantedS
     const lod::TileKey key = open.back();
     open.pop_back();
     const double spacing = lod::post_spacing_m(key.level, shape.intervals(), radius_m);
-    const double wish = wanted(key, lod::bounding_cap(key));
-    if (!(spacing > wish)) continue;
+    const double wanted_m = wanted(key, lod::bounding_cap(key));
+    if (!(spacing > wanted_m)) continue;
     if (key.level >= limits.max_level || 3 * inner_set_.size() > limits.max_leaves) {
-      throw std::runtime_error(
-          "a post spacing of " + std::to_string(wish) + " m needs more tiles than a planet file may have (" +
-          std::to_string(limits.max_leaves) + "); ask for a coarser --spacing or a smaller --region");
+      throw std::runtime_error("a post spacing of " + std::to_string(wanted_m) +
+                               " m needs more tiles than a planet file may have (" +
+                               std::to_string(limits.max_leaves) +
+                               "); ask for a coarser --spacing or a smaller --region");
     }
     split(key);
     for (int c = 0; c < 4; ++c) open.push_back(lod::child(key, c));
@@ -77,24 +58,25 @@ BuildPlan::BuildPlan(std::vector<lod::TileKey> leaves) : leaves_(std::move(leave
   inner_.assign(inner_set_.begin(), inner_set_.end());
   sort();
   for (std::size_t n = 0; n <= leaves_.size(); ++n) {
-    // Along the curve, each begins where the one before it ended.
+    // In Morton order, each begins where the one before it ends.
     const auto begin_of = [&](std::size_t at) {
-      return at < leaves_.size() ? lod::z_position(leaves_[at])
-                                 : lod::z_position({mars::Face::kMinusZ, 0, 0, 0}) + lod::z_extent(0);
+      return at < leaves_.size() ? lod::morton_position(leaves_[at])
+                                 : lod::morton_position({mars::Face::kMinusZ, 0, 0, 0}) + lod::morton_extent(0);
     };
-    const std::int64_t end = n == 0 ? 0 : lod::z_position(leaves_[n - 1]) + lod::z_extent(leaves_[n - 1].level);
+    const std::int64_t end =
+        n == 0 ? 0 : lod::morton_position(leaves_[n - 1]) + lod::morton_extent(leaves_[n - 1].level);
     if (begin_of(n) == end) continue;
     throw std::runtime_error(
-        "finest tiles are missing or double " +
+        "finest tiles do not exist or exist twice " +
         (n == 0 ? std::string("at the start") : "after " + lod::to_string(leaves_[n - 1])));
   }
 }
 
 void BuildPlan::sort() {
   for (const lod::TileKey& key : leaves_) finest_level_ = std::max(finest_level_, key.level);
-  std::sort(leaves_.begin(), leaves_.end(), curve_less);
+  std::sort(leaves_.begin(), leaves_.end(), morton_less);
   std::sort(inner_.begin(), inner_.end(), [](const lod::TileKey& a, const lod::TileKey& b) {
-    return a.level != b.level ? a.level > b.level : curve_less(a, b);
+    return a.level != b.level ? a.level > b.level : morton_less(a, b);
   });
 }
 

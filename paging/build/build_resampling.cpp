@@ -10,7 +10,7 @@ namespace paging {
 
 namespace {
 
-// So many posts are looked up together: enough that neighbours along a source's rows share the reading of a
+// Number of posts that are looked up together: enough that neighbours in a source's rows share the reading of a
 // tile.
 constexpr std::size_t kBatch = std::size_t{1} << 18;
 
@@ -20,14 +20,14 @@ struct SourcePost {
   glm::dvec3 direction{};
   double height_m = 0;
   mars::ChartPoint point;
-  std::size_t leaf = kNowhere;  // index of the finest tile, when it is one of those asked for
+  std::size_t leaf = kNowhere;  // index of the finest tile, when it is one of the given ones
 };
 
 class Meter {
  public:
-  Meter(const BuildContext& context, std::span<const lod::TileKey> leaves, int threads,
+  Meter(const BuildPlan& plan, const StoredTiles& stored, std::span<const lod::TileKey> leaves, int threads,
         const std::function<void()>& step)
-      : context_(context), leaves_(leaves), threads_(threads), step_(step) {}
+      : plan_(plan), stored_(stored), leaves_(leaves), threads_(threads), step_(step) {}
 
   void add(std::span<const glm::dvec3> directions, std::span<const double> heights) {
     for (std::size_t n = 0; n < directions.size(); ++n) {
@@ -49,8 +49,8 @@ class Meter {
     for (SourcePost& p : posts) {
       p.point = mars::chart_point(p.direction);
       if (last == kNowhere || leaves_[last] != lod::tile_at(p.point, leaves_[last].level)) {
-        const lod::TileKey key = lod::tile_at(p.point, context_.plan.leaf_level(p.point));
-        const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, curve_less);
+        const lod::TileKey key = lod::tile_at(p.point, plan_.leaf_level(p.point));
+        const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, morton_less);
         last =
             leaf == leaves_.end() || *leaf != key ? kNowhere : static_cast<std::size_t>(leaf - leaves_.begin());
       }
@@ -74,12 +74,12 @@ class Meter {
     vpe::base::parallel_for(runs.size(), threads_, [&](std::size_t r) {
       const std::size_t end = r + 1 < runs.size() ? runs[r + 1] : posts_.size();
       const lod::TileKey& key = leaves_[posts_[runs[r]].leaf];
-      const lod::Posts posts = read_posts(context_, key);
+      const lod::Posts posts = read_posts(stored_, key);
       const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
       ResamplingSum sum;
       for (std::size_t n = runs[r]; n < end; ++n) {
         const SourcePost& p = posts_[n];
-        const double height_m = lod::surface_height(posts, lines, p.point.u, p.point.v, context_.meta.radius_m);
+        const double height_m = lod::surface_height(posts, lines, p.point.u, p.point.v, stored_.meta.radius_m);
         sum.add(std::abs(height_m - p.height_m));
       }
       const std::lock_guard lock(adding);
@@ -90,7 +90,8 @@ class Meter {
     step_();
   }
 
-  const BuildContext& context_;
+  const BuildPlan& plan_;
+  const StoredTiles& stored_;
   std::span<const lod::TileKey> leaves_;
   int threads_;
   const std::function<void()>& step_;
@@ -100,10 +101,11 @@ class Meter {
 
 }  // namespace
 
-std::vector<ResamplingSum> measure_resampling(const BuildContext& context, std::span<const lod::TileKey> leaves,
+std::vector<ResamplingSum> measure_resampling(const SampleInputs& sampling, const StoredTiles& stored,
+                                              std::size_t most_posts, std::span<const lod::TileKey> leaves,
                                               int threads, const std::function<void()>& step) {
-  Meter meter(context, leaves, threads, step);
-  context.elevation->visit_posts(context.options.resampling_posts,
+  Meter meter(sampling.plan, stored, leaves, threads, step);
+  sampling.elevation.visit_posts(most_posts,
                                  [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
                                    meter.add(directions, heights);
                                  });

@@ -1,6 +1,7 @@
-// S against the sources' own posts.
+// Measures the reference surface against the sources' own posts.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -8,10 +9,11 @@
 
 namespace paging {
 
-// By level, from 0 on: errors at the source posts that lie in these finest tiles (along the curve), of at most
-// about options.resampling_posts over the whole planet. Equal for any number of threads, and adds up over
-// parts. step() is called now and then, from any thread.
-std::vector<ResamplingSum> measure_resampling(const BuildContext& context, std::span<const lod::TileKey> leaves,
+// Returns, by level from 0 on, the errors at the source posts that lie in these finest tiles (in Morton order).
+// Over the whole planet about `most_posts` posts are compared at most. The result is equal for any number of
+// threads and adds up over shards. step() is called now and then, from any thread.
+std::vector<ResamplingSum> measure_resampling(const SampleInputs& sampling, const StoredTiles& stored,
+                                              std::size_t most_posts, std::span<const lod::TileKey> leaves,
                                               int threads, const std::function<void()>& step);
 
 }  // namespace paging

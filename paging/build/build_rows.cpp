@@ -45,19 +45,19 @@ NodeRow to_row(const lod::TileKey& key, const Node& node) {
   return row;
 }
 
-Node recall_leaf(const BuildContext& context, const NodeRow& row) {
+Node recall_leaf(const PlanetMeta& meta, const NodeRow& row) {
   Node node = node_of(row);
   const int level = lod::unpack(row.key)->level;
-  const double spacing = lod::post_spacing_m(level, context.meta.tile.intervals(), context.meta.radius_m);
-  node.lowest_m = node.min_m - facet_sag_m(spacing, context.meta.radius_m);
+  const double spacing = lod::post_spacing_m(level, meta.tile.intervals(), meta.radius_m);
+  node.lowest_m = node.min_m - facet_sagitta_m(spacing, meta.radius_m);
   return node;
 }
 
-Node recall_inner(const BuildContext& context, const NodeRow& row) {
+Node recall_inner(const Nodes& nodes, const NodeRow& row) {
   Node node = node_of(row);
-  node.posts_terms = node.variants.front().terms = {};  // measured anew, or taken from notes
+  node.posts_terms = node.variants.front().terms = {};  // measured again, or taken from checkpoints
   for (int c = 0; c < 4; ++c) {
-    const double lowest = context.nodes.at(lod::child(*lod::unpack(row.key), c)).lowest_m;
+    const double lowest = nodes.at(lod::child(*lod::unpack(row.key), c)).lowest_m;
     node.lowest_m = c == 0 ? lowest : std::min(node.lowest_m, lowest);
   }
   return node;

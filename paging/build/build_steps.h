@@ -1,34 +1,40 @@
-// The steps of a build, one tile each. Used by the builder alone; any number of threads may run them for
-// different tiles at once.
+// Steps of a build, one tile each. Used by the builder and by merging alone. Any number of threads may run a
+// step for different tiles at once.
+//
+// Each step takes only what it needs: SampleInputs where sources are sampled, MeshInputs where posts are
+// meshed, StoredTiles where tiles that an earlier step stored are read back.
 #pragma once
 
 #include <map>
-#include <memory>
-#include <mutex>
 #include <set>
 #include <span>
-#include <unordered_map>
+#include <string>
+#include <vector>
 
+#include "lod/mesh/mesh.h"
 #include "paging/build/build_plan.h"
 #include "paging/build/builder.h"
 #include "paging/build/planet_writer.h"
+#include "vpe/base/object_pool.h"
 
 namespace paging {
 
-// What a build keeps in memory of a tile.
+// Holds what a build keeps in memory of a tile.
 struct Node {
   double min_m = 0;  // of the finest posts
   double max_m = 0;
-  double lowest_m = 0;  // of S: facets sag below their posts
+  double lowest_m = 0;  // of the reference surface: facets lie below their posts by up to the sagitta
   double slope = 0;     // lod::steepest_slope
   bool inner = false;
-  int coarser_neighbour_mask = 0;  // NodeRow::steps
+  int coarser_neighbour_mask = 0;  // NodeRow::coarser_neighbour_mask
   std::set<int> sources;
   std::vector<lod::MeshVariant> variants;
   lod::ErrorTerms posts_terms;  // of an inner tile, as lod::TileInfo
 };
+// Ordered by key, so that nothing depends on hashing. Read-only during a step.
+using Nodes = std::map<lod::TileKey, Node>;
 
-// What is measured of an inner tile against S.
+// Holds the errors of an inner tile, measured against the reference surface.
 struct InnerTerms {
   lod::ErrorTerms mesh;
   lod::ErrorTerms posts;
@@ -38,99 +44,86 @@ struct InnerTerms {
   }
 };
 
-// Of an inner tile that other builds store.
+// Holds an inner tile that lies above several shards. Each of these shards measures it, merging stores it.
 struct SharedAncestor {
   PackedMesh mesh;
   lod::Posts posts;
 };
+using SharedAncestors = std::map<lod::TileKey, SharedAncestor>;
 
-// Meshers keep scratch memory; each is used by one thread at a time.
-class MesherPool {
- public:
-  class Lease {
-   public:
-    Lease(MesherPool& pool, std::unique_ptr<lod::Mesher> mesher) : pool_(&pool), mesher_(std::move(mesher)) {}
-    ~Lease() { pool_->give_back(std::move(mesher_)); }
-    Lease(const Lease&) = delete;
-    Lease& operator=(const Lease&) = delete;
-    lod::Mesher* operator->() const { return mesher_.get(); }
+// Meshers keep scratch memory; one thread at a time uses each.
+using MesherPool = vpe::base::ObjectPool<lod::Mesher>;
 
-   private:
-    MesherPool* pool_;
-    std::unique_ptr<lod::Mesher> mesher_;
-  };
-  Lease borrow() {
-    const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return {*this, std::make_unique<lod::Mesher>()};
-    std::unique_ptr<lod::Mesher> mesher = std::move(idle_.back());
-    idle_.pop_back();
-    return {*this, std::move(mesher)};
-  }
-
- private:
-  void give_back(std::unique_ptr<lod::Mesher> mesher) {
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(mesher));
-  }
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<lod::Mesher>> idle_;
-};
-
-struct BuildContext {
-  const BuildOptions& options;
+struct SampleInputs {
   const PlanetMeta& meta;
   const BuildPlan& plan;
-  const mars::ElevationSource* elevation;  // null where nothing is sampled any more
-  PlanetWriter& writer;
+  const mars::ElevationSource& elevation;
+};
+
+struct MeshInputs {
+  const PlanetMeta& meta;
+  const BuildPlan& plan;
+  double mesh_ratio;  // BuildOptions::mesh_ratio
   MesherPool& meshers;
-  std::map<lod::TileKey, SharedAncestor> above;  // tiles that this build measures, but others store
-  std::map<lod::TileKey, Node> nodes;  // ordered, so that nothing depends on hashing; read-only during a step
+};
+
+struct StoredTiles {
+  const PlanetMeta& meta;
+  PlanetWriter& writer;
+  const Nodes& nodes;  // of all tiles that are read
 };
 
 // Samples, meshes and stores a finest tile.
-Node build_leaf(const BuildContext& context, const lod::TileKey& key);
+Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, PlanetWriter& writer,
+                const lod::TileKey& key);
 
-// Takes an inner tile's posts from its children (which must be in context.nodes), meshes and stores it. Its
-// error terms are 0 until they have been measured.
-Node build_inner(const BuildContext& context, const lod::TileKey& key);
+// Takes an inner tile's posts from its children, which must be stored, and meshes and stores it. Its error
+// terms are 0 until they have been measured.
+Node build_inner(const MeshInputs& meshing, const StoredTiles& stored, const lod::TileKey& key);
 
-// Mesh and posts that build_inner would make, from the sources instead of the children: for a tile that lies
-// above more than one part of a divided build.
-SharedAncestor sample_above(const BuildContext& context, const lod::TileKey& key);
+// Makes the mesh and posts that build_inner() makes, from the sources instead of the children: for a tile that
+// lies above more than one shard.
+SharedAncestor sample_shared_ancestor(const SampleInputs& sampling, const MeshInputs& meshing,
+                                      const lod::TileKey& key);
 
-// The tile's Node from what is stored of it, instead of building it: equal to what building it returns. An
-// inner tile's children must be in context.nodes.
-Node recall_leaf(const BuildContext& context, const NodeRow& row);
-Node recall_inner(const BuildContext& context, const NodeRow& row);
+// Return a tile's Node from its stored row instead of building the tile. The result equals what building
+// returns. An inner tile's children must be in `nodes`.
+Node recall_leaf(const PlanetMeta& meta, const NodeRow& row);
+Node recall_inner(const Nodes& nodes, const NodeRow& row);
 
-// Largest errors of every ancestor's mesh and posts over some finest tiles; from context.above, else as stored.
-std::map<lod::TileKey, InnerTerms> measure_chunk(const BuildContext& context,
+// Computes the largest errors of every ancestor's mesh and posts over some finest tiles. Ancestors are taken
+// from `shared_ancestors`, else as stored.
+std::map<lod::TileKey, InnerTerms> measure_chunk(const StoredTiles& stored,
+                                                 const SharedAncestors& shared_ancestors,
                                                  std::span<const lod::TileKey> leaves);
 
-// measure_chunk's result as bytes and back; unpack throws CodecError.
+// Converts the result of measure_chunk() to bytes and back; unpack_terms() throws CodecError.
 Bytes pack_terms(const std::map<lod::TileKey, InnerTerms>& terms);
 std::map<lod::TileKey, InnerTerms> unpack_terms(std::span<const std::uint8_t> packed);
 
-// Makes errors nest: none of these inner tiles, deepest first, states less than anything below it.
-void nest_errors(BuildContext& context, std::span<const lod::TileKey> inner);
+// Makes errors nest: afterwards none of these inner tiles, deepest first, states a smaller error than any tile
+// below it.
+void nest_errors(Nodes& nodes, std::span<const lod::TileKey> inner);
 
-void build_image(const BuildContext& context, const mars::ImageSource& image, const lod::TileKey& key);
+// Samples an image tile and returns it as JPEG. Nodata texels are grey.
+Bytes make_image_tile(const mars::ImageSource& image, const lod::TileKey& key, double radius_m, int quality);
 
-// What is stored of a Node, and back: all but lowest_m.
+// Convert a Node to its row and back, except lowest_m.
 NodeRow to_row(const lod::TileKey& key, const Node& node);
 Node node_of(const NodeRow& row);
 
-// Bound of how far a facet of the tile's finest cells sags below the sphere through its posts: a point of a
-// flat triangle is within longest edge / sqrt(3) of a post.
-inline double facet_sag_m(double spacing_m, double radius_m) {
+// Bounds how far a facet of the tile's finest cells lies below the sphere through its posts: a point of a flat
+// triangle is within longest edge / sqrt(3) of a post.
+inline double facet_sagitta_m(double spacing_m, double radius_m) {
   return 2.5 * spacing_m * spacing_m / (6.0 * radius_m);
 }
 
-// A stored tile's finest or own posts, borders constrained; and a stored mesh's heights in metres.
-lod::Posts read_posts(const BuildContext& context, const lod::TileKey& key);
+// Reads a stored tile's posts with constrained borders: the finest ones of a leaf, its own of an inner tile.
+lod::Posts read_posts(const StoredTiles& stored, const lod::TileKey& key);
+// Returns the heights of a stored mesh's vertices in metres.
 std::vector<double> vertex_heights(const PackedMesh& mesh, double quantum_m);
 
-// Radial distance that a mesh of this level keeps to its posts.
-double mesh_tolerance_m(const BuildOptions& options, int level);
+// Returns the radial distance within which the mesh of a tile of this level keeps to its posts.
+double mesh_tolerance_m(const MeshInputs& meshing, int level);
 
 }  // namespace paging

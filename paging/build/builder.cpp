@@ -20,18 +20,18 @@ namespace paging {
 
 namespace {
 
-// One build: the stages in their order, each leaving out what an earlier build has finished.
+// Runs the stages of a build in their order; each skips what an earlier build has finished.
 class Build {
  public:
   Build(const BuildOptions& options, const mars::ElevationSource& elevation, const mars::ImageSource* image,
-        const PlanetMeta& meta, const ProgressFunction& progress)
+        const PlanetMeta& meta, BuildPlan plan, const ProgressFunction& progress)
       : options_(options),
         elevation_(elevation),
         image_(image),
         meta_(meta),
-        plan_(meta.tile, meta.radius_m, wanted_elevation(options, elevation)),
-        share_(shard_plan(plan_, options.part)),
-        writer_(options.output, recipe_of(options, meta), options.commit_s),
+        plan_(std::move(plan)),
+        shard_(shard_plan(plan_, options.shard)),
+        writer_(options.output, build_fingerprint(options, meta), options.commit_s),
         stages_(progress),
         threads_(options.threads > 0 ? options.threads : vpe::base::default_threads()) {
     stages_.replaced = writer_.start() == PartialFileStart::kReplaced;
@@ -48,28 +48,28 @@ class Build {
   }
 
  private:
-  // 1. Finest tiles: heights and meshes.
+  // Stage 1 makes the finest tiles: heights and meshes.
   void build_leaves(const std::map<lod::TileKey, NodeRow>& stored) {
-    const std::span<const lod::TileKey> leaves = share_.leaves;
+    const std::span<const lod::TileKey> leaves = shard_.leaves;
     std::vector<lod::TileKey> open;
     for (const lod::TileKey& key : leaves) {
       const auto row = stored.find(key);
       if (row == stored.end()) {
         open.push_back(key);
       } else {
-        context_.nodes.emplace(key, recall_leaf(context_, row->second));
+        nodes_.emplace(key, recall_leaf(meta_, row->second));
       }
     }
     begin("sampling", leaves.size(), open.size(), 0.62);
-    build_each(open, build_leaf);
+    build_each(open, [this](const lod::TileKey& key) { return build_leaf(sampling_, meshing_, writer_, key); });
   }
 
-  // 2. Inner tiles, deepest first: posts and meshes over their children's posts.
+  // Stage 2 makes the inner tiles, deepest first: posts and meshes over their children's posts.
   void build_inner_tiles(const std::map<lod::TileKey, NodeRow>& stored) {
-    const std::vector<lod::TileKey>& inner = share_.inner;
-    const auto missing = std::count_if(inner.begin(), inner.end(),
-                                       [&](const lod::TileKey& key) { return !stored.contains(key); });
-    begin("meshing", inner.size(), static_cast<std::size_t>(missing), 0.15);
+    const std::vector<lod::TileKey>& inner = shard_.inner;
+    const auto to_build = std::count_if(inner.begin(), inner.end(),
+                                        [&](const lod::TileKey& key) { return !stored.contains(key); });
+    begin("meshing", inner.size(), static_cast<std::size_t>(to_build), 0.15);
     for (std::size_t at = 0; at < inner.size();) {
       std::vector<lod::TileKey> open;
       for (const int level = inner[at].level; at < inner.size() && inner[at].level == level; ++at) {
@@ -77,17 +77,17 @@ class Build {
         if (row == stored.end()) {
           open.push_back(inner[at]);
         } else {
-          context_.nodes.emplace(inner[at], recall_inner(context_, row->second));
+          nodes_.emplace(inner[at], recall_inner(nodes_, row->second));
         }
       }
-      build_each(open, build_inner);
+      build_each(open, [this](const lod::TileKey& key) { return build_inner(meshing_, stored_, key); });
     }
   }
 
-  // 3. Every inner mesh and its posts against the finest posts and facets below it.
+  // Stage 3 measures every inner mesh and its posts against the finest posts and facets below it.
   void measure() {
     constexpr std::size_t kChunk = 32;
-    const std::span<const lod::TileKey> leaves = share_.leaves;
+    const std::span<const lod::TileKey> leaves = shard_.leaves;
     const std::size_t chunks = (leaves.size() + kChunk - 1) / kChunk;
     const std::map<std::int64_t, Bytes> checkpoints = writer_.checkpoints();
     std::vector<std::size_t> open;
@@ -101,12 +101,12 @@ class Build {
     }
     stages_.begin("measuring", static_cast<std::int64_t>(chunks), 0.15,
                   static_cast<std::int64_t>(chunks - open.size()));
-    mesh_above();
+    mesh_shared_ancestors();
     std::mutex merge;
     vpe::base::parallel_for(open.size(), threads_, [&](std::size_t n) {
       const std::size_t first = open[n] * kChunk;
-      const auto found =
-          measure_chunk(context_, leaves.subspan(first, std::min(kChunk, leaves.size() - first)));
+      const auto found = measure_chunk(stored_, shared_ancestors_,
+                                       leaves.subspan(first, std::min(kChunk, leaves.size() - first)));
       writer_.put_checkpoint(static_cast<std::int64_t>(open[n]), pack_terms(found));
       {
         const std::lock_guard lock(merge);
@@ -114,14 +114,14 @@ class Build {
       }
       stages_.advance();
     });
-    nest_errors(context_, share_.inner);
+    nest_errors(nodes_, shard_.inner);
   }
 
   void include(const std::map<lod::TileKey, InnerTerms>& found) {
     for (const auto& [key, terms] : found) {
-      const auto node = context_.nodes.find(key);
-      if (node == context_.nodes.end()) {
-        above_[key].terms.include(terms);
+      const auto node = nodes_.find(key);
+      if (node == nodes_.end()) {
+        shared_terms_[key].terms.include(terms);
         continue;
       }
       node->second.variants.front().terms.include(terms.mesh);
@@ -129,32 +129,33 @@ class Build {
     }
   }
 
-  // Meshes and posts of tiles that lie above other parts too.
-  void mesh_above() {
-    std::vector<SharedAncestor> tiles(share_.above.size());
-    vpe::base::parallel_for(tiles.size(), threads_,
-                            [&](std::size_t n) { tiles[n] = sample_above(context_, share_.above[n]); });
+  // Makes meshes and posts of the tiles that lie above other shards too.
+  void mesh_shared_ancestors() {
+    const std::vector<lod::TileKey>& keys = shard_.shared_ancestors;
+    std::vector<SharedAncestor> tiles(keys.size());
+    vpe::base::parallel_for(tiles.size(), threads_, [&](std::size_t n) {
+      tiles[n] = sample_shared_ancestor(sampling_, meshing_, keys[n]);
+    });
     for (std::size_t n = 0; n < tiles.size(); ++n) {
-      const lod::TileKey& key = share_.above[n];
-      above_[key].mesh_checksum = checksum(lod::pack(key), encode_mesh(tiles[n].mesh));
-      context_.above.emplace(key, std::move(tiles[n]));
+      shared_terms_[keys[n]].mesh_checksum = checksum(lod::pack(keys[n]), encode_mesh(tiles[n].mesh));
+      shared_ancestors_.emplace(keys[n], std::move(tiles[n]));
     }
   }
 
-  // 4. The image's own pyramid.
+  // Stage 4 makes the pyramid of the image.
   void build_images() {
     std::vector<lod::TileKey> images =
         image_ != nullptr ? plan_images(options_, *image_) : std::vector<lod::TileKey>();
     const auto count = static_cast<std::int64_t>(images.size());
-    images.erase(images.begin() + options_.part.end(count), images.end());
-    images.erase(images.begin(), images.begin() + options_.part.begin(count));
+    images.erase(images.begin() + options_.shard.end(count), images.end());
+    images.erase(images.begin(), images.begin() + options_.shard.begin(count));
     const std::set<std::int64_t> stored = writer_.image_keys();
     std::vector<lod::TileKey> open;
     std::copy_if(images.begin(), images.end(), std::back_inserter(open),
                  [&](const lod::TileKey& key) { return !stored.contains(lod::pack(key)); });
     begin("image", images.size(), open.size(), 0.06);
     vpe::base::parallel_for(open.size(), threads_, [&](std::size_t n) {
-      build_image(context_, *image_, open[n]);
+      writer_.put_image(open[n], make_image_tile(*image_, open[n], meta_.radius_m, options_.image_quality));
       stages_.advance();
     });
     for (const lod::TileKey& key : images)
@@ -165,10 +166,10 @@ class Build {
   BuildSummary finish() {
     BuildSummary summary;
     std::vector<NodeRow> measured;
-    meta_.tiles = static_cast<std::int64_t>(context_.nodes.size());
-    meta_.leaf_tiles = static_cast<std::int64_t>(share_.leaves.size());
-    meta_.lowest_radius_m = meta_.highest_radius_m = meta_.radius_m + context_.nodes.begin()->second.lowest_m;
-    for (const auto& [key, node] : context_.nodes) {
+    meta_.tiles = static_cast<std::int64_t>(nodes_.size());
+    meta_.leaf_tiles = static_cast<std::int64_t>(shard_.leaves.size());
+    meta_.lowest_radius_m = meta_.highest_radius_m = meta_.radius_m + nodes_.begin()->second.lowest_m;
+    for (const auto& [key, node] : nodes_) {
       meta_.lowest_radius_m = std::min(meta_.lowest_radius_m, meta_.radius_m + node.lowest_m);
       meta_.highest_radius_m = std::max(meta_.highest_radius_m, meta_.radius_m + node.max_m);
       meta_.finest_level = std::max(meta_.finest_level, key.level);
@@ -177,17 +178,18 @@ class Build {
     }
     writer_.replace_nodes(measured);
 
-    // 5. S against the sources' own posts.
+    // Stage 5 measures the reference surface against the sources' own posts.
     stages_.begin("checking", 1, 0.02);
-    auto sums = measure_resampling(context_, share_.leaves, threads_, [this] { stages_.look(); });
+    auto sums = measure_resampling(sampling_, stored_, options_.resampling_posts, shard_.leaves, threads_,
+                                   [this] { stages_.report_again(); });
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
     set_resampling(meta_, sums);
-    if (!options_.part.is_all()) {
-      meta_.share = ShardMeta{options_.part, options_.mesh_ratio, std::move(sums)};
-      writer_.put_checkpoint(kSharedAncestorsCheckpoint, pack_shared_ancestors(above_));
+    if (!options_.shard.is_all()) {
+      meta_.shard = ShardMeta{options_.shard, options_.mesh_ratio, std::move(sums)};
+      writer_.put_checkpoint(kSharedAncestorsCheckpoint, pack_shared_ancestors(shared_terms_));
     }
     writer_.seal(meta_);
-    if (!meta_.share) PlanetFile::open(writer_.part_path());  // as everybody will
+    if (!meta_.shard) PlanetFile::open(writer_.part_path());  // throws when it cannot be used
     stages_.advance();                                        // the last chance to be interrupted
     writer_.publish(meta_);
 
@@ -204,14 +206,14 @@ class Build {
   }
 
   // Builds tiles that do not need each other.
-  void build_each(const std::vector<lod::TileKey>& keys,
-                  Node (*build)(const BuildContext&, const lod::TileKey&)) {
+  template <typename MakeNode>
+  void build_each(const std::vector<lod::TileKey>& keys, const MakeNode& build) {
     std::vector<Node> made(keys.size());
     vpe::base::parallel_for(keys.size(), threads_, [&](std::size_t n) {
-      made[n] = build(context_, keys[n]);
+      made[n] = build(keys[n]);
       stages_.advance();
     });
-    for (std::size_t n = 0; n < keys.size(); ++n) context_.nodes.emplace(keys[n], std::move(made[n]));
+    for (std::size_t n = 0; n < keys.size(); ++n) nodes_.emplace(keys[n], std::move(made[n]));
   }
 
   const BuildOptions& options_;
@@ -219,20 +221,27 @@ class Build {
   const mars::ImageSource* image_;
   PlanetMeta meta_;
   BuildPlan plan_;
-  ShardPlan share_;
+  ShardPlan shard_;
   PlanetWriter writer_;
   Stages stages_;
   int threads_;
   MesherPool meshers_;
-  std::map<lod::TileKey, SharedAncestorTerms> above_;
-  BuildContext context_{options_, meta_, plan_, &elevation_, writer_, meshers_, {}, {}};
+  Nodes nodes_;
+  SharedAncestors shared_ancestors_;
+  std::map<lod::TileKey, SharedAncestorTerms> shared_terms_;
+  const SampleInputs sampling_{meta_, plan_, elevation_};
+  const MeshInputs meshing_{meta_, plan_, options_.mesh_ratio, meshers_};
+  const StoredTiles stored_{meta_, writer_, nodes_};
 };
 
 }  // namespace
 
 BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
-                          const mars::ImageSource* image, const ProgressFunction& progress) {
-  return Build(options, elevation, image, describe_planet(options, elevation, image), progress).run();
+                          const mars::ImageSource* image, const ProgressFunction& progress,
+                          std::optional<BuildPlan> plan) {
+  const PlanetMeta meta = describe_planet(options, elevation, image);
+  if (!plan) plan = plan_tiles(options, elevation);
+  return Build(options, elevation, image, meta, std::move(*plan), progress).run();
 }
 
 }  // namespace paging

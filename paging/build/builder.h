@@ -1,19 +1,21 @@
-// Sources -> planet file.
+// Builds a planet file from elevation and image sources.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mars/sources/source.h"
+#include "paging/build/build_plan.h"
 #include "paging/planet/planet_meta.h"
 #include "vpe/base/shard.h"
 
 namespace paging {
 
-// Longitude-latitude box, east-positive degrees; west > east crosses the antimeridian.
+// Describes a longitude-latitude box, east-positive degrees; west > east crosses the antimeridian.
 struct Region {
   double west_deg = -180;
   double south_deg = -90;
@@ -21,26 +23,38 @@ struct Region {
   double north_deg = 90;
 };
 
-// True when a cap touches the region (conservative: may say yes for a near miss).
+// Returns true when a cap touches the region. Conservative: may return true for a near miss.
 bool touches(const Region& region, const mars::Cap& cap);
 
 struct BuildOptions {
   std::string output;  // the planet file to make
   std::string body = "Mars";
   double radius_m = mars::kMarsRadius_m;
-  bool true_radii = false;       // the sources' heights are counted from the sphere of radius_m
-  double base_spacing_m = 3700;  // at least this fine everywhere, so that the surface is round
-  double finest_spacing_m = 0;   // not finer than this; 0 = as fine as the sources
-  std::vector<Region> regions;   // where to go beyond the base spacing, texels too; empty = wherever sources do
-  int tile_k = 7;                // 2^k intervals a tile; docs/simplifiers.md has the measurement
-  double quantum_m = 0;          // height step stored; 0 = chosen from the sources (docs/planet-file.md)
-  double mesh_ratio = 256;       // a tile's mesh is within side / mesh_ratio of its posts
-  double finest_image_m = 0;     // texels not finer than this; 0 = as fine as the image
-  int image_quality = 90;        // JPEG
-  int threads = 0;               // 0 = all cores
-  std::size_t resampling_posts = 4'000'000;  // how many source posts to compare with S at most
-  vpe::base::Shard part;                     // only this part of the tiles, into a file for merge_parts
-  double commit_s = 1.0;                     // what a killed build may lose, about
+  bool true_radii = false;  // the sources' heights are counted from the sphere of radius_m
+  // Coarsest post spacing anywhere, so that the surface is round. Smaller: rounder where sources are coarse,
+  // but more tiles; larger: facets of the globe become visible.
+  double base_spacing_m = 3700;
+  // Finest post spacing; 0 = as fine as the sources. Larger: smaller file, faster build, less detail.
+  double finest_spacing_m = 0;
+  std::vector<Region> regions;  // where to exceed the base spacing, texels too; empty = wherever sources do
+  // 2^k intervals a tile. Larger: fewer, bigger tiles, so less overhead but coarser loading and culling;
+  // smaller: the reverse. docs/measurements/simplifiers.md has the measurement.
+  int tile_k = 7;
+  // Height step stored; 0 = chosen from the sources (docs/design/planet-file.md). Smaller: smoother slopes,
+  // larger file; larger: terraces become visible in shading.
+  double quantum_m = 0;
+  // A tile's mesh is within side / mesh_ratio of its posts. Larger: more triangles a tile and smaller errors;
+  // smaller: fewer triangles, and views need deeper tiles.
+  double mesh_ratio = 256;
+  double finest_image_m = 0;  // texels not finer than this; 0 = as fine as the image
+  int image_quality = 90;     // JPEG; larger: larger file, smaller: visible blocks
+  int threads = 0;            // 0 = all cores
+  // Largest number of source posts that are compared with the reference surface. Smaller: faster, and the
+  // resampling error is less certain.
+  std::size_t resampling_posts = 4'000'000;
+  vpe::base::Shard shard;  // only this shard of the tiles, into a file for merge_shards()
+  // Seconds between commits: about what a killed build may lose. Smaller: loses less, writes more often.
+  double commit_s = 1.0;
 };
 
 struct BuildProgress {
@@ -49,10 +63,10 @@ struct BuildProgress {
   std::int64_t total = 0;
   double fraction = 0;    // of the whole build, by measured cost shares
   std::int64_t kept = 0;  // tiles and image tiles that an earlier, stopped build had finished
-  bool replaced = false;  // an OUTPUT.part of other options or sources was there, and is gone
+  bool replaced = false;  // OUTPUT.part of other options or sources existed and has been removed
 };
-using ProgressFunction =
-    std::function<void(const BuildProgress&)>;  // called from worker threads, one at a time
+// Called from worker threads, one at a time. May throw to stop.
+using ProgressFunction = std::function<void(const BuildProgress&)>;
 
 struct BuildSummary {
   PlanetMeta meta;
@@ -62,14 +76,28 @@ struct BuildSummary {
   std::int64_t kept = 0;            // as BuildProgress::kept
 };
 
+// Returns the tiles of a build. Reads no more of the source than its footprints. Throws std::runtime_error when
+// they are too many.
+BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& elevation);
+
 // Builds the planet file: OUTPUT.part first, renamed when complete. Memory is a few tiles a thread plus about
-// 600 bytes a tile. Content is a function of the options and sources, whatever the number of threads and
-// however often the build was stopped: one that ends early (killed, disk full, an exception of a source or of
-// progress()) leaves OUTPUT.part, which the next build with the same options and sources continues. Other
-// sources (by name, size and time), options or program versions start anew. image may be null. With
-// options.part, the file holds that part of the tiles, is no planet file yet, and PlanetMeta::share is set.
-// Throws PlanetError, DatabaseError, mars::SourceError, std::runtime_error (plan too large).
+// 600 bytes a tile. The content is a function of the options and sources. It does not depend on the number of
+// threads, nor on how often the build was stopped: a build that ends early (killed, disk full, an exception of
+// a source or of progress()) leaves OUTPUT.part, and the next build with the same options and sources
+// continues it. Other sources (by name, size and time), options or program versions start anew.
+//
+// `image` may be null. `plan` may be what plan_tiles() returned for the same options and source, to save
+// planning twice. With options.shard, the file holds that shard of the tiles and is no planet file yet;
+// PlanetMeta::shard is set.
+//
+// Throws PlanetError, DatabaseError, mars::SourceError, std::runtime_error (too many tiles).
+//
+// Typical usage:
+//   BuildOptions options;
+//   options.output = "mars.vpe";
+//   const BuildSummary summary = build_planet(options, *mars::open_elevation("mola.tif"), nullptr);
 BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
-                          const mars::ImageSource* image, const ProgressFunction& progress = {});
+                          const mars::ImageSource* image, const ProgressFunction& progress = {},
+                          std::optional<BuildPlan> plan = {});
 
 }  // namespace paging

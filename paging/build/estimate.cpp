@@ -10,8 +10,8 @@ namespace paging {
 
 namespace {
 
-// Measured 2026-11-21, processor time of one core of a 2-core virtual machine: mola8 to 5.3 and 2.6 km, the same with
-// relief added to 326 m, mdim21, the embedded Mars; docs/scale.md.
+// Measured 2026-11-21, processor time of one core of a 2-core virtual machine: mola8 to 5.3 and 2.6 km, the
+// same with relief added to 326 m, mdim21, the embedded Mars; docs/measurements/scaling.md.
 constexpr double kLeafPost_s = 1.2e-6;  // sampled from a raster, meshed, measured, packed
 constexpr double kInnerPost_s = 1.0e-6;
 constexpr double kTexel_s = 0.2e-6;
@@ -26,17 +26,16 @@ std::int64_t rounded(double x) { return static_cast<std::int64_t>(x + 0.5); }
 
 }  // namespace
 
-BuildEstimate estimate_build(const BuildOptions& options, const mars::ElevationSource& elevation,
-                             const mars::ImageSource* image) {
+BuildEstimate estimate_build(const BuildOptions& options, const BuildPlan& plan,
+                             const mars::ElevationSource& elevation, const mars::ImageSource* image) {
   const lod::TileShape tile{options.tile_k};
-  const BuildPlan plan(tile, options.radius_m, wanted_elevation(options, elevation));
-  const ShardPlan share = shard_plan(plan, options.part);
+  const ShardPlan shard = shard_plan(plan, options.shard);
   BuildEstimate out;
-  out.leaf_tiles = static_cast<std::int64_t>(share.leaves.size());
-  out.inner_tiles = static_cast<std::int64_t>(share.inner.size());
+  out.leaf_tiles = static_cast<std::int64_t>(shard.leaves.size());
+  out.inner_tiles = static_cast<std::int64_t>(shard.inner.size());
   if (image != nullptr) {
     const auto count = static_cast<std::int64_t>(plan_images(options, *image).size());
-    out.image_tiles = options.part.end(count) - options.part.begin(count);
+    out.image_tiles = options.shard.end(count) - options.shard.begin(count);
   }
   out.posts = out.leaf_tiles * tile.post_count();
   const auto leaf_posts = static_cast<double>(out.posts);

@@ -1,4 +1,4 @@
-// What a build will take, before it starts.
+// Estimates what a build will take, before it starts.
 #pragma once
 
 #include "paging/build/builder.h"
@@ -6,9 +6,9 @@
 namespace paging {
 
 struct BuildEstimate {
-  std::int64_t leaf_tiles = 0;  // exact, as the next two: from the plan
-  std::int64_t inner_tiles = 0;
-  std::int64_t image_tiles = 0;
+  std::int64_t leaf_tiles = 0;   // exact, from the plan
+  std::int64_t inner_tiles = 0;  // exact
+  std::int64_t image_tiles = 0;  // exact
   std::int64_t posts = 0;
   std::int64_t bytes = 0;         // of the finished file
   double processor_s = 0;         // of all threads together
@@ -16,11 +16,12 @@ struct BuildEstimate {
   std::int64_t memory_bytes = 0;  // that the tile index takes while it is built, caches not included
 };
 
-// From the plan, and from rates measured on one machine (docs/scale.md): tiles are exact; bytes are within a
-// factor of two on terrain, less on plains; time is as good as this machine resembles that one, and leaves out
-// slow disks and networks. Of options.part alone where the build is divided. Reads no more of the sources than
-// their footprints. Throws what build_planet throws of its options.
-BuildEstimate estimate_build(const BuildOptions& options, const mars::ElevationSource& elevation,
-                             const mars::ImageSource* image);
+// Estimates a build from its plan and from rates measured on one machine (docs/measurements/scaling.md).
+// Numbers of tiles are exact. Bytes are within a factor of two on terrain, less on plains. Time is as good as
+// this machine resembles that one, and leaves out slow disks and networks. Covers options.shard alone where
+// the build is divided. `plan` is what plan_tiles() returned. Reads no more of the sources than their
+// footprints. Throws PlanetError when the planet has fewer finest tiles than shards.
+BuildEstimate estimate_build(const BuildOptions& options, const BuildPlan& plan,
+                             const mars::ElevationSource& elevation, const mars::ImageSource* image);
 
 }  // namespace paging

@@ -1,4 +1,4 @@
-// Parts of a divided build -> planet file.
+// Merges the shards of a divided build into a planet file.
 #pragma once
 
 #include <string>
@@ -9,16 +9,18 @@
 namespace paging {
 
 struct MergeOptions {
-  std::vector<std::string> parts;  // files that build_planet made with BuildOptions::part, in any order
-  std::string output;              // the planet file to make
-  int threads = 0;                 // 0 = all cores
-  double commit_s = 1.0;           // as in BuildOptions
+  std::vector<std::string> shards;  // files that build_planet() made with BuildOptions::shard, in any order
+  std::string output;               // the planet file to make
+  int threads = 0;                  // 0 = all cores
+  double commit_s = 1.0;            // as in BuildOptions
 };
 
-// Joins all parts: tiles are copied with their checksums verified, the inner tiles above several parts are
-// made, and the planet file has the content and meta of the undivided build, bit for bit. No source is read.
-// Continues OUTPUT.part like build_planet. The parts are left as they are. Throws PlanetError (a part that is
-// missing, double, damaged, no part, or of other sources, options or version; names it), DatabaseError.
-BuildSummary merge_parts(const MergeOptions& options, const ProgressFunction& progress = {});
+// Merges all shards: copies tiles after verifying their checksums, and makes the inner tiles that lie above
+// several shards. The planet file has the content and meta of the undivided build, bit for bit. Reads no
+// source. Continues OUTPUT.part like build_planet(). Leaves the shards as they are.
+//
+// Throws DatabaseError, and PlanetError for a shard that does not exist, is given twice, is damaged, is
+// another kind of file, or has other sources, options or version; the message names it.
+BuildSummary merge_shards(const MergeOptions& options, const ProgressFunction& progress = {});
 
 }  // namespace paging

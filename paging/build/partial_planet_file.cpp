@@ -15,14 +15,14 @@ const char* const kKeepShardTables = "DELETE FROM note WHERE number >= 0";
 
 namespace {
 
-constexpr const char* kPartTables =
+constexpr const char* kPartialTables =
     "CREATE TABLE recipe(text TEXT NOT NULL);"
     "CREATE TABLE note(number INTEGER PRIMARY KEY, checksum INTEGER NOT NULL, data BLOB NOT NULL)";
 
 std::unique_ptr<Database> open_exclusively(const std::string& path) {
   auto db = std::make_unique<Database>(path, Database::Mode::kCreate);
   db->execute("PRAGMA page_size = 8192");
-  // New pages need no going back: the journal costs little here, and a killed build leaves whole transactions.
+  // New pages need no rollback: the journal costs little here, and a killed build leaves whole transactions.
   db->execute("PRAGMA journal_mode = TRUNCATE");
   db->execute("PRAGMA synchronous = NORMAL");
   db->execute("PRAGMA locking_mode = EXCLUSIVE");
@@ -30,14 +30,15 @@ std::unique_ptr<Database> open_exclusively(const std::string& path) {
   return db;
 }
 
-bool fits(Database& db, const std::string& fingerprint) {
+bool has_fingerprint(Database& db, const std::string& fingerprint) {
   if (db.integer("PRAGMA application_id") != kApplicationId) return false;
   Statement text(db, "SELECT text FROM recipe");
   return text.step() && text.text(0) == fingerprint;
 }
 
-// Whether all rows fit their checksums. `sql` gives a key, what is added to it as a seed, checksum, data.
-bool sound(const Database& db, const char* sql) {
+// Returns whether all rows match their checksums. `sql` selects a key, what is added to it as a seed,
+// checksum, data.
+bool rows_are_intact(const Database& db, const char* sql) {
   Statement rows(db, sql);
   while (rows.step()) {
     if (checksum(rows.integer(0) + rows.integer(1), rows.blob(3)) != rows.integer(2)) return false;
@@ -45,16 +46,16 @@ bool sound(const Database& db, const char* sql) {
   return true;
 }
 
-// Whether every row is as it was written, and every tile has all of its rows. Damage is not mended: a killed
-// build leaves none, nor does a machine that ends suddenly; a disk that changes bits is not to be built upon.
-bool sound(Database& db) {
+// Returns whether every row is as it was written, and every tile has all of its rows. Damage is not repaired:
+// neither a killed build nor a sudden power loss leaves any, and a disk that changes bits cannot be relied on.
+bool is_intact(Database& db) {
   Statement check(db, "PRAGMA integrity_check(1)");
   if (!check.step() || check.text(0) != "ok") return false;
   for (const char* sql :
        {"SELECT key, 0, checksum, data FROM heights", "SELECT key, 0, checksum, data FROM missing",
         "SELECT key, variant, checksum, data FROM mesh", "SELECT key, 0, checksum, data FROM image",
         "SELECT number, 0, checksum, data FROM note"}) {
-    if (!sound(db, sql)) return false;
+    if (!rows_are_intact(db, sql)) return false;
   }
   std::vector<NodeRow> nodes;
   if (read_nodes(db, nodes)) return false;
@@ -73,13 +74,14 @@ bool sound(Database& db) {
          db.integer("SELECT count(*) FROM variant") == variants;
 }
 
-// The part at `path`, continued; without a database when it is to be made anew.
-PartialPlanetFile continue_part(const std::string& path, const std::string& fingerprint) {
+// Continues the partial file at `path`; returns no database when it must be made again.
+PartialPlanetFile continue_partial_file(const std::string& path, const std::string& fingerprint) {
   try {
     auto db = open_exclusively(path);
-    // A build that ended before its first commit leaves what SQLite goes back to: an empty file.
+    // A build that ended before its first commit leaves what SQLite rolls back to: an empty file.
     if (db->integer("SELECT count(*) FROM sqlite_schema") == 0) return {};
-    if (!fits(*db, fingerprint) || !sound(*db)) return {nullptr, PartialFileStart::kReplaced, false};
+    if (!has_fingerprint(*db, fingerprint) || !is_intact(*db))
+      return {nullptr, PartialFileStart::kReplaced, false};
     db->execute("DELETE FROM meta");
     const bool holds_tiles = db->integer("SELECT count(*) FROM node") > 0;
     return {std::move(db), PartialFileStart::kContinued, holds_tiles};
@@ -95,24 +97,24 @@ PartialPlanetFile continue_part(const std::string& path, const std::string& fing
 }  // namespace
 
 PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint) {
-  PartialPlanetFile part;
+  PartialPlanetFile partial;
   if (fs::exists(path)) {
-    part = continue_part(path, fingerprint);
-    if (part.db) return part;
+    partial = continue_partial_file(path, fingerprint);
+    if (partial.db) return partial;
   }
   remove_partial_file(path);
-  part.db = open_exclusively(path);
-  part.db->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
-  part.db->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
-  part.db->execute(kSchema);
-  part.db->execute(kPartTables);
-  Statement(*part.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(fingerprint)).step();
-  return part;
+  partial.db = open_exclusively(path);
+  partial.db->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
+  partial.db->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
+  partial.db->execute(kSchema);
+  partial.db->execute(kPartialTables);
+  Statement(*partial.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(fingerprint)).step();
+  return partial;
 }
 
 void remove_partial_file(const std::string& path) {
   std::error_code ignored;
-  // The last two only in parts of older versions.
+  // Only older versions left the last two.
   for (const char* suffix : {"", "-journal", "-wal", "-shm"}) fs::remove(path + suffix, ignored);
 }
 

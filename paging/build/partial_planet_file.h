@@ -1,4 +1,8 @@
-// NAME.vpe.part: a planet file on its way, which a later build can continue.
+// NAME.vpe.part: an incomplete planet file that a later build can resume.
+//
+// Besides the tables of a planet file it has two of its own. Their names in the file differ from the names in
+// the code: the table `recipe` holds the build fingerprint, and each row of the table `note` is a checkpoint,
+// a result of an intermediate step with its number.
 #pragma once
 
 #include <memory>
@@ -8,30 +12,31 @@
 
 namespace paging {
 
-// What became of a part that was there.
+// States what became of a partial file that existed.
 enum class PartialFileStart {
-  kNew,        // there was none, or none of it had been committed
-  kContinued,  // it had the same recipe: its tiles are kept
-  kReplaced,   // it had another one, or was damaged: removed
+  kNew,        // none existed, or nothing of it had been committed
+  kContinued,  // its fingerprint is the same: its tiles are kept
+  kReplaced,   // its fingerprint is another, or it was damaged: removed
 };
 
 struct PartialPlanetFile {
-  std::unique_ptr<Database> db;  // with a transaction open that nobody else can write beside
+  std::unique_ptr<Database> db;  // in an open transaction that excludes all other writers
   PartialFileStart start = PartialFileStart::kNew;
   bool holds_tiles = false;
 };
 
-// Opens the part at `path` for continuing, or makes a new one, with the tables of a planet file, `recipe` and
-// `note`. Only a part with the same recipe, all of it sound, is continued; the check reads the whole of it.
-// Throws DatabaseError; its busy() is true while another build is at work on the part.
+// Opens the partial file at `path` to continue it, or makes a new one with the tables of a planet file, the
+// fingerprint and the table of checkpoints. Continues only a file with the same fingerprint that is undamaged;
+// the check reads the whole of it. Throws DatabaseError; its busy() is true while another build writes the
+// file.
 PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint);
 
-// Removes it and what SQLite keeps beside it.
+// Removes the file and what SQLite keeps beside it.
 void remove_partial_file(const std::string& path);
 
 // SQL that leaves only what a finished planet file has.
 extern const char* const kDropPartialTables;
-// SQL that leaves what a file with PlanetMeta::share has besides: the recipe, and notes with numbers below 0.
+// SQL that leaves what a shard has besides: the fingerprint, and checkpoints with numbers below 0.
 extern const char* const kKeepShardTables;
 
 }  // namespace paging

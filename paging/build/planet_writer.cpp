@@ -63,23 +63,23 @@ PlanetWriter::PlanetWriter(const std::string& path, const std::string& fingerpri
     : path_(path),
       part_path_(path + ".part"),
       commit_every_(commit_s),
-      part_(open_partial_file(part_path_, fingerprint)) {
-  sql_ = std::make_unique<Statements>(*part_.db);
+      partial_(open_partial_file(part_path_, fingerprint)) {
+  sql_ = std::make_unique<Statements>(*partial_.db);
 }
 
 PlanetWriter::~PlanetWriter() {
   if (finished_) return;
   sql_.reset();
-  if (part_.db && uncommitted_ && !broken_) {
+  if (partial_.db && uncommitted_ && !broken_) {
     try {
-      part_.db->execute("COMMIT");
-      part_.holds_tiles = true;
+      partial_.db->execute("COMMIT");
+      partial_.holds_tiles = true;
     } catch (const DatabaseError&) {
-      // As on a full disk: SQLite has gone back to the last commit, or will when the file is opened again.
+      // For example on a full disk: SQLite has gone back to the last commit, or will when the file is opened.
     }
   }
-  part_.db.reset();
-  if (!part_.holds_tiles) remove_partial_file(part_path_);
+  partial_.db.reset();
+  if (!partial_.holds_tiles) remove_partial_file(part_path_);
 }
 
 // An error may have undone the whole transaction (SQLite, "Response to errors within a transaction"), so
@@ -100,10 +100,10 @@ void PlanetWriter::write(const Puts& puts) {
 
 void PlanetWriter::commit_when_due() {
   if (std::chrono::steady_clock::now() - last_commit_ < commit_every_) return;
-  part_.db->execute("COMMIT");
-  part_.holds_tiles = true;
+  partial_.db->execute("COMMIT");
+  partial_.holds_tiles = true;
   uncommitted_ = false;
-  part_.db->execute("BEGIN EXCLUSIVE");
+  partial_.db->execute("BEGIN EXCLUSIVE");
   last_commit_ = std::chrono::steady_clock::now();
 }
 
@@ -177,7 +177,7 @@ void PlanetWriter::replace_nodes(std::span<const NodeRow> rows) {
 std::vector<NodeRow> PlanetWriter::nodes() {
   const std::lock_guard lock(mutex_);
   std::vector<NodeRow> rows;
-  const auto bad = read_nodes(*part_.db, rows);
+  const auto bad = read_nodes(*partial_.db, rows);
   if (bad) {
     throw DatabaseError(part_path_ + ": the tile index is damaged at row " + std::to_string(*bad) +
                         "; remove this file, then build again");
@@ -188,20 +188,20 @@ std::vector<NodeRow> PlanetWriter::nodes() {
 std::set<std::int64_t> PlanetWriter::image_keys() {
   const std::lock_guard lock(mutex_);
   std::set<std::int64_t> keys;
-  Statement rows(*part_.db, "SELECT key FROM image");
+  Statement rows(*partial_.db, "SELECT key FROM image");
   while (rows.step()) keys.insert(rows.integer(0));
   return keys;
 }
 
 std::vector<LevelSummary> PlanetWriter::levels(std::size_t posts) {
   const std::lock_guard lock(mutex_);
-  return summarize_levels(*part_.db, posts);
+  return summarize_levels(*partial_.db, posts);
 }
 
 std::map<std::int64_t, Bytes> PlanetWriter::checkpoints() {
   const std::lock_guard lock(mutex_);
   std::map<std::int64_t, Bytes> out;
-  Statement rows(*part_.db, "SELECT number, data FROM note");
+  Statement rows(*partial_.db, "SELECT number, data FROM note");
   while (rows.step()) {
     const auto data = rows.blob(1);
     out.emplace(rows.integer(0), Bytes(data.begin(), data.end()));
@@ -227,7 +227,7 @@ std::optional<Bytes> PlanetWriter::find(Statement& statement, const lod::TileKey
 
 Bytes PlanetWriter::read(Statement& statement, const lod::TileKey& key, std::int64_t seed) {
   auto found = find(statement, key, seed);
-  if (!found) part_.db->fail("read back tile " + lod::to_string(key));
+  if (!found) partial_.db->fail("read back tile " + lod::to_string(key));
   return std::move(*found);
 }
 
@@ -252,19 +252,19 @@ Bytes PlanetWriter::mesh(const lod::TileKey& key, int variant) {
 void PlanetWriter::seal(PlanetMeta& meta) {
   const std::lock_guard lock(mutex_);
   if (broken_) throw DatabaseError(*broken_);
-  meta.identity = content_identity(*part_.db);
+  meta.identity = content_identity(*partial_.db);
   meta.program = VPE_VERSION;
-  write_meta(*part_.db, meta);
-  part_.db->execute("COMMIT");
+  write_meta(*partial_.db, meta);
+  partial_.db->execute("COMMIT");
   sql_.reset();
-  part_.db.reset();
+  partial_.db.reset();
 }
 
 void PlanetWriter::publish(const PlanetMeta& meta) {
   {
     Database db(part_path_, Database::Mode::kCreate);
     db.execute("BEGIN");
-    db.execute(meta.share ? kKeepShardTables : kDropPartialTables);
+    db.execute(meta.shard ? kKeepShardTables : kDropPartialTables);
     db.execute("DELETE FROM meta");
     write_meta(db, meta);
     db.execute("COMMIT");

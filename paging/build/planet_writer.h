@@ -1,8 +1,8 @@
 // Writes a planet file: PATH.part while it grows, PATH once it is complete.
 //
-// A build that was stopped or killed leaves PATH.part with whole tiles; the next writer with the same recipe
-// continues it. Every transaction ends between two tiles, so what is there is complete whenever the process
-// died; when the machine died, all but the last second or so is.
+// A build that was stopped or killed leaves PATH.part with whole tiles; the next writer with the same
+// fingerprint continues it. Every transaction ends between two tiles, so all stored tiles are complete
+// whenever the process dies. When the machine dies, only the last second or so is lost.
 #pragma once
 
 #include <chrono>
@@ -19,53 +19,63 @@
 
 namespace paging {
 
-// All that the file holds of a tile.
+// Holds everything that the file stores of a tile.
 struct TilePayload {
   Bytes heights;
-  Bytes nodata;               // empty: no post is missing
+  Bytes nodata;               // empty when every post has data
   std::vector<Bytes> meshes;  // by variant
 };
 
-// Members may be called from any thread; they take turns. Throws DatabaseError (disk full, another build at
-// work on the same file, ...); after the first one that a put_ or replace_ throws, all of them throw the same.
-// The name of the finished file only ever holds a complete one.
+// Writes and reads back the tiles of a build. Members may be called from any thread; a lock lets one run at a
+// time. They throw DatabaseError (disk full, another build writes the same file, ...). After the first error
+// of a put_ or replace_ member, all of them throw the same error. A file with the final name is always
+// complete.
+//
+// Typical usage:
+//   PlanetWriter writer(path, fingerprint);
+//   for (const NodeRow& row : writer.nodes()) skip(row.key);  // of an earlier build
+//   writer.put_tile(row, payload);
+//   writer.seal(meta);
+//   writer.publish(meta);
 class PlanetWriter {
  public:
-  // recipe: everything that the content is a function of, as text; two builds with equal recipes make equal
-  // tiles. commit_s: how often finished tiles are made safe.
+  // `fingerprint` is everything that the content is a function of, as text: two builds with equal fingerprints
+  // make equal tiles. `commit_s` is the time between commits: a build that is killed loses less when it is
+  // smaller, and writes faster when it is larger.
   PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s = 1.0);
-  ~PlanetWriter();  // unless publish() was reached, keeps the .part file; removes it when it holds no work
+  // Without publish(), keeps the .part file, or removes it when it holds no tiles.
+  ~PlanetWriter();
   PlanetWriter(const PlanetWriter&) = delete;
   PlanetWriter& operator=(const PlanetWriter&) = delete;
 
-  PartialFileStart start() const { return part_.start; }
+  PartialFileStart start() const { return partial_.start; }
 
-  // What earlier builds left, at the time of asking.
+  // Return what the file holds now, which at first is what earlier builds left.
   std::vector<NodeRow> nodes();
   std::set<std::int64_t> image_keys();
   std::map<std::int64_t, Bytes> checkpoints();
-  std::vector<LevelSummary> levels(std::size_t posts);  // summarize_levels
+  std::vector<LevelSummary> levels(std::size_t posts);  // as summarize_levels()
 
-  // Each is stored whole or not at all.
+  // Store a tile or image tile, whole or not at all.
   void put_tile(const NodeRow& row, const TilePayload& payload);
   void put_image(const lod::TileKey& key, std::span<const std::uint8_t> packed);
-  // A result on the way to the finished file, by number; replaces an earlier one. Dropped by publish(), but
-  // that with a number below 0 stays in a file with PlanetMeta::share.
+  // Stores an intermediate result by number; replaces an earlier one. publish() drops checkpoints, except that
+  // a shard keeps those with numbers below 0.
   void put_checkpoint(std::int64_t number, std::span<const std::uint8_t> packed);
-  // Replaces rows of the tile index, all or none.
+  // Replaces rows of the tile index, all of them or none.
   void replace_nodes(std::span<const NodeRow> rows);
 
-  // What put_tile stored. Throws DatabaseError also when it is damaged.
+  // Read back what put_tile() stored. Throw DatabaseError also when it is damaged.
   Bytes heights(const lod::TileKey& key);
-  Bytes nodata(const lod::TileKey& key);  // empty: no post is missing
+  Bytes nodata(const lod::TileKey& key);  // empty when every post has data
   Bytes mesh(const lod::TileKey& key, int variant);
 
-  // Writes meta (identity and program are filled in) and closes the .part file: it can be opened for reading,
-  // nothing more can be put.
+  // Fills in identity and program, writes meta and closes the .part file. After that it can be opened for
+  // reading, and nothing more can be stored.
   void seal(PlanetMeta& meta);
   const std::string& part_path() const { return part_path_; }
 
-  // After seal: writes meta again, syncs the file to disk and renames it to its final name.
+  // Finishes after seal(): writes meta again, syncs the file to disk and renames it to its final name.
   void publish(const PlanetMeta& meta);
 
  private:
@@ -84,8 +94,8 @@ class PlanetWriter {
   std::string part_path_;
   std::chrono::duration<double> commit_every_;
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
-  PartialPlanetFile part_;
-  bool uncommitted_ = false;               // there is work since the last commit
+  PartialPlanetFile partial_;
+  bool uncommitted_ = false;               // something was written since the last commit
   std::unique_ptr<DatabaseError> broken_;  // the first error of writing
   bool finished_ = false;
   std::unique_ptr<Statements> sql_;

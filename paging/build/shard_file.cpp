@@ -14,26 +14,26 @@ ShardFile::ShardFile(const std::string& path) : path_(path) {
   try {
     db_ = std::make_unique<Database>(path, Database::Mode::kReadOnly);
     if (db_->integer("PRAGMA application_id") != kApplicationId) {
-      throw PlanetError(path + ": an SQLite file, but not of vpe");
+      throw PlanetError(path + ": an SQLite database, but not a file of vpe");
     }
     std::map<std::string, std::string> rows;
     Statement all(*db_, "SELECT key, value FROM meta");
     while (all.step()) rows[all.text(0)] = all.text(1);
     if (rows.empty()) {
-      throw PlanetError(path + ": a build that has not ended; run it again, it continues");
+      throw PlanetError(path + ": a build that has not ended; run it again to continue it");
     }
     meta_ = from_rows(rows, path);
-    if (!meta_.share) throw PlanetError(path + ": a whole planet, not a part of one; leave it out");
+    if (!meta_.shard) throw PlanetError(path + ": a whole planet, not a part of one; leave it out");
     Statement fingerprint(*db_, "SELECT text FROM recipe");
     if (fingerprint.step()) fingerprint_ = fingerprint.text(0);
-    const std::string line = recipe_part(part());
-    if (!fingerprint_.ends_with(line)) damaged("its recipe is of another part");
+    const std::string line = fingerprint_line(id());
+    if (!fingerprint_.ends_with(line)) damaged("its build fingerprint is that of another part");
     fingerprint_.resize(fingerprint_.size() - line.size());
     heights_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM heights WHERE key = ?");
     nodata_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM missing WHERE key = ?");
     mesh_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?");
     image_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM image WHERE key = ?");
-    if (content_identity(*db_) != meta_.identity) damaged("its rows are not those that were written");
+    if (content_identity(*db_) != meta_.identity) damaged("its rows differ from those that were written");
   } catch (const DatabaseError& e) {
     throw PlanetError(std::string(e.what()) + "; not a part of a planet, or damaged: build it again");
   }
@@ -54,12 +54,12 @@ std::vector<NodeRow> ShardFile::nodes() const {
   return rows;
 }
 
-std::map<lod::TileKey, SharedAncestorTerms> ShardFile::above() const {
+std::map<lod::TileKey, SharedAncestorTerms> ShardFile::shared_ancestors() const {
   try {
     Statement checkpoint(*db_, "SELECT checksum, data FROM note WHERE number = ?");
     return unpack_shared_ancestors(verified(checkpoint.bind(1, kSharedAncestorsCheckpoint),
                                             kSharedAncestorsCheckpoint, kSharedAncestorsCheckpoint,
-                                            "the note of tiles above"));
+                                            "checkpoint of shared ancestors"));
   } catch (const CodecError& e) {
     damaged(e.what());
   } catch (const DatabaseError& e) {
@@ -91,7 +91,7 @@ TilePayload ShardFile::payload(const NodeRow& row) {
   nodata_->bind(1, row.key);
   if (nodata_->step()) {
     nodata_->reset();
-    payload.nodata = verified(nodata_->bind(1, row.key), row.key, row.key, "missing mask");
+    payload.nodata = verified(nodata_->bind(1, row.key), row.key, row.key, "nodata mask");
   }
   // A finest tile's last variant is its full grid, without a mesh.
   const auto meshes = static_cast<std::int64_t>(row.variants.size()) - (row.inner ? 0 : 1);

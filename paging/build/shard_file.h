@@ -1,4 +1,4 @@
-// A file that holds one part of a divided build, open for reading.
+// A file that holds one shard of a divided build, open for reading.
 #pragma once
 
 #include <functional>
@@ -13,21 +13,25 @@
 
 namespace paging {
 
-// Used by one thread at a time. Members throw PlanetError when something is damaged, naming file and tile.
+// Reads a shard. Used by one thread at a time. Members throw PlanetError when something is damaged; the message
+// names file and tile.
+//
+// Typical usage:
+//   ShardFile shard("mars.1-of-4.vpe");
+//   for (const NodeRow& row : shard.nodes()) writer.put_tile(row, shard.payload(row));
 class ShardFile {
  public:
-  // Throws PlanetError for a missing file, another kind of file, a whole planet, a damaged part.
+  // Throws PlanetError for a file that does not exist, is of another kind, is a whole planet, or is damaged.
   explicit ShardFile(const std::string& path);
 
   const std::string& path() const { return path_; }
-  const PlanetMeta& meta() const { return meta_; }  // with share
-  const vpe::base::Shard& part() const { return meta_.share->part; }
-  const std::string& fingerprint() const {
-    return fingerprint_;
-  }  // without the line that says which part it is
+  const PlanetMeta& meta() const { return meta_; }  // `shard` is set
+  const vpe::base::Shard& id() const { return meta_.shard->id; }
+  // Returns the build fingerprint of the undivided build.
+  const std::string& fingerprint() const { return fingerprint_; }
 
   std::vector<NodeRow> nodes() const;
-  std::map<lod::TileKey, SharedAncestorTerms> above() const;
+  std::map<lod::TileKey, SharedAncestorTerms> shared_ancestors() const;
   TilePayload payload(const NodeRow& row);
   std::vector<std::int64_t> image_keys() const;
   Bytes image(std::int64_t key);

@@ -7,7 +7,7 @@
 
 namespace paging {
 
-// advance() may be called from any thread.
+// Adds the progress of successive stages up. Members but advance() and report_again() belong to one thread.
 class Stages {
  public:
   explicit Stages(const ProgressFunction& report) : report_(report) {}
@@ -16,33 +16,35 @@ class Stages {
   std::int64_t kept() const { return kept_; }
   void add_kept(std::int64_t count) { kept_ += count; }
 
-  // `share` of the whole build; `done` of `total` are there already.
+  // Begins a stage that takes `share` of the whole build. `done` of its `total` items are finished already.
   void begin(const char* name, std::int64_t total, double share, std::int64_t done = 0) {
     done_share_ += share_;
     share_ = share;
     name_ = name;
     total_ = total;
     done_ = done;
-    tell();
+    report();
   }
 
+  // Counts one item. May be called from any thread.
   void advance() {
     const std::lock_guard lock(mutex_);
     ++done_;
-    tell();
+    report();
   }
 
-  // A chance to be interrupted.
-  void look() {
+  // Reports the same progress again, so that the receiver can interrupt a long item. May be called from any
+  // thread.
+  void report_again() {
     const std::lock_guard lock(mutex_);
-    tell();
+    report();
   }
 
  private:
-  void tell() {
+  void report() {
     if (!report_) return;
-    const double part = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1.0;
-    report_({name_, done_, total_, done_share_ + share_ * part, kept_, replaced});
+    const double done = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1.0;
+    report_({name_, done_, total_, done_share_ + share_ * done, kept_, replaced});
   }
 
   const ProgressFunction& report_;

@@ -72,7 +72,7 @@ class Reader {
 
 using Triangle = std::array<std::uint16_t, 3>;
 
-std::vector<Triangle> normalised(const std::vector<std::uint16_t>& indices) {
+std::vector<Triangle> normalized(const std::vector<std::uint16_t>& indices) {
   std::vector<Triangle> triangles(indices.size() / 3);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     Triangle& tri = triangles[t];
@@ -101,7 +101,7 @@ Bytes decompress(std::span<const std::uint8_t> packed, std::size_t limit) {
   Bytes out(static_cast<std::size_t>(size));
   const std::size_t got = ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size());
   if (ZSTD_isError(got) != 0U) throw CodecError(std::string("zstd: ") + ZSTD_getErrorName(got));
-  if (got != out.size()) throw CodecError("zstd: frame is shorter than it says");
+  if (got != out.size()) throw CodecError("zstd: frame is shorter than its header states");
   return out;
 }
 
@@ -150,7 +150,7 @@ Bytes encode_mask(const std::vector<bool>& nodata) {
 
 std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t count) {
   const Bytes bits = decompress(packed, (count + 7) / 8);
-  if (bits.size() != (count + 7) / 8) throw CodecError("missing mask: wrong number of posts");
+  if (bits.size() != (count + 7) / 8) throw CodecError("nodata mask: wrong number of posts");
   std::vector<bool> nodata(count);
   for (std::size_t i = 0; i < count; ++i) nodata[i] = (bits[i / 8] >> (i % 8) & 1U) != 0;
   return nodata;
@@ -158,7 +158,8 @@ std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t 
 
 Bytes encode_mesh(const PackedMesh& packed) {
   const lod::TileMesh& mesh = packed.mesh;
-  if (packed.height_q.size() != mesh.vertices.size()) throw CodecError("mesh: one height a vertex is needed");
+  if (packed.height_q.size() != mesh.vertices.size())
+    throw CodecError("mesh: the number of heights is not the number of vertices");
   Bytes raw;
   put_varint(raw, static_cast<std::uint32_t>(mesh.intervals));
   put_varint(raw, static_cast<std::uint32_t>(mesh.vertices.size()));
@@ -176,7 +177,7 @@ Bytes encode_mesh(const PackedMesh& packed) {
     height = h;
   }
   std::uint32_t first = 0;
-  for (const Triangle& t : normalised(mesh.triangles)) {
+  for (const Triangle& t : normalized(mesh.triangles)) {
     put_varint(raw, t[0] - first);
     put_varint(raw, static_cast<std::uint32_t>(t[1] - t[0]));
     put_varint(raw, static_cast<std::uint32_t>(t[2] - t[0]));
@@ -219,7 +220,7 @@ PackedMesh decode_mesh(std::span<const std::uint8_t> packed) {
     const std::uint64_t second = first + in.varint();
     const std::uint64_t third = first + in.varint();
     if (first >= vertices || second >= vertices || third >= vertices) {
-      throw CodecError("mesh: a triangle names a vertex that is not there");
+      throw CodecError("mesh: a triangle refers to a vertex that does not exist");
     }
     for (const std::uint64_t index : {first, second, third}) {
       out.mesh.triangles.push_back(static_cast<std::uint16_t>(index));

@@ -1,7 +1,12 @@
-// Payloads of the planet file: heights, missing masks, meshes, as compressed bytes.
+// Payloads of the planet file as compressed bytes: heights, nodata masks, meshes.
 //
-// decode(encode(x)) == x, bit for bit. Every decoder checks sizes and ranges and throws CodecError on bytes
-// that no encoder wrote; it never reads or writes out of bounds, whatever the bytes are. Pure functions.
+// decode(encode(x)) == x, bit for bit. Every decoder checks sizes and ranges. It throws CodecError for bytes
+// that no encoder wrote, and never reads or writes out of bounds, whatever the bytes are. All functions are
+// pure.
+//
+// Typical usage:
+//   const Bytes packed = encode_heights(quanta, side);
+//   const std::vector<std::int32_t> same = decode_heights(packed, side);
 #pragma once
 
 #include <cstdint>
@@ -20,28 +25,31 @@ class CodecError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// zstd frame with its content size; decompress refuses more than `limit` bytes.
+// Packs bytes into a zstd frame that states its content size.
 Bytes compress(std::span<const std::uint8_t> raw, int level);
+// Unpacks such a frame. Throws CodecError for more than `limit` bytes.
 Bytes decompress(std::span<const std::uint8_t> packed, std::size_t limit);
 
-// Heights in quanta, side * side of them, row by row: gradient prediction, zigzag, byte planes, zstd.
+// Packs side * side heights in quanta, row by row: gradient prediction, zigzag, byte planes, zstd.
 Bytes encode_heights(std::span<const std::int32_t> quanta, int side);
 std::vector<std::int32_t> decode_heights(std::span<const std::uint8_t> packed, int side);
 
-// One flag a post (true = no source had data there).
+// Packs one flag for each post: true where no source has data.
 Bytes encode_mask(const std::vector<bool>& nodata);
 std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t count);
 
-// A mesh with the heights (in quanta) of its vertices. Vertices must be sorted by (j, i) and distinct;
-// triangle order and rotation are normalised by encode (so decode may return the same set in another order).
+// Holds a mesh with the heights of its vertices. Vertices must be sorted by (j, i) and distinct.
 struct PackedMesh {
   lod::TileMesh mesh;
-  std::vector<std::int32_t> height_q;  // one per vertex
+  std::vector<std::int32_t> height_q;  // in quanta, one for each vertex
 };
+// Packs a mesh. Normalizes order and rotation of the triangles, so decode_mesh() may return the same set of
+// triangles in another order.
 Bytes encode_mesh(const PackedMesh& mesh);
 PackedMesh decode_mesh(std::span<const std::uint8_t> packed);
 
-// 63-bit checksum (XXH3) of a row's key and payload; never negative, as SQLite integers are signed.
+// Returns the 63-bit checksum (XXH3) of a row's key and payload. Never negative, because SQLite integers are
+// signed.
 std::int64_t checksum(std::int64_t key, std::span<const std::uint8_t> payload);
 
 }  // namespace paging

@@ -28,7 +28,7 @@ std::vector<int> parse_sources(const std::string& text) {
 
 }  // namespace
 
-// A read connection with its prepared statements.
+// Holds a read connection with its prepared statements.
 struct PlanetFile::Connection {
   explicit Connection(const std::string& path)
       : db(path, Database::Mode::kReadOnly),
@@ -38,6 +38,10 @@ struct PlanetFile::Connection {
         mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?"),
         image(db, "SELECT checksum, data FROM image WHERE key = ?") {}
 
+  void reset() {
+    for (Statement* statement : {&heights, &nodata, &node, &mesh, &image}) statement->reset();
+  }
+
   Database db;
   Statement heights;
   Statement nodata;
@@ -46,40 +50,10 @@ struct PlanetFile::Connection {
   Statement image;
 };
 
-class PlanetFile::Borrowed {
- public:
-  explicit Borrowed(const PlanetFile& file) : file_(&file) {
-    {
-      const std::lock_guard lock(file.mutex_);
-      if (!file.idle_.empty()) {
-        connection_ = std::move(file.idle_.back());
-        file.idle_.pop_back();
-        return;
-      }
-    }
-    connection_ = std::make_unique<Connection>(file.path_);
-  }
-  ~Borrowed() {
-    if (!connection_) return;
-    for (Statement* s : {&connection_->heights, &connection_->nodata, &connection_->node, &connection_->mesh,
-                         &connection_->image}) {
-      s->reset();
-    }
-    const std::lock_guard lock(file_->mutex_);
-    file_->idle_.push_back(std::move(connection_));
-  }
-  Borrowed(const Borrowed&) = delete;
-  Borrowed& operator=(const Borrowed&) = delete;
-  Connection* operator->() const { return connection_.get(); }
-
- private:
-  const PlanetFile* file_;
-  std::unique_ptr<Connection> connection_;
-};
-
 namespace {
 
-// The blob of the row that `statement` is bound to, its checksum verified. Empty when there is no such row.
+// Returns the blob of the row that `statement` is bound to after verifying its checksum, or nullopt when there
+// is no such row.
 std::optional<Bytes> verified(Statement& statement, std::int64_t row, const std::string& path,
                               const lod::TileKey& key, const char* what) {
   if (!statement.step()) return std::nullopt;
@@ -98,7 +72,10 @@ std::shared_ptr<const PlanetFile> PlanetFile::open(const std::string& path) {
 
 PlanetFile::~PlanetFile() = default;
 
-PlanetFile::PlanetFile(const std::string& path) : path_(path) {
+PlanetFile::PlanetFile(const std::string& path)
+    : path_(path),
+      connections_([this] { return std::make_unique<Connection>(path_); },
+                   {.reset = [](Connection& connection) { connection.reset(); }}) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw PlanetError(path + ": no such planet file; make one with 'vpe build DEM -o " + path + "'");
@@ -106,20 +83,18 @@ PlanetFile::PlanetFile(const std::string& path) : path_(path) {
   try {
     Database probe(path, Database::Mode::kReadOnly);
     if (probe.integer("PRAGMA application_id") != kApplicationId) {
-      throw PlanetError(path + ": an SQLite file, but not a planet file of vpe");
+      throw PlanetError(path + ": an SQLite database, but not a planet file of vpe");
     }
     std::map<std::string, std::string> rows;
     Statement all(probe, "SELECT key, value FROM meta");
     while (all.step()) rows[all.text(0)] = all.text(1);
     meta_ = from_rows(rows, path);
-    if (meta_.share) {
-      const std::string of = std::to_string(meta_.share->part.of);
-      throw PlanetError(path + ": part " + std::to_string(meta_.share->part.number) + " of " + of +
+    if (meta_.shard) {
+      const std::string of = std::to_string(meta_.shard->id.of);
+      throw PlanetError(path + ": part " + std::to_string(meta_.shard->id.number) + " of " + of +
                         " of a planet; join all " + of + " with 'vpe merge PART... -o PLANET.vpe'");
     }
-    auto connection = std::make_unique<Connection>(path);
-    read_index(*connection);
-    idle_.push_back(std::move(connection));
+    read_index(*connections_.acquire());
   } catch (const DatabaseError& e) {
     throw PlanetError(std::string(e.what()) + "; not a planet file, or damaged: build it again");
   }
@@ -159,7 +134,7 @@ void PlanetFile::read_index(Connection& connection) {
     const auto key = lod::unpack(masks.integer(0));
     if (!key)
       throw PlanetError(path_ +
-                        ": damaged: a mask of missing posts is of no tile; build the planet file again");
+                        ": damaged: nodata mask for a tile that does not exist; build the planet file again");
     nodata_keys_.push_back(masks.integer(0));
     for (lod::TileKey at = *key; at.level > 0;) nodata_keys_.push_back(lod::pack(at = lod::parent(at)));
   }
@@ -186,7 +161,7 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
   Bytes packed;
   std::optional<Bytes> mask;
   try {
-    const Borrowed connection(*this);
+    const auto connection = connections_.acquire();
     connection->node.bind(1, row);
     if (!connection->node.step()) throw PlanetError(damaged(path_, key, "not in the index"));
     out.coarser_neighbour_mask = static_cast<int>(connection->node.integer(0));
@@ -196,7 +171,7 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
     if (!found) throw PlanetError(damaged(path_, key, "heights are missing"));
     packed = std::move(*found);
     connection->nodata.bind(1, row);
-    mask = verified(connection->nodata, row, path_, key, "missing mask");
+    mask = verified(connection->nodata, row, path_, key, "nodata mask");
   } catch (const DatabaseError& e) {
     throw PlanetError(damaged(path_, key, e.what()));
   }
@@ -218,7 +193,7 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
 PackedMesh PlanetFile::mesh(const lod::TileKey& key, int variant) const {
   const std::int64_t row = lod::pack(key);
   try {
-    const Borrowed connection(*this);
+    const auto connection = connections_.acquire();
     connection->mesh.bind(1, row).bind(2, static_cast<std::int64_t>(variant));
     const auto packed = verified(connection->mesh, row + variant, path_, key, "mesh");
     if (!packed) throw PlanetError(damaged(path_, key, "mesh " + std::to_string(variant) + " is missing"));
@@ -249,7 +224,7 @@ std::vector<lod::TileKey> PlanetFile::image_keys() const {
 ImageTile PlanetFile::image(const lod::TileKey& key) const {
   const std::int64_t row = lod::pack(key);
   try {
-    const Borrowed connection(*this);
+    const auto connection = connections_.acquire();
     connection->image.bind(1, row);
     const auto packed = verified(connection->image, row, path_, key, "image");
     if (!packed) throw PlanetError(damaged(path_, key, "image is missing"));

@@ -1,8 +1,8 @@
-// The planet file *.vpe: one SQLite database, read-only once built. Layout in docs/planet-file.md.
+// The planet file *.vpe: one SQLite database, read-only once built. docs/design/planet-file.md describes its
+// tables.
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,30 +10,38 @@
 #include "lod/tree/tree.h"
 #include "paging/planet/codec.h"
 #include "paging/planet/planet_meta.h"
+#include "vpe/base/object_pool.h"
 
 namespace paging {
 
-// Everything of a finest or inner tile but its meshes.
+// Holds what a planet file stores of a tile, except its meshes.
 struct TileHeights {
   lod::Posts posts;                // borders constrained to coarser neighbours
-  int coarser_neighbour_mask = 0;  // bit of each Edge across which a finest tile one level coarser lies
-  std::vector<bool> nodata;        // empty when no post is missing
+  int coarser_neighbour_mask = 0;  // as NodeRow::coarser_neighbour_mask
+  std::vector<bool> nodata;        // true where no source has data; empty when every post has data
   std::vector<int> source;         // indices into PlanetMeta::sources that the tile draws on
 };
 
-// Puts the posts that lie on a coarser neighbour's edges onto these edges as exaggerated, so that S stays
-// watertight: an edge's height grows with the exaggeration, its sag does not. Does nothing where steps is 0.
+// Moves the posts on borders with coarser neighbours onto the edges of these neighbours as they are
+// exaggerated, so that the reference surface stays watertight: the height of an edge grows with the
+// exaggeration, its sagitta does not. Does nothing where coarser_neighbour_mask is 0.
 void put_on_coarser_edges(TileHeights& heights, double radius_m, double exaggeration);
 
 struct ImageTile {
   std::vector<vpe::base::Rgb> texels;  // 257 * 257, row 0 at the south border (v0), column 0 at the west border
 };
 
-// Every const member may be called from any thread; each call borrows one of a pool of read connections.
+// Reads a planet file. Every const member may be called from any thread; each call uses one of a pool of
+// connections to the database.
+//
+// Typical usage:
+//   const std::shared_ptr<const PlanetFile> planet = PlanetFile::open("mars.vpe");
+//   const lod::TileInfo& tile = planet->tree().deepest(lod::tile_at(mars::chart_point(direction), 8));
+//   const TileHeights heights = planet->heights(tile.key);
 class PlanetFile {
  public:
-  // Opens and reads meta and the tile index. Throws PlanetError for a missing file, another kind of file, a
-  // newer major format, an incomplete or damaged one.
+  // Opens the file and reads meta and the tile index. Throws PlanetError for a file that does not exist, is of
+  // another kind or of a newer major format, or is incomplete or damaged.
   static std::shared_ptr<const PlanetFile> open(const std::string& path);
   ~PlanetFile();
 
@@ -42,22 +50,25 @@ class PlanetFile {
   const lod::TileTree& tree() const { return *tree_; }
   double radius_m() const { return meta_.radius_m; }
 
-  // Throw PlanetError with the tile's key when it is missing or damaged (checksum, codec).
-  // With an exaggeration (> 0): the posts of S as drawn so many times as high; see put_on_coarser_edges().
+  // Reads the heights of a tile. Throws PlanetError with the tile's key when it is not in the file or is
+  // damaged (checksum, codec). With an exaggeration (> 0), the posts are those of the reference surface drawn
+  // with it; see put_on_coarser_edges().
   TileHeights heights(const lod::TileKey& key, double exaggeration = 1.0) const;
+  // Reads one mesh of a tile. Throws as heights() does.
   PackedMesh mesh(const lod::TileKey& key, int variant) const;
 
-  // Whether no source has data at some post of the tile or of one below it. Known without reading the tile.
+  // Returns whether the tile, or one below it, has a nodata post. Does not read the tile.
   bool has_nodata(const lod::TileKey& key) const;
 
-  // The deepest stored image tile at or above `key`; nothing when the planet has no image.
+  // Returns the deepest stored image tile at or above `key`, or nullopt when the planet has no image.
   std::optional<lod::TileKey> image_key(const lod::TileKey& key) const;
-  std::vector<lod::TileKey> image_keys() const;    // all of them
-  ImageTile image(const lod::TileKey& key) const;  // key must be one that image_key() returned
+  // Returns the keys of all image tiles.
+  std::vector<lod::TileKey> image_keys() const;
+  // Reads an image tile; `key` must be one that image_key() returned. Throws as heights() does.
+  ImageTile image(const lod::TileKey& key) const;
 
  private:
   struct Connection;
-  class Borrowed;
   explicit PlanetFile(const std::string& path);
   void read_index(Connection& connection);
 
@@ -65,9 +76,8 @@ class PlanetFile {
   PlanetMeta meta_;
   std::unique_ptr<lod::TileTree> tree_;
   std::vector<std::int64_t> image_keys_;   // sorted
-  std::vector<std::int64_t> nodata_keys_;  // of tiles with posts without data and of all above them, sorted
-  mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Connection>> idle_;
+  std::vector<std::int64_t> nodata_keys_;  // of tiles with nodata posts and of all above them, sorted
+  mutable vpe::base::ObjectPool<Connection> connections_;
 };
 
 }  // namespace paging

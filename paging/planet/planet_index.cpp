@@ -14,7 +14,7 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
                   "FROM node ORDER BY key");
   Statement variants(db, "SELECT key, relief_m, sag_m, total_m, triangles FROM variant ORDER BY key, variant");
   bool more = variants.step();
-  // Files before format 1.2 do not have it.
+  // Files before format 1.2 do not have this table.
   Statement known(db, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'posts_error'");
   std::optional<Statement> posts;
   if (known.step())
@@ -43,7 +43,7 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
     }
     const std::optional<lod::TileKey> key = lod::unpack(row.key);
     if (!key || checksum(row) != nodes.integer(6)) return row.key;
-    // The columns for people with SQL say the same as the key.
+    // The columns that help people with SQL must agree with the key.
     if (nodes.integer(8) != static_cast<std::int64_t>(key->face) || nodes.integer(9) != key->level ||
         nodes.integer(10) != std::int64_t{key->i} || nodes.integer(11) != std::int64_t{key->j}) {
       return row.key;
@@ -83,7 +83,7 @@ std::vector<LevelSummary> summarize_levels(const Database& db, std::size_t posts
 }
 
 std::string content_identity(const Database& db) {
-  // In key order, so that the order in which threads finished does not show.
+  // In key order, so that the order in which threads finished has no effect.
   Bytes all;
   for (const char* table : {"node", "heights", "missing", "image"}) {
     Statement rows(db, std::string("SELECT checksum FROM ") + table + " ORDER BY key");

@@ -40,7 +40,7 @@ json to_json(const mars::SourceInfo& s) {
   return j;
 }
 
-// The first files of format 1 say nothing for images.
+// The first files of format 1 have an empty text for images.
 mars::VerticalDatum datum_from(const std::string& text, double radius_m) {
   if (text.empty()) return {};
   const auto datum = mars::parse_datum(text, radius_m);
@@ -87,7 +87,7 @@ bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::Sourc
 
 constexpr const char* kChecksumKey = "checksum";
 
-// Over all other rows, those of later minor formats too.
+// Covers all other rows, including those of later minor formats.
 std::string checksum(const std::map<std::string, std::string>& rows) {
   Bytes bytes;
   for (const auto& [key, value] : rows) {
@@ -119,7 +119,7 @@ bool PlanetMeta::operator==(const PlanetMeta& o) const {
          lowest_radius_m == o.lowest_radius_m && highest_radius_m == o.highest_radius_m &&
          leaf_tiles == o.leaf_tiles && tiles == o.tiles && image_tiles == o.image_tiles &&
          finest_level == o.finest_level && finest_image_level == o.finest_image_level && program == o.program &&
-         identity == o.identity && illustration == o.illustration && levels == o.levels && share == o.share;
+         identity == o.identity && illustration == o.illustration && levels == o.levels && shard == o.shard;
 }
 
 std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
@@ -149,7 +149,7 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"identity", m.identity},
       {"illustration", m.illustration ? "true" : "false"}};
   if (!m.levels.empty()) rows["levels"] = to_text(m.levels);
-  if (m.share) rows["part"] = to_text(*m.share);
+  if (m.shard) rows["part"] = to_text(*m.shard);
   rows[kChecksumKey] = checksum(rows);
   return rows;
 }
@@ -205,7 +205,7 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     current = "levels";
     if (rows.contains("levels")) m.levels = levels_from_text(text("levels"));
     current = "part";
-    if (rows.contains("part")) m.share = shard_from_text(text("part"));
+    if (rows.contains("part")) m.shard = shard_from_text(text("part"));
   } catch (const json::exception& e) {
     throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
   }

@@ -1,4 +1,4 @@
-// What a planet file says of itself, and the constants of its format.
+// The table `meta` of a planet file, its tile index, and the constants of the format.
 #pragma once
 
 #include <map>
@@ -24,24 +24,25 @@ inline constexpr double kMinRadius_m = 1;     // of a planet, included
 inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
 
-// A planet file that cannot be used. what() names the file, the trouble and what to do.
+// Reports a planet file that cannot be used. what() names the file, the problem and what to do.
 class PlanetError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
+// Describes a planet file as a whole.
 struct PlanetMeta {
   std::string body = "Mars";
   double radius_m = mars::kMarsRadius_m;
-  mars::VerticalDatum datum;     // of the heights; S lies at radius_m + height
-  std::string shape = "sphere";  // "radius": these are true radii, datum is the sphere of radius_m
+  mars::VerticalDatum datum;     // of the heights; the reference surface lies at radius_m + height
+  std::string shape = "sphere";  // "radius": heights are true radii, datum is the sphere of radius_m
   lod::TileShape tile;
   double quantum_m = 1.0 / 16.0;
   double fill_m = 0;                      // drawn where no source has data; query answers null there
-  std::vector<mars::SourceInfo> sources;  // elevation, as tiles name them by index
+  std::vector<mars::SourceInfo> sources;  // elevation; tiles refer to them by index
   std::vector<mars::SourceInfo> image_sources;
   ResamplingError resampling;
-  double lowest_radius_m = 0;   // no point of S lies below
+  double lowest_radius_m = 0;   // no point of the reference surface lies below
   double highest_radius_m = 0;  // none above
   std::int64_t leaf_tiles = 0;
   std::int64_t tiles = 0;
@@ -49,46 +50,49 @@ struct PlanetMeta {
   int finest_level = 0;
   int finest_image_level = -1;
   std::string program;               // version that built it
-  std::string identity;              // hexadecimal hash over all checksums: equal content, equal identity
+  std::string identity;              // hexadecimal hash of all checksums: equal content, equal identity
   bool illustration = false;         // some source is made up
   std::vector<LevelSummary> levels;  // by level, coarsest first; empty in files of format 1.0
-  std::optional<ShardMeta> share;    // the file holds this part of the tiles only
+  std::optional<ShardMeta> shard;    // set when the file holds one shard of a divided build only
 
   bool operator==(const PlanetMeta&) const;
 };
 
-// meta <-> rows of the table `meta`. from_rows throws PlanetError naming the file and the key that is missing,
-// malformed or of a newer major format, or that the rows do not fit their checksum. from_rows(to_rows(m)) == m.
+// Converts meta to rows of the table `meta`. from_rows(to_rows(m)) == m.
 std::map<std::string, std::string> to_rows(const PlanetMeta& meta);
+// Converts rows of the table `meta` back. Throws PlanetError when a key does not exist, is malformed or of a
+// newer major format, or when the rows do not match their checksum; the message names the file and the key.
 PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::string& path);
 
-// The tables, as SQL to create them.
+// SQL that creates the tables.
 extern const char* const kSchema;
 
-// Canonical bytes of one row of the tile index, for its checksum.
+// Holds one row of the tile index (table `node`) with its rows of the tables `variant` and `posts_error`.
 struct NodeRow {
   std::int64_t key = 0;
   double min_m = 0;
   double max_m = 0;
   bool inner = false;
-  int coarser_neighbour_mask = 0;  // bit e set: across edge e (lod::Edge) lies a finest tile one level coarser
-  double slope = 0;                // TileInfo::steepest_slope
-  std::string sources;             // indices into meta.sources, comma-separated
+  // Bit e is set where a finest tile one level coarser lies across edge e (lod::Edge). Column `steps`.
+  int coarser_neighbour_mask = 0;
+  double slope = 0;     // TileInfo::steepest_slope
+  std::string sources;  // indices into meta.sources, comma-separated
   std::vector<lod::MeshVariant> variants;
   std::optional<lod::ErrorTerms> posts_terms;  // of an inner tile; has a checksum of its own (format 1.2)
 };
+// Returns the checksum of a row's canonical bytes; the second one covers posts_terms alone.
 std::int64_t checksum(const NodeRow& row);
 std::int64_t posts_checksum(const NodeRow& row);
 
-// All rows of the tile index, in key order, each with its variants. Returns the key of the first row that does
-// not fit its checksum, if any (rows then ends before it). Throws DatabaseError.
+// Reads the whole tile index in key order. Returns the key of the first row that does not match its checksum,
+// if any; `rows` then ends before it. Throws DatabaseError.
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows);
 
-// What the tables hold of each level, but for the resampling error; tiles of `posts` posts. Throws
-// DatabaseError, CodecError.
+// Summarizes what the tables hold of each level, except the resampling error; `posts` is the number of posts of
+// a tile. Throws DatabaseError, CodecError.
 std::vector<LevelSummary> summarize_levels(const Database& db, std::size_t posts);
 
-// PlanetMeta::identity of what the tables hold. Throws DatabaseError.
+// Computes PlanetMeta::identity of what the tables hold. Throws DatabaseError.
 std::string content_identity(const Database& db);
 
 }  // namespace paging

@@ -46,7 +46,7 @@ ResamplingError ResamplingSum::error() const {
 }
 
 bool ShardMeta::operator==(const ShardMeta& o) const {
-  return part.number == o.part.number && part.of == o.part.of && mesh_ratio == o.mesh_ratio &&
+  return id.number == o.id.number && id.of == o.id.of && mesh_ratio == o.mesh_ratio &&
          resampling == o.resampling;
 }
 
@@ -93,26 +93,26 @@ std::vector<LevelSummary> levels_from_text(const std::string& text) {
   return levels;
 }
 
-std::string to_text(const ShardMeta& share) {
+std::string to_text(const ShardMeta& shard) {
   json sums = json::array();
-  for (const ResamplingSum& s : share.resampling) sums.push_back({s.max_m, s.posts, s.high, s.low});
-  return json{{"number", share.part.number},
-              {"of", share.part.of},
-              {"mesh_ratio", share.mesh_ratio},
+  for (const ResamplingSum& s : shard.resampling) sums.push_back({s.max_m, s.posts, s.high, s.low});
+  return json{{"number", shard.id.number},
+              {"of", shard.id.of},
+              {"mesh_ratio", shard.mesh_ratio},
               {"resampling", std::move(sums)}}
       .dump();
 }
 
 ShardMeta shard_from_text(const std::string& text) {
   const json j = json::parse(text);
-  ShardMeta share;
-  share.part = {j.at("number").get<std::int64_t>(), j.at("of").get<std::int64_t>()};
-  share.mesh_ratio = j.at("mesh_ratio").get<double>();
+  ShardMeta shard;
+  shard.id = {j.at("number").get<std::int64_t>(), j.at("of").get<std::int64_t>()};
+  shard.mesh_ratio = j.at("mesh_ratio").get<double>();
   for (const json& s : j.at("resampling")) {
-    share.resampling.push_back({s.at(0).get<double>(), s.at(1).get<std::int64_t>(),
+    shard.resampling.push_back({s.at(0).get<double>(), s.at(1).get<std::int64_t>(),
                                 s.at(2).get<std::uint64_t>(), s.at(3).get<std::uint64_t>()});
   }
-  return share;
+  return shard;
 }
 
 }  // namespace paging

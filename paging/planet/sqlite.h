@@ -1,4 +1,10 @@
 // Thin owner types over SQLite: a connection and a prepared statement. Not thread-safe: one owner at a time.
+//
+// Typical usage:
+//   Database db(path, Database::Mode::kReadOnly);
+//   Statement rows(db, "SELECT key, value FROM meta WHERE key > ?");
+//   rows.bind(1, std::string_view("m"));
+//   while (rows.step()) use(rows.text(0), rows.text(1));
 #pragma once
 
 #include <sqlite3.h>
@@ -12,7 +18,7 @@
 
 namespace paging {
 
-// what() names the file, the operation and SQLite's own words.
+// Reports a failed operation. what() names the file, the operation and SQLite's own message.
 class DatabaseError : public std::runtime_error {
  public:
   explicit DatabaseError(const std::string& what, int code = SQLITE_ERROR)
@@ -24,18 +30,20 @@ class DatabaseError : public std::runtime_error {
   int code_;
 };
 
+// Owns a connection. Members throw DatabaseError.
 class Database {
  public:
   enum class Mode { kReadOnly, kCreate };
 
-  // Throws DatabaseError.
   Database(const std::string& path, Mode mode);
 
   void execute(const std::string& sql);
-  std::int64_t integer(const std::string& sql);  // first column of the first row
+  // Returns the first column of the first row.
+  std::int64_t integer(const std::string& sql);
 
   sqlite3* handle() const { return db_.get(); }
   const std::string& path() const { return path_; }
+  // Throws DatabaseError for the last operation of this connection.
   [[noreturn]] void fail(const std::string& operation) const;
 
  private:
@@ -46,16 +54,18 @@ class Database {
   std::unique_ptr<sqlite3, Close> db_;
 };
 
+// Owns a prepared statement. Members throw DatabaseError.
 class Statement {
  public:
   Statement(const Database& db, const std::string& sql);
 
+  // Bind a parameter; the first one has index 1. SQLite copies texts; bytes must live until step() returns.
   Statement& bind(int index, std::int64_t value);
   Statement& bind(int index, double value);
-  Statement& bind(int index, std::string_view value);               // copied by SQLite
-  Statement& bind(int index, std::span<const std::uint8_t> value);  // must live until step() returns
+  Statement& bind(int index, std::string_view value);
+  Statement& bind(int index, std::span<const std::uint8_t> value);
 
-  // True while there is a row. A statement that is done resets itself and can be bound again.
+  // Returns true while there is a row. After the last one the statement resets itself and can be bound again.
   bool step();
   void reset();
 

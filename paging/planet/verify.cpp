@@ -18,7 +18,7 @@ void check_database(const PlanetFile& planet, VerifyReport& report) {
       if (check.text(0) != "ok") report.problems.push_back({"database", check.text(0)});
     }
     if (content_identity(db) != planet.meta().identity) {
-      report.problems.push_back({"meta", "the identity is not that of the content"});
+      report.problems.push_back({"meta", "the identity does not match the content"});
     }
     std::int64_t meshes = 0;
     std::int64_t variants = 0;

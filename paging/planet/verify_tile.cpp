@@ -30,7 +30,7 @@ double edge_post(const lod::Posts& posts, lod::Edge edge, int along) {
   return 0;
 }
 
-// Positions of a mesh's vertices along an edge, in units of half a post interval of the tile.
+// Returns the positions of a mesh's vertices along an edge, in units of half a post interval of the tile.
 std::vector<int> edge_vertices(const lod::TileMesh& mesh, int tile_intervals, lod::Edge edge) {
   const int last = mesh.intervals;
   const int unit = 2 * tile_intervals / last;
@@ -45,11 +45,11 @@ std::vector<int> edge_vertices(const lod::TileMesh& mesh, int tile_intervals, lo
   return found;
 }
 
-// Empty, or what is wrong.
+// Returns what is wrong with a mesh, or an empty text.
 std::string mesh_problem(const PackedMesh& packed, const lod::MeshVariant& stated, const TileHeights* own,
                          double quantum_m) {
   const lod::TileMesh& mesh = packed.mesh;
-  if (mesh.triangle_count() != stated.triangles) return "its number of triangles is not the index's";
+  if (mesh.triangle_count() != stated.triangles) return "its number of triangles differs from the index";
   // Counter-clockwise triangles whose areas add up to the tile's cover it once: borders are complete.
   std::int64_t area2 = 0;
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
@@ -57,7 +57,7 @@ std::string mesh_problem(const PackedMesh& packed, const lod::MeshVariant& state
     const auto b = mesh.vertices[mesh.triangles[t + 1]];
     const auto c = mesh.vertices[mesh.triangles[t + 2]];
     const std::int64_t twice = std::int64_t{b.i - a.i} * (c.j - a.j) - std::int64_t{b.j - a.j} * (c.i - a.i);
-    if (twice <= 0) return "a triangle is turned over or flat";
+    if (twice <= 0) return "a triangle is reversed or degenerate";
     area2 += twice;
   }
   if (area2 != 2 * std::int64_t{mesh.intervals} * mesh.intervals) return "its triangles do not cover the tile";
@@ -178,7 +178,7 @@ TileFindings check_tile(const PlanetFile& planet, const lod::TileInfo& tile) {
     const lod::GridLines lines = lod::grid_lines(tile.key, own->posts.intervals);
     if (*low != tile.min_height_m || *high != tile.max_height_m ||
         lod::steepest_slope(own->posts, lines, planet.radius_m()) > tile.steepest_slope) {
-      out.problem(tile.key, "its heights or slopes are not those of the index");
+      out.problem(tile.key, "its heights or slopes differ from the index");
     }
   }
   if (first) check_borders(planet, tile, *own, *first, out);

@@ -1,4 +1,5 @@
-// Places between the lines of grids, and colours as bytes: what the sources of TerrainShader share.
+// Positions between the lines of grids, bilinear interpolation, and colours as bytes. Used by TerrainShader
+// alone.
 #pragma once
 
 #include <algorithm>
@@ -18,20 +19,20 @@ inline glm::vec3 rgb(const vpe::base::Rgb& c) { return {c.r, c.g, c.b}; }
 
 inline std::uint8_t to_byte(float x) { return static_cast<std::uint8_t>(std::clamp(x + 0.5F, 0.0F, 255.0F)); }
 
-// Line before, and the share of the way to the next.
+// Holds a position between two lines of a grid.
 struct GridPosition {
-  std::size_t index;
-  float rest;
+  std::size_t index;  // of the line before
+  float rest;         // 0..1, fraction of the interval to the next line
 };
 
-// `at` steps after `offset`, of `fine_total` over a grid of `coarse` intervals.
+// Returns the position `at` steps after `offset`, where `fine_total` steps span a grid of `coarse` intervals.
 inline GridPosition grid_position(int offset, int at, int fine_total, int coarse) {
   const double x = static_cast<double>(offset + at) * coarse / fine_total;
   const auto index = std::min(static_cast<std::size_t>(x), static_cast<std::size_t>(coarse - 1));
   return {index, static_cast<float>(x - static_cast<double>(index))};
 }
 
-// Of a chart coordinate in a tile's grid, whose lines are even in the face's parameter.
+// Returns the position of a chart coordinate in a tile's grid, whose lines are even in the face's parameter.
 inline GridPosition between_lines(double x, int level, std::int32_t index, int intervals) {
   const double line =
       std::clamp(mars::face_parameter(x) * std::ldexp(1.0, level) - index, 0.0, 1.0) * intervals;
@@ -39,8 +40,10 @@ inline GridPosition between_lines(double x, int level, std::int32_t index, int i
   return {before, static_cast<float>(line - static_cast<double>(before))};
 }
 
+// Returns the index of the nearest line.
 inline std::size_t nearest(const GridPosition& at) { return at.index + (at.rest >= 0.5F ? 1 : 0); }
 
+// Interpolates values at the crossings of a grid of `side` lines; get(index) returns the value at a crossing.
 template <typename T, typename Get>
 T bilinear(const GridPosition& x, const GridPosition& y, std::size_t side, Get&& get) {
   const std::size_t at = y.index * side + x.index;

@@ -1,8 +1,10 @@
 #include "paging/shading/terrain_shader.h"
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "paging/shading/terrain_grid.h"
 #include "vpe/core/appearance/shading.h"
 #include "vpe/core/appearance/slope.h"
 
@@ -10,26 +12,76 @@ namespace paging {
 
 namespace {
 
-// At the poles north is along the meridian of longitude 0.
+ColourSource colour_source_of(vpe::core::Colour colour, bool has_image) {
+  switch (colour) {
+    case vpe::core::Colour::kElevation: return ColourSource::kElevation;
+    case vpe::core::Colour::kSlope: return ColourSource::kSlope;
+    case vpe::core::Colour::kAspect: return ColourSource::kAspect;
+    case vpe::core::Colour::kImage: return has_image ? ColourSource::kImageAtPosts : ColourSource::kPlain;
+    case vpe::core::Colour::kNone: break;
+  }
+  return ColourSource::kPlain;
+}
+
+bool shows_scale(ColourSource s) {
+  return s == ColourSource::kElevation || s == ColourSource::kSlope || s == ColourSource::kAspect;
+}
+
+// Returns the direction of steepest descent. At the poles, north is along the meridian of longitude 0.
 double downhill_deg(const glm::dvec3& normal, const glm::dvec3& up) {
   const double flat = std::hypot(up.x, up.y);
   const glm::dvec3 east = flat > 0.0 ? glm::dvec3(-up.y, up.x, 0) / flat : glm::dvec3(0, 1, 0);
   return vpe::core::aspect_deg(normal, up, glm::cross(up, east), east);
 }
 
-std::size_t part(double share, std::size_t budget) {
+std::size_t share_of(double share, std::size_t budget) {
   return static_cast<std::size_t>(share * static_cast<double>(budget));
+}
+
+// Returns the coarsest level whose posts, `intervals` a tile, are no farther apart than footprint_m.
+int level_for(double footprint_m, int intervals, double radius_m) {
+  const double root_m = lod::nominal_side_m(0, radius_m) / intervals;
+  return std::clamp(static_cast<int>(std::ceil(std::log2(root_m / footprint_m))), 0, lod::kMaxLevel);
 }
 
 }  // namespace
 
+ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& sun, bool has_image,
+                             std::shared_ptr<const vpe::core::ColourScale> scale) {
+  using vpe::core::Mode;
+  ShadingParams shading;
+  const ColourSource shown = colour_source_of(a.colour, has_image);
+  const bool of_vertices = a.mode == Mode::kWireframe || a.mode == Mode::kMarkers;
+  shading.exaggeration = a.exaggeration;
+  shading.flat = a.shading == vpe::core::Shading::kFlat && !of_vertices;
+  shading.lit = !of_vertices && a.mode != Mode::kUnlit;
+  shading.colour_source = a.mode == Mode::kWireframe || a.mode == Mode::kLit ? ColourSource::kPlain
+                          : a.mode == Mode::kTextured && has_image           ? ColourSource::kImage
+                                                                             : shown;
+  if (shading.colour_source == ColourSource::kImage && a.colourise) shading.hue = shown;
+  // Parameters that are not used keep their defaults, so that equal images have equal parameters.
+  if (shading.lit) {
+    shading.sun = sun;
+    shading.ambient = a.sun_ambient;
+    shading.diffuse = a.sun_diffuse;
+    shading.shadows = a.shadows;
+  }
+  if (shows_scale(shading.colour_source) || shows_scale(shading.hue)) shading.scale = std::move(scale);
+  return shading;
+}
+
+bool needs_scale(const vpe::core::Appearance& appearance, bool has_image) {
+  const ShadingParams shading = shading_params(appearance, {1, 0, 0}, has_image, nullptr);
+  return shows_scale(shading.colour_source) || shows_scale(shading.hue);
+}
+
 TerrainShader::TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
                              const ShaderBudgetShares& shares)
     : planet_(std::move(planet)),
-      surface_(planet_, part(shares.surface, budget_bytes)),
-      heights_(part(shares.heights, budget_bytes)),
-      normals_(part(shares.normals, budget_bytes)),
-      images_(part(shares.images, budget_bytes)) {}
+      surface_(planet_, share_of(shares.surface, budget_bytes)),
+      heights_(share_of(shares.heights, budget_bytes)),
+      normals_(share_of(shares.normals, budget_bytes)),
+      images_(share_of(shares.images, budget_bytes)) {}
 
 std::size_t TerrainShader::bytes_resident() const {
   return surface_.bytes_resident() + heights_.bytes() + normals_.bytes() + images_.bytes();
@@ -85,9 +137,9 @@ int TerrainShader::useful_intervals(const lod::TileKey& key, ColourSource colour
   return posts << levels;
 }
 
-// What a surfacing shows of a place on the ground.
-glm::dvec3 TerrainShader::shown(ColourSource what, const Ground& at, const ShadingParams& params) const {
-  switch (what) {
+glm::dvec3 TerrainShader::source_colour(ColourSource source, const Ground& at,
+                                        const ShadingParams& params) const {
+  switch (source) {
     case ColourSource::kElevation: return (*params.scale)(at.height_m);
     case ColourSource::kSlope: return (*params.scale)(vpe::core::slope_deg(at.normal, at.up));
     case ColourSource::kAspect: return (*params.scale)(downhill_deg(at.normal, at.up));
@@ -99,20 +151,96 @@ glm::dvec3 TerrainShader::shown(ColourSource what, const Ground& at, const Shadi
 }
 
 glm::dvec3 TerrainShader::colour(const Ground& at, const ShadingParams& params) const {
-  glm::dvec3 out = shown(params.colour_source, at, params);
-  if (params.hue != ColourSource::kPlain) out = vpe::core::colourised(out, shown(params.hue, at, params));
+  glm::dvec3 out = source_colour(params.colour_source, at, params);
+  if (params.hue != ColourSource::kPlain)
+    out = vpe::core::colourised(out, source_colour(params.hue, at, params));
   return params.lit ? out * vpe::core::light(params.ambient, params.diffuse,
                                              at.sun * glm::dot(glm::normalize(at.normal), params.sun))
                     : out;
 }
 
-// The image's texels over a block or a part of it, or none.
 TerrainShader::ImageBlock TerrainShader::image_block(const lod::TileKey& block,
                                                      const ShadingParams& params) const {
   if (!shows_image(params.colour_source)) return {};
   const auto found = planet_->image_key(block);
   if (!found) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
   return {image(*found), *found};
+}
+
+glm::dvec3 TerrainShader::image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const {
+  const mars::ChartPoint place = mars::chart_point(direction);
+  const int level = level_for(footprint_m, kImageIntervals, planet_->radius_m());
+  const auto key = planet_->image_key(lod::tile_at(place, level));
+  if (!key) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
+  if (!cursor.image || cursor.image_key != *key) {
+    cursor.image = image(*key);
+    cursor.image_key = *key;
+  }
+  return bilinear<glm::vec3>(between_lines(place.u, key->level, key->i, kImageIntervals),
+                             between_lines(place.v, key->level, key->j, kImageIntervals), kImageSide,
+                             [&](std::size_t k) { return rgb(cursor.image->texels[k]); });
+}
+
+std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, double footprint_m,
+                                                   const ShadingParams& params, Cursor& cursor) const {
+  const int n = planet_->meta().tile.intervals();
+  const double radius = planet_->radius_m();
+  const mars::ChartPoint place = mars::chart_point(direction);
+  const int level = params.flat ? lod::kMaxLevel : level_for(footprint_m, n, radius);
+  const lod::TileKey key = deepest(lod::tile_at(place, level));
+  if (!cursor.ground || cursor.ground_key != key) {
+    cursor.ground = normals(key, params);
+    cursor.ground_key = key;
+  }
+  const NormalTile& ground = *cursor.ground;
+  const auto side = static_cast<std::size_t>(ground.side);
+  const GridPosition x = between_lines(place.u, key.level, key.i, n);
+  const GridPosition y = between_lines(place.v, key.level, key.j, n);
+  if (!ground.nodata.empty() && ground.nodata[nearest(y) * side + nearest(x)]) return std::nullopt;
+  Ground at;
+  at.up = direction;
+  const int grid_level = key.level + planet_->meta().tile.k;
+  const auto post = [&](std::size_t a, std::size_t b) {
+    const auto line = [&](std::int32_t tile, std::size_t k) {
+      return mars::face_line(std::int64_t{tile} * n + static_cast<std::int64_t>(k), grid_level);
+    };
+    return mars::chart_direction(key.face, line(key.i, x.index + a), line(key.j, y.index + b));
+  };
+  if (params.flat) {
+    const bool lower = x.rest >= y.rest;
+    std::array<glm::dvec3, 3> corners;
+    at.height_m = 0;
+    const std::array<std::array<std::size_t, 2>, 3> posts{
+        {{0, 0}, {lower ? std::size_t{1} : std::size_t{0}, lower ? std::size_t{0} : std::size_t{1}}, {1, 1}}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = posts[k];
+      const double height = static_cast<double>(ground.posts[(y.index + b) * side + x.index + a].height_m);
+      corners[k] = post(a, b) * (radius + params.exaggeration * height);
+      at.height_m += height / 3;
+    }
+    const glm::dvec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    at.up = glm::normalize(middle);
+    at.normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    if (glm::dot(at.normal, at.up) < 0.0) at.normal = -at.normal;
+    if (params.lit && params.shadows && glm::dot(at.normal, params.sun) > 0.0)
+      at.sun = sees_sun(middle, lod::nominal_side_m(key.level, radius) / n, params) ? 1.0 : 0.0;
+    if (shows_image(params.colour_source)) at.image = image_at(at.up, footprint_m, cursor);
+    return colour(at, params);
+  }
+  at.height_m = bilinear<float>(x, y, side, [&](std::size_t k) { return ground.posts[k].height_m; });
+  at.normal = bilinear<glm::vec3>(x, y, side, [&](std::size_t k) { return ground.posts[k].normal; });
+  if (!ground.sees_sun.empty())
+    at.sun = bilinear<float>(x, y, side, [&](std::size_t k) { return static_cast<float>(ground.sees_sun[k]); });
+  if (params.colour_source == ColourSource::kImage) at.image = image_at(direction, footprint_m, cursor);
+  if (params.colour_source == ColourSource::kImageAtPosts) {
+    for (std::size_t b = 0; b < 2; ++b) {
+      for (std::size_t a = 0; a < 2; ++a) {
+        const float share = (a == 1 ? x.rest : 1.0F - x.rest) * (b == 1 ? y.rest : 1.0F - y.rest);
+        at.image += static_cast<double>(share) * image_at(post(a, b), footprint_m, cursor);
+      }
+    }
+  }
+  return colour(at, params);
 }
 
 }  // namespace paging

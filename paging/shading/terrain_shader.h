@@ -1,10 +1,10 @@
-// Colours of a tile's surface, made on the CPU: light from the tile's posts or triangles, colour from
-// elevation, slope, aspect or image (vpe/core/appearance/shading.h has the definition). Pure functions over shared caches;
-// no OpenGL.
+// Colours of the terrain, made on the CPU: light from a tile's posts or triangles, colour from elevation,
+// slope, aspect or image (defined in vpe/core/appearance/shading.h). Pure functions over shared caches; no
+// OpenGL.
 //
-// With Gouraud shading light is computed from posts as fine as the image needs, not from the mesh that
-// happens to be drawn, so that shading does not change when the mesh does. It is baked into one texture a tile,
-// because a single bilinear lookup is what software OpenGL affords (docs/rendering.md). With flat shading every
+// With Gouraud shading, light is computed from posts as fine as the image needs, not from the mesh that is
+// drawn, so that shading does not change with the mesh. It is baked into one texture for each tile, because
+// software OpenGL affords a single bilinear lookup only (docs/design/rendering.md). With flat shading every
 // drawn triangle has one colour.
 #pragma once
 
@@ -22,41 +22,44 @@
 
 namespace paging {
 
-// Where colours come from.
+// Selects where colours come from.
 enum class ColourSource {
   kPlain,  // vpe::core::kPlainGround
   kElevation,
   kSlope,
   kAspect,
   kImage,
-  kImageAtPosts,
+  kImageAtPosts,  // the image sampled at posts and interpolated between them
 };
 
 constexpr bool shows_image(ColourSource s) {
   return s == ColourSource::kImage || s == ColourSource::kImageAtPosts;
 }
 
+// Describes how terrain is coloured and lit.
 struct ShadingParams {
   ColourSource colour_source = ColourSource::kElevation;
-  ColourSource hue = ColourSource::kPlain;  // of an image: not plain = colourised by this
+  ColourSource hue = ColourSource::kPlain;  // not plain: an image is colourised by this
   bool lit = true;
   bool shadows = false;
   bool flat = false;        // for triangles, not for grids
   glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun
-  double ambient = 0.05;
-  double diffuse = 1.235;
+  double ambient = 0.05;    // light without sun
+  double diffuse = 1.235;   // light of a sun in the zenith
   double exaggeration = 1;
   std::shared_ptr<const vpe::core::ColourScale> scale;  // where elevation, slope or aspect is shown
-  // Two scales are one when they are one object.
+  // Two scales are equal when they are one object.
   bool operator==(const ShadingParams&) const = default;
 };
 
-// What an appearance asks of ground. scale: of the appearance; null where it shows none.
+// Converts an appearance to shading parameters. `scale` is the colour scale of the appearance; null where it
+// shows none.
 ShadingParams shading_params(const vpe::core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
                              std::shared_ptr<const vpe::core::ColourScale> scale);
+// Returns whether an appearance shows a colour scale.
 bool needs_scale(const vpe::core::Appearance& appearance, bool has_image);
 
-// Normals and heights at the posts of one stored tile, row 0 at the south.
+// Holds normals and heights at the posts of one stored tile, row 0 at the south.
 struct NormalTile {
   // 16 bytes, so that one load takes all of a post.
   struct Post {
@@ -71,9 +74,10 @@ struct NormalTile {
   std::size_t bytes() const;
 };
 
-// Texels on the (intervals + 1)^2 lines of a tile, row 0 at the south; even in the chart's u and v. Or, with
-// intervals 0, one for each triangle of a mesh. With one channel it is light, 255 for `brightest`; with four
-// colour, and alpha 0 where the nearest post has no data (a triangle: any of its three), else 255.
+// Holds texels on the (intervals + 1)^2 crossings of a tile's grid, row 0 at the south, even in the chart's u
+// and v; or, with intervals 0, one texel for each triangle of a mesh. One channel is light, 255 for
+// `brightest`. Four channels are colour and alpha; alpha is 0 where the nearest post (of a triangle: any of
+// its three) has no data, else 255.
 struct ShadedTile {
   int intervals = 0;
   int channels = 4;
@@ -83,32 +87,40 @@ struct ShadedTile {
   std::size_t bytes() const { return texels.capacity(); }
 };
 
-// What parts of a painter's budget may hold; together at most 1.
+// Divides the budget of a TerrainShader; together at most 1. A larger share saves reading or computing its
+// tiles again, at the expense of the others.
 struct ShaderBudgetShares {
-  double surface = 0.15;  // S, for shadows and flat shading
-  double heights = 0.35;  // to make normals from: a tile's neighbours are needed too
+  double surface = 0.15;  // tiles of the reference surface, for shadows and flat shading
+  double heights = 0.35;  // inputs of normals: a tile's neighbours are needed too
   double normals = 0.35;
   double images = 0.15;
 };
 
-// Any thread may call any member. Keeps within the budget, but for the newest tile of each kind.
+// Colours the terrain of a planet file. Any thread may call any member. Keeps within the budget, except for
+// the newest tile of each kind.
+//
+// Typical usage:
+//   const TerrainShader shader(planet, 256 << 20);
+//   const ShadingParams params = shading_params(appearance, sun, has_image, scale);
+//   const ShadedTile texture = shader.shade(key, shader.useful_intervals(key, params.colour_source), params);
 class TerrainShader {
  public:
   TerrainShader(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes,
                 const ShaderBudgetShares& shares = {});
 
-  // Number of texture intervals over a tile beyond which the data has nothing more to show.
+  // Returns the number of texture intervals over a tile beyond which the data has no more detail.
   int useful_intervals(const lod::TileKey& key, ColourSource colour_source) const;
 
-  // intervals: 2^k times a power of two (>= 1).
+  // Colours the grid of a tile. `intervals` must be 2^k times a power of two (>= 1). Throws PlanetError.
   ShadedTile shade(const lod::TileKey& key, int intervals, const ShadingParams& params) const;
 
-  // One colour for each triangle of a tile's mesh: of its normal, the mean height of its corners, and of the
-  // image below its middle. height_m: of the mesh's vertices, above the sphere.
+  // Computes one colour for each triangle of a tile's mesh, from its normal, the mean height of its corners,
+  // and the image at its middle. `height_m` are the heights of the mesh's vertices above the sphere. Throws
+  // PlanetError.
   ShadedTile shade_facets(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
                           const ShadingParams& params) const;
 
-  // What colour_at() looked at last; one a thread, and for one painter alone.
+  // Keeps the tiles that colour_at() used last. Use one for each thread and each shader.
   class Cursor {
     friend class TerrainShader;
     std::shared_ptr<const NormalTile> ground;
@@ -117,25 +129,26 @@ class TerrainShader {
     lod::TileKey image_key;
   };
 
-  // Colour, 0 to 255 and not yet cut to that, of the ground in a direction: the same definition without texels.
-  // Posts and images are about footprint_m apart, or as fine as they are; facets are those of S. Nothing where
-  // the nearest post has no data.
+  // Computes the colour, 0 to 255 and not clamped, of the terrain in a direction: the same definition without
+  // texels. Posts and texels are about footprint_m apart, or as fine as they exist; facets are those of the
+  // reference surface. Returns nullopt where the nearest post has no data. Throws PlanetError.
   std::optional<glm::dvec3> colour_at(const glm::dvec3& direction, double footprint_m,
                                       const ShadingParams& params, Cursor& cursor) const;
 
-  // What colours are made from: posts of a tile that the planet has, texels of one that image_key() returned.
+  // Return the inputs of colours: posts of a tile that the planet has, texels of one that image_key()
+  // returned. Throw PlanetError.
   std::shared_ptr<const NormalTile> normals(const lod::TileKey& key, const ShadingParams& params) const;
   std::shared_ptr<const ImageTile> image(const lod::TileKey& key) const;
 
   std::size_t bytes_resident() const;
 
  private:
-  // What a colour is made of.
+  // Holds the inputs of one colour.
   struct Ground {
     double height_m = 0;
     glm::dvec3 normal{0, 0, 1};
     glm::dvec3 up{0, 0, 1};
-    double sun = 1;  // share of the sun that is seen
+    double sun = 1;  // visible fraction of the sun
     glm::dvec3 image{0, 0, 0};
   };
   struct ImageBlock {
@@ -154,14 +167,18 @@ class TerrainShader {
     }
   };
 
+  // Returns the deepest stored tile at or above `key`.
   lod::TileKey deepest(const lod::TileKey& key) const;
   int levels_below(const lod::TileKey& key, int limit) const;
   std::shared_ptr<const TileHeights> heights(const lod::TileKey& key) const;
   NormalTile make_normals(const lod::TileKey& key, const ShadingParams& params) const;
+  // Returns the image tile over a block, or none when no image is shown.
   ImageBlock image_block(const lod::TileKey& block, const ShadingParams& params) const;
-  glm::dvec3 shown(ColourSource what, const Ground& at, const ShadingParams& params) const;
+  glm::dvec3 source_colour(ColourSource source, const Ground& at, const ShadingParams& params) const;
   glm::dvec3 colour(const Ground& at, const ShadingParams& params) const;
   glm::dvec3 image_at(const glm::dvec3& direction, double footprint_m, Cursor& cursor) const;
+  // Returns the heights of the row of posts just across an edge, in this tile's order along it, and their
+  // positions.
   std::vector<double> heights_across(const lod::TileKey& key, lod::Edge edge,
                                      std::vector<glm::dvec3>& points) const;
   void shade_block(const lod::TileKey& block, int x0, int y0, int side, const ShadingParams& params,

@@ -12,8 +12,9 @@ namespace {
 
 bool needs_vertical(ColourSource s) { return s == ColourSource::kSlope || s == ColourSource::kAspect; }
 
-// Below level 5 a tile spans several knots of the warp: moves texels from post lines to lines even in u and v,
-// so that texture coordinates are a projective function of the position on every flat triangle.
+// Resamples texels from post lines to lines even in u and v. Below level 5 a tile spans several knots of the
+// warp, and only on even lines are texture coordinates a projective function of the position on every flat
+// triangle.
 void make_even(const lod::TileKey& key, ShadedTile& tile) {
   const auto side = static_cast<std::size_t>(tile.intervals) + 1;
   const mars::ChartRect rect = lod::chart_rect(key);
@@ -175,7 +176,7 @@ ShadedTile TerrainShader::shade(const lod::TileKey& key, int intervals, const Sh
   ShadedTile out;
   out.intervals = n << levels;
   const int side = out.intervals + 1;
-  // Light alone takes a quarter; alpha would tell what has no data.
+  // Light alone takes a quarter of the bytes, but has no alpha for nodata.
   if (params.colour_source == ColourSource::kPlain && params.lit && !planet_->has_nodata(key)) {
     out.channels = 1;
     out.brightest = vpe::core::light(params.ambient, params.diffuse, 1.0);

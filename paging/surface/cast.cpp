@@ -1,6 +1,7 @@
-// Ray casting against S. In the chart of a face a straight ray stays straight and a flat triangle is a plane
-// 1 = A X + B Y + C Z through its three posts (X, Y, Z = components along the face's axes), so each cell needs
-// three linear functions of the ray parameter and no trigonometry (design notes, rays.md section 1).
+// Ray casting against the reference surface. In the chart of a face a straight ray stays straight and a flat
+// triangle is a plane 1 = A X + B Y + C Z through its three posts (X, Y, Z = components along the face's
+// axes), so each cell needs three linear functions of the ray parameter and no trigonometry
+// (docs/design/rays.md).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,13 +33,13 @@ class FaceCaster {
         camera2_(glm::dot(camera, camera)),
         half_(glm::dot(camera, direction)) {}
 
-  // Part of the ray inside the face's pyramid.
+  // Returns the part of the ray inside the face's pyramid.
   Interval reach() const { return line_.in_face({0.0, kNone}); }
 
   double cast(Interval part) const { return in_tile(static_cast<lod::TileTree::Index>(face_), part); }
 
  private:
-  // Least squared distance from the planet's centre over part of the ray.
+  // Returns the least squared distance from the planet's centre over part of the ray.
   double least_radius2(Interval part) const {
     const double t = std::clamp(-half_, part.begin, part.end);
     return camera2_ + t * (2.0 * half_ + t);
@@ -119,15 +120,15 @@ class FaceCaster {
 }  // namespace
 
 double Surface::cast(const glm::dvec3& camera_m, const glm::dvec3& direction, double exaggeration,
-                     const RayPart& wanted) const {
+                     const RaySegment& segment) const {
   // Only the part inside the sphere of the highest terrain can hit.
   const double radius = planet_->radius_m();
   const double top = radius + exaggeration * (planet_->meta().highest_radius_m - radius);
   const double half = glm::dot(camera_m, direction);
   const double rest = half * half - (glm::dot(camera_m, camera_m) - top * top);
   if (!(rest >= 0.0)) return kNone;
-  const Interval region{std::max(wanted.begin_m, -half - std::sqrt(rest)),
-                        std::min(wanted.end_m, -half + std::sqrt(rest))};
+  const Interval region{std::max(segment.begin_m, -half - std::sqrt(rest)),
+                        std::min(segment.end_m, -half + std::sqrt(rest))};
   if (region.empty()) return kNone;
 
   struct Candidate {

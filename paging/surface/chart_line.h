@@ -1,5 +1,11 @@
-// A straight line in space over the chart of a cube face: its chart stays straight, so grid lines cut it where
-// linear functions of its parameter vanish. What casting (cast.cpp) and sections (section.cpp) share.
+// A straight line in space over the chart of a cube face. Its projection to the chart stays straight, so grid
+// lines cut it where linear functions of its parameter vanish. Casting (cast.cpp) and sections (section.cpp)
+// use it.
+//
+// Typical usage:
+//   const ChartLine line(face, start, direction);
+//   const Interval inside = line.in_face({0.0, 1.0});
+//   visit_quarters(inside, line.line_u(u), line.line_v(v), 1.0, visit);
 #pragma once
 
 #include <algorithm>
@@ -13,7 +19,7 @@
 
 namespace paging {
 
-// A function of the line's parameter, value + slope * t.
+// Holds a function of the line's parameter t: value + slope * t.
 struct Linear {
   double value = 0;
   double slope = 0;
@@ -26,7 +32,7 @@ struct Interval {
   bool empty() const { return !(begin < end); }
 };
 
-// Where f >= 0.
+// Returns the part of an interval where f >= 0.
 inline Interval clip(Interval in, Linear f) {
   if (f.slope == 0.0) return f.value >= 0.0 ? in : Interval{};
   const double root = -f.value / f.slope;
@@ -38,7 +44,7 @@ inline Interval clip(Interval in, Linear f) {
   return in;
 }
 
-// Components of start + t direction along a face's axes.
+// Holds the components of start + t direction along a face's axes.
 struct ChartLine {
   Linear x;
   Linear y;
@@ -51,11 +57,11 @@ struct ChartLine {
     z = {glm::dot(a.out, start), glm::dot(a.out, direction)};
   }
 
-  // Zero on the chart line u = const, positive beyond it (Z > 0).
+  // Return functions that are zero on the chart line u = const or v = const and positive beyond it (Z > 0).
   Linear line_u(double u) const { return {x.value - u * z.value, x.slope - u * z.slope}; }
   Linear line_v(double v) const { return {y.value - v * z.value, y.slope - v * z.slope}; }
 
-  // Part of the line inside the face's pyramid.
+  // Returns the part of the line inside the face's pyramid.
   Interval in_face(Interval all) const {
     const auto negated = [](Linear f) { return Linear{-f.value, -f.slope}; };
     all = clip(all, z);
@@ -66,8 +72,9 @@ struct ChartLine {
   }
 };
 
-// The two facets of a cell over a line: 1 - Z w, negative where the line is above the facet, positive below it;
-// scaled so that it is linear. With u = line_u, v = line_v of the cell's first corner and w the inverse depths.
+// Holds the two facets of a cell as functions over a line: 1 - Z w, negative where the line is above the
+// facet, positive below it, scaled so that it is linear. Here u = line_u and v = line_v of the cell's first
+// corner, and w are the inverse depths.
 struct CellFacets {
   Linear lower;  // south-east of the diagonal
   Linear upper;
@@ -90,7 +97,7 @@ struct CellFacets {
     const double w11 = depth(1, 1);
     const double w10 = depth(1, 0);
     const double w01 = depth(0, 1);
-    // Relative to the cell's corner: s = (u - u0) / du, t likewise; w = w00 + ws s + wt t on each triangle.
+    // Relative to the cell's corner, s = (u - u0) / du and t likewise; w = w00 + ws s + wt t on each triangle.
     const Linear fs = line.line_u(u0);
     const Linear ft = line.line_v(v0);
     const auto facet = [&](double ws, double wt) {
@@ -105,9 +112,9 @@ struct CellFacets {
   }
 };
 
-// Visits the up to four quarters that two lines cut out of a part of a line, in its order: visit(east, north,
-// interval) says whether to stop. `far` is what lies beyond the far end of an unbounded line: any later point
-// will do to tell the side.
+// Visits, in order along the line, the up to four pieces into which two grid lines cut a part of it.
+// visit(east, north, interval) returns true to stop; the function then returns true. `far` is added to the
+// begin of an unbounded piece to get a point inside it; any positive length works.
 template <typename Visit>
 bool visit_quarters(Interval part, Linear fu, Linear fv, double far, Visit&& visit) {
   std::array<double, 4> cuts{part.begin, part.end, part.end, part.end};

@@ -66,7 +66,7 @@ std::vector<ProfilePoint> profile(const Surface& surface, std::span<const mars::
       before = here;
       p.distance_m = start_m + t * arc_m;
       p.waypoint = i == 0 || i == count;
-      if (p.waypoint) {  // as it was given, also at a pole
+      if (p.waypoint) {  // unchanged, also at a pole
         p.place = i == 0 ? places[n - 1] : places[n];
         p.place.lon_deg = mars::normalize_lon_deg(p.place.lon_deg);
       }

@@ -21,7 +21,7 @@ PlaceAnswer query(const Surface& surface, mars::LonLat place) {
   a.slope_deg = std::atan2(std::hypot(east, north), up) / mars::kRadiansPerDegree;
   a.aspect_deg = std::atan2(east, north) / mars::kRadiansPerDegree;
   if (a.aspect_deg < 0) a.aspect_deg += 360;
-  a.level = point.tile.level + 1;
+  a.level = point.tile.level;
   a.spacing_m = lod::post_spacing_m(point.tile.level, meta.tile.intervals(), meta.radius_m);
   const auto tile = surface.tile(point.tile);
   for (const int s : tile->data.source) {

@@ -73,7 +73,8 @@ class FaceWalk {
     }
   }
 
-  // Along the vertical the facet is where 1 - Z w vanishes, and Z w grows with the distance from the centre.
+  // Returns the point of a facet on the vertical through the line: 1 - Z w vanishes there, and Z w grows with
+  // the distance from the centre.
   glm::dvec3 on(const Linear& facet, double t) const { return (start_ + t * chord_) / (1.0 - facet.at(t)); }
 
   const Surface& surface_;
@@ -87,20 +88,20 @@ class FaceWalk {
 
 void walk_chord(const Surface& surface, const glm::dvec3& a, const glm::dvec3& b,
                 const std::function<void(const SectionPiece&)>& visit) {
-  struct PartialPlanetFile {
+  struct FacePart {
     Interval part;
     mars::Face face;
   };
-  std::vector<PartialPlanetFile> parts;
+  std::vector<FacePart> parts;
   for (int f = 0; f < mars::kFaces; ++f) {
     const auto face = static_cast<mars::Face>(f);
     const Interval part = FaceWalk(surface, face, a, b - a, visit).reach();
     if (!part.empty()) parts.push_back({part, face});
   }
   std::sort(parts.begin(), parts.end(),
-            [](const PartialPlanetFile& p, const PartialPlanetFile& q) { return p.part.begin < q.part.begin; });
+            [](const FacePart& p, const FacePart& q) { return p.part.begin < q.part.begin; });
   double done = 0.0;  // a chord along the border of two faces lies in both
-  for (const PartialPlanetFile& p : parts) {
+  for (const FacePart& p : parts) {
     const Interval rest{std::max(p.part.begin, done), p.part.end};
     if (rest.empty()) continue;
     FaceWalk(surface, p.face, a, b - a, visit).walk(rest);

@@ -55,10 +55,10 @@ SurfaceTile prepare_tile(TileHeights heights) {
 
 namespace {
 
-// Few tiles lie beside coarser ones.
+// Small, because few tiles lie beside coarser ones.
 constexpr double kExaggeratedShare = 0.1;
 
-std::size_t part(std::size_t bytes, double share) {
+std::size_t share_of(std::size_t bytes, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(bytes));
 }
 
@@ -66,8 +66,8 @@ std::size_t part(std::size_t bytes, double share) {
 
 Surface::Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
-      cache_(part(budget_bytes, 1 - kExaggeratedShare)),
-      exaggerated_(part(budget_bytes, kExaggeratedShare)) {
+      cache_(share_of(budget_bytes, 1 - kExaggeratedShare)),
+      exaggerated_(share_of(budget_bytes, kExaggeratedShare)) {
   constexpr int kTableLevels = 11;
   for (int level = 0; level < kTableLevels; ++level) {
     std::vector<double>& lines = middles_.emplace_back();

@@ -1,4 +1,4 @@
-// S at run time: the exact surface of a planet file, sampled and cast against.
+// The reference surface at run time: the exact surface of a planet file, sampled and cast against.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -12,13 +12,13 @@
 
 namespace paging {
 
-// A finest tile ready for sampling and casting.
+// Holds a tile ready for sampling and casting.
 struct SurfaceTile {
   TileHeights data;
   lod::GridLines lines;
   double min_height_m = 0;
   double max_height_m = 0;
-  // Largest height in each block of 2^b x 2^b cells, b = 1, 2, ..., k: block_max[b - 1], row by row.
+  // block_max[b - 1] has the largest height in each block of 2^b x 2^b cells, row by row; b = 1, 2, ..., k.
   std::vector<std::vector<float>> block_max;
 
   std::size_t bytes() const;
@@ -32,44 +32,52 @@ struct SurfacePoint {
   bool nodata = false;         // the nearest post has no source data
 };
 
-// Any thread may call any member. Results do not depend on the cache's state.
+// Samples and casts against the surface of a planet file, which it reads tile by tile into a cache. Any thread
+// may call any member. Results do not depend on the cache's state.
+//
+// Typical usage:
+//   const Surface surface(PlanetFile::open("mars.vpe"), 256 << 20);
+//   const double height_m = surface.at(mars::direction({-74, -13})).height_m;
+//   const double range_m = surface.cast(camera.position_m, camera.axes.forward);
 class Surface {
  public:
-  // Keeps at most about `budget_bytes` of decoded tiles.
+  // Keeps at most about `budget_bytes` of decoded tiles. Smaller: tiles are read again more often.
   Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes);
 
   const PlanetFile& planet() const { return *planet_; }
   double planet_radius_m() const { return planet_->radius_m(); }
 
-  // S at a direction (any length but 0). Error by rounding <= 4e-9 m * radius / 3.4e6 m. Throws PlanetError.
-  // With an exaggeration: height, radius and normal of S as it is drawn.
+  // Returns the point of the surface in a direction (any length but 0). Rounding error <= 4e-9 m * radius /
+  // 3.4e6 m. With an exaggeration: height, radius and normal as drawn. Throws PlanetError.
   SurfacePoint at(const glm::dvec3& direction, double exaggeration = 1.0) const;
 
-  // Radius of S at many directions; neighbours in the batch should be neighbours on the ground.
+  // Computes the radius of the surface in many directions. Fastest when neighbours in the list are neighbours
+  // on the ground.
   void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m,
               double exaggeration = 1.0) const;
 
-  // Distance along the unit `direction` from `camera_m` (metres from the planet's centre) to the first point of
-  // S; infinity when there is none. Exact on the flat triangles of S up to rounding (about 1e-9 relative plus
-  // what a grazing facet makes of it); watertight: neighbouring facets are tested against the same lines.
-  // A camera below S gives 0. With an exaggeration: of S as it is drawn. `part`: of the ray, metres along it;
-  // where it begins below S that is the answer.
-  struct RayPart {
+  // Restricts a ray to a segment, in metres along it.
+  struct RaySegment {
     double begin_m = 0;
     double end_m = std::numeric_limits<double>::infinity();
   };
+  // Returns the distance along the unit `direction` from `camera_m` (metres from the planet's centre) to the
+  // first point of the surface, or infinity when there is none. Exact on the flat triangles of the surface up
+  // to rounding (about 1e-9 relative, more on a grazing facet), and watertight: neighbouring facets are tested
+  // against the same lines. Returns 0 for a camera below the surface, and segment.begin_m for a segment that
+  // begins below it. With an exaggeration: of the surface as drawn. Throws PlanetError.
   double cast(const glm::dvec3& camera_m, const glm::dvec3& direction, double exaggeration,
-              const RayPart& part) const;
+              const RaySegment& segment) const;
   double cast(const glm::dvec3& camera_m, const glm::dvec3& direction, double exaggeration = 1.0) const {
-    return cast(camera_m, direction, exaggeration, RayPart());
+    return cast(camera_m, direction, exaggeration, RaySegment());
   }
 
-  // Of a finest tile, or a coarser one's own posts. Throws PlanetError. With an exaggeration: S's posts as it is
-  // drawn (PlanetFile::heights).
+  // Returns a finest tile, or the own posts of a coarser one. With an exaggeration: its posts as drawn (see
+  // PlanetFile::heights). Throws PlanetError.
   std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key, double exaggeration = 1.0) const;
   std::size_t bytes_resident() const { return cache_.bytes() + exaggerated_.bytes(); }
 
-  // Chart coordinate of the line between a tile's halves; index: i for u, j for v.
+  // Returns the chart coordinate of the line between a tile's halves; `index` is i for u, j for v.
   double middle_line(int level, std::int32_t index) const;
 
  private:
@@ -77,7 +85,7 @@ class Surface {
   std::vector<std::vector<double>> middles_;  // chart lines through the middles of tiles, by level and index
   mutable vpe::base::LruCache<lod::TileKey, SurfaceTile, lod::TileKeyHash> cache_;
 
-  // Only of tiles beside coarser ones: all others are the same at every exaggeration.
+  // Exaggerated tiles are kept only beside coarser ones: all others are the same at every exaggeration.
   struct Exaggerated {
     lod::TileKey key;
     double exaggeration;
@@ -91,7 +99,7 @@ class Surface {
   mutable vpe::base::LruCache<Exaggerated, SurfaceTile, ExaggeratedHash> exaggerated_;
 };
 
-// Makes a tile ready: grid lines, height range, block maxima. Pure.
+// Prepares a tile: computes grid lines, height range and block maxima. Pure.
 SurfaceTile prepare_tile(TileHeights heights);
 
 }  // namespace paging

@@ -1,5 +1,5 @@
-// A short run of the fuzz targets with our own changes of bytes, on every machine; ./test.sh --fuzz runs them
-// under libFuzzer.
+// A short run of the fuzz targets with changes of bytes made here, on every machine. ./test.sh --fuzz runs
+// them under libFuzzer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,9 +15,8 @@ std::size_t any_place(Random& random, std::size_t size) {
   return static_cast<std::size_t>(random.integer(0, static_cast<int>(size) - 1));
 }
 
-// A handful of small wounds: bits, bytes that mean something, pieces cut, doubled or moved, pieces of another
-// input.
-fuzz::Bytes wounded(const fuzz::Bytes& seed, const fuzz::Bytes& other, Random& random) {
+// Makes a few small changes: bits, significant bytes, pieces cut, doubled or moved, pieces of another input.
+fuzz::Bytes damaged(const fuzz::Bytes& seed, const fuzz::Bytes& other, Random& random) {
   fuzz::Bytes bytes = seed;
   for (int n = random.integer(1, 6); n > 0 && !bytes.empty(); --n) {
     const std::size_t at = any_place(random, bytes.size());
@@ -25,8 +24,8 @@ fuzz::Bytes wounded(const fuzz::Bytes& seed, const fuzz::Bytes& other, Random& r
     switch (random.integer(0, 6)) {
       case 0: bytes[at] = static_cast<std::uint8_t>(bytes[at] ^ (1 << random.integer(0, 7))); break;
       case 1: {
-        constexpr std::uint8_t kTelling[] = {0, 1, 0x7f, 0x80, 0xff, '\n', ' ', '-', '.', '9', 'e', '='};
-        bytes[at] = kTelling[any_place(random, std::size(kTelling))];
+        constexpr std::uint8_t kSignificant[] = {0, 1, 0x7f, 0x80, 0xff, '\n', ' ', '-', '.', '9', 'e', '='};
+        bytes[at] = kSignificant[any_place(random, std::size(kSignificant))];
         break;
       }
       case 2: bytes.resize(at); break;
@@ -58,7 +57,7 @@ void run(const fuzz::Target& target, int times, std::uint64_t seed) {
   target.run({});
   for (const fuzz::Bytes& bytes : seeds) target.run(bytes);
   for (int n = 0; n < times; ++n) {
-    target.run(wounded(seeds[any_place(random, seeds.size())], seeds[any_place(random, seeds.size())], random));
+    target.run(damaged(seeds[any_place(random, seeds.size())], seeds[any_place(random, seeds.size())], random));
   }
 }
 

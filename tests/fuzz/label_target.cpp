@@ -30,7 +30,7 @@ const std::string& scratch() {
   return path;
 }
 
-void check_place(const mars::LabelPlace& place) {
+void check_place(const mars::LabelGeoreference& place) {
   require(!place.crs.empty() && place.to_map.has_value(), "a map is a whole map");
   require((*place.to_map)[1] > 0 && (*place.to_map)[5] < 0, "east to the right, north up");
   if (place.grid) require(place.grid->pixels_per_degree > 0, "grids have a resolution");
@@ -42,9 +42,9 @@ void run_parts(const mars::PdsLabel& label) {
     const auto number = label.number(key);
     require(!number || std::isfinite(*number), "numbers are finite");
   }
-  mars::place_pds(label);
+  mars::pds_placement(label);
   mars::gdal_misreads(label);
-  mars::pds_missing(label);
+  mars::pds_nodata(label);
   try {
     if (const auto place = mars::pds_map(scratch(), label)) check_place(*place);
   } catch (const mars::SourceError&) {
@@ -69,7 +69,7 @@ void run_parts(const mars::PdsLabel& label) {
   }
 }
 
-// The first byte chooses: the label reader's parts, or opening the file as a user does.
+// The first byte selects the parts of the label reader, or opening the file as a user does.
 void run_label(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return;
   const bool whole = bytes[0] % 2 == 1;

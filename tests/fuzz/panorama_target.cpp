@@ -1,4 +1,4 @@
-// Everything that may describe a panorama, and the images themselves.
+// Targets that read the metadata of panoramas, and the images themselves.
 #include <unistd.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of this process alone, in memory where the system has such a place.
+// Returns a folder of this process alone, in memory where the system has such a place.
 const fs::path& scratch() {
   static const fs::path path = [] {
     const fs::path where = ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
@@ -47,7 +47,7 @@ std::string text_of(std::span<const std::uint8_t> bytes) { return {bytes.begin()
 
 Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-// What went wrong is a message that somebody can read, whatever the file has in it.
+// Requires a readable error message, whatever the file contains.
 void check_words(const std::exception& error) {
   const std::string words = error.what();
   require(!words.empty() && words.size() < 2000, "a message for people");
@@ -72,7 +72,7 @@ void check_same(const panorama::PanoramaMap& a, const panorama::PanoramaMap& b) 
           "the scale of maps survives being written");
 }
 
-// The first byte chooses text labels (PDS3, VICAR) or PDS4.
+// The first byte selects text labels (PDS3, VICAR) or PDS4.
 void run_rover(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return;
   const std::string text = text_of(bytes.subspan(1));
@@ -157,7 +157,7 @@ void run_sidecar(std::span<const std::uint8_t> bytes) {
   try {
     const panorama::Sidecar sidecar = panorama::read_sidecar(text);
     check_map(sidecar.map);
-    const panorama::Sidecar again = panorama::read_sidecar(panorama::to_json(sidecar));
+    const panorama::Sidecar again = panorama::read_sidecar(panorama::to_text(sidecar));
     require(again.image == sidecar.image && again.viewpoint == sidecar.viewpoint,
             "stations survive being written");
     check_same(sidecar.map, again.map);
@@ -208,15 +208,15 @@ void look_at(const fs::path& path, const panorama::ImageFileHeader& header) {
         panorama::cylinder_map(size.width_px, size.height_px, static_cast<double>(size.width_px), 0.0,
                                0.5 * static_cast<double>(size.height_px));
     if (!panorama::check(map).empty()) return;
-    panorama::RenderViewOptions look;
-    look.threads = 1;
-    panorama::look(*tiled_image, map, panorama::Viewer(map, 16, 8).view(), look);
+    panorama::RenderViewOptions view_options;
+    view_options.threads = 1;
+    panorama::render_view(*tiled_image, map, panorama::Viewer(map, 16, 8).view(), view_options);
   } catch (const vpe::base::FileError& error) {
     check_words(error);
   }
 }
 
-// As larger images than memory are read, and as planes are.
+// Reads a file as images larger than memory are read, and as planes.
 void read_parts(const fs::path& path, const panorama::ImageFileHeader& header) {
   constexpr std::int64_t kMaxPixels = 1 << 20;
   try {
@@ -274,7 +274,7 @@ std::vector<Bytes> image_seeds() {
   const Bytes png = vpe::core::encode_png(pixels, kWidth, kHeight);
   const Bytes jpeg = vpe::core::encode_jpeg(pixels, kWidth, kHeight, 80);
   std::vector<Bytes> all{png, jpeg, panorama::with_xmp(png, packet), panorama::with_xmp(jpeg, packet)};
-  // TIFF: ours in tiles, and one in rows.
+  // TIFF: one of this program in tiles, and one in rows.
   const fs::path path = scratch() / "seed.tif";
   {
     vpe::base::OutputFile file(path);
@@ -298,6 +298,6 @@ std::vector<Bytes> image_seeds() {
 const Target kRover{"rover", run_rover, rover_seeds};
 const Target kGpano{"gpano", run_gpano, gpano_seeds};
 const Target kSidecar{"sidecar", run_sidecar, sidecar_seeds};
-const Target kImage{"picture", run_image, image_seeds};
+const Target kImage{"image", run_image, image_seeds};
 
 }  // namespace fuzz

@@ -28,7 +28,7 @@ Bytes read(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-// A file of this process alone, in memory where the system has such a folder.
+// Returns a file of this process alone, in memory where the system has such a folder.
 const std::string& scratch() {
   static const std::string path = [] {
     const fs::path folder = ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
@@ -126,7 +126,7 @@ std::vector<Bytes> payload_seeds() {
   return all;
 }
 
-// What verify() finds nothing wrong with must be what was built.
+// A file in which verify() finds no problem must have the content that was built.
 const std::string& seed_identity();
 
 void run_planet(std::span<const std::uint8_t> bytes) {

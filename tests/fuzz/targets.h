@@ -1,5 +1,5 @@
-// What the fuzzers feed: functions of any bytes that must never crash, loop, or answer wrongly. A broken
-// promise ends the process, as fuzzers want it.
+// Targets of the fuzzers: functions of any bytes that must never crash, loop, or give wrong results. A broken
+// promise ends the process, as fuzzers expect.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +12,36 @@ namespace fuzz {
 
 using Bytes = std::vector<std::uint8_t>;
 
+// Describes one target.
 struct Target {
   const char* name;
   void (*run)(std::span<const std::uint8_t> bytes);
   std::vector<Bytes> (*seeds)();  // well-formed inputs to start from
 };
 
-// Flights: parse_flight(), and that what it takes survives to_text().
+// Parses flights with parse_flight(). What it accepts survives to_text().
 extern const Target kFlight;
 
-// The payloads of a planet file; the first byte chooses the decoder. What is decoded survives encoding.
+// Decodes payloads of a planet file; the first byte selects the decoder. What is decoded survives encoding.
 extern const Target kPayload;
 
-// Whole planet files: opening, every payload, verify().
+// Opens whole planet files, reads every payload and runs verify().
 extern const Target kPlanet;
 
-// Labels of PDS images, the label being the image's own: parsing, placing, and opening as a user does.
+// Parses labels of PDS images, derives their placement, and opens the image with the label attached, as a user
+// does.
 extern const Target kLabel;
 
-// What describes a panorama: labels of rover mosaics (the first byte chooses PDS3 and VICAR, or PDS4), GPano's
-// XMP, the JSON beside an image. What is read can be used, and survives being written.
+// Reads the metadata of panoramas: labels of rover mosaics (the first byte selects PDS3 and VICAR, or PDS4),
+// XMP of GPano, JSON sidecars. What is read can be used, and survives being written.
 extern const Target kRover;
 extern const Target kGpano;
 extern const Target kSidecar;
 
-// PNG, JPEG and TIFF as panoramas and planes: describing, looking, reading by rows, putting a packet in.
+// Reads PNG, JPEG and TIFF as panoramas and planes: headers, views, rows, and inserting an XMP packet.
 extern const Target kImage;
 
-// Ends the process with the words when `promise` does not hold.
-void require(bool promise, const char* words);
+// Ends the process with the message when `promise` does not hold.
+void require(bool promise, const char* message);
 
 }  // namespace fuzz

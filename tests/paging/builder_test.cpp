@@ -46,7 +46,7 @@ TEST(Builder, PostsAreTheSource) {
   EXPECT_GT(constrained, 0);
 }
 
-// S from both sides of every tile border, at posts and between them.
+// The reference surface from both sides of every tile border, at posts and between them.
 TEST(Builder, SurfaceIsWatertightAcrossAllBorders) {
   TempDir dir;
   const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 20000));
@@ -136,6 +136,20 @@ TEST(Builder, ContentDoesNotDependOnThreads) {
   EXPECT_TRUE(one->meta() == four->meta());
 }
 
+TEST(Builder, APlanThatIsPassedInGivesTheSamePlanet) {
+  TempDir dir;
+  const FakeElevation source(bumpy_height, fine_around({0, 0, 1}, 0.05, 40000));
+  const auto own = build_fake(dir / "own.vpe", source, 300000);
+  paging::BuildOptions options;
+  options.output = (dir / "given.vpe").string();
+  options.base_spacing_m = 300000;
+  options.threads = 2;
+  options.tile_k = 5;
+  options.resampling_posts = 5000;
+  const paging::BuildPlan plan = paging::plan_tiles(options, source);
+  EXPECT_TRUE(paging::build_planet(options, source, nullptr, {}, plan).meta == own->meta());
+}
+
 TEST(Builder, ResamplingErrorIsMeasured) {
   TempDir dir;
   const FakeElevation source(bumpy_height);
@@ -154,7 +168,7 @@ TEST(Builder, ResamplingErrorIsMeasured) {
   EXPECT_NEAR(worst, fine->meta().resampling.max_m, 1e-6);
 }
 
-TEST(Builder, MissingPlacesAreKnown) {
+TEST(Builder, NodataPlacesAreKnown) {
   TempDir dir;
   const FakeElevation source([](const glm::dvec3& d) { return d.z > 0.5 ? std::nan("") : 1000.0; });
   const auto planet = build_fake(dir / "p.vpe", source, 200000);
@@ -163,7 +177,7 @@ TEST(Builder, MissingPlacesAreKnown) {
   EXPECT_FALSE(surface.at({0, 0, -1}).nodata);
   EXPECT_NEAR(surface.at({0, 0, 1}).height_m, 1000.0, 0.1);  // filled, so that images have no pit
 
-  // Of every level, inner tiles too: as the source has it at each post.
+  // On every level, inner tiles too, masks agree with the source at each post.
   std::set<int> levels;
   const auto check = [&](const auto& self, const lod::TileKey& key) -> bool {
     const lod::TileInfo* info = planet->tree().find(key);
@@ -204,7 +218,7 @@ TEST(Builder, RegionsKnowCapsAcrossTheAntimeridianAndPoles) {
   EXPECT_FALSE(paging::touches(pacific, cap(180, 20, 5)));
   const paging::Region north{0, 80, 10, 90};
   EXPECT_TRUE(paging::touches(north, cap(180, 89, 2)));
-  // Never a false no: random caps and random places of the region.
+  // Never a false negative, for random caps and random places of the region.
   Random random(33);
   for (int n = 0; n < 20000; ++n) {
     const paging::Region r{random.uniform(-180, 180), random.uniform(-90, 0), random.uniform(-180, 180),

@@ -46,7 +46,7 @@ const DrawnMesh& MeshStore::mesh(const lod::SelectedTile& tile, double exaggerat
   return out;
 }
 
-DrawnGround::DrawnGround(MeshStore& store, const lod::Selection& selection, const glm::dvec3& camera_m)
+DrawnTerrain::DrawnTerrain(MeshStore& store, const lod::Selection& selection, const glm::dvec3& camera_m)
     : camera_m_(camera_m), up_(glm::normalize(camera_m)) {
   for (const lod::SelectedTile& tile : selection.tiles) {
     const mars::ChartRect r = lod::chart_rect(tile.key);
@@ -57,14 +57,14 @@ DrawnGround::DrawnGround(MeshStore& store, const lod::Selection& selection, cons
   }
 }
 
-std::optional<bool> DrawnGround::camera_is_above() const {
+std::optional<bool> DrawnTerrain::camera_is_above() const {
   for (const Tile& tile : tiles_) {
     if (glm::dot(mars::face_axes(tile.rect.face).out, up_) <= 0.0) continue;
     const mars::ChartPoint p = mars::chart_on(tile.rect.face, up_);
     if (p.u < tile.rect.u0 || p.u > tile.rect.u1 || p.v < tile.rect.v0 || p.v > tile.rect.v1) continue;
     const DrawnMesh& mesh = *tile.mesh;
     for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
-      // Relative to a corner, so that a triangle of metres loses nothing to the planet's radius.
+      // Relative to a corner, so that a triangle of metres loses no digits to the planet's radius.
       const glm::dvec3& a = mesh.vertices[mesh.triangles[t]];
       const glm::dvec3 ab = mesh.vertices[mesh.triangles[t + 1]] - a;
       const glm::dvec3 ac = mesh.vertices[mesh.triangles[t + 2]] - a;
@@ -79,7 +79,7 @@ std::optional<bool> DrawnGround::camera_is_above() const {
   return std::nullopt;
 }
 
-bool DrawnGround::blocked(const glm::dvec3& point) const {
+bool DrawnTerrain::blocked(const glm::dvec3& point) const {
   const glm::dvec3 to = point - camera_m_;
   glm::dvec3 side = glm::normalize(glm::cross(up_, to));
   side = glm::normalize(side - glm::dot(side, up_) * up_);

@@ -1,5 +1,4 @@
-// What is drawn for a view, as triangles, and rays against all of them: the brute force that culling is tested
-// with.
+// The triangles that are drawn for a view, and rays against all of them: the brute-force oracle of culling.
 #pragma once
 
 #include <map>
@@ -13,7 +12,7 @@
 
 namespace test_support {
 
-// One mesh in 3-D, with its walls.
+// Holds one mesh in 3-D with its occluder profile.
 struct DrawnMesh {
   std::vector<glm::dvec3> vertices;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  // each once
@@ -21,7 +20,7 @@ struct DrawnMesh {
   lod::OccluderProfile occluders;
 };
 
-// Meshes by tile, variant and exaggeration, kept once made.
+// Makes meshes by tile, variant and exaggeration, and keeps them.
 class MeshStore {
  public:
   explicit MeshStore(std::shared_ptr<const paging::PlanetFile> planet) : planet_(std::move(planet)) {}
@@ -34,19 +33,20 @@ class MeshStore {
   std::map<std::pair<std::uint32_t, int>, DrawnMesh> meshes_;
 };
 
-class DrawnGround {
+// Holds the meshes of all drawn tiles.
+class DrawnTerrain {
  public:
-  DrawnGround(MeshStore& store, const lod::Selection& selection, const glm::dvec3& camera_m);
+  DrawnTerrain(MeshStore& store, const lod::Selection& selection, const glm::dvec3& camera_m);
 
   std::size_t size() const { return tiles_.size(); }
   const DrawnMesh& mesh(std::size_t tile) const { return *tiles_[tile].mesh; }
 
-  // Nothing where no tile is drawn under the camera.
+  // Returns whether the camera is above the terrain, or nullopt where no tile is drawn under the camera.
   std::optional<bool> camera_is_above() const;
 
-  // Whether the ray from the camera to a point passes below a drawn edge that is nearer. The drawn ground has one
-  // radius for each direction, and along the ray's own vertical plane it is straight between the edges it
-  // crosses.
+  // Returns whether the ray from the camera to a point passes below a drawn edge that is nearer. The drawn
+  // terrain has one radius for each direction, and in the ray's vertical plane it is straight between the
+  // edges that cross the plane.
   bool blocked(const glm::dvec3& point) const;
 
  private:

@@ -1,4 +1,4 @@
-// Parts of a divided build join into the undivided planet, whatever is stopped on the way.
+// Shards of a divided build merge into the undivided planet, also when builds and merges are stopped.
 #include "paging/build/merge.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ using test_support::fine_around;
 using test_support::Random;
 using test_support::TempDir;
 
-// Hills with a hole, and a step that shows at which spacing a post was sampled.
+// Gives hills with a nodata area, and an offset that shows at which spacing a post was sampled.
 class SpacingElevation : public FakeElevation {
  public:
   using FakeElevation::FakeElevation;
@@ -34,7 +34,7 @@ class SpacingElevation : public FakeElevation {
   }
 };
 
-double holed_height(const glm::dvec3& d) {
+double height_with_nodata(const glm::dvec3& d) {
   return d.y > 0.98 ? std::numeric_limits<double>::quiet_NaN() : bumpy_height(d);
 }
 
@@ -55,12 +55,16 @@ class Merge : public testing::Test {
     return paging::build_planet(o, source_, &image_);
   }
 
-  paging::BuildOptions part_options(std::int64_t number, std::int64_t of) const {
-    paging::BuildOptions o = options(part_name(number, of));
-    o.part = {number, of};
+  paging::BuildEstimate estimate(const paging::BuildOptions& o) const {
+    return paging::estimate_build(o, paging::plan_tiles(o, source_), source_, &image_);
+  }
+
+  paging::BuildOptions shard_options(std::int64_t number, std::int64_t of) const {
+    paging::BuildOptions o = options(shard_name(number, of));
+    o.shard = {number, of};
     return o;
   }
-  static std::string part_name(std::int64_t number, std::int64_t of) {
+  static std::string shard_name(std::int64_t number, std::int64_t of) {
     return "p." + std::to_string(number) + "-of-" + std::to_string(of) + ".vpe";
   }
 
@@ -69,13 +73,13 @@ class Merge : public testing::Test {
     m.output = (dir_ / "merged.vpe").string();
     m.commit_s = commit_s_;
     m.threads = 2;
-    for (std::int64_t n = of; n >= 1; --n) m.parts.push_back((dir_ / part_name(n, of)).string());
+    for (std::int64_t n = of; n >= 1; --n) m.shards.push_back((dir_ / shard_name(n, of)).string());
     return m;
   }
 
   paging::BuildSummary build_and_merge(std::int64_t of) const {
-    for (std::int64_t n = 1; n <= of; ++n) build(part_options(n, of));
-    return paging::merge_parts(merge_options(of));
+    for (std::int64_t n = 1; n <= of; ++n) build(shard_options(n, of));
+    return paging::merge_shards(merge_options(of));
   }
 
   const paging::PlanetMeta& whole() {
@@ -83,7 +87,7 @@ class Merge : public testing::Test {
     return whole_;
   }
 
-  // All that the tables hold, in an order of its own.
+  // Returns everything that the tables hold, in a fixed order.
   static std::vector<std::string> rows_of(const std::string& path) {
     std::vector<std::string> rows;
     paging::Database db(path, paging::Database::Mode::kReadOnly);
@@ -113,7 +117,7 @@ class Merge : public testing::Test {
 
   std::string refusal(const paging::MergeOptions& m) const {
     try {
-      paging::merge_parts(m);
+      paging::merge_shards(m);
     } catch (const paging::PlanetError& e) {
       EXPECT_FALSE(std::filesystem::exists(m.output));
       EXPECT_FALSE(std::filesystem::exists(m.output + ".part"));
@@ -124,14 +128,15 @@ class Merge : public testing::Test {
 
   TempDir dir_;
   double commit_s_ = 60;  // in the end only
-  const SpacingElevation source_{holed_height, fine_around(glm::normalize(glm::dvec3(1, 1, 0.3)), 0.05, 40000)};
+  const SpacingElevation source_{height_with_nodata,
+                                 fine_around(glm::normalize(glm::dvec3(1, 1, 0.3)), 0.05, 40000)};
   const FakeImage image_{};
 
  private:
   paging::PlanetMeta whole_;
 };
 
-TEST_F(Merge, PartsJoinIntoTheUndividedPlanet) {
+TEST_F(Merge, ShardsMergeIntoTheUndividedPlanet) {
   for (const std::int64_t of : {2, 7}) {
     SCOPED_TRACE(of);
     const auto summary = build_and_merge(of);
@@ -179,22 +184,22 @@ TEST_F(Merge, TheSummaryCountsEverything) {
 }
 
 TEST_F(Merge, TheEstimateCountsWhatIsBuilt) {
-  const auto all = paging::estimate_build(options("x.vpe"), source_, &image_);
+  const auto all = estimate(options("x.vpe"));
   EXPECT_EQ(all.leaf_tiles, whole().leaf_tiles);
   EXPECT_EQ(all.leaf_tiles + all.inner_tiles, whole().tiles);
   EXPECT_EQ(all.image_tiles, whole().image_tiles);
   std::int64_t leaves = 0;
   for (std::int64_t n = 1; n <= 5; ++n) {
-    const auto part = paging::estimate_build(part_options(n, 5), source_, &image_);
-    leaves += part.leaf_tiles;
-    EXPECT_EQ(part.leaf_tiles + part.inner_tiles, build(part_options(n, 5)).meta.tiles);
-    EXPECT_LT(part.bytes, all.bytes);
-    EXPECT_LT(part.processor_s, all.processor_s);
+    const auto shard = estimate(shard_options(n, 5));
+    leaves += shard.leaf_tiles;
+    EXPECT_EQ(shard.leaf_tiles + shard.inner_tiles, build(shard_options(n, 5)).meta.tiles);
+    EXPECT_LT(shard.bytes, all.bytes);
+    EXPECT_LT(shard.processor_s, all.processor_s);
   }
   EXPECT_EQ(leaves, all.leaf_tiles);
 }
 
-// Order and division leave no trace in the sums.
+// Sums do not depend on order and division.
 TEST(ResamplingSum, IsExact) {
   Random random(3);
   std::vector<double> errors;
@@ -222,10 +227,10 @@ TEST(ResamplingSum, IsExact) {
   EXPECT_NEAR(large.error().rms_m, 1e6, 1e-3);
 }
 
-TEST_F(Merge, APartIsNoPlanetAndSaysSo) {
-  build(part_options(2, 3));
+TEST_F(Merge, AShardIsRefusedAsAPlanet) {
+  build(shard_options(2, 3));
   try {
-    paging::PlanetFile::open((dir_ / part_name(2, 3)).string());
+    paging::PlanetFile::open((dir_ / shard_name(2, 3)).string());
     FAIL();
   } catch (const paging::PlanetError& e) {
     EXPECT_NE(std::string(e.what()).find("part 2 of 3 of a planet; join all 3 with 'vpe merge"),
@@ -234,64 +239,64 @@ TEST_F(Merge, APartIsNoPlanetAndSaysSo) {
   }
 }
 
-TEST_F(Merge, RefusesWhatDoesNotFit) {
-  for (std::int64_t n = 1; n <= 3; ++n) build(part_options(n, 3));
+TEST_F(Merge, RefusesWhatDoesNotMatch) {
+  for (std::int64_t n = 1; n <= 3; ++n) build(shard_options(n, 3));
   const paging::MergeOptions good = merge_options(3);
   const auto expect = [&](const paging::MergeOptions& m, const std::vector<std::string>& words) {
-    const std::string said = refusal(m);
-    for (const std::string& word : words) EXPECT_NE(said.find(word), std::string::npos) << said;
+    const std::string message = refusal(m);
+    for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
   };
   paging::MergeOptions m = good;
-  m.parts.erase(m.parts.begin() + 1);
+  m.shards.erase(m.shards.begin() + 1);
   expect(m, {"of 3 parts 1 are missing: 2"});
   m = good;
-  m.parts.push_back(m.parts.front());
+  m.shards.push_back(m.shards.front());
   expect(m, {"part 3 of 3", "give each part once"});
   m = good;
-  m.parts[0] = (dir_ / "absent.vpe").string();
+  m.shards[0] = (dir_ / "absent.vpe").string();
   expect(m, {"absent.vpe: no such file"});
   whole();
-  m.parts[0] = options("whole.vpe").output;
+  m.shards[0] = options("whole.vpe").output;
   expect(m, {"whole.vpe: a whole planet"});
   std::ofstream(dir_ / "text.vpe") << std::string(3000, 'x');
-  m.parts[0] = (dir_ / "text.vpe").string();
+  m.shards[0] = (dir_ / "text.vpe").string();
   expect(m, {"text.vpe", "not a part of a planet"});
-  m.parts.clear();
+  m.shards.clear();
   expect(m, {"no parts to merge"});
   // Other options.
-  paging::BuildOptions other = part_options(3, 3);
+  paging::BuildOptions other = shard_options(3, 3);
   other.output = (dir_ / "other.vpe").string();
   other.mesh_ratio = 128;
   build(other);
   m = good;
-  m.parts[0] = other.output;
+  m.shards[0] = other.output;
   expect(m, {"made of other sources, with other options"});
   // Another division.
-  build(part_options(2, 2));
+  build(shard_options(2, 2));
   m = good;
-  m.parts[1] = (dir_ / part_name(2, 2)).string();
+  m.shards[1] = (dir_ / shard_name(2, 2)).string();
   expect(m, {"part 2 of 2", "is part 3 of 3"});
 }
 
 TEST_F(Merge, ASourceThatChangedUnderItsNameIsNoticed) {
-  build(part_options(1, 2));
-  const SpacingElevation changed([](const glm::dvec3& d) { return holed_height(d) + 100 * d.x; },
+  build(shard_options(1, 2));
+  const SpacingElevation changed([](const glm::dvec3& d) { return height_with_nodata(d) + 100 * d.x; },
                                  fine_around(glm::normalize(glm::dvec3(1, 1, 0.3)), 0.05, 40000));
-  // The fill is a mean of heights, so that most changes show in the recipe; this one leaves it as it is.
+  // The fill is a mean of heights, so most changes alter the fingerprint; this one does not.
   try {
-    paging::build_planet(part_options(2, 2), changed, &image_);
-    const std::string said = refusal(merge_options(2));
-    EXPECT_TRUE(said.find("a source has changed under its name") != std::string::npos ||
-                said.find("made of other sources") != std::string::npos)
-        << said;
+    paging::build_planet(shard_options(2, 2), changed, &image_);
+    const std::string message = refusal(merge_options(2));
+    EXPECT_TRUE(message.find("a source has changed under its name") != std::string::npos ||
+                message.find("made of other sources") != std::string::npos)
+        << message;
   } catch (const std::exception& e) {
     FAIL() << e.what();
   }
 }
 
-TEST_F(Merge, DamagedPartsAreNamed) {
-  for (std::int64_t n = 1; n <= 2; ++n) build(part_options(n, 2));
-  const std::string path = merge_options(2).parts.front();
+TEST_F(Merge, DamagedShardsAreNamed) {
+  for (std::int64_t n = 1; n <= 2; ++n) build(shard_options(n, 2));
+  const std::string path = merge_options(2).shards.front();
   for (const char* sql :
        {"UPDATE heights SET data = zeroblob(length(data)) WHERE key = (SELECT max(key) FROM heights)",
         "UPDATE mesh SET data = zeroblob(length(data)) WHERE id = 3",
@@ -304,26 +309,26 @@ TEST_F(Merge, DamagedPartsAreNamed) {
     std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing);
     paging::Database(path, paging::Database::Mode::kCreate).execute(sql);
     try {
-      paging::merge_parts(merge_options(2));
+      paging::merge_shards(merge_options(2));
       ADD_FAILURE();
     } catch (const paging::PlanetError& e) {
-      EXPECT_NE(std::string(e.what()).find(part_name(2, 2)), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(shard_name(2, 2)), std::string::npos) << e.what();
     }
     EXPECT_FALSE(std::filesystem::exists(merge_options(2).output));
     std::filesystem::remove(merge_options(2).output + ".part");
     std::filesystem::copy_file(copy, path, std::filesystem::copy_options::overwrite_existing);
   }
-  paging::merge_parts(merge_options(2));
+  paging::merge_shards(merge_options(2));
   expect_whole(merge_options(2).output);
 }
 
 TEST_F(Merge, StoppedAtAnyStep) {
-  for (std::int64_t n = 1; n <= 3; ++n) build(part_options(n, 3));
+  for (std::int64_t n = 1; n <= 3; ++n) build(shard_options(n, 3));
   std::int64_t stops = 0;
   for (bool done = false; !done;) {
     std::int64_t calls = 0;
     try {
-      paging::merge_parts(merge_options(3), [&](const paging::BuildProgress&) {
+      paging::merge_shards(merge_options(3), [&](const paging::BuildProgress&) {
         if (++calls > 15 + 12 * stops) throw std::runtime_error("stop");
       });
       done = true;
@@ -339,20 +344,20 @@ TEST_F(Merge, StoppedAtAnyStep) {
 
 class LongMerge : public Merge {};
 
-TEST_F(LongMerge, AsManyPartsAsTiles) {
+TEST_F(LongMerge, AsManyShardsAsTiles) {
   const std::int64_t leaves = whole().leaf_tiles;
   ASSERT_LT(leaves, 200);
   build_and_merge(leaves);
   expect_whole((dir_ / "merged.vpe").string());
   try {
-    build(part_options(1, leaves + 1));
+    build(shard_options(1, leaves + 1));
     FAIL();
   } catch (const paging::PlanetError& e) {
     EXPECT_NE(std::string(e.what()).find("ask for fewer parts"), std::string::npos) << e.what();
   }
 }
 
-// Kills of parts and of the merge.
+// Kills builds of shards and the merge.
 class Killed : public Merge {
  protected:
   Killed() { commit_s_ = 0; }  // after each tile
@@ -383,10 +388,10 @@ class Killed : public Merge {
   int round(std::int64_t of, Random& random, double longest_s = 0.12) {
     int killed = 0;
     for (std::int64_t n = 1; n <= of; ++n)
-      killed += kill_until_done([&] { build(part_options(n, of)); }, longest_s, random);
-    killed += kill_until_done([&] { paging::merge_parts(merge_options(of)); }, longest_s, random);
+      killed += kill_until_done([&] { build(shard_options(n, of)); }, longest_s, random);
+    killed += kill_until_done([&] { paging::merge_shards(merge_options(of)); }, longest_s, random);
     expect_whole(merge_options(of).output);
-    for (std::int64_t n = 1; n <= of; ++n) std::filesystem::remove(dir_ / part_name(n, of));
+    for (std::int64_t n = 1; n <= of; ++n) std::filesystem::remove(dir_ / shard_name(n, of));
     std::filesystem::remove(merge_options(of).output);
     return killed;
   }
@@ -394,7 +399,7 @@ class Killed : public Merge {
 
 TEST_F(Killed, AtRandomMoments) {
   Random random(81);
-  // A quick machine is done before it is killed: then sooner.
+  // A fast machine ends before it is killed: then kill sooner.
   int killed = 0;
   double longest_s = 0.12;
   for (int n = 0; n < 10 && killed < 4 && !HasFailure(); ++n, longest_s /= 2)
@@ -411,7 +416,7 @@ TEST_F(LongKilled, TwoHundredTimes) {
   RecordProperty("kills", killed);
 }
 
-// As damage_and_continue() of builds, to parts on their way and to a merge on its way.
+// Damages finished shards and partial merges, as damage_and_continue() does for builds.
 class LongDamaged : public Merge {
  protected:
   static void flip(const std::filesystem::path& path, Random& random) {
@@ -425,14 +430,14 @@ class LongDamaged : public Merge {
   }
 };
 
-// A flipped bit in a finished part or a stopped merge: never other content.
+// A flipped bit in a finished shard or a stopped merge never gives other content.
 TEST_F(LongDamaged, TwoHundredFlips) {
-  for (std::int64_t n = 1; n <= 3; ++n) build(part_options(n, 3));
+  for (std::int64_t n = 1; n <= 3; ++n) build(shard_options(n, 3));
   const paging::MergeOptions m = merge_options(3);
   const auto stop_late = [](const paging::BuildProgress& p) {
     if (p.fraction > 0.7) throw std::runtime_error("stop");
   };
-  EXPECT_THROW(paging::merge_parts(m, stop_late), std::runtime_error);
+  EXPECT_THROW(paging::merge_shards(m, stop_late), std::runtime_error);
   const std::filesystem::path begun = m.output + ".part";
   const std::filesystem::path saved = dir_ / "saved";
   std::filesystem::copy_file(begun, saved);
@@ -442,25 +447,25 @@ TEST_F(LongDamaged, TwoHundredFlips) {
     SCOPED_TRACE(n);
     std::filesystem::remove(m.output);
     std::filesystem::copy_file(saved, begun, std::filesystem::copy_options::overwrite_existing);
-    const bool of_part = n % 2 == 0;
-    if (of_part) std::filesystem::remove(begun);  // so that all of the part is read
+    const bool of_shard = n % 2 == 0;
+    if (of_shard) std::filesystem::remove(begun);  // so that all of the shard is read
     const std::filesystem::path victim =
-        of_part ? m.parts[static_cast<std::size_t>(n / 2 % 3)] : begun.string();
+        of_shard ? m.shards[static_cast<std::size_t>(n / 2 % 3)] : begun.string();
     const std::filesystem::path copy = dir_ / "copy";
     std::filesystem::copy_file(victim, copy, std::filesystem::copy_options::overwrite_existing);
     flip(victim, random);
     try {
-      paging::merge_parts(m);
+      paging::merge_shards(m);
     } catch (const std::runtime_error& e) {
       ++refused;
       EXPECT_NE(std::string(e.what()).find(victim.filename().string()), std::string::npos) << e.what();
       EXPECT_FALSE(std::filesystem::exists(m.output));
-      if (of_part) std::filesystem::copy_file(copy, victim, std::filesystem::copy_options::overwrite_existing);
-      if (!of_part) std::filesystem::remove(begun);
-      paging::merge_parts(m);
+      if (of_shard) std::filesystem::copy_file(copy, victim, std::filesystem::copy_options::overwrite_existing);
+      if (!of_shard) std::filesystem::remove(begun);
+      paging::merge_shards(m);
     }
     expect_whole(m.output);
-    if (of_part) std::filesystem::copy_file(copy, victim, std::filesystem::copy_options::overwrite_existing);
+    if (of_shard) std::filesystem::copy_file(copy, victim, std::filesystem::copy_options::overwrite_existing);
   }
   EXPECT_GT(refused, 20);
   RecordProperty("refused", refused);

@@ -1,4 +1,4 @@
-// Nothing that brute force can see is culled: by the frustum, by the horizon, or by nearer ground.
+// Culling by frustum, horizon and nearer terrain: it removes nothing that brute force can see.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace {
 
-using test_support::DrawnGround;
 using test_support::DrawnMesh;
+using test_support::DrawnTerrain;
 using test_support::MeshStore;
 using test_support::Random;
 namespace core = vpe::core;
@@ -41,7 +41,7 @@ Ground& ground() {
   return made;
 }
 
-core::View look(Random& random, const glm::dvec3& camera_m, double pitch) {
+core::View random_view(Random& random, const glm::dvec3& camera_m, double pitch) {
   core::View view;
   const glm::dvec3 up = glm::normalize(camera_m);
   const glm::dvec3 east = mars::any_perpendicular(up);
@@ -55,7 +55,8 @@ core::View look(Random& random, const glm::dvec3& camera_m, double pitch) {
   return view;
 }
 
-// Near one of the places with detail, anywhere, or over a pole; from half a metre above ground to ten radii.
+// Returns a camera near one of the places with detail, anywhere, or over a pole, from half a metre above the
+// ground to ten radii.
 glm::dvec3 hostile_camera(Random& random) {
   glm::dvec3 d = random.direction();
   const double near = random.log_uniform(1e-5, 0.05);
@@ -100,7 +101,7 @@ struct Occlusion {
   double ms = 0;
 };
 
-// unknown: walls of every so many tiles are not at hand, as while they are loaded; 0 = all are.
+// Every unknown-th tile lacks its occluder profile, as while it is loaded; 0 = none lacks it.
 Occlusion occlude(const lod::Selection& selection, const glm::dvec3& camera_m, bool above, double margin_rad,
                   lod::OcclusionPass& pass, std::size_t unknown = 0) {
   std::vector<lod::OccludingTile> tiles;
@@ -116,7 +117,7 @@ Occlusion occlude(const lod::Selection& selection, const glm::dvec3& camera_m, b
   return out;
 }
 
-// A point of a mesh: most often a vertex, and of a few the one that rises highest in the camera's view.
+// Returns a point of a mesh: mostly the vertex of a few that rises highest in the camera's view.
 glm::dvec3 hostile_point(Random& random, const DrawnMesh& mesh, const glm::dvec3& camera_m) {
   const glm::dvec3 up = glm::normalize(camera_m);
   const auto vertex = [&] {
@@ -141,25 +142,25 @@ glm::dvec3 hostile_point(Random& random, const DrawnMesh& mesh, const glm::dvec3
   return best;
 }
 
-// Is a place of S in one of the tiles (all of which are drawn)?
+// Returns whether a place of the reference surface is in one of the tiles, all of which are drawn.
 bool drawn_at(const lod::Selection& selection, const glm::dvec3& place) {
-  const std::int64_t z = lod::z_position(lod::tile_at(mars::chart_point(place), lod::kMaxLevel));
-  const auto after =
-      std::upper_bound(selection.tiles.begin(), selection.tiles.end(), z,
-                       [](std::int64_t at, const lod::SelectedTile& t) { return at < lod::z_position(t.key); });
+  const std::int64_t z = lod::morton_position(lod::tile_at(mars::chart_point(place), lod::kMaxLevel));
+  const auto after = std::upper_bound(
+      selection.tiles.begin(), selection.tiles.end(), z,
+      [](std::int64_t at, const lod::SelectedTile& t) { return at < lod::morton_position(t.key); });
   return after != selection.tiles.begin() &&
-         z < lod::z_position((after - 1)->key) + lod::z_extent((after - 1)->key.level);
+         z < lod::morton_position((after - 1)->key) + lod::morton_extent((after - 1)->key.level);
 }
 
-struct Tally {
-  int eyes = 0, half_metre = 0, ten_radii = 0, poles = 0, above = 0, below_datum = 0, tiles = 0, hidden = 0,
+struct Totals {
+  int cameras = 0, half_metre = 0, ten_radii = 0, poles = 0, above = 0, below_datum = 0, tiles = 0, hidden = 0,
       points = 0, rays = 0, hits = 0, limb = 0;
 };
 
-// Of what S shows in a pixel, on the image's border or where the horizon is, nothing may be missing from the
-// tiles.
+// Expects tiles wherever rays hit the reference surface: at random pixels, on the image's border, and at the
+// horizon.
 void check_frustum_and_horizon(Random& random, const core::View& view, const lod::Selection& selection,
-                               Tally& update_totals) {
+                               Totals& totals) {
   const glm::dvec3& camera = view.camera.position_m;
   for (int ray = 0; ray < 3; ++ray) {
     double x = random.uniform(0, view.width);
@@ -175,130 +176,130 @@ void check_frustum_and_horizon(Random& random, const core::View& view, const lod
       const glm::dvec3 up = glm::normalize(camera);
       const glm::dvec3 ahead = glm::normalize(d - glm::dot(d, up) * up);
       d = std::cos(down) * ahead - std::sin(down) * up;
-      ++update_totals.limb;
+      ++totals.limb;
     }
     const double distance = ground().surface().cast(camera, glm::normalize(d));
-    ++update_totals.rays;
+    ++totals.rays;
     if (!std::isfinite(distance) || distance == 0.0) continue;
-    ++update_totals.hits;
+    ++totals.hits;
     const glm::dvec3 hit = camera + distance * glm::normalize(d);
     // Off by rounding it may lie in the next tile.
     const glm::dvec3 back = camera + distance * (1 - 1e-9) * glm::normalize(d);
     ASSERT_TRUE(drawn_at(selection, hit) || drawn_at(selection, back))
-        << "eye " << update_totals.eyes << " at " << glm::length(camera) - ground().radius_m() << " m, hit at "
+        << "camera " << totals.cameras << " at " << glm::length(camera) - ground().radius_m() << " m, hit at "
         << distance << " m";
   }
 }
 
 void check_occlusion(Random& random, const core::View& view, const lod::Selection& selection,
-                     lod::OcclusionPass& pass, Tally& update_totals) {
+                     lod::OcclusionPass& pass, Totals& totals) {
   const glm::dvec3& camera = view.camera.position_m;
-  const DrawnGround drawn(ground().store(), selection, camera);
-  // Where the ground under the camera is not in the image, S stands for it, with room for the error.
+  const DrawnTerrain drawn(ground().store(), selection, camera);
+  // Where the ground under the camera is not in the image, the reference surface replaces it, with a margin
+  // for the error.
   const bool above = drawn.camera_is_above().value_or(
       glm::length(camera) > ground().radius_m() +
                                 selection.exaggeration * (ground().surface().at(camera).height_m) +
                                 selection.max_geometric_error_m);
-  update_totals.above += above ? 1 : 0;
+  totals.above += above ? 1 : 0;
   const Occlusion found = occlude(selection, camera, above, 0.0, pass,
                                   static_cast<std::size_t>(std::max(0, random.integer(-6, 3))));
   std::vector<std::size_t> hidden;
   for (std::size_t n = 0; n < found.hidden.size(); ++n) {
     if (found.hidden[n] != 0) hidden.push_back(n);
   }
-  update_totals.tiles += static_cast<int>(selection.tiles.size());
-  update_totals.hidden += static_cast<int>(hidden.size());
+  totals.tiles += static_cast<int>(selection.tiles.size());
+  totals.hidden += static_cast<int>(hidden.size());
   ASSERT_TRUE(above || hidden.empty());
   for (int n = 0; n < 3 && !hidden.empty(); ++n) {
     const std::size_t tile =
         hidden[static_cast<std::size_t>(random.integer(0, static_cast<int>(hidden.size()) - 1))];
-    ++update_totals.points;
+    ++totals.points;
     ASSERT_TRUE(drawn.blocked(hostile_point(random, drawn.mesh(tile), camera)))
-        << "eye " << update_totals.eyes << ", tile " << lod::to_string(selection.tiles[tile].key);
+        << "camera " << totals.cameras << ", tile " << lod::to_string(selection.tiles[tile].key);
   }
 }
 
-void expect_never_culled(std::uint64_t seed, int eyes) {
+void expect_never_culled(std::uint64_t seed, int cameras) {
   Random random(seed);
   lod::OcclusionPass pass;
-  Tally update_totals;
-  for (; update_totals.eyes < eyes && !testing::Test::HasFatalFailure(); ++update_totals.eyes) {
+  Totals totals;
+  for (; totals.cameras < cameras && !testing::Test::HasFatalFailure(); ++totals.cameras) {
     const glm::dvec3 camera = hostile_camera(random);
-    update_totals.below_datum += glm::length(camera) < ground().radius_m() ? 1 : 0;
+    totals.below_datum += glm::length(camera) < ground().radius_m() ? 1 : 0;
     const double height = glm::length(camera) - ground().surface().at(camera).radius_m;
-    update_totals.half_metre += height < 0.51 ? 1 : 0;
-    update_totals.ten_radii += height > 9.99 * ground().radius_m() ? 1 : 0;
-    update_totals.poles += camera.x == 0.0 && camera.y == 0.0 ? 1 : 0;
-    const core::View view = look(random, camera, random.uniform(-90, 45));
+    totals.half_metre += height < 0.51 ? 1 : 0;
+    totals.ten_radii += height > 9.99 * ground().radius_m() ? 1 : 0;
+    totals.poles += camera.x == 0.0 && camera.y == 0.0 ? 1 : 0;
+    const core::View view = random_view(random, camera, random.uniform(-90, 45));
     const lod::Selection selection = select(view, random.log_uniform(0.5, 20), 1.0);
-    check_frustum_and_horizon(random, view, selection, update_totals);
-    check_occlusion(random, view, selection, pass, update_totals);
+    check_frustum_and_horizon(random, view, selection, totals);
+    check_occlusion(random, view, selection, pass, totals);
   }
   std::printf(
-      "eyes %d (0.5 m up %d, 10 radii %d, poles %d, above ground %d, below the datum %d), rays %d, hits %d, at "
-      "the limb %d, tiles %d, hidden %d, "
-      "points %d\n",
-      update_totals.eyes, update_totals.half_metre, update_totals.ten_radii, update_totals.poles,
-      update_totals.above, update_totals.below_datum, update_totals.rays, update_totals.hits,
-      update_totals.limb, update_totals.tiles, update_totals.hidden, update_totals.points);
-  EXPECT_GT(update_totals.above, eyes * 9 / 10);
-  EXPECT_GT(update_totals.below_datum, eyes / 10);
-  EXPECT_GT(update_totals.half_metre, eyes / 8);
-  EXPECT_GT(update_totals.ten_radii, eyes / 100);
-  EXPECT_GT(update_totals.poles, eyes / 100);
-  EXPECT_GT(update_totals.hits, eyes);
-  EXPECT_GT(update_totals.points, eyes);
+      "cameras %d (0.5 m up %d, 10 radii %d, poles %d, above ground %d, below the datum %d), rays %d, hits %d, "
+      "at the limb %d, tiles %d, hidden %d, points %d\n",
+      totals.cameras, totals.half_metre, totals.ten_radii, totals.poles, totals.above, totals.below_datum,
+      totals.rays, totals.hits, totals.limb, totals.tiles, totals.hidden, totals.points);
+  EXPECT_GT(totals.above, cameras * 9 / 10);
+  EXPECT_GT(totals.below_datum, cameras / 10);
+  EXPECT_GT(totals.half_metre, cameras / 8);
+  EXPECT_GT(totals.ten_radii, cameras / 100);
+  EXPECT_GT(totals.poles, cameras / 100);
+  EXPECT_GT(totals.hits, cameras);
+  EXPECT_GT(totals.points, cameras);
 }
 
 TEST(NeverCull, WhatIsSeenIsDrawn) { expect_never_culled(61, 400); }
 
-// 100 000 eyes in all, in four tests so that they can run side by side.
+// 100 000 cameras in all, in four tests so that they can run side by side.
 class LongNeverCull : public testing::TestWithParam<std::uint64_t> {};
 TEST_P(LongNeverCull, WhatIsSeenIsDrawn) { expect_never_culled(GetParam(), 25000); }
 INSTANTIATE_TEST_SUITE_P(LongSeeds, LongNeverCull, testing::Values(621, 622, 623, 624));
 
-// Exaggerated ground hides more, and its walls move with it.
+// Exaggerated ground hides more, and its occluders move with it.
 TEST(NeverCull, ExaggeratedGroundHidesOnlyWhatItHides) {
   Random random(63);
   lod::OcclusionPass pass;
   for (const double exaggeration : {0.3, 4.0}) {
-    Tally update_totals;
-    for (; update_totals.eyes < 100; ++update_totals.eyes) {
+    Totals totals;
+    for (; totals.cameras < 100; ++totals.cameras) {
       const glm::dvec3 d =
           glm::normalize(test_support::kCanyon + random.log_uniform(1e-5, 0.05) * random.direction());
       const double height = ground().surface().at(d).height_m;
       const core::View view =
-          look(random, d * (ground().radius_m() + exaggeration * height + random.log_uniform(10, 1e4)),
-               random.uniform(-30, 10));
-      check_occlusion(random, view, select(view, 4.0, exaggeration), pass, update_totals);
+          random_view(random, d * (ground().radius_m() + exaggeration * height + random.log_uniform(10, 1e4)),
+                      random.uniform(-30, 10));
+      check_occlusion(random, view, select(view, 4.0, exaggeration), pass, totals);
       if (HasFatalFailure()) return;
     }
-    EXPECT_GT(update_totals.points, 60);
+    EXPECT_GT(totals.points, 60);
   }
 }
 
-// Tiles none of whose points are seen, of up to `most` a tile; and how many of them the pass found.
-struct ShardPlan {
+// Counts tiles of which no point is seen, and those of them that the pass found.
+struct HiddenTiles {
   int tiles = 0, hidden = 0, found = 0;
   double ms = 0;
 };
 
-ShardPlan share_found(Random& random, const glm::dvec3& place, double spread_rad, int views, int most) {
+// Tests up to `most` vertices of each tile.
+HiddenTiles count_hidden(Random& random, const glm::dvec3& place, double spread_rad, int views, int most) {
   lod::OcclusionPass pass;
-  ShardPlan share;
+  HiddenTiles count;
   for (int n = 0; n < views; ++n) {
     const glm::dvec3 d = glm::normalize(place + spread_rad * random.uniform(0, 1) * random.direction());
-    core::View view = look(random, d * (ground().surface().at(d).radius_m + random.log_uniform(2, 200)),
-                           random.uniform(-5, 5));
+    core::View view = random_view(random, d * (ground().surface().at(d).radius_m + random.log_uniform(2, 200)),
+                                  random.uniform(-5, 5));
     view.projection = core::Projection::kPerspective;
     view.fov_deg = 60;
     view.width = 1280;
     view.height = 720;
     const lod::Selection selection = select(view, 1.0, 1.0);
-    const DrawnGround drawn(ground().store(), selection, view.camera.position_m);
+    const DrawnTerrain drawn(ground().store(), selection, view.camera.position_m);
     const Occlusion found = occlude(selection, view.camera.position_m, true, 0.0, pass);
-    share.ms += found.ms;
-    share.tiles += static_cast<int>(selection.tiles.size());
+    count.ms += found.ms;
+    count.tiles += static_cast<int>(selection.tiles.size());
     for (std::size_t tile = 0; tile < selection.tiles.size(); ++tile) {
       const DrawnMesh& mesh = drawn.mesh(tile);
       const auto step = std::max<std::size_t>(1, mesh.vertices.size() / static_cast<std::size_t>(most));
@@ -306,30 +307,30 @@ ShardPlan share_found(Random& random, const glm::dvec3& place, double spread_rad
       for (std::size_t v = 0; v < mesh.vertices.size() && !seen; v += step)
         seen = !drawn.blocked(mesh.vertices[v]);
       EXPECT_FALSE(seen && found.hidden[tile] != 0) << lod::to_string(selection.tiles[tile].key);
-      share.hidden += seen ? 0 : 1;
-      share.found += found.hidden[tile] != 0 ? 1 : 0;
+      count.hidden += seen ? 0 : 1;
+      count.found += found.hidden[tile] != 0 ? 1 : 0;
     }
   }
-  std::printf("tiles %d, hidden %d, found %d (%.0f %%), %.3f ms a view, %.2f us a tile\n", share.tiles,
-              share.hidden, share.found, 100.0 * share.found / std::max(1, share.hidden), share.ms / views,
-              1e3 * share.ms / std::max(1, share.tiles));
-  return share;
+  std::printf("tiles %d, hidden %d, found %d (%.0f %%), %.3f ms a view, %.2f us a tile\n", count.tiles,
+              count.hidden, count.found, 100.0 * count.found / std::max(1, count.hidden), count.ms / views,
+              1e3 * count.ms / std::max(1, count.tiles));
+  return count;
 }
 
 TEST(NeverCull, FindsHalfOfWhatIsHiddenInACanyonAndACrater) {
   Random random(64);
   for (const glm::dvec3& place : {test_support::kCanyon, test_support::kCrater}) {
-    const ShardPlan share = share_found(random, place, 0.001, 4, 40);
-    EXPECT_GT(share.hidden, 20);
-    EXPECT_GE(2 * share.found, share.hidden);
+    const HiddenTiles count = count_hidden(random, place, 0.001, 4, 40);
+    EXPECT_GT(count.hidden, 20);
+    EXPECT_GE(2 * count.found, count.hidden);
   }
 }
 
 TEST(LongNeverCullShare, FindsHalfOfWhatIsHiddenInACanyonAndACrater) {
   Random random(65);
   for (const glm::dvec3& place : {test_support::kCanyon, test_support::kCrater}) {
-    const ShardPlan share = share_found(random, place, 0.002, 60, 200);
-    EXPECT_GE(2 * share.found, share.hidden);
+    const HiddenTiles count = count_hidden(random, place, 0.002, 60, 200);
+    EXPECT_GE(2 * count.found, count.hidden);
   }
 }
 

@@ -34,11 +34,11 @@ TEST(Pager, LoadsWhatIsMostUrgentFirst) {
   EXPECT_EQ(order, (std::vector<int>{2, 4, 3, 1}));
 }
 
-TEST(Pager, WhatIsNoLongerWantedIsNotBegun) {
-  std::vector<int> begun;
+TEST(Pager, WhatIsNoLongerWantedIsNotStarted) {
+  std::vector<int> started;
   Pager pager(
       [&](int key) {
-        begun.push_back(key);
+        started.push_back(key);
         return twice(key);
       },
       0, 1000);
@@ -47,7 +47,7 @@ TEST(Pager, WhatIsNoLongerWantedIsNotBegun) {
   pager.want(wants({{3, 0}}));
   EXPECT_EQ(pager.counts().wanted, 1U);
   for (int n = 0; n < 3; ++n) pager.take(1000);
-  EXPECT_EQ(begun, (std::vector<int>{1, 3}));
+  EXPECT_EQ(started, (std::vector<int>{1, 3}));
   EXPECT_EQ(pager.wait(kEver), Outcome::kNothingLeft);
 }
 
@@ -64,7 +64,7 @@ TEST(Pager, LoadersRestWhileTooMuchWaits) {
   pager.want(all);
   while (pager.counts().bytes < 30) std::this_thread::yield();
   std::this_thread::sleep_for(20ms);
-  EXPECT_LE(loads, 4);  // two threads may have begun below the limit
+  EXPECT_LE(loads, 4);  // two threads may have started below the limit
   std::set<int> got;
   while (pager.wait(kEver) != Outcome::kNothingLeft) {
     for (const Pager::Loaded& page : pager.take(15)) EXPECT_TRUE(got.insert(page.key).second);
@@ -124,7 +124,7 @@ TEST(Pager, WaitingHasAnEnd) {
   EXPECT_EQ(pager.wait(kEver), Outcome::kSomething);
 }
 
-// Owners that ask at random, take at random and go away at random; for the thread sanitizer above all.
+// Owners that request, take and end at random times; mainly for the thread sanitizer.
 TEST(PagerThreads, AskTakeAndGoAwayAtRandom) {
   Random random(7);
   for (int round = 0; round < 40; ++round) {

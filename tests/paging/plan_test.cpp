@@ -14,8 +14,8 @@ constexpr double kRadius = 3396190;
 
 double everywhere(const lod::TileKey&, const mars::Cap&) { return 3700; }
 
-// 40 m around one direction, 3700 m elsewhere.
-paging::WantedSpacing hotspot(const glm::dvec3& centre, double reach_rad) {
+// Wants 40 m around one direction, 3700 m elsewhere.
+paging::WantedSpacing inset(const glm::dvec3& centre, double reach_rad) {
   return [=](const lod::TileKey&, const mars::Cap& cap) {
     return mars::angle_between_rad(cap.centre, centre) < cap.radius_rad + reach_rad ? 40.0 : 3700.0;
   };
@@ -34,7 +34,7 @@ TEST(BuildPlan, UniformPlanetHasOneLevel) {
 TEST(BuildPlan, InsetsAreReachedByStepsOfTwo) {
   const glm::dvec3 corner = glm::normalize(glm::dvec3(1, 1, 1));
   for (const glm::dvec3& centre : {glm::dvec3(1, 0, 0), corner, glm::normalize(glm::dvec3(1, 0.3, -0.99))}) {
-    const paging::BuildPlan plan({7}, kRadius, hotspot(centre, 0.002));
+    const paging::BuildPlan plan({7}, kRadius, inset(centre, 0.002));
     int finest = 0;
     double area = 0;
     for (const lod::TileKey& key : plan.leaves()) {
@@ -66,7 +66,7 @@ TEST(BuildPlan, InsetsAreReachedByStepsOfTwo) {
 }
 
 TEST(BuildPlan, CornersKnowTheCoarsestTileAround) {
-  const paging::BuildPlan plan({7}, kRadius, hotspot({1, 0, 0}, 0.002));
+  const paging::BuildPlan plan({7}, kRadius, inset({1, 0, 0}, 0.002));
   for (const lod::TileKey& key : plan.leaves()) {
     if (key.level < 7) continue;
     for (int corner = 0; corner < 4; ++corner) {
@@ -75,7 +75,7 @@ TEST(BuildPlan, CornersKnowTheCoarsestTileAround) {
       const int level = plan.coarsest_level_at_corner(key, east, north);
       ASSERT_LE(level, key.level);
       ASSERT_GE(level, key.level - 2);
-      // Never finer than what the two edges at the corner say.
+      // Never finer than the coarser of the two edges at the corner.
       const int step = std::max(plan.edge_step(key, east ? lod::Edge::kEast : lod::Edge::kWest),
                                 plan.edge_step(key, north ? lod::Edge::kNorth : lod::Edge::kSouth));
       ASSERT_LE(level, key.level - step);
@@ -84,8 +84,8 @@ TEST(BuildPlan, CornersKnowTheCoarsestTileAround) {
 }
 
 TEST(BuildPlan, OrdersAreStable) {
-  const paging::BuildPlan plan({7}, kRadius, hotspot({0, 0, 1}, 0.01));
-  EXPECT_TRUE(std::is_sorted(plan.leaves().begin(), plan.leaves().end(), paging::curve_less));
+  const paging::BuildPlan plan({7}, kRadius, inset({0, 0, 1}, 0.01));
+  EXPECT_TRUE(std::is_sorted(plan.leaves().begin(), plan.leaves().end(), paging::morton_less));
   std::set<lod::TileKey> done(plan.leaves().begin(), plan.leaves().end());
   for (const lod::TileKey& key : plan.inner()) {
     for (int c = 0; c < 4; ++c) ASSERT_TRUE(done.contains(lod::child(key, c)));

@@ -96,12 +96,12 @@ TEST(PlanetFile, RefusesNewerAndIncompleteFiles) {
             std::string::npos);
 }
 
-// Makes it a file of that format, and meta's checksum fit.
+// Changes the format of a file, and makes meta's checksum match.
 void set_format(const std::filesystem::path& path, const std::string& format) {
   change(path, "UPDATE meta SET value = '" + format + "' WHERE key = 'format'");
   paging::Bytes bytes;
   {
-    // As docs/planet-file.md describes it.
+    // As docs/design/planet-file.md describes it.
     paging::Database db(path.string(), paging::Database::Mode::kReadOnly);
     paging::Statement rows(db, "SELECT key, value FROM meta WHERE key <> 'checksum' ORDER BY key");
     while (rows.step()) {
@@ -115,8 +115,8 @@ void set_format(const std::filesystem::path& path, const std::string& format) {
          "UPDATE meta SET value = '" + std::to_string(paging::checksum(0, bytes)) + "' WHERE key = 'checksum'");
 }
 
-// Format 1.0 had no summary by level: such a file opens, and says nothing of levels. Up to 1.1 files do not say
-// how far inner tiles' posts are from S.
+// Files of format 1.0 have no summary by level. Files up to 1.1 do not state how far the posts of inner tiles
+// are from the reference surface. Both can be opened.
 TEST(PlanetFile, OlderFilesOpen) {
   TempDir dir;
   const auto path = dir / "p.vpe";
@@ -149,7 +149,7 @@ TEST(PlanetFile, OlderFilesOpen) {
   read_all(*planet);
 }
 
-TEST(PlanetFile, ChangedErrorsOfPostsAreSeen) {
+TEST(PlanetFile, ChangedErrorsOfPostsAreFound) {
   TempDir dir;
   const auto path = dir / "p.vpe";
   build_fake(path, FakeElevation(bumpy_height), 100000);

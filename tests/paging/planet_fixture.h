@@ -10,6 +10,7 @@
 
 namespace test_support {
 
+// Builds a planet file from a fake source and opens it.
 inline std::shared_ptr<const paging::PlanetFile> build_fake(const std::filesystem::path& path,
                                                             const FakeElevation& source, double base_spacing_m,
                                                             int threads = 2) {
@@ -23,14 +24,14 @@ inline std::shared_ptr<const paging::PlanetFile> build_fake(const std::filesyste
   return paging::PlanetFile::open(path.string());
 }
 
-// Fine around one direction, coarse elsewhere.
+// Returns a spacing that is fine around one direction and coarse elsewhere.
 inline FakeElevation::Spacing fine_around(const glm::dvec3& centre, double reach_rad, double spacing_m) {
   return [=](const mars::Cap& cap) {
     return glm::length(cap.centre - centre) < cap.radius_rad + reach_rad ? spacing_m : 1e9;
   };
 }
 
-// Colours by place.
+// Gives colours that are a function of the place.
 class FakeImage : public mars::ImageSource {
  public:
   std::vector<mars::SourceInfo> infos() const override { return {FakeElevation(bumpy_height).infos().front()}; }

@@ -1,4 +1,4 @@
-// Builds that are stopped, killed or fail go on where they were, and end in the same content.
+// Builds that are stopped, killed or fail continue where they ended, and give the same content.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -38,7 +38,7 @@ class Resume : public testing::Test {
     return paging::build_planet(o, source_, &image_, progress);
   }
 
-  // What an uninterrupted build makes.
+  // Returns the meta of an uninterrupted build.
   const paging::PlanetMeta& whole() {
     if (whole_.tiles == 0) {
       paging::BuildOptions o = options();
@@ -48,7 +48,7 @@ class Resume : public testing::Test {
     return whole_;
   }
 
-  // Equal content: every payload by identity, which is over their checksums, and everything that meta says.
+  // Expects equal content: identity, which covers the checksums of all payloads, and all of meta.
   void expect_whole() {
     const auto planet = paging::PlanetFile::open(options().output);
     EXPECT_TRUE(planet->meta() == whole()) << planet->meta().identity << " is not " << whole().identity;
@@ -63,8 +63,8 @@ class Resume : public testing::Test {
     }
   }
 
-  // Cut short at any place, or with wrong bits anywhere: the next build never ends in other content. It may say
-  // that the file is damaged, and then goes once the file is removed.
+  // Cuts the partial file short, or changes a bit anywhere: the next build never gives other content. It may
+  // report that the file is damaged, and works once the file is removed.
   void damage_and_continue(int times) {
     paging::BuildOptions o = options();
     o.commit_s = 60;
@@ -119,13 +119,13 @@ class Resume : public testing::Test {
 
 // Stops at every n-th step of all, whatever stage that is in.
 TEST_F(Resume, StoppedAtAnyStepOneAfterAnother) {
-  std::int64_t coarser_neighbour_mask = 0;
+  std::int64_t steps = 0;
   {
     paging::BuildOptions o = options();
     o.output = (dir_ / "count.vpe").string();
-    build(o, [&](const paging::BuildProgress&) { ++coarser_neighbour_mask; });
+    build(o, [&](const paging::BuildProgress&) { ++steps; });
   }
-  ASSERT_GT(coarser_neighbour_mask, 50);
+  ASSERT_GT(steps, 50);
   std::int64_t kept_before = 0;
   int stops = 0;
   for (bool done = false; !done;) {
@@ -140,12 +140,12 @@ TEST_F(Resume, StoppedAtAnyStepOneAfterAnother) {
     } catch (const std::runtime_error& e) {
       ASSERT_STREQ(e.what(), "stop");
       ++stops;
-      ASSERT_LT(stops, coarser_neighbour_mask) << "no progress";
+      ASSERT_LT(stops, steps) << "no progress";
     }
     EXPECT_GE(kept, std::min<std::int64_t>(kept_before, kept));
     kept_before = kept;
   }
-  EXPECT_GT(stops, coarser_neighbour_mask / 9 - 4);
+  EXPECT_GT(stops, steps / 9 - 4);
   expect_whole();
 }
 
@@ -181,7 +181,7 @@ void kill_and_continue(const std::function<void()>& build, int kills, double lon
 TEST_F(Resume, KilledAtRandomMoments) {
   Random random(77);
   int total = 0;
-  // A quick machine is done before it is killed: then sooner.
+  // A fast machine ends before it is killed: then kill sooner.
   double longest_s = 0.15;
   for (int round = 0; round < 3 || (round < 12 && total < 6); ++round, longest_s *= 0.7) {
     std::filesystem::remove(options().output);
@@ -196,7 +196,7 @@ TEST_F(Resume, KilledAtRandomMoments) {
 
 class LongResume : public Resume {};
 
-TEST_F(Resume, ADamagedPartNeverEndsInOtherContent) { damage_and_continue(12); }
+TEST_F(Resume, ADamagedPartialFileNeverEndsInOtherContent) { damage_and_continue(12); }
 TEST_F(LongResume, DamagedTwoHundredTimes) { damage_and_continue(200); }
 
 TEST_F(LongResume, KilledTwoHundredTimes) {
@@ -257,7 +257,7 @@ TEST_F(Resume, OtherOptionsStartAnew) {
   EXPECT_NE(summary.meta.identity, whole().identity);
 }
 
-TEST_F(Resume, RubbishUnderThePartsNameIsReplaced) {
+TEST_F(Resume, RubbishUnderThePartialFilesNameIsReplaced) {
   {
     std::ofstream out(options().output + ".part", std::ios::binary);
     out << std::string(20000, 'x');

@@ -1,5 +1,4 @@
-// A small planet with what hides and what is seen far: a canyon, a crater, a deep basin, hills. For tests of
-// culling.
+// A small planet with a canyon, a crater, a deep basin and hills, for tests of culling.
 #pragma once
 
 #include <cmath>
@@ -42,7 +41,7 @@ inline double rough_height(const glm::dvec3& d) {
   return h;
 }
 
-// Posts of some 320 m for 40 km round the canyon's and the crater's middle, in the basin and at the north pole.
+// Builds it with posts of some 320 m within 40 km of the canyon, the crater, the basin and the north pole.
 inline std::shared_ptr<const paging::PlanetFile> build_rough(const std::filesystem::path& path) {
   const FakeElevation source(rough_height, [](const mars::Cap& cap) {
     for (const glm::dvec3& at : {kCanyon, kCrater, kBasin, kPole}) {

@@ -41,19 +41,19 @@ class Section : public ::testing::Test {
 std::unique_ptr<TempDir> Section::folder_;
 std::unique_ptr<paging::Surface> Section::surface_;
 
-// Every piece lies on S from end to end, in the plane, and begins where the one before it ends: over faces,
-// corners of the cube, tiles of unlike depth, poles, along borders.
+// Every piece lies on the reference surface from end to end, in the plane, and begins where the one before it
+// ends: over faces, corners of the cube, tiles of unlike depth, poles, along borders.
 TEST_F(Section, PiecesLieOnTheGroundAndInThePlane) {
   Random random(1);
-  std::vector<std::pair<glm::dvec3, glm::dvec3>> ways{
+  std::vector<std::pair<glm::dvec3, glm::dvec3>> paths{
       {{1, 0, 0}, {0, 1, 0}},   {{1, 1, 0}, {1, 1, 2}},    {{0.3, 0, 1}, {-0.3, 0, 1}},
       {{1, 0.2, 0.2}, kCorner}, {{-1, 0.9, 1}, {1, 1, 1}}, {{1, 0, 0}, {-0.9, 1e-3, 0.1}},
       {{1, 1, -1}, {1, 1, 1}},  {{1, 0, 0}, {1, 0, 0.5}}};
-  for (int n = 0; n < 20; ++n) ways.emplace_back(random.direction(), random.direction());
+  for (int n = 0; n < 20; ++n) paths.emplace_back(random.direction(), random.direction());
   for (int n = 0; n < 20; ++n) {
-    ways.emplace_back(kCorner + 0.03 * random.direction(), kCorner + 0.03 * random.direction());
+    paths.emplace_back(kCorner + 0.03 * random.direction(), kCorner + 0.03 * random.direction());
   }
-  for (const auto& [from, to] : ways) {
+  for (const auto& [from, to] : paths) {
     const auto all = pieces(from, to);
     ASSERT_FALSE(all.empty());
     const double near_m = paging::kSectionError * 4e6;
@@ -103,7 +103,7 @@ TEST_F(Section, LengthsAddUpAndFineStepsComeCloseFromBelow) {
   EXPECT_NEAR(whole.highest_m, highest_m, 1);
 }
 
-TEST_F(Section, NothingBetweenEqualPlacesAndNoWayBetweenOppositeOnes) {
+TEST_F(Section, NoPieceBetweenEqualPlacesAndAnErrorBetweenOppositeOnes) {
   EXPECT_TRUE(pieces({1, 2, 3}, {1, 2, 3}).empty());
   EXPECT_THROW(pieces({1, 2, 3}, {-1, -2, -3}), std::invalid_argument);
 }

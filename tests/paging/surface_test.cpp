@@ -23,7 +23,8 @@ struct Facet {
   glm::dvec3 a, b, c;
 };
 
-// Every facet of S, built in 3-D from the posts: nothing shared with the caster but the posts.
+// Returns every facet of the reference surface, built in 3-D from the posts. Shares nothing with the caster
+// but them.
 std::vector<Facet> all_facets(const paging::PlanetFile& planet) {
   std::vector<Facet> out;
   for (const lod::TileInfo& info : planet.tree().tiles()) {
@@ -71,7 +72,7 @@ TEST(Surface, CastAgreesWithEveryFacet) {
   int hits = 0;
   int misses = 0;
   for (int n = 0; n < 400; ++n) {
-    // Eyes near a cube corner, near edges and anywhere; from 10 m above ground to ten radii.
+    // Cameras near a cube corner, near edges and anywhere; from 10 m above ground to ten radii.
     glm::dvec3 up = random.direction();
     if (n % 3 == 0) up = glm::normalize(kCorner + 0.02 * random.direction());
     const double height = random.log_uniform(10, 3.4e7);
@@ -120,8 +121,8 @@ TEST(Surface, NoRayGetsThrough) {
   }
 }
 
-// Where the depth of the tree changes both sides give one surface, however high it is drawn; posts that were each
-// exaggerated by itself would not.
+// Where the depth of the tree changes, both sides give one surface at every exaggeration. Posts that were
+// exaggerated one by one would not.
 TEST(Surface, IsClosedAtEveryExaggeration) {
   TempDir dir;
   const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 20000));
@@ -220,8 +221,8 @@ TEST(Surface, NormalsPointUpTheFacet) {
   }
 }
 
-// Eight threads with a cache that holds almost nothing see what one thread sees.
-TEST(Surface, ThreadsAndEvictionDoNotShow) {
+// Eight threads with a cache that holds almost nothing get the results of one thread.
+TEST(Surface, ThreadsAndEvictionDoNotChangeResults) {
   TempDir dir;
   const FakeElevation source(bumpy_height, fine_around(kCorner, 0.05, 40000));
   const auto planet = build_fake(dir / "p.vpe", source, 200000);

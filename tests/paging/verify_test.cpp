@@ -1,4 +1,5 @@
-// vpe verify: nothing to say of a good file, and of each kind of lie what is wrong, also when checksums fit.
+// vpe verify: no problem in a good file, and a message for each kind of wrong content, also when checksums
+// match.
 #include "paging/planet/verify.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ class Verify : public testing::Test {
     return paging::verify(*paging::PlanetFile::open(path_), options);
   }
 
-  // What verify says, line by line.
+  // Returns the problems, line by line.
   std::string words(std::size_t deep = 0) const {
     std::string all;
     for (const paging::Problem& p : verify(deep).problems) all += p.where + ": " + p.what + "\n";
@@ -43,7 +44,7 @@ class Verify : public testing::Test {
     EXPECT_NE(all.find(what), std::string::npos) << "'" << what << "' is not among:\n" << all;
   }
 
-  // Some finest tile in the middle of the tree.
+  // Returns one of the finest tiles.
   lod::TileInfo leaf() const {
     const auto planet = paging::PlanetFile::open(path_);
     for (const lod::TileInfo& tile : planet->tree().tiles()) {
@@ -52,7 +53,7 @@ class Verify : public testing::Test {
     throw std::logic_error("no leaf");
   }
 
-  // Replaces a payload and its checksum; the identity no longer fits, which must not be the only finding.
+  // Replaces a payload and its checksum. The identity no longer matches, which must not be the only finding.
   void replace(const std::string& table, const lod::TileKey& key, const paging::Bytes& data,
                int variant = 0) const {
     paging::Database db(path_, paging::Database::Mode::kCreate);
@@ -74,7 +75,7 @@ class Verify : public testing::Test {
   std::string path_ = (dir_ / "p.vpe").string();
 };
 
-TEST_F(Verify, HasNothingToSayOfAGoodFile) {
+TEST_F(Verify, FindsNoProblemInAGoodFile) {
   const paging::VerifyReport report = verify(1000);
   EXPECT_EQ(words(1000), "");
   const auto planet = paging::PlanetFile::open(path_);
@@ -101,7 +102,7 @@ TEST_F(Verify, APostThatMoved) {
   expect_found("identity");
 }
 
-TEST_F(Verify, MeshesThatLie) {
+TEST_F(Verify, WrongMeshes) {
   const lod::TileInfo tile = leaf();
   const auto planet = paging::PlanetFile::open(path_);
   paging::PackedMesh mesh = planet->mesh(tile.key, 0);
@@ -110,23 +111,23 @@ TEST_F(Verify, MeshesThatLie) {
   moved.height_q.front() += 1;
   replace("mesh", tile.key, paging::encode_mesh(moved));
   expect_found("a vertex is not on its post");
-  // A hole.
-  paging::PackedMesh holed = mesh;
-  holed.mesh.triangles.resize(holed.mesh.triangles.size() - 3);
-  replace("mesh", tile.key, paging::encode_mesh(holed));
-  expect_found("its number of triangles is not the index's");
-  // One turned over.
+  // A missing triangle.
+  paging::PackedMesh open = mesh;
+  open.mesh.triangles.resize(open.mesh.triangles.size() - 3);
+  replace("mesh", tile.key, paging::encode_mesh(open));
+  expect_found("its number of triangles differs from the index");
+  // A reversed triangle.
   paging::PackedMesh turned = mesh;
   std::swap(turned.mesh.triangles[0], turned.mesh.triangles[1]);
   replace("mesh", tile.key, paging::encode_mesh(turned));
-  expect_found("turned over");
+  expect_found("reversed");
   // Another tile's mesh: whole, but with other borders and heights.
   const auto other = planet->mesh(lod::child(lod::parent(tile.key), 3), 0);
   replace("mesh", tile.key, paging::encode_mesh(other));
   EXPECT_NE(words(), "");
 }
 
-TEST_F(Verify, BoundsThatAreTooSmallAreSeenByMeasuringAgain) {
+TEST_F(Verify, BoundsThatAreTooSmallAreFoundByMeasuringAgain) {
   // Every stated error a hundredth too small, with checksums that fit.
   {
     paging::Database db(path_, paging::Database::Mode::kCreate);
@@ -168,7 +169,7 @@ TEST_F(Verify, EveryFlippedBitOfThePayloadsIsFound) {
     try {
       const auto found = verify();
       ++opened;
-      // Bits that say nothing (free space of pages) may differ; then the content is the same.
+      // Unused bits (free space of pages) may differ; then the content is the same.
       if (found.problems.empty()) {
         const auto planet = paging::PlanetFile::open(path_);
         paging::Database db(path_, paging::Database::Mode::kReadOnly);

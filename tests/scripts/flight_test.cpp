@@ -31,8 +31,8 @@ Flight example() {
   flight.view = {60, 1280, 720, {30, 1}};
   flight.waypoints = {{0, -74, -13.5, 12000, false, 90, -15, 0}, {8, -68, -13.2, 3000, true, 100, -10, -20}};
   flight.sets = {{8, "mode", "textured"}, {8, "exaggeration", "2"}};
-  flight.looks = {{10, 40, 5, 0}};
-  flight.interests = {{12, -67, -13, 40000, 1}};
+  flight.heads = {{10, 40, 5, 0}};
+  flight.interests = {{12, {-67, -13, 40000, 1}}};
   flight.end_s = 20;
   return flight;
 }
@@ -43,7 +43,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-// The flight whose one error is on `line`, and what that error says.
+// Expects one error on `line`, and its message.
 std::string error_of(const std::string& text, int line) {
   const ParsedFlight parsed = parse_flight(text, "F.flight");
   EXPECT_FALSE(parsed.flight.has_value()) << text;
@@ -54,7 +54,7 @@ std::string error_of(const std::string& text, int line) {
   return parsed.errors[0].expected;
 }
 
-// A flight with one pose on line 2, then these lines.
+// Returns a flight with one pose on line 2, then these lines.
 std::string with_lines(const std::string& lines) {
   return std::string("flight 1\nat 0 pose lon=0 lat=0 alt=1\n").append(lines);
 }
@@ -195,7 +195,7 @@ TEST(Flight, BadViewsAreRefused) {
   expect_error(with_lines("view fov=60\n"), 3, "before the first \"at\"");
 }
 
-TEST(Flight, BadSettingsLooksAndInterestsAreRefused) {
+TEST(Flight, BadSettingsHeadsAndInterestsAreRefused) {
   expect_error(with_lines("at 1 set\n"), 3, "KEY=VALUE");
   expect_error(with_lines("at 1 set mode\n"), 3, "KEY=VALUE");
   expect_error(with_lines("at 1 set mode=shiny\n"), 3, "one of wireframe");
@@ -266,7 +266,7 @@ TEST(Flight, MessagesShowOnlyPrintableText) {
   }
 }
 
-// Text of a setting that is allowed.
+// Returns a valid setting.
 SetCommand random_set(Random& random, double time_s) {
   const auto& list = vpe::core::Settings::list();
   const vpe::core::SettingInfo& info =
@@ -299,13 +299,14 @@ Flight random_flight(Random& random) {
                                   random.uniform(-360, 360)});
     }
     if (random.integer(0, 2) == 0) {
-      flight.looks.push_back(
+      flight.heads.push_back(
           {t, random.uniform(-360, 360), random.uniform(-90, 90), random.uniform(-360, 360)});
     }
     while (random.integer(0, 2) == 0) flight.sets.push_back(random_set(random, t));
     if (random.integer(0, 3) == 0) {
-      flight.interests.push_back({t, random.uniform(-360, 360), random.uniform(-90, 90), random.uniform(0, 1e6),
-                                  random.integer(-30, 30)});
+      flight.interests.push_back({t,
+                                  {random.uniform(-360, 360), random.uniform(-90, 90), random.uniform(0, 1e6),
+                                   random.integer(-30, 30)}});
     }
     t += random.log_uniform(1e-9, 100);
   }

@@ -49,7 +49,7 @@ void write_log(const std::filesystem::path& file, const Flight& flight, const Pa
     if (k >= 10) regions.push_back({1, 2, 3, -1});
     if (k >= 20) regions.push_back({4, 5, 6, 7});
     if (k >= 20) regions.push_back({4, 5, 6, 7});
-    log.frame(t, state.pose, state.look, settings, regions);
+    log.frame(t, state.pose, state.head, settings, regions);
   }
   if (end) log.end(frame_time(flight.view.fps, frames));
 }
@@ -64,9 +64,10 @@ TEST(FlightLog, ReplaysToTheBit) {
     ASSERT_TRUE(parsed.flight.has_value()) << to_string(parsed.errors.at(0));
     EXPECT_EQ(parsed.flight->view, flight.view);
     const double later_s = frame_time(flight.view.fps, 20);
-    EXPECT_EQ(parsed.flight->interests, (std::vector<Interest>{{frame_time(flight.view.fps, 10), 1, 2, 3, -1},
-                                                               {later_s, 4, 5, 6, 7},
-                                                               {later_s, 4, 5, 6, 7}}));
+    EXPECT_EQ(parsed.flight->interests,
+              (std::vector<InterestCommand>{{frame_time(flight.view.fps, 10), {1, 2, 3, -1}},
+                                            {later_s, {4, 5, 6, 7}},
+                                            {later_s, {4, 5, 6, 7}}}));
     const Path replay(*parsed.flight, mars::kMarsRadius_m, {});
     const std::int64_t frames = frame_count(flight.view.fps, path.duration_s());
     const std::int64_t replayed = frame_count(flight.view.fps, replay.duration_s());
@@ -75,7 +76,7 @@ TEST(FlightLog, ReplaysToTheBit) {
       const double t = frame_time(flight.view.fps, k);
       const mars::CameraPose a = path.at(t).camera;
       const mars::CameraPose b = replay.at(t).camera;
-      ASSERT_EQ(a.camera_m, b.camera_m) << k;
+      ASSERT_EQ(a.position_m, b.position_m) << k;
       ASSERT_EQ(a.axes.right, b.axes.right) << k;
       ASSERT_EQ(a.axes.up, b.axes.up) << k;
       ASSERT_EQ(a.axes.forward, b.axes.forward) << k;
@@ -95,8 +96,8 @@ TEST(FlightLog, HeadStaysStillUntilItMoves) {
     log.end(6);
   }
   const Path replay(*parse_flight(read_file(folder / "log.flight"), "").flight, mars::kMarsRadius_m, {});
-  for (int k = 0; k <= 30; ++k) EXPECT_EQ(replay.at(k / 10.0).look.yaw_deg, 0);
-  for (int k = 40; k <= 60; ++k) EXPECT_EQ(replay.at(k / 10.0).look.yaw_deg, 30);
+  for (int k = 0; k <= 30; ++k) EXPECT_EQ(replay.at(k / 10.0).head.yaw_deg, 0);
+  for (int k = 40; k <= 60; ++k) EXPECT_EQ(replay.at(k / 10.0).head.yaw_deg, 30);
 }
 
 TEST(FlightLog, IsAValidFlightAtAnyMoment) {

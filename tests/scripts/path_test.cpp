@@ -42,7 +42,7 @@ Waypoint waypoint(double time_s, mars::LonLat place, double alt_m, double yaw_de
   return {time_s, place.lon_deg, place.lat_deg, alt_m, false, yaw_deg, pitch, 0};
 }
 
-// Waypoints that wander, with holds, anywhere on the planet.
+// Returns random waypoints, with holds, anywhere on the planet.
 Flight random_flight(Random& random) {
   Flight flight;
   double t = random.integer(0, 2) == 0 ? random.uniform(0.1, 3) : 0.0;
@@ -63,7 +63,7 @@ Flight random_flight(Random& random) {
       w.time_s = t;
     }
     flight.waypoints.push_back(w);
-    flight.looks.push_back({t, random.uniform(-180, 180), random.uniform(-90, 90), random.uniform(-180, 180)});
+    flight.heads.push_back({t, random.uniform(-180, 180), random.uniform(-90, 90), random.uniform(-180, 180)});
     t += random.log_uniform(0.3, 30);
     place = glm::normalize(place + random.direction() * random.log_uniform(1e-5, 0.95));
   }
@@ -76,7 +76,7 @@ struct Velocities {
   glm::dvec3 after;
 };
 
-// One-sided second-order differences.
+// Computes a velocity by one-sided second-order differences.
 template <class Function>
 Velocities velocities(const Function& f, double t, double h) {
   return {(f(t) * 3.0 - f(t - h) * 4.0 + f(t - 2 * h)) / (2 * h),
@@ -132,7 +132,7 @@ TEST(PathProperty, StatesAreFiniteContinuousAndWithinTheirKnots) {
       for (int k = 1; k <= 100; ++k) {
         const FlightState state = path.at(std::min(b.time_s, a.time_s + (b.time_s - a.time_s) * k / 100.0));
         ASSERT_TRUE(state.pose.alt_m >= low && state.pose.alt_m <= high);
-        ASSERT_TRUE(std::abs(state.look.pitch_deg) <= 90.0);
+        ASSERT_TRUE(std::abs(state.head.pitch_deg) <= 90.0);
         ASSERT_TRUE(std::abs(glm::length(state.camera.axes.forward) - 1.0) < 1e-14);
         const mars::Axes platform = mars::to_camera(state.pose, kRadius_m).axes;
         ASSERT_TRUE(turned_rad(platform, mars::to_camera(before.pose, kRadius_m).axes) < 0.15);
@@ -154,10 +154,10 @@ TEST(PathProperty, StateAtAWaypointIsTheLineToTheBit) {
       ASSERT_TRUE(state.pose.lon_deg == w.lon_deg && state.pose.lat_deg == w.lat_deg &&
                   state.pose.alt_m == w.up_m && state.pose.yaw_deg == w.yaw_deg &&
                   state.pose.pitch_deg == w.pitch_deg && state.pose.roll_deg == w.roll_deg);
-      const Look& look = flight.looks[i];
-      ASSERT_TRUE(state.look.yaw_deg == look.yaw_deg && state.look.pitch_deg == look.pitch_deg &&
-                  state.look.roll_deg == look.roll_deg);
-      ASSERT_TRUE(equal(state.camera.axes, mars::to_camera(state.pose, state.look, kRadius_m).axes));
+      const HeadCommand& head = flight.heads[i];
+      ASSERT_TRUE(state.head.yaw_deg == head.yaw_deg && state.head.pitch_deg == head.pitch_deg &&
+                  state.head.roll_deg == head.roll_deg);
+      ASSERT_TRUE(equal(state.camera.axes, mars::to_camera(state.pose, state.head, kRadius_m).axes));
       // And what comes right before and after it is next to it.
       const FlightState after = path.at(std::nextafter(w.time_s, 1e9));
       ASSERT_TRUE(turned_rad(after.camera.axes, state.camera.axes) < 1e-6);
@@ -232,7 +232,7 @@ TEST(Path, CrossesThePolesWithoutSpin) {
   }
 }
 
-TEST(Path, CrossesTheAntimeridianTheShortWay) {
+TEST(Path, CrossesTheAntimeridianOnTheShorterArc) {
   const Path path = path_of(
       "at 0 pose lon=170 lat=0 alt=0 yaw=90\n"
       "at 10 pose lon=-170 lat=0 alt=0 yaw=90\n"
@@ -249,7 +249,7 @@ TEST(Path, CrossesTheAntimeridianTheShortWay) {
   }
 }
 
-TEST(Path, TurnsTheShortWay) {
+TEST(Path, TurnsInTheShorterDirection) {
   const Path path = path_of("at 0 pose lon=0 lat=0 alt=0 yaw=350\nat 2 pose lon=0 lat=0 alt=0 yaw=10\n");
   for (int k = 0; k <= 20; ++k)
     EXPECT_NEAR(std::remainder(path.at(k / 10.0).pose.yaw_deg - (350.0 + k), 360.0), 0, 1e-12);
@@ -283,7 +283,7 @@ TEST(Path, IsHeldBeforeTheFirstPoseAndAfterTheLast) {
   EXPECT_EQ(single.at(1).pose.lat_deg, 2);
 }
 
-// Between its look lines too, wherever it has turned before: a log of a head that rests replays to the bit.
+// A head that is held keeps its angles to the bit between `look` lines too, whatever its earlier motion.
 TEST(Path, AHeadThatIsHeldIsHeldToTheBit) {
   const Path path(*parse_flight("flight 1\n"
                                 "at 0 pose lon=0 lat=0 alt=1\n"
@@ -295,27 +295,27 @@ TEST(Path, AHeadThatIsHeldIsHeldToTheBit) {
                        .flight,
                   mars::kMarsRadius_m, {});
   for (const double t : {2.0, 2.1, 3.7, 4.9, 5.0, 8.0, 9.0}) {
-    const mars::HeadAngles look = path.at(t).look;
-    EXPECT_EQ(look.yaw_deg, -102.259) << t;
-    EXPECT_EQ(look.pitch_deg, 0.3) << t;
-    EXPECT_EQ(look.roll_deg, 100.1) << t;
+    const mars::HeadAngles head = path.at(t).head;
+    EXPECT_EQ(head.yaw_deg, -102.259) << t;
+    EXPECT_EQ(head.pitch_deg, 0.3) << t;
+    EXPECT_EQ(head.roll_deg, 100.1) << t;
   }
 }
 
-TEST(Path, HeadTurnsSmoothlyTheShortWayAndIsHeldOutside) {
+TEST(Path, HeadTurnsSmoothlyInTheShorterDirectionAndIsHeldOutside) {
   const Path path = path_of(
       "at 0 pose lon=0 lat=0 alt=0\nat 2 look yaw=170\nat 4 look yaw=-170 pitch=10\nat 8 look yaw=-170 "
       "pitch=10\nat 10 end\n");
-  EXPECT_EQ(path.at(0).look.yaw_deg, 170);
-  EXPECT_EQ(path.at(2).look.yaw_deg, 170);
-  EXPECT_NEAR(std::abs(path.at(3).look.yaw_deg), 180, 1e-12);
-  EXPECT_NEAR(path.at(3).look.pitch_deg, 5, 1e-12);
-  EXPECT_EQ(path.at(4).look.yaw_deg, -170);
-  EXPECT_EQ(path.at(6).look.pitch_deg, 10);
-  EXPECT_EQ(path.at(10).look.yaw_deg, -170);
+  EXPECT_EQ(path.at(0).head.yaw_deg, 170);
+  EXPECT_EQ(path.at(2).head.yaw_deg, 170);
+  EXPECT_NEAR(std::abs(path.at(3).head.yaw_deg), 180, 1e-12);
+  EXPECT_NEAR(path.at(3).head.pitch_deg, 5, 1e-12);
+  EXPECT_EQ(path.at(4).head.yaw_deg, -170);
+  EXPECT_EQ(path.at(6).head.pitch_deg, 10);
+  EXPECT_EQ(path.at(10).head.yaw_deg, -170);
   double before = 170;
   for (int k = 1; k <= 200; ++k) {
-    const double step = std::remainder(path.at(2 + k / 100.0).look.yaw_deg - before, 360);
+    const double step = std::remainder(path.at(2 + k / 100.0).head.yaw_deg - before, 360);
     ASSERT_GE(step, 0);
     ASSERT_LT(step, 0.2);
     before += step;
@@ -323,7 +323,7 @@ TEST(Path, HeadTurnsSmoothlyTheShortWayAndIsHeldOutside) {
   const FlightState state = path.at(4);
   EXPECT_TRUE(equal(state.camera.axes, mars::to_camera(state.pose, {-170, 10, 0}, kRadius_m).axes));
   const FlightState ahead = path_of("at 0 pose lon=0 lat=0 alt=0\n").at(0);
-  EXPECT_EQ(ahead.look.yaw_deg, 0);
+  EXPECT_EQ(ahead.head.yaw_deg, 0);
 }
 
 TEST(Path, SettingsHoldFromTheirTimeOn) {
@@ -343,7 +343,7 @@ TEST(Path, SettingsHoldFromTheirTimeOn) {
   EXPECT_EQ(at(99).mode, vpe::core::Mode::kUnlit);
   EXPECT_TRUE(path.interests(2.9).empty());
   ASSERT_EQ(path.interests(3).size(), 1u);
-  EXPECT_EQ(path.interests(3)[0].levels, -4);
+  EXPECT_EQ(path.interests(3)[0].region.levels, -4);
 }
 
 TEST(Path, HeightsAreAboveTheTerrain) {
@@ -366,7 +366,7 @@ TEST(Path, RefusesWhatCannotBeFlown) {
   const std::string low = "at 0 pose lon=0 lat=0 alt=1\nat 8.5 pose lon=10 lat=20 height=300\n";
   expect_throw(low, {}, "at 8.5 s has height=");
   expect_throw(
-      low, [](mars::LonLat, double) { return std::nan(""); }, "lon 10 lat 20 is not known");
+      low, [](mars::LonLat, double) { return std::nan(""); }, "lon 10 lat 20 is unknown");
   expect_throw("at 0 pose lon=0 lat=0 alt=-3396190\n", {}, "at 0 s lies at or below the planet's centre");
   expect_throw("at 0 pose lon=0 lat=10 alt=0\nat 4 pose lon=180 lat=-10 alt=0\n", {}, "at 4 s is opposite");
   EXPECT_NO_THROW(path_of("at 0 pose lon=0 lat=10 alt=0\nat 4 pose lon=180 lat=-10.001 alt=0\n"));

@@ -75,7 +75,7 @@ TEST(SphericalSpline, StaysOnAGreatCircleThatHoldsItsKnots) {
   }
 }
 
-TEST(SphericalSpline, NeverSwingsOut) {
+TEST(SphericalSpline, NeverOvershoots) {
   Random random(4);
   double worst = 0;
   for (int i = 0; i < 2000; ++i) {

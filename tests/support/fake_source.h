@@ -1,4 +1,4 @@
-// Elevation from a function: a planet whose every height is known.
+// Elevation from a function, so that every height of the planet is known.
 #pragma once
 
 #include <cmath>
@@ -10,6 +10,7 @@
 
 namespace test_support {
 
+// Samples a function of the direction.
 class FakeElevation : public mars::ElevationSource {
  public:
   using Height = std::function<double(const glm::dvec3& direction)>;
@@ -35,7 +36,7 @@ class FakeElevation : public mars::ElevationSource {
   }
   double spacing_in(const mars::Cap& cap) const override { return spacing_(cap); }
   void visit_posts(std::size_t max_posts, const mars::PostVisitor& visit) const override {
-    // A spiral over the sphere.
+    // Posts on a spiral over the sphere.
     std::vector<glm::dvec3> directions;
     std::vector<double> heights;
     const auto count = std::min<std::size_t>(max_posts, 5000);
@@ -54,7 +55,7 @@ class FakeElevation : public mars::ElevationSource {
   Spacing spacing_;
 };
 
-// Smooth relief with features from 2000 km down to about 30 km, within +-8 km.
+// Returns smooth heights with features from 2000 km down to about 30 km, within +-8 km.
 inline double bumpy_height(const glm::dvec3& d) {
   double h = 0;
   double size = 3000;

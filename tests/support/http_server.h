@@ -1,4 +1,4 @@
-// A small HTTP server on loopback for tests: serves one folder, with ranges, and fails when told to.
+// A small HTTP server on loopback for tests: serves one folder, with ranges, and fails on request.
 #pragma once
 
 #include <atomic>
@@ -9,6 +9,7 @@
 
 namespace test_support {
 
+// Serves until it is destroyed.
 class HttpServer {
  public:
   enum class Fate {
@@ -18,7 +19,7 @@ class HttpServer {
     kCut,          // the connection ends in the middle of the body
     kHangUp,       // it ends before any answer
   };
-  // What becomes of the n-th request (from 0), called from the server's thread.
+  // Returns the fate of the n-th request (from 0). Called from the server's thread.
   using Decide = std::function<Fate(int n, const std::string& method)>;
 
   explicit HttpServer(std::filesystem::path folder, Decide decide = {});

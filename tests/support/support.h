@@ -1,4 +1,4 @@
-// What every test program shares: data that may be absent, temporary folders, seeded random numbers.
+// Helpers of every test program: data that may be absent, temporary folders, seeded random numbers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,10 +10,11 @@
 
 namespace test_support {
 
-// Real planetary data beside the checkout (or under $VPE_SHARED_DATA); empty path when it is not there.
+// Returns the path of real planetary data beside the checkout (or under $VPE_SHARED_DATA), or an empty path
+// when it does not exist.
 std::filesystem::path shared_data(const std::string& relative);
 
-// A folder of its own that is removed at the end.
+// Makes a temporary folder, and removes it at the end.
 class TempDir {
  public:
   TempDir();
@@ -27,7 +28,7 @@ class TempDir {
   std::filesystem::path path_;
 };
 
-// Fixed seed, recorded in the test's output; $VPE_SEED replaces it.
+// Gives random numbers from a fixed seed, which the test's output records; $VPE_SEED replaces it.
 class Random {
  public:
   explicit Random(std::uint64_t seed);

@@ -32,7 +32,6 @@ std::size_t NormalTile::bytes() const {
          nodata.capacity() / 8;
 }
 
-// Heights of the row of posts just across an edge, in this tile's order along it, and where those posts are.
 std::vector<double> TerrainShader::heights_across(const lod::TileKey& key, lod::Edge edge,
                                                   std::vector<glm::dvec3>& points) const {
   const int n = planet_->meta().tile.intervals();
@@ -73,7 +72,7 @@ NormalTile TerrainShader::make_normals(const lod::TileKey& key, const ShadingPar
   const lod::Posts& posts = source->posts;
   const int n = posts.intervals;
   const auto side = static_cast<std::size_t>(n) + 1;
-  const auto wide = side + 2;  // with one row of neighbours all around; the four corners are not used
+  const auto wide = side + 2;  // with one row of neighbours on each side; the four corners are not used
   const double radius = planet_->radius_m();
   const lod::GridLines lines = lod::grid_lines(key, n);
   const mars::ChartRect rect = lod::chart_rect(key);
@@ -126,7 +125,7 @@ NormalTile TerrainShader::make_normals(const lod::TileKey& key, const ShadingPar
   return out;
 }
 
-// From a little above the ground, since the ray's own facets meet it there.
+// Casts from slightly above the surface, because the facets at the place itself would stop the ray.
 bool TerrainShader::sees_sun(const glm::dvec3& place_m, double spacing_m, const ShadingParams& params) const {
   constexpr double kLift = 1e-3;
   const double radius = glm::length(place_m);
