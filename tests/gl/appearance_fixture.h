@@ -1,4 +1,4 @@
-// Planets and looks for comparing images with their definition, whatever backend drew them.
+// Planets and appearances for comparing images of either backend with their definition.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace test_support {
 
-// Rises and falls over some 400 km.
+// An image whose colours rise and fall over some 400 km.
 class WavyImage : public FakeImage {
  public:
   void sample(std::span<const glm::dvec3> directions, double, std::span<vpe::base::Rgb> colours,
@@ -30,7 +30,7 @@ class WavyImage : public FakeImage {
 
 inline const glm::dvec3 kWavyMiddle = glm::normalize(glm::dvec3(0.9, 0.3, 0.35));
 
-// Posts of some 5 km round the middle, with an image.
+// Builds a planet with an image and posts of some 5 km round kWavyMiddle.
 inline std::shared_ptr<const paging::PlanetFile> wavy_planet(const std::filesystem::path& path) {
   paging::BuildOptions options;
   options.output = path.string();
@@ -43,8 +43,8 @@ inline std::shared_ptr<const paging::PlanetFile> wavy_planet(const std::filesyst
   return paging::PlanetFile::open(options.output);
 }
 
-// Every mode that shows ground, with every shading and colour, on black.
-inline std::vector<vpe::core::Appearance> all_looks() {
+// Returns every mode that shows ground with every shading and colour, on black.
+inline std::vector<vpe::core::Appearance> all_appearances() {
   using vpe::core::Colour;
   using vpe::core::Mode;
   using vpe::core::Shading;
@@ -78,7 +78,7 @@ inline std::string name(const vpe::core::Appearance& a) {
          (a.colourise ? " colourised" : "");
 }
 
-// The share of pixels within 2 of the reference in every channel, of those that it knows.
+// Returns the share of pixels within 2 of the reference in every channel, among those that the reference has.
 inline double agreement(vpe::core::Renderer& draw, const paging::Surface& surface,
                         const vpe::core::DrawRequest& request) {
   const vpe::core::DrawResult result = draw.draw(request);

@@ -1,5 +1,5 @@
-// What an appearance looks like at a place on the ground, from its definition (vpe/core/appearance/shading.h,
-// docs/appearance.md) and the planet's posts alone: nothing of the renderer's way to its images is used.
+// Colour of a place on the ground in an appearance, from its definition (vpe/core/appearance/shading.h,
+// docs/design/appearance.md) and the planet's posts alone. Shares nothing with the renderers.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,15 @@ namespace test_support {
 
 struct GroundReference {
   const paging::Surface& surface;
-  vpe::core::Appearance look;
+  vpe::core::Appearance appearance;
   glm::dvec3 sun;
 
-  // Colour, 0 to 255, not yet cut to that; nothing beside the rim of a face or where tiles of two depths meet.
-  GroundReference(const paging::Surface& of, const vpe::core::Appearance& appearance, const glm::dvec3& to_sun)
-      : surface(of), look(appearance), sun(to_sun) {}
+  GroundReference(const paging::Surface& of, const vpe::core::Appearance& appearance_of,
+                  const glm::dvec3& to_sun)
+      : surface(of), appearance(appearance_of), sun(to_sun) {}
 
+  // Returns the colour, 0 to 255 but not clamped, or nullopt at the edge of a face and where tiles of two
+  // depths meet.
   std::optional<glm::dvec3> at(const glm::dvec3& direction) const {
     const paging::PlanetFile& planet = surface.planet();
     const lod::TileKey key = surface.at(direction).tile;
@@ -32,7 +34,7 @@ struct GroundReference {
     const std::int64_t first_i = std::int64_t{key.i} * n + i;
     const std::int64_t first_j = std::int64_t{key.j} * n + j;
     const Grid grid{key.face, key.level, n};
-    const bool flat = look.shading == vpe::core::Shading::kFlat;
+    const bool flat = appearance.shading == vpe::core::Shading::kFlat;
     const auto post = [&](int a, int b) { return this->post(grid, first_i + a, first_j + b); };
     double height_m = 0;
     glm::dvec3 normal(0), image_rgb(0), up = glm::normalize(direction), from = direction;
@@ -65,16 +67,16 @@ struct GroundReference {
           normal +=
               weight * glm::normalize(glm::cross(drawn(*east) - drawn(*west), drawn(*north) - drawn(*south)));
           height_m += weight * here->height_m;
-          if (look.colour == vpe::core::Colour::kImage) image_rgb += weight * image(here->direction);
+          if (appearance.colour == vpe::core::Colour::kImage) image_rgb += weight * image(here->direction);
         }
       }
       normal = glm::normalize(normal);
-      if (look.mode == vpe::core::Mode::kTextured) image_rgb = image(up);
+      if (appearance.mode == vpe::core::Mode::kTextured) image_rgb = image(up);
     }
     return painted(height_m, normal, up, image_rgb);
   }
 
-  // As the planet file holds it, straight between texels.
+  // Returns the planet file's image, linear between texels.
   glm::dvec3 image(const glm::dvec3& direction) const {
     const paging::PlanetFile& planet = surface.planet();
     const auto key = planet.image_key(lod::tile_at(mars::chart_point(direction), lod::kMaxLevel));
@@ -113,7 +115,7 @@ struct GroundReference {
   };
 
   bool is_unlit_elevation() const {
-    return look.mode == vpe::core::Mode::kUnlit && look.colour == vpe::core::Colour::kElevation;
+    return appearance.mode == vpe::core::Mode::kUnlit && appearance.colour == vpe::core::Colour::kElevation;
   }
 
   static int cell(const std::vector<double>& line, double x) {
@@ -145,7 +147,7 @@ struct GroundReference {
   }
 
   glm::dvec3 drawn(const Post& post) const {
-    return post.direction * (surface.planet_radius_m() + look.exaggeration * post.height_m);
+    return post.direction * (surface.planet_radius_m() + appearance.exaggeration * post.height_m);
   }
 
   glm::dvec3 painted(double height_m, const glm::dvec3& normal, const glm::dvec3& up,
@@ -153,24 +155,26 @@ struct GroundReference {
     using vpe::core::Colour;
     using vpe::core::Mode;
     const auto shown = [&]() -> glm::dvec3 {
-      if (look.colour == Colour::kNone) return {178, 142, 112};
-      if (look.colour == Colour::kImage) return image_rgb;
-      const vpe::core::ColourScale scale(look);
-      if (look.colour == Colour::kElevation) return scale(height_m);
+      if (appearance.colour == Colour::kNone) return {178, 142, 112};
+      if (appearance.colour == Colour::kImage) return image_rgb;
+      const vpe::core::ColourScale scale(appearance);
+      if (appearance.colour == Colour::kElevation) return scale(height_m);
       const glm::dvec3 east = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), up));
       const glm::dvec3 north = glm::cross(up, east);
-      if (look.colour == Colour::kSlope) return scale(std::acos(glm::dot(normal, up)) * 180 / mars::kPi);
+      if (appearance.colour == Colour::kSlope) return scale(std::acos(glm::dot(normal, up)) * 180 / mars::kPi);
       const double angle = std::atan2(glm::dot(normal, east), glm::dot(normal, north)) * 180 / mars::kPi;
       return scale(angle < 0 ? angle + 360 : angle);
     };
-    glm::dvec3 c = look.mode == Mode::kLit ? glm::dvec3(178, 142, 112) : shown();
-    if (look.mode == Mode::kTextured)
-      c = look.colourise && look.colour != Colour::kNone ? colourised(image_rgb, shown()) : image_rgb;
-    if (look.mode == Mode::kUnlit) return c;
-    return c * std::sqrt(look.sun_ambient + look.sun_diffuse * std::max(0.0, glm::dot(normal, sun)));
+    glm::dvec3 c = appearance.mode == Mode::kLit ? glm::dvec3(178, 142, 112) : shown();
+    if (appearance.mode == Mode::kTextured)
+      c = appearance.colourise && appearance.colour != Colour::kNone ? colourised(image_rgb, shown())
+                                                                     : image_rgb;
+    if (appearance.mode == Mode::kUnlit) return c;
+    return c *
+           std::sqrt(appearance.sun_ambient + appearance.sun_diffuse * std::max(0.0, glm::dot(normal, sun)));
   }
 
-  // The largest channel stays what it is in the image; the others keep their shares of it.
+  // Keeps the largest channel of the image. The other channels keep their ratios to it in the colour.
   static glm::dvec3 colourised(const glm::dvec3& image_rgb, const glm::dvec3& c) {
     const double value = std::max({image_rgb.x, image_rgb.y, image_rgb.z});
     return c * (value / std::max({c.x, c.y, c.z}));

@@ -1,4 +1,4 @@
-// Every mode, shading and colour against an independent reading of the definition.
+// Every mode, shading and colour against an independent implementation of the definition.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -42,14 +42,14 @@ TEST_F(Appearance, EveryModeShadingAndColourAsDefined) {
   const auto file = planet();
   const paging::Surface surface(file, std::size_t{1} << 26);
   const auto draw = renderer(file);
-  for (const core::Appearance& look : test_support::all_looks()) {
+  for (const core::Appearance& appearance : test_support::all_appearances()) {
     core::DrawRequest r = request(file->radius_m());
-    set(r, look);
-    EXPECT_GE(test_support::agreement(*draw, surface, r), 0.999) << test_support::name(look);
+    set(r, appearance);
+    EXPECT_GE(test_support::agreement(*draw, surface, r), 0.999) << test_support::name(appearance);
   }
 }
 
-// Every appearance that uses other vertices, textures or programs.
+// Returns every appearance that uses other vertices, textures or programs.
 std::vector<core::Appearance> appearances() {
   std::vector<core::Appearance> all;
   for (const auto mode : {core::Mode::kWireframe, core::Mode::kMarkers, core::Mode::kUnlit, core::Mode::kLit,
@@ -75,13 +75,13 @@ std::vector<core::Appearance> appearances() {
   return all;
 }
 
-// A mode on, then off, leaves the pixels and the memory of before.
+// Switching a mode on and off restores the pixels and the memory.
 TEST_F(Appearance, ChangedAndChangedBackLeavesNothing) {
   const auto file = planet();
   const auto draw = renderer(file);
   core::DrawRequest home = request(file->radius_m());
   home.settings.lod_tolerance_px = 2;
-  // Caches of the CPU, bounded by themselves, may hold more than before: all are filled first.
+  // Caches of the CPU have bounds of their own and may grow: all are filled first.
   for (const core::Appearance& a : appearances()) {
     core::DrawRequest other = home;
     set(other, a);
@@ -98,7 +98,7 @@ TEST_F(Appearance, ChangedAndChangedBackLeavesNothing) {
   }
 }
 
-// Bytes on the GPU by appearance, in proportion to vertices (docs/appearance.md has the table).
+// Bytes on the GPU by appearance, in proportion to vertices (docs/design/appearance.md has the table).
 TEST_F(Appearance, AModeCostsWhatItUses) {
   const auto file = planet();
   const lod::TileInfo& tile = file->tree()[0];
@@ -114,11 +114,11 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
     const vpe::gl::TileMaterial p = needs(a);
     EXPECT_LE(vertex_bytes(a), 20U);
     const bool textured = vpe::gl::is_textured(tile.key, *file, p);
-    if (p.by != vpe::gl::PaintMethod::kPalette) {
-      EXPECT_EQ(textured, p.by == vpe::gl::PaintMethod::kTexture);
+    if (p.method != vpe::gl::PaintMethod::kPalette) {
+      EXPECT_EQ(textured, p.method == vpe::gl::PaintMethod::kTexture);
     }
-    EXPECT_EQ(vertex_bytes(a) == 16U, p.by == vpe::gl::PaintMethod::kTexture && !p.look.flat);
-    EXPECT_EQ(p.look.scale != nullptr, paging::needs_scale(a, true));
+    EXPECT_EQ(vertex_bytes(a) == 16U, p.method == vpe::gl::PaintMethod::kTexture && !p.shading.flat);
+    EXPECT_EQ(p.shading.scale != nullptr, paging::needs_scale(a, true));
     if (a.mode == core::Mode::kWireframe) {
       EXPECT_FALSE(textured);
       EXPECT_EQ(vertex_bytes(a), 12U);
@@ -127,10 +127,10 @@ TEST_F(Appearance, AModeCostsWhatItUses) {
   core::Appearance unlit;
   unlit.mode = core::Mode::kUnlit;
   EXPECT_EQ(vertex_bytes(unlit), 12U);
-  EXPECT_EQ(needs(unlit).by, vpe::gl::PaintMethod::kPalette);
+  EXPECT_EQ(needs(unlit).method, vpe::gl::PaintMethod::kPalette);
 }
 
-// Elevation from afar: meshes are coarse there, and off by kilometres; their colours must not be.
+// From orbit meshes are coarse and off by kilometres; colours of elevation must not be.
 TEST_F(Appearance, UnlitElevationIsThatOfTheGroundFromOrbitToo) {
   const auto file = planet();
   const auto draw = renderer(file);

@@ -1,8 +1,9 @@
-// What every certificate promises, checked on one image against exact casts of S.
+// Checks what a certificate promises on one image, against exact casts of the reference surface.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/gl/gl_fixture.h"
@@ -10,7 +11,7 @@
 
 namespace test_support {
 
-// The range image has an error of its own, which moves points along their rays.
+// Returns the error of the range image itself, which moves points along their rays.
 inline double range_error_px(const vpe::core::View& view, const std::vector<float>& range_m) {
   float nearest = vpe::core::kSkyRange;
   float farthest = 0;
@@ -21,13 +22,14 @@ inline double range_error_px(const vpe::core::View& view, const std::vector<floa
   return vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(view);
 }
 
+// Expects an image to be within its certificate.
 inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surface& surface,
                              const vpe::core::DrawRequest& request, const std::string& name) {
   const vpe::core::DrawResult result = renderer.draw(request);
   const std::vector<float> reference = reference_ranges(surface, request.view);
   const vpe::core::ImageErrors errors = vpe::core::compare_to_reference(request.view, result.frame.range_m,
                                                                         reference, radius_of(surface), {4, 2});
-  SCOPED_TRACE(name + " " + vpe::core::to_json(errors) + " " + vpe::core::to_json(result.certificate));
+  SCOPED_TRACE(name + " " + vpe::core::to_json(errors) + " " + vpe::core::to_json(result.certificate).dump(2));
   EXPECT_EQ(errors.sky_for_ground, 0);
   EXPECT_EQ(errors.false_surface, 0);
   EXPECT_EQ(errors.invalid, 0);

@@ -1,4 +1,4 @@
-// The image against exact ray casts of S: what the certificate promises.
+// Images are within their certificates: shifts against exact ray casts of the reference surface.
 #include <gtest/gtest.h>
 
 #include "tests/gl/certified.h"
@@ -34,7 +34,7 @@ TEST_F(PolygonError, ShiftsStayWithinTheCertificate) {
                                   {"cube corner", fine},
                                   {"cube edge", {45, 0}},
                                   {"face centre", {0, 0}},
-                                  {"inset rim", {fine.lon_deg + 3, fine.lat_deg}}};
+                                  {"inset boundary", {fine.lon_deg + 3, fine.lat_deg}}};
   for (const Named& named : places) {
     for (const double height : {30.0, 1500.0, 60000.0, 3e6, 3.4e7}) {
       const double ground = surface.at(mars::direction(named.place)).height_m;
@@ -93,7 +93,7 @@ TEST_F(PolygonError, BordersSeenEdgeOn) {
   }
 }
 
-// Where rounding relative to a tile's centre would be metres of image.
+// Here rounding relative to a tile's centre would move the image by many pixels.
 TEST_F(PolygonError, AHandAboveTheGround) {
   const glm::dvec3 hotspot = glm::normalize(glm::dvec3(0.2, -0.4, 1));
   const auto planet =
@@ -117,7 +117,7 @@ TEST_F(PolygonError, AHandAboveTheGround) {
 }
 
 TEST_F(PolygonError, ExaggeratedGroundKeepsItsCertificate) {
-  // Ground of two depths: S as drawn is not S times x where they meet.
+  // Ground of two depths: where they meet, the exaggerated surface is not S with heights times x.
   const mars::LonLat place{20, 30};
   const auto planet = build_fake(
       dir_ / "p.vpe", FakeElevation(bumpy_height, fine_around(mars::direction(place), 0.05, 10000)), 150000);
@@ -139,7 +139,7 @@ TEST_F(PolygonError, ExaggeratedGroundKeepsItsCertificate) {
   }
 }
 
-// A planet without relief is the analytic sphere, but for the flat facets.
+// A planet without height differences is the analytic sphere, but for the flat facets.
 TEST_F(PolygonError, FlatPlanetIsTheSphere) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation([](const glm::dvec3&) { return 0.0; }), 20000);
   const auto draw = renderer(planet);
@@ -153,7 +153,7 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
     // Cells near a knot of the warp are up to 5 % wider than the mean.
     const double sagitta = result.certificate.geometric_error_m + 2.0 * 1.11 * spacing * spacing / (8 * radius);
     const float nearest = *std::min_element(result.frame.range_m.begin(), result.frame.range_m.end());
-    // Storage and rasterising move what is drawn by so much across the ray, for a metre of distance.
+    // Storage and rasterising move a drawn point by this much across the ray, for each metre of distance.
     const double moved = result.certificate.quantisation_px / vpe::core::focal_px(request.view);
     int surface_pixels = 0;
     double worst_range = 0;
@@ -164,7 +164,7 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
         const double lowest =
             std::sqrt(glm::dot(request.view.camera.position_m, request.view.camera.position_m) - half * half);
         const float range = result.frame.range_m[static_cast<std::size_t>(y * 200 + x)];
-        // How far the ray passes below the sphere decides; facets may be lower than it by sag.
+        // The depth of the ray below the sphere decides; facets may be lower than the sphere by the sagitta.
         const double outer = radius + moved * std::abs(half);
         if (half > 0 || lowest > outer) {
           ASSERT_TRUE(std::isinf(range)) << alt << " " << x << " " << y;
@@ -187,7 +187,7 @@ TEST_F(PolygonError, FlatPlanetIsTheSphere) {
   }
 }
 
-TEST_F(PolygonError, ToleranceZeroDrawsSItself) {
+TEST_F(PolygonError, ToleranceZeroDrawsTheReferenceSurface) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 150000);
   const paging::Surface surface(planet, std::size_t{1} << 28);
   DrawRequest request = test_support::request_for({-40, 12, 300000, 200, -40, 0}, planet->radius_m(), 160, 96);

@@ -1,4 +1,4 @@
-// Memory of the process on a flight that does not wait: within --memory, and flat.
+// Memory of the process on a flight that does not wait stays within --memory and flat.
 #include <unistd.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using test_support::FakeElevation;
 
 constexpr double kMegabyte = 1 << 20;
 
-// What of this process lies in memory, as the kernel counts it (VmRSS).
+// Returns the resident memory of this process, as the kernel counts it (VmRSS).
 double resident_mb() {
   std::ifstream in("/proc/self/statm");
   double all = 0, resident = 0;
@@ -34,7 +34,7 @@ struct Flight {
   double least_height_m = 0;  // above the ground
   int width = 0;
   int height = 0;
-  int wait_every = 0;  // so many frames one waits for its tiles; 0 = never
+  int wait_every = 0;  // one frame in this many waits for its tiles; 0 = none
 
   int frames() const { return static_cast<int>(std::lround(duration_s * fps)); }
   mars::LonLat place(double t, double radius_m) const {
@@ -42,8 +42,8 @@ struct Flight {
   }
 };
 
-// Altitudes at whole seconds. The highest ground for 10 s each way, averaged over 10 s each way, is smooth and
-// never below the ground.
+// Returns altitudes at whole seconds. The highest ground within 10 s, averaged over 10 s each way, is smooth
+// and never below the ground.
 std::vector<double> altitudes(const Flight& flight, const paging::Surface& surface) {
   constexpr int kReach = 10;
   const int count = static_cast<int>(flight.duration_s) + 2;
@@ -62,8 +62,8 @@ std::vector<double> altitudes(const Flight& flight, const paging::Surface& surfa
   return out;
 }
 
-// The camera looks ahead and a little down, sways to both sides and climbs and sinks by up to four times its least
-// height.
+// Returns a view ahead and a little down. The camera sways to both sides, and climbs and sinks by up to four
+// times its least height.
 vpe::core::View view_at(const Flight& flight, const std::vector<double>& altitude_m, double t,
                         double radius_m) {
   const mars::LonLat at = flight.place(t, radius_m);
@@ -79,8 +79,8 @@ vpe::core::View view_at(const Flight& flight, const std::vector<double>& altitud
 
 struct LineFit {
   double slope = 0;
-  double slope_error = 0;  // standard error, as if what is off the line were independent
-  double spread = 0;       // standard deviation off the line
+  double slope_error = 0;  // standard error, as if residuals were independent
+  double spread = 0;       // standard deviation of the residuals
 };
 LineFit fit_line(const std::vector<glm::dvec2>& points) {
   glm::dvec2 mean(0);
@@ -98,7 +98,7 @@ LineFit fit_line(const std::vector<glm::dvec2>& points) {
 
 class FlightMemory : public test_support::GlTest {
  protected:
-  // What the process takes with this context when it has drawn one frame of a tiny planet, in the mode and size
+  // Returns the memory of the process with this context after one frame of a tiny planet, in the mode and size
   // of the flight.
   double base_mb(const Flight& flight) {
     vpe::base::keep_heap_compact();  // as `vpe` does
@@ -108,7 +108,7 @@ class FlightMemory : public test_support::GlTest {
     return resident_mb();
   }
 
-  // views[0] is to be drawn, the others come later.
+  // Returns a request for views[0] with the other views upcoming.
   static vpe::core::DrawRequest request(std::vector<vpe::core::View> views) {
     vpe::core::DrawRequest out;
     out.view = views[0];
@@ -175,7 +175,7 @@ class FlightMemory : public test_support::GlTest {
                 100.0 * static_cast<double>(missing) / static_cast<double>(wanted),
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
                 flight.frames());
-    EXPECT_GT(evicted, 0);  // else nothing was shown
+    EXPECT_GT(evicted, 0);  // else the flight does not test the bound
     EXPECT_LE(held_mb, memory_mb);
     EXPECT_LE(highest_mb, 1.15 * memory_mb);
     EXPECT_LE(std::abs(line.slope * fitted_s), 0.05 * memory_mb);
@@ -192,7 +192,7 @@ TEST_F(FlightMemory, StaysWithinTheBudgetAndFlat) {
   fly(flight, dir_ / "p.vpe", base, 64, 20);
 }
 
-// Ten minutes at 10 km/s over the largest planet file at hand.
+// Needs the largest planet file at hand.
 using LongFlight = FlightMemory;
 TEST_F(LongFlight, TenMinutesAtTenKilometresASecond) {
   const char* file = std::getenv("VPE_LARGE_PLANET");

@@ -1,4 +1,4 @@
-// What is made ready for OpenGL, and what is said of it: no context needed.
+// Geometry for OpenGL and its certificate. Needs no context.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -54,7 +54,7 @@ TEST(TileGeometryTest, VerticesAreWithinTheStatedRoundingOfTheirPlaces) {
       const double error = glm::length(stored - exact);
       worst = std::max(worst, error);
       ASSERT_LE(error, g.quantisation_m + 1e-9);
-      // The bound that certify() takes near the camera.
+      // certify() takes this bound near the camera.
       ASSERT_LE(error, std::ldexp(glm::length(exact - g.centre_m), -24) + 1e-9);
     }
     EXPECT_GE(worst, 0.99 * g.quantisation_m - 1e-9);
@@ -100,8 +100,8 @@ TEST(TileGeometryTest, BordersHaveALineAndASkirtForEachPiece) {
   }
 }
 
-// A point of a triangle, its corners rounded as storage and the subtraction of the camera round them, stays within
-// what is certified; and the figure is no more than some tens of times that.
+// A point of a triangle, whose corners are rounded by storage and by the subtraction of the camera, moves by no
+// more than is certified; and the certified figure is at most some tens of times the movement.
 TEST(Certify, BoundsWhatStorageMoves) {
   Random random(32);
   const lod::TileTree tree = fake::tree(fake::rough(3, 5));
@@ -186,20 +186,20 @@ TEST(Certify, BoundsPartsWhereTheyAppear) {
   seen.key = tree[1].key;
   seen.geometric_error_m = 2;
   seen.screen_space_error_px = 20;
-  seen.min_distance_m = 100;  // of what it never shows
+  seen.min_distance_m = 100;  // of a point that is not visible
   const std::array<vpe::gl::CertifiedTile, 2> tiles{{{&hidden, 1e-9, 100, 0, 0}, {&seen, 1e-9, 100, 0, 6}}};
   using vpe::gl::TilePart;
   const auto bound = [&](TilePart part, float near_m, float far_m) {
-    const std::array<std::uint32_t, 3> numbers{vpe::gl::kNoTile, vpe::gl::pack({1, part}),
-                                               vpe::gl::pack({1, TilePart::kSurface})};
+    const std::array<std::uint32_t, 3> ids{vpe::gl::kNoTile, vpe::gl::pack({1, part}),
+                                           vpe::gl::pack({1, TilePart::kSurface})};
     const std::array<float, 3> ranges{vpe::core::kSkyRange, near_m, far_m};
-    return vpe::gl::bound_in_image(tiles, tree, {numbers, ranges, 1e-6}, {1000, 0.5, 0.02, 1});
+    return vpe::gl::bound_in_image(tiles, tree, {ids, ranges, 1e-6}, {1000, 0.5, 0.02, 1});
   };
   EXPECT_NEAR(bound(TilePart::kSurface, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
   EXPECT_NEAR(bound(TilePart::kRibbon, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
   EXPECT_NEAR(bound(TilePart::kSkirt, 4000, 8000), (2.0 + 6.0) / 4 + 0.02 * 4, 1e-3);
   EXPECT_NEAR(bound(TilePart::kSkirt, 32000, 4000), 2.0 / 4 + 0.02 * 4, 1e-3);
-  // Ranges are known no better than they say.
+  // Ranges are known no better than their stated error.
   EXPECT_GT(bound(TilePart::kSurface, 4000, 4e9F), bound(TilePart::kSurface, 4000, 8000) - 1e-12);
   EXPECT_EQ(vpe::gl::bound_in_image(tiles, tree, {}, {1000, 0.5, 0.02, 1}), 0);
 }
@@ -209,11 +209,11 @@ TEST(TileId, SurvivesColours) {
   for (const std::size_t tile : {0U, 1U, 84U, 85U, 86U, 4095U, 70000U, (1U << 22U) - 1U}) {
     for (const auto part :
          {vpe::gl::TilePart::kSurface, vpe::gl::TilePart::kRibbon, vpe::gl::TilePart::kSkirt}) {
-      const std::uint32_t number = vpe::gl::pack({tile, part});
-      EXPECT_GT(number, before);
-      before = number;
-      const auto rgb = vpe::gl::number_colour(number);
-      const auto back = vpe::gl::unpack(vpe::gl::number_of_colour(rgb[0], rgb[1], rgb[2]));
+      const std::uint32_t id = vpe::gl::pack({tile, part});
+      EXPECT_GT(id, before);
+      before = id;
+      const auto rgb = vpe::gl::id_colour(id);
+      const auto back = vpe::gl::unpack(vpe::gl::id_of_colour(rgb[0], rgb[1], rgb[2]));
       EXPECT_EQ(back.tile, tile);
       EXPECT_EQ(back.part, part);
     }

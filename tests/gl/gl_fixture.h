@@ -1,4 +1,4 @@
-// One context and small planets, shared by the tests of the polygon backend.
+// Fixture of the tests of the polygon backend: one context for a suite.
 #pragma once
 
 #include <memory>
@@ -25,6 +25,7 @@ class GlTest : public ::testing::Test {
 };
 inline std::shared_ptr<vpe::gl::Context> GlTest::context_;
 
+// Returns a request for one sample a pixel, coloured, lit from the northwest, with ranges.
 inline vpe::core::DrawRequest request_for(const mars::Pose& pose, double radius_m, int width, int height,
                                           double fov_deg = 60) {
   vpe::core::DrawRequest request;
@@ -39,7 +40,7 @@ inline vpe::core::DrawRequest request_for(const mars::Pose& pose, double radius_
   return request;
 }
 
-// The image that an exact cast of S gives.
+// Returns the ranges that an exact cast of the reference surface gives.
 inline std::vector<float> reference_ranges(const paging::Surface& surface, const vpe::core::View& view) {
   const glm::ivec2 size = vpe::core::drawn_size(view);
   std::vector<float> out;
@@ -53,6 +54,7 @@ inline std::vector<float> reference_ranges(const paging::Surface& surface, const
   return out;
 }
 
+// Returns the radius of the reference surface as a function of directions.
 inline vpe::core::SurfaceRadius radius_of(const paging::Surface& surface) {
   return [&surface](std::span<const glm::dvec3> directions, std::span<double> radius_m) {
     surface.radius(directions, radius_m);

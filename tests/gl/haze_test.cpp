@@ -1,4 +1,4 @@
-// Haze in images is the definition's (vpe/core/appearance/shading.h), pixel by pixel.
+// Haze in images agrees with its definition (vpe/core/appearance/shading.h) pixel by pixel.
 #include "vpe/core/appearance/shading.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ const mars::LonLat kPlace{20, 15};
 
 using Haze = test_support::GlTest;
 
-TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
+TEST_F(Haze, EveryPixelIsDimmedByTheAirInFrontOfIt) {
   const test_support::FakeElevation source(test_support::bumpy_height,
                                            test_support::fine_around(mars::direction(kPlace), 0.05, 4000));
   const auto file = test_support::build_fake(dir_ / "p.vpe", source, 60000);
@@ -40,7 +40,7 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
       r.settings.lod_tolerance_px = tolerance_px;
       r.sun = mars::sun_direction(kPlace, 250, sun_deg);
       const core::DrawResult clear = draw->draw(r);
-      // Coarse triangles far away are chords below the ground; haze is that before the ground itself.
+      // Coarse triangles far away are chords below the ground; haze is that of the air in front of the ground.
       const std::vector<float> ranges_m =
           tolerance_px > 0 ? test_support::reference_ranges(surface, r.view) : clear.frame.range_m;
       for (const double visibility_m : {20000.0, 200000.0}) {
@@ -79,8 +79,8 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirBeforeIt) {
           }
         }
         std::printf(
-            "eye at %.0f m, sun at %.0f, tolerance %.0f, visibility %.0f km: %d of %d pixels of ground within "
-            "2, worst %.1f, %d changed\n",
+            "camera at %.0f m, sun at %.0f, tolerance %.0f, visibility %.0f km: %d of %d pixels of ground "
+            "within 2, worst %.1f, %d changed\n",
             camera.alt_m, sun_deg, tolerance_px, visibility_m / 1000, good, ground, worst, changed);
         if (tolerance_px > 0) {
           // A pixel is up to 80 km here, and heights are coarse like the rest.

@@ -1,3 +1,4 @@
+// Images of the polygon backend: orientation, parts, modes, history, seams.
 #include <gtest/gtest.h>
 
 #include "paging/shading/terrain_shader.h"
@@ -74,7 +75,7 @@ TEST_F(Image, DoesNotDependOnHistory) {
       test_support::request_for({-100, -70, 20000, 130, -15, 20}, planet->radius_m(), 160, 100);
   const auto fresh = renderer(planet);
   const DrawResult first = fresh->draw(a);
-  // A renderer with next to no memory that has been elsewhere.
+  // A renderer with hardly any memory that has drawn another place.
   const auto used = renderer(planet, std::size_t{4} << 20);
   used->draw(b);
   used->draw(a);
@@ -85,7 +86,7 @@ TEST_F(Image, DoesNotDependOnHistory) {
   EXPECT_EQ(first.frame.range_m, used->draw(a).frame.range_m);
 }
 
-TEST_F(Image, PartsOfAImageAreTheImage) {
+TEST_F(Image, PartsOfAnImageAreTheImage) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 60000);
   DrawRequest request = test_support::request_for({5, 40, 100000, 30, -25, 10}, planet->radius_m(), 160, 100);
   request.settings.lod_tolerance_px = 0;  // the same meshes for both
@@ -132,7 +133,7 @@ TEST_F(Image, NightIsDark) {
   EXPECT_GT(day, 2 * night);
 }
 
-// Texels on shared borders are equal from both sides, over cube edges and corners too: no seams.
+// Texels on shared borders are equal from both sides, across cube edges and corners too.
 TEST_F(Image, ShadingMeetsAtBorders) {
   const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 100000);
   const paging::TerrainShader shader(planet, std::size_t{64} << 20);

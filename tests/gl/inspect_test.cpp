@@ -1,4 +1,4 @@
-// The inspector shows how an image is made and changes nothing else of it.
+// The inspector shows how an image is made and changes nothing else in it.
 #include "vpe/core/appearance/inspect.h"
 #include "vpe/core/appearance/shading.h"
 
@@ -44,7 +44,7 @@ TEST_F(Inspect, BordersAreLinesOverTheImage) {
   }
   EXPECT_GT(changed, 200u);
   EXPECT_LT(changed, plain.frame.colour.size() / 5);
-  // Nothing of it stays behind.
+  // Switched off, it leaves nothing behind.
   request.settings.inspect = core::Inspect::kNone;
   EXPECT_EQ(gl->draw(request).frame.colour, plain.frame.colour);
 }
@@ -79,7 +79,7 @@ TEST_F(Inspect, LevelsHaveTheColoursOfThePalette) {
   EXPECT_GE(seen.size(), 2u);
 }
 
-TEST_F(Inspect, FrozenCullingIsTheImageFromItsOwnEye) {
+TEST_F(Inspect, FrozenCullingFromItsOwnViewIsTheImage) {
   auto gl = renderer(planet());
   core::DrawRequest request = oblique();
   const core::DrawResult plain = gl->draw(request);
@@ -89,7 +89,7 @@ TEST_F(Inspect, FrozenCullingIsTheImageFromItsOwnEye) {
   EXPECT_EQ(same.frame.range_m, plain.frame.range_m);
 }
 
-TEST_F(Inspect, FrozenCullingShowsWhatWasLeftOut) {
+TEST_F(Inspect, FrozenCullingShowsWhatWasCulled) {
   auto gl = renderer(planet());
   core::DrawRequest request = oblique();
   request.settings.lod_tolerance_px = 4;

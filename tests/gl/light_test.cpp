@@ -1,4 +1,4 @@
-// Where the light falls: the subsolar point and the terminator, against published tables and the sphere.
+// Lighting: the subsolar point and the terminator, against published tables and the sphere.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -19,7 +19,7 @@ constexpr double kRadius_m = mars::kMarsRadius_m;
 
 using Sun = test_support::GlTest;
 
-// Where a ray meets the sphere; length 0 beside it.
+// Returns the direction of the point where a ray meets the sphere; length 0 if it misses.
 glm::dvec3 on_sphere(const glm::dvec3& camera, const glm::dvec3& ray) {
   const double half = -glm::dot(camera, ray);
   const double under = half * half - glm::dot(camera, camera) + kRadius_m * kRadius_m;
@@ -27,9 +27,8 @@ glm::dvec3 on_sphere(const glm::dvec3& camera, const glm::dvec3& ray) {
   return glm::normalize(camera + (half - std::sqrt(under)) * ray);
 }
 
-// The dates of both published test cases, and where the sun is in the zenith then by their tables: longitude is
-// counted west there, and latitude (graphic) without the term that makes it so is asin(0.42565 sin Ls) =
-// graphic - 0.25 sin Ls.
+// Date of a published test case and the subsolar point in its table. The table counts longitude west. Its
+// latitude is planetographic; the planetocentric one is asin(0.42565 sin Ls) = graphic - 0.25 sin Ls.
 struct Published {
   const char* date;
   double solar_longitude_deg, west_deg, graphic_lat_deg;
@@ -59,7 +58,7 @@ TEST_F(Sun, SubsolarPointAndTerminatorAreWhereTheDatePutsThem) {
       const core::DrawResult result = draw->draw(r);
       const int ambient = static_cast<int>(std::ceil(plain_byte(core::light(0.05, 1.235, 0))));
 
-      // The brightest byte is that of a cap; its middle, by area on the ground, is the brightest place.
+      // Pixels of the brightest byte form a cap; its middle, by area on the ground, is the brightest place.
       int brightest = 0;
       for (const vpe::base::Rgb& c : result.frame.colour) brightest = std::max(brightest, int{c.r});
       EXPECT_NEAR(brightest, plain_byte(core::light(0.05, 1.235, 1)), 1);

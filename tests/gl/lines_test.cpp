@@ -1,4 +1,4 @@
-// Wireframes and markers: the edges and vertices of what is drawn, all that can be seen and nothing else.
+// Wireframes and markers show all visible edges and vertices of what is drawn, and nothing else.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,7 +42,7 @@ class Lines : public test_support::GlTest {
     request_ = test_support::request_for({kPlace.lon_deg, kPlace.lat_deg, 2200, 0, -12, 0}, file_->radius_m(),
                                          kWidth, kHeight, 55);
     request_.settings.background = core::Background::kBlack;
-    // What is drawn are the facets of S, which are known.
+    // So the facets of the reference surface are drawn, which are known.
     request_.settings.lod_tolerance_px = 0;
   }
 
@@ -69,7 +69,7 @@ class Lines : public test_support::GlTest {
     }
   }
 
-  // Of the ground at each pixel, along the camera's axis: what hides by OpenGL's rule.
+  // Returns the depth of the ground at each pixel along the camera's axis, which decides what OpenGL hides.
   std::vector<double> depths_m(const core::Frame& frame) const {
     std::vector<double> out;
     for (int y = 0; y < kHeight; ++y) {
@@ -89,13 +89,13 @@ class Lines : public test_support::GlTest {
     }
     return out;
   }
-  // By a ray to the place itself.
+  // Casts a ray to the place itself.
   bool can_be_seen(const glm::dvec3& place_m) const {
     const glm::dvec3 way = place_m - request_.view.camera.position_m;
     const double distance_m = glm::length(way);
     return surface_->cast(request_.view.camera.position_m, way / distance_m) > distance_m * (1 - 1e-6);
   }
-  // No crest and no ground seen on its edge is so near that pixels may be the one or the other.
+  // Returns true if no crest and no edge-on ground is so near that a pixel could show either side.
   static bool is_clear(const std::vector<double>& depths, const core::Projected& at, int reach) {
     const int x = static_cast<int>(at.xy.x), y = static_cast<int>(at.xy.y);
     for (int b = y - reach; b <= y + reach; ++b) {
@@ -120,14 +120,14 @@ class Lines : public test_support::GlTest {
   core::DrawRequest request_;
 };
 
-// Lines and dots stand a little before the ground, and so show through ground that is nearer by less than that.
+// Lines and dots are a little nearer than the ground, so that they show through ground that is nearer by less.
 constexpr double kThrough = 1.0021;
 
 TEST_F(Lines, WireframesAreTheEdgesThatCanBeSeen) {
   request_.settings.mode = core::Mode::kWireframe;
   const core::Frame frame = draw_->draw(request_).frame;
   const std::vector<double> depths = depths_m(frame);
-  // Of each pixel, how near (px) an edge comes that nothing hides, and one at all.
+  // For each pixel, the distance (px) of the nearest visible edge, and of the nearest edge at all.
   std::vector<double> visible_px(frame.colour.size(), INFINITY), any_px = visible_px;
   int edges = 0, seen = 0, missed = 0, hidden = 0;
   const auto edge = [&](const Vertex& a, const Vertex& b) {
@@ -158,7 +158,7 @@ TEST_F(Lines, WireframesAreTheEdgesThatCanBeSeen) {
       }
       if (!is_clear(depths, p, 1)) continue;
       ++seen;
-      // Without gaps: of the column that a flat line passes, or the row of a steep one, a pixel is painted.
+      // Lines are continuous: one pixel is painted in each column of a flat line, in each row of a steep one.
       const int x = static_cast<int>(p.xy.x), y = static_cast<int>(p.xy.y);
       const bool is_flat = std::abs(along.x) > std::abs(along.y);
       bool hit = false;
@@ -194,8 +194,7 @@ TEST_F(Lines, WireframesAreTheEdgesThatCanBeSeen) {
     }
   }
   std::printf(
-      "%d pixels of lines: %d astray, %d hidden ones; %d edges, %d places that can be seen, %d without a line, "
-      "%d "
+      "%d pixels of lines: %d astray, %d hidden ones; %d edges, %d visible places, %d without a line, %d "
       "hidden places; %d of %d pixels of ground are between lines\n",
       lines, astray, through, edges, seen, missed, hidden, black, ground);
   EXPECT_EQ(astray, 0);
@@ -245,7 +244,7 @@ TEST_F(Lines, MarkersAreTheVerticesThatCanBeSeenInTheirColours) {
         }
         if (!is_clear(depths, v.at, static_cast<int>(half))) continue;
         ++seen;
-        // The whole dot, but for where another one is before it, which is painted too.
+        // The dot is whole; where another one covers it, that one is painted too.
         bool whole = true;
         for (int y = static_cast<int>(std::ceil(v.at.xy.y - half)); y + 0.5 < v.at.xy.y + half - 0.5; ++y) {
           for (int x = static_cast<int>(std::ceil(v.at.xy.x - half)); x + 0.5 < v.at.xy.x + half - 0.5; ++x)
@@ -270,9 +269,8 @@ TEST_F(Lines, MarkersAreTheVerticesThatCanBeSeenInTheirColours) {
       }
     }
     std::printf(
-        "markers of %.0f px: %d pixels, %d astray, %d hidden ones, %d of another colour; %d vertices that can "
-        "be "
-        "seen, %d without a dot, %d hidden; %d of %d pixels of ground are between\n",
+        "markers of %.0f px: %d pixels, %d astray, %d hidden ones, %d of another colour; %d visible vertices, "
+        "%d without a dot, %d hidden; %d of %d pixels of ground are between\n",
         size_px, dots, astray, through, discoloured, seen, missed, hidden, black, ground);
     EXPECT_EQ(astray, 0);
     EXPECT_EQ(through, 0);

@@ -1,4 +1,4 @@
-// Ground without data is striped, in every mode and from every distance, and nothing else is.
+// Nodata ground is striped, in every mode and from every distance, and nothing else is.
 #include <gtest/gtest.h>
 
 #include "tests/gl/gl_fixture.h"
@@ -12,25 +12,25 @@ using vpe::core::DrawRequest;
 using vpe::core::DrawResult;
 using vpe::core::Mode;
 
-// The stripes of vpe/gl/shaders.cpp.
+// The stripes of vpe/gl/shaders/nodata_pattern.glsl.
 constexpr int kBright = 150;
 constexpr int kDark = 60;
 
 bool grey(const vpe::base::Rgb& c) { return c.r == c.g && c.g == c.b && c.r >= kDark && c.r <= kBright; }
 
-class Gaps : public test_support::GlTest {
+class Nodata : public test_support::GlTest {
  protected:
   static constexpr double kSpacing_m = 60000;
   const glm::dvec3 middle_ = mars::direction({10, 20});
 
-  std::shared_ptr<const paging::PlanetFile> holed() {
-    return build_fake(dir_ / "holed.vpe", FakeElevation([m = middle_](const glm::dvec3& d) {
+  std::shared_ptr<const paging::PlanetFile> planet_with_nodata() {
+    return build_fake(dir_ / "nodata.vpe", FakeElevation([m = middle_](const glm::dvec3& d) {
                         return glm::length(d - m) < 0.25 ? std::nan("") : bumpy_height(d);
                       }),
                       kSpacing_m);
   }
 
-  // All finest tiles, so that the stripes end where query says.
+  // Returns a request for finest tiles only, so that the stripes end where query says.
   DrawRequest request(const mars::Pose& pose, double radius_m) const {
     DrawRequest out = test_support::request_for(pose, radius_m, 160, 120);
     out.settings.lod_tolerance_px = 0;
@@ -39,12 +39,12 @@ class Gaps : public test_support::GlTest {
   }
 };
 
-TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
-  const auto planet = holed();
+TEST_F(Nodata, AreStripedInEveryModeAndNothingElseIs) {
+  const auto planet = planet_with_nodata();
   const paging::Surface surface(planet, std::size_t{64} << 20);
   const auto draw = renderer(planet);
   const std::vector<std::pair<const char*, mars::Pose>> poses{{"far", {10, 20, 4e6, 0, -90, 0}},
-                                                              {"rim", {10, 6, 600e3, 0, -60, 0}},
+                                                              {"boundary", {10, 6, 600e3, 0, -60, 0}},
                                                               {"grazing", {10, 2, 80e3, 0, -14, 0}},
                                                               {"near", {10, 20, 30e3, 40, -30, 0}},
                                                               {"at the ground", {10, 20, 20e3, 40, -70, 10}}};
@@ -56,10 +56,10 @@ TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
       const DrawResult result = draw->draw(request);
       const int w = result.frame.width;
       const int h = result.frame.height;
-      // 1: no data, 0: data, -1: sky, as query has it.
-      std::vector<int> missing(result.frame.range_m.size(), -1);
-      std::vector<bool> near_rim(missing.size());
-      for (std::size_t n = 0; n < missing.size(); ++n) {
+      // By query. 1: nodata, 0: data, -1: sky.
+      std::vector<int> nodata(result.frame.range_m.size(), -1);
+      std::vector<bool> near_boundary(nodata.size());
+      for (std::size_t n = 0; n < nodata.size(); ++n) {
         const float range = result.frame.range_m[n];
         if (!std::isfinite(range)) continue;
         const int x = static_cast<int>(n) % w;
@@ -68,12 +68,12 @@ TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
             request.view.camera.position_m +
             double{range} * glm::normalize(vpe::core::pixel_ray(request.view, x + 0.5, y + 0.5));
         const glm::dvec3 d = glm::normalize(p);
-        missing[n] = surface.at(d).missing ? 1 : 0;
-        // Below level 5 the rim is right to a texel, here a quarter of a post.
+        nodata[n] = surface.at(d).nodata ? 1 : 0;
+        // Below level 5 the boundary is right to a texel, here a quarter of a post.
         const double reach = 0.25 * kSpacing_m / planet->radius_m();
         for (const glm::dvec3& aside : {glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}}) {
           for (const double to : {-reach, reach}) {
-            if (surface.at(glm::normalize(d + to * aside)).missing != (missing[n] == 1)) near_rim[n] = true;
+            if (surface.at(glm::normalize(d + to * aside)).nodata != (nodata[n] == 1)) near_boundary[n] = true;
           }
         }
       }
@@ -85,14 +85,14 @@ TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
       for (int y = 1; y + 1 < h; ++y) {
         for (int x = 1; x + 1 < w; ++x) {
           const auto at = static_cast<std::size_t>(y * w + x);
-          all += missing[at] == 1;
-          bool inside = !near_rim[at];  // and all pixels around are alike
+          all += nodata[at] == 1;
+          bool inside = !near_boundary[at];  // and all pixels around are alike
           for (const int step : {-w - 1, -w, -w + 1, -1, 1, w - 1, w, w + 1}) {
-            inside = inside && missing[at] == missing[static_cast<std::size_t>(static_cast<int>(at) + step)];
+            inside = inside && nodata[at] == nodata[static_cast<std::size_t>(static_cast<int>(at) + step)];
           }
           const vpe::base::Rgb& c = result.frame.colour[at];
           if (!inside) continue;
-          if (missing[at] != 1) {
+          if (nodata[at] != 1) {
             wrong += grey(c);
             continue;
           }
@@ -114,8 +114,8 @@ TEST_F(Gaps, AreStripedInEveryModeAndNothingElseIs) {
   }
 }
 
-TEST_F(Gaps, StayOnTheGroundWhileTheCameraMoves) {
-  const auto planet = holed();
+TEST_F(Nodata, StayOnTheGroundWhileTheCameraMoves) {
+  const auto planet = planet_with_nodata();
   const auto draw = renderer(planet);
   test_support::Random random(5);
   for (const double altitude_m : {20e3, 300e3, 3e6}) {
@@ -149,8 +149,8 @@ TEST_F(Gaps, StayOnTheGroundWhileTheCameraMoves) {
   }
 }
 
-TEST_F(Gaps, CostNothingElsewhere) {
-  const auto planet = holed();
+TEST_F(Nodata, CostNothingElsewhere) {
+  const auto planet = planet_with_nodata();
   const auto whole = build_fake(dir_ / "whole.vpe", FakeElevation(bumpy_height), kSpacing_m);
   const auto with = renderer(planet);
   const auto without = renderer(whole);
@@ -169,8 +169,8 @@ TEST_F(Gaps, CostNothingElsewhere) {
   EXPECT_FALSE(whole->has_nodata({mars::Face{}, 0, 0, 0}));
 }
 
-TEST_F(Gaps, WireframesShowNone) {
-  const auto planet = holed();
+TEST_F(Nodata, WireframesShowNone) {
+  const auto planet = planet_with_nodata();
   DrawRequest request = this->request({10, 20, 300e3, 0, -90, 0}, planet->radius_m());
   request.settings.mode = Mode::kWireframe;
   const DrawResult result = renderer(planet)->draw(request);
@@ -178,9 +178,9 @@ TEST_F(Gaps, WireframesShowNone) {
   for (const vpe::base::Rgb& c : result.frame.colour) ASSERT_FALSE(grey(c));
 }
 
-// Samples count in parts.
-TEST_F(Gaps, ShareOfAMultisampledImage) {
-  const auto planet = holed();
+// Pixels count by their share of nodata samples.
+TEST_F(Nodata, ShareOfAMultisampledImage) {
+  const auto planet = planet_with_nodata();
   const auto draw = renderer(planet);
   DrawRequest request = this->request({10, 6, 600e3, 0, -60, 0}, planet->radius_m());
   const double one = draw->draw(request).certificate.nodata_share.value_or(-1);

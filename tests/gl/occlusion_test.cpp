@@ -1,4 +1,4 @@
-// Leaving out what nearer ground hides changes no pixel: of complete images, and of those with tiles missing.
+// Occlusion changes no pixel, neither of complete images nor of those with missing tiles.
 #include <gtest/gtest.h>
 
 #include <condition_variable>
@@ -23,8 +23,9 @@ class OcclusionBase : public test_support::GlTest {
     surface_ = std::make_unique<paging::Surface>(planet_, std::size_t{1} << 28);
   }
 
-  // Some eyes are just under the ground as it is drawn: exaggerated facets stand above exaggerated heights.
-  // In the canyon, the crater, the basin, at the pole and anywhere; from half a metre up to orbit.
+  // Returns a view in the canyon, the crater, the basin, at the pole or anywhere, from half a metre up to
+  // orbit. Some cameras are just under the ground as it is drawn: exaggerated facets are above exaggerated
+  // heights.
   DrawRequest random_request(Random& random) const {
     const glm::dvec3 centres[] = {test_support::kCanyon, test_support::kCrater, test_support::kBasin,
                                   test_support::kPole, random.direction()};
@@ -70,7 +71,7 @@ class OcclusionBase : public test_support::GlTest {
       all += without.stats.tiles_drawn;
     }
     std::printf("%d views: %d of %d tiles hidden\n", views, hidden, all);
-    EXPECT_GT(hidden, least_share * all);  // else nothing was shown
+    EXPECT_GT(hidden, least_share * all);  // else the views do not test it
   }
 
   std::shared_ptr<const paging::PlanetFile> planet_;
@@ -103,7 +104,7 @@ class Gate {
   int free_ = 0;
 };
 
-// Whatever is there, and whatever stands in for the rest.
+// Whatever is resident, and whatever replaces the rest.
 TEST_F(Occluded, UnfinishedImagesAreTheSameToo) {
   Random random(73);
   int unfinished = 0;
@@ -120,7 +121,7 @@ TEST_F(Occluded, UnfinishedImagesAreTheSameToo) {
       draw->draw(with(request, Occlusion::kOn));
       gate.let(random.integer(0, 12));
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      // The first takes what has come, the others see the same.
+      // The first frame takes what has been loaded, the others draw the same.
       draw->draw(with(request, Occlusion::kOff));
       const DrawResult without = draw->draw(with(request, Occlusion::kOff));
       const DrawResult with_it = draw->draw(with(request, Occlusion::kOn));
@@ -153,7 +154,7 @@ TEST_F(Occluded, SettledImagesDoNotDependOnHistory) {
   }
 }
 
-// Without occlusion meshes come without the walls that it needs.
+// Without occlusion meshes are made without occluder profiles.
 TEST_F(Occluded, SwitchedOnItHidesWhatANewOneHides) {
   Random random(75);
   const auto draw = renderer(planet_);

@@ -1,4 +1,4 @@
-// The loader of the polygon backend under a pager, without OpenGL: for the thread sanitizer above all.
+// Page loader of the polygon backend under a pager, without OpenGL. Above all for the thread sanitizer.
 #include <set>
 
 #include "paging/pager.h"
@@ -19,9 +19,9 @@ using vpe::gl::PageKind;
 using vpe::gl::PageLoader;
 using TilePager = paging::Pager<PageKey, Page, PageKeyHash>;
 
-// Any page that the planet has: meshes of all variants, textures in two looks, posts.
+// Returns any page that the planet has: meshes of all variants, textures with all shadings, posts.
 PageKey random_page(const paging::PlanetFile& planet, Random& random,
-                    const std::vector<std::shared_ptr<const ShadingParams>>& looks) {
+                    const std::vector<std::shared_ptr<const ShadingParams>>& shadings) {
   const lod::TileTree& tree = planet.tree();
   const lod::TileInfo& tile =
       tree[static_cast<lod::TileTree::Index>(random.integer(0, static_cast<int>(tree.size()) - 1))];
@@ -34,9 +34,10 @@ PageKey random_page(const paging::PlanetFile& planet, Random& random,
       break;
     case 1:
       page.kind = PageKind::kTexture;
-      page.look = looks[static_cast<std::size_t>(random.integer(0, static_cast<int>(looks.size()) - 1))];
-      page.detail = page.look->flat
-                        ? vpe::gl::facet_paint(random.integer(0, static_cast<int>(tile.variants.size()) - 1))
+      page.shading =
+          shadings[static_cast<std::size_t>(random.integer(0, static_cast<int>(shadings.size()) - 1))];
+      page.detail = page.shading->flat
+                        ? vpe::gl::facet_texture(random.integer(0, static_cast<int>(tile.variants.size()) - 1))
                         : planet.meta().tile.intervals() << random.integer(0, 1);
       break;
     default: page.kind = PageKind::kGround;
@@ -56,19 +57,19 @@ std::shared_ptr<const paging::PlanetFile> build_bumpy(const std::filesystem::pat
   return paging::PlanetFile::open(options.output);
 }
 
-// Owners that ask, take, change their mind and go away at random, while the shader's small caches evict.
-TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
+// Owners request, take, cancel and end at random, while the shader's small caches evict.
+TEST(PageLoadsThreads, RequestedCancelledEvictedAndShutDownAtRandom) {
   const test_support::TempDir dir;
   const auto planet = build_bumpy(dir / "p.vpe");
-  std::vector<std::shared_ptr<const ShadingParams>> looks;
+  std::vector<std::shared_ptr<const ShadingParams>> shadings;
   for (const auto colour_source : {paging::ColourSource::kElevation, paging::ColourSource::kImage}) {
-    ShadingParams look;
-    look.colour_source = colour_source;
-    look.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
-    looks.push_back(std::make_shared<const ShadingParams>(look));
-    look.flat = true;
-    look.shadows = true;
-    looks.push_back(std::make_shared<const ShadingParams>(look));
+    ShadingParams shading;
+    shading.colour_source = colour_source;
+    shading.scale = std::make_shared<const vpe::core::ColourScale>(vpe::core::Appearance());
+    shadings.push_back(std::make_shared<const ShadingParams>(shading));
+    shading.flat = true;
+    shading.shadows = true;
+    shadings.push_back(std::make_shared<const ShadingParams>(shading));
   }
   Random random(17);
   std::size_t taken = 0;
@@ -80,12 +81,12 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
     for (int step = 0; step < 25; ++step) {
       std::vector<TilePager::Want> wants;
       for (int k = random.integer(step == 0 ? 1 : 0, 30); k > 0; --k) {
-        wants.push_back({random_page(*planet, random, looks), random.uniform(0, 1)});
+        wants.push_back({random_page(*planet, random, shadings), random.uniform(0, 1)});
       }
       pager.want(std::move(wants));
       if (step == 0) {
-        pager.wait(
-            TilePager::Clock::time_point::max());  // however slow the machine is, each round takes something
+        // However slow the machine is, each round takes something.
+        pager.wait(TilePager::Clock::time_point::max());
       } else if (random.integer(0, 2) == 0) {
         pager.wait(TilePager::Clock::now() + 2ms);
       }
@@ -102,8 +103,8 @@ TEST(PageLoadsThreads, AskedCancelledEvictedAndShutDownAtRandom) {
   EXPECT_GE(taken, static_cast<std::size_t>(kRounds));
 }
 
-// They take a third of the work that a mesh is.
-TEST(PageLoads, WallsAreMadeForThoseWhoAsk) {
+// They take a third of the time of a mesh.
+TEST(PageLoads, OccluderProfilesAreMadeOnRequest) {
   const test_support::TempDir dir;
   const auto planet = build_bumpy(dir / "p.vpe");
   const PageLoader loader(planet, std::make_shared<const paging::TerrainShader>(planet, std::size_t{50000}));

@@ -1,4 +1,4 @@
-// Frames that do not wait: full cover, true certificates, and the same image in the end.
+// Frames that do not wait have no holes, true certificates, and the same image in the end.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -45,7 +45,7 @@ class Paging : public test_support::GlTest {
     return request;
   }
 
-  // Draws one view again and again until nothing changes any more.
+  // Draws one view again and again until it is settled.
   static DrawResult settle(Renderer& renderer, const DrawRequest& request) {
     DrawResult result;
     for (int n = 0; n < 20000; ++n) {
@@ -60,7 +60,7 @@ class Paging : public test_support::GlTest {
   std::shared_ptr<const paging::PlanetFile> planet_;
 };
 
-// Loads that take up to a few milliseconds, each for its own time.
+// Returns a function that delays each load by a time of its own, up to three milliseconds.
 std::function<void(const lod::TileKey&)> delays(unsigned seed) {
   return [state = std::make_shared<std::atomic<unsigned>>(seed)](const lod::TileKey&) {
     const unsigned n = state->fetch_add(0x9E3779B9U);
@@ -80,17 +80,17 @@ TEST_F(Paging, FramesAreCoveredAndTheirCertificatesTrue) {
     const auto errors = vpe::core::compare_to_reference(request.view, result.frame.range_m, reference,
                                                         test_support::radius_of(surface), {64, 64});
     SCOPED_TRACE("frame " + std::to_string(n) + " " + vpe::core::to_json(errors) + " " +
-                 vpe::core::to_json(result.certificate));
+                 vpe::core::to_json(result.certificate).dump(2));
     EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px * 1.01 + 0.5);
     EXPECT_EQ(errors.invalid, 0);
     EXPECT_EQ(result.missing.empty(), result.stats.tiles_missing == 0);
     EXPECT_EQ(result.certificate.tiles_missing, result.stats.tiles_missing);
     EXPECT_GT(result.stats.tiles_drawn, 0);
   }
-  EXPECT_GT(incomplete, 0);  // else nothing was shown
+  EXPECT_GT(incomplete, 0);  // else the frames do not test it
 }
 
-// Straight down there is ground behind every pixel.
+// In views straight down there is ground behind every pixel.
 TEST_F(Paging, NoFrameHasAHole) {
   const auto draw = slow_renderer(delays(2));
   Random random(3);
@@ -114,7 +114,7 @@ TEST_F(Paging, SettledImagesDoNotDependOnHistory) {
     EXPECT_TRUE(result.missing.empty());
     EXPECT_EQ(result.frame.colour, alone.frame.colour) << seed;
     EXPECT_EQ(result.frame.range_m, alone.frame.range_m) << seed;
-    EXPECT_EQ(vpe::core::to_json(result.certificate), vpe::core::to_json(alone.certificate));
+    EXPECT_EQ(vpe::core::to_json(result.certificate).dump(2), vpe::core::to_json(alone.certificate).dump(2));
     // And waiting, warm.
     EXPECT_EQ(draw->draw(last).frame.colour, alone.frame.colour);
   }
@@ -137,11 +137,11 @@ TEST_F(Paging, CloseToTheGroundToo) {
   EXPECT_EQ(settle(*draw, without_waiting(last)).frame.range_m, alone.frame.range_m);
 }
 
-TEST_F(Paging, AnOldLookStandsInUntilTheNewOneIsThere) {
+TEST_F(Paging, AnOldShadingIsDrawnUntilTheNewOneIsLoaded) {
   const auto draw = slow_renderer(delays(6));
   DrawRequest request = without_waiting(flight_at(0.1));
-  // Which frames look for hidden tiles is decided by what that was worth; where one does not, tiles are wanted that
-  // had not been, and their stand-ins are drawn behind nearer ground.
+  // With occlusion the time it takes decides which frames use it. In a frame without, tiles are wanted that
+  // were not before, and their fallbacks are drawn behind nearer ground.
   request.settings.occlusion = vpe::core::Occlusion::kOff;
   settle(*draw, request);
   request.sun = mars::sun_direction({0, 0}, 200, 20);
@@ -173,7 +173,7 @@ TEST_F(Paging, UpcomingViewsAreLoadedAhead) {
   EXPECT_EQ(result.frame.colour, renderer(planet_)->draw(next).frame.colour);
 }
 
-TEST_F(Paging, ATileThatCannotBeReadIsDrawnCoarserAndToldOnce) {
+TEST_F(Paging, ATileThatCannotBeReadIsDrawnCoarserAndReportedOnce) {
   const DrawRequest request = flight_at(0.0);
   const DrawResult whole = renderer(planet_)->draw(request);
   const int deepest = static_cast<int>(whole.stats.tiles_by_level.size()) - 1;
@@ -205,7 +205,7 @@ TEST_F(Paging, ATileThatCannotBeReadIsDrawnCoarserAndToldOnce) {
   EXPECT_EQ(settle(*draw, without_waiting(request)).frame.colour, result.frame.colour);
 }
 
-TEST_F(Paging, WaitingEndsAndSaysWhatIsMissing) {
+TEST_F(Paging, WaitingEndsAndReportsWhatIsMissing) {
   std::atomic<bool> go{false};
   const auto draw = slow_renderer([&](const lod::TileKey& tile) {
     while (tile.level > 0 && !go) std::this_thread::sleep_for(std::chrono::milliseconds(1));

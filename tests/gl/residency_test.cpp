@@ -1,4 +1,4 @@
-// What tiles take on the GPU is what is counted.
+// The counted bytes of tiles are what OpenGL takes for them.
 #include <gtest/gtest.h>
 
 #if defined(__GLIBC__)
@@ -17,10 +17,11 @@ class Residency : public test_support::GlTest {
 #if defined(__GLIBC__)
     if (context_->info().renderer.find("llvmpipe") != std::string::npos) return;
 #endif
-    GTEST_SKIP() << "skipped: what OpenGL allocates can be seen with llvmpipe and glibc alone";
+    GTEST_SKIP() << "skipped: allocations of OpenGL can be measured with llvmpipe and glibc only";
   }
 
-  // What `count` objects take over what they count, as a ratio. A first batch makes the driver's own tables.
+  // Returns the ratio of the bytes that `count` objects take to those that they count. A first batch makes the
+  // driver allocate its own tables.
   template <class Make>
   static double taken_to_counted(int count, Make make) {
 #if defined(__GLIBC__)

@@ -1,4 +1,4 @@
-// Shadows that ground casts, against geometry and rays over the formula of the ground.
+// Cast shadows, against geometry and against rays over the formula of the ground.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@ using test_support::red;
 
 constexpr double kRadius_m = mars::kMarsRadius_m;
 
-// Ground whose heights are a formula, with posts of 200 m around one place.
+// Spacing of the posts around one place; heights are a formula.
 constexpr double kPost_m = 200;
 
 class Shadows : public test_support::GlTest {
@@ -29,7 +29,7 @@ class Shadows : public test_support::GlTest {
   }
 };
 
-// Straight down, `px_m` a pixel.
+// Returns a request for a view straight down with pixels of `px_m` metres.
 core::DrawRequest shadowed_from_above(const mars::LonLat& at, double px_m, int width, int height) {
   constexpr double kHeight_m = 300000;
   const double fov_deg = 2 * std::atan(0.5 * height * px_m / kHeight_m) / mars::kRadiansPerDegree;
@@ -38,13 +38,14 @@ core::DrawRequest shadowed_from_above(const mars::LonLat& at, double px_m, int w
   return out;
 }
 
-// A scarp along the meridian 0, where posts are: high on its west, down to the sphere within a post on its
-// east.
+// Height of a scarp along the meridian 0, where posts are: high in the west, down to the sphere within a post
+// in the east.
 constexpr double kScarp_m = 1500;
 double scarp(const glm::dvec3& d) { return d.x > 0 && d.y <= 0 ? kScarp_m : 0; }
 
-// The ray over a rim of that height at that elevation reaches the sphere where it has sunk to
-// cos(elevation there) R = cos(elevation) (R + height); between both the vertical turned by their difference.
+// Returns the length of the shadow of an edge of a height, the sun at an elevation over the edge. The ray over
+// the edge reaches the sphere where cos(elevation there) R = cos(elevation) (R + height); between both places
+// the vertical turns by the difference of the elevations.
 double shadow_rad(double height_m, double elevation_deg) {
   const double e = elevation_deg * mars::kRadiansPerDegree;
   return e - std::acos(std::cos(e) * (kRadius_m + height_m) / kRadius_m);
@@ -99,7 +100,7 @@ TEST_F(Shadows, OfAScarpAreAsLongAsTheSunIsLow) {
   std::printf("ends of shadows: Gouraud %.2f px off at most, flat %.2f px\n", worst_gouraud_px, worst_flat_px);
 }
 
-// A crater with a rim, away from axes and grid lines. Rays are marched over the formula itself.
+// A crater with a raised rim, away from axes and grid lines. Rays are marched over the formula itself.
 struct Crater {
   static constexpr double kRim_m = 1200, kReach_m = 6000, kWidth_m = 1000, kDepth_m = 900;
   glm::dvec3 middle{1, 0, 0};
@@ -110,7 +111,7 @@ struct Crater {
     const double out = (r - kReach_m) / kWidth_m;
     return kRim_m * std::exp(-out * out) - kDepth_m * inside * inside;
   }
-  // Height of a point over the ground.
+  // Returns the height of a point over the ground.
   double over(const glm::dvec3& p, double exaggeration) const {
     const double r = glm::length(p);
     return r - kRadius_m - exaggeration * (*this)(p / r);
@@ -140,7 +141,7 @@ struct Crater {
   }
 };
 
-// Draws the crater under suns from all sides.
+// Draws the crater with the sun on all sides.
 void expect_shadows_of(const Crater& crater, core::Renderer& draw) {
   constexpr int kSide = 96;
   const mars::LonLat at = mars::lon_lat(crater.middle);
@@ -160,7 +161,7 @@ void expect_shadows_of(const Crater& crater, core::Renderer& draw) {
     r.settings.exaggeration = c.exaggeration;
     r.sun = mars::sun_direction(at, c.azimuth_deg, c.elevation_deg);
     const core::DrawResult result = draw.draw(r);
-    // What the formula shows at each pixel, with a frame of two more.
+    // Values of the formula at each pixel, with a margin of two pixels.
     constexpr int kMore = 2, kWide = kSide + 2 * kMore;
     std::vector<double> wanted;
     int hidden = 0;
@@ -175,8 +176,8 @@ void expect_shadows_of(const Crater& crater, core::Renderer& draw) {
       }
     }
     // Each pixel shows what the formula shows within a pixel of it. A facet has the light of its own normal,
-    // which the formula has nowhere: there it is asked only whether the sun is seen, and two pixels around,
-    // since its middle is up to 0.94 posts away.
+    // which the formula has nowhere. For facets only the visibility of the sun is compared, within two pixels,
+    // since the middle of a facet is up to 0.94 posts away.
     const int reach = c.shading == flat ? 2 : 1;
     const double ambient = plain_byte(core::light(0.05, 1.235, 0));
     const double clearly_lit = plain_byte(core::light(0.05, 1.235, 0.15));
@@ -242,17 +243,17 @@ TEST_F(Shadows, AHighSunCastsNoneAndALowOneLeavesAmbientOnly) {
       r.settings.shadows = shadows;
       return draw->draw(r).frame.colour;
     };
-    // Nothing is as steep as this sun is high.
+    // No slope is as steep as this sun is high.
     const auto high = drawn(80, false);
     EXPECT_EQ(drawn(80, true), high);
     // Off, on and off again: the same.
     const auto low = drawn(15, false);
     EXPECT_NE(drawn(15, true), low);
     EXPECT_EQ(drawn(15, false), low);
-    // Only shadows make it darker, and nothing lighter.
+    // Shadows only darken.
     const auto shaded = drawn(15, true);
     for (std::size_t n = 0; n < low.size(); ++n) ASSERT_LE(shaded[n].r, low[n].r);
-    // Slopes that face a sun under the horizon get none of it.
+    // Without shadows slopes may face a sun under the horizon; with them only ambient light is left.
     EXPECT_NE(drawn(-10, false), drawn(-60, false));
     const double ambient = core::light(0.05, 1.235, 0);
     for (const vpe::base::Rgb& c : drawn(-10, true)) {

@@ -1,4 +1,4 @@
-// An image that holds ground from 0.1 m to 10^8 m away: from the top of a mountain on a planet of 10^8 m.
+// An image that shows ground from 0.1 m to 10^8 m away, from the top of a mountain on a planet of 10^8 m.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,14 @@ inline StrangeGround deep_ground() {
   const glm::dvec3 top =
       mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
   return {"mountain", [top](const glm::dvec3& d) {
-            // A spike with ridges about it, so that near ground stands before far.
+            // A spike with ridges around it, so that near ground hides far ground.
             const double away = glm::length(d - top);
             const Post post = post_at(d);
             return away < 1e-9 ? 0.35 : (away < 0.4 && ((post.i ^ post.j) & 3) == 0) ? 0.08 : 0.0;
           }};
 }
 
-// 0.1 m over the top, looking down its side.
+// Returns a view from 0.1 m over the top, down its side.
 inline vpe::core::View deep_view(const paging::Surface& surface, double yaw_deg) {
   const glm::dvec3 top =
       mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
@@ -37,6 +37,7 @@ inline vpe::core::View deep_view(const paging::Surface& surface, double yaw_deg)
   return view;
 }
 
+// Counts pixels whose range is wrong.
 struct DepthOrder {
   double nearest_m = INFINITY;
   double farthest_m = 0;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "lod/mesh/mesh.h"
+#include "lod/mesh/error_meter.h"
 #include "lod/tree/posts.h"
 #include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
@@ -48,7 +48,7 @@ TEST(GeometryErrors, HoldBetweenTheVerticesWhereTheyAreMeasured) {
       worst = std::max(worst, off_m / terms.total_m);
     }
   }
-  test_support::record_worst("errors of meshes, relief to 0.6 radii: measured anywhere", worst, 1,
+  test_support::record_worst("errors of meshes, heights to 0.6 radii: measured anywhere", worst, 1,
                              "of the stated error");
 }
 

@@ -24,7 +24,7 @@ double largest_difference(const mars::Axes& a, const mars::Axes& b) {
       {glm::length(a.right - b.right), glm::length(a.up - b.up), glm::length(a.forward - b.forward)});
 }
 
-TEST(GeometryPlaces, PosesComeBackFromEyes) {
+TEST(GeometryPlaces, PosesComeBackFromCameras) {
   Random random(301);
   double position = 0;
   double axes = 0;
@@ -43,7 +43,7 @@ TEST(GeometryPlaces, PosesComeBackFromEyes) {
         const mars::Pose back = mars::to_pose(camera, radius_m);
         const mars::CameraPose again = mars::to_camera(back, radius_m);
         const double away = glm::length(camera.position_m);
-        position = std::max(position, glm::length(again.camera_m - camera.position_m) / away);
+        position = std::max(position, glm::length(again.position_m - camera.position_m) / away);
         axes = std::max(axes, largest_difference(again.axes, camera.axes));
         height = std::max(height, std::abs(back.alt_m - pose.alt_m) / away);
         ASSERT_TRUE(mars::is_valid({back.lon_deg, back.lat_deg}));
@@ -51,10 +51,10 @@ TEST(GeometryPlaces, PosesComeBackFromEyes) {
       }
     }
   }
-  record_worst("pose from eye: place, any radius", position, mars::kToPosePositionError,
+  record_worst("pose from camera: place, any radius", position, mars::kToPosePositionError,
                "of the distance from the centre");
-  record_worst("pose from eye: axes, any radius", axes, mars::kToPoseAxesError_rad, "rad");
-  record_worst("pose from eye: altitude", height, 1e-15, "of the distance from the centre");
+  record_worst("pose from camera: axes, any radius", axes, mars::kToPoseAxesError_rad, "rad");
+  record_worst("pose from camera: altitude", height, 1e-15, "of the distance from the centre");
 }
 
 TEST(GeometryPlaces, EveryPlaceIsOnAChartAndComesBack) {
@@ -75,8 +75,8 @@ TEST(GeometryPlaces, EveryPlaceIsOnAChartAndComesBack) {
   EXPECT_LE(lines, 0.0);
 }
 
-// Moving 1e-9 degrees over a pole, the antimeridian or an edge of the cube moves the camera by so much and no
-// more.
+// Moving by 1e-9 degrees over a pole, the antimeridian or an edge of the cube moves the camera by exactly that
+// angle.
 TEST(GeometryPlaces, NothingJumpsBetweenNeighbours) {
   constexpr double kStep_deg = 1e-9;
   double jump = 0;

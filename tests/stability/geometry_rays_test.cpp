@@ -1,4 +1,5 @@
-// Rays against ground that strains arithmetic: what is hit lies on S, and nothing is passed through on the way.
+// Rays against terrain that strains arithmetic: hits lie on the reference surface, and no ray passes through
+// it.
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
@@ -28,7 +29,8 @@ glm::dvec3 random_post(Random& random) {
                                mars::face_line(random.integer(0, kFacePosts), 6));
 }
 
-// Over anything, poles, edges and posts included; from 1e-7 to ten radii above S.
+// Returns a camera over any place, often a pole, edge or post, from 1e-7 to ten radii above the reference
+// surface.
 glm::dvec3 random_camera(Random& random, const paging::Surface& surface, double exaggeration) {
   static const std::vector<mars::LonLat> places = test_support::hostile_places();
   glm::dvec3 up = random.direction();
@@ -52,7 +54,7 @@ Ray random_ray(Random& random, const paging::Surface& surface, double exaggerati
     case 2:
       return {camera,
               glm::normalize(post * surface.at(post, exaggeration).radius_m - camera)};  // through a post
-    case 3: {  // in the plane of a grid line, where two neighbours share all they are asked
+    case 3: {  // in the plane of a grid line, where two neighbours are tested against the same lines
       const mars::Face face = mars::chart_point(up).face;
       const double u = mars::face_line(random.integer(0, kFacePosts), 6);
       const glm::dvec3 on = mars::chart_direction(face, u, random.uniform(-1, 1));
@@ -72,8 +74,8 @@ Ray random_ray(Random& random, const paging::Surface& surface, double exaggerati
 }
 
 struct Worst {
-  double off = 0;      // of what is hit from the facet, by distance from the centre and from the camera
-  double through = 0;  // how far below S a ray was before its hit, likewise
+  double off = 0;      // distance of a hit from its facet, over the distances to centre and camera
+  double through = 0;  // depth of a ray below the reference surface before its hit, likewise
   int hits = 0;
   int misses = 0;
 };
@@ -91,7 +93,7 @@ void check(Random& random, const paging::Surface& surface, double exaggeration, 
     const auto below_m = [&](double t) {
       const glm::dvec3 p = ray.camera_m + t * ray.direction;
       const paging::SurfacePoint s = surface.at(p, exaggeration);
-      // Across the facet: on a wall the radius says nothing.
+      // Across the facet, because the radius is ambiguous on a wall.
       return (s.radius_m - glm::length(p)) * glm::dot(s.normal, glm::normalize(p));
     };
     if (std::isfinite(hit_m)) worst.off = std::max(worst.off, std::abs(below_m(hit_m)) / scale_m);
@@ -121,11 +123,12 @@ TEST(GeometryRays, HitWhatIsThereAndNothingElse) {
   }
   EXPECT_GT(worst.hits, 10000);
   EXPECT_GT(worst.misses, 5000);
-  record_worst("casts: what is hit lies on S", worst.off, 1e-13, "of the distances to centre and eye");
-  record_worst("casts: nothing is passed through", worst.through, 1e-13, "of the distances to centre and eye");
+  record_worst("casts: hits lie on S", worst.off, 1e-13, "of the distances to centre and camera");
+  record_worst("casts: nothing is passed through", worst.through, 1e-13,
+               "of the distances to centre and camera");
 }
 
-// From the planet's centre's neighbourhood to the largest height that can be stored.
+// Heights from near the planet's centre to the largest that can be stored.
 TEST(GeometryRays, RampFromTheCentreToTheLargestHeightThatCanBeStored) {
   test_support::TempDir dir;
   constexpr double kRadius_m = 1e6;
@@ -146,10 +149,11 @@ TEST(GeometryRays, RampFromTheCentreToTheLargestHeightThatCanBeStored) {
   Worst worst;
   check(random, surface, 1.0, 2000, worst);
   record_worst("casts: a ramp over 2000 radii", std::max(worst.off, worst.through), 1e-12,
-               "of the distances to centre and eye");
+               "of the distances to centre and camera");
 }
 
-// Down is the height above S, up is the sky, at every place that could be special.
+// At every special place, the range downwards is the height above the reference surface, and upwards is the
+// sky.
 TEST(GeometryRays, StraightDownIsTheHeightAndStraightUpTheSky) {
   test_support::TempDir dir;
   double off = 0;
@@ -175,8 +179,8 @@ TEST(GeometryRays, StraightDownIsTheHeightAndStraightUpTheSky) {
   record_worst("casts: straight down", off, 1e-13, "of the distance from the centre");
 }
 
-// Ground that no source knows is drawn, and told.
-TEST(GeometryRays, GroundWithoutDataIsThereAndToldAsMissing) {
+// Nodata ground is drawn and reported.
+TEST(GeometryRays, NodataGroundIsDrawnAndReported) {
   test_support::TempDir dir;
   const auto planet =
       build_ground(dir / "none", 1e6, {"no data", [](const glm::dvec3&) { return std::nan(""); }});
@@ -184,22 +188,22 @@ TEST(GeometryRays, GroundWithoutDataIsThereAndToldAsMissing) {
   Random random(313);
   for (int n = 0; n < 200; ++n) {
     const paging::SurfacePoint at = surface.at(random.direction());
-    ASSERT_TRUE(at.missing);
+    ASSERT_TRUE(at.nodata);
     ASSERT_NEAR(at.height_m, planet->meta().fill_m, 1e6 / 1000);
   }
 }
 
-// A height that is a number but cannot be stored is refused by name; it is never another height.
+// A finite height that cannot be stored is refused with a message; it never becomes another height.
 TEST(GeometryRays, HeightsThatCannotBeStoredAreRefused) {
   test_support::TempDir dir;
   for (const double wild_m : {3.0e38, -3.4028226550889045e38, 1e25, 1e13, -1e13}) {
-    const glm::dvec3 hotspot =
+    const glm::dvec3 post =
         mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
     const StrangeGround ground{
-        "wild", [&](const glm::dvec3& d) { return glm::length(d - hotspot) < 1e-9 ? wild_m / 1e6 : 0; }};
+        "wild", [&](const glm::dvec3& d) { return glm::length(d - post) < 1e-9 ? wild_m / 1e6 : 0; }};
     try {
       build_ground(dir / "wild.vpe", 1e6, ground);
-      FAIL() << wild_m << " was taken";
+      FAIL() << wild_m << " was accepted";
     } catch (const std::runtime_error& e) {
       EXPECT_NE(std::string(e.what()).find("height"), std::string::npos) << e.what();
     }
@@ -213,7 +217,7 @@ TEST(GeometryRays, RadiiOutOfRangeAreRefusedBeforeAnythingIsBuilt) {
   for (const double radius_m : {0.999, 0.0, -1.0, 1e12, std::nan("")}) {
     try {
       build_ground(dir / "p.vpe", radius_m, flat);
-      FAIL() << radius_m << " was taken";
+      FAIL() << radius_m << " was accepted";
     } catch (const std::runtime_error& e) {
       EXPECT_NE(std::string(e.what()).find("radius"), std::string::npos) << e.what();
     }

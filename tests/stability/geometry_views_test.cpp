@@ -23,12 +23,12 @@ using vpe::voxel::RangeOptions;
 constexpr std::size_t kBudget = std::size_t{1} << 26;
 constexpr double kSame = 1e-5;  // of the range
 
-struct Tally {
+struct Totals {
   double pixels = 0;
-  double beside = 0;  // show what lies less than a pixel beside them
+  double beside = 0;  // show a cast less than a pixel beside them
   double wrong = 0;   // show neither
   double range = 0;   // largest relative difference of the others, times the sine of incidence
-  double wide = 0;    // the same in wide fields of view and over very high relief
+  double wide = 0;    // the same in wide fields of view and over very large height differences
 };
 
 bool same(double seen, double exact) {
@@ -52,7 +52,7 @@ bool seen_beside(const paging::Surface& surface, const core::View& view, glm::dv
 }
 
 void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& view, double exaggeration,
-           Tally& update_totals) {
+           Totals& totals) {
   const paging::PlanetMeta& meta = caster.surface().planet().meta();
   const bool wide = view.fov_deg > RangeCaster::kWide_deg ||
                     exaggeration * (meta.highest_radius_m - meta.lowest_radius_m) > 0.1 * meta.radius_m;
@@ -66,17 +66,17 @@ void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& v
       const glm::dvec2 at(x + 0.5, y + 0.5);
       const glm::dvec3 ray = core::pixel_ray(view, at.x, at.y);
       const double exact = caster.surface().cast(view.camera.position_m, ray, exaggeration);
-      update_totals.pixels += 1;
+      totals.pixels += 1;
       if (same(seen, exact)) {
         if (!std::isfinite(exact) || exact <= 0) continue;
         const glm::dvec3 normal =
             caster.surface().at(view.camera.position_m + exact * ray, exaggeration).normal;
-        double& range_error = wide ? update_totals.wide : update_totals.range;
+        double& range_error = wide ? totals.wide : totals.range;
         range_error = std::max(range_error, std::abs(glm::dot(normal, ray)) * std::abs(seen - exact) / exact);
       } else if (seen_beside(caster.surface(), view, at, seen, exaggeration)) {
-        update_totals.beside += 1;
+        totals.beside += 1;
       } else {
-        update_totals.wrong += 1;
+        totals.wrong += 1;
       }
     }
   }
@@ -113,14 +113,14 @@ TEST(GeometryViews, PixelsAreTheCastsOfTheirRays) {
   test_support::TempDir dir;
   Random random(321);
   vpe::base::ThreadPool pool(2);
-  Tally smooth;
-  Tally rough;
+  Totals smooth;
+  Totals rough;
   int n = 0;
   for (const double radius_m : {1.0, mars::kMarsRadius_m, 1e8}) {
     for (const StrangeGround& ground : test_support::strange_grounds(0.008)) {
       RangeCaster caster(build_ground(dir / std::to_string(n++), radius_m, ground), kBudget);
       const std::string name = ground.name;
-      Tally& update_totals =
+      Totals& totals =
           name == "flat" || name == "constant" || name == "ramp" || name == "no data" ? smooth : rough;
       for (const double exaggeration : {0.1, 1.0, 100.0}) {
         for (const double fov_deg : {0.01, 1.0, 60.0, 120.0, 179.0}) {
@@ -129,31 +129,31 @@ TEST(GeometryViews, PixelsAreTheCastsOfTheirRays) {
             const core::View view = random_view(random, caster.surface(), exaggeration, fov_deg, projection);
             SCOPED_TRACE(name + " radius " + std::to_string(radius_m) + " times " +
                          std::to_string(exaggeration) + " fov " + std::to_string(fov_deg));
-            check(caster, pool, view, exaggeration, update_totals);
+            check(caster, pool, view, exaggeration, totals);
           }
         }
       }
     }
   }
   EXPECT_GT(smooth.pixels + rough.pixels, 100000);
-  record_worst("ray pictures: range times sine of incidence", std::max(smooth.range, rough.range),
+  record_worst("ray images: range times sine of incidence", std::max(smooth.range, rough.range),
                RangeCaster::kRangeError, "of the range");
   record_worst(
-      "ray pictures, over 150 degrees or relief over a tenth of the radius: range times sine of incidence",
+      "ray images, over 150 degrees or relief over a tenth of the radius: range times sine of incidence",
       std::max(smooth.wide, rough.wide), RangeCaster::kWideRangeError, "of the range");
-  record_worst("ray pictures, smooth ground: pixels of neither their own ray nor one beside",
+  record_worst("ray images, smooth ground: pixels of neither their own ray nor one beside",
                smooth.wrong / smooth.pixels, 0, "of all");
-  record_worst("ray pictures, walls and spikes: pixels of neither their own ray nor one beside",
+  record_worst("ray images, walls and spikes: pixels of neither their own ray nor one beside",
                rough.wrong / rough.pixels, 1e-3, "of all");
 }
 
-// From there all that other faces show lies along columns that point straight up: parts of it were missing
-// once.
+// From there all that other faces show lies along columns that point straight up. An earlier version lost
+// parts of it.
 TEST(GeometryViews, FromOverTheMiddleOfAFaceTheWholeDiscIsThere) {
   test_support::TempDir dir;
   vpe::base::ThreadPool pool(2);
   RangeCaster caster(build_ground(dir / "p", 3e6, {"flat", [](const glm::dvec3&) { return 0.0; }}), kBudget);
-  Tally update_totals;
+  Totals totals;
   for (const mars::LonLat at :
        {mars::LonLat{0, 0}, {90, 0}, {180, 0}, {-90, 0}, {0, 90}, {0, -90}, {45, 0}, {0, 45}}) {
     for (const double up : {0.5, 1.0, 3.0, 10.0}) {
@@ -167,17 +167,17 @@ TEST(GeometryViews, FromOverTheMiddleOfAFaceTheWholeDiscIsThere) {
         view.fov_deg = flat ? 2.2 * std::asin(1 / (1 + up)) / mars::kRadiansPerDegree : 178;
         view.camera =
             mars::to_camera({at.lon_deg, at.lat_deg, up * 3e6, 77, flat ? -90.0 : 0.0, flat ? 33.0 : 0.0}, 3e6);
-        check(caster, pool, view, 1, update_totals);
+        check(caster, pool, view, 1, totals);
       }
     }
   }
-  record_worst("ray pictures from over the middle of a face: pixels of neither their own ray nor one beside",
-               update_totals.wrong / update_totals.pixels, 0, "of all");
-  record_worst("ray pictures: range times sine of incidence", update_totals.range, RangeCaster::kRangeError,
+  record_worst("ray images from over the middle of a face: pixels of neither their own ray nor one beside",
+               totals.wrong / totals.pixels, 0, "of all");
+  record_worst("ray images: range times sine of incidence", totals.range, RangeCaster::kRangeError,
                "of the range");
   record_worst(
-      "ray pictures, over 150 degrees or relief over a tenth of the radius: range times sine of incidence",
-      update_totals.wide, RangeCaster::kWideRangeError, "of the range");
+      "ray images, over 150 degrees or relief over a tenth of the radius: range times sine of incidence",
+      totals.wide, RangeCaster::kWideRangeError, "of the range");
 }
 
 }  // namespace

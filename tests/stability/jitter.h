@@ -1,4 +1,4 @@
-// Does ground stand still while the camera moves by a millimetre a frame?
+// Measures whether terrain stands still while the camera moves by a millimetre a frame.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace test_support {
 
 inline constexpr double kJitterBound_px = 0.05;
 
-// Bumps of a hand's height a few metres wide, over hills; posts half a metre apart about a place.
+// Describes bumps 0.15 m high and a few metres wide over hills, with posts half a metre apart around a place.
 struct FinePlace {
   explicit FinePlace(mars::LonLat place) : at(place), frame(mars::local_frame(place)) {}
 
@@ -44,7 +44,8 @@ struct FinePlace {
   mars::LocalFrame frame;
 };
 
-// A metre over the ground, a millimetre further each frame: a part of an image of 1280 x 720.
+// Returns a view from a metre over the ground, a millimetre further each frame: a part of an image of 1280 x
+// 720.
 inline vpe::core::View millimetre_view(const FinePlace& place, const paging::Surface& surface, double yaw_deg,
                                        int frame) {
   const mars::LonLat at = mars::destination(place.at, yaw_deg, frame * 1e-3 / mars::kMarsRadius_m);
@@ -59,13 +60,13 @@ inline vpe::core::View millimetre_view(const FinePlace& place, const paging::Sur
 }
 
 struct Jitter {
-  double off_px = 0;    // how far a pixel's ground is from S across it
-  double step_px = 0;   // how much that changes from frame to frame
+  double off_px = 0;    // distance of a pixel's ground from the reference surface, across it
+  double step_px = 0;   // change of that distance from frame to frame
   double measured = 0;  // pixels
   double outlines = 0;  // pixels at the outline of nearer ground, of which none is measured
 };
 
-// ranges(view): the drawn part's, row by row.
+// Compares ranges(view), the ranges of the drawn part row by row, with exact casts.
 inline Jitter measure_jitter(const FinePlace& place, const paging::Surface& surface, int frames,
                              const std::function<std::vector<float>(const vpe::core::View&)>& ranges) {
   Jitter jitter;
@@ -86,7 +87,7 @@ inline Jitter measure_jitter(const FinePlace& place, const paging::Surface& surf
       }
       std::vector<double> off(range_m.size(), std::nan(""));
       for (std::size_t k = 0; k < range_m.size(); ++k) {
-        // Ground beside a pixel that is much farther: an outline runs through it.
+        // A neighbouring pixel is much farther or nearer: an outline runs through this one.
         bool outline = false;
         for (const int step : {-1, 1, -width, width}) {
           const auto other = static_cast<std::ptrdiff_t>(k) + step;

@@ -76,7 +76,7 @@ TEST(Depth, RaysKeepTheOrderFromATenthOfAMetreToAHundredThousandKilometres) {
     const auto order = test_support::check_depth_order(caster.surface(), view, cast(caster, view));
     EXPECT_LT(order.nearest_m, 0.2);
     EXPECT_GT(order.farthest_m, 6e7);
-    record_worst("rays, 0.1 to 10^8 m in one picture: pixels out of order", order.wrong / order.pixels, 0,
+    record_worst("rays, 0.1 to 10^8 m in one image: pixels out of order", order.wrong / order.pixels, 0,
                  "of all");
   }
 }

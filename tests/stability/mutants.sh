@@ -11,22 +11,22 @@ tests=$(realpath "${1:-build/mutations}")/tests
 # guard, program, test
 mutants="
 lowest-occluder  lod/lod_tests                    Select.DrawsEveryVisiblePlaceExactlyOnce
-facet-sag        lod/lod_tests                    Tree.ShellsAndTheLowestRadiusHoldTheFacets
+facet-sagitta    lod/lod_tests                    Tree.RegionsAndTheLowestRadiusContainTheFacets
 skirt-neighbour  lod/lod_tests                    Skirt.CoversWhatIsDrawnAcrossEveryEdgeAndNoMore
-second-order     lod/lod_tests                    MeshMeasure.SecondOrderIsNeeded
-second-order     lod/lod_tests                    MeshMeasure.BoundHoldsAtEveryExaggeration
+second-order     lod/lod_tests                    ErrorMeter.SecondOrderIsNeeded
+second-order     lod/lod_tests                    ErrorMeter.BoundHoldsAtEveryExaggeration
 cell-variation   stability/stability_tests        GeometryErrors.HoldBetweenTheVerticesWhereTheyAreMeasured
 errors-nest      lod/lod_tests                    Tree.RefusesErrorsAndHeightsThatDoNotNest
 border-posts     lod/lod_tests                    Posts.SurfaceIsWatertightAcrossAChangeOfDepth
 border-posts     paging/paging_tests              Builder.SurfaceIsWatertightAcrossAllBorders
-short-way        scripts/scripts_tests            Path.HeadTurnsSmoothlyTheShortWayAndIsHeldOutside
-short-way        stability/stability_tests        StiffFlight.YawGoesThroughHalfATurnEvenly
+short-way        scripts/scripts_tests            Path.HeadTurnsSmoothlyInTheShorterDirectionAndIsHeldOutside
+short-way        stability/stability_tests        StiffFlight.YawPassesThrough180DegreesEvenly
 face-order       paging/paging_tests              Surface.CastAgreesWithEveryFacet
 face-order       stability/stability_tests        GeometryRays.HitWhatIsThereAndNothingElse
 near-origin      stability/gl/stability_gl_tests  PolygonMotion.KeepsTheOrderFromATenthOfAMetreToAHundredThousandKilometres
 reversed-depth   stability/gl/stability_gl_tests  PolygonMotion.KeepsTheOrderFromATenthOfAMetreToAHundredThousandKilometres
-missing-heights  paging/paging_tests              Builder.MissingPlacesAreKnown
-missing-heights  stability/stability_tests        GeometryRays.GroundWithoutDataIsThereAndToldAsMissing
+nodata-heights   paging/paging_tests              Builder.NodataPlacesAreKnown
+nodata-heights   stability/stability_tests        GeometryRays.NodataGroundIsDrawnAndReported
 "
 
 log=$(mktemp)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures again what docs/numerics.md states: runs the tests of the label stability, the long ones too, and puts the
+# Measures again what docs/measurements/numerics.md states: runs the tests of the label stability, the long ones too, and puts the
 # worst case of every claim beside its bound into the table between the two marks of the document.
 #   tests/stability/numerics.sh [BUILD_FOLDER [-- ARGUMENTS OF CTEST]]
 set -euo pipefail
@@ -25,6 +25,6 @@ ctest --test-dir "$build" -L stability --no-tests=error --output-on-failure "$@"
 awk -v table="$table" '
   /<!-- measured -->/ { print; print ""; while ((getline row < table) > 0) print row; print ""; inside = 1; next }
   /<!-- end of measured -->/ { inside = 0 }
-  !inside { print }' docs/numerics.md >docs/numerics.md.new
-mv docs/numerics.md.new docs/numerics.md
-echo "$(($(wc -l <"$table") - 2)) claims in docs/numerics.md"
+  !inside { print }' docs/measurements/numerics.md >docs/measurements/numerics.md.new
+mv docs/measurements/numerics.md.new docs/measurements/numerics.md
+echo "$(($(wc -l <"$table") - 2)) claims in docs/measurements/numerics.md"

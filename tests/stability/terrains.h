@@ -1,4 +1,4 @@
-// Planets of any radius with ground that strains arithmetic, each a function of the post.
+// Planets of any radius with terrain that strains arithmetic, each a function of the post.
 #pragma once
 
 #include <cmath>
@@ -10,10 +10,10 @@
 
 namespace test_support {
 
-// Intervals a face of planets made by build_ground().
+// Number of intervals across a face of the planets that build_ground() makes.
 inline constexpr int kFacePosts = 64;
 
-// A post of the finest grid, found from its direction.
+// Holds a post of the finest grid.
 struct Post {
   mars::Face face = mars::Face::kPlusX;
   int i = 0;
@@ -27,34 +27,36 @@ inline Post post_at(const glm::dvec3& direction) {
   return {at.face, index(at.u), index(at.v)};
 }
 
-// Heights as parts of the planet's radius.
+// Describes terrain by heights as fractions of the planet's radius.
 struct StrangeGround {
   const char* name;
   std::function<double(const glm::dvec3& direction)> height;
 };
 
-// `relief`: the largest height, and depth, as a part of the radius.
-inline std::vector<StrangeGround> strange_grounds(double relief) {
-  const glm::dvec3 hotspot =
+// Returns terrains whose largest height and depth is `amplitude`, a fraction of the radius.
+inline std::vector<StrangeGround> strange_grounds(double amplitude) {
+  const glm::dvec3 special_post =
       mars::chart_direction(mars::Face::kPlusX, mars::face_line(40, 6), mars::face_line(24, 6));
   return {
       {"flat", [](const glm::dvec3&) { return 0.0; }},
-      {"constant", [=](const glm::dvec3&) { return 0.37 * relief; }},
-      {"spike", [=](const glm::dvec3& d) { return glm::length(d - hotspot) < 1e-9 ? relief : 0.0; }},
-      {"pit", [=](const glm::dvec3& d) { return glm::length(d - hotspot) < 1e-9 ? -relief : 0.0; }},
-      {"cliff", [=](const glm::dvec3& d) { return d.x + 0.7 * d.y + 0.2 * d.z > 0.31 ? relief : -relief; }},
+      {"constant", [=](const glm::dvec3&) { return 0.37 * amplitude; }},
+      {"spike", [=](const glm::dvec3& d) { return glm::length(d - special_post) < 1e-9 ? amplitude : 0.0; }},
+      {"pit", [=](const glm::dvec3& d) { return glm::length(d - special_post) < 1e-9 ? -amplitude : 0.0; }},
+      {"cliff",
+       [=](const glm::dvec3& d) { return d.x + 0.7 * d.y + 0.2 * d.z > 0.31 ? amplitude : -amplitude; }},
       {"checkerboard",
        [=](const glm::dvec3& d) {
          const Post post = post_at(d);
-         return ((post.i + post.j) & 1) != 0 ? relief : -relief;
+         return ((post.i + post.j) & 1) != 0 ? amplitude : -amplitude;
        }},
-      {"ramp", [=](const glm::dvec3& d) { return relief * d.z; }},
-      {"hills", [=](const glm::dvec3& d) { return relief / 8000 * bumpy_height(d); }},
+      {"ramp", [=](const glm::dvec3& d) { return amplitude * d.z; }},
+      {"hills", [=](const glm::dvec3& d) { return amplitude / 8000 * bumpy_height(d); }},
       {"no data", [](const glm::dvec3&) { return std::nan(""); }},
   };
 }
 
-// Of one depth: kFacePosts intervals a face. The step of stored heights is 2^-31 of the largest, or so.
+// Builds a planet of one level with kFacePosts intervals across a face. The step of stored heights is about
+// 2^-31 of the largest.
 inline std::shared_ptr<const paging::PlanetFile> build_ground(const std::filesystem::path& path,
                                                               double radius_m, const StrangeGround& ground) {
   const FakeElevation source([&](const glm::dvec3& d) { return radius_m * ground.height(d); });
@@ -70,8 +72,8 @@ inline std::shared_ptr<const paging::PlanetFile> build_ground(const std::filesys
   return paging::PlanetFile::open(path.string());
 }
 
-// Places where charts, longitudes or faces meet: poles and their neighbourhood to 1e-9 degrees, the
-// antimeridian, edges and corners of the cube, and 1e-9 degrees beside them.
+// Returns places where charts, longitudes or faces meet: poles and places as near as 1e-9 degrees, the
+// antimeridian, edges and corners of the cube, and places 1e-9 degrees beside them.
 inline std::vector<mars::LonLat> hostile_places() {
   std::vector<mars::LonLat> places;
   const double corner_deg = std::atan(std::sqrt(0.5)) / mars::kRadiansPerDegree;

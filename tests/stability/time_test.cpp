@@ -1,4 +1,4 @@
-// Flights whose times, ways and speeds differ by many orders of magnitude, and flights of more than a day.
+// Flights whose times, distances and speeds differ by many orders of magnitude, and flights of more than a day.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,8 @@ Waypoint waypoint(double time_s, mars::LonLat place, double alt_m, double yaw_de
 
 glm::dvec3 up_of(const FlightState& state) { return glm::normalize(state.camera.position_m); }
 
-// Segments of a thousandth of a second beside some of a thousand seconds, of nothing to half a turn.
+// Returns a flight whose segments take a thousandth of a second or a thousand seconds, over arcs of 0 to 3
+// radians.
 Flight stiff_flight(Random& random) {
   Flight flight;
   double t = 0;
@@ -37,16 +38,16 @@ Flight stiff_flight(Random& random) {
   for (int n = 0; n < 8; ++n) {
     flight.waypoints.push_back(waypoint(t, at, random.log_uniform(0.1, 1e8), random.uniform(-180, 180),
                                         random.uniform(-90, 90), random.uniform(-180, 180)));
-    flight.looks.push_back({t, random.uniform(-180, 180), random.uniform(-90, 90), random.uniform(-180, 180)});
+    flight.heads.push_back({t, random.uniform(-180, 180), random.uniform(-90, 90), random.uniform(-180, 180)});
     t += random.integer(0, 1) == 0 ? 1e-3 : 1e3;
     const int kind = random.integer(0, 3);
-    const double way_rad = kind == 0 ? 0.0 : kind == 1 ? random.uniform(1, 3) : random.log_uniform(1e-7, 1);
-    at = mars::destination(at, random.uniform(0, 360), way_rad);
+    const double arc_rad = kind == 0 ? 0.0 : kind == 1 ? random.uniform(1, 3) : random.log_uniform(1e-7, 1);
+    at = mars::destination(at, random.uniform(0, 360), arc_rad);
   }
   return flight;
 }
 
-TEST(StiffFlight, NeverSwingsOut) {
+TEST(StiffFlight, NeverOvershoots) {
   Random random(341);
   double swing = 0;
   double speed = 0;
@@ -57,7 +58,7 @@ TEST(StiffFlight, NeverSwingsOut) {
       const Waypoint& a = flight.waypoints[i];
       const Waypoint& b = flight.waypoints[i + 1];
       const glm::dvec3 from = mars::direction({a.lon_deg, a.lat_deg});
-      const double way_rad = mars::angle_between_rad(from, mars::direction({b.lon_deg, b.lat_deg}));
+      const double arc_rad = mars::angle_between_rad(from, mars::direction({b.lon_deg, b.lat_deg}));
       const auto [low, high] = std::minmax(a.up_m, b.up_m);
       glm::dvec3 before = from;
       constexpr int kSteps = 200;
@@ -69,9 +70,9 @@ TEST(StiffFlight, NeverSwingsOut) {
           ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z));
         ASSERT_TRUE(state.pose.alt_m >= low && state.pose.alt_m <= high);
         const glm::dvec3 up = up_of(state);
-        if (way_rad > 1e-9) {
-          swing = std::max(swing, (mars::angle_between_rad(from, up) - 1e-15) / way_rad);
-          speed = std::max(speed, (mars::angle_between_rad(before, up) - 1e-15) * kSteps / way_rad);
+        if (arc_rad > 1e-9) {
+          swing = std::max(swing, (mars::angle_between_rad(from, up) - 1e-15) / arc_rad);
+          speed = std::max(speed, (mars::angle_between_rad(before, up) - 1e-15) * kSteps / arc_rad);
         } else {
           ASSERT_LE(mars::angle_between_rad(from, up), 2e-15) << "moves where it rests";
         }
@@ -93,10 +94,10 @@ TEST(StiffFlight, VelocityIsContinuousAcrossSpeedsAMillionApart) {
     Flight flight;
     const mars::LonLat start = mars::lon_lat(random.direction());
     const mars::LonLat next = mars::destination(start, random.uniform(0, 360), random.log_uniform(1e-4, 1));
-    // As long a way in a millionth of the time, or a millionth of the way in as long.
+    // The same distance in a millionth of the time, or a millionth of the distance in the same time.
     const bool short_time = trial % 2 == 0;
-    const double way_rad = mars::distance_rad(start, next) * (short_time ? 1.0 : 1e-6);
-    const mars::LonLat last = mars::destination(next, random.uniform(0, 360), std::max(way_rad, 1e-9));
+    const double arc_rad = mars::distance_rad(start, next) * (short_time ? 1.0 : 1e-6);
+    const mars::LonLat last = mars::destination(next, random.uniform(0, 360), std::max(arc_rad, 1e-9));
     flight.waypoints = {waypoint(0, start, 1000, 10), waypoint(1000, next, 2000, 50),
                         waypoint(short_time ? 1000.001 : 2000, last, 1500, -170)};
     const Path path(flight, kRadius_m, {});
@@ -132,7 +133,7 @@ TEST(StiffFlight, CoincidentPosesRestAndOppositeOnesAreRefused) {
     const double step = mars::angle_between_rad(up_of(nearly.at(k * 0.01)), up_of(nearly.at((k + 1) * 0.01)));
     uneven = std::max(uneven, std::abs(step * 1000 / away_rad - 1));
   }
-  record_worst("flights: nearly opposite poses, evenness of the way", uneven, 1e-9, "of the speed");
+  record_worst("flights: nearly opposite poses, evenness of the speed", uneven, 1e-9, "of the speed");
 
   // The same pose many times, at times a thousandth and a thousand seconds apart.
   Flight still;
@@ -150,13 +151,13 @@ TEST(StiffFlight, CoincidentPosesRestAndOppositeOnesAreRefused) {
   }
 }
 
-// Twenty degrees a second, on and on through 180 degrees, platform and head.
-TEST(StiffFlight, YawGoesThroughHalfATurnEvenly) {
+// Twenty degrees a second, repeatedly through 180 degrees, of platform and head.
+TEST(StiffFlight, YawPassesThrough180DegreesEvenly) {
   Flight flight;
   for (int k = 0; k <= 90; ++k) {
     const double yaw_deg = mars::normalize_lon_deg(20.0 * k);
     flight.waypoints.push_back(waypoint(k, {179.9, 12}, 500, yaw_deg));
-    flight.looks.push_back({static_cast<double>(k), mars::normalize_lon_deg(-20.0 * k), 0, 0});
+    flight.heads.push_back({static_cast<double>(k), mars::normalize_lon_deg(-20.0 * k), 0, 0});
   }
   const Path path(flight, kRadius_m, {});
   double platform = 0;
@@ -165,10 +166,10 @@ TEST(StiffFlight, YawGoesThroughHalfATurnEvenly) {
     const double t = k / 64.0;
     const FlightState state = path.at(t);
     platform = std::max(platform, std::abs(std::remainder(state.pose.yaw_deg - 20 * t, 360)));
-    head = std::max(head, std::abs(std::remainder(state.look.yaw_deg + 20 * t, 360)));
+    head = std::max(head, std::abs(std::remainder(state.head.yaw_deg + 20 * t, 360)));
   }
-  record_worst("flights: yaw through 180 degrees, platform", platform, 1e-9, "degrees off an even turn");
-  record_worst("flights: yaw through 180 degrees, head", head, 1e-9, "degrees off an even turn");
+  record_worst("flights: yaw through 180 degrees, platform", platform, 1e-9, "degrees off an even rotation");
+  record_worst("flights: yaw through 180 degrees, head", head, 1e-9, "degrees off an even rotation");
 }
 
 Flight long_flight(Random& random) {
@@ -189,14 +190,14 @@ TEST(LongReplay, StatesDoNotDependOnWhatWasPlayed) {
   const scripts::FrameRate rate{30000, 1001};
   const std::int64_t frames = scripts::frame_count(rate, path.duration_s());
   const auto at = [&](std::int64_t k) { return path.at(scripts::frame_time(rate, k)); };
-  std::vector<glm::dvec3> eyes;
+  std::vector<glm::dvec3> cameras;
   std::vector<std::int64_t> some;
   for (std::int64_t k = 0; k < frames; k += 97) some.push_back(k);
-  for (const std::int64_t k : some) eyes.push_back(at(k).camera.position_m);
-  for (std::size_t n = some.size(); n-- > 0;) ASSERT_EQ(at(some[n]).camera.position_m, eyes[n]);
+  for (const std::int64_t k : some) cameras.push_back(at(k).camera.position_m);
+  for (std::size_t n = some.size(); n-- > 0;) ASSERT_EQ(at(some[n]).camera.position_m, cameras[n]);
   for (int n = 0; n < 2000; ++n) {
     const auto pick = static_cast<std::size_t>(random.integer(0, static_cast<int>(some.size()) - 1));
-    ASSERT_EQ(at(some[pick]).camera.position_m, eyes[pick]);
+    ASSERT_EQ(at(some[pick]).camera.position_m, cameras[pick]);
   }
   double drift_s = 0;
   for (std::int64_t k = 0; k <= frames; k += 11) {
@@ -206,7 +207,7 @@ TEST(LongReplay, StatesDoNotDependOnWhatWasPlayed) {
   record_worst("films: time of a frame within 10^5 s", drift_s, 0.5 * std::exp2(-36), "s");
 }
 
-// A player adds up frames: 6 million of them in 10^5 s.
+// A player adds frame times up: 6 million of them in 10^5 s.
 TEST(LongReplay, ThePlayerKeepsTime) {
   Random random(345);
   vpe::explore::FlightPlayer player(Path(long_flight(random), kRadius_m, {}), kRadius_m);
@@ -238,8 +239,8 @@ TEST(LongReplay, SteeringStraightAheadStaysOnItsGreatCircle) {
     const mars::LonLat start{170, 60};
     mars::Pose pose{start.lon_deg, start.lat_deg, 50000, heading_deg, 0, 0};
     const mars::LocalFrame frame = mars::local_frame(start);
-    const mars::SinCos turn = mars::sin_cos_deg(heading_deg);
-    const glm::dvec3 ahead = frame.north * turn.cos + frame.east * turn.sin;
+    const mars::SinCos heading = mars::sin_cos_deg(heading_deg);
+    const glm::dvec3 ahead = frame.north * heading.cos + frame.east * heading.sin;
     double across = 0;
     double along = 0;
     for (int k = 1; k <= 100000; ++k) {

@@ -17,18 +17,18 @@ constexpr double kRounding = 1.0 / (1 << 24);
 // Roundings of the vertex stage, as a part of the distance: a few of 2^-24.
 constexpr double kTransformError = 4e-7;
 
-// dr / d(angle) / r with heights times x.
-double exaggerated(const lod::TileInfo& tile, double x, const lod::TileTree& tree) {
+// Steepest dr / d(angle) / r of a tile with heights times x.
+double exaggerated_slope(const lod::TileInfo& tile, double x, const lod::TileTree& tree) {
   const double radius_m = tree.radius_m();
-  const double relief = x * tile.steepest_slope * (radius_m + tile.max_height_m) /
+  const double ground = x * tile.steepest_slope * (radius_m + tile.max_height_m) /
                         std::max(1.0, radius_m + x * tile.min_height_m);
-  if (tile.has_children) return relief;
+  if (tile.has_children) return ground;
   // Lines of posts are nowhere nearer to each other than half the nominal spacing.
   const double least_m = 0.5 * lod::nominal_side_m(tile.key.level, radius_m) / tree.shape().intervals();
-  return relief + tree.edge_shift_m(tile, x) / least_m;
+  return ground + tree.edge_shift_m(tile, x) / least_m;
 }
 
-// What float storage does to a point of a tile at a distance.
+// Shift of a point of a tile at a distance by float storage.
 double storage_px(const CertifiedTile& t, double distance_m, double focal_px) {
   const double stored_m =
       std::min(t.quantisation_m, kRounding * (distance_m + t.camera_to_centre_m + t.longest_edge_m));
@@ -52,7 +52,7 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
     const double distance_m = std::max(tile.min_distance_m, optics.near_m);
     const double stored_px = storage_px(t, distance_m, optics.focal_px);
     const lod::TileInfo& info = tree[tile.index];
-    slope = std::max(slope, exaggerated(info, optics.exaggeration, tree));
+    slope = std::max(slope, exaggerated_slope(info, optics.exaggeration, tree));
     surface_px = std::max(surface_px, tile.screen_space_error_px + stored_px);
     c.geometric_error_m = std::max(c.geometric_error_m, tile.geometric_error_m);
     c.screen_space_error_px = std::max(c.screen_space_error_px, tile.screen_space_error_px);
@@ -79,15 +79,15 @@ double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree&
                                                      {core::kSkyRange, core::kSkyRange, core::kSkyRange});
   float nearest_m = core::kSkyRange;
   for (std::size_t k = 0; k < pixels.range_m.size(); ++k) {
-    if (pixels.number[k] == kNoTile) continue;
-    const TileId drawn = unpack(pixels.number[k]);
+    if (pixels.id[k] == kNoTile) continue;
+    const TileId drawn = unpack(pixels.id[k]);
     float& least = nearest[drawn.tile][static_cast<std::size_t>(drawn.part)];
     least = std::min(least, pixels.range_m[k]);
     nearest_m = std::min(nearest_m, pixels.range_m[k]);
   }
   double slope = 0;
   for (const CertifiedTile& t : tiles)
-    slope = std::max(slope, exaggerated(tree[t.tile->index], optics.exaggeration, tree));
+    slope = std::max(slope, exaggerated_slope(tree[t.tile->index], optics.exaggeration, tree));
   const double steep = std::sqrt(1.0 + slope * slope);
   double bound_px = 0;
   for (std::size_t k = 0; k < tiles.size(); ++k) {

@@ -1,4 +1,4 @@
-// The geometric error of a frame from what is known of its tiles. Pure; no OpenGL.
+// Bound of a frame's geometric error, from its tiles. Pure; no OpenGL.
 #pragma once
 
 #include <cstdint>
@@ -11,44 +11,44 @@ namespace vpe::gl {
 
 struct CertifiedTile {
   const lod::SelectedTile* tile = nullptr;
-  double quantisation_m = 0;  // of its vertices
-  double longest_edge_m = 0;
-  double camera_to_centre_m = 0;  // from what its positions are relative to
+  double quantisation_m = 0;      // TileGeometry::quantisation_m
+  double longest_edge_m = 0;      // TileGeometry::longest_edge_m
+  double camera_to_centre_m = 0;  // distance of the camera from the origin of its positions
   double deepest_skirt_m = 0;
 };
 
 struct FrameOptics {
   double focal_px = 1;
-  double near_m = 1;   // nothing is drawn nearer
+  double near_m = 1;   // near plane: nothing is drawn nearer
   double snap_px = 0;  // TileDrawer::snap_px()
   double exaggeration = 1;
 };
 
-// Fills the terms of error, exaggeration, tiles_drawn and share_at_data_limit. The bound of a pixel's shift is
-// the sum of three terms.
+// Returns a certificate with the terms of error, exaggeration, tiles_drawn and share_at_data_limit filled in.
 //
-// The error of its tile, projected.
+// The bound of a pixel's shift is the sum of three terms:
+// - The screen-space error of its tile.
+// - Float storage. A vertex v relative to a centre c is off by 2^-24 |v - c| or less, c - camera by 2^-24 of
+//   itself, and the vertex stage's arithmetic adds a part of |v - camera|. The vertices of the triangle at a
+//   point p are within its longest edge of p.
+// - snap_px / cos(slope), with the steepest slope of the reference surface S in the drawn tiles. A point of the
+//   meshes lies within its tile's geometric error of S. Moved by s pixels in the image, which are s r / f
+//   metres across the ray at range r, it has S at most s r / f / cos(slope) farther above or below it.
 //
-// Float storage: a vertex v relative to a centre c is off by 2^-24 |v - c| or less, c - camera by 2^-24 of itself,
-// and the vertex stage's arithmetic adds a part of |v - camera|. The vertices of the triangle at a point p are
-// within its longest edge of p.
-//
-// snap_px / cos(slope), with the steepest slope of S in the drawn tiles: a point of the meshes, within its
-// tile's error of S, that is moved by s pixels in the image, s r / f metres across the ray at range r, has S
-// at most s r / f / cos(slope) farther above or below it.
+// intervals: of a tile's finest grid.
 core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileTree& tree, int intervals,
                           const FrameOptics& optics);
 
-// Of every pixel of an image: the number of what is drawn there (tile_id.h) and its range, whose relative
-// error is at most range_error * (1 + range / nearest range).
+// Describes every pixel of an image: the packed ID of what is drawn there (tile_id.h) and its range, whose
+// relative error is at most range_error * (1 + range / nearest range).
 struct DrawnPixels {
-  std::span<const std::uint32_t> number;
+  std::span<const std::uint32_t> id;
   std::span<const float> range_m;
   double range_error = 0;
 };
 
-// Certificate::image_bound_px: the bound above with the ranges at which tiles appear, each of a tile's parts
-// by itself. What is seen of a skirt is at most the skirt's depth below the border of its tile.
+// Returns Certificate::image_bound_px: the bound above with the ranges at which tiles appear, for each of a
+// tile's parts separately. Visible parts of a skirt are at most the skirt's depth below the border of its tile.
 double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree& tree,
                       const DrawnPixels& pixels, const FrameOptics& optics);
 

@@ -7,7 +7,7 @@
 
 namespace vpe::gl {
 
-// No usable OpenGL. what() lists what was tried and what each attempt said.
+// Reports that there is no usable OpenGL. what() lists the attempts and the reason why each failed.
 class ContextError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,20 +21,28 @@ struct ContextInfo {
   bool software = false;  // no GPU: llvmpipe, softpipe, ...
 };
 
-// Whether there is a device for OpenGL that is not a program on the CPU. A millisecond: no context is made, so
-// that it may turn out not to be usable. False for OSMesa.
+// Returns true if there is a device for OpenGL other than a program on the CPU. Takes a millisecond. Makes no
+// context, so that the device may turn out not to be usable. Always false with OSMesa.
 bool has_gpu();
 
-// Current on the thread that made it, for as long as it lives; one at a time a thread. Hardware EGL devices
-// are preferred, then Mesa's surfaceless platform, then software devices. $VPE_EGL = device | surfaceless
-// restricts the choice. Needs no display server and no root.
+// Owns an OpenGL context. It is current on the thread that made it for as long as it lives; a thread may have
+// one at a time. Needs no display server and no root.
+//
+// Typical usage:
+//
+//   const std::shared_ptr<Context> context = Context::create();
+//   const auto renderer = make_polygon_renderer(context, planet);
 class Context {
  public:
+  // Makes a context. Prefers hardware EGL devices, then Mesa's surfaceless platform, then software devices;
+  // $VPE_EGL = device | surfaceless restricts the choice. Throws ContextError.
   static std::unique_ptr<Context> create();
   virtual ~Context() = default;
+
   const ContextInfo& info() const { return info_; }
 
  protected:
+  // Fills in info() from the current context.
   void read_info(std::string platform);
 
  private:

@@ -34,7 +34,7 @@ bool has_extension(const char* list, const char* name) {
 
 class EglContext : public Context {
  public:
-  // Throws ContextError with a few words.
+  // Throws ContextError with the failed call.
   EglContext(EGLDisplay display, const std::string& platform) : display_(display) {
     if (display == EGL_NO_DISPLAY) throw ContextError("no display");
     EGLint major = 0;

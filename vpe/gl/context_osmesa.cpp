@@ -26,7 +26,7 @@ class MesaContext : public Context {
                                          0};
     context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
     if (context_ == nullptr) throw ContextError("OSMesa: cannot make an OpenGL 4.5 context");
-    // Everything is drawn into framebuffer objects; OSMesa only wants some memory of its own.
+    // Everything is drawn into framebuffer objects, but OSMesa needs some memory of its own.
     if (OSMesaMakeCurrent(context_, dummy_.data(), GL_UNSIGNED_BYTE, 1, 1) != GL_TRUE) {
       OSMesaDestroyContext(context_);
       throw ContextError("OSMesa: OSMesaMakeCurrent failed");

@@ -1,4 +1,4 @@
-// Owners of OpenGL objects. All must be made and destroyed while their context is current.
+// Owners of OpenGL objects, and errors of OpenGL.
 #pragma once
 
 #include <string>
@@ -8,11 +8,13 @@
 
 namespace vpe::gl {
 
-// Move-only owner of a name; Traits has create() and destroy(name).
+// Owns an OpenGL object, or none; movable, not copyable. Traits has create() and destroy(name). Objects must be
+// made and destroyed while their context is current.
 template <typename Traits>
 class Object {
  public:
   Object() = default;
+  // Makes an OpenGL object.
   static Object make() {
     Object object;
     object.name_ = Traits::create();
@@ -26,6 +28,7 @@ class Object {
   ~Object() {
     if (name_ != 0) Traits::destroy(name_);
   }
+  // Returns OpenGL's name of the object, or 0.
   GLuint name() const { return name_; }
   explicit operator bool() const { return name_ != 0; }
 
@@ -64,12 +67,12 @@ using Framebuffer = Object<FramebufferTraits>;
 using Renderbuffer = Object<RenderbufferTraits>;
 using Program = Object<ProgramTraits>;
 
-// Compiles and links; throws std::runtime_error with the driver's log. `label` names it in the message.
-// geometry: null = no geometry stage.
+// Compiles and links a program. geometry: null = no such stage. Throws std::runtime_error with the driver's
+// log; `label` names the program in the message.
 Program make_program(const std::string& label, const char* vertex, const char* fragment,
                      const char* geometry = nullptr);
 
-// Throws std::runtime_error naming the operation when OpenGL has recorded an error.
+// Throws std::runtime_error that names the operation if OpenGL has recorded an error.
 void check_gl(const char* operation);
 
 }  // namespace vpe::gl

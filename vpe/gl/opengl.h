@@ -1,7 +1,7 @@
-// The one place that names the OpenGL headers.
+// OpenGL headers. No other file of this folder includes them.
 //
-// libepoxy finds each function when it is called for the first time: a program that draws nothing opens no
-// OpenGL library. OSMesa is linked outright, as libepoxy does not know its contexts.
+// libepoxy looks each function up when it is called for the first time, so that a program that draws nothing
+// opens no OpenGL library. OSMesa is linked directly, as libepoxy does not know its contexts.
 #pragma once
 
 #ifdef VPE_OSMESA

@@ -1,6 +1,7 @@
-// libOSMesa has the functions of OpenGL 4.5 but does not export those of ARB_direct_state_access and
-// ARB_clip_control: they are forwarded through its own lookup. Whoever calls one has a context, which is why
-// the library knows it.
+// OpenGL functions that libOSMesa does not export.
+//
+// It has those of ARB_direct_state_access and ARB_clip_control, but only behind its own lookup, which knows
+// them once there is a context.
 #ifdef VPE_OSMESA
 
 #include <stdexcept>
@@ -21,7 +22,7 @@ Function look_up(const char* name) {
 }  // namespace
 }  // namespace vpe::gl
 
-// NOLINTBEGIN(cppcoreguidelines-macro-usage): a definition for each, of OpenGL's own declaration
+// NOLINTBEGIN(cppcoreguidelines-macro-usage): defines each function as OpenGL declares it
 #define VPE_FORWARD(result, name, parameters, arguments)                            \
   result APIENTRY name parameters {                                                 \
     static const auto call = vpe::gl::look_up<result(APIENTRY*) parameters>(#name); \

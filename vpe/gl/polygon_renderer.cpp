@@ -34,7 +34,7 @@ constexpr std::size_t kBytesPerTriangle = 600;
 
 const glm::vec3 kLineColour(0.95F, 0.75F, 0.55F);
 const glm::vec3 kBorderColour(0.1F, 1.0F, 0.2F);  // no ground is that green
-// The relief shows through.
+// The shading stays visible below the tint.
 glm::vec4 level_tint(int level) {
   constexpr float kShare = 0.6F;
   const base::Rgb c = core::level_colour(level).colour;
@@ -55,7 +55,7 @@ class PolygonRenderer : public core::Renderer {
     const bool halved = base::mutated(base::Guard::kReversedDepth);
     glClipControl(GL_LOWER_LEFT, halved ? GL_NEGATIVE_ONE_TO_ONE : GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
-    glDisable(GL_DITHER);  // colours may be numbers
+    glDisable(GL_DITHER);  // colours may be IDs
     glDisable(GL_CULL_FACE);
     check_gl("set up");
   }
@@ -63,9 +63,8 @@ class PolygonRenderer : public core::Renderer {
   core::DrawResult draw(const core::DrawRequest& request) override;
 
  private:
-  double near_plane_m(const core::View& view, double exaggeration) const;
   void draw_sky(const core::DrawRequest& request, const ClipProjection& clip);
-  void set_paint(const core::DrawRequest& request);
+  void set_material(const core::DrawRequest& request);
   void draw_pass(const core::DrawRequest& request, const ClipProjection& clip, Target& to, bool image);
   void read_range(const core::DrawRequest& request, ClipProjection clip, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
@@ -78,7 +77,7 @@ class PolygonRenderer : public core::Renderer {
   base::ThreadPool pool_;
   TileScene scene_;
   TileDrawer tiles_;
-  std::shared_ptr<const core::ColourScale> palette_;  // that tiles_ has; null: none
+  std::shared_ptr<const core::ColourScale> palette_;  // the one that tiles_ has; null: none
   Program sky_program_;                               // made for the first sky
   VertexArray empty_array_;
   std::optional<Target> colour_target_;
@@ -87,22 +86,8 @@ class PolygonRenderer : public core::Renderer {
   std::vector<CertifiedTile> certified_;
   std::vector<float> depth_;
   std::vector<base::Rgb> colours_;
-  std::vector<std::uint32_t> numbers_;  // of the range image's pixels (tile_id.h)
+  std::vector<std::uint32_t> tile_ids_;  // packed, of the range image's pixels (tile_id.h)
 };
-
-// Depth interpolation loses precision on triangles that reach from the near plane to far away, so the near
-// plane is as far out as the ground allows: some fiftieth of the camera's height is only passed by slopes over 88
-// degrees.
-double PolygonRenderer::near_plane_m(const core::View& view, double exaggeration) const {
-  const double nearest = scene_.nearest_m();
-  // In the image's corners depth is less than distance.
-  const double f = core::focal_px(view);
-  const double x = 0.5 * view.width + std::abs(view.principal_offset_px.x);
-  const double y = 0.5 * view.height + std::abs(view.principal_offset_px.y);
-  const double cosine = f / std::sqrt(f * f + x * x + y * y);
-  if (std::isfinite(nearest) && nearest > 1000.0) return 0.5 * cosine * nearest;
-  return std::clamp(0.03 * cosine * scene_.clearance_m() / std::max(1.0, exaggeration), 0.003, 1000.0);
-}
 
 void PolygonRenderer::draw_sky(const core::DrawRequest& request, const ClipProjection& clip) {
   const glm::dvec3& camera = request.view.camera.position_m;
@@ -110,15 +95,18 @@ void PolygonRenderer::draw_sky(const core::DrawRequest& request, const ClipProje
   const glm::mat3 to_body = glm::transpose(body_to_camera(request.view.camera.axes));
   const glm::vec3 up(camera / r);
   const glm::vec3 sun(request.sun);
-  if (!sky_program_) sky_program_ = make_program("sky", kSkyVertexShader, kSkyFragmentShader);
+  if (!sky_program_) {
+    const ShaderSources shaders = sky_shaders();
+    sky_program_ = make_program("sky", shaders.vertex.c_str(), shaders.fragment.c_str());
+  }
   glUseProgram(sky_program_.name());
   glBindVertexArray(empty_array_.name());
-  glUniformMatrix3fv(kSkyRotation, 1, GL_FALSE, &to_body[0][0]);
-  glUniform4fv(kSkyProjection, 1, &clip.scale_shift[0]);
-  glUniform3fv(kSkyUp, 1, &up[0]);
-  glUniform2f(kSkyAltitude, static_cast<float>(r - planet_->radius_m()),
+  glUniformMatrix3fv(sky_uniform("to_body"), 1, GL_FALSE, &to_body[0][0]);
+  glUniform4fv(sky_uniform("projection"), 1, &clip.scale_shift[0]);
+  glUniform3fv(sky_uniform("up"), 1, &up[0]);
+  glUniform2f(sky_uniform("altitude"), static_cast<float>(r - planet_->radius_m()),
               static_cast<float>(planet_->radius_m()));
-  glUniform3fv(kSkySun, 1, &sun[0]);
+  glUniform3fv(sky_uniform("sun"), 1, &sun[0]);
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
   glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -133,7 +121,7 @@ Target& PolygonRenderer::target(std::optional<Target>& slot, const glm::ivec2& s
   return *slot;
 }
 
-// Of the image that was drawn and read last.
+// `image` is the image that was drawn and read last.
 std::optional<double> PolygonRenderer::nodata_share(core::Mode mode, const Target& image) const {
   if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers) {
     const auto has_nodata = [&](const SceneTile& t) { return planet_->has_nodata(t.tile->key); };
@@ -158,25 +146,24 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
   core::Certificate c = gl::certify(certified_, planet_->tree(), planet_->meta().tile.intervals(), optics);
   if (request.want_range) {
     const double bound_px =
-        bound_in_image(certified_, planet_->tree(), {numbers_, frame.range_m, kRangeError}, optics);
+        bound_in_image(certified_, planet_->tree(), {tile_ids_, frame.range_m, kRangeError}, optics);
     c.image_bound_px = std::min(bound_px, c.shift_bound_px);
   }
-  c.tolerance_px = request.settings.lod_tolerance_px;
   const paging::PlanetMeta& meta = planet_->meta();
-  c.resampling_max_m = meta.resampling.max_m;
-  c.resampling_rms_m = meta.resampling.rms_m;
-  for (const mars::SourceInfo& s : meta.sources) {
-    if (s.accuracy_m) c.source_accuracy_m = std::max(c.source_accuracy_m.value_or(0.0), *s.accuracy_m);
-  }
-  c.illustration = meta.illustration;
+  core::state_data(c,
+                   {.tolerance_px = request.settings.lod_tolerance_px,
+                    .resampling_max_m = meta.resampling.max_m,
+                    .resampling_rms_m = meta.resampling.rms_m,
+                    .illustration = meta.illustration},
+                   meta.sources);
   return c;
 }
 
-// What the programs of this image's tiles need, and nothing else.
-void PolygonRenderer::set_paint(const core::DrawRequest& request) {
+// Gives the programs of this image's tiles what they need, and nothing else.
+void PolygonRenderer::set_material(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
-  const bool shows = scene_.material().by == PaintMethod::kPalette;
-  const std::shared_ptr<const core::ColourScale> wanted = shows ? scene_.scale() : nullptr;
+  const bool shows_palette = scene_.material().method == PaintMethod::kPalette;
+  const std::shared_ptr<const core::ColourScale> wanted = shows_palette ? scene_.scale() : nullptr;
   if (wanted != palette_) {
     if (wanted) {
       PaletteTable table{wanted->low(), wanted->high(), {}};
@@ -210,7 +197,7 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProj
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDepthFunc(GL_GREATER);
   draws_.clear();
-  const PaintMethod by = scene_.material().by;
+  const PaintMethod method = scene_.material().method;
   const glm::vec3 plain = wireframe || markers ? kLineColour : glm::vec3(core::kPlainGround / 255.0);
   for (const SceneTile& t : scene_.tiles()) {
     TileDraw& draw = draws_.emplace_back();
@@ -219,15 +206,15 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProj
     draw.skirt_m = t.skirt_m;
     if (!image) continue;
     draw.texture = t.texture;
-    draw.flat = by == PaintMethod::kColour;
-    draw.palette = by == PaintMethod::kPalette;
+    draw.flat = method == PaintMethod::kColour;
+    draw.palette = method == PaintMethod::kPalette;
     draw.colour = plain;
     if (image && request.settings.inspect == core::Inspect::kLevels)
       draws_.back().tint = level_tint(t.tile->key.level);
   }
   if (image && (wireframe || markers)) {
-    // What stands before them hides dots and lines, and no sky shows through. The ground itself must not: it is
-    // pushed back by what its depth changes on the way from an edge or a vertex to the last pixel that shows
+    // Nearer ground hides dots and lines, and no sky shows through. The ground that they lie on must not hide
+    // them: it is pushed back by the change of its depth from an edge or a vertex to the last pixel that shows
     // it.
     const float reach_px = markers ? 0.5F * static_cast<float>(request.settings.marker_px) + 0.5F : 1.0F;
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -265,9 +252,9 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, ClipProjectio
     if (pass == 0 && nearest > 0.0F) clip.near_m = std::max(clip.near_m, 0.5F * clip.near_m / nearest);
   }
   to.read_colour(colours_);
-  numbers_.resize(colours_.size());
-  std::transform(colours_.begin(), colours_.end(), numbers_.begin(),
-                 [](const base::Rgb& c) { return number_of_colour(c.r, c.g, c.b); });
+  tile_ids_.resize(colours_.size());
+  std::transform(colours_.begin(), colours_.end(), tile_ids_.begin(),
+                 [](const base::Rgb& c) { return id_of_colour(c.r, c.g, c.b); });
   const core::View& view = request.view;
   const double f = core::focal_px(view);
   const double cx = 0.5 * view.width + view.principal_offset_px.x - view.part.x;
@@ -296,20 +283,20 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
 
   auto start = Clock::now();
   const glm::ivec2 size = core::drawn_size(request.view);
-  const ClipProjection clip = clip_projection(request.view, near_plane_m(request.view, settings.exaggeration));
+  const ClipProjection clip = clip_projection(request.view, scene_.near_plane_m(request.view));
   Target& image = target(colour_target_, size, settings.samples);
-  set_paint(request);
+  set_material(request);
   draw_pass(request, clip, image, true);
   glFinish();
   check_gl("draw");
   result.stats.draw_ms = ms_since(start);
-  scene_.drawn_in(result.stats.draw_ms);
+  scene_.record_draw_time(result.stats.draw_ms);
 
   start = Clock::now();
   result.frame.width = size.x;
   result.frame.height = size.y;
   image.read_colour(result.frame.colour);
-  const std::optional<double> without_data = nodata_share(settings.mode, image);
+  const std::optional<double> nodata = nodata_share(settings.mode, image);
   const bool lines = settings.mode == core::Mode::kWireframe || settings.mode == core::Mode::kMarkers;
   const bool smooth = settings.samples == 1 && settings.smooth_edges && !lines;
   if (smooth) image.read_depth(depth_);
@@ -324,7 +311,7 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
 
   tiles_.drop_unused();
   result.certificate = certify(request, clip, result.frame);
-  result.certificate.nodata_share = without_data;
+  result.certificate.nodata_share = nodata;
   result.certificate.tiles_missing = result.stats.tiles_missing;
   result.certificate.tiles_substituted = result.stats.tiles_substituted;
   return result;

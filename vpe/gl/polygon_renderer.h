@@ -1,4 +1,4 @@
-// The polygon backend: selected tiles as textured triangle meshes.
+// Polygon backend: draws selected tiles as textured triangle meshes.
 #pragma once
 
 #include <functional>
@@ -11,23 +11,37 @@
 namespace vpe::gl {
 
 struct RendererOptions {
-  std::size_t memory_bytes = std::size_t{1} << 30;  // CPU and GPU payloads together
-  int threads = 0;                                  // for making tiles ready; 0 = all cores
-  // Called by a loader before each page that it makes, on its thread; may wait, and may throw what then is the
-  // page's failure. For tests of slow and broken storage.
+  // CPU and GPU payloads together. Smaller: coarser textures, more loading while the camera moves, and fewer
+  // triangles (most_triangles()); larger: more memory of the process.
+  std::size_t memory_bytes = std::size_t{1} << 30;
+  // Threads that make pages; 0 = all cores. Fewer: tiles come later, drawing is disturbed less.
+  int threads = 0;
+  // Called by a loader on its thread before each page that it makes. May wait. An exception becomes the page's
+  // failure. For tests of slow and broken storage.
   std::function<void(const lod::TileKey& tile)> before_load;
 };
 
-// Triangles of the largest frame for which the memory is enough.
+// Returns the number of triangles of the largest frame for which the memory is enough.
 std::int64_t most_triangles(std::size_t memory_bytes);
 
-// Complete images (core::DrawResult::missing is empty) do not depend on what was drawn before, on threads or
-// on the order in which tiles came. Others are in full cover: coarser tiles stand in for missing ones.
-// Positions are relative to each tile's centre, the camera is subtracted in double, depth is reversed 32-bit
-// float. Range of a pixel is the distance to the drawn triangle at the pixel's centre; its relative error is at
-// most kRangeError * (1 + range / nearest range in the image), from the interpolation of depth over large
-// triangles. Sky pixels are +infinity. Range takes passes of its own, with one sample a pixel.
+// Relative error of a range, from the interpolation of depth over large triangles: a range is off by at most
+// kRangeError * (1 + range / nearest range in the image) of itself.
 inline constexpr double kRangeError = 5e-7;
+
+// Makes a renderer of a planet. The context must be current on this thread, which alone may use the renderer.
+// Throws std::runtime_error when OpenGL fails.
+//
+// Complete images (core::DrawResult::missing is empty) do not depend on what was drawn before, on threads or on
+// the order in which tiles came. Other images have no holes: coarser tiles replace missing ones. Positions are
+// relative to each tile's centre, the camera is subtracted in double, depth is reversed 32-bit float. The range
+// of a pixel is the distance to the drawn triangle at the pixel's centre, +infinity for the sky. Ranges take
+// passes of their own, with one sample a pixel. Only perspective views can be drawn.
+//
+// Typical usage:
+//
+//   const std::shared_ptr<Context> context = Context::create();
+//   const auto renderer = make_polygon_renderer(context, paging::PlanetFile::open("mars.vpe"));
+//   const core::DrawResult result = renderer->draw(request);
 std::unique_ptr<core::Renderer> make_polygon_renderer(std::shared_ptr<Context> context,
                                                       std::shared_ptr<const paging::PlanetFile> planet,
                                                       const RendererOptions& options = {});

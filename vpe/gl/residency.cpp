@@ -6,13 +6,13 @@ namespace vpe::gl {
 
 namespace {
 
-// What Mesa without a GPU (22.3) takes for the objects themselves, measured by residency_test: the two
+// Bytes that Mesa without a GPU (22.3) takes for the objects themselves, measured by residency_test: the two
 // buffers of a mesh, a texture. Small tiles take as much for these as for their triangles.
 constexpr std::size_t kMeshObjectBytes = 1600;
 constexpr std::size_t kBufferBytes = 600;
 constexpr std::size_t kTextureObjectBytes = 2400;
 
-// It keeps textures in rows of so many bytes, and blocks of so many rows.
+// Mesa keeps textures in rows of a multiple of these bytes, and in blocks of these rows.
 constexpr std::size_t kRowBytes = 64;
 constexpr std::size_t kBlockHeight = 4;
 

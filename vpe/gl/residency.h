@@ -1,4 +1,4 @@
-// GPU objects of tiles: what is resident, what a frame still needs, what may leave.
+// GPU objects of tiles, and how long they stay resident.
 #pragma once
 
 #include <algorithm>
@@ -22,15 +22,16 @@ struct GpuMesh {
   Buffer positions;
   Buffer charts;  // none: no textures
   Buffer indices;
-  bool short_indices = false;
+  bool short_indices = false;  // 16 bits
   glm::dvec3 centre_m{0, 0, 0};
-  std::uint32_t first_foot = 0;
+  std::uint32_t first_foot = 0;  // vertices from here on are feet of skirts
   IndexRanges ranges;
   double quantisation_m = 0;
   double longest_edge_m = 0;
-  std::shared_ptr<const lod::OccluderProfile> occluders;  // null: nobody asked for them
+  std::shared_ptr<const lod::OccluderProfile> occluders;  // null: not made
   std::size_t bytes = 0;
 };
+// Uploads geometry to buffers of its own. Throws std::runtime_error.
 GpuMesh upload(const TileGeometry& geometry);
 
 // Facets lie in rows of kFacetRow texels.
@@ -40,35 +41,45 @@ struct GpuTexture {
   Texture2D texture;
   int intervals = 0;     // 0: facets
   bool light = false;    // one channel: ShadedTile::channels
-  double brightest = 1;  // of light
+  double brightest = 1;  // light of the value 255
   bool nodata = false;   // ShadedTile::nodata
   std::size_t bytes = 0;
 };
+// Uploads colours or light to a texture of its own. Throws std::runtime_error.
 GpuTexture upload(const ShadedTile& tile);
 
-// Which of a tile's meshes and textures.
+// Identifies one of a tile's meshes.
 struct MeshDetail {
   int variant = 0;
   int origin = kTileCentre;  // what positions are relative to (make_geometry)
   bool charts = true;
   bool operator==(const MeshDetail&) const = default;
 };
+// Identifies one of a tile's textures.
 struct TextureDetail {
-  int paint = 0;  // TileNeed::paint
+  int texture = 0;  // TileNeed::texture
   std::shared_ptr<const ShadingParams> shading;
   bool operator==(const TextureDetail&) const = default;
 };
 
-// Least recently used objects leave when the budget is passed; what the current frame uses never does. Pointers
-// stay valid until the next trim() or clear(). Used on the context's thread only.
+// Holds the resident objects of tiles, several for each tile. Values have a member `bytes`.
+//
+// Each use is marked with a frame, which need not be the latest: pages of later views are marked with an
+// earlier one, so that they leave first. trim() drops what has the oldest marks, but nothing of the current
+// frame. Pointers to values stay valid until the next trim(), drop() or clear().
+//
+// base::LruList and base::LruCache do not fit: they order by the time of use, where pages of later views would
+// stay longer than those of this frame.
+//
+// Thread rule: the context's thread.
 template <typename Detail, typename Value>
 class Resident {
  public:
-  // The value if resident; marks it as used by the current frame.
+  // Returns a tile's value or null, and marks it as used in `frame`.
   Value* find(const lod::TileKey& tile, const Detail& detail, std::uint64_t frame) {
     return best(tile, frame, [&](const Detail& d) { return d == detail ? 0 : -1; });
   }
-  // Of a tile's values the one of the largest score >= 0; marks it as used.
+  // Returns the one of a tile's values with the largest score, or null if no score is >= 0. Marks it as used.
   template <typename Score>
   Value* best(const lod::TileKey& tile, std::uint64_t frame, const Score& score) {
     const auto at = items_.find(tile);
@@ -83,12 +94,13 @@ class Resident {
     found->frame = std::max(found->frame, frame);
     return found->value.get();
   }
+  // Adds a value, unless the tile has one of this detail.
   void insert(const lod::TileKey& tile, const Detail& detail, Value value, std::uint64_t frame) {
     if (find(tile, detail, frame) != nullptr) return;
     bytes_ += value.bytes;
     items_[tile].push_back({detail, std::make_unique<Value>(std::move(value)), frame});
   }
-  // Frees what was used longest ago until at most `limit` bytes are held; returns how many objects left.
+  // Drops values with the oldest marks until at most `limit` bytes are held. Returns how many were dropped.
   int trim(std::size_t limit, std::uint64_t current_frame) {
     if (bytes_ <= limit) return 0;
     struct Old {
@@ -116,6 +128,7 @@ class Resident {
     }
     return gone;
   }
+  // Drops all values whose detail fulfils a condition.
   template <typename Drop>
   void drop(const Drop& drop) {
     for (auto at = items_.begin(); at != items_.end();) {

@@ -34,7 +34,7 @@ Target::Target(int width, int height, int samples) : width_(width), height_(heig
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max_size);
   glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
   if (width < 1 || height < 1 || width > max_size || height > max_size) {
-    throw std::runtime_error("OpenGL: a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+    throw std::runtime_error("OpenGL: an image of " + std::to_string(width) + "x" + std::to_string(height) +
                              " is too large here (at most " + std::to_string(max_size) + " a side)");
   }
   if (samples > max_samples) {
@@ -76,7 +76,7 @@ void Target::read_colour(std::vector<base::Rgb>& out) const {
   static_assert(sizeof(base::Rgb) == 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, out.data());
-  check_gl("read the picture");
+  check_gl("read the image");
   flip_rows(out, width_, height_);
 }
 

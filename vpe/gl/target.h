@@ -1,27 +1,41 @@
-// An offscreen image: colour and reversed float depth, with or without multisampling.
+// Offscreen render target.
 #pragma once
 
 #include <vector>
 
-#include "mars/sources/source.h"
+#include "vpe/base/rgb.h"
 #include "vpe/gl/objects.h"
 
 namespace vpe::gl {
 
+// Owns an offscreen framebuffer: colour and reversed float depth, with or without multisampling.
+//
+// Thread rule: the context's thread. All members throw std::runtime_error when OpenGL reports an error.
+//
+// Typical usage:
+//
+//   Target target(640, 480, 4);
+//   target.bind();
+//   ... clear and draw ...
+//   target.read_colour(pixels);
 class Target {
  public:
-  // Throws std::runtime_error when the size or sample count is beyond what this OpenGL does.
+  // samples: 1 for no multisampling. Throws std::runtime_error if this OpenGL cannot do the size or sample
+  // count.
   Target(int width, int height, int samples);
 
   int width() const { return width_; }
   int height() const { return height_; }
   int samples() const { return samples_; }
 
-  void bind();  // makes it the draw framebuffer and sets the viewport
+  // Makes it the draw framebuffer and sets the viewport.
+  void bind();
 
-  // Reads back, top row first. Depth only from a target with one sample.
+  // Reads colours back, top row first.
   void read_colour(std::vector<base::Rgb>& out) const;
-  double mean_alpha() const;  // of what read_colour() read last, 0 to 1
+  // Returns the mean alpha, 0 to 1, of the image that read_colour() read last.
+  double mean_alpha() const;
+  // Reads depths back, top row first. Only for a target with one sample.
   void read_depth(std::vector<float>& out) const;
 
  private:

@@ -1,5 +1,4 @@
-// Draws resident tiles without a gap between them: their surfaces, then ribbons along their borders, then
-// skirts where the borders of neighbours differ.
+// Drawing of resident tiles without cracks between them.
 #pragma once
 
 #include <array>
@@ -18,67 +17,83 @@
 
 namespace vpe::gl {
 
+// Describes how a tile is drawn.
 struct TileDraw {
   const GpuMesh* mesh = nullptr;
-  const GpuTexture* texture = nullptr;
-  // Null texture: the palette's colours, or one. Of a texture only its gaps are shown when `flat`.
-  bool flat = false;
-  bool palette = false;
-  glm::vec3 colour{1, 1, 1};  // the one colour, and of light
+  const GpuTexture* texture = nullptr;  // null: the palette's colours, or one colour
+  bool flat = false;                    // one colour; of a texture only the nodata ground is shown
+  bool palette = false;                 // without a texture: the palette's colours
+  glm::vec3 colour{1, 1, 1};            // the one colour, and the colour that light is multiplied with
   lod::TileKey key;
   std::array<float, 4> skirt_m{};  // by lod::Edge; 0 = none
   glm::vec4 tint{0, 0, 0, 0};      // this colour takes the share alpha
 };
 
-// What all tiles of an image share.
+// Describes the air between the camera and all tiles of an image.
 struct Air {
-  glm::vec3 sun{1, 0, 0};  // body-fixed
+  glm::vec3 sun{1, 0, 0};  // towards the sun, body-fixed, unit
   float visibility_m = 0;  // 0: clear
 };
+
+// Holds the colours of heights from low to high, metres, evenly spaced.
 struct PaletteTable {
   double low = 0;
   double high = 1;
-  std::vector<base::Rgb> colours;  // from low to high, even
+  std::vector<base::Rgb> colours;
 };
 
+// Draws the surfaces of tiles, then ribbons along their borders, then skirts where the borders of neighbours
+// differ.
+//
 // Two tiles store the same border relative to different centres, and rasterisers snap the two roundings of a
-// vertex to a grid of 2^-subpixel_bits pixels: between equal borders a gap of a grid step may open, whatever
-// hangs below. Ribbons cover it from every side; they are three steps wide to either side, so that a step for
-// the gap and a step each for the ribbon's own corners are inside. Skirts stand upright and may be seen
-// edge-on, when the same ribbons close what they leave.
+// vertex to a grid of 2^-subpixel_bits pixels: between equal borders a crack of a grid step may open, whatever
+// hangs below. Ribbons cover it from every side. They are three steps wide to either side, so that a step for
+// the crack and a step each for the ribbon's own corners are inside. Skirts stand upright and may be seen
+// edge-on; then the same ribbons close the cracks that skirts leave.
+//
+// Thread rule: the context's thread. Throws std::runtime_error when a program cannot be made.
+//
+// Typical usage, with the target's framebuffer bound, and depth test and polygon mode set:
+//
+//   drawer.set_palette(nullptr);
+//   drawer.set_air({sun, 0});
+//   drawer.set_exaggeration(1);
+//   drawer.draw(view, projection, tiles);
+//   drawer.drop_unused();
 class TileDrawer {
  public:
   explicit TileDrawer(double planet_radius_m);
 
-  // For the draws that follow. The table may be dropped when it returns; null: no tile shows a palette.
+  // Sets the palette of the draws that follow. null: no tile shows a palette. The table is copied.
   void set_palette(const PaletteTable* table);
   void set_air(const Air& air) { air_ = air; }
   void set_exaggeration(double exaggeration) { exaggeration_ = exaggeration; }
 
-  // Lets go of programs that have not drawn since the last call.
+  // Drops programs that have not drawn since the last call.
   void drop_unused();
 
-  // The target's framebuffer is bound, depth test and polygon mode are set.
+  // Draws tiles in their colours.
   void draw(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles);
 
-  // Edges of triangles that the surfaces, drawn before, do not hide.
+  // Draws the edges of triangles that the surfaces, drawn before, do not hide.
   void draw_edges(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles);
 
-  // A square dot at each vertex, likewise.
+  // Draws a square dot at each vertex that the surfaces, drawn before, do not hide.
   void draw_vertices(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
                      float size_px);
 
-  // Lines along the borders of tiles over what draw() drew with the same view, lens and tiles. Depth and alpha
-  // stay as they are; a line is before the ground by a five-hundredth of its distance, so that its own tile
-  // does not hide it.
+  // Draws lines along the borders of tiles over what draw() drew with the same view, projection and tiles.
+  // Leaves depth and alpha as they are. A line is nearer than the ground by a five-hundredth of its distance,
+  // so that its own tile does not hide it.
   void draw_borders(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles,
                     const glm::vec3& colour);
 
-  // draw() in colours that number tiles and their parts (tile_id.h), on black.
+  // Draws tiles as draw() does, in the colours of the IDs of their parts (tile_id.h). The index of a tile in
+  // `tiles` is its ID. The target must be black.
   void draw_tile_ids(const core::View& view, const ClipProjection& projection, std::span<const TileDraw> tiles);
 
-  // What is drawn at a pixel's centre is a point of the meshes moved by at most this in the image: by a
-  // vertex's snap, or from a border to the corner of a ribbon and its snap.
+  // Returns the distance, pixels, by which a drawn point may be moved in the image from its place on the
+  // meshes: by the snap of a vertex, or from a border to the corner of a ribbon and its snap.
   double snap_px() const { return (kRibbonSteps + 1) * std::numbers::sqrt2 * step_px_; }
 
  private:
@@ -91,12 +106,13 @@ class TileDrawer {
     bool used = true;
   };
 
-  TilePaint paint_of(const TileDraw& tile) const;
-  Programs& programs(const TilePaint& paint);
-  void use(const Program& program, const TilePaint& paint, TilePart part, const core::View& view,
+  TileFeatures features_of(const TileDraw& tile) const;
+  Programs& programs(const TileFeatures& features);
+  void use(const Program& program, const TileFeatures& features, TilePart part, const core::View& view,
            const ClipProjection& projection);
-  void use(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view, float near_m);
-  void draw_part(const TileDraw& tile, const TilePaint& paint, TilePart part, const core::View& view,
+  void use(const TileDraw& tile, const TileFeatures& features, TilePart part, const core::View& view,
+           float near_m);
+  void draw_part(const TileDraw& tile, const TileFeatures& features, TilePart part, const core::View& view,
                  float near_m);
   template <typename DrawOne>
   void draw_before_ground(const core::View& view, const ClipProjection& projection,
@@ -105,13 +121,13 @@ class TileDrawer {
 
   double radius_m_;
   double exaggeration_ = 1;
-  std::map<TilePaint, Programs> programs_;
+  std::map<TileFeatures, Programs> programs_;
   Air air_;
   Texture2D palette_;
   glm::vec2 palette_terms_{0, 0};
   VertexArray array_;
   double step_px_ = 1.0 / 256;
-  const TileDraw* numbered_from_ = nullptr;  // numbers are drawn in place of colours
+  const TileDraw* first_with_id_ = nullptr;  // not null: IDs are drawn, relative to this tile
 };
 
 }  // namespace vpe::gl

@@ -11,57 +11,58 @@
 
 namespace vpe::gl {
 
-// Relative to TileGeometry::centre_m, body-fixed axes. What every appearance needs of a vertex.
+// Place of a vertex relative to TileGeometry::centre_m, metres, body-fixed axes. Every appearance needs it.
 using VertexPosition = glm::vec3;
 static_assert(sizeof(VertexPosition) == 12);
 
-// Where a vertex is in its tile: from 0 to 65535 over the chart rectangle, even in u and v. What textures need.
+// Place of a vertex in its tile: from 0 to 65535 over the chart rectangle, even in u and v. Textures need it.
 struct VertexChart {
   std::uint16_t s = 0;
   std::uint16_t t = 0;
 };
 static_assert(sizeof(VertexChart) == 4);
 
-// Where the parts lie in the indices.
+// Ranges of a tile's parts in its indices.
 struct IndexRanges {
   std::uint32_t surface = 0;  // triangles of the mesh: [0, surface)
-  // Of the skirt of edge e: [skirts[e], skirts[e + 1]), four a piece: two vertices of the border, their two
-  // feet.
+  // Skirt of edge e: [skirts[e], skirts[e + 1]). Four indices a piece: two vertices of the border, their feet.
   std::array<std::uint32_t, 5> skirts{};
   std::uint32_t border_end = 0;  // lines of the border: [skirts[4], border_end)
 };
 
 struct TileGeometry {
   glm::dvec3 centre_m{0, 0, 0};
-  std::vector<VertexPosition> positions_m;  // the mesh's, then the feet of the skirts
+  std::vector<VertexPosition> positions_m;  // of the mesh, then of the feet of the skirts
   std::vector<VertexChart> charts;          // as many, or none
-  std::uint32_t surface_vertices = 0;       // how many are the mesh's
+  std::uint32_t surface_vertices = 0;       // number of vertices of the mesh
   std::vector<std::uint32_t> indices;
   IndexRanges ranges;
   double quantisation_m = 0;  // no vertex is farther than this from its exact place, nor 2^-24 of its position
-  double longest_edge_m = 0;  // of a triangle of the mesh
+  double longest_edge_m = 0;  // longest edge of a triangle of the mesh
   std::size_t bytes() const {
     return positions_m.capacity() * sizeof(VertexPosition) + charts.capacity() * sizeof(VertexChart) +
            indices.capacity() * 4;
   }
 };
 
-// Positions are relative to the tile's centre, or to the vertex nearest to post i, j of the finest grid, where
-// the camera is so near that rounding relative to the centre would show: origin = j * (intervals + 1) + i.
+// Origin of positions at the tile's centre.
 inline constexpr int kTileCentre = -1;
 
-// height_m: one per vertex, above the sphere. The feet of the skirts stand at the border vertices themselves;
-// the vertex shader lowers them by the depth that the frame needs.
 struct GeometryOptions {
   double exaggeration = 1;
+  // kTileCentre, or j * (intervals + 1) + i: the vertex nearest to post i, j of the finest grid. For cameras so
+  // near that rounding relative to the centre would be visible.
   int origin = kTileCentre;
-  bool charts = true;
+  bool charts = true;  // false: no chart coordinates, which saves 4 bytes a vertex
 };
+
+// Makes the vertices and indices of a tile. height_m: one per vertex, above the sphere. The feet of the skirts
+// stand at the border vertices themselves; the vertex shader lowers them by the depth that the frame needs.
 TileGeometry make_geometry(const lod::TileKey& key, const lod::TileMesh& mesh, std::span<const double> height_m,
                            double radius_m, const GeometryOptions& options);
 
-// Of each line of a mesh's border, in the order of TileGeometry's, the triangle that it belongs to, counted
-// from 0.
+// Returns, for each line of a mesh's border in the order of TileGeometry, the triangle that it belongs to,
+// counted from 0.
 std::vector<std::uint32_t> border_triangles(const lod::TileMesh& mesh);
 
 }  // namespace vpe::gl

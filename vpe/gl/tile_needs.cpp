@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kLargestTexture = 1024;
 
-// The tile's centre, unless rounding relative to that would show: then the post nearest to the camera.
+// The tile's centre, unless rounding relative to it would be visible: then the post nearest to the camera.
 int origin(const lod::SelectedTile& tile, const core::View& view, const paging::PlanetFile& planet) {
   constexpr double kShows_px = 0.01;
   if (base::mutated(base::Guard::kNearOrigin)) return kTileCentre;
@@ -37,30 +37,33 @@ TileMaterial material(const core::Appearance& a, const glm::dvec3& sun, bool has
   out.shows_nodata = a.mode != core::Mode::kWireframe && a.mode != core::Mode::kMarkers;
   out.shading = paging::shading_params(a, sun, has_image, std::move(scale));
   const ShadingParams& shading = out.shading;
-  out.by = shading.lit                                                                  ? PaintMethod::kTexture
-           : shading.colour_source == paging::ColourSource::kPlain                      ? PaintMethod::kColour
-           : shading.colour_source == paging::ColourSource::kElevation && !shading.flat ? PaintMethod::kPalette
-                                                                                        : PaintMethod::kTexture;
-  if (out.by == PaintMethod::kPalette && shading.scale)
+  out.method = shading.lit                                             ? PaintMethod::kTexture
+               : shading.colour_source == paging::ColourSource::kPlain ? PaintMethod::kColour
+               : shading.colour_source == paging::ColourSource::kElevation && !shading.flat
+                   ? PaintMethod::kPalette
+                   : PaintMethod::kTexture;
+  if (out.method == PaintMethod::kPalette && shading.scale)
     out.palette_error_m = std::abs(shading.scale->high() - shading.scale->low()) / 256;
   return out;
 }
 
 bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material) {
-  if (material.by == PaintMethod::kTexture || (material.shows_nodata && planet.has_nodata(tile))) return true;
-  if (material.by != PaintMethod::kPalette) return false;
+  if (material.method == PaintMethod::kTexture || (material.shows_nodata && planet.has_nodata(tile)))
+    return true;
+  if (material.method != PaintMethod::kPalette) return false;
   const lod::TileInfo* info = planet.tree().find(tile);
   return info != nullptr && info->variants.front().terms.height_error_m > material.palette_error_m;
 }
 
 bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material) {
   if (!is_textured(tile, planet, material)) return false;
-  // The programs of coarse tiles find the place by themselves (TilePaint::placed): a texel is wide there.
-  return (material.by != PaintMethod::kPalette && !material.shading.flat) || planet.has_nodata(tile);
+  // Programs compute texture coordinates of coarse tiles from positions (TileFeatures::placed): texels are
+  // wide.
+  return (material.method != PaintMethod::kPalette && !material.shading.flat) || planet.has_nodata(tile);
 }
 
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
-                                 const paging::PlanetFile& planet, const TerrainShader& painter,
+                                 const paging::PlanetFile& planet, const TerrainShader& terrain_shader,
                                  const NeedOptions& options) {
   const double focal = core::focal_px(view);
   std::vector<TileNeed> needs;
@@ -70,28 +73,28 @@ std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const
                   0};
     if (!is_textured(tile.key, planet, options.material)) {
     } else if (options.material.shading.flat) {
-      need.paint = facet_paint(tile.variant);
+      need.texture = facet_texture(tile.variant);
     } else {
       const double side = lod::nominal_side_m(tile.key.level, planet.radius_m());
       const double wanted = 0.75 * side * focal / std::max(tile.min_distance_m, 1e-3 * side);
-      const int most =
-          std::min(kLargestTexture, painter.useful_intervals(tile.key, options.material.shading.colour_source));
+      const int most = std::min(
+          kLargestTexture, terrain_shader.useful_intervals(tile.key, options.material.shading.colour_source));
       // Colours of posts are not made finer than posts.
       const bool at_posts = options.material.shading.colour_source == paging::ColourSource::kImageAtPosts;
-      need.paint = at_posts ? std::min(kSmallestTexture, most) : kSmallestTexture;
-      while (need.paint < wanted && need.paint < most) need.paint *= 2;
+      need.texture = at_posts ? std::min(kSmallestTexture, most) : kSmallestTexture;
+      while (need.texture < wanted && need.texture < most) need.texture *= 2;
     }
     needs.push_back(need);
   }
   for (int cap = kLargestTexture; cap > kSmallestTexture; cap /= 2) {
     std::size_t bytes = 0;
     for (const TileNeed& need : needs) {
-      if (need.paint <= 0) continue;
-      const auto side = static_cast<std::size_t>(need.paint) + 1;
+      if (need.texture <= 0) continue;
+      const auto side = static_cast<std::size_t>(need.texture) + 1;
       bytes += 4 * side * side;
     }
     if (bytes <= options.texture_bytes) break;
-    for (TileNeed& need : needs) need.paint = std::min(need.paint, cap / 2);
+    for (TileNeed& need : needs) need.texture = std::min(need.texture, cap / 2);
   }
   return needs;
 }

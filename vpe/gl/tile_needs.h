@@ -1,4 +1,4 @@
-// Which mesh and which texture a tile is to be drawn with: pure functions of the view and the settings.
+// Mesh and texture that a tile is to be drawn with: pure functions of the view and the settings.
 #pragma once
 
 #include <span>
@@ -11,36 +11,39 @@
 
 namespace vpe::gl {
 
-// How an appearance paints ground.
+// Ways to colour ground.
 enum class PaintMethod {
   kColour,   // one colour
-  kPalette,  // colour of the height of what is drawn, by the program; where its meshes are too coarse for the
-             // palette a texture
-  kTexture,  // ShadedTile: a grid, or with flat shading facets
+  kPalette,  // the program computes the colour from the height of what is drawn; a texture where meshes are too
+             // coarse for the palette
+  kTexture,  // ShadedTile: a grid, or facets with flat shading
 };
 
+// Describes how ground is drawn in an appearance.
 struct TileMaterial {
-  PaintMethod by = PaintMethod::kTexture;
-  bool shows_nodata = true;    // ground without data looks different: such tiles have textures in any case
-  double palette_error_m = 0;  // relief that a palette may be off: a 256th of its range
+  PaintMethod method = PaintMethod::kTexture;
+  bool shows_nodata = true;    // nodata ground looks different: its tiles have textures with every method
+  double palette_error_m = 0;  // height error that a palette may show: a 256th of its range
   ShadingParams shading;       // of textures
   bool operator==(const TileMaterial&) const = default;
 };
 
-// scale: of the appearance; null where it shows none (paging::needs_scale).
+// Returns the material of an appearance. scale: the scale of its colours; null where it shows none
+// (paging::needs_scale).
 TileMaterial material(const core::Appearance& appearance, const glm::dvec3& sun, bool has_image,
                       std::shared_ptr<const core::ColourScale> scale);
 
-inline constexpr int kSmallestTexture = 128;
+inline constexpr int kSmallestTexture = 128;  // intervals
 
+// Returns true if a tile needs a texture.
 bool is_textured(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material);
 
-// Whether vertices need to know where they are in their tile.
+// Returns true if a tile's vertices need chart coordinates.
 bool needs_charts(const lod::TileKey& tile, const paging::PlanetFile& planet, const TileMaterial& material);
 
 struct TileNeed {
   MeshDetail mesh;
-  int paint = 0;  // 0: no texture; > 0: intervals of its grid; < 0: facet_paint(variant)
+  int texture = 0;  // 0: none; > 0: intervals of its grid; < 0: facet_texture(variant)
 };
 
 struct NeedOptions {
@@ -48,10 +51,10 @@ struct NeedOptions {
   std::size_t texture_bytes = 0;  // for the textures of all the tiles
 };
 
-// One for each tile. Textures have one texel a pixel at the tile's nearest point, unless the data or the memory
-// has less.
+// Returns the need of each tile. Textures have one texel a pixel at the tile's nearest point, unless the data
+// or the memory allows less.
 std::vector<TileNeed> tile_needs(std::span<const lod::SelectedTile> tiles, const core::View& view,
-                                 const paging::PlanetFile& planet, const TerrainShader& painter,
+                                 const paging::PlanetFile& planet, const TerrainShader& terrain_shader,
                                  const NeedOptions& options);
 
 }  // namespace vpe::gl

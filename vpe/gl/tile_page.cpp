@@ -37,16 +37,16 @@ std::pair<Page, std::size_t> PageLoader::load(const PageKey& key) const {
     }
     case PageKind::kTexture: {
       if (key.shading->flat) {
-        with_mesh(key.tile, painted_variant(key.detail), key.shading->exaggeration,
+        with_mesh(key.tile, variant_of_facets(key.detail), key.shading->exaggeration,
                   [&](const lod::TileMesh& mesh, std::span<const double> height_m) {
-                    page.shaded = painter_->shade_facets(key.tile, mesh, height_m, *key.shading);
+                    page.shaded = terrain_shader_->shade_facets(key.tile, mesh, height_m, *key.shading);
                     for (const std::uint32_t triangle : border_triangles(mesh)) {
                       for (std::size_t c = 0; c < 4; ++c)
                         page.shaded.texels.push_back(page.shaded.texels[4 * triangle + c]);
                     }
                   });
       } else {
-        page.shaded = painter_->shade(key.tile, key.detail, *key.shading);
+        page.shaded = terrain_shader_->shade(key.tile, key.detail, *key.shading);
       }
       const std::size_t bytes = page.shaded.bytes();
       return {std::move(page), bytes};

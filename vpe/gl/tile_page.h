@@ -1,4 +1,4 @@
-// What a tile needs to be drawn, made on the CPU by any thread. No OpenGL.
+// Pages: what a tile needs to be drawn, made on the CPU. No OpenGL.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@ using paging::ShadingParams;
 using paging::TerrainShader;
 
 enum class PageKind : std::uint8_t {
-  kMesh,     // of a variant, relative to an origin, at an exaggeration
-  kTexture,  // as a look paints it
+  kMesh,     // geometry of a variant, relative to an origin, at an exaggeration
+  kTexture,  // colours or light with given shading
   kGround,   // posts of a finest tile, as drawn at an exaggeration
 };
 
 struct PageKey {
   PageKind kind = PageKind::kMesh;
   lod::TileKey tile;
-  int detail = 0;  // variant, or TileNeed::paint
-  int origin = kTileCentre;
-  bool charts = true;                            // of meshes
-  double exaggeration = 1;                       // of meshes and posts
-  std::shared_ptr<const ShadingParams> shading;  // of textures; equal looks are one object
-  bool occluders = false;                        // of meshes: with them
+  int detail = 0;                                // variant, or TileNeed::texture
+  int origin = kTileCentre;                      // meshes only
+  bool charts = true;                            // meshes only
+  double exaggeration = 1;                       // meshes and posts only
+  std::shared_ptr<const ShadingParams> shading;  // textures only; equal shading is one object
+  bool occluders = false;                        // meshes only: with their occluder profile
   bool operator==(const PageKey&) const = default;
 };
 struct PageKeyHash {
@@ -41,34 +41,35 @@ struct PageKeyHash {
   }
 };
 
-// TileNeed::paint of the facets of a variant's mesh, and back.
-constexpr int facet_paint(int variant) { return -1 - variant; }
-constexpr int painted_variant(int paint) { return -1 - paint; }
+// Converts a variant to the TileNeed::texture of the facets of its mesh, and back.
+constexpr int facet_texture(int variant) { return -1 - variant; }
+constexpr int variant_of_facets(int texture) { return -1 - texture; }
 
-// The member of the key's kind is there.
+// Holds the member of the key's kind; the others are empty.
 struct Page {
   TileGeometry geometry;
-  std::shared_ptr<const lod::OccluderProfile> occluders;  // of the geometry; null unless asked for
+  std::shared_ptr<const lod::OccluderProfile> occluders;  // of the geometry; null unless requested
   ShadedTile shaded;
   std::shared_ptr<const paging::TileHeights> ground;
 };
 
-// Thread rule: any thread may load.
+// Makes pages from a planet file. Thread rule: any thread may call load().
 class PageLoader {
  public:
-  PageLoader(std::shared_ptr<const paging::PlanetFile> planet, std::shared_ptr<const TerrainShader> painter)
-      : planet_(std::move(planet)), painter_(std::move(painter)) {}
+  PageLoader(std::shared_ptr<const paging::PlanetFile> planet,
+             std::shared_ptr<const TerrainShader> terrain_shader)
+      : planet_(std::move(planet)), terrain_shader_(std::move(terrain_shader)) {}
 
-  // The page and its bytes. Throws paging::PlanetError that names the tile.
+  // Returns the page and its bytes. Throws paging::PlanetError that names the tile.
   std::pair<Page, std::size_t> load(const PageKey& key) const;
 
  private:
-  // visit(mesh, heights of its vertices, drawn so many times as high) for one of a tile's meshes.
+  // Calls visit(mesh, heights of its vertices as drawn) for one of a tile's meshes.
   template <typename Visit>
   void with_mesh(const lod::TileKey& tile, int variant, double exaggeration, Visit&& visit) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  std::shared_ptr<const TerrainShader> painter_;
+  std::shared_ptr<const TerrainShader> terrain_shader_;
 };
 
 }  // namespace vpe::gl

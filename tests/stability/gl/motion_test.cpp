@@ -51,9 +51,10 @@ TEST_F(PolygonMotion, KeepsTheOrderFromATenthOfAMetreToAHundredThousandKilometre
         test_support::check_depth_order(surface, view, draw->draw(request_for(view)).frame.range_m);
     EXPECT_LT(order.nearest_m, 0.2);
     EXPECT_GT(order.farthest_m, 6e7);
-    // A pixel or two at the outline of the needle under the camera, a millionth of its length away, show the sky.
-    record_worst("polygons, 0.1 to 10^8 m in one picture: pixels out of order", order.wrong / order.pixels,
-                 2e-4, "of all");
+    // One or two pixels at the outline of the needle under the camera, a millionth of its length away, show
+    // sky.
+    record_worst("polygons, 0.1 to 10^8 m in one image: pixels out of order", order.wrong / order.pixels, 2e-4,
+                 "of all");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "cull/terrain_horizon.h"
 #include "lod/control.h"
 #include "lod/frame_budget.h"
+#include "lod/mesh/error_meter.h"
 #include "lod/mesh/mesh.h"
 #include "lod/off_axis_magnification.h"
 #include "lod/tree/posts.h"
@@ -82,9 +83,9 @@ void planet(int n) {
   const mars::Pose pose{a.lon_deg, a.lat_deg, alt_m, uniform(-400, 400), uniform(-90, 90), uniform(-200, 200)};
   const mars::CameraPose camera =
       mars::to_camera(pose, {uniform(-90, 90), uniform(-90, 90), 3}, mars::kMarsRadius_m);
-  print("eye", n, camera.position_m);
-  print("eye forward", n, camera.axes.forward);
-  print("eye up", n, camera.axes.up);
+  print("camera", n, camera.position_m);
+  print("camera forward", n, camera.axes.forward);
+  print("camera up", n, camera.axes.up);
   const mars::Pose again = mars::to_pose(camera, mars::kMarsRadius_m);
   print("pose", n, {again.lon_deg, again.lat_deg, again.alt_m, again.yaw_deg, again.pitch_deg, again.roll_deg});
   const mars::ChartPoint chart = mars::chart_point(direction());
@@ -114,7 +115,7 @@ void views(int n) {
         {crossed ? static_cast<double>(*crossed) : -1, horizon.half_tangent,
          cull::hidden(horizon, chord2, region.max_radius_m) ? 1.0 : 0.0,
          cull::against_sky(camera, horizon, chord2, region.max_radius_m) ? 1.0 : 0.0});
-  print("stretch", n, {lod::off_axis_magnification(lod::image_plane(view), volume)});
+  print("magnification", n, {lod::off_axis_magnification(lod::image_plane(view), volume)});
   print("centre", n, {lod::least_angle_rad(lod::centre_of_view(view), volume)});
 }
 
@@ -189,16 +190,16 @@ void flights(int trial) {
   for (int n = 0; n < 6; ++n) {
     flight.waypoints.push_back({t, at.lon_deg, at.lat_deg, uniform(1, 1e6), false, uniform(-180, 180),
                                 uniform(-90, 90), uniform(-180, 180)});
-    flight.looks.push_back({t, uniform(-180, 180), uniform(-90, 90), 0});
+    flight.heads.push_back({t, uniform(-180, 180), uniform(-90, 90), 0});
     t += uniform(0.1, 20);
     at = mars::destination(at, uniform(0, 360), uniform(0, 1));
   }
   const scripts::Path path(flight, mars::kMarsRadius_m, {});
   for (int n = 0; n < 30; ++n) {
     const scripts::FlightState state = path.at(uniform(0, t));
-    print("flight eye", 30 * trial + n, state.camera.position_m);
+    print("flight camera", 30 * trial + n, state.camera.position_m);
     print("flight forward", 30 * trial + n, state.camera.axes.forward);
-    print("flight look", 30 * trial + n, {state.look.yaw_deg, state.look.pitch_deg, state.pose.alt_m});
+    print("flight head", 30 * trial + n, {state.head.yaw_deg, state.head.pitch_deg, state.pose.alt_m});
   }
   const vpe::explore::TerrainQuery ball = vpe::explore::ball(mars::kMarsRadius_m);
   mars::Pose pose{at.lon_deg, at.lat_deg, 5000, 30, 0, 0};

@@ -1,0 +1,2 @@
+// Fragment shader of surfaces and ribbons.
+void main() { colour_ground(); }
