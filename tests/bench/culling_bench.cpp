@@ -1,5 +1,5 @@
-// What the cullers inside of selection share out, cost and save: selection with both, without the horizon and
-// without the frustum, for views on a canyon floor, in a crater, over a plain and from orbit. docs/culling.md
+// Cost and savings of the cullers inside selection: selection with both, without the horizon and without the
+// frustum, for views on a canyon floor, in a crater, over a plain and from orbit. docs/measurements/culling.md
 // has the table.
 //
 //   culling_bench PLANET.vpe
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   const paging::Surface surface(planet, std::size_t{64} << 20);
   constexpr int kYaws = 6;
   std::printf(
-      "a view: tiles visited, culled by each (tiles that their absence adds to the picture), time of "
+      "a view: tiles visited, culled by each (tiles that their absence adds to the image), time of "
       "selecting\n");
   for (const bench::Place& place : bench::culling_places()) {
     Total both, without_horizon, without_frustum;
@@ -52,8 +52,7 @@ int main(int argc, char** argv) {
     }
     std::printf(
         "%-8s %7.0f m: %4ld visited, horizon %3.0f %% (%5ld), frustum %3.0f %% (%5ld), %4ld drawn; %.3f ms, "
-        "without "
-        "horizon %.3f, without frustum %.3f\n",
+        "without horizon %.3f, without frustum %.3f\n",
         place.name.c_str(), place.height_m, both.visited / kYaws,
         100.0 * static_cast<double>(both.horizon) / static_cast<double>(both.visited),
         (without_horizon.tiles - both.tiles) / kYaws,

@@ -1,4 +1,4 @@
-// Places and times that benchmarks of culling share.
+// Places, views and timing for the benchmarks of culling.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "mars/geodesy/pose.h"
 #include "paging/surface/surface.h"
+#include "vpe/base/quantile.h"
 #include "vpe/core/view.h"
 
 namespace bench {
@@ -19,7 +20,7 @@ struct Place {
   double lon, lat, height_m, pitch_deg;
 };
 
-// Of the embedded Mars.
+// Returns places on the embedded Mars.
 inline std::vector<Place> culling_places() {
   return {{"canyon", -72.0, -12.5, 100, 0},    {"canyon", -72.0, -12.5, 2, 0},
           {"crater", 137.4, -5.0, 100, 0},     {"crater", 137.4, -5.0, 2, 0},
@@ -27,15 +28,15 @@ inline std::vector<Place> culling_places() {
           {"flight", -74.0, -13.5, 8000, -15}, {"orbit", -72.0, -12.5, 400000, -30}};
 }
 
-// View n of many round a place.
-inline vpe::core::View view_at(const Place& place, const paging::Surface& surface, int n, int many) {
+// Returns view n of `count` around a place.
+inline vpe::core::View view_at(const Place& place, const paging::Surface& surface, int n, int count) {
   vpe::core::View view;
   view.width = 1280;
   view.height = 720;
   view.fov_deg = 60;
   const double ground = surface.at(mars::direction({place.lon, place.lat})).height_m;
   view.camera =
-      mars::to_camera({place.lon, place.lat, ground + place.height_m, 360.0 * n / many, place.pitch_deg, 0},
+      mars::to_camera({place.lon, place.lat, ground + place.height_m, 360.0 * n / count, place.pitch_deg, 0},
                       surface.planet_radius_m());
   return view;
 }
@@ -44,6 +45,7 @@ inline double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+// Returns the median time of a number of rounds.
 template <class Work>
 double median_ms(Work&& work, int rounds = 7) {
   std::vector<double> times;
@@ -52,8 +54,7 @@ double median_ms(Work&& work, int rounds = 7) {
     work();
     times.push_back(ms_since(start));
   }
-  std::nth_element(times.begin(), times.begin() + rounds / 2, times.end());
-  return times[static_cast<std::size_t>(rounds / 2)];
+  return vpe::base::median_upper(times);
 }
 
 }  // namespace bench

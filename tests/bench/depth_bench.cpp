@@ -1,10 +1,10 @@
-// Time of a frame against the depth of the planet, at a fixed view and tolerance: docs/paging.md has the
-// figures.
+// Time of a frame against the depth of the planet, at a fixed view and tolerance. docs/measurements/paging.md
+// has the figures.
 //
 //   depth_bench LON,LAT,ALT,YAW,PITCH,ROLL WIDTHxHEIGHT ROUNDS PLANET.vpe PLANET.vpe...
 //
-// The planets should differ in their finest spacing alone. Every planet has its renderer, all tiles are there,
-// and rounds go over all planets in turn. The exponent is the slope of the line through (doublings of
+// The planets should differ in their finest spacing alone. Every planet has its own renderer, all tiles are
+// resident, and each round draws every planet once. The exponent is the slope of the line through (doublings of
 // resolution, log2 of the median time).
 #include <algorithm>
 #include <chrono>
@@ -18,11 +18,13 @@
 #include "paging/planet/planet_file.h"
 #include "vpe/base/heap.h"
 #include "vpe/base/number.h"
+#include "vpe/base/quantile.h"
 #include "vpe/gl/polygon_renderer.h"
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using vpe::base::median_upper;
 
 struct Planet {
   std::string file;
@@ -33,12 +35,6 @@ struct Planet {
   std::vector<double> frame_ms;
   std::vector<double> select_ms;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double finest_spacing_m(const paging::PlanetFile& planet) {
   int level = 0;
@@ -79,17 +75,17 @@ void run(const mars::Pose& pose, int width, int height, int rounds, char** files
       "| finest spacing m | tiles in the file | tiles drawn | triangles | select ms | frame ms |\n"
       "|---|---|---|---|---|---|\n");
   double x_mean = 0, y_mean = 0, xx = 0, xy = 0;
-  for (const Planet& p : planets) {
+  for (Planet& p : planets) {
     std::printf("| %.1f | %zu | %d | %lld | %.3f | %.2f |\n", p.spacing_m,
                 static_cast<std::size_t>(p.planet->tree().size()), p.stats.tiles_drawn,
-                static_cast<long long>(p.stats.triangles), median(p.select_ms), median(p.frame_ms));
+                static_cast<long long>(p.stats.triangles), median_upper(p.select_ms), median_upper(p.frame_ms));
     x_mean -= std::log2(p.spacing_m) / count;
-    y_mean += std::log2(median(p.frame_ms)) / count;
+    y_mean += std::log2(median_upper(p.frame_ms)) / count;
   }
-  for (const Planet& p : planets) {
+  for (Planet& p : planets) {
     const double x = -std::log2(p.spacing_m) - x_mean;
     xx += x * x;
-    xy += x * (std::log2(median(p.frame_ms)) - y_mean);
+    xy += x * (std::log2(median_upper(p.frame_ms)) - y_mean);
   }
   std::printf("\ntime grows with resolution to the power %.3f (aim at most 0.1)\n", xy / xx);
 }

@@ -55,7 +55,7 @@ within() {
     awk -v of="$1" '{ n = $1; gsub(",", "", n); sub(/^[^:]*:/, ""); sub(/\(.*/, "") } index($0, of) { sum += n } END { print sum + 0 }'
 }
 {
-  for backend in voxel polygon; do
+  for backend in ray polygon; do
     for program in $with $without; do
       few=$(count $program bare $backend 2)
       many=$(count $program bare $backend 12)
@@ -73,12 +73,12 @@ polygon,overlays,overlay::draw
 polygon,statistics,StatsWriter::row
 polygon,stereo,draw_stereo
 polygon,planes,Target::read_depth
-polygon,occlusion culling,make_walls
-polygon,light and normals of posts,GroundPainter::shade
-polygon,shadows,GroundPainter::sees_sun
-voxel,light and normals of posts,GroundPainter::normals
-voxel,imagery,GroundPainter::image
-voxel,overlays,overlay::draw
+polygon,occlusion culling,make_occluder_profile
+polygon,light and normals of posts,TerrainShader::shade
+polygon,shadows,TerrainShader::sees_sun
+ray,light and normals of posts,TerrainShader::normals
+ray,imagery,TerrainShader::image
+ray,overlays,overlay::draw
 END
 } | tee "$out/instructions.txt"
 rm -f "$out/callgrind" "$out/none.csv"

@@ -15,6 +15,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "lod/mesh/error_meter.h"
 #include "lod/select.h"
 #include "paging/surface/surface.h"
 #include "scripts/path.h"
@@ -122,7 +123,7 @@ RegularTiles measure(const paging::Surface& surface) {
     if (!tile.has_children) leaves.push_back(tile.key);
   }
   std::sort(leaves.begin(), leaves.end(),
-            [](const auto& a, const auto& b) { return lod::z_position(a) < lod::z_position(b); });
+            [](const auto& a, const auto& b) { return lod::morton_position(a) < lod::morton_position(b); });
   constexpr std::size_t kChunk = 64;
   std::vector<RegularTiles> found((leaves.size() + kChunk - 1) / kChunk);
   vpe::base::parallel_for(found.size(), 0, [&](std::size_t chunk) {

@@ -1,11 +1,11 @@
-// Time of a film's frames against plain drawing of the same triangles: section "What software OpenGL costs" of
-// docs/rendering.md.
+// Time of a film's frames against plain drawing of the same triangles. docs/measurements/rendering.md has the
+// figures.
 //
 //   frame_bench PLANET.vpe FLIGHT [FRAMES] [ROUNDS]
 //
-// The peer draws all triangles of the frame's meshes, relative to the camera, with one call, one vertex buffer and
-// one texture, into the same kind of target: what OpenGL takes for that many triangles and pixels. Frames are
-// resident on both sides; rounds alternate; figures are medians.
+// The baseline draws all triangles of the frame's meshes, relative to the camera, with one call, one vertex
+// buffer and one texture, into the same kind of target. It is the time that OpenGL takes for that many
+// triangles and pixels. Tiles are resident on both sides, rounds alternate, figures are medians.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -19,6 +19,7 @@
 #include "scripts/path.h"
 #include "tests/bench/flight.h"
 #include "vpe/base/number.h"
+#include "vpe/base/quantile.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/gl/projection.h"
 #include "vpe/gl/target.h"
@@ -27,6 +28,7 @@
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using vpe::base::median_upper;
 using vpe::core::DrawRequest;
 
 constexpr const char* kVertex = R"glsl(
@@ -34,12 +36,13 @@ constexpr const char* kVertex = R"glsl(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec2 st;
 layout(location = 2) uniform mat3 rotation;
-layout(location = 3) uniform vec4 lens;
+layout(location = 3) uniform vec4 projection;
 layout(location = 4) uniform float near;
 layout(location = 0) out vec2 place;
 void main() {
   vec3 e = rotation * position;
-  gl_Position = vec4(lens.x * e.x + lens.z * e.z, lens.y * e.y + lens.w * e.z, near, -e.z);
+  gl_Position =
+      vec4(projection.x * e.x + projection.z * e.z, projection.y * e.y + projection.w * e.z, near, -e.z);
   place = st;
 }
 )glsl";
@@ -81,7 +84,7 @@ struct Vertex {
   vpe::gl::VertexChart chart;
 };
 
-// The meshes of a frame in one buffer.
+// Holds the meshes of a frame in one buffer.
 class Plain {
  public:
   Plain(const paging::PlanetFile& planet, const DrawRequest& request) : array_(vpe::gl::VertexArray::make()) {
@@ -166,12 +169,6 @@ class Plain {
   glm::mat3 rotation_{};
 };
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
 vpe::gl::Texture2D noise_texture() {
   constexpr GLsizei kSide = 1024;
   std::vector<std::uint32_t> texels(static_cast<std::size_t>(kSide) * kSide);
@@ -220,15 +217,15 @@ void run(const char* planet_file, const char* flight_file, std::int64_t count, s
       flat_ms.push_back(plain.draw_ms(target, flat));
       smooth_ms.push_back(renderer->draw(smooth).stats.draw_ms);
     }
-    const double peer_ms = median(bilinear_ms);
-    hard_ratios.push_back(median(hard_ms) / peer_ms);
-    smooth_ratios.push_back(median(smooth_ms) / peer_ms);
+    const double baseline_ms = median_upper(bilinear_ms);
+    hard_ratios.push_back(median_upper(hard_ms) / baseline_ms);
+    smooth_ratios.push_back(median_upper(smooth_ms) / baseline_ms);
     std::printf("| %zu | %lld | %.1f | %.2f | %.2f | %.2f |\n", n, static_cast<long long>(plain.triangles()),
-                peer_ms, median(flat_ms) / peer_ms, hard_ratios.back(), smooth_ratios.back());
+                baseline_ms, median_upper(flat_ms) / baseline_ms, hard_ratios.back(), smooth_ratios.back());
     std::fflush(stdout);
   }
   std::printf("\nmedian of the frames: edges=hard %.2f, edges=smooth %.2f of plain bilinear drawing\n",
-              median(hard_ratios), median(smooth_ratios));
+              median_upper(hard_ratios), median_upper(smooth_ratios));
 }
 
 }  // namespace

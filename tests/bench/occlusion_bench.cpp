@@ -1,6 +1,6 @@
-// What terrain occlusion removes and costs: of the tiles selected for views on a canyon floor, in a crater,
-// over a plain and from orbit, how many the pass hides, how many brute force finds hidden, and the time of the
-// pass beside that of selecting. docs/culling.md has the table.
+// Effect and cost of terrain occlusion: for views on a canyon floor, in a crater, over a plain and from orbit,
+// the number of selected tiles that the pass hides and that brute force finds hidden, and the time of the pass
+// beside that of selection. docs/measurements/culling.md has the table.
 //
 //   occlusion_bench PLANET.vpe [MARGIN_PX] [NAME LON LAT HEIGHT PITCH]...
 #include <algorithm>
@@ -32,7 +32,7 @@ void measure(test_support::MeshStore& store, const paging::Surface& surface, con
     lod::Selection selection;
     select_ms +=
         bench::median_ms([&] { lod::select({}, planet.tree(), lod::select_view(view), scratch, selection); });
-    const test_support::DrawnGround drawn(store, selection, view.camera.position_m);
+    const test_support::DrawnTerrain drawn(store, selection, view.camera.position_m);
     std::vector<lod::OccludingTile> given;
     for (const lod::SelectedTile& t : selection.tiles) {
       given.push_back(

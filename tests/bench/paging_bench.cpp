@@ -1,11 +1,12 @@
-// Frames that do not wait against the same frames with all tiles there: docs/paging.md has the figures.
+// Time of frames that do not wait against the same frames with all tiles resident. docs/measurements/paging.md
+// has the figures.
 //
 //   paging_bench PLANET.vpe [FLIGHT] [WIDTHxHEIGHT] [ROUNDS] [MEMORY_MB]
 //
-// A round flies the flight twice, each time with a new renderer. Paged: frame n shows the pose at n / 30 s, at
-// once, with the poses 0.25 s and 1 s ahead as what comes next. Preloaded: each pose is drawn complete first,
-// which is not timed, and then timed. Time of flight is virtual, loading is not: a frame that takes 50 ms gives
-// the loaders 50 ms, whatever the film's 33 ms say.
+// A round flies the flight twice, each time with a new renderer. Paged: frame n shows the pose at n / 30 s at
+// once, and the poses 0.25 s and 1 s ahead are upcoming. Preloaded: each pose is drawn complete first, which is
+// not timed, and then drawn again, timed. Time of flight is virtual, loading is not: a frame that takes 50 ms
+// gives the loaders 50 ms, not the film's 33 ms.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -20,6 +21,7 @@
 #include "tests/bench/flight.h"
 #include "vpe/base/heap.h"
 #include "vpe/base/number.h"
+#include "vpe/base/quantile.h"
 #include "vpe/gl/polygon_renderer.h"
 
 namespace {
@@ -74,13 +76,9 @@ class Film {
   int frames_;
 };
 
-double quantile(std::vector<double> values, double part) {
-  const auto at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
+double quantile(std::vector<double> values, double share) { return vpe::base::quantile_round(values, share); }
 
-// One flight's frames.
+// Times and counts of one flight's frames.
 struct Times {
   std::vector<double> frame_ms;
   double select_ms = 0, load_ms = 0, draw_ms = 0, read_ms = 0;
@@ -156,8 +154,7 @@ int run(const char* planet_file, const char* flight_file, int width, int height,
               height, memory_mb);
   std::printf(
       "| run | median ms | p95 | longest | jank ms | total ms | select %% | select / load / draw / read, mean "
-      "ms | "
-      "incomplete frames %% | tiles missing %% |\n|---|---|---|---|---|---|---|---|---|---|\n");
+      "ms | incomplete frames %% | tiles missing %% |\n|---|---|---|---|---|---|---|---|---|---|\n");
   const vpe::gl::RendererOptions options{static_cast<std::size_t>(memory_mb) << 20, 0, {}};
   std::vector<double> jank, jank_preloaded, total, median, p95, select;
   for (int round = 0; round < rounds; ++round) {
@@ -175,8 +172,7 @@ int run(const char* planet_file, const char* flight_file, int width, int height,
   const double allowed = 1.5 * quantile(jank_preloaded, 0.5) + 100;
   std::printf(
       "\nmedians of %d rounds, paged : preloaded: total %.2f (aim 1.2), median %.2f, p95 %.2f; jank %.0f ms : "
-      "%.0f "
-      "ms (aim at most %.0f); select and cull %.1f %% of the paged frames (aim below 5)\n",
+      "%.0f ms (aim at most %.0f); select and cull %.1f %% of the paged frames (aim below 5)\n",
       rounds, quantile(total, 0.5), quantile(median, 0.5), quantile(p95, 0.5), quantile(jank, 0.5),
       quantile(jank_preloaded, 0.5), allowed, quantile(select, 0.5));
   return 0;

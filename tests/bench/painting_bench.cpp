@@ -1,9 +1,10 @@
-// Time of painting an image whose ranges are known (vpe/voxel/paint/image_painter.h) against asking
-// TerrainShader::colour_at, sky and haze pixel by pixel: section "Painting" of docs/rays.md.
+// Times painting an image whose ranges are known (vpe/voxel/paint/image_painter.h) against
+// TerrainShader::colour_at, sky and haze pixel by pixel. docs/measurements/rays.md has the figures, section
+// "Painting".
 //
-//   painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]
+//   painting_bench PLANET.vpe [ROUNDS [CAMERA [APPEARANCE]]]
 //
-// EYE and LOOK: parts of the names of those that are wanted.
+// CAMERA and APPEARANCE select cases by a part of their name.
 //
 // Both sides paint the same ranges on two threads with warm caches; rounds alternate; figures are medians.
 #include <algorithm>
@@ -32,7 +33,7 @@ double median(std::vector<double> all) {
   return all[all.size() / 2];
 }
 
-// Wall clock, and the processors' time, which other programs on the machine disturb less.
+// Holds wall-clock times, and processor times, which other programs on the machine disturb less.
 struct Times {
   std::vector<double> wall_ms, cpu_ms;
 
@@ -46,7 +47,7 @@ struct Times {
   }
 };
 
-struct Look {
+struct AppearanceCase {
   const char* name;
   core::Mode mode;
   core::Colour colour;
@@ -59,7 +60,7 @@ struct Look {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: painting_bench PLANET.vpe [ROUNDS [EYE [LOOK]]]\n");
+    std::fprintf(stderr, "usage: painting_bench PLANET.vpe [ROUNDS [CAMERA [APPEARANCE]]]\n");
     return 2;
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
@@ -73,25 +74,26 @@ int main(int argc, char** argv) {
   const paging::Surface surface(planet, kMemory);
   const test_support::PaintedByPoint by_point(planet, kMemory);
   vpe::voxel::ImagePainter painter(planet, kMemory);
-  struct Eye {
+  struct CameraCase {
     const char* name;
     mars::Pose pose;
   };
-  const Eye eyes[] = {{"Coprates from 20 km", {-67, -13, 20000, 90, -20, 0}},
-                      {"Coprates from 20 km, rolled", {-67, -13, 20000, 90, -20, 40}},
-                      {"Coprates from 20 km, horizon", {-67, -13, 20000, 90, 0, 0}},
-                      {"Coprates from 500 km", {-67, -13, 500000, 90, -60, 0}},
-                      {"the planet", {-67, -13, 1e7, 0, -90, 0}}};
-  const Look looks[] = {{"lit", core::Mode::kLit, core::Colour::kNone},
-                        {"textured", core::Mode::kTextured, core::Colour::kNone},
-                        {"lit elevation", core::Mode::kColoured, core::Colour::kElevation},
-                        {"lit slope", core::Mode::kColoured, core::Colour::kSlope},
-                        {"lit aspect", core::Mode::kColoured, core::Colour::kAspect},
-                        {"textured, colourised", core::Mode::kTextured, core::Colour::kElevation, 0, true},
-                        {"textured, haze", core::Mode::kTextured, core::Colour::kNone, 150000},
-                        {"unlit elevation", core::Mode::kUnlit, core::Colour::kElevation},
-                        {"lit, image at posts", core::Mode::kColoured, core::Colour::kImage},
-                        {"lit flat", core::Mode::kLit, core::Colour::kNone, 0, false, core::Shading::kFlat}};
+  const CameraCase cameras[] = {{"Coprates from 20 km", {-67, -13, 20000, 90, -20, 0}},
+                                {"Coprates from 20 km, rolled", {-67, -13, 20000, 90, -20, 40}},
+                                {"Coprates from 20 km, horizon", {-67, -13, 20000, 90, 0, 0}},
+                                {"Coprates from 500 km", {-67, -13, 500000, 90, -60, 0}},
+                                {"the planet", {-67, -13, 1e7, 0, -90, 0}}};
+  const AppearanceCase appearances[] = {
+      {"lit", core::Mode::kLit, core::Colour::kNone},
+      {"textured", core::Mode::kTextured, core::Colour::kNone},
+      {"lit elevation", core::Mode::kColoured, core::Colour::kElevation},
+      {"lit slope", core::Mode::kColoured, core::Colour::kSlope},
+      {"lit aspect", core::Mode::kColoured, core::Colour::kAspect},
+      {"textured, colourised", core::Mode::kTextured, core::Colour::kElevation, 0, true},
+      {"textured, haze", core::Mode::kTextured, core::Colour::kNone, 150000},
+      {"unlit elevation", core::Mode::kUnlit, core::Colour::kElevation},
+      {"lit, image at posts", core::Mode::kColoured, core::Colour::kImage},
+      {"lit flat", core::Mode::kLit, core::Colour::kNone, 0, false, core::Shading::kFlat}};
   const auto pixels =
       static_cast<std::size_t>(request.view.width) * static_cast<std::size_t>(request.view.height);
   std::printf("%dx%d, %d threads, median of %d rounds; off: share of pixels over 1 / over 2 of 255 apart\n",
@@ -99,7 +101,7 @@ int main(int argc, char** argv) {
   const auto wanted = [&](const char* name, int argument) {
     return argc <= argument || std::strstr(name, argv[argument]) != nullptr;
   };
-  for (const Eye& camera : eyes) {
+  for (const CameraCase& camera : cameras) {
     if (!wanted(camera.name, 3)) continue;
     request.view.camera = mars::to_camera(camera.pose, planet->radius_m());
     std::vector<float> range_m(pixels);
@@ -112,13 +114,13 @@ int main(int argc, char** argv) {
     });
     const auto sky = static_cast<double>(std::count(range_m.begin(), range_m.end(), core::kSkyRange));
     std::printf("%s (%.0f %% sky)\n", camera.name, 100 * sky / static_cast<double>(pixels));
-    for (const Look& look : looks) {
-      if (!wanted(look.name, 4)) continue;
-      request.settings.mode = look.mode;
-      request.settings.colour = look.colour;
-      request.settings.colourise = look.colourise;
-      request.settings.shading = look.shading;
-      request.settings.haze_visibility_m = look.haze_m;
+    for (const AppearanceCase& appearance : appearances) {
+      if (!wanted(appearance.name, 4)) continue;
+      request.settings.mode = appearance.mode;
+      request.settings.colour = appearance.colour;
+      request.settings.colourise = appearance.colourise;
+      request.settings.shading = appearance.shading;
+      request.settings.haze_visibility_m = appearance.haze_m;
       std::vector<vpe::base::Rgb> a(pixels), b(pixels);
       Times caches, ours, theirs;
       for (int n = 0; n <= rounds; ++n) {
@@ -136,7 +138,7 @@ int main(int argc, char** argv) {
       std::printf(
           "  %-22s %6.1f ms, %5.1f ns a pixel of one core; colour_at %7.1f ms, %6.1f ns, %5.1f x; "
           "off %.4f %% / %.4f %%\n",
-          look.name, median(ours.wall_ms), median(ours.cpu_ms) * per_pixel, median(theirs.wall_ms),
+          appearance.name, median(ours.wall_ms), median(ours.cpu_ms) * per_pixel, median(theirs.wall_ms),
           median(theirs.cpu_ms) * per_pixel, median(theirs.cpu_ms) / median(ours.cpu_ms),
           100e-6 * static_cast<double>(one) * per_pixel, 100e-6 * static_cast<double>(two) * per_pixel);
     }

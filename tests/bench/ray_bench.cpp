@@ -1,15 +1,16 @@
-// Range images by the ray backend against Embree over the same triangles: docs/rays.md has the figures.
+// Times range images of the ray backend against Embree over the same triangles. docs/measurements/rays.md has
+// the figures.
 //
 //   ray_bench [--dir DIR] [--scenes 513,2049,8193,mars] [--mars FILE] [--scale 1] [--threads 2] [--rounds 5]
 //             [--cell PX] [--show PIXELS] [--memory MiB] [--mesh-limit TRIANGLES] [--benchmark_filter=REGEX]
 //             [--benchmark_out=FILE ...]
 //
-// Scenes: patches of 513^2, 2049^2 and 8193^2 posts (ray_bench_scenes.h), built into DIR when they are not
-// there (without --dir into a folder that is removed at the end), and a planet file of the embedded Mars. Every
-// round casts ours, Embree's triangle mesh and Embree's grid in turn, both sides with the same threads; Embree
-// in whichever of its modes was fastest in this run on this view, less the time that making its rays takes
-// (measured without a scene). Its structures are made for each eye, and not timed. One iteration of
-// Google Benchmark is a round, its time is ours.
+// Scenes are patches of 513^2, 2049^2 and 8193^2 posts (ray_bench_scenes.h), built into DIR if missing there
+// (without --dir into a folder that is removed at the end), and a planet file of the embedded Mars. Every round
+// casts the ray backend, Embree's triangle mesh and Embree's grid one after the other, with the same number of
+// threads. Embree runs in the mode that was fastest in this run on this view; the time of making its rays,
+// measured without a scene, is subtracted. Its structures are built for each camera, and not timed. One
+// iteration of Google Benchmark is a round, and its time is that of the ray backend.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -23,17 +24,17 @@
 #include <vector>
 
 #include "tests/bench/ray_bench_agreement.h"
-#include "tests/bench/ray_bench_caster.h"
 #include "tests/bench/ray_bench_embree.h"
 #include "tests/bench/ray_bench_options.h"
 #include "tests/bench/ray_bench_views.h"
 #include "tests/support/support.h"
 #include "vpe/core/metrics.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace {
 
-using test_support::EmbreeScene;
-using test_support::EmbreeShape;
+using vpe::app::EmbreeScene;
+using vpe::app::EmbreeShape;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -47,7 +48,7 @@ std::string fixed(double value) {
   return text;
 }
 
-// Of the processor, as the system calls it; empty when it does not say.
+// Returns the name of the processor as the system states it, or "".
 std::string processor() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {
@@ -56,7 +57,7 @@ std::string processor() {
   return {};
 }
 
-// Embree's side of one view: a scene in the mode that is fastest on it.
+// Holds Embree's side of one view: a scene, and the mode that is fastest on it.
 struct Peer {
   const EmbreeScene* scene = nullptr;
   const char* shape = "";
@@ -67,7 +68,7 @@ struct Peer {
 
 struct Row {
   std::string name;
-  double ours = 0, mesh = 0, grid = 0;  // Mrays/s, 0 = not made
+  double ours = 0, mesh = 0, grid = 0;  // Mrays/s, 0 = not measured
   double ratio = 0, ratio_low = 0, ratio_high = 0;
   std::string agreement;
 };
@@ -92,9 +93,8 @@ class Bench {
   void print_table() const {
     if (rows_.empty()) return;
     std::printf(
-        "\n%d threads, picture sides x %g, medians of %d rounds; ratio to the better of mesh and grid in its "
-        "round "
-        "(lowest, highest)\n\n"
+        "\n%d threads, image sides x %g, medians of %d rounds; ratio to the better of mesh and grid in "
+        "its round (lowest, highest)\n\n"
         "| view | ours Mrays/s | mesh | grid | ratio | agreement |\n|---|---|---|---|---|---|\n",
         pool_.threads(), options_.scale, options_.rounds);
     const auto rate = [](double mrays) { return mrays > 0.0 ? fixed(mrays) : "-"; };
@@ -105,14 +105,14 @@ class Bench {
   }
 
  private:
-  // Structures of a scene and a camera; the cases of one eye follow each other.
+  // Builds the structures of a scene and a camera, unless they are those of the last case.
   void prepare(const std::shared_ptr<const bench::RayScene>& scene, const glm::dvec3& camera_m) {
     if (scene_ != scene) {
       mesh_.reset();
       grid_.reset();
       scene_ = scene;
       const auto bytes = static_cast<std::size_t>(options_.memory_mib * 1048576.0);
-      caster_ = std::make_unique<bench::RangeCaster>(scene->planet, pool_.threads(), bytes);
+      caster_ = std::make_unique<vpe::voxel::RangeCaster>(scene->planet, bytes);
       surface_ = std::make_unique<paging::Surface>(scene->planet, std::size_t{512} << 20);
     } else if (camera_m == camera_m_) {
       return;
@@ -120,8 +120,8 @@ class Bench {
     camera_m_ = camera_m;
     mesh_.reset();
     grid_.reset();
-    const auto tiles = test_support::tiles_in_sight(*scene->planet, camera_m);
-    if (static_cast<double>(test_support::triangle_count(*scene->planet, tiles)) <= options_.mesh_limit)
+    const auto tiles = vpe::app::tiles_in_sight(*scene->planet, camera_m);
+    if (static_cast<double>(vpe::app::triangle_count(*scene->planet, tiles)) <= options_.mesh_limit)
       make(mesh_, EmbreeShape::kTriangles, tiles, camera_m);
     make(grid_, EmbreeShape::kGrid, tiles, camera_m);
   }
@@ -130,14 +130,14 @@ class Bench {
             const glm::dvec3& camera_m) {
     out = std::make_unique<EmbreeScene>(
         *scene_->planet, tiles, camera_m,
-        test_support::EmbreeOptions{shape, RTC_BUILD_QUALITY_HIGH, false, pool_.threads()});
+        vpe::app::EmbreeOptions{shape, RTC_BUILD_QUALITY_HIGH, false, pool_.threads()});
     std::fprintf(stderr, "%s: Embree %s of %.1f M triangles in %zu tiles: built in %.2f s, %.0f MiB\n",
                  scene_->name.c_str(), shape == EmbreeShape::kGrid ? "grid" : "mesh",
                  static_cast<double>(out->triangles()) * 1e-6, tiles.size(), out->build_s(),
                  static_cast<double>(out->bytes()) / 1048576.0);
   }
 
-  // The fastest mode, each tried twice after a first time that warms up.
+  // Selects the fastest mode: tries each twice, after a warm-up.
   void choose_mode(Peer& peer, const bench::EmbreeImage& image, std::span<float> range_m) {
     double best = std::numeric_limits<double>::infinity();
     image.cast(peer.scene->scene(), peer.mode, pool_, range_m);
@@ -168,7 +168,9 @@ class Bench {
     prepare(scene, c.view.camera.position_m);
     const auto pixels = static_cast<std::size_t>(c.view.width) * static_cast<std::size_t>(c.view.height);
     std::vector<float> ours_m(pixels), theirs_m(pixels);
-    caster_->cast_ranges(c.view, options_.cell_px, ours_m);  // loads tiles
+    vpe::voxel::RangeOptions cast_options;
+    cast_options.cell_px = options_.cell_px;
+    caster_->cast(c.view, cast_options, pool_, ours_m);  // loads tiles
 
     const bench::EmbreeImage image(c.view);
     std::vector<Peer> peers;
@@ -179,7 +181,7 @@ class Bench {
     std::vector<double> ours_s, ratio;
     for (auto _ : state) {
       const auto start = std::chrono::steady_clock::now();
-      caster_->cast_ranges(c.view, options_.cell_px, ours_m);
+      caster_->cast(c.view, cast_options, pool_, ours_m);
       ours_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       state.SetIterationTime(ours_s.back());
       double best = std::numeric_limits<double>::infinity();
@@ -208,7 +210,7 @@ class Bench {
     state.counters["ratio_low"] = row.ratio_low;
     state.counters["ratio_high"] = row.ratio_high;
 
-    // theirs_m is the last peer's; the mesh's corners are the grid's.
+    // theirs_m holds the last peer's ranges. Mesh and grid have the same corners.
     const bench::Agreement agreement = bench::compare(c.view, ours_m, theirs_m, *surface_);
     row.agreement = bench::to_text(agreement);
     if (options_.cell_px > 0) row.agreement += "; " + shifts(c.view, ours_m, theirs_m, state);
@@ -236,7 +238,8 @@ class Bench {
     rows_.push_back(std::move(row));
   }
 
-  // How far ours is off in the image, against S and against Embree's exact image.
+  // Describes how far the ray backend is off in the image, against the reference surface and Embree's exact
+  // image.
   std::string shifts(const vpe::core::View& view, std::span<const float> ours_m,
                      std::span<const float> theirs_m, benchmark::State& state) const {
     const vpe::core::SurfaceRadius radius = [&](std::span<const glm::dvec3> at, std::span<double> radius_m) {
@@ -256,7 +259,7 @@ class Bench {
   bench::RayBenchOptions options_;
   vpe::base::ThreadPool pool_;
   std::shared_ptr<const bench::RayScene> scene_;
-  std::unique_ptr<bench::RangeCaster> caster_;
+  std::unique_ptr<vpe::voxel::RangeCaster> caster_;
   std::unique_ptr<paging::Surface> surface_;
   glm::dvec3 camera_m_{0};
   std::unique_ptr<EmbreeScene> mesh_;

@@ -9,7 +9,7 @@ namespace bench {
 
 namespace {
 
-// Relative to b; 0 for sky in both, infinity for a hit in one alone.
+// Returns the difference relative to b; 0 for sky in both, infinity for a hit in only one.
 double difference(double a, double b) {
   if (std::isinf(a) && std::isinf(b)) return 0.0;
   return std::abs(a - b) / (std::isinf(b) ? 1.0 : b);

@@ -27,7 +27,7 @@ class DenormalsOff {
   unsigned before_;
 };
 
-// Everything of a packet of kWide x kHigh pixels that no ray changes.
+// Returns a packet of kWide x kHigh pixels with everything set that does not depend on the rays.
 template <typename Packet, int kWide, int kHigh>
 Packet blank_packet() {
   Packet packet{};
@@ -51,7 +51,7 @@ void fill(const RayTables& t, int x0, int y0, Packet& packet) {
   }
 }
 
-// Range of a pixel; infinite distances stay so.
+// Converts a distance along a table's ray to a range; infinity stays infinite.
 float range_of(const RayTables& t, int x, int y, float distance) {
   const float s = t.tangent[static_cast<std::size_t>(y)];
   return distance * std::sqrt(t.column_length2[static_cast<std::size_t>(x)] + s * s);
@@ -139,7 +139,7 @@ const char* name(EmbreeMode mode) {
 EmbreeImage::EmbreeImage(const vpe::core::View& view) {
   using vpe::core::Projection;
   if (view.projection == Projection::kEquirectangular || view.part.width != 0)
-    throw std::invalid_argument("EmbreePicture: only whole perspective and cylindrical pictures");
+    throw std::invalid_argument("EmbreeImage: only whole perspective and cylindrical images");
   tables_.width = view.width;
   tables_.height = view.height;
   const double focal = vpe::core::focal_px(view);

@@ -1,16 +1,17 @@
-// Range images by Embree, as fast as it goes.
+// Casts range images by Embree in its fastest modes.
 #pragma once
 
 #include <array>
 #include <span>
 #include <vector>
 
-#include "tests/voxel/embree_scene.h"
+#include "vpe/app/report/embree_scene.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/view.h"
 
 namespace bench {
 
+// Selects the function of Embree that casts.
 enum class EmbreeMode {
   kPacket16,  // rtcIntersect16, 4x4 pixels
   kPacket8,   // rtcIntersect8, 4x2 pixels
@@ -19,10 +20,12 @@ enum class EmbreeMode {
 };
 inline constexpr std::array kEmbreeModes{EmbreeMode::kPacket16, EmbreeMode::kPacket8, EmbreeMode::kStream,
                                          EmbreeMode::kStream1};
+
+// Returns the name of a mode for labels.
 const char* name(EmbreeMode mode);
 
-// The rays of a view: that of pixel (x, y) goes along column[x] + tangent[y] * up, of length
-// sqrt(column_length2[x] + tangent[y]^2). Padded to whole blocks by the last column and row.
+// Holds the rays of a view. The ray of pixel (x, y) goes along column[x] + tangent[y] * up, of length
+// sqrt(column_length2[x] + tangent[y]^2). Tables are padded to whole blocks by the last column and row.
 struct RayTables {
   int width = 0;
   int height = 0;
@@ -31,15 +34,16 @@ struct RayTables {
   float up_x = 0, up_y = 0, up_z = 0;
 };
 
-// A perspective or cylindrical view of which all is drawn. Rays are made of tables, three products each; all
-// are coherent (RTC_INTERSECT_CONTEXT_FLAG_COHERENT), rows of 8x8 pixels are handed out to the pool's threads,
-// denormals are off as Embree asks.
+// Casts a perspective or cylindrical view of which all is drawn. Rays are made from tables by three products
+// each. All are coherent (RTC_INTERSECT_CONTEXT_FLAG_COHERENT), threads of the pool take rows of 8x8 pixels,
+// and denormals are off as Embree recommends.
 class EmbreeImage {
  public:
+  // Throws std::invalid_argument for equirectangular views and for parts of views.
   explicit EmbreeImage(const vpe::core::View& view);
 
-  // Range of every pixel, row by row, infinity for sky; returns seconds. Without a scene (nullptr) everything
-  // but Embree's own calls is done.
+  // Writes the range of every pixel, row by row, infinity for sky, and returns the seconds taken. Without a
+  // scene (nullptr) does everything but Embree's own calls.
   double cast(RTCScene scene, EmbreeMode mode, vpe::base::ThreadPool& pool, std::span<float> range_m) const;
 
  private:

@@ -48,7 +48,7 @@ RayBenchOptions parse_options(int argc, char** argv) {
     } else if (key == "--mesh-limit") {
       options.mesh_limit = number(0);
     } else {
-      refuse(key + " is no option");
+      refuse(key + " is not an option");
     }
   }
   return options;

@@ -1,10 +1,11 @@
-// The command line of the benchmark of rays.
+// Parses the command line of ray_bench.
 #pragma once
 
 #include <string>
 
 namespace bench {
 
+// Fields are the options of the same names (ray_bench.cpp).
 struct RayBenchOptions {
   std::string dir;
   std::string scenes = "513,2049,8193,mars";
@@ -12,19 +13,19 @@ struct RayBenchOptions {
   double scale = 1;
   int threads = 0;
   int rounds = 5;
-  double cell_px = 0;  // > 0: ours in multires, with shifts against Embree's exact image
-  int show = 0;        // pixels of a view where ours is wrong, on stderr
+  double cell_px = 0;  // > 0: mode multires, and shifts against Embree's exact image
+  int show = 0;        // wrong pixels of a view to list on stderr
   double memory_mib = 4096;
   double mesh_limit = 4e7;  // triangles; beyond it only the grid, whose structure is a sixth as large
 };
 
-// Of what Google Benchmark has left of the command line. Throws std::invalid_argument with the usage.
+// Parses what Google Benchmark has left of the command line. Throws std::invalid_argument with the usage.
 RayBenchOptions parse_options(int argc, char** argv);
 
-// Throws std::invalid_argument: what is wrong, and the usage.
+// Throws std::invalid_argument with the problem and the usage.
 [[noreturn]] void refuse(const std::string& what);
 
-// The planet file that `vpe` builds on its first run without a planet.
+// Returns the planet file that `vpe` builds on its first run without a planet.
 std::string cached_mars();
 
 }  // namespace bench

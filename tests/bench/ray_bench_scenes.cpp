@@ -15,9 +15,10 @@ namespace {
 constexpr int kTileK = 7;
 constexpr double kBaseSpacing_m = 5300;
 constexpr std::uint64_t kSeed = 1996;
-constexpr int kRevision = 1;  // of the ground below: files of another are not taken
+constexpr int kRevision = 1;  // of the ground below; files of another revision are not used
 
-// Fractal ground with craters in the patch, of the wanted relief. Waves up to half the patch.
+// Provides fractal ground with craters in the patch, of the wanted height range, with waves up to half the
+// patch.
 class PatchElevation : public test_support::FakeElevation {
  public:
   explicit PatchElevation(const PatchSpec& spec)
@@ -40,7 +41,7 @@ class PatchElevation : public test_support::FakeElevation {
       heights_m[n] = scale_ * (terrain_.height_m(directions[n], spacing_m) - low_m_);
   }
 
-  // Fine in the patch and, so that the tree gets there, in what contains it.
+  // Fine in the patch and in the tiles that contain it, so that the tree is refined down to it.
   double spacing_in(const mars::Cap& cap) const override {
     const mars::ChartPoint middle = mars::chart_point(cap.centre);
     for (int level = 0; level <= spec_.patch.level + spec_.levels_below; ++level) {

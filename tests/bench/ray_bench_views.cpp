@@ -12,11 +12,11 @@ namespace {
 constexpr double kYaw_deg = 30;
 constexpr double kAcross_deg = 60;
 
-struct Eye {
+struct CameraHeight {
   const char* name;
   double height_m;
 };
-constexpr Eye kEyes[] = {{"2m", 2}, {"1km", 1e3}, {"10km", 1e4}, {"300km", 3e5}};
+constexpr CameraHeight kCameras[] = {{"2m", 2}, {"1km", 1e3}, {"10km", 1e4}, {"300km", 3e5}};
 
 }  // namespace
 
@@ -26,8 +26,8 @@ std::vector<RayCase> ray_cases(const RayScene& scene, double scale) {
   const double ground_m = surface.at(scene.middle).height_m;
   const bool whole_planet = scene.name == "mars";
   std::vector<RayCase> cases;
-  const auto add = [&](std::string name, const Eye& camera, double pitch_deg, double roll_deg, int width,
-                       int height) {
+  const auto add = [&](std::string name, const CameraHeight& camera, double pitch_deg, double roll_deg,
+                       int width, int height) {
     RayCase& c = cases.emplace_back();
     c.name = scene.name + "/" + std::move(name) + "/" + camera.name;
     c.view.camera = mars::to_camera(
@@ -38,7 +38,7 @@ std::vector<RayCase> ray_cases(const RayScene& scene, double scale) {
     c.view.fov_deg = 2.0 / mars::kRadiansPerDegree *
                      std::atan(std::tan(0.5 * kAcross_deg * mars::kRadiansPerDegree) * height / width);
   };
-  for (const Eye& camera : kEyes) {
+  for (const CameraHeight& camera : kCameras) {
     if (whole_planet && camera.height_m < 1e5) continue;
     add("pano", camera, 0, 0, 6000, 2000);
     cases.back().view.projection = vpe::core::Projection::kCylinder;

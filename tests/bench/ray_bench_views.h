@@ -1,4 +1,4 @@
-// The views of the benchmark of rays.
+// Makes the views of ray_bench.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -15,10 +15,13 @@ struct RayCase {
   vpe::core::View view;
 };
 
-// Panoramas: 6000x2000, rows even in tan(elevation), +-30 degrees, from 2 m, 1 km, 10 km and 300 km above the
-// ground of the middle. Perspective: 1920x1080, 60 degrees across, pitch -0.5 (p05), -10, -30, -60, -90 and
-// roll 0, 15, 45, from 1 km. wan: 500x400, -30 degrees. Looking north-north-east, oblique to the grid. Whole
-// planets: from 300 km alone. All sides times `scale`. In the order of their eyes.
+// Returns the views of a scene in the order of their cameras, all sides times `scale`:
+//   pano  6000x2000, rows even in tan(elevation), +-30 degrees, from 2 m, 1 km, 10 km and 300 km above ground
+//   pNN   perspective, 1920x1080, 60 degrees across, pitch -0.5 (p05), -10, -30, -60, -90, roll 0, 15, 45,
+//         from 1 km
+//   wan   perspective, 500x400, pitch -30 degrees, from 1 km
+// Cameras look north-north-east, oblique to the grid. Whole planets are seen from 300 km only, in all three
+// kinds.
 std::vector<RayCase> ray_cases(const RayScene& scene, double scale);
 
 }  // namespace bench

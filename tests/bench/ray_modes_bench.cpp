@@ -1,6 +1,10 @@
-// The ray backend against itself: what coherence is worth (columns against single rays down the same pyramids
-// and against even steps), what coarser cells are worth, and what roll, pitch and a larger grid cost.
-// ray_modes_bench DIR [ROUNDS]: DIR holds the planets of ray_bench, or takes them.
+// Compares modes of the ray backend: the gain of coherence (columns against single rays down the same pyramids
+// and against fixed steps), the gain of coarser cells, and the cost of roll, pitch and a larger grid.
+// docs/measurements/rays.md has the figures.
+//
+//   ray_modes_bench DIR [ROUNDS]
+//
+// DIR holds the planets of ray_bench, or receives them.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -20,8 +24,8 @@ using vpe::voxel::RangeOptions;
 
 constexpr RangeOptions kExact{};
 constexpr RangeOptions kMultires{1, 1};
-constexpr RangeOptions kEach{1, 0, RangeOptions::Method::kEach};
-constexpr RangeOptions kPlain{1, 0, RangeOptions::Method::kPlain};
+constexpr RangeOptions kSingleRays{1, 0, RangeOptions::Method::kSingleRays};
+constexpr RangeOptions kReference{1, 0, RangeOptions::Method::kReference};
 
 struct Scene {
   bench::RayScene scene;
@@ -61,7 +65,8 @@ struct Run {
   RangeOptions options;
 };
 
-// Median of a, and of b / a in the same round, by turns; the first round loads and is left out.
+// Prints the median of a, and of b / a in the same round. Rounds alternate; the first one loads and does not
+// count.
 void compare(const char* name, const Run& a, const Run& b, int rounds, vpe::base::ThreadPool& pool) {
   std::vector<double> times;
   std::vector<double> ratios;
@@ -93,11 +98,11 @@ void run(const std::string& dir, int rounds) {
   View pano_large = large.view(6000, 2000, 60, 0, 0);
   pano_large.projection = vpe::core::Projection::kCylinder;
 
-  std::printf("| view, 2 threads | ms | times as long (lowest..highest) |\n|---|---|---|\n");
-  compare("wan 2049: exact; each ray by itself", {&small, wan, kExact}, {&small, wan, kEach}, rounds, pool);
-  compare("p10 2049: exact; each ray by itself", {&small, p10, kExact}, {&small, p10, kEach}, rounds, pool);
-  compare("pano 2049: exact; each ray by itself", {&small, pano, kExact}, {&small, pano, kEach}, rounds, pool);
-  compare("wan 2049: exact; plain", {&small, wan, kExact}, {&small, wan, kPlain}, 3, pool);
+  std::printf("| view, 2 threads | ms | ratio of times (lowest..highest) |\n|---|---|---|\n");
+  compare("wan 2049: exact; single rays", {&small, wan, kExact}, {&small, wan, kSingleRays}, rounds, pool);
+  compare("p10 2049: exact; single rays", {&small, p10, kExact}, {&small, p10, kSingleRays}, rounds, pool);
+  compare("pano 2049: exact; single rays", {&small, pano, kExact}, {&small, pano, kSingleRays}, rounds, pool);
+  compare("wan 2049: exact; reference", {&small, wan, kExact}, {&small, wan, kReference}, 3, pool);
   compare("p10 2049: multires; exact", {&small, p10, kMultires}, {&small, p10, kExact}, rounds, pool);
   compare("p10 8193: multires; exact", {&large, p10_large, kMultires}, {&large, p10_large, kExact}, rounds,
           pool);

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "lod/mesh/error_meter.h"
 #include "tests/bench/simplify_methods.h"
 #include "tests/lod/mesh_terrain.h"
 #include "tests/lod/mesh_twin.h"

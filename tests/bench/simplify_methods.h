@@ -1,4 +1,4 @@
-// The rivals of greedy insertion, as meshes of one tile's posts.
+// Methods that greedy insertion is compared with: meshes of one tile's posts.
 #pragma once
 
 #include <memory>

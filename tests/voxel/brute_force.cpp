@@ -14,7 +14,7 @@ constexpr int kBlock = 8;            // cells a side
 constexpr double kRounding = 4e-15;  // of the edge tests, relative to their factors
 constexpr int kSamples = 64;
 
-// Whether the part t >= 0 of the ray may meet the ball.
+// Returns true if the part t >= 0 of the ray may meet the ball.
 bool meets(const glm::dvec3& camera, const glm::dvec3& direction, const glm::dvec3& centre, double radius_m) {
   const glm::dvec3 to = centre - camera;
   const double along = glm::dot(to, direction);

@@ -1,5 +1,5 @@
-// The nearest hit of a ray with S by trying triangles, in double: nothing of the ray backends' ways (charts,
-// tile trees, pyramids) is in it, so it judges all of them.
+// Intersects rays with the reference surface by trying triangles, in double. Shares nothing with the casters
+// (charts, tile trees, pyramids), so it judges all of them.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,26 @@
 
 namespace test_support {
 
-// Any thread may call any const member. Memory: about 80 bytes a triangle of S.
+// Any thread may call any const member. Takes about 80 bytes for each triangle.
 class BruteForce {
  public:
   // Reads all finest tiles. Throws paging::PlanetError.
   explicit BruteForce(const paging::PlanetFile& planet);
 
-  // Where the ray from `camera_m` (metres from the planet's centre) along unit `direction` crosses S, t >= 0,
-  // ascending. Every triangle whose bounding ball the ray meets is tried (Moeller & Trumbore 1997), with its
-  // edges widened by the rounding of that test, so no ray gets through between neighbours; a ray through an
-  // edge may be told twice. Error of t about 1e-15 (|camera| + |S|) / sin(incidence).
+  // Returns the distances t >= 0, ascending, at which the ray from `camera_m` (metres from the planet's centre)
+  // along unit `direction` crosses the reference surface S. Tries every triangle whose bounding ball the ray
+  // meets (Moeller & Trumbore 1997), with edges widened by the rounding of that test, so that no ray gets
+  // through between neighbours. A crossing through an edge may appear twice. The error of t is about 1e-15
+  // (|camera| + |S|) / sin(incidence).
   std::vector<double> crossings(const glm::dvec3& camera_m, const glm::dvec3& direction) const;
-  // The first of them; infinity when there is none.
+  // Returns the first crossing, or infinity.
   double cast(const glm::dvec3& camera_m, const glm::dvec3& direction) const;
 
-  // Radius of S along a direction of any length but 0, metres.
+  // Returns the radius of the reference surface along a direction of any length but 0, metres.
   double radius_m(const glm::dvec3& direction) const;
 
-  // How far below S, along the vertical, the ray gets at most between two distances; negative when it stays
-  // above. Sampled between crossings, and good to a few percent there.
+  // Returns how far below the reference surface, along the vertical, the ray gets at most between two
+  // distances; negative if it stays above. Samples between crossings, within a few percent.
   double deepest_m(const glm::dvec3& camera_m, const glm::dvec3& direction, double from, double to) const;
 
   std::size_t triangles() const { return triangles_.size(); }
@@ -41,7 +42,7 @@ class BruteForce {
   struct Ball {
     glm::dvec3 centre{0};
     double radius_m = 0;
-    std::size_t begin = 0, end = 0;  // what it holds: blocks_ or triangles_
+    std::size_t begin = 0, end = 0;  // range in blocks_ or triangles_
   };
 
   template <typename Visit>
@@ -53,20 +54,22 @@ class BruteForce {
   std::vector<Triangle> triangles_;
 };
 
-// What a caster's answer for a ray is worth.
+// Classifies a caster's result for a ray.
 enum class Verdict {
   kSame,     // within kSameRange of the brute force, or both none
-  kTie,      // differs, but the ray is that near to S where they differ
+  kTie,      // differs, but the ray is within the tie's limits of the surface where they differ
   kMissed,   // the caster went through ground
   kPhantom,  // the caster hit air
 };
 inline constexpr double kSameRange = 1e-9;
 
-// How far below S a ray may sink, or above it be stopped, in a tie: share of the range + metres.
+// Limits a tie: the distance that a ray may sink below the surface, or end above it, is a share of the range
+// plus metres.
 struct Tie {
   double share = 1e-6;
   double metres = 0;
 };
+// Compares a caster's range with brute force.
 Verdict judge(const BruteForce& truth, const glm::dvec3& camera_m, const glm::dvec3& direction,
               double claimed_m, const Tie& tie = {});
 

@@ -1,4 +1,4 @@
-// The ground that mode multires draws for a camera, told from the posts of its tiles.
+// Finds the ground that mode multires draws for a camera, from the posts of its tiles.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -13,13 +13,14 @@
 
 namespace test_support {
 
-// The ground that a view draws, by the posts of its tiles: pops without interpolation, but blind to how rays
-// find them.
+// Finds the tile that a view draws at a place. Pops of its posts are free of interpolation, but do not show how
+// rays find the ground.
 class DrawnGround {
  public:
   DrawnGround(const paging::Surface& surface, const vpe::core::View& view, double cell_px)
       : walk_(surface, camera(surface, view.camera.position_m), 1, {cell_px, vpe::core::focal_px(view)}) {}
 
+  // Returns the drawn tile along a direction.
   lod::TileTree::Index tile(const glm::dvec3& direction) const {
     const mars::ChartPoint at = mars::chart_point(direction);
     const lod::TileTree& tree = walk_.tree();
@@ -41,11 +42,12 @@ class DrawnGround {
   vpe::voxel::ColumnWalk walk_;
 };
 
-// Posts of tiles, for all threads.
+// Keeps the posts of tiles, for all threads.
 class PostsOf {
  public:
   explicit PostsOf(const paging::PlanetFile& planet) : planet_(planet) {}
 
+  // Returns the radius of a tile's ground along a direction.
   double radius_m(lod::TileTree::Index tile, const glm::dvec3& direction) {
     const Tile& t = get(tile);
     const mars::ChartPoint at = mars::chart_on(t.posts.key.face, direction);

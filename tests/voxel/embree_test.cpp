@@ -1,4 +1,4 @@
-// Casts against Embree: the same triangles in code that we did not write.
+// Tests casts against Embree, an independent implementation over the same triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,16 +8,16 @@
 
 #include "tests/paging/planet_fixture.h"
 #include "tests/voxel/brute_force.h"
-#include "tests/voxel/embree_scene.h"
+#include "vpe/app/report/embree_scene.h"
 
 namespace {
 
 using test_support::BruteForce;
-using test_support::EmbreeOptions;
-using test_support::EmbreeScene;
-using test_support::EmbreeShape;
 using test_support::Random;
 using test_support::Verdict;
+using vpe::app::EmbreeOptions;
+using vpe::app::EmbreeScene;
+using vpe::app::EmbreeShape;
 
 class Embree : public ::testing::Test {
  protected:
@@ -37,13 +37,13 @@ glm::dvec3 float_direction(const glm::dvec3& d) {
 }
 
 // Embree's corners are floats relative to the camera, so its triangles lie this share of (range + their longest
-// side) off S; rays that get nearer than that to S are ties between the two.
+// side) off the surface; rays that get nearer to it than that are ties between the two.
 constexpr double kQuantum = 3e-7;
-// What Embree may still tell otherwise; of those the brute force must side with S.
+// The share of the other rays for which Embree may differ. There the brute force must agree with ours.
 constexpr double kShareWrong = 1e-4;
 constexpr double kFar = 1e-4;
 
-TEST_F(Embree, CastsOfSAreEmbrees) {
+TEST_F(Embree, CastsAgreeWithEmbree) {
   const auto planet = stepped(dir_ / "stepped.vpe");
   const paging::Surface surface(planet, std::size_t{128} << 20);
   const BruteForce truth(*planet);
@@ -54,7 +54,7 @@ TEST_F(Embree, CastsOfSAreEmbrees) {
     const glm::dvec3 up =
         e % 3 == 0 ? glm::normalize(mars::direction({40, 34}) + 0.03 * random.direction()) : random.direction();
     const glm::dvec3 camera = up * (surface.at(up).radius_m + random.log_uniform(2, 1e6));
-    const auto tiles = test_support::tiles_in_sight(*planet, camera);
+    const auto tiles = vpe::app::tiles_in_sight(*planet, camera);
     const EmbreeScene triangles(*planet, tiles, camera,
                                 {EmbreeShape::kTriangles, RTC_BUILD_QUALITY_MEDIUM, true, 2});
     const EmbreeScene grid(*planet, tiles, camera, {EmbreeShape::kGrid, RTC_BUILD_QUALITY_MEDIUM, true, 2});
@@ -77,7 +77,7 @@ TEST_F(Embree, CastsOfSAreEmbrees) {
         ++differ;
         const Verdict verdict = test_support::judge(truth, camera, direction / length, ours);
         EXPECT_TRUE(verdict == Verdict::kSame || verdict == Verdict::kTie)
-            << "eye " << e << " ray " << n << ": S " << ours << " m, Embree " << theirs << " m";
+            << "camera " << e << " ray " << n << ": S " << ours << " m, Embree " << theirs << " m";
         const Verdict other =
             test_support::judge(truth, camera, direction / length, theirs, {kQuantum, kQuantum * longest_m});
         embree_wrong += other == Verdict::kMissed || other == Verdict::kPhantom ? 1 : 0;
@@ -90,7 +90,7 @@ TEST_F(Embree, CastsOfSAreEmbrees) {
               hits, differ, embree_wrong);
 }
 
-// What culling leaves out of the scenes cannot be hit.
+// Tiles that culling leaves out of the scenes cannot be hit.
 TEST_F(Embree, TilesOutOfSightAreNotHit) {
   const auto planet = stepped(dir_ / "stepped.vpe");
   const paging::Surface surface(planet, std::size_t{128} << 20);
@@ -99,14 +99,14 @@ TEST_F(Embree, TilesOutOfSightAreNotHit) {
   for (int e = 0; e < 20; ++e) {
     const glm::dvec3 up = random.direction();
     const glm::dvec3 camera = up * (surface.at(up).radius_m + random.log_uniform(2, 1e6));
-    const auto tiles = test_support::tiles_in_sight(*planet, camera);
+    const auto tiles = vpe::app::tiles_in_sight(*planet, camera);
     outside += static_cast<int>(planet->meta().leaf_tiles) - static_cast<int>(tiles.size());
     for (int n = 0; n < 1000; ++n) {
       const glm::dvec3 direction = random.direction();
       const double range = surface.cast(camera, direction);
       if (!std::isfinite(range)) continue;
       const lod::TileKey hit = surface.at(camera + range * direction).tile;
-      // A hit on a border may be told of either side.
+      // A hit on a border may belong to either side.
       const auto touches = [&](const lod::TileKey& key) {
         const mars::Cap cap = lod::bounding_cap(key);
         return mars::angle_between_rad(cap.centre, camera + range * direction) <= cap.radius_rad + 1e-12;

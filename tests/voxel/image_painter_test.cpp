@@ -1,4 +1,4 @@
-// Images painted many pixels at once against their definition, pixel by pixel.
+// Tests images painted in blocks against their definition, pixel by pixel.
 #include "vpe/voxel/paint/image_painter.h"
 
 #include <gtest/gtest.h>
@@ -21,10 +21,10 @@ const mars::LonLat kPlace = mars::lon_lat(test_support::kWavyMiddle);
 struct Painted {
   std::vector<vpe::base::Rgb> colour;
   std::vector<float> inverse_depth;
-  std::int64_t without_data = 0;
+  std::int64_t nodata_count = 0;
 };
 
-// Pixels more than `by` of 255 apart in some channel.
+// Returns the number of pixels that differ by more than `by` of 255 in some channel.
 std::size_t apart(const std::vector<vpe::base::Rgb>& a, const std::vector<vpe::base::Rgb>& b, int by) {
   std::size_t count = 0;
   for (std::size_t n = 0; n < a.size(); ++n) {
@@ -34,12 +34,12 @@ std::size_t apart(const std::vector<vpe::base::Rgb>& a, const std::vector<vpe::b
   return count;
 }
 
-class Painting : public ::testing::Test {
+class PaintedImage : public ::testing::Test {
  protected:
   void SetUp() override { planet_ = test_support::wavy_planet(dir_ / "wavy.vpe"); }
   void TearDown() override { use_instructions(0); }
 
-  // 0: the best there are.
+  // Restricts the kernel to a target; 0 selects the best one.
   static void use_instructions(std::int64_t target) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -73,7 +73,7 @@ class Painting : public ::testing::Test {
     Painted out;
     out.colour.resize(range_m.size());
     out.inverse_depth.resize(depths ? range_m.size() : 0);
-    out.without_data = painter.paint(of, range_m, out.colour, out.inverse_depth, pool);
+    out.nodata_count = painter.paint(of, range_m, out.colour, out.inverse_depth, pool);
     return out;
   }
 
@@ -82,7 +82,7 @@ class Painting : public ::testing::Test {
   vpe::base::ThreadPool pool_{2};
 };
 
-TEST_F(Painting, AllLooksAsDefined) {
+TEST_F(PaintedImage, AllAppearancesAsDefined) {
   const paging::Surface surface(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
   ImagePainter painter(planet_, kMemory);
@@ -91,17 +91,18 @@ TEST_F(Painting, AllLooksAsDefined) {
   for (const mars::Pose& pose : {mars::Pose{kPlace.lon_deg, kPlace.lat_deg, 15000, 40, -12, 10},
                                  {kPlace.lon_deg, kPlace.lat_deg, 9e6, 40, -88, 200}}) {
     core::DrawRequest r = request(pose, 77, 52, 45);
-    for (const core::Appearance& look : test_support::all_looks()) {
-      if (look.shading == core::Shading::kFlat) continue;
-      static_cast<core::Appearance&>(r.settings) = look;
+    for (const core::Appearance& appearance : test_support::all_appearances()) {
+      if (appearance.shading == core::Shading::kFlat) continue;
+      static_cast<core::Appearance&>(r.settings) = appearance;
       const auto range_m = ranges(surface, r);
       const auto expected = definition.paint(r, range_m, pool_);
-      EXPECT_EQ(apart(paint(painter, r, range_m, pool_).colour, expected, 1), 0U) << test_support::name(look);
+      EXPECT_EQ(apart(paint(painter, r, range_m, pool_).colour, expected, 1), 0U)
+          << test_support::name(appearance);
     }
   }
 }
 
-TEST_F(Painting, AllProjectionsPartsAndSkiesAsDefined) {
+TEST_F(PaintedImage, AllProjectionsPartsAndSkiesAsDefined) {
   const paging::Surface surface(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
   ImagePainter painter(planet_, kMemory);
@@ -129,8 +130,8 @@ TEST_F(Painting, AllProjectionsPartsAndSkiesAsDefined) {
   EXPECT_EQ(off, 0U) << "of " << pixels;
 }
 
-// Sky alone, also from very far away and round the sun's disc.
-TEST_F(Painting, SkyAndSunFromEverywhere) {
+// Paints sky alone, also from very far away and about the sun's disc.
+TEST_F(PaintedImage, SkyAndSunFromEverywhere) {
   ImagePainter painter(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
   for (const double height_m : {0.0, 5e4, 1e7, 1e9, 1e12}) {
@@ -144,8 +145,8 @@ TEST_F(Painting, SkyAndSunFromEverywhere) {
   }
 }
 
-// Where nothing is looked up for a pixel.
-TEST_F(Painting, OneColourBehindAnyAirAsDefined) {
+// Paints ground that needs no lookup.
+TEST_F(PaintedImage, OneColourBehindAnyAirAsDefined) {
   const paging::Surface surface(planet_, kMemory);
   const test_support::PaintedByPoint definition(planet_, kMemory);
   ImagePainter painter(planet_, kMemory);
@@ -162,47 +163,47 @@ TEST_F(Painting, OneColourBehindAnyAirAsDefined) {
       const Painted painted = paint(painter, r, range_m, pool_, true);
       EXPECT_EQ(apart(painted.colour, expected, 1), 0U) << visibility_m;
       EXPECT_EQ(paint(painter, r, range_m, pool_).colour, painted.colour) << visibility_m;
-      EXPECT_EQ(painted.without_data, 0);
+      EXPECT_EQ(painted.nodata_count, 0);
     }
   }
 }
 
-TEST_F(Painting, ShadowsAndGapsAsDefined) {
-  const auto holed = test_support::build_fake(
-      dir_ / "holed.vpe", test_support::FakeElevation([](const glm::dvec3& d) {
+TEST_F(PaintedImage, ShadowsAndNodataAsDefined) {
+  const auto with_nodata = test_support::build_fake(
+      dir_ / "nodata.vpe", test_support::FakeElevation([](const glm::dvec3& d) {
         return glm::length(d - test_support::kWavyMiddle) < 0.05 ? std::nan("")
                                                                  : 3 * test_support::bumpy_height(d);
       }),
       40000);
-  const paging::Surface surface(holed, kMemory);
-  const test_support::PaintedByPoint definition(holed, kMemory);
-  ImagePainter painter(holed, kMemory);
+  const paging::Surface surface(with_nodata, kMemory);
+  const test_support::PaintedByPoint definition(with_nodata, kMemory);
+  ImagePainter painter(with_nodata, kMemory);
   core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 700000, 40, -70, 0}, 100, 70);
   r.sun = mars::sun_direction(kPlace, 315, 4);
-  struct Look {
+  struct ModeAndColour {
     core::Mode mode;
     core::Colour colour;
   };
   for (const bool shadows : {false, true}) {
-    for (const Look look :
-         {Look{core::Mode::kUnlit, core::Colour::kElevation}, Look{core::Mode::kUnlit, core::Colour::kNone},
-          Look{core::Mode::kLit, core::Colour::kElevation},
-          Look{core::Mode::kColoured, core::Colour::kElevation}}) {
-      r.settings.mode = look.mode;
-      r.settings.colour = look.colour;
+    for (const ModeAndColour appearance : {ModeAndColour{core::Mode::kUnlit, core::Colour::kElevation},
+                                           ModeAndColour{core::Mode::kUnlit, core::Colour::kNone},
+                                           ModeAndColour{core::Mode::kLit, core::Colour::kElevation},
+                                           ModeAndColour{core::Mode::kColoured, core::Colour::kElevation}}) {
+      r.settings.mode = appearance.mode;
+      r.settings.colour = appearance.colour;
       r.settings.shadows = shadows;
       const auto range_m = ranges(surface, r);
       const auto expected = definition.paint(r, range_m, pool_);
       const Painted painted = paint(painter, r, range_m, pool_);
       EXPECT_EQ(apart(painted.colour, expected, 1), 0U);
       const auto grey = std::count(painted.colour.begin(), painted.colour.end(), vpe::base::Rgb{105, 105, 105});
-      EXPECT_EQ(painted.without_data, grey);
-      EXPECT_GT(painted.without_data, 500);
+      EXPECT_EQ(painted.nodata_count, grey);
+      EXPECT_GT(painted.nodata_count, 500);
     }
   }
 }
 
-TEST_F(Painting, ThreadsInstructionsMemoryAndHistoryChangeNothing) {
+TEST_F(PaintedImage, ThreadsInstructionsMemoryAndHistoryChangeNothing) {
   const paging::Surface surface(planet_, kMemory);
   ImagePainter reference(planet_, kMemory);
   // Nearly nothing can be kept.
@@ -232,7 +233,7 @@ TEST_F(Painting, ThreadsInstructionsMemoryAndHistoryChangeNothing) {
   }
 }
 
-TEST_F(Painting, InverseDepthsAreAlongTheEyesAxis) {
+TEST_F(PaintedImage, InverseDepthsAreAlongTheCamerasAxis) {
   const paging::Surface surface(planet_, kMemory);
   ImagePainter painter(planet_, kMemory);
   const core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 30000, 40, -10, 30}, 70, 50);
@@ -248,7 +249,7 @@ TEST_F(Painting, InverseDepthsAreAlongTheEyesAxis) {
   }
 }
 
-TEST_F(Painting, UnreadablePalettesAreTold) {
+TEST_F(PaintedImage, UnreadablePalettesAreErrors) {
   ImagePainter painter(planet_, kMemory);
   core::DrawRequest r = request({kPlace.lon_deg, kPlace.lat_deg, 60000, 40, -20, 10}, 40, 30);
   r.settings.mode = core::Mode::kColoured;

@@ -1,4 +1,4 @@
-// Casts against brute force: no ray gets through S, none stops in the air.
+// Tests casts against brute force: no ray passes through the reference surface, none stops above it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::shared_ptr<const paging::PlanetFile> stepped_planet(const std::filesystem::
   return test_support::build_fake(path, source, 60000);
 }
 
-// Casts in double are held to their rounding, not only to 1e-6 of the range.
+// Casts in double must be exact to their rounding, not only to 1e-6 of the range.
 constexpr test_support::Tie kRounding{4e-15, 1e-8};
 
 struct Ray {
@@ -41,7 +41,7 @@ struct Ray {
   glm::dvec3 direction;
 };
 
-// A chart coordinate of a tile: one of its borders half of the time, else one of its post lines or any.
+// Returns a chart coordinate of a tile: a border if asked for, else one of its post lines or any.
 double pick_line(Random& random, const std::vector<double>& lines, bool border) {
   const int last = static_cast<int>(lines.size()) - 1;
   if (border) return random.integer(0, 1) == 0 ? lines.front() : lines.back();
@@ -49,7 +49,8 @@ double pick_line(Random& random, const std::vector<double>& lines, bool border) 
   return random.uniform(lines.front(), lines.back());
 }
 
-// A point of S or, half of the time, just below it; on a border of tiles, levels or faces as a rule.
+// Returns a point of the reference surface or, half of the time, just below it; mostly on a border of tiles,
+// levels or faces.
 glm::dvec3 pick_target(Random& random, const paging::Surface& surface) {
   const lod::TileTree& tree = surface.planet().tree();
   for (;;) {
@@ -66,7 +67,8 @@ glm::dvec3 pick_target(Random& random, const paging::Surface& surface) {
   }
 }
 
-// Eyes 1 m to 10 000 km above ground, rays to a target from above, half of them grazing; one in four anywhere.
+// Returns a ray from a camera 1 m to 10 000 km above ground to a target below, grazing half of the time; one
+// ray in four points anywhere.
 Ray pick_ray(Random& random, const paging::Surface& surface) {
   for (;;) {
     Ray ray;
@@ -94,7 +96,7 @@ void expect_no_missed_hits(std::int64_t count) {
   const paging::Surface surface(planet, std::size_t{256} << 20);
   const BruteForce truth(*planet);
   Random random(7000);
-  std::array<std::int64_t, 4> update_totals{};
+  std::array<std::int64_t, 4> verdict_counts{};
   std::int64_t hits = 0;
   std::vector<Ray> wrong;
   constexpr std::int64_t kBatch = 20000;
@@ -109,23 +111,23 @@ void expect_no_missed_hits(std::int64_t count) {
       hit[n] = std::isfinite(found_m) ? 1 : 0;
     });
     for (std::size_t n = 0; n < rays.size(); ++n) {
-      ++update_totals[static_cast<std::size_t>(verdicts[n])];
+      ++verdict_counts[static_cast<std::size_t>(verdicts[n])];
       hits += hit[n];
       if (verdicts[n] == Verdict::kMissed || verdicts[n] == Verdict::kPhantom) wrong.push_back(rays[n]);
     }
   }
-  const auto verdicts = [&](Verdict v) { return update_totals[static_cast<std::size_t>(v)]; };
+  const auto verdicts = [&](Verdict v) { return verdict_counts[static_cast<std::size_t>(v)]; };
   for (std::size_t n = 0; n < std::min<std::size_t>(wrong.size(), 5); ++n) {
     const Ray& ray = wrong[n];
-    ADD_FAILURE() << "eye " << ray.camera_m.x << " " << ray.camera_m.y << " " << ray.camera_m.z << " towards "
-                  << ray.direction.x << " " << ray.direction.y << " " << ray.direction.z << ": cast "
-                  << surface.cast(ray.camera_m, ray.direction) << " m, exact "
+    ADD_FAILURE() << "camera " << ray.camera_m.x << " " << ray.camera_m.y << " " << ray.camera_m.z
+                  << " towards " << ray.direction.x << " " << ray.direction.y << " " << ray.direction.z
+                  << ": cast " << surface.cast(ray.camera_m, ray.direction) << " m, exact "
                   << truth.cast(ray.camera_m, ray.direction) << " m";
   }
   EXPECT_EQ(verdicts(Verdict::kMissed), 0);
   EXPECT_EQ(verdicts(Verdict::kPhantom), 0);
   EXPECT_LE(verdicts(Verdict::kTie), count / 20);  // rays aimed at ridges from beside them
-  EXPECT_GE(hits, count / 2);                      // the rays are worth casting
+  EXPECT_GE(hits, count / 2);                      // most rays reach the ground
   ::testing::Test::RecordProperty("rays", std::to_string(count));
   ::testing::Test::RecordProperty("ties", std::to_string(verdicts(Verdict::kTie)));
   std::printf("%lld rays, %lld hits, %lld ties, %zu triangles\n", static_cast<long long>(count),
@@ -141,7 +143,7 @@ TEST(LongRaysZeroMissedHits, InAMillionRays) {
   expect_no_missed_hits(count.value_or(1000000));
 }
 
-// The judge itself: true answers pass, answers beside them do not.
+// Tests the judge itself: true ranges pass, ranges beside them do not.
 TEST(BruteForceJudge, TellsWrongFromRight) {
   const test_support::TempDir dir;
   const auto planet = test_support::build_fake(dir / "bumpy.vpe",

@@ -1,5 +1,5 @@
-// An image of given ranges painted by its definition, one pixel after the other: TerrainShader::colour_at,
-// haze and sky. What vpe/voxel/paint/image_painter.h is compared with and timed against.
+// Paints an image of given ranges by its definition, one pixel after the other, with TerrainShader::colour_at,
+// haze and sky. The reference for tests and benchmarks of vpe/voxel/paint/image_painter.h.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace test_support {
 class PaintedByPoint {
  public:
   PaintedByPoint(std::shared_ptr<const paging::PlanetFile> planet, std::size_t memory_bytes)
-      : planet_(std::move(planet)), painter_(planet_, memory_bytes) {}
+      : planet_(std::move(planet)), shader_(planet_, memory_bytes) {}
 
   std::vector<vpe::base::Rgb> paint(const vpe::core::DrawRequest& request, const std::vector<float>& range_m,
                                     vpe::base::ThreadPool& pool) const {
@@ -29,7 +29,7 @@ class PaintedByPoint {
     std::shared_ptr<const core::ColourScale> scale;
     if (paging::needs_scale(appearance, has_image))
       scale = std::make_shared<const core::ColourScale>(appearance);
-    const paging::ShadingParams look = paging::shading_params(appearance, request.sun, has_image, scale);
+    const paging::ShadingParams shading = paging::shading_params(appearance, request.sun, has_image, scale);
     const core::View& view = request.view;
     const core::SubRectangle part = core::drawn_part(view);
     const auto width = static_cast<std::size_t>(part.width);
@@ -40,7 +40,7 @@ class PaintedByPoint {
         const glm::dvec3 ray =
             core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(y) + 0.5);
         const glm::dvec3 c =
-            colour(request, look, ray, static_cast<double>(range_m[y * width + x]), cursor) + 0.5;
+            colour(request, shading, ray, static_cast<double>(range_m[y * width + x]), cursor) + 0.5;
         out[y * width + x] = {static_cast<std::uint8_t>(std::min(c.x, 255.0)),
                               static_cast<std::uint8_t>(std::min(c.y, 255.0)),
                               static_cast<std::uint8_t>(std::min(c.z, 255.0))};
@@ -50,7 +50,7 @@ class PaintedByPoint {
   }
 
  private:
-  glm::dvec3 colour(const vpe::core::DrawRequest& request, const paging::ShadingParams& look,
+  glm::dvec3 colour(const vpe::core::DrawRequest& request, const paging::ShadingParams& shading,
                     const glm::dvec3& ray, double range_m, paging::TerrainShader::Cursor& cursor) const {
     namespace core = vpe::core;
     const glm::dvec3& camera = request.view.camera.position_m;
@@ -61,9 +61,10 @@ class PaintedByPoint {
       return core::sky_colour(camera, ray, request.sun, radius);
     }
     const glm::dvec3 up = glm::normalize(camera + range_m * ray);
-    const glm::dvec3 ground = glm::clamp(
-        painter_.colour_at(up, range_m / core::focal_px(request.view), look, cursor).value_or(glm::dvec3(105)),
-        0.0, 255.0);
+    const glm::dvec3 ground =
+        glm::clamp(shader_.colour_at(up, range_m / core::focal_px(request.view), shading, cursor)
+                       .value_or(glm::dvec3(105)),
+                   0.0, 255.0);
     if (!(request.settings.haze_visibility_m > 0.0)) return ground;
     const double camera_radius = glm::length(camera);
     const double air =
@@ -73,7 +74,7 @@ class PaintedByPoint {
   }
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::TerrainShader painter_;
+  paging::TerrainShader shader_;
 };
 
 }  // namespace test_support

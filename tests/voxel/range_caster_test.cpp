@@ -1,4 +1,4 @@
-// Ranges of columns against single exact casts, the analytic sphere, and each other.
+// Tests ranges of columns against single exact casts, the analytic sphere, and each other.
 #include "vpe/voxel/cast/range_caster.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,8 @@ std::vector<float> cast(RangeCaster& caster, const core::View& view, const Range
   return out;
 }
 
-// Whether the ray, tilted by a little, meets S where it was seen: it only just touches something.
+// Returns true if a slightly tilted ray meets the surface where the pixel saw it: the ray only just touches
+// something.
 bool is_tie(const paging::Surface& surface, const core::View& view, const glm::dvec3& ray, double seen,
             double exaggeration, double tilt) {
   const glm::dvec3 up = glm::normalize(view.camera.position_m);
@@ -93,7 +94,7 @@ class Columns : public testing::Test {
                                     50000);
   }
 
-  // Somewhere above ground, looking anywhere; every few times over an edge or a corner of the cube.
+  // Returns a view from above ground in any direction, every few times over an edge or a corner of the cube.
   static core::View random_view(Random& random, const paging::Surface& surface, core::Projection projection,
                                 double exaggeration) {
     glm::dvec3 place = random.direction();
@@ -141,8 +142,8 @@ TEST_F(Columns, RoundImagesAreExact) {
   EXPECT_LT(sum.at(0.99), 2e-6);
 }
 
-// A million rays of columns, each against a cast of its own (which voxel/missed_hits_test holds to every
-// triangle).
+// Compares a million rays of columns with single casts, which voxel/missed_hits_test compares with every
+// triangle.
 TEST_F(Columns, AMillionRaysOfRoundImages) {
   RangeCaster caster(bumpy(), kBudget);
   Random random(76);
@@ -207,7 +208,7 @@ TEST_F(Columns, FlatPlanetIsTheSphere) {
         const double closest =
             std::sqrt(glm::dot(view.camera.position_m, view.camera.position_m) - half * half);
         const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * view.width + x)]);
-        // The limb, but for the sagitta and one millionth.
+        // Leaves out the limb within the sagitta and one millionth.
         if (half >= 0 || closest > radius * (1 + 1e-6)) {
           ASSERT_TRUE(std::isinf(seen)) << x << " " << y;
         } else if (closest < radius * (1 - 1e-6) - 4 * sagitta) {
@@ -231,7 +232,7 @@ TEST_F(Columns, VectorUnitsAndThreadsAgree) {
     ASSERT_EQ(best, cast(caster, view, {}, 1));
     ASSERT_EQ(best, cast(caster, view, {}, 5));
     for (std::int64_t targets = hwy::SupportedTargets() & ~HWY_SCALAR; targets != 0;) {
-      // Without its best one.
+      // Removes the best remaining target.
       targets &= targets - 1;
       hwy::SetSupportedTargetsForTest(targets != 0 ? targets : HWY_SCALAR);
       hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -249,7 +250,7 @@ TEST_F(Columns, VectorUnitsAndThreadsAgree) {
           EXPECT_TRUE(is_tie(caster.surface(), view, ray, b, 1, 1e-6)) << name << " " << k;
           ++ties;
         } else if (std::abs(a - b) > 2e-6 * a) {
-          // A grazing ray: both are on S.
+          // A grazing ray: both ranges are on the surface.
           const glm::dvec3 place = view.camera.position_m + b * ray;
           EXPECT_NEAR(glm::length(place), caster.surface().at(place).radius_m, 1e-6 * b) << name << " " << k;
           ++ties;
@@ -289,7 +290,8 @@ TEST_F(Columns, CoarserCellsStayWithinTheirWidth) {
         const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * view.width + x)]);
         ASSERT_FALSE(std::isnan(seen));
         if (std::isinf(seen)) continue;
-        // Posts of coarser tiles lie on S, so a facet is off by its slope over a cell at most.
+        // Posts of coarser tiles lie on the reference surface, so a facet is off by its slope over a cell at
+        // most.
         const glm::dvec3 place = view.camera.position_m + seen * core::pixel_ray(view, x + 0.5, y + 0.5);
         const double off = std::abs(glm::length(place) - surface.at(place).radius_m);
         const double steepest = 4;
@@ -299,7 +301,7 @@ TEST_F(Columns, CoarserCellsStayWithinTheirWidth) {
   }
 }
 
-TEST_F(Columns, AnCameraBelowTheGroundSeesNothingFar) {
+TEST_F(Columns, ACameraBelowTheGroundSeesNothingFar) {
   RangeCaster caster(bumpy(), kBudget);
   core::View view;
   view.width = 16;

@@ -1,4 +1,4 @@
-// The ray backend against exact casts, the definition of appearances, and the polygon backend.
+// Tests the ray backend against exact casts, the definition of appearances, and the polygon backend.
 #include "vpe/voxel/ray_renderer.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class Rays : public test_support::GlTest {
   }
 };
 
-TEST_F(Rays, RangesAreThoseOfSInEveryProjection) {
+TEST_F(Rays, RangesAreThoseOfTheReferenceSurfaceInEveryProjection) {
   const auto planet = bumpy();
   const paging::Surface surface(planet, std::size_t{1} << 27);
   const auto draw = rays(planet);
@@ -50,7 +50,7 @@ TEST_F(Rays, RangesAreThoseOfSInEveryProjection) {
       request.view.projection = projection;
       request.view.part = {8, 6, 40, 30};
       const core::DrawResult result = draw->draw(request);
-      // But for rounding (voxel/range_caster_test).
+      // Equal but for rounding (voxel/range_caster_test).
       const std::vector<float> exact = test_support::reference_ranges(surface, request.view);
       ASSERT_EQ(result.frame.range_m.size(), exact.size());
       int differ = 0;
@@ -118,17 +118,17 @@ TEST_F(Rays, EveryModeShadingAndColourAsDefined) {
   const paging::Surface surface(planet, std::size_t{1} << 26);
   const auto draw = rays(planet);
   const mars::LonLat place = mars::lon_lat(test_support::kWavyMiddle);
-  for (const core::Appearance& look : test_support::all_looks()) {
+  for (const core::Appearance& appearance : test_support::all_appearances()) {
     core::DrawRequest request =
         request_for({place.lon_deg, place.lat_deg, 60000, 40, -65, 10}, planet->radius_m(), 64, 48, 40);
     request.settings.smooth_edges = false;
-    static_cast<core::Appearance&>(request.settings) = look;
-    EXPECT_GE(test_support::agreement(*draw, surface, request), 0.999) << test_support::name(look);
+    static_cast<core::Appearance&>(request.settings) = appearance;
+    EXPECT_GE(test_support::agreement(*draw, surface, request), 0.999) << test_support::name(appearance);
   }
 }
 
-// What multires states of its error is true and no more than was asked for, and it draws fewer and coarser
-// tiles (in all; in one view ground behind a crest that sinks may take some more).
+// The error that multires states is true and no larger than requested, and it draws fewer and coarser tiles in
+// total. (In a single view the ground behind a crest that sinks may take some more.)
 TEST_F(Rays, MultiresKeepsItsCertificate) {
   const auto planet = test_support::build_fake(dir_ / "finer.vpe",
                                                test_support::FakeElevation(test_support::bumpy_height), 20000);
@@ -161,7 +161,7 @@ TEST_F(Rays, MultiresKeepsItsCertificate) {
   EXPECT_LT(tiles, exact_tiles / 2);
 }
 
-// Also where cells a pixel wide are farther off than a pixel, by steep ground or exaggeration.
+// Tests steep ground and exaggeration, where cells a pixel wide would be off by more than a pixel.
 TEST_F(Rays, MultiresStatesNoMoreThanTheCell) {
   test_support::build_rough(dir_ / "rough.vpe");
   const auto planet = paging::PlanetFile::open(dir_ / "rough.vpe");
@@ -187,7 +187,7 @@ TEST_F(Rays, MultiresStatesNoMoreThanTheCell) {
   EXPECT_GE(coarser, 10);
 }
 
-TEST_F(Rays, PlainStepsEndOnTheSurface) {
+TEST_F(Rays, ReferenceStepsEndOnTheSurface) {
   const auto planet = bumpy();
   const paging::Surface surface(planet, std::size_t{1} << 27);
   const auto draw = rays(planet);
@@ -196,10 +196,10 @@ TEST_F(Rays, PlainStepsEndOnTheSurface) {
   for (int n = 0; n < 6; ++n) {
     core::DrawRequest request = random_request(random, surface, 40, 30);
     const core::DrawResult exact = draw->draw(request);
-    request.settings.ray_mode = core::RayMode::kPlain;
-    const core::DrawResult plain = draw->draw(request);
-    for (std::size_t k = 0; k < plain.frame.range_m.size(); ++k) {
-      const auto range = static_cast<double>(plain.frame.range_m[k]);
+    request.settings.ray_mode = core::RayMode::kReference;
+    const core::DrawResult stepped = draw->draw(request);
+    for (std::size_t k = 0; k < stepped.frame.range_m.size(); ++k) {
+      const auto range = static_cast<double>(stepped.frame.range_m[k]);
       if (std::isinf(range)) continue;
       ++hits;
       const glm::dvec3 ray =
@@ -213,7 +213,7 @@ TEST_F(Rays, PlainStepsEndOnTheSurface) {
   EXPECT_GE(same, hits * 95 / 100);
 }
 
-// Several rays a pixel come nearer to the mean over the pixel than one does.
+// Several samples come nearer to the mean over the pixel than one does.
 TEST_F(Rays, SamplesAverageThePixel) {
   const auto planet = bumpy();
   const auto draw = rays(planet);
@@ -245,7 +245,7 @@ TEST_F(Rays, SamplesAverageThePixel) {
   const double one = difference(1);
   EXPECT_LT(difference(2), 0.8 * one);
   EXPECT_LT(difference(4), 0.5 * one);
-  // What is stated is so of every ray.
+  // The certificate holds for the rays of all samples.
   core::DrawRequest coarse = request(1, 1);
   coarse.settings.ray_mode = core::RayMode::kMultires;
   const core::Certificate single = draw->draw(coarse).certificate;
@@ -255,12 +255,12 @@ TEST_F(Rays, SamplesAverageThePixel) {
   EXPECT_LE(several.screen_space_error_px, coarse.settings.ray_cell_px);
   EXPECT_GT(several.geometric_error_m, 0);
   EXPECT_GE(several.tiles_drawn, single.tiles_drawn);
-  // Ranges are those of the middle.
+  // Ranges are those of the pixels' centres.
   EXPECT_EQ(draw->draw(request(1, 4)).frame.range_m, draw->draw(request(1, 1)).frame.range_m);
 }
 
-// Grey where both backends agree; by the larger shift green over 1/4 px, yellow over 1/2, red over 1; white:
-// sky in one of them.
+// Writes an image of the differences: grey where both backends agree; by the larger shift green over 1/4 px,
+// yellow over 1/2, red over 1; white: sky in one of them.
 void write_difference(const std::string& path, const core::DrawResult& a, const core::DrawResult& b,
                       std::span<const double> forward, std::span<const double> backward) {
   std::vector<vpe::base::Rgb> out;
@@ -279,7 +279,7 @@ void write_difference(const std::string& path, const core::DrawResult& a, const 
   core::write_image(path, out, a.frame.width, a.frame.height);
 }
 
-// Of some views, the largest of each figure.
+// Keeps the largest of each figure over several views.
 struct Worst {
   core::ShiftSummary largest;
   std::string worst_view;  // of p99_px
@@ -298,7 +298,7 @@ struct Worst {
   }
 };
 
-// Shift between both backends' images of one view: at most 1 px on all but 0.5 % of the pixels (skylines).
+// Expects that the images of both backends shift by at most 1 px on all but 0.5 % of the pixels (skylines).
 // $VPE_PICTURES names a folder for images of the differences.
 core::ImageErrors expect_agreement(core::Renderer& polygons, core::Renderer& rays,
                                    const paging::Surface& surface, core::DrawRequest request,
@@ -376,9 +376,10 @@ TEST_F(LongRays, BackendsAgreeOverGale) {
   const char* ready = std::getenv("VPE_GALE_PLANET");
   if (ready == nullptr) GTEST_SKIP() << "skipped: $VPE_GALE_PLANET names no planet file";
   expect_agreement_in_200_views(ready, "gale", [](Random& random, const paging::Surface& surface) {
-    const double turn = random.uniform(0, 2 * M_PI);
+    const double azimuth_rad = random.uniform(0, 2 * M_PI);
     const double off_deg = random.log_uniform(1e-4, 2);
-    const mars::LonLat place{137.4417 + off_deg * std::cos(turn), -4.5895 + off_deg * std::sin(turn)};
+    const mars::LonLat place{137.4417 + off_deg * std::cos(azimuth_rad),
+                             -4.5895 + off_deg * std::sin(azimuth_rad)};
     const double ground = surface.at(mars::direction(place)).height_m;
     return request_for({place.lon_deg, place.lat_deg, ground + random.log_uniform(1.5, 3e5),
                         random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)},

@@ -16,7 +16,7 @@ constexpr double kSameRange = 1.01;
 constexpr double kEven = 0.5;  // of a step, between the mean of its neighbours and itself
 constexpr double kAway_px = 2.0;
 
-// Whether the inverse range goes on evenly from a over b and c to d.
+// Returns true if the inverse range changes evenly from a over b and c to d.
 bool even(double a, double b, double c, double d) {
   const double step = c - b;
   return std::abs(step - 0.5 * (b - a + d - c)) <= kEven * std::abs(step) ||

@@ -1,4 +1,4 @@
-// How far drawn ground moves between two images of a flight.
+// Measures how far drawn ground moves between two images of a flight.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +21,28 @@ struct RangeImage {
   }
 };
 
-// For each pixel of `now`: how much higher its ground is drawn than it was in `before`, pixels: difference of
-// radii in one direction from the planet's centre, times focal_px(now.view) / range. The radius before is that
-// of the triangle through three of the four pixels about the point's place in `before`, so it holds what
-// interpolation makes of relief within a pixel. NaN where there is nothing to measure: sky; outside `before`;
-// the four pixels see more than one surface (their ranges differ by more than 1 % and the inverse ranges are
-// not even along either side); or the point lies more than 2 px from that triangle, hidden before.
+// Returns for each pixel of `now` how much higher its ground is drawn than in `before`, in pixels: the
+// difference of radii in one direction from the planet's centre, times focal_px(now.view) / range. The radius
+// in `before` is that of the triangle through three of the four pixels about the point's position there, so it
+// includes what interpolation makes of terrain within a pixel.
+//
+// NaN where there is nothing to measure: sky; a position outside `before`; four pixels that see more than one
+// surface (their ranges differ by more than 1 %, and the inverse ranges are not even along either side); a
+// point more than 2 px from that triangle, which was hidden before.
 std::vector<float> pops_px(const RangeImage& before, const RangeImage& now, vpe::base::ThreadPool& pool);
 
-// Distribution of |pop|.
+// Accumulates the distribution of |pop|.
 class Pops {
  public:
-  void add(std::span<const float> pops_px);  // NaN left out
+  // Adds all values but NaN.
+  void add(std::span<const float> pops_px);
   void add(const Pops& other);
 
   std::int64_t measured() const { return measured_; }
   double max_px() const { return max_px_; }
-  double quantile_px(double share) const;  // the smallest bound of such a share, within 1/1000 px up to 8 px
+  // Returns the smallest bound that this share of the pops keeps, within 1/1000 px up to 8 px.
+  double quantile_px(double share) const;
+  // Returns the share of pops above a size.
   double share_over(double px) const;
 
  private:

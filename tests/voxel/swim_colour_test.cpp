@@ -1,5 +1,5 @@
-// Do colours of the ground stand still while the camera moves? Consecutive frames, each pixel's ground looked up
-// in the frame before.
+// Tests that colours of the ground stand still while the camera moves. Looks each pixel's ground up in the
+// frame before.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using test_support::RangeImage;
 
 double grey(const vpe::base::Rgb& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; }
 
-// Straight between the four pixels about a place.
+// Interpolates bilinearly between the four pixels about a position.
 double grey_at(const core::Frame& frame, const glm::dvec2& xy) {
   const double x = xy.x - 0.5 - std::floor(xy.x - 0.5);
   const double y = xy.y - 0.5 - std::floor(xy.y - 0.5);
@@ -30,7 +30,7 @@ double grey_at(const core::Frame& frame, const glm::dvec2& xy) {
   return (1 - y) * ((1 - x) * at(0, 0) + x * at(1, 0)) + y * ((1 - x) * at(0, 1) + x * at(1, 1));
 }
 
-// Shares of pixels by how far their grey moved, in steps of 1/255.
+// Accumulates how far the grey of pixels moved, in steps of 1/255.
 class Steps {
  public:
   void add(double step) {
@@ -57,9 +57,9 @@ class Steps {
   double squares_ = 0;
 };
 
-// Colours have a level whose posts and texels are at most a pixel wide: it changes where the range passes a
-// power of two of some length, all around the camera. `crossing`: pixels whose ground has passed one since the
-// frame before; `beside`: those within a tenth of one that have not.
+// Holds steps of colour. Colours have a level whose posts and texels are at most a pixel wide. It changes where
+// the range passes a power of two of some length, all around the camera. `crossing`: pixels whose ground has
+// passed one since the frame before; `beside`: those within a tenth of one that have not.
 struct ColourSwim {
   Steps all, beside, crossing;
 };
@@ -82,8 +82,9 @@ class LongColourSwim : public testing::TestWithParam<core::RayMode> {
     RangeImage before_range;
     for (int n = 0; n < kFrames; ++n) {
       core::DrawRequest request;
-      const double way_deg = metres_a_frame * n / planet_->radius_m() * 57.29577951308232;
-      const mars::Pose pose{137.38 + 0.94 * way_deg, -4.62 + 0.34 * way_deg, alt_m, 70, pitch_deg, 0};
+      const double travelled_deg = metres_a_frame * n / planet_->radius_m() * 57.29577951308232;
+      const mars::Pose pose{
+          137.38 + 0.94 * travelled_deg, -4.62 + 0.34 * travelled_deg, alt_m, 70, pitch_deg, 0};
       request.view.camera = mars::to_camera(pose, planet_->radius_m());
       request.view.width = 640;
       request.view.height = 360;

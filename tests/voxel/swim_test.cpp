@@ -1,5 +1,6 @@
-// Does drawn ground stand still while the camera moves? Pops between consecutive frames (swim.h) of mode multires
-// against those of exact, whose ground does not move: what is left there is relief within a pixel.
+// Tests that drawn ground stands still while the camera moves. Compares pops between consecutive frames
+// (swim.h) of mode multires with those of mode exact, whose ground does not move: what is left there is terrain
+// within a pixel.
 #include "tests/voxel/swim.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ using test_support::RangeImage;
 using vpe::voxel::RangeCaster;
 
 struct Swim {
-  Pops drawn;     // as images show it
+  Pops drawn;     // as seen in images
   Pops beyond;    // the pixels' pop less that of mode exact at the same pixel
   Pops changed;   // of drawn: those where the tile has changed
   Pops by_posts;  // of the ground's posts
@@ -45,8 +46,8 @@ core::View view_of(const mars::Pose& pose, double radius_m, int width, int heigh
   return view;
 }
 
-// Grey, and pops in colour: green from 1/10 px, yellow from 1/4, red from 1/2, white from 1; blue: not
-// measured.
+// Writes pops in colour over grey ranges: green from 1/10 px, yellow from 1/4, red from 1/2, white from 1;
+// blue: not measured.
 void write_pops(const std::string& path, const RangeImage& image, std::span<const float> pops) {
   std::vector<vpe::base::Rgb> out;
   for (std::size_t k = 0; k < pops.size(); ++k) {
@@ -217,7 +218,7 @@ TEST_F(Swimming, GroundOfMultiresStandsStill) {
   EXPECT_LE(multires.drawn.quantile_px(0.999), exact.drawn.quantile_px(0.999) + 0.05);
 }
 
-// The meter itself: ground that is drawn a fifth higher in the second frame.
+// Tests the meter itself with ground that is drawn a fifth higher in the second frame.
 TEST_F(Swimming, MeterFindsAKnownPop) {
   RangeCaster caster(rough_, std::size_t{1} << 28);
   const paging::Surface& surface = caster.surface();
@@ -240,7 +241,7 @@ TEST_F(Swimming, MeterFindsAKnownPop) {
                                                              static_cast<double>(k / 160) + 0.5);
     const double raised_m = surface.at(place, 1.2).radius_m - surface.at(place, 1).radius_m;
     const double expected = raised_m * core::focal_px(now.view) / range;
-    // What is left are pixels on other triangles.
+    // The remaining error is that of pixels on other triangles.
     const double error = static_cast<double>(pops[k] - none[k]) - expected;
     ++measured;
     sum += std::abs(expected);
@@ -287,21 +288,26 @@ TEST_F(LongSwim, TwoKilometresAboveGale) {
   const double alt_m = ground_m(start) + 2000;
   measure(
       [&](int frame) {
-        const double way = degrees(6.0 * frame);
-        return mars::Pose{start.lon_deg + 0.94 * way, start.lat_deg + 0.34 * way, alt_m, 70 + 0.05 * frame, -8,
+        const double travelled_deg = degrees(6.0 * frame);
+        return mars::Pose{start.lon_deg + 0.94 * travelled_deg,
+                          start.lat_deg + 0.34 * travelled_deg,
+                          alt_m,
+                          70 + 0.05 * frame,
+                          -8,
                           10 * std::sin(0.02 * frame)};
       },
       300, "gale");
 }
 
-// 1 km/s: the data's finest relief is below a pixel.
+// 1 km/s: the finest terrain of the data is below a pixel.
 TEST_F(LongSwim, FifteenKilometresAboveGale) {
   const mars::LonLat start{137.3, -4.8};
   const double alt_m = ground_m(start) + 15000;
   measure(
       [&](int frame) {
-        const double way = degrees(40.0 * frame);
-        return mars::Pose{start.lon_deg + 0.94 * way, start.lat_deg + 0.34 * way, alt_m, 70, -25, 0};
+        const double travelled_deg = degrees(40.0 * frame);
+        return mars::Pose{
+            start.lon_deg + 0.94 * travelled_deg, start.lat_deg + 0.34 * travelled_deg, alt_m, 70, -25, 0};
       },
       100, "high");
 }
@@ -312,8 +318,9 @@ TEST_F(LongSwim, LowOverTheRover) {
   const double alt_m = ground_m(rover) + 20;
   measure(
       [&](int frame) {
-        const double way = degrees(1.2 * (frame - 60));
-        return mars::Pose{rover.lon_deg + 0.94 * way, rover.lat_deg + 0.34 * way, alt_m, 70, -6, 0};
+        const double travelled_deg = degrees(1.2 * (frame - 60));
+        return mars::Pose{
+            rover.lon_deg + 0.94 * travelled_deg, rover.lat_deg + 0.34 * travelled_deg, alt_m, 70, -6, 0};
       },
       100, "rover");
 }

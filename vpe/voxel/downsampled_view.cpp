@@ -9,28 +9,28 @@
 
 namespace vpe::voxel {
 
-core::View downsampled_view(const core::View& view, int times) {
-  const auto fewer = [&](int pixels) { return (pixels + times - 1) / times; };
-  core::View thin = view;
-  thin.width = fewer(view.width);
-  thin.height = fewer(view.height);
-  // The principal point stays where it is in the image, and so does what a pixel is worth.
+core::View downsampled_view(const core::View& view, int factor) {
+  const auto fewer = [&](int pixels) { return (pixels + factor - 1) / factor; };
+  core::View out = view;
+  out.width = fewer(view.width);
+  out.height = fewer(view.height);
+  // The principal point stays at its place in the image, and a pixel keeps its angle times the factor.
   const glm::dvec2 principal = glm::dvec2(view.width, view.height) * 0.5 + view.principal_offset_px;
-  thin.principal_offset_px = principal / static_cast<double>(times) - 0.5 * glm::dvec2(thin.width, thin.height);
+  out.principal_offset_px = principal / static_cast<double>(factor) - 0.5 * glm::dvec2(out.width, out.height);
   if (view.projection == core::Projection::kEquirectangular) {
-    thin.fov_deg = std::min(180.0, view.fov_deg * thin.height * times / view.height);
+    out.fov_deg = std::min(180.0, view.fov_deg * out.height * factor / view.height);
   } else {
     const double half = std::tan(view.fov_deg * glm::pi<double>() / 360.0);
-    thin.fov_deg = std::min(core::ViewLimits::kMaxFov_deg,
-                            std::atan(half * thin.height * times / view.height) * 360.0 / glm::pi<double>());
+    out.fov_deg = std::min(core::ViewLimits::kMaxFov_deg,
+                           std::atan(half * out.height * factor / view.height) * 360.0 / glm::pi<double>());
   }
   if (view.part.width > 0) {
-    thin.part.x = view.part.x / times;
-    thin.part.y = view.part.y / times;
-    thin.part.width = std::min(fewer(view.part.x + view.part.width), thin.width) - thin.part.x;
-    thin.part.height = std::min(fewer(view.part.y + view.part.height), thin.height) - thin.part.y;
+    out.part.x = view.part.x / factor;
+    out.part.y = view.part.y / factor;
+    out.part.width = std::min(fewer(view.part.x + view.part.width), out.width) - out.part.x;
+    out.part.height = std::min(fewer(view.part.y + view.part.height), out.height) - out.part.y;
   }
-  return thin;
+  return out;
 }
 
 bool same_view(const core::View& a, const core::View& b) {

@@ -6,16 +6,17 @@
 #include <system_error>
 
 #include "vpe/voxel/downsampled_view.h"
+#include "vpe/voxel/ray_renderer.h"
 
 namespace vpe::voxel {
 
 namespace {
 
-// Of the lattices' budget: what may be made ahead of one image.
-constexpr std::size_t kGridPart = 4;
-// Of the whole budget: the ranges of an image that is cast beforehand.
-constexpr std::size_t kRangePart = 8;
-// An image is read in so many strips, to look after each of them at what that took.
+// At most a quarter of the height grids' budget is filled before an image is drawn.
+constexpr std::size_t kGridDivisor = 4;
+// The ranges of an image that is cast early take at most an eighth of the whole budget.
+constexpr std::size_t kRangeDivisor = 8;
+// Strips that an image is read in. The filled budget is checked after each of them.
 constexpr int kStrips = 4;
 constexpr std::size_t kMostUpcoming = 3;
 
@@ -32,31 +33,21 @@ std::size_t pixels_of(const core::View& view) {
 
 }  // namespace
 
-RangeOptions range_options(const core::DrawRequest& request) {
-  RangeOptions options;
-  options.exaggeration = request.settings.exaggeration;
-  if (request.settings.ray_mode == core::RayMode::kPlain) options.method = RangeOptions::Method::kPlain;
-  // What is given up for speed are cells.
-  if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
-    options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
-  return options;
-}
-
 struct FramePrefetcher::Job {
-  explicit Job(base::ThreadPool& front) : behind(base::ThreadPool::Behind{front}) {}
+  explicit Job(base::ThreadPool& front) : background_pool(base::ThreadPool::Background{front}) {}
 
-  base::ThreadPool alone{1};
-  base::ThreadPool behind;
-  std::optional<core::DrawRequest> next;  // to be cast
-  std::vector<core::DrawRequest> reading;
-  std::size_t made_before = 0;  // bytes of lattices
-  ColumnWalk::Used used;
+  base::ThreadPool reading_pool{1};
+  base::ThreadPool background_pool;
+  std::optional<core::DrawRequest> next;   // the request to cast
+  std::vector<core::DrawRequest> reading;  // the requests whose tiles are read
+  std::size_t bytes_before = 0;            // of height grids built before the job
+  ColumnWalk::Usage usage;
   State state = State::kReading;  // guarded by the mutex
   bool begun = false;             // guarded by the mutex
 
   void stop() {
-    alone.stop();
-    behind.stop();
+    reading_pool.stop();
+    background_pool.stop();
   }
 };
 
@@ -76,7 +67,7 @@ FramePrefetcher::~FramePrefetcher() {
 
 bool FramePrefetcher::can_cast(const core::DrawRequest& next) const {
   return pool_.threads() > 1 && next.settings.samples <= 1 &&
-         pixels_of(next.view) * sizeof(float) * kRangePart <= budget_;
+         pixels_of(next.view) * sizeof(float) * kRangeDivisor <= budget_;
 }
 
 void FramePrefetcher::begin(const core::DrawRequest& request) {
@@ -101,9 +92,9 @@ void FramePrefetcher::begin(const core::DrawRequest& request) {
   {
     const std::lock_guard lock(mutex_);
     try {
-      if (!thread_.joinable()) thread_ = std::thread([this] { serve(); });
+      if (!thread_.joinable()) thread_ = std::thread([this] { run_thread(); });
     } catch (const std::system_error&) {
-      return;  // everything works without
+      return;  // without a thread nothing is done early
     }
     job_ = std::move(job);
   }
@@ -122,20 +113,20 @@ void FramePrefetcher::wait() {
   changed_.wait(lock, [this] { return !job_ || (job_->begun && !working_); });
 }
 
-std::optional<ColumnWalk::Used> FramePrefetcher::take(const core::View& view, const RangeOptions& options,
-                                                      std::vector<float>& range_m) {
+std::optional<ColumnWalk::Usage> FramePrefetcher::take(const core::View& view, const RangeOptions& options,
+                                                       std::vector<float>& range_m) {
   {
     std::unique_lock lock(mutex_);
     const auto is_cast = [this] { return job_->state == State::kCast; };
     if (job_ && job_->next && same_view(job_->next->view, view) &&
         same_options(range_options(*job_->next), options) && (job_->state == State::kCasting || is_cast())) {
-      job_->behind.hurry();
+      job_->background_pool.promote();
       changed_.wait(lock, [&] { return !working_; });
       if (is_cast()) {
         range_m.swap(range_m_);
-        const ColumnWalk::Used used = std::move(job_->used);
+        const ColumnWalk::Usage usage = std::move(job_->usage);
         job_ = nullptr;
-        return used;
+        return usage;
       }
     }
   }
@@ -148,7 +139,7 @@ std::size_t FramePrefetcher::bytes() const {
   return bytes_;
 }
 
-void FramePrefetcher::serve() {
+void FramePrefetcher::run_thread() {
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return closed_ || (job_ && !job_->begun); });
@@ -160,7 +151,7 @@ void FramePrefetcher::serve() {
     try {
       work(*job);
     } catch (...) {
-      // Whoever draws this image meets it again.
+      // The frame that needs this image meets the error again.
     }
     lock.lock();
     if (job->state != State::kCast) job->state = State::kIdle;
@@ -171,27 +162,26 @@ void FramePrefetcher::serve() {
 }
 
 void FramePrefetcher::work(Job& job) {
-  job.made_before = caster_.store().made().bytes;
+  job.bytes_before = caster_.store().build_totals().bytes;
   for (const core::DrawRequest& later : job.reading) {
-    if (!read(job, later, downsampled_view(later.view, kThinning))) break;
+    if (!read(job, later, downsampled_view(later.view, kDownsampling))) break;
   }
-  if (!job.next || job.alone.is_stopped()) return;
+  if (!job.next || job.reading_pool.is_stopped()) return;
   {
     const std::lock_guard lock(mutex_);
     job.state = State::kCasting;
   }
   range_m_.resize(pixels_of(job.next->view));
-  job.used = caster_.cast(job.next->view, range_options(*job.next), job.behind, range_m_, sectors_);
-  if (job.behind.is_stopped()) return;
+  job.usage = caster_.cast(job.next->view, range_options(*job.next), job.background_pool, range_m_, sectors_);
+  if (job.background_pool.is_stopped()) return;
   const std::lock_guard lock(mutex_);
   job.state = State::kCast;
 }
 
-// False when no more is to be read.
 bool FramePrefetcher::read(Job& job, const core::DrawRequest& request, const core::View& view) {
   RangeOptions options = range_options(request);
   if (options.method != RangeOptions::Method::kColumns) return false;
-  options.cell_px /= kThinning;
+  options.cell_px /= kDownsampling;
   const HeightGridStore& store = caster_.store();
   const core::SubRectangle whole = core::drawn_part(view);
   std::vector<float> all_m(pixels_of(view));
@@ -202,15 +192,16 @@ bool FramePrefetcher::read(Job& job, const core::DrawRequest& request, const cor
     part.part = {whole.x + begin, whole.y, whole.width * (strip + 1) / kStrips - begin, whole.height};
     if (part.part.width == 0) continue;
     range_m.resize(pixels_of(part));
-    caster_.cast(part, options, job.alone, range_m, coarse_sectors_);
-    if (job.alone.is_stopped() || store.made().bytes - job.made_before > store.budget_bytes() / kGridPart)
+    caster_.cast(part, options, job.reading_pool, range_m, coarse_sectors_);
+    if (job.reading_pool.is_stopped() ||
+        store.build_totals().bytes - job.bytes_before > store.budget_bytes() / kGridDivisor)
       return false;
     for (int row = 0; row < whole.height; ++row)
       std::copy_n(range_m.begin() + std::ptrdiff_t{row} * part.part.width, part.part.width,
                   all_m.begin() + std::ptrdiff_t{row} * whole.width + begin);
   }
-  painter_.read_ahead(request, view, all_m, job.alone);
-  return !job.alone.is_stopped();
+  painter_.read_ahead(request, view, all_m, job.reading_pool);
+  return !job.reading_pool.is_stopped();
 }
 
 }  // namespace vpe::voxel

@@ -41,7 +41,7 @@ class RayRenderer : public core::Renderer {
         caster_(planet_, share(options, kCastShare)),
         painter_(planet_, share(options, kPaintShare)),
         pool_(options.threads),
-        ahead_(caster_, painter_, pool_, options.memory_bytes) {}
+        prefetcher_(caster_, painter_, pool_, options.memory_bytes) {}
 
   core::DrawResult draw(const core::DrawRequest& request) override;
 
@@ -51,28 +51,29 @@ class RayRenderer : public core::Renderer {
   }
 
   core::DrawResult draw_image(const core::DrawRequest& request);
-  bool has_room_ahead() const;
-  ColumnWalk::Used cast(const core::DrawRequest& request, std::vector<float>& range_m);
-  ColumnWalk::Used draw_samples(const core::DrawRequest& request, core::Frame& frame, std::int64_t& gaps);
-  core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame, std::int64_t gaps,
-                            const ColumnWalk::Used& used) const;
+  bool has_room_for_next() const;
+  ColumnWalk::Usage cast(const core::DrawRequest& request, std::vector<float>& range_m);
+  ColumnWalk::Usage draw_samples(const core::DrawRequest& request, core::Frame& frame,
+                                 std::int64_t& nodata_pixels);
+  core::Certificate certify(const core::DrawRequest& request, const core::Frame& frame,
+                            std::int64_t nodata_pixels, const ColumnWalk::Usage& usage) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   RangeCaster caster_;
   ImagePainter painter_;
   base::ThreadPool pool_;
-  FramePrefetcher ahead_;
-  // Used again by the next image, so that it need not ask for memory.
+  FramePrefetcher prefetcher_;
+  // Kept so that the next image need not allocate them.
   std::vector<float> range_m_;
   std::vector<float> inverse_depth_;
   std::int64_t tiles_used_ = 0;  // by the last cast
 };
 
-// Where in a pixel its rays go through, from its middle.
-std::span<const glm::dvec2> places_in_pixel(int samples) {
+// Returns where the rays of a pixel go through it, relative to its centre, in pixels.
+std::span<const glm::dvec2> sample_offsets(int samples) {
   static constexpr std::array<glm::dvec2, 1> kOne{{{0, 0}}};
   static constexpr std::array<glm::dvec2, 2> kTwo{{{-0.25, -0.25}, {0.25, 0.25}}};
-  // A square turned by atan(1/2), so that no two are in one row or column.
+  // A square rotated by atan(1/2), so that no two samples share a row or a column.
   static constexpr std::array<glm::dvec2, 4> kFour{
       {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
   if (samples >= 4) return kFour;
@@ -80,101 +81,99 @@ std::span<const glm::dvec2> places_in_pixel(int samples) {
   return kOne;
 }
 
-// The view whose pixel middles are this view's at `place` from theirs.
-core::View shifted(core::View view, const glm::dvec2& place) {
-  view.principal_offset_px.y -= place.y;
+// Returns the view whose pixel centres lie at `offset` from those of `view`.
+core::View shifted(core::View view, const glm::dvec2& offset) {
+  view.principal_offset_px.y -= offset.y;
   if (view.projection == core::Projection::kPerspective) {
-    view.principal_offset_px.x -= place.x;
+    view.principal_offset_px.x -= offset.x;
   } else {
-    const double turn = place.x / view.width * 2 * glm::pi<double>();
+    const double angle = offset.x / view.width * 2 * glm::pi<double>();
     const glm::dvec3 right = view.camera.axes.right;
     const glm::dvec3 forward = view.camera.axes.forward;
-    view.camera.axes.forward = std::cos(turn) * forward + std::sin(turn) * right;
-    view.camera.axes.right = std::cos(turn) * right - std::sin(turn) * forward;
+    view.camera.axes.forward = std::cos(angle) * forward + std::sin(angle) * right;
+    view.camera.axes.right = std::cos(angle) * right - std::sin(angle) * forward;
   }
   return view;
 }
 
 core::Certificate RayRenderer::certify(const core::DrawRequest& request, const core::Frame& frame,
-                                       std::int64_t gaps, const ColumnWalk::Used& used) const {
+                                       std::int64_t nodata_pixels, const ColumnWalk::Usage& usage) const {
   core::Certificate c;
   c.quantisation_px = RangeCaster::range_error(request.view) * core::focal_px(request.view);
-  c.geometric_error_m = used.geometric_error_m;
-  c.screen_space_error_px = used.screen_space_error_px;
-  c.shift_bound_px = used.screen_space_error_px + c.quantisation_px;
-  for (const int n : used.tiles_by_level) c.tiles_drawn += n;
+  c.geometric_error_m = usage.geometric_error_m;
+  c.screen_space_error_px = usage.screen_space_error_px;
+  c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px;
+  for (const int n : usage.tiles_by_level) c.tiles_drawn += n;
   c.image_bound_px = c.shift_bound_px;
-  c.tolerance_px = request.settings.lod_tolerance_px;
   c.nodata_share =
-      static_cast<double>(gaps) / static_cast<double>(std::max<std::size_t>(1, frame.colour.size()));
+      static_cast<double>(nodata_pixels) / static_cast<double>(std::max<std::size_t>(1, frame.colour.size()));
   const paging::PlanetMeta& meta = planet_->meta();
-  c.resampling_max_m = meta.resampling.max_m;
-  c.resampling_rms_m = meta.resampling.rms_m;
-  for (const mars::SourceInfo& s : meta.sources) {
-    if (s.accuracy_m) c.source_accuracy_m = std::max(c.source_accuracy_m.value_or(0.0), *s.accuracy_m);
-  }
-  c.illustration = meta.illustration;
+  core::state_data(c,
+                   {.tolerance_px = request.settings.lod_tolerance_px,
+                    .resampling_max_m = meta.resampling.max_m,
+                    .resampling_rms_m = meta.resampling.rms_m,
+                    .illustration = meta.illustration},
+                   meta.sources);
   c.exaggeration = request.settings.exaggeration;
   return c;
 }
 
-// Several rays a pixel, shifted in parallel (Cohen-Or 1996, section 2), and their mean; range is that of the
-// middle.
-ColumnWalk::Used RayRenderer::draw_samples(const core::DrawRequest& request, core::Frame& frame,
-                                           std::int64_t& gaps) {
+// Draws a complete image for each sample and takes their mean. The range is that of the pixel's centre.
+ColumnWalk::Usage RayRenderer::draw_samples(const core::DrawRequest& request, core::Frame& frame,
+                                            std::int64_t& nodata_pixels) {
   const RangeOptions options = range_options(request);
-  const std::span<const glm::dvec2> places = places_in_pixel(request.settings.samples);
+  const std::span<const glm::dvec2> offsets = sample_offsets(request.settings.samples);
   std::vector<glm::ivec3> sum(frame.colour.size(), glm::ivec3(0));
   std::vector<float> range(frame.range_m.size());
   core::DrawRequest moved = request;
-  ColumnWalk::Used used;
-  gaps = 0;
-  for (const glm::dvec2& place : places) {
-    moved.view = shifted(request.view, place);
-    used.add(caster_.cast(moved.view, options, pool_, range));
-    gaps += painter_.paint(moved, range, frame.colour, {}, pool_);
+  ColumnWalk::Usage usage;
+  nodata_pixels = 0;
+  for (const glm::dvec2& offset : offsets) {
+    moved.view = shifted(request.view, offset);
+    usage.add(caster_.cast(moved.view, options, pool_, range));
+    nodata_pixels += painter_.paint(moved, range, frame.colour, {}, pool_);
     for (std::size_t k = 0; k < sum.size(); ++k)
       sum[k] += glm::ivec3(frame.colour[k].r, frame.colour[k].g, frame.colour[k].b);
   }
-  if (request.want_range) used.add(caster_.cast(request.view, options, pool_, frame.range_m));
-  ahead_.begin(request);
-  const int n = static_cast<int>(places.size());
-  gaps /= n;
+  if (request.want_range) usage.add(caster_.cast(request.view, options, pool_, frame.range_m));
+  prefetcher_.begin(request);
+  const int n = static_cast<int>(offsets.size());
+  nodata_pixels /= n;
   for (std::size_t k = 0; k < sum.size(); ++k) {
     const auto mean = [&](int s) { return static_cast<std::uint8_t>((s + n / 2) / n); };
     frame.colour[k] = {mean(sum[k].x), mean(sum[k].y), mean(sum[k].z)};
   }
-  return used;
+  return usage;
 }
 
-// Whether the caches have room for two images at once.
-bool RayRenderer::has_room_ahead() const {
-  const HeightGridStore::Made made = caster_.store().made();
-  if (tiles_used_ == 0 || made.tiles == 0) return false;
-  const double tile_bytes = static_cast<double>(made.bytes) / static_cast<double>(made.tiles);
-  // Some tiles are there in two families.
+// Returns true if the caches have room for the tiles of two images at once.
+bool RayRenderer::has_room_for_next() const {
+  const HeightGridStore::BuildTotals totals = caster_.store().build_totals();
+  if (tiles_used_ == 0 || totals.tiles == 0) return false;
+  const double tile_bytes = static_cast<double>(totals.bytes) / static_cast<double>(totals.tiles);
+  // A tile may be held in two line families.
   return 2 * tile_bytes * static_cast<double>(tiles_used_) <=
          0.5 * static_cast<double>(caster_.store().budget_bytes());
 }
 
-// Ranges of a view, and of those to come as soon as somebody is idle.
-ColumnWalk::Used RayRenderer::cast(const core::DrawRequest& request, std::vector<float>& range_m) {
+// Casts the view, or takes its ranges from the prefetcher, and lets the prefetcher start on the next one.
+ColumnWalk::Usage RayRenderer::cast(const core::DrawRequest& request, std::vector<float>& range_m) {
   const RangeOptions options = range_options(request);
-  std::optional<ColumnWalk::Used> used = ahead_.take(request.view, options, range_m);
-  const bool early = has_room_ahead();
-  if (early) ahead_.begin(request);
-  if (!used) used = caster_.cast(request.view, options, pool_, range_m);
+  std::optional<ColumnWalk::Usage> usage = prefetcher_.take(request.view, options, range_m);
+  const bool early = has_room_for_next();
+  if (early) prefetcher_.begin(request);
+  if (!usage) usage = caster_.cast(request.view, options, pool_, range_m);
   tiles_used_ = 0;
-  for (const int n : used->tiles_by_level) tiles_used_ += n;
-  if (!early) ahead_.begin(request);
-  return *used;
+  for (const int n : usage->tiles_by_level) tiles_used_ += n;
+  if (!early) prefetcher_.begin(request);
+  return *usage;
 }
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   try {
     return draw_image(request);
   } catch (...) {
-    ahead_.stop();
+    prefetcher_.stop();
     throw;
   }
 }
@@ -193,38 +192,48 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   frame.colour.resize(pixels);
   frame.range_m.swap(range_m_);
   frame.range_m.resize(pixels);
-  ColumnWalk::Used used;
-  std::int64_t gaps = 0;
+  ColumnWalk::Usage usage;
+  std::int64_t nodata_pixels = 0;
   if (request.settings.samples > 1) {
-    used = draw_samples(request, frame, gaps);
+    usage = draw_samples(request, frame, nodata_pixels);
   } else {
-    used = cast(request, frame.range_m);
+    usage = cast(request, frame.range_m);
     result.stats.select_ms = ms_since(start);
     const bool smooth =
         request.settings.smooth_edges && request.view.projection == core::Projection::kPerspective;
     inverse_depth_.resize(smooth ? pixels : 0);
-    gaps = painter_.paint(request, frame.range_m, frame.colour, inverse_depth_, pool_);
+    nodata_pixels = painter_.paint(request, frame.range_m, frame.colour, inverse_depth_, pool_);
     if (smooth) core::smooth_edges(frame.colour, inverse_depth_, size.x, size.y, pool_);
   }
   core::apply_gamma(frame.colour, request.settings.gamma);
-  result.certificate = certify(request, frame, gaps, used);
-  result.stats.tiles_by_level = used.tiles_by_level;
+  result.certificate = certify(request, frame, nodata_pixels, usage);
+  result.stats.tiles_by_level = usage.tiles_by_level;
   result.stats.tiles_drawn = result.certificate.tiles_drawn;
   if (!request.want_range) range_m_.swap(frame.range_m);
-  // Not those of a poster.
+  // The buffers of a poster are too large to keep.
   if (pixels > kMostKeptPixels) {
     range_m_ = {};
     inverse_depth_ = {};
   }
   result.stats.draw_ms = ms_since(start);
   result.stats.bytes_resident = static_cast<std::int64_t>(
-      caster_.bytes_resident() + painter_.bytes_resident() + ahead_.bytes() +
+      caster_.bytes_resident() + painter_.bytes_resident() + prefetcher_.bytes() +
       (range_m_.capacity() + inverse_depth_.capacity()) * sizeof(float) + planet_->tree().bytes());
   result.settled = true;
   return result;
 }
 
 }  // namespace
+
+RangeOptions range_options(const core::DrawRequest& request) {
+  RangeOptions options;
+  options.exaggeration = request.settings.exaggeration;
+  if (request.settings.ray_mode == core::RayMode::kReference) options.method = RangeOptions::Method::kReference;
+  // Coarsening, the price of speed, acts on the cells.
+  if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
+    options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
+  return options;
+}
 
 std::string why_not(const core::DrawRequest& request) {
   const core::Mode mode = request.settings.mode;

@@ -1,4 +1,24 @@
-// The ray backend: images of the exact surface S without triangles and without OpenGL.
+// The ray backend (`--backend ray`): draws the reference surface by ray casting on the CPU, without triangles
+// and without OpenGL.
+//
+// A pixel gets its colour in this order (docs/design/rays.md):
+//   RangeCaster     finds the range of every pixel (cast/range_caster.h):
+//     SectorPlan      divides a perspective image into sectors of vertical columns (cast/view_sector.h),
+//     ColumnBatch     hands neighbouring columns to threads (cast/column_batch.h),
+//     ColumnWalk      leads a group of columns over the tiles from near to far (cast/column_walk.h),
+//     walk_grid()     resolves rows at the edges of one tile's posts (cast/columns.h),
+//     refine_row()    moves the ranges from the columns to the pixels' own rays (cast/refine.h);
+//   ImagePainter    colours ground, haze and sky of these ranges (paint/image_painter.h);
+//   RayRenderer     (this file) averages samples, smooths edges, applies gamma and states the certificate.
+// FramePrefetcher starts the same steps early for the next frame of a film (frame_prefetcher.h).
+//
+// Typical usage:
+//   const auto renderer = make_ray_renderer(paging::PlanetFile::open("mars.vpe"));
+//   core::DrawRequest request;
+//   request.view.camera = mars::to_camera(pose, planet_radius_m);
+//   request.settings.ray_mode = core::RayMode::kMultires;
+//   if (const std::string reason = why_not(request); !reason.empty()) throw std::runtime_error(reason);
+//   const core::DrawResult result = renderer->draw(request);
 #pragma once
 
 #include <cstddef>
@@ -10,21 +30,47 @@
 
 namespace vpe::voxel {
 
+struct RangeOptions;  // cast/range_caster.h
+
 struct RayOptions {
-  std::size_t memory_bytes = std::size_t{1024} << 20;  // of decoded ground and its colours
-  int threads = 0;                                     // 0: as many as the machine runs at once
+  // Budget for decoded ground and its colours: 0.6 of it for casting, 0.4 for painting. Smaller: tiles are read
+  // and decoded again, which takes time; larger: no gain once all tiles of an image fit.
+  std::size_t memory_bytes = std::size_t{1024} << 20;
+  // Threads of casting and painting, the caller included; 0: as many as the machine runs at once. Fewer leave
+  // processors to other work; images do not depend on it.
+  int threads = 0;
 };
 
-// Draws every projection, at any pitch and roll (vpe/voxel/cast/range_caster.h). With rays.mode=exact the image
-// has no tile error: what a pixel shows is on S as exaggerated, within RangeCaster::range_error(). With
-// multires, or where the request is for coarsening, tiles far away are coarser, and the certificate says by how
-// much at most. Colours are those of core::Appearance, with posts and images about as fine as a pixel; ground
-// of modes wireframe and markers, which show meshes, cannot be drawn. Several samples are rays shifted in
-// parallel; range is that of the middle. Does not depend on threads or on what was drawn before. Draws with one
-// thread at a time. draw() throws std::runtime_error for a view or an appearance that it cannot draw,
-// paging::PlanetError for unreadable tiles. Why an image cannot be drawn by rays, for people; empty: it can.
+// Returns the reason why the ray backend cannot draw the request, for users, or "" if it can. Wireframes,
+// markers, a cull view and inspection show meshes or tiles, which the ray backend does not draw.
 std::string why_not(const core::DrawRequest& request);
 
+// Returns how the ranges of a request are cast: the mode of the settings, and cells that grow with the
+// request's coarsening. In modes exact and reference a coarsening above 1 also leads to coarser cells.
+RangeOptions range_options(const core::DrawRequest& request);
+
+// Returns a renderer of every projection, at any pitch and roll.
+//
+// Geometry: with rays.mode=exact the geometric error is 0: a pixel shows the reference surface as exaggerated,
+// within RangeCaster::range_error(). With multires, or where the request asks for coarsening, far tiles are
+// coarser, and the certificate states the bound. Colours are those of core::Appearance, from posts and images
+// about as fine as a pixel.
+//
+// Samples: several samples are complete images with shifted pixel centres, and their mean; the range is that of
+// the pixel's centre. (Cohen-Or 1996, section 2, shares one column's walk among vertical samples; this does
+// not.)
+//
+// Certificate: quantisation_px is the rounding of ranges. tolerance_px repeats lod.tolerance, which the polygon
+// backend uses and this one does not: it says nothing about the image. The choice of tiles does not depend on
+// lod.* or on regions of interest.
+//
+// A request that names the next one (DrawRequest::paging.next, a shared pointer to another request) lets the
+// renderer start it early. The next request's own paging.next is ignored, so requests never form a chain here.
+//
+// Images do not depend on the number of threads or on what was drawn before. One thread at a time may call
+// draw(). Its tiles are read within the frame, whatever PagingRequest::wait says, so results are always
+// settled. draw() throws std::runtime_error for a view or an appearance that it cannot draw, and
+// paging::PlanetError for unreadable tiles.
 std::unique_ptr<core::Renderer> make_ray_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                   const RayOptions& options = {});
 

@@ -1,4 +1,7 @@
-// From runs of rows to ranges.
+// Second pass over the rows of a group of columns: turns runs of rows into ranges, and copies them to the
+// image.
+//
+// Part of column_kernel.cpp; columns.h has the contracts. Runs after all height grids are walked.
 #if defined(VPE_VOXEL_COLUMN_EXPAND_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_EXPAND_INL_H_
 #undef VPE_VOXEL_COLUMN_EXPAND_INL_H_
@@ -34,7 +37,7 @@ void least_as(const Rows& rows, ColumnGroup& group) {
       static_cast<double>(hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(alive, model.slope(row), far))));
 }
 
-void UpdateLeastSlope(const Rows& rows, ColumnGroup& group) {
+void update_least_slope_kernel(const Rows& rows, ColumnGroup& group) {
   switch (rows.kind) {
     case RowKind::kEven: return least_as<RowKind::kEven>(rows, group);
     case RowKind::kTable: return least_as<RowKind::kTable>(rows, group);
@@ -96,7 +99,8 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
   hn::Store(from, d, group.run_slope);
 }
 
-void ExpandRows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride) {
+void expand_rows_kernel(const Rows& rows, ColumnGroup& group, int first, int last, float* out,
+                        std::ptrdiff_t stride) {
   switch (rows.kind) {
     case RowKind::kEven: return expand_as<RowKind::kEven>(rows, group, first, last, out, stride);
     case RowKind::kTable: return expand_as<RowKind::kTable>(rows, group, first, last, out, stride);
@@ -104,15 +108,15 @@ void ExpandRows(const Rows& rows, ColumnGroup& group, int first, int last, float
   }
 }
 
-void CopyRows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
-              int rows, bool stream) {
+void copy_rows_kernel(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride,
+                      int columns, int rows, bool stream) {
   const RowTag d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
   const auto bytes = static_cast<std::uintptr_t>(lanes) * sizeof(float);
   for (int r = 0; r < rows; ++r, from += from_stride, to += to_stride) {
     std::ptrdiff_t x = 0;
     if (stream) {
-      // Up to the first whole vector.
+      // hn::Stream() needs an aligned address.
       while (x < columns && reinterpret_cast<std::uintptr_t>(to + x) % bytes != 0) {
         to[x] = from[x];
         ++x;

@@ -73,7 +73,8 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
           const double height = foot.height(plane, camera);
           for (int lane0 = 0; lane0 < static_cast<int>(hn::Lanes(FloatTag()));
                lane0 += static_cast<int>(hn::Lanes(DoubleTag()))) {
-            Walk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, camera, rows, group);
+            HorizonWalk<DoubleTag, kKind> walk(lines, family, f.intervals, paths, kind, lane0, camera, rows,
+                                               group);
             if (!walk.any()) continue;
             walk.start_at_foot(at, height, paths);
             walk.run(first, until);
@@ -87,7 +88,7 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
     const HeightGridLines<float>& lines = source.lines(family);
     find_bases(f, lines.reference, camera, up, paths);
     const bool begins = foot.inside && first == (outward_up ? low : high);
-    Walk<FloatTag, kKind> walk(lines, family, f.intervals, paths, kind, 0, camera, rows, group);
+    HorizonWalk<FloatTag, kKind> walk(lines, family, f.intervals, paths, kind, 0, camera, rows, group);
     if (!walk.any()) continue;
     if (begins)
       walk.start_at_foot(static_cast<float>(foot.on(family)),
@@ -97,8 +98,8 @@ void walk_as(const HeightGridFrame& f, HeightGridSource& source, const ColumnCam
   }
 }
 
-void WalkGrid(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera,
-              const glm::dvec3& up, const Rows& rows, ColumnGroup& group) {
+void walk_grid_kernel(const HeightGridFrame& f, HeightGridSource& source, const ColumnCamera& camera,
+                      const glm::dvec3& up, const Rows& rows, ColumnGroup& group) {
   switch (rows.kind) {
     case RowKind::kEven: return walk_as<RowKind::kEven>(f, source, camera, up, rows, group);
     case RowKind::kTable: return walk_as<RowKind::kTable>(f, source, camera, up, rows, group);
@@ -106,8 +107,8 @@ void WalkGrid(const HeightGridFrame& f, HeightGridSource& source, const ColumnCa
   }
 }
 
-int ColumnLanes() { return static_cast<int>(hn::Lanes(FloatTag())); }
-const char* ColumnTarget() { return hwy::TargetName(HWY_TARGET); }
+int column_lanes_kernel() { return static_cast<int>(hn::Lanes(FloatTag())); }
+const char* column_target_kernel() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace
 }  // namespace vpe::voxel::HWY_NAMESPACE
@@ -120,29 +121,29 @@ bool needs_exact(const HeightGridFrame& frame, const ColumnCamera& camera) {
   return camera.distance_m - camera.ground_m < kExactLines * std::max(frame.du, frame.dv) * camera.radius_m;
 }
 
-HWY_EXPORT(WalkGrid);
-HWY_EXPORT(UpdateLeastSlope);
-HWY_EXPORT(ExpandRows);
-HWY_EXPORT(CopyRows);
-HWY_EXPORT(ColumnLanes);
-HWY_EXPORT(ColumnTarget);
+HWY_EXPORT(walk_grid_kernel);
+HWY_EXPORT(update_least_slope_kernel);
+HWY_EXPORT(expand_rows_kernel);
+HWY_EXPORT(copy_rows_kernel);
+HWY_EXPORT(column_lanes_kernel);
+HWY_EXPORT(column_target_kernel);
 
 void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera,
                const glm::dvec3& up, const Rows& rows, ColumnGroup& group) {
-  HWY_DYNAMIC_DISPATCH(WalkGrid)(frame, source, camera, up, rows, group);
+  HWY_DYNAMIC_DISPATCH(walk_grid_kernel)(frame, source, camera, up, rows, group);
 }
 void update_least_slope(const Rows& rows, ColumnGroup& group) {
-  HWY_DYNAMIC_DISPATCH(UpdateLeastSlope)(rows, group);
+  HWY_DYNAMIC_DISPATCH(update_least_slope_kernel)(rows, group);
 }
 void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride) {
-  HWY_DYNAMIC_DISPATCH(ExpandRows)(rows, group, first, last, out, stride);
+  HWY_DYNAMIC_DISPATCH(expand_rows_kernel)(rows, group, first, last, out, stride);
 }
 void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
                int rows, bool stream) {
-  HWY_DYNAMIC_DISPATCH(CopyRows)(from, from_stride, to, to_stride, columns, rows, stream);
+  HWY_DYNAMIC_DISPATCH(copy_rows_kernel)(from, from_stride, to, to_stride, columns, rows, stream);
 }
-int column_lanes() { return HWY_DYNAMIC_DISPATCH(ColumnLanes)(); }
-const char* column_target() { return HWY_DYNAMIC_DISPATCH(ColumnTarget)(); }
+int column_lanes() { return HWY_DYNAMIC_DISPATCH(column_lanes_kernel)(); }
+const char* column_target() { return HWY_DYNAMIC_DISPATCH(column_target_kernel)(); }
 
 }  // namespace vpe::voxel
 #endif

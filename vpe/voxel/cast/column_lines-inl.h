@@ -1,4 +1,6 @@
-// Reading posts, and the edges between them, along straight paths.
+// Reads posts, and the edges between them, along straight paths through a height grid.
+//
+// Part of column_kernel.cpp, below column_steps-inl.h.
 #if defined(VPE_VOXEL_COLUMN_LINES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_LINES_INL_H_
 #undef VPE_VOXEL_COLUMN_LINES_INL_H_
@@ -20,10 +22,10 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// How the posts of all lanes that matter are read: from a window of two or four vectors, or each by itself.
+// Selects how the posts of all active lanes are read: from a window of two or four vectors, or each by itself.
 enum class Reach { kNear, kWide, kAny };
 
-// Posts along the paths of lanes that go through one lattice the same way.
+// Reads posts along the paths of lanes that cross one height grid by the same family of lines.
 template <class D>
 class PathReader {
  public:
@@ -33,20 +35,20 @@ class PathReader {
   using DI = hn::RebindToSigned<D>;
   using VI = hn::Vec<DI>;
 
-  // position, turn: of the first lane.
-  PathReader(const HeightGridLines<T>& lines, LineFamily family, int intervals, V position, V turn)
-      : lines_(lines), family_(family), n_(intervals), position_(position), turn_(turn) {
+  // position0, position1: the lanes' position at line 0 and its change from line to line.
+  PathReader(const HeightGridLines<T>& lines, LineFamily family, int intervals, V position0, V position1)
+      : lines_(lines), family_(family), n_(intervals), position0_(position0), position1_(position1) {
     const D d;
-    // A limit keeps 0 times it from becoming NaN.
+    // The limit keeps the product with 0 from becoming NaN.
     const V limit = hn::Set(d, T(1e30));
-    per_turn_ = hn::Min(hn::Div(hn::Set(d, T(1)), turn_), limit);
-    per_rest_ = hn::Min(hn::Div(hn::Set(d, T(1)), hn::Sub(hn::Set(d, T(1)), turn_)), limit);
+    per_position1_ = hn::Min(hn::Div(hn::Set(d, T(1)), position1_), limit);
+    per_rest_ = hn::Min(hn::Div(hn::Set(d, T(1)), hn::Sub(hn::Set(d, T(1)), position1_)), limit);
   }
 
   int intervals() const { return n_; }
   const T* maxima(int block) const { return lines_.maxima(block); }
 
-  V position_at(int k) const { return hn::MulAdd(turn_, hn::Set(D(), static_cast<T>(k)), position_); }
+  V position_at(int k) const { return hn::MulAdd(position1_, hn::Set(D(), static_cast<T>(k)), position0_); }
   T first_position(int k) const {
     return family_ == LineFamily::kDiagonals ? static_cast<T>(std::max(0, k)) : T(0);
   }
@@ -54,7 +56,8 @@ class PathReader {
     return static_cast<T>(family_ == LineFamily::kDiagonals ? n_ + std::min(0, k) : n_);
   }
 
-  // What is read of one line at each lane's position.
+  // Holds what is read of one line at each lane's position: the posts on either side, and the position between
+  // them.
   struct Line {
     V whole;
     V part;
@@ -62,7 +65,7 @@ class PathReader {
     V high;
   };
 
-  // Any position: reads are kept within the lattice's rows.
+  // Reads a line at any positions. Indices are clamped to the line and one post beside it.
   Line gather(int k) const {
     const D d;
     const DI di;
@@ -78,8 +81,8 @@ class PathReader {
     return line;
   }
 
-  // Positions of all lanes that matter are in [from, from + width]; others read anything. A window begins one
-  // post before `from`, and the last lane's upper neighbour is in it.
+  // Reads a line whose active lanes have positions in [from, from + width]; other lanes read anything. The
+  // window begins one post before `from` and includes the upper neighbour of the last lane.
 #if HWY_TARGET == HWY_AVX2
   static constexpr int kNearWidth = 5;
   static constexpr int kWideWidth = 13;
@@ -123,7 +126,7 @@ class PathReader {
       line.low = V{_mm256_permutevar8x32_ps(_mm256_loadu_ps(at), at_low)};
       line.high = V{_mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 1), at_low)};
       if constexpr (kReach == Reach::kWide) {
-        // Bit 3 of the index says which half.
+        // Bit 3 of the index selects the half.
         const __m256 far = _mm256_castsi256_ps(_mm256_slli_epi32(at_low, 28));
         const __m256 low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 8), at_low);
         const __m256 high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(at + 9), at_low);
@@ -149,19 +152,20 @@ class PathReader {
     }
   }
 
-  // The one edge between two lines, `lower` having the smaller number.
+  // Describes where a path crosses the one edge between two neighbouring lines.
   struct Crossing {
     V x;
     V height;
     M other;  // an edge along the lines' normal, not a diagonal of the family's cells
   };
+  // Returns the crossing between line k (`lower`) and line k + 1 (`upper`).
   Crossing between(int k, const Line& lower, const Line& upper) const {
     const D d;
     const V one = hn::Set(d, T(1));
     Crossing c;
     c.other = hn::Ne(lower.whole, upper.whole);
     const V numerator = hn::IfThenElse(c.other, hn::Sub(one, lower.part), lower.part);
-    const V factor = hn::IfThenElse(c.other, per_turn_, per_rest_);
+    const V factor = hn::IfThenElse(c.other, per_position1_, per_rest_);
     const V s = hn::Min(hn::Max(hn::Mul(numerator, factor), hn::Zero(d)), one);
     const V a = hn::IfThenElse(c.other, lower.high, lower.low);
     const V b = hn::IfThenElse(c.other, upper.low, upper.high);
@@ -182,7 +186,7 @@ class PathReader {
   const HeightGridLines<T>& lines_;
   LineFamily family_;
   int n_;
-  V position_, turn_, per_turn_, per_rest_;
+  V position0_, position1_, per_position1_, per_rest_;
 };
 
 }  // namespace

@@ -1,4 +1,6 @@
-// Where columns go through a lattice.
+// Computes the straight paths of a group's columns through a height grid.
+//
+// Part of column_kernel.cpp: the first step of walk_grid(), before column_steps-inl.h.
 #if defined(VPE_VOXEL_COLUMN_PATHS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_PATHS_INL_H_
 #undef VPE_VOXEL_COLUMN_PATHS_INL_H_
@@ -19,10 +21,11 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Path of each lane through a lattice: position, sigma, z and w R^2 / |E| are affine in the line number k.
+// Holds the path of each lane through a height grid. Position, sigma, z and w R^2 / |E| are affine in the line
+// number k: value = value0 + value1 k.
 struct Paths {
-  alignas(64) double position[kMaxLanes];
-  alignas(64) double turn[kMaxLanes];  // positions a line, in [0, 1]
+  alignas(64) double position0[kMaxLanes];
+  alignas(64) double position1[kMaxLanes];  // in [0, 1]
   alignas(64) double sigma0[kMaxLanes];
   alignas(64) double sigma1[kMaxLanes];
   alignas(64) double base0[kMaxLanes];
@@ -33,18 +36,18 @@ struct Paths {
   alignas(64) double xk[kMaxLanes];
   alignas(64) double y0[kMaxLanes];
   alignas(64) double yk[kMaxLanes];
-  alignas(64) double from[kMaxLanes];  // lines that the path is inside the lattice at
+  alignas(64) double from[kMaxLanes];  // lines at which the path is inside the grid
   alignas(64) double to[kMaxLanes];
-  alignas(64) double kind[kMaxLanes];  // 2 * family + (1 where k grows outward); -1: not in the lattice
+  alignas(64) double kind[kMaxLanes];  // 2 * family + (1 if k grows outward); -1: outside the grid
 };
 
-// Smallest magnitude that is divided by.
+// Divisors have at least this magnitude.
 constexpr double kTiny = 1e-290;
 constexpr double kHuge = 1e30;
 
 double away_from_zero(double x) { return std::abs(x) < kTiny ? (x < 0 ? -kTiny : kTiny) : x; }
 
-// Cuts [from, to] to where 0 <= p + q k <= n.
+// Clips [from, to] to where 0 <= p + q k <= n.
 void cut(double p, double q, double n, double& from, double& to) {
   const double inverse = 1.0 / away_from_zero(q);
   const double a = -p * inverse;
@@ -84,8 +87,8 @@ void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const Colu
     double to = kHuge;
     cut(x0, xk, n, from, to);
     cut(y0, yk, n, from, to);
-    // In front of the camera is where sigma is positive. It stays the same along paths that point straight up: those
-    // of other faces under a camera exactly over a face's middle.
+    // sigma is positive in front of the camera. It is constant along paths that point straight up, which occur
+    // on other faces below a camera exactly over the middle of a face.
     if (s1 > 0) {
       from = std::max(from, -s0 / away_from_zero(s1));
     } else if (s1 < 0) {
@@ -94,8 +97,8 @@ void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const Colu
       to = from;
     }
     const bool inside = from < to && group.row[lane] < group.row_end[lane];
-    out.position[lane] = diagonal ? x0 : (columns ? y0 : x0);
-    out.turn[lane] = m;
+    out.position0[lane] = diagonal ? x0 : (columns ? y0 : x0);
+    out.position1[lane] = m;
     out.sigma0[lane] = s0 * scale;
     out.sigma1[lane] = s1 * scale;
     out.x0[lane] = x0;
@@ -109,7 +112,7 @@ void find_paths(const HeightGridFrame& f, const ColumnCamera& camera, const Colu
   }
 }
 
-// Heights along the paths, against the reference of their posts.
+// Computes heights along the paths relative to the reference plane of their posts.
 void find_bases(const HeightGridFrame& f, const DepthPlane& plane, const ColumnCamera& camera,
                 const glm::dvec3& up, Paths& out) {
   const double scale = camera.radius_m * camera.radius_m / camera.distance_m;
@@ -128,16 +131,18 @@ void find_bases(const HeightGridFrame& f, const DepthPlane& plane, const ColumnC
   }
 }
 
+// Holds the camera's foot, the point of the ground below the camera, in the coordinates of a grid.
 struct Foot {
-  bool inside = false;  // the camera's foot is seen from this face
+  bool inside = false;  // the foot lies in the hemisphere of this face
   double x = 0;
   double y = 0;
-  double depth = 0;  // w of S there
+  double depth = 0;  // w of the reference surface there
 
+  // Returns the line number of the foot in a family.
   double on(LineFamily family) const {
     return family == LineFamily::kColumns ? x : (family == LineFamily::kRows ? y : x - y);
   }
-  // As the posts of a lattice have it.
+  // Returns the height of the foot in the form of a post, H.
   double height(const DepthPlane& plane, const ColumnCamera& camera) const {
     return (plane.w0 + plane.wx * x + plane.wy * y - depth) * camera.radius_m * camera.radius_m;
   }

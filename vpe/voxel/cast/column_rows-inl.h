@@ -1,4 +1,6 @@
-// Rows of an image as vectors see them.
+// Computes slopes of rows, and rows of slopes, for vectors of columns.
+//
+// Part of column_kernel.cpp, below column_steps-inl.h and column_expand-inl.h.
 #if defined(VPE_VOXEL_COLUMN_ROWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_ROWS_INL_H_
 #undef VPE_VOXEL_COLUMN_ROWS_INL_H_
@@ -19,12 +21,12 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// 1 / x to the last bit or two; x finite and not tiny.
+// Returns 1 / x to the last bit or two. Requires a finite x that is not tiny.
 template <class D>
 hn::Vec<D> reciprocal(D d, hn::Vec<D> x) {
   if constexpr (sizeof(hn::TFromD<D>) == 4) {
     const auto guess = hn::ApproximateReciprocal(x);
-    // One step of Newton's method doubles its bits.
+    // One step of Newton's method doubles the correct bits.
     const auto error = hn::NegMulAdd(x, guess, hn::Set(d, 1.0F));
     const auto better = hn::MulAdd(guess, error, guess);
 #if HWY_TARGET <= HWY_AVX3
@@ -37,7 +39,7 @@ hn::Vec<D> reciprocal(D d, hn::Vec<D> x) {
   }
 }
 
-// Rows as vectors of D see them.
+// Converts between rows and slopes of as many lanes as D has.
 template <class D, RowKind kKind>
 class RowModel {
  public:
@@ -58,19 +60,19 @@ class RowModel {
     }
   }
 
-  // row: whole numbers in [0, count].
+  // Returns the slopes of rows, whole numbers in [0, count].
   V slope(V row) const {
     const D d;
     if constexpr (kKind == RowKind::kEven) return hn::Mul(hn::Sub(row, centre_), step_);
     if constexpr (kKind == RowKind::kTable) return table(row);
     if constexpr (kKind == RowKind::kSector) {
-      // Beyond the last row the direction may point anywhere.
+      // Beyond the last row the coefficients may describe any direction.
       const V last = hn::Min(row, hn::Sub(count_, hn::Set(d, T(1))));
       return hn::Div(hn::MulAdd(a1_, last, a0_), hn::MulAdd(b1_, last, b0_));
     }
   }
 
-  // Rows whose slope is at most this one.
+  // Returns the number of rows whose slope is at most slope_now.
   V count_up_to(V slope_now) const {
     const D d;
     const V one = hn::Set(d, T(1));
@@ -87,7 +89,7 @@ class RowModel {
       const V per = hn::Set(d, static_cast<T>(1.0 / rows_.elevation_step));
       n = hn::Floor(hn::Mul(hn::Sub(hn::Atan(d, slope_now), first), per));
       n = hn::Min(hn::Max(n, hn::Zero(d)), count_);
-      // The guess is within one row.
+      // The estimate is off by at most one row.
       n = hn::IfThenElse(hn::Le(table(n), slope_now), hn::Add(n, one), n);
       n = hn::Min(n, count_);
       const V before = hn::Max(hn::Sub(n, one), hn::Zero(d));

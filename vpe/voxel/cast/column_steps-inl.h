@@ -1,4 +1,7 @@
-// The floating horizon of a group of columns, step by step through one lattice.
+// Steps the floating horizon of a group of columns through one height grid: the inner loop of the ray backend.
+//
+// Part of column_kernel.cpp, called by walk_grid(). The paths come from column_paths-inl.h, posts from
+// column_lines-inl.h, slopes from column_rows-inl.h. Events (crossings with edges) resolve rows.
 #if defined(VPE_VOXEL_COLUMN_STEPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_COLUMN_STEPS_INL_H_
 #undef VPE_VOXEL_COLUMN_STEPS_INL_H_
@@ -24,9 +27,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Lanes that go through one lattice the same way.
+// Walks the lanes that cross one height grid by the same family of lines in the same direction.
 template <class D, RowKind kKind>
-class Walk {
+class HorizonWalk {
  public:
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
@@ -34,10 +37,10 @@ class Walk {
   using DI = hn::RebindToSigned<D>;
   using VI = hn::Vec<DI>;
 
-  Walk(const HeightGridLines<T>& lines, LineFamily family, int intervals, const Paths& paths, int kind,
-       int lane0, const ColumnCamera& camera, const Rows& rows, ColumnGroup& group)
+  HorizonWalk(const HeightGridLines<T>& lines, LineFamily family, int intervals, const Paths& paths, int kind,
+              int lane0, const ColumnCamera& camera, const Rows& rows, ColumnGroup& group)
       : lane0_(lane0),
-        reader_(lines, family, intervals, load(paths.position), load(paths.turn)),
+        reader_(lines, family, intervals, load(paths.position0), load(paths.position1)),
         group_(group),
         model_(rows, group, lane0) {
     const D d;
@@ -52,14 +55,16 @@ class Walk {
     end_ = load(group.row_end);
     active_ = hn::Eq(load(paths.kind), hn::Set(d, static_cast<T>(kind)));
     started_ = hn::MaskFromVec(hn::Zero(d));
-    seen_x_ = hn::Zero(d);
-    seen_h_ = hn::Zero(d);
-    aim();
+    last_x_ = hn::Zero(d);
+    last_h_ = hn::Zero(d);
+    update_slope();
   }
 
+  // Returns true if some lane has unresolved rows.
   bool any() const { return !hn::AllFalse(D(), alive_); }
 
-  // Lanes whose path begins at the camera's foot inside this lattice, at line `foot` with post value `height`.
+  // Starts the lanes whose path begins at the camera's foot inside this grid, at line `foot` with height
+  // `height`.
   void start_at_foot(T foot, T height, const Paths& paths) {
     const D d;
     const V at = hn::Set(d, foot);
@@ -68,11 +73,11 @@ class Walk {
     const V near = hn::Set(d, sizeof(T) == 8 ? T(1e-9) : T(1e-4));
     started_ = hn::And(
         active_, hn::Or(hn::Lt(hn::Abs(hn::Sub(from, at)), near), hn::Lt(hn::Abs(hn::Sub(to, at)), near)));
-    seen_x_ = at;
-    seen_h_ = hn::Set(d, height);
+    last_x_ = at;
+    last_h_ = hn::Set(d, height);
   }
 
-  // From line `first` to line `last`, outward; stays in whole blocks where it can.
+  // Walks outward from line `first` to line `last`, in whole blocks where possible. Skips hidden blocks.
   void run(int first, int last) {
     const bool up = last > first;
     bool fresh = true;
@@ -86,14 +91,14 @@ class Walk {
       } else {
         if (fresh) enter(k);
         fresh = false;
-        const bool all = settled(low, high);
+        const bool all = all_inside(low, high);
         const Reach reach = all ? reach_of_all() : reach_of_some();
         if (reach == Reach::kNear) {
-          block<Reach::kNear>(up, all, k, next);
+          walk_block<Reach::kNear>(up, all, k, next);
         } else if (reach == Reach::kWide) {
-          block<Reach::kWide>(up, all, k, next);
+          walk_block<Reach::kWide>(up, all, k, next);
         } else {
-          block<Reach::kAny>(up, false, k, next);
+          walk_block<Reach::kAny>(up, false, k, next);
         }
       }
       k = next;
@@ -101,14 +106,15 @@ class Walk {
   }
 
   template <Reach kReach>
-  void block(bool up, bool all, int first, int last) {
+  void walk_block(bool up, bool all, int first, int last) {
     if (kReach != Reach::kAny && all) {
-      up ? fast<true, kReach>(first, last) : fast<false, kReach>(first, last);
+      up ? step_all<true, kReach>(first, last) : step_all<false, kReach>(first, last);
     } else {
-      up ? careful<true, kReach>(first, last) : careful<false, kReach>(first, last);
+      up ? step_masked<true, kReach>(first, last) : step_masked<false, kReach>(first, last);
     }
   }
 
+  // Writes the lanes' next rows back to the group.
   void store() const {
     alignas(64) T rows[kMaxLanes];
     hn::Store(row_, D(), rows);
@@ -129,8 +135,9 @@ class Walk {
 
   static int floor_block(int k) { return k >= 0 ? k / kBlockLines : -((kBlockLines - 1 - k) / kBlockLines); }
 
-  // The line z = slope sigma of the next row, subtracted from all that comes.
-  void aim() {
+  // Subtracts the line z = slope sigma of the next row from the paths' heights, and updates which lanes are
+  // alive.
+  void update_slope() {
     slope_ = model_.slope(row_);
     base_s0_ = hn::NegMulAdd(slope_, sigma0_, base0_);
     base_s1_ = hn::NegMulAdd(slope_, sigma1_, base1_);
@@ -150,7 +157,7 @@ class Walk {
             hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElse(alive_, position, hn::Neg(far))))};
   }
 
-  // Whether nothing between two lines of one block can reach any lane's next row.
+  // Returns true if nothing between two lines of one block can reach any lane's next row.
   bool hidden(int low, int high) {
     const D d;
     at_low_ = extent(reader_.position_at(low));
@@ -170,8 +177,9 @@ class Walk {
 
   M in_front(V x) const { return hn::Gt(hn::MulAdd(sigma1_, x, sigma0_), hn::Zero(D())); }
 
-  // Whether all lanes that are alive are inside at both lines, have begun and are near each other.
-  bool settled(int low, int high) const {
+  // Returns true if all lanes that are alive have started and are inside the grid, in front of the camera, at
+  // both lines.
+  bool all_inside(int low, int high) const {
     const D d;
     if (at_low_.low < reader_.first_position(low) || at_low_.high >= reader_.last_position(low)) return false;
     if (at_high_.low < reader_.first_position(high) || at_high_.high >= reader_.last_position(high))
@@ -181,31 +189,34 @@ class Walk {
     return hn::AllFalse(d, hn::AndNot(ready, alive_));
   }
 
-  // A path's first event: what lies before it is not of this lattice, so a row is resolved at the event itself.
-  void begin(M who, V x, V height) {
+  // Records a path's first event. Nothing of this grid lies before it, so rows are resolved at the event
+  // itself.
+  void begin_path(M lanes, V x, V height) {
     const D d;
-    seen_x_ = hn::IfThenElse(who, x, seen_x_);
-    seen_h_ = hn::IfThenElse(who, hn::Sub(height, hn::Set(d, T(1))), seen_h_);
-    started_ = hn::Or(started_, who);
+    last_x_ = hn::IfThenElse(lanes, x, last_x_);
+    last_h_ = hn::IfThenElse(lanes, hn::Sub(height, hn::Set(d, T(1))), last_h_);
+    started_ = hn::Or(started_, lanes);
   }
 
-  void event(M who, V x, V height) {
+  // Resolves rows of the lanes whose event reaches their next row.
+  void test_event(M lanes, V x, V height) {
     const D d;
     const V rest = hn::Add(height, rest_at(x));
-    const M reached = hn::And(hn::And(who, alive_), hn::Ge(rest, hn::Zero(d)));
+    const M reached = hn::And(hn::And(lanes, alive_), hn::Ge(rest, hn::Zero(d)));
     if (HWY_UNLIKELY(!hn::AllFalse(d, reached))) resolve(reached, x, height, rest);
   }
 
+  // Starts the lanes that are on line k, after hidden blocks or at the border of the grid.
   void enter(int k) {
     const D d;
     const typename PathReader<D>::Line line = reader_.gather(k);
     const V x = hn::Set(d, static_cast<T>(k));
     const M here = hn::And(active_, hn::And(reader_.on_line(k, line), in_front(x)));
     const V height = reader_.height_on(line);
-    begin(here, x, height);
-    event(here, x, height);
-    seen_x_ = hn::IfThenElse(here, x, seen_x_);
-    seen_h_ = hn::IfThenElse(here, height, seen_h_);
+    begin_path(here, x, height);
+    test_event(here, x, height);
+    last_x_ = hn::IfThenElse(here, x, last_x_);
+    last_h_ = hn::IfThenElse(here, height, last_h_);
   }
 
   static Reach reach_for(T width) {
@@ -214,21 +225,21 @@ class Walk {
                : (width <= PathReader<D>::kWideWidth ? Reach::kWide : Reach::kAny);
   }
 
-  // A window of its own for each line.
+  // Returns the reach when each line has a window of its own.
   Reach reach_of_all() const {
     return reach_for(std::max(at_low_.high - at_low_.low, at_high_.high - at_high_.low));
   }
 
-  // One for the whole block: lanes come and go.
+  // Returns the reach when lanes enter and leave, so that one window serves the whole block; sets its start.
   Reach reach_of_some() {
     const T last = static_cast<T>(reader_.intervals());
     from_ = std::clamp(std::min(at_low_.low, at_high_.low), T(-1), last);
     return reach_for(std::clamp(std::max(at_low_.high, at_high_.high), T(-1), last) - from_);
   }
 
-  // Lanes may come and go.
+  // Walks a block in which lanes may enter or leave the grid.
   template <bool kUp, Reach kReach>
-  void careful(int first, int last) {
+  void step_masked(int first, int last) {
     const D d;
     const auto read = [&](int k) { return reader_.template read<kReach>(k, from_); };
     typename PathReader<D>::Line line = read(first);
@@ -240,7 +251,7 @@ class Walk {
       const auto& lower = kUp ? line : next;
       const auto& upper = kUp ? next : line;
       const auto c = reader_.between(low_k, lower, upper);
-      // Both ends of the edge must be posts of this lattice.
+      // Both ends of the edge must be posts of this grid.
       const V one = hn::Set(d, T(1));
       const V low_post = hn::IfThenElse(c.other, hn::Add(lower.whole, one), lower.whole);
       const V high_post = hn::Add(lower.whole, one);
@@ -249,33 +260,34 @@ class Walk {
       here = hn::And(here, hn::And(hn::Ge(high_post, hn::Set(d, reader_.first_position(low_k + 1))),
                                    hn::Le(high_post, hn::Set(d, reader_.last_position(low_k + 1)))));
       here = hn::And(here, hn::And(active_, in_front(c.x)));
-      // A path that begins at the camera's foot has nothing before it.
+      // A path that begins at the camera's foot has no events before it.
       here = hn::And(here, outward<kUp>(c.x));
-      pass(here, c.x, c.height);
+      process_event(here, c.x, c.height);
       const V x = hn::Set(d, static_cast<T>(next_k));
       const M there =
           hn::And(hn::And(active_, reader_.on_line(next_k, next)), hn::And(in_front(x), outward<kUp>(x)));
-      pass(there, x, reader_.height_on(next));
+      process_event(there, x, reader_.height_on(next));
       line = next;
     }
   }
 
   template <bool kUp>
   M outward(V x) const {
-    const M beyond = kUp ? hn::Ge(x, seen_x_) : hn::Le(x, seen_x_);
+    const M beyond = kUp ? hn::Ge(x, last_x_) : hn::Le(x, last_x_);
     return hn::Or(beyond, hn::Not(started_));
   }
 
-  void pass(M who, V x, V height) {
-    begin(hn::AndNot(started_, who), x, height);
-    event(who, x, height);
-    seen_x_ = hn::IfThenElse(who, x, seen_x_);
-    seen_h_ = hn::IfThenElse(who, height, seen_h_);
+  // Starts lanes where needed, tests the event and makes it the last one.
+  void process_event(M lanes, V x, V height) {
+    begin_path(hn::AndNot(started_, lanes), x, height);
+    test_event(lanes, x, height);
+    last_x_ = hn::IfThenElse(lanes, x, last_x_);
+    last_h_ = hn::IfThenElse(lanes, height, last_h_);
   }
 
-  // All lanes are there.
+  // Walks a block that all lanes cross.
   template <bool kUp, Reach kReach>
-  void fast(int first, int last) {
+  void step_all(int first, int last) {
     const D d;
     const V zero = hn::Zero(d);
     const T rate = (at_high_.low - at_low_.low) / static_cast<T>(std::abs(last - first));
@@ -295,18 +307,18 @@ class Walk {
       if (!hn::AllFalse(d, reached)) {
         const M first_reached = hn::And(alive_, hn::Ge(rest_c, zero));
         if (!hn::AllFalse(d, first_reached)) resolve(first_reached, c.x, c.height, rest_c);
-        seen_x_ = c.x;
-        seen_h_ = c.height;
-        event(alive_, x, height);
+        last_x_ = c.x;
+        last_h_ = c.height;
+        test_event(alive_, x, height);
       }
-      seen_x_ = x;
-      seen_h_ = height;
+      last_x_ = x;
+      last_h_ = height;
       line = next;
     }
   }
 
-  // Rows up to the slope of an event are resolved by the facet between the last event and this one.
-  void resolve(M who, V x, V height, V rest) {
+  // Resolves the rows up to the slope of an event: they show the facet between the last event and this one.
+  void resolve(M lanes, V x, V height, V rest) {
     const D d;
     const V zero = hn::Zero(d);
     const V one = hn::Set(d, T(1));
@@ -315,40 +327,42 @@ class Walk {
     const V reached = hn::Mul(hn::Add(height, hn::MulAdd(base1_, x, base0_)), per_sigma);
     V rows = hn::Max(model_.count_up_to(reached), hn::Add(row_, one));
     rows = hn::Min(rows, end_);
-    // Where the next row's ray meets the facet.
-    const V before = hn::Min(hn::Add(seen_h_, rest_at(seen_x_)), zero);
-    const V share = hn::Min(hn::Mul(before, reciprocal(d, hn::Sub(before, hn::Max(rest, least())))), one);
-    const V at_x = hn::MulAdd(share, hn::Sub(x, seen_x_), seen_x_);
-    const V at_h = hn::MulAdd(share, hn::Sub(height, seen_h_), seen_h_);
+    // The place where the next row's ray meets the facet.
+    const V before = hn::Min(hn::Add(last_h_, rest_at(last_x_)), zero);
+    const V share =
+        hn::Min(hn::Mul(before, reciprocal(d, hn::Sub(before, hn::Max(rest, smallest_divisor())))), one);
+    const V at_x = hn::MulAdd(share, hn::Sub(x, last_x_), last_x_);
+    const V at_h = hn::MulAdd(share, hn::Sub(height, last_h_), last_h_);
     const V at = hn::Mul(inverse(at_x, at_h), reciprocal(d, hn::MulAdd(sigma1_, at_x, sigma0_)));
-    scatter(group_.start, who, at);
-    const M more = hn::And(who, hn::Gt(rows, hn::Add(row_, one)));
+    scatter(group_.start, lanes, at);
+    const M more = hn::And(lanes, hn::Gt(rows, hn::Add(row_, one)));
     if (!hn::AllFalse(d, more)) {
       const V end = hn::Mul(inverse(x, height), per_sigma);
       const V rise = hn::Sub(reached, slope_);
       const M rises = hn::And(more, hn::Gt(rise, zero));
       scatter(group_.gain, rises, hn::Div(hn::Sub(end, at), rise));
     }
-    row_ = hn::IfThenElse(who, rows, row_);
-    aim();
+    row_ = hn::IfThenElse(lanes, rows, row_);
+    update_slope();
   }
 
-  // w R^2 / |E|: over sigma it is the inverse horizontal distance.
+  // Returns w R^2 / |E|; divided by sigma it is the inverse horizontal distance.
   V inverse(V x, V height) const {
     return hn::NegMulAdd(height, per_distance_, hn::MulAdd(depth1_, x, depth0_));
   }
 
   // Keeps a quotient of two zeros from being NaN.
-  static V least() { return hn::Set(D(), T(1e-30)); }
+  static V smallest_divisor() { return hn::Set(D(), T(1e-30)); }
 
-  // To each lane's next row.
-  void scatter(float* to, M who, V values) const {
+  // Stores values at each lane's next row.
+  void scatter(float* to, M lanes, V values) const {
     const D d;
 #if HWY_TARGET <= HWY_AVX3
     if constexpr (sizeof(T) == 4) {
       const __m512i row = _mm512_cvttps_epi32(row_.raw);
       const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-      _mm512_mask_i32scatter_ps(to, who.raw, _mm512_add_epi32(_mm512_slli_epi32(row, 4), lane), values.raw, 4);
+      _mm512_mask_i32scatter_ps(to, lanes.raw, _mm512_add_epi32(_mm512_slli_epi32(row, 4), lane), values.raw,
+                                4);
       return;
     }
 #endif
@@ -357,7 +371,7 @@ class Walk {
     hn::Store(row_, d, rows);
     hn::Store(values, d, all);
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, who, bits);
+    hn::StoreMaskBits(d, lanes, bits);
     for (unsigned left = bits[0]; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
       to[static_cast<std::size_t>(rows[k]) * kMaxLanes + static_cast<std::size_t>(lane0_) + k] =
@@ -372,7 +386,7 @@ class Walk {
   V sigma0_, sigma1_, base0_, base1_, depth0_, depth1_, per_distance_;
   V row_, end_, slope_, base_s0_, base_s1_;
   M active_, alive_, started_;
-  V seen_x_, seen_h_;  // the last event of each lane
+  V last_x_, last_h_;  // the last event of each lane
   Extent at_low_{};
   Extent at_high_{};
   T from_ = 0;

@@ -12,14 +12,14 @@ namespace vpe::voxel {
 
 namespace {
 
-// Of ends_.
+// Bits of ends_.
 constexpr std::uint8_t kKnown = 1;
 constexpr std::uint8_t kYes = 2;
 constexpr std::uint8_t kUsed = 4;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// A cell of the quadtree in its face's chart.
+// Bounds of a quadtree cell in the chart of its face.
 struct Cell {
   double u0;
   double u1;
@@ -27,7 +27,8 @@ struct Cell {
   double v1;
 };
 
-// Steepest slope from the camera to anything within `radius_m` of the centre at central angles [near, far].
+// Returns the steepest slope from the camera to anything within `radius_m` of the centre at central angles
+// [near, far].
 double steepest(double radius_m, double distance_m, double near, double far) {
   const auto slope = [&](double angle) {
     const double sine = std::sin(angle);
@@ -61,7 +62,7 @@ ColumnWalk::Angles ColumnWalk::angles(lod::TileTree::Index tile) const {
   const auto line = [&](std::int32_t k) { return mars::face_line(k, key.level); };
   const double u[2] = {line(key.i), line(key.i + 1)};
   const double v[2] = {line(key.j), line(key.j + 1)};
-  // A cone about the tile.
+  // Bounds the tile by a cone.
   const glm::dvec3 axis = mars::chart_direction(key.face, 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]));
   double cosine = 1;
   for (double x : u) {
@@ -79,13 +80,13 @@ float ColumnWalk::slope_bound(lod::TileTree::Index tile) const {
   const Angles at = angles(tile);
   const double top = (camera_.radius_m + exaggeration_ * tree_[tile].max_height_m) * (1 + 1e-12);
   const double bound = steepest(top, camera_.distance_m, at.near, at.far);
-  // Upward to float.
+  // Rounded upward, to stay a bound.
   const float rounded = std::nextafter(static_cast<float>(bound), std::numeric_limits<float>::infinity());
   bounds_[tile].store(rounded, std::memory_order_relaxed);
   return rounded;
 }
 
-// To the shell that the tile's posts lie in.
+// The posts lie in a part of a spherical layer, whose nearest point bounds their distance.
 double ColumnWalk::least_distance_m(lod::TileTree::Index tile) const {
   const lod::TileInfo& info = tree_[tile];
   const double low = camera_.radius_m + exaggeration_ * info.min_height_m;
@@ -125,33 +126,33 @@ void ColumnWalk::mark_used(lod::TileTree::Index tile) const {
     ends_[tile].fetch_or(kUsed, std::memory_order_relaxed);
 }
 
-ColumnWalk::Used ColumnWalk::used() const {
-  Used used;
+ColumnWalk::Usage ColumnWalk::usage() const {
+  Usage usage;
   for (lod::TileTree::Index tile = 0; tile < tree_.size(); ++tile) {
     if ((ends_[tile].load(std::memory_order_relaxed) & kUsed) == 0) continue;
     const lod::TileInfo& info = tree_[tile];
     const auto level = static_cast<std::size_t>(info.key.level);
-    if (used.tiles_by_level.size() <= level) used.tiles_by_level.resize(level + 1);
-    ++used.tiles_by_level[level];
+    if (usage.tiles_by_level.size() <= level) usage.tiles_by_level.resize(level + 1);
+    ++usage.tiles_by_level[level];
     if (!info.has_children) continue;
     double geometric_error_m = measured_error_m(tile);
     if (!std::isfinite(geometric_error_m)) {
-      // Its posts lie on S. From one of them to any place of its cell it is a cell's side at most (to the
-      // nearest, half a diagonal), and neither S nor the facet is steeper than S's steepest facet; warped lines
-      // are up to sqrt(2) times the nominal spacing apart.
+      // The tile's posts lie on the reference surface. Any place of a cell is at most a cell's side away from a
+      // post (half a diagonal from the nearest). Neither the surface nor the facet is steeper than the
+      // surface's steepest facet, and warped lines are up to sqrt(2) times the nominal spacing apart.
       const double spacing = lod::nominal_side_m(info.key.level, camera_.radius_m) / tree_.shape().intervals();
       const double reach = std::sqrt(2.0) * spacing;
       const double sagitta = reach * reach / (4 * camera_.radius_m);
       geometric_error_m =
           2 * exaggeration_ * info.steepest_slope * reach + sagitta + tree_.edge_shift_m(info, exaggeration_);
     }
-    used.geometric_error_m = std::max(used.geometric_error_m, geometric_error_m);
-    used.screen_space_error_px = std::max(used.screen_space_error_px, in_image_px(geometric_error_m, tile));
+    usage.geometric_error_m = std::max(usage.geometric_error_m, geometric_error_m);
+    usage.screen_space_error_px = std::max(usage.screen_space_error_px, in_image_px(geometric_error_m, tile));
   }
-  return used;
+  return usage;
 }
 
-void ColumnWalk::Used::add(const Used& other) {
+void ColumnWalk::Usage::add(const Usage& other) {
   tiles_by_level.resize(std::max(tiles_by_level.size(), other.tiles_by_level.size()));
   for (std::size_t level = 0; level < other.tiles_by_level.size(); ++level)
     tiles_by_level[level] = std::max(tiles_by_level[level], other.tiles_by_level[level]);
@@ -159,7 +160,7 @@ void ColumnWalk::Used::add(const Used& other) {
   geometric_error_m = std::max(geometric_error_m, other.geometric_error_m);
 }
 
-// One group on one face after the other.
+// Leads one group over one face after the other.
 class GroupWalk : public HeightGridSource {
  public:
   GroupWalk(const ColumnWalk& walk, const Rows& rows, ThreadLocalTiles& tiles, ColumnGroup& group)
@@ -167,13 +168,13 @@ class GroupWalk : public HeightGridSource {
 
   void go(const glm::dvec3* azimuth) {
     update_least_slope(rows_, group_);
-    // The face that the camera is above comes first, then as they are turned away (docs/rays.md).
+    // The face below the camera comes first; the others follow by their angle to it (docs/design/rays.md).
     std::array<int, mars::kFaces> order{};
     for (int f = 0; f < mars::kFaces; ++f) order[static_cast<std::size_t>(f)] = f;
-    const auto turned = [&](int f) {
+    const auto facing = [&](int f) {
       return glm::dot(walk_.camera_.up, mars::face_axes(static_cast<mars::Face>(f)).out);
     };
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return turned(a) > turned(b); });
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return facing(a) > facing(b); });
     for (int f : order) {
       const auto root = static_cast<lod::TileTree::Index>(f);
       if (done() || hidden(root)) continue;
@@ -183,10 +184,10 @@ class GroupWalk : public HeightGridSource {
   }
 
   const HeightGridLines<float>& lines(LineFamily family) override {
-    return tiles_.grids(tile_, family).lines(part_i_, part_j_);
+    return tiles_.grids(tile_, family).lines(grid_i_, grid_j_);
   }
   const HeightGridLines<double>& exact_lines(LineFamily family) override {
-    return tiles_.exact_grids(tile_, family).lines(part_i_, part_j_);
+    return tiles_.exact_grids(tile_, family).lines(grid_i_, grid_j_);
   }
 
  private:
@@ -209,7 +210,7 @@ class GroupWalk : public HeightGridSource {
         group_.normal[k][lane] = n[k];
       }
     }
-    // The wedge between the first and the last column; none where it is no wedge.
+    // The wedge between the first and the last column, if they form one.
     const glm::dvec3 first = in_face(azimuth[0]);
     const glm::dvec3 last = in_face(azimuth[group_.columns - 1]);
     const glm::dvec3 middle = in_face(azimuth[group_.columns / 2]);
@@ -235,7 +236,8 @@ class GroupWalk : public HeightGridSource {
     return false;
   }
 
-  // The quarters of a cell from near to far: at each of its middle lines the side of the camera's foot is nearer.
+  // Visits the quarters of a cell from near to far: at each middle line the side of the camera's foot is
+  // nearer.
   template <typename Visit>
   void quarters(const Cell& cell, double um, double vm, Visit&& visit_quarter) {
     const bool east_first = up_.x - um * up_.z >= 0;
@@ -255,7 +257,7 @@ class GroupWalk : public HeightGridSource {
       tile_ = tile;
       walk_.mark_used(tile);
       const int per_side = grids_per_side(info.key.level, tree_.shape().intervals());
-      visit_parts(cell, 0, 0, per_side, per_side);
+      visit_grids(cell, 0, 0, per_side, per_side);
       return;
     }
     const lod::TileTree::Index first = tree_.first_child(tile);
@@ -266,12 +268,12 @@ class GroupWalk : public HeightGridSource {
     });
   }
 
-  // Lattices [i, i + size) x [j, j + size) of the tile at hand.
-  void visit_parts(const Cell& cell, int i, int j, int size, int per_side) {
+  // Visits grids [i, i + size) x [j, j + size) of the current tile.
+  void visit_grids(const Cell& cell, int i, int j, int size, int per_side) {
     if (done() || hidden(tile_) || outside(cell)) return;
     if (size == 1) {
-      part_i_ = i;
-      part_j_ = j;
+      grid_i_ = i;
+      grid_j_ = j;
       const int n = tree_.shape().intervals() / per_side;
       const HeightGridFrame frame{n, cell.u0, (cell.u1 - cell.u0) / n, cell.v0, (cell.v1 - cell.v0) / n};
       walk_grid(frame, *this, walk_.camera_, up_, rows_, group_);
@@ -280,11 +282,11 @@ class GroupWalk : public HeightGridSource {
     }
     const lod::TileKey& key = tree_[tile_].key;
     const int half = size / 2;
-    const int parts_level = key.level + static_cast<int>(std::lround(std::log2(per_side)));
-    const double um = mars::face_line(std::int64_t{key.i} * per_side + i + half, parts_level);
-    const double vm = mars::face_line(std::int64_t{key.j} * per_side + j + half, parts_level);
+    const int grids_level = key.level + static_cast<int>(std::lround(std::log2(per_side)));
+    const double um = mars::face_line(std::int64_t{key.i} * per_side + i + half, grids_level);
+    const double vm = mars::face_line(std::int64_t{key.j} * per_side + j + half, grids_level);
     quarters(cell, um, vm, [&](bool east, bool north, const Cell& part) {
-      visit_parts(part, east ? i + half : i, north ? j + half : j, half, per_side);
+      visit_grids(part, east ? i + half : i, north ? j + half : j, half, per_side);
     });
   }
 
@@ -297,8 +299,8 @@ class GroupWalk : public HeightGridSource {
   glm::dvec3 side_[2]{};
   bool wedge_ = false;
   lod::TileTree::Index tile_ = 0;
-  int part_i_ = 0;
-  int part_j_ = 0;
+  int grid_i_ = 0;
+  int grid_j_ = 0;
 };
 
 void ColumnWalk::cast(const glm::dvec3* azimuth, const Rows& rows, ThreadLocalTiles& tiles,

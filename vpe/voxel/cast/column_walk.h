@@ -1,4 +1,9 @@
-// The way of a group of columns over the planet: tiles from near to far, without those that cannot be seen.
+// Leads groups of columns over the planet: tiles from near to far, without those that cannot be seen.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): one ColumnWalk serves an image. cast_columns()
+// (column_batch.h) calls cast() for every group; cast() calls walk_grid() (columns.h) for each height grid on
+// the group's path. SectorCaster and march_fixed_steps() use the same choice of tiles through FacetFinder
+// (facet_finder.h).
 #pragma once
 
 #include <atomic>
@@ -11,65 +16,76 @@
 
 namespace vpe::voxel {
 
-// Which tiles are fine enough: those whose posts, drawn as a grid, are within cell_px of S in the image
-// wherever they are (so crests sink by no more than that). In planet files that do not say how far they are
-// (before 1.2): those whose posts are at most cell_px apart there.
+// Selects the tiles that are fine enough: those whose posts, drawn as a grid, are within cell_px of the
+// reference surface in the image, wherever they appear (so crests sink by no more than that). Planet files
+// before format 1.2 do not record this error; there, tiles are fine enough whose posts are at most cell_px
+// apart in the image.
 struct CellRule {
-  double cell_px = 0;   // 0: none but the finest, so S itself
-  double focal_px = 1;  // pixels per radian, at most
+  // Smaller: closer to the reference surface, slower; larger: coarser tiles, fewer to read and walk. 0: the
+  // finest tiles alone, so the reference surface itself.
+  double cell_px = 0;
+  double focal_px = 1;  // largest number of pixels per radian in the image
 };
 
-// Prepared for one eye and one exaggeration. Threads may share it.
+// Holds what all groups of one image share: camera, exaggeration, and the tiles' bounds seen from there.
+// Threads may share it.
 class ColumnWalk {
  public:
-  // The camera stands above S: camera.distance_m > camera.ground_m.
+  // Requires a camera above the reference surface: camera.distance_m > camera.ground_m. `surface` must outlive
+  // this.
   ColumnWalk(const paging::Surface& surface, const ColumnCamera& camera, double exaggeration,
              const CellRule& rule);
 
-  // A group of columns from their azimuth vectors (unit, body-fixed, normal to camera.up), neighbours in order.
-  // Rows, fans, and buffers of `group` are set before. Resolves all rows that see ground.
+  // Resolves all rows of a group of columns that see ground. `azimuth` holds a vector for each column (unit,
+  // body-fixed, normal to camera.up), neighbours in order. Rows, slope coefficients and buffers of `group` must
+  // be set. Throws paging::PlanetError for tiles that cannot be read.
   void cast(const glm::dvec3* azimuth, const Rows& rows, ThreadLocalTiles& tiles, ColumnGroup& group) const;
 
   const ColumnCamera& camera() const { return camera_; }
   const lod::TileTree& tree() const { return tree_; }
 
-  // Whether the tile's own posts are cast: it is fine enough, or the finest there.
+  // Returns true if the tile's own posts are cast, because it is fine enough or the finest there.
   bool ends_at(lod::TileTree::Index tile) const;
 
-  // Radius of the highest ground, as exaggerated.
+  // Returns the radius of the highest ground, as exaggerated.
   double highest_m() const { return highest_m_; }
 
-  // What the casts so far have used.
-  struct Used {
+  // Describes the tiles that casts have used.
+  struct Usage {
     std::vector<int> tiles_by_level;  // index 0 = level 0
-    // Bound of |drawn - S| in the image, pixels: 0 when all tiles were the finest.
+    // Bound of the distance between what is cast and the reference surface, in the image; 0 if all tiles were
+    // the finest.
     double screen_space_error_px = 0;
     double geometric_error_m = 0;  // largest of the tiles
-    // Of several images of nearly one view: at least the tiles of each, and all their errors.
-    void add(const Used& other);
+    // Merges the usage of another image of nearly the same view: takes the larger of both counts of each level,
+    // and of both errors.
+    void add(const Usage& other);
   };
-  Used used() const;
+  // Returns the usage of all casts so far.
+  Usage usage() const;
 
-  // Chart line through the middle of a cell of 2^level a side of a face.
+  // Returns the chart line through the middle of cell `index` of 2^level cells along a side of a face.
   double middle_line(int level, std::int32_t index) const { return surface_.middle_line(level, index); }
 
  private:
   friend class GroupWalk;
-  // Central angles that a tile lies within.
+  // Range of central angles, in radians, that a tile lies within.
   struct Angles {
     double near;
     double far;
   };
   Angles angles(lod::TileTree::Index tile) const;
+  // Returns a lower bound of the distance from the camera to the tile's posts.
   double least_distance_m(lod::TileTree::Index tile) const;
   void mark_used(lod::TileTree::Index tile) const;
 
-  // Bound of |its posts as a grid - S|; infinite where the planet file does not say.
+  // Returns the bound of the distance between the tile's posts as a grid and the reference surface; infinite if
+  // the planet file does not record it.
   double measured_error_m(lod::TileTree::Index tile) const;
-  // What such an error makes in the image at most.
+  // Returns the largest screen-space error that a geometric error at this tile can cause.
   double in_image_px(double geometric_error_m, lod::TileTree::Index tile) const;
 
-  // No ray into the tile is steeper than this many times upward.
+  // Returns an upper bound of the slope tan(e) of all rays that meet the tile.
   float slope_bound(lod::TileTree::Index tile) const;
 
   const paging::Surface& surface_;
@@ -78,8 +94,8 @@ class ColumnWalk {
   double exaggeration_;
   double highest_m_;
   CellRule rule_;
-  // Made when first wanted; NaN and 0 before. ends_ also marks the tiles that were used. Whoever makes one
-  // makes the same.
+  // Computed on first use; NaN and 0 before. Threads that compute an entry at the same time store the same
+  // value. ends_ also marks the tiles that were used.
   mutable std::vector<std::atomic<float>> bounds_;
   mutable std::vector<std::atomic<std::uint8_t>> ends_;
 };

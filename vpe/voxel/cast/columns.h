@@ -1,10 +1,23 @@
-// Columns: half-planes through the planet's axis of the camera, cast many at once.
+// Columns: half-planes through the camera's vertical, cast up to kMaxLanes at once over the posts of one tile.
 //
-// With the camera E = |E| U, a column is the half-plane of U and a unit azimuth vector A (A . U = 0). For a point
-// p of any length sigma = A . p, C = U . p and z = C - |E| w |p| (w |p|: over its inverse radius) make every
-// ray of elevation e in it the straight line z = tan(e) sigma (docs/rays.md). Going outward, the steepest z /
-// sigma so far is the floating horizon: the rows below it are resolved, lowest first, each by the first edge of
-// S that reaches it.
+// The method: let E = |E| U be the camera's position and A the unit azimuth vector of a column (A . U = 0). For
+// a point p of any length let sigma = A . p, C = U . p and z = C - |E| w |p|, where w |p| is |p| over the
+// point's radius. Then the ray of elevation e is the straight line z = tan(e) sigma. Going outward, the
+// steepest z / sigma so far is the floating horizon. It resolves the image's rows from the lowest one upward:
+// each row by the first edge of the reference surface that reaches it. Derivation and figures:
+// docs/design/rays.md; the idea of casting columns coherently: Cohen-Or 1996, Wan 1999, section 4.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): cast_columns() (column_batch.h) prepares a ColumnGroup,
+// ColumnWalk (column_walk.h) calls walk_grid() for one tile after the other, and expand_rows() and copy_rows()
+// turn the result into ranges. The functions are compiled for several instruction sets in column_kernel.cpp.
+//
+// Typical usage, for a group whose rows, azimuths and buffers are set:
+//   update_least_slope(rows, group);
+//   for (each height grid from near to far) {
+//     walk_grid(frame, source, camera, up_in_face, rows, group);
+//     update_least_slope(rows, group);  // group.least_slope is infinite when all rows are resolved
+//   }
+//   expand_rows(rows, group, 0, rows.count, out, stride);
 #pragma once
 
 #include <cstddef>
@@ -18,56 +31,57 @@ namespace vpe::voxel {
 
 inline constexpr int kMaxLanes = 16;
 
-// Slopes tan(e) of an image's rows, rising with the row.
+// Selects how the slopes tan(e) of an image's rows are computed. Slopes rise with the row.
 enum class RowKind : std::uint8_t {
   kEven,    // slope = (row - centre) step
-  kTable,   // from a table; rows are about even in elevation
-  kSector,  // slope = (a0 + a1 row) / (b0 + b1 row), for each column its own
+  kTable,   // slope from a table; rows are about even in elevation
+  kSector,  // slope = (a0 + a1 row) / (b0 + b1 row), with coefficients of each column
 };
 
+// Describes the rows that all columns of a batch share.
 struct Rows {
   RowKind kind = RowKind::kEven;
   int count = 0;
   double centre = 0;
   double step = 0;
-  const float* slope = nullptr;  // count + 1 entries, the last infinite
-  const double* slope_exact = nullptr;
-  const float* length = nullptr;  // sqrt(1 + slope^2); not for fans
-  double first_elevation = 0;     // of row 0, radians
-  double elevation_step = 0;
+  const float* slope = nullptr;         // count + 1 entries, the last infinite
+  const double* slope_exact = nullptr;  // the same in double
+  const float* length = nullptr;        // sqrt(1 + slope^2); not for kSector
+  double first_elevation = 0;           // of row 0, radians
+  double elevation_step = 0;            // radians
 };
 
-// Where all columns stand. Vectors are body-fixed.
+// Describes the camera of all columns. Vectors are body-fixed.
 struct ColumnCamera {
   glm::dvec3 up{0, 0, 1};
   double distance_m = 0;  // |E|
   double radius_m = 0;    // of the sphere
-  double ground_m = 0;    // radius of S below the camera, as exaggerated; less than |E|
+  double ground_m = 0;    // radius of the reference surface below the camera, as exaggerated; less than |E|
 };
 
-// State of up to kMaxLanes neighbouring columns. Rows [row, row_end) of a column are not resolved yet; a
-// resolved run of rows that one facet shows begins with its first row's inverse horizontal distance in
-// `start[row * kMaxLanes + lane]`, which falls by `gain` per unit of slope; start is 0 elsewhere.
+// Holds the state of up to kMaxLanes neighbouring columns. Rows [row, row_end) of a column are not resolved
+// yet. A run of resolved rows that show one facet is stored at its first row: `start[row * kMaxLanes + lane]`
+// is the inverse horizontal distance there, which falls by `gain` per unit of slope. `start` is 0 elsewhere.
 struct ColumnGroup {
   int columns = 0;
-  alignas(64) double azimuth[3][kMaxLanes];  // A, in the axes of the face at hand
-  alignas(64) double normal[3][kMaxLanes];   // A x U, likewise
-  alignas(64) double sector_a0[kMaxLanes];
+  alignas(64) double azimuth[3][kMaxLanes];  // A, in the axes of the current face
+  alignas(64) double normal[3][kMaxLanes];   // A x U, in the axes of the current face
+  alignas(64) double sector_a0[kMaxLanes];   // slope coefficients for RowKind::kSector
   alignas(64) double sector_a1[kMaxLanes];
   alignas(64) double sector_b0[kMaxLanes];
   alignas(64) double sector_b1[kMaxLanes];
   alignas(64) float row[kMaxLanes];      // whole numbers
-  alignas(64) float row_end[kMaxLanes];  // likewise; 0 for lanes beyond `columns`
+  alignas(64) float row_end[kMaxLanes];  // whole numbers; 0 for lanes beyond `columns`
   float* start = nullptr;                // rows * kMaxLanes, at a multiple of 64 bytes
-  float* gain = nullptr;
-  double least_slope = 0;  // of all rows that are not resolved; infinite when there are none
-  // The run that expand_rows() is in.
+  float* gain = nullptr;                 // rows * kMaxLanes, at a multiple of 64 bytes
+  double least_slope = 0;                // of all unresolved rows; infinite when there are none
+  // The run that expand_rows() has reached.
   alignas(64) float run_start[kMaxLanes];
   alignas(64) float run_gain[kMaxLanes];
   alignas(64) float run_slope[kMaxLanes];
 };
 
-// What the kernel reads of one lattice; made when asked for.
+// Provides the posts of one height grid to the kernel, when it asks for them.
 class HeightGridSource {
  public:
   virtual ~HeightGridSource() = default;
@@ -75,32 +89,35 @@ class HeightGridSource {
   virtual const HeightGridLines<double>& exact_lines(LineFamily family) = 0;
 };
 
-// Walks all columns through one lattice and resolves rows. The group must have gone through everything before
-// it, as seen from the camera. up: of the camera, in the face's axes. Lines within kExactLines of the camera's foot are
-// read in double, where needs_exact() says so. Every crossing with an edge counts, so that facets are exact but
-// for rounding (RangeCaster::range_error). Results of a column do not depend on the others of its group.
+// Walks all columns through one height grid and resolves rows. The group must have gone through everything
+// nearer to the camera before. `up` is the camera's vertical in the face's axes. Lines within kExactLines of
+// the point below the camera are read in double where needs_exact() says so. Every crossing with an edge
+// counts, so facets are exact but for rounding (RangeCaster::range_error). A column's result does not depend on
+// the other columns of its group.
 void walk_grid(const HeightGridFrame& frame, HeightGridSource& source, const ColumnCamera& camera,
                const glm::dvec3& up, const Rows& rows, ColumnGroup& group);
 inline constexpr int kExactLines = 24;
 
-// Whether the camera is so low that the cells about its foot need double.
+// Returns true if the camera is so low that the cells below it need double.
 bool needs_exact(const HeightGridFrame& frame, const ColumnCamera& camera);
 
-// Sets least_slope from the rows that are left.
+// Sets group.least_slope from the unresolved rows.
 void update_least_slope(const Rows& rows, ColumnGroup& group);
 
-// Writes ranges (float, from the camera; infinity where no ground was met) of rows [first, last) for all columns:
-// out[(row - first) * stride + lane], and clears `start` for them. Rows are taken from 0 upward, in as many
-// calls as one likes. last <= rows.count.
+// Writes the ranges of rows [first, last) for all columns to out[(row - first) * stride + lane], and clears
+// `start` and `gain` of these rows. Ranges are metres from the camera, infinite where no ground was met. Calls
+// must take the rows from 0 upward, in any number of pieces. Requires last <= rows.count.
 void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride);
 
-// Copies rows of floats; strides count floats and may be negative. stream: past the caches, for images that
-// would not stay in them.
+// Copies rows of floats. Strides count floats and may be negative. `stream` writes past the caches: faster for
+// images that do not stay in them, slower for small ones that are read next.
 void copy_rows(const float* from, std::ptrdiff_t from_stride, float* to, std::ptrdiff_t to_stride, int columns,
                int rows, bool stream);
 
-// Columns that are cast at once on this machine, at most kMaxLanes; and the name of its vector unit.
+// Returns the number of columns that this machine casts at once, at most kMaxLanes.
 int column_lanes();
+
+// Returns the name of the instruction set that is used.
 const char* column_target();
 
 }  // namespace vpe::voxel

@@ -24,7 +24,7 @@ const Facets& FacetFinder::at(const glm::dvec3& place_m) {
     if (x >= 0 && x <= f.intervals && y >= 0 && y <= f.intervals) return facets_;
   }
   auto tile = static_cast<lod::TileTree::Index>(place.face);
-  // The cell at hand: (i, j) of 2^level a side.
+  // The current cell is (i, j) of 2^level along a side.
   double u0 = -1;
   double u1 = 1;
   double v0 = -1;

@@ -1,4 +1,7 @@
-// Finds the lattice that a place on the planet lies over.
+// Finds the height grid over or under a point.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): the link between refinement (refine.h), or the fixed-step
+// marcher, and the tiles that the column walk casts.
 #pragma once
 
 #include "vpe/voxel/cast/column_walk.h"
@@ -7,12 +10,14 @@
 
 namespace vpe::voxel {
 
-// For one thread.
+// Returns the height grids that `walk` casts, so that refined pixels and columns see the same facets. For one
+// thread.
 class FacetFinder : public FacetSource {
  public:
-  // Lattices that the walk casts.
+  // `walk` and `tiles` must outlive this.
   FacetFinder(const ColumnWalk& walk, ThreadLocalTiles& tiles) : walk_(walk), tiles_(tiles) {}
 
+  // Throws paging::PlanetError for tiles that cannot be read.
   const Facets& at(const glm::dvec3& place_m) override;
 
  private:

@@ -11,7 +11,7 @@ namespace vpe::voxel {
 
 namespace {
 
-// H of a post, whatever kind of lattice.
+// Returns H of a post of a grid in either precision.
 double post(const Facets& f, int x, int y) {
   const int line = f.family == LineFamily::kColumns ? x : (f.family == LineFamily::kRows ? y : x - y);
   const int position = f.family == LineFamily::kColumns ? y : x;
@@ -20,7 +20,7 @@ double post(const Facets& f, int x, int y) {
 }
 
 struct Sample {
-  double rise_m = 0;  // of the place above S, along the vertical
+  double rise_m = 0;  // height of the sample above the ground, along the vertical
   double spacing_m = 0;
 };
 
@@ -43,12 +43,12 @@ Sample sample(const glm::dvec3& place, FacetFinder& finder, double radius_m) {
   const DepthPlane& plane = f.exact_lines != nullptr ? f.exact_lines->reference : f.lines->reference;
   const double depth = plane.w0 + plane.wx * x + plane.wy * y - h / (radius_m * radius_m);
   const double length = std::sqrt(p.u * p.u + p.v * p.v + 1);
-  // A cell's side on the sphere.
+  // The side of a cell, projected to the sphere.
   const double spacing = radius_m * std::sqrt(f.frame.du * f.frame.dv) / std::pow(length, 1.5);
   return {glm::length(place) - length / depth, spacing};
 }
 
-// Between a place above S and one below it, by halving.
+// Bisects between a place above the ground and one below it.
 double crossing(const glm::dvec3& camera, const glm::dvec3& ray, double above, double below,
                 FacetFinder& finder, double radius_m) {
   constexpr double kEnough = 1e-8;
@@ -74,7 +74,7 @@ double march(const glm::dvec3& camera, const glm::dvec3& ray, double begin_m, do
     const Sample s = sample(camera + t * ray, finder, radius_m);
     if (s.rise_m <= 0) return first ? t : crossing(camera, ray, last_t, t, finder, radius_m);
     last_t = t;
-    t += kPlainStep * s.spacing_m;
+    t += kReferenceStep * s.spacing_m;
   }
   return kNone;
 }
@@ -84,8 +84,8 @@ void march_fixed_steps(const core::View& view, const ColumnWalk& walk, ScratchPo
   const core::SubRectangle part = core::drawn_part(view);
   const auto width = static_cast<std::size_t>(part.width);
   pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
-    const ScratchPool::Use use(scratches);
-    FacetFinder finder(walk, use.tiles());
+    const ScratchPool::Lease scratch = scratches.acquire();
+    FacetFinder finder(walk, scratch->tiles);
     for (std::size_t x = 0; x < width; ++x) {
       const glm::dvec3 ray =
           core::pixel_ray(view, part.x + static_cast<double>(x) + 0.5, part.y + static_cast<double>(row) + 0.5);

@@ -1,4 +1,9 @@
-// Rays one by one in even steps, as in the papers: what columns are measured against.
+// Casts rays one by one in fixed steps (rays.mode=reference): an independent check of the column kernel.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): takes the place of batches, walk and refinement in mode
+// reference, and casts single rays in mode multires that refinement cannot resolve. It is not the caster of a
+// paper: it steps over the reference surface in double, neither over densities (Wan 1999) nor over integer
+// cells (Cohen-Or 1996), and it is not tuned for speed.
 #pragma once
 
 #include <span>
@@ -11,16 +16,18 @@
 
 namespace vpe::voxel {
 
-// Steps of 0.6 times the post spacing about each sample (Wan 1999, section 3), from where a ray comes below the
-// highest ground until it is below S or above that again; then where the line between its last two samples
-// meets the ground's height. May pass through ridges that are narrower than a step. Same S, same posts as the
-// walk's.
+// Writes the range of every pixel of the view's drawn part, row by row from the top; infinite for the sky. A
+// ray advances by kReferenceStep times the local post spacing, from where it comes below the highest ground
+// until it is below the ground or above the highest ground again. Bisection between its last two samples then
+// gives the range within 1e-8 of it. Passes through ridges that are narrower than a step. Uses the tiles of
+// `walk`. Throws paging::PlanetError for tiles that cannot be read.
 void march_fixed_steps(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
                        base::ThreadPool& pool, std::span<float> range_m);
-inline constexpr double kPlainStep = 0.6;
+inline constexpr double kReferenceStep = 0.6;  // as the samples of Wan 1999, section 3
 
-// One such ray (unit) over the lattices that `finder` knows, from `begin_m` on: the range where it comes below
-// their ground, infinite where it leaves the shell under `top_m` first.
+// Returns the range where the ray (unit) comes below the ground of the finder's height grids, from `begin_m`
+// on; infinite if it leaves the sphere of radius `top_m` first. Returns the first sample's range if that is
+// below ground already.
 double march(const glm::dvec3& camera_m, const glm::dvec3& ray, double begin_m, double top_m,
              FacetFinder& finder, double radius_m);
 

@@ -39,7 +39,7 @@ Shape shape_of(int intervals, LineFamily family) {
   return s;
 }
 
-// Positions that a line has posts at.
+// Range of positions at which a line has posts.
 struct Span {
   int begin;
   int end;  // past the last
@@ -49,12 +49,12 @@ Span span_of(int k, int intervals, LineFamily family) {
   return {std::max(0, k), intervals + std::min(0, k) + 1};
 }
 
-// Post (x, y) of position p on line k.
-struct Place {
+// Indices of a post in its grid.
+struct GridPost {
   int x;
   int y;
 };
-Place place_of(int k, int p, LineFamily family) {
+GridPost post_of(int k, int p, LineFamily family) {
   if (family == LineFamily::kColumns) return {k, p};
   if (family == LineFamily::kRows) return {p, k};
   return {p, p - k};
@@ -80,7 +80,7 @@ void fill_maxima(const HeightGridLines<T>& lines, const Shape& shape, int interv
   }
 }
 
-// About through the corners of a lattice's posts.
+// Returns the plane that fits the four corner posts of a grid best (least squares).
 DepthPlane plane_of(std::size_t x0, std::size_t y0, int n, const std::vector<double>& w, std::size_t side) {
   const auto m = static_cast<std::size_t>(n);
   const double a = w[y0 * side + x0];
@@ -126,7 +126,7 @@ TileHeightGrids<T>::TileHeightGrids(const paging::TileHeights& heights, double r
         const Span span = span_of(k, n, family);
         T* line = first + (lines.line(k) - first);
         for (int p = span.begin; p < span.end; ++p) {
-          const Place at = place_of(k, p, family);
+          const GridPost at = post_of(k, p, family);
           const double post =
               w[(y0 + static_cast<std::size_t>(at.y)) * side + x0 + static_cast<std::size_t>(at.x)];
           line[p] = static_cast<T>((plane.w0 + plane.wx * at.x + plane.wy * at.y - post) * radius_m * radius_m);

@@ -4,10 +4,10 @@ namespace vpe::voxel {
 
 namespace {
 
-// Few tiles are about the camera's foot.
+// Few tiles lie below the camera.
 constexpr double kExactShare = 0.05;
 
-std::size_t part(std::size_t bytes, double share) {
+std::size_t budget_share(std::size_t bytes, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(bytes));
 }
 
@@ -16,19 +16,19 @@ std::size_t part(std::size_t bytes, double share) {
 HeightGridStore::HeightGridStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
       budget_(budget_bytes),
-      grids_(part(budget_bytes, 1.0 - kExactShare)),
-      exact_(part(budget_bytes, kExactShare)) {}
+      grids_(budget_share(budget_bytes, 1.0 - kExactShare)),
+      exact_(budget_share(budget_bytes, kExactShare)) {}
 
 template <typename T>
 std::shared_ptr<const TileHeightGrids<T>> HeightGridStore::get(Cache<T>& cache, const Key& key) const {
   return cache.get(key, [&] {
-    auto made = std::make_shared<const TileHeightGrids<T>>(
+    auto tile_grids = std::make_shared<const TileHeightGrids<T>>(
         planet_->heights(planet_->tree()[key.tile].key, key.exaggeration), planet_->radius_m(),
         key.exaggeration, key.family);
-    const std::size_t bytes = made->bytes();
+    const std::size_t bytes = tile_grids->bytes();
     ++tiles_made_;
     bytes_made_ += bytes;
-    return std::pair(std::move(made), bytes);
+    return std::pair(std::move(tile_grids), bytes);
   });
 }
 

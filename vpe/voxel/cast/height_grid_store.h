@@ -1,4 +1,7 @@
-// Lattices of a planet's tiles, kept within a budget and shared by all threads that cast columns.
+// Keeps the height grids of a planet's tiles within a budget, for all threads that cast.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): between the planet file and the column walk. A renderer has
+// one store for all images; each thread puts ThreadLocalTiles before it.
 #pragma once
 
 #include <array>
@@ -14,32 +17,36 @@
 
 namespace vpe::voxel {
 
-// Any thread may call any member. What is returned stays as it is for as long as it is held.
+// Any thread may call any member. Returned grids are immutable and live as long as they are held.
 class HeightGridStore {
  public:
+  // The budget limits the grids that are kept. Smaller: grids are read and made again; larger: more memory.
   HeightGridStore(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
   const paging::PlanetFile& planet() const { return *planet_; }
 
-  // Throw paging::PlanetError for a tile that cannot be read.
+  // Returns the grids of a tile. Throws paging::PlanetError if the tile cannot be read, as the functions below
+  // do.
   std::shared_ptr<const TileHeightGrids<float>> grids(lod::TileTree::Index tile, LineFamily family,
                                                       double exaggeration) const;
-  // In double: for the tiles about the camera's foot.
+  // Returns the grids in double, for the tiles below the camera.
   std::shared_ptr<const TileHeightGrids<double>> exact_grids(lod::TileTree::Index tile, LineFamily family,
                                                              double exaggeration) const;
 
-  // In whatever family is there; the same posts in all of them.
+  // Returns the grids in any family that is held, else in kColumns, and sets `family`. All families hold the
+  // same posts.
   std::shared_ptr<const TileHeightGrids<float>> any_grids(lod::TileTree::Index tile, double exaggeration,
                                                           LineFamily& family) const;
 
   std::size_t bytes_resident() const;
   std::size_t budget_bytes() const { return budget_; }
-  // All that was ever made from the planet file, also what is gone.
-  struct Made {
+
+  // Counts all grids that were ever made from the planet file, those that have left the store included.
+  struct BuildTotals {
     std::int64_t tiles = 0;
     std::size_t bytes = 0;
   };
-  Made made() const { return {tiles_made_, bytes_made_}; }
+  BuildTotals build_totals() const { return {tiles_made_, bytes_made_}; }
 
  private:
   struct Key {
@@ -67,13 +74,15 @@ class HeightGridStore {
   mutable Cache<double> exact_;
 };
 
-// What one thread used last: finding it again takes no lock.
+// Remembers the grids that one thread used last, so that it finds them again without a lock. Not synchronised.
 class ThreadLocalTiles {
  public:
+  // `store` must outlive this.
   ThreadLocalTiles(const HeightGridStore& store, double exaggeration)
       : store_(store), exaggeration_(exaggeration) {}
 
-  // Valid until the next call.
+  // Return what the store's functions of the same names return, and throw what they throw. References are valid
+  // until the next call.
   const TileHeightGrids<float>& grids(lod::TileTree::Index tile, LineFamily family);
   const TileHeightGrids<double>& exact_grids(lod::TileTree::Index tile, LineFamily family);
   const TileHeightGrids<float>& any_grids(lod::TileTree::Index tile, LineFamily& family);

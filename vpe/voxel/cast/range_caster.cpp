@@ -16,14 +16,15 @@ namespace {
 
 constexpr double kSurfaceShare = 0.25;
 
-std::size_t share_of(std::size_t bytes, double share) {
+std::size_t bytes_of_share(std::size_t bytes, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(bytes));
 }
 
-// Tilt up to which a round image's columns count as vertical: below a thousandth of a pixel.
+// Tilt up to which the columns of a cylindrical or equirectangular image count as vertical: below a thousandth
+// of a pixel.
 constexpr double kLevel = 1e-8;
 
-// Whether the image's columns are vertical half-planes.
+// Returns true if the image's columns are vertical half-planes.
 bool upright(const core::View& view, const glm::dvec3& up) {
   if (view.projection == core::Projection::kPerspective || glm::length(view.camera.axes.up - up) > kLevel)
     return false;
@@ -37,10 +38,10 @@ bool upright(const core::View& view, const glm::dvec3& up) {
   return highest < kQuarter && lowest > -kQuarter;
 }
 
-// Larger images are written past the caches.
+// Images larger than this are written past the caches.
 constexpr std::size_t kCachedBytes = std::size_t{4} << 20;
 
-// Rows of a round image from its lowest one, with their tables.
+// Holds the rows of a cylindrical or equirectangular image, the lowest first, with their tables.
 struct ImageRows {
   Rows rows;
   std::vector<double> exact;
@@ -87,23 +88,23 @@ ImageRows image_rows(const core::View& view, const core::SubRectangle& part) {
 }  // namespace
 
 RangeCaster::RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
-    : surface_(planet, share_of(budget_bytes, kSurfaceShare)),
-      store_(planet, share_of(budget_bytes, 1.0 - kSurfaceShare)) {}
+    : surface_(planet, bytes_of_share(budget_bytes, kSurfaceShare)),
+      store_(planet, bytes_of_share(budget_bytes, 1.0 - kSurfaceShare)) {}
 
-ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
-                                   std::span<float> range_m, SectorCaster& sectors) const {
+ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
+                                    std::span<float> range_m, SectorCaster& sectors) const {
   const double distance = glm::length(view.camera.position_m);
-  if (distance > 0 && options.method != RangeOptions::Method::kEach) {
+  if (distance > 0 && options.method != RangeOptions::Method::kSingleRays) {
     const glm::dvec3 up = view.camera.position_m / distance;
     const ColumnCamera camera{up, distance, surface_.planet_radius_m(),
                               surface_.at(up, options.exaggeration).radius_m};
     const bool round = upright(view, up);
-    const bool plain = options.method == RangeOptions::Method::kPlain;
+    const bool is_reference = options.method == RangeOptions::Method::kReference;
     if (camera.distance_m > camera.ground_m &&
-        (plain || round || view.projection == core::Projection::kPerspective)) {
+        (is_reference || round || view.projection == core::Projection::kPerspective)) {
       const ColumnWalk walk(surface_, camera, options.exaggeration, {options.cell_px, core::focal_px(view)});
-      ScratchPool scratches(store_, options.exaggeration);
-      if (plain) {
+      ScratchPool scratches = make_scratch_pool(store_, options.exaggeration);
+      if (is_reference) {
         march_fixed_steps(view, walk, scratches, pool, range_m);
       } else if (round) {
         cast_upright(view, walk, scratches, pool, range_m);
@@ -111,10 +112,10 @@ ColumnWalk::Used RangeCaster::cast(const core::View& view, const RangeOptions& o
         sectors.cast(view, walk, scratches, surface_, options.exaggeration, options.cell_px == 0, pool,
                      range_m);
       }
-      return walk.used();
+      return walk.usage();
     }
   }
-  cast_each(view, options.exaggeration, pool, range_m);
+  cast_single_rays(view, options.exaggeration, pool, range_m);
   return {};
 }
 
@@ -138,8 +139,8 @@ void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, S
   cast_columns({&batch, 1}, walk, scratches, pool);
 }
 
-void RangeCaster::cast_each(const core::View& view, double exaggeration, base::ThreadPool& pool,
-                            std::span<float> range_m) const {
+void RangeCaster::cast_single_rays(const core::View& view, double exaggeration, base::ThreadPool& pool,
+                                   std::span<float> range_m) const {
   const core::SubRectangle part = core::drawn_part(view);
   pool.run(static_cast<std::size_t>(part.height), [&](std::size_t row) {
     const auto width = static_cast<std::size_t>(part.width);

@@ -1,4 +1,16 @@
-// Range images of S, cast column by column.
+// Casts range images of the reference surface.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): the first one. RangeCaster chooses among three ways to
+// cast: vertical columns for panoramas of a level camera (ColumnBatch), sectors of columns and refinement for
+// perspective images (SectorCaster), and single rays for all else (paging::Surface::cast). ImagePainter colours
+// the result.
+//
+// Typical usage:
+//   RangeCaster caster(planet, memory_bytes);
+//   base::ThreadPool pool(0);
+//   const glm::ivec2 size = core::drawn_size(view);
+//   std::vector<float> range_m(std::size_t(size.x) * std::size_t(size.y));
+//   caster.cast(view, {.cell_px = 1}, pool, range_m);
 #pragma once
 
 #include <memory>
@@ -15,40 +27,49 @@ namespace vpe::voxel {
 
 struct RangeOptions {
   double exaggeration = 1;
-  // 0: S itself. Else tiles are cast as coarse as their posts are at most this far apart in the image; posts
-  // of coarser tiles lie on S.
+  // Bound of the geometric error in the image (CellRule in column_walk.h). Smaller: closer to the reference
+  // surface, slower; larger: coarser tiles, faster. 0: the reference surface itself.
   double cell_px = 0;
   enum class Method {
-    kColumns,
-    kEach,   // every ray by itself, down the pyramids of S
-    kPlain,  // every ray by itself in even steps (vpe/voxel/cast/fixed_step_marcher.h)
+    kColumns,     // columns and sectors where the view allows it
+    kSingleRays,  // every ray by itself, down the maximum pyramids; ignores cell_px
+    kReference,   // every ray by itself in fixed steps (fixed_step_marcher.h)
   };
-  Method method = Method::kColumns;  // the others are what columns are measured against
+  // kColumns is by far the fastest. The others are checks, and the baseline of measurements
+  // (docs/measurements/rays.md).
+  Method method = Method::kColumns;
 };
 
 class RangeCaster {
  public:
+  // A quarter of the budget goes to single rays (paging::Surface), the rest to height grids.
   RangeCaster(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
-  // Ranges from the camera to S as exaggerated, metres, infinity for the sky, of the view's drawn part, row by row
-  // from the top. Columns for perspective views and for round ones whose camera is level, else a ray a pixel; an
-  // camera below S sees 0. With cell_px 0 as Surface::cast() says but for rounding: relative error below
-  // range_error(view) / sine of incidence. Does not depend on the number of threads, nor on what was cast
-  // before. Throws paging::PlanetError for tiles that cannot be read.
-  // Returns the tiles that columns went over and the bound of their error; nothing of single rays.
-  // One caller at a time for each SectorCaster, whose memory a cast uses; without one, one caller at a time.
-  ColumnWalk::Used cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
-                        std::span<float> range_m) {
+  // Writes the ranges of the view's drawn part, row by row from the top: metres from the camera to the
+  // reference surface as exaggerated, infinite for the sky, 0 for a camera below the surface. Columns serve
+  // perspective views, and cylindrical and equirectangular ones whose camera is level; other views get a ray
+  // for each pixel.
+  //
+  // With cell_px 0 ranges are those of paging::Surface::cast() but for rounding: the relative error is below
+  // range_error(view) / sine of incidence. They do not depend on the number of threads or on earlier casts.
+  //
+  // Returns the tiles that columns used and the bound of their error; nothing for single rays. Throws
+  // paging::PlanetError for tiles that cannot be read.
+  //
+  // A cast uses the memory of a SectorCaster: one thread at a time may call it for each of them. Without one,
+  // the caster's own serves, for one thread at a time.
+  ColumnWalk::Usage cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
+                         std::span<float> range_m) {
     return cast(view, options, pool, range_m, sectors_);
   }
-  ColumnWalk::Used cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
-                        std::span<float> range_m, SectorCaster& sectors) const;
+  ColumnWalk::Usage cast(const core::View& view, const RangeOptions& options, base::ThreadPool& pool,
+                         std::span<float> range_m, SectorCaster& sectors) const;
   static constexpr double kRangeError = 1e-6;
-  // In fields of view wider than kWide_deg, whose lowest rows look almost straight down, and of ground whose relief
-  // as exaggerated is more than a tenth of the radius.
+  // Error in fields of view wider than kWide_deg, whose lowest rows look almost straight down, and of ground
+  // whose exaggerated height range is more than a tenth of the radius.
   static constexpr double kWideRangeError = 5e-6;
   static constexpr double kWide_deg = 150;
-  // Without exaggerated relief.
+  // Returns the error for ground whose height range is at most a tenth of the radius.
   static double range_error(const core::View& view) {
     return view.fov_deg > kWide_deg ? kWideRangeError : kRangeError;
   }
@@ -62,8 +83,8 @@ class RangeCaster {
  private:
   void cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
                     base::ThreadPool& pool, std::span<float> range_m) const;
-  void cast_each(const core::View& view, double exaggeration, base::ThreadPool& pool,
-                 std::span<float> range_m) const;
+  void cast_single_rays(const core::View& view, double exaggeration, base::ThreadPool& pool,
+                        std::span<float> range_m) const;
 
   paging::Surface surface_;
   HeightGridStore store_;

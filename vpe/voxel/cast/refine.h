@@ -1,5 +1,10 @@
-// From ranges near a pixel to the range at its centre: a ray is met with the facet at its hint, then with the
-// facet at what that gave, until the facet stays the same.
+// Refinement: moves ranges from samples near a pixel to the pixel's own ray.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): after the columns of a perspective image. SectorCaster
+// takes the two samples on either side of each pixel as hints (hints_from_row(), hints_from_columns()).
+// refine_row() intersects the pixel's ray with the facet at its hint, then with the facet at that place, until
+// the facet stays the same. What it cannot resolve SectorCaster casts as single rays (the retrace of Wan 1999,
+// section 4). The functions are compiled for several instruction sets in refine_kernel.cpp.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +16,9 @@
 
 namespace vpe::voxel {
 
-// The facets of one lattice. Posts in float or, about the camera's foot, in double.
+// Describes the facets of one height grid. Posts are in float or, below the camera, in double.
 struct Facets {
-  std::uint64_t id = 0;  // of the lattice
+  std::uint64_t id = 0;  // of the height grid
   mars::Face face = mars::Face::kPlusX;
   HeightGridFrame frame;
   LineFamily family = LineFamily::kColumns;
@@ -21,14 +26,15 @@ struct Facets {
   const HeightGridLines<double>* exact_lines = nullptr;  // used where set
 };
 
+// Provides the facets of any place.
 class FacetSource {
  public:
   virtual ~FacetSource() = default;
-  // The lattice over or under a place. Valid until the next call.
+  // Returns the height grid over or under a point. The reference is valid until the next call.
   virtual const Facets& at(const glm::dvec3& place_m) = 0;
 };
 
-// Rays of neighbouring pixels, evenly apart: direction of pixel k is first + k step, of any length.
+// Describes the rays of neighbouring pixels: the direction of pixel k is first + k step, of any length.
 struct RayRow {
   glm::dvec3 camera_m;
   double radius_m = 0;  // of the sphere
@@ -37,20 +43,24 @@ struct RayRow {
   int count = 0;
 };
 
-// range[k]: where ray k meets S between the hints a[k] and b[k], ranges of samples on either side of the pixel,
-// of which it lies share[k] of the way from a to b. As exact as the facets' posts, then rounded to float.
-// Infinite where both hints are. Pixels whose hints do not belong to one surface, and those that find no facet,
-// are appended to `open` and left as the nearer hint. The two sources see the same lattices; each is asked by
-// turns of its own.
+// Writes to range[k] where ray k meets the surface between the hints a[k] and b[k]. Hints are ranges of samples
+// on either side of the pixel, which lies share[k] of the way from a to b. The result is as exact as the
+// facets' posts, rounded to float, and infinite where both hints are. Pixels whose hints belong to different
+// surfaces, and pixels that find no facet, keep the nearer hint and are appended to `unresolved`.
+//
+// `source` and `exact_source` must provide the same height grids; they are two because the kernel alternates
+// between posts in float and in double, and each source remembers its last grid. Throws what they throw.
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
-                FacetSource& exact_source, float* range, std::vector<int>& open);
+                FacetSource& exact_source, float* range, std::vector<int>& unresolved);
 
-// Hints from a row of samples: pixel k lies at first + k step, in samples; a and b are its neighbours there.
+// Finds the hints of `count` pixels in one row of samples: pixel k lies at position first + k step among the
+// samples, between a[k] and b[k].
 void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
                     float* b, float* share);
 
-// Hints from rows of samples, one a pixel: pixel k lies at stretch[k] y + shift[k] of samples[k * lines ...].
-void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification,
-                        const float* shift, float y, int count, float* a, float* b, float* share);
+// Finds the hints of `count` pixels in as many rows of samples: pixel k lies at position scale[k] y + shift[k]
+// of the row samples[k * lines ...].
+void hints_from_columns(const float* samples, int lines, const float* scale, const float* shift, float y,
+                        int count, float* a, float* b, float* share);
 
 }  // namespace vpe::voxel

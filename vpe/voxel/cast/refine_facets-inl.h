@@ -1,4 +1,6 @@
-// Meeting rays with the facets of one lattice after the other.
+// Intersects neighbouring rays with the facets of one height grid after the other.
+//
+// Part of refine_kernel.cpp, called by refine_row() (refine.h).
 #if defined(VPE_VOXEL_REFINE_FACETS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_REFINE_FACETS_INL_H_
 #undef VPE_VOXEL_REFINE_FACETS_INL_H_
@@ -22,10 +24,11 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int kRounds = 8;
-constexpr int kGrids = 12;
+constexpr int kMaxRounds = 8;  // facets that are tried in one grid
+constexpr int kMaxGrids = 12;
 
-// Neighbouring rays against facets; D a vector of float, or of double about the camera's foot.
+// Refines as many neighbouring pixels as D has lanes. D is a vector of float or, for grids below the camera, of
+// double.
 template <class D>
 class RowRefiner {
  public:
@@ -38,12 +41,12 @@ class RowRefiner {
 
   RowRefiner(const RayRow& row, FacetSource& source) : row_(row), source_(source) {
     const V zero = hn::Zero(D());
-    ex_ = ey_ = ez_ = dx_ = dy_ = dz_ = camera_rise_ = ray_rise_ = last_ = zero;
-    number_ = last_facet_ = hn::Zero(DI());
-    not_here_ = hn::MaskFromVec(zero);
+    camera_x_ = camera_y_ = camera_z_ = dx_ = dy_ = dz_ = camera_rise_ = ray_rise_ = last_ = zero;
+    grid_number_ = last_facet_ = hn::Zero(DI());
+    other_kind_ = hn::MaskFromVec(zero);
   }
 
-  // Rays k, k + 1, ...
+  // Selects rays k, k + 1, ...
   void set_rays(int k) {
     const D d;
     first_ = k;
@@ -54,49 +57,50 @@ class RowRefiner {
     const V square = hn::MulAdd(index_, hn::MulAdd(index_, set(glm::dot(b, b)), set(2 * glm::dot(a, b))),
                                 set(glm::dot(a, a)));
     per_length_ = hn::Div(hn::Set(d, T(1)), hn::Sqrt(square));
-    if (facets_ != nullptr) turn();
+    if (facets_ != nullptr) set_directions();
   }
 
-  // t holds first guesses of the lanes in `todo` and takes their ranges, if these are within [low, high].
-  // Returns who was found. Lanes over lattices of the other kind are left to it: not_here().
+  // Replaces the estimates t of the lanes in `todo` by their ranges, where these are within [low, high].
+  // Returns the lanes that were found. Lanes over grids of the other precision are left alone and returned by
+  // other_kind().
   M refine(M todo, V low, V high, V& t) {
     const D d;
     M found = hn::MaskFromVec(hn::Zero(d));
-    not_here_ = found;
+    other_kind_ = found;
     last_facet_ = hn::Set(DI(), -1);
-    for (int grids = 0; grids < kGrids && !hn::AllFalse(d, todo); ++grids) {
-      Place place = place_of(t);
-      M here = hn::And(todo, inside(place));
+    for (int grids = 0; grids < kMaxGrids && !hn::AllFalse(d, todo); ++grids) {
+      GridPosition position = position_at(t);
+      M here = hn::And(todo, inside(position));
       if (facets_ == nullptr || hn::AllFalse(d, here)) {
-        aim(todo, t);
-        place = place_of(t);
-        here = hn::And(todo, inside(place));
+        select_grid(todo, t);
+        position = position_at(t);
+        here = hn::And(todo, inside(position));
       }
       if ((facets_->exact_lines != nullptr) != kExact) {
-        not_here_ = hn::Or(not_here_, here);
+        other_kind_ = hn::Or(other_kind_, here);
         todo = hn::AndNot(here, todo);
         continue;
       }
-      for (int round = 0; round < kRounds && !hn::AllFalse(d, here); ++round) {
-        step(here, place, todo, found, low, high, t);
-        place = place_of(t);
-        here = hn::And(todo, inside(place));
+      for (int round = 0; round < kMaxRounds && !hn::AllFalse(d, here); ++round) {
+        step(here, position, todo, found, low, high, t);
+        position = position_at(t);
+        here = hn::And(todo, inside(position));
       }
     }
     return found;
   }
 
-  M not_here() const { return not_here_; }
+  M other_kind() const { return other_kind_; }
 
  private:
-  struct Place {
+  struct GridPosition {
     V x, y, z;
   };
 
   static V set(double x) { return hn::Set(D(), static_cast<T>(x)); }
 
-  // To the lattice of the first lane that is left.
-  void aim(M todo, V t) {
+  // Selects the height grid of the first lane in `todo`.
+  void select_grid(M todo, V t) {
     const D d;
     const auto lane = static_cast<std::size_t>(hn::FindFirstTrue(d, todo));
     alignas(64) T ts[64 / sizeof(T)];
@@ -105,9 +109,9 @@ class RowRefiner {
         glm::normalize(row_.first + static_cast<double>(first_ + static_cast<int>(lane)) * row_.step);
     facets_ = &source_.at(row_.camera_m + static_cast<double>(ts[lane]) * ray);
     const Facets& f = *facets_;
-    aims_ = (aims_ + 1) & 0x1fff;
-    // Beside 2^8 x 2^8 cells of two facets.
-    number_ = hn::Set(DI(), static_cast<hn::TFromD<DI>>(aims_ << 18));
+    grid_count_ = (grid_count_ + 1) & 0x1fff;
+    // Above the bits of 2^8 x 2^8 cells of two facets each.
+    grid_number_ = hn::Set(DI(), static_cast<hn::TFromD<DI>>(grid_count_ << 18));
     last_ = set(f.frame.intervals - 1);
     const mars::FaceAxes& axes = mars::face_axes(f.face);
     const DepthPlane& plane = f.exact_lines != nullptr ? f.exact_lines->reference : f.lines->reference;
@@ -118,17 +122,17 @@ class RowRefiner {
       return glm::dvec4(x, y, z, -row_.radius_m * (plane.w0 * z + plane.wx * x + plane.wy * y));
     };
     const glm::dvec4 camera = from(row_.camera_m);
-    ex_ = set(camera.x);
-    ey_ = set(camera.y);
-    ez_ = set(camera.z);
+    camera_x_ = set(camera.x);
+    camera_y_ = set(camera.y);
+    camera_z_ = set(camera.z);
     camera_rise_ = set(row_.radius_m + camera.w);
     ray0_ = from(row_.first);
     ray1_ = from(row_.step);
-    turn();
+    set_directions();
   }
 
-  // The rays against the lattice at hand.
-  void turn() {
+  // Expresses the rays' directions in the coordinates of the current grid.
+  void set_directions() {
     const auto along = [&](double a, double b) {
       return hn::Mul(hn::MulAdd(index_, set(b), set(a)), per_length_);
     };
@@ -138,16 +142,16 @@ class RowRefiner {
     ray_rise_ = along(ray0_.w, ray1_.w);
   }
 
-  Place place_of(V t) const {
+  GridPosition position_at(V t) const {
     const D d;
     if (facets_ == nullptr) return {t, t, t};
-    const V z = hn::MulAdd(t, dz_, ez_);
+    const V z = hn::MulAdd(t, dz_, camera_z_);
     const V per_z = hn::Div(hn::Set(d, T(1)), z);
-    return {hn::Mul(hn::MulAdd(t, dx_, ex_), per_z), hn::Mul(hn::MulAdd(t, dy_, ey_), per_z), z};
+    return {hn::Mul(hn::MulAdd(t, dx_, camera_x_), per_z), hn::Mul(hn::MulAdd(t, dy_, camera_y_), per_z), z};
   }
 
-  // A place on a border belongs to both sides.
-  M inside(const Place& p) const {
+  // Returns the lanes over the current grid. A position on a border belongs to both sides.
+  M inside(const GridPosition& p) const {
     const D d;
     constexpr double kSlack = kExact ? 1e-11 : 1e-4;
     const V low = set(-kSlack);
@@ -157,7 +161,7 @@ class RowRefiner {
     return hn::And(hn::Gt(p.z, hn::Zero(d)), hn::And(x, y));
   }
 
-  // Where post (x, y) of each lane is.
+  // Returns the index of post (x, y) of each lane.
   VI index_of(VI x, VI y) const {
     const DI di;
     const VI side = hn::Set(di, facets_->frame.intervals + 1);
@@ -168,7 +172,7 @@ class RowRefiner {
     return hn::Add(hn::Mul(line, side), x);
   }
 
-  // One by one: since the mitigations of 2023 vector gathers take longer than loads on many processors.
+  // Loads one by one: since the mitigations of 2023 vector gathers take longer than loads on many processors.
   V posts_at(VI index) const {
     alignas(64) hn::TFromD<DI> at[64 / sizeof(T)];
     alignas(64) T values[64 / sizeof(T)];
@@ -183,7 +187,7 @@ class RowRefiner {
     return hn::Load(D(), values);
   }
 
-  // A facet's posts: its cell's corner, the one across, and the one between.
+  // Holds a facet's posts: its cell's corner, the opposite corner, and the one between.
   struct Corners {
     V first;
     V across;
@@ -206,17 +210,20 @@ class RowRefiner {
             posts_at(hn::Add(index, hn::IfThenElse(low, east, north)))};
   }
 
-  void step(M here, const Place& place, M& todo, M& found, V low, V high, V& t) {
+  // Intersects the rays with the planes of the facets at `position`. Moves lanes whose facet stays the same
+  // from `todo` to `found`, and drops lanes whose intersection is not usable from `todo`.
+  void step(M here, const GridPosition& position, M& todo, M& found, V low, V high, V& t) {
     const D d;
     const DI di;
     const V zero = hn::Zero(d);
-    const V i = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(place.x), zero), last_), zero);
-    const V j = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(place.y), zero), last_), zero);
-    const M lower = hn::Ge(hn::Sub(place.x, i), hn::Sub(place.y, j));
+    const V i = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(position.x), zero), last_), zero);
+    const V j = hn::IfThenElse(here, hn::Min(hn::Max(hn::Floor(position.y), zero), last_), zero);
+    const M lower = hn::Ge(hn::Sub(position.x, i), hn::Sub(position.y, j));
     const VI xi = hn::ConvertTo(di, i);
     const VI yj = hn::ConvertTo(di, j);
     const VI lower_i = hn::IfThenElse(hn::RebindMask(di, lower), hn::Set(di, 1), hn::Zero(di));
-    const VI facet = hn::Add(hn::Add(hn::ShiftLeft<1>(xi), hn::ShiftLeft<9>(yj)), hn::Add(lower_i, number_));
+    const VI facet =
+        hn::Add(hn::Add(hn::ShiftLeft<1>(xi), hn::ShiftLeft<9>(yj)), hn::Add(lower_i, grid_number_));
     const M same = hn::And(here, hn::RebindMask(d, hn::Eq(facet, last_facet_)));
     found = hn::Or(found, same);
     todo = hn::AndNot(same, todo);
@@ -228,19 +235,19 @@ class RowRefiner {
     const V second = hn::Sub(c.across, c.between);
     const V p = hn::IfThenElse(lower, first, second);
     const V q = hn::IfThenElse(lower, second, first);
-    // Metres below the facet's plane: of the reference plane, and of the facet against it.
+    // Metres below the facet's plane, by way of the reference plane.
     const V per_r = set(1.0 / row_.radius_m);
     const auto below = [&](V x, V y, V z, V reference) {
       const V px = hn::NegMulAdd(i, z, x);
       const V py = hn::NegMulAdd(j, z, y);
       return hn::MulAdd(per_r, hn::MulAdd(c.first, z, hn::MulAdd(p, px, hn::Mul(q, py))), reference);
     };
-    const V at_camera = below(ex_, ey_, ez_, camera_rise_);
+    const V at_camera = below(camera_x_, camera_y_, camera_z_, camera_rise_);
     const V slope = below(dx_, dy_, dz_, ray_rise_);
     const V next = hn::Neg(hn::Div(at_camera, slope));
     const M good = hn::And(hn::Gt(slope, zero), hn::And(hn::Ge(next, low), hn::Le(next, high)));
     t = hn::IfThenElse(hn::And(here, good), next, t);
-    // Back to back with the ray, or far from its hints: not this way.
+    // The facet faces away from the camera, or the place is far from the hints.
     todo = hn::AndNot(hn::AndNot(good, here), todo);
   }
 
@@ -248,17 +255,17 @@ class RowRefiner {
   FacetSource& source_;
   const Facets* facets_ = nullptr;
   int first_ = 0;
-  int aims_ = 0;
+  int grid_count_ = 0;
   glm::dvec4 ray0_{};
   glm::dvec4 ray1_{};
   V index_ = hn::Zero(D());
   V per_length_ = hn::Zero(D());
-  V ex_, ey_, ez_, dx_, dy_, dz_;
-  V camera_rise_, ray_rise_;  // below the reference plane
+  V camera_x_, camera_y_, camera_z_, dx_, dy_, dz_;
+  V camera_rise_, ray_rise_;  // metres below the reference plane
   V last_;
-  VI number_;      // of the lattice at hand
-  VI last_facet_;  // of each lane
-  M not_here_;
+  VI grid_number_;  // of the current grid
+  VI last_facet_;   // of each lane
+  M other_kind_;
 };
 
 }  // namespace

@@ -1,4 +1,6 @@
-// Samples beside pixels.
+// Finds the samples beside pixels.
+//
+// Part of refine_kernel.cpp; refine.h has the contracts.
 #if defined(VPE_VOXEL_REFINE_HINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_REFINE_HINTS_INL_H_
 #undef VPE_VOXEL_REFINE_HINTS_INL_H_
@@ -23,7 +25,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using HintTag = hn::CappedTag<float, 16>;
 
-// Loads one by one, for the same reason as in posts_at().
+// Loads one by one, for the reason given at RowRefiner::posts_at().
 template <class D>
 hn::Vec<D> pick(D d, const float* from, hn::Vec<hn::RebindToSigned<D>> index) {
   alignas(64) std::int32_t at[16];
@@ -33,9 +35,8 @@ hn::Vec<D> pick(D d, const float* from, hn::Vec<hn::RebindToSigned<D>> index) {
   return hn::Load(d, values);
 }
 
-// Row `row` of samples [step][line] at line = stretch[k] y + shift[k], step first + k.
-void HintsFromColumns(const float* samples, int lines, const float* off_axis_magnification, const float* shift,
-                      float y, int count, float* a, float* b, float* share) {
+void hints_from_columns_kernel(const float* samples, int lines, const float* scale, const float* shift, float y,
+                               int count, float* a, float* b, float* share) {
   const HintTag d;
   const hn::RebindToSigned<HintTag> di;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -48,7 +49,7 @@ void HintsFromColumns(const float* samples, int lines, const float* off_axis_mag
       std::copy_n(from + k, used, room);
       return hn::Load(d, room);
     };
-    const auto line = hn::MulAdd(load(off_axis_magnification, some[0]), hn::Set(d, y), load(shift, some[1]));
+    const auto line = hn::MulAdd(load(scale, some[0]), hn::Set(d, y), load(shift, some[1]));
     const auto before =
         hn::Min(hn::Max(hn::Floor(line), hn::Zero(d)), hn::Set(d, static_cast<float>(lines - 2)));
     const auto step = hn::Min(hn::Add(hn::Iota(di, 0), hn::Set(di, k)), hn::Set(di, count - 1));
@@ -71,8 +72,8 @@ void HintsFromColumns(const float* samples, int lines, const float* off_axis_mag
   }
 }
 
-void HintsFromRow(const float* samples, int sample_count, double first, double step, int count, float* a,
-                  float* b, float* share) {
+void hints_from_row_kernel(const float* samples, int sample_count, double first, double step, int count,
+                           float* a, float* b, float* share) {
   const hn::CappedTag<float, 16> d;
   const hn::RebindToSigned<decltype(d)> di;
   const int lanes = static_cast<int>(hn::Lanes(d));

@@ -23,13 +23,13 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Hints farther apart than this share of the nearer one are not taken for one surface.
+// Hints that differ by more than this share of the nearer one belong to different surfaces.
 constexpr double kApart = 0.04;
 
 using FloatTag = hn::CappedTag<float, 16>;
 using DoubleTag = hn::CappedTag<double, 8>;
 
-// Both kinds of lattices for a vector of floats.
+// Refines a vector of floats over height grids of both precisions.
 class PixelRefiner {
  public:
   using V = hn::Vec<FloatTag>;
@@ -46,7 +46,7 @@ class PixelRefiner {
   M refine(M todo, V low, V high, V& t) {
     const FloatTag d;
     const M found = floats_.refine(todo, low, high, t);
-    const M left = floats_.not_here();
+    const M left = floats_.other_kind();
     if (HWY_LIKELY(hn::AllFalse(d, left))) return found;
     const DoubleTag dd;
     alignas(64) float marks[16];
@@ -90,8 +90,9 @@ class PixelRefiner {
   RowRefiner<DoubleTag> doubles_;
 };
 
-void RefineRow(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
-               FacetSource& exact_source, float* range, std::vector<int>& open) {
+void refine_row_kernel(const RayRow& row, const float* a, const float* b, const float* share,
+                       FacetSource& source, FacetSource& exact_source, float* range,
+                       std::vector<int>& unresolved) {
   const FloatTag d;
   using V = hn::Vec<FloatTag>;
   using M = hn::Mask<FloatTag>;
@@ -123,13 +124,13 @@ void RefineRow(const RayRow& row, const float* a, const float* b, const float* s
     refiner.set_rays(k);
     const V reach = hn::Mul(near, apart);
     const M close = hn::Le(hn::Sub(far, near), reach);
-    // On one facet the inverse range is all but even from sample to sample.
+    // On one facet the inverse range changes almost linearly from sample to sample.
     const V inverse = hn::MulAdd(part, hn::Sub(hn::Div(one, hb), hn::Div(one, ha)), hn::Div(one, ha));
     // Between two surfaces the nearer one comes first.
     V t = hn::IfThenElse(close, hn::Div(one, inverse), near);
     const V high = hn::IfThenElse(close, hn::Add(far, reach), hn::Add(near, reach));
     M found = refiner.refine(hn::Not(sky), hn::Sub(near, reach), high, t);
-    // Rough ground may lead astray from between two samples; a sample's own facet faces the camera.
+    // On rough ground the iteration may fail from between two samples. A sample's own facet faces the camera.
     for (const V& start : {near, far}) {
       const M again = hn::And(close, hn::Not(hn::Or(found, sky)));
       if (hn::AllFalse(d, again)) break;
@@ -138,7 +139,7 @@ void RefineRow(const RayRow& row, const float* a, const float* b, const float* s
       t = hn::IfThenElse(met, other, t);
       found = hn::Or(found, met);
     }
-    // A ray that misses it meets the farther one, if that is not the sky.
+    // A ray that misses the nearer surface meets the farther one, unless that is the sky.
     const M missed = hn::Not(hn::Or(found, hn::Or(sky, close)));
     V seen = hn::IfThenElse(found, t, near);
     M done = hn::Or(found, sky);
@@ -160,7 +161,7 @@ void RefineRow(const RayRow& row, const float* a, const float* b, const float* s
     if (!hn::AllTrue(d, done)) {
       hn::Store(hn::IfThenElse(done, zero, one), d, some[0]);
       for (int lane = 0; lane < used; ++lane) {
-        if (some[0][lane] != 0) open.push_back(k + lane);
+        if (some[0][lane] != 0) unresolved.push_back(k + lane);
       }
     }
   }
@@ -173,21 +174,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vpe::voxel {
 
-HWY_EXPORT(RefineRow);
-HWY_EXPORT(HintsFromRow);
-HWY_EXPORT(HintsFromColumns);
+HWY_EXPORT(refine_row_kernel);
+HWY_EXPORT(hints_from_row_kernel);
+HWY_EXPORT(hints_from_columns_kernel);
 
 void refine_row(const RayRow& row, const float* a, const float* b, const float* share, FacetSource& source,
-                FacetSource& exact_source, float* range, std::vector<int>& open) {
-  HWY_DYNAMIC_DISPATCH(RefineRow)(row, a, b, share, source, exact_source, range, open);
+                FacetSource& exact_source, float* range, std::vector<int>& unresolved) {
+  HWY_DYNAMIC_DISPATCH(refine_row_kernel)(row, a, b, share, source, exact_source, range, unresolved);
 }
 void hints_from_row(const float* samples, int sample_count, double first, double step, int count, float* a,
                     float* b, float* share) {
-  HWY_DYNAMIC_DISPATCH(HintsFromRow)(samples, sample_count, first, step, count, a, b, share);
+  HWY_DYNAMIC_DISPATCH(hints_from_row_kernel)(samples, sample_count, first, step, count, a, b, share);
 }
-void hints_from_columns(const float* samples, int lines, const float* off_axis_magnification,
-                        const float* shift, float y, int count, float* a, float* b, float* share) {
-  HWY_DYNAMIC_DISPATCH(HintsFromColumns)(samples, lines, off_axis_magnification, shift, y, count, a, b, share);
+void hints_from_columns(const float* samples, int lines, const float* scale, const float* shift, float y,
+                        int count, float* a, float* b, float* share) {
+  HWY_DYNAMIC_DISPATCH(hints_from_columns_kernel)(samples, lines, scale, shift, y, count, a, b, share);
 }
 
 }  // namespace vpe::voxel

@@ -13,14 +13,14 @@ namespace vpe::voxel {
 
 namespace {
 
-// Between the lines of fans where they are farthest apart.
+// Distance between lines of a sector where they are farthest apart.
 constexpr double kSpacing_px = 1.0;
 constexpr int kTaskRows = 32;
 constexpr int kTaskColumns = 128;
-// Share of a hint that a ray is cast before and behind it.
+// A ray is cast over this share of a hint before and behind it.
 constexpr double kAround = 0.04;
 
-// For one thread.
+// Holds the hints of one row. For one thread.
 struct RowHints {
   explicit RowHints(int width)
       : a(static_cast<std::size_t>(width)),
@@ -29,11 +29,11 @@ struct RowHints {
   std::vector<float> a;
   std::vector<float> b;
   std::vector<float> share;
-  std::vector<int> open;
+  std::vector<int> unresolved;
 };
 
-// About the nearer hint, then from the farther one on; from the camera where either is too far (Wan 1999, section
-// 4).
+// Casts about the nearer hint, then from the farther one on, and from the camera if either lies too far (the
+// retrace of Wan 1999, section 4).
 double cast_near(const paging::Surface& surface, const glm::dvec3& camera, const glm::dvec3& ray,
                  double exaggeration, float a, float b) {
   const auto near = static_cast<double>(std::min(a, b));
@@ -52,7 +52,7 @@ double cast_near(const paging::Surface& surface, const glm::dvec3& camera, const
   return surface.cast(camera, ray, exaggeration);
 }
 
-// The same over the walk's lattices, in steps.
+// Does the same over the walk's height grids, in fixed steps.
 double march_near(const ColumnWalk& walk, FacetFinder& finder, const glm::dvec3& camera, const glm::dvec3& ray,
                   float a, float b) {
   const auto near = static_cast<double>(std::min(a, b));
@@ -80,7 +80,7 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, 
     batch.rows.kind = RowKind::kSector;
     batch.rows.count = sector.steps;
     batch.columns = sector.lines;
-    // Stored by step.
+    // Samples are stored by step.
     batch.stride = sector.rising ? sector.lines : -static_cast<std::ptrdiff_t>(sector.lines);
     batch.out = samples_[f].data() + (sector.rising ? 0 : std::ptrdiff_t{sector.lines} * (sector.steps - 1));
     batch.set_column = [&plan, &sector](int column, ColumnGroup& group, int lane, glm::dvec3& azimuth) {
@@ -97,7 +97,6 @@ void SectorCaster::cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, 
   cast_columns(batches, walk, scratches, pool);
 }
 
-// Samples on either side of pixels [first, last) of one row, in that row or column of samples.
 void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
                               int last_pixel, float* a, float* b, float* share) const {
   const double y = part.y + row + 0.5;
@@ -117,11 +116,10 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
       const int step = std::clamp(part.y + row - sector->first_step, 0, sector->steps - 1);
       const ViewSector::Map& map = sector->maps[static_cast<std::size_t>(step)];
       const double first =
-          (map.off_axis_magnification * (part.x + span.begin + 0.5) + map.shift - sector->first_line) /
-          sector->spacing;
+          (map.scale * (part.x + span.begin + 0.5) + map.shift - sector->first_line) / sector->spacing;
       hints_from_row(samples(*sector) + std::ptrdiff_t{step} * sector->lines, sector->lines, first,
-                     map.off_axis_magnification / sector->spacing, span.end - span.begin, a + span.begin,
-                     b + span.begin, share + span.begin);
+                     map.scale / sector->spacing, span.end - span.begin, a + span.begin, b + span.begin,
+                     share + span.begin);
     } else {
       for (int k = span.begin; k < span.end; ++k) none(k);
     }
@@ -133,7 +131,7 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
       for (int k = begin; k < end; ++k) none(k);
       return;
     }
-    // Pixels that the fan's steps leave out have their neighbours' samples.
+    // Pixels outside the sector's steps take the samples of their neighbours.
     const int first = std::clamp(sector->first_step - part.x, begin, end);
     const int last = std::clamp(sector->first_step + sector->steps - part.x, first, end);
     if (first == last) {
@@ -142,7 +140,7 @@ void SectorCaster::find_hints(const SectorPlan& plan, const core::SubRectangle& 
     }
     const auto step = static_cast<std::size_t>(part.x + first - sector->first_step);
     hints_from_columns(samples(*sector) + static_cast<std::ptrdiff_t>(step) * sector->lines, sector->lines,
-                       sector->line_stretch.data() + step, sector->line_shift.data() + step,
+                       sector->line_scale.data() + step, sector->line_shift.data() + step,
                        static_cast<float>(y - sector->origin), last - first, a + first, b + first,
                        share + first);
     for (int k = begin; k < end; ++k) {
@@ -169,13 +167,13 @@ void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchP
   const double cy = 0.5 * view.height + view.principal_offset_px.y;
   const int tasks = (part.height + kTaskRows - 1) / kTaskRows;
   pool.run(static_cast<std::size_t>(tasks), [&](std::size_t task) {
-    const ScratchPool::Use use(scratches);
-    FacetFinder finder(walk, use.tiles());
-    FacetFinder exact_finder(walk, use.tiles());
+    const ScratchPool::Lease scratch = scratches.acquire();
+    FacetFinder finder(walk, scratch->tiles);
+    FacetFinder exact_finder(walk, scratch->tiles);
     RowHints hints(part.width);
     const int first = static_cast<int>(task) * kTaskRows;
     const int last = std::min(first + kTaskRows, part.height);
-    // In blocks, so that neighbouring rows find their samples and lattices at hand.
+    // In blocks, so that neighbouring rows find their samples and height grids in the caches.
     for (int begin = 0; begin < part.width; begin += kTaskColumns) {
       const int end = std::min(begin + kTaskColumns, part.width);
       for (int row = first; row < last; ++row) {
@@ -189,12 +187,12 @@ void SectorCaster::cast(const core::View& view, const ColumnWalk& walk, ScratchP
                      focal * axes.forward;
         rays.step = axes.right;
         rays.count = end - begin;
-        hints.open.clear();
+        hints.unresolved.clear();
         const float* const a = hints.a.data() + begin;
         const float* const b = hints.b.data() + begin;
         const float* const share = hints.share.data() + begin;
-        refine_row(rays, a, b, share, finder, exact_finder, out, hints.open);
-        for (const int k : hints.open) {
+        refine_row(rays, a, b, share, finder, exact_finder, out, hints.unresolved);
+        for (const int k : hints.unresolved) {
           const glm::dvec3 ray = glm::normalize(rays.first + static_cast<double>(k) * rays.step);
           out[k] = static_cast<float>(
               exact ? cast_near(surface, view.camera.position_m, ray, exaggeration, a[k], b[k])

@@ -1,4 +1,7 @@
-// Range images of perspective views.
+// Casts range images of perspective views.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): RangeCaster calls it. It plans the image's sectors
+// (view_sector.h), casts their columns (column_batch.h), and refines the samples to pixels (refine.h).
 #pragma once
 
 #include <span>
@@ -12,24 +15,29 @@
 
 namespace vpe::voxel {
 
-// Casts fans of columns, then meets each pixel's own ray with the facet at its nearest samples. Where these
-// belong to different surfaces (ridges, the skyline) the ray is cast by itself: against S, if `exact`, else in
-// steps over the walk's lattices. One caller at a time.
+// Keeps the samples of the last image, so that the next one need not allocate them. One thread at a time may
+// call it.
 class SectorCaster {
  public:
+  // Writes the ranges of the view's drawn part, row by row from the top. Casts the columns of all sectors, then
+  // intersects each pixel's own ray with the facet at its nearest samples. Where these belong to different
+  // surfaces (ridges, the skyline) the ray is cast by itself: against the reference surface if `exact`, else in
+  // fixed steps over the height grids of `walk`. Throws paging::PlanetError for tiles that cannot be read.
   void cast(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,
             const paging::Surface& surface, double exaggeration, bool exact, base::ThreadPool& pool,
             std::span<float> range_m);
 
+  // Returns the bytes of the samples that are kept.
   std::size_t bytes() const;
 
  private:
   void cast_sectors(const SectorPlan& plan, const ColumnWalk& walk, ScratchPool& scratches,
                     base::ThreadPool& pool);
+  // Finds the samples on either side of pixels [first_pixel, last_pixel) of a row of the drawn part.
   void find_hints(const SectorPlan& plan, const core::SubRectangle& part, int row, int first_pixel,
                   int last_pixel, float* a, float* b, float* share) const;
 
-  std::vector<std::vector<float>> samples_;  // of the last image's fans, by step
+  std::vector<std::vector<float>> samples_;  // of the last image, by sector and step
 };
 
 }  // namespace vpe::voxel

@@ -9,9 +9,9 @@ namespace vpe::voxel {
 
 namespace {
 
-// Steps nearer than this to V have no direction.
+// Steps nearer than this to V have no usable direction.
 constexpr double kNearest_px = 0.01;
-// Pixels beyond a sector or the image that are cast, so that a nearest sample always exists.
+// Pixels beyond a sector or the image that are also cast, so that a nearest sample always exists.
 constexpr double kMargin_px = 1.0;
 
 }  // namespace
@@ -28,7 +28,7 @@ SectorPlan::SectorPlan(const core::View& view, const glm::dvec3& up, double spac
   vw_ = glm::dot(up, axes.forward);
   vx_ = cx_ * vw_ + focal_ * glm::dot(up, axes.right);
   vy_ = cy_ * vw_ - focal_ * glm::dot(up, axes.up);
-  // Away from V is the same for both of its ends.
+  // (vx, vy, vw) and its negative are the same point of the image.
   if (vw_ < 0) {
     vw_ = -vw_;
     vx_ = -vx_;
@@ -55,7 +55,7 @@ SectorPlan::Span SectorPlan::upright_span(int row) const {
     return static_cast<int>(std::clamp(std::floor(x - part_.x), 0.0, static_cast<double>(part_.width)));
   };
   Span span{pixel((vx_ - half) / vw_), pixel((vx_ + half) / vw_)};
-  // Exactly those that side_of() says.
+  // Agrees with side_of() exactly, whatever the rounding above.
   while (span.begin > 0 && is_upright(span.begin - 1)) --span.begin;
   while (span.begin < part_.width && !is_upright(span.begin) && part_.x + span.begin + 0.5 < vx_ / vw_)
     ++span.begin;
@@ -72,7 +72,7 @@ void SectorPlan::add(bool upright, bool forward) {
   const double s_max = (upright ? part_.x + part_.width : part_.y + part_.height) + kMargin_px;
   const double vt = upright ? vy_ : vx_;
   const double vs = upright ? vx_ : vy_;
-  // Steps with pixels in the sector, and where these are.
+  // Range of s of the sector's pixels, by step.
   struct Reach {
     double low;
     double high;
@@ -116,17 +116,17 @@ void SectorPlan::add(bool upright, bool forward) {
     const ViewSector::Map map{1.0 + lean * vw_, -lean * vs};
     sector.maps.push_back(map);
     const Reach& r = reach[static_cast<std::size_t>(k)];
-    low = std::min(low, map.off_axis_magnification * r.low + map.shift);
-    high = std::max(high, map.off_axis_magnification * r.high + map.shift);
+    low = std::min(low, map.scale * r.low + map.shift);
+    high = std::max(high, map.scale * r.high + map.shift);
   }
   // Where lines are parallel and upright they go through pixel centres.
   sector.first_line = std::floor(low - 0.5) + 0.5;
   sector.lines = static_cast<int>(std::ceil((high - sector.first_line) / spacing_)) + 1;
   sector.origin = 0.5 * (s_min + s_max);
   for (const ViewSector::Map& map : sector.maps) {
-    sector.line_stretch.push_back(static_cast<float>(map.off_axis_magnification / spacing_));
-    sector.line_shift.push_back(static_cast<float>(
-        (map.off_axis_magnification * sector.origin + map.shift - sector.first_line) / spacing_));
+    sector.line_scale.push_back(static_cast<float>(map.scale / spacing_));
+    sector.line_shift.push_back(
+        static_cast<float>((map.scale * sector.origin + map.shift - sector.first_line) / spacing_));
   }
   index_[upright ? 1 : 0][forward ? 1 : 0] = static_cast<int>(sectors_.size());
   // Slopes rise away from the nadir, and towards the zenith.
@@ -155,7 +155,7 @@ SectorLine SectorPlan::line(const ViewSector& sector, int index) const {
   const glm::dvec3 far = ray(sector.reference);
   SectorLine out;
   out.azimuth = glm::normalize(far - glm::dot(far, up_) * up_);
-  // The step must not turn the direction behind the vertical, which lies beyond the fan's steps.
+  // The step must not carry the direction past the vertical, which lies beyond the sector's steps.
   const double t_first = sector.first_step + 0.5;
   const double t_last = t_first + sector.steps - 1;
   const glm::dvec3 begin = ray(sector.rising ? t_first : t_last);
@@ -165,7 +165,7 @@ SectorLine SectorPlan::line(const ViewSector& sector, int index) const {
   out.a1 = glm::dot(step, up_);
   out.b0 = glm::dot(begin, out.azimuth);
   out.b1 = glm::dot(step, out.azimuth);
-  // Steps at which the line is in the drawn part, and a pixel more.
+  // Steps at which the line is in the drawn part, with a margin of a pixel.
   const double s_min = (sector.upright ? part_.x : part_.y) - kMargin_px;
   const double s_max = (sector.upright ? part_.x + part_.width : part_.y + part_.height) + kMargin_px;
   double low = 0;

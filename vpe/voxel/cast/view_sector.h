@@ -1,10 +1,14 @@
-// Fans: how a perspective image of any pitch and roll is cut into columns.
+// Sectors: divides a perspective image of any pitch and roll into vertical columns.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): SectorCaster makes a SectorPlan for each image and casts
+// every ViewSector as a ColumnBatch.
 //
 // All planes through the camera and the planet's centre appear in an image as lines through one point, the
-// vanishing point V of the vertical. Diagonals through V part the image into up to four sectors. In a sector,
-// lines are a fixed distance apart on the image's row (or column) farthest from V, and a line's sample r lies
-// where it crosses the r-th row of pixel centres; along it slopes are (a0 + a1 r) / (b0 + b1 r). So a pixel's
-// nearest sample is in its own row, half the spacing away at most, and finding it is one affine map a row.
+// vanishing point V of the vertical. Diagonals through V divide the image into up to four sectors. In a sector,
+// lines are a fixed distance apart on the image's row (or column) farthest from V, and sample r of a line lies
+// where the line crosses the r-th row of pixel centres. Along a line the slopes of rays are (a0 + a1 r) / (b0 +
+// b1 r). So a pixel's nearest sample is in its own row, half the spacing away at most, and one affine map for
+// each row finds it (docs/design/rays.md).
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -15,34 +19,35 @@
 
 namespace vpe::voxel {
 
-// One sector. Steps run along y where `upright`, else along x; lines cross them at `s`, the other coordinate.
+// Describes one sector. Steps are rows of pixels (t = y) if `upright`, else columns of pixels (t = x). Lines
+// cross the steps at s, the other coordinate.
 struct ViewSector {
   bool upright = true;
-  bool forward = true;  // its steps grow away from V
-  int first_step = 0;   // pixels of the full image
+  bool forward = true;  // steps grow away from V
+  int first_step = 0;   // pixel of the full image
   int steps = 0;
-  double reference = 0;   // step coordinate that lines are even at
-  double first_line = 0;  // s of line 0 there
-  double spacing = 1;     // pixels
+  double reference = 0;   // t at which the lines are evenly spaced
+  double first_line = 0;  // s of line 0 at the reference
+  double spacing = 1;     // of lines at the reference, pixels
   int lines = 0;
   bool rising = true;  // slopes rise with the step
 
-  // s at step t of what crosses the reference at s_ref is (s_ref - shift) / stretch; s_ref = stretch s + shift.
+  // Maps s of a step to s of the same line at the reference: s_reference = scale s + shift.
   struct Map {
-    double off_axis_magnification;
+    double scale;
     double shift;
   };
   std::vector<Map> maps;  // by step
-  // The same for positions among the lines, in float: line = line_stretch (s - origin) + line_shift.
+  // Maps s to a position among the lines, in float: line = line_scale (s - origin) + line_shift, by step.
   double origin = 0;
-  std::vector<float> line_stretch;
+  std::vector<float> line_scale;
   std::vector<float> line_shift;
 };
 
-// What a line's columns need.
+// Describes the column of one line.
 struct SectorLine {
   glm::dvec3 azimuth;  // unit, body-fixed
-  double a0 = 0;       // rows counted so that slopes rise
+  double a0 = 0;       // slope coefficients; rows are counted so that slopes rise
   double a1 = 0;
   double b0 = 0;
   double b1 = 0;
@@ -50,31 +55,36 @@ struct SectorLine {
   int row_end = 0;  // past the last that is in the drawn part
 };
 
+// Divides one image into sectors. Immutable; any thread may read it.
 class SectorPlan {
  public:
-  // spacing_px in (0, 1]. The view is perspective; `up` is the vertical at the camera.
+  // The view must be perspective; `up` is the unit vertical at the camera. spacing_px in (0, 1]: smaller finds
+  // narrower ridges and makes more columns; 1 gives each pixel samples at most half a pixel away.
   SectorPlan(const core::View& view, const glm::dvec3& up, double spacing_px);
 
   const std::vector<ViewSector>& sectors() const { return sectors_; }
+  // Returns the column of line `index`, 0 <= index < sector.lines.
   SectorLine line(const ViewSector& sector, int index) const;
 
-  // The sector of an image position.
+  // Names a sector by its direction from V.
   struct Side {
     bool upright;
     bool forward;
   };
+  // Returns the side of V that an image position lies on.
   Side side_of(double x, double y) const;
-  // nullptr where the drawn part has none of it.
+  // Returns the sector on a side, or nullptr if the drawn part has no pixels of it.
   const ViewSector* sector_of(Side side) const {
     const int index = index_[side.upright ? 1 : 0][side.forward ? 1 : 0];
     return index < 0 ? nullptr : &sectors_[static_cast<std::size_t>(index)];
   }
 
-  // Pixels [begin, end) of the drawn part's row, counted from its left, that are in an upright sector.
+  // Range [begin, end) of pixels, counted from the left of the drawn part.
   struct Span {
     int begin;
     int end;
   };
+  // Returns the pixels of a row of the drawn part that lie in upright sectors.
   Span upright_span(int row) const;
 
  private:
@@ -86,7 +96,7 @@ class SectorPlan {
   double focal_;
   double cx_;
   double cy_;
-  // V in homogeneous image coordinates: (vx, vy) / vw.
+  // V in homogeneous image coordinates, (vx, vy) / vw, with vw >= 0.
   double vx_;
   double vy_;
   double vw_;

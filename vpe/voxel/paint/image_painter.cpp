@@ -4,58 +4,33 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <mutex>
 #include <unordered_set>
 #include <vector>
 
+#include "vpe/base/object_pool.h"
 #include "vpe/voxel/paint/paint_job.h"
 
 namespace vpe::voxel {
 
 namespace {
 
-// Of the budget: what threads hold on to while they paint. The caches have the rest, and in it mostly what
-// every image takes again: heights are looked at only when tiles are new.
+// Share of the budget that threads hold while they paint. The caches have the rest, most of it for what every
+// image uses again: heights are needed only when tiles are new.
 constexpr double kHeldShare = 0.15;
 constexpr paging::ShaderBudgetShares kShares{.surface = 0.1, .heights = 0.2, .normals = 0.45, .images = 0.25};
 
-// Rows a thread takes at a time.
+// Rows that a thread takes at a time.
 constexpr int kBand = 16;
 
 std::size_t share(double part, std::size_t budget) {
   return static_cast<std::size_t>(part * static_cast<double>(budget));
 }
 
-// Squares at hand, given to whoever paints a band and taken back after it.
-class TilesOfThreads {
- public:
-  template <typename Make>
-  std::unique_ptr<PaintTiles> take(Make&& make) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!idle_.empty()) {
-        auto tiles = std::move(idle_.back());
-        idle_.pop_back();
-        return tiles;
-      }
-    }
-    return make();
-  }
-  void give(std::unique_ptr<PaintTiles> tiles) {
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(tiles));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<PaintTiles>> idle_;
-};
-
-// Tiles up to so many bytes.
+// Counts the bytes of tiles up to a limit.
 class HeldTiles {
  public:
   explicit HeldTiles(std::size_t limit_bytes) : limit_(limit_bytes) {}
-  // False when it is one too many.
+  // Returns false if the tiles exceed the limit.
   bool add(const void* tile, std::size_t bytes) {
     if (held_.insert(tile).second) bytes_ += bytes;
     return bytes_ <= limit_;
@@ -80,12 +55,12 @@ bool is_one_colour(const paging::ShadingParams& shading, const paging::PlanetFil
   return true;
 }
 
-// Several rays a pixel are coloured as finely as they lie apart.
+// Samples of a pixel are coloured as finely as their distance.
 double rays_per_radian(const core::DrawRequest& request) {
   return core::focal_px(request.view) * std::sqrt(static_cast<double>(request.settings.samples));
 }
 
-// Where rays are as far apart as the posts of level 0.
+// Returns the range at which rays are as far apart as the posts of level 0.
 double root_range(const paging::PlanetFile& planet, const core::DrawRequest& request) {
   return lod::nominal_side_m(0, planet.radius_m()) / planet.meta().tile.intervals() * rays_per_radian(request);
 }
@@ -95,7 +70,7 @@ double root_range(const paging::PlanetFile& planet, const core::DrawRequest& req
 ImagePainter::ImagePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
       budget_(budget_bytes),
-      painter_(planet_, share(1 - kHeldShare, budget_bytes), kShares) {}
+      shader_(planet_, share(1 - kHeldShare, budget_bytes), kShares) {}
 
 void ImagePainter::set_shading(const core::DrawRequest& request) {
   const core::Appearance& appearance = request.settings;
@@ -117,7 +92,7 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   const glm::ivec2 size = core::drawn_size(request.view);
   PaintJob job;
   job.request = &request;
-  job.painter = &painter_;
+  job.shader = &shader_;
   job.shading = &shading_;
   job.scale = shading_.scale ? &table_ : nullptr;
   job.rays = ray_rows(request.view);
@@ -136,21 +111,22 @@ std::int64_t ImagePainter::paint(const core::DrawRequest& request, std::span<con
   job.inverse_depth = inverse_depth.empty() ? nullptr : inverse_depth.data();
 
   const auto bands = static_cast<std::size_t>((size.y + kBand - 1) / kBand);
-  std::atomic<std::int64_t> without_data{0};
-  TilesOfThreads tiles_of_threads;
+  std::atomic<std::int64_t> nodata_count{0};
+  base::ObjectPool<PaintTiles> tiles_pool(
+      [&] {
+        return std::make_unique<PaintTiles>(*planet_, shader_, shading_,
+                                            share(kHeldShare / pool.threads(), budget_));
+      },
+      {.discard_on_exception = true});
   pool.run(bands, [&](std::size_t band) {
-    auto tiles = tiles_of_threads.take([&] {
-      return std::make_unique<PaintTiles>(*planet_, painter_, shading_,
-                                          share(kHeldShare / pool.threads(), budget_));
-    });
+    const auto tiles = tiles_pool.acquire();
     const int begin = static_cast<int>(band) * kBand;
-    without_data += paint_rows(job, *tiles, begin, std::min(begin + kBand, size.y));
-    tiles_of_threads.give(std::move(tiles));
+    nodata_count += paint_rows(job, *tiles, begin, std::min(begin + kBand, size.y));
   });
-  return without_data;
+  return nodata_count;
 }
 
-void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View& thin,
+void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View& downsampled,
                               std::span<const float> range_m, const base::ThreadPool& pool) const {
   const bool has_image = planet_->meta().finest_image_level >= 0;
   // No tile depends on the scale of colours.
@@ -158,21 +134,21 @@ void ImagePainter::read_ahead(const core::DrawRequest& request, const core::View
       paging::shading_params(request.settings, request.sun, has_image, nullptr);
   if (by_point(shading)) return;
   constexpr double kPart = 0.5 * (1 - kHeldShare);
-  PaintTiles tiles(*planet_, painter_, shading, budget_);
+  PaintTiles tiles(*planet_, shader_, shading, budget_);
   HeldTiles ground(share(kPart * kShares.normals, budget_));
   HeldTiles images(share(kPart * kShares.images, budget_));
   const double root_range_m = root_range(*planet_, request);
-  const core::SubRectangle part = core::drawn_part(thin);
+  const core::SubRectangle part = core::drawn_part(downsampled);
   std::size_t at = 0;
   for (int y = 0; y < part.height; ++y) {
     for (int x = 0; x < part.width; ++x, ++at) {
       const auto range = static_cast<double>(range_m[at]);
       if (!std::isfinite(range) || !(range > 0.0)) continue;
       if (pool.is_stopped()) return;
-      const glm::dvec3 ray = core::pixel_ray(thin, part.x + x + 0.5, part.y + y + 0.5);
+      const glm::dvec3 ray = core::pixel_ray(downsampled, part.x + x + 0.5, part.y + y + 0.5);
       const int level = static_cast<int>(std::ceil(std::log2(root_range_m / range)));
       const PaintTile& tile =
-          tiles.find(thin.camera.position_m + range * ray, std::clamp(level, 0, tiles.max_level()));
+          tiles.find(downsampled.camera.position_m + range * ray, std::clamp(level, 0, tiles.max_level()));
       if (tile.ground && !ground.add(tile.ground.get(), tile.ground->bytes())) return;
       if (tile.image && !images.add(tile.image.get(), tile.image->texels.capacity() * sizeof(base::Rgb)))
         return;

@@ -1,9 +1,17 @@
-// Colours of an image whose ranges are known: ground, haze, sky and gaps, as core::Appearance defines them.
+// Colours an image whose ranges are known: ground, haze, sky and nodata, as core::Appearance
+// defines them.
 //
-// Many pixels at once: a ray's place comes from terms of its row and column and its range, the posts and texels
-// under it from squares of the chart that a thread has at hand, and the rest in vectors, for the instruction
-// set that the machine has. Flat shading and colour=image are left to paging::TerrainShader::colour_at, pixel
-// by pixel, at some 17 and 50 times the cost (docs/rays.md).
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): the one after RangeCaster. Bands of rows are handed to
+// threads. For each block of 32 pixels the kernel (paint_kernel.cpp) computes the places that the rays meet
+// (ray_rows.h, paint_block-inl.h), finds their posts and texels (paint_tiles.h, paint_ground-inl.h), shades
+// them (paint_shading-inl.h, scale_table.h), and adds haze and sky (paint_air-inl.h), in vectors of the
+// machine's instruction set. Flat shading and colour=image are left to paging::TerrainShader::colour_at, pixel
+// by pixel, which costs some 17 and 50 times as much (docs/measurements/rays.md).
+//
+// Typical usage:
+//   ImagePainter painter(planet, memory_bytes);
+//   std::vector<base::Rgb> colour(range_m.size());
+//   const std::int64_t nodata_pixels = painter.paint(request, range_m, colour, {}, pool);
 #pragma once
 
 #include <cstdint>
@@ -17,41 +25,42 @@
 
 namespace vpe::voxel {
 
-// paint(): one caller at a time.
+// One thread at a time may call paint().
 class ImagePainter {
  public:
-  // Between images and while painting, holds at most about `budget_bytes` of posts and texels.
+  // Holds at most about `budget_bytes` of posts and texels, also while painting. Smaller: tiles are read and
+  // shaded again; larger: more memory.
   ImagePainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
-  // Paints the drawn part of request.view, any projection. range_m: of its pixels, metres along their unit
-  // rays, core::kSkyRange = sky; rounded to float they move no colour. Sets all of `colour`, and
-  // `inverse_depth`, when it is not empty, to 1 / metres along the camera's axis, at most 1000, 0 = sky
-  // (perspective views). All three are as long as the part has pixels. Returns the number of pixels without
-  // data.
+  // Paints the drawn part of request.view in any projection, and returns the number of nodata pixels.
+  // `range_m` holds metres along the pixels' unit rays, core::kSkyRange for sky; rounding to float changes no
+  // colour. Sets all of `colour`. Sets `inverse_depth`, unless it is empty, to 1 / metres along the camera's
+  // axis, at most 1000, and 0 for sky; only for perspective views. All three hold one entry for each pixel of
+  // the drawn part, row by row from the top.
   //
-  // Within 1/255 of TerrainShader::colour_at, core::air_m with core::haze_colour, and core::sky_colour; at
-  // steps of a palette, and where flat ground has no aspect, within rounding of the value to float. The same
-  // bits for any number of threads, any instruction set and whatever was painted before. Modes wireframe and
-  // markers are painted as their ground would be. Throws paging::PlanetError, and std::runtime_error for an
-  // unreadable palette.
+  // Colours are within 1/255 of TerrainShader::colour_at, core::air_m with core::haze_colour, and
+  // core::sky_colour. At steps of a palette, and where flat ground has no aspect, they are those of the value
+  // rounded to float. They are the same to the bit for any number of threads, any instruction set and any
+  // earlier image. Modes wireframe and markers are painted as their ground would be. Throws paging::PlanetError
+  // for unreadable tiles, and std::runtime_error for an unreadable palette.
   std::int64_t paint(const core::DrawRequest& request, std::span<const float> range_m,
                      std::span<base::Rgb> colour, std::span<float> inverse_depth, base::ThreadPool& pool);
 
-  // Reads what painting `request` takes, as far as rays through the pixels of `thin` tell, whose ranges are
-  // given. `thin` sees what request.view sees, or a part of it. Ends early when `pool` is stopped, and when the
-  // tiles of this image would take more than half of what the caches have for their kind. Any thread; also
-  // while others paint. Throws PlanetError.
-  void read_ahead(const core::DrawRequest& request, const core::View& thin, std::span<const float> range_m,
-                  const base::ThreadPool& pool) const;
+  // Reads the tiles that painting `request` needs, as found by the pixels of `downsampled` with the given
+  // ranges. `downsampled` sees what request.view sees, or a part of it. Ends early when `pool` is stopped, and
+  // when the tiles of this image would fill more than half of the caches of their kind. Any thread may call it,
+  // also while another one paints. Throws paging::PlanetError.
+  void read_ahead(const core::DrawRequest& request, const core::View& downsampled,
+                  std::span<const float> range_m, const base::ThreadPool& pool) const;
 
-  std::size_t bytes_resident() const { return painter_.bytes_resident(); }
+  std::size_t bytes_resident() const { return shader_.bytes_resident(); }
 
  private:
   void set_shading(const core::DrawRequest& request);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   std::size_t budget_;
-  paging::TerrainShader painter_;
+  paging::TerrainShader shader_;
   paging::ShadingParams shading_;
   core::Appearance scale_of_;
   std::shared_ptr<const core::ColourScale> scale_;

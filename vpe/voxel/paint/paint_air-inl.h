@@ -1,5 +1,7 @@
-// Sky and haze over a block of pixels: core::sky_colour, core::air_m and core::haze_colour in vectors. Within
-// 0.5/255 of them (tests/voxel/image_painter_test).
+// Paints sky and haze over a block of pixels: core::sky_colour, core::air_m and core::haze_colour in vectors,
+// within 0.5/255 of them (tests/voxel/image_painter_test).
+//
+// Part of paint_kernel.cpp: the last step of a block.
 #if defined(VPE_VOXEL_PAINT_AIR_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_PAINT_AIR_INL_H_
 #undef VPE_VOXEL_PAINT_AIR_INL_H_
@@ -17,12 +19,13 @@ HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
 
-// What sky and haze know of rays in doubles, handed on as floats: two halves of a vector at a time cost more.
+// Holds intermediate values of the block's rays, computed in double and stored as float. Processing half
+// vectors of double throughout costs more.
 struct alignas(64) RayAir {
   float a[kBlock], b[kBlock], c[kBlock], d[kBlock], e[kBlock];
 };
 
-// Puts the sky's colour where the block has sky. After ray_angles().
+// Paints the block's sky. Requires ray_angles().
 inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
   const core::SkyAir& air = core::kSkyAir;
   const double height = std::max(job.camera_radius_m - job.radius_m, 0.0);
@@ -35,7 +38,8 @@ inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
     const auto rise = hn::Load(dd, block.rise + i);
     const auto sunward = hn::Load(dd, block.sunward + i);
-    // Far eyes would lose the ray's height in floats, and 1 less a small number the sun's disc.
+    // In double: floats lose the ray's height seen from far cameras, and the sun's disc in 1 less a small
+    // number.
     const auto down = hn::Max(hn::Neg(rise), hn::Zero(dd));
     const auto level = hn::Sub(hn::Set(dd, 1.0), hn::Mul(down, down));
     const auto per_root = inverse_root(dd, hn::Max(level, hn::Set(dd, 1e-18)));
@@ -84,19 +88,19 @@ inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
   }
 }
 
-// Lays haze over the block's ground. After ray_angles().
+// Paints haze over the block's ground. Requires ray_angles().
 inline HWY_NOINLINE void paint_haze(const PaintJob& job, double visibility_m, Block& block) {
   const double r = job.camera_radius_m;
   const double camera_height = r - job.radius_m;
   const double top = job.radius_m + core::kAirTop_m;
   const glm::dvec3& sun = job.request->sun;
-  // Height above the sphere, less rounding: rise over (root of the square of the radius and rise) + radius.
+  // A height above the sphere loses less to rounding as rise / (sqrt(radius^2 + rise) + radius).
   const auto rise_at = [&](double height) { return height * (2 * job.radius_m + height); };
   RayAir rays;
   const Doubles dd;
   const Halves dh;
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
-    // Where the ray is below the top of the air. From there on floats do.
+    // The part of the ray below the top of the air. Floats suffice after this.
     const auto range = hn::PromoteTo(dd, hn::Load(dh, block.range + i));
     const auto half = hn::Mul(hn::Load(dd, block.rise + i), hn::Set(dd, -r));
     const auto under = hn::Sub(hn::Mul(half, half), hn::Set(dd, r * r - top * top));
@@ -131,8 +135,8 @@ inline HWY_NOINLINE void paint_haze(const PaintJob& job, double visibility_m, Bl
         const auto rise = hn::Add(first, hn::Mul(t, hn::Add(twice, t)));
         const auto height =
             hn::Div(rise, hn::Add(hn::Sqrt(hn::Max(hn::Add(square, rise), hn::Zero(d))), radius));
-        const auto thin = hn::Mul(height, hn::Set(d, static_cast<float>(-1 / core::kAirScale_m)));
-        sum = hn::Add(sum, hn::Mul(weight, exponential(d, hn::Min(thin, hn::Set(d, 80.0F)))));
+        const auto exponent = hn::Mul(height, hn::Set(d, static_cast<float>(-1 / core::kAirScale_m)));
+        sum = hn::Add(sum, hn::Mul(weight, exponential(d, hn::Min(exponent, hn::Set(d, 80.0F)))));
       }
     }
     const auto air = hn::Mul(length, sum);

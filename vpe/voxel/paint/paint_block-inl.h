@@ -1,4 +1,6 @@
-// A block of kBlock pixels of a row: places on the ground, and what sky and haze need of their rays.
+// Holds a block of kBlock pixels of a row, and computes its places on the ground and the angles of its rays.
+//
+// Part of paint_kernel.cpp: the first step of a block.
 #if defined(VPE_VOXEL_PAINT_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_PAINT_BLOCK_INL_H_
 #undef VPE_VOXEL_PAINT_BLOCK_INL_H_
@@ -20,19 +22,19 @@ using Ints = hn::RebindToSigned<Floats>;
 using Doubles = hn::CappedTag<double, kBlock>;
 using Halves = hn::Rebind<float, Doubles>;  // as many floats as there are doubles in a vector
 
-// Where a pixel's colours come from: the south-west corner of its cell in a grid, and where in the cell, 0
-// to 1.
+// Holds where the pixels' colours come from: the south-west corner of a pixel's cell in a grid, and the
+// position in the cell, 0 to 1.
 template <class T>
 struct alignas(64) Sources {
   const T* at[kBlock];
   float x[kBlock], y[kBlock];
 };
 
-// Arrays first: all of them are whole vectors.
-// Functions over a block are not inlined: nothing is gained by it, and compilers take minutes with sanitizers.
+// Holds the pixels' values, an array for each kind. Arrays come first, as all of them are whole vectors.
+// Functions over a block are not inlined: inlining gains nothing, and compilers take minutes with sanitizers.
 struct alignas(64) Block {
-  // Set by begin_block(). Range and place are 0 and the camera where there is sky. Places and per_length only
-  // where something is made of them.
+  // Set by begin_block(). At sky pixels the range is 0 and the place the camera. Places and per_length are set
+  // only if the image needs them.
   double place[3][kBlock];
   double per_length[kBlock];  // 1 / length of the row's direction
   float range[kBlock];
@@ -41,7 +43,7 @@ struct alignas(64) Block {
   // Set by locate().
   Sources<float> posts;
   Sources<std::uint8_t> texels;
-  float sun[kBlock];  // share of it that is seen; with shadows alone
+  float sun[kBlock];  // share of the sun that is visible; set with shadows only
   // Set by take_posts(), take_texels() and take_scale().
   float post[kBlock][4];
   float texel[kBlock][4];
@@ -54,10 +56,10 @@ struct alignas(64) Block {
   const double* c0;
   const double* c1;
   int x, y, count;
-  std::uint32_t sky, ground, nodata;  // bits of pixels, lowest first
+  std::uint32_t sky, ground, nodata;  // a bit for each pixel, lowest first
 };
 
-// Bits of a mask at its place in the block.
+// Returns the bits of a mask of the pixels from `at` on.
 template <class D, class M>
 HWY_INLINE std::uint32_t bits_of(D d, M mask, int at) {
   std::uint8_t bytes[8] = {};
@@ -67,7 +69,8 @@ HWY_INLINE std::uint32_t bits_of(D d, M mask, int at) {
   return (bits & valid) << at;
 }
 
-// 1 / sqrt(x) of doubles near any size: from floats, then one step of Newton's; relative error 1e-13.
+// Returns 1 / sqrt(x) of doubles within the range of float: from floats and one step of Newton's method, with
+// relative error 1e-13.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V inverse_root(D d, V x) {
   const hn::Rebind<float, D> half;
@@ -76,6 +79,7 @@ HWY_INLINE V inverse_root(D d, V x) {
   return hn::Mul(y, hn::Sub(hn::Set(d, 1.5), hn::Mul(hn::Mul(hn::Set(d, 0.5), x), hn::Mul(y, y))));
 }
 
+// Returns 1 / x in the same way.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V inverse(D d, V x) {
   const hn::Rebind<float, D> half;
@@ -83,7 +87,7 @@ HWY_INLINE V inverse(D d, V x) {
   return hn::Mul(y, hn::Sub(hn::Set(d, 2.0), hn::Mul(x, y)));
 }
 
-// a c0 + b c1 + c at columns i and after.
+// Returns a c0 + b c1 + c at columns i and after.
 template <class D>
 HWY_INLINE hn::Vec<D> along_row(D d, const Block& block, int i, double a, double b, double c) {
   const auto first = hn::Mul(hn::Set(d, a), hn::LoadU(d, block.c0 + i));
@@ -99,7 +103,7 @@ HWY_INLINE hn::Vec<D> inverse_length(D d, const Block& block, int i) {
                                  hn::Mul(c0, hn::Add(hn::Set(d, row.m1), hn::Mul(c0, hn::Set(d, row.m2))))));
 }
 
-// Sky, places and levels of `count` pixels from (x, y) on.
+// Sets sky, places and levels of `count` pixels from (x, y) on.
 inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, int y, int count,
                                      Block& block) {
   const std::size_t at =
@@ -112,9 +116,9 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   block.count = count;
   block.nodata = 0;
   const std::uint32_t all = count >= kBlock ? ~std::uint32_t{0} : (std::uint32_t{1} << count) - 1;
-  // Whole blocks are read where they are: a copy would wait for its own stores.
+  // Whole blocks are read in place: loads from a copy would wait for its stores.
   const float* ranges = job.range_m + at;
-  // Those of the next row, which comes soon: pages apart, so that nothing else would bring them.
+  // Prefetches the next row, which is pages away, so that the processor does not fetch it by itself.
   if (y + 1 < job.height) {
     __builtin_prefetch(ranges + job.width);
     __builtin_prefetch(ranges + job.width + kBlock / 2);
@@ -135,7 +139,7 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
     block.sky |= bits_of(d, sky, i);
     hn::Store(hn::IfThenElse(sky, hn::Set(d, 1.0F), hn::Zero(d)), d, block.is_sky + i);
     hn::Store(hn::IfThenElse(sky, hn::Zero(d), range), d, block.range + i);
-    // The exponent, rounded up, is the level.
+    // The level is the exponent, rounded up.
     const auto ratio = hn::BitCast(di, hn::Div(root, range));
     const auto level = hn::Sub(hn::ShiftRight<23>(hn::Add(ratio, hn::Set(di, 0x7fffff))), hn::Set(di, 127));
     hn::Store(hn::Min(hn::Max(level, hn::Zero(di)), hn::Set(di, max_level)), di, block.level + i);
@@ -159,8 +163,8 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
     if (block.ground == 0) continue;
     const auto scale = hn::Mul(range, per_length);
     for (int c = 0; c < 3; ++c) {
-      const auto way = along_row(dd, block, i, row.a[c], row.b[c], row.c[c]);
-      hn::Store(hn::Add(hn::Set(dd, camera[c]), hn::Mul(scale, way)), dd, block.place[c] + i);
+      const auto ray = along_row(dd, block, i, row.a[c], row.b[c], row.c[c]);
+      hn::Store(hn::Add(hn::Set(dd, camera[c]), hn::Mul(scale, ray)), dd, block.place[c] + i);
     }
     if (job.inverse_depth != nullptr)
       hn::StoreU(hn::DemoteTo(dh, hn::Mul(scale, hn::Set(dd, row.forward))), dh, depth + i);
@@ -172,6 +176,7 @@ inline HWY_NOINLINE void begin_block(const PaintJob& job, int max_level, int x, 
   }
 }
 
+// Sets `rise` and `sunward`.
 inline HWY_NOINLINE void ray_angles(const PaintJob& job, Block& block) {
   const Doubles d;
   const RowRays& row = *block.row;

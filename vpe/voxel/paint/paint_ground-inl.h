@@ -1,4 +1,7 @@
-// Colours of the ground of a block: posts and texels of its tiles, and the look over them.
+// Colours the ground of a block from the posts and texels of its tiles.
+//
+// Part of paint_kernel.cpp: locate() runs when a block begins, paint_ground() one block later, when the memory
+// that locate() prefetched has arrived.
 #if defined(VPE_VOXEL_PAINT_GROUND_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_PAINT_GROUND_INL_H_
 #undef VPE_VOXEL_PAINT_GROUND_INL_H_
@@ -18,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
 
-// Four floats of a post or texel at once: vector gathers are slower on many machines.
+// The four floats of a post or texel are loaded at once: vector gathers are slower on many machines.
 using Fours = hn::CappedTag<float, 4>;
 
 struct alignas(64) Chart {
@@ -27,11 +30,12 @@ struct alignas(64) Chart {
 
 constexpr int kTexels = paging::kImageIntervals + 1;
 
-struct alignas(64) Shares {
+struct alignas(64) Fractions {
   float x[kBlock], y[kBlock];  // of a square's sides
 };
 
-// Chart coordinates on the tile's face; beyond any square's where the place is on the other side.
+// Sets chart coordinates on the tile's face, and coordinates outside any square for places on the other side of
+// the planet.
 inline HWY_NOINLINE void set_chart(const PaintTile& tile, const Block& block, Chart& chart) {
   const Doubles d;
   const double* const p[3] = {block.place[tile.axis[0]], block.place[tile.axis[1]], block.place[tile.axis[2]]};
@@ -47,9 +51,9 @@ inline HWY_NOINLINE void set_chart(const PaintTile& tile, const Block& block, Ch
   }
 }
 
-// Bits of the pixels whose places and levels are the square's.
+// Returns the bits of the pixels whose place and level are those of the square, and sets the positions of all.
 inline HWY_NOINLINE std::uint32_t inside(const PaintTile& tile, const Block& block, const Chart& chart,
-                                         Shares& at) {
+                                         Fractions& at) {
   const Doubles dd;
   const Halves dh;
   for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(dd))) {
@@ -73,10 +77,10 @@ inline HWY_NOINLINE std::uint32_t inside(const PaintTile& tile, const Block& blo
   return bits;
 }
 
-// Where some pixels lie in a grid of `side` lines with `step` values a corner. Asks the memory for it: by the
-// time that the block is painted it is there.
+// Finds the cells of some pixels in a grid of `side` lines with `step` values for each corner, and prefetches
+// them.
 template <class T>
-inline HWY_NOINLINE void find_sources(const Shares& at, const WindowAxis& across, const WindowAxis& up,
+inline HWY_NOINLINE void find_sources(const Fractions& at, const WindowAxis& across, const WindowAxis& up,
                                       const T* grid, int side, std::size_t step, std::uint32_t pixels,
                                       Sources<T>& out) {
   const Floats d;
@@ -91,7 +95,7 @@ inline HWY_NOINLINE void find_sources(const Shares& at, const WindowAxis& across
     const auto x_line =
         hn::Add(hn::Set(d, across.first), hn::Mul(hn::Load(d, at.x + i), hn::Set(d, across.span)));
     const auto y_line = hn::Add(hn::Set(d, up.first), hn::Mul(hn::Load(d, at.y + i), hn::Set(d, up.span)));
-    // Cut to the grid, so that pixels of other squares do no harm.
+    // Clamped to the grid, as the pixels of other squares are computed too.
     const auto x = hn::Min(hn::Max(x_line, zero), last);
     const auto y = hn::Min(hn::Max(y_line, zero), last);
     const auto column = hn::Min(hn::Trunc(x), before_last);
@@ -113,7 +117,7 @@ inline HWY_NOINLINE void find_sources(const Shares& at, const WindowAxis& across
   }
 }
 
-// Straight between four corners.
+// Interpolates bilinearly between four corners.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V between(D d, V south_west, V south_east, V north_west, V north_east, float x, float y) {
   const V across = hn::Set(d, x);
@@ -122,6 +126,7 @@ HWY_INLINE V between(D d, V south_west, V south_east, V north_west, V north_east
   return hn::Add(south, hn::Mul(hn::Set(d, y), hn::Sub(north, south)));
 }
 
+// Sets `post` of the block's ground.
 inline HWY_NOINLINE void take_posts(std::size_t side, Block& block) {
   const Fours d;
   for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
@@ -135,6 +140,7 @@ inline HWY_NOINLINE void take_posts(std::size_t side, Block& block) {
   }
 }
 
+// Sets `texel` of the block's ground.
 inline HWY_NOINLINE void take_texels(Block& block) {
   static_assert(std::endian::native == std::endian::little);
   const Fours d;
@@ -146,7 +152,7 @@ inline HWY_NOINLINE void take_texels(Block& block) {
     const int i = __builtin_ctz(left);
     const std::uint8_t* const south = block.texels.at[i];
     const std::uint8_t* const north = south + 3 * kTexels;
-    // Four bytes are loaded, and after the last texel there is none: the fourth is the one before.
+    // Four bytes are loaded, but no byte follows the last texel. So it is loaded with the byte before it.
     std::uint32_t last;
     std::memcpy(&last, north + 2, sizeof last);
     last >>= 8;
@@ -159,8 +165,9 @@ inline HWY_NOINLINE void take_texels(Block& block) {
   }
 }
 
-// Pixels whose nearest post has no data; shares of the sun that is seen.
-inline HWY_NOINLINE void take_rest(const paging::NormalTile& tile, std::uint32_t pixels, Block& block) {
+// Marks pixels whose nearest post has no data, and sets the visible share of the sun.
+inline HWY_NOINLINE void take_nodata_and_sun(const paging::NormalTile& tile, std::uint32_t pixels,
+                                             Block& block) {
   const auto side = static_cast<std::size_t>(tile.side);
   for (std::uint32_t left = pixels; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
@@ -179,12 +186,12 @@ inline HWY_NOINLINE void take_rest(const paging::NormalTile& tile, std::uint32_t
   }
 }
 
-// Finds where the block's colours come from. `tile` is what was used last, or null.
+// Finds the sources of the block's colours. `tile` is the square that was used last, or null.
 inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block& block) {
   Chart chart;
   int charted = tile == nullptr ? -1 : static_cast<int>(tile->face);
   if (tile != nullptr) set_chart(*tile, block, chart);
-  Shares at;
+  Fractions at;
   for (std::uint32_t left = block.ground; left != 0;) {
     std::uint32_t here = tile == nullptr ? 0 : inside(*tile, block, chart, at) & left;
     if (here == 0) {
@@ -192,7 +199,7 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
       tile = &tiles.find({block.place[0][i], block.place[1][i], block.place[2][i]}, block.level[i]);
       if (charted != static_cast<int>(tile->face)) set_chart(*tile, block, chart);
       charted = static_cast<int>(tile->face);
-      // Its own pixel belongs to it even where rounding has it just outside.
+      // The pixel that the square was found for belongs to it, even if rounding puts it just outside.
       here = (inside(*tile, block, chart, at) & left) | (std::uint32_t{1} << i);
     }
     left &= ~here;
@@ -200,7 +207,7 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
       const paging::NormalTile& ground = *tile->ground;
       find_sources(at, tile->ground_x, tile->ground_y, &ground.posts.data()->normal.x, ground.side, 4, here,
                    block.posts);
-      if (!ground.nodata.empty() || !ground.sees_sun.empty()) take_rest(ground, here, block);
+      if (!ground.nodata.empty() || !ground.sees_sun.empty()) take_nodata_and_sun(ground, here, block);
     }
     if (tile->image)
       find_sources(at, tile->image_x, tile->image_y, &tile->image->texels.data()->r, kTexels, 3, here,
@@ -208,7 +215,7 @@ inline HWY_NOINLINE void locate(PaintTiles& tiles, const PaintTile*& tile, Block
   }
 }
 
-// Colours the block's ground, after locate().
+// Colours the block's ground. Requires locate().
 inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
   const PaintNeeds needs = paint_needs(*job.shading);
   if (needs.posts) take_posts(static_cast<std::size_t>(job.posts_side), block);
@@ -216,12 +223,12 @@ inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
   paint_shading(job, block);
 }
 
-// The same by TerrainShader::colour_at, pixel by pixel.
+// Colours the block's ground by TerrainShader::colour_at, pixel by pixel.
 inline void paint_by_point(const PaintJob& job, PaintTiles& tiles, Block& block) {
   for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
     const glm::dvec3 place{block.place[0][i], block.place[1][i], block.place[2][i]};
-    const auto colour = job.painter->colour_at(
+    const auto colour = job.shader->colour_at(
         glm::normalize(place), static_cast<double>(block.range[i]) / job.focal_px, *job.shading, tiles.cursor);
     if (!colour) block.nodata |= std::uint32_t{1} << i;
     const glm::vec3 rgb = colour ? glm::vec3(*colour) : glm::vec3(0);

@@ -1,4 +1,7 @@
-// An image to paint, as the kernels take it: everything that is the same for all of its pixels.
+// Describes an image to paint for the kernel: everything that is the same for all of its pixels.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): ImagePainter (image_painter.h) fills a PaintJob, and its
+// threads call paint_rows() (paint_kernel.cpp) for bands of rows.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +15,19 @@
 
 namespace vpe::voxel {
 
+// The pointers belong to ImagePainter and its caller.
 struct PaintJob {
   const core::DrawRequest* request = nullptr;
-  const paging::TerrainShader* painter = nullptr;
+  const paging::TerrainShader* shader = nullptr;
   const paging::ShadingParams* shading = nullptr;
-  const ScaleTable* scale = nullptr;  // where the look has one
+  const ScaleTable* scale = nullptr;  // null without a colour scale
   RayRows rays;
   double radius_m = 0;
-  double focal_px = 0;      // rays a radian
+  double focal_px = 0;      // rays per radian
   double root_range_m = 0;  // at this range pixels are as wide as the posts of level 0 are apart
   int posts_side = 0;       // lines of a tile's grid
-  bool by_point = false;    // ground is left to TerrainShader::colour_at
-  bool one_colour = false;  // all ground has the same, and data: no tile is looked at
+  bool by_point = false;    // TerrainShader::colour_at colours the ground
+  bool one_colour = false;  // all ground has one colour and data: no tile is needed
   glm::dvec3 up{0, 0, 1};   // at the camera
   double camera_radius_m = 0;
 
@@ -34,8 +38,8 @@ struct PaintJob {
   float* inverse_depth = nullptr;  // 1 / metres along the camera's axis, 0 = sky; null when not wanted
 };
 
-// Paints rows [begin, end) and returns how many of their pixels have no data. Any thread; one for each
-// PaintTiles.
+// Paints rows [begin, end) and returns the number of their nodata pixels. Any thread may call it, with a
+// PaintTiles of its own. Throws paging::PlanetError for unreadable tiles.
 std::int64_t paint_rows(const PaintJob& job, PaintTiles& tiles, int begin, int end);
 
 }  // namespace vpe::voxel

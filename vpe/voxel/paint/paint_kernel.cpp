@@ -3,7 +3,7 @@
 
 #include "vpe/voxel/paint/paint_job.h"
 
-// Built once for each instruction set; the best one that the machine has is taken at run time.
+// Highway compiles this file once for each instruction set and selects the best one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vpe/voxel/paint/paint_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -16,8 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
 
-// Ground without data, the mean of the polygon backend's stripes.
-constexpr float kGap = 105;
+// Colour of nodata ground: the mean of the polygon backend's stripes.
+constexpr float kNodataGrey = 105;
 
 inline HWY_NOINLINE void store_colours(const Block& block, base::Rgb* out, int count) {
   const Floats d;
@@ -40,7 +40,7 @@ HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, const PaintTile*& 
   if (block.ground != 0 && !job.by_point && !job.one_colour) locate(tiles, tile, block);
 }
 
-// Returns the number of pixels without data.
+// Returns the number of nodata pixels.
 HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
   const core::SettingsValues& settings = job.request->settings;
   if (block.ground != 0) {
@@ -52,7 +52,7 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
   }
   for (std::uint32_t left = block.nodata; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
-    block.red[i] = block.green[i] = block.blue[i] = kGap;
+    block.red[i] = block.green[i] = block.blue[i] = kNodataGrey;
   }
   const bool hazy = settings.haze_visibility_m > 0.0 && block.ground != 0;
   const bool sky = settings.background == core::Background::kSky && block.sky != 0;
@@ -71,20 +71,20 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
 }
 
 std::int64_t paint(const PaintJob& job, PaintTiles& tiles, int first_row, int end_row) {
-  std::int64_t without_data = 0;
+  std::int64_t nodata_count = 0;
   const PaintTile* tile = nullptr;
-  // Two blocks are under way, so that memory has time to bring what the younger one needs.
+  // Two blocks overlap, so that the memory of the later one arrives while the earlier one is finished.
   Block blocks[2];
   for (int y = first_row; y < end_row; ++y) {
     if (tiles.trim()) tile = nullptr;
     int n = 0;
     for (int x = 0; x < job.width; x += kBlock, ++n) {
       begin(job, tiles, tile, x, y, blocks[n & 1]);
-      if (n > 0) without_data += finish(job, tiles, blocks[(n - 1) & 1]);
+      if (n > 0) nodata_count += finish(job, tiles, blocks[(n - 1) & 1]);
     }
-    without_data += finish(job, tiles, blocks[(n - 1) & 1]);
+    nodata_count += finish(job, tiles, blocks[(n - 1) & 1]);
   }
-  return without_data;
+  return nodata_count;
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,4 +1,7 @@
-// Functions of floats that every instruction set computes to the same bit: no fused steps, no estimates.
+// Elementary functions of vectors that every instruction set computes to the same bit: without fused steps and
+// estimates.
+//
+// Part of paint_kernel.cpp.
 #if defined(VPE_VOXEL_PAINT_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VPE_VOXEL_PAINT_MATH_INL_H_
 #undef VPE_VOXEL_PAINT_MATH_INL_H_
@@ -19,14 +22,14 @@ HWY_INLINE V clamp(D d, V x, double low, double high) {
   return hn::Min(hn::Max(x, hn::Set(d, static_cast<T>(low))), hn::Set(d, static_cast<T>(high)));
 }
 
-// a + b x
+// Returns a + b x.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V line(D d, V x, double a, double b) {
   using T = hn::TFromD<D>;
   return hn::Add(hn::Set(d, static_cast<T>(a)), hn::Mul(hn::Set(d, static_cast<T>(b)), x));
 }
 
-// e^x for x <= 80, relative error 3e-7; 0 below -87.
+// Returns e^x for x <= 80, with relative error 3e-7; 0 below -87.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V exponential(D d, V x) {
   const hn::RebindToSigned<D> di;
@@ -46,7 +49,7 @@ HWY_INLINE V exponential(D d, V x) {
   return hn::IfThenElse(hn::Lt(x, hn::Set(d, -87.0F)), hn::Zero(d), value);
 }
 
-// Angle of (x, y) in degrees, -180 to 180, within 2e-5; 0 for (0, 0). Abramowitz and Stegun 4.4.49.
+// Returns the angle of (x, y) in degrees, -180 to 180, within 2e-5; 0 for (0, 0). Abramowitz and Stegun 4.4.49.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V angle_deg(D d, V y, V x) {
   const V wide = hn::Abs(x);
@@ -64,7 +67,7 @@ HWY_INLINE V angle_deg(D d, V y, V x) {
   return hn::IfThenElse(hn::Lt(y, hn::Zero(d)), hn::Neg(angle), angle);
 }
 
-// 0 below `low`, 1 above `high`, smooth between.
+// Returns 0 below `low`, 1 above `high`, and a cubic between.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V smooth_step(D d, V x, double low, double high) {
   const V t = clamp(d, line(d, x, -low / (high - low), 1.0 / (high - low)), 0, 1);

@@ -1,9 +1,12 @@
-// From normals, heights and texels of a block to colours: paging::TerrainShader's colour() in vectors.
-#if defined(VPE_VOXEL_PAINT_LOOK_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef VPE_VOXEL_PAINT_LOOK_INL_H_
-#undef VPE_VOXEL_PAINT_LOOK_INL_H_
+// Shades a block: turns its normals, heights and texels into colours, as paging::TerrainShader does, in
+// vectors.
+//
+// Part of paint_kernel.cpp, called by paint_ground() (paint_ground-inl.h).
+#if defined(VPE_VOXEL_PAINT_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VPE_VOXEL_PAINT_SHADING_INL_H_
+#undef VPE_VOXEL_PAINT_SHADING_INL_H_
 #else
-#define VPE_VOXEL_PAINT_LOOK_INL_H_
+#define VPE_VOXEL_PAINT_SHADING_INL_H_
 #endif
 
 #include <hwy/highway.h>
@@ -31,7 +34,7 @@ HWY_INLINE Triple<V> triple(D d, const glm::dvec3& v) {
           hn::Set(d, static_cast<float>(v.z))};
 }
 
-// Slope and aspect of normals of any length at places p, degrees; aspect `nothing` where the ground is flat.
+// Returns the slope of normals of any length at places p, degrees.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V slope(D d, const Triple<V>& normal, const Triple<V>& p) {
   const Triple<V> cross{hn::Sub(hn::Mul(normal.y, p.z), hn::Mul(normal.z, p.y)),
@@ -40,15 +43,16 @@ HWY_INLINE V slope(D d, const Triple<V>& normal, const Triple<V>& p) {
   return angle_deg(d, hn::Sqrt(dot(cross, cross)), dot(normal, p));
 }
 
+// Returns the aspect, degrees; `undefined` where the ground is flat.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V aspect(D d, const Triple<V>& n, const Triple<V>& p, float nothing) {
+HWY_INLINE V aspect(D d, const Triple<V>& n, const Triple<V>& p, float undefined) {
   // East (-y, x, 0) and north (-xz, -yz, x^2 + y^2), both as long as the distance from the axis.
   const V flat2 = hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y));
   const V inverse = hn::Div(hn::Set(d, 1.0F), hn::Sqrt(hn::Add(flat2, hn::Mul(p.z, p.z))));
   const V flat = hn::Mul(hn::Sqrt(flat2), inverse);
   const V at_pole = hn::Zero(d);
   const auto pole = hn::Eq(flat2, at_pole);
-  // There east is (0, 1, 0).
+  // At a pole east is (0, 1, 0).
   const V x = hn::IfThenElse(pole, hn::Set(d, 1.0F), hn::Mul(p.x, inverse));
   const V y = hn::Mul(p.y, inverse);
   const V z = hn::Mul(p.z, inverse);
@@ -57,14 +61,14 @@ HWY_INLINE V aspect(D d, const Triple<V>& n, const Triple<V>& p, float nothing) 
   const V shorter = hn::IfThenElse(pole, hn::Set(d, 1.0F), flat);
   const V north = hn::Sub(hn::Mul(flat, n.z), hn::Div(hn::Mul(z, meridian), shorter));
   const V clockwise = angle_deg(d, hn::Div(east, shorter), north);
-  const V turned =
+  const V positive =
       hn::IfThenElse(hn::Lt(clockwise, hn::Zero(d)), hn::Add(clockwise, hn::Set(d, 360.0F)), clockwise);
   // 1e-9 degrees.
   const V tilt2 = hn::Add(hn::Mul(east, east), hn::Mul(north, north));
-  return hn::IfThenElse(hn::Lt(tilt2, hn::Set(d, 3e-22F)), hn::Set(d, nothing), turned);
+  return hn::IfThenElse(hn::Lt(tilt2, hn::Set(d, 3e-22F)), hn::Set(d, undefined), positive);
 }
 
-// The scale's colours of the block's values, into `out`, four floats a pixel.
+// Writes the scale's colours of the block's values to `out`, four floats for each pixel.
 inline HWY_NOINLINE void take_scale(const ScaleTable& table, const core::ColourScale& scale, const float* value,
                                     std::uint32_t pixels, float (*out)[4]) {
   const Floats d;
@@ -95,12 +99,12 @@ inline HWY_NOINLINE void take_scale(const ScaleTable& table, const core::ColourS
   }
 }
 
-// The value that a surfacing shows, of pixels i and after.
+// Returns the values that a colour source shows at pixels i and after.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V shown_value(D d, const PaintJob& job, paging::ColourSource what, const Block& block, int i,
                          const Triple<V>& normal, V height) {
   if (what == paging::ColourSource::kElevation) return height;
-  // Places as floats: halves of vectors of doubles.
+  // A vector of doubles holds half as many places as a vector of floats.
   const Doubles dd;
   const Halves dh;
   alignas(64) float place[3][kBlock];
@@ -110,9 +114,10 @@ HWY_INLINE V shown_value(D d, const PaintJob& job, paging::ColourSource what, co
   }
   const Triple<V> p{hn::Load(d, place[0]), hn::Load(d, place[1]), hn::Load(d, place[2])};
   if (what == paging::ColourSource::kSlope) return slope(d, normal, p);
-  return aspect(d, normal, p, job.scale->of_nothing);
+  return aspect(d, normal, p, job.scale->undefined_value);
 }
 
+// Colours the whole block, after take_posts() and take_texels().
 inline HWY_NOINLINE void paint_shading(const PaintJob& job, Block& block) {
   const paging::ShadingParams& shading = *job.shading;
   const bool of_image = shading.colour_source == paging::ColourSource::kImage;

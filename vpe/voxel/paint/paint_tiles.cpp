@@ -28,7 +28,7 @@ void set_axes(mars::Face face, PaintTile& out) {
   }
 }
 
-// Where a square lies in the grid of a tile that contains it.
+// Returns where a square lies in the grid of a tile that contains it.
 WindowAxis window(std::int32_t index, int square_level, std::int32_t tile_index, int tile_level,
                   int intervals) {
   const double span = std::ldexp(1.0, tile_level - square_level);
@@ -42,10 +42,10 @@ PaintNeeds paint_needs(const paging::ShadingParams& shading) {
           shading.colour_source == ColourSource::kImage};
 }
 
-PaintTiles::PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& painter,
+PaintTiles::PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& shader,
                        const paging::ShadingParams& shading, std::size_t limit_bytes)
     : planet_(planet),
-      painter_(painter),
+      shader_(shader),
       shading_(shading),
       needs_(paint_needs(shading)),
       max_level_(planet.meta().finest_level),
@@ -69,7 +69,7 @@ PaintTile PaintTiles::make(const lod::TileKey& square, int level) const {
   out.per_v = 1.0 / (rect.v1 - rect.v0);
   const lod::TileKey stored = planet_.tree().deepest(lod::ancestor(square, level)).key;
   if (needs_.posts || planet_.has_nodata(stored)) {
-    out.ground = painter_.normals(stored, shading_);
+    out.ground = shader_.normals(stored, shading_);
     const int n = out.ground->side - 1;
     out.ground_x = window(square.i, square.level, stored.i, stored.level, n);
     out.ground_y = window(square.j, square.level, stored.j, stored.level, n);
@@ -77,7 +77,7 @@ PaintTile PaintTiles::make(const lod::TileKey& square, int level) const {
   if (needs_.image) {
     const auto key = planet_.image_key(lod::ancestor(square, std::max(level - image_below_, 0)));
     if (!key) throw paging::PlanetError(planet_.path() + ": has no image; use --set mode=coloured");
-    out.image = painter_.image(*key);
+    out.image = shader_.image(*key);
     out.image_x = window(square.i, square.level, key->i, key->level, paging::kImageIntervals);
     out.image_y = window(square.j, square.level, key->j, key->level, paging::kImageIntervals);
   }
@@ -99,8 +99,8 @@ bool PaintTiles::trim() {
 const PaintTile& PaintTiles::find(const glm::dvec3& point, int level) {
   const int side_level = std::max({level, level - image_below_, kKnotLevel});
   const lod::TileKey square = lod::tile_at(mars::chart_point(point), side_level);
-  // Below the knots' level one square belongs to tiles of several levels: the low bits of keys that coarse are
-  // free.
+  // At levels coarser than the knots' one square belongs to tiles of several levels. Keys of squares so coarse
+  // have free low bits.
   const std::int64_t name = lod::pack(square) + (level < kKnotLevel ? level + 1 : 0);
   if (const auto at = squares_.find(name); at != squares_.end()) return at->second;
   const PaintTile& made = squares_.emplace(name, make(square, level)).first->second;

@@ -1,4 +1,7 @@
-// Which posts and texels colour the ground at a place: what one thread has at hand while it paints an image.
+// Finds the posts and texels that colour the ground at a place.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): under the painting kernel. Each painting thread holds a
+// PaintTiles; locate() (paint_ground-inl.h) asks it for the square of chart under a pixel.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +13,29 @@
 
 namespace vpe::voxel {
 
-// What a look takes from the planet.
+// Describes what an appearance needs from the planet file.
 struct PaintNeeds {
   bool posts = false;
   bool image = false;
 };
 PaintNeeds paint_needs(const paging::ShadingParams& shading);
 
-// Places along one axis of a grid: first + share of the window's side * span, in grid lines.
+// Maps a position in a square to a line of a grid, along one axis: line = first + share of the side * span.
 struct WindowAxis {
   float first = 0;
   float span = 0;
 };
 
-// A square of a face's chart, between two knots of the warp, at one level of detail; and what is there.
+// Holds the posts and texels of a square of a face's chart, between two knots of the warp, at one level of
+// detail.
 struct PaintTile {
-  // Chart coordinates of a body-fixed point p: u = sign[0] p[axis[0]] / (sign[2] p[axis[2]]), v likewise
-  // with 1.
+  // Chart coordinates of a body-fixed point p: u = sign[0] p[axis[0]] / (sign[2] p[axis[2]]), and v with index
+  // 1 in place of 0.
   mars::Face face = mars::Face::kPlusX;
   int axis[3] = {0, 0, 0};
   double sign[3] = {0, 0, 0};
-  int level = 0;                                // of PaintTiles::find
-  double u0 = 0, v0 = 0, per_u = 0, per_v = 0;  // share of the side: (u - u0) per_u
+  int level = 0;                                // as given to PaintTiles::find()
+  double u0 = 0, v0 = 0, per_u = 0, per_v = 0;  // (u - u0) per_u is the share of the side
 
   std::shared_ptr<const paging::NormalTile> ground;  // null when not needed
   WindowAxis ground_x, ground_y;
@@ -39,18 +43,20 @@ struct PaintTile {
   WindowAxis image_x, image_y;
 };
 
-// Used by one thread at a time.
+// Keeps the squares that one thread has used. Not synchronised.
 class PaintTiles {
  public:
-  PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& painter,
+  // `planet` and `shader` must outlive this. Smaller limits release squares more often, which then are looked
+  // up again.
+  PaintTiles(const paging::PlanetFile& planet, const paging::TerrainShader& shader,
              const paging::ShadingParams& shading, std::size_t limit_bytes);
 
-  // The square that holds a point (of any length but 0) at a level of posts: of the tile that
-  // TerrainShader::colour_at takes for it. Levels are 0 to max_level(); what is beyond shows no more. Valid
-  // until trim() says that it let go. Throws PlanetError.
+  // Returns the square that holds a point (of any length but 0) at a level of posts, 0 to max_level(); finer
+  // levels show no more. The posts are those of the tile that TerrainShader::colour_at takes. The reference is
+  // valid until trim() returns true. Throws paging::PlanetError.
   const PaintTile& find(const glm::dvec3& point, int level);
 
-  // Lets go of everything, and says so, when more than limit_bytes of tiles are held.
+  // Releases all squares and returns true if more than limit_bytes of tiles are held.
   bool trim();
 
   int max_level() const { return max_level_; }
@@ -62,11 +68,11 @@ class PaintTiles {
   void hold(const void* tile, std::size_t bytes);
 
   const paging::PlanetFile& planet_;
-  const paging::TerrainShader& painter_;
+  const paging::TerrainShader& shader_;
   paging::ShadingParams shading_;
   PaintNeeds needs_;
   int max_level_;
-  int image_below_;  // levels from posts to the image's tiles of equal spacing
+  int image_below_;  // level of posts less the level of image tiles of equal spacing
   std::size_t limit_;
   std::size_t held_bytes_ = 0;
   std::unordered_set<const void*> held_;

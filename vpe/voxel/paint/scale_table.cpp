@@ -26,19 +26,19 @@ ScaleTable scale_table(const core::ColourScale& scale) {
   const double last = stops.back().at;
   ScaleTable out;
   out.first = static_cast<float>(first);
-  out.of_nothing = static_cast<float>(scale.low());
+  out.undefined_value = static_cast<float>(scale.low());
   const double per_unit = ScaleTable::kInner / (last - first);
   const bool usable = last > first && per_unit < 1e30;
   out.per_unit = usable ? static_cast<float>(per_unit) : 0.0F;
 
   out.buckets.push_back(bucket(stops.front().rgb, glm::dvec3(0), usable));
   for (int n = 0; n < ScaleTable::kInner; ++n) {
-    // As wide as rounding of values to float can move a stop from one bucket into the next.
+    // Rounding of values to float can move a stop this far into the next bucket.
     constexpr double kSlack = 1e-3;
     const double from = first + (last - first) * n / ScaleTable::kInner;
     const double width = (last - first) / ScaleTable::kInner;
     const glm::dvec3 base = scale(from);
-    // From the middle, since a step may be right at the end.
+    // Measured at the middle, as a step may lie right at the end.
     const glm::dvec3 middle = scale(from + 0.5 * width);
     glm::dvec3 rise = 2.0 * (middle - base);
     bool step = false;

@@ -1,4 +1,7 @@
-// A colour scale in even buckets, for kernels that colour many values at once.
+// Tabulates a colour scale in even buckets, so that the kernel colours many values at once.
+//
+// Stage of the pipeline (vpe/voxel/ray_renderer.h): ImagePainter makes the table when the appearance changes;
+// take_scale() (paint_shading-inl.h) looks values up.
 #pragma once
 
 #include <array>
@@ -8,23 +11,26 @@
 
 namespace vpe::voxel {
 
-// Straight within each bucket. Where that would be more than kScaleTableError off the scale (steps, sharp
-// bends) the bucket says so, and the scale itself has to be asked. Value v is in bucket floor((clamp(v, first,
-// last) - first) per_unit) + 1; bucket 0 is all below first, the last one all from `last` on.
-inline constexpr double kScaleTableError = 0.2;  // of 255
+// Largest difference between a table and its scale, of 255.
+inline constexpr double kScaleTableError = 0.2;
 
+// Holds colours that are linear within each bucket. A bucket where this would be more than kScaleTableError off
+// the scale (steps, sharp bends) is marked, and the scale itself must be evaluated. Value v is in bucket
+// floor((clamp(v, first, last) - first) per_unit) + 1. Bucket 0 holds all values below `first`, the last bucket
+// all values from `last` on.
 struct ScaleTable {
   static constexpr int kInner = 1024;
   struct Bucket {
-    std::array<float, 4> base;  // 0 to 255; [3] is 1 where the scale itself has to be asked, else 0
-    std::array<float, 4> rise;  // over the bucket
+    std::array<float, 4> base;  // 0 to 255; [3] is 1 if the scale itself must be evaluated, else 0
+    std::array<float, 4> rise;  // change over the bucket
   };
   std::vector<Bucket> buckets;  // kInner + 2
   float first = 0;
   float per_unit = 0;
-  float of_nothing = 0;  // the value that stands for no number
+  float undefined_value = 0;  // stands for a value that is not defined, such as the aspect of flat ground
 };
 
+// Returns the table of a scale.
 ScaleTable scale_table(const core::ColourScale& scale);
 
 }  // namespace vpe::voxel
