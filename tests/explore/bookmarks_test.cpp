@@ -26,7 +26,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text.str();
 }
 
-// The one fault of a text.
+// Returns the only error of a text.
 std::string fault_of(const std::string& text, int line) {
   const ParsedBookmarks parsed = parse_bookmarks(text, "B");
   EXPECT_FALSE(parsed.bookmarks.has_value()) << text;
@@ -36,7 +36,7 @@ std::string fault_of(const std::string& text, int line) {
   return to_string(parsed.errors[0]);
 }
 
-TEST(Bookmarks, AreReadFromATextThatPeopleWrote) {
+TEST(Bookmarks, AreReadFromATextWrittenByPeople) {
   const auto b = parse_bookmarks(kText, "B").bookmarks;
   ASSERT_TRUE(b.has_value());
   const auto all = b->all();
@@ -55,7 +55,7 @@ TEST(Bookmarks, AreReadFromATextThatPeopleWrote) {
   EXPECT_TRUE(parse_bookmarks("", "B").bookmarks->all().empty());
 }
 
-TEST(Bookmarks, CommentsAndLinesThatWereNotTouchedStay) {
+TEST(Bookmarks, CommentsAndUnchangedLinesStay) {
   Bookmarks b = *parse_bookmarks(kText, "B").bookmarks;
   EXPECT_EQ(b.put({1, {{1, 2, 3, 4, 5, 6}, 7}, " New one "}), "");
   EXPECT_EQ(b.put({2, {}, ""}), "");
@@ -74,14 +74,14 @@ TEST(Bookmarks, CommentsAndLinesThatWereNotTouchedStay) {
   EXPECT_FALSE(b.remove(3));
 }
 
-TEST(Bookmarks, AnEmptyFileGetsALineThatExplains) {
+TEST(Bookmarks, AnEmptyFileGetsAnExplainingLine) {
   Bookmarks b;
   EXPECT_EQ(b.put({3, {{-74.2, -13.5, 12000, 90, -15, 0}, 60}, "West"}), "");
   EXPECT_EQ(b.to_text(),
             "# vpe bookmarks: N lon lat alt yaw pitch roll fov name\n3 -74.2 -13.5 12000 90 -15 0 60 West\n");
 }
 
-TEST(Bookmarks, WhatCannotBeKeptIsRefusedWithAReason) {
+TEST(Bookmarks, BadBookmarksAreRejectedWithAReason) {
   Bookmarks b;
   EXPECT_NE(b.put({10, {}, "x"}).find("1 to 9"), std::string::npos);
   EXPECT_NE(b.put({1, {}, "two\nlines"}).find("one line"), std::string::npos);
@@ -93,7 +93,7 @@ TEST(Bookmarks, WhatCannotBeKeptIsRefusedWithAReason) {
   EXPECT_EQ(b.to_text(), "");
 }
 
-TEST(Bookmarks, BadLinesAreToldByNumber) {
+TEST(Bookmarks, BadLinesAreReportedByNumber) {
   const std::string good = "1 0 0 0 0 0 0 60\n";
   EXPECT_EQ(fault_of(good + "2 0 0 0 0 0 0\n", 2), "B:2: expected a number for fov, found the end of the line");
   EXPECT_EQ(fault_of("\n# x\n0 0 0 0 0 0 0 60\n", 3),
@@ -140,7 +140,7 @@ TEST(Bookmarks, RoundTripsToTheBit) {
   });
 }
 
-TEST(BookmarkFile, IsMadeWithItsFolderAndReadBack) {
+TEST(BookmarkFile, IsCreatedWithItsFolderAndReadBack) {
   const test_support::TempDir folder;
   const auto path = folder / "data/vpe/bookmarks";
   EXPECT_TRUE(load_bookmarks(path).bookmarks->all().empty());

@@ -17,7 +17,7 @@ TEST(Controls, OfSeveralDevicesAddUpToTheirLimits) {
   EXPECT_TRUE(any(combine(devices)));
 }
 
-TEST(Controls, NumbersThatAreNoneCountAsRest) {
+TEST(Controls, NumbersThatAreNotFiniteCountAsRest) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::array<Controls, 1> devices{Controls{.right = nan, .up = 1, .roll_right = -nan, .speed = nan}};
   EXPECT_EQ(combine(devices), (Controls{.up = 1}));

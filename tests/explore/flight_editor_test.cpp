@@ -38,12 +38,12 @@ class Editor : public ::testing::Test {
     for (const Waypoint& w : editor_.flight().waypoints) all.push_back(w.time_s);
     return all;
   }
-  // Refused with these words, and nothing changed.
-  void expect_refused(const std::function<std::string()>& edit, const std::string& words) {
+  // Expects an edit to be rejected with this text, and nothing to change.
+  void expect_rejected(const std::function<std::string()>& edit, const std::string& text) {
     const Flight before = editor_.flight();
     const std::string undo = editor_.undo_text();
     const std::string problem = edit();
-    EXPECT_NE(problem.find(words), std::string::npos) << problem << "\nwanted: " << words;
+    EXPECT_NE(problem.find(text), std::string::npos) << problem << "\nexpected: " << text;
     EXPECT_EQ(editor_.flight(), before);
     EXPECT_EQ(editor_.undo_text(), undo);
   }
@@ -52,14 +52,14 @@ class Editor : public ::testing::Test {
   FlightEditor editor_{flight_of(kFlight), mars::kMarsRadius_m};
 };
 
-TEST_F(Editor, AppendsWithTheTimeThatTheWayTakes) {
+TEST_F(Editor, AppendsWithTheTimeOfThePath) {
   ASSERT_EQ(editor_.append(at(13), kDegree_m / 2), "");
   EXPECT_NEAR(times().back(), 22, 1e-9);
   EXPECT_EQ(editor_.flight().end_s, 25);
   ASSERT_EQ(editor_.append(at(23), kDegree_m), "");
   EXPECT_NEAR(times().back(), 32, 1e-9);
   EXPECT_EQ(editor_.flight().end_s, times().back());  // moved along
-  ASSERT_EQ(editor_.append(at(23), kDegree_m), "");   // turns in place
+  ASSERT_EQ(editor_.append(at(23), kDegree_m), "");   // rotates in place
   EXPECT_NEAR(times().back(), 33, 1e-9);
   EXPECT_NEAR(editor_.length_m(), 23 * kDegree_m, 1e-3);
 }
@@ -79,9 +79,9 @@ TEST_F(Editor, InsertsBetweenInProportion) {
   EXPECT_EQ(editor_.flight().end_s, 30);
   ASSERT_EQ(editor_.insert_after(6, at(15), kDegree_m), "");
   EXPECT_NEAR(times().back(), 31, 1e-9);
-  expect_refused([&] { return editor_.insert(at(5, 0, 10)); }, "already");
-  expect_refused([&] { return editor_.insert(at(5, 0, -1)); }, "a time in seconds from 0");
-  expect_refused([&] { return editor_.insert_after(77, at(1), 1); }, "there is no pose 78");
+  expect_rejected([&] { return editor_.insert(at(5, 0, 10)); }, "already");
+  expect_rejected([&] { return editor_.insert(at(5, 0, -1)); }, "a time in seconds from 0");
+  expect_rejected([&] { return editor_.insert_after(77, at(1), 1); }, "there is no pose 78");
 }
 
 TEST_F(Editor, MovesKeepingHeightTimeAndAttitude) {
@@ -114,56 +114,56 @@ TEST_F(Editor, EditsAnyField) {
       .time_s = 11, .lon_deg = -20, .lat_deg = 5, .up_m = 7, .yaw_deg = 1, .pitch_deg = 2, .roll_deg = 3};
   ASSERT_EQ(editor_.replace(1, edited), "");
   EXPECT_EQ(editor_.flight().waypoints[1], edited);
-  const auto refused = [&](auto change, const std::string& words) {
+  const auto rejected = [&](auto change, const std::string& text) {
     Waypoint bad = edited;
     change(bad);
-    expect_refused([&] { return editor_.replace(1, bad); }, words);
+    expect_rejected([&] { return editor_.replace(1, bad); }, text);
   };
-  refused([](Waypoint& w) { w.time_s = 20; }, "before 20 s, that of the pose beside it, not 20");
-  refused([](Waypoint& w) { w.time_s = 0; }, "after 0 s");
-  refused([](Waypoint& w) { w.time_s = std::nan(""); }, "a time");
-  refused([](Waypoint& w) { w.lat_deg = 91; }, "a pose needs lat=NUMBER from -90 to 90");
-  refused([](Waypoint& w) { w.lon_deg = std::numeric_limits<double>::infinity(); }, "lon");
-  refused([](Waypoint& w) { w.pitch_deg = -91; }, "pitch");
-  refused([](Waypoint& w) { w.up_m = 1e11; }, "alt");
-  refused([](Waypoint& w) { w.up_m = -3.5e6; }, "centre");
-  refused([](Waypoint& w) { w.up_m = -1, w.above_terrain = true; }, "height");
-  refused([](Waypoint& w) { w.lon_deg = 180, w.lat_deg = 0; }, "opposite sides");
-  expect_refused([&] { return editor_.replace(3, edited); }, "there is no pose 4");
+  rejected([](Waypoint& w) { w.time_s = 20; }, "before 20 s, the time of the neighbouring pose, not 20");
+  rejected([](Waypoint& w) { w.time_s = 0; }, "after 0 s");
+  rejected([](Waypoint& w) { w.time_s = std::nan(""); }, "a time");
+  rejected([](Waypoint& w) { w.lat_deg = 91; }, "a pose needs lat=NUMBER from -90 to 90");
+  rejected([](Waypoint& w) { w.lon_deg = std::numeric_limits<double>::infinity(); }, "lon");
+  rejected([](Waypoint& w) { w.pitch_deg = -91; }, "pitch");
+  rejected([](Waypoint& w) { w.up_m = 1e11; }, "alt");
+  rejected([](Waypoint& w) { w.up_m = -3.5e6; }, "centre");
+  rejected([](Waypoint& w) { w.up_m = -1, w.above_terrain = true; }, "height");
+  rejected([](Waypoint& w) { w.lon_deg = 180, w.lat_deg = 0; }, "opposite sides");
+  expect_rejected([&] { return editor_.replace(3, edited); }, "there is no pose 4");
 }
 
 TEST_F(Editor, DeletesAllButTheLastPose) {
   ASSERT_EQ(editor_.remove(1), "");
   ASSERT_EQ(editor_.remove(0), "");
   EXPECT_EQ(times(), std::vector<double>{20});
-  expect_refused([&] { return editor_.remove(0); }, "at least one pose");
+  expect_rejected([&] { return editor_.remove(0); }, "at least one pose");
   EXPECT_EQ(editor_.flight().sets.size(), 1U);
 }
 
-TEST_F(Editor, DeletingTheOneBetweenOppositePosesIsRefused) {
+TEST_F(Editor, DeletingThePoseBetweenOppositePosesIsRejected) {
   ASSERT_EQ(editor_.replace(2, at(180, 0, 20)), "");
-  expect_refused([&] { return editor_.remove(1); }, "opposite sides");
+  expect_rejected([&] { return editor_.remove(1); }, "opposite sides");
 }
 
 TEST_F(Editor, ScalesAllTimes) {
   ASSERT_EQ(editor_.scale_times(3), "");
   EXPECT_EQ(times(), (std::vector<double>{0, 30, 60}));
-  EXPECT_EQ(editor_.flight().looks[0].time_s, 15);
+  EXPECT_EQ(editor_.flight().heads[0].time_s, 15);
   EXPECT_EQ(editor_.flight().sets[0].time_s, 30);
   EXPECT_EQ(editor_.flight().interests[0].time_s, 36);
   EXPECT_EQ(editor_.flight().end_s, 75);
   for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    expect_refused([&] { return editor_.scale_times(bad); }, "factor");
+    expect_rejected([&] { return editor_.scale_times(bad); }, "factor");
   }
-  expect_refused([&] { return editor_.scale_times(1e6); }, "longer than 1000000 s");
+  expect_rejected([&] { return editor_.scale_times(1e6); }, "longer than 1000000 s");
 }
 
-TEST_F(Editor, ConstantSpeedMovesEverythingWithItsPoses) {
+TEST_F(Editor, ConstantSpeedMovesCommandsWithTheirPoses) {
   ASSERT_EQ(editor_.keep_speed(kDegree_m / 4), "");
   const auto t = times();
   EXPECT_NEAR(t[1], 40, 1e-9);
   EXPECT_NEAR(t[2], 48, 1e-9);
-  EXPECT_NEAR(editor_.flight().looks[0].time_s, 20, 1e-9);
+  EXPECT_NEAR(editor_.flight().heads[0].time_s, 20, 1e-9);
   EXPECT_EQ(editor_.flight().sets[0].time_s, t[1]);
   EXPECT_NEAR(editor_.flight().interests[0].time_s, 41.6, 1e-9);
   EXPECT_NEAR(*editor_.flight().end_s, 53, 1e-9);
@@ -172,39 +172,39 @@ TEST_F(Editor, ConstantSpeedMovesEverythingWithItsPoses) {
   ASSERT_EQ(editor_.keep_speed(kDegree_m), "");
   EXPECT_NEAR(times()[1], standing_s, 1e-12);
   EXPECT_NEAR(times()[2], standing_s + 10, 1e-9);
-  expect_refused([&] { return editor_.keep_speed(0); }, "above 0");
-  expect_refused([&] { return editor_.append(at(3), -1); }, "above 0");
-  expect_refused([&] { return editor_.keep_speed(1e-3); }, "longer than");
+  expect_rejected([&] { return editor_.keep_speed(0); }, "above 0");
+  expect_rejected([&] { return editor_.append(at(3), -1); }, "above 0");
+  expect_rejected([&] { return editor_.keep_speed(1e-3); }, "longer than");
   Waypoint first = editor_.flight().waypoints[0];
   first.time_s = 0.5 * standing_s;
   ASSERT_EQ(editor_.replace(0, first), "");
-  expect_refused([&] { return editor_.keep_speed(1e30); }, "too close");
+  expect_rejected([&] { return editor_.keep_speed(1e30); }, "too close");
 }
 
 TEST_F(Editor, ViewAndEnd) {
   scripts::FlightView view = editor_.flight().view;
   view.fov_deg = 0;
-  expect_refused([&] { return editor_.set_view(view); }, "a view needs fov");
+  expect_rejected([&] { return editor_.set_view(view); }, "a view needs fov");
   view.fov_deg = 30;
   ASSERT_EQ(editor_.set_view(view), "");
   EXPECT_EQ(editor_.flight().view.fov_deg, 30);
-  expect_refused([&] { return editor_.set_end(19); }, "from 20 s, the last time");
-  expect_refused([&] { return editor_.set_end(std::nan("")); }, "the end");
+  expect_rejected([&] { return editor_.set_end(19); }, "from 20 s, the last time");
+  expect_rejected([&] { return editor_.set_end(std::nan("")); }, "the end");
   ASSERT_EQ(editor_.set_end(std::nullopt), "");
   EXPECT_FALSE(editor_.flight().end_s.has_value());
 }
 
-TEST_F(Editor, TheWholeFlightAnewIsCheckedToo) {
+TEST_F(Editor, AReplacedFlightIsCheckedToo) {
   Flight next = editor_.flight();
-  next.looks.push_back({7, 1, 2, 3});
+  next.heads.push_back({7, 1, 2, 3});
   ASSERT_EQ(editor_.replace_all(next, "add a look"), "");
   EXPECT_EQ(editor_.undo_text(), "add a look");
-  next.looks.push_back({6, 1, 2, 3});
-  expect_refused([&] { return editor_.replace_all(next, "x"); }, "order of their times");
+  next.heads.push_back({6, 1, 2, 3});
+  expect_rejected([&] { return editor_.replace_all(next, "x"); }, "order of their times");
   next = editor_.flight();
   next.sets.push_back({20, "exaggeration", "much"});
-  expect_refused([&] { return editor_.replace_all(next, "x"); }, "a flight needs a setting");
-  expect_refused([&] { return editor_.replace_all(Flight(), "x"); }, "at least one pose");
+  expect_rejected([&] { return editor_.replace_all(next, "x"); }, "a flight needs a setting");
+  expect_rejected([&] { return editor_.replace_all(Flight(), "x"); }, "at least one pose");
   EXPECT_THROW(FlightEditor(Flight(), mars::kMarsRadius_m), std::invalid_argument);
 }
 
@@ -233,7 +233,7 @@ TEST(EditorMemory, UndoOfLongFlightsIsBounded) {
   EXPECT_GE((steps + 2) * bytes, FlightEditorLimits::kUndoBytes);
 }
 
-// Numbers that are often fine, often at a limit, sometimes nonsense.
+// Generates numbers that are often valid, often at a limit, sometimes invalid.
 double number(double scale) {
   switch (*rc::gen::inRange(0, 80)) {
     case 0: return 0;
@@ -289,14 +289,14 @@ TEST(EditorProperties, AnyEditsGiveAFlightThatReadsBackAndPlays) {
     }
     const scripts::Path path(editor.flight(), mars::kMarsRadius_m, [](mars::LonLat, double) { return 100.0; });
     RC_ASSERT(std::isfinite(path.at(0.5 * path.duration_s()).pose.alt_m));
-    // Undone to the beginning and done again it is the same.
+    // Undoing and redoing everything restores the flight.
     const Flight last = editor.flight();
     while (editor.undo()) {
     }
     RC_ASSERT(editor.flight() == flight_of(kFlight));
     while (editor.redo()) {
     }
-    // What had been undone before comes again too.
+    // Edits that had been undone before are redone too.
     if (editor.flight() != last) {
       bool found = false;
       do {

@@ -31,7 +31,7 @@ void expect_state(const FlightPlayer& player, double time_s) {
   const scripts::FlightState wanted = path_of(kFlight).at(time_s);
   EXPECT_EQ(is.camera.position_m, wanted.camera.position_m) << time_s;
   EXPECT_EQ(is.camera.axes.forward, wanted.camera.axes.forward) << time_s;
-  EXPECT_EQ(is.look.yaw_deg, wanted.look.yaw_deg) << time_s;
+  EXPECT_EQ(is.head.yaw_deg, wanted.head.yaw_deg) << time_s;
 }
 
 std::string exaggeration_of(const FlightPlayer& player, const core::Settings& base = {}) {
@@ -64,7 +64,7 @@ TEST(FlightPlayer, EndsExactlyAtTheEndAndBeginsAgain) {
   EXPECT_EQ(player.time_s(), 1.75);
 }
 
-TEST(FlightPlayer, LoopsExactlyHoweverLongAFrameTook) {
+TEST(FlightPlayer, LoopsExactlyForFramesOfAnyLength) {
   FlightPlayer player = player_of();
   player.set_loop(true);
   player.play();
@@ -137,42 +137,42 @@ TEST(FlightPlayer, ScrubbedBackwardsSettingsAreThoseOfThatTime) {
 
 TEST(FlightPlayer, LookingAroundLeavesTheFlightAlone) {
   FlightPlayer alone = player_of();
-  FlightPlayer turned = player_of();
+  FlightPlayer looking = player_of();
   alone.play();
-  turned.play();
+  looking.play();
   for (int n = 0; n < 80; ++n) {
     alone.advance(0.1);
-    turned.advance(0.1);
-    turned.turn_look(7, n % 2 == 0 ? 3 : -1, 0.5);
+    looking.advance(0.1);
+    looking.add_look_offset(7, n % 2 == 0 ? 3 : -1, 0.5);
     const scripts::FlightState a = alone.state();
-    const scripts::FlightState b = turned.state();
-    EXPECT_EQ(alone.time_s(), turned.time_s());
+    const scripts::FlightState b = looking.state();
+    EXPECT_EQ(alone.time_s(), looking.time_s());
     EXPECT_EQ(a.pose.lon_deg, b.pose.lon_deg);
     EXPECT_EQ(a.pose.yaw_deg, b.pose.yaw_deg);
     EXPECT_EQ(a.camera.position_m, b.camera.position_m);
     EXPECT_NE(a.camera.axes.forward, b.camera.axes.forward);
   }
-  turned.look_ahead();
-  expect_state(turned, turned.time_s());
+  looking.reset_look_offset();
+  expect_state(looking, looking.time_s());
 }
 
 TEST(FlightPlayer, TheUsersLookIsAddedToTheFlights) {
   FlightPlayer player = player_of();
   player.scrub(3);
-  player.view_panorama({20, 10, -5});
+  player.set_look_offset({20, 10, -5});
   const scripts::FlightState state = player.state();
-  EXPECT_EQ(state.look.yaw_deg, 60);
-  EXPECT_EQ(state.look.pitch_deg, 15);
-  EXPECT_EQ(state.look.roll_deg, -5);
+  EXPECT_EQ(state.head.yaw_deg, 60);
+  EXPECT_EQ(state.head.pitch_deg, 15);
+  EXPECT_EQ(state.head.roll_deg, -5);
   const mars::CameraPose camera = mars::to_camera(state.pose, {60, 15, -5}, mars::kMarsRadius_m);
   EXPECT_EQ(state.camera.axes.forward, camera.axes.forward);
   EXPECT_EQ(state.camera.axes.up, camera.axes.up);
-  player.turn_look(400, 500);
-  EXPECT_EQ(player.state().look.pitch_deg, 90);
-  EXPECT_EQ(player.state().look.yaw_deg, 100);
-  player.turn_look(0, -1);  // felt at once
-  EXPECT_EQ(player.state().look.pitch_deg, 89);
-  player.view_panorama({std::nan(""), std::numeric_limits<double>::infinity(), 0});
+  player.add_look_offset(400, 500);
+  EXPECT_EQ(player.state().head.pitch_deg, 90);
+  EXPECT_EQ(player.state().head.yaw_deg, 100);
+  player.add_look_offset(0, -1);  // takes effect at once
+  EXPECT_EQ(player.state().head.pitch_deg, 89);
+  player.set_look_offset({std::nan(""), std::numeric_limits<double>::infinity(), 0});
   expect_state(player, 3);
 }
 
@@ -193,7 +193,7 @@ TEST(FlightPlayer, TheUsersSettingsHoldWhileTheFlightPlays) {
   EXPECT_EQ(*player.settings({}).get("mode"), "wireframe");
 }
 
-TEST(FlightPlayer, AFlightOfNoLengthStandsAtItsPose) {
+TEST(FlightPlayer, AFlightWithoutDurationStandsAtItsPose) {
   FlightPlayer player = player_of("flight 1\nat 0 pose lon=1 lat=2 alt=3\n");
   for (const bool loop : {false, true}) {
     player.set_loop(loop);

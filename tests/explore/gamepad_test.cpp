@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "vpe/explore/input/stick.h"
+#include "vpe/explore/input/controls.h"
 
 namespace vpe::explore {
 namespace {
@@ -26,7 +26,7 @@ PadState pressed(PadButton button) {
   return state;
 }
 
-TEST(Gamepad, AtRestNothingIsAskedFor) {
+TEST(Gamepad, AtRestAllRatesAreZero) {
   EXPECT_EQ(pad_controls(PadState{}, {}), Controls{});
   // Worn sticks do not come back to their middle.
   PadState worn;
@@ -34,7 +34,7 @@ TEST(Gamepad, AtRestNothingIsAskedFor) {
   EXPECT_EQ(pad_controls(worn, {}), Controls{});
 }
 
-TEST(Gamepad, EachPartDoesItsOwn) {
+TEST(Gamepad, EachPartHasItsOwnRate) {
   const auto c = [](PadAxis axis, float value) { return pad_controls(with(axis, value), kStraight); };
   EXPECT_EQ(c(PadAxis::kLeftX, 0.5F), (Controls{.right = 0.5}));
   EXPECT_EQ(c(PadAxis::kLeftY, -1), (Controls{.forward = 1}));  // pushed away
@@ -59,7 +59,7 @@ TEST(Gamepad, ADeadZoneIsRoundAndHasNoStepAtItsEdge) {
   EXPECT_NEAR(stick_rates({0.6, 0}, zone, 1).x, 0.5, 1e-12);
   EXPECT_NEAR(stick_rates({0.6, 0}, zone, 2).x, 0.25, 1e-12);
   EXPECT_EQ(stick_rates({1, 0}, zone, 3).x, 1);
-  // Square sticks reach (1, 1): the direction is kept, the length is that of a full push.
+  // Square sticks reach (1, 1): the direction is kept, the rate is that of full deflection.
   const glm::dvec2 corner = stick_rates({1, -1}, zone, 2);
   EXPECT_NEAR(std::hypot(corner.x, corner.y), 1, 1e-12);
   EXPECT_EQ(corner.x, -corner.y);
@@ -80,7 +80,7 @@ RC_GTEST_PROP(GamepadProperty, AnyStateIsWithinLimits, ()) {
   RC_ASSERT(c.speed >= PadOptions::kSlower && c.speed <= PadOptions::kFaster);
 }
 
-RC_GTEST_PROP(GamepadProperty, PushingFurtherIsNeverSlower, ()) {
+RC_GTEST_PROP(GamepadProperty, LargerDeflectionIsNeverSlower, ()) {
   const double zone = 0.01 * *rc::gen::inRange(0, 90);
   const double curve = 0.1 * *rc::gen::inRange(10, 50);
   double before = 0;
@@ -103,7 +103,7 @@ TEST(Gamepad, AButtonActsWhenItGoesDown) {
   EXPECT_EQ(pad.read(pressed(PadButton::kStart), {}).actions.size(), 1U);
 }
 
-TEST(Gamepad, UnpluggedIsRestAndPluggedInIsNoPress) {
+TEST(Gamepad, UnpluggedIsRestAndPluggingInIsNoPress) {
   Gamepad pad;
   PadState state = pressed(PadButton::kA);
   state.axes[0] = 1;
@@ -115,7 +115,7 @@ TEST(Gamepad, UnpluggedIsRestAndPluggedInIsNoPress) {
   EXPECT_TRUE(pad.read(state, {}).actions.empty());
 }
 
-TEST(Gamepad, TriggersThatHaveToldNothingAreAtRest) {
+TEST(Gamepad, TriggersThatHaveReportedNothingAreAtRest) {
   Gamepad pad;
   PadState fresh;
   fresh.axes[4] = fresh.axes[5] = 0;  // "half pressed"
@@ -128,7 +128,7 @@ TEST(Gamepad, TriggersThatHaveToldNothingAreAtRest) {
   EXPECT_EQ(pad.read(fresh, {}).controls, Controls{});
 }
 
-TEST(Gamepad, NoButtonDoesTwoThings) {
+TEST(Gamepad, NoButtonHasTwoActions) {
   std::set<PadButton> used{PadButton::kLeftBumper, PadButton::kRightBumper, PadButton::kLeftStick,
                            PadButton::kRightStick};
   for (const PadBinding& binding : pad_bindings()) {

@@ -38,7 +38,7 @@ void expect_look(const mars::HeadAngles& look, double yaw, double pitch, double 
   EXPECT_NEAR(look.roll_deg, roll, within);
 }
 
-// Feeds the same datagram for a while, ending at `to`.
+// Feeds the same datagram until the time `to`.
 void hold(HeadTracker& tracker, const Bytes& bytes, double from, double to) {
   for (int n = 0; n <= 100; ++n) tracker.receive(bytes, from + (to - from) * n / 100);
 }
@@ -72,7 +72,7 @@ TEST(HeadDatagram, OtherSizesAndNumbersAreIgnored) {
     EXPECT_FALSE(parse_head_datagram(datagram(0, bad, 0)).has_value()) << bad;
     EXPECT_FALSE(parse_head_datagram(datagram(0, 0, bad)).has_value()) << bad;
   }
-  Bytes swapped = good;  // as a sender with the other byte order has it
+  Bytes swapped = good;  // as from a sender with the other byte order
   for (int n = 0; n < 6; ++n) std::reverse(swapped.begin() + 8 * n, swapped.begin() + 8 * n + 8);
   HeadTracker tracker;
   tracker.receive(swapped, 1);
@@ -141,7 +141,7 @@ TEST(HeadTracker, ComesBackWithoutAJump) {
   }
 }
 
-TEST(HeadTracker, GoesRoundTheShortWay) {
+TEST(HeadTracker, TakesTheShorterDirection) {
   HeadTracker tracker;
   hold(tracker, datagram(175, 0, 0), 0, 1);
   tracker.receive(datagram(-175, 0, 0), 1);
@@ -184,7 +184,8 @@ RC_GTEST_PROP(HeadTrackerProperty, AnyBytesAreHarmless, (const std::vector<Bytes
   RC_ASSERT(tracker.received() + tracker.ignored() == packets.size());
 }
 
-// Over any history of poses, gaps and changes of mind: no faster than smoothing and easing make it.
+// Checks, for any history of poses, gaps and options, that the look is no faster than smoothing and easing
+// allow.
 RC_GTEST_PROP(HeadTrackerProperty, TheLookIsContinuous, ()) {
   const HeadTrackerOptions options{.invert_yaw = *rc::gen::arbitrary<bool>(),
                                    .scale = 0.1 * *rc::gen::inRange(5, 30),

@@ -24,7 +24,7 @@ std::string fault_of(const std::string& text, int line) {
 TEST(Hotspots, AreReadWithPathsRelativeToTheFile) {
   const ParsedHotspots parsed = parse_hotspots(
       "\xef\xbb\xbf# spots\r\n"
-      "spot \"Glen Torridon\" 137.39 -4.72 2 ../panoramas/torridon.json  # with planes\r\n"
+      "spot \"Glen Torridon\" 137.39 -4.72 2 ../panoramas/torridon.json  # with layers\r\n"
       "\n"
       "spot \"A \\\"rim\\\" #1\" 0 0 1.5 \"/abs/my pano.png\"\n"
       "spot Rim 360 -90 0 rim.tif",
@@ -43,8 +43,9 @@ TEST(Hotspots, AreReadWithPathsRelativeToTheFile) {
   EXPECT_EQ(parse_hotspots("spot a 1 2 3 p.png", "S").hotspots[0].panorama, "p.png");
 }
 
-TEST(Hotspots, BadLinesAreToldByNumber) {
-  EXPECT_EQ(fault_of("\nsport a 1 2 3 p\n", 2), "/a/S:2: expected a spot, found \"sport\"");
+TEST(Hotspots, BadLinesAreReportedByNumber) {
+  EXPECT_EQ(fault_of("\nsport a 1 2 3 p\n", 2),
+            "/a/S:2: expected a line that begins with spot, found \"sport\"");
   EXPECT_NE(fault_of("spot Glen Torridon 1 2 3 p\n", 1).find("found 7 words; a name or path with blanks"),
             std::string::npos);
   EXPECT_NE(fault_of("spot a 1 91 3 p\n", 1).find("a latitude from -90 to 90, found \"91\""),
@@ -74,22 +75,22 @@ TEST(Hotspots, LinesReadBackAsTheyWere) {
   });
 }
 
-TEST(Hotspots, AFileThatIsNotThereIsSaid) {
+TEST(Hotspots, AMissingFileIsReported) {
   const test_support::TempDir folder;
   EXPECT_THROW(load_hotspots(folder / "spots"), base::FileError);
   std::ofstream(folder / "spots") << "spot a 1 2 3 p.png\n";
   EXPECT_EQ(load_hotspots(folder / "spots").hotspots.at(0).panorama, folder / "p.png");
 }
 
-// Spots along the equator, 1 km apart, 2 m above ground at 100 m.
+// Hotspots along the equator, 1 km apart, 2 m above ground at 100 m.
 std::vector<glm::dvec3> row_of_hotspots(int count) {
   std::vector<Hotspot> hotspots;
   for (int n = 0; n < count; ++n) {
     hotspots.push_back(
         {"s" + std::to_string(n), {n * 1000.0 / mars::kMarsRadius_m / mars::kRadiansPerDegree, 0}, 2, "p"});
   }
-  return hotspot_eyes(hotspots, mars::kMarsRadius_m,
-                      [](mars::LonLat, double exaggeration) { return 100 * exaggeration; });
+  return hotspot_positions(hotspots, mars::kMarsRadius_m,
+                           [](mars::LonLat, double exaggeration) { return 100 * exaggeration; });
 }
 
 glm::dvec3 camera_at(double east_m, double alt_m = 102) {
@@ -98,22 +99,22 @@ glm::dvec3 camera_at(double east_m, double alt_m = 102) {
 }
 
 TEST(Hotspots, TheNearestWithinADistance) {
-  const auto eyes = row_of_hotspots(5);
-  EXPECT_NEAR(glm::length(eyes[0]), mars::kMarsRadius_m + 102, 1e-6);
-  const auto near = nearest_hotspot(eyes, camera_at(2100), 500);
+  const auto positions = row_of_hotspots(5);
+  EXPECT_NEAR(glm::length(positions[0]), mars::kMarsRadius_m + 102, 1e-6);
+  const auto near = nearest_hotspot(positions, camera_at(2100), 500);
   ASSERT_TRUE(near.has_value());
   EXPECT_EQ(near->index, 2U);
   EXPECT_NEAR(near->distance_m, 100, 0.1);
-  EXPECT_FALSE(nearest_hotspot(eyes, camera_at(2400), 300).has_value());
-  EXPECT_FALSE(nearest_hotspot(eyes, camera_at(2000, 5000), 3000).has_value());  // far above counts as far
+  EXPECT_FALSE(nearest_hotspot(positions, camera_at(2400), 300).has_value());
+  EXPECT_FALSE(nearest_hotspot(positions, camera_at(2000, 5000), 3000).has_value());  // far above counts as far
   EXPECT_FALSE(nearest_hotspot({}, camera_at(0), 1e9).has_value());
   const Hotspot hotspot{"a", {0, 0}, 2, "p"};
-  const auto unknown = hotspot_eyes(std::span(&hotspot, 1), mars::kMarsRadius_m, {});
+  const auto unknown = hotspot_positions(std::span(&hotspot, 1), mars::kMarsRadius_m, {});
   EXPECT_FALSE(nearest_hotspot(unknown, camera_at(0), 1e9).has_value());
 }
 
 TEST(HotspotTrackers, StagesBeginAndEndAtDifferentDistances) {
-  HotspotTracker tracker(row_of_hotspots(1), {.approach_m = 1000, .reach_m = 100, .leave = 1.5});
+  HotspotTracker tracker(row_of_hotspots(1), {.approach_m = 1000, .reach_m = 100, .leave_factor = 1.5});
   const auto stage = [&](double east_m) { return tracker.update(camera_at(east_m)).stage; };
   EXPECT_EQ(stage(1100), HotspotStage::kFar);
   EXPECT_EQ(stage(990), HotspotStage::kApproaching);
@@ -128,7 +129,7 @@ TEST(HotspotTrackers, StagesBeginAndEndAtDifferentDistances) {
   EXPECT_NEAR(tracker.state().hotspot.distance_m, 140, 0.1);
 }
 
-// Walking to and fro between two spots, and trembling at every border: few changes.
+// Moves back and forth between two hotspots with jitter at every limit: few changes.
 TEST(HotspotTrackers, NothingFlickers) {
   HotspotTracker tracker(row_of_hotspots(3), {.approach_m = 700, .reach_m = 100});
   int changes = 0;
@@ -144,7 +145,7 @@ TEST(HotspotTrackers, NothingFlickers) {
   EXPECT_EQ(changes, 10);
 }
 
-TEST(HotspotTrackers, AJumpToAnotherSpotIsSeenAtOnce) {
+TEST(HotspotTrackers, AJumpToAnotherHotspotTakesEffectAtOnce) {
   HotspotTracker tracker(row_of_hotspots(50), {});
   EXPECT_EQ(tracker.update(camera_at(3000)).hotspot.index, 3U);
   const auto state = tracker.update(camera_at(40000));

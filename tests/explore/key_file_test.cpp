@@ -19,23 +19,30 @@ struct Things {
   std::optional<mars::Pose> pose;
 };
 
-std::vector<KeyEntry> keys_of(Things& t) {
-  return {{"one.size", NumberKey{&t.size, 0, 10}, "how large"},
-          {"one.count", IntegerKey{&t.count, 1, 99}, "how many"},
-          {"one.on", SwitchKey{&t.on}, "whether"},
-          {"two.fruit", choice_key(t.fruit, {"apple", "pear"}), "which"},
-          {"two.word",
-           TextKey{&t.word, "a text without x",
-                   [](const std::string& text) {
-                     return std::string(text.find('x') == std::string::npos ? "" : "has an x");
-                   }},
-           "what"},
-          {"two.pose", PoseKey{&t.pose}, "where"}};
+const core::KeyRegistry<Things>& keys() {
+  using T = Things;
+  using Declare = core::KeyMembers<Things>;
+  static const core::KeyRegistry<Things> all({
+      {"one.size", Declare::number<&T::size>(0, 10), "", "how large"},
+      {"one.count", Declare::integer<&T::count>(1, 99), "", "how many"},
+      {"one.on", Declare::toggle<&T::on>(), "", "whether"},
+      {"two.fruit",
+       Declare::choice<&T::fruit>({core::word("apple", Fruit::kApple), core::word("pear", Fruit::kPear)}), "",
+       "which"},
+      {"two.word",
+       Declare::text<&T::word>("a text without x",
+                               [](const std::string& text) {
+                                 return std::string(text.find('x') == std::string::npos ? "" : "has an x");
+                               }),
+       "", "what"},
+      {"two.pose", Declare::pose<&T::pose>(), "", "where"},
+  });
+  return all;
 }
 
 Things read(std::string_view text) {
   Things things;
-  read_keys(text, "F.toml", keys_of(things));
+  read_keys(text, "F.toml", keys(), things);
   return things;
 }
 
@@ -48,10 +55,7 @@ std::string why(std::string_view text) {
   }
 }
 
-std::string written(Things things, KeysShown shown) {
-  Things usual;
-  return write_keys(keys_of(things), keys_of(usual), shown);
-}
+std::string written(const Things& things, KeysShown shown) { return write_keys(keys(), things, shown); }
 
 TEST(KeyFile, ReadsWhatIsNamedAndLeavesTheRest) {
   const Things t = read("[two]\nfruit = \"pear\"\npose = [1, -2.5, 3e4, 0, 0, 0]\n[one]\nsize = 3\n");

@@ -41,7 +41,7 @@ TEST(Keys, NamesAreDifferentAndReadBack) {
   }
 }
 
-RC_GTEST_PROP(KeysProperty, AnyTextIsReadOrRefused, (const std::string& text)) {
+RC_GTEST_PROP(KeysProperty, AnyTextIsReadOrRejected, (const std::string& text)) {
   const auto chord = parse_chord(text);
   if (chord) RC_ASSERT(parse_chord(name(*chord)) == chord);
   const auto action = parse_action(text);
@@ -63,7 +63,7 @@ TEST(Actions, NamesAreDifferentAndReadBack) {
   }
 }
 
-TEST(Keyboard, HeldKeysMoveAndTurn) {
+TEST(Keyboard, HeldKeysMoveAndRotate) {
   EXPECT_EQ(held({}), Controls{});
   EXPECT_EQ(held({Key::kW, Key::kD, Key::kE}), (Controls{.right = 1, .up = 1, .forward = 1}));
   EXPECT_EQ(held({Key::kS, Key::kA, Key::kQ}), (Controls{.right = -1, .up = -1, .forward = -1}));
@@ -75,7 +75,7 @@ TEST(Keyboard, HeldKeysMoveAndTurn) {
   EXPECT_EQ(held({Key::kLeft, Key::kW}, {.alt = true}), Controls{});
 }
 
-TEST(Keyboard, KeysOfTheHabits) {
+TEST(Keyboard, CommonKeysHaveTheirUsualActions) {
   const std::map<std::string, Action> expected{
       {"N", {ActionKind::kNorthUp}},
       {"U", {ActionKind::kLookDown}},
@@ -109,7 +109,7 @@ TEST(Keyboard, OnlySomeActionsRepeat) {
   EXPECT_TRUE(press("F12", true).empty());
 }
 
-TEST(Keyboard, NoKeyDoesTwoThings) {
+TEST(Keyboard, NoKeyHasTwoActions) {
   std::set<Key> held_keys;
   for (const HeldBinding& binding : held_bindings()) {
     EXPECT_TRUE(held_keys.insert(binding.key).second) << name(binding.key);
@@ -124,7 +124,7 @@ TEST(Keyboard, NoKeyDoesTwoThings) {
   for (const ActionInfo& known : actions()) EXPECT_TRUE(reached.contains(known.kind)) << known.name;
 }
 
-TEST(Keyboard, EachRateGoesBothWays) {
+TEST(Keyboard, EachRateHasBothSigns) {
   for (const HeldBinding& one : held_bindings()) {
     EXPECT_EQ(
         std::count_if(held_bindings().begin(), held_bindings().end(),

@@ -21,7 +21,8 @@ glm::dvec3 point_of(const paging::Surface& surface, const SightPoint& p) {
   return (surface.at(d).radius_m + p.height_m) * d;
 }
 
-// Of a line that passes a sphere: its distance from the centre, where its foot lies between the ends.
+// Returns the distance of a line from the sphere's centre, if the foot of the perpendicular lies between the
+// ends.
 double over_sphere_m(const glm::dvec3& a, const glm::dvec3& b, double radius_m) {
   const glm::dvec3 way = glm::normalize(b - a);
   const double foot = -glm::dot(a, way);
@@ -29,7 +30,7 @@ double over_sphere_m(const glm::dvec3& a, const glm::dvec3& b, double radius_m) 
   return glm::length(nearest) - radius_m;
 }
 
-// On a sphere of facets S lies between the sphere and the facets' sag below it.
+// On a faceted sphere the reference surface lies between the sphere and the facets' sagitta below it.
 TEST_F(SphereSight, ClearanceIsTheSpheresAndSightEndsAtTheHorizon) {
   Random random(5);
   int seen = 0;
@@ -60,7 +61,7 @@ TEST_F(SphereSight, ClearanceIsTheSpheresAndSightEndsAtTheHorizon) {
   EXPECT_GT(hidden, 50);
 }
 
-// Behind the horizon a mast must stand up to the tangent: R / cos(beyond) - R.
+// Behind the horizon a mast must reach the tangent: R / cos(beyond) - R.
 TEST_F(SphereSight, TheHeightNeededIsThatOfTheTangent) {
   const SightPoint a{mars::lon_lat(kPatch), 20};
   const double dip_rad = mars::horizon_dip_rad(20, mars::kMarsRadius_m);
@@ -76,7 +77,7 @@ TEST_F(SphereSight, TheHeightNeededIsThatOfTheTangent) {
   EXPECT_EQ(line_of_sight(surface(), a, far).needed_height_m, std::numeric_limits<double>::infinity());
 }
 
-TEST_F(RidgeSight, HidesWhatLiesBehindUnlessItIsTall) {
+TEST_F(RidgeSight, HidesPlacesBehindUnlessTheyAreTall) {
   const SightPoint west{{-35.3, 20}, 60};  // enough to look over the bulge of the planet
   const LineOfSight sight = line_of_sight(surface(), west, {{-34.7, 20}, 60});
   EXPECT_FALSE(sight.visible);
@@ -155,7 +156,7 @@ TEST_F(BumpySight, SightIsMutual) {
   }
 }
 
-TEST_F(BumpySight, StraightUpNothingIsInTheWay) {
+TEST_F(BumpySight, StraightUpNothingObstructs) {
   const mars::LonLat place = mars::lon_lat(kPatch);
   const LineOfSight up = line_of_sight(surface(), {place, 2}, {place, 500});
   EXPECT_TRUE(up.visible);
@@ -171,7 +172,7 @@ TEST_F(BumpySight, StraightUpNothingIsInTheWay) {
   EXPECT_EQ(craft.needed_height_m, 0);
 }
 
-TEST_F(BumpySight, WhatIsNoPointIsRefused) {
+TEST_F(BumpySight, InvalidPointsAreRejected) {
   const SightPoint fine{{0, 0}, 2};
   EXPECT_THROW(line_of_sight(surface(), fine, {{0, 91}, 2}), std::invalid_argument);
   EXPECT_THROW(line_of_sight(surface(), {{0, 0}, -1}, fine), std::invalid_argument);

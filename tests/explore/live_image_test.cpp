@@ -13,7 +13,7 @@ core::View at(double lon_deg) {
   return view;
 }
 
-// Images whose time falls with what is given up.
+// Imitates images whose time falls with their coarseness.
 double cost_ms(double full_ms, double multiplier) { return full_ms / std::pow(multiplier, 1.2); }
 
 TEST(LiveImage, AtRestItEndsWithTheFullImageAndThenNothing) {
@@ -22,7 +22,7 @@ TEST(LiveImage, AtRestItEndsWithTheFullImageAndThenNothing) {
   double last = 0;
   while (const auto order = live.next(at(0), false, 10'000)) {
     last = order->multiplier;
-    live.made(400, true);
+    live.record(400, true);
     ASSERT_LT(++images, 20);
   }
   EXPECT_GE(images, 1);
@@ -34,14 +34,14 @@ TEST(LiveImage, AtRestItEndsWithTheFullImageAndThenNothing) {
   EXPECT_TRUE(again->is_full);
 }
 
-TEST(LiveImage, WhileTilesComeItIsDrawnAgain) {
+TEST(LiveImage, IsDrawnAgainWhileTilesArrive) {
   LiveImage live;
   for (int n = 0; n < 30; ++n) {
     ASSERT_TRUE(live.next(at(0), false, 10'000).has_value());
-    live.made(20, false);
+    live.record(20, false);
   }
   ASSERT_TRUE(live.next(at(0), false, 10'000).has_value());
-  live.made(20, true);
+  live.record(20, true);
   EXPECT_FALSE(live.next(at(0), false, 10'000).has_value());
 }
 
@@ -53,7 +53,7 @@ TEST(LiveImage, MovingItMeetsItsBudgetByPixelsAndTolerance) {
     ASSERT_TRUE(order.has_value());
     EXPECT_EQ(order->is_full, order->multiplier == 1.0);
     ms = cost_ms(200, order->multiplier);
-    live.made(ms, true);
+    live.record(ms, true);
     if (n > 30) {
       EXPECT_LT(order->view.width, 1280);
       EXPECT_NEAR(order->view.width / 1280.0, order->view.height / 720.0, 0.01);
@@ -64,18 +64,18 @@ TEST(LiveImage, MovingItMeetsItsBudgetByPixelsAndTolerance) {
   EXPECT_GT(ms, 35);
 }
 
-TEST(LiveImage, WithoutABudgetNothingIsGivenUp) {
+TEST(LiveImage, WithoutABudgetImagesAreFull) {
   LiveImage live({.budget_ms = 0});
   for (int n = 0; n < 20; ++n) {
     const auto order = live.next(at(0.5 * n), false, 10'000);
     ASSERT_TRUE(order.has_value());
     EXPECT_TRUE(order->is_full);
     EXPECT_EQ(order->view.width, 1280);
-    live.made(1000, true);
+    live.record(1000, true);
   }
 }
 
-TEST(LiveImage, OptionsOutOfRangeAreRefused) {
+TEST(LiveImage, OptionsOutOfRangeAreRejected) {
   EXPECT_THROW(LiveImage({.budget_ms = -1}), std::invalid_argument);
   EXPECT_THROW(LiveImage({.budget_ms = 10, .smallest_side = 0}), std::invalid_argument);
 }

@@ -34,7 +34,7 @@ TEST(MapLine, ItBendsTowardsThePole) {
   EXPECT_NEAR(highest, 180 - 2 * top_deg, 0.5);
 }
 
-TEST(MapLine, IsCutAtTheEdgeAndComesInAtTheOther) {
+TEST(MapLine, IsCutAtTheEdgeAndContinuesAtTheOther) {
   MapView map = whole_map(720, 360);
   map.middle.lon_deg = 30;  // the edges are at 150 W
   const std::vector<mars::LonLat> places{{-170, 10}, {-120, -20}, {-179, 0}};

@@ -28,7 +28,7 @@ RC_GTEST_PROP(MapView, PlacesComeBack, ()) {
     const auto held = map.place(xy);
     const MapView next = zoomed(map, xy, *rc::gen::inRange(5, 40) / 10.0);
     RC_ASSERT(next.middle.lat_deg + 90 >= 0 && next.middle.lat_deg <= 90);
-    // What is under the cursor stays there when it nears (farther out the planet's edge may be in the way).
+    // The place under the cursor stays there when zooming in (zooming out may meet the planet's edge).
     if (held && next.degrees_per_px < map.degrees_per_px)
       RC_ASSERT(glm::length(next.position(*held) - xy) < 1e-3 || std::abs(held->lat_deg) > 80);
     map = next;
@@ -49,7 +49,7 @@ TEST(MapView, ZoomEndsAtItsLimits) {
   EXPECT_EQ(zoomed(map, {1, 1}, std::nan("")), map);
 }
 
-TEST(MapView, ADragMovesWhatIsHeld) {
+TEST(MapView, ADragMovesThePlaceThatIsHeld) {
   const MapView map = zoomed(whole_map(600, 300), {300, 150}, 4);
   const auto held = map.place({300, 150});
   const MapView next = moved(map, {20, -10});
@@ -57,7 +57,7 @@ TEST(MapView, ADragMovesWhatIsHeld) {
   EXPECT_NEAR(next.position(*held).x, 320, 0.5);  // the middle's latitude changed the scale
 }
 
-TEST(MapView, FootprintsAreWhatTheViewSees) {
+TEST(MapView, FootprintsEncloseTheGroundInView) {
   const double r = mars::kMarsRadius_m;
   const Screen screen{1000, 1000, 90};
   const core::View view = view_of({20, 10, 100'000, 0, -90, 0}, screen, r);

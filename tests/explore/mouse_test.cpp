@@ -34,7 +34,7 @@ const Case kCases[] = {
     {"rolled", {0, 0, 20'000, 10, -40, 30}},        {"down, rolled", {0, 0, 20'000, 10, -90, 30}},
 };
 
-TEST(Mouse, WhatIsDraggedStaysUnderTheCursor) {
+TEST(Mouse, DraggedGroundStaysUnderTheCursor) {
   const TerrainQuery ground = ball(kR);
   for (const Case& c : kCases) {
     SCOPED_TRACE(c.name);
@@ -53,7 +53,7 @@ TEST(Mouse, WhatIsDraggedStaysUnderTheCursor) {
   }
 }
 
-TEST(Mouse, DragEastShowsWhatIsWest) {
+TEST(Mouse, DraggingEastShowsTheWest) {
   const TerrainQuery ground = ball(kR);
   const Pose pose{20, 0, 500'000, 0, -90, 0};
   const auto held = ground_at(pose, kScreen, {640, 360}, ground);
@@ -72,7 +72,7 @@ TEST(Mouse, ADragBeyondTheEdgeHoldsTheEdge) {
   EXPECT_LT(end.lon_deg, -20);
 }
 
-TEST(Mouse, ZoomKeepsWhatIsUnderTheCursor) {
+TEST(Mouse, ZoomKeepsTheGroundUnderTheCursor) {
   const TerrainQuery ground = ball(kR);
   for (const Case& c : kCases) {
     SCOPED_TRACE(c.name);
@@ -83,8 +83,8 @@ TEST(Mouse, ZoomKeepsWhatIsUnderTheCursor) {
       const Pose end = zoomed(c.pose, kScreen, xy, factor, ground);
       if (end.alt_m > SteerLimits::kHighest_radii * kR * 0.99) continue;
       EXPECT_LT(off_px(end, *point, xy), 1e-5);
-      const double before = glm::length(mars::to_camera(c.pose, kR).camera_m - *point);
-      const double after = glm::length(mars::to_camera(end, kR).camera_m - *point);
+      const double before = glm::length(mars::to_camera(c.pose, kR).position_m - *point);
+      const double after = glm::length(mars::to_camera(end, kR).position_m - *point);
       EXPECT_NEAR(after / before, factor, c.pose.alt_m > 1e6 ? 0.25 : 0.02);
     }
   }
@@ -101,24 +101,24 @@ TEST(Mouse, ZoomingInEndsAboveTheGround) {
   EXPECT_GT(pose.alt_m, kR);
 }
 
-TEST(Mouse, TiltTurnsAboutTheMiddle) {
+TEST(Mouse, TiltRotatesAboutTheMiddle) {
   const TerrainQuery ground = ball(kR);
   for (const Case& c : kCases) {
     if (c.pose.roll_deg != 0) continue;
     SCOPED_TRACE(c.name);
     const auto pivot = ground_at(c.pose, kScreen, {640, 360}, ground);
     ASSERT_TRUE(pivot.has_value());
-    const double distance = glm::length(mars::to_camera(c.pose, kR).camera_m - *pivot);
+    const double distance = glm::length(mars::to_camera(c.pose, kR).position_m - *pivot);
     for (const glm::dvec2 turn : {glm::dvec2{20, 0}, {-35, 5}, {0, -10}}) {
       const Pose end = tilted(c.pose, kScreen, turn.x, turn.y, ground);
       EXPECT_LT(off_px(end, *pivot, {640, 360}), 1e-5);
-      EXPECT_NEAR(glm::length(mars::to_camera(end, kR).camera_m - *pivot) / distance, 1, 1e-9);
+      EXPECT_NEAR(glm::length(mars::to_camera(end, kR).position_m - *pivot) / distance, 1, 1e-9);
       EXPECT_NEAR(end.roll_deg, 0, 1e-5);
     }
   }
 }
 
-TEST(Mouse, TiltDownFromTheSkyIsATurn) {
+TEST(Mouse, TiltInTheSkyRotatesInPlace) {
   const Pose end = tilted({0, 0, 1000, 0, 30, 0}, kScreen, 10, 5, ball(kR));
   EXPECT_NEAR(end.yaw_deg, 10, 1e-12);
   EXPECT_NEAR(end.pitch_deg, 25, 1e-12);
@@ -139,10 +139,10 @@ TEST(Mouse, LookingAtAPlaceHasItInTheMiddle) {
   const glm::dvec3 point = mars::direction({3, 4}) * kR;
   const Pose end = looking_at(pose, point, 20'000, ground);
   EXPECT_LT(off_px(end, point, {640, 360}), 1e-5);
-  EXPECT_NEAR(glm::length(mars::to_camera(end, kR).camera_m - point), 20'000, 1e-3);
+  EXPECT_NEAR(glm::length(mars::to_camera(end, kR).position_m - point), 20'000, 1e-3);
 }
 
-TEST(FlyTo, BeginsAndEndsWhereItIsTold) {
+TEST(FlyTo, BeginsAndEndsAtItsPoses) {
   const TerrainQuery ground = hills();
   const Pose from = kept_clear({10, 20, 4000, 350, -20, 10}, ground);
   const Pose to = kept_clear({-170, -40, 90'000, 20, -80, -10}, ground);

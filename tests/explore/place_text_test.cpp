@@ -6,17 +6,16 @@
 #include <cmath>
 
 #include "vpe/base/number.h"
-#include "vpe/explore/measure/digits.h"
 
 namespace vpe::explore {
 namespace {
 
-// Far from the poles degrees of longitude count as those of latitude.
+// Measures in degrees of latitude, far from the poles.
 double apart_deg(mars::LonLat a, mars::LonLat b) {
   return std::max(std::abs(std::remainder(a.lon_deg - b.lon_deg, 360.0)), std::abs(a.lat_deg - b.lat_deg));
 }
 
-TEST(PlaceText, OnePlaceInManyWays) {
+TEST(PlaceText, OnePlaceInManyNotations) {
   const mars::LonLat place{137.4417, -4.5895};
   for (const char* text : {
            "137.4417,-4.5895",
@@ -56,11 +55,11 @@ TEST(PlaceText, OnePlaceInManyWays) {
     std::string fault;
     const auto read = read_place(text, fault);
     ASSERT_TRUE(read.has_value()) << text << ": " << fault;
-    EXPECT_LT(apart_deg(*read, place), 1e-9) << text << ": " << place_words(*read);
+    EXPECT_LT(apart_deg(*read, place), 1e-9) << text << ": " << place_text(*read);
   }
 }
 
-TEST(PlaceText, WhatIsNotCertainIsRefusedWithWhatIsExpected) {
+TEST(PlaceText, AmbiguousTextIsRejectedWithTheExpectedForm) {
   const auto fault_of = [](std::string_view text) {
     std::string fault;
     EXPECT_FALSE(read_place(text, fault).has_value()) << text;
@@ -104,9 +103,9 @@ TEST(PlaceText, MinusZeroDegreesAreMinus) {
   EXPECT_EQ(read_place("-180, 0", fault)->lon_deg, 180);
 }
 
-TEST(PlaceText, SaysHowItWasUnderstood) {
-  EXPECT_EQ(place_words({-74.2, -13.5}), "74.200000\u00b0 W (285.800000\u00b0 E), 13.500000\u00b0 S");
-  EXPECT_EQ(place_words({137.4417, 4}), "137.441700\u00b0 E, 4.000000\u00b0 N");
+TEST(PlaceText, ShowsHowItWasUnderstood) {
+  EXPECT_EQ(place_text({-74.2, -13.5}), "74.200000\u00b0 W (285.800000\u00b0 E), 13.500000\u00b0 S");
+  EXPECT_EQ(place_text({137.4417, 4}), "137.441700\u00b0 E, 4.000000\u00b0 N");
 }
 
 mars::LonLat any_place() {
@@ -117,10 +116,10 @@ mars::LonLat any_place() {
 std::string in_seconds(double degrees) {
   const auto tenths = std::llround(std::abs(degrees) * 36e6);  // of a thousandth of a second
   return std::to_string(tenths / 36'000'000) + " " + std::to_string(tenths / 600'000 % 60) + " " +
-         fixed_text(static_cast<double>(tenths % 600'000) / 1e4, 4);
+         vpe::base::format_display(static_cast<double>(tenths % 600'000) / 1e4, 4);
 }
 
-RC_GTEST_PROP(PlaceText, EveryPlaceComesBackFromEveryConvention, ()) {
+RC_GTEST_PROP(PlaceText, EveryPlaceReadsBackFromEveryNotation, ()) {
   const mars::LonLat place = any_place();
   const double east = place.lon_deg < 0 ? place.lon_deg + 360 : place.lon_deg;
   const std::string lon = base::format_number(place.lon_deg);
@@ -128,7 +127,7 @@ RC_GTEST_PROP(PlaceText, EveryPlaceComesBackFromEveryConvention, ()) {
   const std::string letter_ns = place.lat_deg < 0 ? "S" : "N";
   const std::string letter_ew = place.lon_deg < 0 ? "W" : "E";
   const std::string lat_size = base::format_number(std::abs(place.lat_deg));
-  std::string outside = place_words(place);
+  std::string outside = place_text(place);
   if (const auto open = outside.find(" ("); open != std::string::npos)
     outside.erase(open, outside.find(')') - open + 1);
   const std::vector<std::pair<std::string, double>> texts{
@@ -144,11 +143,11 @@ RC_GTEST_PROP(PlaceText, EveryPlaceComesBackFromEveryConvention, ()) {
     std::string fault;
     const auto read = read_place(text, fault);
     if (!read) RC_FAIL(text + ": " + fault);
-    if (!(apart_deg(*read, place) <= error_deg)) RC_FAIL(text + " was read as " + place_words(*read));
+    if (!(apart_deg(*read, place) <= error_deg)) RC_FAIL(text + " was read as " + place_text(*read));
   }
 }
 
-RC_GTEST_PROP(PlaceText, WhateverIsPastedIsAPlaceOrAReason, ()) {
+RC_GTEST_PROP(PlaceText, AnyTextIsAPlaceOrAReason, ()) {
   const auto piece =
       rc::gen::element<std::string>("1", "59", "-", "+", ".", ",", ";", " ", "E", "w", "N", "S", "lon", "lat",
                                     "\u00b0", "'", "\"", "90", "360", "deg", "\xe2", "\xff", ":", "min", "0.5");

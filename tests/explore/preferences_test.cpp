@@ -116,24 +116,26 @@ TEST(Preferences, AreReadBackAsTheyWereSaved) {
 // Each key by itself: changed, saved, read.
 TEST(Preferences, EveryKeyIsKept) {
   const TempDir folder;
-  Preferences probe;
+  const core::KeyRegistry<Preferences>& keys = preference_keys();
   std::set<std::string_view> names;
-  for (std::size_t n = 0; n < keys_of(probe).size(); ++n) {
+  for (std::size_t n = 0; n < keys.infos().size(); ++n) {
     Preferences changed;
-    const KeyEntry key = keys_of(changed)[n];
+    const core::KeyInfo& key = keys.infos()[n];
     EXPECT_TRUE(names.insert(key.name).second) << key.name;
-    if (const auto* number = std::get_if<NumberKey>(&key.member)) {
-      EXPECT_TRUE(*number->value >= number->min && *number->value <= number->max) << key.name;
-      *number->value = (number->min + number->max) / 2.7;
-    } else if (const auto* whole = std::get_if<IntegerKey>(&key.member)) {
-      *whole->value = whole->max;
-    } else if (const auto* on = std::get_if<SwitchKey>(&key.member)) {
-      *on->value = !*on->value;
-    } else if (const auto* choice = std::get_if<ChoiceKey>(&key.member)) {
-      choice->write(static_cast<int>(choice->words.size()) - 1);
-    } else if (const auto* text = std::get_if<TextKey>(&key.member)) {
-      *text->value = "::1";
+    core::KeyValue value = keys.get(n, changed);
+    EXPECT_TRUE(core::is_allowed(key, value)) << key.name;
+    if (const auto* number = std::get_if<core::NumberKey>(&key.type)) {
+      value = (number->min + number->max) / 2.7;
+    } else if (const auto* whole = std::get_if<core::IntegerKey>(&key.type)) {
+      value = whole->max;
+    } else if (std::holds_alternative<core::SwitchKey>(key.type)) {
+      value = !std::get<bool>(value);
+    } else if (const auto* choice = std::get_if<core::ChoiceKey>(&key.type)) {
+      value = choice->words.back().value;
+    } else if (std::holds_alternative<core::TextKey>(key.type)) {
+      value = std::string("::1");
     }
+    keys.set(n, changed, value);
     EXPECT_FALSE(changed == Preferences{}) << key.name;
     ASSERT_EQ(save(changed, folder / "f.toml"), "");
     EXPECT_TRUE(read_preferences(folder / "f.toml") == changed) << key.name << "\n"
@@ -195,7 +197,7 @@ TEST(LastSession, IsReadBackAsItWasSaved) {
   s.window_width_px = 2560;
   s.planet = "/data/Gale \"crater\".vpe";
   s.pose = mars::Pose{137.4, -4.6, 12345.678901234567, -179.25, -10, 1e-7};
-  s.backend = SessionBackend::kVoxel;
+  s.backend = core::Backend::kRay;
   s.panels = false;
   ASSERT_EQ(save(s, folder / "explore.toml"), "");
   const LastSession back = read_session(folder / "explore.toml");
@@ -205,8 +207,16 @@ TEST(LastSession, IsReadBackAsItWasSaved) {
   ASSERT_TRUE(back.pose.has_value());
   EXPECT_EQ(back.pose->alt_m, s.pose->alt_m);
   EXPECT_EQ(back.pose->roll_deg, s.pose->roll_deg);
-  EXPECT_EQ(back.backend, SessionBackend::kVoxel);
+  EXPECT_EQ(back.backend, core::Backend::kRay);
   EXPECT_FALSE(back.panels);
+}
+
+TEST(LastSession, FormerNamesOfBackendsAreRead) {
+  const TempDir folder;
+  write(folder / "explore.toml", "[last]\nbackend = \"voxel\"\n");
+  EXPECT_EQ(read_session(folder / "explore.toml").backend, core::Backend::kRay);
+  ASSERT_EQ(save(read_session(folder / "explore.toml"), folder / "explore.toml"), "");
+  EXPECT_NE(text_of(folder / "explore.toml").find("backend = \"ray\"  #"), std::string::npos);
 }
 
 TEST(LastSession, WhatNobodyCouldReadBackIsNotSaved) {

@@ -13,31 +13,6 @@ namespace {
 
 class PlotOfRidge : public test_support::GroundTest<test_support::RidgeGround> {};
 
-TEST(Ticks, AreRoundAndFew) {
-  EXPECT_EQ(ticks(0, 10, 5).values, (std::vector<double>{0, 5, 10}));
-  EXPECT_EQ(ticks(0, 10, 6).values, (std::vector<double>{0, 2, 4, 6, 8, 10}));
-  EXPECT_EQ(ticks(-4503, -4497, 4).values, (std::vector<double>{-4502, -4500, -4498}));
-  const Ticks fine = ticks(0, 0.3, 4);
-  ASSERT_EQ(fine.values.size(), 4U);
-  EXPECT_EQ(fine.digits, 1);
-  EXPECT_TRUE(ticks(1, 1, 5).values.empty());
-  EXPECT_TRUE(ticks(0, std::nan(""), 5).values.empty());
-}
-
-RC_GTEST_PROP(Ticks, AreWithinAndNeverTooMany, ()) {
-  const double low = *rc::gen::inRange(-1'000'000, 1'000'000) / 100.0;
-  const double high = low + std::pow(10.0, *rc::gen::inRange(-30, 60) / 10.0);
-  const int most = *rc::gen::inRange(2, 12);
-  const Ticks t = ticks(low, high, most);
-  RC_ASSERT(t.values.size() <= static_cast<std::size_t>(most));
-  RC_ASSERT(static_cast<int>(t.values.size()) >= most / 3);  // the next finer ones would be 2.5 times as many
-  for (const double v : t.values) {
-    RC_ASSERT(v >= low - 1e-6 * (high - low) && v <= high + 1e-6 * (high - low));
-    const double scaled = v * std::pow(10.0, t.digits);
-    RC_ASSERT(std::abs(scaled - std::round(scaled)) < 1e-6 * std::max(1.0, std::abs(scaled)));
-  }
-}
-
 TEST_F(PlotOfRidge, NoPeakIsLostInAnyNumberOfColumns) {
   const std::vector<mars::LonLat> places{{-35.2, 20}, {-34.8, 20.1}};
   for (const double step_m : {0.0, 3000.0, 30000.0}) {
@@ -61,7 +36,7 @@ TEST_F(PlotOfRidge, NoPeakIsLostInAnyNumberOfColumns) {
   }
 }
 
-TEST_F(PlotOfRidge, WhatIsMissingIsSaid) {
+TEST_F(PlotOfRidge, ColumnsWithNodataAreMarked) {
   Profile profile = make_profile(surface(), std::vector<mars::LonLat>{{-36, 20}, {-34, 20}}, {.step_m = 2000});
   ASSERT_GT(profile.points.size(), 20U);
   profile.points[10].nodata = true;
@@ -82,7 +57,7 @@ TEST_F(PlotOfRidge, AGivenDistanceFindsItsPoint) {
   EXPECT_NEAR(ground_at_distance_m(profile, profile.points[7].distance_m), profile.points[7].height_m, 1e-9);
 }
 
-// The same line in space, without the formula.
+// Computes the same line in space, without the formula.
 RC_GTEST_PROP(SightHeight, IsTheStraightLine, ()) {
   const double radius_m = 3396190;
   const double arc = *rc::gen::inRange(1, 30000) / 1e4;

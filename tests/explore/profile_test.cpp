@@ -25,7 +25,7 @@ TEST_F(Profiles, AThousandPointsButNotFinerThanThePosts) {
   EXPECT_EQ(make_profile(surface(), far, {.step_m = 2e6}).points.size(), 4U);
 }
 
-TEST_F(Profiles, FiguresAreThoseOfThePoints) {
+TEST_F(Profiles, TotalsAreThoseOfThePoints) {
   const std::vector<mars::LonLat> places{{-36, 19}, {-35, 20}, {-33, 24}};
   const Profile p = make_profile(surface(), places);
   EXPECT_NEAR(p.length_m,
@@ -33,7 +33,7 @@ TEST_F(Profiles, FiguresAreThoseOfThePoints) {
                   mars::kMarsRadius_m,
               1e-6);
   EXPECT_EQ(p.ground_length_m, p.points.back().ground_distance_m);
-  EXPECT_FALSE(p.some_missing);
+  EXPECT_FALSE(p.has_nodata);
   for (const paging::ProfilePoint& point : p.points) {
     EXPECT_LE(point.lowest_m, point.height_m);
     EXPECT_GE(point.highest_m, point.height_m);
@@ -42,7 +42,7 @@ TEST_F(Profiles, FiguresAreThoseOfThePoints) {
   }
 }
 
-// Over the ridge: up and down a roof whose length is known.
+// The path crosses a ridge whose length along the ground is known.
 TEST_F(RidgeProfiles, GroundDistanceGoesOverTheRidge) {
   const std::vector<mars::LonLat> places{{-35.2, 20}, {-34.8, 20}};
   const Profile p = make_profile(surface(), places, {.step_m = 50});
@@ -81,7 +81,7 @@ TEST_F(Profiles, CsvHasAPointALine) {
   EXPECT_EQ(profile_csv_line(nodata), "0.000,0.000,10,0,,,,1\n");
 }
 
-TEST_F(Profiles, WhatIsNoWayIsRefused) {
+TEST_F(Profiles, InvalidPathsAreRejected) {
   const std::vector<mars::LonLat> one{{10, 0}}, opposite{{10, 0}, {-170, 0}}, far{{0, 0}, {90, 0}};
   EXPECT_THROW(make_profile(surface(), one), std::invalid_argument);
   EXPECT_THROW(make_profile(surface(), opposite), std::invalid_argument);

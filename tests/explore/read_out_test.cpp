@@ -19,8 +19,8 @@ std::string text_of(const ReadOut& r, const std::string& label) {
   return found == lines.end() ? "" : found->text;
 }
 
-// A point of S is taken, a camera is put somewhere above it, and the ray back must read that point out, unless
-// other ground is nearer.
+// Takes a point of the reference surface and a camera somewhere above it. The ray back must read that point
+// out, unless other ground is nearer.
 TEST_F(ReadOuts, AreThoseOfQueryWhereTheRayMeetsTheGround) {
   Random random(3);
   int met = 0;
@@ -47,7 +47,7 @@ TEST_F(ReadOuts, AreThoseOfQueryWhereTheRayMeetsTheGround) {
   EXPECT_GT(met, 200);
 }
 
-TEST_F(ReadOuts, BothLongitudesAndTheWaysOfSayingThem) {
+TEST_F(ReadOuts, BothLongitudesAndTheirTexts) {
   const ReadOut west = read_out_at(surface(), {-74, -13.5});
   EXPECT_EQ(west.at.place.lon_deg, -74);
   EXPECT_EQ(west.lon_east_deg, 286);
@@ -62,7 +62,7 @@ TEST_F(ReadOuts, BothLongitudesAndTheWaysOfSayingThem) {
   EXPECT_EQ(text_of(west, "Range"), "");
 }
 
-TEST_F(ReadOuts, SaysWhatTheGroundComesFromAndHowFarItIsRight) {
+TEST_F(ReadOuts, NamesTheSourceAndItsError) {
   const ReadOut r = read_out_at(surface(), mars::lon_lat(test_support::kPatch));
   EXPECT_EQ(r.at.source, "fake");
   EXPECT_EQ(text_of(r, "Source"), "fake");
@@ -75,7 +75,7 @@ TEST_F(ReadOuts, SaysWhatTheGroundComesFromAndHowFarItIsRight) {
   EXPECT_NE(text_of(r, "Resampling error"), "");
 }
 
-TEST_F(ReadOuts, TheSkyIsNothingAndUndergroundIsHere) {
+TEST_F(ReadOuts, TheSkyHasNoneAndUndergroundIsTheCamerasPlace) {
   const glm::dvec3 up = mars::direction({10, 10});
   EXPECT_FALSE(read_out(surface(), up * 4e6, up).has_value());
   const auto below = read_out(surface(), up * 3.38e6, up);
@@ -97,14 +97,14 @@ TEST_F(ReadOuts, AnExaggeratedImageReadsTheSameElevations) {
 }
 
 TEST(ReadOutLengths, KeepThreeDigits) {
-  EXPECT_EQ(length_text(0), "0.00 m");
-  EXPECT_EQ(length_text(-0.0001), "0.00 m");
-  EXPECT_EQ(length_text(9.994), "9.99 m");
-  EXPECT_EQ(length_text(9.996), "10.0 m");
-  EXPECT_EQ(length_text(950.4), "950 m");
-  EXPECT_EQ(length_text(12345), "12.35 km");
-  EXPECT_EQ(length_text(-234567), "-234.6 km");
-  EXPECT_EQ(length_text(3396190), "3396 km");
+  EXPECT_EQ(measured_length_text(0), "0.00 m");
+  EXPECT_EQ(measured_length_text(-0.0001), "0.00 m");
+  EXPECT_EQ(measured_length_text(9.994), "9.99 m");
+  EXPECT_EQ(measured_length_text(9.996), "10.0 m");
+  EXPECT_EQ(measured_length_text(950.4), "950 m");
+  EXPECT_EQ(measured_length_text(12345), "12.35 km");
+  EXPECT_EQ(measured_length_text(-234567), "-234.6 km");
+  EXPECT_EQ(measured_length_text(3396190), "3396 km");
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ class SessionLogs : public ::testing::Test {
   SessionLog log_{path_, {50, 640, 360, {30, 1}}, mars::kMarsRadius_m};
 };
 
-// A session of motions, pauses, jumps and changes of settings: at every frame's time all is as it was.
+// Logs motions, pauses, jumps and changes of settings. At every frame's time the replay equals the session.
 TEST_F(SessionLogs, ReplayToTheBit) {
   Random random(11);
   struct Seen {
@@ -70,8 +70,8 @@ TEST_F(SessionLogs, ReplayToTheBit) {
     if (n % 60 == 9) {
       ASSERT_EQ(settings.set("mode", n % 120 == 9 ? "wireframe" : "textured"), "");
     }
-    if (n == 200) log_.enter(frame.time_s, "a \"spot\"", "/p/a b.json");
-    if (n == 250) log_.step_out(frame.time_s);
+    if (n == 200) log_.enter_overlook(frame.time_s, "a \"spot\"", "/p/a b.json");
+    if (n == 250) log_.leave_overlook(frame.time_s);
     const auto time_s = log_.frame(frame, settings);
     ASSERT_EQ(time_s, frame.time_s);
     seen.push_back({frame, settings});
@@ -82,8 +82,8 @@ TEST_F(SessionLogs, ReplayToTheBit) {
   for (const Seen& s : seen) {
     const scripts::FlightState state = path.at(s.frame.time_s);
     EXPECT_TRUE(equal(state.pose, s.frame.pose)) << s.frame.time_s;
-    EXPECT_EQ(state.look.yaw_deg, s.frame.look.yaw_deg);
-    EXPECT_EQ(state.look.pitch_deg, s.frame.look.pitch_deg);
+    EXPECT_EQ(state.head.yaw_deg, s.frame.look.yaw_deg);
+    EXPECT_EQ(state.head.pitch_deg, s.frame.look.pitch_deg);
     core::Settings then;
     path.apply_settings(s.frame.time_s, then);
     EXPECT_EQ(then, s.settings);
@@ -98,7 +98,7 @@ TEST_F(SessionLogs, ReplayToTheBit) {
   EXPECT_EQ(steps[1].time_s, seen[250].frame.time_s);
 }
 
-// The window drew nothing for a minute: then nothing moved.
+// The window drew nothing for a minute, so nothing moves in the replay.
 TEST_F(SessionLogs, TheCameraStandsStillInAPause) {
   const mars::Pose here{10, 20, 5000, 0, -10, 0};
   const mars::Pose there{11, 20, 6000, 40, -10, 0};
@@ -108,14 +108,14 @@ TEST_F(SessionLogs, TheCameraStandsStillInAPause) {
   const scripts::Path path = replay();
   for (const double t : {0.5, 30.0, 59.95}) {
     EXPECT_TRUE(equal(path.at(t).pose, here)) << t;
-    EXPECT_EQ(path.at(t).look.yaw_deg, 0);
+    EXPECT_EQ(path.at(t).head.yaw_deg, 0);
   }
   EXPECT_TRUE(equal(path.at(60).pose, there));
   EXPECT_TRUE(equal(path.at(90).pose, there));
   EXPECT_EQ(flight().waypoints.size(), 4U);  // no hold where nothing moved
 }
 
-TEST_F(SessionLogs, RegionsComeAndGo) {
+TEST_F(SessionLogs, RegionsAreAddedAndRemoved) {
   const core::InterestRegion a{1, 2, 3000, 2};
   const core::InterestRegion b{400, 5, 6000, -1};
   const std::vector<core::InterestRegion> both{a, b}, twice{b, b}, none;
@@ -126,7 +126,8 @@ TEST_F(SessionLogs, RegionsComeAndGo) {
   const auto told = flight().interests;
   const auto levels_at = [&](double time_s, double lon_deg) {
     int levels = 0;
-    for (const scripts::Interest& i : told) levels += i.time_s <= time_s && i.lon_deg == lon_deg ? i.levels : 0;
+    for (const scripts::InterestCommand& i : told)
+      levels += i.time_s <= time_s && i.region.lon_deg == lon_deg ? i.region.levels : 0;
     return levels;
   };
   EXPECT_EQ(levels_at(0, 1), 2);
@@ -150,7 +151,7 @@ TEST_F(SessionLogs, AJumpToTheOtherSideOfThePlanetReplays) {
   EXPECT_TRUE(equal(path.at(50).pose, here));
 }
 
-TEST_F(SessionLogs, TheFileIsAFlightWhateverHappens) {
+TEST_F(SessionLogs, TheFileIsAlwaysAFlight) {
   const double nan = std::nan("");
   const mars::Pose pose{10, 20, 5000, 0, -10, 0};
   EXPECT_EQ(log_.frame({1, pose, {}}, {}), 1);
@@ -165,7 +166,7 @@ TEST_F(SessionLogs, TheFileIsAFlightWhateverHappens) {
   EXPECT_FALSE(log_.frame({2e6, pose, {}}, {}).has_value());
   EXPECT_EQ(log_.frame({3, {370, 20, 5000, 725, 0, 0}, {}}, {}), 3);
   log_.note(3, "two\nlines\rhere");
-  log_.enter(3, "", "a\nb");
+  log_.enter_overlook(3, "", "a\nb");
   log_.end(0);
   const scripts::Flight f = flight();
   EXPECT_NEAR(f.waypoints.back().lon_deg, 10, 1e-12);
@@ -175,7 +176,7 @@ TEST_F(SessionLogs, TheFileIsAFlightWhateverHappens) {
   EXPECT_NE(read_text(path_).find("# at 3 two lines here\n"), std::string::npos);
 }
 
-TEST(OverlookSteps, OtherTextHoldsNone) {
+TEST(OverlookSteps, OtherTextHasNone) {
   EXPECT_TRUE(overlook_steps("").empty());
   EXPECT_TRUE(overlook_steps("flight 1\n# at x overlook out\n# at 1 overlook in a\n# at 1 overlook\n"
                              "at 1 overlook out\n# at 1 overlook in \"a b\n\x01\xff")

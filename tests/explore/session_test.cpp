@@ -1,4 +1,4 @@
-// A session told what hands do: without a window.
+// Tests of a session without a window.
 #include "vpe/explore/session.h"
 
 #include <gtest/gtest.h>
@@ -43,10 +43,10 @@ glm::dvec2 place_of(const Session& session, const glm::dvec3& at_m) {
 }
 
 const mars::Pose kOver{20, 10, 150'000, 40, -35, 3};
-// A head that looks aside, straight ahead as a check.
+// Directions of a head: straight ahead as a check, and aside.
 const std::vector<mars::HeadAngles> kHeads{{0, 0, 0}, {30, -20, 8}, {-25, 10, 0}};
 
-TEST(Session, TheMouseHoldsWhatIsSeenWhereverTheHeadLooks) {
+TEST(Session, TheMouseHoldsTheGroundForAnyDirectionOfTheHead) {
   for (const mars::HeadAngles& head : kHeads) {
     Session session = session_at(kOver);
     session.advance(0, {}, head);
@@ -59,7 +59,7 @@ TEST(Session, TheMouseHoldsWhatIsSeenWhereverTheHeadLooks) {
   }
 }
 
-TEST(Session, TheWheelComesNearerToWhatIsSeenWhereverTheHeadLooks) {
+TEST(Session, TheWheelZoomsToTheCursorForAnyDirectionOfTheHead) {
   for (const mars::HeadAngles& head : kHeads) {
     Session session = session_at(kOver);
     session.advance(0, {}, head);
@@ -72,7 +72,7 @@ TEST(Session, TheWheelComesNearerToWhatIsSeenWhereverTheHeadLooks) {
   }
 }
 
-TEST(Session, ADoubleClickEndsWithThePlaceInTheMiddleWhereverTheHeadLooks) {
+TEST(Session, ADoubleClickCentresThePlaceForAnyDirectionOfTheHead) {
   for (const mars::HeadAngles& head : kHeads) {
     Session session = session_at(kOver);
     session.advance(0, {}, head);
@@ -84,7 +84,7 @@ TEST(Session, ADoubleClickEndsWithThePlaceInTheMiddleWhereverTheHeadLooks) {
   }
 }
 
-TEST(Session, AnInvertedWheelGoesAway) {
+TEST(Session, AnInvertedWheelZoomsOut) {
   SessionOptions options;
   options.start = kOver;
   options.invert_wheel = true;
@@ -97,16 +97,16 @@ TEST(Session, AnInvertedWheelGoesAway) {
 TEST(Session, AFasterMouseTiltsFurther) {
   SessionOptions options;
   options.start = kOver;
-  double turned_deg[2];
+  double rotated_deg[2];
   for (const double speed : {1.0, 2.0}) {
     options.mouse_speed = speed;
     Session session(surface(), options);
     session.press(MouseUse::kTilt, {640, 360});
     session.drag({640, 350});
-    turned_deg[speed == 2.0] = session.pose().pitch_deg - kOver.pitch_deg;
+    rotated_deg[speed == 2.0] = session.pose().pitch_deg - kOver.pitch_deg;
   }
-  EXPECT_NEAR(turned_deg[1], 2 * turned_deg[0], 0.05 * std::abs(turned_deg[0]));
-  EXPECT_GT(std::abs(turned_deg[0]), 1);
+  EXPECT_NEAR(rotated_deg[1], 2 * rotated_deg[0], 0.05 * std::abs(rotated_deg[0]));
+  EXPECT_GT(std::abs(rotated_deg[0]), 1);
 }
 
 scripts::Flight flight(const std::string& more) {
@@ -118,25 +118,25 @@ scripts::Flight flight(const std::string& more) {
   return *parsed.flight;
 }
 
-// A tracker on a look that the flight has already: no log takes a look beyond straight up.
-TEST(Session, AHeadNeverGoesOverBackwards) {
+// A tracker's angles are added to a flight's look: a log cannot hold a look beyond straight up.
+TEST(Session, PitchNeverExceedsStraightUp) {
   Session session = session_at(kOver);
-  ASSERT_EQ(session.flights().take(flight("at 0 look yaw=170 pitch=60\n")), "");
+  ASSERT_EQ(session.flights().load(flight("at 0 look yaw=170 pitch=60\n")), "");
   ASSERT_EQ(session.follow(false), "");
   session.advance(0.01, {}, {30, 45, 0});
   EXPECT_EQ(session.look().pitch_deg, 90);
   EXPECT_NEAR(session.look().yaw_deg, -160, 1e-9);
 }
 
-TEST(Session, WhatIsSetByHandInAFlightHoldsAlsoWhenTheFlightIsEdited) {
+TEST(Session, SettingsByHandInAFlightHoldWhenTheFlightIsEdited) {
   Session session = session_at(kOver);
-  ASSERT_EQ(session.flights().take(flight("at 0 set exaggeration=2\n")), "");
+  ASSERT_EQ(session.flights().load(flight("at 0 set exaggeration=2\n")), "");
   ASSERT_EQ(session.follow(true), "");
   EXPECT_EQ(session.settings().values().exaggeration, 2);
   ASSERT_EQ(session.set("exaggeration", "5"), "");
   session.advance(0.5, {});
   EXPECT_EQ(session.settings().values().exaggeration, 5);
-  ASSERT_EQ(session.flights().add(kOver, 1000), "");
+  ASSERT_EQ(session.flights().append(kOver, 1000), "");
   session.advance(0.5, {});
   session.advance(0.5, {});
   EXPECT_EQ(session.settings().values().exaggeration, 5);
@@ -144,7 +144,7 @@ TEST(Session, WhatIsSetByHandInAFlightHoldsAlsoWhenTheFlightIsEdited) {
 
 TEST(Session, TheFirstWaypointIsNotSavedYet) {
   Session session = session_at(kOver);
-  ASSERT_EQ(session.flights().add(kOver, 1000), "");
+  ASSERT_EQ(session.flights().append(kOver, 1000), "");
   EXPECT_TRUE(session.flights().editor()->is_changed());
   session.flights().editor()->mark_saved();
   EXPECT_FALSE(session.flights().editor()->is_changed());

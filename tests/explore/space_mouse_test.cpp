@@ -21,7 +21,7 @@ namespace {
 
 constexpr SpaceMouseOptions kStraight{.dead_zone = 0, .curve = 1};
 
-TEST(SpaceMouse, TheCapIsTheEye) {
+TEST(SpaceMouse, TheCapIsTheCamera) {
   const auto c = [](std::array<int, 3> move, std::array<int, 3> turn) {
     return space_mouse_controls({move, turn}, kStraight);
   };
@@ -81,7 +81,7 @@ TEST(SpaceMouse, ButtonsActWhenTheyGoDown) {
 
 #ifdef VPE_SPNAV
 
-// A daemon of protocol 0 or 1 on a socket of its own, as far as a mouse needs one.
+// Imitates a daemon of protocol 0 or 1 on a socket of its own.
 class FakeDaemon {
  public:
   using Packet = std::array<std::int32_t, 8>;
@@ -159,14 +159,14 @@ TEST(Spnav, MotionAndButtonsOfADaemonArrive) {
   ASSERT_EQ(events.size(), 3U);
   const auto& moved = std::get<SpaceMouseMotion>(events[0]);
   EXPECT_EQ(moved.move, (std::array<int, 3>{1, 2, 3}));
-  EXPECT_EQ(moved.turn, (std::array<int, 3>{4, 5, 6}));
+  EXPECT_EQ(moved.rotate, (std::array<int, 3>{4, 5, 6}));
   EXPECT_EQ(std::get<SpaceMouseButton>(events[1]).number, 7);
   EXPECT_TRUE(std::get<SpaceMouseButton>(events[1]).is_down);
   EXPECT_FALSE(std::get<SpaceMouseButton>(events[2]).is_down);
   EXPECT_TRUE(source->poll().empty());
 }
 
-TEST(Spnav, EventsThatAreNoneChangeNothing) {
+TEST(Spnav, InvalidEventsChangeNothing) {
   FakeDaemon daemon;
   const auto source = daemon.open();
   ASSERT_NE(source, nullptr);
@@ -181,7 +181,7 @@ TEST(Spnav, EventsThatAreNoneChangeNothing) {
   ASSERT_EQ(source->poll().size(), 1U);
 }
 
-TEST(Spnav, ADaemonThatEndsAndAMouseThatIsPulledOutAreRest) {
+TEST(Spnav, ALostDaemonAndAnUnpluggedMouseAreRest) {
   FakeDaemon daemon;
   auto source = daemon.open();
   ASSERT_NE(source, nullptr);
@@ -224,7 +224,7 @@ TEST(Spnav, ErrorsSayWhatToDo) {
 
 #else
 
-TEST(Spnav, LeftOutIsSaid) {
+TEST(Spnav, AMissingLibraryIsReported) {
   try {
     (void)open_space_mouse();
     FAIL();

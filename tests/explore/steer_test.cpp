@@ -29,7 +29,7 @@ Pose some_pose() {
           between(-180, 180, (m + k) % 1'000'001, 1'000'000)};
 }
 
-TEST(Steer, AheadIsAGreatCircleAndItsLengthIsThat) {
+TEST(Steer, AheadIsAGreatCircleOfTheRightLength) {
   const TerrainQuery ground = ball(kR);
   const Pose start{10, 40, 5000, 30, -20, 5};
   const Pose end = moved(start, 0, 0, 200'000, ground);
@@ -44,7 +44,7 @@ TEST(Steer, AheadIsAGreatCircleAndItsLengthIsThat) {
   EXPECT_EQ(end.roll_deg, 5);
 }
 
-TEST(Steer, OverThePoleAndOn) {
+TEST(Steer, ContinuesOverThePole) {
   const TerrainQuery ground = ball(kR);
   const Pose end =
       moved({20, 89.9, 1000, 0, -10, 0}, 0, 0, 0.2 * mars::kRadiansPerDegree * (kR + 1000), ground);
@@ -53,7 +53,7 @@ TEST(Steer, OverThePoleAndOn) {
   EXPECT_NEAR(std::abs(end.yaw_deg), 180, 1e-6);
 }
 
-TEST(Steer, ControlsMoveAlongTheEyesAxes) {
+TEST(Steer, ControlsMoveAlongTheCamerasAxes) {
   const TerrainQuery ground = ball(kR);
   const Pose start{0, 0, 1000, 90, 0, 0};
   const double full = full_speed_m_s(start, ground);
@@ -73,9 +73,9 @@ TEST(Steer, ControlsMoveAlongTheEyesAxes) {
 }
 
 TEST(Steer, PitchEndsAtTheZenith) {
-  EXPECT_EQ(turned({0, 0, 0, 0, 80, 0}, 0, 30, 0).pitch_deg, 90);
-  EXPECT_EQ(turned({0, 0, 0, 170, 0, 0}, 20, 0, 0).yaw_deg, -170);
-  EXPECT_EQ(turned({0, 0, 0, 170, 0, 0}, std::nan(""), 0, 0).yaw_deg, 170);
+  EXPECT_EQ(rotated({0, 0, 0, 0, 80, 0}, 0, 30, 0).pitch_deg, 90);
+  EXPECT_EQ(rotated({0, 0, 0, 170, 0, 0}, 20, 0, 0).yaw_deg, -170);
+  EXPECT_EQ(rotated({0, 0, 0, 170, 0, 0}, std::nan(""), 0, 0).yaw_deg, 170);
 }
 
 RC_GTEST_PROP(Steer, NeverBelowTheGround, ()) {
@@ -95,7 +95,7 @@ RC_GTEST_PROP(Steer, NeverBelowTheGround, ()) {
   }
 }
 
-TEST(Steer, RidesOverWhatStandsInTheWay) {
+TEST(Steer, PassesOverObstacles) {
   // A wall of 2 km, 100 m thick, 5 km ahead; in one long step from 50 m above the plain.
   TerrainQuery ground = ball(kR);
   const double wall_rad = 5000 / kR;

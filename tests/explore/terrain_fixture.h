@@ -1,4 +1,4 @@
-// Small planets for measuring: bumps with a fine patch, a smooth sphere, a ridge.
+// Small planets for tests of measuring: bumps with a fine patch, a smooth sphere, a ridge.
 #pragma once
 
 #include <memory>

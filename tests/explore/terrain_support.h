@@ -1,4 +1,4 @@
-// Grounds without a planet file.
+// Terrain without a planet file, for tests of navigation.
 #pragma once
 
 #include <cmath>

@@ -51,7 +51,7 @@ std::string why(const UdpOptions& options) {
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST(UdpReceiver, HandsOnAllThatHasComeInItsOrder) {
+TEST(UdpReceiver, PassesAllDatagramsInTheirOrder) {
   UdpReceiver receiver({.port = 0});
   ASSERT_GT(receiver.port(), 0);
   std::vector<Bytes> all;
@@ -67,7 +67,7 @@ TEST(UdpReceiver, HandsOnAllThatHasComeInItsOrder) {
   EXPECT_EQ(receiver.poll(keep), 0U);
 }
 
-TEST(UdpReceiver, LongDatagramsAreCutAndNoneIsLost) {
+TEST(UdpReceiver, LongDatagramsAreTruncatedAndNoneIsLost) {
   UdpReceiver receiver({.port = 0});
   Sender sender(receiver.port());
   sender.send(Bytes(20'000, 1));
@@ -77,7 +77,7 @@ TEST(UdpReceiver, LongDatagramsAreCutAndNoneIsLost) {
   EXPECT_EQ(sizes, (std::vector<std::size_t>{UdpReceiver::kMaxBytes, 48}));
 }
 
-TEST(UdpReceiver, OpentracksDatagramsTurnTheHead) {
+TEST(UdpReceiver, OpentracksDatagramsRotateTheHead) {
   UdpReceiver receiver({.port = 0});
   Sender sender(receiver.port());
   const double numbers[6] = {0, 0, 0, 25, -5, 2};  // this machine's bytes: the test says so on no other

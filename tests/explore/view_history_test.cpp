@@ -9,7 +9,7 @@ SavedView view_at(double lon_deg, double yaw_deg = 0, double fov_deg = 60) {
   return {{lon_deg, 10, 5000, yaw_deg, -10, 0}, fov_deg};
 }
 
-// A user: time goes on, the camera is moved and rests.
+// Imitates a user: time passes, the camera moves and rests.
 class History : public ::testing::Test {
  protected:
   void pass(const SavedView& view) { history_.observe(now_s_ += 0.03, view, 5000); }
@@ -32,7 +32,7 @@ class History : public ::testing::Test {
   ViewHistory history_{mars::kMarsRadius_m};
 };
 
-TEST_F(History, LeadsBackAndForthThroughWhatRested) {
+TEST_F(History, LeadsBackAndForthThroughViewsThatRested) {
   for (const double lon : {1, 2, 3}) rest_at(view_at(lon));
   EXPECT_TRUE(history_.can_go_back());
   EXPECT_FALSE(history_.can_go_forward());
@@ -50,7 +50,7 @@ TEST_F(History, LeadsBackAndForthThroughWhatRested) {
   EXPECT_EQ(history_.size(), 3U);
 }
 
-TEST_F(History, WhatIsPassedThroughIsNotKept) {
+TEST_F(History, ViewsOnTheWayAreNotStored) {
   rest_at(view_at(1));
   for (double lon = 1; lon < 20; lon += 0.1) pass(view_at(lon));
   rest_at(view_at(20));
@@ -58,7 +58,7 @@ TEST_F(History, WhatIsPassedThroughIsNotKept) {
   EXPECT_EQ(history_.size(), 2U);
 }
 
-TEST_F(History, SmallMotionsMergeButDriftingDoesNotGoOnForEver) {
+TEST_F(History, SmallMotionsMergeButDriftMakesNewEntries) {
   rest_at(view_at(1));
   rest_at(view_at(1, 2));
   rest_at(view_at(1, 4));
@@ -72,7 +72,7 @@ TEST_F(History, SmallMotionsMergeButDriftingDoesNotGoOnForEver) {
   EXPECT_LE(drifting.size(), 19U);
 }
 
-TEST_F(History, TurningZoomingAndMovingAllCount) {
+TEST_F(History, RotationZoomAndMotionAllCount) {
   rest_at(view_at(1));
   rest_at(view_at(1, 20));
   rest_at(view_at(1, 20, 30));
@@ -81,7 +81,7 @@ TEST_F(History, TurningZoomingAndMovingAllCount) {
   EXPECT_EQ(history_.size(), 4U);  // the last one has not been left
 }
 
-TEST_F(History, GoingElsewhereAfterBackDropsWhatLayAhead) {
+TEST_F(History, GoingElsewhereAfterBackDropsTheViewsAhead) {
   for (const double lon : {1, 2, 3}) rest_at(view_at(lon));
   expect_back(2);
   rest_at(view_at(2));
@@ -93,7 +93,7 @@ TEST_F(History, GoingElsewhereAfterBackDropsWhatLayAhead) {
   expect_back(2);
 }
 
-TEST_F(History, TheWayToAViewAddsNothingAndMayBeCutShort) {
+TEST_F(History, TheWayToAViewAddsNothingAndMayBeInterrupted) {
   for (const double lon : {1, 2, 3, 4}) rest_at(view_at(lon));
   expect_back(3);
   for (double lon = 3.9; lon > 3.4; lon -= 0.05) pass(view_at(lon));
@@ -129,7 +129,7 @@ TEST(HistoryLimits, TheOldestGoFirst) {
   EXPECT_EQ(lon, 15);
 }
 
-TEST(HistoryLimits, NothingSeenNothingKept) {
+TEST(HistoryLimits, IsEmptyBeforeTheFirstView) {
   ViewHistory history(mars::kMarsRadius_m);
   EXPECT_FALSE(history.can_go_back());
   EXPECT_FALSE(history.back().has_value());

@@ -1,4 +1,4 @@
-// A sphere with a cone on it, its range image by marching along rays, and layers to look at.
+// A sphere with a cone on it, and its range image by marching along rays.
 #pragma once
 
 #include <gtest/gtest.h>

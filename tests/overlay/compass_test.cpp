@@ -1,4 +1,4 @@
-// Marks of azimuth: which there are and where views have them.
+// Tests of compass marks: selection, labels, positions in views.
 #include "vpe/overlay/compass.h"
 
 #include <cmath>
@@ -37,7 +37,7 @@ TEST(Compass, StepsFitTheImage) {
     EXPECT_GE(steps.figure_deg / steps.tick_deg, 1.9);
     EXPECT_LE(steps.figure_deg / steps.tick_deg, 6.1);
     EXPECT_NEAR(steps.room_deg * px_per_deg, 40, 1e-9);
-    // No finer one would do, none is needlessly coarse.
+    // The steps are not needlessly coarse.
     if (px_per_deg < 5e4 && px_per_deg > 1) {
       EXPECT_LT(steps.figure_deg * px_per_deg, 80 * 3.1) << px_per_deg;
     }
@@ -61,7 +61,7 @@ TEST(Compass, WindsAndFigures) {
   // Figures give way to winds.
   const auto tens = labels(compass_marks(30, 30, {2, 10, 6}));
   EXPECT_EQ(tens, (std::map<double, std::string>{{30, "30\u00b0"}, {45, "NE"}, {60, "60\u00b0"}}));
-  // Across north, at any number of turns, with decimals that the step needs.
+  // Across north, beyond one full circle, with the decimals that the step needs.
   const auto north = labels(compass_marks(-0.25, 0.5, {0.02, 0.1, 0.01}));
   EXPECT_EQ(north.size(), 5U);
   EXPECT_EQ(north.begin()->second, "359.8\u00b0");
@@ -126,7 +126,7 @@ TEST(Compass, MarksOfViewsAreAtTheirAzimuths) {
   }
 }
 
-TEST(Compass, RoundViewsAndThoseWithoutOrder) {
+TEST(Compass, CylindricalViewsAndViewsWithoutOrder) {
   const mars::LocalFrame frame = mars::local_frame({50, 30});
   View view = view_at({50, 30, 1000, 75, 0, 0}, 2000, 500, 60);
   view.projection = vpe::core::Projection::kCylinder;

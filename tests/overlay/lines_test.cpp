@@ -1,4 +1,4 @@
-// Graticule and contours: where the pixels are, against rays cast for this test alone.
+// Tests of graticule and contours: positions of pixels, against rays cast independently.
 #include <map>
 #include <set>
 
@@ -18,14 +18,14 @@ using vpe::overlay::isolines;
 using vpe::overlay::LabelLayout;
 using vpe::overlay::VisibleTerrain;
 
-// The lines alone: labels are what draw_*() returns.
+// Draws the lines alone; labels are returned by draw_*().
 template <class Draw>
 Layer lines_of(const Sight& sight, const Draw& draw, std::vector<vpe::overlay::LineLabel>* labels = nullptr) {
   const Scene scene = sight.scene();
-  const VisibleTerrain ground(scene);
+  const VisibleTerrain terrain(scene);
   Canvas canvas(sight.view.width, sight.view.height);
   LabelLayout layout(canvas);
-  const auto all = draw(layout, ground);
+  const auto all = draw(layout, terrain);
   if (labels != nullptr) *labels = all;
   return canvas.layer();
 }
@@ -75,8 +75,8 @@ TEST(Graticule, PixelsLieWithinAPixelOfTheLines) {
   for (const mars::Pose& pose :
        {mars::Pose{-70, -13, 9e5, 30, -70, 10}, mars::Pose{179.5, 40, 4e5, 0, -90, 0}}) {
     const Sight sight({}, view_at(pose, 200, 120));
-    const Layer layer = lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) {
-      return draw_graticule(layout, ground, 2);
+    const Layer layer = lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& terrain) {
+      return draw_graticule(layout, terrain, 2);
     });
     const auto place = [&](double x, double y) {
       const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, x, y);
@@ -97,8 +97,8 @@ TEST(Contours, PixelsLieWithinAPixelOfTheirElevation) {
   for (const double exaggeration : {1.0, 2.5}) {
     const Ball ball{{20, 10}, 20000, 0.08, exaggeration};
     const Sight sight(ball, view_at({20, 9, 6e5, 0, -80, 0}, 200, 150));
-    const Layer layer = lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& ground) {
-      return draw_contours(layout, ground, 5000);
+    const Layer layer = lines_of(sight, [](LabelLayout& layout, const VisibleTerrain& terrain) {
+      return draw_contours(layout, terrain, 5000);
     });
     const auto elevation = [&](double x, double y) {
       const glm::dvec3 ray = vpe::core::pixel_ray(sight.view, x, y);
@@ -118,7 +118,7 @@ TEST(Contours, EveryFifthIsHeavierAndLabelledWithItsElevation) {
   std::vector<vpe::overlay::LineLabel> labels;
   const Layer layer = lines_of(
       sight,
-      [](LabelLayout& layout, const VisibleTerrain& ground) { return draw_contours(layout, ground, 1000); },
+      [](LabelLayout& layout, const VisibleTerrain& terrain) { return draw_contours(layout, terrain, 1000); },
       &labels);
   std::set<std::string> texts;
   for (const auto& label : labels) {
@@ -143,29 +143,29 @@ TEST(Contours, EveryFifthIsHeavierAndLabelledWithItsElevation) {
 }
 
 // Multiples of the step, each with the number of its lines.
-std::map<std::int64_t, int> census(const VisibleTerrain& ground, const std::vector<double>& values, double step,
-                                   double period) {
+std::map<std::int64_t, int> census(const VisibleTerrain& terrain, const std::vector<double>& values,
+                                   double step, double period) {
   IsolineOptions options;
   options.step = step;
   options.period = period;
   std::map<std::int64_t, int> count;
-  for (const Isoline& line : isolines(ground, values, options)) ++count[line.multiple];
+  for (const Isoline& line : isolines(terrain, values, options)) ++count[line.multiple];
   return count;
 }
 
 TEST(Isolines, RunUnbrokenOverTheAntimeridian) {
   const Sight sight({}, view_at({180, 0, 6e5, 0, -90, 0}));
   const Scene scene = sight.scene();
-  const VisibleTerrain ground(scene);
-  const auto count = census(ground, ground.longitudes_deg(), 2, 360);
+  const VisibleTerrain terrain(scene);
+  const auto count = census(terrain, terrain.longitudes_deg(), 2, 360);
   ASSERT_TRUE(count.contains(90));
   EXPECT_FALSE(count.contains(-90));  // the same line
   EXPECT_TRUE(count.contains(89));
   EXPECT_TRUE(count.contains(-89));
   // Farther out the image's border cuts them.
   for (const auto& [multiple, lines] : count) EXPECT_TRUE(lines == 1 || std::abs(multiple) < 86) << multiple;
-  // A step that does not divide the turn: multiples count from 0 on both sides, none beyond 180.
-  for (const auto& [multiple, lines] : census(ground, ground.longitudes_deg(), 7, 360)) {
+  // A step that does not divide the full circle: multiples count from 0 on both sides, none beyond 180.
+  for (const auto& [multiple, lines] : census(terrain, terrain.longitudes_deg(), 7, 360)) {
     EXPECT_LE(std::abs(multiple), 25) << multiple;
   }
 }
@@ -174,11 +174,11 @@ TEST(Isolines, CloseRoundThePoles) {
   for (const double lat : {90.0, -90.0}) {
     const Sight sight({}, view_at({0, lat, 4e5, 0, -90, 0}, 240, 240));
     const Scene scene = sight.scene();
-    const VisibleTerrain ground(scene);
+    const VisibleTerrain terrain(scene);
     IsolineOptions options;
     options.step = 1;
     int closed = 0;
-    for (const Isoline& line : isolines(ground, ground.latitudes_deg(), options)) {
+    for (const Isoline& line : isolines(terrain, terrain.latitudes_deg(), options)) {
       EXPECT_EQ(line.multiple < 0, lat < 0);
       closed += line.closed ? 1 : 0;
       if (!line.closed) continue;
@@ -191,7 +191,7 @@ TEST(Isolines, CloseRoundThePoles) {
       }
     }
     EXPECT_GE(closed, 2);
-    const auto count = census(ground, ground.longitudes_deg(), 30, 360);
+    const auto count = census(terrain, terrain.longitudes_deg(), 30, 360);
     EXPECT_EQ(count.size(), 12U);
     for (const auto& [multiple, lines] : count) EXPECT_EQ(lines, 1) << multiple;
   }
@@ -203,13 +203,13 @@ TEST(VisibleTerrain, PointsAreThoseOfTheViewsRays) {
   view.part = {40, 30, 200, 120};
   const Sight sight({}, view);
   const Scene scene = sight.scene();
-  const VisibleTerrain ground(scene);
+  const VisibleTerrain terrain(scene);
   for (const glm::ivec2 p : {glm::ivec2{0, 0}, {199, 0}, {0, 119}, {120, 60}}) {
     const glm::dvec3 ray = vpe::core::pixel_ray(view, 40 + p.x + 0.5, 30 + p.y + 0.5);
     const glm::dvec3 wanted =
-        view.camera.position_m + ray * static_cast<double>(sight.range_m[ground.index(p.x, p.y)]);
-    EXPECT_LT(glm::length(ground.point(p.x, p.y) - wanted), 1e-6);
-    EXPECT_LT(glm::length(ground.to_image(wanted).value() - glm::dvec2(p) - 0.5), 1e-6);
+        view.camera.position_m + ray * static_cast<double>(sight.range_m[terrain.index(p.x, p.y)]);
+    EXPECT_LT(glm::length(terrain.point(p.x, p.y) - wanted), 1e-6);
+    EXPECT_LT(glm::length(terrain.to_image(wanted).value() - glm::dvec2(p) - 0.5), 1e-6);
   }
 }
 
@@ -218,20 +218,20 @@ TEST(Isolines, EndAtEdgesWhereNearGroundHidesFarGround) {
   const Ball ball{{0, 1.5}, 25000, 0.01, 1};
   const Sight sight(ball, view_at({0, 0, 40000, 0, -25, 0}));
   const Scene scene = sight.scene();
-  const VisibleTerrain ground(scene);
+  const VisibleTerrain terrain(scene);
   int edges = 0;
   int whole = 0;
-  for (int y = 0; y + 1 < ground.height(); ++y) {
-    for (int x = 0; x + 1 < ground.width(); ++x) {
-      if (!ground.is_ground(ground.index(x, y)) || !ground.is_ground(ground.index(x, y + 1))) continue;
-      const double jump = glm::length(ground.point(x, y) - ground.point(x, y + 1));
-      const float r = sight.range_m[ground.index(x, y)];
+  for (int y = 0; y + 1 < terrain.height(); ++y) {
+    for (int x = 0; x + 1 < terrain.width(); ++x) {
+      if (!terrain.is_ground(terrain.index(x, y)) || !terrain.is_ground(terrain.index(x, y + 1))) continue;
+      const double jump = glm::length(terrain.point(x, y) - terrain.point(x, y + 1));
+      const float r = sight.range_m[terrain.index(x, y)];
       const bool cone_to_plain =
-          (ball.height_m(ground.point(x, y)) > 0) != (ball.height_m(ground.point(x, y + 1)) > 0);
+          (ball.height_m(terrain.point(x, y)) > 0) != (ball.height_m(terrain.point(x, y + 1)) > 0);
       if (cone_to_plain && jump > 0.25 * static_cast<double>(r)) {
-        EXPECT_FALSE(ground.is_whole(x, y)) << x << " " << y;
+        EXPECT_FALSE(terrain.is_whole(x, y)) << x << " " << y;
         ++edges;
-      } else if (ground.is_whole(x, y)) {
+      } else if (terrain.is_whole(x, y)) {
         ++whole;
       }
     }
@@ -241,7 +241,7 @@ TEST(Isolines, EndAtEdgesWhereNearGroundHidesFarGround) {
   IsolineOptions options;
   options.step = 0.5;
   options.densest_px = 0;
-  for (const Isoline& line : isolines(ground, ground.latitudes_deg(), options)) {
+  for (const Isoline& line : isolines(terrain, terrain.latitudes_deg(), options)) {
     for (std::size_t n = 1; n < line.points.size(); ++n) {
       EXPECT_LT(glm::length(line.points[n] - line.points[n - 1]), 1.5);
     }
@@ -251,16 +251,16 @@ TEST(Isolines, EndAtEdgesWhereNearGroundHidesFarGround) {
 TEST(Isolines, APlainIsWholeUpToItsHorizon) {
   const Sight sight({}, view_at({0, 0, 2000, 40, 0, 0}));
   const Scene scene = sight.scene();
-  const VisibleTerrain ground(scene);
+  const VisibleTerrain terrain(scene);
   int cells = 0;
   int whole = 0;
-  for (int y = 0; y + 1 < ground.height(); ++y) {
-    for (int x = 2; x + 3 < ground.width(); ++x) {
+  for (int y = 0; y + 1 < terrain.height(); ++y) {
+    for (int x = 2; x + 3 < terrain.width(); ++x) {
       bool all = true;
       for (int j = -1; j < 3; ++j)
-        all = all && y + j >= 0 && y + j < ground.height() && ground.is_ground(ground.index(x, y + j));
+        all = all && y + j >= 0 && y + j < terrain.height() && terrain.is_ground(terrain.index(x, y + j));
       cells += all ? 1 : 0;
-      whole += all && ground.is_whole(x, y) ? 1 : 0;
+      whole += all && terrain.is_whole(x, y) ? 1 : 0;
     }
   }
   EXPECT_GT(cells, 20000);
@@ -284,10 +284,10 @@ TEST(Contours, FadeWhereTheDrawnGroundIsTooFarOff) {
   const auto with = [&](double shift_px, double step_m) {
     Scene scene = sight.scene();
     scene.shift_px = shift_px;
-    const VisibleTerrain ground(scene);
+    const VisibleTerrain terrain(scene);
     Canvas canvas(sight.view.width, sight.view.height);
     LabelLayout layout(canvas);
-    draw_contours(layout, ground, step_m);
+    draw_contours(layout, terrain, step_m);
     return painted(canvas.layer());
   };
   // A pixel is about 4500 m there.

@@ -1,4 +1,4 @@
-// Layers as a whole: furniture, names, compositing, hostile input.
+// Tests of whole layers: legend, scale bar, arrow, names, compositing, hostile input.
 #include "vpe/overlay/overlay.h"
 
 #include <malloc.h>
@@ -7,6 +7,7 @@
 
 #include "tests/overlay/ball.h"
 #include "tests/support/support.h"
+#include "vpe/base/nice_ticks.h"
 #include "vpe/core/appearance/palette.h"
 #include "vpe/overlay/canvas.h"
 #include "vpe/overlay/number_format.h"
@@ -67,7 +68,7 @@ TEST(Overlay, NothingSetCostsNothing) {
   EXPECT_EQ(image, (std::vector<vpe::base::Rgb>(7, vpe::base::Rgb{1, 2, 3})));
 }
 
-TEST(Overlay, OnlyWhatLooksAtTheGroundNeedsRanges) {
+TEST(Overlay, OnlyOverlaysOfTheTerrainNeedRanges) {
   const std::vector<bool> needs{false, true, true, true, true, false, false, true, false};
   const std::vector<Overlays> each = one_by_one();
   for (std::size_t n = 0; n < each.size(); ++n) {
@@ -148,7 +149,7 @@ TEST(Overlay, DrawsOverImagesOfAnySizeViewAndProjection) {
     for (int x = 40; x < 80; ++x)
       same += (at(piece, x, y).a > 100) == (at(whole, x + 150, y + 100).a > 100) ? 1 : 0;
   }
-  EXPECT_GT(same, 1500);  // of 1600: lines are a little wider on the larger sheet
+  EXPECT_GT(same, 1500);  // of 1600: lines are a little wider in the larger image
 }
 
 TEST(Overlay, HostileTextIsShownOrLeftOut) {
@@ -234,7 +235,7 @@ TEST(ScaleBar, IsARoundLengthAtTheCentre) {
   for (const double alt_m : {300.0, 4e4, 1e6}) {
     const Sight sight({}, view_at({20, 6, alt_m, 0, -90, 0}, 640, 360));
     const Layer layer = sight.draw(overlays);
-    // The longest run of opaque pixels in a row is the bar with its rim of 2 * 0.975 px on each side.
+    // The longest run of opaque pixels in a row is the bar with its outline of 2 * 0.975 px on each side.
     int longest = 0;
     for (int y = 0; y < layer.height; ++y) {
       int run = 0;
@@ -245,7 +246,7 @@ TEST(ScaleBar, IsARoundLengthAtTheCentre) {
     }
     const double m_per_px = alt_m / vpe::core::focal_px(sight.view);
     const double length_m = (longest - 3.9) * m_per_px;
-    const double round_m = vpe::overlay::round_below(length_m * 1.05);
+    const double round_m = vpe::base::nice_step_below(length_m * 1.05);
     EXPECT_NEAR(length_m, round_m, 1.5 * m_per_px) << alt_m;
     EXPECT_GT(longest, 50);
   }
@@ -309,7 +310,7 @@ TEST(Names, AreHiddenBehindGroundBeyondTheHorizonAndOutside) {
   EXPECT_FALSE(is_named(sight, {"behind it", 20, 10.6, 0}));
   EXPECT_TRUE(is_named(sight, {"beside it", 20.75, 10.2, 0}));
   EXPECT_FALSE(is_named(sight, {"beyond the horizon", 22, 18, 0}));
-  EXPECT_FALSE(is_named(sight, {"behind the eye", 20, 8.5, 0}));
+  EXPECT_FALSE(is_named(sight, {"behind the camera", 20, 8.5, 0}));
   EXPECT_FALSE(is_named(sight, {"the antipode", -160, -9, 0}));
   EXPECT_FALSE(is_named(sight, {"far to the side", 30, 9.3, 0}));
   EXPECT_FALSE(is_named(sight, {"too small", 20, 9.3, 10}));
@@ -318,7 +319,7 @@ TEST(Names, AreHiddenBehindGroundBeyondTheHorizonAndOutside) {
   EXPECT_TRUE(is_named(Sight({}, sight.view), {"behind it", 20, 10.6, 0}));
 }
 
-TEST(Names, HigherPlacesWinAndNoneOverlap) {
+TEST(Names, EarlierPlacesWinAndNoneOverlap) {
   const Sight sight({}, view_at({20, 6, 2e5, 0, -90, 0}, 640, 360));
   Overlays overlays;
   overlays.names = "places";
@@ -339,17 +340,19 @@ TEST(Overlay, DrawingALotKeepsNoMemory) {
   EXPECT_LT(used(), before + 100'000);  // a layer has 920 000 bytes
 }
 
-TEST(Figures, AreRoundAndTheSameInEveryLocale) {
+TEST(NumberFormat, IsRoundAndTheSameInEveryLocale) {
   using namespace vpe::overlay;
-  EXPECT_EQ(round_below(999), 500);
-  EXPECT_EQ(round_below(1000), 1000);
-  EXPECT_EQ(round_above(1001), 2000);
-  EXPECT_EQ(round_above(0.021), 0.05);
+  using vpe::base::nice_step_above;
+  using vpe::base::nice_step_below;
+  EXPECT_EQ(nice_step_below(999), 500);
+  EXPECT_EQ(nice_step_below(1000), 1000);
+  EXPECT_EQ(nice_step_above(1001), 2000);
+  EXPECT_EQ(nice_step_above(0.021), 0.05);
   EXPECT_EQ(number_text(-0.0001, 2), "0.00");
   EXPECT_EQ(number_text(-12.345, 1), "\u221212.3");
-  EXPECT_EQ(length_text(250, 250), "250 m");
-  EXPECT_EQ(length_text(20000, 20000), "20 km");
-  EXPECT_EQ(length_text(0.5, 0.5), "0.5 m");
+  EXPECT_EQ(scale_length_text(250, 250), "250 m");
+  EXPECT_EQ(scale_length_text(20000, 20000), "20 km");
+  EXPECT_EQ(scale_length_text(0.5, 0.5), "0.5 m");
   EXPECT_EQ(longitude_text(-74.5, 0.5), "74.5\u00b0W");
   EXPECT_EQ(longitude_text(180, 30), "180\u00b0");
   EXPECT_EQ(longitude_text(0, 30), "0\u00b0");
@@ -363,11 +366,11 @@ TEST(Figures, AreRoundAndTheSameInEveryLocale) {
     EXPECT_EQ(time_text(frame / 25.0), text);
   }
   for (const double high : {0.37, 45.0, 360.0, 21300.0}) {
-    const std::vector<double> values = round_values(-0.4 * high, high, 6);
+    const std::vector<double> values = vpe::base::nice_ticks_two_or_more(-0.4 * high, high, 6);
     EXPECT_GE(values.size(), 3U);
     EXPECT_LE(values.size(), 7U);
   }
-  EXPECT_TRUE(round_values(1, 1, 6).empty());
+  EXPECT_TRUE(vpe::base::nice_ticks_two_or_more(1, 1, 6).empty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Overlays of panoramas: places, seams, parts.
+// Tests of overlays of panoramas: positions, seams, regions.
 #include "vpe/overlay/panorama_overlay.h"
 
 #include <cmath>
@@ -24,10 +24,10 @@ PanoramaScene scene_of(std::int64_t width, std::int64_t height, double left_deg 
   PanoramaScene scene;
   scene.width_px = width;
   scene.height_px = height;
-  scene.turn_px = std::llround(static_cast<double>(width) * 360 / span_deg);
+  scene.full_circle_px = std::llround(static_cast<double>(width) * 360 / span_deg);
   scene.left_azimuth_deg = left_deg;
   scene.span_deg = span_deg;
-  scene.px_per_deg = static_cast<double>(scene.turn_px) / 360;
+  scene.px_per_deg = static_cast<double>(scene.full_circle_px) / 360;
   scene.horizon_px = 0.5 * static_cast<double>(height);
   const double px_per_deg = scene.px_per_deg;
   const double horizon_px = scene.horizon_px;
@@ -54,7 +54,7 @@ struct Image {
 Image whole(const SpriteLayer& sprites, const PanoramaScene& scene) {
   Image image{scene.width_px, scene.height_px, {}};
   image.pixels.assign(static_cast<std::size_t>(scene.width_px * scene.height_px), kGround);
-  sprites.lay({0, 0, scene.width_px, scene.height_px, image.pixels});
+  sprites.composite({0, 0, scene.width_px, scene.height_px, image.pixels});
   return image;
 }
 
@@ -67,7 +67,7 @@ Image in_parts(const SpriteLayer& sprites, const PanoramaScene& scene, std::int6
       const std::int64_t w = std::min(width, scene.width_px - x);
       const std::int64_t h = std::min(height, scene.height_px - y);
       std::vector<vpe::base::Rgb> part(static_cast<std::size_t>(w * h), kGround);
-      sprites.lay({x, y, w, h, part});
+      sprites.composite({x, y, w, h, part});
       for (std::int64_t row = 0; row < h; ++row) {
         std::copy_n(part.begin() + row * w, w, image.pixels.begin() + (y + row) * scene.width_px + x);
       }
@@ -94,12 +94,12 @@ PanoramaScene crowded(std::int64_t width, std::int64_t height, double left_deg =
   return scene;
 }
 
-TEST(Wide, NothingSetPaintsNothing) {
+TEST(PanoramaOverlay, NothingSetPaintsNothing) {
   const PanoramaScene scene = scene_of(900, 300);
   EXPECT_TRUE(lay_out_panorama({}, scene).empty());
 }
 
-TEST(Wide, PartsAreThoseOfTheWhole) {
+TEST(PanoramaOverlay, PartsAreThoseOfTheWhole) {
   for (const double span_deg : {360.0, 70.0}) {
     const PanoramaScene scene = crowded(1400, 420, 200, span_deg);
     for (const CompassStrip where : {CompassStrip::kBottom, CompassStrip::kTop, CompassStrip::kHorizon}) {
@@ -110,13 +110,13 @@ TEST(Wide, PartsAreThoseOfTheWhole) {
       EXPECT_EQ(in_parts(sprites, scene, 256, 420).pixels, image.pixels);
       EXPECT_EQ(in_parts(sprites, scene, 61, 420).pixels, image.pixels);
       EXPECT_EQ(in_parts(sprites, scene, 333, 101).pixels, image.pixels);
-      // And everything has its place again.
+      // Laying out again gives the same positions.
       EXPECT_EQ(whole(lay_out_panorama(overlays, scene), scene).pixels, image.pixels);
     }
   }
 }
 
-TEST(Wide, TicksAreInTheColumnsOfTheirAzimuths) {
+TEST(PanoramaOverlay, TicksAreInTheColumnsOfTheirAzimuths) {
   for (const CompassStrip where : {CompassStrip::kBottom, CompassStrip::kTop, CompassStrip::kHorizon}) {
     PanoramaScene scene = scene_of(3600, 500, 100);
     vpe::core::Overlays overlays;
@@ -144,7 +144,7 @@ TEST(Wide, TicksAreInTheColumnsOfTheirAzimuths) {
   }
 }
 
-TEST(Wide, AtTheSeamBothEdgesShowTheirHalf) {
+TEST(PanoramaOverlay, AtTheSeamBothEdgesShowTheirHalf) {
   // The same panorama, begun elsewhere, is the same shifted.
   vpe::core::Overlays overlays;
   overlays.compass = CompassStrip::kHorizon;
@@ -164,7 +164,7 @@ TEST(Wide, AtTheSeamBothEdgesShowTheirHalf) {
   EXPECT_TRUE(seam.is_painted(0, 180) && seam.is_painted(1439, 180));
 }
 
-TEST(Wide, NamesStandAtTheirPlacesAndNoTextOverAnother) {
+TEST(PanoramaOverlay, NamesStandAtTheirPlacesAndNoTextOverAnother) {
   vpe::core::Overlays overlays;
   overlays.names = "places";
   PanoramaScene scene = scene_of(1440, 400, 0, 120);
@@ -205,7 +205,7 @@ TEST(Wide, NamesStandAtTheirPlacesAndNoTextOverAnother) {
               0.03 * static_cast<double>(at_end));
 }
 
-TEST(Wide, SmallPlacesAndThoseOutsideAreLeftOut) {
+TEST(PanoramaOverlay, SmallPlacesAndThoseOutsideAreLeftOut) {
   vpe::core::Overlays overlays;
   overlays.names = "places";
   PanoramaScene scene = scene_of(720, 720, 0, 60);
@@ -215,7 +215,7 @@ TEST(Wide, SmallPlacesAndThoseOutsideAreLeftOut) {
   EXPECT_FALSE(lay_out_panorama(overlays, scene).empty());
 }
 
-TEST(Wide, LettersHaveASensibleSizeInImagesOfAnySize) {
+TEST(PanoramaOverlay, LettersHaveASensibleSizeInImagesOfAnySize) {
   for (const auto& [width, height, span_deg] :
        std::vector<std::tuple<std::int64_t, std::int64_t, double>>{{100, 20, 360},
                                                                    {2048, 652, 360},
@@ -231,17 +231,17 @@ TEST(Wide, LettersHaveASensibleSizeInImagesOfAnySize) {
   EXPECT_EQ(vpe::overlay::panorama_unit(scene_of(60000, 17000)), 6);
 }
 
-// Only what falls into a part is held: its pixels are made before, and small.
-TEST(Wide, HugeImagesAreLaidOutAndDrawnInParts) {
+// Memory does not grow with the image: only sprites that meet the region are drawn.
+TEST(PanoramaOverlay, HugeImagesAreLaidOutAndDrawnInParts) {
   const PanoramaScene scene = crowded(1'000'000, 60'000);
   const SpriteLayer sprites = lay_out_panorama(all_of_them(), scene);
   std::vector<vpe::base::Rgb> part(std::size_t{64} * 60'000, kGround);
-  sprites.lay({0, 0, 64, 60'000, part});
+  sprites.composite({0, 0, 64, 60'000, part});
   EXPECT_NE(part[std::size_t{64} * 59'900 + 1], kGround);  // the band
-  EXPECT_THROW(sprites.lay({0, 0, 65, 60'000, part}), std::invalid_argument);
+  EXPECT_THROW(sprites.composite({0, 0, 65, 60'000, part}), std::invalid_argument);
 }
 
-TEST(Wide, TinyImagesAreSurvived) {
+TEST(PanoramaOverlay, TinyImagesAreSurvived) {
   for (const std::int64_t side : {1, 2, 9, 30}) {
     const PanoramaScene scene = crowded(2 * side, side);
     const Image image = whole(lay_out_panorama(all_of_them(), scene), scene);
@@ -249,7 +249,7 @@ TEST(Wide, TinyImagesAreSurvived) {
   }
 }
 
-TEST(Wide, DistancesAreShort) {
+TEST(PanoramaOverlay, DistancesAreShort) {
   using vpe::overlay::distance_text;
   EXPECT_EQ(distance_text(7.4), "7 m");
   EXPECT_EQ(distance_text(99.6), "100 m");
@@ -263,7 +263,7 @@ TEST(Wide, DistancesAreShort) {
   EXPECT_EQ(vpe::overlay::name_text("Gale", 17000), "Gale \u00b7 17 km");
 }
 
-TEST(Wide, WhatPanoramasDoNotHaveIsNamed) {
+TEST(PanoramaOverlay, OverlaysThatPanoramasLackAreNamed) {
   using vpe::overlay::not_for_panoramas;
   EXPECT_EQ(not_for_panoramas(all_of_them()), "");
   vpe::core::Overlays overlays;

@@ -1,4 +1,4 @@
-// What the mouse does to the view, and files dropped on the window.
+// Tests of mouse navigation, and of files dropped on the window.
 #include <fstream>
 
 #include "tests/window/explore_window_fixture.h"
@@ -38,22 +38,23 @@ class ExploreMouseTest : public ExploreWindowTest {
   }
 };
 
-TEST_F(ExploreMouseTest, TheWheelComesNearerToWhatIsUnderTheCursor) {
+TEST_F(ExploreMouseTest, TheWheelZoomsToTheGroundUnderTheCursor) {
   open();
   move(700, 180);
   settle();
   const glm::dvec3 under = ground_at(700, 180);
   const double before_m = distance_to(under);
   robot_->wheel(3);
-  turns(5);
+  iterate(5);
   settle();
   EXPECT_LT(distance_to(under), 0.9 * before_m);
   EXPECT_NEAR(place_of_ground(under).x, 700, 0.5);
   EXPECT_NEAR(place_of_ground(under).y, 180, 0.5);
   robot_->wheel(-3);
-  turns(5);
+  iterate(5);
   settle();
-  // A notch holds what is under the cursor then: a pixel of the whole planet is kilometres of ground.
+  // Each notch holds the ground under the cursor at that moment; a pixel of the whole planet is kilometres
+  // wide.
   EXPECT_NEAR(distance_to(under), before_m, 0.01 * before_m);
 }
 
@@ -64,7 +65,7 @@ TEST_F(ExploreMouseTest, ARightDragTiltsAboutTheMiddle) {
   const double y = screen.height / 2.0;
   move(x, y);
   robot_->wheel(10);
-  turns(10);
+  iterate(10);
   settle();
   const glm::dvec3 middle = ground_at(x, y);
   const double before_m = distance_to(middle);
@@ -72,7 +73,7 @@ TEST_F(ExploreMouseTest, ARightDragTiltsAboutTheMiddle) {
   for (const int button : {3, 2}) {  // right, then middle
     move(x, y);
     robot_->press(button);
-    turns(2);
+    iterate(2);
     for (int n = 1; n <= 6; ++n) move(x + 5 * n, y - 10 * n);
     robot_->release(button);
     settle();
@@ -117,14 +118,14 @@ TEST_F(ExploreMouseTest, ADroppedPlanetIsShownNext) {
   EXPECT_EQ(window_->next_planet_file(), other);
 }
 
-TEST_F(ExploreMouseTest, ADroppedFileThatIsNoPlanetSaysWhyAndTheWindowGoesOn) {
+TEST_F(ExploreMouseTest, ADroppedFileThatIsNoPlanetIsReportedAndTheWindowContinues) {
   const std::string text = folder_ / "notes.txt";
   std::ofstream(text) << "no planet\n";
   extra_.open_planet = [](const std::string& file) { return app::open_planet(file, app::Common{}); };
   open();
   drop(text);
-  for (int n = 0; n < 1000 && !window_->state().message_is_trouble; ++n) ASSERT_TRUE(window_->step(0.01));
-  EXPECT_TRUE(window_->state().message_is_trouble);
+  for (int n = 0; n < 1000 && !window_->state().message_is_error; ++n) ASSERT_TRUE(window_->step(0.01));
+  EXPECT_TRUE(window_->state().message_is_error);
   EXPECT_NE(window_->state().message.find("notes.txt"), std::string::npos) << window_->state().message;
   EXPECT_EQ(window_->next_planet(), nullptr);
   settle();

@@ -1,4 +1,4 @@
-// The explore window over a small planet, and hands on it.
+// Fixture for tests of the explore window with a small planet.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace vpe::window {
 
-// One planet for all tests, colours from its elevation.
+// Returns the planet of all tests; its colours come from elevation.
 inline std::shared_ptr<const paging::PlanetFile> planet() {
   static const test_support::TempDir folder;
   static const auto file = test_support::build_fake(
@@ -19,9 +19,9 @@ inline std::shared_ptr<const paging::PlanetFile> planet() {
   return file;
 }
 
-class ExploreWindowTest : public HandsTest<ExploreWindow> {
+class ExploreWindowTest : public WindowTest<ExploreWindow> {
  protected:
-  void open(int width = 960, int height = 540, Backend backend = Backend::kRays) {
+  void open(int width = 960, int height = 540, core::Backend backend = core::Backend::kRay) {
     ExploreSetup setup = std::move(extra_);
     setup.folder = folder_.path();
     setup.bookmarks = folder_ / "bookmarks";
@@ -38,10 +38,10 @@ class ExploreWindowTest : public HandsTest<ExploreWindow> {
       return std::make_unique<app::WindowPainter>(file, common);
     };
     window_ = std::make_unique<ExploreWindow>(std::move(setup));
-    take_hold();
+    focus();
   }
 
-  ExploreSetup extra_;  // what a test wants besides
+  ExploreSetup extra_;  // options of a test
   std::shared_ptr<const paging::PlanetFile> planet_ = planet();
 };
 

@@ -1,4 +1,4 @@
-// The window of `vpe explore`, driven as a person would: a mouse and keys on a screen of its own.
+// Tests of the window of `vpe explore` with simulated mouse and keys on a virtual screen.
 #include "vpe/window/explore_window.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST_F(ExploreWindowTest, ShowsThePlanetAndComesToRest) {
   open();
   ASSERT_NE(window_->drawn(), nullptr);
   EXPECT_TRUE(window_->drawn()->error.empty());
-  EXPECT_EQ(window_->drawn()->order.request.coarsening, 1.0);
+  EXPECT_EQ(window_->drawn()->request.draw.coarsening, 1.0);
   EXPECT_EQ(window_->image().width, window_->session().screen().width);
   const std::int64_t frames = window_->frames();
   const std::int64_t images = window_->images();
@@ -46,7 +46,7 @@ TEST_F(ExploreWindowTest, ADragHoldsTheGround) {
   ASSERT_TRUE(held.has_value());
   move(600, 250);
   robot_->press();
-  turns(2);
+  iterate(2);
   for (int n = 1; n <= 10; ++n) move(600 + 10 * n, 250 + 4 * n);
   robot_->release();
   settle();
@@ -67,9 +67,9 @@ TEST_F(ExploreWindowTest, TheFrameAfterAnEventShowsIt) {
   robot_->wheel(1);
   for (int n = 0; n < 100 && window_->session().pose().alt_m == pose.alt_m; ++n) window_->step(0.01);
   ASSERT_NE(window_->session().pose().alt_m, pose.alt_m);
-  // The turn that took the event has ordered the image; it is the next one shown.
+  // The iteration that handled the event has requested the image; it is the next one shown.
   for (int n = 0; n < 100 && window_->images() == before; ++n) window_->step(0.01);
-  EXPECT_EQ(glm::length(window_->drawn()->order.request.view.camera.position_m -
+  EXPECT_EQ(glm::length(window_->drawn()->request.draw.view.camera.position_m -
                         window_->session().view().camera.position_m),
             0.0);
 }
@@ -79,12 +79,12 @@ TEST_F(ExploreWindowTest, EveryModeAndBothBackendsWhileRunning) {
   for (const char* backend : {"Triangles", "Rays"}) {
     click(backend);
     settle();
-    EXPECT_EQ(window_->drawn()->order.backend,
-              backend == std::string("Rays") ? Backend::kRays : Backend::kPolygons);
+    EXPECT_EQ(window_->drawn()->request.backend,
+              backend == std::string("Rays") ? core::Backend::kRay : core::Backend::kPolygon);
     EXPECT_TRUE(window_->drawn()->error.empty()) << window_->drawn()->error;
     click("Appearance");
     for (const char* mode : {"wireframe", "markers", "unlit", "lit", "coloured", "textured"}) {
-      // Rays draw surfaces; lines and dots are refused with a reason, and the window goes on.
+      // Rays draw surfaces only; lines and dots are rejected with a reason, and the window continues.
       click("mode");
       click(std::string("mode=") + mode);
       settle();
@@ -94,18 +94,18 @@ TEST_F(ExploreWindowTest, EveryModeAndBothBackendsWhileRunning) {
   }
 }
 
-TEST_F(ExploreWindowTest, KeysMoveTurnAndHide) {
+TEST_F(ExploreWindowTest, KeysMoveRotateAndHide) {
   open();
   click(600, 240);  // the view has the focus
   settle();
   const mars::Pose before = window_->session().pose();
   robot_->key_down("w");
-  turns(10);
+  iterate(10);
   robot_->key_up("w");
   settle();
   EXPECT_LT(window_->session().pose().alt_m, before.alt_m);  // looks down, so forward is down
   robot_->key_down("Right");
-  turns(10);
+  iterate(10);
   robot_->key_up("Right");
   settle();
   EXPECT_NE(window_->session().pose().yaw_deg, before.yaw_deg);
@@ -139,7 +139,7 @@ TEST_F(ExploreWindowTest, NothingOverlaps) {
   }
 }
 
-TEST_F(ExploreWindowTest, WithoutADisplayItSaysWhatToDo) {
+TEST_F(ExploreWindowTest, WithoutADisplayTheErrorNamesAnAlternative) {
   unsetenv("DISPLAY");
   DisplayOptions options;
   options.instead = "do something else";
@@ -151,8 +151,8 @@ TEST_F(ExploreWindowTest, WithoutADisplayItSaysWhatToDo) {
   }
 }
 
-// Pairs side by side: each half is a whole view. What is under the cursor there is what is seen there.
-TEST_F(ExploreWindowTest, TheCursorIsOnTheGroundThatIsSeenThereAlsoInPairs) {
+// In pairs side by side each half is a whole view. The ground under the cursor is that of the half's image.
+TEST_F(ExploreWindowTest, TheCursorIsOnTheGroundShownThereAlsoInPairs) {
   open();
   click("##eyes");
   click("##eyes=side by side");
@@ -170,22 +170,22 @@ TEST_F(ExploreWindowTest, TheCursorIsOnTheGroundThatIsSeenThereAlsoInPairs) {
                                           window_->session().ground());
     ASSERT_TRUE(under.has_value());
     robot_->wheel(1);
-    turns(5);
+    iterate(5);
     settle();
     const core::Projected now = core::project(window_->session().view(), *under);
     EXPECT_NEAR(now.xy.x, 0.6 * screen.width, 0.5) << left;
     EXPECT_NEAR(now.xy.y, 0.5 * screen.height, 0.5) << left;
     EXPECT_LT(window_->session().pose().alt_m, before.alt_m);
   }
-  // In the bars above and below there is nothing.
+  // There is no ground in the bars above and below.
   const mars::Pose before = window_->session().pose();
   move(330 + half, 8);
   robot_->wheel(1);
-  turns(5);
+  iterate(5);
   EXPECT_EQ(window_->session().pose().alt_m, before.alt_m);
 }
 
-TEST_F(ExploreWindowTest, HiddenPanelsLetItRest) {
+TEST_F(ExploreWindowTest, ItRestsWithHiddenPanels) {
   open();
   key("Tab");
   key("Tab");
@@ -196,7 +196,7 @@ TEST_F(ExploreWindowTest, HiddenPanelsLetItRest) {
   EXPECT_EQ(window_->frames(), frames);
 }
 
-TEST_F(ExploreWindowTest, AImageThatCannotBeMadeIsToldInItsPlace) {
+TEST_F(ExploreWindowTest, AnImageThatCannotBeDrawnIsReplacedByAMessage) {
   open();
   ASSERT_EQ(window_->session().set("mode", "wireframe"), "");
   settle();
@@ -212,8 +212,8 @@ TEST_F(ExploreWindowTest, AFlightThatWasNotSavedIsKept) {
   open();
   EXPECT_EQ(window_->exit_message(), "");
   key("p");
-  const std::string words = window_->exit_message();
-  EXPECT_NE(words.find("unsaved"), std::string::npos) << words;
+  const std::string message = window_->exit_message();
+  EXPECT_NE(message.find("unsaved"), std::string::npos) << message;
   int kept = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
     kept += entry.path().string().find("unsaved") != std::string::npos ? 1 : 0;

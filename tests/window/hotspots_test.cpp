@@ -1,4 +1,4 @@
-// Stepping into a panorama and out of it.
+// Tests of entering and leaving the panorama of a hotspot.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -14,7 +14,7 @@ namespace {
 
 class HotspotsTest : public ExploreWindowTest {
  protected:
-  // A turn of 720 columns whose red is the azimuth.
+  // Makes a full circle of 720 columns whose red is the azimuth.
   std::filesystem::path make_panorama() {
     core::RgbImage image{720, 180, {}};
     for (int y = 0; y < image.height; ++y)
@@ -29,7 +29,7 @@ class HotspotsTest : public ExploreWindowTest {
   }
 };
 
-TEST_F(HotspotsTest, EnterStepsInAndEscapeOut) {
+TEST_F(HotspotsTest, EnterOpensAndEscapeLeaves) {
   explore::Hotspot hotspot;
   hotspot.name = "Ridge";
   hotspot.place = {30, 10};
@@ -43,7 +43,7 @@ TEST_F(HotspotsTest, EnterStepsInAndEscapeOut) {
   open();
   key("Return");  // nothing is near
   EXPECT_EQ(window_->overlook(), nullptr);
-  EXPECT_TRUE(window_->state().message_is_trouble);
+  EXPECT_TRUE(window_->state().message_is_error);
 
   const double ground_m = window_->session().ground().height_m(mars::direction(hotspot.place));
   window_->session().put({30.0, 10.0005, ground_m + 60, 180, -20, 0});
@@ -55,14 +55,14 @@ TEST_F(HotspotsTest, EnterStepsInAndEscapeOut) {
   ASSERT_NE(window_->overlook(), nullptr);
   const double yaw_deg = window_->overlook()->viewer().yaw_deg();
   robot_->key_down("Right");
-  turns(10);
+  iterate(10);
   robot_->key_up("Right");
   settle();
   EXPECT_GT(window_->overlook()->viewer().yaw_deg(), yaw_deg);
-  const double turned_deg = window_->overlook()->viewer().yaw_deg();
-  // Nothing moves the camera that nobody sees through.
+  const double rotated_deg = window_->overlook()->viewer().yaw_deg();
+  // Actions that would move the camera, which is not shown, are rejected.
   key("Home");
-  EXPECT_TRUE(window_->state().message_is_trouble);
+  EXPECT_TRUE(window_->state().message_is_error);
   click("map");
   settle();
   key("Escape");
@@ -80,14 +80,14 @@ TEST_F(HotspotsTest, EnterStepsInAndEscapeOut) {
   ASSERT_EQ(steps.size(), 2U);
   EXPECT_EQ(steps[0].hotspot, "Ridge");
   EXPECT_FALSE(steps[1].in);
-  // Played, the camera stands at the spot and the head looks where the overlook's view did.
+  // In playback the camera stands at the hotspot and the head has the direction of the overlook's view.
   const scripts::Path path(*scripts::parse_flight(text.str(), "log").flight, planet_->radius_m(),
                            [](mars::LonLat, double) { return 0.0; });
   const scripts::FlightState before_out = path.at(steps[1].time_s - 1e-3);
   EXPECT_NEAR(before_out.pose.lon_deg, hotspot.place.lon_deg, 1e-9);
   EXPECT_NEAR(before_out.pose.lat_deg, hotspot.place.lat_deg, 1e-9);
   EXPECT_NEAR(before_out.pose.alt_m, ground_m + hotspot.height_m, 1e-3);
-  EXPECT_NEAR(std::remainder(before_out.pose.yaw_deg + before_out.look.yaw_deg - turned_deg, 360.0), 0, 1e-6);
+  EXPECT_NEAR(std::remainder(before_out.pose.yaw_deg + before_out.head.yaw_deg - rotated_deg, 360.0), 0, 1e-6);
 }
 
 }  // namespace

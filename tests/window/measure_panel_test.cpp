@@ -1,4 +1,4 @@
-// The measuring panel without a window: Dear ImGui asks for no OpenGL until something is shown.
+// Tests of the measuring panel without a window: Dear ImGui needs no OpenGL until a frame is shown.
 #include "vpe/window/measure_panel.h"
 
 #include <gtest/gtest.h>
@@ -27,13 +27,13 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     shared_ = std::shared_ptr<const paging::Surface>(&surface(), [](const paging::Surface*) {});
     session_ = std::make_unique<explore::Session>(shared_, explore::SessionOptions{});
     session_->resize(800, 600);
-    panel_ = std::make_unique<MeasurePanel>(shared_, [this] { ++told_; });
+    panel_ = std::make_unique<MeasurePanel>(shared_, [this] { ++notified_; });
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.DisplaySize = {340, 2000};
     io.ClipboardUserData = &logged_;
-    io.SetClipboardTextFn = [](void* to, const char* words) { *static_cast<std::string*>(to) = words; };
+    io.SetClipboardTextFn = [](void* to, const char* text) { *static_cast<std::string*>(to) = text; };
     unsigned char* pixels = nullptr;
     int width = 0;
     int height = 0;
@@ -49,7 +49,7 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     ImGui::DestroyContext();
   }
 
-  // All that stands in the panel.
+  // Draws a frame and returns all text of the panel.
   const std::string& frame(std::optional<mars::LonLat> under_cursor = {}) {
     ImGui::GetIO().DeltaTime = 0.02F;
     ImGui::NewFrame();
@@ -58,15 +58,15 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     ImGui::SetNextWindowSize({330, 1990});
     ImGui::Begin("side", nullptr, ImGuiWindowFlags_NoDecoration);
     ImGui::LogToClipboard();
-    MeasureActions wish = panel_->draw(*session_, under_cursor, widgets_);
+    MeasureActions actions = panel_->draw(*session_, under_cursor, widgets_);
     ImGui::LogFinish();
     ImGui::End();
-    if (wish.go_to || !wish.message.empty()) wish_ = wish;
+    if (actions.go_to || !actions.message.empty()) actions_ = actions;
     ImGui::Render();
     return logged_;
   }
-  // With the mouse elsewhere: no words of help, which would end the list.
-  const std::string& words() {
+  // Returns the text with the mouse elsewhere: a tooltip would end the log.
+  const std::string& text() {
     move(-1, -1);
     return logged_;
   }
@@ -97,9 +97,9 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
     frame();
     frame();
   }
-  void type(const std::string& label, const std::string& words) {
+  void type(const std::string& label, const std::string& typed) {
     click(label);
-    ImGui::GetIO().AddInputCharactersUTF8(words.c_str());
+    ImGui::GetIO().AddInputCharactersUTF8(typed.c_str());
     frame();
     enter(true);
     frame();
@@ -122,18 +122,18 @@ class MeasurePanelTest : public test_support::GroundTest<test_support::RidgeGrou
 
   std::shared_ptr<const paging::Surface> shared_;
   std::unique_ptr<explore::Session> session_;
-  std::atomic<int> told_{0};
+  std::atomic<int> notified_{0};
   std::unique_ptr<MeasurePanel> panel_;
   Widgets widgets_;
-  MeasureActions wish_;
+  MeasureActions actions_;
   std::string logged_;
 };
 
-bool has(const std::string& words, const std::string& part) { return words.find(part) != std::string::npos; }
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST_F(MeasurePanelTest, WhatIsUnderTheCursorIsReadOutAndStays) {
+TEST_F(MeasurePanelTest, ThePlaceUnderTheCursorIsReadOutAndStays) {
   session_->put({145, -20, 20000, 0, -90, 0});
-  EXPECT_TRUE(has(words(), "Point at the ground"));
+  EXPECT_TRUE(has(text(), "Point at the ground"));
   const std::string there = frame(kEast);
   for (const explore::ReadOutLine& line : explore::read_out_lines(explore::read_out_at(surface(), kEast)))
     EXPECT_TRUE(has(there, line.text)) << line.text << " in\n" << there;
@@ -143,23 +143,23 @@ TEST_F(MeasurePanelTest, WhatIsUnderTheCursorIsReadOutAndStays) {
   EXPECT_TRUE(has(frame(kEast), "Range"));
 }
 
-TEST_F(MeasurePanelTest, ATypedPlaceSaysHowItIsUnderstoodAndIsGoneTo) {
+TEST_F(MeasurePanelTest, ATypedPlaceIsEchoedAndFlownTo) {
   type("##place", "4.5895 S 222.5583 W");
-  EXPECT_TRUE(has(words(), "137.441700\u00b0 E, 4.589500\u00b0 S")) << logged_;
+  EXPECT_TRUE(has(text(), "137.441700\u00b0 E, 4.589500\u00b0 S")) << logged_;
   click("Go there");
-  ASSERT_TRUE(wish_.go_to.has_value());
-  EXPECT_NEAR(wish_.go_to->lon_deg, 137.4417, 1e-9);
-  EXPECT_NEAR(wish_.go_to->lat_deg, -4.5895, 1e-9);
+  ASSERT_TRUE(actions_.go_to.has_value());
+  EXPECT_NEAR(actions_.go_to->lon_deg, 137.4417, 1e-9);
+  EXPECT_NEAR(actions_.go_to->lat_deg, -4.5895, 1e-9);
   click("Add as a point");
   ASSERT_EQ(panel_->points().size(), 1U);
   EXPECT_NEAR(panel_->points()[0].lon_deg, 137.4417, 1e-9);
 }
 
-TEST_F(MeasurePanelTest, AWrongPlaceSaysWhatIsExpectedAndIsNotGoneTo) {
+TEST_F(MeasurePanelTest, AWrongPlaceIsExplainedAndNotFlownTo) {
   type("##place", "somewhere");
-  EXPECT_TRUE(has(words(), "expected")) << logged_;
+  EXPECT_TRUE(has(text(), "expected")) << logged_;
   click("Go there");
-  EXPECT_FALSE(wish_.go_to.has_value());
+  EXPECT_FALSE(actions_.go_to.has_value());
 }
 
 TEST_F(MeasurePanelTest, TwoPointsAreMeasured) {
@@ -170,11 +170,11 @@ TEST_F(MeasurePanelTest, TwoPointsAreMeasured) {
             explore::to_csv(explore::make_profile(surface(), std::vector<mars::LonLat>{kWest, kEast})));
   ASSERT_TRUE(m.sight.has_value());
   EXPECT_FALSE(m.sight->visible);
-  EXPECT_GE(told_, 1);
-  const std::string all = words();
-  EXPECT_TRUE(has(all, explore::length_text(m.profile->ground_length_m)));
+  EXPECT_GE(notified_, 1);
+  const std::string all = text();
+  EXPECT_TRUE(has(all, explore::measured_length_text(m.profile->ground_length_m)));
   EXPECT_TRUE(has(all, "A and B do not see each other"));
-  EXPECT_TRUE(has(all, "B at " + explore::length_text(m.sight->needed_height_m) + " above ground"));
+  EXPECT_TRUE(has(all, "B at " + explore::measured_length_text(m.sight->needed_height_m) + " above ground"));
 }
 
 TEST_F(MeasurePanelTest, FromHighEnoughTheySeeEachOther) {
@@ -184,24 +184,24 @@ TEST_F(MeasurePanelTest, FromHighEnoughTheySeeEachOther) {
   type("B (m)##to", std::to_string(std::ceil(needed_m)));
   settle();
   ASSERT_NE(panel_->measured(), nullptr);
-  EXPECT_EQ(panel_->measured()->order.to_height_m, std::ceil(needed_m));
+  EXPECT_EQ(panel_->measured()->request.to_height_m, std::ceil(needed_m));
   EXPECT_TRUE(panel_->measured()->sight->visible);
   EXPECT_EQ(panel_->measured()->profile, profile);  // not made again
-  EXPECT_TRUE(has(words(), "A and B see each other")) << logged_;
+  EXPECT_TRUE(has(text(), "A and B see each other")) << logged_;
 }
 
-TEST_F(MeasurePanelTest, WhatIsShownIsOfThePointsAsTheyAre) {
+TEST_F(MeasurePanelTest, ValuesShownAreThoseOfThePresentPoints) {
   panel_->add(kWest);
   panel_->add(kEast);
   frame();
-  panel_->add({-34.9, 20.1});  // while the first two may be under way
+  panel_->add({-34.9, 20.1});  // while the first two may be being measured
   settle();
-  ASSERT_EQ(panel_->measured()->order.places.size(), 3U);
+  ASSERT_EQ(panel_->measured()->request.places.size(), 3U);
   click("x##B");
   EXPECT_EQ(panel_->points().size(), 2U);
   settle();
   ASSERT_NE(panel_->measured(), nullptr);
-  EXPECT_EQ(panel_->measured()->order.places.back().lat_deg, 20.1);
+  EXPECT_EQ(panel_->measured()->request.places.back().lat_deg, 20.1);
   click("Clear");
   EXPECT_TRUE(panel_->points().empty());
   EXPECT_EQ(panel_->measured(), nullptr);
@@ -211,17 +211,17 @@ TEST_F(MeasurePanelTest, WhatIsShownIsOfThePointsAsTheyAre) {
   EXPECT_TRUE(panel_->is_at_rest());
 }
 
-// An order that comes while another is being measured: the older one's figures are never shown.
-TEST_F(MeasurePanelTest, WhatIsFinishedTooLateIsDropped) {
+// Results of a request that is replaced while it is being measured are never shown.
+TEST_F(MeasurePanelTest, ResultsOfFormerPointsAreDropped) {
   for (int n = 0; n < 20; ++n) {
     panel_->add({-100.0 - n, 0});
     panel_->add({50, 10});
-    std::this_thread::sleep_for(std::chrono::microseconds(500));  // most often it is under way by now
+    std::this_thread::sleep_for(std::chrono::microseconds(500));  // it is usually being measured by now
     panel_->add({60, 20});
     while (!panel_->is_at_rest()) {
       frame();
       const Measured* shown = panel_->measured();
-      ASSERT_EQ(shown == nullptr ? 3U : shown->order.places.size(), 3U);
+      ASSERT_EQ(shown == nullptr ? 3U : shown->request.places.size(), 3U);
     }
     frame();
     ASSERT_NE(panel_->measured(), nullptr);
@@ -229,20 +229,20 @@ TEST_F(MeasurePanelTest, WhatIsFinishedTooLateIsDropped) {
   }
 }
 
-TEST_F(MeasurePanelTest, WhatCannotBeMeasuredSaysWhy) {
+TEST_F(MeasurePanelTest, FailedMeasurementsAreExplained) {
   panel_->add({10, 0});
   panel_->add({-170, 0});
   settle();
   ASSERT_NE(panel_->measured(), nullptr);
   EXPECT_EQ(panel_->measured()->profile, nullptr);
-  EXPECT_TRUE(has(words(), "opposite sides")) << logged_;
-  // And the panel goes on.
+  EXPECT_TRUE(has(text(), "opposite sides")) << logged_;
+  // The panel keeps working.
   panel_->clear();
   add_both();
   EXPECT_NE(panel_->measured()->profile, nullptr);
 }
 
-TEST_F(MeasurePanelTest, OnePlaceTwiceIsAWayOfNoLength) {
+TEST_F(MeasurePanelTest, OnePlaceTwiceIsAPathWithoutLength) {
   panel_->add(kWest);
   panel_->add(kWest);
   settle();
@@ -263,7 +263,7 @@ TEST_F(MeasurePanelTest, TheCursorOnThePlotMarksThePlace) {
   EXPECT_LT(mars::distance_rad(*panel_->marked(), kEast) * mars::kMarsRadius_m, 400);
   // Its figures are those of a point of the profile.
   const paging::ProfilePoint& last = panel_->measured()->profile->points.back();
-  EXPECT_TRUE(has(frame(), explore::length_text(last.distance_m) + ": ")) << logged_;
+  EXPECT_TRUE(has(frame(), explore::measured_length_text(last.distance_m) + ": ")) << logged_;
   move(plot.x1 - 1, plot.y1 + 900);
   EXPECT_FALSE(panel_->marked().has_value());
   // Gone too when the panel is not drawn any longer.
@@ -281,21 +281,21 @@ TEST_F(MeasurePanelTest, TheProfileIsSavedWholeOrNotAtAll) {
   const test_support::TempDir folder;
   type("##file", (folder / "p.csv").string());
   click("Save CSV");
-  ASSERT_FALSE(wish_.message.empty());
-  EXPECT_FALSE(wish_.message_is_trouble) << wish_.message;
+  ASSERT_FALSE(actions_.message.empty());
+  EXPECT_FALSE(actions_.message_is_error) << actions_.message;
   std::ifstream file(folder / "p.csv");
   std::stringstream text;
   text << file.rdbuf();
   EXPECT_EQ(text.str(), explore::to_csv(*panel_->measured()->profile));
   click("Save CSV");
-  EXPECT_TRUE(has(wish_.message, "replaced")) << wish_.message;
+  EXPECT_TRUE(has(actions_.message, "replaced")) << actions_.message;
   std::filesystem::remove_all(folder.path());
   click("Save CSV");
-  EXPECT_TRUE(wish_.message_is_trouble);
-  EXPECT_TRUE(has(wish_.message, (folder / "p.csv").string())) << wish_.message;
+  EXPECT_TRUE(actions_.message_is_error);
+  EXPECT_TRUE(has(actions_.message, (folder / "p.csv").string())) << actions_.message;
 }
 
-TEST_F(MeasurePanelTest, ItMayEndWhileItMeasures) {
+TEST_F(MeasurePanelTest, ThePanelMayBeDestroyedWhileItMeasures) {
   for (int n = 0; n < 5; ++n) {
     panel_->add({-100.0 + n, 0});
     panel_->add({70, 10.0 * n});
@@ -306,7 +306,7 @@ TEST_F(MeasurePanelTest, ItMayEndWhileItMeasures) {
 
 constexpr ImU32 kMark = IM_COL32(255, 214, 90, 255);
 
-// Vertices of the marks' full colour within some pixels of a place.
+// Counts vertices of the marks' full colour within some pixels of a place.
 int vertices_at(const ImDrawList& list, const explore::Session& session, mars::LonLat place, double x0,
                 double y0, double within_px) {
   const glm::dvec3 d = mars::direction(place);
@@ -320,7 +320,7 @@ int vertices_at(const ImDrawList& list, const explore::Session& session, mars::L
   return count;
 }
 
-TEST_F(MeasurePanelTest, MarksStandWhereTheirPlacesAreAndHiddenOnesAreFaint) {
+TEST_F(MeasurePanelTest, MarksStandAtTheirPlacesAndHiddenOnesAreFaint) {
   const auto draw = [&](const mars::Pose& pose) {
     session_->put(pose);
     ImGui::NewFrame();
@@ -349,7 +349,7 @@ TEST_F(MeasurePanelTest, MarksStandWhereTheirPlacesAreAndHiddenOnesAreFaint) {
   for (const ImDrawVert& v : far->VtxBuffer) EXPECT_NE(v.col, kMark);
 }
 
-TEST(PointNames, GoOnBehindZ) {
+TEST(PointNames, ContinueAfterZ) {
   EXPECT_EQ(point_name(0), "A");
   EXPECT_EQ(point_name(25), "Z");
   EXPECT_EQ(point_name(26), "AA");

@@ -1,4 +1,4 @@
-// The window of `vpe overlook`, driven as a person would: a mouse and keys on a screen of its own.
+// Tests of the window of `vpe overlook` with simulated mouse and keys on a virtual screen.
 #include "vpe/window/overlook_window.h"
 
 #include <arpa/inet.h>
@@ -36,22 +36,22 @@ vpe::base::Rgb colour_of(const Direction& d) {
   return {byte(0.5 + 0.5 * std::sin(a)), byte(0.5 + 0.5 * std::cos(a)), byte(0.5 + d.elevation_deg / 180)};
 }
 
-std::vector<vpe::base::Rgb> pixels_of(const PanoramaMap& map, double turned_deg = 0) {
+std::vector<vpe::base::Rgb> pixels_of(const PanoramaMap& map, double rotated_deg = 0) {
   std::vector<vpe::base::Rgb> pixels;
   for (std::int64_t y = 0; y < map.height_px; ++y) {
     for (std::int64_t x = 0; x < map.width_px; ++x) {
       Direction d = map.to_direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
-      d.azimuth_deg += turned_deg;
+      d.azimuth_deg += rotated_deg;
       pixels.push_back(colour_of(d));
     }
   }
   return pixels;
 }
 
-class OverlookWindowTest : public HandsTest<OverlookWindow> {
+class OverlookWindowTest : public WindowTest<OverlookWindow> {
  protected:
   void SetUp() override {
-    HandsTest::SetUp();
+    WindowTest::SetUp();
     preferences_.use_space_mouse = false;
     pad_ = [] { return std::nullopt; };
   }
@@ -60,7 +60,7 @@ class OverlookWindowTest : public HandsTest<OverlookWindow> {
     core::write_image(folder_ / name, pixels_of(map), static_cast<int>(map.width_px),
                       static_cast<int>(map.height_px));
     const fs::path json = (folder_ / name).replace_extension(".json");
-    base::write_file(json, panorama::to_json({name, map, {}}));
+    base::write_file(json, panorama::to_text({name, map, {}}));
     return json;
   }
 
@@ -79,7 +79,7 @@ class OverlookWindowTest : public HandsTest<OverlookWindow> {
   }
   void open(const fs::path& json) { open(json, Opening()); }
   void open(const fs::path& json, const Opening& how) {
-    const app::EyesFiles files{json.string(), {}, {}};
+    const app::PanoramaFiles files{json.string(), {}, {}};
     OverlookWindowSetup setup;
     setup.view = app::overlook_setup(files, std::size_t{64} << 20, 2);
     setup.view.look = how.look;
@@ -93,13 +93,13 @@ class OverlookWindowTest : public HandsTest<OverlookWindow> {
     setup.devices.pad = [this] { return pad_(); };
     window_.reset();
     window_ = std::make_unique<OverlookWindow>(std::move(setup));
-    take_hold();
+    focus();
   }
 
   void drag(glm::dvec2 from, glm::dvec2 to) {
     move(from.x, from.y);
     robot_->press();
-    turns(2);
+    iterate(2);
     for (int n = 1; n <= 3; ++n) {
       const glm::dvec2 at = from + (to - from) * (n / 3.0);
       move(at.x, at.y);
@@ -108,7 +108,7 @@ class OverlookWindowTest : public HandsTest<OverlookWindow> {
     settle();
   }
   void key(const std::string& name) {
-    HandsTest::key(name);
+    WindowTest::key(name);
     settle();
   }
   core::RgbImage screenshot() {
@@ -155,7 +155,7 @@ TEST_F(OverlookWindowTest, ShowsEachDirectionAtItsPixelAndThenDrawsNothing) {
   }
 }
 
-TEST_F(OverlookWindowTest, ADragHoldsTheDirectionAcrossTheWholeTurn) {
+TEST_F(OverlookWindowTest, ADragHoldsTheDirectionAroundTheFullCircle) {
   for (const PanoramaMap& map : {kCylinder, kFacets}) {
     open(write(map, "a.png"));
     const double begun_deg = viewer().yaw_deg();
@@ -169,7 +169,7 @@ TEST_F(OverlookWindowTest, ADragHoldsTheDirectionAcrossTheWholeTurn) {
     if (all_around) {
       EXPECT_GT(viewer().yaw_deg(), begun_deg + 360.0);  // and on
     }
-    const core::View& view = window_->view().drawn()->order.request.view;
+    const core::View& view = window_->view().drawn()->request.draw.view;
     EXPECT_EQ(view.height, viewer().size().y);
     EXPECT_EQ(view.camera.axes.forward, viewer().view().camera.axes.forward);
   }
@@ -193,28 +193,28 @@ TEST_F(OverlookWindowTest, TheWheelZoomsAtTheCursor) {
   const Direction before = under(450, 220);
   const double wide = std::tan(viewer().fov_deg() / 2 * mars::kRadiansPerDegree);
   robot_->wheel(3);
-  turns(5);
+  iterate(5);
   settle();
   expect_same(under(450, 220), before, 1e-6);
   EXPECT_NEAR(std::tan(viewer().fov_deg() / 2 * mars::kRadiansPerDegree),
               wide / std::pow(OverlookView::kZoomStep, 3), 1e-9);
   robot_->wheel(40);
-  turns(5);
+  iterate(5);
   settle();
   EXPECT_EQ(viewer().fov_deg(), viewer().min_fov_deg());
 }
 
-TEST_F(OverlookWindowTest, KeysTurnAndZoom) {
+TEST_F(OverlookWindowTest, KeysRotateAndZoom) {
   open(write(kCylinder, "a.png"), looking(Direction{100, 5}));
   move(320, 150);
   robot_->key_down("Right");
-  turns(10);
+  iterate(10);
   robot_->key_up("Right");
   settle();
   EXPECT_GT(viewer().yaw_deg(), 100.0);
   EXPECT_EQ(viewer().pitch_deg(), 5.0);
   robot_->key_down("Down");
-  turns(10);
+  iterate(10);
   robot_->key_up("Down");
   settle();
   EXPECT_LT(viewer().pitch_deg(), 5.0);
@@ -232,7 +232,7 @@ TEST_F(OverlookWindowTest, KeysTurnAndZoom) {
   EXPECT_EQ(viewer().fov_deg(), 60.0);
 }
 
-TEST_F(OverlookWindowTest, CompassMarksStandWhereTheViewHasThem) {
+TEST_F(OverlookWindowTest, CompassMarksStandAtTheirAzimuths) {
   for (const double pitch_deg : {0.0, 12.0}) {
     open(write(kCylinder, "a.png"), looking(Direction{350, pitch_deg}));
     const core::RgbImage shown = screenshot();
@@ -266,7 +266,7 @@ TEST_F(OverlookWindowTest, TheReadOutIsThatOfTheCommandLine) {
   std::vector<float> range;
   for (int n = 0; n < 1440 * 480; ++n) range.push_back(n < 1440 * 240 ? NAN : static_cast<float>(n % 1440));
   core::write_tiff(folder_ / "a.range.tif", range, 1440, 480);
-  auto json = nlohmann::json::parse(panorama::to_json({"a.png", kCylinder, {}}));
+  auto json = nlohmann::json::parse(panorama::to_text({"a.png", kCylinder, {}}));
   json["planes"] = {{"range", "a.range.tif"}};
   base::write_file(json_path, json.dump());
   open(json_path);
@@ -277,7 +277,7 @@ TEST_F(OverlookWindowTest, TheReadOutIsThatOfTheCommandLine) {
     const auto reading = window_->view().reading();
     ASSERT_TRUE(reading && reading->place);
     expect_same(reading->direction, under(at.x, at.y), 1e-9);
-    const app::ShownPlace told = app::place_at(window_->view().panorama(), under(at.x, at.y));
+    const panorama::ProbeResult told = app::probe_direction(window_->view().panorama(), under(at.x, at.y));
     EXPECT_EQ(app::csv_line(*reading->place), app::csv_line(told));
     const bool is_ground = reading->direction.elevation_deg < 0;
     ground += is_ground ? 1 : 0;
@@ -293,7 +293,7 @@ TEST_F(OverlookWindowTest, TheReadOutIsThatOfTheCommandLine) {
   EXPECT_FALSE(window_->view().reading().has_value());
 }
 
-TEST_F(OverlookWindowTest, AHeadTrackerTurnsItAndComesBack) {
+TEST_F(OverlookWindowTest, AHeadTrackerRotatesItAndReturns) {
   preferences_.use_head_tracker = true;
   preferences_.head_from.port = 0;
   open(write(kCylinder, "a.png"), looking(Direction{100, 0}));
@@ -311,7 +311,7 @@ TEST_F(OverlookWindowTest, AHeadTrackerTurnsItAndComesBack) {
   const auto turn_until = [&](double yaw_deg, double pitch_deg, bool sends) {
     for (int n = 0; n < 1000; ++n) {
       if (sends) send_look(yaw_deg - 100, pitch_deg);
-      turns(1);
+      iterate(1);
       if (std::abs(viewer().yaw_deg() - yaw_deg) < 0.01 && std::abs(viewer().pitch_deg() - pitch_deg) < 0.01)
         return;
     }
@@ -323,17 +323,17 @@ TEST_F(OverlookWindowTest, AHeadTrackerTurnsItAndComesBack) {
   close(out);
 }
 
-TEST_F(OverlookWindowTest, AGamepadTurnsIt) {
+TEST_F(OverlookWindowTest, AGamepadRotatesIt) {
   open(write(kCylinder, "a.png"), looking(Direction{100, 0}));
   explore::PadState pad;
   pad.axes[static_cast<std::size_t>(explore::PadAxis::kRightX)] = 1;
   pad_ = [&pad] { return pad; };
-  turns(10);
+  iterate(10);
   pad_ = [] { return std::nullopt; };
   settle();
   EXPECT_GT(viewer().yaw_deg(), 100.0);
   const double yaw_deg = viewer().yaw_deg();
-  turns(10);
+  iterate(10);
   EXPECT_EQ(viewer().yaw_deg(), yaw_deg);
 }
 
@@ -342,18 +342,18 @@ TEST_F(OverlookWindowTest, PairsInEveryLayout) {
   const std::vector<vpe::base::Rgb> right = pixels_of(kCylinder, 40);
   both.insert(both.end(), right.begin(), right.end());
   core::write_image(folder_ / "ou.png", both, 1440, 960);
-  auto json = nlohmann::json::parse(panorama::to_json({"ou.png", kCylinder, {}}));
+  auto json = nlohmann::json::parse(panorama::to_text({"ou.png", kCylinder, {}}));
   json["stereo"] = "ou";
   base::write_file(folder_ / "ou.json", json.dump());
   Opening anaglyph;
   anaglyph.stereo = core::StereoLayout::kAnaglyph;
   open(folder_ / "ou.json", anaglyph);
-  const auto drawn = panorama::open_image(folder_ / "ou.png", panorama::ImageFormat::kPng, {});
+  const auto drawn = panorama::open_tiled_image(folder_ / "ou.png", panorama::ImageFileFormat::kPng, {});
   const auto expected = [&] {
     panorama::RenderViewOptions options;
-    const core::RgbImage left = panorama::look(*drawn, kCylinder, viewer().view(), options);
+    const core::RgbImage left = panorama::render_view(*drawn, kCylinder, viewer().view(), options);
     options.origin.y_px = kCylinder.height_px;
-    return core::combine_stereo(left, panorama::look(*drawn, kCylinder, viewer().view(), options),
+    return core::combine_stereo(left, panorama::render_view(*drawn, kCylinder, viewer().view(), options),
                                 *window_->view().stereo());
   };
   EXPECT_EQ(window_->view().drawn()->image.pixels, expected().pixels);
@@ -393,7 +393,7 @@ TEST_F(OverlookWindowTest, HidesHelpsSavesAndCloses) {
   EXPECT_LT(viewer().size().y, 400);
   key("F12");
   key("F12");
-  EXPECT_FALSE(window_->view().message_is_trouble());
+  EXPECT_FALSE(window_->view().message_is_error());
   EXPECT_NE(window_->view().message().find("a-view-2.png"), std::string::npos) << window_->view().message();
   for (const char* name : {"a-view-1.png", "a-view-2.png"})
     EXPECT_EQ(core::read_image(folder_ / name).pixels, window_->view().drawn()->image.pixels);
@@ -411,26 +411,26 @@ TEST_F(OverlookWindowTest, MovesInSmallerImagesWhenTimeIsShort) {
   open(write(kCylinder, "a.png"));
   move(150, 150);
   robot_->press();
-  turns(2);
+  iterate(2);
   int smallest = viewer().size().y;
   for (int n = 1; n <= 20; ++n) {
     move(150 + 10 * n, 150);
-    smallest = std::min(smallest, window_->view().drawn()->order.request.view.height);
+    smallest = std::min(smallest, window_->view().drawn()->request.draw.view.height);
   }
   robot_->release();
   settle();
   EXPECT_LT(smallest, viewer().size().y);
-  EXPECT_EQ(window_->view().drawn()->order.request.view.height, viewer().size().y);
+  EXPECT_EQ(window_->view().drawn()->request.draw.view.height, viewer().size().y);
 }
 
-TEST_F(OverlookWindowTest, ADamagedImageIsTold) {
+TEST_F(OverlookWindowTest, ADamagedImageIsReported) {
   const fs::path json = write(kCylinder, "bad.png");
   std::fstream file(folder_ / "bad.png", std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(static_cast<std::streamoff>(fs::file_size(folder_ / "bad.png") / 2));
   file << "not what was here";
   file.close();
   open(json);
-  EXPECT_TRUE(window_->view().message_is_trouble());
+  EXPECT_TRUE(window_->view().message_is_error());
   EXPECT_NE(window_->view().message().find("bad.png"), std::string::npos) << window_->view().message();
   EXPECT_EQ(window_->view().drawn(), nullptr);
 }
@@ -456,24 +456,24 @@ TEST_F(OverlookWindowTest, NothingOverlaps) {
   }
 }
 
-// An image that does not fit is copied into the cache, and nobody waits for that when the window is closed.
+// An image that does not fit into memory is copied into the cache; closing the window stops that.
 TEST(PanoramaPainterTest, StopsCopyingWhenNobodyWantsIt) {
   const test_support::TempDir folder;
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
   const PanoramaMap map = panorama::cylinder_map(1440, 1440, 1440, 0, 720);
   core::write_image(folder / "a.png", pixels_of(map), 1440, 1440);
-  base::write_file(folder / "a.json", panorama::to_json({"a.png", map, {}}));
+  base::write_file(folder / "a.json", panorama::to_text({"a.png", map, {}}));
   OverlookSetup setup = app::overlook_setup({(folder / "a.json").string(), {}, {}},
                                             panorama::TiledImageOptions::kMinBudget_bytes, 1);
-  ImageRequest order;
-  order.request.view = panorama::view_of(0, 0, 60, 64, 36);
+  ImageRequest request;
+  request.draw.view = panorama::view_of(0, 0, 60, 64, 36);
   const auto painter = setup.make_painter();
   setup.copying->stop = true;
-  EXPECT_THROW(painter->paint(order), std::exception);
+  EXPECT_THROW(painter->paint(request), std::exception);
   const fs::path kept = folder / "cache" / "vpe" / "pictures";
   EXPECT_TRUE(!fs::exists(kept) || fs::is_empty(kept));
   setup.copying->stop = false;
-  EXPECT_EQ(painter->paint(order).image.width, 64);
+  EXPECT_EQ(painter->paint(request).image.width, 64);
   EXPECT_FALSE(fs::is_empty(kept));
   unsetenv("XDG_CACHE_HOME");
 }

@@ -1,4 +1,4 @@
-// A screen that nobody sees, and hands that move its mouse and press its keys as a person would.
+// A virtual screen, and a simulated user that moves the mouse and presses keys on it.
 #pragma once
 
 #include <memory>
@@ -6,10 +6,10 @@
 
 namespace vpe::window {
 
-// A virtual X server of its own. `DISPLAY` is set to it while it lives.
+// Runs a virtual X server and sets `DISPLAY` to it during its lifetime.
 class Screen {
  public:
-  // Empty `why` when it runs.
+  // Starts the server; why_not() is empty if it runs.
   Screen(int width, int height);
   ~Screen();
   Screen(const Screen&) = delete;
@@ -21,7 +21,7 @@ class Screen {
   std::string why_not_;
 };
 
-// Positions are of the whole screen.
+// Simulates input. Positions are in pixels of the whole screen.
 class Robot {
  public:
   Robot();

@@ -1,4 +1,4 @@
-// A session from beginning to end, by hand, and the same again from its log.
+// Tests of a whole session by hand, and of its replay from the log.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -19,20 +19,20 @@ namespace vpe::window {
 namespace {
 
 struct Shown {
-  ImageRequest order;
+  ImageRequest request;
   core::RgbImage image;
   mars::Pose pose;
 };
 
 class SessionTest : public ExploreWindowTest {
  protected:
-  // Turns of the loop; every image that is shown is kept.
+  // Runs iterations of the event loop and keeps every image that is shown.
   void watch(int count) {
     for (int n = 0; n < count; ++n) {
       const std::int64_t before = window_->images();
       ASSERT_TRUE(window_->step(0.01));
-      if (window_->images() != before && window_->drawn()->order.logged_s)
-        shown_.push_back({window_->drawn()->order, window_->image(), window_->session().pose()});
+      if (window_->images() != before && window_->drawn()->request.logged_s)
+        shown_.push_back({window_->drawn()->request, window_->image(), window_->session().pose()});
     }
   }
 
@@ -67,17 +67,17 @@ TEST_F(SessionTest, IsTheSameFromItsLog) {
   EXPECT_TRUE(window_->is_recording());
   // Five waypoints on the map.
   robot_->key_down("Control_L");
-  turns(3);
+  iterate(3);
   for (const double u : {0.55, 0.6, 0.65, 0.7, 0.75}) click(on_map(u, 0.45).first, on_map(u, 0.45).second);
   robot_->key_up("Control_L");
-  turns(3);
+  iterate(3);
   ASSERT_NE(window_->session().flights().editor(), nullptr);
   ASSERT_EQ(window_->session().flights().editor()->flight().waypoints.size(), 5U);
   explore::FlightEditor& editor = *window_->session().flights().editor();
   ASSERT_EQ(editor.scale_times(2.0 / scripts::duration_s(editor.flight())), "");  // two seconds
   const scripts::Flight flown = editor.flight();
 
-  // It plays while somebody looks around in it and changes what is drawn.
+  // The flight plays while the user looks around and changes a setting.
   click("Play");
   ASSERT_TRUE(window_->session().follows_flight());
   move(600, 200);
@@ -112,17 +112,17 @@ TEST_F(SessionTest, IsTheSameFromItsLog) {
   double off_m = 0;
   double off_rad = 0;
   for (const Shown& shown : shown_) {
-    const double time_s = *shown.order.logged_s;
+    const double time_s = *shown.request.logged_s;
     const mars::CameraPose camera = path.at(time_s).camera;
-    const mars::CameraPose& drawn = shown.order.request.view.camera;
-    off_m = std::max(off_m, glm::length(camera.position_m - drawn.camera_m));
+    const mars::CameraPose& drawn = shown.request.draw.view.camera;
+    off_m = std::max(off_m, glm::length(camera.position_m - drawn.position_m));
     off_rad = std::max(off_rad, mars::angle_between_rad(camera.axes.forward, drawn.axes.forward));
     off_rad = std::max(off_rad, mars::angle_between_rad(camera.axes.up, drawn.axes.up));
-    if (shown.order.request.coarsening != 1.0 || compared >= 3) continue;
+    if (shown.request.draw.coarsening != 1.0 || compared >= 3) continue;
     core::Settings settings = first;
     path.apply_settings(time_s, settings);
     core::DrawRequest request;
-    request.view = shown.order.request.view;
+    request.view = shown.request.draw.view;
     request.view.camera = camera;
     request.settings = settings.values();
     request.sun = app::sun_for(settings.values(), path.at(time_s).pose);
@@ -140,10 +140,10 @@ TEST_F(SessionTest, BookmarksAndViewsLeadBack) {
   open();
   const mars::Pose start = window_->session().pose();
   robot_->key_down("Control_L");
-  turns(2);
+  iterate(2);
   key("1");
   robot_->key_up("Control_L");
-  turns(2);
+  iterate(2);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "bookmarks"));
   click(600, 240);
   robot_->wheel(8);
@@ -151,7 +151,7 @@ TEST_F(SessionTest, BookmarksAndViewsLeadBack) {
   EXPECT_LT(window_->session().pose().alt_m, start.alt_m / 2);
   // A view counts once it has been looked at for half a second.
   const double begun = glfwGetTime();
-  while (glfwGetTime() < begun + 0.7) turns(1);
+  while (glfwGetTime() < begun + 0.7) iterate(1);
   key("1");
   settle();
   EXPECT_NEAR(window_->session().pose().alt_m, start.alt_m, 1e-6);
@@ -160,7 +160,7 @@ TEST_F(SessionTest, BookmarksAndViewsLeadBack) {
   EXPECT_LT(window_->session().pose().alt_m, start.alt_m / 2);
 }
 
-TEST_F(SessionTest, AImageIsWhatIsShown) {
+TEST_F(SessionTest, ASavedImageIsTheOneShown) {
   open();
   key("F12");
   settle();
@@ -174,7 +174,7 @@ TEST_F(SessionTest, AImageIsWhatIsShown) {
   EXPECT_EQ(images, 1);
 }
 
-TEST_F(SessionTest, AGamepadASpaceMouseAndAHeadMoveTheEye) {
+TEST_F(SessionTest, AGamepadASpaceMouseAndAHeadMoveTheCamera) {
   struct Cap : explore::SpaceMouseSource {
     std::vector<explore::SpaceMouseEvent> next;
     std::vector<explore::SpaceMouseEvent> poll() override { return std::exchange(next, {}); }
@@ -190,16 +190,16 @@ TEST_F(SessionTest, AGamepadASpaceMouseAndAHeadMoveTheEye) {
   const mars::Pose start = window_->session().pose();
   *pad = explore::PadState{};
   (*pad)->axes[static_cast<std::size_t>(explore::PadAxis::kRightX)] = 1;
-  turns(12);
+  iterate(12);
   EXPECT_NE(window_->session().pose().yaw_deg, start.yaw_deg);
   pad->reset();
-  turns(2);
+  iterate(2);
   const double alt_m = window_->session().pose().alt_m;
   hand->next.push_back(explore::SpaceMouseMotion{{0, 0, 350}, {0, 0, 0}});
-  turns(12);
+  iterate(12);
   EXPECT_LT(window_->session().pose().alt_m, alt_m);  // ahead is down
   hand->next.push_back(explore::SpaceMouseMotion{});
-  turns(2);
+  iterate(2);
 
   // A head, 20 degrees to the right; one datagram is no datagram.
   ASSERT_TRUE(window_->devices().tracker_port().has_value());
@@ -215,11 +215,11 @@ TEST_F(SessionTest, AGamepadASpaceMouseAndAHeadMoveTheEye) {
   };
   const mars::Pose pose = window_->session().pose();
   send(sizeof head - 1);
-  turns(3);
+  iterate(3);
   EXPECT_EQ(window_->session().look().yaw_deg, 0);
   for (int n = 0; n < 300 && window_->session().look().yaw_deg < 19; ++n) {
     send(sizeof head);
-    turns(1);
+    iterate(1);
   }
   EXPECT_NEAR(window_->session().look().yaw_deg, 20, 1);
   EXPECT_NEAR(window_->session().look().pitch_deg, 5, 1);
@@ -234,20 +234,20 @@ TEST_F(SessionTest, AWaypointIsDraggedAndARegionDrawnOnTheMap) {
   const auto x_of = [&](double u) { return map.x0 + u * (map.x1 - map.x0); };
   const auto y_of = [&](double v) { return map.y0 + v * (map.y1 - map.y0); };
   robot_->key_down("Control_L");
-  turns(2);
+  iterate(2);
   click(x_of(0.3), y_of(0.3));
   click(x_of(0.5), y_of(0.3));
   robot_->key_up("Control_L");
-  turns(2);
+  iterate(2);
   const explore::FlightEditor* editor = window_->session().flights().editor();
   ASSERT_NE(editor, nullptr);
   const scripts::Flight before = editor->flight();
   move(x_of(0.3), y_of(0.3));
   robot_->press();
-  turns(2);
+  iterate(2);
   for (int n = 1; n <= 4; ++n) move(x_of(0.3), y_of(0.3 + 0.05 * n));
   robot_->release();
-  turns(2);
+  iterate(2);
   const double degrees_px = 180.0 / (map.y1 - map.y0);
   EXPECT_NEAR(editor->flight().waypoints[0].lat_deg, before.waypoints[0].lat_deg - 0.2 * 180, 2 * degrees_px);
   EXPECT_EQ(editor->flight().waypoints[0].up_m, before.waypoints[0].up_m);
@@ -258,17 +258,17 @@ TEST_F(SessionTest, AWaypointIsDraggedAndARegionDrawnOnTheMap) {
   robot_->key_down("Shift_L");
   move(x_of(0.7), y_of(0.6));
   robot_->press();
-  turns(2);
+  iterate(2);
   for (int n = 1; n <= 4; ++n) move(x_of(0.7), y_of(0.6 + 0.02 * n));
   robot_->release();
-  turns(2);
+  iterate(2);
   robot_->key_up("Shift_L");
   settle();
   ASSERT_EQ(window_->session().interest().size(), 1U);
   const core::InterestRegion region = window_->session().interest().front();
   EXPECT_NEAR(region.lon_deg, 0.2 * 360, 2 * degrees_px);
   EXPECT_NEAR(region.radius_m / planet()->radius_m() / mars::kRadiansPerDegree, 0.08 * 180, 2 * degrees_px);
-  EXPECT_EQ(window_->drawn()->order.request.interest.size(), 1U);
+  EXPECT_EQ(window_->drawn()->request.draw.interest.size(), 1U);
 }
 
 TEST_F(SessionTest, TwoEyesInEveryLayout) {
@@ -280,7 +280,7 @@ TEST_F(SessionTest, TwoEyesInEveryLayout) {
     click("##eyes");
     click(std::string("##eyes=") + name);
     settle();
-    ASSERT_EQ(window_->drawn()->order.stereo, layout);
+    ASSERT_EQ(window_->drawn()->request.stereo, layout);
     EXPECT_EQ(window_->image().width, screen.width * (layout == core::StereoLayout::kSideBySide ? 2 : 1));
     EXPECT_EQ(window_->image().height, screen.height * (layout == core::StereoLayout::kOverUnder ? 2 : 1));
   }

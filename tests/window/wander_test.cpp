@@ -1,4 +1,4 @@
-// Wandering about for a long time. VPE_WANDER_S says how long (300), VPE_EMBEDDED_PLANET where.
+// Test of a long random session. VPE_WANDER_S sets its duration (300), VPE_EMBEDDED_PLANET the planet.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
   if (path != nullptr) planet_ = paging::PlanetFile::open(path);
   ASSERT_TRUE(extra_.session.settings.set("lod.tolerance", "2").empty());
   ASSERT_TRUE(extra_.session.settings.set("lod.frame_ms", "40").empty());
-  open(1280, 720, Backend::kPolygons);
+  open(1280, 720, core::Backend::kPolygon);
 
   test_support::Random random(20261122);
   std::vector<double> frames_ms;
@@ -41,7 +41,7 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
   const auto begun = Clock::now();
   double next_memory_s = 0;
   std::int64_t images = window_->images();
-  // One thing after another, each for a while.
+  // Performs one random activity after another, each for some seconds.
   enum class Doing { kForward, kDrag, kTilt, kZoomIn, kZoomOut, kMap, kRest };
   Doing doing = Doing::kRest;
   double until_s = 0;
@@ -102,7 +102,7 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
                            static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
   };
   std::printf(
-      "%zu frames: median %.1f ms, 99 %% %.1f, longest %.1f; %zu pictures: median %.1f, 99 %% %.1f, longest "
+      "%zu frames: median %.1f ms, 99 %% %.1f, longest %.1f; %zu images: median %.1f, 99 %% %.1f, longest "
       "%.1f\n",
       frames_ms.size(), part(frames_ms, 0.5), part(frames_ms, 0.99), frames_ms.back(), images_ms.size(),
       part(images_ms, 0.5), part(images_ms, 0.99), images_ms.back());
@@ -111,7 +111,7 @@ TEST_F(LongWander, FramesStayShortAndMemoryFlat) {
   std::printf("\nlongest frames, ms:");
   for (const double ms : longest_ms) std::printf(" %.0f", ms);
   std::printf("\n");
-  // Holders fill in the first half; from then on there is nothing more to hold.
+  // Caches fill in the first half; after that memory must not grow.
   const double half = memory_mb[memory_mb.size() / 2];
   EXPECT_LT(memory_mb.back(), half * 1.1 + 16);
 }

@@ -1,4 +1,4 @@
-// Hands on a window on a screen of its own: what tests of every window do.
+// Fixture for tests of any window: a virtual screen, simulated input, iterations of the event loop.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,21 +15,21 @@
 namespace vpe::window {
 
 // `Window` has step(), is_at_rest(), display() and widgets(). The test opens it as window_ and calls
-// take_hold().
+// focus().
 template <class Window>
-class HandsTest : public testing::Test {
+class WindowTest : public testing::Test {
  protected:
   void SetUp() override {
     if (!screen_.why_not().empty()) GTEST_SKIP() << "skipped: " << screen_.why_not();
     robot_ = std::make_unique<Robot>();
   }
 
-  void take_hold() {
+  void focus() {
     glfwFocusWindow(window_->display().handle());
     settle();
   }
 
-  // Turns of the loop until nothing moves, loads or waits.
+  // Runs the event loop until nothing moves, loads or waits.
   void settle() {
     for (int n = 0; n < 2000; ++n) {
       ASSERT_TRUE(window_->step(0.01));
@@ -37,24 +37,24 @@ class HandsTest : public testing::Test {
     }
     FAIL() << "the window does not come to rest";
   }
-  void turns(int count) {
+  void iterate(int count) {
     for (int n = 0; n < count; ++n) ASSERT_TRUE(window_->step(0.01));
   }
 
-  // Positions are of the window.
+  // Positions are in pixels of the window.
   void move(double x, double y) {
     int left = 0;
     int top = 0;
     glfwGetWindowPos(window_->display().handle(), &left, &top);
     robot_->move(x + left, y + top);
-    turns(3);
+    iterate(3);
   }
   void click(double x, double y) {
     move(x, y);
     robot_->press();
-    turns(2);
+    iterate(2);
     robot_->release();
-    turns(2);
+    iterate(2);
   }
   void click(const std::string& label) {
     const auto found = window_->widgets().places().find(label);
@@ -65,7 +65,7 @@ class HandsTest : public testing::Test {
   const WidgetPlace& place_of(const std::string& label) { return window_->widgets().places().at(label); }
   void key(const std::string& name) {
     robot_->key(name);
-    turns(3);
+    iterate(3);
   }
 
   test_support::TempDir folder_;

@@ -8,14 +8,14 @@ namespace vpe::explore {
 FlightController::FlightController(double radius_m, scripts::TerrainHeight terrain_height_m)
     : radius_m_(radius_m), terrain_height_m_(std::move(terrain_height_m)) {}
 
-std::string FlightController::take(const scripts::Flight& flight) {
+std::string FlightController::load(const scripts::Flight& flight) {
   try {
     FlightEditor editor(flight, radius_m_);
     FlightPlayer player(scripts::Path(flight, radius_m_, terrain_height_m_), radius_m_);
     editor_.emplace(std::move(editor));
     player_.emplace(std::move(player));
-    played_ = editor_->revision();
-    played_exaggeration_ = 1;
+    player_revision_ = editor_->revision();
+    player_exaggeration_ = 1;
     problem_.clear();
     return {};
   } catch (const std::exception& e) {
@@ -29,7 +29,7 @@ void FlightController::clear() {
   problem_.clear();
 }
 
-std::string FlightController::add(const mars::Pose& pose, double speed_m_per_s) {
+std::string FlightController::append(const mars::Pose& pose, double speed_m_per_s) {
   scripts::Waypoint waypoint;
   waypoint.lon_deg = pose.lon_deg;
   waypoint.lat_deg = pose.lat_deg;
@@ -40,17 +40,17 @@ std::string FlightController::add(const mars::Pose& pose, double speed_m_per_s) 
   if (editor_) return editor_->append(waypoint, speed_m_per_s);
   scripts::Flight flight;
   flight.waypoints.push_back(waypoint);
-  std::string trouble = take(flight);
-  if (trouble.empty()) editor_->mark_unsaved();
-  return trouble;
+  std::string problem = load(flight);
+  if (problem.empty()) editor_->mark_unsaved();
+  return problem;
 }
 
 FlightPlayer* FlightController::player(double exaggeration) {
   if (!editor_) return nullptr;
-  if (played_ == editor_->revision() && played_exaggeration_ == exaggeration)
+  if (player_revision_ == editor_->revision() && player_exaggeration_ == exaggeration)
     return player_ ? &*player_ : nullptr;
-  played_ = editor_->revision();
-  played_exaggeration_ = exaggeration;
+  player_revision_ = editor_->revision();
+  player_exaggeration_ = exaggeration;
   std::optional<FlightPlayer> before = std::exchange(player_, std::nullopt);
   try {
     player_.emplace(scripts::Path(editor_->flight(), radius_m_, terrain_height_m_, exaggeration), radius_m_);
@@ -63,7 +63,7 @@ FlightPlayer* FlightController::player(double exaggeration) {
     player_->set_speed(before->speed());
     player_->set_loop(before->loops());
     player_->scrub(before->time_s());
-    player_->view_panorama(before->look_offset());
+    player_->set_look_offset(before->look_offset());
     player_->keep_settings_of(*before);
     if (before->is_playing()) player_->play();
   }

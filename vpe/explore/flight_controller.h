@@ -1,4 +1,4 @@
-// The flight of a session: being edited and played at once.
+// The flight of a session, which can be edited and played at the same time.
 #pragma once
 
 #include <cstdint>
@@ -12,32 +12,42 @@
 
 namespace vpe::explore {
 
+// Owns the editor and the player of one flight, and remakes the player after each edit. For one thread at a
+// time.
+//
+// Typical usage:
+//   FlightController flights(radius_m, terrain_height_m);
+//   if (std::string problem = flights.append(pose, 1000); !problem.empty()) show(problem);
+//   if (FlightPlayer* player = flights.player(exaggeration)) player->advance(dt_s);
 class FlightController {
  public:
   FlightController(double radius_m, scripts::TerrainHeight terrain_height_m);
 
-  // Replaces what is there; paused at the start. What is wrong, empty when all is well; then nothing changes.
-  [[nodiscard]] std::string take(const scripts::Flight& flight);
+  // Replaces the flight; the player is paused at the start. Returns what is wrong with the flight, or "". A bad
+  // flight changes nothing.
+  [[nodiscard]] std::string load(const scripts::Flight& flight);
+  // Removes the flight.
   void clear();
 
-  // A waypoint at the end, at its altitude, reached with a ground speed; the first one makes the flight.
-  [[nodiscard]] std::string add(const mars::Pose& pose, double speed_m_per_s);
+  // Appends a waypoint at the pose's altitude, reached at a ground speed; makes a new flight if there is none.
+  // Returns what is wrong, or "".
+  [[nodiscard]] std::string append(const mars::Pose& pose, double speed_m_per_s);
 
-  // Null when there is no flight.
+  // Returns the editor, or null if there is no flight.
   FlightEditor* editor() { return editor_ ? &*editor_ : nullptr; }
   const FlightEditor* editor() const { return editor_ ? &*editor_ : nullptr; }
-  // As the flight is now: an edit shows at once, with the player's time, speed, loop, look and settings kept by hand as they were. Null when
-  // there is no flight or it cannot be played (problem()).
+  // Returns a player of the flight as edited. Remakes it after an edit, but keeps its time, speed, loop, look
+  // offset and the user's settings. Returns null if there is no flight or it cannot be played (problem()).
   FlightPlayer* player(double exaggeration);
-  // Why it cannot be played; empty when it can.
+  // Returns why the flight cannot be played, or "".
   const std::string& problem() const { return problem_; }
 
  private:
   double radius_m_;
   scripts::TerrainHeight terrain_height_m_;
   std::optional<FlightEditor> editor_;
-  std::uint64_t played_ = 0;  // revision of the flight that the player was made of
-  double played_exaggeration_ = 1;
+  std::uint64_t player_revision_ = 0;  // FlightEditor::revision() that the player was made from
+  double player_exaggeration_ = 1;
   std::optional<FlightPlayer> player_;
   std::string problem_;
 };

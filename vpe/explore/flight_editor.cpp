@@ -22,17 +22,17 @@ constexpr double kStanding_m = 1;
 
 mars::LonLat place_of(const Waypoint& w) { return {w.lon_deg, w.lat_deg}; }
 
-std::string number_text(std::size_t index) { return "pose " + std::to_string(index + 1); }
+std::string pose_name(std::size_t index) { return "pose " + std::to_string(index + 1); }
 
-// What the format says that it wants, in its own words, or nothing.
-std::string wanted_by(const scripts::ParsedFlight& parsed) {
+// Returns what the flight format expects instead of the first error, or "".
+std::string expected_by(const scripts::ParsedFlight& parsed) {
   constexpr std::string_view kExpected = "expected ";
   if (parsed.errors.empty()) return "";
-  const std::string& words = parsed.errors.front().expected;
-  return words.starts_with(kExpected) ? words.substr(kExpected.size()) : words;
+  const std::string& text = parsed.errors.front().expected;
+  return text.starts_with(kExpected) ? text.substr(kExpected.size()) : text;
 }
 
-std::string problem_in(const std::string& lines) { return wanted_by(scripts::parse_flight(lines, "")); }
+std::string problem_in(const std::string& lines) { return expected_by(scripts::parse_flight(lines, "")); }
 
 std::string problem_of(const Waypoint& w) { return problem_in(scripts::version_line() + scripts::to_line(w)); }
 
@@ -42,7 +42,8 @@ std::string problem_of_speed(double speed_m_per_s) {
 
 std::size_t bytes_of(const Flight& f) {
   std::size_t bytes = sizeof f + f.waypoints.size() * sizeof(Waypoint) +
-                      f.looks.size() * sizeof(scripts::Look) + f.interests.size() * sizeof(scripts::Interest);
+                      f.heads.size() * sizeof(scripts::HeadCommand) +
+                      f.interests.size() * sizeof(scripts::InterestCommand);
   for (const scripts::SetCommand& set : f.sets) bytes += sizeof set + set.key.size() + set.text.size();
   return bytes;
 }
@@ -80,10 +81,10 @@ std::size_t FlightEditor::nearest(mars::LonLat place) const {
 
 FlightEditor::Problem FlightEditor::no_pose(std::size_t index) const {
   if (index < flight_.waypoints.size()) return "";
-  return "there is no " + number_text(index) + ": the flight has " + std::to_string(flight_.waypoints.size());
+  return "there is no " + pose_name(index) + ": the flight has " + std::to_string(flight_.waypoints.size());
 }
 
-// The pose's own numbers, its time between those of its neighbours, and the ways to them.
+// Checks a pose's numbers, its time between those of its neighbours, and the paths to them.
 FlightEditor::Problem FlightEditor::check_neighbours(const Flight& flight, std::size_t index) const {
   const Waypoint& w = flight.waypoints[index];
   if (Problem problem = problem_of(w); !problem.empty()) return "a pose needs " + problem;
@@ -94,10 +95,10 @@ FlightEditor::Problem FlightEditor::check_neighbours(const Flight& flight, std::
     const Waypoint& o = flight.waypoints[other];
     if (is_before ? !(o.time_s < w.time_s) : !(w.time_s < o.time_s)) {
       return "the time must be " + std::string(is_before ? "after " : "before ") + format_number(o.time_s) +
-             " s, that of the pose beside it, not " + format_number(w.time_s);
+             " s, the time of the neighbouring pose, not " + format_number(w.time_s);
     }
     if (mars::distance_rad(place_of(o), place_of(w)) > mars::kPi - kOpposite_rad) {
-      return "two poses after each other may not be on opposite sides of the planet: place one between them";
+      return "consecutive poses may not be on opposite sides of the planet: place one between them";
     }
     return "";
   };
@@ -143,10 +144,10 @@ FlightEditor::Problem FlightEditor::insert(const Waypoint& waypoint) {
   const auto after = std::lower_bound(all.begin(), all.end(), waypoint.time_s,
                                       [](const Waypoint& w, double t) { return w.time_s < t; });
   if (after != all.end() && after->time_s == waypoint.time_s) {
-    return "there is a pose at " + format_number(waypoint.time_s) + " s already: take another time";
+    return "there is a pose at " + format_number(waypoint.time_s) + " s already: choose another time";
   }
   const auto index = static_cast<std::size_t>(after - all.begin());
-  return insert_at(index, waypoint, "insert " + number_text(index));
+  return insert_at(index, waypoint, "insert " + pose_name(index));
 }
 
 FlightEditor::Problem FlightEditor::insert_after(std::size_t index, const Waypoint& waypoint,
@@ -157,34 +158,34 @@ FlightEditor::Problem FlightEditor::insert_after(std::size_t index, const Waypoi
   const Waypoint& b = flight_.waypoints[index + 1];
   const double before_m = leg_m(a, waypoint);
   const double after_m = leg_m(waypoint, b);
-  // Not so near to either that the flight would jump.
+  // Not so close to either time that the flight would jump.
   constexpr double kLeastShare = 0.01;
   const double share = before_m + after_m > 0 ? before_m / (before_m + after_m) : 0.5;
   Waypoint placed = waypoint;
   placed.time_s = a.time_s + std::clamp(share, kLeastShare, 1 - kLeastShare) * (b.time_s - a.time_s);
-  return insert_at(index + 1, placed, "insert " + number_text(index + 1));
+  return insert_at(index + 1, placed, "insert " + pose_name(index + 1));
 }
 
 FlightEditor::Problem FlightEditor::append(const Waypoint& waypoint, double speed_m_per_s) {
   if (Problem problem = problem_of_speed(speed_m_per_s); !problem.empty()) return problem;
   const Waypoint& last = flight_.waypoints.back();
-  const double way_m = leg_m(last, waypoint);
+  const double path_m = leg_m(last, waypoint);
   Waypoint placed = waypoint;
   placed.time_s =
-      last.time_s + (way_m < kStanding_m ? FlightEditorLimits::kStandingLeg_s : way_m / speed_m_per_s);
+      last.time_s + (path_m < kStanding_m ? FlightEditorLimits::kStandingLeg_s : path_m / speed_m_per_s);
   const std::size_t index = flight_.waypoints.size();
-  return insert_at(index, placed, "append " + number_text(index));
+  return insert_at(index, placed, "append " + pose_name(index));
 }
 
-FlightEditor::Problem FlightEditor::move(std::size_t index, mars::LonLat place, bool goes_on) {
+FlightEditor::Problem FlightEditor::move(std::size_t index, mars::LonLat place, bool continues) {
   if (Problem problem = no_pose(index); !problem.empty()) return problem;
   Flight next = flight_;
   Waypoint& w = next.waypoints[index];
   w.lon_deg = place.lon_deg;
   w.lat_deg = place.lat_deg;
   if (Problem problem = check_neighbours(next, index); !problem.empty()) return problem;
-  const std::string what = "move " + number_text(index);
-  const bool merges = goes_on && drag_ == what;
+  const std::string what = "move " + pose_name(index);
+  const bool merges = continues && drag_ == what;
   if (!merges) drag_.clear();
   if (next == flight_) return "";
   Problem problem = change(std::move(next), what, merges);
@@ -197,7 +198,7 @@ FlightEditor::Problem FlightEditor::replace(std::size_t index, const Waypoint& w
   Flight next = flight_;
   next.waypoints[index] = waypoint;
   if (Problem problem = check_neighbours(next, index); !problem.empty()) return problem;
-  return change(std::move(next), "edit " + number_text(index));
+  return change(std::move(next), "edit " + pose_name(index));
 }
 
 FlightEditor::Problem FlightEditor::remove(std::size_t index) {
@@ -208,7 +209,7 @@ FlightEditor::Problem FlightEditor::remove(std::size_t index) {
   if (index > 0 && index < next.waypoints.size()) {
     if (Problem problem = check_neighbours(next, index); !problem.empty()) return problem;
   }
-  return change(std::move(next), "delete " + number_text(index));
+  return change(std::move(next), "delete " + pose_name(index));
 }
 
 FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& time_s, std::string what) {
@@ -221,7 +222,7 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
     for (auto& command : commands) command.time_s = time_s(command.time_s);
   };
   all(next.waypoints);
-  all(next.looks);
+  all(next.heads);
   all(next.sets);
   all(next.interests);
   if (next.end_s) next.end_s = time_s(*next.end_s);
@@ -231,14 +232,14 @@ FlightEditor::Problem FlightEditor::retime(const std::function<double(double)>& 
     }
     return true;
   };
-  if (!ascend(next.waypoints) || !ascend(next.looks)) {
+  if (!ascend(next.waypoints) || !ascend(next.heads)) {
     return "the times would be too close together to tell them apart";
   }
   return change(std::move(next), std::move(what));
 }
 
 FlightEditor::Problem FlightEditor::scale_times(double factor) {
-  if (!(factor > 0) || !std::isfinite(factor)) return "a factor of times must be above 0";
+  if (!(factor > 0) || !std::isfinite(factor)) return "the factor of times must be above 0";
   return retime([&](double t) { return factor * t; }, "scale times");
 }
 
@@ -247,9 +248,9 @@ FlightEditor::Problem FlightEditor::keep_speed(double speed_m_per_s) {
   const auto& all = flight_.waypoints;
   std::vector<double> times_s{all.front().time_s};
   for (std::size_t i = 1; i < all.size(); ++i) {
-    const double way_m = leg_m(all[i - 1], all[i]);
+    const double path_m = leg_m(all[i - 1], all[i]);
     const double old_s = all[i].time_s - all[i - 1].time_s;
-    times_s.push_back(times_s.back() + (way_m < kStanding_m ? old_s : way_m / speed_m_per_s));
+    times_s.push_back(times_s.back() + (path_m < kStanding_m ? old_s : path_m / speed_m_per_s));
   }
   const auto time_s = [&](double t) {
     if (t <= all.front().time_s) return t;
@@ -289,7 +290,7 @@ FlightEditor::Problem FlightEditor::set_end(std::optional<double> end_s) {
 
 FlightEditor::Problem FlightEditor::replace_all(Flight flight, const std::string& what) {
   const scripts::ParsedFlight parsed = scripts::parse_flight(scripts::to_text(flight), "");
-  if (!parsed.flight) return "a flight needs " + wanted_by(parsed);
+  if (!parsed.flight) return "a flight needs " + expected_by(parsed);
   if (!(*parsed.flight == flight)) return "the flight's commands must be in the order of their times";
   for (std::size_t i = 0; i < flight.waypoints.size(); ++i) {
     if (Problem problem = check_neighbours(flight, i); !problem.empty()) return problem;

@@ -1,9 +1,10 @@
-// Editing the poses of a flight: placed, dragged, inserted, deleted, timed anew, with undo.
+// Editing of a flight's poses: place, drag, insert, delete and retime, with undo.
 //
-// The flight is always one that parse_flight(to_text()) gives back and that plays: times of poses ascend
-// strictly and lie within the format's limits, there is at least one pose, every number is in its range, and no
-// pose is opposite to the one before it or (given by its altitude) at the planet's centre. An edit that would
-// break this changes nothing and says why. Distances are along great circles on the planet's sphere.
+// The flight always satisfies these conditions: parse_flight(to_text()) returns it, and it can be played. Times
+// of poses ascend strictly and lie within the format's limits, there is at least one pose, every number is in
+// its range, and no pose is opposite to the one before it or (if given by its altitude) at the planet's centre.
+// An edit that would violate this changes nothing and returns the reason. Distances are along great circles on
+// the planet's sphere.
 #pragma once
 
 #include <cstddef>
@@ -19,74 +20,81 @@
 namespace vpe::explore {
 
 struct FlightEditorLimits {
-  static constexpr std::size_t kUndoBytes = std::size_t{64}
-                                            << 20;  // of flights kept for undo; the oldest go first
-  static constexpr double kStandingLeg_s = 1;       // to a pose at the same place, where a speed gives no time
+  static constexpr std::size_t kUndoBytes = std::size_t{64} << 20;  // of flights kept for undo; oldest go first
+  static constexpr double kStandingLeg_s = 1;  // to a pose at the same place, where a speed gives no time
 };
 
+// Edits one flight. For one thread at a time.
+//
+// Typical usage:
+//   FlightEditor editor(flight, radius_m);
+//   if (FlightEditor::Problem problem = editor.move(2, place); !problem.empty()) show(problem);
+//   if (!editor.undo_text().empty()) editor.undo();
 class FlightEditor {
  public:
   // Empty, or what is wrong with an edit and what to do.
   using Problem = std::string;
 
-  // Throws std::invalid_argument with the problem: a flight that is not as above.
+  // Throws std::invalid_argument with the problem for a flight that violates the conditions above.
   FlightEditor(scripts::Flight flight, double radius_m);
 
   const scripts::Flight& flight() const { return flight_; }
-  // Another number whenever the flight is another.
+  // Returns a number that changes whenever the flight changes.
   std::uint64_t revision() const { return revision_; }
   std::string to_text() const { return scripts::to_text(flight_); }
 
-  // The pose nearest to a place, over the ground; the first of equal ones.
+  // Returns the index of the pose nearest to a place, along the ground; the first of equal ones.
   std::size_t nearest(mars::LonLat place) const;
 
-  // At its own time, between the poses around it. An `end` before it moves to it.
+  // Inserts a pose at its own time. An earlier `end` moves to it.
   [[nodiscard]] Problem insert(const scripts::Waypoint& waypoint);
 
-  // Between a pose and the next one, its time dividing theirs as its place divides the way; after the last pose
-  // as append(). The time of `waypoint` is not read.
+  // Inserts a pose between a pose and the next one. Its time divides theirs as its place divides the path.
+  // After the last pose works as append(). Does not read the time of `waypoint`.
   [[nodiscard]] Problem insert_after(std::size_t index, const scripts::Waypoint& waypoint,
                                      double speed_m_per_s);
 
-  // At the end, as long after the last pose as the way between them takes; an earlier `end` moves to it. The
-  // time of `waypoint` is not read.
+  // Adds a pose at the end. Its time follows from the distance and the speed; an earlier `end` moves to it.
+  // Does not read the time of `waypoint`.
   [[nodiscard]] Problem append(const scripts::Waypoint& waypoint, double speed_m_per_s);
 
-  // To another place; altitude or height, attitude and time stay. `goes_on`: one step of undo with the move of
-  // the same pose just before it, as of one drag.
-  [[nodiscard]] Problem move(std::size_t index, mars::LonLat place, bool goes_on = false);
+  // Moves a pose to another place; altitude or height, attitude and time stay. `continues` joins the move with
+  // the previous move of the same pose to one undo step, as during one drag.
+  [[nodiscard]] Problem move(std::size_t index, mars::LonLat place, bool continues = false);
 
-  // Any field. The time must stay between those of its neighbours; the rest of the flight keeps its times.
+  // Replaces all fields of a pose. The time must stay between those of its neighbours; other times do not
+  // change.
   [[nodiscard]] Problem replace(std::size_t index, const scripts::Waypoint& waypoint);
 
-  // All but the only pose.
+  // Deletes a pose. The last remaining pose cannot be deleted.
   [[nodiscard]] Problem remove(std::size_t index);
 
-  // Every time of the flight times a positive factor.
+  // Multiplies every time of the flight by a positive factor.
   [[nodiscard]] Problem scale_times(double factor);
 
-  // Legs of at least 1 m get the time of this ground speed, shorter ones keep theirs; the first pose keeps its
-  // time. Looks, settings, regions and the end move with the poses around them.
+  // Retimes legs of at least 1 m for this ground speed; shorter ones keep their time, and so does the first
+  // pose. Looks, settings, regions and the end move with the poses around them.
   [[nodiscard]] Problem keep_speed(double speed_m_per_s);
 
-  // From the first to the last pose, metres.
+  // Returns the length from the first to the last pose, metres.
   double length_m() const;
 
   [[nodiscard]] Problem set_view(const scripts::FlightView& view);
 
-  // Nothing: the flight ends with its last command.
+  // Sets the time at which the flight ends; nullopt: it ends with its last command.
   [[nodiscard]] Problem set_end(std::optional<double> end_s);
 
-  // Anything else, such as looks, settings and regions: the whole flight anew. `what` names the edit for undo.
+  // Replaces the whole flight, for edits of looks, settings and regions. `what` names the edit for undo.
   [[nodiscard]] Problem replace_all(scripts::Flight flight, const std::string& what);
 
-  // What undo() and redo() would take back or bring again, as "move pose 3"; empty when there is nothing.
+  // Return the edit that undo() or redo() would revert or repeat, such as "move pose 3", or "" if there is
+  // none.
   std::string undo_text() const;
   std::string redo_text() const;
   bool undo();
   bool redo();
 
-  // Whether the flight differs from what it was made with or last marked as saved.
+  // Returns true if the flight differs from the one given to the constructor or last marked as saved.
   bool is_changed() const { return !(flight_ == saved_); }
   void mark_saved() { saved_ = flight_; }
   void mark_unsaved() { saved_ = {}; }
@@ -110,7 +118,7 @@ class FlightEditor {
   scripts::Flight saved_;
   std::deque<Step> undo_;
   std::deque<Step> redo_;
-  std::string drag_;  // name of the step that a move may go on with
+  std::string drag_;  // name of the undo step that a move may continue
 };
 
 }  // namespace vpe::explore

@@ -43,26 +43,26 @@ void FlightPlayer::set_speed(double speed) {
   speed_ = std::copysign(size, speed);
 }
 
-void FlightPlayer::view_panorama(const mars::HeadAngles& offset) {
+void FlightPlayer::set_look_offset(const mars::HeadAngles& offset) {
   offset_ = {mars::normalize_lon_deg(finite(offset.yaw_deg)),
              std::clamp(finite(offset.pitch_deg), -180.0, 180.0),
              mars::normalize_lon_deg(finite(offset.roll_deg))};
 }
 
-void FlightPlayer::turn_look(double yaw_deg, double pitch_deg, double roll_deg) {
-  // Kept to what can be seen, so that turning back is felt at once.
-  const double flight_deg = path_.at(time_s_).look.pitch_deg;
+void FlightPlayer::add_look_offset(double yaw_deg, double pitch_deg, double roll_deg) {
+  // The sum is clamped here, so that a rotation back takes effect immediately.
+  const double flight_deg = path_.at(time_s_).head.pitch_deg;
   const double pitch = std::clamp(flight_deg + offset_.pitch_deg + finite(pitch_deg), -90.0, 90.0) - flight_deg;
-  view_panorama({offset_.yaw_deg + finite(yaw_deg), pitch, offset_.roll_deg + finite(roll_deg)});
+  set_look_offset({offset_.yaw_deg + finite(yaw_deg), pitch, offset_.roll_deg + finite(roll_deg)});
 }
 
 scripts::FlightState FlightPlayer::state() const {
   scripts::FlightState state = path_.at(time_s_);
   if (offset_.yaw_deg == 0 && offset_.pitch_deg == 0 && offset_.roll_deg == 0) return state;
-  state.look = {mars::normalize_lon_deg(state.look.yaw_deg + offset_.yaw_deg),
-                std::clamp(state.look.pitch_deg + offset_.pitch_deg, -90.0, 90.0),
-                mars::normalize_lon_deg(state.look.roll_deg + offset_.roll_deg)};
-  state.camera = mars::to_camera(state.pose, state.look, radius_m_);
+  state.head = {mars::normalize_lon_deg(state.head.yaw_deg + offset_.yaw_deg),
+                std::clamp(state.head.pitch_deg + offset_.pitch_deg, -90.0, 90.0),
+                mars::normalize_lon_deg(state.head.roll_deg + offset_.roll_deg)};
+  state.camera = mars::to_camera(state.pose, state.head, radius_m_);
   return state;
 }
 
@@ -70,7 +70,7 @@ core::Settings FlightPlayer::settings(const core::Settings& base) const {
   core::Settings settings = base;
   path_.apply_settings(time_s_, settings);
   for (const auto& [key, text] : kept_) {
-    // keep_setting() has tried it.
+    // keep_setting() has checked it.
     static_cast<void>(settings.set(key, text));
   }
   return settings;

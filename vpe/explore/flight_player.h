@@ -1,7 +1,7 @@
-// Plays a flight: play, pause, scrub, speed, loop, with the user's own look around on top.
+// Playback of a flight: play, pause, scrub, speed, loop. The user can look around at the same time.
 //
-// No clock: advance() is told how much time went by. What it shows at a time is what scripts::Path says of that
-// time, however it got there.
+// The player has no clock: the caller passes the elapsed time to advance(). The state at a time is that of
+// scripts::Path and does not depend on how that time was reached.
 #pragma once
 
 #include <map>
@@ -18,27 +18,27 @@ struct FlightPlayerLimits {
   static constexpr double kFastest = 100;
 };
 
+// Plays one path. For one thread at a time.
 class FlightPlayer {
  public:
-  // Paused at the start.
+  // Is paused at the start.
   FlightPlayer(scripts::Path path, double radius_m);
 
-  // At the end of what is ahead (the end, or the start when the speed is negative) it begins again from the
-  // other.
+  // Starts or continues. At the end (or at the start, if the speed is negative) begins again from the other
+  // one.
   void play();
   void pause() { playing_ = false; }
   bool is_playing() const { return playing_; }
 
-  // Time goes by in the user's world, seconds, 0 or more. Without a loop it stops exactly at the end (or start)
-  // and pauses there. With one the end is the start: what is beyond the end is beyond the start, however long
-  // it was.
+  // Advances by elapsed real time, seconds, 0 or more. Without a loop, stops and pauses exactly at the end (or
+  // start). With a loop, continues from the other end; any number of loops may pass.
   void advance(double dt_s);
 
-  // To a time, kept to the flight; playing or pausing stays as it is.
+  // Jumps to a time, clamped to the flight. Does not start or pause.
   void scrub(double time_s);
 
-  // Seconds of flight a second, negative: backwards. Kept to FlightPlayerLimits with its sign; what is 0 or not
-  // finite changes nothing (pause() stands still).
+  // Sets the seconds of flight for each real second; negative: backwards. Clamps to FlightPlayerLimits and
+  // keeps the sign. Ignores 0 and values that are not finite (use pause() instead).
   void set_speed(double speed);
   double speed() const { return speed_; }
   void set_loop(bool loop) { loop_ = loop; }
@@ -50,29 +50,30 @@ class FlightPlayer {
   bool at_end() const { return time_s_ >= duration_s(); }
   const scripts::Path& path() const { return path_; }
 
-  // The user's look, added to that of the flight angle by angle (pitch stops straight up and down). The
-  // platform's motion and the flight's own look go on below it. Angles that are not finite count as 0.
-  void view_panorama(const mars::HeadAngles& offset);
-  void turn_look(double yaw_deg, double pitch_deg, double roll_deg = 0);  // further, from where it is
-  void look_ahead() { view_panorama({}); }
+  // Sets the user's look, which is added to that of the flight angle by angle (pitch is clamped to straight up
+  // and down). The platform's motion and the flight's own look continue below it. Angles that are not finite
+  // count as 0.
+  void set_look_offset(const mars::HeadAngles& offset);
+  // Adds to the look offset.
+  void add_look_offset(double yaw_deg, double pitch_deg, double roll_deg = 0);
+  void reset_look_offset() { set_look_offset({}); }
   const mars::HeadAngles& look_offset() const { return offset_; }
 
-  // Now: without an offset that of Path::at(), to the bit.
+  // Returns the state now. Without an offset it equals Path::at() bit by bit.
   scripts::FlightState state() const;
 
-  // The settings of now: `base` (what held before the flight), the flight's up to and including this time, and
-  // over them the user's own. Scrubbed backwards it is again as it was then.
+  // Returns the settings now: `base` (those before the flight), then the flight's up to and including this
+  // time, then the user's own. They depend on the time alone, also after scrubbing backwards.
   core::Settings settings(const core::Settings& base) const;
 
-  // A setting of the user's own while the flight plays, which the flight does not undo. Returns what is wrong,
-  // as core::Settings::set().
+  // Adds a setting of the user, which overrides the flight's. Returns what is wrong, as core::Settings::set().
   [[nodiscard]] std::string keep_setting(const std::string& key, const std::string& text);
   void release_setting(const std::string& key) { kept_.erase(key); }
   void release_settings() { kept_.clear(); }
-  // Those of another player of the same flight, in place of its own.
+  // Copies the user's settings from another player of the same flight.
   void keep_settings_of(const FlightPlayer& other) { kept_ = other.kept_; }
 
-  std::span<const scripts::Interest> interests() const { return path_.interests(time_s_); }
+  std::span<const scripts::InterestCommand> interests() const { return path_.interests(time_s_); }
 
  private:
   scripts::Path path_;

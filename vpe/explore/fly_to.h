@@ -1,4 +1,4 @@
-// Flying to a place by itself: after a double click, a click on the map, a bookmark.
+// Automatic flight to a pose, after a double click, a click on the map, or a bookmark.
 #pragma once
 
 #include "mars/geodesy/pose.h"
@@ -11,20 +11,20 @@ struct FlyToLimits {
   static constexpr double kLongest_s = 4;
 };
 
-// A way from one pose to another: along the great circle, over an arc that rises with its length so that both
-// ends are in sight in the middle, eased at both ends; angles the short way round. Immutable, pure.
+// Interpolates between two poses along the great circle. The path rises with its length, so that both ends are
+// in sight in the middle, and is eased at both ends. Angles take the shorter direction. Immutable.
 class FlyTo {
  public:
   FlyTo(const mars::Pose& from, const mars::Pose& to, const TerrainQuery& ground);
 
   double duration_s() const { return duration_s_; }
-  // Clear of the ground in between; at the end, and after it, `to` itself.
+  // Returns the pose at a time: above the ground on the way, and exactly `to` at the end and later.
   mars::Pose at(double time_s, const TerrainQuery& ground) const;
 
  private:
   mars::Pose from_;
   mars::Pose to_;
-  double hump_ = 0;  // of the logarithm of the height, in the middle
+  double climb_ = 0;  // of the logarithm of the height, in the middle
   double duration_s_ = 0;
 };
 

@@ -1,9 +1,13 @@
-// Which image to draw next while somebody looks: coarse while the camera moves and time is short, full when it
-// rests, none when nothing would change. Look and wait (lod/progressive_refinement.h) and the frame-time controller
-// (lod/frame_budget.h) in one, over images that are made one after the other. Pure: no clock.
+// Selects the next image of an interactive view: coarse while the camera moves and time is short, full when it
+// rests, none when nothing would change. Combines progressive refinement (lod/progressive_refinement.h, "look
+// and wait" in Hitchner 1992) with the frame-time controller (lod/frame_budget.h), for images that are drawn
+// one after the other. Has no clock.
 //
-// What is given up for speed is one factor m: the tolerance counts m times, and the image has sqrt(m) times
-// fewer pixels along each side, to kSmallestSide; so triangles, rays and pixels all fall.
+// The time budget alone makes images coarser: ProgressiveRefinement's rule for motion is switched off
+// (max_multiplier = 1). One factor m describes a coarse image: its tolerance is m times larger, and it has
+// sqrt(m) times fewer pixels along each side, down to LiveImageOptions::smallest_side. Triangles, rays and
+// pixels all decrease. The ray backend reads missing tiles while it draws, which the factor does not shorten,
+// so its images can exceed the budget.
 #pragma once
 
 #include <optional>
@@ -15,10 +19,21 @@
 namespace vpe::explore {
 
 struct LiveImageOptions {
-  double budget_ms = 50;  // of an image while the camera moves; 0: nothing is given up
+  // Time of an image while the camera moves. Smaller: smoother motion, coarser images; larger: the reverse. 0:
+  // all images are full.
+  double budget_ms = 50;
+  // Smallest side of a coarse image relative to the full one. Smaller: budgets are met on slower machines, with
+  // blurred images; larger: sharper, but the budget may be exceeded.
   double smallest_side = 1.0 / 3.0;
 };
 
+// Chooses image by image. For one thread at a time.
+//
+// Typical usage:
+//   if (const auto request = live.next(view, has_changed, nearest_m)) {
+//     ...                               // draw request->view with request->multiplier
+//     live.record(milliseconds, is_settled);
+//   }
 class LiveImage {
  public:
   // Throws std::invalid_argument for a budget under 0 or a side outside (0, 1].
@@ -28,31 +43,31 @@ class LiveImage {
 
   struct Request {
     double multiplier = 1;  // DrawRequest::coarsening
-    core::View view;        // `wanted`, perhaps of fewer pixels
-    bool is_full = true;    // nothing is given up
+    core::View view;        // the wanted view, possibly with fewer pixels
+    bool is_full = true;    // in tolerance and pixels
   };
-  // Whenever no image is on its way. `changed`: something besides the view did since the last order.
-  // nearest_m: distance of the nearest ground, for how far the image moves. Nothing: the image that is
-  // there is final.
+  // Returns the next image to draw, or nullopt if the last one is final. Call it whenever no image is being
+  // drawn. `changed`: something besides the view has changed since the last request. `nearest_m`: distance of
+  // the nearest ground, from which the motion in the image follows.
   std::optional<Request> next(const core::View& wanted, bool changed, double nearest_m);
 
-  // How the last order went.
-  void made(double ms, bool settled);
+  // Records the time and the result of the last request.
+  void record(double ms, bool settled);
 
   lod::RefinementState state() const { return state_; }
 
  private:
   LiveImageOptions options_;
-  lod::ProgressiveRefinement look_;
+  lod::ProgressiveRefinement refinement_;
   lod::FrameBudgetState budget_;
-  std::optional<core::View> last_;  // wanted at the last order
+  std::optional<core::View> last_;  // wanted view of the last request
   double last_multiplier_ = 1;
   bool settled_ = false;
-  bool lost_ = true;  // nothing was drawn yet
+  bool is_first_ = true;  // nothing was requested yet
   lod::RefinementState state_ = lod::RefinementState::kRefining;
 };
 
-// The same view of fewer pixels (0 < side <= 1), at least 16 a side.
+// Returns the same view with fewer pixels (0 < side <= 1), at least 16 a side.
 core::View reduced(const core::View& view, double side);
 
 }  // namespace vpe::explore

@@ -13,9 +13,10 @@ namespace {
 
 using mars::Pose;
 
-constexpr double kPoleKeepsHeading_deg = 80;
+constexpr double kKeepsHeading_deg = 80;  // up to this latitude
 
-// Where a line of sight meets a ball about the planet's centre; beside it, the edge nearest to the line.
+// Returns the point at which a line of sight meets a sphere about the planet's centre, or the nearest point of
+// the sphere's visible edge if the line misses it.
 glm::dvec3 on_ball(const glm::dvec3& camera_m, const glm::dvec3& ray, double radius_m) {
   const double middle_m = -glm::dot(camera_m, ray);
   const glm::dvec3 nearest = camera_m + ray * middle_m;
@@ -27,7 +28,8 @@ glm::dvec3 on_ball(const glm::dvec3& camera_m, const glm::dvec3& ray, double rad
     if (inside < 0.0) return camera_m + ray * (middle_m + half_m);
     if (middle_m >= 0.0) return camera_m + ray * (middle_m - half_m);
   }
-  // The edge as it is seen: where a tangent through the camera, in the plane of the line of sight, touches.
+  // The visible edge is where a tangent through the camera, in the plane of the line of sight, touches the
+  // sphere.
   const double distance_m = glm::length(camera_m);
   const glm::dvec3 up = camera_m / distance_m;
   const glm::dvec3 side = ray - up * glm::dot(ray, up);
@@ -37,11 +39,11 @@ glm::dvec3 on_ball(const glm::dvec3& camera_m, const glm::dvec3& ray, double rad
   return (up * c + side / length * std::sqrt((1.0 - c) * (1.0 + c))) * radius_m;
 }
 
-// The least rotation that takes unit `from` to unit `to`, applied.
-glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3& to) {
+// Applies the smallest rotation that takes unit `from` to unit `to`.
+glm::dvec3 rotate_vector(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 axis = glm::cross(from, to);
   const double c = glm::dot(from, to);
-  if (c < -0.999999) return v;  // half a turn: no axis is better than another
+  if (c < -0.999999) return v;  // opposite directions: no axis is better than another
   return v * c + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1.0 + c));
 }
 
@@ -51,9 +53,9 @@ double distance_px(const Pose& pose, const Screen& screen, const glm::dvec3& poi
   return at.behind ? std::numeric_limits<double>::infinity() : glm::length(at.xy - xy);
 }
 
-// Turns the planet so that `held_m` comes under `xy`, from a pose near to that.
-Pose pulled(const Pose& pose, const Screen& screen, const glm::dvec3& held_m, glm::dvec2 xy, double radius_m,
-            bool keep_heading) {
+// Moves the camera so that `held_m` comes to `xy`, from a pose near to that.
+Pose moved_to_hold(const Pose& pose, const Screen& screen, const glm::dvec3& held_m, glm::dvec2 xy,
+                   double radius_m, bool keep_heading) {
   constexpr int kMostSteps = 40;
   constexpr double kNear_px = 1e-7;
   const double held_radius_m = glm::length(held_m);
@@ -66,16 +68,16 @@ Pose pulled(const Pose& pose, const Screen& screen, const glm::dvec3& held_m, gl
     const glm::dvec3 from = glm::normalize(shown);
     const glm::dvec3 to = held_m / held_radius_m;
     mars::CameraPose camera = view.camera;
-    camera.position_m = rotated(camera.position_m, from, to);
+    camera.position_m = rotate_vector(camera.position_m, from, to);
     for (glm::dvec3* axis : {&camera.axes.right, &camera.axes.up, &camera.axes.forward})
-      *axis = rotated(*axis, from, to);
+      *axis = rotate_vector(*axis, from, to);
     const Pose found = mars::to_pose(camera, radius_m);
     Pose next = pose;
     next.lon_deg = found.lon_deg;
     next.lat_deg = found.lat_deg;
     if (!keep_heading) {
       next.yaw_deg = found.yaw_deg;
-      // Straight up and down yaw and roll turn about one axis, and are told apart by noise.
+      // Straight up and down, yaw and roll rotate about one axis, so only their sum is meaningful.
       if (pose.pitch_deg < -89.999) next.yaw_deg += found.roll_deg - pose.roll_deg;
       if (pose.pitch_deg > 89.999) next.yaw_deg -= found.roll_deg - pose.roll_deg;
     }
@@ -92,10 +94,9 @@ Pose pulled(const Pose& pose, const Screen& screen, const glm::dvec3& held_m, gl
 
 Pose held_under(const Pose& pose, const Screen& screen, const glm::dvec3& held_m, glm::dvec2 xy,
                 double radius_m) {
-  const Pose free = pulled(pose, screen, held_m, xy, radius_m, false);
-  if (std::abs(pose.lat_deg) > kPoleKeepsHeading_deg || std::abs(free.lat_deg) > kPoleKeepsHeading_deg)
-    return free;
-  const Pose kept = pulled(pose, screen, held_m, xy, radius_m, true);
+  const Pose free = moved_to_hold(pose, screen, held_m, xy, radius_m, false);
+  if (std::abs(pose.lat_deg) > kKeepsHeading_deg || std::abs(free.lat_deg) > kKeepsHeading_deg) return free;
+  const Pose kept = moved_to_hold(pose, screen, held_m, xy, radius_m, true);
   const double free_px = distance_px(free, screen, held_m, xy, radius_m);
   const double kept_px = distance_px(kept, screen, held_m, xy, radius_m);
   return kept_px <= free_px + 0.5 ? kept : free;
@@ -128,15 +129,15 @@ Pose dragged(const Pose& begun, const Screen& screen, const glm::dvec3& held_m, 
   return kept_clear(held_under(begun, screen, held_m, xy, ground.radius_m), ground);
 }
 
-Pose looked(const Pose& begun, const Screen& screen, glm::dvec2 from, glm::dvec2 to) {
+Pose panned(const Pose& begun, const Screen& screen, glm::dvec2 from, glm::dvec2 to) {
   const double focal = screen.height / 2.0 / std::tan(screen.fov_deg / 2.0 * mars::kRadiansPerDegree);
   const auto angle = [focal](double offset_px) {
     return std::atan2(offset_px, focal) / mars::kRadiansPerDegree;
   };
   const glm::dvec2 m = middle(screen);
   const double level = std::max(0.05, std::cos(begun.pitch_deg * mars::kRadiansPerDegree));
-  return turned(begun, -(angle(to.x - m.x) - angle(from.x - m.x)) / level,
-                angle(to.y - m.y) - angle(from.y - m.y), 0.0);
+  return rotated(begun, -(angle(to.x - m.x) - angle(from.x - m.x)) / level,
+                 angle(to.y - m.y) - angle(from.y - m.y), 0.0);
 }
 
 Pose zoomed(const Pose& pose, const Screen& screen, glm::dvec2 xy, double factor, const TerrainQuery& ground) {
@@ -165,16 +166,16 @@ Pose tilted(const Pose& pose, const Screen& screen, double around_deg, double up
             const TerrainQuery& ground) {
   if (!(std::isfinite(around_deg) && std::isfinite(up_deg))) return pose;
   const std::optional<glm::dvec3> pivot = ground_at(pose, screen, middle(screen), ground);
-  if (!pivot) return kept_clear(turned(pose, around_deg, -up_deg, 0.0), ground);
+  if (!pivot) return kept_clear(rotated(pose, around_deg, -up_deg, 0.0), ground);
   const mars::CameraPose camera = mars::to_camera(pose, ground.radius_m);
   const glm::dvec3 away = camera.position_m - *pivot;
   const double distance_m = glm::length(away);
-  // In the pivot's level frame: azimuth and elevation of the camera.
+  // Azimuth and elevation of the camera in the pivot's level frame.
   const mars::LocalFrame frame = mars::local_frame(mars::lon_lat(*pivot));
   const glm::dvec3 out = away / std::max(distance_m, 1e-9);
   const double elevation_deg =
       std::asin(std::clamp(glm::dot(out, frame.up), -1.0, 1.0)) / mars::kRadiansPerDegree;
-  // The heading towards the pivot as the camera has it: defined straight above it too, by the image's up.
+  // The heading towards the pivot by the camera's axes, which is defined straight above it too.
   const Pose local = mars::to_pose({frame.up * ground.radius_m, camera.axes}, ground.radius_m);
   const double heading_deg = local.yaw_deg + (local.pitch_deg < -89.9 ? local.roll_deg : 0.0) + around_deg;
   const double lowest_deg = std::min(elevation_deg, MouseLimits::kLowestTilt_deg);

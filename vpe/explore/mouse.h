@@ -1,9 +1,9 @@
-// What a mouse does to a view of a planet, as in the globes that people know: left drag holds the ground, the
-// wheel comes nearer to what is under the cursor, right or middle drag tilts and turns about what is in the
-// middle, double click goes there.
+// Mouse navigation over a planet, as in common virtual globes: dragging with the left button holds the ground,
+// the wheel zooms to the ground under the cursor, dragging with the right or middle button tilts and rotates
+// about the ground in the middle, a double click flies there.
 //
-// Cursor positions are image positions of the view (vpe/core/view.h). All functions are pure; every pose that
-// is given back is clear of the ground (vpe/explore/steer.h).
+// Cursor positions are image positions of the view (vpe/core/view.h). All functions are pure. Every returned
+// pose is above the ground (vpe/explore/steer.h).
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -16,11 +16,11 @@
 namespace vpe::explore {
 
 struct MouseLimits {
-  static constexpr double kNearest_m = 2;       // of what is zoomed in to
-  static constexpr double kLowestTilt_deg = 1;  // of the line of sight about the point tilted about
+  static constexpr double kNearest_m = 2;       // distance of the ground when zooming in
+  static constexpr double kLowestTilt_deg = 1;  // elevation of the camera seen from the point tilted about
 };
 
-// How a pose is shown: the image that the cursor is in. The head is straight ahead.
+// Describes the image that the cursor is in. The head looks straight ahead.
 struct Screen {
   int width = 1280;
   int height = 720;
@@ -28,36 +28,39 @@ struct Screen {
 };
 core::View view_of(const mars::Pose& pose, const Screen& screen, double radius_m);
 
-// The ground under a position, metres from the planet's centre; nothing for the sky.
+// Returns the ground under a position, metres from the planet's centre, or nullopt for the sky.
 std::optional<glm::dvec3> ground_at(const mars::Pose& pose, const Screen& screen, glm::dvec2 xy,
                                     const TerrainQuery& ground);
 
-// A drag that began over the ground at `held_m` with the pose of then: the pose from which it is at `xy`. The
-// planet turns under the camera: altitude, pitch and roll stay, and so does the heading where the camera is farther
-// than 10 degrees from the poles and can keep it. A position beside the planet holds the nearest edge. `held_m`
-// is at `xy` within 1e-6 pixels where the line of sight meets the ground's sphere at more than a degree.
+// Computes the pose of a drag of the ground: the one from which `held_m` is at `xy`. `begun` is the pose at the
+// beginning of the drag. Altitude, pitch and roll stay. The heading stays too, if that is possible and the
+// camera is farther than 10 degrees from the poles. A position beside the planet holds the nearest edge.
+// `held_m` is at `xy` within 1e-6 pixels where the line of sight meets the ground's sphere at more than a
+// degree.
 mars::Pose dragged(const mars::Pose& begun, const Screen& screen, const glm::dvec3& held_m, glm::dvec2 xy,
                    const TerrainQuery& ground);
 
-// A drag that began over the sky: turns, so that the direction that was at `from` is at `to`. Roll stays.
-mars::Pose looked(const mars::Pose& begun, const Screen& screen, glm::dvec2 from, glm::dvec2 to);
+// Computes the pose of a drag of the sky: rotates so that the direction that was at `from` is at `to`. Roll
+// stays.
+mars::Pose panned(const mars::Pose& begun, const Screen& screen, glm::dvec2 from, glm::dvec2 to);
 
-// Multiplies the distance to the ground under the cursor by `factor` (0.1 to 10); that ground stays under the
-// cursor, for which the camera moves aside: the distance is within 6 % of that below 1000 km, within 25 % above. Over the sky the altitude above the ground is multiplied.
+// Multiplies the distance to the ground under the cursor by `factor` (0.1 to 10). That ground stays under the
+// cursor; the camera moves sideways for this, so the distance is exact within 6 % below 1000 km, within 25 %
+// above. Over the sky, multiplies the altitude above the ground.
 mars::Pose zoomed(const mars::Pose& pose, const Screen& screen, glm::dvec2 xy, double factor,
                   const TerrainQuery& ground);
 
-// Turns about the ground in the middle of the image: the camera goes right around it by an angle and up about
-// it. Its distance stays, and it stays in the middle. When there is sky, the camera turns in its place.
+// Orbits about the ground in the middle of the image by azimuth and elevation. Distance and the point in the
+// middle stay. If the middle shows sky, rotates the camera in place.
 mars::Pose tilted(const mars::Pose& pose, const Screen& screen, double around_deg, double up_deg,
                   const TerrainQuery& ground);
 
-// The pose that looks at a point on the ground from `distance_m` away with the same heading, without roll, from
-// at least 20 degrees above it.
+// Returns the pose that looks at a point on the ground from `distance_m` away with the same heading, without
+// roll, from at least 20 degrees above it.
 mars::Pose looking_at(const mars::Pose& pose, const glm::dvec3& point_m, double distance_m,
                       const TerrainQuery& ground);
 
-// Far enough out that the whole planet is in the image, straight above a place, north up.
+// Returns a pose straight above a place, north up, from which the whole planet is in the image.
 mars::Pose overview(mars::LonLat place, const Screen& screen, double radius_m);
 
 }  // namespace vpe::explore

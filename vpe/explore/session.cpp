@@ -15,7 +15,7 @@ constexpr double kTilt_deg_px = 0.25;  // of a drag, on an image of 720 rows
 constexpr double kWheelNotch = 0.8;    // of the distance
 constexpr double kDoubleClick = 0.4;   // of the distance
 
-// A head does not go over backwards, and a log takes no steeper look.
+// Adds angles. Pitch is clamped: a log cannot hold a steeper look.
 mars::HeadAngles added(const mars::HeadAngles& a, const mars::HeadAngles& b) {
   return {std::remainder(a.yaw_deg + b.yaw_deg, 360.0), std::clamp(a.pitch_deg + b.pitch_deg, -90.0, 90.0),
           std::remainder(a.roll_deg + b.roll_deg, 360.0)};
@@ -56,7 +56,7 @@ mars::Pose Session::seen() const {
                          : mars::to_pose(mars::to_camera(pose_, look_, ground_.radius_m), ground_.radius_m);
 }
 
-// The head's axes in those of its platform, right, ahead and up, taken off the camera's.
+// Removes the head's rotation (axes right, ahead and up of its platform) from the camera's axes.
 mars::Pose Session::platform_of(const mars::Pose& seen) const {
   if (is_ahead(look_)) return seen;
   const mars::CameraPose camera = mars::to_camera(seen, ground_.radius_m);
@@ -74,8 +74,8 @@ double Session::wheel_factor(double notches) const {
 }
 
 std::string Session::set(std::string_view key, std::string_view text) {
-  const std::string trouble = settings_.set(key, text);
-  if (!trouble.empty()) return trouble;
+  const std::string problem = settings_.set(key, text);
+  if (!problem.empty()) return problem;
   if (follows_) {
     if (FlightPlayer* flight = player(); flight != nullptr)
       (void)flight->keep_setting(std::string(key), std::string(text));
@@ -84,7 +84,7 @@ std::string Session::set(std::string_view key, std::string_view text) {
   return {};
 }
 
-// What is shown: the user's settings, and a flight's that is followed.
+// Updates the settings in effect: the user's, and those of a followed flight.
 void Session::follow_settings() {
   FlightPlayer* flight = follows_ ? player() : nullptr;
   const core::Settings next = flight != nullptr ? flight->settings(settings_) : settings_;
@@ -100,8 +100,7 @@ void Session::follow_settings() {
 std::vector<core::InterestRegion> Session::all_interest() {
   std::vector<core::InterestRegion> all = interest_;
   if (FlightPlayer* flight = follows_ ? player() : nullptr; flight != nullptr) {
-    for (const scripts::Interest& region : flight->interests())
-      all.push_back({region.lon_deg, region.lat_deg, region.radius_m, region.levels});
+    for (const scripts::InterestCommand& command : flight->interests()) all.push_back(command.region);
   }
   return all;
 }
@@ -123,7 +122,7 @@ void Session::set_fov(double fov_deg) {
 std::string Session::follow(bool play) {
   FlightPlayer* flight = player();
   if (flight == nullptr)
-    return flights_.problem().empty() ? "there is no flight yet; place waypoints or open one"
+    return flights_.problem().empty() ? "there is no flight yet; place waypoints or open a flight"
                                       : flights_.problem();
   stop();
   follows_ = true;
@@ -139,7 +138,7 @@ void Session::leave_flight() {
   if (!follows_) return;
   if (FlightPlayer* flight = player(); flight != nullptr) {
     flight->pause();
-    flight->look_ahead();
+    flight->reset_look_offset();
     flight->release_settings();
   }
   follows_ = false;
@@ -165,7 +164,7 @@ void Session::take_flight_state(const mars::HeadAngles& tracker) {
   }
   const scripts::FlightState state = flight->state();
   pose_ = state.pose;
-  look_ = added(state.look, tracker);
+  look_ = added(state.head, tracker);
   follow_settings();
 }
 
@@ -194,7 +193,7 @@ void Session::go_to(mars::LonLat place) {
   go(goal);
 }
 
-void Session::go_turned(double yaw_deg, double pitch_deg, double roll_deg) {
+void Session::go_rotated(double yaw_deg, double pitch_deg, double roll_deg) {
   mars::Pose goal = pose_;
   goal.yaw_deg = yaw_deg;
   goal.pitch_deg = pitch_deg;
@@ -206,7 +205,7 @@ void Session::look_down(bool north_up) {
   mars::Pose goal = pose_;
   goal.roll_deg = 0;
   goal = tilted(goal, screen_, 0, 180, ground_);
-  // Without ground in the middle the camera turns in its place.
+  // If the middle shows sky, the camera rotates in place.
   goal.pitch_deg = -90;
   if (north_up) goal.yaw_deg = 0;
   go(goal);
@@ -221,9 +220,9 @@ void Session::advance(double dt_s, const Controls& controls, const mars::HeadAng
     const bool moves = controls.right != 0 || controls.up != 0 || controls.forward != 0;
     if (flight != nullptr && (flight->is_playing() || !moves)) {
       const double dt = std::min(std::max(dt_s, 0.0), SteerLimits::kLongestStep_s);
-      flight->turn_look(controls.yaw_right * SteerLimits::kTurn_deg_s * dt,
-                        controls.pitch_up * SteerLimits::kTurn_deg_s * dt,
-                        controls.roll_right * SteerLimits::kRoll_deg_s * dt);
+      flight->add_look_offset(controls.yaw_right * SteerLimits::kRotation_deg_s * dt,
+                              controls.pitch_up * SteerLimits::kRotation_deg_s * dt,
+                              controls.roll_right * SteerLimits::kRoll_deg_s * dt);
       if (flight->is_playing()) flight->advance(std::max(dt_s, 0.0));
       take_flight_state(tracker);
       return;
@@ -255,16 +254,16 @@ void Session::drag(glm::dvec2 xy) {
   if (follows_) {
     FlightPlayer* flight = player();
     if (flight == nullptr || use_ == MouseUse::kNone) return;
-    // As the sky is held: to the left shows what is right.
-    const mars::Pose turned_by = looked({0, 0, 0, 0, 0, 0}, screen_, begun_xy_, xy);
-    flight->view_panorama({begun_look_.yaw_deg + mouse_speed_ * turned_by.yaw_deg,
-                           begun_look_.pitch_deg + mouse_speed_ * turned_by.pitch_deg, begun_look_.roll_deg});
+    // Dragging holds the sky: dragging to the left looks to the right.
+    const mars::Pose rotation = panned({0, 0, 0, 0, 0, 0}, screen_, begun_xy_, xy);
+    flight->set_look_offset({begun_look_.yaw_deg + mouse_speed_ * rotation.yaw_deg,
+                             begun_look_.pitch_deg + mouse_speed_ * rotation.pitch_deg, begun_look_.roll_deg});
     take_flight_state(tracker_);
     return;
   }
   if (use_ == MouseUse::kHold) {
     pose_ = platform_of(held_m_ ? dragged(begun_, screen_, *held_m_, xy, ground_)
-                                : looked(begun_, screen_, begun_xy_, xy));
+                                : panned(begun_, screen_, begun_xy_, xy));
   } else if (use_ == MouseUse::kTilt) {
     const glm::dvec2 by = (xy - begun_xy_) * (mouse_speed_ * kTilt_deg_px * 720.0 / screen_.height);
     pose_ = platform_of(tilted(begun_, screen_, by.x, by.y, ground_));

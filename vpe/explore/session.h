@@ -1,5 +1,5 @@
-// One exploration: where the camera is and where it goes, what is set, and what a mouse is doing. Knows no window
-// and no clock: it is told what devices say and how much time has passed.
+// An interactive session: camera and its motion, settings, mouse drags, the flight. Independent of windows and
+// clocks: the caller passes inputs of devices and elapsed time.
 #pragma once
 
 #include <cstdint>
@@ -25,15 +25,22 @@ namespace vpe::explore {
 
 struct SessionOptions {
   core::Settings settings;
-  std::optional<mars::Pose> start;  // left out: the whole planet
+  std::optional<mars::Pose> start;  // nullopt: the whole planet
   double fov_deg = 50;
   std::vector<core::InterestRegion> interest;
-  double mouse_speed = 1;     // factor on what a drag turns and tilts
-  bool invert_wheel = false;  // rolling away goes away
+  double mouse_speed = 1;     // factor on rotation and tilt by a drag
+  bool invert_wheel = false;  // rolling away zooms out
 };
 
 enum class MouseUse : std::uint8_t { kNone, kHold, kTilt };
 
+// Holds the state of a session. For one thread at a time.
+//
+// Typical usage, in each iteration of the event loop:
+//   session.resize(width, height);
+//   session.press(MouseUse::kHold, xy);              // on mouse events
+//   session.advance(dt_s, controls, head_angles);
+//   draw(session.view(), session.settings());
 class Session {
  public:
   static constexpr double kMinFov_deg = 1;
@@ -47,54 +54,56 @@ class Session {
   const TerrainQuery& ground() const { return ground_; }
   const paging::Surface& surface() const { return *surface_; }
   double height_m() const;  // of the camera above the ground
-  // What the camera sees: pose, head and screen.
+  // Returns the view of the camera: pose, head and screen.
   core::View view() const;
 
-  // While a flight is followed: the flight's too, and over them what was set since.
+  // Returns the settings in effect. While a flight is followed they include the flight's, and the user's
+  // changes since then.
   const core::Settings& settings() const { return shown_settings_; }
-  // What is wrong, empty when all is well. The ground follows the exaggeration.
+  // Sets a setting. Returns what is wrong, or "". The ground follows the exaggeration.
   std::string set(std::string_view key, std::string_view text);
-  std::span<const core::InterestRegion> interest() const { return interest_; }  // without a flight's own
+  std::span<const core::InterestRegion> interest() const { return interest_; }  // without the flight's
   std::vector<core::InterestRegion> all_interest();
   void set_interest(std::vector<core::InterestRegion> regions);
-  // Counts what changed besides the view: settings, regions.
+  // Counts changes of settings and regions.
   std::uint64_t changes() const { return changes_; }
 
   void resize(int width, int height);
   void set_fov(double fov_deg);
 
-  // At once; ends a flight to somewhere.
+  // Moves the camera to a pose at once and ends an automatic flight.
   void put(const mars::Pose& pose);
-  // Flies there.
+  // Begins an automatic flight to a pose.
   void go(const mars::Pose& pose);
   bool is_going() const { return going_.has_value(); }
   void stop() { going_.reset(); }
-  // Flies to a place with what is seen from here: the same height above ground, heading and pitch; from farther
-  // out than a radius, down to half a radius.
+  // Flies to a place with the same height above ground, heading and pitch. From farther than a planet's radius,
+  // flies down to half a radius.
   void go_to(mars::LonLat place);
-  void north_up() { go_turned(0, pose_.pitch_deg, pose_.roll_deg); }
-  void level() { go_turned(pose_.yaw_deg, pose_.pitch_deg, 0); }
-  // Straight down on what is in the middle of the image, from as far away; perhaps with north up.
+  void north_up() { go_rotated(0, pose_.pitch_deg, pose_.roll_deg); }
+  void level() { go_rotated(pose_.yaw_deg, pose_.pitch_deg, 0); }
+  // Flies straight above the ground in the middle of the image, at the same distance; optionally with north up.
   void look_down(bool north_up);
-  // The whole planet from above where the camera is.
+  // Flies above the present place until the whole planet is in the image.
   void show_planet();
 
-  // The flight: edited here, played by follow(). While it is followed the camera is its platform's, and drags and
-  // turns look around in it without disturbing it; moving by hand while it is paused leaves it.
+  // Gives access to the flight: edited here, played by follow(). While it is followed, the camera is on its
+  // platform, and drags and rotations add to its look without disturbing it. Moving by hand while it is paused
+  // leaves it.
   FlightController& flights() { return flights_; }
   const FlightController& flights() const { return flights_; }
   FlightPlayer* player() { return flights_.player(shown_settings_.values().exaggeration); }
   bool follows_flight() const { return follows_; }
-  // Plays (or shows, paused). What is wrong, empty when all is well.
+  // Plays the flight, or shows it paused. Returns what is wrong, or "".
   std::string follow(bool play);
   void leave_flight();
   void scrub(double time_s);
 
-  // A frame: what hands ask for, and where a tracker says that the head looks.
+  // Advances by one frame. `tracker` is the direction of the head by a head tracker.
   void advance(double dt_s, const Controls& controls, const mars::HeadAngles& tracker = {});
 
-  // Positions on the screen, of what is seen there: with the head on its platform. A press ends a flight to
-  // somewhere.
+  // Handle mouse input. Positions are on the screen and refer to the image that is shown, which includes the
+  // head's direction. A press ends an automatic flight.
   void press(MouseUse use, glm::dvec2 xy);
   void drag(glm::dvec2 xy);
   void release() { use_ = MouseUse::kNone; }
@@ -106,7 +115,7 @@ class Session {
   mars::Pose seen() const;                               // the camera's, with the head
   mars::Pose platform_of(const mars::Pose& seen) const;  // its inverse
   double wheel_factor(double notches) const;
-  void go_turned(double yaw_deg, double pitch_deg, double roll_deg);
+  void go_rotated(double yaw_deg, double pitch_deg, double roll_deg);
   void take_flight_state(const mars::HeadAngles& tracker);
   void follow_settings();
 
@@ -127,10 +136,10 @@ class Session {
   std::optional<FlyTo> going_;
   double gone_s_ = 0;
   MouseUse use_ = MouseUse::kNone;
-  mars::HeadAngles begun_look_;  // when the button was pressed, in a flight
-  mars::Pose begun_;             // what was seen when the button was pressed
+  mars::HeadAngles begun_look_;  // look offset in a flight, when the button was pressed
+  mars::Pose begun_;             // pose of the image, when the button was pressed
   glm::dvec2 begun_xy_{0, 0};
-  std::optional<glm::dvec3> held_m_;  // ground under it then
+  std::optional<glm::dvec3> held_m_;  // ground under the cursor, when the button was pressed
 };
 
 }  // namespace vpe::explore

@@ -12,22 +12,22 @@ using mars::Pose;
 
 constexpr int kMostSteps = 256;
 
-double wrapped(double angle_deg) {
-  const double turned_deg = std::remainder(angle_deg, 360.0);
-  return turned_deg <= -180.0 ? 180.0 : turned_deg;
+double normalized(double angle_deg) {
+  const double remainder_deg = std::remainder(angle_deg, 360.0);
+  return remainder_deg <= -180.0 ? 180.0 : remainder_deg;
 }
 
 double ground_height_m(const Pose& pose, const TerrainQuery& ground) {
   return ground.height_m(mars::direction({pose.lon_deg, pose.lat_deg}));
 }
 
-// Along the great circle that leaves with `heading_deg`; the camera turns with it.
+// Moves along the great circle that begins with `heading_deg`, and rotates the camera with it.
 Pose carried(const Pose& pose, double heading_deg, double arc_rad) {
   if (arc_rad == 0.0) return pose;
-  // Directions, not bearings, are carried: at a pole a bearing says nothing.
+  // Transports directions, not bearings, which are undefined at a pole.
   const mars::LocalFrame frame = mars::local_frame({pose.lon_deg, pose.lat_deg});
-  const mars::SinCos turn = mars::sin_cos_deg(heading_deg);
-  const glm::dvec3 ahead = frame.north * turn.cos + frame.east * turn.sin;
+  const mars::SinCos h = mars::sin_cos_deg(heading_deg);
+  const glm::dvec3 ahead = frame.north * h.cos + frame.east * h.sin;
   const double c = std::cos(arc_rad);
   const double s = std::sin(arc_rad);
   const glm::dvec3 up = frame.up * c + ahead * s;
@@ -40,7 +40,7 @@ Pose carried(const Pose& pose, double heading_deg, double arc_rad) {
   Pose next = pose;
   next.lon_deg = place.lon_deg;
   next.lat_deg = place.lat_deg;
-  next.yaw_deg = wrapped(pose.yaw_deg + (heading_there_deg - heading_deg));
+  next.yaw_deg = normalized(pose.yaw_deg + (heading_there_deg - heading_deg));
   return next;
 }
 
@@ -58,8 +58,8 @@ Pose kept_clear(const Pose& pose, const TerrainQuery& ground, double clearance_m
   Pose clear = pose;
   clear.lon_deg = mars::normalize_lon_deg(pose.lon_deg);
   clear.pitch_deg = std::clamp(pose.pitch_deg, -90.0, 90.0);
-  clear.yaw_deg = wrapped(pose.yaw_deg);
-  clear.roll_deg = wrapped(pose.roll_deg);
+  clear.yaw_deg = normalized(pose.yaw_deg);
+  clear.roll_deg = normalized(pose.roll_deg);
   const double highest_m = SteerLimits::kHighest_radii * ground.radius_m;
   clear.alt_m =
       std::clamp(pose.alt_m, std::min(ground_height_m(pose, ground) + clearance_m, highest_m), highest_m);
@@ -70,7 +70,7 @@ Pose moved(const Pose& pose, double right_m, double up_m, double forward_m, cons
   const double ahead_m = std::hypot(right_m, forward_m);
   if (!(std::isfinite(ahead_m) && std::isfinite(up_m))) return pose;
   const double heading_deg = pose.yaw_deg + std::atan2(right_m, forward_m) / mars::kRadiansPerDegree;
-  // What stands in the way is met when a step is no longer than the camera is above the ground.
+  // Obstacles are noticed if a step is not longer than the camera's height above the ground.
   const double height_m = std::max(height_above_ground_m(pose, ground), SteerLimits::kClearance_m);
   const int steps = std::clamp(static_cast<int>(std::ceil(4.0 * ahead_m / height_m)), 1, kMostSteps);
   Pose at = pose;
@@ -86,29 +86,29 @@ Pose moved(const Pose& pose, double right_m, double up_m, double forward_m, cons
   return at;
 }
 
-Pose turned(const Pose& pose, double yaw_deg, double pitch_deg, double roll_deg) {
+Pose rotated(const Pose& pose, double yaw_deg, double pitch_deg, double roll_deg) {
   if (!(std::isfinite(yaw_deg) && std::isfinite(pitch_deg) && std::isfinite(roll_deg))) return pose;
   Pose next = pose;
-  next.yaw_deg = wrapped(pose.yaw_deg + yaw_deg);
+  next.yaw_deg = normalized(pose.yaw_deg + yaw_deg);
   next.pitch_deg = std::clamp(pose.pitch_deg + pitch_deg, -90.0, 90.0);
-  next.roll_deg = wrapped(pose.roll_deg + roll_deg);
+  next.roll_deg = normalized(pose.roll_deg + roll_deg);
   return next;
 }
 
 Pose steered(const Pose& pose, const Controls& controls, double dt_s, const TerrainQuery& ground) {
   if (!any(controls) || !(dt_s > 0.0)) return pose;
   const double dt = std::min(dt_s, SteerLimits::kLongestStep_s);
-  const Pose aimed = turned(pose, controls.yaw_right * SteerLimits::kTurn_deg_s * dt,
-                            controls.pitch_up * SteerLimits::kTurn_deg_s * dt,
-                            controls.roll_right * SteerLimits::kRoll_deg_s * dt);
+  const Pose aimed = rotated(pose, controls.yaw_right * SteerLimits::kRotation_deg_s * dt,
+                             controls.pitch_up * SteerLimits::kRotation_deg_s * dt,
+                             controls.roll_right * SteerLimits::kRoll_deg_s * dt);
   if (controls.right == 0 && controls.up == 0 && controls.forward == 0) return aimed;
   const double step_m = full_speed_m_s(aimed, ground) * controls.speed * dt;
   // The camera's axes in its level frame: right, up, forward.
   const mars::LocalFrame level{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};  // east, north, up
   const mars::Axes axes = mars::oriented_axes(level, 0.0, aimed.pitch_deg, aimed.roll_deg);
-  const glm::dvec3 way =
+  const glm::dvec3 step =
       (axes.right * controls.right + axes.up * controls.up + axes.forward * controls.forward) * step_m;
-  return moved(aimed, way.x, way.y, way.z, ground);
+  return moved(aimed, step.x, step.y, step.z, ground);
 }
 
 }  // namespace vpe::explore

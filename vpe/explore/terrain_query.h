@@ -1,4 +1,4 @@
-// The ground as the camera meets it: S with the exaggeration that is drawn.
+// The terrain as navigation uses it: the reference surface with the exaggeration that is drawn.
 #pragma once
 
 #include <functional>
@@ -12,21 +12,21 @@
 
 namespace vpe::explore {
 
-// Two questions that moving asks. Neither depends on what is drawn or loaded. Both may be called from any
-// thread when what they were made of may.
+// Holds the two queries of navigation. They do not depend on what is drawn or loaded. Any thread may call them
+// if the objects that they refer to allow it.
 struct TerrainQuery {
   double radius_m = mars::kMarsRadius_m;
-  // Metres above the sphere at a direction (any length but 0).
+  // Returns the height above the sphere at a direction (of any length but 0), metres.
   std::function<double(const glm::dvec3& direction)> height_m;
-  // Metres from a camera (from the planet's centre) along a unit direction to the ground; infinity: sky; 0 below
-  // it.
+  // Returns the distance from a camera (relative to the planet's centre) along a unit direction to the ground,
+  // metres; infinity for the sky; 0 if the camera is below the ground.
   std::function<double(const glm::dvec3& camera_m, const glm::dvec3& direction)> cast_m;
 };
 
-// Ground of S; keeps the surface. Tiles that cannot be read count as the sphere.
+// Queries the reference surface, which is kept alive. Tiles that cannot be read count as the sphere.
 TerrainQuery ground_of(std::shared_ptr<const paging::Surface> surface, double exaggeration);
 
-// A ball without relief.
+// Queries a sphere without terrain.
 TerrainQuery ball(double radius_m);
 
 }  // namespace vpe::explore

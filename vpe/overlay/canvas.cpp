@@ -8,8 +8,8 @@
 
 #include <cairo.h>
 
-// Fontconfig keeps what it read of fonts until the process ends and lets go of the pointer: some hundred bytes,
-// once. The leak sanitizer must not take them for ours.
+// Fontconfig loses the pointer to some hundred bytes of font data that it keeps until the process ends. The
+// leak sanitizer must not report them.
 #if defined(__SANITIZE_ADDRESS__) || defined(__clang__)
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kFamily = "DejaVu Sans";
 
-// Share of the font's size: half of a capital's height.
+// Half of a capital's height, as a share of the font's size.
 constexpr double kHalfCapital = 0.365;
 
 struct Release {
@@ -32,8 +32,8 @@ struct Release {
 
 void require(cairo_status_t status) {
   if (status == CAIRO_STATUS_SUCCESS) return;
-  throw std::runtime_error(std::string("cannot draw the overlays: Cairo says: ") +
-                           cairo_status_to_string(status) + "; make the picture smaller or set fewer overlays");
+  throw std::runtime_error(std::string("cannot draw the overlays: Cairo: ") + cairo_status_to_string(status) +
+                           "; make the image smaller or set fewer overlays");
 }
 
 void set_ink(cairo_t* context, const Ink& ink) { cairo_set_source_rgba(context, ink.r, ink.g, ink.b, ink.a); }
@@ -64,7 +64,7 @@ Canvas::Canvas(int width, int height) : width_(width), height_(height), state_(s
   cairo_t* context = state_->context.get();
   require(cairo_status(context));
   cairo_set_line_join(context, CAIRO_LINE_JOIN_ROUND);
-  // The same letters at every place and angle.
+  // Without hinting, letters have the same shape at every position and angle.
   const std::unique_ptr<cairo_font_options_t, Release> options(cairo_font_options_create());
   cairo_font_options_set_antialias(options.get(), CAIRO_ANTIALIAS_GRAY);
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
@@ -94,7 +94,7 @@ TextSize Canvas::measure(std::string_view text, const Font& font) const {
   set_font(context, font);
   cairo_text_extents_t extents;
   cairo_text_extents(context, printable_utf8(text).c_str(), &extents);
-  // Room for what hangs below the line, and as much above it.
+  // Leaves room for descenders below the line, and as much above it.
   return {extents.x_advance, 1.25 * font.size_px};
 }
 
@@ -162,7 +162,7 @@ Layer Canvas::layer() const {
 
 namespace vpe::overlay {
 
-// Settings refuse every overlay in this build (core::overlays_refused), so that nobody comes here by them.
+// Settings reject every overlay in this build (core::overlays_refused), so these functions are not reached.
 struct Canvas::State {};
 Canvas::Canvas(int width, int height) : width_(width), height_(height) {
   throw std::runtime_error(std::string(core::overlays_refused()));
@@ -200,7 +200,7 @@ std::string printable_utf8(std::string_view text) {
       good = good && (byte(k) & 0xc0U) == 0x80U;
       code = code << 6 | (byte(k) & 0x3fU);
     }
-    // Neither longer than needed, nor a half of a pair, nor past the last one.
+    // Rejects overlong forms, surrogates, and codes beyond U+10FFFF.
     good = good &&
            code >= (length == 4   ? 0x10000U
                     : length == 3 ? 0x800U

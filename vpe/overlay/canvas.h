@@ -1,5 +1,5 @@
-// Vectors and text on a transparent image: all that the overlays need of Cairo, which nothing else includes.
-// Positions are in pixels, x right, y down, pixel centres at +0.5.
+// Vector drawing and text on a transparent image. The only header of the project whose source includes Cairo.
+// Positions are in pixels: x right, y down, pixel centres at +0.5.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -21,23 +21,23 @@ struct Font {
   bool bold = false;
 };
 
-// Text with an outline that separates it from any ground.
+// Describes text with an outline that separates it from any background.
 struct Lettering {
   Font font;
   Ink ink;
   Ink halo;
 };
 
-// Upright box of a line of text about its centre; capitals are centred in it.
+// Holds the size of the upright box of a line of text. Capitals are centred in the box.
 struct TextSize {
   double width;
   double height;
 };
 
-// One thread.
+// Draws shapes and text with Cairo. For one thread at a time.
 class Canvas {
  public:
-  // Throws std::runtime_error when there is no memory.
+  // Throws std::runtime_error if there is not enough memory.
   Canvas(int width, int height);
   ~Canvas();
   Canvas(const Canvas&) = delete;
@@ -50,10 +50,10 @@ class Canvas {
   void polygon(std::span<const glm::dvec2> points, const Ink& ink);
   TextSize measure(std::string_view text, const Font& font) const;
   void text(std::string_view text, glm::dvec2 centre, double angle_rad, const Lettering& style);
-  // Takes away what is drawn so far in a box turned about its centre.
+  // Erases everything drawn so far in a box that is rotated about its centre.
   void clear(glm::dvec2 centre, TextSize size, double angle_rad);
 
-  // Throws std::runtime_error with the library's words when anything failed so far.
+  // Returns what was drawn. Throws std::runtime_error with Cairo's message if any call failed so far.
   Layer layer() const;
 
  private:
@@ -63,7 +63,8 @@ class Canvas {
   std::unique_ptr<State> state_;
 };
 
-// The text with everything that is not UTF-8 replaced by U+FFFD, and control characters by blanks.
+// Returns the text with every byte that is not valid UTF-8 replaced by U+FFFD, and control characters by
+// spaces.
 std::string printable_utf8(std::string_view text);
 
 }  // namespace vpe::overlay

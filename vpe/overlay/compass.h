@@ -1,5 +1,5 @@
-// Marks of azimuth: which there are, what they say, and where a view has them. Pure, and without any library of
-// letters. Azimuth is clockwise from north, degrees.
+// Compass marks: selects azimuths, makes their labels, and computes their positions in a view. Pure functions
+// without any drawing library. Azimuths are clockwise from north, in degrees.
 #pragma once
 
 #include <cstdint>
@@ -20,26 +20,27 @@ enum class CompassRank : std::uint8_t {
 };
 
 struct CompassMark {
-  double azimuth_deg = 0;  // within the range that was asked for, any number of turns
+  double azimuth_deg = 0;  // within the requested range, so it may lie outside of [0, 360)
   CompassRank rank = CompassRank::kTick;
   std::string label;  // empty for ticks
 };
 
-// How far marks are apart, degrees.
+// Holds the spacing of marks, in degrees.
 struct CompassSteps {
   double tick_deg = 15;
   double figure_deg = 90;
-  double room_deg = 0;  // that one label takes
+  double room_deg = 0;  // width of one label
 };
 
-// As suits an image of so many pixels a degree, where it has the fewest, and labels that are `label_px` wide:
-// figures every 90, 45, 30, 15, 10, 5, 2, 1, 0.5 ... 0.001 degrees, two labels apart at least (90 always), and
-// two to six ticks to each. Both numbers are more than 0.
+// Selects the spacing of marks for an image with this many pixels per degree, where it has the fewest, and for
+// labels that are `label_px` wide. Figures stand every 90, 45, 30, 15, 10, 5, 2, 1, 0.5 ... 0.001 degrees, at
+// least two label widths apart (90 is always used if nothing smaller fits), with two to six ticks for each.
+// Both arguments must be more than 0.
 CompassSteps compass_steps(double px_per_deg, double label_px);
 
-// The marks from one azimuth over a span of 0 or more to the right, both ends belonging to it, by azimuth. The
-// eight winds stand at their azimuths (with figures every 90 degrees only four), and figures closer to one than
-// a label's room are ticks.
+// Returns the marks from an azimuth over a span of 0 or more to the right, both ends included, sorted by
+// azimuth. The eight winds stand at their azimuths; with figures every 90 degrees only four do. Figures closer
+// to a wind than the width of a label become ticks.
 std::vector<CompassMark> compass_marks(double from_deg, double span_deg, const CompassSteps& steps);
 
 struct PlacedMark {
@@ -47,20 +48,22 @@ struct PlacedMark {
   glm::dvec2 at;  // pixels of the view's drawn part
 };
 
-// Where the azimuths that the middle row of a view shows are in that row. `frame` says what is north and up at
-// the camera. Empty where the row has no order of azimuths: within 2 degrees of the zenith or nadir, and in round
-// views whose camera is not level.
+// Returns marks along the middle row of a view, at the positions of their azimuths in that row. `frame` defines
+// north and up at the camera. Returns none if azimuths are not ordered along the row: within 2 degrees of the
+// zenith or nadir, and in cylindrical or equirectangular views whose camera is not level.
 std::vector<PlacedMark> compass_row(const core::View& view, const mars::LocalFrame& frame, double label_px);
 
-// The line of elevation 0 in a view's drawn part, left to right; nothing where it shows none, and in round
-// views whose camera is not level.
+// Holds the line of elevation 0 in a view's drawn part.
 struct HorizonLine {
   glm::dvec2 left;
   glm::dvec2 right;
 };
+
+// Computes the horizon line. Returns nullopt if the view does not show it, and for cylindrical or
+// equirectangular views whose camera is not level.
 std::optional<HorizonLine> horizon_line(const core::View& view, const mars::LocalFrame& frame);
 
-// Where azimuths are on it; empty where there is none.
+// Returns marks along the horizon line, or none if there is no such line.
 std::vector<PlacedMark> compass_horizon(const core::View& view, const mars::LocalFrame& frame, double label_px);
 
 }  // namespace vpe::overlay

@@ -13,7 +13,7 @@ double CompassStyle::label_px(const Canvas& canvas, double px_per_deg) const {
     return canvas.measure(text, figure).width + 0.5 * figure.size_px;
   };
   const double whole_px = width_px("000\u00b0");
-  // Below a degree figures have decimals.
+  // Figures below one degree have decimals.
   return compass_steps(px_per_deg, whole_px).figure_deg >= 1 ? whole_px : width_px("000.000\u00b0");
 }
 

@@ -1,4 +1,4 @@
-// How the compass looks, in images of any size.
+// Sizes, boxes and drawing of compass marks, for images of any size.
 #pragma once
 
 #include <algorithm>
@@ -8,22 +8,22 @@
 
 namespace vpe::overlay {
 
-// Pixels.
+// Computes sizes of marks in pixels and draws them. Each mark stands on a point of the compass line.
 struct CompassStyle {
-  double unit = 1;     // pixels at 720 rows
-  bool is_up = false;  // ticks and labels are above their line, not below
+  double unit = 1;     // pixels for each pixel of an image with 720 rows
+  bool is_up = false;  // ticks and labels are above their line instead of below
 
   Font font(CompassRank rank) const { return {std::max(14 * unit, 9.8), rank == CompassRank::kWind}; }
   double line_px() const { return std::max(1.3 * unit, 1.0); }
   double tick_px(CompassRank rank) const {
     return (rank == CompassRank::kTick ? 0.3 : 0.55) * font(CompassRank::kFigure).size_px;
   }
-  // Of line, ticks, labels and what keeps them apart.
+  // Returns the height of line, ticks and labels, including the space between them.
   double height_px() const { return 2.0 * font(CompassRank::kFigure).size_px; }
 
-  // That a label and the space beside it take, at so many pixels a degree.
+  // Returns the width of a label and the space beside it, in an image with this many pixels per degree.
   double label_px(const Canvas& canvas, double px_per_deg) const;
-  // Where a mark's label is, its tick standing on a point of the line; without width for ticks.
+  // Returns the box of the label of the mark that stands on `at`. Its width is 0 for ticks.
   Box label_box(const Canvas& canvas, glm::dvec2 at, const CompassMark& mark) const;
   Box tick_box(glm::dvec2 at, const CompassMark& mark) const;
 
@@ -34,7 +34,7 @@ struct CompassStyle {
   glm::dvec2 label_centre(glm::dvec2 at) const;
 };
 
-// Under marks along an edge.
+// Background of marks along an edge of the image.
 inline constexpr Ink kCompassBand{0, 0, 0, 0.45};
 
 }  // namespace vpe::overlay

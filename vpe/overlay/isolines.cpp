@@ -14,7 +14,8 @@ constexpr double kMostInACell = 1000;
 constexpr double kLargestMultiple = 1e15;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-// One end of a segment: a line's crossing of the edge between two pixels, shared with the segment next to it.
+// Describes one end of a segment: where a line crosses the edge between two pixels. The adjacent segment has
+// the same end.
 struct End {
   std::int64_t multiple;
   std::size_t edge;  // 2 * pixel, + 1 for the edge downwards
@@ -27,7 +28,7 @@ struct Segment {
   std::array<std::size_t, 2> edge;
   std::array<glm::dvec2, 2> at;
   double spacing_px;
-  std::array<std::size_t, 2> next{kNone, kNone};  // segment beyond each end
+  std::array<std::size_t, 2> next{kNone, kNone};  // adjacent segment at each end
   bool used = false;
 };
 
@@ -38,16 +39,16 @@ struct Corner {
 
 class Tracer {
  public:
-  Tracer(const VisibleTerrain& ground, const std::vector<double>& values, const IsolineOptions& options)
-      : ground_(ground), values_(values), options_(options) {}
+  Tracer(const VisibleTerrain& terrain, const std::vector<double>& values, const IsolineOptions& options)
+      : terrain_(terrain), values_(values), options_(options) {}
 
   std::vector<Isoline> run() {
-    for (int y = 0; y + 1 < ground_.height(); ++y) {
-      for (int x = 0; x + 1 < ground_.width(); ++x) cell(x, y);
+    for (int y = 0; y + 1 < terrain_.height(); ++y) {
+      for (int x = 0; x + 1 < terrain_.width(); ++x) cell(x, y);
     }
     join();
     std::vector<Isoline> lines;
-    // Open lines first, from an end; what remains is closed.
+    // Open lines are traced first, from an end. Segments that remain belong to closed lines.
     for (const bool open : {true, false}) {
       for (std::size_t n = 0; n < segments_.size(); ++n) {
         const Segment& s = segments_[n];
@@ -62,20 +63,22 @@ class Tracer {
 
  private:
   void cell(int x, int y) {
-    const std::size_t p = ground_.index(x, y);
-    const auto down = static_cast<std::size_t>(ground_.width());
+    const std::size_t p = terrain_.index(x, y);
+    const auto down = static_cast<std::size_t>(terrain_.width());
     std::array<double, 4> v{values_[p], values_[p + 1], values_[p + down + 1], values_[p + down]};
     if (std::isnan(v[0] + v[1] + v[2] + v[3])) return;
     if (options_.period > 0) {
-      const auto way = [period = options_.period](double from, double to) {
+      const auto difference = [period = options_.period](double from, double to) {
         const double straight = to - from;
         return std::abs(straight) <= 0.5 * period ? straight : straight - std::copysign(period, straight);
       };
-      // Round a pole the values do not come back to where they began.
-      if (std::abs(way(v[0], v[1]) + way(v[1], v[2]) + way(v[2], v[3]) + way(v[3], v[0])) > 1e-6) return;
-      v[1] = v[0] + way(v[0], v[1]);
-      v[2] = v[1] + way(v[1], v[2]);
-      v[3] = v[0] + way(v[0], v[3]);
+      // Around a pole the differences add up to a full period.
+      if (std::abs(difference(v[0], v[1]) + difference(v[1], v[2]) + difference(v[2], v[3]) +
+                   difference(v[3], v[0])) > 1e-6)
+        return;
+      v[1] = v[0] + difference(v[0], v[1]);
+      v[2] = v[1] + difference(v[1], v[2]);
+      v[3] = v[0] + difference(v[0], v[3]);
     }
     const auto [low, high] = std::minmax({v[0], v[1], v[2], v[3]});
     const double step = options_.step;
@@ -83,23 +86,23 @@ class Tracer {
     const auto first = static_cast<std::int64_t>(std::ceil(low / step));
     const auto last = static_cast<std::int64_t>(std::floor(high / step));
     if (first > last) return;
-    if (options_.noise > 0 && high - low <= options_.noise * ground_.noise_m(p)) return;
+    if (options_.noise > 0 && high - low <= options_.noise * terrain_.noise_m(p)) return;
     const double slope = std::hypot(0.5 * (v[1] - v[0] + v[2] - v[3]), 0.5 * (v[3] - v[0] + v[2] - v[1]));
     const double spacing_px = step / std::max(slope, 1e-300);
-    if (spacing_px < options_.densest_px || !ground_.is_whole(x, y)) return;
+    if (spacing_px < options_.densest_px || !terrain_.is_whole(x, y)) return;
     const std::array<Corner, 4> corners{Corner{v[0], {x + 0.5, y + 0.5}}, Corner{v[1], {x + 1.5, y + 0.5}},
                                         Corner{v[2], {x + 1.5, y + 1.5}}, Corner{v[3], {x + 0.5, y + 1.5}}};
     const std::array<std::size_t, 4> edges{2 * p, 2 * (p + 1) + 1, 2 * (p + down), 2 * p + 1};
     for (std::int64_t k = first; k <= last; ++k) {
-      const std::int64_t multiple = within_turn(k);
+      const std::int64_t multiple = within_period(k);
       if (options_.leave_out > 0 && multiple % options_.leave_out == 0) continue;
       if (options_.period > 0 && !is_a_line(multiple, k)) continue;
       cross(corners, edges, static_cast<double>(k) * step, multiple, spacing_px);
     }
   }
 
-  // Multiples of angles a turn apart are the same line where the step divides the turn.
-  std::int64_t within_turn(std::int64_t k) const {
+  // Multiples of angles one period apart are the same line if the step divides the period.
+  std::int64_t within_period(std::int64_t k) const {
     if (options_.period <= 0) return k;
     const double value = static_cast<double>(k) * options_.step;
     double inside = std::remainder(value, options_.period);
@@ -126,7 +129,7 @@ class Tracer {
     };
     if (count == 2) add(crossed[0], crossed[1]);
     if (count != 4) return;
-    // A saddle: the mean decides which opposite corners are joined.
+    // At a saddle the mean decides which opposite corners are joined.
     const double mean = 0.25 * (corners[0].value + corners[1].value + corners[2].value + corners[3].value);
     const bool cut_off_first = (mean >= level) != (corners[0].value >= level);
     add(cut_off_first ? 3 : 0, cut_off_first ? 0 : 1);
@@ -134,10 +137,10 @@ class Tracer {
   }
 
   static glm::dvec2 place(const std::array<Corner, 4>& corners, std::size_t edge, double level) {
-    // From the upper or left corner on, so that both cells beside an edge say the same.
-    const bool turned = edge >= 2;
-    const Corner& a = corners[turned ? (edge + 1) % 4 : edge];
-    const Corner& b = corners[turned ? edge : (edge + 1) % 4];
+    // Always interpolates from the upper or left corner, so that both cells beside an edge get the same point.
+    const bool reversed = edge >= 2;
+    const Corner& a = corners[reversed ? (edge + 1) % 4 : edge];
+    const Corner& b = corners[reversed ? edge : (edge + 1) % 4];
     return a.at + (b.at - a.at) * std::clamp((level - a.value) / (b.value - a.value), 0.0, 1.0);
   }
 
@@ -162,7 +165,7 @@ class Tracer {
     s.next[s.edge[0] == end.edge ? 0 : 1] = other;
   }
 
-  // From a segment's end `entry` on, until there is none or the first one comes again.
+  // Follows a line from a segment's end `entry` until it ends or returns to its first segment.
   Isoline chain(std::size_t n, std::size_t entry) {
     Isoline line;
     line.multiple = segments_[n].multiple;
@@ -183,7 +186,7 @@ class Tracer {
     return line;
   }
 
-  // Harmonic mean over some pixels to each side: the density of lines, not its noise.
+  // Takes the harmonic mean over some points to each side, which removes noise of single cells.
   static void smooth(std::vector<double>& spacing) {
     constexpr std::size_t kReach = 12;
     std::vector<double> sums(spacing.size() + 1, 0.0);
@@ -195,7 +198,7 @@ class Tracer {
     }
   }
 
-  const VisibleTerrain& ground_;
+  const VisibleTerrain& terrain_;
   const std::vector<double>& values_;
   const IsolineOptions& options_;
   std::vector<Segment> segments_;
@@ -209,9 +212,9 @@ double Isoline::length_px() const {
   return sum;
 }
 
-std::vector<Isoline> isolines(const VisibleTerrain& ground, const std::vector<double>& values,
+std::vector<Isoline> isolines(const VisibleTerrain& terrain, const std::vector<double>& values,
                               const IsolineOptions& options) {
-  return Tracer(ground, values, options).run();
+  return Tracer(terrain, values, options).run();
 }
 
 }  // namespace vpe::overlay

@@ -1,4 +1,4 @@
-// Lines of equal value over the ground in an image, as chains of points (marching squares).
+// Lines of equal value over the terrain in an image, as chains of points (marching squares).
 #pragma once
 
 #include <cstdint>
@@ -10,27 +10,27 @@
 namespace vpe::overlay {
 
 struct Isoline {
-  std::int64_t multiple = 0;  // its value is this times the step
+  std::int64_t multiple = 0;  // the line's value divided by IsolineOptions::step
   bool closed = false;
   std::vector<glm::dvec2> points;  // in the layer's pixels
-  std::vector<double> spacing_px;  // at each point, to the next line, smoothed along the line
-  std::vector<double> trust;       // 0 to 1 at each point; empty for 1
+  std::vector<double> spacing_px;  // distance to the next line at each point, smoothed along the line
+  std::vector<double> trust;       // 0 to 1 at each point; empty means 1 everywhere
 
   double length_px() const;
 };
 
 struct IsolineOptions {
-  double step = 1;
-  double period = 0;      // values are angles in (-period/2, period/2]
-  int leave_out = 0;      // multiples of this are not made
-  double noise = 0;       // cells that span no more than this times Ground::noise_m() have no line
-  double densest_px = 1;  // nor have cells with lines closer than this
+  double step = 1;        // Smaller: more lines, slower; larger: fewer lines.
+  double period = 0;      // > 0: values are angles in (-period/2, period/2]
+  int leave_out = 0;      // > 0: multiples of this number are skipped
+  double noise = 0;       // cells that span at most this times VisibleTerrain::noise_m() have no line
+  double densest_px = 1;  // cells with lines closer than this have no line
 };
 
-// `values`: of every pixel of the ground, straight between pixel centres. Each point of a line is where its
-// value is on the edge between two neighbouring pixels. In no particular order, but the same for the same
-// input.
-std::vector<Isoline> isolines(const VisibleTerrain& ground, const std::vector<double>& values,
+// Traces isolines. `values` holds one value for each pixel and is interpolated linearly between pixel centres.
+// Each point of a line lies on the edge between two neighbouring pixels. The order of the lines is not
+// specified, but is the same for the same input.
+std::vector<Isoline> isolines(const VisibleTerrain& terrain, const std::vector<double>& values,
                               const IsolineOptions& options);
 
 }  // namespace vpe::overlay

@@ -24,7 +24,7 @@ LabelLayout::LabelLayout(Canvas& canvas, double unit)
 double LabelLayout::line_px(double at_720) const { return std::max(px(at_720), 0.75 * at_720); }
 
 Font LabelLayout::font(double at_720, bool bold) const {
-  // Smaller letters cannot be read, whatever the image's size.
+  // Smaller letters are not legible in images of any size.
   return {std::max(px(at_720), 0.7 * at_720), bold};
 }
 

@@ -1,4 +1,5 @@
-// The overlays one by one. Each takes the room it uses on the sheet; what finds none is left out.
+// One function for each overlay. Each records the boxes that it uses in the layout and draws nothing that does
+// not find room.
 #pragma once
 
 #include "vpe/overlay/label_layout.h"
@@ -6,25 +7,28 @@
 
 namespace vpe::overlay {
 
-// Lines over the ground, and the labels that they get once everything else has its place.
+// Describes a label of a line over the terrain. Labels are drawn after all other overlays have their boxes.
 struct LineLabel {
   std::string text;
   glm::dvec2 at;
   double angle_rad;
   Lettering style;
 };
-std::vector<LineLabel> draw_graticule(LabelLayout& layout, const VisibleTerrain& ground, double step_deg);
-std::vector<LineLabel> draw_contours(LabelLayout& layout, const VisibleTerrain& ground, double step_m);
-// In gaps of the lines. Labels of the same text keep a distance.
+
+// Draw lines and return their labels.
+std::vector<LineLabel> draw_graticule(LabelLayout& layout, const VisibleTerrain& terrain, double step_deg);
+std::vector<LineLabel> draw_contours(LabelLayout& layout, const VisibleTerrain& terrain, double step_m);
+// Draws labels into gaps that it cuts into the lines. Keeps a distance between labels with the same text.
 void draw_labels(LabelLayout& layout, const std::vector<LineLabel>& labels);
 
 void draw_title(LabelLayout& layout, const std::string& title);
 void draw_time(LabelLayout& layout, double time_s);
 void draw_legend(LabelLayout& layout, const Scene& scene);
-void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& ground);
-void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& ground);
-// Takes the edge for itself. With `distances` a name has its distance beside it (name_text()).
+void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& terrain);
+void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& terrain);
+// Draws compass marks. Along an edge, removes the band from the layout's area.
 void draw_compass(LabelLayout& layout, const Scene& scene, core::CompassStrip where);
-void draw_names(LabelLayout& layout, const VisibleTerrain& ground, bool distances);
+// Draws names of places; with `distances` each name is followed by its distance (name_text()).
+void draw_names(LabelLayout& layout, const VisibleTerrain& terrain, bool distances);
 
 }  // namespace vpe::overlay

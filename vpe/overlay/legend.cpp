@@ -1,7 +1,9 @@
+// Legend of the colours of elevation, slope or aspect.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "vpe/base/nice_ticks.h"
 #include "vpe/core/appearance/palette.h"
 #include "vpe/overlay/layer_functions.h"
 #include "vpe/overlay/number_format.h"
@@ -27,37 +29,37 @@ struct Tick {
   std::string text;
 };
 
-struct Figures {
+struct LegendScale {
   std::string title;
   std::vector<Tick> ticks;
 };
 
-Figures figures_of(Colour colour, double low, double high) {
+LegendScale legend_scale(Colour colour, double low, double high) {
   constexpr int kTicks = 6;
   constexpr double kKilometresFrom_m = 5000;
-  Figures figures;
+  LegendScale legend;
   const double bottom = std::min(low, high);
   const double top = std::max(low, high);
   if (colour == Colour::kAspect && bottom <= 0 && top >= 360) {
-    constexpr std::array<const char*, 5> kWinds{"N", "E", "S", "W", "N"};
-    figures.title = "Aspect";
-    for (std::size_t n = 0; n < kWinds.size(); ++n)
-      figures.ticks.push_back({90.0 * static_cast<double>(n), kWinds[n]});
-    return figures;
+    constexpr std::array<const char*, 5> kMainWinds{"N", "E", "S", "W", "N"};
+    legend.title = "Aspect";
+    for (std::size_t n = 0; n < kMainWinds.size(); ++n)
+      legend.ticks.push_back({90.0 * static_cast<double>(n), kMainWinds[n]});
+    return legend;
   }
   const bool in_km =
       colour == Colour::kElevation && std::max(std::abs(low), std::abs(high)) >= kKilometresFrom_m;
   const double unit = in_km ? 1000 : 1;
-  figures.title = colour == Colour::kElevation ? in_km ? "Elevation, km" : "Elevation, m"
-                  : colour == Colour::kSlope   ? "Slope"
-                                               : "Aspect";
-  const std::vector<double> values = round_values(bottom / unit, top / unit, kTicks);
-  const int decimals = values.size() > 1 ? decimals_of(values[1] - values[0]) : 0;
+  legend.title = colour == Colour::kElevation ? in_km ? "Elevation, km" : "Elevation, m"
+                 : colour == Colour::kSlope   ? "Slope"
+                                              : "Aspect";
+  const std::vector<double> values = base::nice_ticks_two_or_more(bottom / unit, top / unit, kTicks);
+  const int decimals = values.size() > 1 ? base::step_decimals(values[1] - values[0]) : 0;
   for (const double v : values) {
-    figures.ticks.push_back(
+    legend.ticks.push_back(
         {v * unit, number_text(v, decimals) + (colour == Colour::kElevation ? "" : "\u00b0")});
   }
-  return figures;
+  return legend;
 }
 
 }  // namespace
@@ -67,12 +69,12 @@ void draw_legend(LabelLayout& layout, const Scene& scene) {
   Canvas& canvas = layout.canvas();
   const core::ColourScale scale(scene.appearance);
   if (scale.low() == scale.high()) return;  // a palette of one colour
-  const Figures figures = figures_of(scene.appearance.colour, scale.low(), scale.high());
+  const LegendScale legend = legend_scale(scene.appearance.colour, scale.low(), scale.high());
   const Font font = layout.font(14);
   const Font title_font = layout.font(14, true);
-  const TextSize title = canvas.measure(figures.title, title_font);
+  const TextSize title = canvas.measure(legend.title, title_font);
   double ticks_px = 0;
-  for (const Tick& tick : figures.ticks) ticks_px = std::max(ticks_px, canvas.measure(tick.text, font).width);
+  for (const Tick& tick : legend.ticks) ticks_px = std::max(ticks_px, canvas.measure(tick.text, font).width);
 
   const double pad = layout.px(8);
   const double bar_width = std::max(layout.px(16), 9.0);
@@ -92,9 +94,9 @@ void draw_legend(LabelLayout& layout, const Scene& scene) {
   };
   canvas.clear({0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)}, {width, height}, 0);
   rectangle(box, {0, 0, 0, 0.6});
-  layout.label(figures.title, {0.5 * (box.left + box.right), box.top + pad + 0.5 * title.height}, title_font);
+  layout.label(legend.title, {0.5 * (box.left + box.right), box.top + pad + 0.5 * title.height}, title_font);
 
-  // Whole pixels, each with the colour of its middle.
+  // Rows of whole pixels, each with the colour of its centre.
   const double left = std::round(box.left + pad);
   const double top = std::round(box.top + pad + 1.4 * title.height);
   const int rows = static_cast<int>(std::lround(bar_height));
@@ -104,7 +106,7 @@ void draw_legend(LabelLayout& layout, const Scene& scene) {
     const glm::dvec3 rgb = scale(scale.low() + at * (scale.high() - scale.low())) / 255.0;
     rectangle({left, top + row, left + std::round(bar_width), top + row + 1}, {rgb.x, rgb.y, rgb.z, 1});
   }
-  for (const Tick& tick : figures.ticks) {
+  for (const Tick& tick : legend.ticks) {
     const double at = (tick.value - scale.low()) / (scale.high() - scale.low());
     const double y = top + rows * (1 - at);
     const double x = left + std::round(bar_width) + 1;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "vpe/base/nice_ticks.h"
 #include "vpe/overlay/layer_functions.h"
 #include "vpe/overlay/number_format.h"
 
@@ -10,7 +11,8 @@ namespace vpe::overlay {
 
 namespace {
 
-// A line of text in the middle of the image's width; in smaller letters, then cut, when it is too long.
+// Draws a line of text in the middle of the image's width. Text that is too long gets smaller letters, then is
+// cut.
 void draw_middle(LabelLayout& layout, std::string text, Font font, bool at_top) {
   Canvas& canvas = layout.canvas();
   const double most_px = canvas.width() - 2 * layout.margin_px();
@@ -22,7 +24,7 @@ void draw_middle(LabelLayout& layout, std::string text, Font font, bool at_top) 
   const std::string whole = printable_utf8(text);
   std::size_t kept = whole.size();
   while (size.width > most_px && kept > 0) {
-    // By its share at once, then letter by letter.
+    // One large step by proportion, then letter by letter: measuring is slow.
     kept = std::min(kept - 1, static_cast<std::size_t>(1.2 * most_px / size.width * static_cast<double>(kept)));
     while (kept > 0 && (static_cast<unsigned char>(whole[kept]) & 0xc0U) == 0x80U) --kept;
     text = whole.substr(0, kept) + "\u2026";
@@ -38,20 +40,20 @@ void draw_middle(LabelLayout& layout, std::string text, Font font, bool at_top) 
   layout.label(text, centre, font);
 }
 
-// Where the image's centre looks at the ground.
+// Holds the point that the image's centre shows, or the camera if it shows sky.
 struct Centre {
   glm::dvec3 point_m;
   glm::dvec3 ray;
   bool is_ground;
 };
 
-Centre centre_of(const VisibleTerrain& ground) {
-  const int x = ground.width() / 2;
-  const int y = ground.height() / 2;
-  const core::View& view = ground.scene().view;
+Centre centre_of(const VisibleTerrain& terrain) {
+  const int x = terrain.width() / 2;
+  const int y = terrain.height() / 2;
+  const core::View& view = terrain.scene().view;
   const core::SubRectangle part = core::drawn_part(view);
   const glm::dvec3 ray = core::pixel_ray(view, part.x + x + 0.5, part.y + y + 0.5);
-  if (ground.is_ground(ground.index(x, y))) return {ground.point(x, y), ray, true};
+  if (terrain.is_ground(terrain.index(x, y))) return {terrain.point(x, y), ray, true};
   return {view.camera.position_m, ray, false};
 }
 
@@ -65,21 +67,21 @@ void draw_time(LabelLayout& layout, double time_s) {
   draw_middle(layout, time_text(time_s), layout.font(18), false);
 }
 
-void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& ground) {
+void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& terrain) {
   Canvas& canvas = layout.canvas();
-  const Centre centre = centre_of(ground);
+  const Centre centre = centre_of(terrain);
   if (!centre.is_ground) return;
-  const core::View& view = ground.scene().view;
+  const core::View& view = terrain.scene().view;
   const core::SubRectangle part = core::drawn_part(view);
-  const double x = part.x + ground.width() / 2 + 0.5;
-  const double y = part.y + ground.height() / 2 + 0.5;
+  const double x = part.x + terrain.width() / 2 + 0.5;
+  const double y = part.y + terrain.height() / 2 + 0.5;
   const glm::dvec3 across = core::pixel_ray(view, x + 0.5, y) - core::pixel_ray(view, x - 0.5, y);
   const double m_per_px = glm::length(centre.point_m - view.camera.position_m) * glm::length(across);
-  const double length_m = round_below(0.22 * canvas.width() * m_per_px);
+  const double length_m = base::nice_step_below(0.22 * canvas.width() * m_per_px);
   const double length_px = length_m / m_per_px;
 
   const Font font = layout.font(16);
-  const std::string text = length_text(length_m, length_m);
+  const std::string text = scale_length_text(length_m, length_m);
   const std::string where = "at the centre";
   const Font small = layout.font(13);
   const double text_px = std::max(canvas.measure(text, font).width, canvas.measure(where, small).width);
@@ -94,7 +96,6 @@ void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& ground) {
   layout.take(box.grown(layout.px(6)));
   canvas.clear({0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)},
                {box.right - box.left, box.bottom - box.top}, 0);
-  // Black and white in four fields, white first.
   const double bar_bottom = bottom - row_px - layout.px(2);
   const auto field = [&](double from, double to, double grow, const Ink& ink) {
     const double l = left + from * length_px - grow;
@@ -104,30 +105,30 @@ void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& ground) {
     const std::vector<glm::dvec2> corners{{l, t}, {r, t}, {r, b}, {l, b}};
     canvas.polygon(corners, ink);
   };
-  const double rim = layout.line_px(1.3);
-  field(0, 1, 2 * rim, {0, 0, 0, 0.8});
-  field(0, 1, rim, kWhite);
+  const double outline = layout.line_px(1.3);
+  field(0, 1, 2 * outline, {0, 0, 0, 0.8});
+  field(0, 1, outline, kWhite);
   for (const double from : {0.25, 0.75}) field(from, from + 0.25, 0, {0, 0, 0, 1});
   const double middle = left + 0.5 * length_px;
   layout.label(text, {middle, top + 0.5 * upper_px}, font);
   layout.label(where, {middle, bottom - 0.5 * row_px}, small);
 }
 
-void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& ground) {
+void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& terrain) {
   constexpr double kLeastTilt = 0.5;  // sine of 30 degrees
   constexpr double kPole = 1e-7;
-  const Centre centre = centre_of(ground);
-  const mars::Axes& axes = ground.scene().view.camera.axes;
+  const Centre centre = centre_of(terrain);
+  const mars::Axes& axes = terrain.scene().view.camera.axes;
   const glm::dvec3 up = glm::normalize(centre.point_m);
   if (std::hypot(up.x, up.y) < kPole) return;
   const mars::LocalFrame frame = mars::local_frame(mars::lon_lat(up));
-  // Away from the camera along the ground; looking straight down, what is up in the image.
+  // Away from the camera along the ground, or upwards in the image if the camera looks straight down.
   glm::dvec3 away = centre.ray - up * glm::dot(centre.ray, up);
   if (glm::length(away) < 1e-6) away = axes.up - up * glm::dot(axes.up, up);
   away = glm::normalize(away);
   const glm::dvec3 across = glm::cross(away, up);
   const double tilt = std::max(kLeastTilt, -glm::dot(centre.ray, up));
-  // `across` is square to the line of sight: the image shows it unshortened, and turned by the roll.
+  // `across` is perpendicular to the line of sight: the image shows it in full length, rotated by the roll.
   const glm::dvec2 roll = glm::normalize(glm::dvec2(glm::dot(across, axes.right), glm::dot(across, axes.up)));
   const double radius_px = std::max(layout.px(30), 15.0);
   const auto on_disc = [&](glm::dvec2 east_north) {
@@ -144,13 +145,13 @@ void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& ground) {
   const Box box = Box::about(middle, {2 * half_px, 2 * half_px});
   if (!layout.is_free(box)) return;
   layout.take(box);
-  std::vector<glm::dvec2> rim;
+  std::vector<glm::dvec2> circle;
   for (int n = 0; n <= 48; ++n) {
     const mars::SinCos a = mars::sin_cos_deg(n * 7.5);
-    rim.push_back(middle + on_disc({a.sin, a.cos}));
+    circle.push_back(middle + on_disc({a.sin, a.cos}));
   }
-  layout.canvas().polygon(rim, {0, 0, 0, 0.25});
-  layout.outlined(rim, layout.line_px(1.5), kWhite, kShade);
+  layout.canvas().polygon(circle, {0, 0, 0, 0.25});
+  layout.outlined(circle, layout.line_px(1.5), kWhite, kShade);
   const glm::dvec2 tip = middle + on_disc({0, 0.94});
   const glm::dvec2 tail = middle + on_disc({0, -0.5});
   const auto half = [&](double side, const Ink& ink) {
@@ -160,10 +161,10 @@ void draw_north_arrow(LabelLayout& layout, const VisibleTerrain& ground) {
   };
   half(-1, kWhite);
   half(1, {0.75, 0.1, 0.05, 1});
-  // Beyond the tip, upright, however short the arrow is.
-  const glm::dvec2 way = on_disc({0, 1});
-  const double length = glm::length(way);
-  layout.label("N", middle + way / length * (length + 0.5 * letter_px), font);
+  // The letter stands upright beyond the tip, even if the arrow is short.
+  const glm::dvec2 north = on_disc({0, 1});
+  const double length = glm::length(north);
+  layout.label("N", middle + north / length * (length + 0.5 * letter_px), font);
 }
 
 }  // namespace vpe::overlay

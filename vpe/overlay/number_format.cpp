@@ -1,77 +1,29 @@
 #include "vpe/overlay/number_format.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 
-#include "vpe/base/number.h"
+#include "vpe/base/nice_ticks.h"
 
 namespace vpe::overlay {
 
 namespace {
 
-constexpr double kBitsOff = 1e-9;
-constexpr std::array<double, 4> kRound{1, 2, 5, 10};
-
-double power_of_ten(int exponent) {
-  return exponent < 0 ? 1.0 / std::pow(10.0, -exponent) : std::pow(10.0, exponent);
-}
+constexpr double kRounding = 1e-9;
 
 std::string degrees_text(double value, double step, const char* positive, const char* negative) {
-  const std::string number = number_text(std::abs(value), decimals_of(step));
-  const bool nothing = std::abs(value) < kBitsOff;
-  return number + "\u00b0" + (nothing ? "" : value > 0 ? positive : negative);
+  const std::string number = number_text(std::abs(value), base::step_decimals(step));
+  const bool is_zero = std::abs(value) < kRounding;
+  return number + "\u00b0" + (is_zero ? "" : value > 0 ? positive : negative);
 }
 
 }  // namespace
 
-double round_below(double x) {
-  const int exponent = static_cast<int>(std::floor(std::log10(x) + kBitsOff));
-  const double unit = power_of_ten(exponent);
-  double best = unit;
-  for (const double r : kRound) {
-    if (r * unit <= x * (1 + kBitsOff)) best = r * unit;
-  }
-  return best;
-}
-
-double round_above(double x) {
-  const int exponent = static_cast<int>(std::floor(std::log10(x) + kBitsOff));
-  const double unit = power_of_ten(exponent);
-  for (const double r : kRound) {
-    if (r * unit >= x * (1 - kBitsOff)) return r * unit;
-  }
-  return 10 * unit;
-}
-
-std::vector<double> round_values(double low, double high, int most) {
-  std::vector<double> values;
-  if (!(high > low)) return values;
-  double step = round_above((high - low) / most);
-  for (;;) {
-    const auto first = static_cast<std::int64_t>(std::ceil(low / step - kBitsOff));
-    const auto last = static_cast<std::int64_t>(std::floor(high / step + kBitsOff));
-    if (last > first || step < (high - low) * 1e-3) {
-      for (std::int64_t k = first; k <= last; ++k) values.push_back(static_cast<double>(k) * step);
-      return values;
-    }
-    step = round_below(step * 0.6);
-  }
-}
-
-int decimals_of(double step) {
-  for (int n = 0; n < 9; ++n) {
-    const double scaled = step * power_of_ten(n);
-    if (std::abs(scaled - std::round(scaled)) <= 1e-6 * scaled) return n;
-  }
-  return 9;
-}
-
 std::string number_text(double value, int decimals) {
-  // Not by printf: its point is the locale's.
-  const double unit = power_of_ten(decimals);
+  // printf would use the locale's decimal point.
+  const double unit = base::power_of_ten(decimals);
   const auto all = static_cast<std::int64_t>(std::llround(std::abs(value) * unit));
   const auto part = static_cast<std::int64_t>(unit);
   std::string text = all != 0 && value < 0 ? "\u2212" : "";
@@ -84,15 +36,15 @@ std::string number_text(double value, int decimals) {
   return text;
 }
 
-std::string length_text(double metres, double step) {
+std::string scale_length_text(double metres, double step) {
   if (std::max(std::abs(metres), step) >= 1000) {
-    return number_text(metres / 1000, decimals_of(step / 1000)) + " km";
+    return number_text(metres / 1000, base::step_decimals(step / 1000)) + " km";
   }
-  return number_text(metres, decimals_of(step)) + " m";
+  return number_text(metres, base::step_decimals(step)) + " m";
 }
 
 std::string distance_text(double metres) {
-  // What is rounded up to the next unit is said in it.
+  // Limits at which rounding reaches the next unit or format.
   constexpr double kHundred_m = 99.5;
   constexpr double kKilometre_m = 995;
   constexpr double kTenKilometres_m = 9950;
@@ -106,7 +58,7 @@ std::string name_text(const std::string& name, double distance_m) {
 }
 
 std::string longitude_text(double lon_deg, double step) {
-  if (std::abs(lon_deg) > 180 - kBitsOff) return "180\u00b0";
+  if (std::abs(lon_deg) > 180 - kRounding) return "180\u00b0";
   return degrees_text(lon_deg, step, "E", "W");
 }
 

@@ -1,34 +1,28 @@
-// Round numbers, and numbers as a map has them.
+// Text of numbers on maps: lengths, distances, coordinates and times.
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace vpe::overlay {
 
-// The largest of 1, 2, 5 times a power of ten that is not above x > 0.
-double round_below(double x);
-// The smallest that is not below it.
-double round_above(double x);
-
-// Multiples of a round step within [low, high], at least 2 if the range has any width, at most `most` + 1.
-std::vector<double> round_values(double low, double high, int most);
-
-// Decimals that tell multiples of a step apart, at most 9.
-int decimals_of(double step);
-
-// With a true minus sign; never "-0".
+// Returns a number with U+2212 as minus sign, never "-0". Halves round away from zero, unlike
+// base::format_display(), which rounds the exact binary value.
 std::string number_text(double value, int decimals);
-// "250 m", "20 km"; `step` says how many decimals there are.
-std::string length_text(double metres, double step);
-// "850 m", "4.2 km", "17 km": two figures of what is nearer than 10 km, whole kilometres beyond.
+
+// Returns a length for a scale, as "250 m" or "20 km". `step` determines the number of decimals.
+std::string scale_length_text(double metres, double step);
+
+// Returns a distance as "850 m", "4.2 km", "17 km": two digits below 10 km, whole kilometres above.
 std::string distance_text(double metres);
-// "Gale · 17 km".
+
+// Returns "Gale · 17 km".
 std::string name_text(const std::string& name, double distance_m);
-// "74.5°W", "0°", "180°"; "13°S".
+
+// Return "74.5°W", "0°", "180°" and "13°S". `step` determines the number of decimals.
 std::string longitude_text(double lon_deg, double step);
 std::string latitude_text(double lat_deg, double step);
-// "T+01:02:03.45"; hundredths are rounded down, but for the last bits of a frame's time.
+
+// Returns "T+01:02:03.45". Hundredths are rounded down, after allowing for rounding errors of a frame's time.
 std::string time_text(double time_s);
 
 }  // namespace vpe::overlay

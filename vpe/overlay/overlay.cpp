@@ -20,23 +20,23 @@ bool any(const core::Overlays& overlays) {
 Layer draw(const core::Overlays& overlays, const Scene& scene) {
   if (!any(overlays)) return {};
   const glm::ivec2 size = core::drawn_size(scene.view);
-  std::optional<VisibleTerrain> ground;
-  if (needs_range(overlays)) ground.emplace(scene);
+  std::optional<VisibleTerrain> terrain;
+  if (needs_range(overlays)) terrain.emplace(scene);
   Canvas canvas(size.x, size.y);
   LabelLayout layout(canvas);
   std::vector<LineLabel> labels;
-  if (overlays.contours) labels = draw_contours(layout, *ground, overlays.contour_m);
+  if (overlays.contours) labels = draw_contours(layout, *terrain, overlays.contour_m);
   if (overlays.graticule) {
-    const std::vector<LineLabel> more = draw_graticule(layout, *ground, overlays.graticule_deg);
+    const std::vector<LineLabel> more = draw_graticule(layout, *terrain, overlays.graticule_deg);
     labels.insert(labels.begin(), more.begin(), more.end());
   }
   if (overlays.compass != core::CompassStrip::kOff) draw_compass(layout, scene, overlays.compass);
   if (!overlays.title.empty()) draw_title(layout, overlays.title);
   if (overlays.legend) draw_legend(layout, scene);
-  if (overlays.scale_bar) draw_scale_bar(layout, *ground);
-  if (overlays.north_arrow) draw_north_arrow(layout, *ground);
+  if (overlays.scale_bar) draw_scale_bar(layout, *terrain);
+  if (overlays.north_arrow) draw_north_arrow(layout, *terrain);
   if (overlays.time_code) draw_time(layout, scene.time_s);
-  if (!overlays.names.empty()) draw_names(layout, *ground, overlays.distances);
+  if (!overlays.names.empty()) draw_names(layout, *terrain, overlays.distances);
   draw_labels(layout, labels);
   return canvas.layer();
 }
@@ -53,7 +53,7 @@ void composite(const Layer& layer, std::vector<base::Rgb>& image) {
   if (layer.pixels.empty()) return;
   if (layer.pixels.size() != image.size()) {
     throw std::invalid_argument("a layer of " + std::to_string(layer.pixels.size()) +
-                                " pixels over a picture of " + std::to_string(image.size()));
+                                " pixels over an image of " + std::to_string(image.size()));
   }
   for (std::size_t n = 0; n < image.size(); ++n) {
     if (layer.pixels[n].a != 0) image[n] = blend(layer.pixels[n], image[n]);

@@ -21,15 +21,16 @@ struct Mark {
   glm::dvec2 at;
 };
 
-class Layout {
+class PanoramaLayout {
  public:
-  Layout(const core::Overlays& overlays, const PanoramaScene& scene)
+  PanoramaLayout(const core::Overlays& overlays, const PanoramaScene& scene)
       : overlays_(overlays),
         scene_(scene),
         unit_(panorama_unit(scene)),
         ruler_(1, 1),
         size_(static_cast<double>(scene.width_px), static_cast<double>(scene.height_px)),
-        sprites_(scene.width_px, scene.height_px, scene.width_px == scene.turn_px ? scene.turn_px : 0),
+        sprites_(scene.width_px, scene.height_px,
+                 scene.width_px == scene.full_circle_px ? scene.full_circle_px : 0),
         bottom_px_(size_.y) {}
 
   SpriteLayer run() {
@@ -37,7 +38,7 @@ class Layout {
     if (!overlays_.title.empty()) title();
     if (overlays_.legend) legend();
     names();
-    // Last, where there is still room.
+    // Figures along the horizon come last: they use the room that is left.
     for (const Mark& m : figures_) label(m);
     return std::move(sprites_);
   }
@@ -48,14 +49,14 @@ class Layout {
   Font font(double at_720, bool bold = false) const { return {std::max(px(at_720), 0.7 * at_720), bold}; }
 
   std::vector<Mark> marks(double y) const {
-    const double label_px = look_.label_px(ruler_, scene_.px_per_deg);
-    const bool is_turn = scene_.width_px == scene_.turn_px;
+    const double label_px = style_.label_px(ruler_, scene_.px_per_deg);
+    const bool is_full_circle = scene_.width_px == scene_.full_circle_px;
     std::vector<Mark> placed;
     for (CompassMark& mark :
          compass_marks(scene_.left_azimuth_deg, scene_.span_deg, compass_steps(scene_.px_per_deg, label_px))) {
-      // The end of a whole turn is its beginning.
+      // The end of a full circle is its beginning.
       constexpr double kSame_deg = 1e-9;
-      if (is_turn && mark.azimuth_deg > scene_.left_azimuth_deg + 360 - kSame_deg) continue;
+      if (is_full_circle && mark.azimuth_deg > scene_.left_azimuth_deg + 360 - kSame_deg) continue;
       const auto at = scene_.place(mark.azimuth_deg, 0);
       if (!at) continue;
       placed.push_back({std::move(mark), {at->x, y}});
@@ -64,23 +65,23 @@ class Layout {
   }
 
   void compass() {
-    look_.unit = unit_;
-    const double height_px = std::ceil(look_.height_px());
+    style_.unit = unit_;
+    const double height_px = std::ceil(style_.height_px());
     if (2 * height_px > size_.y) return;
     CompassStrip where = overlays_.compass;
     if (where == CompassStrip::kHorizon && (scene_.horizon_px < 0 || scene_.horizon_px + height_px > size_.y))
       where = CompassStrip::kBottom;
-    look_.is_up = where == CompassStrip::kTop;
+    style_.is_up = where == CompassStrip::kTop;
     double line_y = scene_.horizon_px;
     if (where != CompassStrip::kHorizon) {
-      line_y = look_.is_up ? height_px : size_.y - height_px;
-      const Box band{0, look_.is_up ? 0 : line_y, size_.x, look_.is_up ? line_y : size_.y};
+      line_y = style_.is_up ? height_px : size_.y - height_px;
+      const Box band{0, style_.is_up ? 0 : line_y, size_.x, style_.is_up ? line_y : size_.y};
       sprites_.fill(band, {0, 0, 0, static_cast<std::uint8_t>(std::lround(255 * kCompassBand.a))});
-      if (look_.is_up) top_px_ = line_y;
-      if (!look_.is_up) bottom_px_ = line_y;
+      if (style_.is_up) top_px_ = line_y;
+      if (!style_.is_up) bottom_px_ = line_y;
     } else {
-      // Whole pixels, thin enough to see the ground by.
-      const double width_px = std::max(1.0, std::round(look_.line_px()));
+      // Whole pixels, thin enough not to hide the terrain.
+      const double width_px = std::max(1.0, std::round(style_.line_px()));
       const double y = std::round(line_y - 0.5 * width_px);
       constexpr core::Rgba kDark{0, 0, 0, 110};
       constexpr core::Rgba kBright{255, 255, 255, 190};
@@ -88,35 +89,35 @@ class Layout {
       sprites_.fill({0, y, size_.x, y + width_px}, kBright);
     }
     for (Mark& m : marks(line_y)) {
-      const Box tick = look_.tick_box(m.at, m.mark).grown(2 * look_.line_px());
-      sprites_.add(tick, [style = look_, m](Canvas& canvas, glm::dvec2 corner) {
+      const Box tick = style_.tick_box(m.at, m.mark).grown(2 * style_.line_px());
+      sprites_.add(tick, [style = style_, m](Canvas& canvas, glm::dvec2 corner) {
         style.draw_tick(canvas, m.at - corner, m.mark);
       });
       if (m.mark.rank == CompassRank::kWind) label(m);
       if (m.mark.rank == CompassRank::kFigure) figures_.push_back(std::move(m));
     }
     if (where == CompassStrip::kHorizon) {
-      for (const Mark& m : figures_) figure_boxes_.push_back(look_.label_box(ruler_, m.at, m.mark));
+      for (const Mark& m : figures_) figure_boxes_.push_back(style_.label_box(ruler_, m.at, m.mark));
       return;
     }
     for (const Mark& m : figures_) label(m);
     figures_.clear();
-    sprites_.take({0, look_.is_up ? 0 : line_y, size_.x, look_.is_up ? line_y : size_.y});
+    sprites_.take({0, style_.is_up ? 0 : line_y, size_.x, style_.is_up ? line_y : size_.y});
   }
 
   void label(const Mark& m) {
-    const Box box = look_.label_box(ruler_, m.at, m.mark);
+    const Box box = style_.label_box(ruler_, m.at, m.mark);
     if (!sprites_.is_free(box)) return;
     sprites_.take(box.grown(px(3)));
-    sprites_.add(halo(box), [style = look_, m](Canvas& canvas, glm::dvec2 corner) {
+    sprites_.add(halo(box), [style = style_, m](Canvas& canvas, glm::dvec2 corner) {
       style.draw_label(canvas, m.at - corner, m.mark);
     });
   }
 
-  // With what an outline and slanting letters add.
+  // Adds room for the outline and for letters that extend over their box.
   Box halo(const Box& box) const { return box.grown(2 + 0.2 * (box.bottom - box.top)); }
 
-  // Furniture is drawn as in an image of the size of its own corner.
+  // Draws title or legend as in an image of the size of `box`.
   void furniture(const Box& box, const std::function<void(LabelLayout&)>& draw) {
     const auto width = static_cast<int>(box.right - box.left);
     const auto height = static_cast<int>(box.bottom - box.top);
@@ -137,7 +138,7 @@ class Layout {
   }
 
   void title() {
-    // Wider ones are cut.
+    // Wider titles are cut.
     constexpr double kMost_px = 12000;
     const Font letters = font(24, true);
     const double margin_px = px(16);
@@ -163,19 +164,19 @@ class Layout {
   void names() {
     constexpr double kSmallest_px = 4;
     constexpr std::size_t kMost = 1000;
-    std::vector<const PanoramaName*> order;
-    for (const PanoramaName& name : scene_.names) order.push_back(&name);
+    std::vector<const PanoramaName*> sorted;
+    for (const PanoramaName& name : scene_.names) sorted.push_back(&name);
     const auto apparent = [](const PanoramaName& name) {
       return name.diameter_m / std::max(name.distance_m, 1e-3);
     };
-    std::stable_sort(order.begin(), order.end(), [&](const PanoramaName* a, const PanoramaName* b) {
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const PanoramaName* a, const PanoramaName* b) {
       const double x = apparent(*a);
       const double y = apparent(*b);
       return x != y ? x > y : a->distance_m < b->distance_m;
     });
     const double px_per_rad = scene_.px_per_deg / mars::kRadiansPerDegree;
     std::size_t count = 0;
-    for (const PanoramaName* name : order) {
+    for (const PanoramaName* name : sorted) {
       if (name->diameter_m > 0 && apparent(*name) * px_per_rad < px(kSmallest_px)) continue;
       const auto at = scene_.place(name->azimuth_deg, name->elevation_deg);
       if (at && draw_name(*name, *at) && ++count == kMost) return;
@@ -191,21 +192,21 @@ class Layout {
     const Box dot = Box::about(at, {2 * dot_px, 2 * dot_px});
     if (!sprites_.is_free(dot)) return false;
     glm::dvec2 centre = at;
-    if (scene_.width_px != scene_.turn_px) {
+    if (scene_.width_px != scene_.full_circle_px) {
       const double half_px = 0.5 * size.width + px(2);
       if (2 * half_px > size_.x) return false;
       centre.x = std::clamp(centre.x, half_px, size_.x - half_px);
     }
-    // Where a figure of the compass would have to go only when there is no other room.
+    // Covers a figure of the compass only if there is no other room.
     for (const bool spares_figures : {true, false}) {
       for (const int row : kRows) {
-        const double way = row < 0 ? 1 : -1;
+        const double sign = row < 0 ? 1 : -1;
         const double away_px = 1.4 * letters.size_px + 1.5 * letters.size_px * (row < 0 ? -1 - row : row);
-        centre.y = at.y + way * (away_px + 0.5 * size.height);
+        centre.y = at.y + sign * (away_px + 0.5 * size.height);
         const Box box = Box::about(centre, size);
         const double half_px = 1.5 * line_px(1);
-        const Box leader{at.x - half_px, way < 0 ? box.bottom : dot.bottom, at.x + half_px,
-                         way < 0 ? dot.top : box.top};
+        const Box leader{at.x - half_px, sign < 0 ? box.bottom : dot.bottom, at.x + half_px,
+                         sign < 0 ? dot.top : box.top};
         if (!sprites_.is_free(box) || !sprites_.is_free(leader)) continue;
         if (spares_figures && (meets_figure(box.grown(px(4))) || meets_figure(leader))) continue;
         sprites_.take(dot.grown(px(2)));
@@ -222,32 +223,32 @@ class Layout {
   }
 
   bool meets_figure(const Box& box) const {
-    const double turn = scene_.width_px == scene_.turn_px ? size_.x : 0;
+    const double period = scene_.width_px == scene_.full_circle_px ? size_.x : 0;
     return std::any_of(figure_boxes_.begin(), figure_boxes_.end(), [&](const Box& other) {
       const auto meets = [&](double shift) {
         return box.meets({other.left + shift, other.top, other.right + shift, other.bottom});
       };
-      return meets(0) || meets(turn) || meets(-turn);
+      return meets(0) || meets(period) || meets(-period);
     });
   }
 
   void add_leader(glm::dvec2 at, const Box& leader, double dot_px) {
     const double line = line_px(1);
-    const double rim = dot_px + line;
-    const Box box{at.x - rim, std::min(leader.top, at.y - rim), at.x + rim,
-                  std::max(leader.bottom, at.y + rim)};
+    const double radius = dot_px + line;
+    const Box box{at.x - radius, std::min(leader.top, at.y - radius), at.x + radius,
+                  std::max(leader.bottom, at.y + radius)};
     sprites_.add(box.grown(1), [at, leader, line, dot_px](Canvas& canvas, glm::dvec2 corner) {
       const std::array<glm::dvec2, 2> ends{glm::dvec2{at.x, leader.top} - corner,
                                            glm::dvec2{at.x, leader.bottom} - corner};
       canvas.line(ends, false, 3 * line, kShade);
       canvas.line(ends, false, line, kWhite);
       const auto disc = [&](double radius_px, const Ink& ink) {
-        std::vector<glm::dvec2> rim_points;
+        std::vector<glm::dvec2> circle;
         for (int n = 0; n < 16; ++n) {
           const mars::SinCos a = mars::sin_cos_deg(n * 22.5);
-          rim_points.push_back(at - corner + glm::dvec2(a.cos, a.sin) * radius_px);
+          circle.push_back(at - corner + glm::dvec2(a.cos, a.sin) * radius_px);
         }
-        canvas.polygon(rim_points, ink);
+        canvas.polygon(circle, ink);
       };
       disc(dot_px + line, kShade);
       disc(dot_px, kWhite);
@@ -260,8 +261,8 @@ class Layout {
   Canvas ruler_;
   glm::dvec2 size_;
   SpriteLayer sprites_;
-  CompassStyle look_;
-  std::vector<Mark> figures_;  // whose labels are still to be placed
+  CompassStyle style_;
+  std::vector<Mark> figures_;  // with labels that are not placed yet
   std::vector<Box> figure_boxes_;
   double top_px_ = 0;
   double bottom_px_;
@@ -271,21 +272,21 @@ class Layout {
 
 double panorama_unit(const PanoramaScene& scene) {
   const double side_px = static_cast<double>(std::min(scene.width_px, scene.height_px));
-  return std::min({side_px / 720.0, static_cast<double>(scene.turn_px) / 3200.0, kMostPanoramaUnit});
+  return std::min({side_px / 720.0, static_cast<double>(scene.full_circle_px) / 3200.0, kMaxPanoramaUnit});
 }
 
 std::string not_for_panoramas(const core::Overlays& overlays) {
-  if (overlays.graticule) return "overlay.graticule: lines on the ground are not drawn over panoramas";
-  if (overlays.contours) return "overlay.contours: lines on the ground are not drawn over panoramas";
+  if (overlays.graticule) return "overlay.graticule: lines on the terrain are not drawn over panoramas";
+  if (overlays.contours) return "overlay.contours: lines on the terrain are not drawn over panoramas";
   if (overlays.scale_bar)
     return "overlay.scale: a panorama has no centre with one scale; see overlay.distances";
-  if (overlays.north_arrow) return "overlay.north: a panorama looks everywhere; see overlay.compass";
-  if (overlays.time_code) return "overlay.time: a panorama is no frame of a flight";
+  if (overlays.north_arrow) return "overlay.north: a panorama shows all directions; see overlay.compass";
+  if (overlays.time_code) return "overlay.time: a panorama is not a frame of a flight";
   return {};
 }
 
 SpriteLayer lay_out_panorama(const core::Overlays& overlays, const PanoramaScene& scene) {
-  return Layout(overlays, scene).run();
+  return PanoramaLayout(overlays, scene).run();
 }
 
 }  // namespace vpe::overlay

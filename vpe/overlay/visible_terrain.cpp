@@ -20,7 +20,7 @@ VisibleTerrain::VisibleTerrain(const Scene& scene)
       size_(core::drawn_size(scene.view)),
       is_flat_(scene.view.projection == core::Projection::kPerspective) {
   if (is_flat_) {
-    // As core::pixel_ray(), with what is the same for all pixels worked out once.
+    // Equals core::pixel_ray(), with the terms that all pixels share computed once.
     const mars::Axes& axes = scene.view.camera.axes;
     const glm::dvec2 first = glm::dvec2(part_.x + 0.5, part_.y + 0.5) -
                              glm::dvec2(scene.view.width, scene.view.height) * 0.5 -
@@ -35,8 +35,7 @@ VisibleTerrain::VisibleTerrain(const Scene& scene)
     return;
   }
   throw std::invalid_argument("the range image has " + std::to_string(scene.range_m.size()) +
-                              " pixels, the picture " + std::to_string(size_.x) + "x" +
-                              std::to_string(size_.y));
+                              " pixels, the image " + std::to_string(size_.x) + "x" + std::to_string(size_.y));
 }
 
 bool VisibleTerrain::is_ground(std::size_t pixel) const {
@@ -49,7 +48,7 @@ double VisibleTerrain::deviation_m(std::size_t pixel) const {
 }
 
 double VisibleTerrain::noise_m(std::size_t pixel) const {
-  // A tenth of what vpe/gl bounds it by: what is usual, not what is possible.
+  // A tenth of the bound in vpe/gl: the usual error, not the largest possible one.
   constexpr double kShare = 5e-8;
   constexpr double kRounding = 1.2e-7;
   const auto range_m = static_cast<double>(scene_.range_m[pixel]);
@@ -72,9 +71,9 @@ std::optional<glm::dvec2> VisibleTerrain::to_image(const glm::dvec3& point_m) co
   return p.xy - glm::dvec2(part_.x, part_.y);
 }
 
-// Whether ground ends between a pixel and the next one, to the right (side = width) or below. One over the
-// range is nearly linear along a plane however it is tilted, so that a step much larger than those beside it is
-// an edge.
+// Returns true if terrain ends between a pixel and the next one, to the right (side = width) or below. The
+// reciprocal of the range is nearly linear along a plane of any tilt, so a step much larger than its neighbours
+// is an edge.
 bool VisibleTerrain::breaks(std::size_t pixel, int x, int side, std::size_t step) const {
   constexpr double kTimesTheNeighbours = 4;
   constexpr double kUnnoticed = 0.003;
@@ -130,7 +129,7 @@ std::vector<double> VisibleTerrain::elevations_m() const {
   return values([=](const glm::dvec3& p) { return (glm::length(p) - radius_m) * factor; });
 }
 
-std::optional<Spread> spread_of(const std::vector<double>& values, double period) {
+std::optional<CentralRange> central_range(const std::vector<double>& values, double period) {
   constexpr std::size_t kSamples = 20000;
   constexpr double kLeftOut = 0.05;
   std::vector<double> some;
@@ -142,14 +141,14 @@ std::optional<Spread> spread_of(const std::vector<double>& values, double period
   double middle = 0;
   if (period > 0) {
     glm::dvec2 sum{0, 0};
-    const double turn = 2 * mars::kPi / period;
-    for (const double v : some) sum += glm::dvec2(std::cos(v * turn), std::sin(v * turn));
-    middle = std::atan2(sum.y, sum.x) / turn;
+    const double radians = 2 * mars::kPi / period;  // of one unit
+    for (const double v : some) sum += glm::dvec2(std::cos(v * radians), std::sin(v * radians));
+    middle = std::atan2(sum.y, sum.x) / radians;
     for (double& v : some) v = middle + std::remainder(v - middle, period);
   }
   const auto left_out = static_cast<std::size_t>(kLeftOut * static_cast<double>(some.size()));
   std::sort(some.begin(), some.end());
-  return Spread{some[left_out], some[some.size() - 1 - left_out]};
+  return CentralRange{some[left_out], some[some.size() - 1 - left_out]};
 }
 
 }  // namespace vpe::overlay

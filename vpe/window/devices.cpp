@@ -78,14 +78,14 @@ Devices::Devices(const explore::Preferences& preferences, DeviceSources sources)
     try {
       sources_.space_mouse = explore::open_space_mouse();
     } catch (const explore::DeviceError&) {
-      // Hardly anybody has one: not a word about it.
+      // Few users have a space mouse, so its absence is not reported.
     }
   }
   if (preferences_.use_head_tracker) {
     try {
       receiver_ = std::make_unique<explore::UdpReceiver>(preferences_.head_from);
     } catch (const explore::DeviceError& e) {
-      troubles_.emplace_back(e.what());
+      errors_.emplace_back(e.what());
     }
   }
 }
@@ -97,7 +97,7 @@ std::optional<int> Devices::tracker_port() const {
 void Devices::key(const Event& event) {
   with_ = {(event.modifiers & GLFW_MOD_CONTROL) != 0, (event.modifiers & GLFW_MOD_ALT) != 0,
            (event.modifiers & GLFW_MOD_SHIFT) != 0};
-  // GLFW tells of a modifier's own key what was held before it.
+  // GLFW's modifiers in the event of a modifier key do not include that key.
   const bool is_down = event.kind != Event::Kind::kKeyRelease;
   if (event.code == GLFW_KEY_LEFT_SHIFT || event.code == GLFW_KEY_RIGHT_SHIFT) with_.shift = is_down;
   if (event.code == GLFW_KEY_LEFT_CONTROL || event.code == GLFW_KEY_RIGHT_CONTROL) with_.ctrl = is_down;
@@ -109,7 +109,7 @@ void Devices::key(const Event& event) {
 }
 
 bool Devices::polls(double time_s) const {
-  return pad_was_there_ || cap_moves_ || receiver_ != nullptr || tracker_.is_moving(time_s);
+  return has_pad_ || cap_moves_ || receiver_ != nullptr || tracker_.is_moving(time_s);
 }
 
 DeviceReading Devices::read(double time_s, bool typing) {
@@ -125,7 +125,7 @@ DeviceReading Devices::read(double time_s, bool typing) {
   }
   if (preferences_.use_gamepad) {
     const std::optional<explore::PadState> state = sources_.pad();
-    pad_was_there_ = state.has_value();
+    has_pad_ = state.has_value();
     const explore::PadReading pad = gamepad_.read(state, preferences_.gamepad);
     controls.push_back(pad.controls);
     add(pad.actions);

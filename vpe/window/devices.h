@@ -1,4 +1,4 @@
-// All that hands and heads are on, polled once a frame: keys, gamepad, space mouse, head tracker.
+// Input devices, polled once a frame: keyboard, gamepad, space mouse, head tracker.
 #pragma once
 
 #include <functional>
@@ -20,10 +20,10 @@
 
 namespace vpe::window {
 
-// Where devices come from; each may be replaced, as in tests.
+// Sources of device states. Tests replace them.
 struct DeviceSources {
-  std::function<std::optional<explore::PadState>()> pad;   // default: the first that GLFW knows
-  std::unique_ptr<explore::SpaceMouseSource> space_mouse;  // default: spacenavd, when it runs
+  std::function<std::optional<explore::PadState>()> pad;   // default: the first that GLFW finds
+  std::unique_ptr<explore::SpaceMouseSource> space_mouse;  // default: spacenavd, if it runs
 };
 
 struct DeviceReading {
@@ -32,23 +32,29 @@ struct DeviceReading {
   std::vector<explore::Action> actions;
 };
 
+// Combines the input of all devices. For the window's thread.
+//
+// Typical usage:
+//   for (const Event& event : display.events(wait_s)) devices.key(event);
+//   const DeviceReading input = devices.read(time_s, ImGui::GetIO().WantTextInput);
+//   session.advance(dt_s, input.controls, input.look);
 class Devices {
  public:
   Devices(const explore::Preferences& preferences, DeviceSources sources);
 
-  // Keys, as they come.
+  // Processes a key event.
   void key(const Event& event);
   void lose_keyboard() { held_.clear(); }
 
-  // typing: keys belong to a text field. Times are seconds of one clock.
+  // Reads all devices. typing: a text field has the focus, so keys are ignored. Times are seconds of one clock.
   DeviceReading read(double time_s, bool typing);
 
-  // Whether something must be polled though no event comes.
+  // Returns true if a device must be polled because it sends no events.
   bool polls(double time_s) const;
   void recentre(double time_s) { tracker_.recentre(time_s); }
-  // What could not be opened, each told once.
-  const std::vector<std::string>& troubles() const { return troubles_; }
-  // Port of the head tracker's datagrams; nothing when it is off.
+  // Returns why devices could not be opened.
+  const std::vector<std::string>& errors() const { return errors_; }
+  // Returns the port for the head tracker's datagrams, or nullopt if it is off.
   std::optional<int> tracker_port() const;
 
  private:
@@ -61,9 +67,9 @@ class Devices {
   explore::SpaceMouse space_mouse_;
   explore::HeadTracker tracker_;
   std::unique_ptr<explore::UdpReceiver> receiver_;
-  bool pad_was_there_ = false;
+  bool has_pad_ = false;
   bool cap_moves_ = false;
-  std::vector<std::string> troubles_;
+  std::vector<std::string> errors_;
 };
 
 }  // namespace vpe::window

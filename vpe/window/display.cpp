@@ -1,7 +1,7 @@
 #include "vpe/window/display.h"
 
 #include <epoxy/gl.h>
-// After it: OpenGL's own headers are not wanted.
+// After epoxy, which replaces OpenGL's own headers.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -84,9 +84,9 @@ void on_drop(GLFWwindow* window, int count, const char** paths) {
 }
 
 std::string last_error() {
-  const char* words = nullptr;
-  glfwGetError(&words);
-  return words == nullptr ? "no reason given" : words;
+  const char* message = nullptr;
+  glfwGetError(&message);
+  return message == nullptr ? "no reason given" : message;
 }
 
 void set_colours() {
@@ -171,7 +171,7 @@ void Display::choose_scale(double wanted) {
   set_colours();
   ImGui::GetStyle().ScaleAllSizes(static_cast<float>(scale_));
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-  // Latin with its extensions, Greek, punctuation, arrows and signs that the panels use.
+  // Latin with extensions, Greek, punctuation, arrows and symbols of the panels.
   static const ImWchar kRanges[] = {0x20,   0x24f,  0x370,  0x3ff,  0x2010, 0x2044, 0x2190,
                                     0x21ff, 0x2200, 0x2265, 0x25a0, 0x25ff, 0};
   const float letters = std::round(kLetters_px * static_cast<float>(scale_));

@@ -1,5 +1,5 @@
-// A window on the screen with Dear ImGui in it: GLFW, an OpenGL context for panels and finished images, fonts
-// for its pixel density. Images of ground come as pixels (painter.h): their OpenGL is elsewhere.
+// A window on the screen with Dear ImGui: GLFW, an OpenGL context for panels and finished images, fonts for its
+// pixel density. Images of terrain arrive as pixels (painter.h); this context does not draw them.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct GLFWwindow;
 
 namespace vpe::window {
 
-// No window can be had. what() says why and what to do instead.
+// Thrown if no window can be opened. what() contains the reason and an alternative.
 class DisplayError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -25,15 +25,15 @@ struct DisplayOptions {
   std::string title = "vpe";
   int width = 1280;  // of the window, screen coordinates
   int height = 720;
-  bool scales_size = false;  // on a dense monitor the window is so much larger; else exactly of that size
-  double scale = 0;          // of letters and panels; 0: as the monitor has it
-  std::string instead;       // what to do without a display, for messages
+  bool scales_size = false;  // enlarge the window on a dense monitor
+  double scale = 0;          // of text and panels; 0: the monitor's scale
+  std::string instead;       // alternative to a window, for messages
 };
 
-// Throws DisplayError when there is no display, before any work is done for a window.
+// Throws DisplayError if there is no display. Call it before other work for a window.
 void check_display(const DisplayOptions& options);
 
-// What happened, in the order in which it did. Keys and buttons have GLFW's numbers.
+// Describes an event. Keys and buttons have GLFW's numbers.
 struct Event {
   enum class Kind : std::uint8_t {
     kKeyPress,
@@ -51,11 +51,17 @@ struct Event {
   double x = 0;  // cursor, framebuffer pixels
   double y = 0;
   double scroll = 0;
-  double time_s = 0;  // since the library began
+  double time_s = 0;  // since GLFW was initialised
   std::vector<std::string> files;
 };
 
-// One at a time in a process, on the main thread.
+// Owns the window. There is one at a time in a process, used by the main thread.
+//
+// Typical usage:
+//   for (const Event& event : display.events(0.5)) handle(event);
+//   display.begin_frame();
+//   ImGui::Text("...");
+//   display.end_frame();
 class Display {
  public:
   explicit Display(const DisplayOptions& options);
@@ -66,19 +72,21 @@ class Display {
   GLFWwindow* handle() const { return window_; }
   double scale() const { return scale_; }
   void framebuffer(int& width, int& height) const;
-  std::pair<int, int> size() const;  // of the window, in screen coordinates, when it does not fill the screen
+  // Returns the window's size in screen coordinates, or its former size while it fills the screen.
+  std::pair<int, int> size() const;
   bool should_close() const;
   void close();
   void set_title(const std::string& title);
   void set_fullscreen(bool on);
   bool is_fullscreen() const { return is_fullscreen_; }
 
-  // Waits for events for at most so long (0: does not wait), and gives what happened since the last call.
+  // Waits for events for at most `wait_s` seconds (0: does not wait). Returns the events since the last call.
   std::vector<Event> events(double wait_s);
-  // Ends a wait of events() from any thread.
+  // Ends the waiting of events(). May be called from any thread.
   static void wake();
 
-  // Around what ImGui is asked to draw. end_frame() shows it, and gives its pixels when asked to.
+  // Begin and end a frame of ImGui. end_frame() shows the frame, and stores its pixels in `shown` unless that
+  // is null.
   void begin_frame();
   void end_frame(core::RgbImage* shown = nullptr);
 
@@ -92,10 +100,10 @@ class Display {
   GLFWwindow* window_ = nullptr;
   double scale_ = 1;
   bool is_fullscreen_ = false;
-  int windowed_[4] = {0, 0, 1280, 720};  // place and size to go back to
+  int windowed_[4] = {0, 0, 1280, 720};  // position and size outside of full screen
 };
 
-// Pixels that ImGui can draw. Belongs to a display's context.
+// Holds an image that ImGui can draw. Belongs to a display's OpenGL context.
 class Texture {
  public:
   Texture();

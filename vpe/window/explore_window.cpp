@@ -1,6 +1,6 @@
 #include "vpe/window/explore_window.h"
 
-// OpenGL's own headers are not wanted.
+// GLFW would include OpenGL's own headers.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -19,8 +19,8 @@ constexpr double kShortestFrame_s = 1.0 / 120;
 constexpr double kDoubleClick_s = 0.35;
 constexpr double kDoubleClick_px = 6;
 constexpr double kIdle_s = 0.5;
-constexpr double kMessage_s = 6;  // for which one is shown
-constexpr double kTrouble_s = 30;
+constexpr double kMessage_s = 6;  // for which it is shown
+constexpr double kError_s = 30;
 constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
@@ -33,31 +33,33 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       display_(setup_.display),
       map_(setup_.planet, setup_.threads, [] { Display::wake(); }),
       measure_(setup_.surface, [] { Display::wake(); }),
+      flight_(setup_.flight_file, setup_.folder),
       guide_(setup_.hotspots, setup_.open_overlook),
       live_({setup_.session.settings.values().lod_frame_ms}),
       devices_(setup_.preferences, std::move(setup_.devices)),
       history_(session_.ground().radius_m),
+      opener_(setup_.open_planet),
       first_fov_deg_(setup_.session.fov_deg),
       begun_(Clock::now()),
-      last_frame_(begun_),
+      last_step_(begun_),
       maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
   state_.backend = setup_.backend;
   lay_out();
   if (!setup_.session.start)
     session_.put(explore::overview({0, 0}, session_.screen(), session_.ground().radius_m));
   state_.panels = setup_.panels;
-  if (!setup_.log.empty()) start_log(setup_.log);
-  // All of them, and before what went well.
-  std::string troubles = state_.message_is_trouble ? state_.message : "";
-  const auto add = [&troubles](const std::string& trouble) {
-    if (!trouble.empty()) troubles += (troubles.empty() ? "" : "; ") + trouble;
+  if (!setup_.log.empty()) set_recording(true, setup_.log);
+  // All errors are shown together, and instead of other messages.
+  std::string errors = state_.message_is_error ? state_.message : "";
+  const auto add = [&errors](const std::string& error) {
+    if (!error.empty()) errors += (errors.empty() ? "" : "; ") + error;
   };
-  for (const std::string& trouble : devices_.troubles()) add(trouble);
-  if (setup_.flight) add(session_.flights().take(*setup_.flight));
-  if (!troubles.empty()) say(troubles, true);
+  for (const std::string& error : devices_.errors()) add(error);
+  if (setup_.flight) add(session_.flights().load(*setup_.flight));
+  if (!errors.empty()) show_message(errors, true);
 }
 
-ExploreWindow::~ExploreWindow() { stop_log(); }
+ExploreWindow::~ExploreWindow() { (void)recorder_.stop(now_s()); }
 
 double ExploreWindow::now_s() const { return seconds(Clock::now() - begun_); }
 
@@ -74,7 +76,7 @@ bool ExploreWindow::is_at_rest() const {
 
 bool ExploreWindow::shows_final_image() const {
   return drawn_ && state_.image_error.empty() && drawn_->result.settled &&
-         drawn_->order.request.coarsening == 1.0 && maker_->is_idle() &&
+         drawn_->request.draw.coarsening == 1.0 && maker_->is_idle() &&
          live_.state() == lod::RefinementState::kWaiting;
 }
 
@@ -82,11 +84,11 @@ bool ExploreWindow::step(double wait_s) {
   const explore::FlightPlayer* flight = session_.follows_flight() ? session_.player() : nullptr;
   const bool plays = flight != nullptr && flight->is_playing();
   const bool moves = session_.is_going() || plays || was_moving_ || !maker_->is_idle();
-  const double since_s = seconds(Clock::now() - last_frame_);
+  const double since_s = seconds(Clock::now() - last_step_);
   const double pause_s = std::max(0.0, kShortestFrame_s - since_s);
-  const bool looks = guide_.inside() != nullptr;
-  const bool busy = looks ? !guide_.inside()->is_at_rest() || frames_due_ > 0
-                          : moves || frames_due_ > 0 || live_.state() != lod::RefinementState::kWaiting;
+  const bool is_inside = guide_.inside() != nullptr;
+  const bool busy = is_inside ? !guide_.inside()->is_at_rest() || frames_due_ > 0
+                              : moves || frames_due_ > 0 || live_.state() != lod::RefinementState::kWaiting;
   const double rest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
   const std::vector<Event> events = display_.events(busy ? pause_s : rest_s);
   if (display_.should_close()) return false;
@@ -95,27 +97,31 @@ bool ExploreWindow::step(double wait_s) {
     frames_due_ = kFramesAfterChange;
   }
   lay_out();
-  const DeviceReading hands = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
-  for (const explore::Action& action : hands.actions) {
-    const std::string trouble = act(action);
-    if (!trouble.empty()) say(trouble, true);
+  const DeviceReading input = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
+  for (const explore::Action& action : input.actions) {
+    if (const std::string error = act(action); !error.empty()) show_message(error, true);
     frames_due_ = kFramesAfterChange;
   }
   const auto now = Clock::now();
-  // After a rest no time has passed for what moves.
-  const double dt_s = busy ? seconds(now - last_frame_) : 0.0;
-  last_frame_ = now;
-  take_opened();
-  forget_old_message();
-  if (view_panorama(hands, dt_s)) return !display_.should_close();
-  explore::Controls controls = hands.controls;
+  // The time of a rest does not count as motion.
+  const double dt_s = busy ? seconds(now - last_step_) : 0.0;
+  last_step_ = now;
+  try {
+    if (auto planet = opener_.take()) next_planet_ = std::move(planet);
+  } catch (const std::exception& e) {
+    show_message(e.what(), true);
+  }
+  const double shown_s = now_s() - state_.message_since_s;
+  if (!state_.message.empty() && shown_s > (state_.message_is_error ? kError_s : kMessage_s)) clear_message();
+  if (step_overlook(input, dt_s)) return !display_.should_close();
+  explore::Controls controls = input.controls;
   controls.speed *= state_.speed;
   was_moving_ = explore::any(controls);
-  session_.advance(dt_s, controls, hands.look);
+  session_.advance(dt_s, controls, input.look);
 
-  if (const std::string words = guide_.follow(session_, view_area_); !words.empty()) say(words);
+  if (const std::string text = guide_.follow(session_, view_area_); !text.empty()) show_message(text);
 
-  order_image();
+  request_image();
   take_image(kImageWait_s);
   if ((shows_map() && !map_.is_at_rest()) || !measure_.is_at_rest()) frames_due_ = std::max(frames_due_, 1);
   if (frames_due_ > 0 || session_.is_going() || plays) {
@@ -131,7 +137,10 @@ void ExploreWindow::handle(const Event& event) {
   const bool is_key = event.kind == Event::Kind::kKeyPress || event.kind == Event::Kind::kKeyRepeat ||
                       event.kind == Event::Kind::kKeyRelease;
   if (event.kind == Event::Kind::kDrop) {
-    if (!event.files.empty()) open_dropped(event.files.front());
+    if (event.files.empty()) return;
+    const std::string error = opener_.start(event.files.front());
+    if (!error.empty()) return show_message(error, true);
+    show_message("opening " + opener_.file() + "; other files than planet files are converted first");
     return;
   }
   if (guide_.inside() != nullptr && !is_key) {
@@ -146,13 +155,14 @@ void ExploreWindow::handle(const Event& event) {
     case Event::Kind::kPress:
     case Event::Kind::kRelease: handle_button(event); break;
     case Event::Kind::kMove:
-      if (session_.mouse_use() != explore::MouseUse::kNone) session_.drag(held_xy(cursor_));
+      if (session_.mouse_use() != explore::MouseUse::kNone)
+        session_.drag(image_layout().unwrapped_xy(cursor_) - held_half_);
       break;
     case Event::Kind::kScroll:
-      if (const auto xy = camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
+      if (const auto xy = image_layout().camera_xy(cursor_); xy && !state_.large_map && !io.WantCaptureMouse)
         session_.wheel(*xy, event.scroll);
       break;
-    case Event::Kind::kDrop: break;  // above
+    case Event::Kind::kDrop: break;  // handled above
   }
 }
 
@@ -161,11 +171,10 @@ void ExploreWindow::handle_button(const Event& event) {
     session_.release();
     return;
   }
-  const std::optional<glm::dvec2> over = camera_xy(cursor_);
+  const std::optional<glm::dvec2> over = image_layout().camera_xy(cursor_);
   if (state_.large_map || !over || ImGui::GetIO().WantCaptureMouse) return;
   const glm::dvec2 xy = *over;
-  held_half_ = {0, 0};
-  held_half_ = held_xy(cursor_) - xy;
+  held_half_ = image_layout().unwrapped_xy(cursor_) - xy;
   if (event.code == GLFW_MOUSE_BUTTON_LEFT) {
     const bool again = last_press_ && event.time_s - last_press_->first < kDoubleClick_s &&
                        glm::length(last_press_->second - cursor_) < kDoubleClick_px;
@@ -195,43 +204,18 @@ void ExploreWindow::lay_out() {
   session_.resize(static_cast<int>(view_area_.width), static_cast<int>(view_area_.height));
 }
 
-void ExploreWindow::forget_message() {
-  state_.message = opening_.valid() ? "opening " + opening_file_ + " ..." : "";
-  state_.message_is_trouble = false;
+void ExploreWindow::clear_message() {
+  state_.message = opener_.is_opening() ? "opening " + opener_.file() + " ..." : "";
+  state_.message_is_error = false;
   state_.message_since_s = now_s();
   frames_due_ = kFramesAfterChange;
 }
 
-void ExploreWindow::forget_old_message() {
-  const double shown_s = now_s() - state_.message_since_s;
-  if (!state_.message.empty() && shown_s > (state_.message_is_trouble ? kTrouble_s : kMessage_s))
-    forget_message();
-}
-
-void ExploreWindow::say(std::string words, bool is_trouble) {
-  state_.message = std::move(words);
-  state_.message_is_trouble = is_trouble;
+void ExploreWindow::show_message(std::string text, bool is_error) {
+  state_.message = std::move(text);
+  state_.message_is_error = is_error;
   state_.message_since_s = now_s();
   frames_due_ = kFramesAfterChange;
-}
-
-void ExploreWindow::draw_frame() {
-  display_.begin_frame();
-  widgets_.begin_frame();
-  find_cursor();
-  if (state_.large_map)
-    draw_large_map();
-  else if (guide_.inside() != nullptr)
-    guide_.inside()->draw();
-  else
-    draw_view();
-  if (state_.panels) {
-    draw_side();
-    draw_status();
-  }
-  if (state_.help) draw_help();
-  display_.end_frame(std::exchange(capture_, nullptr));
-  ++frames_;
 }
 
 }  // namespace vpe::window

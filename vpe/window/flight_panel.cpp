@@ -1,86 +1,158 @@
-// The panel of flights: play, scrub, edit, record.
+#include "vpe/window/flight_panel.h"
+
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <cstdio>
+#include <ctime>
+#include <utility>
 
+#include "vpe/base/file.h"
 #include "vpe/explore/measure/read_out.h"
-#include "vpe/window/explore_window.h"
 
 namespace vpe::window {
 
-void ExploreWindow::flight_panel() {
+namespace {
+
+void report(FlightActions& actions, std::string error) {
+  if (error.empty()) return;
+  actions.message = std::move(error);
+  actions.message_is_error = true;
+}
+
+}  // namespace
+
+std::filesystem::path new_file(const std::filesystem::path& folder, const std::string& kind,
+                               const std::string& extension) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  const std::string stem = "vpe-" + kind + stamp;
+  std::filesystem::path file = folder / (stem + extension);
+  for (int n = 2; std::filesystem::exists(file); ++n)
+    file = folder / (stem + "-" + std::to_string(n) + extension);
+  return file;
+}
+
+FlightPanel::FlightPanel(std::string file, std::filesystem::path folder)
+    : file_(std::move(file)), folder_(std::move(folder)) {}
+
+FlightActions FlightPanel::draw(explore::Session& session, bool is_recording, Widgets& widgets) {
+  FlightActions actions;
   ImGui::BeginChild("flight");
-  const auto tell = [this](const std::string& trouble) {
-    if (!trouble.empty()) say(trouble, true);
-  };
-  explore::FlightPlayer* player = session_.player();
-  const bool follows = session_.follows_flight();
+  const bool follows = session.follows_flight();
+  const explore::FlightPlayer* player = session.player();
   const bool plays = follows && player != nullptr && player->is_playing();
-  if (widgets_.button(plays ? "Pause" : "Play", "Space")) tell(session_.follow(!plays));
+  if (widgets.button(plays ? "Pause" : "Play", "Space")) report(actions, session.follow(!plays));
   ImGui::SameLine();
-  if (widgets_.button("Leave", "Esc: go on by hand from here") && follows) session_.leave_flight();
+  if (widgets.button("Leave", "Esc: leave the flight and continue by hand") && follows) session.leave_flight();
   ImGui::SameLine();
-  bool records = log_ != nullptr;
-  if (widgets_.toggle("Record", records, "L: everything that happens, as a flight")) {
-    if (records)
-      start_log(new_file("log-", ".flight"));
-    else
-      stop_log();
-  }
+  bool records = is_recording;
+  if (widgets.toggle("Record", records,
+                     "L: record the session as a flight. Zoom, backend, stereo and window size are recorded as "
+                     "comments, which playback skips."))
+    actions.record = records;
+  draw_player(session, widgets);
+  ImGui::Separator();
+  if (widgets.button("Add waypoint", "P: at the present pose of the camera"))
+    report(actions, session.flights().append(session.pose(), ground_speed_m_s_));
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
+  widgets.number("m/s to it", ground_speed_m_s_, 0.01, 1e6, 100, "%.6g",
+                 "ground speed to waypoints that are added");
+  if (session.flights().editor() != nullptr)
+    draw_waypoints(session, actions, widgets);
+  else
+    ImGui::TextDisabled("Ctrl + click on the map adds a waypoint there");
+  ImGui::EndChild();
+  return actions;
+}
+
+void FlightPanel::draw_player(explore::Session& session, Widgets& widgets) {
+  explore::FlightPlayer* player = session.player();
   if (player != nullptr) {
     double time_s = player->time_s();
     ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 3);
-    if (widgets_.slide("Time", time_s, 0, std::max(player->duration_s(), 1e-3), "%.2f s", false))
-      session_.scrub(time_s);
-    player = session_.player();
+    if (widgets.slide("Time", time_s, 0, std::max(player->duration_s(), 1e-3), "%.2f s", false))
+      session.scrub(time_s);
+    player = session.player();
   }
   if (player != nullptr) {
     double speed = player->speed();
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
-    if (widgets_.number("Times as fast", speed, -100, 100, 0.5, "%.3g", "negative: backwards"))
+    if (widgets.number("Speed factor", speed, -100, 100, 0.5, "%.3g", "negative: backwards"))
       player->set_speed(speed);
     ImGui::SameLine();
     bool loops = player->loops();
-    if (widgets_.check("Loop", loops)) player->set_loop(loops);
+    if (widgets.check("Loop", loops)) player->set_loop(loops);
     if (player->look_offset().yaw_deg != 0 || player->look_offset().pitch_deg != 0) {
-      if (widgets_.button("Look ahead", "where the flight looks")) player->look_ahead();
+      if (widgets.button("Look ahead", "return to the flight's own direction")) player->reset_look_offset();
     }
-  } else if (!session_.flights().problem().empty()) {
-    ImGui::TextWrapped("%s", session_.flights().problem().c_str());
+  } else if (!session.flights().problem().empty()) {
+    ImGui::TextWrapped("%s", session.flights().problem().c_str());
   }
-  ImGui::Separator();
-  if (widgets_.button("Add waypoint", "P: here, as the eye is now"))
-    tell(session_.flights().add(session_.pose(), state_.ground_speed_m_s));
-  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
-  widgets_.number("m/s to it", state_.ground_speed_m_s, 0.01, 1e6, 100, "%.6g",
-                  "ground speed to waypoints that are added");
-  if (explore::FlightEditor* editor = session_.flights().editor(); editor != nullptr)
-    waypoint_rows(*editor);
-  else
-    ImGui::TextDisabled("Ctrl + click on the map adds one there");
-  ImGui::EndChild();
 }
 
-void ExploreWindow::waypoint_rows(explore::FlightEditor& editor) {
-  const auto tell = [this](const std::string& trouble) {
-    if (!trouble.empty()) say(trouble, true);
-  };
-  if (widgets_.button("Undo", editor.undo_text().c_str())) editor.undo();
+void FlightPanel::draw_waypoints(explore::Session& session, FlightActions& actions, Widgets& widgets) {
+  explore::FlightEditor& editor = *session.flights().editor();
+  if (widgets.button("Undo", editor.undo_text().c_str())) editor.undo();
   ImGui::SameLine();
-  if (widgets_.button("Redo", editor.redo_text().c_str())) editor.redo();
+  if (widgets.button("Redo", editor.redo_text().c_str())) editor.redo();
   ImGui::SameLine();
-  if (widgets_.button("Even speed", "the same ground speed, of the field above, everywhere"))
-    tell(editor.keep_speed(state_.ground_speed_m_s));
+  if (widgets.button("Even speed", "retime the flight for the ground speed above"))
+    report(actions, editor.keep_speed(ground_speed_m_s_));
   ImGui::SameLine();
-  if (widgets_.button("Save")) save_flight();
+  if (widgets.button("Save")) save(editor, actions);
   ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 2.5F);
-  widgets_.text("File", setup_.flight_file);
+  widgets.text("File", file_);
 
   const std::vector<scripts::Waypoint> waypoints = editor.flight().waypoints;
-  state_.waypoint = std::clamp(state_.waypoint, 0, static_cast<int>(waypoints.size()) - 1);
+  waypoint_ = std::clamp(waypoint_, 0, static_cast<int>(waypoints.size()) - 1);
   ImGui::Text("%d waypoints, %s", static_cast<int>(waypoints.size()),
-              explore::length_text(editor.length_m()).c_str());
-  // A log may have a hundred thousand: only the rows in sight are made.
+              explore::measured_length_text(editor.length_m()).c_str());
+  draw_list(waypoints, widgets);
+
+  const auto index = static_cast<std::size_t>(waypoint_);
+  scripts::Waypoint w = waypoints[index];
+  if (widgets.button("Go to it")) session.scrub(w.time_s);
+  ImGui::SameLine();
+  if (widgets.button("Insert after", "at the present pose of the camera")) {
+    scripts::Waypoint next = w;
+    const mars::Pose& pose = session.pose();
+    next.lon_deg = pose.lon_deg;
+    next.lat_deg = pose.lat_deg;
+    next.up_m = pose.alt_m;
+    next.above_terrain = false;
+    next.yaw_deg = pose.yaw_deg;
+    next.pitch_deg = pose.pitch_deg;
+    next.roll_deg = pose.roll_deg;
+    report(actions, editor.insert_after(index, next, ground_speed_m_s_));
+  }
+  ImGui::SameLine();
+  if (widgets.button("Delete")) {
+    if (waypoints.size() == 1) {
+      session.leave_flight();
+      session.flights().clear();
+      return;
+    }
+    report(actions, editor.remove(index));
+  }
+  widgets.group("waypoint");
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 10);
+  bool changed = widgets.number("Time (s)", w.time_s, 0, 1e6, 1, "%.3f");
+  changed |= widgets.number("Longitude", w.lon_deg, -180, 180, 0.01, "%.6f");
+  changed |= widgets.number("Latitude", w.lat_deg, -90, 90, 0.01, "%.6f");
+  changed |= widgets.number(w.above_terrain ? "Height (m)" : "Altitude (m)", w.up_m, -1e7, 1e10, 100, "%.2f");
+  changed |= widgets.number("Heading", w.yaw_deg, -360, 360, 5, "%.2f");
+  changed |= widgets.number("Pitch", w.pitch_deg, -90, 90, 5, "%.2f");
+  changed |= widgets.number("Roll", w.roll_deg, -360, 360, 5, "%.2f");
+  ImGui::PopItemWidth();
+  widgets.group("");
+  if (changed) report(actions, editor.replace(index, w));
+}
+
+void FlightPanel::draw_list(const std::vector<scripts::Waypoint>& waypoints, Widgets& widgets) {
+  // A log may have a hundred thousand waypoints: only visible rows are drawn.
   ImGui::BeginChild("rows", ImVec2(0, ImGui::GetTextLineHeightWithSpacing() * 6), true);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(waypoints.size()));
@@ -89,52 +161,26 @@ void ExploreWindow::waypoint_rows(explore::FlightEditor& editor) {
       const scripts::Waypoint& w = waypoints[static_cast<std::size_t>(n)];
       char row[160];
       std::snprintf(row, sizeof row, "%8.2f s  %9.4f° %8.4f°  %s", w.time_s, w.lon_deg, w.lat_deg,
-                    explore::length_text(w.up_m).c_str());
+                    explore::measured_length_text(w.up_m).c_str());
       ImGui::PushID(n);
-      if (ImGui::Selectable(row, n == state_.waypoint)) state_.waypoint = n;
-      widgets_.note("waypoint " + std::to_string(n));
+      if (ImGui::Selectable(row, n == waypoint_)) waypoint_ = n;
+      widgets.record("waypoint " + std::to_string(n));
       ImGui::PopID();
     }
   }
   ImGui::EndChild();
+}
 
-  const auto index = static_cast<std::size_t>(state_.waypoint);
-  scripts::Waypoint w = waypoints[index];
-  if (widgets_.button("Go to it")) session_.scrub(w.time_s);
-  ImGui::SameLine();
-  if (widgets_.button("Insert after", "where the eye is now")) {
-    scripts::Waypoint next = w;
-    const mars::Pose& pose = session_.pose();
-    next.lon_deg = pose.lon_deg;
-    next.lat_deg = pose.lat_deg;
-    next.up_m = pose.alt_m;
-    next.above_terrain = false;
-    next.yaw_deg = pose.yaw_deg;
-    next.pitch_deg = pose.pitch_deg;
-    next.roll_deg = pose.roll_deg;
-    tell(editor.insert_after(index, next, state_.ground_speed_m_s));
+void FlightPanel::save(explore::FlightEditor& editor, FlightActions& actions) {
+  if (file_.empty()) file_ = new_file(folder_, "", ".flight").string();
+  try {
+    base::write_file(file_, editor.to_text());
+    editor.mark_saved();
+    actions.message = "flight: " + file_;
+    actions.message_is_error = false;
+  } catch (const std::exception& e) {
+    report(actions, e.what());
   }
-  ImGui::SameLine();
-  if (widgets_.button("Delete")) {
-    if (waypoints.size() == 1) {
-      session_.leave_flight();
-      session_.flights().clear();
-      return;
-    }
-    tell(editor.remove(index));
-  }
-  widgets_.group("waypoint");
-  ImGui::PushItemWidth(ImGui::GetFontSize() * 10);
-  bool changed = widgets_.number("Time (s)", w.time_s, 0, 1e6, 1, "%.3f");
-  changed |= widgets_.number("Longitude", w.lon_deg, -180, 180, 0.01, "%.6f");
-  changed |= widgets_.number("Latitude", w.lat_deg, -90, 90, 0.01, "%.6f");
-  changed |= widgets_.number(w.above_terrain ? "Height (m)" : "Altitude (m)", w.up_m, -1e7, 1e10, 100, "%.2f");
-  changed |= widgets_.number("Heading", w.yaw_deg, -360, 360, 5, "%.2f");
-  changed |= widgets_.number("Pitch", w.pitch_deg, -90, 90, 5, "%.2f");
-  changed |= widgets_.number("Roll", w.roll_deg, -360, 360, 5, "%.2f");
-  ImGui::PopItemWidth();
-  widgets_.group("");
-  if (changed) tell(editor.replace(index, w));
 }
 
 }  // namespace vpe::window

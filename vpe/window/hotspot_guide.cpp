@@ -11,7 +11,7 @@ namespace vpe::window {
 namespace {
 
 constexpr double kShownWithin_m = 50'000;
-constexpr double kHiddenShare = 0.01;  // of its distance: how far in front of a spot ground may be
+constexpr double kHiddenShare = 0.01;  // terrain nearer by this share of its distance hides a hotspot
 constexpr ImU32 kMark = IM_COL32(120, 220, 255, 255);
 constexpr ImU32 kDark = IM_COL32(0, 0, 0, 180);
 
@@ -20,22 +20,22 @@ constexpr ImU32 kDark = IM_COL32(0, 0, 0, 180);
 HotspotGuide::HotspotGuide(std::vector<explore::Hotspot> hotspots, OpenOverlook open)
     : hotspots_(std::move(hotspots)), open_(std::move(open)) {}
 
-void HotspotGuide::place(const explore::Session& session) {
+void HotspotGuide::compute_positions(const explore::Session& session) {
   const double exaggeration = session.settings().values().exaggeration;
-  if (exaggeration == placed_exaggeration_) return;
-  placed_exaggeration_ = exaggeration;
+  if (exaggeration == positions_exaggeration_) return;
+  positions_exaggeration_ = exaggeration;
   const explore::TerrainQuery& ground = session.ground();
-  eyes_m_ = explore::hotspot_eyes(
+  positions_m_ = explore::hotspot_positions(
       hotspots_, ground.radius_m,
       [&](mars::LonLat place, double) { return ground.height_m(mars::direction(place)); }, exaggeration);
-  tracker_.emplace(eyes_m_);
+  tracker_.emplace(positions_m_);
 }
 
 std::string HotspotGuide::follow(const explore::Session& session, const ViewArea& area) {
   if (hotspots_.empty() || inside_ != nullptr) return {};
-  place(session);
+  compute_positions(session);
   if (ahead_ != nullptr) {
-    // What is copied once is copied on the way there.
+    // A large image is copied while the camera approaches.
     ahead_->place(area);
     ahead_->update(0);
   }
@@ -56,7 +56,7 @@ std::string HotspotGuide::follow(const explore::Session& session, const ViewArea
     }
   }
   if (state_.stage != explore::HotspotStage::kWithinReach) return {};
-  return hotspots_[ahead_index_].name + ": Enter looks around from there";
+  return hotspots_[ahead_index_].name + ": press Enter to open its panorama";
 }
 
 const explore::Hotspot* HotspotGuide::within_reach() const {
@@ -66,8 +66,8 @@ const explore::Hotspot* HotspotGuide::within_reach() const {
 
 std::string HotspotGuide::enter() {
   if (inside_ != nullptr) return {};
-  if (hotspots_.empty()) return "there are no spots; --spots FILE names them";
-  if (within_reach() == nullptr) return "no spot is near enough to step into its panorama";
+  if (hotspots_.empty()) return "there are no hotspots; --hotspots FILE defines them";
+  if (within_reach() == nullptr) return "no hotspot is near enough to open its panorama";
   inside_ = std::move(ahead_);
   inside_index_ = ahead_index_;
   state_ = {};
@@ -77,13 +77,13 @@ std::string HotspotGuide::enter() {
 void HotspotGuide::draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0) const {
   const core::View view = session.view();
   const float size = ImGui::GetFontSize() * 0.45F;
-  for (std::size_t n = 0; n < eyes_m_.size(); ++n) {
-    const glm::dvec3 way = eyes_m_[n] - view.camera.position_m;
-    const double distance_m = glm::length(way);
+  for (std::size_t n = 0; n < positions_m_.size(); ++n) {
+    const glm::dvec3 path = positions_m_[n] - view.camera.position_m;
+    const double distance_m = glm::length(path);
     if (!(distance_m < kShownWithin_m) || distance_m < 1.0) continue;
-    const core::Projected at = core::project(view, eyes_m_[n]);
+    const core::Projected at = core::project(view, positions_m_[n]);
     if (at.behind || at.xy.x < 0 || at.xy.y < 0 || at.xy.x > view.width || at.xy.y > view.height) continue;
-    if (session.ground().cast_m(view.camera.position_m, way / distance_m) < distance_m * (1.0 - kHiddenShare))
+    if (session.ground().cast_m(view.camera.position_m, path / distance_m) < distance_m * (1.0 - kHiddenShare))
       continue;
     const ImVec2 p{static_cast<float>(x0 + at.xy.x), static_cast<float>(y0 + at.xy.y)};
     const ImVec2 corners[4] = {{p.x, p.y - size}, {p.x + size, p.y}, {p.x, p.y + size}, {p.x - size, p.y}};

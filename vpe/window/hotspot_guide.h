@@ -1,4 +1,7 @@
-// Panoramas in the world: where they are, which is near, and stepping into them.
+// Panorama hotspots in the window: which one is near, opening its panorama ahead, entering and leaving it.
+//
+// Hotspots are drawn as marks over the image of a single camera. They are not objects of the scene: stereo
+// pairs, films and still images do not show them.
 #pragma once
 
 #include <imgui.h>
@@ -11,47 +14,54 @@
 
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/session.h"
+#include "vpe/window/imgui_helpers.h"
 #include "vpe/window/overlook_view.h"
 
 namespace vpe::window {
 
-// A panorama's view; throws what is wrong with the file.
+// Opens a panorama's view. Throws if the file cannot be used.
 using OpenOverlook = std::function<OverlookSetup(const std::filesystem::path& panorama)>;
 
+// Follows the camera and holds the panorama that is open. For the window's thread.
+//
+// Typical usage, in each iteration of the event loop:
+//   if (const std::string text = guide.follow(session, area); !text.empty()) show(text);
+//   if (enter_was_pressed) show(guide.enter());
+//   if (guide.inside() != nullptr) guide.inside()->draw();
 class HotspotGuide {
  public:
   HotspotGuide(std::vector<explore::Hotspot> hotspots, OpenOverlook open);
 
   const std::vector<explore::Hotspot>& hotspots() const { return hotspots_; }
 
-  // Where the camera is now. While it approaches a spot its panorama is opened ahead. Returns what is worth saying
-  // when that has changed, else nothing. Its first image is made for a view of that size.
+  // Updates for the session's camera. Opens the panorama of a hotspot that the camera approaches, with a first
+  // image for a view of this area. Returns a message for the user if the situation has changed, or "".
   std::string follow(const explore::Session& session, const ViewArea& area);
-  // The spot that one may step into.
+  // Returns the hotspot that can be entered, or null.
   const explore::Hotspot* within_reach() const;
 
-  // Steps into it. What is wrong, empty when all is well.
+  // Enters the hotspot within reach. Returns what is wrong, or "".
   std::string enter();
-  void step_out() { inside_.reset(); }
-  // The panorama that one stands in; null outside.
+  void leave() { inside_.reset(); }
+  // Returns the panorama that was entered, or null.
   OverlookView* inside() { return inside_.get(); }
   const OverlookView* inside() const { return inside_.get(); }
-  const glm::dvec3& inside_camera_m() const { return eyes_m_[inside_index_]; }
+  const glm::dvec3& inside_camera_m() const { return positions_m_[inside_index_]; }
   const explore::Hotspot* inside_hotspot() const { return inside_ ? &hotspots_[inside_index_] : nullptr; }
 
-  // Markers and names over a view with its upper left corner at (x0, y0); those that ground hides are left out.
+  // Draws marks and names over a view with its upper left corner at (x0, y0), except those hidden by terrain.
   void draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0) const;
 
  private:
-  void place(const explore::Session& session);
+  void compute_positions(const explore::Session& session);
 
   std::vector<explore::Hotspot> hotspots_;
   OpenOverlook open_;
-  std::vector<glm::dvec3> eyes_m_;
-  double placed_exaggeration_ = -1;
+  std::vector<glm::dvec3> positions_m_;
+  double positions_exaggeration_ = -1;
   std::optional<explore::HotspotTracker> tracker_;
   explore::HotspotTracker::State state_;
-  std::unique_ptr<OverlookView> ahead_;
+  std::unique_ptr<OverlookView> ahead_;  // of the hotspot that the camera approaches
   std::size_t ahead_index_ = 0;
   std::unique_ptr<OverlookView> inside_;
   std::size_t inside_index_ = 0;

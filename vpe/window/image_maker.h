@@ -1,46 +1,35 @@
-// Makes images on a thread of its own, so that a window never waits for one longer than it wants to.
+// Draws images on a thread of its own, so that a window can limit how long it waits for them.
 #pragma once
 
-#include <condition_variable>
 #include <functional>
-#include <memory>
-#include <mutex>
 #include <optional>
-#include <thread>
 
+#include "vpe/base/latest_worker.h"
 #include "vpe/window/painter.h"
 
 namespace vpe::window {
 
-// One thread at a time calls. An order that is not begun is replaced by a later one; one that is begun is
-// finished. Errors come as images: nothing is thrown across threads.
+// Keeps at most one request waiting; a later request replaces it. A request that has begun is finished. Errors
+// are returned in DrawnImage::error; nothing is thrown across threads. For one calling thread at a time.
+//
+// Typical usage, in each iteration of the event loop:
+//   if (maker.is_idle()) maker.request(next_request());
+//   if (const auto drawn = maker.take(0.1)) show(*drawn);
 class ImageMaker {
  public:
-  // The painter is made on the maker's thread, at the first order. `tell`: called on that thread when an image
-  // is finished.
-  ImageMaker(MakePainter make_painter, std::function<void()> tell);
-  ~ImageMaker();  // waits for the image that is begun
-  ImageMaker(const ImageMaker&) = delete;
-  ImageMaker& operator=(const ImageMaker&) = delete;
+  // Creates the painter on the maker's thread, at the first request. Calls `notify` on that thread when an
+  // image is finished.
+  ImageMaker(MakePainter make_painter, std::function<void()> notify);
 
-  void ask(ImageRequest order);
-  // Neither begun nor waiting nor finished and not taken.
-  bool is_idle() const;
-  // The image finished last, once. Waits for at most so long when there is none but one is on its way.
-  std::optional<DrawnImage> take(double wait_s = 0);
+  void request(ImageRequest request) { worker_.request(std::move(request)); }
+  // Returns true if no request waits or runs, and no image can be taken.
+  bool is_idle() const { return worker_.is_idle(); }
+  // Returns the image finished last, once. Waits for at most `wait_s` seconds if there is none yet but one is
+  // being drawn.
+  std::optional<DrawnImage> take(double wait_s = 0) { return worker_.take(wait_s); }
 
  private:
-  void run();
-
-  MakePainter make_painter_;
-  std::function<void()> tell_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::optional<ImageRequest> waiting_;
-  std::optional<DrawnImage> finished_;
-  bool is_busy_ = false;
-  bool ends_ = false;
-  std::thread thread_;  // last: uses all of the above
+  base::LatestWorker<ImageRequest, DrawnImage> worker_;
 };
 
 }  // namespace vpe::window

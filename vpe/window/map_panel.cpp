@@ -6,7 +6,7 @@
 
 #include "paging/planet/planet_meta.h"
 #include "vpe/explore/measure/map_line.h"
-#include "vpe/window/screen_point.h"
+#include "vpe/window/imgui_helpers.h"
 
 namespace vpe::window {
 
@@ -14,70 +14,42 @@ namespace {
 
 constexpr std::size_t kBudget_bytes = std::size_t{96} << 20;
 constexpr double kDragBegins_px = 4;
-constexpr std::size_t kMostMarks = 200;        // of waypoints, and of spots that are named
-constexpr double kHotspotNames_deg_px = 0.05;  // from afar names would lie over each other
-constexpr ImU32 kEye = IM_COL32(255, 214, 90, 255);
+constexpr std::size_t kMostMarks = 200;  // of waypoints, and of hotspots with names
+constexpr double kHotspotNames_deg_px =
+    0.05;  // names are not shown at smaller scales, where they would overlap
+constexpr ImU32 kCamera = IM_COL32(255, 214, 90, 255);
 constexpr ImU32 kOutline = IM_COL32(255, 214, 90, 190);
 constexpr ImU32 kRegion = IM_COL32(90, 200, 255, 220);
 constexpr ImU32 kFlight = IM_COL32(255, 255, 255, 230);
 constexpr ImU32 kHotspot = IM_COL32(120, 220, 255, 255);
-constexpr ImU32 kWay = IM_COL32(120, 255, 160, 255);
-constexpr ImU32 kDark = IM_COL32(0, 0, 0, 160);
+constexpr ImU32 kPath = IM_COL32(120, 255, 160, 255);
+constexpr ImU32 kMapDark = IM_COL32(0, 0, 0, 160);
 
 }  // namespace
 
-MapPanel::MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> tell)
-    : planet_(std::move(planet)), threads_(threads), tell_(std::move(tell)), thread_([this] { run(); }) {}
+MapPanel::MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> notify)
+    : planet_(std::move(planet)),
+      worker_(
+          [planet = planet_, threads, painter = std::unique_ptr<explore::MapPainter>(),
+           pool = std::unique_ptr<base::ThreadPool>()](const Request& request) mutable -> std::optional<Made> {
+            try {
+              if (painter == nullptr) {
+                painter = std::make_unique<explore::MapPainter>(planet, kBudget_bytes);
+                pool = std::make_unique<base::ThreadPool>(threads);
+              }
+              core::RgbImage image = painter->paint(request.map, request.style, *pool);
+              if (image.width > 0) return Made(request, std::move(image));
+            } catch (const std::exception&) {
+              // Tiles that cannot be read leave the map unchanged; the view reports them.
+            }
+            return std::nullopt;
+          },
+          std::move(notify)) {}
 
-MapPanel::~MapPanel() {
-  {
-    const std::lock_guard lock(mutex_);
-    ends_ = true;
-  }
-  changed_.notify_all();
-  thread_.join();
-}
-
-bool MapPanel::is_at_rest() const {
-  const std::lock_guard lock(mutex_);
-  return !waiting_ && !is_busy_ && !finished_;
-}
-
-void MapPanel::run() {
-  std::unique_ptr<explore::MapPainter> painter;
-  std::unique_ptr<base::ThreadPool> pool;
-  while (true) {
-    Request order;
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return waiting_ || ends_; });
-      if (ends_) return;
-      order = *std::exchange(waiting_, std::nullopt);
-      is_busy_ = true;
-    }
-    core::RgbImage image;
-    try {
-      if (painter == nullptr) {
-        painter = std::make_unique<explore::MapPainter>(planet_, kBudget_bytes);
-        pool = std::make_unique<base::ThreadPool>(threads_);
-      }
-      image = painter->paint(order.map, order.ground, *pool);
-    } catch (const std::exception&) {
-      // Tiles that cannot be read leave the map as it was; the view tells of them.
-    }
-    {
-      const std::lock_guard lock(mutex_);
-      is_busy_ = false;
-      if (image.width > 0) finished_.emplace(order, std::move(image));
-    }
-    tell_();
-  }
-}
-
-MapActions MapPanel::draw(const explore::Session& session, explore::MapGround ground,
-                          std::span<const mars::LonLat> way, std::span<const explore::Hotspot> hotspots,
+MapActions MapPanel::draw(const explore::Session& session, explore::MapStyle style,
+                          std::span<const mars::LonLat> path, std::span<const explore::Hotspot> hotspots,
                           int width, int height, Widgets& widgets) {
-  MapActions wish;
+  MapActions actions;
   if (is_fresh_) {
     map_ = explore::whole_map(width, height);
     is_fresh_ = false;
@@ -86,11 +58,11 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapGround gr
   }
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("map", at(width, height));
-  widgets.note("map");
+  widgets.record("map");
   const ImGuiIO& io = ImGui::GetIO();
   const glm::dvec2 xy{static_cast<double>(io.MousePos.x - corner.x),
                       static_cast<double>(io.MousePos.y - corner.y)};
-  if (ImGui::IsItemHovered()) wish.under_cursor = map_.place(xy);
+  if (ImGui::IsItemHovered()) actions.under_cursor = map_.place(xy);
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0F)
     map_ = explore::zoomed(map_, xy, std::pow(1.25, static_cast<double>(io.MouseWheel)));
   if (ImGui::IsItemActivated()) {
@@ -106,7 +78,7 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapGround gr
     is_drag_ = is_drag_ || glm::length(xy - *pressed_) > kDragBegins_px;
     if (is_drag_ && waypoint_) {
       if (const auto place = map_.place(xy); place && xy != dragged_) {
-        wish.drag = MapActions::Drag{*waypoint_, *place, waypoint_moved_};
+        actions.drag = MapActions::Drag{*waypoint_, *place, waypoint_moved_};
         waypoint_moved_ = true;
       }
     } else if (is_drag_ && !with_shift_) {
@@ -118,34 +90,29 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapGround gr
     const auto place = map_.place(xy);
     const auto begun = map_.place(*pressed_);
     if (waypoint_ && is_drag_) {
-      // It is where it was dropped.
+      // The waypoint stays where it was dropped.
     } else if (with_shift_ && is_drag_ && place && begun) {
       const double radius_m = mars::distance_rad(*begun, *place) * planet_->radius_m();
-      wish.new_region = core::InterestRegion{begun->lon_deg, begun->lat_deg, radius_m, 1};
+      actions.new_region = core::InterestRegion{begun->lon_deg, begun->lat_deg, radius_m, 1};
     } else if (!is_drag_ && place) {
       if (with_control_)
-        wish.new_waypoint = place;
+        actions.new_waypoint = place;
       else
-        wish.go_to = place;
+        actions.go_to = place;
     }
     pressed_.reset();
   }
 
-  const Request order{map_, ground};
-  {
-    const std::lock_guard lock(mutex_);
-    if (!(asked_ == order)) {
-      asked_ = order;
-      waiting_ = order;
-    }
-    if (finished_) {
-      if (texture_ == nullptr) texture_ = std::make_unique<Texture>();
-      texture_->upload(finished_->second);
-      shown_ = finished_->first.map;
-      finished_.reset();
-    }
+  const Request request{map_, style};
+  if (!(requested_ == request)) {
+    requested_ = request;
+    worker_.request(request);
   }
-  changed_.notify_all();
+  if (const std::optional<Made> made = worker_.take()) {
+    if (texture_ == nullptr) texture_ = std::make_unique<Texture>();
+    texture_->upload(made->second);
+    shown_ = made->first.map;
+  }
 
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(corner, at(corner.x + static_cast<float>(width), corner.y + static_cast<float>(height)),
@@ -153,7 +120,7 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapGround gr
   list.AddRectFilled(corner, at(corner.x + static_cast<float>(width), corner.y + static_cast<float>(height)),
                      IM_COL32(40, 42, 46, 255));
   if (texture_ != nullptr) {
-    // The image that is there, where it belongs on the map as it is now.
+    // The present image may be of another section of the map: draws it at its place in the present one.
     const double scale = shown_.degrees_per_px / map_.degrees_per_px;
     const double wide = shown_.lon_degrees_per_px() / map_.lon_degrees_per_px();
     const glm::dvec2 middle = map_.position(shown_.middle);
@@ -164,12 +131,12 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapGround gr
   }
   draw_marks(session, corner.x, corner.y);
   draw_hotspots(hotspots, corner.x, corner.y);
-  draw_way(way, corner.x, corner.y);
+  draw_path(path, corner.x, corner.y);
   list.PopClipRect();
-  return wish;
+  return actions;
 }
 
-// The waypoint that is taken hold of at a position, if any.
+// Returns the waypoint at a position, if any.
 std::optional<std::size_t> MapPanel::waypoint_near(const explore::Session& session, glm::dvec2 xy) const {
   const explore::FlightEditor* editor = session.flights().editor();
   if (editor == nullptr || editor->flight().waypoints.size() > kMostMarks) return std::nullopt;
@@ -195,7 +162,7 @@ void MapPanel::draw_marks(const explore::Session& session, double x0, double y0)
     const glm::dvec2 p = map_.position(place);
     return at(x0 + p.x, y0 + p.y);
   };
-  // Lines that would run the long way round the map are left out.
+  // Lines across the map's edge are left out: they would run across the whole map.
   const auto line = [&](mars::LonLat a, mars::LonLat b, ImU32 colour, float thick) {
     const ImVec2 p = point(a);
     const ImVec2 q = point(b);
@@ -218,7 +185,7 @@ void MapPanel::draw_marks(const explore::Session& session, double x0, double y0)
     }
   }
   if (const explore::FlightEditor* editor = session.flights().editor(); editor != nullptr) {
-    // Of a long log every so many poses are enough for a line.
+    // A long log is drawn with every n-th pose.
     constexpr std::size_t kMost = 2000;
     const std::vector<scripts::Waypoint>& all = editor->flight().waypoints;
     const std::size_t every = 1 + all.size() / kMost;
@@ -237,7 +204,7 @@ void MapPanel::draw_marks(const explore::Session& session, double x0, double y0)
     for (std::size_t n = 0; few && n < all.size(); ++n) {
       const ImVec2 p = point({all[n].lon_deg, all[n].lat_deg});
       list.AddCircleFilled(p, ImGui::GetFontSize() * 0.28F, kFlight);
-      list.AddCircle(p, ImGui::GetFontSize() * 0.28F, kDark, 0, 1.5F);
+      list.AddCircle(p, ImGui::GetFontSize() * 0.28F, kMapDark, 0, 1.5F);
     }
   }
   if (pressed_ && is_drag_ && with_shift_) {
@@ -251,8 +218,8 @@ void MapPanel::draw_marks(const explore::Session& session, double x0, double y0)
   const auto corner_at = [&](double angle, double r) {
     return at(camera.x + r * std::sin(heading + angle), camera.y - r * std::cos(heading + angle));
   };
-  list.AddTriangleFilled(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kEye);
-  list.AddTriangle(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kDark, 1.5F);
+  list.AddTriangleFilled(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kCamera);
+  list.AddTriangle(corner_at(0, size * 1.35), corner_at(2.5, size), corner_at(-2.5, size), kMapDark, 1.5F);
 }
 
 void MapPanel::draw_hotspots(std::span<const explore::Hotspot> hotspots, double x0, double y0) const {
@@ -268,27 +235,27 @@ void MapPanel::draw_hotspots(std::span<const explore::Hotspot> hotspots, double 
                                {middle.x, middle.y + size},
                                {middle.x - size, middle.y}};
     list.AddConvexPolyFilled(corners, 4, kHotspot);
-    list.AddPolyline(corners, 4, kDark, ImDrawFlags_Closed, 1.5F);
+    list.AddPolyline(corners, 4, kMapDark, ImDrawFlags_Closed, 1.5F);
     if (!named) continue;
     const ImVec2 text{middle.x + size * 1.6F, middle.y - ImGui::GetFontSize() * 0.5F};
-    list.AddText({text.x + 1, text.y + 1}, kDark, hotspot.name.c_str());
+    list.AddText({text.x + 1, text.y + 1}, kMapDark, hotspot.name.c_str());
     list.AddText(text, kHotspot, hotspot.name.c_str());
   }
 }
 
-void MapPanel::draw_way(std::span<const mars::LonLat> way, double x0, double y0) const {
+void MapPanel::draw_path(std::span<const mars::LonLat> path, double x0, double y0) const {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   std::vector<ImVec2> points;
-  for (const std::vector<glm::dvec2>& piece : explore::map_line(map_, way)) {
+  for (const std::vector<glm::dvec2>& piece : explore::map_line(map_, path)) {
     points.clear();
     for (const glm::dvec2 p : piece) points.push_back(at(x0 + p.x, y0 + p.y));
-    list.AddPolyline(points.data(), static_cast<int>(points.size()), kWay, 0, 1.5F);
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), kPath, 0, 1.5F);
   }
-  for (std::size_t n = 0; n < way.size(); ++n) {
-    const glm::dvec2 p = map_.position(way[n]);
-    list.AddCircleFilled(at(x0 + p.x, y0 + p.y), ImGui::GetFontSize() * 0.22F, kWay);
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    const glm::dvec2 p = map_.position(path[n]);
+    list.AddCircleFilled(at(x0 + p.x, y0 + p.y), ImGui::GetFontSize() * 0.22F, kPath);
     const char letter[2] = {static_cast<char>('A' + static_cast<char>(n % 26)), 0};
-    list.AddText(at(x0 + p.x + ImGui::GetFontSize() * 0.4, y0 + p.y - ImGui::GetFontSize() * 1.1), kWay,
+    list.AddText(at(x0 + p.x + ImGui::GetFontSize() * 0.4, y0 + p.y - ImGui::GetFontSize() * 1.1), kPath,
                  letter);
   }
 }

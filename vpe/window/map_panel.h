@@ -1,15 +1,14 @@
-// The map: the planet flat, the camera and what it sees, clicked to go there, dragged, zoomed.
+// The map panel: a flat map with the camera and its footprint. The user can click, drag and zoom it.
 #pragma once
 
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
-#include <thread>
+#include <utility>
 #include <vector>
 
+#include "vpe/base/latest_worker.h"
 #include "vpe/core/interest.h"
 #include "vpe/explore/files/hotspots.h"
 #include "vpe/explore/measure/map_painter.h"
@@ -20,49 +19,47 @@
 
 namespace vpe::window {
 
-// What the user asked for in a frame.
+// Holds what the user did with the map in one frame.
 struct MapActions {
   std::optional<mars::LonLat> under_cursor;
-  std::optional<mars::LonLat> go_to;               // a click
-  std::optional<core::InterestRegion> new_region;  // drawn with Shift
+  std::optional<mars::LonLat> go_to;               // by a click
+  std::optional<core::InterestRegion> new_region;  // by dragging with Shift
   struct Drag {
     std::size_t waypoint = 0;
     mars::LonLat to;
-    bool goes_on = false;  // of the same drag
+    bool continues = false;  // not the first step of this drag
   };
   std::optional<Drag> drag;
-  std::optional<mars::LonLat> new_waypoint;  // a click with Ctrl
+  std::optional<mars::LonLat> new_waypoint;  // by a click with Ctrl
 };
 
+// Draws the map. For the window's thread.
 class MapPanel {
  public:
-  // Images of the map are made on a thread of its own; `tell` is called there when one is finished.
-  MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> tell);
-  ~MapPanel();
+  // Images of the map are painted on a thread of its own, which calls `notify` when one is finished.
+  MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> notify);
 
-  // Inside an ImGui window: takes so many pixels of it. `way`: points that are measured. `spots`: that have panoramas.
-  MapActions draw(const explore::Session& session, explore::MapGround ground, std::span<const mars::LonLat> way,
+  // Draws the map inside an ImGui window, with this size in pixels. `path` holds the points that are measured.
+  MapActions draw(const explore::Session& session, explore::MapStyle style, std::span<const mars::LonLat> path,
                   std::span<const explore::Hotspot> hotspots, int width, int height, Widgets& widgets);
 
   const explore::MapView& map() const { return map_; }
-  bool is_at_rest() const;
+  bool is_at_rest() const { return worker_.is_idle(); }
 
  private:
   struct Request {
     explore::MapView map;
-    explore::MapGround ground = explore::MapGround::kRelief;
+    explore::MapStyle style = explore::MapStyle::kElevation;
     bool operator==(const Request&) const = default;
   };
+  using Made = std::pair<Request, core::RgbImage>;
 
-  void run();
   std::optional<std::size_t> waypoint_near(const explore::Session& session, glm::dvec2 xy) const;
   void draw_marks(const explore::Session& session, double x0, double y0) const;
   void draw_hotspots(std::span<const explore::Hotspot> hotspots, double x0, double y0) const;
-  void draw_way(std::span<const mars::LonLat> way, double x0, double y0) const;
+  void draw_path(std::span<const mars::LonLat> path, double x0, double y0) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
-  int threads_;
-  std::function<void()> tell_;
   explore::MapView map_;
   bool is_fresh_ = true;
   std::optional<glm::dvec2> pressed_;  // on the map, while the button is down
@@ -74,15 +71,9 @@ class MapPanel {
   bool waypoint_moved_ = false;
   std::unique_ptr<Texture> texture_;
   explore::MapView shown_;  // of the texture
-  std::optional<Request> asked_;
+  std::optional<Request> requested_;
 
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::optional<Request> waiting_;
-  std::optional<std::pair<Request, core::RgbImage>> finished_;
-  bool is_busy_ = false;
-  bool ends_ = false;
-  std::thread thread_;
+  base::LatestWorker<Request, Made> worker_;
 };
 
 }  // namespace vpe::window

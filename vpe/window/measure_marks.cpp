@@ -13,7 +13,7 @@ namespace {
 
 constexpr ImU32 kMark = IM_COL32(255, 214, 90, 255);
 constexpr ImU32 kFaint = IM_COL32(255, 214, 90, 90);
-constexpr ImU32 kDark = IM_COL32(0, 0, 0, 200);
+constexpr ImU32 kMarkDark = IM_COL32(0, 0, 0, 200);
 constexpr ImU32 kFaintDark = IM_COL32(0, 0, 0, 60);
 
 class Marker {
@@ -31,14 +31,13 @@ class Marker {
     return direction * (session_.ground().radius_m + session_.ground().height_m(direction));
   }
 
-  // What is aimed at stands a little above the ground: about two pixels, so that its own facet does not hide
-  // it.
+  // Tests a point about two pixels above the ground, so that its own facet does not hide it.
   bool is_hidden(const glm::dvec3& point_m) const {
     const glm::dvec3& camera_m = view_.camera.position_m;
     const double lift_m = std::max(0.5, 2 * glm::length(point_m - camera_m) / core::focal_px(view_));
-    const glm::dvec3 way = point_m * (1 + lift_m / glm::length(point_m)) - camera_m;
-    const double distance_m = glm::length(way);
-    return session_.ground().cast_m(camera_m, way / distance_m) < distance_m * (1 - 1e-9);
+    const glm::dvec3 path = point_m * (1 + lift_m / glm::length(point_m)) - camera_m;
+    const double distance_m = glm::length(path);
+    return session_.ground().cast_m(camera_m, path / distance_m) < distance_m * (1 - 1e-9);
   }
 
   core::Projected seen(const glm::dvec3& point_m) const { return core::project(view_, point_m); }
@@ -59,18 +58,18 @@ class Marker {
     core::Projected seen;
     bool hidden = false;
   };
-  void off_axis_magnification(std::vector<LinePoint> points) const;
+  void draw_section(std::vector<LinePoint> points) const;
 
   ImDrawList& list_;
   const explore::Session& session_;
   core::View view_;
   double x0_;
   double y0_;
-  float thick_;  // of lines; a dark one twice as wide is below them
+  float thick_;  // of lines; each lies on a dark one twice as wide
 };
 
-// One part of the line that crosses the view.
-void Marker::off_axis_magnification(std::vector<LinePoint> points) const {
+// Draws one section of the path, which is in the view.
+void Marker::draw_section(std::vector<LinePoint> points) const {
   const std::size_t every = 1 + points.size() / MarkLimits::kLinePoints;
   std::vector<LinePoint> kept;
   for (std::size_t n = 0; n < points.size(); ++n)
@@ -88,7 +87,8 @@ void Marker::off_axis_magnification(std::vector<LinePoint> points) const {
       if (!a.seen.behind && !b.seen.behind) draw(at(a.seen.xy), at(b.seen.xy), a.hidden || b.hidden);
     }
   };
-  runs([&](ImVec2 a, ImVec2 b, bool faint) { list_.AddLine(a, b, faint ? kFaintDark : kDark, 2 * thick_); });
+  runs(
+      [&](ImVec2 a, ImVec2 b, bool faint) { list_.AddLine(a, b, faint ? kFaintDark : kMarkDark, 2 * thick_); });
   runs([&](ImVec2 a, ImVec2 b, bool faint) { list_.AddLine(a, b, faint ? kFaint : kMark, thick_); });
 }
 
@@ -102,7 +102,7 @@ void Marker::line(const explore::Profile& profile) const {
     next.seen = seen(next.place_m);
     all.push_back(next);
   }
-  // Pieces whose ends are both beside the view may yet cross it.
+  // A piece with both ends outside of the view may still cross it.
   const auto crosses = [&](std::size_t n) {
     const core::Projected& p = all[n - 1].seen;
     const core::Projected& q = all[n].seen;
@@ -113,7 +113,7 @@ void Marker::line(const explore::Profile& profile) const {
     if (!crosses(n)) continue;
     const std::size_t begin = n - 1;
     while (n < all.size() && crosses(n)) ++n;
-    off_axis_magnification(
+    draw_section(
         {all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(n)});
   }
 }
@@ -125,14 +125,14 @@ void Marker::point(mars::LonLat place, const std::string& name) const {
   const ImVec2 middle = at(p.xy);
   const auto size = static_cast<float>(ImGui::GetFontSize() * 0.28);
   const bool hidden = is_hidden(place_m);
-  list_.AddCircleFilled(middle, size + 0.8F * thick_, hidden ? kFaintDark : kDark);
+  list_.AddCircleFilled(middle, size + 0.8F * thick_, hidden ? kFaintDark : kMarkDark);
   if (hidden)
     list_.AddCircle(middle, size, kFaint, 0, thick_);
   else
     list_.AddCircleFilled(middle, size, kMark);
   const ImVec2 corner{middle.x + size + 3, middle.y - ImGui::GetFontSize() - 1};
   for (const auto& [dx, dy] : {std::pair{-1.0F, 0.0F}, {1.0F, 0.0F}, {0.0F, -1.0F}, {0.0F, 1.0F}})
-    list_.AddText({corner.x + dx, corner.y + dy}, hidden ? kFaintDark : kDark, name.c_str());
+    list_.AddText({corner.x + dx, corner.y + dy}, hidden ? kFaintDark : kMarkDark, name.c_str());
   list_.AddText(corner, hidden ? IM_COL32(255, 214, 90, 170) : kMark, name.c_str());
 }
 
@@ -141,7 +141,8 @@ void Marker::cross(mars::LonLat place) const {
   if (!is_in_view(p)) return;
   const ImVec2 m = at(p.xy);
   const auto size = static_cast<float>(ImGui::GetFontSize() * 0.5);
-  for (const auto& [colour, thick] : {std::pair{kDark, 2 * thick_}, {IM_COL32(255, 255, 255, 255), thick_}}) {
+  for (const auto& [colour, thick] :
+       {std::pair{kMarkDark, 2 * thick_}, {IM_COL32(255, 255, 255, 255), thick_}}) {
     list_.AddLine({m.x - size, m.y}, {m.x + size, m.y}, colour, thick);
     list_.AddLine({m.x, m.y - size}, {m.x, m.y + size}, colour, thick);
   }

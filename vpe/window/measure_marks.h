@@ -1,4 +1,4 @@
-// What is measured, drawn over the view: points, and the way over the ground.
+// Marks of measurements over the view: points, and the path on the ground.
 #pragma once
 
 #include <imgui.h>
@@ -14,16 +14,16 @@ namespace vpe::window {
 struct MeasureMarks {
   std::span<const mars::LonLat> points;
   const explore::Profile* profile = nullptr;  // null: the points alone
-  std::optional<mars::LonLat> marked;         // one more place, as of a cursor on the plot
+  std::optional<mars::LonLat> marked;         // one more place, for example of a cursor on the plot
 };
 
 struct MarkLimits {
-  static constexpr int kLinePoints = 240;  // at most, of the part that is in the view
-  static constexpr int kCasts = 60;        // at most, to find what nearer ground hides of the line
+  static constexpr int kLinePoints = 240;  // of the section of the path in the view
+  static constexpr int kCasts = 60;        // that find sections hidden by nearer ground
 };
 
-// Over a view whose upper left corner is at (x0, y0) of the list. What nearer ground hides of the line is
-// faint, hidden points are hollow. On the ground as it is drawn, with its exaggeration.
+// Draws marks over a view with its upper left corner at (x0, y0) of the list, on the ground as drawn, with its
+// exaggeration. Sections of the path that nearer ground hides are faint, hidden points are hollow.
 void draw_measure_marks(ImDrawList& list, const explore::Session& session, const MeasureMarks& marks, double x0,
                         double y0);
 

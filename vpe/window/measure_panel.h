@@ -1,4 +1,4 @@
-// The measuring panel: what lies under the cursor, places typed, points, distances, profile, line of sight.
+// The panel "Measure": place under the cursor, typed places, points, distances, profile, line of sight.
 #pragma once
 
 #include <functional>
@@ -15,53 +15,58 @@
 
 namespace vpe::window {
 
-// What the user asked for in a frame, and what is to be said.
+// Holds what the window has to do after the panel was drawn.
 struct MeasureActions {
   std::optional<mars::LonLat> go_to;
-  std::string message;  // of something done, or that could not be; empty: nothing new
-  bool message_is_trouble = false;
+  std::string message;  // empty: nothing new
+  bool message_is_error = false;
 };
 
-// On the window's thread. What takes long is measured on another one.
+// Draws the panel and holds the points. For the window's thread; slow measurements run on another one.
+//
+// Typical usage:
+//   panel.add(place);                                                 // a point of the path
+//   const MeasureActions actions = panel.draw(session, under_cursor, widgets);
+//   panel.draw_marks(list, session, x0, y0);                          // over the view
 class MeasurePanel {
  public:
-  // `tell` is called on that thread when something is finished: the window shall draw again.
-  MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> tell);
+  // Calls `notify` on the measuring thread when a measurement is finished and the window should draw again.
+  MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify);
 
-  // Inside the tab "Measure". The place under the cursor, in view or map; nothing where there is none: then the
-  // last one stays.
+  // Draws the panel inside its tab. `under_cursor` is the place under the cursor in view or map; without one
+  // the last place stays.
   MeasureActions draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
                       Widgets& widgets);
 
-  // Another point of the way. Places that are none are ignored.
+  // Adds a point to the path. Ignores invalid places.
   void add(mars::LonLat place);
   void erase(std::size_t index);
   void clear();
   std::span<const mars::LonLat> points() const { return places_; }
-  // The place under a cursor on the plot of the frame drawn last, to be marked in map and view.
+  // Returns the place under a cursor on the plot of the last frame, to be marked in map and view.
   std::optional<mars::LonLat> marked() const;
 
-  // Nothing is measured, and nothing finished waits for the next draw() or draw_marks() to show it.
-  bool is_at_rest() const { return measurer_.is_at_rest(); }
-  // Takes what is finished; draw() and draw_marks() do so too.
+  // Returns true if nothing is being measured, and no result waits for update().
+  bool is_at_rest() const { return measurer_.is_idle(); }
+  // Takes a finished result. draw() and draw_marks() do this too.
   void update() { take(); }
-  // What was measured of the points as they are now; null while that is not finished.
+  // Returns the measurement of the present points, or null if it is not finished.
   const Measured* measured() const { return measured_ ? &*measured_ : nullptr; }
 
-  // Points, the way over the ground and the marked place, over a view with its upper left corner at (x0, y0).
-  // Casts rays: about a millisecond or two.
+  // Draws points, path and marked place over a view with its upper left corner at (x0, y0). Casts rays, which
+  // takes one or two milliseconds.
   void draw_marks(ImDrawList& list, const explore::Session& session, double x0, double y0);
 
  private:
-  void order();
+  void request();
   void take();
   void draw_read_out(const explore::Session& session, std::optional<mars::LonLat> under_cursor);
-  void draw_place(MeasureActions& wish, Widgets& widgets);
+  void draw_place(MeasureActions& actions, Widgets& widgets);
   void draw_points(Widgets& widgets);
-  void draw_figures();
+  void draw_values();
   void draw_sight(Widgets& widgets);
-  void draw_profile(MeasureActions& wish, Widgets& widgets);
-  void save(MeasureActions& wish) const;
+  void draw_profile(MeasureActions& actions, Widgets& widgets);
+  void save(MeasureActions& actions) const;
 
   std::shared_ptr<const paging::Surface> surface_;
   std::vector<mars::LonLat> places_;
@@ -69,15 +74,15 @@ class MeasurePanel {
   double to_height_m_ = 0;
   std::string place_text_;
   std::optional<mars::LonLat> place_read_;
-  std::string place_said_;  // how the text was understood, or what is wrong with it
+  std::string place_reply_;  // how the text was understood, or what is wrong with it
   std::string file_ = "profile.csv";
   std::vector<explore::ReadOutLine> read_out_;  // of the cursor's last place
-  std::string read_out_trouble_;
-  std::uint64_t wanted_ = 0;  // order of the points as they are now; 0: none
+  std::string read_out_error_;
+  std::uint64_t wanted_ = 0;  // request for the present points; 0: none
   std::optional<Measured> measured_;
   std::optional<mars::LonLat> marked_;
-  int marked_frame_ = -2;  // ImGui's count of the frame that marked it
-  Measurer measurer_;      // last: its thread tells the window
+  int marked_frame_ = -2;  // ImGui's number of the frame that marked it
+  Measurer measurer_;      // last: its thread notifies the window
 };
 
 }  // namespace vpe::window

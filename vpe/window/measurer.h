@@ -1,21 +1,20 @@
-// Profiles and lines of sight, made on a thread of their own: they may take seconds.
+// Computes profiles and lines of sight on a thread of its own, since they may take seconds.
 #pragma once
 
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
+#include "vpe/base/latest_worker.h"
 #include "vpe/explore/measure/line_of_sight.h"
 #include "vpe/explore/measure/profile.h"
 
 namespace vpe::window {
 
-// Points of a way and how high above the ground its ends look from.
+// Holds the points of a path, and the heights above the ground of its two ends.
 struct MeasureRequest {
   std::vector<mars::LonLat> places;
   double from_height_m = 0;
@@ -23,47 +22,39 @@ struct MeasureRequest {
 };
 
 struct Measured {
-  std::uint64_t number = 0;  // of the order
-  MeasureRequest order;
-  std::shared_ptr<const explore::Profile> profile;  // null: trouble says why
+  std::uint64_t number = 0;  // returned by Measurer::request()
+  MeasureRequest request;
+  std::shared_ptr<const explore::Profile> profile;  // null after an error
   std::optional<explore::LineOfSight> sight;        // between the first and the last place
-  std::string trouble;
+  std::string error;
 };
 
-// One caller at a time.
+// Keeps at most one request waiting. For one calling thread at a time.
+//
+// Typical usage:
+//   const std::uint64_t number = measurer.request({places, 2, 0});
+//   if (auto measured = measurer.take(); measured && measured->number == number) show(*measured);
 class Measurer {
  public:
-  // `tell` is called on the thread when something is finished. It must not throw.
-  Measurer(std::shared_ptr<const paging::Surface> surface, std::function<void()> tell);
-  // Waits for what is being measured.
-  ~Measurer();
-  Measurer(const Measurer&) = delete;
-  Measurer& operator=(const Measurer&) = delete;
+  // Calls `notify` on the thread when a request is finished. It must not throw.
+  Measurer(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify);
 
-  // In place of what has not begun. The number of the order, larger than all before.
-  std::uint64_t ask(MeasureRequest order);
-  // Drops what has not begun and what is finished.
-  void forget();
-  // What is finished, once.
-  std::optional<Measured> take();
-  // Nothing waits, is being measured or is to be taken.
-  bool is_at_rest() const;
+  // Replaces a request that has not begun. Returns the request's number, larger than all before.
+  std::uint64_t request(MeasureRequest request);
+  // Drops a request that has not begun, and a result that was not taken.
+  void forget() { worker_.forget(); }
+  // Returns the latest result, once.
+  std::optional<Measured> take() { return worker_.take(); }
+  // Returns true if no request waits or runs, and no result can be taken.
+  bool is_idle() const { return worker_.is_idle(); }
 
  private:
-  void run();
-  Measured measure(std::uint64_t number, const MeasureRequest& order);
+  Measured measure(std::uint64_t number, const MeasureRequest& request);
 
   std::shared_ptr<const paging::Surface> surface_;
-  std::function<void()> tell_;
-  Measured last_;  // the thread's own: a profile that still holds is not made again
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::uint64_t asked_ = 0;
-  std::optional<std::pair<std::uint64_t, MeasureRequest>> waiting_;
-  std::optional<Measured> finished_;
-  bool is_busy_ = false;
-  bool ends_ = false;
-  std::thread thread_;  // last: it uses the rest
+  Measured last_;  // for the thread alone: its profile is reused if the places are the same
+  std::uint64_t requested_ = 0;
+  base::LatestWorker<std::pair<std::uint64_t, MeasureRequest>, Measured> worker_;  // last: it uses the rest
 };
 
 }  // namespace vpe::window

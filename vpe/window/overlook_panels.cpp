@@ -7,9 +7,8 @@
 #include <cstdio>
 #include <string>
 
+#include "vpe/window/imgui_helpers.h"
 #include "vpe/window/overlook_window.h"
-#include "vpe/window/screen_point.h"
-#include "vpe/window/words.h"
 
 namespace vpe::window {
 
@@ -20,53 +19,39 @@ using explore::ActionKind;
 constexpr const char* kFirstView = "First view";
 constexpr const char* kSave = "Save";
 constexpr const char* kHelp = "Help";
-const ImVec4 kTroubleInk{1, 0.5F, 0.4F, 1};
-const ImVec4 kDoneInk{0.7F, 0.9F, 0.7F, 1};
 
-template <class... Args>
-std::string print(const char* format, Args... args) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, args...);
-  return text;
-}
-
-double within_turn(double azimuth_deg) {
+double normalized_azimuth(double azimuth_deg) {
   const double rest = azimuth_deg - 360.0 * std::floor(azimuth_deg / 360.0);
   return rest < 360.0 ? rest : 0.0;
 }
 
 std::string up_or_down(double elevation_deg, int digits) {
-  return print("%.*f° %s", digits, std::abs(elevation_deg), elevation_deg < 0 ? "down" : "up");
+  return formatted("%.*f° %s", digits, std::abs(elevation_deg), elevation_deg < 0 ? "down" : "up");
 }
 
-// "range 1234 m", "lon 137.441600°": known names without their units, which stand behind the number.
-std::string worded(const panorama::PlaneValue& value) {
+// Returns a value as "1.23 km away" or "lon 137.441600°". Units of known names follow the number.
+std::string value_text(const panorama::PlaneValue& value) {
   const double v = *value.value;
-  if (value.name == "range_m") return metres(v) + " away";
-  if (value.name == "elevation_m") return print("elevation %.1f m", v);
-  if (value.name == "lon_deg" || value.name == "lat_deg") return value.name.substr(0, 3) + print(" %.6f°", v);
-  if (value.name.ends_with("_deg")) return value.name.substr(0, value.name.size() - 4) + print(" %.2f°", v);
-  return value.name + print(" %.6g", v);
+  if (value.name == "range_m") return panel_length_text(v) + " away";
+  if (value.name == "elevation_m") return formatted("elevation %.1f m", v);
+  if (value.name == "lon_deg" || value.name == "lat_deg")
+    return value.name.substr(0, 3) + formatted(" %.6f°", v);
+  if (value.name.ends_with("_deg")) return value.name.substr(0, value.name.size() - 4) + formatted(" %.2f°", v);
+  return value.name + formatted(" %.6g", v);
 }
 
-std::string worded(const OverlookReading& reading) {
-  std::string line = print("under the cursor: azimuth %.3f°, ", reading.direction.azimuth_deg) +
+std::string reading_text(const OverlookReading& reading) {
+  std::string line = formatted("under the cursor: azimuth %.3f°, ", reading.direction.azimuth_deg) +
                      up_or_down(reading.direction.elevation_deg, 3);
-  if (!reading.place) return line + "   outside of the picture";
+  if (!reading.place) return line + "   outside of the image";
   bool any = false;
   for (const panorama::PlaneValue& value : reading.place->values) {
     if (!value.value) continue;
     any = true;
-    line += "   " + worded(value);
+    line += "   " + value_text(value);
   }
-  if (!any && !reading.place->values.empty()) line += "   sky, or nothing known";
+  if (!any && !reading.place->values.empty()) line += "   sky, or nodata";
   return line;
-}
-
-void coloured(const ImVec4& ink, const std::string& words) {
-  ImGui::PushStyleColor(ImGuiCol_Text, ink);
-  ImGui::TextUnformatted(words.c_str());
-  ImGui::PopStyleColor();
 }
 
 }  // namespace
@@ -88,7 +73,7 @@ void OverlookWindow::draw_bar() {
   const double inside = static_cast<double>(ImGui::GetContentRegionAvail().x);
   ImGui::BeginChild("figures", at(std::max(1.0, inside - buttons), 0), false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  draw_figures();
+  draw_values();
   ImGui::EndChild();
   ImGui::SameLine();
   draw_buttons();
@@ -96,22 +81,23 @@ void OverlookWindow::draw_bar() {
   ImGui::PopStyleVar();
 }
 
-void OverlookWindow::draw_figures() {
+void OverlookWindow::draw_values() {
   const panorama::Viewer& viewer = view_.viewer();
   if (!view_.message().empty()) {
-    coloured(view_.message_is_trouble() ? kTroubleInk : kDoneInk, view_.message());
-  } else if (!trouble_.empty()) {
-    coloured(kTroubleInk, trouble_);
+    coloured_line(view_.message_is_error() ? kErrorColour : kSuccessColour, view_.message());
+  } else if (!device_error_.empty()) {
+    coloured_line(kErrorColour, device_error_);
   } else {
-    std::string line = print("azimuth %.2f°   ", within_turn(viewer.yaw_deg())) +
-                       up_or_down(viewer.pitch_deg(), 2) + print("   field of view %.4g°", viewer.fov_deg());
+    std::string line = formatted("azimuth %.2f°   ", normalized_azimuth(viewer.yaw_deg())) +
+                       up_or_down(viewer.pitch_deg(), 2) +
+                       formatted("   field of view %.4g°", viewer.fov_deg());
     if (!view_.panorama().heading_is_known)
-      line += "   north is not known: azimuths are from the picture's middle";
+      line += "   north is not known: azimuths are from the middle of the image";
     ImGui::TextUnformatted(line.c_str());
   }
   const auto reading = view_.reading();
   if (reading)
-    ImGui::TextUnformatted(worded(*reading).c_str());
+    ImGui::TextUnformatted(reading_text(*reading).c_str());
   else
     ImGui::TextDisabled("drag to look around, wheel to zoom, F1 for more");
 }
@@ -121,28 +107,28 @@ void OverlookWindow::draw_buttons() {
     static const std::array<std::string, 4> kEyes{"one eye", "side by side", "over and under", "red and cyan"};
     int eyes = view_.stereo() ? 1 + static_cast<int>(*view_.stereo()) : 0;
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 10);
-    if (widgets_.choose("##eyes", eyes, kEyes, "how the two eyes' pictures are shown")) {
+    if (widgets_.choose("##eyes", eyes, kEyes, "layout of the two eyes' images")) {
       view_.set_stereo(eyes == 0 ? std::nullopt : std::optional(static_cast<core::StereoLayout>(eyes - 1)));
     }
     ImGui::SameLine();
   }
   if (widgets_.button(kFirstView, "R")) view_.act({ActionKind::kReset});
   ImGui::SameLine();
-  if (widgets_.button(kSave, "F12: this view as a picture")) view_.act({ActionKind::kScreenshot});
+  if (widgets_.button(kSave, "F12: save this view as an image")) view_.act({ActionKind::kScreenshot});
   ImGui::SameLine();
   if (widgets_.button(kHelp, "F1")) help_ = !help_;
 }
 
 void OverlookWindow::draw_help() {
   static constexpr const char* kLines[][2] = {
-      {"drag", "hold what is under the cursor"},
+      {"drag", "move the panorama with the cursor"},
       {"wheel", "zoom at the cursor"},
       {"arrow keys, right stick, head tracker", "turn"},
-      {"+  -  0, cross up and down", "zoom; field of view as at the start"},
-      {"N, G, R", "to the north; level; first view"},
+      {"+  -  0, cross up and down", "zoom; reset the field of view"},
+      {"N, G, R", "look north; level; first view"},
       {"C", "head tracker: this is straight ahead"},
       {"H, F1, F11", "hide the bar; this help; full screen"},
-      {"F12", "save the view as a picture"},
+      {"F12", "save the view as an image"},
       {"Esc", "close"},
   };
   ImGui::SetNextWindowPos(at(width_ / 2.0, (height_ - bar_height_) / 2), ImGuiCond_Always, {0.5F, 0.5F});

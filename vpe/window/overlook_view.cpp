@@ -17,8 +17,8 @@ namespace {
 
 using explore::ActionKind;
 
-constexpr double kTurnFov_deg = 60;  // at which turning has its stated speed
-// The eye stays where it is, so nothing that is near moves past it.
+constexpr double kRotationFov_deg = 60;  // at which kRotation_deg_s applies
+// The camera only rotates, so the distance of the ground does not matter.
 constexpr double kNearest_m = 1;
 
 double tangent_of_half(double fov_deg) { return std::tan(0.5 * fov_deg * mars::kRadiansPerDegree); }
@@ -33,13 +33,13 @@ bool same_view(const core::View& a, const core::View& b) {
 OverlookView::OverlookView(OverlookSetup setup)
     : setup_(std::move(setup)),
       viewer_(setup_.panorama.map, 1280, 720),
-      reader_(setup_.panorama),
+      probe_(setup_.panorama),
       live_({setup_.budget_ms}),
       maker_(std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); })) {
   viewer_.set_fov(setup_.fov_deg);
   if (setup_.look) viewer_.look_at(setup_.look->azimuth_deg, setup_.look->elevation_deg);
   start_deg_ = {viewer_.yaw_deg(), viewer_.pitch_deg()};
-  took_over();
+  update_platform();
   set_stereo(setup_.stereo);
 }
 
@@ -69,13 +69,13 @@ void OverlookView::place(const ViewArea& area) {
   is_new_ = is_new_ || moved;
 }
 
-void OverlookView::took_over() {
+void OverlookView::update_platform() {
   platform_deg_ = glm::dvec2{viewer_.yaw_deg(), viewer_.pitch_deg()} - head_deg_;
 }
 
-void OverlookView::say(std::string words, bool is_trouble) {
-  message_ = std::move(words);
-  message_is_trouble_ = is_trouble;
+void OverlookView::show_message(std::string text, bool is_error) {
+  message_ = std::move(text);
+  message_is_error_ = is_error;
   is_new_ = true;
 }
 
@@ -92,12 +92,12 @@ void OverlookView::handle(const Event& event, bool captured) {
     case Event::Kind::kRelease:
       if (event.code != GLFW_MOUSE_BUTTON_LEFT || !held_) break;
       held_.reset();
-      // Of a pair the cursor may have come into the other half.
+      // In a pair the cursor may have moved into the other half.
       cursor_ = over ? std::optional(camera_xy(event.x, event.y)) : std::nullopt;
       break;
     case Event::Kind::kMove:
       if (held_) {
-        // A drag belongs to the half in which it began, wherever the hand goes.
+        // A drag belongs to the half in which it began.
         const glm::dvec2 size = viewer_.size();
         glm::dvec2 xy = glm::dvec2{event.x - area_.x, event.y - area_.y};
         if (stereo_ == core::StereoLayout::kSideBySide)
@@ -106,7 +106,7 @@ void OverlookView::handle(const Event& event, bool captured) {
           xy.y -= size.y * std::round((xy.y - cursor_->y) / size.y);
         cursor_ = xy;
         viewer_.hold(*held_, xy.x, xy.y);
-        took_over();
+        update_platform();
       } else if (over) {
         cursor_ = camera_xy(event.x, event.y);
       } else {
@@ -118,7 +118,7 @@ void OverlookView::handle(const Event& event, bool captured) {
       message_.clear();
       const glm::dvec2 xy = camera_xy(event.x, event.y);
       viewer_.zoom(std::pow(kZoomStep, setup_.invert_wheel ? -event.scroll : event.scroll), xy.x, xy.y);
-      took_over();
+      update_platform();
       break;
     }
     default: break;
@@ -129,7 +129,7 @@ bool OverlookView::act(const explore::Action& action) {
   const glm::dvec2 middle = 0.5 * glm::dvec2(viewer_.size());
   switch (action.kind) {
     case ActionKind::kNorthUp:
-      // The nearest of all turns.
+      // The nearest multiple of a full circle.
       viewer_.look_at(viewer_.yaw_deg() - std::remainder(viewer_.yaw_deg(), 360.0), viewer_.pitch_deg());
       break;
     case ActionKind::kLevel: viewer_.look_at(viewer_.yaw_deg(), 0); break;
@@ -144,7 +144,7 @@ bool OverlookView::act(const explore::Action& action) {
     default: return false;
   }
   message_.clear();
-  took_over();
+  update_platform();
   return true;
 }
 
@@ -154,16 +154,17 @@ void OverlookView::advance(const explore::Controls& controls, const mars::HeadAn
     head_deg_ = head;
     viewer_.look_at(platform_deg_.x + head.x, platform_deg_.y + head.y);
   }
-  turns_ = controls.yaw_right != 0 || controls.pitch_up != 0;
-  if (turns_) {
-    const double step_deg = kTurn_deg_s * tangent_of_half(viewer_.fov_deg()) / tangent_of_half(kTurnFov_deg) *
+  rotates_ = controls.yaw_right != 0 || controls.pitch_up != 0;
+  if (rotates_) {
+    const double step_deg = kRotation_deg_s * tangent_of_half(viewer_.fov_deg()) /
+                            tangent_of_half(kRotationFov_deg) *
                             std::min(dt_s, explore::SteerLimits::kLongestStep_s);
     viewer_.turn(controls.yaw_right * step_deg, controls.pitch_up * step_deg);
-    took_over();
+    update_platform();
   }
   if (held_ && cursor_) {
     viewer_.hold(*held_, cursor_->x, cursor_->y);
-    took_over();
+    update_platform();
   }
 }
 
@@ -178,24 +179,24 @@ void OverlookView::set_stereo(std::optional<core::StereoLayout> stereo) {
 
 void OverlookView::look_at(double yaw_deg, double pitch_deg) {
   viewer_.look_at(yaw_deg, pitch_deg);
-  took_over();
+  update_platform();
 }
 
 void OverlookView::set_fov(double fov_deg) {
   viewer_.set_fov(fov_deg);
-  took_over();
+  update_platform();
 }
 
 bool OverlookView::is_at_rest() const {
-  return maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting && !turns_ && !is_new_ &&
+  return maker_->is_idle() && live_.state() == lod::RefinementState::kWaiting && !rotates_ && !is_new_ &&
          !save_due_;
 }
 
 bool OverlookView::update(double wait_s) {
   const std::int64_t before = images_;
   take_image(0);
-  // The next one is made while this one is shown.
-  order_image();
+  // The next image is drawn while this one is shown.
+  request_image();
   if (images_ == before) take_image(wait_s);
   const double copying = setup_.copying->fraction;
   if (copying != shown_copying_) is_new_ = true;
@@ -203,53 +204,54 @@ bool OverlookView::update(double wait_s) {
   return std::exchange(is_new_, false);
 }
 
-void OverlookView::order_image() {
+void OverlookView::request_image() {
   if (!maker_->is_idle()) return;
   const core::View wanted = viewer_.view();
-  // A view that was saved while it moved is one that nobody had a good look at.
+  // Images are saved at rest, so that the saved view is the one that the user sees.
   const bool shows_it = drawn_ && image_is_full_ && drawn_->error.empty() &&
-                        same_view(drawn_->order.request.view, wanted) && drawn_->order.stereo == stereo_;
+                        same_view(drawn_->request.draw.view, wanted) && drawn_->request.stereo == stereo_;
   if (save_due_ && shows_it) save_image();
-  if (ordered_ == 0) {
-    // A full one may take long; this is there at once, and tells nothing of how long images take.
-    order_is_full_ = false;
+  if (requested_ == 0) {
+    // A full image may take long, so the first one is small. Its time is not representative and is not
+    // recorded.
+    request_is_full_ = false;
     ImageRequest first;
-    first.number = ++ordered_;
-    first.stereo = ordered_stereo_ = stereo_;
-    first.request.view = explore::reduced(wanted, explore::LiveImageOptions().smallest_side);
-    maker_->ask(std::move(first));
+    first.number = ++requested_;
+    first.stereo = requested_stereo_ = stereo_;
+    first.draw.view = explore::reduced(wanted, explore::LiveImageOptions().smallest_side);
+    maker_->request(std::move(first));
     return;
   }
-  const auto order = live_.next(wanted, stereo_ != ordered_stereo_, kNearest_m);
-  if (!order) {
+  const auto next = live_.next(wanted, stereo_ != requested_stereo_, kNearest_m);
+  if (!next) {
     if (save_due_) {
       save_due_ = false;
-      say("there is no picture to save", true);
+      show_message("there is no image to save", true);
     }
     return;
   }
-  ordered_stereo_ = stereo_;
-  order_is_full_ = order->is_full;
-  ImageRequest image_request;
-  image_request.number = ++ordered_;
-  image_request.stereo = stereo_;
-  image_request.request.view = order->view;
-  maker_->ask(std::move(image_request));
+  requested_stereo_ = stereo_;
+  request_is_full_ = next->is_full;
+  ImageRequest request;
+  request.number = ++requested_;
+  request.stereo = stereo_;
+  request.draw.view = next->view;
+  maker_->request(std::move(request));
 }
 
 void OverlookView::take_image(double wait_s) {
-  std::optional<DrawnImage> made = maker_->take(wait_s);
-  if (!made) return;
+  std::optional<DrawnImage> drawn = maker_->take(wait_s);
+  if (!drawn) return;
   ++images_;
   is_new_ = true;
-  if (made->order.number > 1) live_.made(made->seconds * 1e3, true);
-  if (!made->error.empty()) {
-    say(made->error, true);
+  if (drawn->request.number > 1) live_.record(drawn->seconds * 1e3, true);
+  if (!drawn->error.empty()) {
+    show_message(drawn->error, true);
     return;
   }
-  texture_.upload(made->image);
-  drawn_ = std::move(*made);
-  image_is_full_ = order_is_full_;
+  texture_.upload(drawn->image);
+  drawn_ = std::move(*drawn);
+  image_is_full_ = request_is_full_;
 }
 
 void OverlookView::save_image() {
@@ -263,9 +265,9 @@ void OverlookView::save_image() {
   const core::RgbImage& image = drawn_->image;
   try {
     core::write_image(path, image.pixels, image.width, image.height);
-    say("written: " + fs::absolute(path, ignored).string(), false);
+    show_message("written: " + fs::absolute(path, ignored).string(), false);
   } catch (const std::exception& e) {
-    say(e.what(), true);
+    show_message(e.what(), true);
   }
 }
 
@@ -278,9 +280,9 @@ std::optional<OverlookReading> OverlookView::reading() {
   read_view_ = view;
   reading_ = OverlookReading{viewer_.direction(cursor_->x, cursor_->y), std::nullopt};
   try {
-    reading_->place = reader_.at(reading_->direction);
+    reading_->place = probe_.at(reading_->direction);
   } catch (const std::exception& e) {
-    say(e.what(), true);
+    show_message(e.what(), true);
   }
   return reading_;
 }

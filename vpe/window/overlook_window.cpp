@@ -15,8 +15,8 @@ using explore::ActionKind;
 
 constexpr double kShortestFrame_s = 1.0 / 120;
 constexpr double kPoll_s = 1.0 / 60;   // of devices that send no events
-constexpr double kImageWait_s = 0.1;   // for which a frame waits for its image
-constexpr int kFramesAfterChange = 3;  // ImGui settles within so many
+constexpr double kImageWait_s = 0.1;   // limit of waiting for an image in one iteration
+constexpr int kFramesAfterChange = 3;  // ImGui settles within these
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -39,9 +39,9 @@ OverlookWindow::OverlookWindow(OverlookWindowSetup setup)
       devices_(preferences_, std::move(setup.devices)),
       view_(preferred(std::move(setup.view), preferences_)),
       begun_(Clock::now()),
-      last_turn_(begun_),
+      last_step_(begun_),
       frames_due_(kFramesAfterChange) {
-  for (const std::string& trouble : devices_.troubles()) trouble_ = trouble;
+  for (const std::string& error : devices_.errors()) device_error_ = error;
   lay_out();
 }
 
@@ -50,7 +50,7 @@ double OverlookWindow::now_s() const { return seconds(Clock::now() - begun_); }
 bool OverlookWindow::step(double wait_s) {
   const bool busy = !is_at_rest();
   const double longest_s = devices_.polls(now_s()) ? std::min(wait_s, kPoll_s) : wait_s;
-  const double pause_s = std::max(0.0, kShortestFrame_s - seconds(Clock::now() - last_turn_));
+  const double pause_s = std::max(0.0, kShortestFrame_s - seconds(Clock::now() - last_step_));
   const std::vector<Event> events = display_.events(busy ? pause_s : longest_s);
   if (display_.should_close()) return false;
   lay_out();
@@ -64,13 +64,13 @@ bool OverlookWindow::step(double wait_s) {
     if (event.kind == Event::Kind::kMove) cursor_ = event;
     frames_due_ = kFramesAfterChange;
   }
-  // ImGui knows only with the next frame on what the cursor is: it may rest by then.
+  // ImGui updates WantCaptureMouse with the next frame, when the cursor may rest already.
   if (cursor_ && captured != was_captured_) view_.handle(*cursor_, captured);
   was_captured_ = captured;
   const auto now = Clock::now();
-  // After a rest no time has passed for what turns.
-  const double dt_s = busy ? seconds(now - last_turn_) : 0.0;
-  last_turn_ = now;
+  // The time of a rest does not count as motion.
+  const double dt_s = busy ? seconds(now - last_step_) : 0.0;
+  last_step_ = now;
   const DeviceReading reading = devices_.read(now_s(), ImGui::GetIO().WantTextInput);
   for (const explore::Action& action : reading.actions) act(action);
   view_.advance(reading.controls, reading.look, dt_s);
@@ -85,7 +85,7 @@ bool OverlookWindow::step(double wait_s) {
 
 void OverlookWindow::act(const explore::Action& action) {
   frames_due_ = kFramesAfterChange;
-  trouble_.clear();
+  device_error_.clear();
   switch (action.kind) {
     case ActionKind::kHidePanels: bar_ = !bar_; break;
     case ActionKind::kHelp: help_ = !help_; break;

@@ -1,4 +1,4 @@
-// The window of `vpe overlook`: a panorama all over it, and a bar of figures.
+// The window of `vpe overlook`: a panorama and a bar with its values.
 #pragma once
 
 #include <chrono>
@@ -17,27 +17,34 @@ namespace vpe::window {
 struct OverlookWindowSetup {
   OverlookSetup view;
   DisplayOptions display;
-  explore::Preferences preferences;  // budget and wheel of the view, and devices, are as they say
+  explore::Preferences preferences;  // override budget and wheel of the view; configure the devices
   DeviceSources devices;
 };
 
+// Shows one panorama. For the main thread.
+//
+// Typical usage:
+//   OverlookWindow window(std::move(setup));
+//   while (window.step(0.5)) {
+//   }
 class OverlookWindow {
  public:
-  // Throws DisplayError, and as OverlookView.
+  // Throws DisplayError, and what OverlookView throws.
   explicit OverlookWindow(OverlookWindowSetup setup);
 
-  // One turn: events, devices, an image when one is due, a frame when something changed. Waits for events for
-  // at most so long when there is nothing to do. False when the window is closed.
+  // Runs one iteration of the event loop: events, devices, an image if one is due, a frame if something
+  // changed. Waits for events for at most `wait_s` seconds if there is nothing to do. Returns false if the
+  // window was closed.
   bool step(double wait_s);
 
   OverlookView& view() { return view_; }
   Display& display() { return display_; }
   const Devices& devices() const { return devices_; }
   const Widgets& widgets() const { return widgets_; }
-  // Nothing moves, loads or waits to be drawn.
+  // Returns true if nothing moves, is being drawn, or waits to be shown.
   bool is_at_rest() const { return view_.is_at_rest() && frames_due_ <= 0; }
   std::int64_t frames() const { return frames_; }
-  // The next frame's pixels, once it is shown.
+  // Stores the pixels of the next frame that is shown.
   void capture(core::RgbImage* to) { capture_ = to; }
 
  private:
@@ -45,7 +52,7 @@ class OverlookWindow {
   void lay_out();
   void draw_frame();
   void draw_bar();
-  void draw_figures();
+  void draw_values();
   void draw_buttons();
   void draw_help();
   double now_s() const;
@@ -55,8 +62,8 @@ class OverlookWindow {
   Devices devices_;
   Widgets widgets_;
   OverlookView view_;
-  std::string trouble_;          // with a device
-  std::optional<Event> cursor_;  // where it was moved last
+  std::string device_error_;
+  std::optional<Event> cursor_;  // its last motion
   bool was_captured_ = false;    // by a panel
   bool bar_ = true;
   bool help_ = false;
@@ -64,7 +71,7 @@ class OverlookWindow {
   int width_ = 1;
   int height_ = 1;
   std::chrono::steady_clock::time_point begun_;
-  std::chrono::steady_clock::time_point last_turn_;
+  std::chrono::steady_clock::time_point last_step_;
   int frames_due_;
   std::int64_t frames_ = 0;
   core::RgbImage* capture_ = nullptr;

@@ -1,4 +1,4 @@
-// Who makes the images that a window shows. The window says what; how is the backends' business.
+// Interface between a window, which requests images, and the program, which draws them with a backend.
 #pragma once
 
 #include <cstdint>
@@ -7,42 +7,39 @@
 #include <optional>
 #include <string>
 
+#include "vpe/core/backend.h"
 #include "vpe/core/frame.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/stereo.h"
 
 namespace vpe::window {
 
-enum class Backend : std::uint8_t { kPolygons, kRays };
-
-// "polygon", "voxel", as on the command line.
-const char* to_string(Backend backend);
-
 struct ImageRequest {
-  std::uint64_t number = 0;  // of orders of one window; later ones are larger
-  Backend backend = Backend::kPolygons;
-  core::DrawRequest request;
+  std::uint64_t number = 0;  // of the window's requests, ascending
+  core::Backend backend = core::Backend::kPolygon;
+  core::DrawRequest draw;
   std::optional<core::StereoLayout> stereo;
   double eye_base_m = 0;           // with stereo; > 0
   double flight_time_s = 0;        // for the overlay of that name
-  std::optional<double> logged_s;  // its time in the log, while one is written
+  std::optional<double> logged_s;  // its time in the log while a session is recorded
 };
 
-// What became of an order.
+// Holds the result of a request.
 struct DrawnImage {
-  ImageRequest order;
-  core::RgbImage image;     // of another size than the view's in stereo; empty after an error
-  core::DrawResult result;  // without its pixels; of the left eye in stereo
+  ImageRequest request;
+  core::RgbImage image;  // in stereo of another size than the view; empty after an error
+  // Without its pixels. In stereo its figures and certificate are those of the left eye.
+  core::DrawResult result;
   double seconds = 0;
-  std::string error;  // empty when all went well
+  std::string error;  // empty if the image was drawn
 };
 
-// Used by one thread, on which it was made.
+// Draws images. Is used by the thread on which it was created.
 class Painter {
  public:
   virtual ~Painter() = default;
   // Throws what renderers throw.
-  virtual DrawnImage paint(const ImageRequest& order) = 0;
+  virtual DrawnImage paint(const ImageRequest& request) = 0;
 };
 
 using MakePainter = std::function<std::unique_ptr<Painter>()>;

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "vpe/explore/measure/digits.h"
-#include "vpe/window/screen_point.h"
+#include "vpe/base/nice_ticks.h"
+#include "vpe/base/number.h"
+#include "vpe/window/imgui_helpers.h"
 
 namespace vpe::window {
 
@@ -13,11 +14,11 @@ namespace {
 
 constexpr ImU32 kSky = IM_COL32(30, 33, 38, 255);
 constexpr ImU32 kGround = IM_COL32(104, 66, 44, 255);
-constexpr ImU32 kBand = IM_COL32(150, 102, 72, 255);
+constexpr ImU32 kProfileBand = IM_COL32(150, 102, 72, 255);
 constexpr ImU32 kNoData = IM_COL32(70, 72, 76, 255);
 constexpr ImU32 kLine = IM_COL32(240, 205, 170, 255);
 constexpr ImU32 kGrid = IM_COL32(255, 255, 255, 34);
-constexpr ImU32 kWords = IM_COL32(196, 198, 202, 255);
+constexpr ImU32 kText = IM_COL32(196, 198, 202, 255);
 constexpr ImU32 kSeen = IM_COL32(120, 225, 130, 255);
 constexpr ImU32 kHidden = IM_COL32(255, 112, 92, 255);
 constexpr ImU32 kCursor = IM_COL32(255, 214, 90, 255);
@@ -30,12 +31,12 @@ struct Unit {
 };
 Unit unit_of(double length_m) { return length_m >= 10000 ? Unit{1000, "km"} : Unit{1, "m"}; }
 
-// The elevations shown: ground, and the ends of the line of sight.
+// Range of elevations shown: those of the ground and of the ends of the line of sight.
 struct Range {
   double low_m;
   double high_m;
 };
-Range range_of(const PlotOfProfile& plot) {
+Range range_of(const ProfilePlot& plot) {
   Range r{plot.profile.lowest_m, plot.profile.highest_m};
   if (plot.sight != nullptr) {
     r.high_m = std::max({r.high_m, plot.profile.points.front().height_m + plot.from_height_m,
@@ -45,7 +46,7 @@ Range range_of(const PlotOfProfile& plot) {
   return {r.low_m - room_m, r.high_m + room_m};
 }
 
-// Where things are on the screen.
+// Converts distances and elevations to positions on the screen.
 struct Frame {
   double x0, y0, x1, y1;  // of the ground
   double length_m;
@@ -57,24 +58,24 @@ struct Frame {
   }
 };
 
-void draw_axes(ImDrawList& list, const Frame& f, const explore::Ticks& heights) {
+void draw_axes(ImDrawList& list, const Frame& f, const base::NiceTicks& heights) {
   const double letters = ImGui::GetFontSize();
   for (const double height_m : heights.values) {
     const double y = std::round(f.y(height_m));
-    const std::string words = explore::fixed_text(height_m, heights.digits);
+    const std::string text = base::format_display(height_m, heights.decimals);
     list.AddLine(at(f.x0, y), at(f.x1, y), kGrid);
-    list.AddText(at(f.x0 - 4 - ImGui::CalcTextSize(words.c_str()).x, y - letters / 2), kWords, words.c_str());
+    list.AddText(at(f.x0 - 4 - ImGui::CalcTextSize(text.c_str()).x, y - letters / 2), kText, text.c_str());
   }
   const Unit unit = unit_of(f.length_m);
-  const explore::Ticks along =
-      explore::ticks(0, f.length_m / unit.metres, std::max(2, static_cast<int>((f.x1 - f.x0) / (letters * 4))));
+  const base::NiceTicks along = base::nice_ticks(0, f.length_m / unit.metres,
+                                                 std::max(2, static_cast<int>((f.x1 - f.x0) / (letters * 4))));
   for (std::size_t n = 0; n < along.values.size(); ++n) {
     const double x = std::round(f.x(along.values[n] * unit.metres));
-    std::string words = explore::fixed_text(along.values[n], along.digits);
-    if (n + 1 == along.values.size()) words += std::string(" ") + unit.name;
-    const double wide = ImGui::CalcTextSize(words.c_str()).x;
+    std::string text = base::format_display(along.values[n], along.decimals);
+    if (n + 1 == along.values.size()) text += std::string(" ") + unit.name;
+    const double wide = ImGui::CalcTextSize(text.c_str()).x;
     list.AddLine(at(x, f.y0), at(x, f.y1 + 3), kGrid);
-    list.AddText(at(std::min(x - wide / 2, f.x1 - wide), f.y1 + 3), kWords, words.c_str());
+    list.AddText(at(std::min(x - wide / 2, f.x1 - wide), f.y1 + 3), kText, text.c_str());
   }
 }
 
@@ -86,7 +87,7 @@ void draw_ground(ImDrawList& list, const Frame& f, const explore::Profile& profi
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const explore::PlotColumn& c = columns[k];
     const double x = f.x0 + static_cast<double>(k);
-    list.AddRectFilled(at(x, f.y(c.high_m)), at(x + 1, f.y1), c.nodata ? kNoData : kBand);
+    list.AddRectFilled(at(x, f.y(c.high_m)), at(x + 1, f.y1), c.nodata ? kNoData : kProfileBand);
     list.AddRectFilled(at(x, f.y(c.low_m)), at(x + 1, f.y1), c.nodata ? kNoData : kGround);
     line.push_back(at(x, f.y(c.begin_m)));
   }
@@ -94,7 +95,7 @@ void draw_ground(ImDrawList& list, const Frame& f, const explore::Profile& profi
   list.AddPolyline(line.data(), static_cast<int>(line.size()), kLine, ImDrawFlags_None, thick());
 }
 
-void draw_sight(ImDrawList& list, const Frame& f, const PlotOfProfile& plot) {
+void draw_sight(ImDrawList& list, const Frame& f, const ProfilePlot& plot) {
   const double from_m = plot.profile.points.front().height_m + plot.from_height_m;
   const double to_m = plot.profile.points.back().height_m + plot.to_height_m;
   constexpr int kPieces = 96;
@@ -124,7 +125,7 @@ void draw_names(ImDrawList& list, const Frame& f, const explore::Profile& profil
     const double wide = ImGui::CalcTextSize(name.c_str()).x;
     list.AddLine(at(x, f.y0), at(x, f.y1), IM_COL32(255, 214, 90, 70));
     const double left = std::clamp(x - wide / 2, f.x0 + 1, f.x1 - wide - 1);
-    if (left < free_from) continue;  // names too near to each other
+    if (left < free_from) continue;  // would overlap the previous name
     list.AddText(at(left, f.y0), kCursor, name.c_str());
     free_from = left + wide + 2;
   }
@@ -139,17 +140,18 @@ std::string point_name(std::size_t index) {
   return name;
 }
 
-std::optional<double> draw_plot(const PlotOfProfile& plot, double width, double height, Widgets& widgets) {
+std::optional<double> draw_profile_plot(const ProfilePlot& plot, double width, double height,
+                                        Widgets& widgets) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("profile plot", at(width, height));
-  widgets.note("profile plot");
+  widgets.record("profile plot");
   const double letters = ImGui::GetFontSize();
   const Range range = range_of(plot);
-  const explore::Ticks heights =
-      explore::ticks(range.low_m, range.high_m, std::max(2, static_cast<int>(height / (letters * 2))));
+  const base::NiceTicks heights =
+      base::nice_ticks(range.low_m, range.high_m, std::max(2, static_cast<int>(height / (letters * 2))));
   double margin = 0;
   for (const double h : heights.values)
-    margin = std::max<double>(margin, ImGui::CalcTextSize(explore::fixed_text(h, heights.digits).c_str()).x);
+    margin = std::max<double>(margin, ImGui::CalcTextSize(base::format_display(h, heights.decimals).c_str()).x);
 
   const double left = corner.x;
   const double top = corner.y;
@@ -158,14 +160,14 @@ std::optional<double> draw_plot(const PlotOfProfile& plot, double width, double 
                 plot.profile.length_m,         range};
   if (f.x1 < f.x0 + 8 || f.y1 < f.y0 + 8) return std::nullopt;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  std::string words = "Elevation (m)";
+  std::string text = "Elevation (m)";
   if (plot.profile.length_m > 0) {
     const double exaggeration =
         (f.y1 - f.y0) / (range.high_m - range.low_m) * plot.profile.length_m / (f.x1 - f.x0);
     const int digits = exaggeration < 10 ? 1 : 0;
-    words += ", exaggerated " + explore::fixed_text(exaggeration, exaggeration < 1 ? 2 : digits) + "x";
+    text += ", exaggerated " + base::format_display(exaggeration, exaggeration < 1 ? 2 : digits) + "x";
   }
-  list.AddText(at(left, top), kWords, words.c_str());
+  list.AddText(at(left, top), kText, text.c_str());
   list.AddRectFilled(at(f.x0, f.y0), at(f.x1, f.y1), kSky);
   list.PushClipRect(at(f.x0, f.y0), at(f.x1, f.y1), true);
   draw_ground(list, f, plot.profile);

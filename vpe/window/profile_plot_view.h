@@ -1,4 +1,4 @@
-// The plot of a profile, drawn by Dear ImGui.
+// Drawing of a profile's plot with Dear ImGui.
 #pragma once
 
 #include <optional>
@@ -9,20 +9,20 @@
 
 namespace vpe::window {
 
-struct PlotOfProfile {
+struct ProfilePlot {
   const explore::Profile& profile;
   double radius_m = mars::kMarsRadius_m;
-  // Drawn over the ground, null: none. It must be of the profile's own way: two places, no more.
+  // Drawn over the ground; null: none. Must belong to the profile's path, which has two places then.
   const explore::LineOfSight* sight = nullptr;
   double from_height_m = 0;  // of its ends above the ground
   double to_height_m = 0;
 };
 
-// Takes so many pixels of the window. Vertical exaggeration and datum of the elevations are words above it. The
-// distance under the cursor, nothing beside the ground.
-std::optional<double> draw_plot(const PlotOfProfile& plot, double width, double height, Widgets& widgets);
+// Draws a plot of this size in pixels, with the vertical exaggeration above it. Returns the distance under the
+// cursor, or nullopt beside the ground.
+std::optional<double> draw_profile_plot(const ProfilePlot& plot, double width, double height, Widgets& widgets);
 
-// A, B, ... Z, AA, AB: what the points of a way are called.
+// Returns the name of a path's point: A, B, ... Z, AA, AB.
 std::string point_name(std::size_t index);
 
 }  // namespace vpe::window

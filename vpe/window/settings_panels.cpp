@@ -1,18 +1,45 @@
-// The panels of everything in the settings registry.
+#include "vpe/window/settings_panels.h"
+
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "lod/tree/posts.h"
 #include "vpe/base/number.h"
-#include "vpe/core/appearance/inspect.h"
-#include "vpe/window/explore_window.h"
-#include "vpe/window/words.h"
+#include "vpe/window/imgui_helpers.h"
 
 namespace vpe::window {
 
-void ExploreWindow::setting(const core::SettingInfo& info) {
+namespace {
+
+// Draws rows of settings and applies changes.
+class SettingRows {
+ public:
+  SettingRows(explore::Session& session, Widgets& widgets) : session_(session), widgets_(widgets) {}
+
+  // Draws the settings whose keys begin with `prefix` and with none of `without`.
+  void group(std::string_view prefix, const std::vector<std::string_view>& without = {}) {
+    for (const core::SettingInfo& info : core::Settings::list()) {
+      if (!info.key.starts_with(prefix)) continue;
+      const bool left_out = std::any_of(without.begin(), without.end(),
+                                        [&](std::string_view p) { return info.key.starts_with(p); });
+      if (!left_out) row(info);
+    }
+  }
+
+  // Returns what is wrong with the last setting that could not be changed, or "".
+  const std::string& error() const { return error_; }
+
+ private:
+  void row(const core::SettingInfo& info);
+
+  explore::Session& session_;
+  Widgets& widgets_;
+  std::string error_;
+};
+
+void SettingRows::row(const core::SettingInfo& info) {
   const std::string key(info.key);
   const std::string text = session_.settings().get(key).value_or("");
   const std::string meaning =
@@ -43,65 +70,54 @@ void ExploreWindow::setting(const core::SettingInfo& info) {
     changed = widgets_.text(key.c_str(), next, (meaning + ": " + info.grammar).c_str());
   }
   if (!changed) return;
-  const std::string trouble = session_.set(key, next);
-  if (!trouble.empty()) say(trouble, true);
+  if (std::string problem = session_.set(key, next); !problem.empty()) error_ = std::move(problem);
 }
 
-void ExploreWindow::settings_group(std::string_view prefix, const std::vector<std::string_view>& without) {
-  for (const core::SettingInfo& info : core::Settings::list()) {
-    if (!info.key.starts_with(prefix)) continue;
-    const bool left_out = std::any_of(without.begin(), without.end(),
-                                      [&](std::string_view p) { return info.key.starts_with(p); });
-    if (!left_out) setting(info);
-  }
-}
+}  // namespace
 
-void ExploreWindow::appearance_panel() {
+std::string draw_appearance_panel(explore::Session& session, Widgets& widgets) {
+  SettingRows rows(session, widgets);
   ImGui::BeginChild("appearance");
   if (ImGui::CollapsingHeader("Ground", ImGuiTreeNodeFlags_DefaultOpen))
-    settings_group("", {"lod.", "rays.", "cull.", "overlay.", "sun", "ramp.", "samples", "edges", "inspect",
-                        "haze", "background", "gamma", "shadows"});
+    rows.group("", {"lod.", "rays.", "cull.", "overlay.", "sun", "ramp.", "samples", "edges", "inspect", "haze",
+                    "background", "gamma", "shadows"});
   if (ImGui::CollapsingHeader("Light and air", ImGuiTreeNodeFlags_DefaultOpen)) {
-    settings_group("sun", {});
-    settings_group("shadows", {});
-    settings_group("haze", {});
-    settings_group("gamma", {});
-    settings_group("background", {});
+    for (const char* prefix : {"sun", "shadows", "haze", "gamma", "background"}) rows.group(prefix);
   }
-  if (ImGui::CollapsingHeader("Over the picture")) settings_group("overlay.", {});
-  if (ImGui::CollapsingHeader("Palette from two colours")) settings_group("ramp.", {});
+  if (ImGui::CollapsingHeader("Over the image")) rows.group("overlay.");
+  if (ImGui::CollapsingHeader("Palette from two colours")) rows.group("ramp.");
   ImGui::EndChild();
+  return rows.error();
 }
 
-void ExploreWindow::detail_panel() {
+std::string draw_detail_panel(explore::Session& session, const DrawnImage* drawn,
+                              const paging::PlanetFile& planet, Widgets& widgets) {
+  SettingRows rows(session, widgets);
   ImGui::BeginChild("detail");
-  if (ImGui::CollapsingHeader("Level of detail", ImGuiTreeNodeFlags_DefaultOpen)) settings_group("lod.", {});
-  if (ImGui::CollapsingHeader("Rays", ImGuiTreeNodeFlags_DefaultOpen)) settings_group("rays.", {});
-  if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) {
-    settings_group("samples", {});
-    settings_group("edges", {});
-    settings_group("cull.", {});
-    settings_group("inspect", {});
+  if (ImGui::CollapsingHeader("Level of detail", ImGuiTreeNodeFlags_DefaultOpen)) rows.group("lod.");
+  if (ImGui::CollapsingHeader("Rays", ImGuiTreeNodeFlags_DefaultOpen)) rows.group("rays.");
+  if (ImGui::CollapsingHeader("Image", ImGuiTreeNodeFlags_DefaultOpen)) {
+    for (const char* prefix : {"samples", "edges", "cull.", "inspect"}) rows.group(prefix);
   }
-  if (drawn_ && ImGui::CollapsingHeader("Tiles by level", ImGuiTreeNodeFlags_DefaultOpen)) {
-    const std::vector<int>& levels = drawn_->result.stats.tiles_by_level;
+  if (drawn != nullptr && ImGui::CollapsingHeader("Tiles by level", ImGuiTreeNodeFlags_DefaultOpen)) {
+    const std::vector<int>& levels = drawn->result.stats.tiles_by_level;
     for (std::size_t n = 0; n < levels.size(); ++n) {
       if (levels[n] == 0) continue;
-      const double spacing_m = lod::post_spacing_m(static_cast<int>(n), setup_.planet->meta().tile.intervals(),
-                                                   setup_.planet->radius_m());
-      ImGui::Text("%2d   %4d tiles   posts of %s", core::shown_level(static_cast<int>(n)), levels[n],
-                  metres(spacing_m).c_str());
+      const int level = static_cast<int>(n);
+      const double spacing_m = lod::post_spacing_m(level, planet.meta().tile.intervals(), planet.radius_m());
+      ImGui::Text("%2d   %4d tiles   posts every %s", level, levels[n], panel_length_text(spacing_m).c_str());
     }
   }
-  if (!session_.interest().empty()) {
+  if (!session.interest().empty()) {
     ImGui::Separator();
-    ImGui::Text("Regions of interest: %d", static_cast<int>(session_.interest().size()));
+    ImGui::Text("Regions of interest: %d", static_cast<int>(session.interest().size()));
     ImGui::SameLine();
-    if (widgets_.button("Remove all")) session_.set_interest({});
+    if (widgets.button("Remove all")) session.set_interest({});
   } else {
-    ImGui::TextDisabled("Shift-drag on the map: a region of interest");
+    ImGui::TextDisabled("Shift + drag on the map adds a region of interest");
   }
   ImGui::EndChild();
+  return rows.error();
 }
 
 }  // namespace vpe::window

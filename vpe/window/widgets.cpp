@@ -6,61 +6,61 @@
 
 namespace vpe::window {
 
-void Widgets::note(std::string_view label) {
+void Widgets::record(std::string_view label) {
   const ImVec2 a = ImGui::GetItemRectMin();
   const ImVec2 b = ImGui::GetItemRectMax();
   const std::string name = group_.empty() ? std::string(label) : group_ + "/" + std::string(label);
   places_[name] = {a.x, a.y, b.x, b.y};
 }
 
-void Widgets::tip(const char* words) const {
-  if (words == nullptr || !ImGui::IsItemHovered()) return;
+void Widgets::show_tip(const char* text) const {
+  if (text == nullptr || !ImGui::IsItemHovered()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
-  ImGui::TextUnformatted(words);
+  ImGui::TextUnformatted(text);
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }
 
-bool Widgets::button(const char* label, const char* words) {
+bool Widgets::button(const char* label, const char* tip) {
   const bool pressed = ImGui::Button(label);
-  note(label);
-  tip(words);
+  record(label);
+  show_tip(tip);
   return pressed;
 }
 
-bool Widgets::toggle(const char* label, bool& on, const char* words) {
+bool Widgets::toggle(const char* label, bool& on, const char* tip) {
   if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyle().Colors[ImGuiCol_ButtonActive]);
   const bool was_on = on;
   const bool pressed = ImGui::Button(label);
-  note(label);
+  record(label);
   if (was_on) ImGui::PopStyleColor();
-  tip(words);
+  show_tip(tip);
   if (pressed) on = !on;
   return pressed;
 }
 
-bool Widgets::check(const char* label, bool& on, const char* words) {
+bool Widgets::check(const char* label, bool& on, const char* tip) {
   const bool changed = ImGui::Checkbox(label, &on);
-  note(label);
-  tip(words);
+  record(label);
+  show_tip(tip);
   return changed;
 }
 
 bool Widgets::tab(const char* label) {
   const bool open = ImGui::BeginTabItem(label);
-  note(label);
+  record(label);
   return open;
 }
 
-bool Widgets::choose(const char* label, int& index, std::span<const std::string> names, const char* words) {
+bool Widgets::choose(const char* label, int& index, std::span<const std::string> names, const char* tip) {
   const auto count = static_cast<int>(names.size());
   const char* shown = index >= 0 && index < count ? names[static_cast<std::size_t>(index)].c_str() : "";
   bool changed = false;
   const bool open = ImGui::BeginCombo(label, shown);
-  note(label);
+  record(label);
   if (!open) {
-    tip(words);
+    show_tip(tip);
     return false;
   }
   for (int n = 0; n < count; ++n) {
@@ -69,20 +69,20 @@ bool Widgets::choose(const char* label, int& index, std::span<const std::string>
       changed = n != index;
       index = n;
     }
-    note(std::string(label) + "=" + name);
+    record(std::string(label) + "=" + name);
   }
   ImGui::EndCombo();
   return changed;
 }
 
 bool Widgets::number(const char* label, double& value, double low, double high, double step, const char* format,
-                     const char* words) {
+                     const char* tip) {
   double edited = value;
   const bool changed =
       ImGui::InputDouble(label, &edited, step, step * 10, format,
                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-  note(label);
-  tip(words);
+  record(label);
+  show_tip(tip);
   if (!changed || !(edited == edited)) return false;
   edited = std::clamp(edited, low, high);
   if (edited == value) return false;
@@ -91,22 +91,22 @@ bool Widgets::number(const char* label, double& value, double low, double high, 
 }
 
 bool Widgets::slide(const char* label, double& value, double low, double high, const char* format,
-                    bool logarithmic, const char* words) {
+                    bool logarithmic, const char* tip) {
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   const bool changed = ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &low, &high, format, flags);
-  note(label);
-  tip(words);
+  record(label);
+  show_tip(tip);
   return changed;
 }
 
-bool Widgets::text(const char* label, std::string& value, const char* words) {
+bool Widgets::text(const char* label, std::string& value, const char* tip) {
   std::string& draft = drafts_[ImGui::GetID(label)];
   if (editing_ != ImGui::GetID(label)) draft = value;
   const bool entered =
       ImGui::InputText(label, &draft, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-  note(label);
-  tip(words);
+  record(label);
+  show_tip(tip);
   if (ImGui::IsItemActive()) {
     editing_ = ImGui::GetID(label);
   } else if (editing_ == ImGui::GetID(label)) {

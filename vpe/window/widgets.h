@@ -1,5 +1,4 @@
-// Dear ImGui's widgets as this program uses them. Each notes where it is, under its label, so that somebody who
-// has no eyes, as a test, can find it.
+// Dear ImGui's widgets with tooltips. Records where each widget is, by its label, so that tests can operate it.
 #pragma once
 
 #include <imgui.h>
@@ -19,35 +18,41 @@ struct WidgetPlace {
   double y1 = 0;
 };
 
+// Draws widgets in the present ImGui window. For the window's thread.
+//
+// Typical usage:
+//   widgets.begin_frame();
+//   if (widgets.button("Save", "F12")) save();
+//   widgets.places().at("Save");   // where it was drawn
 class Widgets {
  public:
   void begin_frame() { places_.clear(); }
-  // Of the frame drawn last, by label; of widgets inside of a group "GROUP/LABEL".
+  // Returns the places of the last frame by label; inside a group by "GROUP/LABEL".
   const std::map<std::string, WidgetPlace>& places() const { return places_; }
   void group(std::string name) { group_ = std::move(name); }
 
-  // True when pressed or changed.
+  // Return true if pressed or changed.
   bool button(const char* label, const char* tip = nullptr);
   bool toggle(const char* label, bool& on, const char* tip = nullptr);  // a button that stays down
   bool check(const char* label, bool& on, const char* tip = nullptr);
-  bool tab(const char* label);  // then ImGui::EndTabItem()
+  bool tab(const char* label);  // if true, call ImGui::EndTabItem() after it
   bool choose(const char* label, int& index, std::span<const std::string> names, const char* tip = nullptr);
-  // A number typed or stepped; what is typed counts with Enter.
+  // A number that is typed or stepped. Typed text takes effect with Enter.
   bool number(const char* label, double& value, double low, double high, double step, const char* format,
               const char* tip = nullptr);
   bool slide(const char* label, double& value, double low, double high, const char* format, bool logarithmic,
              const char* tip = nullptr);
-  // True when Enter is pressed or the field is left with another text.
+  // A text field. Returns true if Enter is pressed or the field is left with another text.
   bool text(const char* label, std::string& value, const char* tip = nullptr);
-  // Notes the item drawn last under a name.
-  void note(std::string_view label);
+  // Records the place of the item drawn last under a label.
+  void record(std::string_view label);
 
  private:
-  void tip(const char* words) const;
+  void show_tip(const char* text) const;
 
   std::map<std::string, WidgetPlace> places_;
   std::string group_;
-  std::map<unsigned, std::string> drafts_;  // texts being typed
+  std::map<unsigned, std::string> drafts_;  // texts that are being typed
   unsigned editing_ = 0;
 };
 

@@ -17,18 +17,18 @@ namespace fs = std::filesystem;
 
 constexpr int kLastKey = 9;
 constexpr std::uintmax_t kLargestFile = 4 << 20;
-constexpr std::string_view kBlanks = " \t\r\v\f";
+constexpr std::string_view kBookmarkBlanks = " \t\r\v\f";
 constexpr const char* kHeader = "# vpe bookmarks: N lon lat alt yaw pitch roll fov name";
 
 std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(kBlanks);
+  const std::size_t begin = text.find_first_not_of(kBookmarkBlanks);
   if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+  return text.substr(begin, text.find_last_not_of(kBookmarkBlanks) - begin + 1);
 }
 
 std::string_view take_word(std::string_view& line) {
   line = trimmed(line);
-  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+  const std::string_view word = line.substr(0, line.find_first_of(kBookmarkBlanks));
   line.remove_prefix(word.size());
   return word;
 }
@@ -43,7 +43,7 @@ std::string to_line(const Bookmark& b) {
   return b.name.empty() ? line : line + " " + b.name;
 }
 
-// What is wrong in `fault`.
+// Parses a bookmark; sets `fault` to what was expected if it is wrong.
 Bookmark read_line(std::string_view line, std::string& fault) {
   Bookmark b;
   const std::string_view key = take_word(line);
@@ -170,7 +170,7 @@ void save_bookmarks(const fs::path& path, const Bookmarks& bookmarks) {
   const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
   if (const fs::path folder = target.parent_path(); !folder.empty()) {
     fs::create_directories(folder, error);
-    if (error) throw base::file_error("make the folder", folder, error.message(), "check its permissions");
+    if (error) throw base::file_error("create the folder", folder, error.message(), "check its permissions");
   }
   const std::string text = bookmarks.to_text();
   base::OutputFile file(target, target.string() + "." + std::to_string(getpid()) + ".tmp");

@@ -1,8 +1,8 @@
-// Views kept under a key or a name, in a text file that people may edit.
+// Views stored under a key or a name, in a text file that people may edit.
 //
-// One bookmark a line: N lon lat alt yaw pitch roll fov name. N is the key 1..9, or - for none; degrees, metres
-// above the planet's sphere; the name is the rest of the line and may be left out. Lines that begin with # and
-// empty lines are kept where they are.
+// The file has one bookmark a line: N lon lat alt yaw pitch roll fov name. N is the key 1..9, or - for none.
+// Angles are in degrees, the altitude in metres above the planet's sphere. The name is the rest of the line and
+// may be left out. Lines that begin with # and empty lines are preserved.
 //
 //   # N lon lat alt yaw pitch roll fov name
 //   1 -74.2 -13.5 12000 90 -15 0 60 Valles Marineris, west
@@ -28,25 +28,33 @@ struct Bookmark {
 
 struct ParsedBookmarks;
 
+// Holds the lines of a bookmarks file.
+//
+// Typical usage:
+//   ParsedBookmarks parsed = load_bookmarks(path);
+//   if (!parsed.bookmarks) return report(parsed.errors);
+//   const std::string problem = parsed.bookmarks->put({1, view, "Home"});
+//   if (!problem.empty()) return show(problem);
+//   save_bookmarks(path, *parsed.bookmarks);
 class Bookmarks {
  public:
-  // In the order of the file.
+  // Returns all bookmarks in the order of the file.
   std::vector<Bookmark> all() const;
 
-  // Nothing when there is none.
+  // Return a bookmark, or nullopt if there is none.
   std::optional<Bookmark> at_key(int key) const;
   std::optional<Bookmark> named(std::string_view name) const;
 
-  // In the place of the one with the same key; without a key, of the one of the same name without a key; else
-  // at the end. Blanks about the name are dropped. Returns what is wrong, empty when all is well; then nothing
-  // changes.
+  // Stores a bookmark. Replaces the one with the same key, or, without a key, the one with the same name and no
+  // key; otherwise appends it. Removes blanks around the name. Returns what is wrong, or ""; a bad bookmark
+  // changes nothing.
   [[nodiscard]] std::string put(Bookmark bookmark);
 
-  // By position in all(); false where there is none.
+  // Removes the bookmark at a position of all(). Returns false if there is none.
   bool remove(std::size_t index);
 
-  // parse_bookmarks() reads the same bookmarks back, to the bit. Lines of the file that were not replaced are
-  // as they were.
+  // Returns the text of the file. parse_bookmarks() reads the same bookmarks back, bit by bit. Lines that were
+  // not replaced are unchanged.
   std::string to_text() const;
 
  private:
@@ -59,22 +67,22 @@ class Bookmarks {
   std::vector<Line> lines_;
 };
 
-// Either bookmarks and no errors, or no bookmarks and what is wrong (the first kMaxErrors): a file with a bad
-// line is refused, so that saving cannot lose it.
+// Holds either bookmarks, or errors (the first kMaxErrors). A file with a bad line is rejected as a whole, so
+// that saving cannot lose the line.
 struct ParsedBookmarks {
   static constexpr std::size_t kMaxErrors = 20;
   std::optional<Bookmarks> bookmarks;
   std::vector<LineError> errors;
 };
 
-// Any text is allowed. `name` is what errors call the file.
+// Parses any text. `name` is the file's name in errors.
 ParsedBookmarks parse_bookmarks(std::string_view text, const std::string& name);
 
-// A file that is not there holds no bookmarks. Throws base::FileError when it cannot be read.
+// Reads a file; a file that does not exist holds no bookmarks. Throws base::FileError if it cannot be read.
 ParsedBookmarks load_bookmarks(const std::filesystem::path& path);
 
-// The file appears whole or stays as it was; its folder is made when missing, and a link is followed. Throws
-// base::FileError. Of two programs that save, the last one counts: load, change and save in one go.
+// Replaces the file atomically. Creates its folder if needed, and follows a link. Throws base::FileError. If
+// two programs save, the later one wins: load, change and save without delay.
 void save_bookmarks(const std::filesystem::path& path, const Bookmarks& bookmarks);
 
 }  // namespace vpe::explore

@@ -12,16 +12,16 @@ namespace vpe::explore {
 
 namespace {
 
-constexpr std::uintmax_t kLargestFile = 16 << 20;
+constexpr std::uintmax_t kLargestHotspotsFile = 16 << 20;
 
-// What is wrong in `fault`.
+// Parses a hotspot; sets `fault` to what was expected if it is wrong.
 Hotspot read_hotspot(const std::vector<std::string>& words, std::string& fault) {
   Hotspot hotspot;
   if (words[0] != "spot") {
-    fault = "a spot, found " + found_text(words[0]);
+    fault = "a line that begins with spot, found " + found_text(words[0]);
   } else if (words.size() != 6) {
     fault = "spot NAME LON LAT HEIGHT PANORAMA, found " + std::to_string(words.size()) +
-            (words.size() == 1 ? " word" : " words") + "; a name or path with blanks stands in double quotes";
+            (words.size() == 1 ? " word" : " words") + "; a name or path with blanks needs double quotes";
   } else if (words[1].empty() || !is_one_line(words[1])) {
     fault = "a name of at least one character and no control characters, found " + found_text(words[1]);
   } else if (words[5].empty()) {
@@ -41,7 +41,7 @@ Hotspot read_hotspot(const std::vector<std::string>& words, std::string& fault) 
 
 ParsedHotspots parse_hotspots(std::string_view text, const std::filesystem::path& file) {
   ParsedHotspots parsed;
-  std::vector<int> lines;  // of the spots
+  std::vector<int> lines;  // of the hotspots
   int number = 0;
   for (const std::string_view line : lines_of(text)) {
     ++number;
@@ -53,7 +53,7 @@ ParsedHotspots parse_hotspots(std::string_view text, const std::filesystem::path
       const auto twin = std::find_if(parsed.hotspots.begin(), parsed.hotspots.end(),
                                      [&](const Hotspot& other) { return other.name == hotspot.name; });
       if (twin != parsed.hotspots.end()) {
-        fault = "a name of its own, found " + found_text(hotspot.name) + " again after line " +
+        fault = "a unique name, found " + found_text(hotspot.name) + " again after line " +
                 std::to_string(lines[static_cast<std::size_t>(twin - parsed.hotspots.begin())]);
       }
     }
@@ -71,7 +71,7 @@ ParsedHotspots parse_hotspots(std::string_view text, const std::filesystem::path
 }
 
 ParsedHotspots load_hotspots(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = base::read_file(file, kLargestFile);
+  const std::vector<std::uint8_t> bytes = base::read_file(file, kLargestHotspotsFile);
   return parse_hotspots({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
 }
 
@@ -81,43 +81,43 @@ std::string to_line(const Hotspot& hotspot) {
          as_word(hotspot.panorama.string()) + "\n";
 }
 
-std::vector<glm::dvec3> hotspot_eyes(std::span<const Hotspot> hotspots, double radius_m,
-                                     const scripts::TerrainHeight& terrain_height_m, double exaggeration) {
-  std::vector<glm::dvec3> eyes;
-  eyes.reserve(hotspots.size());
+std::vector<glm::dvec3> hotspot_positions(std::span<const Hotspot> hotspots, double radius_m,
+                                          const scripts::TerrainHeight& terrain_height_m, double exaggeration) {
+  std::vector<glm::dvec3> positions;
+  positions.reserve(hotspots.size());
   for (const Hotspot& hotspot : hotspots) {
     const double terrain_m = terrain_height_m ? terrain_height_m(hotspot.place, exaggeration) : std::nan("");
-    eyes.push_back((radius_m + terrain_m + hotspot.height_m) * mars::direction(hotspot.place));
+    positions.push_back((radius_m + terrain_m + hotspot.height_m) * mars::direction(hotspot.place));
   }
-  return eyes;
+  return positions;
 }
 
-std::optional<NearHotspot> nearest_hotspot(std::span<const glm::dvec3> eyes_m, const glm::dvec3& camera_m,
+std::optional<NearHotspot> nearest_hotspot(std::span<const glm::dvec3> positions_m, const glm::dvec3& camera_m,
                                            double within_m) {
   std::optional<NearHotspot> nearest;
-  for (std::size_t n = 0; n < eyes_m.size(); ++n) {
-    const double distance_m = glm::length(eyes_m[n] - camera_m);
+  for (std::size_t n = 0; n < positions_m.size(); ++n) {
+    const double distance_m = glm::length(positions_m[n] - camera_m);
     if (distance_m <= within_m && (!nearest || distance_m < nearest->distance_m))
       nearest = NearHotspot{n, distance_m};
   }
   return nearest;
 }
 
-HotspotTracker::HotspotTracker(std::vector<glm::dvec3> eyes_m, const HotspotTrackerOptions& options)
-    : eyes_m_(std::move(eyes_m)), options_(options) {}
+HotspotTracker::HotspotTracker(std::vector<glm::dvec3> positions_m, const HotspotTrackerOptions& options)
+    : positions_m_(std::move(positions_m)), options_(options) {}
 
 HotspotTracker::State HotspotTracker::update(const glm::dvec3& camera_m) {
-  const auto nearest = nearest_hotspot(eyes_m_, camera_m, options_.approach_m);
+  const auto nearest = nearest_hotspot(positions_m_, camera_m, options_.approach_m);
   State next;
   double reach_m = options_.reach_m;
   if (state_.stage != HotspotStage::kFar) {
-    const double distance_m = glm::length(eyes_m_[state_.hotspot.index] - camera_m);
-    const bool keeps = distance_m <= options_.leave * options_.approach_m;
+    const double distance_m = glm::length(positions_m_[state_.hotspot.index] - camera_m);
+    const bool keeps = distance_m <= options_.leave_factor * options_.approach_m;
     const bool other = nearest && nearest->index != state_.hotspot.index &&
-                       (!keeps || nearest->distance_m < options_.swap * distance_m);
+                       (!keeps || nearest->distance_m < options_.switch_share * distance_m);
     if (keeps && !other) {
       next = {HotspotStage::kApproaching, {state_.hotspot.index, distance_m}};
-      if (state_.stage == HotspotStage::kWithinReach) reach_m *= options_.leave;
+      if (state_.stage == HotspotStage::kWithinReach) reach_m *= options_.leave_factor;
     }
   }
   if (next.stage == HotspotStage::kFar && nearest) next = {HotspotStage::kApproaching, *nearest};

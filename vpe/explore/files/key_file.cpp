@@ -5,32 +5,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 #include "vpe/base/number.h"
+#include "vpe/core/registry/former_names.h"
 
 namespace vpe::explore {
 
 namespace {
 
 constexpr std::size_t kMaxShown = 60;
-
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
+constexpr core::SwitchWords kTomlSwitch{"false", "true", "true or false"};
 
 std::string_view table_of(std::string_view name) { return name.substr(0, name.find('.')); }
 std::string_view key_of(std::string_view name) { return name.substr(name.find('.') + 1); }
-
-template <class Words>
-std::string list(const Words& words) {
-  std::string text;
-  for (const std::string_view word : words) text.append(text.empty() ? "" : ", ").append(word);
-  return text;
-}
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -54,114 +44,56 @@ std::string quoted(const std::string& text) {
   return out;
 }
 
-std::array<double*, 6> numbers_of(mars::Pose& pose) {
-  return {&pose.lon_deg, &pose.lat_deg, &pose.alt_m, &pose.yaw_deg, &pose.pitch_deg, &pose.roll_deg};
+std::string value_text(const core::KeyInfo& key, const core::KeyValue& value) {
+  const std::string text = core::print_value(key, value, kTomlSwitch);
+  const bool is_word =
+      std::holds_alternative<core::ChoiceKey>(key.type) || std::holds_alternative<core::TextKey>(key.type);
+  return is_word ? quoted(text) : text;
 }
 
-// What may stand in a pose that somebody wrote.
-constexpr std::array<double, 6> kPoseLimits{360, 90, 1e15, 360, 90, 360};
-
-std::string pose_text(std::optional<mars::Pose> pose) {
-  if (!pose) return "[]";
-  std::string text;
-  for (const double* number : numbers_of(*pose))
-    text += (text.empty() ? "[" : ", ") + base::format_number(*number);
-  return text + "]";
-}
-
-std::string value_text(const KeyEntry& key) {
-  return std::visit(Overloaded{[](const NumberKey& k) { return base::format_number(*k.value); },
-                               [](const IntegerKey& k) { return std::to_string(*k.value); },
-                               [](const SwitchKey& k) { return std::string(*k.value ? "true" : "false"); },
-                               [](const ChoiceKey& k) {
-                                 return quoted(std::string(k.words[static_cast<std::size_t>(k.read())]));
-                               },
-                               [](const TextKey& k) { return quoted(*k.value); },
-                               [](const PoseKey& k) { return pose_text(*k.value); }},
-                    key.member);
-}
-
-std::string allowed_text(const KeyEntry& key) {
-  return std::visit(
-      Overloaded{[](const NumberKey& k) {
-                   return "a number from " + base::format_number(k.min) + " to " + base::format_number(k.max);
-                 },
-                 [](const IntegerKey& k) {
-                   return "a whole number from " + std::to_string(k.min) + " to " + std::to_string(k.max);
-                 },
-                 [](const SwitchKey&) { return std::string("true or false"); },
-                 [](const ChoiceKey& k) { return "one of " + list(k.words); },
-                 [](const TextKey& k) { return std::string(k.grammar); },
-                 [](const PoseKey&) {
-                   return std::string(
-                       "[longitude, latitude, altitude, yaw, pitch, roll] in degrees and metres, or []");
-                 }},
-      key.member);
-}
-
-// The node as a number; NaN for anything else.
+// Returns NaN for a node that is not a number.
 double number_of(const toml::node& node) {
   if (const auto* value = node.as_floating_point()) return value->get();
   if (const auto* value = node.as_integer()) return static_cast<double>(value->get());
   return std::nan("");
 }
 
-bool set_pose(const toml::node& node, std::optional<mars::Pose>& pose) {
+// Returns nullopt for a node that is neither six numbers nor an empty list.
+std::optional<core::KeyValue> pose_value(const toml::node& node) {
   const toml::array* list = node.as_array();
-  if (list == nullptr) return false;
-  if (list->empty()) {
-    pose.reset();
-    return true;
-  }
-  mars::Pose read;
-  const std::array<double*, 6> numbers = numbers_of(read);
-  if (list->size() != numbers.size()) return false;
-  for (std::size_t n = 0; n < numbers.size(); ++n) {
-    *numbers[n] = number_of((*list)[n]);
-  }
-  if (!is_pose(read)) return false;
-  pose = read;
-  return true;
+  if (list == nullptr) return std::nullopt;
+  if (list->empty()) return std::optional<mars::Pose>();
+  mars::Pose pose;
+  const std::array<double*, 6> numbers{&pose.lon_deg, &pose.lat_deg,   &pose.alt_m,
+                                       &pose.yaw_deg, &pose.pitch_deg, &pose.roll_deg};
+  if (list->size() != numbers.size()) return std::nullopt;
+  for (std::size_t n = 0; n < numbers.size(); ++n) *numbers[n] = number_of((*list)[n]);
+  return std::optional<mars::Pose>(pose);
 }
 
-bool set_word(const toml::node& node, const ChoiceKey& key) {
-  const auto* word = node.as_string();
-  if (word == nullptr) return false;
-  const auto found = std::find(key.words.begin(), key.words.end(), word->get());
-  if (found == key.words.end()) return false;
-  key.write(static_cast<int>(found - key.words.begin()));
-  return true;
-}
-
-// False when the node is not what the key allows.
-bool set(const toml::node& node, const KeyEntry& key) {
-  return std::visit(Overloaded{[&node](const NumberKey& k) {
-                                 const double value = number_of(node);
-                                 if (!(value >= k.min && value <= k.max)) return false;
-                                 *k.value = value;
-                                 return true;
-                               },
-                               [&node](const IntegerKey& k) {
-                                 const auto* value = node.as_integer();
-                                 if (value == nullptr || value->get() < k.min || value->get() > k.max)
-                                   return false;
-                                 *k.value = static_cast<int>(value->get());
-                                 return true;
-                               },
-                               [&node](const SwitchKey& k) {
-                                 const auto* value = node.as_boolean();
-                                 if (value != nullptr) *k.value = value->get();
-                                 return value != nullptr;
-                               },
-                               [&node](const ChoiceKey& k) { return set_word(node, k); },
-                               [&node](const TextKey& k) {
-                                 const auto* value = node.as_string();
-                                 if (value == nullptr || !k.problem(value->get()).empty()) return false;
-                                 *k.value = value->get();
-                                 return true;
-                               },
-                               [&node](const PoseKey& k) { return set_pose(node, *k.value); }},
-                    key.member);
+// Returns nullopt for a node of another type than the key's. The value may be one that is not allowed.
+std::optional<core::KeyValue> value_of(const toml::node& node, const core::KeyInfo& key) {
+  if (std::holds_alternative<core::NumberKey>(key.type)) return number_of(node);
+  if (std::holds_alternative<core::PoseKey>(key.type)) return pose_value(node);
+  if (const auto* limits = std::get_if<core::IntegerKey>(&key.type)) {
+    const auto* value = node.as_integer();
+    if (value == nullptr || value->get() < limits->min || value->get() > limits->max) return std::nullopt;
+    return static_cast<int>(value->get());
+  }
+  if (std::holds_alternative<core::SwitchKey>(key.type)) {
+    const auto* value = node.as_boolean();
+    if (value == nullptr) return std::nullopt;
+    return value->get();
+  }
+  const auto* text = node.as_string();
+  if (text == nullptr) return std::nullopt;
+  if (const auto* choice = std::get_if<core::ChoiceKey>(&key.type)) {
+    return core::word_value(*choice,
+                            core::current_value(core::NameKind::kPreferenceValue, key.name, text->get()));
+  }
+  if (std::holds_alternative<core::TextKey>(key.type)) return text->get();
+  std::string problem;
+  return core::parse_value(key, text->get(), problem);
 }
 
 std::string shown(const toml::node& node) {
@@ -175,7 +107,9 @@ std::string shown(const toml::node& node) {
 
 class Reader {
  public:
-  Reader(const std::string& file, std::span<const KeyEntry> keys) : file_(file), keys_(keys) {}
+  Reader(const std::string& file, std::span<const core::KeyInfo> keys,
+         const std::function<void(std::size_t, const core::KeyValue&)>& set)
+      : file_(file), keys_(keys), set_(set) {}
 
   void read(std::string_view text) const {
     toml::table top;
@@ -191,7 +125,7 @@ class Reader {
         fail(node, "unknown table or key '" + std::string(name.str()) + "'; tables are " + tables());
       const toml::table* table = node.as_table();
       if (table == nullptr)
-        fail(node, "'" + std::string(name.str()) + "' is a table; its keys are " + list(known));
+        fail(node, "'" + std::string(name.str()) + "' is a table; its keys are " + core::join(known));
       for (const auto& [key, value] : *table)
         read_key(std::string(name.str()) + "." + std::string(key.str()), value);
     }
@@ -202,19 +136,24 @@ class Reader {
     throw KeyFileError(file_ + ":" + std::to_string(node.source().begin.line) + ": " + what);
   }
 
-  void read_key(const std::string& name, const toml::node& node) const {
-    const auto found =
-        std::find_if(keys_.begin(), keys_.end(), [&name](const KeyEntry& key) { return key.name == name; });
+  void read_key(const std::string& former_or_current, const toml::node& node) const {
+    const std::string name(core::current_name(core::NameKind::kPreference, former_or_current));
+    const auto found = std::find_if(keys_.begin(), keys_.end(),
+                                    [&name](const core::KeyInfo& key) { return key.name == name; });
     if (found == keys_.end()) {
       fail(node, "unknown key '" + name + "'; keys of [" + std::string(table_of(name)) + "] are " +
-                     list(keys_in(table_of(name))));
+                     core::join(keys_in(table_of(name))));
     }
-    if (!set(node, *found)) fail(node, name + ": expected " + allowed_text(*found) + ", found " + shown(node));
+    const std::optional<core::KeyValue> value = value_of(node, *found);
+    if (!value || !core::is_allowed(*found, *value)) {
+      fail(node, name + ": expected " + core::allowed_text(*found, kTomlSwitch) + ", found " + shown(node));
+    }
+    set_(static_cast<std::size_t>(found - keys_.begin()), *value);
   }
 
   std::vector<std::string_view> keys_in(std::string_view table) const {
     std::vector<std::string_view> all;
-    for (const KeyEntry& key : keys_) {
+    for (const core::KeyInfo& key : keys_) {
       if (table_of(key.name) == table) all.push_back(key_of(key.name));
     }
     return all;
@@ -222,46 +161,39 @@ class Reader {
 
   std::string tables() const {
     std::vector<std::string_view> all;
-    for (const KeyEntry& key : keys_) {
+    for (const core::KeyInfo& key : keys_) {
       if (all.empty() || all.back() != table_of(key.name)) all.push_back(table_of(key.name));
     }
-    return list(all);
+    return core::join(all);
   }
 
   const std::string& file_;
-  std::span<const KeyEntry> keys_;
+  std::span<const core::KeyInfo> keys_;
+  const std::function<void(std::size_t, const core::KeyValue&)>& set_;
 };
 
 }  // namespace
 
-bool is_pose(const mars::Pose& pose) {
-  mars::Pose copy = pose;
-  const std::array<double*, 6> numbers = numbers_of(copy);
-  for (std::size_t n = 0; n < numbers.size(); ++n) {
-    if (!(std::abs(*numbers[n]) <= kPoseLimits[n])) return false;
-  }
-  return true;
+void read_keys(std::string_view toml, const std::string& file, std::span<const core::KeyInfo> keys,
+               const std::function<void(std::size_t, const core::KeyValue&)>& set) {
+  Reader(file, keys, set).read(toml);
 }
 
-void read_keys(std::string_view toml, const std::string& file, std::span<const KeyEntry> keys) {
-  Reader(file, keys).read(toml);
-}
-
-std::string write_keys(std::span<const KeyEntry> keys, std::span<const KeyEntry> defaults,
-                       KeysShown shown_keys) {
+std::string write_keys(std::span<const core::KeyInfo> keys, std::span<const core::KeyValue> values,
+                       std::span<const core::KeyValue> defaults, KeysShown shown_keys) {
   std::string text;
   std::string_view table;
   for (std::size_t n = 0; n < keys.size(); ++n) {
-    const KeyEntry& key = keys[n];
+    const core::KeyInfo& key = keys[n];
     if (table_of(key.name) != table) {
       table = table_of(key.name);
       text.append(text.empty() ? "[" : "\n[").append(table).append("]\n");
     }
-    const std::string value = value_text(key);
-    const std::string usual = value_text(defaults[n]);
+    const std::string usual = value_text(key, defaults[n]);
+    const std::string value = value_text(key, core::within_limits(key, values[n], defaults[n]));
     if (shown_keys == KeysShown::kChanged && value == usual) text += "# ";
     text.append(key_of(key.name)).append(" = ").append(value);
-    text.append("  # ").append(key.meaning).append("; ").append(allowed_text(key));
+    text.append("  # ").append(key.meaning).append("; ").append(core::allowed_text(key, kTomlSwitch));
     text.append("; default ").append(usual).append("\n");
   }
   return text;

@@ -1,13 +1,20 @@
-// What vpe explore keeps: preferences, which people choose, and the last session, which the program remembers.
+// Files of `vpe explore`: preferences, which people edit, and the last session, which the program remembers.
+//
+// Typical usage:
+//   const ExploreFiles files = explore_files();
+//   Preferences preferences = read_preferences(files.preferences);  // defaults if there is no file
+//   preferences.ui_scale = 2;
+//   if (const std::string problem = save(preferences, files.preferences); !problem.empty()) show(problem);
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "mars/geodesy/pose.h"
 #include "vpe/base/user_folders.h"
+#include "vpe/core/backend.h"
+#include "vpe/core/registry/key_registry.h"
 #include "vpe/explore/files/key_file.h"
 #include "vpe/explore/files/user_files.h"
 #include "vpe/explore/input/gamepad.h"
@@ -19,42 +26,43 @@ namespace vpe::explore {
 
 enum class LongitudeRange { kSigned, kPositive };  // -180..180, 0..360; east is positive in both
 
+// Choices of the user. preferences.cpp declares the key, the limits and the meaning of each.
 struct Preferences {
-  double mouse_speed = 1;                              // factor on what a drag turns and tilts
-  bool invert_wheel = false;                           // rolling away goes away
-  double fly_speed = 1;                                // factor on moving, of all devices
-  double turn_speed = 1;                               // factor on turning, of keys, gamepad and space mouse
-  double draw_budget_ms = 40;                          // lod.frame_ms while the camera moves; 0 = none
-  double ui_scale = 0;                                 // of letters and panels; 0 = as the display says
+  double mouse_speed = 1;     // factor on the angles of a drag
+  bool invert_wheel = false;  // rolling forward moves away from the ground
+  double fly_speed = 1;       // factor on the speed of motion, for all devices
+  double turn_speed = 1;      // factor on the speed of turning, for keys, gamepad and space mouse
+  // lod.frame_ms while the camera moves; 0: no limit. Smaller: smoother motion, coarser images.
+  double draw_budget_ms = 40;
+  double ui_scale = 0;                                 // size of letters and panels; 0: the display's own scale
   LongitudeRange longitude = LongitudeRange::kSigned;  // in the status line
   bool use_gamepad = true;
   PadOptions gamepad;
   bool use_space_mouse = true;
   SpaceMouseOptions space_mouse;
-  bool use_head_tracker = false;  // no port is opened unasked
+  bool use_head_tracker = false;  // off, because it opens a port
   UdpOptions head_from;
   HeadTrackerOptions head;
 
   bool operator==(const Preferences&) const = default;
 };
 
-enum class SessionBackend { kPolygon, kVoxel };
-
+// The state of the window at its end, from which the next session starts.
 struct LastSession {
   int window_width_px = 1280;
   int window_height_px = 720;
-  std::string planet;              // the last one's file as it was given; empty = none
-  std::optional<mars::Pose> pose;  // of the camera, there
-  SessionBackend backend = SessionBackend::kPolygon;
+  std::string planet;              // path of the planet as it was given; empty: none
+  std::optional<mars::Pose> pose;  // of the camera
+  core::Backend backend = core::Backend::kPolygon;
   bool panels = true;  // map, panels and figures are shown
 };
 
-// All keys, bound to the members of the object.
-std::vector<KeyEntry> keys_of(Preferences& preferences);
-std::vector<KeyEntry> keys_of(LastSession& session);
+// Return the keys of the two files.
+const core::KeyRegistry<Preferences>& preference_keys();
+const core::KeyRegistry<LastSession>& session_keys();
 
-// explore.toml in the user's folders of settings and of state, bookmarks in that of data (vpe/base/user_folders.h);
-// an empty path where there is no such folder.
+// Paths of the files: explore.toml in the user's folders of settings and of state, bookmarks in that of data
+// (vpe/base/user_folders.h). A path is empty if there is no such folder.
 struct ExploreFiles {
   std::filesystem::path preferences;
   std::filesystem::path session;
@@ -62,18 +70,16 @@ struct ExploreFiles {
 };
 ExploreFiles explore_files(const base::Environment& environment = base::process_environment());
 
-// Defaults where there is no file and for an empty path. Throw KeyFileError and base::FileError; the window
-// goes on with defaults and shows the message when it is the session that cannot be read.
+// Return defaults if there is no file, and for an empty path. Throw KeyFileError and base::FileError.
 Preferences read_preferences(const std::filesystem::path& file);
 LastSession read_session(const std::filesystem::path& file);
 
-// Keep them. Return what went wrong, empty when all is well; never throw. For an empty path they say that there
-// is no folder. Comments that people wrote into the file are lost. A number beyond its range is brought within
-// it.
+// Write the file. Return "", or what went wrong; never throw. For an empty path they report that there is no
+// folder. Comments that people wrote into the file are lost. Numbers beyond their range are brought within it.
 [[nodiscard]] std::string save(const Preferences& preferences, const std::filesystem::path& file);
 [[nodiscard]] std::string save(const LastSession& session, const std::filesystem::path& file);
 
-// All keys with values in effect, ranges, defaults and meanings: TOML.
+// Returns all keys as TOML, with the values in effect, ranges, defaults and meanings.
 std::string to_text(const Preferences& preferences);
 
 }  // namespace vpe::explore

@@ -19,9 +19,9 @@ bool same(const SavedView& a, const SavedView& b) {
 ViewDifference difference(const SavedView& a, const SavedView& b, double radius_m) {
   const mars::CameraPose p = mars::to_camera(a.pose, radius_m);
   const mars::CameraPose q = mars::to_camera(b.pose, radius_m);
-  const double turn_rad = std::max(mars::angle_between_rad(p.axes.forward, q.axes.forward),
-                                   mars::angle_between_rad(p.axes.up, q.axes.up));
-  return {glm::length(p.position_m - q.position_m), turn_rad / mars::kRadiansPerDegree,
+  const double rotation_rad = std::max(mars::angle_between_rad(p.axes.forward, q.axes.forward),
+                                       mars::angle_between_rad(p.axes.up, q.axes.up));
+  return {glm::length(p.position_m - q.position_m), rotation_rad / mars::kRadiansPerDegree,
           std::max(a.fov_deg, b.fov_deg) / std::min(a.fov_deg, b.fov_deg)};
 }
 

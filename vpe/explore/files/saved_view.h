@@ -1,4 +1,4 @@
-// A view to come back to.
+// A view that the user can return to.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ struct SavedView {
   double fov_deg = 60;  // vertical
 };
 
-// To the bit.
+// Returns true if the views are equal bit by bit.
 bool same(const SavedView& a, const SavedView& b);
 
-// How far apart two views are, for whoever asks whether they are one.
+// Measures how far two views are apart.
 struct ViewDifference {
-  double distance_m = 0;  // straight, between the eyes
-  double turn_deg = 0;    // the larger of the turns of what is ahead and of what is up
-  double zoom = 1;        // larger field of view / smaller one
+  double distance_m = 0;    // straight, between the cameras
+  double rotation_deg = 0;  // the larger of the angles between the forward axes and between the up axes
+  double zoom = 1;          // larger field of view / smaller one
 };
 ViewDifference difference(const SavedView& a, const SavedView& b, double radius_m);
 
-// What files hold of a view: the ranges of the flight format. Empty when all is well, else what is wrong.
+// Returns what is wrong with a view, or "". Files hold views within the limits of the flight format.
 std::string problem_of(const SavedView& view);
 
 }  // namespace vpe::explore

@@ -14,18 +14,20 @@ namespace {
 
 constexpr double kOpposite_rad = 1e-6;  // as scripts::Path
 
-bool in_turn(double angle_deg) { return std::abs(angle_deg) <= 360; }  // false for what is not a number
+bool in_full_circle(double angle_deg) { return std::abs(angle_deg) <= 360; }  // false for NaN
 
-// As it is where the format can hold it, so that it replays to the bit.
-double angle(double angle_deg) { return in_turn(angle_deg) ? angle_deg : mars::normalize_lon_deg(angle_deg); }
+// Leaves angles that the format can hold unchanged, so that they replay bit by bit.
+double angle(double angle_deg) {
+  return in_full_circle(angle_deg) ? angle_deg : mars::normalize_lon_deg(angle_deg);
+}
 
 bool fits(const SessionLog::Frame& f) {
   using Limits = scripts::FlightLimits;
-  return f.time_s >= 0 && f.time_s <= Limits::kMaxTime_s && in_turn(f.pose.lon_deg) &&
+  return f.time_s >= 0 && f.time_s <= Limits::kMaxTime_s && in_full_circle(f.pose.lon_deg) &&
          std::abs(f.pose.lat_deg) <= 90 && f.pose.alt_m >= Limits::kMinAlt_m &&
-         f.pose.alt_m <= Limits::kMaxAlt_m && in_turn(f.pose.yaw_deg) && std::abs(f.pose.pitch_deg) <= 90 &&
-         in_turn(f.pose.roll_deg) && in_turn(f.look.yaw_deg) && std::abs(f.look.pitch_deg) <= 90 &&
-         in_turn(f.look.roll_deg);
+         f.pose.alt_m <= Limits::kMaxAlt_m && in_full_circle(f.pose.yaw_deg) &&
+         std::abs(f.pose.pitch_deg) <= 90 && in_full_circle(f.pose.roll_deg) &&
+         in_full_circle(f.look.yaw_deg) && std::abs(f.look.pitch_deg) <= 90 && in_full_circle(f.look.roll_deg);
 }
 
 bool same_place(const SessionLog::Frame& a, const SessionLog::Frame& b) {
@@ -44,12 +46,12 @@ SessionLog::SessionLog(const std::filesystem::path& path, const scripts::FlightV
                        const SessionLogOptions& options)
     : log_(path, view), radius_m_(radius_m), options_(options) {}
 
-// A flight adds regions up and takes none back: the opposite of one does.
-void SessionLog::tell_regions(std::span<const core::InterestRegion> regions) {
+// Flights add regions and cannot remove them, so a removed region is cancelled by its opposite.
+void SessionLog::update_regions(std::span<const core::InterestRegion> regions) {
   std::vector<core::InterestRegion> fresh;
   std::vector<core::InterestRegion> gone = active_;
   for (core::InterestRegion region : regions) {
-    if (!in_turn(region.lon_deg)) region.lon_deg = mars::normalize_lon_deg(region.lon_deg);
+    if (!in_full_circle(region.lon_deg)) region.lon_deg = mars::normalize_lon_deg(region.lon_deg);
     const auto known = std::find(gone.begin(), gone.end(), region);
     if (known == gone.end()) {
       fresh.push_back(region);
@@ -60,14 +62,14 @@ void SessionLog::tell_regions(std::span<const core::InterestRegion> regions) {
   for (core::InterestRegion& region : gone) {
     active_.erase(std::find(active_.begin(), active_.end(), region));
     region.levels = -region.levels;
-    told_.push_back(region);
+    written_.push_back(region);
   }
   active_.insert(active_.end(), fresh.begin(), fresh.end());
-  told_.insert(told_.end(), fresh.begin(), fresh.end());
+  written_.insert(written_.end(), fresh.begin(), fresh.end());
 }
 
 void SessionLog::write(const Frame& frame, const core::Settings& settings) {
-  log_.frame(frame.time_s, frame.pose, frame.look, settings, told_);
+  log_.frame(frame.time_s, frame.pose, frame.look, settings, written_);
   last_ = frame;
   settings_ = settings;
 }
@@ -75,9 +77,9 @@ void SessionLog::write(const Frame& frame, const core::Settings& settings) {
 std::optional<double> SessionLog::frame(const Frame& seen, const core::Settings& settings,
                                         std::span<const core::InterestRegion> regions) {
   Frame frame = seen;
-  for (double* turn : {&frame.pose.lon_deg, &frame.pose.yaw_deg, &frame.pose.roll_deg, &frame.look.yaw_deg,
-                       &frame.look.roll_deg}) {
-    *turn = angle(*turn);
+  for (double* value : {&frame.pose.lon_deg, &frame.pose.yaw_deg, &frame.pose.roll_deg, &frame.look.yaw_deg,
+                        &frame.look.roll_deg}) {
+    *value = angle(*value);
   }
   if (last_) frame.time_s = std::max(frame.time_s, just_after(last_->time_s));
   if (!fits(frame) || !(radius_m_ + frame.pose.alt_m > 0)) return std::nullopt;
@@ -90,7 +92,7 @@ std::optional<double> SessionLog::frame(const Frame& seen, const core::Settings&
     const mars::LonLat from{last_->pose.lon_deg, last_->pose.lat_deg};
     const mars::LonLat to{frame.pose.lon_deg, frame.pose.lat_deg};
     if (mars::distance_rad(from, to) > mars::kPi - kOpposite_rad) {
-      // A jump to the other side of the planet: no way leads there that is not defined by a place between.
+      // No unique great circle leads to the other side of the planet, so a place between defines one.
       Frame between = *last_;
       between.time_s = std::max(0.5 * (last_->time_s + frame.time_s), just_after(last_->time_s));
       frame.time_s = std::max(frame.time_s, just_after(between.time_s));
@@ -100,16 +102,17 @@ std::optional<double> SessionLog::frame(const Frame& seen, const core::Settings&
       write(between, settings_);
     }
   }
-  tell_regions(regions);
+  update_regions(regions);
   write(frame, settings);
   return frame.time_s;
 }
 
-void SessionLog::enter(double time_s, const std::string& hotspot, const std::filesystem::path& panorama) {
+void SessionLog::enter_overlook(double time_s, const std::string& hotspot,
+                                const std::filesystem::path& panorama) {
   note(time_s, "overlook in " + as_word(hotspot) + " " + as_word(panorama.string()));
 }
 
-void SessionLog::step_out(double time_s) { note(time_s, "overlook out"); }
+void SessionLog::leave_overlook(double time_s) { note(time_s, "overlook out"); }
 
 void SessionLog::note(double time_s, std::string_view text) {
   log_.note("at " + base::format_number(time_s) + " " + std::string(text));

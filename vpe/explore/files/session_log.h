@@ -1,10 +1,10 @@
-// Everything that happens in a session, as a flight that `vpe fly` renders at any size.
+// A recording of a session as a flight, which `vpe fly` can render at any size.
 //
-// scripts::FlightLog writes poses, looks, settings and regions. Added here: a window that draws only when
-// something changes leaves gaps, in which the camera must stand still and not creep to where it was next; regions
-// that are taken away; jumps; steps into an overlook and out of it. These last are comments (playback passes
-// over them: the log stays a flight of version 1, in which the camera stands at the spot and the head looks
-// around):
+// scripts::FlightLog writes poses, looks, settings and regions. This class adds: pauses, since a window draws
+// only when something changes and the camera must stand still meanwhile; removal of regions; jumps; and
+// entering and leaving panoramas. The latter are comments, which playback skips: the log stays a flight of
+// version 1, in which the camera stands at the hotspot and the head looks around. Zoom, backend, stereo and
+// window size are comments too, so playback does not repeat them.
 //
 //   # at 12.5 overlook in "Glen Torridon" "/home/u/panoramas/torridon.json"
 //   # at 40 overlook out
@@ -23,11 +23,17 @@ namespace vpe::explore {
 
 struct SessionLogOptions {
   double gap_s = 0.2;    // frames farther apart than this are a pause
-  double lead_s = 0.04;  // so long before the frame that ends a pause motion begins; below gap_s
+  double lead_s = 0.04;  // motion begins this long before the frame that ends a pause; less than gap_s
 };
 
-// At any moment the file is a valid flight, once the first frame is written. Poses, looks and settings replay
-// to the bit at the times of frames (scripts/path.h). Errors as scripts::LineFile.
+// Writes a log. The file is a valid flight at any moment after the first frame. Poses, looks and settings
+// replay bit by bit at the times of frames (scripts/path.h). Throws as scripts::LineFile. For one thread at a
+// time.
+//
+// Typical usage:
+//   SessionLog log("session.flight", view, radius_m);
+//   log.frame({time_s, session.pose(), session.look()}, session.settings());   // for each image
+//   log.end(time_s);
 class SessionLog {
  public:
   SessionLog(const std::filesystem::path& path, const scripts::FlightView& view, double radius_m,
@@ -36,45 +42,48 @@ class SessionLog {
   struct Frame {
     double time_s = 0;
     mars::Pose pose;
-    mars::HeadAngles look;  // with the head on its platform, as the image was drawn
+    mars::HeadAngles look;  // of the head on its platform, as the image was drawn
   };
 
-  // Each image that was drawn. `regions` are those that hold now. A time that is not after the one before
-  // counts as just after it. Returns the time written. Frames beyond the flight format (numbers that are not
-  // finite, times after FlightLimits::kMaxTime_s, a tilt of more than 90 degrees) are left out: nothing.
+  // Records an image that was drawn. `regions` are those in effect. A time that is not after the previous one
+  // counts as just after it. Returns the time written, or nullopt if the frame exceeds the flight format
+  // (numbers that are not finite, times after FlightLimits::kMaxTime_s, a pitch beyond 90 degrees) and is left
+  // out.
   std::optional<double> frame(const Frame& frame, const core::Settings& settings,
                               std::span<const core::InterestRegion> regions = {});
 
-  void enter(double time_s, const std::string& hotspot, const std::filesystem::path& panorama);
-  void step_out(double time_s);
+  // Record entering and leaving a panorama.
+  void enter_overlook(double time_s, const std::string& hotspot, const std::filesystem::path& panorama);
+  void leave_overlook(double time_s);
 
-  // Whatever else is worth knowing, as a comment: a resized window, another backend.
+  // Writes a comment, for example about another window size or backend.
   void note(double time_s, std::string_view text);
 
-  // At or after the last frame; closes the file.
+  // Ends the flight at a time, at least that of the last frame, and closes the file.
   void end(double time_s);
 
  private:
-  void tell_regions(std::span<const core::InterestRegion> regions);
+  void update_regions(std::span<const core::InterestRegion> regions);
   void write(const Frame& frame, const core::Settings& settings);
 
   scripts::FlightLog log_;
   double radius_m_;
   SessionLogOptions options_;
   std::optional<Frame> last_;
-  core::Settings settings_;                   // of the last frame
-  std::vector<core::InterestRegion> active_;  // regions that hold, as told
-  std::vector<core::InterestRegion> told_;    // all that were told, those that take back included
+  core::Settings settings_;                    // of the last frame
+  std::vector<core::InterestRegion> active_;   // regions in effect
+  std::vector<core::InterestRegion> written_;  // all regions written, including those that cancel others
 };
 
-// The steps that a log tells of, in its order. Any text is allowed; comments that are not steps are passed
-// over.
+// Describes that a panorama was entered or left.
 struct OverlookStep {
   double time_s = 0;
   bool in = false;
-  std::string hotspot;             // of a step in
-  std::filesystem::path panorama;  // likewise
+  std::string hotspot;             // only when entering
+  std::filesystem::path panorama;  // only when entering
 };
+
+// Returns the steps that a log contains, in its order. Accepts any text; other comments are skipped.
 std::vector<OverlookStep> overlook_steps(std::string_view log);
 
 }  // namespace vpe::explore

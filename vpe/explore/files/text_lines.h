@@ -1,4 +1,4 @@
-// Small text files that people edit: lines, words, numbers, and what is wrong with them by line.
+// Parsing of small text files that people edit: lines, words, numbers, and errors with line numbers.
 #pragma once
 
 #include <optional>
@@ -10,28 +10,31 @@
 
 namespace vpe::explore {
 
-// FILE:LINE: expected ...; scripts::to_string() makes the text.
+// "FILE:LINE: expected ..."; scripts::to_string() makes the text.
 using LineError = scripts::FlightError;
 
-// Without their ends (LF or CRLF) and without a byte order mark. A last line without an end counts.
+// Returns the lines without line ends (LF or CRLF) and without a byte order mark. A last line without a line
+// end counts.
 std::vector<std::string_view> lines_of(std::string_view text);
 
-// Words split by blanks; `#` starts a comment. A word in double quotes may hold blanks and `#`; inside, a
-// backslash keeps the next character as it is. `fault` says what was expected where a quote is wrong (then
-// there are no words).
+// Splits a line at blanks; `#` starts a comment. A word in double quotes may contain blanks and `#`; inside, a
+// backslash keeps the next character as it is. If a quote is wrong, returns no words and sets `fault` to what
+// was expected.
 std::vector<std::string> split_words(std::string_view line, std::string& fault);
 
-// The text as one word that split_words() reads back, in quotes where it needs them.
+// Returns the text as one word that split_words() reads back, with quotes if needed.
 std::string as_word(std::string_view text);
 
-// A number within limits, both allowed; otherwise nothing, and `fault` says what was expected.
+// Parses a number within limits, both included. Otherwise returns nullopt and sets `fault` to what was
+// expected.
 std::optional<double> number_word(std::string_view word, std::string_view what, double min, double max,
                                   std::string& fault);
 
-// What was found, in quotes, cut short and fit for a terminal whatever bytes it holds.
+// Returns unexpected text for a message: in quotes, shortened, and safe for a terminal whatever bytes it
+// contains.
 std::string found_text(std::string_view text);
 
-// No line ends and no other control characters.
+// Returns true if the text contains no line ends and no other control characters.
 bool is_one_line(std::string_view text);
 
 }  // namespace vpe::explore

@@ -17,13 +17,13 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
 
-void make_folders(const fs::path& folder) {
+void create_folders(const fs::path& folder) {
   std::error_code ignored;
   if (folder.empty() || fs::is_directory(folder, ignored)) return;
-  make_folders(folder.parent_path());
+  create_folders(folder.parent_path());
   if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
     throw base::file_error(
-        "make the folder", folder, std::generic_category().message(errno),
+        "create the folder", folder, std::generic_category().message(errno),
         "check the permissions there, or set XDG_CONFIG_HOME and XDG_STATE_HOME to other folders");
   }
 }
@@ -38,7 +38,7 @@ std::optional<std::string> read_user_file(const fs::path& file) {
 }
 
 void write_user_file(const fs::path& file, std::string_view text) {
-  make_folders(file.parent_path());
+  create_folders(file.parent_path());
   std::error_code failure;
   fs::path target = fs::canonical(file, failure);
   if (failure) target = file;

@@ -1,4 +1,4 @@
-// How the user's own files are read and written; where they are: vpe/base/user_folders.h.
+// Reading and writing of the user's own files; vpe/base/user_folders.h defines where they are.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,13 @@
 
 namespace vpe::explore {
 
-// Nothing when there is no such file. Throws base::FileError when it cannot be read or is larger than 1 MiB.
+// Reads a file; returns nullopt if it does not exist. Throws base::FileError if it cannot be read or is larger
+// than 1 MiB.
 std::optional<std::string> read_user_file(const std::filesystem::path& file);
 
-// Replaces the file at once, or what it is a link to; makes its folders, for this user alone. Two programs may
-// write it at the same time: one of them is the last. Throws base::FileError; then the file is as it was.
+// Replaces the file, or the file that it links to, atomically. Creates its folders, accessible to this user
+// alone. Two programs may write at the same time; the later one wins. Throws base::FileError; the file is
+// unchanged then.
 void write_user_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace vpe::explore

@@ -13,7 +13,7 @@ ViewHistory::ViewHistory(double radius_m, const ViewHistoryOptions& options)
 bool ViewHistory::near(const Entry& entry, const SavedView& view) const {
   const ViewDifference d = difference(entry.first.view, view, radius_m_);
   return d.distance_m < options_.near_share * std::max(entry.first.height_m, 1.0) &&
-         d.turn_deg < options_.near_deg && d.zoom < options_.near_zoom;
+         d.rotation_deg < options_.near_deg && d.zoom < options_.near_zoom;
 }
 
 void ViewHistory::keep(const Seen& seen) {
@@ -48,7 +48,7 @@ bool ViewHistory::can_go_forward() const { return current_ + 1 < entries_.size()
 std::optional<SavedView> ViewHistory::go(std::size_t index) {
   current_ = index;
   on_the_way_ = true;
-  // What was observed last is no rest any more.
+  // The last observed view does not count as resting any more.
   last_->since_s = std::numeric_limits<double>::infinity();
   return entries_[current_].view;
 }

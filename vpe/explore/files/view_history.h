@@ -1,7 +1,7 @@
-// Back and forward through views, as in a browser.
+// Back and forward through views, as in a web browser.
 //
-// A view is kept once it has rested; what was passed through on the way is not. Views that are nearly one stay
-// one entry, which follows them. No clock: the caller says the time.
+// A view is stored once it has rested; views passed on the way are not. Views that are close together share one
+// entry, which follows them. The history has no clock: the caller passes the time.
 #pragma once
 
 #include <cstddef>
@@ -14,24 +14,30 @@ namespace vpe::explore {
 
 struct ViewHistoryOptions {
   std::size_t capacity = 100;  // the oldest go first; at least 2
-  double rest_s = 0.5;         // a view held this long is kept
-  // Less than all of these from where an entry began is still that entry:
-  double near_share = 0.1;  // of the height above ground there
-  double near_deg = 5;      // of turning
+  double rest_s = 0.5;  // Smaller: more views are stored; larger: only views that were looked at for longer.
+  // A view that differs from the beginning of an entry by less than all of these belongs to the entry:
+  double near_share = 0.1;  // distance, as a share of the height above ground there
+  double near_deg = 5;      // rotation
   double near_zoom = 1.1;   // factor of the field of view
 };
 
+// Stores views. For one thread at a time.
+//
+// Typical usage:
+//   history.observe(time_s, view, height_m);               // for each image
+//   if (const auto view = history.back()) session.go(view->pose);
 class ViewHistory {
  public:
   explicit ViewHistory(double radius_m, const ViewHistoryOptions& options = {});
 
-  // Where the camera is. Call it for every frame that is drawn: an idle window need not call, rest is seen at the
-  // next call. Times ascend, seconds. `height_m`: of the camera above the ground.
+  // Records the present view. Call it for every image that is drawn; an idle window need not call it. Times
+  // ascend, seconds. `height_m` is the height of the camera above the ground.
   void observe(double time_s, const SavedView& view, double height_m);
 
-  // The view to fly to, or nothing at the end of the list. Where the camera is now is kept first, rested or not,
-  // so that the other direction leads back to it. What is observed on the way there adds nothing unless it
-  // rests elsewhere; asked again before it is there, it goes on from where it was going.
+  // Return the view to fly to, or nullopt at the end of the list. The present view is stored first, even if it
+  // has not rested, so that the other direction returns to it. Views observed on the way are not stored, unless
+  // the camera rests elsewhere. A second call before arrival continues from the view that the first one
+  // returned.
   std::optional<SavedView> back();
   std::optional<SavedView> forward();
   bool can_go_back() const;
@@ -46,13 +52,13 @@ class ViewHistory {
     double since_s = 0;
   };
   struct Entry {
-    Seen first;      // where it began: what counts for nearness, so that drifting does not go on for ever
-    SavedView view;  // where it was left
+    Seen first;      // nearness is measured from here, so that slow drift makes new entries
+    SavedView view;  // the last view of the entry
   };
   bool near(const Entry& entry, const SavedView& view) const;
   void keep(const Seen& seen);
   std::optional<SavedView> go(std::size_t index);
-  bool elsewhere() const;  // than the current entry, and not on the way to it
+  bool elsewhere() const;  // away from the current entry, and not on the way to it
 
   double radius_m_;
   ViewHistoryOptions options_;

@@ -1,4 +1,4 @@
-// What a pressed key or button asks for, once: one vocabulary for all devices, the help panel and scripts.
+// Actions that a key or button triggers once: one vocabulary for all devices, the help panel and scripts.
 #pragma once
 
 #include <optional>
@@ -46,18 +46,19 @@ struct Action {
 
 struct ActionInfo {
   ActionKind kind;
-  std::string_view name;     // in scripts; "set-bookmark 3" for a kind that is numbered
+  std::string_view name;     // in scripts; numbered kinds add their number: "set-bookmark 3"
   std::string_view meaning;  // in the help panel
   bool is_numbered = false;
-  bool repeats = false;  // as long as its key is held
+  bool repeats = false;  // while its key is held
 };
 
-// Every kind once, in the order in which people should read them.
+// Returns every kind once, in the order of the help panel.
 std::span<const ActionInfo> actions();
 const ActionInfo& info(ActionKind kind);
 
+// Returns the action's name in scripts.
 std::string name(const Action& action);
-// Inverse of name(); nothing for anything else.
+// Parses a name; returns nullopt for other text.
 std::optional<Action> parse_action(std::string_view name);
 
 }  // namespace vpe::explore

@@ -32,4 +32,19 @@ Controls combine(std::span<const Controls> devices) {
   return all;
 }
 
+double stick_rate(double deflection, double dead_zone, double curve) {
+  if (!std::isfinite(deflection) || deflection <= dead_zone || dead_zone >= 1) return 0;
+  return std::pow((std::min(deflection, 1.0) - dead_zone) / (1.0 - dead_zone), curve);
+}
+
+double axis_rate(double deflection, double dead_zone, double curve) {
+  return std::copysign(stick_rate(std::abs(deflection), dead_zone, curve), deflection);
+}
+
+glm::dvec2 stick_rates(const glm::dvec2& deflection, double dead_zone, double curve) {
+  const double length = std::hypot(deflection.x, deflection.y);
+  const double rate = stick_rate(length, dead_zone, curve);
+  return rate > 0 ? deflection * (rate / length) : glm::dvec2(0);
+}
+
 }  // namespace vpe::explore

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vpe/explore/input/stick.h"
-
 namespace vpe::explore {
 
 namespace {
@@ -27,7 +25,7 @@ double trigger(float value, const PadOptions& options) {
   return stick_rate((finite(value, -1.0) + 1.0) / 2.0, options.trigger_dead_zone, options.curve);
 }
 
-double pushed(const PadState& state, PadButton more, PadButton less) {
+double difference(const PadState& state, PadButton more, PadButton less) {
   return (state.is_down(more) ? 1.0 : 0.0) - (state.is_down(less) ? 1.0 : 0.0);
 }
 
@@ -47,7 +45,7 @@ Controls pad_controls(const PadState& state, const PadOptions& options) {
   controls.pitch_up = options.invert_pitch ? right.y : -right.y;
   controls.up = trigger(state.axis(PadAxis::kRightTrigger), options) -
                 trigger(state.axis(PadAxis::kLeftTrigger), options);
-  controls.roll_right = pushed(state, PadButton::kRightBumper, PadButton::kLeftBumper);
+  controls.roll_right = difference(state, PadButton::kRightBumper, PadButton::kLeftBumper);
   if (state.is_down(PadButton::kLeftStick)) controls.speed *= PadOptions::kFaster;
   if (state.is_down(PadButton::kRightStick)) controls.speed *= PadOptions::kSlower;
   return controls;
@@ -59,14 +57,14 @@ PadReading Gamepad::read(const std::optional<PadState>& state, const PadOptions&
   PadReading reading;
   if (!state) {
     before_.reset();
-    has_told_ = {};
+    has_reported_ = {};
     return reading;
   }
   PadState now = *state;
-  for (std::size_t n = 0; n < has_told_.size(); ++n) {
+  for (std::size_t n = 0; n < has_reported_.size(); ++n) {
     float& value = now.axes[static_cast<std::size_t>(PadAxis::kLeftTrigger) + n];
-    has_told_[n] = has_told_[n] || value != 0.0F;
-    if (!has_told_[n]) value = -1.0F;
+    has_reported_[n] = has_reported_[n] || value != 0.0F;
+    if (!has_reported_[n]) value = -1.0F;
   }
   reading.controls = pad_controls(now, options);
   for (const PadBinding& binding : kBindings) {

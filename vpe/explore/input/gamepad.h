@@ -1,7 +1,7 @@
-// A gamepad, as controls and actions.
+// Converts the state of a gamepad to controls and actions.
 //
-// Left stick moves right and forward, right stick turns, triggers sink (left) and climb (right), bumpers roll;
-// the left stick pressed moves faster, the right one slower. Other buttons are pressed_buttons().
+// Left stick moves right and forward, right stick rotates, triggers sink (left) and climb (right), bumpers
+// roll. Pressing the left stick moves faster, the right one slower. Other buttons are in pad_bindings().
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace vpe::explore {
 
-// Numbers as in the standard mapping of GLFW 3.3 (and SDL): the names are of an Xbox pad.
+// Numbers of the standard mapping of GLFW 3.3 (and SDL); the names are those of an Xbox pad.
 enum class PadButton {
   kA,
   kB,
@@ -39,7 +39,8 @@ inline constexpr std::size_t kPadButtons = 15;
 enum class PadAxis { kLeftX, kLeftY, kRightX, kRightY, kLeftTrigger, kRightTrigger };
 inline constexpr std::size_t kPadAxes = 6;
 
-// Sticks -1..1, right and *down* positive; triggers -1 (rest) to 1. The same members as GLFWgamepadstate.
+// Holds the same members as GLFWgamepadstate. Sticks are -1..1, right and *down* positive; triggers -1 (rest)
+// to 1.
 struct PadState {
   std::array<std::uint8_t, kPadButtons> buttons{};  // 0 = up
   std::array<float, kPadAxes> axes{0, 0, 0, 0, -1, -1};
@@ -55,15 +56,16 @@ struct PadOptions {
   static constexpr double kFaster = 4;
   static constexpr double kSlower = 0.25;
 
-  double dead_zone = 0.15;         // of the sticks, share of their way, round
+  // Shares of the deflection. Smaller: reacts sooner, but worn sticks drift; larger: the reverse.
+  double dead_zone = 0.15;         // of the sticks, round
   double trigger_dead_zone = 0.1;  // of the triggers
-  double curve = 2;                // power: 1 = straight, more = finer near rest
+  double curve = 2;                // power: 1 = linear; larger: finer near rest, steeper at the end
   bool invert_pitch = false;       // right stick up looks down
 
   bool operator==(const PadOptions&) const = default;
 };
 
-// Axes that are not finite are at rest. Pure.
+// Converts a state to controls. Axes that are not finite count as at rest. Pure.
 Controls pad_controls(const PadState& state, const PadOptions& options);
 
 struct PadBinding {
@@ -77,17 +79,17 @@ struct PadReading {
   std::vector<Action> actions;
 };
 
-// One pad from frame to frame. One thread at a time.
+// Detects presses from frame to frame. For one thread at a time.
 class Gamepad {
  public:
-  // The state now; nothing = no pad is plugged in, which is rest. A button that is down when the pad comes is
-  // not pressed. A trigger that says exactly 0 has told nothing since the pad came (some drivers begin so): it
-  // is at rest.
+  // Processes the present state; nullopt = no pad is plugged in, which counts as rest. A button that is down
+  // when the pad is plugged in does not count as pressed. Some drivers report 0 for a trigger until it is
+  // touched: a trigger that has reported nothing but 0 since the pad was plugged in counts as at rest.
   PadReading read(const std::optional<PadState>& state, const PadOptions& options);
 
  private:
   std::optional<PadState> before_;
-  std::array<bool, 2> has_told_{};
+  std::array<bool, 2> has_reported_{};
 };
 
 }  // namespace vpe::explore

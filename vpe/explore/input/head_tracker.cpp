@@ -17,14 +17,14 @@ double read_double(std::span<const std::uint8_t> bytes) {
   return std::bit_cast<double>(bits);
 }
 
-double short_way(double angle_deg) { return std::remainder(angle_deg, 360.0); }
+double normalized(double angle_deg) { return std::remainder(angle_deg, 360.0); }
 
-// Yaw and roll go round; pitch does not.
+// Yaw and roll are periodic; pitch is not.
 double difference(std::size_t angle, double to, double from) {
-  return angle == kPitch ? to - from : short_way(to - from);
+  return angle == kPitch ? to - from : normalized(to - from);
 }
 
-// From 1 to 0, with no speed at both ends.
+// Falls smoothly from 1 to 0, with zero slope at both ends.
 double fading(double share) {
   const double t = std::clamp(share, 0.0, 1.0);
   return 1.0 - t * t * (3.0 - 2.0 * t);
@@ -58,27 +58,27 @@ HeadTracker::HeadTracker(const HeadTrackerOptions& options) : options_(checked(o
 
 double HeadTracker::not_before(double time_s) const { return time_s > now_s_ ? time_s : now_s_; }
 
-// A scaled angle stops at half a turn, where left and right meet, so a head that goes on round meets no jump
-// there.
+// Clamps scaled angles to 180 degrees, where left and right meet, so that the look does not jump when the head
+// rotates farther.
 HeadTracker::Angles HeadTracker::target() const {
   const std::array<bool, 3> inverted{options_.invert_yaw, options_.invert_pitch, options_.invert_roll};
   Angles all{};
   for (std::size_t n = 0; n < all.size(); ++n) {
     const double limit = n == kPitch ? 90.0 : 180.0;
-    const double turned = short_way(raw_[n] - centre_[n]) * (inverted[n] ? -1.0 : 1.0);
-    all[n] = std::clamp(options_.scale * turned, -limit, limit);
+    const double rotation = normalized(raw_[n] - centre_[n]) * (inverted[n] ? -1.0 : 1.0);
+    all[n] = std::clamp(options_.scale * rotation, -limit, limit);
   }
   return all;
 }
 
 HeadTracker::Angles HeadTracker::followed(double time_s) const {
-  const double late = options_.smoothing_s > 0 ? std::exp(-(time_s - *last_s_) / options_.smoothing_s) : 0.0;
+  const double lag = options_.smoothing_s > 0 ? std::exp(-(time_s - *last_s_) / options_.smoothing_s) : 0.0;
   Angles all{};
-  for (std::size_t n = 0; n < all.size(); ++n) all[n] = to_[n] - difference(n, to_[n], from_[n]) * late;
+  for (std::size_t n = 0; n < all.size(); ++n) all[n] = to_[n] - difference(n, to_[n], from_[n]) * lag;
   return all;
 }
 
-// What is followed and what is left of an earlier change of mind; after the time-out what was shown then fades.
+// Adds the fading rest of an earlier easing to the followed look. After the time-out the last look fades.
 HeadTracker::Angles HeadTracker::angles(double time_s) const {
   Angles all{};
   if (!last_s_) return all;
@@ -92,7 +92,7 @@ HeadTracker::Angles HeadTracker::angles(double time_s) const {
   const double share = fading((time_s - eased_s_) / kEase_s);
   for (std::size_t n = 0; n < all.size(); ++n) {
     all[n] += left_[n] * share;
-    all[n] = n == kPitch ? std::clamp(all[n], -90.0, 90.0) : short_way(all[n]);
+    all[n] = n == kPitch ? std::clamp(all[n], -90.0, 90.0) : normalized(all[n]);
   }
   return all;
 }

@@ -1,9 +1,10 @@
-// Where a tracked head looks, from opentrack's datagrams ("UDP over network").
+// Direction of a tracked head, from opentrack's datagrams ("UDP over network").
 //
-// A datagram is 48 bytes: x, y, z in centimetres, then yaw, pitch, roll in degrees, each an IEEE 754 double,
-// least significant byte first. As opentrack means them yaw is to the right, pitch up and roll to the right
-// when positive, which is mars::HeadAngles; trackers differ, so each can be inverted. x, y, z are read and not
-// used: what a head moves is nothing against a planet.
+// A datagram is 48 bytes: x, y, z in centimetres, then yaw, pitch, roll in degrees, each an IEEE 754 double in
+// little-endian order. In opentrack's convention positive yaw is to the right, positive pitch up and positive
+// roll to the right, as in mars::HeadAngles. Trackers differ, so each angle can be inverted. The position of
+// the head is read but does not move the camera: at kilometres it would change nothing, but a metre or two
+// above the ground the parallax of a moving head is missing.
 #pragma once
 
 #include <array>
@@ -18,7 +19,7 @@ namespace vpe::explore {
 
 struct HeadDatagram {
   static constexpr std::size_t kBytes = 48;
-  static constexpr double kMaxAngle_deg = 360;  // a head has no larger angles: such numbers are something else
+  static constexpr double kMaxAngle_deg = 360;  // larger angles cannot be a head's
 
   double x_cm = 0;
   double y_cm = 0;
@@ -28,7 +29,8 @@ struct HeadDatagram {
   double roll_deg = 0;
 };
 
-// Nothing for another size, numbers that are not finite, and angles beyond kMaxAngle_deg.
+// Parses a datagram. Returns nullopt for another size, numbers that are not finite, and angles beyond
+// kMaxAngle_deg.
 std::optional<HeadDatagram> parse_head_datagram(std::span<const std::uint8_t> bytes);
 
 struct HeadTrackerOptions {
@@ -39,41 +41,45 @@ struct HeadTrackerOptions {
   bool invert_yaw = false;
   bool invert_pitch = false;
   bool invert_roll = false;
-  double scale = 1;           // of all angles: with 2, half a turn of the head is a whole one of the view
-  double smoothing_s = 0.03;  // time in which 63 % of a step is followed; 0 = at once
+  double scale = 1;           // of all angles: with 2, 90 degrees of the head are 180 of the view
+  double smoothing_s = 0.03;  // time constant. Smaller: follows faster, with more jitter; larger: the reverse.
 
   bool operator==(const HeadTrackerOptions&) const = default;
 };
 
 // Follows the datagrams. Times are seconds of one clock that does not run backwards (an earlier time counts as
-// the last one). Between datagrams, when they stop and when they come back the look is a continuous function of
-// time: it follows each datagram within smoothing_s, goes to zero in kEase_s after kTimeout_s without any, and
-// goes to where the head is in kEase_s when they come back. One thread at a time.
+// the last one). The look is a continuous function of time, also when datagrams stop or return: it follows each
+// datagram with the time constant smoothing_s, eases to zero within kEase_s after kTimeout_s without datagrams,
+// and eases to the head's direction within kEase_s when they return. For one thread at a time.
+//
+// Typical usage, in each iteration of the event loop:
+//   receiver.poll([&](std::span<const std::uint8_t> bytes) { tracker.receive(bytes, time_s); });
+//   session.advance(dt_s, controls, tracker.look(time_s));
 class HeadTracker {
  public:
   static constexpr double kTimeout_s = 0.5;
   static constexpr double kEase_s = 0.5;
 
-  // Options beyond their limits, and numbers that are not finite, are brought within them.
+  // Clamps options to their limits; options that are not finite get their defaults.
   explicit HeadTracker(const HeadTrackerOptions& options = {});
 
-  // Changes the options; the look eases to what they make of the last datagram.
+  // Changes the options; the look eases to the new direction of the last datagram.
   void set_options(const HeadTrackerOptions& options, double time_s);
 
-  // Whether the bytes were a datagram; others are counted and change nothing.
+  // Processes a datagram. Returns false if the bytes are not one; these are counted and otherwise ignored.
   bool receive(std::span<const std::uint8_t> bytes, double time_s);
 
-  // Where the head is now is straight ahead from now on; the look eases there. Nothing happens when no datagram
-  // came within the time-out.
+  // Makes the head's present direction straight ahead; the look eases there. Does nothing if no datagram came
+  // within the time-out.
   void recentre(double time_s);
 
-  // Relative to the platform: yaw and roll in [-180, 180], pitch in [-90, 90].
+  // Returns the direction relative to the platform: yaw and roll in [-180, 180], pitch in [-90, 90].
   mars::HeadAngles look(double time_s) const;
 
-  // Whether a datagram came within the time-out.
+  // Returns true if a datagram came within the time-out.
   bool is_live(double time_s) const;
 
-  // Whether look() is on its way to somewhere at this time, so that the next image is another one.
+  // Returns true if look() is still changing at this time, so that the next image will differ.
   bool is_moving(double time_s) const;
 
   std::uint64_t received() const { return received_; }
@@ -89,12 +95,12 @@ class HeadTracker {
   double not_before(double time_s) const;
 
   HeadTrackerOptions options_;
-  std::optional<double> last_s_;  // of the last datagram
-  Angles raw_{};                  // of it
+  std::optional<double> last_s_;  // time of the last datagram
+  Angles raw_{};                  // its angles
   Angles centre_{};               // raw angles that are straight ahead
-  Angles from_{};                 // look that was followed at last_s_
-  Angles to_{};                   // look that is followed from then on
-  Angles left_{};                 // what the look differs from what is followed, at eased_s_
+  Angles from_{};                 // followed look at last_s_
+  Angles to_{};                   // look that is followed since then
+  Angles left_{};                 // difference of the look from the followed one, at eased_s_
   double eased_s_ = 0;
   double now_s_ = 0;
   std::uint64_t received_ = 0;

@@ -29,7 +29,7 @@ constexpr Modifiers kAlone{};
 constexpr Modifiers kCtrl{.ctrl = true};
 constexpr Modifiers kAlt{.alt = true};
 constexpr Modifiers kShift{.shift = true};
-// What most keyboards need for a +: to people it is the same.
+// Most keyboards need Shift for a +.
 constexpr Chord kTypedPlus{Key::kPlus, kShift};
 
 std::vector<PressedBinding> make_pressed() {
@@ -73,7 +73,7 @@ const std::vector<PressedBinding>& pressed() {
   return all;
 }
 
-// Keys of one kind of action; a row of numbers by its ends.
+// Returns the keys of one kind of action; numbered keys as first and last.
 std::string keys_of(const ActionInfo& action) {
   std::vector<std::string> keys;
   for (const PressedBinding& binding : pressed()) {

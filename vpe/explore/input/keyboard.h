@@ -1,4 +1,4 @@
-// What keys do: tables, and pure functions of them.
+// Key bindings, and functions that convert keys to controls and actions.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace vpe::explore {
 
-// A key that works as long as it is held; with Alt it does not.
+// Describes a key that acts while it is held, unless Alt is held too.
 struct HeldBinding {
   Key key;
   double Controls::*rate;
@@ -20,40 +20,42 @@ struct HeldBinding {
   std::string_view meaning;
 };
 
-// A key that works when it goes down, with exactly these modifiers.
+// Describes a key that acts when it goes down with exactly these modifiers.
 struct PressedBinding {
   Chord chord;
   Action action;
 };
 
-// No chord does two things: a held key is in no pressed chord but such with Alt.
+// Return the tables. No chord has two meanings: a held key occurs in pressed chords only with Alt.
 std::span<const HeldBinding> held_bindings();
 std::span<const PressedBinding> pressed_bindings();
 
 struct KeyboardOptions {
-  static constexpr double kFaster = 4;     // Shift: factor of moving
+  static constexpr double kFaster = 4;     // Shift: factor on motion
   static constexpr double kSlower = 0.25;  // Ctrl
 };
 
-// Opposite keys cancel each other.
+// Converts held keys to controls. Opposite keys cancel each other.
 Controls keyboard_controls(const KeySet& held, const Modifiers& with);
 
-// A key that went down, or that the system repeats because it is held.
+// Describes a key that went down, or that the system repeats while it is held.
 struct KeyPress {
   Chord chord;
   bool is_repeat = false;
 };
 
-// What the presses ask for, in their order. Of repeats only those of actions that repeat.
+// Converts presses to actions, in their order. Repeats count only for actions that repeat.
 std::vector<Action> keyboard_actions(std::span<const KeyPress> presses);
 
-// Lines of the help panel: keys ("1 ... 9") and what they do, held ones first.
+// Describes a line of the help panel, for example "1 ... 9" and the meaning.
 struct HelpLine {
   std::string keys;
   std::string meaning;
 };
+
+// Returns the lines of the help panel, held keys first.
 std::vector<HelpLine> keyboard_help();
-// The same as text, in two columns.
+// Returns the same as text in two columns.
 std::string keyboard_help_text();
 
 }  // namespace vpe::explore

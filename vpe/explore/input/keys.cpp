@@ -23,7 +23,7 @@ bool same(std::string_view a, std::string_view b) {
                     [](char x, char y) { return lower(x) == lower(y); });
 }
 
-// Takes "PREFIX+" off the front.
+// Removes "PREFIX+" from the front of the text, if it is there.
 bool take(std::string_view& text, std::string_view prefix) {
   if (text.size() <= prefix.size() + 1 || text[prefix.size()] != '+') return false;
   if (!same(text.substr(0, prefix.size()), prefix)) return false;

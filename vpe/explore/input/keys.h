@@ -1,5 +1,5 @@
-// Keys by name, whatever window system tells of them. A letter's or digit's key is the one that bears it on a
-// keyboard of the United States: WASD are neighbours on every keyboard.
+// Names of keys, independent of the window system. The key of a letter or digit is the one at its position on a
+// US keyboard, so that WASD are neighbours on every keyboard.
 #pragma once
 
 #include <bitset>
@@ -95,7 +95,7 @@ struct Modifiers {
   bool operator==(const Modifiers&) const = default;
 };
 
-// A key with what is held beside it.
+// A key with the modifiers that are held.
 struct Chord {
   Key key = Key::kA;
   Modifiers with;
@@ -103,12 +103,12 @@ struct Chord {
   bool operator==(const Chord&) const = default;
 };
 
-// The keys that are down.
+// Holds the set of keys that are down.
 class KeySet {
  public:
   void set(Key key, bool is_down = true) { down_.set(static_cast<std::size_t>(key), is_down); }
   bool has(Key key) const { return down_.test(static_cast<std::size_t>(key)); }
-  // As when the window loses the keyboard and will not hear of keys that are let go.
+  // Removes all keys. Call it when the window loses the focus, since it does not see keys released then.
   void clear() { down_.reset(); }
   bool any() const { return down_.any(); }
 
@@ -116,11 +116,12 @@ class KeySet {
   std::bitset<kKeyCount> down_;
 };
 
-// As on the key: "W", "F1", "Page Up", "+".
+// Returns the label of a key: "W", "F1", "Page Up", "+".
 std::string_view name(Key key);
 
-// As people write it: "Ctrl+1", "Alt+Left". The text is read in any case; modifiers in any order.
+// Returns the name of a chord: "Ctrl+1", "Alt+Left".
 std::string name(const Chord& chord);
+// Parses the name of a chord in upper or lower case, with modifiers in any order.
 std::optional<Chord> parse_chord(std::string_view text);
 
 }  // namespace vpe::explore

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "vpe/explore/input/stick.h"
-
 namespace vpe::explore {
 
 namespace {
@@ -25,16 +23,16 @@ std::optional<Action> action_of(int button) {
 
 Controls space_mouse_controls(const SpaceMouseMotion& motion, const SpaceMouseOptions& options) {
   const auto rate = [&options](int value) {
-    const double pushed = static_cast<double>(value) / SpaceMouseOptions::kFull;
-    return (options.holds_ground ? -1.0 : 1.0) * axis_rate(pushed, options.dead_zone, options.curve);
+    const double deflection = static_cast<double>(value) / SpaceMouseOptions::kFull;
+    return (options.holds_ground ? -1.0 : 1.0) * axis_rate(deflection, options.dead_zone, options.curve);
   };
   Controls controls;
   controls.right = rate(motion.move[0]);
   controls.up = rate(motion.move[1]);
   controls.forward = rate(motion.move[2]);
-  controls.pitch_up = rate(motion.turn[0]);
-  controls.yaw_right = -rate(motion.turn[1]);
-  if (options.roll) controls.roll_right = rate(motion.turn[2]);
+  controls.pitch_up = rate(motion.rotate[0]);
+  controls.yaw_right = -rate(motion.rotate[1]);
+  if (options.roll) controls.roll_right = rate(motion.rotate[2]);
   return controls;
 }
 

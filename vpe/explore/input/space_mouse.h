@@ -1,7 +1,7 @@
-// A space mouse (a cap that can be pushed and turned in all six degrees of freedom), as controls and actions.
+// Converts events of a space mouse (a cap with six degrees of freedom) to controls and actions.
 //
-// The cap is the camera: pushed right, up or away it moves so; tilted back it looks up, turned clockwise (seen
-// from above) it looks right, tilted right it rolls right.
+// The cap controls the camera: pushing it moves the camera in the same direction; tilting it back looks up,
+// rotating it clockwise (seen from above) looks right, tilting it right rolls right.
 #pragma once
 
 #include <array>
@@ -14,15 +14,13 @@
 
 #include "vpe/explore/input/actions.h"
 #include "vpe/explore/input/controls.h"
-#include "vpe/explore/input/device_error.h"
 
 namespace vpe::explore {
 
-// As spacenavd tells them: about -350..350 each. move: right, up, away from the hand. turn, about those axes:
-// tilted back, counterclockwise from above, tilted right.
+// Holds a deflection as spacenavd reports it, about -350..350 each.
 struct SpaceMouseMotion {
-  std::array<int, 3> move{};
-  std::array<int, 3> turn{};
+  std::array<int, 3> move{};    // right, up, away from the hand
+  std::array<int, 3> rotate{};  // tilted back, counterclockwise from above, tilted right
 };
 
 struct SpaceMouseButton {
@@ -30,33 +28,34 @@ struct SpaceMouseButton {
   bool is_down = false;
 };
 
-// The mouse, or the daemon that speaks for it, is gone.
+// The mouse was unplugged, or the connection to its daemon was lost.
 struct SpaceMouseGone {};
 
 using SpaceMouseEvent = std::variant<SpaceMouseMotion, SpaceMouseButton, SpaceMouseGone>;
 
+// Delivers events of a space mouse.
 class SpaceMouseSource {
  public:
   virtual ~SpaceMouseSource() = default;
-  // Events since the last call, oldest first. Never waits, never throws.
+  // Returns the events since the last call, oldest first. Never waits, never throws.
   virtual std::vector<SpaceMouseEvent> poll() = 0;
 };
 
 struct SpaceMouseOptions {
-  static constexpr double kFull = 350;  // of an event: a cap pushed as far as it goes
+  static constexpr double kFull = 350;  // an event's value at full deflection
   static constexpr double kMaxDeadZone = 0.9;
   static constexpr double kMinCurve = 1;
   static constexpr double kMaxCurve = 5;
 
-  double dead_zone = 0.05;    // share of the way, of each axis
-  double curve = 1.5;         // power: 1 = straight, more = finer near rest
-  bool holds_ground = false;  // the cap is the ground instead of the camera: everything the other way round
-  bool roll = true;           // off: the horizon stays level
+  double dead_zone = 0.05;    // share of each axis. Smaller: reacts sooner; larger: no drift of worn caps.
+  double curve = 1.5;         // power: 1 = linear; larger: finer near rest, steeper at the end
+  bool holds_ground = false;  // the cap controls the ground instead of the camera: all signs are reversed
+  bool roll = true;           // false: the horizon stays level
 
   bool operator==(const SpaceMouseOptions&) const = default;
 };
 
-// Pure.
+// Converts a deflection to controls. Pure.
 Controls space_mouse_controls(const SpaceMouseMotion& motion, const SpaceMouseOptions& options);
 
 struct SpaceMouseReading {
@@ -64,8 +63,13 @@ struct SpaceMouseReading {
   std::vector<Action> actions;  // button 0: level, button 1: north up, straight down
 };
 
-// From frame to frame. Motion lasts until the next event: spacenavd tells when the cap is back at rest. For the
-// case that it never does, motion ends after kTimeout_s without an event, and at once with SpaceMouseGone.
+// Processes events frame by frame. Motion lasts until the next event, since spacenavd reports when the cap is
+// back at rest. If it does not, motion ends after kTimeout_s without an event, and immediately with
+// SpaceMouseGone. For one thread at a time.
+//
+// Typical usage:
+//   const auto source = open_space_mouse();
+//   const SpaceMouseReading reading = mouse.read(source->poll(), options, time_s);   // in each frame
 class SpaceMouse {
  public:
   static constexpr double kTimeout_s = 2;
@@ -80,9 +84,10 @@ class SpaceMouse {
   std::vector<int> down_;
 };
 
-// spacenavd by libspnav: at $SPNAV_SOCKET, where /etc/spnavrc says, or at /var/run/spnav.sock. May wait for 0.3
-// s for an old daemon's answer. Throws DeviceError when there is none, when one is open already (libspnav has
-// one connection a process) and when vpe was built without libspnav. The process must ignore SIGPIPE.
+// Connects to spacenavd by libspnav: at $SPNAV_SOCKET, at the socket named in /etc/spnavrc, or at
+// /var/run/spnav.sock. May wait up to 0.3 s for the answer of an old daemon. Throws DeviceError if there is no
+// daemon, if a connection is open already (libspnav has one for each process), and if vpe was built without
+// libspnav. The process must ignore SIGPIPE.
 std::unique_ptr<SpaceMouseSource> open_space_mouse();
 
 }  // namespace vpe::explore

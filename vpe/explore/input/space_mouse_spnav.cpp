@@ -2,7 +2,7 @@
 
 #ifdef VPE_SPNAV
 #include <spnav_config.h>
-// Without it spnav.h wants the headers of X11, which nothing here needs.
+// Otherwise spnav.h includes the headers of X11.
 #undef SPNAV_USE_X11
 #include <spnav.h>
 #include <sys/socket.h>
@@ -38,7 +38,7 @@ class Spnav : public SpaceMouseSource {
           close();
           events.emplace_back(SpaceMouseGone{});
           return events;
-        case Waiting::kNothing:  // but maybe in libspnav's own queue
+        case Waiting::kNothing:  // but libspnav's own queue may hold events
           if (spnav_poll_event(&event) == 0) return events;
           break;
         case Waiting::kEvent: spnav_poll_event(&event);
@@ -51,8 +51,8 @@ class Spnav : public SpaceMouseSource {
  private:
   enum class Waiting { kNothing, kPart, kEvent, kEnd };
 
-  // libspnav reads what there is: it would take part of an event for a whole one, and the daemon's end for
-  // silence.
+  // Checks the socket before libspnav reads it: libspnav would take part of an event for a whole one, and a
+  // closed connection for no events.
   static Waiting waiting() {
     std::array<char, kEventBytes> bytes{};
     const ssize_t size = ::recv(spnav_fd(), bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
@@ -83,11 +83,11 @@ class Spnav : public SpaceMouseSource {
 }  // namespace
 
 std::unique_ptr<SpaceMouseSource> open_space_mouse() {
-  if (spnav_fd() >= 0) throw DeviceError("the space mouse is open already; use it where it is");
+  if (spnav_fd() >= 0) throw DeviceError("the space mouse is open already in this program");
   errno = 0;
   if (spnav_open() != 0) {
-    const std::string words = errno != 0 ? std::generic_category().message(errno) : "no answer";
-    throw DeviceError("cannot reach the space mouse's daemon: " + words +
+    const std::string message = errno != 0 ? std::generic_category().message(errno) : "no answer";
+    throw DeviceError("cannot reach the space mouse's daemon: " + message +
                       "; start spacenavd (Debian: apt install spacenavd), or set SPNAV_SOCKET to its socket");
   }
   return std::make_unique<Spnav>();
@@ -97,7 +97,7 @@ std::unique_ptr<SpaceMouseSource> open_space_mouse() {
 
 std::unique_ptr<SpaceMouseSource> open_space_mouse() {
   throw DeviceError(
-      "this program was built without libspnav, which speaks to space mice; install libspnav-dev and build it "
+      "this program was built without libspnav, which reads space mice; install libspnav-dev and build it "
       "again");
 }
 

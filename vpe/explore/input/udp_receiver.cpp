@@ -16,7 +16,7 @@ namespace {
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-// Nothing looks up names: that may wait.
+// Names are not resolved, since that could block.
 Addresses resolve(const std::string& address, int port, int& failure) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
@@ -27,9 +27,9 @@ Addresses resolve(const std::string& address, int port, int& failure) {
   return {failure == 0 ? found : nullptr, &::freeaddrinfo};
 }
 
-DeviceError listen_error(const UdpOptions& options, const std::string& words, const std::string& advice) {
+DeviceError listen_error(const UdpOptions& options, const std::string& reason, const std::string& advice) {
   return DeviceError("cannot listen for datagrams at " + options.address + " port " +
-                     std::to_string(options.port) + ": " + words + "; " + advice);
+                     std::to_string(options.port) + ": " + reason + "; " + advice);
 }
 
 std::string advice_for(int error) {
@@ -77,7 +77,7 @@ std::size_t UdpReceiver::poll(const Sink& sink) {
     const ssize_t size = ::recv(socket_, buffer.data(), buffer.size(), 0);
     if (size < 0) {
       if (errno == EAGAIN || errno == EWOULDBLOCK) break;
-      continue;  // interrupted, or an error that the socket has told with this and forgotten
+      continue;  // interrupted, or a pending error of the socket, which this call has cleared
     }
     ++count;
     sink(std::span(buffer).first(static_cast<std::size_t>(size)));

@@ -1,4 +1,4 @@
-// Datagrams from the network, taken when there is time for them.
+// Receives datagrams from the network without waiting.
 #pragma once
 
 #include <cstddef>
@@ -7,33 +7,37 @@
 #include <span>
 #include <string>
 
-#include "vpe/explore/input/device_error.h"
+#include "vpe/explore/input/controls.h"
 
 namespace vpe::explore {
 
 struct UdpOptions {
   static constexpr int kDefaultPort = 4242;  // opentrack's
 
-  std::string address = "127.0.0.1";  // of this machine: numeric, IPv4 or IPv6; 0.0.0.0 or :: = all of them
-  int port = kDefaultPort;            // 0 = any that is free
+  std::string address = "127.0.0.1";  // of this machine: numeric, IPv4 or IPv6; 0.0.0.0 or :: = all addresses
+  int port = kDefaultPort;            // 0 = any free port
 
   bool operator==(const UdpOptions&) const = default;
 };
 
-// Empty when the text is a numeric address, else what is wrong with it.
+// Returns what is wrong with an address, or "" if it is a numeric one.
 std::string address_problem(const std::string& address);
 
-// Never waits. One thread at a time.
+// Listens on a UDP port. Never waits. For one thread at a time.
+//
+// Typical usage:
+//   UdpReceiver receiver({.port = 4242});
+//   receiver.poll([&](std::span<const std::uint8_t> bytes) { tracker.receive(bytes, time_s); });
 class UdpReceiver {
  public:
-  // Datagrams of one poll(): a flood of them must not hold up a frame.
+  // Limit of datagrams in one poll(), so that a flood of them does not delay a frame.
   static constexpr std::size_t kMaxPerPoll = 1024;
-  // Longer ones are handed on cut to this.
+  // Longer datagrams are truncated to this size.
   static constexpr std::size_t kMaxBytes = 512;
 
   using Sink = std::function<void(std::span<const std::uint8_t> bytes)>;
 
-  // Throws DeviceError, as when another program listens there.
+  // Throws DeviceError, for example if another program listens on the port.
   explicit UdpReceiver(const UdpOptions& options);
   ~UdpReceiver();
   UdpReceiver(const UdpReceiver&) = delete;
@@ -41,7 +45,7 @@ class UdpReceiver {
 
   int port() const { return port_; }
 
-  // Hands on what has come since the last call, oldest first; returns how many.
+  // Passes the datagrams since the last call to `sink`, oldest first. Returns their number.
   std::size_t poll(const Sink& sink);
 
  private:

@@ -20,7 +20,7 @@ constexpr int kMostHalvings = 40;
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-// The vertical plane: up at the beginning and ahead, the planet's centre at 0.
+// Describes the vertical plane through the planet's centre, with axes up and ahead at the beginning.
 struct Plane {
   glm::dvec3 up;
   glm::dvec3 ahead;
@@ -28,7 +28,7 @@ struct Plane {
   glm::dvec2 of(const glm::dvec3& p) const { return {glm::dot(p, ahead), glm::dot(p, up)}; }
 };
 
-// A straight line as its distance from the centre at a direction.
+// Describes a straight line by its distance from the centre in a direction.
 struct Line {
   glm::dvec2 begin;
   glm::dvec2 along;
@@ -36,16 +36,16 @@ struct Line {
   double radius(const glm::dvec2& direction) const { return cross(begin, along) / cross(direction, along); }
 };
 
-// Smallest height of the line of sight above pieces of the section. Over an angle d the line's distance from
-// the centre r(angle) is below its chord by d^2 / 8 times its largest second derivative at most, r (2 (r / p)^2
-// - 1) with p its nearest distance to the centre, and a facet's is never above its chord; so halving finds the
-// least within kClearance_m.
+// Finds the smallest height of the line of sight above pieces of the section by bisection. Let r(angle) be the
+// line's distance from the centre and p the smallest one. Over an angle d, r is below its chord by at most d^2
+// / 8 times its largest second derivative r (2 (r / p)^2 - 1), and a facet is never above its chord. This
+// bounds the clearance between samples, so bisection finds the minimum within kClearance_m.
 class Clearance {
  public:
   explicit Clearance(const Line& sight)
       : sight_(sight), nearest_m_(std::abs(cross(sight.begin, sight.along)) / glm::length(sight.along)) {}
 
-  // Its ends alone, for a first bound: with it refining passes over most facets.
+  // Samples the ends alone. The bound that results lets refine() skip most facets.
   void sample_ends(const Line& facet, const glm::dvec2& begin, const glm::dvec2& end) {
     sample(facet, begin);
     sample(facet, end);
@@ -71,7 +71,7 @@ class Clearance {
   Sample sample(const Line& facet, const glm::dvec2& direction) {
     Sample s{direction, 0.0, sight_.radius(direction)};
     s.clearance_m = s.radius_m - facet.radius(direction);
-    // A steep line's distance answers to a rounded direction with its slope.
+    // Rounding of the direction changes a steep line's distance in proportion to its slope.
     const double steep = s.radius_m / std::max(nearest_m_, 1e-9 * s.radius_m);
     s.radius_m = std::abs(s.radius_m);
     if (keep(s)) rounding_m_ = 4e-15 * s.radius_m * steep;
@@ -119,7 +119,7 @@ void check(const SightPoint& point, const char* which) {
   }
 }
 
-// Straight up and down: nothing but S below is there.
+// Handles vertical lines, which only the surface below could obstruct.
 LineOfSight upright(const paging::Surface& surface, const SightPoint& from, const SightPoint& to) {
   LineOfSight sight;
   sight.visible = true;
@@ -142,13 +142,13 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
   const double ground_there_m = surface.at(up_there).radius_m;
   const glm::dvec3 camera = (surface.at(up).radius_m + from.height_m) * up;
   const glm::dvec3 target = (ground_there_m + to.height_m) * up_there;
-  const glm::dvec3 way = target - camera;
+  const glm::dvec3 path = target - camera;
 
   LineOfSight sight;
-  sight.distance_m = glm::length(way);
+  sight.distance_m = glm::length(path);
   sight.arc_m = mars::angle_between_rad(up, up_there) * surface.planet_radius_m();
   const double end_m = kSightEnd_m + 1e-8 * sight.distance_m;
-  const glm::dvec3 ray = way / sight.distance_m;
+  const glm::dvec3 ray = path / sight.distance_m;
   if (sight.distance_m > 2 * end_m) {
     const double hit_m = surface.cast(camera, ray, 1.0, {end_m, sight.distance_m - end_m});
     if (std::isfinite(hit_m)) {
@@ -165,14 +165,14 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
   Clearance clearance(line);
   clearance.include(plane.of(up), from.height_m);
   clearance.include(there, to.height_m);
-  glm::dvec2 steepest{0, 0};  // of the directions to the ground on the way, the highest
+  glm::dvec2 steepest{0, 0};  // highest direction to the ground so far
   bool ground_there_seen = true;
   paging::section(surface, up, up_there, [&](const paging::SectionPiece& piece) {
     const glm::dvec2 begin = plane.of(piece.begin_m);
     const glm::dvec2 end = plane.of(piece.end_m);
     if (begin == end) return;
     clearance.sample_ends({begin, end - begin}, glm::normalize(begin), glm::normalize(end));
-    // A facet's highest direction is that of one of its ends; the beginning is the end of the one before.
+    // A facet's highest direction is at one of its ends; its beginning is the end of the previous one.
     const glm::dvec2 seen = end - line.begin;
     if (glm::length(seen) <= end_m) return;
     ground_there_seen = steepest == glm::dvec2(0, 0) || cross(steepest, seen) >= 0;
@@ -191,7 +191,7 @@ LineOfSight line_of_sight(const paging::Surface& surface, const SightPoint& from
   sight.clearance_distance_m = std::clamp(glm::length(least * radius_m - line.begin), 0.0, sight.distance_m);
 
   if (ground_there_seen) return sight;
-  // The line over the highest ground, up to the vertical of the second point.
+  // Extends the line over the highest ground to the vertical of the second point.
   const double reach = cross(there, steepest);
   const double over_m = reach != 0 ? cross(line.begin, steepest) / reach : 0;
   const bool meets = over_m > 0 && glm::dot(over_m * there - line.begin, steepest) > 0;

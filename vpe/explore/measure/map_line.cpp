@@ -8,28 +8,28 @@ namespace vpe::explore {
 
 namespace {
 
-constexpr int kMostHalvings = 14;
-constexpr double kFirstSteps = 16;  // a half turn has at least so many
+constexpr int kMostLineHalvings = 14;
+constexpr double kFirstSteps = 16;  // least number of steps of a half circle
 
-// One side of the map's seam: longitudes count without a jump from the middle.
+// Computes positions on one side of the map's seam, where longitudes are continuous.
 class Drawer {
  public:
-  explicit Drawer(const MapView& map) : map_(map), half_turn_px_(180.0 / map.lon_degrees_per_px()) {}
+  explicit Drawer(const MapView& map) : map_(map), half_circle_px_(180.0 / map.lon_degrees_per_px()) {}
 
-  // On the seam itself the position at the edge that `side` (+1 or -1) says.
+  // Returns the position of a direction on the seam, at the edge selected by `side` (+1 or -1).
   glm::dvec2 at_seam(const glm::dvec3& direction, double side) const {
-    return {map_.width / 2.0 + side * half_turn_px_, map_.position(mars::lon_lat(direction)).y};
+    return {map_.width / 2.0 + side * half_circle_px_, map_.position(mars::lon_lat(direction)).y};
   }
   glm::dvec2 at(const glm::dvec3& direction) const { return map_.position(mars::lon_lat(direction)); }
 
-  // What is between two positions that the piece has or will have.
+  // Adds the positions between two ends of a piece.
   void between(const glm::dvec3& a, glm::dvec2 at_a, const glm::dvec3& b, glm::dvec2 at_b,
                std::vector<glm::dvec2>& piece, int depth = 0) const {
     const glm::dvec3 middle = mars::slerp(a, b, 0.5);
     const glm::dvec2 xy = at(middle);
     const bool is_long = glm::dot(a, b) < std::cos(mars::kPi / kFirstSteps);
-    // A jump is one at a pole, where every longitude is.
-    if (depth == kMostHalvings || (!is_long && glm::length((at_a + at_b) / 2.0 - xy) < kMapLineError_px))
+    // The depth is reached only at a pole, where positions jump.
+    if (depth == kMostLineHalvings || (!is_long && glm::length((at_a + at_b) / 2.0 - xy) < kMapLineError_px))
       return;
     between(a, at_a, middle, xy, piece, depth + 1);
     piece.push_back(xy);
@@ -38,17 +38,18 @@ class Drawer {
 
  private:
   const MapView& map_;
-  double half_turn_px_;
+  double half_circle_px_;
 };
 
-// Where the arc crosses the half circle of the seam, away from the arc's ends.
+// Returns the point where the arc crosses the half circle of the seam, other than at the arc's ends, or
+// nullopt.
 std::optional<glm::dvec3> crossing(const glm::dvec3& a, const glm::dvec3& b, double seam_lon_deg) {
   const mars::LocalFrame seam = mars::local_frame({seam_lon_deg, 0});
   const double east_a = glm::dot(a, seam.east);
   const double east_b = glm::dot(b, seam.east);
   if (!(east_a * east_b < 0)) return std::nullopt;
   const glm::dvec3 meeting = a * std::abs(east_b) + b * std::abs(east_a);
-  if (!(glm::dot(meeting, seam.up) > 0)) return std::nullopt;  // the middle's meridian is crossed
+  if (!(glm::dot(meeting, seam.up) > 0)) return std::nullopt;  // crosses the middle's meridian instead
   return glm::normalize(meeting);
 }
 

@@ -9,14 +9,16 @@
 
 namespace vpe::explore {
 
-// Pieces of a line, each drawn from its first position to its last.
+// Pieces of a line, each a chain of positions.
 using MapLine = std::vector<std::vector<glm::dvec2>>;
 
-// The shorter great circle from place to place, in positions of the map (also outside of its image), no
-// farther from it than a third of a pixel, except within a pixel of the poles. A piece ends at the meridian
-// opposite to the map's middle, exactly there, and the next one begins at the other edge. Nothing for fewer
-// than two places. Pure.
+// Largest distance of a map line from the great circle.
 inline constexpr double kMapLineError_px = 1.0 / 3;
+
+// Computes the shorter great circles from place to place as positions of the map, also outside of its image.
+// The error is at most kMapLineError_px, except within a pixel of the poles. A piece ends exactly at the
+// meridian opposite to the map's middle, and the next one begins at the other edge. Returns no pieces for fewer
+// than two places. Pure.
 MapLine map_line(const MapView& map, std::span<const mars::LonLat> places);
 
 }  // namespace vpe::explore

@@ -11,7 +11,7 @@ namespace vpe::explore {
 
 namespace {
 
-constexpr base::Rgb kBeyond{40, 42, 46};
+constexpr base::Rgb kBeyondPole{40, 42, 46};
 constexpr base::Rgb kNoData{0, 0, 0};
 
 std::uint8_t byte(double value) {
@@ -21,11 +21,11 @@ std::uint8_t byte(double value) {
 }  // namespace
 
 MapPainter::MapPainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes)
-    : planet_(std::move(planet)), painter_(planet_, budget_bytes) {}
+    : planet_(std::move(planet)), shader_(planet_, budget_bytes) {}
 
-core::RgbImage MapPainter::paint(const MapView& map, MapGround ground, base::ThreadPool& pool) {
+core::RgbImage MapPainter::paint(const MapView& map, MapStyle style, base::ThreadPool& pool) {
   core::Appearance appearance;
-  appearance.mode = ground == MapGround::kImage ? core::Mode::kTextured : core::Mode::kColoured;
+  appearance.mode = style == MapStyle::kImagery ? core::Mode::kTextured : core::Mode::kColoured;
   appearance.colour = core::Colour::kElevation;
   const bool has_image = planet_->meta().finest_image_level >= 0;
   if (paging::needs_scale(appearance, has_image) && scale_ == nullptr)
@@ -37,7 +37,7 @@ core::RgbImage MapPainter::paint(const MapView& map, MapGround ground, base::Thr
   image.width = map.width;
   image.height = map.height;
   const auto width = static_cast<std::size_t>(map.width);
-  image.pixels.assign(width * static_cast<std::size_t>(map.height), kBeyond);
+  image.pixels.assign(width * static_cast<std::size_t>(map.height), kBeyondPole);
   pool.run(static_cast<std::size_t>(map.height), [&](std::size_t y) {
     paging::TerrainShader::Cursor cursor;
     paging::ShadingParams params = base;
@@ -45,7 +45,7 @@ core::RgbImage MapPainter::paint(const MapView& map, MapGround ground, base::Thr
       const auto place = map.place({static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
       if (!place) continue;
       params.sun = mars::sun_direction(*place, 315, 45);
-      const auto colour = painter_.colour_at(mars::direction(*place), footprint_m, params, cursor);
+      const auto colour = shader_.colour_at(mars::direction(*place), footprint_m, params, cursor);
       image.pixels[y * width + x] =
           colour ? base::Rgb{byte(colour->x), byte(colour->y), byte(colour->z)} : kNoData;
     }

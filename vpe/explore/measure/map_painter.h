@@ -1,4 +1,4 @@
-// Colours of a flat map: shaded relief in the colours of elevation, or imagery.
+// Colours of a flat map: shaded terrain in the colours of elevation, or imagery.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,20 @@
 
 namespace vpe::explore {
 
-enum class MapGround { kRelief, kImage };
+enum class MapStyle { kElevation, kImagery };
 
-// One thread at a time.
+// Paints maps of one planet. For one thread at a time.
 class MapPainter {
  public:
   MapPainter(std::shared_ptr<const paging::PlanetFile> planet, std::size_t budget_bytes);
 
-  // Light from the north-west at 45 degrees everywhere. Beyond the poles grey; ground without data black.
-  // Pixels do not depend on the pool. Throws paging::PlanetError.
-  core::RgbImage paint(const MapView& map, MapGround ground, base::ThreadPool& pool);
+  // Paints a map with light from the north-west at 45 degrees everywhere. Areas beyond the poles are grey,
+  // areas of nodata black. Pixels do not depend on the pool. Throws paging::PlanetError.
+  core::RgbImage paint(const MapView& map, MapStyle style, base::ThreadPool& pool);
 
  private:
   std::shared_ptr<const paging::PlanetFile> planet_;
-  paging::TerrainShader painter_;
+  paging::TerrainShader shader_;
   std::shared_ptr<const core::ColourScale> scale_;
 };
 

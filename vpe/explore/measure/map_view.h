@@ -1,5 +1,5 @@
-// A flat map of the planet: even in longitude and latitude, its degrees as wide as they are high in the middle.
-// Positions are pixels, (0, 0) the upper left corner, pixel centres at +0.5. Pure.
+// A flat map of the planet: linear in longitude and latitude, with degrees as wide as high in the middle.
+// Positions are in pixels, (0, 0) is the upper left corner, pixel centres are at +0.5. All functions are pure.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -17,12 +17,13 @@ struct MapView {
   int width = 512;
   int height = 256;
 
-  // Longitude of a pixel: cos(latitude of the middle) times fewer pixels, but not less than a tenth.
+  // Returns the longitude of a pixel's width: degrees_per_px / cos(latitude of the middle), with the cosine
+  // taken as at least 0.1.
   double lon_degrees_per_px() const;
 
-  // Latitude beyond +-90 is none; longitude is in (-180, 180].
+  // Returns the place at a position, with longitude in (-180, 180], or nullopt beyond the poles.
   std::optional<mars::LonLat> place(glm::dvec2 xy) const;
-  // The nearest of the positions that a place has.
+  // Returns the position of a place, the nearest to the middle of those that are a full circle apart.
   glm::dvec2 position(mars::LonLat place) const;
 
   bool operator==(const MapView& other) const {
@@ -35,16 +36,17 @@ struct MapLimits {
   static constexpr double kFinest_deg = 1e-7;  // a pixel
 };
 
-// The whole planet in a map of a size.
+// Returns a map of the whole planet.
 MapView whole_map(int width, int height);
-// Moved by pixels; zoomed about a position (factor > 1: nearer). Both keep the map within the planet and its
-// limits.
+// Move by pixels, zoom about a position (factor > 1: in), and resize. All keep the map within the planet and
+// its limits.
 MapView moved(const MapView& map, glm::dvec2 by_px);
 MapView zoomed(const MapView& map, glm::dvec2 xy, double factor);
 MapView resized(const MapView& map, int width, int height);
 
-// Outline of the ground that a view sees, corner by corner: where lines of sight along its edge meet the ball
-// through the ground below, and its horizon where they pass it. Empty for views that are not in perspective.
+// Returns the outline of the ground in a view, corner by corner: the points where lines of sight along its edge
+// meet the sphere through the ground below, or the sphere's horizon where they miss it. Empty for views that
+// are not in perspective.
 std::vector<mars::LonLat> footprint(const core::View& view, double ground_radius_m);
 
 }  // namespace vpe::explore

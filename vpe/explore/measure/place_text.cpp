@@ -9,7 +9,6 @@
 
 #include "vpe/base/number.h"
 #include "vpe/explore/files/text_lines.h"
-#include "vpe/explore/measure/digits.h"
 
 namespace vpe::explore {
 
@@ -31,7 +30,7 @@ struct Token {
 };
 using Tokens = std::span<const Token>;
 
-// Longer ones first where one begins with another.
+// A longer text stands before one that it begins with.
 constexpr std::array<std::pair<std::string_view, int>, 13> kUnits{{{"\u00b0", 0},
                                                                    {"\u00ba", 0},
                                                                    {"deg", 0},
@@ -66,7 +65,7 @@ class Reader {
     decimal_comma_ = text.find(';') != std::string_view::npos;
   }
 
-  // What is wrong, or nothing.
+  // Splits the text into tokens. Returns what was expected, or "".
   std::string read(std::vector<Token>& tokens) {
     while (at_ < text_.size()) {
       const char c = text_[at_];
@@ -76,7 +75,7 @@ class Reader {
         tokens.push_back(token);
       } else if (std::string_view(" \t\r\n()[]:=").find(c) != std::string_view::npos) {
         ++at_;
-      } else if (takes("\u00a0")) {  // a blank that does not break
+      } else if (takes("\u00a0")) {  // no-break space
       } else if (is_digit(c) || c == '.' || c == '+' || c == '-' || text_.substr(at_).starts_with(kMinus)) {
         if (!number(token)) return "a number, found " + found_text(text_.substr(at_));
         tokens.push_back(token);
@@ -147,7 +146,7 @@ class Reader {
   bool decimal_comma_ = false;
 };
 
-// Degrees, minutes, seconds with what else is said of one coordinate.
+// Holds one coordinate as read: its value, and whether letters or names identify it.
 struct Coordinate {
   double degrees = 0;
   std::optional<bool> is_lon;  // where it says so
@@ -172,24 +171,24 @@ std::string add_parts(std::span<const std::pair<Token, int>> parts, Coordinate& 
     before = unit;
   }
   if (first.is_signed && out.letter != ' ')
-    return std::string("either a sign or a letter, as it is not certain what ") + (first.is_minus ? "-" : "+") +
-           " means with " + out.letter;
+    return std::string("either a sign or a letter, since it is ambiguous what ") +
+           (first.is_minus ? "-" : "+") + " means with " + out.letter;
   if (first.is_minus || out.letter == 'W' || out.letter == 'S') out.degrees = -out.degrees;
   return {};
 }
 
 std::string read_coordinate(Tokens tokens, Coordinate& out) {
-  std::vector<std::pair<Token, int>> parts;  // numbers and the units that stand behind them, -1: none
+  std::vector<std::pair<Token, int>> parts;  // numbers and the units after them, -1: none
   bool takes_unit = false;
-  bool is_closed = false;  // a letter behind the numbers ends them
+  bool is_closed = false;  // a letter after the numbers ends them
   for (const Token& token : tokens) {
     switch (token.kind) {
       case Token::Kind::kNumber:
-        if (is_closed) return "the letter E, W, N or S before or behind all of a coordinate's numbers";
+        if (is_closed) return "the letter E, W, N or S before or after all of a coordinate's numbers";
         parts.emplace_back(token, -1);
         break;
       case Token::Kind::kUnit:
-        if (!takes_unit) return "signs of degrees, minutes and seconds behind their numbers";
+        if (!takes_unit) return "signs of degrees, minutes and seconds after their numbers";
         parts.back().second = token.unit;
         break;
       case Token::Kind::kName:
@@ -216,11 +215,12 @@ std::vector<std::size_t> where(Tokens tokens, const Is& is) {
   return found;
 }
 
-// Where the second coordinate begins, and how many tokens are between them; nothing when nobody can know.
+// Holds where the second coordinate begins, and how many tokens separate the two.
 struct Cut {
   std::size_t at = 0;
   std::size_t between = 0;
 };
+// Finds the boundary of the two coordinates; returns nullopt if it is ambiguous.
 std::optional<Cut> cut(Tokens tokens) {
   const auto of_kind = [&](Token::Kind kind) {
     return where(tokens, [&](const Token& t) { return t.kind == kind; });
@@ -241,7 +241,7 @@ std::optional<Cut> cut(Tokens tokens) {
   return Cut{numbers[numbers.size() / 2], 0};
 }
 
-std::optional<mars::LonLat> refused(std::string& fault, std::string why) {
+std::optional<mars::LonLat> rejected(std::string& fault, std::string why) {
   fault = std::move(why);
   return std::nullopt;
 }
@@ -249,39 +249,42 @@ std::optional<mars::LonLat> refused(std::string& fault, std::string why) {
 }  // namespace
 
 std::optional<mars::LonLat> read_place(std::string_view text, std::string& fault) {
-  if (text.size() > kLongestPlaceText) return refused(fault, std::string("expected ") + kExpected);
+  if (text.size() > kLongestPlaceText) return rejected(fault, std::string("expected ") + kExpected);
   std::vector<Token> tokens;
-  if (std::string wrong = Reader(text).read(tokens); !wrong.empty()) return refused(fault, "expected " + wrong);
+  if (std::string wrong = Reader(text).read(tokens); !wrong.empty())
+    return rejected(fault, "expected " + wrong);
   const Tokens all(tokens);
   const std::optional<Cut> middle = cut(all);
-  if (!middle) return refused(fault, std::string("expected ") + kExpected + ", with one comma where it helps");
+  if (!middle) return rejected(fault, std::string("expected ") + kExpected + "; one comma may separate them");
   Coordinate a;
   Coordinate b;
   std::string wrong = read_coordinate(all.first(middle->at), a);
   if (wrong.empty()) wrong = read_coordinate(all.subspan(middle->at + middle->between), b);
-  if (!wrong.empty()) return refused(fault, "expected " + wrong);
+  if (!wrong.empty()) return rejected(fault, "expected " + wrong);
   if (a.is_lon && b.is_lon && *a.is_lon == *b.is_lon)
-    return refused(fault, std::string("expected a longitude and a latitude, found two ") +
-                              (*a.is_lon ? "longitudes" : "latitudes"));
+    return rejected(fault, std::string("expected a longitude and a latitude, found two ") +
+                               (*a.is_lon ? "longitudes" : "latitudes"));
   const bool lon_first = a.is_lon ? *a.is_lon : !b.is_lon.value_or(false);
   const Coordinate& lon = lon_first ? a : b;
   const Coordinate& lat = lon_first ? b : a;
   if (!(std::abs(lat.degrees) <= 90)) {
-    const bool said = a.is_lon || b.is_lon;
-    return refused(fault, "expected a latitude from -90 to 90, found " + base::format_number(lat.degrees) +
-                              (said ? "" : "; without letters the longitude comes first"));
+    const bool has_letters = a.is_lon || b.is_lon;
+    return rejected(fault, "expected a latitude from -90 to 90, found " + base::format_number(lat.degrees) +
+                               (has_letters ? "" : "; without letters the longitude comes first"));
   }
   if (!(std::abs(lon.degrees) <= 360))
-    return refused(fault, "expected a longitude from -360 to 360, found " + base::format_number(lon.degrees));
+    return rejected(fault, "expected a longitude from -360 to 360, found " + base::format_number(lon.degrees));
   return mars::LonLat{mars::normalize_lon_deg(lon.degrees), lat.degrees};
 }
 
-std::string place_words(mars::LonLat place) {
+std::string place_text(mars::LonLat place) {
   constexpr int kDigits = 6;
   const std::string degree = "\u00b0 ";
-  std::string words = fixed_text(std::abs(place.lon_deg), kDigits) + degree + (place.lon_deg < 0 ? "W" : "E");
-  if (place.lon_deg < 0) words += " (" + fixed_text(place.lon_deg + 360, kDigits) + degree + "E)";
-  return words + ", " + fixed_text(std::abs(place.lat_deg), kDigits) + degree + (place.lat_deg < 0 ? "S" : "N");
+  std::string text =
+      base::format_display(std::abs(place.lon_deg), kDigits) + degree + (place.lon_deg < 0 ? "W" : "E");
+  if (place.lon_deg < 0) text += " (" + base::format_display(place.lon_deg + 360, kDigits) + degree + "E)";
+  return text + ", " + base::format_display(std::abs(place.lat_deg), kDigits) + degree +
+         (place.lat_deg < 0 ? "S" : "N");
 }
 
 }  // namespace vpe::explore

@@ -4,7 +4,6 @@
 
 #include "lod/tree/posts.h"
 #include "vpe/base/number.h"
-#include "vpe/explore/measure/digits.h"
 
 namespace vpe::explore {
 
@@ -31,7 +30,7 @@ Profile make_profile(const paging::Surface& surface, std::span<const mars::LonLa
   for (const paging::ProfilePoint& p : profile.points) {
     profile.lowest_m = std::min(profile.lowest_m, p.lowest_m);
     profile.highest_m = std::max(profile.highest_m, p.highest_m);
-    profile.some_missing = profile.some_missing || p.nodata;
+    profile.has_nodata = profile.has_nodata || p.nodata;
   }
   return profile;
 }
@@ -41,13 +40,14 @@ std::string profile_csv_header() {
 }
 
 std::string profile_csv_line(const paging::ProfilePoint& p) {
-  std::string line = fixed_text(p.distance_m, 3) + "," + fixed_text(p.ground_distance_m, 3) + "," +
-                     base::format_number(p.place.lon_deg) + "," + base::format_number(p.place.lat_deg) + ",";
-  if (!p.nodata) line += fixed_text(p.height_m, 3);
+  std::string line = base::format_display(p.distance_m, 3) + "," +
+                     base::format_display(p.ground_distance_m, 3) + "," + base::format_number(p.place.lon_deg) +
+                     "," + base::format_number(p.place.lat_deg) + ",";
+  if (!p.nodata) line += base::format_display(p.height_m, 3);
   line += ",";
-  if (!p.nodata) line += fixed_text(p.slope_deg, 3);
+  if (!p.nodata) line += base::format_display(p.slope_deg, 3);
   line += ",";
-  if (!p.nodata) line += fixed_text(p.cross_slope_deg, 3);
+  if (!p.nodata) line += base::format_display(p.cross_slope_deg, 3);
   return line + (p.waypoint ? ",1\n" : ",0\n");
 }
 

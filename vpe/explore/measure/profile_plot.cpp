@@ -9,7 +9,7 @@ namespace {
 
 double share(double part, double whole) { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
-// The first point at or behind a distance that is not the first of all.
+// Returns the index of the first point at or after a distance, at least 1.
 std::size_t step_at(const Profile& profile, double distance_m) {
   const auto found = std::lower_bound(
       profile.points.begin() + 1, profile.points.end() - 1, distance_m,
@@ -18,23 +18,6 @@ std::size_t step_at(const Profile& profile, double distance_m) {
 }
 
 }  // namespace
-
-Ticks ticks(double low, double high, int most) {
-  Ticks out;
-  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high) || most < 2) return out;
-  int power = static_cast<int>(std::floor(std::log10((high - low) / most)));
-  const double room = (high - low) * 1e-9;
-  for (int n = 0;; ++n) {
-    constexpr double kRound[] = {1, 2, 5};
-    const double step = kRound[n % 3] * std::pow(10.0, power + n / 3);
-    const double first = std::ceil((low - room) / step);
-    const double last = std::floor((high + room) / step);
-    if (last - first >= most) continue;
-    out.digits = std::max(0, -(power + n / 3));
-    for (double k = first; k <= last; ++k) out.values.push_back(k * step);
-    return out;
-  }
-}
 
 double ground_at_distance_m(const Profile& profile, double distance_m) {
   const std::size_t n = step_at(profile, distance_m);

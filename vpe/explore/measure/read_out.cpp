@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "vpe/explore/measure/digits.h"
+#include "vpe/base/number.h"
 
 namespace vpe::explore {
 
@@ -10,7 +10,7 @@ namespace {
 
 double east_of(double lon_deg) {
   const double east = lon_deg < 0 ? lon_deg + 360.0 : lon_deg;
-  return east < 360.0 ? east : 0.0;  // the sum may round up
+  return east < 360.0 ? east : 0.0;  // the sum may have been rounded up to 360
 }
 
 }  // namespace
@@ -38,34 +38,37 @@ std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3
   return out;
 }
 
-std::string length_text(double length_m) {
+std::string measured_length_text(double length_m) {
   const double size = std::abs(length_m);
-  if (size < 9.995) return fixed_text(length_m, 2) + " m";
-  if (size < 99.95) return fixed_text(length_m, 1) + " m";
-  if (size < 9999.5) return fixed_text(length_m, 0) + " m";
-  if (size < 99950) return fixed_text(length_m / 1000, 2) + " km";
-  if (size < 999500) return fixed_text(length_m / 1000, 1) + " km";
-  return fixed_text(length_m / 1000, 0) + " km";
+  if (size < 9.995) return base::format_display(length_m, 2) + " m";
+  if (size < 99.95) return base::format_display(length_m, 1) + " m";
+  if (size < 9999.5) return base::format_display(length_m, 0) + " m";
+  if (size < 99950) return base::format_display(length_m / 1000, 2) + " km";
+  if (size < 999500) return base::format_display(length_m / 1000, 1) + " km";
+  return base::format_display(length_m / 1000, 0) + " km";
 }
 
 std::vector<ReadOutLine> read_out_lines(const ReadOut& r) {
   const paging::PlaceAnswer& a = r.at;
   std::vector<ReadOutLine> lines;
   const auto add = [&](const char* label, std::string text) { lines.push_back({label, std::move(text)}); };
-  add("Longitude", fixed_text(a.place.lon_deg, 5) + " (" + fixed_text(r.lon_east_deg, 5) + " E)");
-  add("Latitude", fixed_text(a.place.lat_deg, 5));
+  add("Longitude",
+      base::format_display(a.place.lon_deg, 5) + " (" + base::format_display(r.lon_east_deg, 5) + " E)");
+  add("Latitude", base::format_display(a.place.lat_deg, 5));
   if (a.nodata) {
     add("Elevation", "no data");
   } else {
-    add("Elevation", fixed_text(a.elevation_m, 1) + " m (" + r.datum + ")");
-    add("Slope", fixed_text(a.slope_deg, 1) + " deg, down to " + fixed_text(a.aspect_deg, 0) + " deg");
+    add("Elevation", base::format_display(a.elevation_m, 1) + " m (" + r.datum + ")");
+    add("Slope", base::format_display(a.slope_deg, 1) + " deg, down to " +
+                     base::format_display(a.aspect_deg, 0) + " deg");
   }
-  if (r.range_m) add("Range", length_text(*r.range_m));
-  add("Level", std::to_string(a.level) + ", posts " + length_text(a.spacing_m));
+  if (r.range_m) add("Range", measured_length_text(*r.range_m));
+  add("Level", std::to_string(a.level) + ", posts " + measured_length_text(a.spacing_m));
   if (!a.source.empty()) add("Source", a.source + (r.illustration ? ", not data" : ""));
   const paging::ResamplingError& error = a.resampling_here.posts > 0 ? a.resampling_here : a.resampling;
   if (error.posts > 0) {
-    add("Resampling error", length_text(error.rms_m) + " rms, " + length_text(error.max_m) + " most");
+    add("Resampling error",
+        measured_length_text(error.rms_m) + " rms, " + measured_length_text(error.max_m) + " most");
   }
   return lines;
 }

@@ -1,4 +1,4 @@
-// What lies under the cursor: the ground that a ray meets, in the numbers of `vpe query`.
+// Read-out of the place under the cursor: the ground that a ray meets, with the numbers of `vpe query`.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -14,32 +14,33 @@ struct ReadOut {
   paging::PlaceAnswer at;         // longitude in (-180, 180]
   double lon_east_deg = 0;        // the same longitude in [0, 360)
   std::string datum;              // of the elevation, paging::describe_datum()
-  bool illustration = false;      // a made-up planet
-  glm::dvec3 point_m{0, 0, 0};    // on the ground as it is drawn, body-fixed, from the planet's centre
-  std::optional<double> range_m;  // from the camera to the ground as it is drawn; nothing without a camera
+  bool illustration = false;      // the planet is synthetic
+  glm::dvec3 point_m{0, 0, 0};    // on the ground as drawn, body-fixed, from the planet's centre
+  std::optional<double> range_m;  // from the camera to the ground as drawn; nullopt without a camera
 };
 
-// Of the first ground along the unit `direction`, as it is drawn with an exaggeration (elevation, slope and
-// aspect are those of the planet, never exaggerated); nothing for the sky. For a camera below the ground the
-// place is its own, at range 0. The place is right within the error of paging::Surface::cast() along the ray.
-// Throws paging::PlanetError. Any thread.
+// Reads out the first ground along the unit `direction`, as drawn with an exaggeration. Elevation, slope and
+// aspect are never exaggerated. Returns nullopt for the sky. For a camera below the ground the place is its
+// own, at range 0. The place is correct within the error of paging::Surface::cast() along the ray. Throws
+// paging::PlanetError. May be called from any thread.
 std::optional<ReadOut> read_out(const paging::Surface& surface, const glm::dvec3& camera_m,
                                 const glm::dvec3& direction, double exaggeration = 1.0);
 
-// Of a place, as on a map.
+// Reads out a place, for example on a map.
 ReadOut read_out_at(const paging::Surface& surface, mars::LonLat place, double exaggeration = 1.0);
 
-// As people read it: "Elevation" "-2103.4 m (areoid)". Rounded to what the numbers are good for; "no data"
-// where no source has any.
+// Describes a line for display, such as "Elevation" and "-2103.4 m (areoid)".
 struct ReadOutLine {
   std::string label;
   std::string text;
 
   bool operator==(const ReadOutLine&) const = default;
 };
+
+// Returns the read-out as text, rounded to significant digits; "no data" for nodata.
 std::vector<ReadOutLine> read_out_lines(const ReadOut& read_out);
 
-// "950 m", "12.3 km", "0.42 m": at least three digits that count.
-std::string length_text(double length_m);
+// Returns a measured length with at least three significant digits: "950 m", "12.35 km", "0.42 m".
+std::string measured_length_text(double length_m);
 
 }  // namespace vpe::explore
