@@ -1,4 +1,4 @@
-// What --backend auto draws with.
+// The backend of --backend auto.
 #include "vpe/app/picture/backend_choice.h"
 
 #include <gtest/gtest.h>
@@ -6,32 +6,34 @@
 namespace vpe::app {
 namespace {
 
+using core::Backend;
+
 core::DrawRequest looking(double pitch_deg, double alt_m = 20000) {
   core::DrawRequest request;
   request.view.camera = mars::to_camera({30, 10, alt_m, 70, pitch_deg, 0}, mars::kMarsRadius_m);
   return request;
 }
 
-BackendChoice choice(const std::vector<core::DrawRequest>& images, const TiledImageOptions& options = {},
+BackendChoice choice(const std::vector<core::DrawRequest>& images, const RenderOptions& options = {},
                      bool has_gpu = false) {
   return choose_backend(options, make_settings(options), images, mars::kMarsRadius_m, has_gpu);
 }
 
-TEST(BackendChoice, RaysToTheHorizonFromNearbyWithoutAGpu) {
-  EXPECT_EQ(choice({looking(-10)}).backend, "voxel");
-  EXPECT_EQ(choice({looking(-10)}, {}, true).backend, "polygon");
-  EXPECT_EQ(choice({looking(-70)}).backend, "polygon");
-  EXPECT_EQ(choice({looking(-30, 1e5)}).backend, "voxel");
-  EXPECT_EQ(choice({looking(-30, 2e5)}).backend, "polygon");
-  EXPECT_EQ(choice({looking(-70, 1e7)}).backend, "polygon");  // the whole planet
-  // Of several, what suits the half.
-  EXPECT_EQ(choice({looking(-10), looking(-70)}).backend, "voxel");
-  EXPECT_EQ(choice({looking(-10), looking(-70), looking(-80)}).backend, "polygon");
+TEST(BackendChoice, RaysDrawNearbyViewsToTheHorizonWithoutAGpu) {
+  EXPECT_EQ(choice({looking(-10)}).backend, Backend::kRay);
+  EXPECT_EQ(choice({looking(-10)}, {}, true).backend, Backend::kPolygon);
+  EXPECT_EQ(choice({looking(-70)}).backend, Backend::kPolygon);
+  EXPECT_EQ(choice({looking(-30, 1e5)}).backend, Backend::kRay);
+  EXPECT_EQ(choice({looking(-30, 2e5)}).backend, Backend::kPolygon);
+  EXPECT_EQ(choice({looking(-70, 1e7)}).backend, Backend::kPolygon);  // the whole planet
+  // Of several images, half are enough.
+  EXPECT_EQ(choice({looking(-10), looking(-70)}).backend, Backend::kRay);
+  EXPECT_EQ(choice({looking(-10), looking(-70), looking(-80)}).backend, Backend::kPolygon);
 }
 
 TEST(BackendChoice, ANamedBackendIsTaken) {
-  for (const std::string backend : {"voxel", "polygon"}) {
-    TiledImageOptions options;
+  for (const Backend backend : {Backend::kRay, Backend::kPolygon}) {
+    RenderOptions options;
     options.backend = backend;
     for (const double pitch_deg : {-10.0, -70.0}) {
       const BackendChoice chosen = choice({looking(pitch_deg)}, options);
@@ -41,14 +43,14 @@ TEST(BackendChoice, ANamedBackendIsTaken) {
   }
 }
 
-TEST(BackendChoice, WhatIsAboutTrianglesIsDrawnByThem) {
+TEST(BackendChoice, RequestsAboutTrianglesAreDrawnByPolygons) {
   const auto expect_triangles = [](const auto& change) {
     core::DrawRequest request = looking(-10);
     EXPECT_TRUE(suits_rays(request));
     change(request);
     EXPECT_FALSE(suits_rays(request));
     // One image of many is enough.
-    EXPECT_EQ(choice({looking(-10), request, looking(-10)}).backend, "polygon");
+    EXPECT_EQ(choice({looking(-10), request, looking(-10)}).backend, Backend::kPolygon);
   };
   expect_triangles([](auto& r) { r.settings.mode = core::Mode::kWireframe; });
   expect_triangles([](auto& r) { r.settings.mode = core::Mode::kMarkers; });
@@ -63,11 +65,11 @@ TEST(BackendChoice, WhatIsAboutTrianglesIsDrawnByThem) {
 
 TEST(BackendChoice, RaysKeepToTheTolerance) {
   const auto settings = [](const std::vector<std::string>& set, double tolerance_px = -1) {
-    TiledImageOptions options;
+    RenderOptions options;
     options.set = set;
     options.tolerance_px = tolerance_px;
     const BackendChoice chosen = choice({looking(-10)}, options);
-    EXPECT_EQ(chosen.backend, "voxel");
+    EXPECT_EQ(chosen.backend, Backend::kRay);
     return chosen.settings.values();
   };
   EXPECT_EQ(settings({}).ray_mode, core::RayMode::kMultires);
@@ -77,7 +79,7 @@ TEST(BackendChoice, RaysKeepToTheTolerance) {
   EXPECT_EQ(settings({}, 1000).ray_cell_px, core::RayLimits::kMostCell_px);
   EXPECT_EQ(settings({}, 0).ray_mode, core::RayMode::kExact);
   EXPECT_EQ(settings({}, 0.001).ray_mode, core::RayMode::kExact);
-  // As it is said where it is said.
+  // A named key of rays leaves the settings as they are.
   EXPECT_EQ(settings({"rays.mode=exact"}).ray_mode, core::RayMode::kExact);
   EXPECT_EQ(settings({"rays.cell=2"}).ray_mode, core::RayMode::kExact);
   EXPECT_EQ(settings({"rays.mode=multires", "rays.cell=2"}).ray_cell_px, 2);

@@ -1,4 +1,4 @@
-// Files that are not what they should be: one clear message, exit 1, nothing half-written.
+// Malformed files: one clear message, exit 1, nothing half-written.
 #include <limits>
 
 #include "tests/app/support/app_fixture.h"
@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 class BadInput : public AppTest {
  protected:
-  // Through `build`, and where a PLANET is expected.
+  // Expects the failure from `build`, and where a PLANET is expected.
   void expect_bad_dem(const std::string& name, const Words& parts) const {
     Words all = parts;
     all.push_back(name);
@@ -52,7 +52,7 @@ TEST_F(BadInput, Dems) {
   expect_bad_dem("cut.tif", {"cannot read", "cut short or damaged"});
 }
 
-TEST_F(BadInput, OnePixelIsAPlanetOfOneHeightThere) {
+TEST_F(BadInput, OnePixelGivesAPlanetWithOneHeightThere) {
   Dem dem;
   dem.width = dem.height = 1;
   dem.west_deg = 10;
@@ -62,7 +62,7 @@ TEST_F(BadInput, OnePixelIsAPlanetOfOneHeightThere) {
   write_dem(dir_ / "one.tif", dem);
   EXPECT_EQ(vpe({"build", "one.tif", "-o", "one.vpe", "--base-spacing", "100000"}).exit_code, 0);
   const auto answers = parse_json(vpe({"query", "one.vpe", "--json", "12,20", "100,20"}).out);
-  EXPECT_NEAR(answers[0]["elevation_m"].get<double>(), 1234, 135);  // the sag of a sphere by posts 42 km apart
+  EXPECT_NEAR(answers[0]["elevation_m"].get<double>(), 1234, 135);  // the sagitta of posts 42 km apart
   EXPECT_TRUE(answers[1]["elevation_m"].is_null());
 }
 
@@ -93,7 +93,7 @@ TEST_F(BadInput, PlanetFiles) {
   }
 }
 
-TEST_F(BadInput, FlippedBitsAreSeenOrDoNotMatter) {
+TEST_F(BadInput, FlippedBitsAreDetectedOrDoNotMatter) {
   const std::string whole = read_text(planet());
   const Words places{"10,20", "90,0", "-74,-13", "180,0", "100,80", "0,-80"};  // one on every face
   const auto query = [&](const std::string& name) {
@@ -148,8 +148,8 @@ TEST_F(BadInput, OutputsOfImagesAreCheckedBeforeTheWork) {
     expect_failure(words, 1, parts);
     EXPECT_FALSE(exists("x.png"));
   };
-  render({"-o", "x.bmp"}, {"x.bmp", "cannot write", "picture format", ".png, .jpg or .jpeg"});
-  render({"-o", "x"}, {"x: cannot write", "picture format"});
+  render({"-o", "x.bmp"}, {"x.bmp", "cannot write", "image format", ".png, .jpg or .jpeg"});
+  render({"-o", "x"}, {"x: cannot write", "image format"});
   render({"-o", "none/x.png"}, {"none/x.png", "no folder 'none'"});
   render({"-o", "x.png", "--range", "r.png"}, {"r.png", "cannot write", ".tif"});
   render({"-o", "x.png", "--range", "none/r.tif"}, {"none/r.tif", "no folder 'none'"});

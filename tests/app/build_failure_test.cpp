@@ -1,4 +1,4 @@
-// A build whose disk is full, or whose source goes away, says so and can be continued.
+// A build whose disk is full, or whose source disappears, reports this and can be continued.
 #include "paging/planet/planet_file.h"
 #include "tests/app/support/app_fixture.h"
 
@@ -13,8 +13,8 @@ class BuildFailure : public AppTest {
     return paging::PlanetFile::open(planet.string())->meta().identity;
   }
 
-  // Runs a shell script whose folder `disk` is a file system of its own of so many bytes; `grow` in it makes
-  // that 64 MB. False where this process may not mount one.
+  // Runs a shell script whose folder `disk` is a file system of its own with this many bytes; `grow` in the
+  // script enlarges it to 64 MB. Returns false where this process may not mount one.
   static bool can_mount(const fs::path& folder) {
     Command command;
     command.program = "/bin/sh";
@@ -48,7 +48,7 @@ TEST_F(BuildFailure, FullDisk) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_TRUE(says(result.out, {"exit 1\n"}));
     EXPECT_TRUE(says(result.err, {"disk/x.vpe.part", "disk is full", "free some space"}));
-    // What is said is so: there is something to continue, and it is continued, or neither.
+    // The message is true: either there is work to continue, and it is continued, or there is none.
     const bool kept = result.out.find("kept") != std::string::npos;
     EXPECT_EQ(result.err.find("the same command continues it") != std::string::npos, kept) << result.err;
     EXPECT_EQ(result.err.find("Continuing") != std::string::npos, kept) << result.err;
@@ -59,9 +59,8 @@ TEST_F(BuildFailure, FullDisk) {
   }
 }
 
-// The eastern half of a mosaic is on a disk that is not there for a while, or cannot be read from some block
-// on.
-TEST_F(BuildFailure, SourceGoesAway) {
+// The eastern half of a mosaic is on a disk that is missing for a while, or unreadable beyond some block.
+TEST_F(BuildFailure, SourceDisappears) {
   Dem half;
   half.width = 90;
   half.height_m = [](int column, int row) { return 30.0 * ((column * 7 + row * 11) % 90); };

@@ -6,7 +6,7 @@ namespace {
 
 class Config : public AppTest {
  protected:
-  // What a query says with this file: whether --json took effect shows which options were read.
+  // Runs a query with this file: whether --json took effect shows which options were read.
   Result query(const std::string& toml, const Words& more = {}) const {
     write_text(dir_ / "c.toml", toml);
     Words words{"query", planet().string(), "10,20", "--config", "c.toml"};
@@ -27,11 +27,11 @@ TEST_F(Config, TopAndTable) {
   EXPECT_EQ(parse_json(query("# mine\n[query]\njson = true\nmemory = 128\n").out).size(), 1U);
   EXPECT_EQ(query("json = false\n").out.find("lon_deg,lat_deg"), 0U);
   EXPECT_EQ(query("json = true\n[query]\njson = false\n").out.find("lon_deg"), 0U);
-  // Of other commands: at the top and in their tables.
+  // Options of other commands, at the top and in their tables, have no effect.
   EXPECT_EQ(query("fov = 40\nset = ['mode=lit']\n[render]\njson = true\n").out.find("lon_deg,lat_deg"), 0U);
 }
 
-// Commands of two words have a table in a table, whose keys are theirs.
+// A command of two words has a table within a table.
 TEST_F(Config, CommandsOfTwoWords) {
   EXPECT_EQ(query("[report.error-time]\nrounds = 3\n").out.find("lon_deg,lat_deg"), 0U);
   expect_error("[report.error-time]\nround = 3\n", {"c.toml:2", "'report error-time'", "--round"});
@@ -74,7 +74,7 @@ TEST_F(Config, Errors) {
                  {".: cannot read the configuration", "Is a directory"});
 }
 
-// The user's file, the system's files, the environment: whose word counts.
+// Precedence of the user's file, the system's files and the environment.
 class ConfigOrder : public AppTest {
  protected:
   void write_config(const std::string& folder, const std::string& toml) const {
@@ -105,7 +105,7 @@ TEST_F(ConfigOrder, UserBeforeSystem) {
   EXPECT_FALSE(is_json(both));
   write_config("user", "[query]\njson = true\n");
   EXPECT_TRUE(is_json(both));
-  // The file of --config stands for the project, the command line above it.
+  // The file of --config overrides the user's file, and the command line overrides it.
   write_text(dir_ / "project.toml", "json = false\n");
   EXPECT_FALSE(is_json(both, {"--config", "project.toml"}));
   EXPECT_TRUE(is_json(both, {"--config", "project.toml", "--json"}));
@@ -119,7 +119,7 @@ TEST_F(ConfigOrder, UserBeforeSystem) {
   EXPECT_EQ(run(version).exit_code, 0);
 }
 
-TEST_F(ConfigOrder, HomeWhereTheVariableIsNotSetOrNotAbsolute) {
+TEST_F(ConfigOrder, HomeCountsWhereTheVariableIsNotSetOrNotAbsolute) {
   write_config("home/.config", "json = true\n");
   write_config("relative", "bogus = true\n");
   EXPECT_TRUE(is_json({}));
@@ -137,7 +137,7 @@ TEST_F(ConfigOrder, Environment) {
   EXPECT_TRUE(says(result.err, {"VPE_MEMORY", "64"}));
   EXPECT_EQ(query({{"VPE_THREADS", "two"}}).exit_code, 2);
   EXPECT_EQ(query({{"VPE_MEMORY", ""}}).exit_code, 0);
-  // Over the files, under the command line.
+  // The environment overrides the files, and the command line overrides the environment.
   write_config("home/.config", "memory = 1\n");
   EXPECT_EQ(query({}).exit_code, 2);
   EXPECT_EQ(query({{"VPE_MEMORY", "128"}}).exit_code, 0);

@@ -4,28 +4,30 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "tests/support/support.h"
 #include "vpe/app/cli/digest.h"
+#include "vpe/app/picture/fingerprint.h"
 #include "vpe/base/file.h"
 
 namespace {
 
 using vpe::app::Digest;
-using vpe::app::FilmBasis;
 using vpe::app::fingerprint_of;
+using vpe::app::RenderBasis;
 using vpe::core::DrawRequest;
 using vpe::core::Settings;
 
 struct Inputs {
-  FilmBasis basis{"1.2.3", "abcdef", "polygon", 1024};
+  RenderBasis basis{"1.2.3", "abcdef", vpe::core::Backend::kPolygon, 1024};
   DrawRequest request;
   Settings settings;
   std::string fingerprint() const { return fingerprint_of(basis, request, settings); }
 };
 
-TEST(FilmFrame, EverythingThatAImageDependsOnIsInItsFingerprint) {
+TEST(FilmFrame, EverythingThatAnImageDependsOnIsInItsFingerprint) {
   const std::string base = Inputs{}.fingerprint();
   EXPECT_EQ(base.size(), 32U);
   EXPECT_EQ(base, Inputs{}.fingerprint());
@@ -37,7 +39,7 @@ TEST(FilmFrame, EverythingThatAImageDependsOnIsInItsFingerprint) {
   };
   change("program version", [](Inputs& i) { i.basis.program = "1.2.4"; });
   change("planet", [](Inputs& i) { i.basis.planet = "abcdee"; });
-  change("backend", [](Inputs& i) { i.basis.backend = "voxel"; });
+  change("backend", [](Inputs& i) { i.basis.backend = vpe::core::Backend::kRay; });
   change("memory", [](Inputs& i) { i.basis.memory_mb = 512; });
   change("boundary between texts", [](Inputs& i) {
     i.basis.program = "1.2.3a";
@@ -45,7 +47,7 @@ TEST(FilmFrame, EverythingThatAImageDependsOnIsInItsFingerprint) {
   });
   auto& next = std::nextafter<double, double>;
   for (int n = 0; n < 3; ++n) {
-    change("eye", [&](Inputs& i) {
+    change("camera", [&](Inputs& i) {
       i.request.view.camera.position_m[n] = next(i.request.view.camera.position_m[n], 9);
     });
     change("right", [&](Inputs& i) { i.request.view.camera.axes.right[n] += 0.5; });
@@ -87,7 +89,7 @@ TEST(FilmFrame, EverySettingIsInItsFingerprint) {
   }
 }
 
-TEST(FilmFrame, WhatAPaletteFileHoldsIsInItsFingerprint) {
+TEST(FilmFrame, ThePaletteFilesContentIsInItsFingerprint) {
   const test_support::TempDir dir;
   const std::string file = (dir / "p.txt").string();
   Inputs inputs;
@@ -103,7 +105,7 @@ TEST(FilmFrame, WhatAPaletteFileHoldsIsInItsFingerprint) {
   }
 }
 
-TEST(FilmFrame, WhatAGazetteerHoldsIsInItsFingerprint) {
+TEST(FilmFrame, TheGazetteersContentIsInItsFingerprint) {
   if (!vpe::core::overlays_refused().empty()) GTEST_SKIP() << vpe::core::overlays_refused();
   const test_support::TempDir dir;
   const std::string file = (dir / "n.csv").string();
@@ -130,7 +132,7 @@ TEST(FilmFrame, ItsTimeCountsOnlyWhereItIsShown) {
   EXPECT_EQ(at(1), at(1));
 }
 
-TEST(FilmDigest, TellsSequencesApart) {
+TEST(FilmDigest, DistinguishesSequences) {
   std::set<std::string> seen;
   EXPECT_TRUE(seen.insert(Digest().hex()).second);
   EXPECT_TRUE(seen.insert(Digest().add("").hex()).second);

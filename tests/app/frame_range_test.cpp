@@ -1,27 +1,28 @@
-// Which frames a run makes.
-#include "vpe/app/film/frame_range.h"
+// The frames that a run makes: --frames and --part.
+#include "vpe/app/film/film_plan.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "vpe/app/cli/program.h"
+#include "vpe/app/planet/shard_option.h"
 
 namespace {
 
-using vpe::app::Part;
+using vpe::app::Shard;
 using vpe::app::UsageError;
 
 using Variables = std::map<std::string, std::string>;
 
-Part part(const std::string& text, const Variables& variables = {}) {
+Shard part(const std::string& text, const Variables& variables = {}) {
   return vpe::app::parse_shard(text, [&](const char* name) -> const char* {
     const auto found = variables.find(name);
     return found == variables.end() ? nullptr : found->second.c_str();
   });
 }
 
-void expect_part(const Part& got, std::int64_t number, std::int64_t of) {
+void expect_part(const Shard& got, std::int64_t number, std::int64_t of) {
   EXPECT_EQ(got.number, number);
   EXPECT_EQ(got.of, of);
 }
@@ -39,7 +40,7 @@ TEST(FilmPart, PartsFollowEachOtherAndAreEven) {
     for (const std::int64_t of : {1, 2, 3, 7, 64}) {
       std::int64_t at = 0;
       for (std::int64_t k = 1; k <= of; ++k) {
-        const Part p{k, of};
+        const Shard p{k, of};
         EXPECT_EQ(p.begin(count), at);
         at = p.end(count);
         EXPECT_LE(std::abs((at - p.begin(count)) - count / of), 1);
@@ -72,7 +73,7 @@ TEST(FilmPart, AutoReadsEachEnvironment) {
   expect_part(part("auto", both), 4, 4);
 }
 
-TEST(FilmPart, AutoSaysWhatIsMissingOrDoesNotFit) {
+TEST(FilmPart, AutoReportsWhatIsMissingOrDoesNotFit) {
   const auto message = [](const Variables& variables) -> std::string {
     try {
       part("auto", variables);
@@ -86,7 +87,7 @@ TEST(FilmPart, AutoSaysWhatIsMissingOrDoesNotFit) {
   EXPECT_NE(message({{"PMI_RANK", "1"}}).find("PMI_SIZE is not"), std::string::npos);
   EXPECT_NE(message({{"PMI_RANK", "x"}, {"PMI_SIZE", "2"}}).find("PMI_RANK='x'"), std::string::npos);
   EXPECT_NE(message({{"PMI_RANK", "2"}, {"PMI_SIZE", "2"}}).find("does not fit"), std::string::npos);
-  // Counted from 1 without saying so: part 1 would never be made.
+  // Counted from 1 without SLURM_ARRAY_TASK_MIN: part 1 would never be made.
   EXPECT_NE(
       message({{"SLURM_ARRAY_TASK_ID", "4"}, {"SLURM_ARRAY_TASK_COUNT", "4"}}).find("SLURM_ARRAY_TASK_MIN"),
       std::string::npos);

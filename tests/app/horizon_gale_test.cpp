@@ -38,7 +38,7 @@ double at(const std::vector<Sight>& skyline, double azimuth_deg) {
 
 class LongHorizon : public AppTest {
  protected:
-  // The nest of shared DEMs, 1 m about the rover; empty and a reason when one is not there.
+  // Builds a planet of the nested shared DEMs, 1 m around the rover, and returns its path.
   std::string build_nest(const std::vector<std::string>& treatment) {
     std::vector<std::string> words{"build"};
     for (const char* name :
@@ -74,7 +74,7 @@ class LongHorizon : public AppTest {
   }
 };
 
-// The rasters as they are, as the reference has them.
+// The rasters unchanged, as in the reference.
 TEST_F(LongHorizon, OfTheNavcamMosaicIsTheReference) {
   VPE_NEED_SHARED(reference_path, "pano-navcam1051/dem_skyline.csv");
   json summary;
@@ -95,7 +95,7 @@ TEST_F(LongHorizon, OfTheNavcamMosaicIsTheReference) {
   std::printf("worst difference %.3f degrees over %d azimuths\n", worst, compared);
 }
 
-// Without the blunders at the CTX mosaic's edges, which stand a degree above the ground in two arcs (72 to 84
+// Without the outliers at the CTX mosaic's edges, which stand a degree above the ground in two arcs (72 to 84
 // and 240 to 245 degrees), the skyline is the photograph's: edges read off it. MOLA's posts are 463 m apart,
 // 0.3 degrees at 80 km and more at the foot of Mount Sharp. $VPE_GALE_PLANET is one that is built already.
 TEST_F(LongHorizon, OfTheNavcamMosaicIsThePhotographs) {
@@ -103,7 +103,7 @@ TEST_F(LongHorizon, OfTheNavcamMosaicIsThePhotographs) {
   const char* ready = std::getenv("VPE_GALE_PLANET");
   json summary;
   const auto ours =
-      skyline(ready != nullptr ? ready : build_nest({"--level", "bend", "--mask-blunders"}), summary);
+      skyline(ready != nullptr ? ready : build_nest({"--align", "edges", "--reject-outliers"}), summary);
   ASSERT_EQ(ours.size(), 720U);
   for (const Sight& s : {Sight{79.2, 2.06}, {80.9, 2.26}, {83.7, 2.87}, {243.2, 2.35}, {246.7, 2.52}})
     EXPECT_NEAR(at(ours, s.azimuth_deg), s.elevation_deg, 0.35) << s.azimuth_deg;

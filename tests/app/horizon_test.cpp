@@ -41,7 +41,7 @@ class Horizon : public AppTest {
   }
 };
 
-TEST_F(Horizon, TheWholeTurnAndItsSummary) {
+TEST_F(Horizon, TheFullCircleAndItsSummary) {
   const json summary = ask({"--height", "500", "-o", "s.csv", "--step", "0.5"});
   std::string head;
   const auto rows = read_csv(read_text(dir_ / "s.csv"), &head);
@@ -87,10 +87,10 @@ TEST_F(Horizon, AnArcHasTheSameNumbers) {
   }
 }
 
-TEST_F(Horizon, OfOrbitAndOfAPole) {
+TEST_F(Horizon, FromOrbitAndAtAPole) {
   const json orbit = ask({"--altitude", "4e6", "-o", "o.csv", "--step", "10"});
   const double radius = orbit["radius_m"];
-  // The embedded sphere's dip, but for hills and for the sag of facets 42 km wide.
+  // The dip of the sphere, apart from hills and the sagitta of facets 42 km wide.
   const double dip = std::acos(radius / (radius + 4e6)) * 180 / M_PI;
   EXPECT_GT(dip, 60);
   EXPECT_NEAR(orbit["highest"]["elevation_deg"].get<double>(), -dip, 0.1);
@@ -163,7 +163,7 @@ TEST_F(Horizon, BadInput) {
   expect_failure(words({"--height", "2", "-o", "s.csv", "--from", "9", "--to", "9"}), 2,
                  {"--from -20 --to 20"});
   expect_failure(words({"--height", "2", "-o", "no/s.csv"}), 1, {"no/s.csv", "there is no folder"});
-  expect_failure(words({"--height", "2", "--landscape", "l", "--to", "90"}), 2, {"--landscape", "whole turn"});
+  expect_failure(words({"--height", "2", "--landscape", "l", "--to", "90"}), 2, {"--landscape", "full circle"});
   expect_failure(words({"--height", "2", "-o", "s.csv", "--features", "f.csv"}), 2, {"--features", "--names"});
   expect_failure(words({"--height", "2", "-o", "s.csv", "--names", "gone.csv"}), 1, {"gone.csv"});
   write_text(dir_ / "file", "");

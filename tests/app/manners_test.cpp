@@ -1,4 +1,4 @@
-// What a program owes its user: a start that opens nothing it does not need, a manual, a completion, a doctor.
+// Start-up without unneeded libraries and tiles, the manual, the completion, and `vpe doctor`.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 
 class StartUp : public AppTest {
  protected:
-  // Names of shared libraries that a run opened, by the dynamic linker's own account.
+  // Returns the names of shared libraries that a run opened, as the dynamic linker reports them.
   std::string libraries_of(const Words& arguments) const {
     Command command = command_for(arguments);
     command.environment["LD_DEBUG"] = "files";
@@ -46,11 +46,11 @@ TEST_F(StartUp, OnlyWhatDrawsOpensOpenGl) {
   EXPECT_FALSE(has_opengl(libraries_of({"query", p, "10,20"})));
   EXPECT_FALSE(has_opengl(libraries_of({"verify", p})));
   EXPECT_FALSE(has_opengl(libraries_of({"settings"})));
-  // And the trace sees it where it is.
+  // The trace shows OpenGL where it is opened.
   EXPECT_TRUE(has_opengl(libraries_of({"doctor"})));
 }
 
-// Every payload but one made unreadable: who reads it fails.
+// All payloads but one are unreadable: a command that reads any of them fails.
 TEST_F(StartUp, InfoReadsNoTileAndQueryOnlyItsOwn) {
   std::filesystem::copy_file(planet(), dir_ / "x.vpe");
   const Result info = vpe({"info", "x.vpe", "--json"});
@@ -112,7 +112,7 @@ TEST_F(Manual, TheManPageNamesEveryCommandOptionAndSetting) {
   }
 }
 
-// Asks bash itself what it would offer.
+// Runs the completion in bash.
 TEST_F(Manual, BashCompletesCommandsOptionsKeysAndChoices) {
   const auto bash = find_program("bash");
   if (bash.empty()) GTEST_SKIP() << "skipped: no bash";
@@ -142,13 +142,13 @@ TEST_F(Manual, BashCompletesCommandsOptionsKeysAndChoices) {
 
 class Doctor : public AppTest {};
 
-TEST_F(Doctor, SaysWhatWillBeUsedAndWhatIsInTheWay) {
+TEST_F(Doctor, ReportsWhatWillBeUsedAndWhatIsMissing) {
   const nlohmann::json json = parse_json(vpe({"doctor", "--json", "--threads", "1"}).out);
   for (const char* what : {"vpe", "GDAL", "display", "OpenGL", "threads", "memory", "cache", "ffmpeg"}) {
     EXPECT_NE(json.at(what).at("state").get<std::string>(), "bad") << json.at(what);
   }
   EXPECT_EQ(json.at("threads").at("text").get<std::string>().front(), '1');
-  // No OpenGL, no ffmpeg, a cache that cannot be made: each is told, and the exit status says it.
+  // No OpenGL, no ffmpeg, a cache that cannot be made: each is reported, and the exit status is 1.
   write_text(dir_ / "file", "");
   Command command = command_for({"doctor"});
   command.environment["VPE_EGL"] = "device-that-nobody-has";
@@ -158,10 +158,10 @@ TEST_F(Doctor, SaysWhatWillBeUsedAndWhatIsInTheWay) {
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_TRUE(
       says(bad.out, {"OpenGL   bad", "cache    bad", "cannot make the cache folder", "apt install ffmpeg"}));
-  EXPECT_TRUE(says(bad.err, {"in the way of drawing: OpenGL, cache"}));
+  EXPECT_TRUE(says(bad.err, {"requirements of drawing are not met: OpenGL, cache"}));
 }
 
-TEST_F(StartUp, ThereIsNoColourWhereNobodyLooks) {
+TEST_F(StartUp, ThereIsNoColourOffATerminal) {
   for (const Words& words : {Words{"--help"}, Words{"doctor"}, Words{"info", planet().string()}}) {
     const Result result = vpe(words);
     EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos);

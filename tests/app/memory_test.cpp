@@ -1,4 +1,4 @@
-// --memory bounds what a build keeps of its sources.
+// --memory bounds the memory that a build uses for its sources.
 #include "tests/app/support/app_fixture.h"
 
 namespace app_test {

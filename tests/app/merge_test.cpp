@@ -41,13 +41,13 @@ TEST_F(Merge, PartsEqualTheWhole) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
-TEST_F(Merge, SaysWhatItMade) {
+TEST_F(Merge, PrintsASummary) {
   Result part = vpe({"build", "x.tif", "-o", "x.vpe", "--base-spacing", "60000", "--part", "2/2"});
   EXPECT_EQ(part.exit_code, 0);
   EXPECT_TRUE(says(part.out, {"x.2-of-2.vpe: ", "Part 2 of 2", "vpe merge"}));
   vpe({"build", "x.tif", "-o", "x.vpe", "--base-spacing", "60000", "--part", "1/2"});
   const Result merged = vpe({"merge", "x.1-of-2.vpe", "x.2-of-2.vpe", "-o", "x.vpe"});
-  EXPECT_TRUE(says(merged.out, {"x.vpe: ", "resampling error", "posts without data: 0", "maximum, m"}));
+  EXPECT_TRUE(says(merged.out, {"x.vpe: ", "resampling error", "nodata posts: 0", "maximum, m"}));
 }
 
 TEST_F(Merge, AnEstimateBuildsNothing) {
@@ -65,7 +65,7 @@ TEST_F(Merge, AnEstimateBuildsNothing) {
   EXPECT_EQ(vpe(build_words("y.vpe", {"-q"})).err, "");
 }
 
-TEST_F(Merge, TheSchedulerSaysWhichPart) {
+TEST_F(Merge, TheSchedulerSelectsThePart) {
   Command command = command_for(build_words("x.vpe", {"--part", "auto"}));
   command.environment = {
       {"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "4"}, {"SLURM_ARRAY_TASK_MIN", "1"}};
@@ -74,13 +74,13 @@ TEST_F(Merge, TheSchedulerSaysWhichPart) {
   EXPECT_TRUE(exists("x.3-of-4.vpe"));
 }
 
-TEST(MergeNames, SortAsPartsDo) {
-  EXPECT_EQ(vpe::app::part_file_name("a/mars.vpe", {7, 12}), "a/mars.07-of-12.vpe");
-  EXPECT_EQ(vpe::app::part_file_name("a.b/mars", {2, 2}), "a.b/mars.2-of-2");
-  EXPECT_EQ(vpe::app::part_file_name("mars.vpe", {1, 1}), "mars.vpe");
+TEST(MergeNames, SortLikeParts) {
+  EXPECT_EQ(vpe::app::shard_file_name("a/mars.vpe", {7, 12}), "a/mars.07-of-12.vpe");
+  EXPECT_EQ(vpe::app::shard_file_name("a.b/mars", {2, 2}), "a.b/mars.2-of-2");
+  EXPECT_EQ(vpe::app::shard_file_name("mars.vpe", {1, 1}), "mars.vpe");
 }
 
-TEST_F(Merge, MistakesSayWhatToDo) {
+TEST_F(Merge, MessagesSayWhatToDo) {
   vpe(build_words("x.vpe", {"--part", "1/2"}));
   expect_failure({"info", "x.1-of-2.vpe"}, 1, {"x.1-of-2.vpe: part 1 of 2 of a planet", "vpe merge"});
   expect_failure({"merge", "x.1-of-2.vpe", "-o", "y.vpe"}, 1, {"of 2 parts 1 are missing: 2", "--part"});

@@ -1,4 +1,4 @@
-// Looking around in panoramas, as a user does.
+// vpe overlook, as a user runs it.
 #include <cmath>
 
 #include "panorama/image/xmp_file.h"
@@ -42,7 +42,7 @@ class Overlook : public AppTest {
 
   void write_wheel(const std::string& name) const {
     vpe::core::write_image(dir_ / name, wheel_image(map_), 720, 300);
-    write_text((dir_ / name).replace_extension(".json"), panorama::to_json({name, map_, {}}));
+    write_text((dir_ / name).replace_extension(".json"), panorama::to_text({name, map_, {}}));
   }
   vpe::core::RgbImage view(const Words& more) const {
     Words words{"overlook", "a.png", "-o", "v.png", "--size", "160x90"};
@@ -53,7 +53,7 @@ class Overlook : public AppTest {
   }
 };
 
-TEST_F(Overlook, LooksWhereItIsTold) {
+TEST_F(Overlook, LooksInTheGivenDirection) {
   write_wheel("a.png");
   for (const auto& [yaw, red, green] :
        {std::tuple("0", 128, 255), {"90", 255, 128}, {"180", 128, 0}, {"-90", 0, 128}, {"3690", 255, 128}}) {
@@ -100,8 +100,8 @@ TEST_F(Overlook, SaysWhatIsThere) {
   auto json = parse_json(read_text(dir_ / "a.json"));
   json["planes"] = {{"range", {{"file", "a.range.tif"}}}};
   write_text(dir_ / "a.json", json.dump());
-  const Result result =
-      vpe({"overlook", "a.png", "--at", "90.25,-10", "--at", "-0.25,5", "--at-pixel", "180.5,200", "--json"});
+  const Result result = vpe({"overlook", "a.png", "--direction", "90.25,-10", "--direction", "-0.25,5",
+                             "--at-pixel", "180.5,200", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto places = parse_json(result.out)["places"];
   ASSERT_EQ(places.size(), 3U);
@@ -112,10 +112,12 @@ TEST_F(Overlook, SaysWhatIsThere) {
   EXPECT_EQ(places[1]["range_m"], 180.0);
   EXPECT_NEAR(places[2]["azimuth_deg"].get<double>(), 359.75, 1e-9);
   EXPECT_TRUE(places[2]["range_m"].is_null());  // the sky
-  const Result text = vpe({"overlook", "a.png", "--at", "90.25,-10", "--at", "0,5"});
+  const Result text = vpe({"overlook", "a.png", "--direction", "90.25,-10", "--direction", "0,5"});
   EXPECT_EQ(text.out,
             "x,y,azimuth_deg,elevation_deg,range_m\n180.500,170.206,90.250000,-10.000000,180.000\n"
             "0.000,139.975,0.000000,5.000000,\n");
+  // The former name of --direction.
+  EXPECT_EQ(vpe({"overlook", "a.png", "--at", "90.25,-10", "--at", "0,5"}).out, text.out);
 }
 
 TEST_F(Overlook, Pairs) {
@@ -123,7 +125,7 @@ TEST_F(Overlook, Pairs) {
   write_wheel("a.png");
   const PanoramaMap other = panorama::cylinder_map(720, 300, 720, 90.0, 150.0);
   vpe::core::write_image(dir_ / "r.png", wheel_image(other), 720, 300);
-  write_text(dir_ / "r.json", panorama::to_json({"r.png", map_, {}}));
+  write_text(dir_ / "r.json", panorama::to_text({"r.png", map_, {}}));
   const vpe::core::RgbImage left = view({"--view", "0,0"});
   const vpe::core::RgbImage beside = view({"--view", "0,0", "--right", "r.png", "--stereo", "sbs"});
   ASSERT_EQ(beside.width, 320);
@@ -135,7 +137,7 @@ TEST_F(Overlook, Pairs) {
   const std::vector<vpe::base::Rgb> right = wheel_image(other);
   both.insert(both.end(), right.begin(), right.end());
   vpe::core::write_image(dir_ / "ou.png", both, 720, 600);
-  auto json = parse_json(panorama::to_json({"ou.png", map_, {}}));
+  auto json = parse_json(panorama::to_text({"ou.png", map_, {}}));
   json["stereo"] = "ou";
   write_text(dir_ / "ou.json", json.dump());
   const auto of_pair = [&](const Words& more) {
@@ -175,8 +177,8 @@ TEST_F(Overlook, WrongUsageIsToldBeforeAnyWork) {
                    {"--view '" + std::string(bad) + "'"});
   for (const char* bad : {"0", "180", "nan"})
     expect_failure({"overlook", "no.png", "-o", "v.png", "--fov", bad}, 2, {"--fov", bad, "120"});
-  expect_failure({"overlook", "no.png", "--at", "0"}, 2, {"--at '0'", "AZIMUTH,ELEVATION"});
-  expect_failure({"overlook", "no.png", "--at", "nan,0"}, 2, {"--at 'nan,0'"});
+  expect_failure({"overlook", "no.png", "--direction", "0"}, 2, {"--direction '0'", "AZIMUTH,ELEVATION"});
+  expect_failure({"overlook", "no.png", "--direction", "nan,0"}, 2, {"--direction 'nan,0'"});
   expect_failure({"overlook", "no.png", "--at-pixel", "1"}, 2, {"--at-pixel '1'", "X,Y"});
   expect_failure({"overlook", "no.png", "-o", "v.png", "--size", "0x5"}, 2, {"--size", "0x5"});
   expect_failure({"overlook", "no.png", "-o", "v.png", "--stereo", "cross"}, 2, {"--stereo", "cross"});
@@ -184,14 +186,14 @@ TEST_F(Overlook, WrongUsageIsToldBeforeAnyWork) {
   expect_failure({"overlook", "no.png", "-o", "v.png"}, 1, {"no.png", "No such file"});
 }
 
-// Of a window that cannot be had; what to do instead is the same without windows in the build.
+// The advice is the same in a build without windows.
 TEST_F(Overlook, WithoutADisplayItSaysWhatToDo) {
   write_wheel("a.png");
   Command command = command_for({"overlook", "a.png"});
   command.environment["DISPLAY"] = "";
   const Result result = run(command);
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(says(result.err, {"window", "--view YAW,PITCH -o", "--at"})) << result.err;
+  EXPECT_TRUE(says(result.err, {"window", "--view YAW,PITCH -o", "--direction"})) << result.err;
   EXPECT_EQ(result.out, "");
 }
 
@@ -199,13 +201,13 @@ TEST_F(Overlook, BadPanoramas) {
   vpe::core::write_image(dir_ / "plain.png", wheel_image(map_), 720, 300);
   expect_failure({"overlook", "plain.png", "-o", "v.png"}, 1, {"plain.png", "directions", "plain.json"});
   write_wheel("a.png");
-  expect_failure({"overlook", "a.png", "--at", "0,80"}, 1,
-                 {"--at 0,80", "a.png", "does not show it", "-52.622"});
+  expect_failure({"overlook", "a.png", "--direction", "0,80"}, 1,
+                 {"--direction 0,80", "a.png", "does not show it", "-52.622"});
   expect_failure({"overlook", "a.png", "--at-pixel", "720.5,3"}, 1, {"--at-pixel 720.5,3", "720x300"});
   auto json = parse_json(read_text(dir_ / "a.json"));
   json["planes"] = {{"range", "gone.tif"}};
   write_text(dir_ / "a.json", json.dump());
-  expect_failure({"overlook", "a.png", "--at", "0,0"}, 1, {"gone.tif", "cannot read"});
+  expect_failure({"overlook", "a.png", "--direction", "0,0"}, 1, {"gone.tif", "cannot read"});
   json["width"] = 721;
   write_text(dir_ / "a.json", json.dump());
   expect_failure({"overlook", "a.png", "-o", "v.png"}, 1, {"a.json", "721"});
@@ -223,10 +225,10 @@ TEST_F(Overlook, LargeImagesWithinTheirMemory) {
   panorama_test::SharedTiles::write(dir_ / "big.tif", 100'000, 20'000);
   write_text(
       dir_ / "big.json",
-      panorama::to_json({"big.tif", panorama::equirectangular_map(100'000, 20'000, 100'000, 0.0, 1e4), {}}));
+      panorama::to_text({"big.tif", panorama::equirectangular_map(100'000, 20'000, 100'000, 0.0, 1e4), {}}));
   for (const char* fov : {"120", "20", "1"}) {
     const Result result = vpe({"overlook", "big.tif", "--view", "200,0", "--fov", fov, "-o", "v.png", "--size",
-                               "640x360", "--memory", "256", "--at", "200,-3"});
+                               "640x360", "--memory", "256", "--direction", "200,-3"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");  // no copies were made
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -242,7 +244,7 @@ TEST_F(Overlook, AHugeClaimIsRefused) {
   const std::string side{'\x00', '\x0F', '\x42', '\x40'};
   bytes.replace(16, 8, side + side);
   write_text(dir_ / "a.png", bytes);
-  auto json = parse_json(panorama::to_json({"a.png", map_, {}}));
+  auto json = parse_json(panorama::to_text({"a.png", map_, {}}));
   json["width"] = json["height"] = 1'000'000;
   json["columns_per_turn"] = 1'000'000;
   json.erase("focal_px");

@@ -47,8 +47,8 @@ class PanoramaOverlay : public AppTest {
 
 double brightness(const vpe::base::Rgb& p) { return (p.r + p.g + p.b) / 3.0; }
 
-TEST_F(PanoramaOverlay, NamesThatAreSeenStandAtTheirPixelsInEveryProjection) {
-  // What vpe horizon says of the same places.
+TEST_F(PanoramaOverlay, VisibleNamesStandAtTheirPixelsInEveryProjection) {
+  // vpe horizon answers for the same places.
   const auto report = parse_json(vpe({"horizon", planet().string(), "--at", "10,5", "--height", "4000",
                                       "--step", "10", "--names", "places.csv", "-o", "s.csv", "--json"})
                                      .out);
@@ -94,7 +94,7 @@ TEST_F(PanoramaOverlay, MemoryThreadsAndStripsChangeNoByte) {
   make("a.png", more);
   make("b.png", with(more, {"--memory", "64", "--threads", "3"}));
   EXPECT_TRUE(read_text(dir_ / "a.png") == read_text(dir_ / "b.png"));
-  // A camera that is stopped goes on with the same layout.
+  // A run that was stopped continues with the same layout.
   fs::remove(dir_ / "a.json");
   const std::string bytes = read_text(dir_ / "a.png");
   fs::remove(dir_ / "a.png");
@@ -113,24 +113,24 @@ TEST_F(PanoramaOverlay, MemoryThreadsAndStripsChangeNoByte) {
   EXPECT_TRUE(read_text(dir_ / "a.png") == bytes);
 }
 
-TEST_F(PanoramaOverlay, AgainItHasTheSameBytesUnlessTheNamesAreOthers) {
+TEST_F(PanoramaOverlay, FromItsSidecarItHasTheSameBytesUnlessTheNamesChanged) {
   make("p.png", with(all_of_them(), {"--width", "700", "--from", "300", "--to", "120", "--elevation=-12,8"}));
   // From another folder the names are still found.
   fs::create_directory(dir_ / "elsewhere");
-  Command command = command_for({"panorama", "--again", path("p.json"), "-o", "q.png", "-q"});
+  Command command = command_for({"panorama", "--from-sidecar", path("p.json"), "-o", "q.png", "-q"});
   command.folder = dir_ / "elsewhere";
   const Result again = run(command);
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_TRUE(read_text(dir_ / "elsewhere" / "q.png") == read_text(dir_ / "p.png"));
   write_text(dir_ / "places.csv", "name,lon,lat\nNorth,10,6.5\n");
-  expect_failure({"panorama", "--again", "p.json", "-o", "z.png", "-q"}, 1,
-                 {"places.csv", "was changed", "names"});
+  expect_failure({"panorama", "--from-sidecar", "p.json", "-o", "z.png", "-q"}, 1,
+                 {"places.csv", "has changed", "names"});
   fs::remove(dir_ / "places.csv");
-  expect_failure({"panorama", "--again", "p.json", "-o", "z.png", "-q"}, 1, {"places.csv"});
+  expect_failure({"panorama", "--from-sidecar", "p.json", "-o", "z.png", "-q"}, 1, {"places.csv"});
   EXPECT_FALSE(exists("z.png"));
 }
 
-TEST_F(PanoramaOverlay, WrongOnesAreToldBeforeAnyWork) {
+TEST_F(PanoramaOverlay, WrongOnesAreReportedBeforeAnyWork) {
   const auto refuse = [&](int code, const Words& more, const Words& parts) {
     Words all{"panorama", planet().string(), "--at", "10,5", "--height", "4000", "-o", "x.png"};
     expect_failure(with(all, more), code, parts);

@@ -22,7 +22,7 @@ using vpe::core::RgbImage;
 
 class StereoPanorama : public AppTest {
  protected:
-  // `more` in place of what would be said else.
+  // Words of `more` replace the default ones.
   Words words(const std::string& output, const Words& more = {}) const {
     Words all{"panorama", planet().string(), "--at", "10,5", "--height", "4000", "-o", output, "-q"};
     for (const auto& [name, value] : {std::pair("--width", "500"), std::pair("--elevation", "-30,20")}) {
@@ -48,8 +48,8 @@ RgbImage part_of(const RgbImage& image, int x, int y, int width, int height) {
   return part;
 }
 
-// All numbers; what lies beyond the edges repeats them.
-std::vector<float> read_plane(const fs::path& path) {
+// Returns all numbers of a layer; tiles beyond the edges repeat them.
+std::vector<float> read_layer(const fs::path& path) {
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(path.c_str(), "r"), TIFFClose);
   if (tiff == nullptr) throw std::runtime_error("cannot open " + path.string());
   std::vector<float> numbers;
@@ -80,7 +80,7 @@ TEST_F(StereoPanorama, EveryLayoutHasTheSameEyes) {
   const RgbImage mixed = vpe::core::read_image(dir_ / "a.png");
   EXPECT_EQ(mixed.pixels, vpe::core::combine_stereo(left, right, vpe::core::StereoLayout::kAnaglyph).pixels);
 
-  // What describes them: GPano where it can, the layout where there is one.
+  // GPano describes single images, the sidecar the layout of a pair.
   const auto pair = panorama::describe(dir_ / "s.png");
   EXPECT_EQ(pair.pair, panorama::PairLayout::kSideBySide);
   EXPECT_EQ(pair.map.width_px, 500);
@@ -90,13 +90,13 @@ TEST_F(StereoPanorama, EveryLayoutHasTheSameEyes) {
   EXPECT_EQ(panorama::describe(dir_ / "j.jpg").pair, panorama::PairLayout::kNone);
   EXPECT_EQ(panorama::describe(dir_ / "j.jpg").sources.size(), 2U);
 
-  const auto look = [&](const std::string& name, const std::string& output) {
+  const auto view = [&](const std::string& name, const std::string& output) {
     const Result result = vpe({"overlook", name, "--view", "80,-5", "--fov", "40", "--size", "300x200",
                                "--stereo", "sbs", "-o", output, "-q"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return vpe::core::read_image(dir_ / output).pixels;
   };
-  EXPECT_TRUE(look("s.png", "v.png") == look("t.tif", "w.png"));
+  EXPECT_TRUE(view("s.png", "v.png") == view("t.tif", "w.png"));
   EXPECT_EQ(leftovers(), Words{});
 }
 
@@ -110,13 +110,13 @@ TEST_F(StereoPanorama, TheBaseIsAThirtiethOfTheNearestAndKept) {
   EXPECT_NEAR(stereo["nearest_m"].get<double>(), 30 * base_m, 1e-9 * base_m);
   EXPECT_EQ(report["width"], 1000);
   // Ground as seen in a panorama for one eye.
-  make("one.png", {"--planes", "range"});
+  make("one.png", {"--aux-layers", "range"});
   float nearest_m = HUGE_VALF;
-  for (const float r : read_plane(dir_ / "one.range.tif")) nearest_m = std::fmin(nearest_m, r);
+  for (const float r : read_layer(dir_ / "one.range.tif")) nearest_m = std::fmin(nearest_m, r);
   EXPECT_NEAR(30 * base_m, nearest_m, 0.02 * nearest_m);
 }
 
-TEST_F(StereoPanorama, AgainAndResumedItIsTheSame) {
+TEST_F(StereoPanorama, FromItsSidecarAndResumedItIsTheSame) {
   const Words wide{"--width", "9000", "--elevation=-3.2,-0.8", "--eye-base", "300"};
   for (const std::string layout : {"sbs", "ou", "anaglyph"}) {
     Words more = wide;
@@ -124,7 +124,7 @@ TEST_F(StereoPanorama, AgainAndResumedItIsTheSame) {
     make("p.tif", more);
     const std::string bytes = read_text(dir_ / "p.tif");
     const Result again =
-        vpe({"panorama", "--again", "p.json", "-o", "q.tif", "-q", "--memory", "300", "--threads", "3"});
+        vpe({"panorama", "--from-sidecar", "p.json", "-o", "q.tif", "-q", "--memory", "300", "--threads", "3"});
     ASSERT_EQ(again.exit_code, 0) << again.err;
     EXPECT_TRUE(read_text(dir_ / "q.tif") == bytes) << layout;
     EXPECT_EQ(parse_json(read_text(dir_ / "p.json"))["vpe"]["recipe"],
@@ -150,7 +150,7 @@ TEST_F(StereoPanorama, AgainAndResumedItIsTheSame) {
   }
 }
 
-TEST_F(StereoPanorama, BadInputIsTold) {
+TEST_F(StereoPanorama, BadInputIsReported) {
   const auto refuse = [&](int code, const Words& more, const Words& parts,
                           const std::string& output = "x.png") {
     expect_failure(words(output, more), code, parts);
@@ -164,13 +164,13 @@ TEST_F(StereoPanorama, BadInputIsTold) {
     refuse(2, {"--stereo", "sbs", "--eye-base", bad}, {"--eye-base", bad});
   refuse(2, {"--stereo", "sbs", "--backend", "polygon", "--projection", "facets"}, {"--stereo", "--backend"});
   refuse(2, {"--stereo", "sbs", "--projection", "facets"}, {"facet", "--projection cylinder"});
-  refuse(2, {"--stereo", "sbs", "--planes", "range"}, {"--planes", "one eye", "without --stereo"});
-  // Nearer than the eyes are to each other, or nearly.
+  refuse(2, {"--stereo", "sbs", "--aux-layers", "range"}, {"--aux-layers", "one eye", "without --stereo"});
+  // Ground nearer than the eyes are to each other, or nearly.
   refuse(1, {"--stereo", "sbs", "--eye-base", "9000"}, {"--eye-base", "eyes 9000 m apart", "comfortable"});
   refuse(1, {"--stereo", "sbs", "--eye-base", "2500"}, {"--eye-base", "at most"});
   refuse(1, {"--stereo", "sbs", "--elevation=40,60"}, {"sky alone", "--eye-base"});
   refuse(1, {"--stereo", "sbs", "--width", "40000", "--elevation=-2,2"}, {"80000x", "65500"}, "x.jpg");
-  // An eye in a slope that the image does not show.
+  // An eye inside a slope that the image does not show.
   const Result low =
       vpe({"panorama", planet().string(), "--at", "100,0", "--height", "0.02", "-o", "x.png", "--width", "500",
            "--elevation=40,60", "--stereo", "sbs", "--eye-base", "2000", "-q"});
@@ -181,18 +181,18 @@ TEST_F(StereoPanorama, BadInputIsTold) {
 
   make("p.png", {"--stereo", "sbs"});
   auto json = parse_json(read_text(dir_ / "p.json"));
-  expect_failure({"panorama", "--again", "p.json", "-o", "x.png", "--stereo", "ou"}, 2,
-                 {"--stereo and --again"});
+  expect_failure({"panorama", "--from-sidecar", "p.json", "-o", "x.png", "--stereo", "ou"}, 2,
+                 {"--stereo and --from-sidecar"});
   json["vpe"]["recipe"]["stereo"]["eye_base_m"] = -3;
   write_text(dir_ / "b.json", json.dump());
-  expect_failure({"panorama", "--again", "b.json", "-o", "x.png"}, 1, {"b.json", "stereo", "-3"});
+  expect_failure({"panorama", "--from-sidecar", "b.json", "-o", "x.png"}, 1, {"b.json", "stereo", "-3"});
   json["vpe"]["recipe"]["stereo"]["layout"] = "cross";
   write_text(dir_ / "b.json", json.dump());
-  expect_failure({"panorama", "--again", "b.json", "-o", "x.png"}, 1, {"b.json", "layout"});
+  expect_failure({"panorama", "--from-sidecar", "b.json", "-o", "x.png"}, 1, {"b.json", "layout"});
 }
 
-// Ground with relief of metres about an eye 30 m above it.
-class StereoGround : public AppTest {
+// Terrain with hills of some metres around a camera 30 m above it.
+class StereoTerrain : public AppTest {
  protected:
   static constexpr double kLon_deg = 20;
   static constexpr double kLat_deg = 30;
@@ -208,7 +208,7 @@ class StereoGround : public AppTest {
   }
 };
 
-TEST_F(StereoGround, DisparitiesAreThoseOfExactCasts) {
+TEST_F(StereoTerrain, DisparitiesAreThoseOfExactCasts) {
   const auto planet = hills();
   const paging::Surface surface(planet, std::size_t{64} << 20);
   for (const std::string projection : {"cylinder", "equirectangular"}) {
@@ -243,7 +243,7 @@ TEST_F(StereoGround, DisparitiesAreThoseOfExactCasts) {
     const test_support::TwoEyes eyes(middle, mars::kMarsRadius_m, base_m);
     const RgbImage image = vpe::core::read_image(dir_ / "p.png");
 
-    // Light of the left eye's half between two pixels of a row.
+    // Returns the light of the left eye's half between two pixels of a row.
     const auto light = [&](double x, double y) {
       const auto row = static_cast<std::int64_t>(y);
       const double left = std::floor(x - 0.5);
@@ -297,13 +297,13 @@ TEST_F(StereoGround, DisparitiesAreThoseOfExactCasts) {
     const double best_px = static_cast<double>(best - kShifts / 2) * kStep_px;
     RecordProperty("best_px_" + projection, std::to_string(best_px));
     EXPECT_LE(std::abs(best_px), 0.3) << projection;
-    // A pixel off is told from right.
+    // An error of one pixel would be noticed.
     EXPECT_GT(difference.front(), 2 * difference[static_cast<std::size_t>(best)]) << projection;
     EXPECT_GT(difference.back(), 2 * difference[static_cast<std::size_t>(best)]) << projection;
   }
 }
 
-TEST_F(StereoGround, TheSeamOfTheTurnIsClosed) {
+TEST_F(StereoTerrain, TheSeamOfTheFullCircleIsClosed) {
   hills();
   const Result result = vpe({"panorama", "hills.vpe", "--at", "20,30", "--height", "30", "-o", "p.png",
                              "--width", "1500", "--elevation=-45,5", "--stereo", "ou", "-q"});

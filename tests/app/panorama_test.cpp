@@ -81,7 +81,7 @@ TEST_F(Panorama, AtAPoleItIsTheOneOfItsMeridian) {
   make("n.png", {"--width", "360", "--elevation=-20,10"});
   const auto at_pole = [&](const std::string& name, const std::string& lon) {
     const Result result = vpe({"panorama", planet().string(), "--at", lon + ",90", "--height", "3000", "-o",
-                               name, "--width", "360", "--elevation=-20,10", "-q", "--planes", "lonlat"});
+                               name, "--width", "360", "--elevation=-20,10", "-q", "--aux-layers", "lonlat"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
   };
   at_pole("a.png", "0");
@@ -102,7 +102,7 @@ TEST_F(Panorama, AtAPoleItIsTheOneOfItsMeridian) {
 TEST_F(Panorama, ResumedAfterASignalItIsTheSame) {
   for (const std::string name : {"p.tif", "p.png", "p.jpg"}) {
     Words more = wide();
-    more.insert(more.end(), {"--planes", "range,elevation"});
+    more.insert(more.end(), {"--aux-layers", "range,elevation"});
     make(name, more);
     const std::string panorama_image = read_text(dir_ / name);
     const std::string range = read_text(dir_ / "p.range.tif");
@@ -125,7 +125,7 @@ TEST_F(Panorama, ResumedAfterASignalItIsTheSame) {
     fs::create_directory(dir_ / "other");
     fs::copy(dir_ / (name + ".parts"), dir_ / "other" / (name + ".parts"));
     Words other = wide();
-    other.insert(other.end(), {"--planes", "range,elevation", "--set", "sun.elevation=10", "--json"});
+    other.insert(other.end(), {"--aux-layers", "range,elevation", "--set", "sun.elevation=10", "--json"});
     EXPECT_EQ(parse_json(make("other/" + name, other).out)["strips_kept"], 0);
     fs::remove_all(dir_ / "other");
 
@@ -144,12 +144,12 @@ TEST_F(Panorama, ResumedAfterASignalItIsTheSame) {
   }
 }
 
-TEST_F(Panorama, AgainItHasTheSameBytes) {
+TEST_F(Panorama, FromItsSidecarItHasTheSameBytes) {
   make("p.png", {"--width", "300", "--from", "300", "--to", "20.5", "--elevation=-20,10", "--set", "samples=2",
-                 "--set", "exaggeration=1.7", "--sun", "2026-11-20T12:00Z", "--planes",
+                 "--set", "exaggeration=1.7", "--sun", "2026-11-20T12:00Z", "--aux-layers",
                  "range,lonlat,elevation,slope,incidence"});
   const Result again =
-      vpe({"panorama", "--again", "p.json", "-o", "q.png", "-q", "--memory", "300", "--threads", "3"});
+      vpe({"panorama", "--from-sidecar", "p.json", "-o", "q.png", "-q", "--memory", "300", "--threads", "3"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   for (const std::string end :
        {".png", ".range.tif", ".lonlat.tif", ".elevation.tif", ".slope.tif", ".incidence.tif"})
@@ -159,14 +159,15 @@ TEST_F(Panorama, AgainItHasTheSameBytes) {
   // Under its own name, in its folder.
   const std::string bytes = read_text(dir_ / "p.png");
   fs::remove(dir_ / "p.png");
-  ASSERT_EQ(vpe({"panorama", "--again", path("p.json"), "-q"}).exit_code, 0);
+  ASSERT_EQ(vpe({"panorama", "--from-sidecar", path("p.json"), "-q"}).exit_code, 0);
   EXPECT_TRUE(read_text(dir_ / "p.png") == bytes);
 
-  expect_failure({"panorama", "--again", "p.json", "--width=5"}, 2, {"--width and --again"});
+  expect_failure({"panorama", "--from-sidecar", "p.json", "--width=5"}, 2, {"--width and --from-sidecar"});
   // Defaults of a configuration file do not count.
   write_text(dir_ / "c.toml", "[panorama]\nwidth = 77\nbackend = \"polygon\"\n");
   fs::remove(dir_ / "q.png");
-  const Result by_file = vpe({"panorama", "--again", "p.json", "-o", "q.png", "-q", "--config", "c.toml"});
+  const Result by_file =
+      vpe({"panorama", "--from-sidecar", "p.json", "-o", "q.png", "-q", "--config", "c.toml"});
   ASSERT_EQ(by_file.exit_code, 0) << by_file.err;
   EXPECT_TRUE(read_text(dir_ / "q.png") == bytes);
 
@@ -175,9 +176,41 @@ TEST_F(Panorama, AgainItHasTheSameBytes) {
   dem.height_m = [](int, int) { return 100; };
   write_dem(dir_ / "flat.tif", dem);
   ASSERT_EQ(vpe({"build", "flat.tif", "-o", "flat.vpe", "--base-spacing", "100000", "-q"}).exit_code, 0);
-  expect_failure({"panorama", "flat.vpe", "--again", "p.json", "-o", "z.png"}, 1,
+  expect_failure({"panorama", "flat.vpe", "--from-sidecar", "p.json", "-o", "z.png"}, 1,
                  {"p.json", "identity", "flat.vpe", "name the right planet"});
   EXPECT_FALSE(exists("z.png"));
+}
+
+// Sidecars of earlier versions have former names of the backend and of settings.
+TEST_F(Panorama, FormerSidecarsAndOptionsStillWork) {
+  make("p.png",
+       {"--width", "100", "--elevation=-20,10", "--aux-layers", "range", "--set", "rays.mode=reference"});
+  const std::string bytes = read_text(dir_ / "p.png");
+  auto json = parse_json(read_text(dir_ / "p.json"));
+  auto& recipe = json["vpe"]["recipe"];
+  EXPECT_EQ(recipe["backend"], "ray");
+  EXPECT_EQ(recipe["settings"]["rays.mode"], "reference");
+  recipe["backend"] = "voxel";
+  recipe["settings"]["rays.mode"] = "plain";
+  recipe["settings"]["lod.rule"] = "error";  // former name
+  recipe["settings"].erase("lod.metric");
+  write_text(dir_ / "old.json", json.dump());
+  ASSERT_EQ(vpe({"panorama", "--from-sidecar", "old.json", "-o", "q.png", "-q"}).exit_code, 0);
+  EXPECT_TRUE(read_text(dir_ / "q.png") == bytes);
+  const auto made = parse_json(read_text(dir_ / "q.json"))["vpe"]["recipe"];
+  EXPECT_EQ(made["backend"], "ray");
+  EXPECT_EQ(made["settings"]["rays.mode"], "reference");
+  EXPECT_EQ(made["settings"]["lod.metric"], "error");
+  ASSERT_EQ(vpe({"panorama", "--again", "p.json", "-o", "r.png", "-q"}).exit_code, 0);  // former name
+  EXPECT_TRUE(read_text(dir_ / "r.png") == bytes);
+  expect_failure({"panorama", "--again", "p.json", "--planes", "range"}, 2,  // former name
+                 {"--aux-layers and --from-sidecar"});
+  make("s.png",
+       {"--width", "100", "--elevation=-20,10", "--planes", "range", "--backend", "voxel"});  // former name
+  EXPECT_TRUE(exists("s.range.tif"));
+  recipe["backend"] = "scanline";
+  write_text(dir_ / "bad.json", json.dump());
+  expect_failure({"panorama", "--from-sidecar", "bad.json", "-o", "z.png"}, 1, {"bad.json", "'scanline'"});
 }
 
 TEST_F(Panorama, DamagedDescriptionsAreNotMadeAgain) {
@@ -187,7 +220,7 @@ TEST_F(Panorama, DamagedDescriptionsAreNotMadeAgain) {
     write_text(dir_ / "x.json", text);
     Words all = parts;
     all.push_back("x.json");
-    expect_failure({"panorama", "--again", "x.json", "-o", "z.png"}, 1, all);
+    expect_failure({"panorama", "--from-sidecar", "x.json", "-o", "z.png"}, 1, all);
   };
   expect("", {"not well-formed JSON", "vpe panorama"});
   expect(good.substr(0, good.size() / 2), {"not well-formed JSON"});
@@ -219,11 +252,11 @@ TEST_F(Panorama, DamagedDescriptionsAreNotMadeAgain) {
   changed = json;
   changed["vpe"]["recipe"]["planes"] = "range,colour";
   expect(changed.dump(), {"'colour'"});
-  expect_failure({"panorama", "--again", "none.json"}, 1, {"none.json", "No such file"});
+  expect_failure({"panorama", "--from-sidecar", "none.json"}, 1, {"none.json", "No such file"});
   EXPECT_FALSE(exists("z.png"));
 }
 
-TEST_F(Panorama, BadInputIsToldBeforeAnyWork) {
+TEST_F(Panorama, BadInputIsReportedBeforeAnyWork) {
   const auto refuse = [&](int code, const Words& more, const Words& parts,
                           const std::string& output = "x.png") {
     expect_failure(words(output, more), code, parts);
@@ -234,7 +267,7 @@ TEST_F(Panorama, BadInputIsToldBeforeAnyWork) {
   refuse(2, {"--projection", "facets", "--facets", "1000000"}, {"1000000 facets: must be 3 to 64"});
   refuse(2, {"--facets", "8"}, {"--facets", "cylinder", "--projection facets"});
   refuse(2, {"--projection", "mercator"}, {"'mercator'", "facets, cylinder or equirectangular"});
-  refuse(2, {"--backend", "polygon", "--projection", "cylinder"}, {"planes only", "--backend voxel"});
+  refuse(2, {"--backend", "polygon", "--projection", "cylinder"}, {"planes only", "--backend ray"});
   refuse(2, {"--width", "0"}, {"width of 0"});
   refuse(2, {"--width", "2000000"}, {"must be 1 to 1000000"});
   refuse(2, {"--width", "1000000"}, {"rows high"});
@@ -243,14 +276,14 @@ TEST_F(Panorama, BadInputIsToldBeforeAnyWork) {
   refuse(2, {"--elevation=20,10"}, {"must be at least"});
   refuse(2, {"--from", "10"}, {"--from and --to"});
   refuse(2, {"--from", "0", "--to", "400"}, {"0.1 to 360"});
-  refuse(2, {"--planes", "range,depth"}, {"'depth'", "range, lonlat, elevation, slope, incidence"});
+  refuse(2, {"--aux-layers", "range,depth"}, {"'depth'", "range, lonlat, elevation, slope, incidence"});
   refuse(2, {"--set", "nonsense=1"}, {"nonsense"});
   refuse(1, {}, {"x.bmp", ".tif, .png or .jpg"}, "x.bmp");
   refuse(1, {}, {"no folder", "none"}, "none/x.png");
   refuse(1, {"--width", "66000", "--elevation=-5,5"}, {"x.jpg", "65500", ".tif"}, "x.jpg");
   refuse(1, {"--width", "1000000", "--elevation=-5,5", "--memory", "64"}, {"x.png", "--memory", ".tif"});
   fs::create_directory(dir_ / "d.range.tif");
-  refuse(1, {"--planes", "range"}, {"d.range.tif", "folder"}, "d.png");
+  refuse(1, {"--aux-layers", "range"}, {"d.range.tif", "folder"}, "d.png");
   expect_failure({"panorama", planet().string(), "-o", "x.png"}, 2, {"--at"});
   expect_failure({"panorama", planet().string(), "--at", "1,2", "-o", "x.png"}, 2, {"--height", "--altitude"});
   expect_failure({"panorama", planet().string(), "--at", "1,92", "--height", "2", "-o", "x.png"}, 2,
@@ -270,10 +303,11 @@ TEST_F(Panorama, BadInputIsToldBeforeAnyWork) {
   if (::access((dir_ / "locked").c_str(), W_OK) != 0) refuse(1, {}, {"locked", "permissions"}, "locked/x.png");
 }
 
-// A planet of constant height with posts 20 m apart about the camera: S is the sphere within 2e-5 m there.
+// A planet of constant height with posts 20 m apart around the camera: the reference surface is the sphere
+// within 2e-5 m there.
 class PanoramaSphere : public Panorama {};
 
-TEST_F(PanoramaSphere, PlanesAreThoseOfTheSphere) {
+TEST_F(PanoramaSphere, LayersAreThoseOfTheSphere) {
   const double kLon_deg = 20;
   const double kLat_deg = 30;
   const double kHeight_m = 50;
@@ -284,7 +318,7 @@ TEST_F(PanoramaSphere, PlanesAreThoseOfTheSphere) {
   for (const std::string projection : {"cylinder", "equirectangular", "facets"}) {
     const Result result = vpe({"panorama", "flat.vpe", "--at", "20,30", "--height", "50", "-o", "s.png",
                                "--width", "320", "--elevation=-60,-10", "--projection", projection, "-q",
-                               "--planes", "range,lonlat,elevation,slope,incidence"});
+                               "--aux-layers", "range,lonlat,elevation,slope,incidence"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const panorama::PanoramaMap map = panorama::describe(dir_ / "s.png").map;
     const auto range = read_numbers<float>(dir_ / "s.range.tif");
@@ -323,8 +357,9 @@ TEST_F(PanoramaSphere, PlanesAreThoseOfTheSphere) {
   }
 }
 
-TEST_F(Panorama, PlanesAreNanInTheSky) {
-  make("p.png", {"--width", "300", "--elevation=-20,40", "--planes", "range,lonlat,elevation,slope,incidence"});
+TEST_F(Panorama, LayersAreNanInTheSky) {
+  make("p.png",
+       {"--width", "300", "--elevation=-20,40", "--aux-layers", "range,lonlat,elevation,slope,incidence"});
   const auto range = read_numbers<float>(dir_ / "p.range.tif");
   const auto lonlat = read_numbers<double>(dir_ / "p.lonlat.tif", 2);
   const auto incidence = read_numbers<float>(dir_ / "p.incidence.tif");
@@ -361,7 +396,7 @@ TEST_F(Panorama, OfManyStripsIsThatOfPieces) {
 class LongPanorama : public Panorama {};
 
 TEST_F(LongPanorama, MemoryIsBounded) {
-  const Words more{"--width", "100000", "--elevation=-4,8", "--memory", "256", "--planes", "range"};
+  const Words more{"--width", "100000", "--elevation=-4,8", "--memory", "256", "--aux-layers", "range"};
   const Result result = run([&] {
     Command command = command_for(words("p.tif", more));
     command.limit_s = 1500;

@@ -22,7 +22,7 @@ class Profile : public AppTest {
 
 TEST_F(Profile, FollowsTheGreatCircle) {
   const json points = ask({"-100,60", "100,60", "--step", "50000"});
-  // 160 degrees of longitude at 60 north, over the pole's side: shorter than along the parallel.
+  // 160 degrees of longitude at 60 north: the great circle passes near the pole, shorter than the parallel.
   const double arc = 2 * std::asin(std::cos(M_PI / 3) * std::sin(80 * M_PI / 180));
   EXPECT_NEAR(points.back()["distance_m"].get<double>(), 3396190 * arc, 1e-3);
   EXPECT_EQ(points.size(), static_cast<std::size_t>(std::ceil(3396190 * arc / 50000)) + 1);
@@ -52,7 +52,7 @@ TEST_F(Profile, HeightsAreThoseOfQuery) {
     given += p["place_given"].get<bool>() ? 1 : 0;
   }
   EXPECT_EQ(given, 3);
-  EXPECT_EQ(points.back()["lon_deg"], -5);  // as understood
+  EXPECT_EQ(points.back()["lon_deg"], -5);  // normalized
   // Slopes are those between neighbouring points.
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double run = points[i]["distance_m"].get<double>() - points[i - 1]["distance_m"].get<double>();
@@ -74,7 +74,7 @@ TEST_F(Profile, CsvAndStandardInput) {
   EXPECT_EQ(line.substr(0, 17), "0.000,0.000,10,0,");
 }
 
-TEST_F(Profile, HolesAreNull) {
+TEST_F(Profile, NodataIsNull) {
   Dem dem;
   dem.no_data = -9999;
   dem.height_m = [](int column, int) { return column >= 90 && column < 110 ? -9999.0 : 100.0; };

@@ -1,4 +1,4 @@
-// Questions and answers, and figures as JSON.
+// vpe query, and results of other commands as JSON.
 #include <clocale>
 #include <sstream>
 
@@ -39,18 +39,19 @@ TEST_F(Query, NegativeCoordinatesNeedNoEscape) {
 }
 
 TEST_F(Query, AnswersFollowTheRaster) {
-  // The hills at centres of cells. S lies below them by its sag: posts are 42 km apart, diagonals 59 km.
-  constexpr double kSag_m = 59e3 * 59e3 / (8 * 3396190.0);
+  // The hills at centres of cells. The reference surface lies below them by the sagitta: posts are 42 km apart,
+  // diagonals 59 km.
+  constexpr double kSagitta_m = 59e3 * 59e3 / (8 * 3396190.0);
   for (const auto& a : ask({"1,1", "31,1", "91,1", "-149,-1", "31,59"})) {
     const double lon = a["lon_deg"].get<double>();
     const double lat = a["lat_deg"].get<double>();
     const double column = std::floor((lon + 180) / 2);
     const double expected = 3000 * std::sin(3 * 2 * M_PI * column / 180) * std::cos(lat * M_PI / 180);
     EXPECT_LE(a["elevation_m"].get<double>(), expected + 10) << a.dump();
-    EXPECT_GE(a["elevation_m"].get<double>(), expected - kSag_m - 10) << a.dump();
+    EXPECT_GE(a["elevation_m"].get<double>(), expected - kSagitta_m - 10) << a.dump();
     EXPECT_EQ(a["source"].get<std::string>().substr(a["source"].get<std::string>().size() - 9), "hills.tif");
     EXPECT_EQ(a["illustration"], false);
-    EXPECT_EQ(a["level"], 1);
+    EXPECT_EQ(a["level"], 0);
     EXPECT_EQ(a["tile_error_m"], 0);
   }
 }
@@ -109,11 +110,11 @@ TEST_F(Query, NoAnswerWhereNoSourceHasData) {
     EXPECT_TRUE(answers[0][key].is_null()) << key;
     EXPECT_TRUE(answers[1][key].is_number()) << key;
   }
-  // S sags by up to 128 m between its few posts.
+  // The reference surface lies up to 128 m below the sphere between its few posts.
   EXPECT_NEAR(answers[1]["elevation_m"].get<double>(), 636, 64.1);
   const std::vector<std::string> lines = lines_of(vpe({"query", "half.vpe", "-100,10", "100,10"}).out);
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_EQ(lines[1].find("-100,10,,,,1,"), 0U) << lines[1];
+  EXPECT_EQ(lines[1].find("-100,10,,,,0,"), 0U) << lines[1];
   EXPECT_NEAR(std::stod(lines[2].substr(7)), answers[1]["elevation_m"].get<double>(), 0.0006) << lines[2];
 }
 
@@ -148,6 +149,8 @@ TEST_F(Query, InfoAndBuildAndSettingsAsJson) {
   EXPECT_TRUE(says(build["notes"][0], {"x.tif", "--datum"}));
   build.erase("notes");
   EXPECT_EQ(info, build);
+  EXPECT_EQ(info["levels"], 1);
+  EXPECT_EQ(info["by_level"][0]["level"], 0);
 
   const json settings = parse_json(vpe({"settings", "--json"}).out);
   ASSERT_TRUE(settings.is_array());

@@ -19,7 +19,7 @@ class Remote : public AppTest {
   }
 };
 
-TEST_F(Remote, EqualsTheLocalBuildThoughTheServerFails) {
+TEST_F(Remote, EqualsTheLocalBuildAlthoughTheServerFails) {
   write_dem(dir_ / "x.tif");
   std::mt19937 random(7);
   HttpServer server(dir_.path(), [&](int, const std::string&) {
@@ -33,7 +33,7 @@ TEST_F(Remote, EqualsTheLocalBuildThoughTheServerFails) {
   EXPECT_GT(server.failed(), 0);
 }
 
-TEST_F(Remote, WhatIsNotThereIsNamed) {
+TEST_F(Remote, MissingFilesAreNamed) {
   const HttpServer server(dir_.path());
   const Result result = build(server.url("absent.tif"), "x.vpe");
   EXPECT_EQ(result.exit_code, 1);

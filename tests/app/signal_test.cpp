@@ -16,7 +16,7 @@ class Signals : public AppTest {
     }
     return false;
   }
-  // What a stopped build leaves is its part, for the next one, and nothing else.
+  // A stopped build leaves its .part file for the next one, and nothing else.
   void expect_only_parts() const {
     for (const std::string& name : leftovers())
       EXPECT_TRUE(name.ends_with(".part") || name.ends_with(".part-journal")) << name;
@@ -41,7 +41,7 @@ TEST_F(Signals, StopABuild) {
   }
 }
 
-TEST_F(Signals, KeepTheFileThatWasThere) {
+TEST_F(Signals, KeepTheExistingFile) {
   write_dem(dir_ / "x.tif");
   std::filesystem::copy_file(planet(), dir_ / "x.vpe");
   Command command = command_for({"build", "x.tif", "-o", "x.vpe"});
@@ -71,7 +71,7 @@ TEST_F(Signals, StopABuildIntoTheCache) {
   }
 }
 
-// A build of about a second, stopped over and over.
+// A build of about a second, stopped repeatedly.
 class Continue : public Signals {
  protected:
   Words build_words(const std::string& name) const {
@@ -97,7 +97,7 @@ class Continue : public Signals {
   }
 };
 
-TEST_F(Continue, AStoppedBuildSaysHowAndGoesOn) {
+TEST_F(Continue, AStoppedBuildIsContinued) {
   write_dem(dir_ / "x.tif");
   const Result whole = vpe(build_words("whole.vpe"));
   ASSERT_EQ(whole.exit_code, 0) << whole.err;

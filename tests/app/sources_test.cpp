@@ -1,4 +1,4 @@
-// vpe build: datums, levels, blunders, bodies, as users give them.
+// vpe build: datums, vertical alignment, outliers and bodies, as users give them.
 #include <cmath>
 
 #include "tests/app/support/app_fixture.h"
@@ -38,10 +38,10 @@ TEST_F(Sources, DatumsAreNamedRefusedAndConverted) {
   Result result = build({"--datum", "globe.tif=areoid", "--datum", "inset.tif=sphere:3396000"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(
-      says(result.err, {"globe.tif", "'areoid'", "inset.tif", "'sphere:3396000'", "median", "--convert"}));
+      says(result.err, {"globe.tif", "'areoid'", "inset.tif", "'sphere:3396000'", "median", "--to-datum"}));
   EXPECT_EQ(leftovers(), Words{});
   // Between spheres nothing but the radii is needed.
-  result = build({"--datum", "globe.tif=sphere:3396190", "--datum", "inset.tif=sphere:3396000", "--convert",
+  result = build({"--datum", "globe.tif=sphere:3396190", "--datum", "inset.tif=sphere:3396000", "--to-datum",
                   "--json", "-q"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   json built = parse_json(result.out);
@@ -52,7 +52,13 @@ TEST_F(Sources, DatumsAreNamedRefusedAndConverted) {
   EXPECT_EQ(at["datum"], "sphere:3396190");
   EXPECT_NEAR(at["elevation_m"].get<double>(),
               3000 * std::sin(3 * 2 * M_PI * 204 / 360) * std::cos(5 * M_PI / 180) - 190, 30);
-  // One for all that do not say.
+  // A flag in a configuration file means the same as on the command line.
+  write_text(dir_ / "c.toml", "[build]\nto-datum = true\n");
+  result = build({"--datum", "globe.tif=sphere:3396190", "--datum", "inset.tif=sphere:3396000", "--config",
+                  "c.toml", "--json", "-q"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(parse_json(result.out)["datum"], "sphere:3396190");
+  // One datum for all rasters that do not state theirs.
   result = build({"--datum", "areoid", "--json", "-q"});
   EXPECT_EQ(parse_json(result.out)["datum"], "areoid");
   EXPECT_EQ(parse_json(result.out)["notes"].size(), 0U);
@@ -72,14 +78,14 @@ TEST_F(Sources, TrueRadii) {
   EXPECT_TRUE(says(vpe({"info", "p.vpe"}).out, {"true radii"}));
 }
 
-TEST_F(Sources, LevelsAndBlundersAreReported) {
+TEST_F(Sources, AlignmentIsReported) {
   write_globe_and_inset(700);
-  Result result = build({"--level", "fit", "--datum", "areoid"});
+  Result result = build({"--align", "plane", "--datum", "areoid"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(says(result.err, {"inset.tif lies", "m above what is below it", "tilt", "RMS there was"}));
-  result = build({"--level", "bend", "--datum", "areoid", "--json"});
+  EXPECT_TRUE(says(result.err, {"inset.tif lies", "m above the base", "tilt", "RMS difference there was"}));
+  result = build({"--align", "edges", "--datum", "areoid", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(says(result.err, {"bent to meet it"}));
+  EXPECT_TRUE(says(result.err, {"the base is warped to meet inset.tif"}));
   EXPECT_NEAR(parse_json(result.out)["findings"][1]["bend"]["rms_m"].get<double>(), 700, 100);
   EXPECT_TRUE(parse_json(result.out)["findings"][1]["level"].is_null());
 }
@@ -111,10 +117,10 @@ TEST_F(Sources, BadOptions) {
   };
   expect_failure(with({"--datum", "sealevel"}), 2, {"--datum", "'sealevel'", "areoid"});
   expect_failure(with({"--datum", "other.tif=areoid"}), 2, {"other.tif", "no raster is called"});
-  expect_failure(with({"--convert=up"}), 2, {"--convert", "'up'"});
+  expect_failure(with({"--to-datum=up"}), 2, {"--to-datum", "'up'"});
   expect_failure(with({"--datum", "areoid", "--shape", "radius"}), 1, {"areoid", "--areoid"});
   expect_failure(with({"--areoid", "none.tif"}), 1, {"none.tif", "No such file"});
-  expect_failure(with({"--level", "up"}), 2, {"--level", "fit", "bend"});
+  expect_failure(with({"--align", "up"}), 2, {"--align", "plane", "edges"});
   expect_failure(with({"--feather", "-1"}), 2, {"--feather"});
   expect_failure(with({"--shape", "egg"}), 2, {"--shape", "radius"});
 }

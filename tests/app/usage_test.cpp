@@ -37,7 +37,7 @@ TEST_F(Usage, CommandsAndOptions) {
   expect_failure({"info", "--memory", "63"}, 2, {"--memory", "63", "64"});
   expect_failure({"info", "--threads", "-1"}, 2, {"--threads", "-1"});
   expect_failure({"render", "x.vpe", "--pose", "0,0,1", "-o", "x.png", "--backend", "magic"}, 2,
-                 {"--backend", "magic", "polygon"});
+                 {"--backend", "magic", "polygon", "ray"});
 }
 
 TEST_F(Usage, Places) {
@@ -54,7 +54,7 @@ TEST_F(Usage, Places) {
 
 class ImageUsage : public Usage {
  protected:
-  // Wrong usage is told although the planet is not even there: nothing was done before.
+  // Wrong usage is reported although the planet does not exist: nothing was done before.
   void expect_usage(const Words& more, const Words& parts, const std::string& pose = "0,0,300000") const {
     Words arguments{"render", "missing.vpe", "-o", "x.png", "--pose", pose};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -70,7 +70,7 @@ TEST_F(ImageUsage, Pose) {
   expect_usage({}, {"--pose '0,0'", "LON,LAT,ALT"}, "0,0");
   expect_usage({}, {"--pose '0,0,1,2,3,4,5'", "LON,LAT,ALT"}, "0,0,1,2,3,4,5");
   expect_usage({}, {"--pose ''", "LON,LAT,ALT"}, "");
-  expect_usage({}, {"eye", "1000000000000000 m"}, "0,0,1e17");
+  expect_usage({}, {"--pose '0,0,1e17'", "ALT", "1000000000000000 m"}, "0,0,1e17");
   expect_usage({"--height", "nan"}, {"--height", "'nan'"});
 }
 
@@ -81,7 +81,7 @@ TEST_F(ImageUsage, InterestAndLevelControl) {
     expect_usage({"--interest", bad}, {"--interest '" + std::string(bad) + "'", "LON,LAT,RADIUS,LEVELS"});
     expect_failure({"fly", "missing.flight", "--interest", bad, "-o", "x"}, 2, {"--interest"});
   }
-  expect_usage({"--set", "lod.rule=1992"}, {"lod.rule=1992", "error, hitchner"});
+  expect_usage({"--set", "lod.metric=1992"}, {"lod.metric=1992", "error, distance"});
   expect_usage({"--set", "lod.distance.scale=-1"}, {"lod.distance.scale", "0 to 1000000000000 m"});
   expect_usage({"--set", "lod.centre.weight=101"}, {"lod.centre.weight", "0 to 100"});
   expect_usage({"--set", "lod.centre.table=1:2,1:3"}, {"lod.centre.table", "X:LEVELS"});
@@ -90,10 +90,11 @@ TEST_F(ImageUsage, InterestAndLevelControl) {
 }
 
 TEST_F(ImageUsage, CullFrom) {
-  for (const char* pose : {"", "0,0", "0,91,1", "nan,0,1", "0,0,1,2,3,4,5"}) {
+  for (const char* pose : {"", "0,0", "nan,0,1", "0,0,1,2,3,4,5"}) {
     expect_usage({"--cull-from", pose}, {"--cull-from '" + std::string(pose) + "'", "LON,LAT,ALT"});
   }
-  expect_usage({"--cull-from", "0,0,1e17"}, {"eye", "1000000000000000 m"});
+  expect_usage({"--cull-from", "0,91,1"}, {"--cull-from '0,91,1'", "latitude", "-90..90"});
+  expect_usage({"--cull-from", "0,0,1e17"}, {"--cull-from '0,0,1e17'", "ALT", "1000000000000000 m"});
 }
 
 TEST_F(ImageUsage, SizeAndFieldOfView) {

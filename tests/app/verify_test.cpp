@@ -18,7 +18,7 @@ TEST_F(VerifyCommand, AGoodFileIsSound) {
   EXPECT_GT(json.at("largest_share_of_a_stated_error").get<double>(), 0.5);
 }
 
-TEST_F(VerifyCommand, ADamagedTileIsNamedAndTheExitCodeSaysSo) {
+TEST_F(VerifyCommand, ADamagedTileIsNamedWithExitCode1) {
   std::filesystem::copy_file(planet(), dir_ / "x.vpe");
   damage_payloads(dir_ / "x.vpe", "heights");
   const Result result = vpe({"verify", "x.vpe"});
@@ -31,7 +31,7 @@ TEST_F(VerifyCommand, ADamagedTileIsNamedAndTheExitCodeSaysSo) {
   EXPECT_GE(parse_json(json.out).at("problems").size(), 1U);
 }
 
-TEST_F(VerifyCommand, WhatIsNoPlanetIsRefused) {
+TEST_F(VerifyCommand, OtherFilesAreRefused) {
   expect_failure({"verify"}, 2, {"PLANET"});
   expect_failure({"verify", "none.vpe"}, 1, {"none.vpe", "no such planet file"});
   write_text(dir_ / "text.vpe", "text");

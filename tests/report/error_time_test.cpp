@@ -1,4 +1,4 @@
-// Ways measured and timed with fake renderers of counted frames, whose errors are known.
+// Configurations measured and timed with fake renderers whose frames are counted and whose errors are known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ core::View view_down() {
   return view;
 }
 
-// What the fakes share: a log of what was asked of them, and a clock that they turn.
+// Shared by the fakes: a log of requests, and a clock that they advance.
 struct World {
   double now_s = 0;
   int made = 0;
@@ -87,7 +87,7 @@ Configuration configuration(double tolerance, const std::string& renderer = "a")
   Configuration one;
   one.sweep = renderer + " by tolerance";
   one.knob = "lod.tolerance=" + std::to_string(static_cast<int>(tolerance));
-  one.comparison_group = one.plot = one.colour_plot = "picture";
+  one.comparison_group = one.plot = one.colour_plot = "image";
   one.renderer = renderer;
   core::DrawRequest request;
   request.view = view_down();
@@ -137,7 +137,8 @@ TEST_F(ErrorTime, FindsTheErrorsThatWerePutIn) {
   for (std::size_t k = 0; k < 4; ++k) {
     const Measured& m = result.measured[k];
     const double off_px = tolerances[k];
-    // In the middle the range is the height less what was put in; towards the rims it is a few per cent longer.
+    // In the middle the range is the height less the error put in; towards the edges it is a few per cent
+    // longer.
     EXPECT_NEAR(m.shift.forward.max_px, off_px / (1 - off_px / core::focal_px(view_down())), 0.002 * off_px)
         << k;
     EXPECT_LE(m.shift.forward.p99_px, m.shift.forward.max_px);
@@ -151,7 +152,7 @@ TEST_F(ErrorTime, FindsTheErrorsThatWerePutIn) {
   }
 }
 
-TEST_F(ErrorTime, TimesInTurnsByRenderersThatAreWarm) {
+TEST_F(ErrorTime, TimesInterleavedByWarmRenderers) {
   const SubjectResult result = measure(subject(), options_);
   EXPECT_NEAR(result.measured[0].timing.median_s(), 1 / 8.0, 1e-9);
   EXPECT_NEAR(result.measured[2].timing.median_s(), 1 / 2.0, 1e-9);
@@ -161,13 +162,13 @@ TEST_F(ErrorTime, TimesInTurnsByRenderersThatAreWarm) {
     EXPECT_EQ(m.timing.round_s.size(), 3U);
     EXPECT_EQ(m.pages_reloaded, 0);
   }
-  // The reference and every way by a renderer of its own, with ranges; then a round that does not count and
-  // three that do, without.
+  // The reference and every configuration by its own renderer, with ranges; then an untimed round and three
+  // timed ones, without.
   const std::vector<std::string> round{"a 8", "a 4", "a 2", "b 4"};
   std::vector<std::string> expected{"a with ranges 0", "a with ranges 8", "a with ranges 4", "a with ranges 2",
                                     "b with ranges 4"};
   expected.insert(expected.end(), round.begin(), round.end());
-  // Before the first round that counts each is asked whether it still has all.
+  // Before the first timed round each draws once to see whether it still has its data.
   for (const std::string& frame : round) expected.insert(expected.end(), 2, frame);
   for (int n = 0; n < 2; ++n) expected.insert(expected.end(), round.begin(), round.end());
   EXPECT_EQ(world_.log, expected);
@@ -176,18 +177,18 @@ TEST_F(ErrorTime, TimesInTurnsByRenderersThatAreWarm) {
   EXPECT_EQ(shares_, (std::vector<double>{1, 1, 1, 1, 1, 0.5, 0.5}));
 }
 
-// What is quick is drawn once more before each time that counts.
-TEST_F(ErrorTime, QuickWaysAreTimedWarm) {
+// Quick configurations are drawn once more before each timed frame.
+TEST_F(ErrorTime, QuickConfigurationsAreTimedWarm) {
   Subject all = subject();
   all.configurations[0].requests.front().settings.lod_tolerance_px = 16;
   const SubjectResult result = measure(all, options_);
   EXPECT_NEAR(result.measured[0].timing.median_s(), 1 / 16.0, 1e-9);
-  // In the round that does not count and twice in each of three that do; slower ones once, but for the first.
+  // Once in the untimed round and twice in each of three timed ones; slower ones once, but for the first.
   EXPECT_EQ(std::count(world_.log.begin(), world_.log.end(), "a 16"), 7);
   EXPECT_EQ(std::count(world_.log.begin(), world_.log.end(), "a 4"), 5);
 }
 
-// Where another way takes the memory, what is loaded again is not timed.
+// Where another configuration displaces data, loading it again is not timed.
 TEST_F(ErrorTime, LoadingAgainIsNotTimed) {
   class Forgetful : public core::Renderer {
    public:
@@ -212,14 +213,14 @@ TEST_F(ErrorTime, LoadingAgainIsNotTimed) {
   EXPECT_EQ(result.measured[0].pages_reloaded, 0);
 }
 
-TEST_F(ErrorTime, TellsAFalseStatement) {
+TEST_F(ErrorTime, FindsAFalseStatement) {
   stated_factor_ = 0.9;
   const SubjectResult result = measure(subject(), options_);
   EXPECT_FALSE(result.measured[0].within_stated());
   EXPECT_FALSE(summarize_sweeps(result).at(0).within_stated);
 }
 
-TEST_F(ErrorTime, WhatStatesNothingIsNotHeldToIt) {
+TEST_F(ErrorTime, WithoutAStatementNothingIsExceeded) {
   stated_factor_ = std::numeric_limits<double>::quiet_NaN();
   const SubjectResult result = measure(subject(), options_);
   EXPECT_FALSE(result.measured[0].stated_px.has_value());
@@ -229,7 +230,7 @@ TEST_F(ErrorTime, WhatStatesNothingIsNotHeldToIt) {
 TEST_F(ErrorTime, SweepsSayHowFarErrorsFall) {
   const SubjectResult result = measure(subject(), options_);
   const std::vector<SweepSummary> sweeps = summarize_sweeps(result);
-  ASSERT_EQ(sweeps.size(), 1U);  // b has one way
+  ASSERT_EQ(sweeps.size(), 1U);  // b has one configuration
   EXPECT_EQ(sweeps[0].points, 3);
   EXPECT_EQ(sweeps[0].coarsest, "lod.tolerance=8");
   EXPECT_EQ(sweeps[0].finest, "lod.tolerance=2");
@@ -240,9 +241,9 @@ TEST_F(ErrorTime, SweepsSayHowFarErrorsFall) {
   EXPECT_NEAR(summarize_sweeps(measure(rising, options_)).at(0).worst_rise, 2, 0.2);
 }
 
-TEST_F(ErrorTime, DefaultsAreHeldAgainstTheFront) {
+TEST_F(ErrorTime, DefaultsAreComparedWithTheFront) {
   Subject all = subject();
-  // Twice as quick and as exact as the default, by another renderer; what shows something else is no rival.
+  // As exact as the default and faster, by another renderer; another group does not count.
   all.configurations[3].requests.front().settings.lod_tolerance_px = 4;
   SubjectResult result = measure(all, options_);
   result.measured[3].timing.round_s = {0.05, 0.05, 0.05};
@@ -262,7 +263,7 @@ TEST_F(ErrorTime, DefaultsAreHeldAgainstTheFront) {
   EXPECT_NEAR(place_defaults(result).at(0).over_front, 1, 1e-6);
 }
 
-TEST_F(ErrorTime, WhatIsRoundingsIsNotBetter) {
+TEST_F(ErrorTime, ErrorsOfRoundingAreNotBetter) {
   SubjectResult result = measure(subject(), options_);
   result.measured[1].shift.forward.p99_px = result.measured[1].shift.backward.p99_px = 2e-5;
   result.measured[2].shift.forward.p99_px = result.measured[2].shift.backward.p99_px = 1e-5;  // and slower
@@ -270,8 +271,8 @@ TEST_F(ErrorTime, WhatIsRoundingsIsNotBetter) {
   EXPECT_EQ(place_defaults(result).at(0).error, 2e-5);
 }
 
-// Two halves of an image, put together.
-TEST_F(ErrorTime, ImagesMayBePutTogether) {
+// Two halves of an image, joined.
+TEST_F(ErrorTime, ImagesMayBeComposed) {
   Subject all = subject();
   Configuration halves = configuration(2);
   halves.requests.push_back(halves.requests.front());
@@ -293,7 +294,7 @@ TEST_F(ErrorTime, ImagesMayBePutTogether) {
   EXPECT_THROW(measure(all, options_), std::invalid_argument);
 }
 
-TEST_F(ErrorTime, RefusesWhatCannotBeMeasured) {
+TEST_F(ErrorTime, RefusesSubjectsThatCannotBeMeasured) {
   Subject none = subject();
   none.configurations.clear();
   EXPECT_THROW(measure(none, options_), std::invalid_argument);

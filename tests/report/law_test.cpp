@@ -1,4 +1,4 @@
-// Laws: what is fitted to what was measured, and what is said of it.
+// Laws: fits to measurements, and the verdicts on them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ TEST(Law, FitsTheMediansOfItsRounds) {
 }
 
 // Each round is 1.3 times the one before, on both sides: that is no scatter of the ratio.
-TEST(Law, OfTwoXEveryRoundIsFittedByItself) {
+TEST(Law, WithTwoXEveryRoundIsFittedAlone) {
   Law law{"threads", "rays", "threads", "frame_s", -1.1, -0.9, {{1, {2, 2.6, 3.38}}, {2, {1, 1.3, 1.69}}}};
   const auto fitted = fit(law);
   ASSERT_TRUE(fitted);
@@ -51,20 +51,20 @@ TEST(Law, SaysWhatHoldsAndHowSurely) {
   const double half_width = fit(law)->growth.half_width;
   ASSERT_GT(half_width, 0.01);
   const double exponent = fit(law)->growth.exponent;
-  const auto asked = [&](std::optional<double> least, std::optional<double> most) {
+  const auto with_aim = [&](std::optional<double> least, std::optional<double> most) {
     law.least_exponent = least;
     law.most_exponent = most;
     return *fit(law);
   };
-  EXPECT_EQ(asked({}, exponent + 2 * half_width).holds, true);
-  EXPECT_EQ(asked({}, exponent + 2 * half_width).surely, true);
-  EXPECT_EQ(asked({}, exponent + half_width / 2).holds, true);
-  EXPECT_EQ(asked({}, exponent + half_width / 2).surely, false);
-  EXPECT_EQ(asked({}, exponent - half_width / 2).holds, false);
-  EXPECT_EQ(asked({}, exponent - half_width / 2).surely, false);
-  EXPECT_EQ(asked(exponent + 2 * half_width, {}).holds, false);
-  EXPECT_EQ(asked(exponent + 2 * half_width, {}).surely, true);
-  EXPECT_EQ(asked(exponent - 2 * half_width, exponent + 2 * half_width).surely, true);
+  EXPECT_EQ(with_aim({}, exponent + 2 * half_width).holds, true);
+  EXPECT_EQ(with_aim({}, exponent + 2 * half_width).surely, true);
+  EXPECT_EQ(with_aim({}, exponent + half_width / 2).holds, true);
+  EXPECT_EQ(with_aim({}, exponent + half_width / 2).surely, false);
+  EXPECT_EQ(with_aim({}, exponent - half_width / 2).holds, false);
+  EXPECT_EQ(with_aim({}, exponent - half_width / 2).surely, false);
+  EXPECT_EQ(with_aim(exponent + 2 * half_width, {}).holds, false);
+  EXPECT_EQ(with_aim(exponent + 2 * half_width, {}).surely, true);
+  EXPECT_EQ(with_aim(exponent - 2 * half_width, exponent + 2 * half_width).surely, true);
 }
 
 TEST(Law, WithoutAPowerThereIsNoFit) {
@@ -96,7 +96,7 @@ TEST(Law, TablesAndPlotsHaveEverySample) {
   EXPECT_EQ(plot.x_label, "posts");
 }
 
-TEST(Law, TimesOfTurnsAreSamples) {
+TEST(Law, InterleavedTimesAreSamples) {
   const std::vector<double> x{1, 2};
   const std::vector<Timing> timings{{{3, 4}}, {{5, 6}}};
   const auto samples = timed_samples(x, timings);
@@ -106,7 +106,7 @@ TEST(Law, TimesOfTurnsAreSamples) {
   EXPECT_THROW(timed_samples(std::vector<double>{1}, timings), std::invalid_argument);
 }
 
-TEST(Features, MediansOfWhatWasMeasured) {
+TEST(Features, MediansOverTheMeasured) {
   const std::vector<SceneCost> rounds{{1, 10, {}, {}, 7}, {3, 20, {}, {}, {}}, {2, 90, {}, {}, {}}};
   const SceneCost cost = median_cost(rounds);
   EXPECT_EQ(cost.peak_mb, 2);
@@ -116,7 +116,7 @@ TEST(Features, MediansOfWhatWasMeasured) {
 }
 
 TEST(Features, TableHasOffOnAndNever) {
-  FeatureCost cost{"light", "voxel", "bare", {}, {}, {}, 1.5, {}, "always"};
+  FeatureCost cost{"light", "ray", "bare", {}, {}, {}, 1.5, {}, "always"};
   cost.off.frame_s = 0.002;
   cost.on.frame_s = 0.003;
   const Table table = feature_table(std::vector<FeatureCost>{cost});

@@ -12,7 +12,7 @@ namespace vpe::report {
 namespace {
 
 Table small_table() {
-  Table table{"speeds", "Speeds of <all>", {{"way", "how"}, {"time_s", "median"}}, {}};
+  Table table{"speeds", "Speeds of <all>", {{"method", "how"}, {"time_s", "median"}}, {}};
   table.add({"rays, \"exact\"", 0.1});
   table.add({"triangles", std::nan("")});
   table.add({std::monostate{}, 2.0});
@@ -20,7 +20,7 @@ Table small_table() {
 }
 
 TEST(Table, IsCsv) {
-  EXPECT_EQ(to_csv(small_table()), "way,time_s\n\"rays, \"\"exact\"\"\",0.1\ntriangles,\n,2\n");
+  EXPECT_EQ(to_csv(small_table()), "method,time_s\n\"rays, \"\"exact\"\"\",0.1\ntriangles,\n,2\n");
 }
 
 TEST(Table, IsJson) {
@@ -29,7 +29,7 @@ TEST(Table, IsJson) {
   EXPECT_EQ(json["columns"][1]["name"], "time_s");
   EXPECT_EQ(json["rows"][0]["time_s"], 0.1);
   EXPECT_TRUE(json["rows"][1]["time_s"].is_null());
-  EXPECT_TRUE(json["rows"][2]["way"].is_null());
+  EXPECT_TRUE(json["rows"][2]["method"].is_null());
 }
 
 TEST(Table, RefusesARowOfAnotherLength) {

@@ -1,4 +1,4 @@
-// Growth, fronts and time in turns, against what is known of them.
+// Growth, Pareto fronts and interleaved timing against known results.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -34,7 +34,7 @@ TEST(Growth, IntervalIsStudents) {
   EXPECT_NEAR(growth.half_width, 12.706 * std::sqrt(1.0 / 6) / std::sqrt(2.0), 1e-9);
 }
 
-// What the interval promises: it holds the truth about 95 times in 100.
+// The interval contains the truth about 95 times in 100.
 TEST(Growth, IntervalHoldsTheTruth) {
   test_support::Random random(20261122);
   int held = 0;
@@ -55,7 +55,7 @@ TEST(Growth, IntervalHoldsTheTruth) {
   EXPECT_LT(held, kTrials * 0.97);
 }
 
-TEST(Growth, RefusesWhatHasNoGrowth) {
+TEST(Growth, RefusesValuesWithoutGrowth) {
   const std::vector<double> one{1};
   const std::vector<double> two{1, 2};
   const std::vector<double> same{2, 2};
@@ -67,7 +67,7 @@ TEST(Growth, RefusesWhatHasNoGrowth) {
   EXPECT_TRUE(std::isinf(fit_growth(two, two).half_width));
 }
 
-RC_GTEST_PROP(Front, NobodyBeatsItAndItBeatsAllOthers, ()) {
+RC_GTEST_PROP(Front, NoPointBeatsItAndItBeatsAllOthers, ()) {
   const auto costs = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 20));
   std::vector<CostAndError> points;
   for (std::size_t k = 0; k < costs.size(); ++k) {
@@ -92,7 +92,7 @@ RC_GTEST_PROP(Front, NobodyBeatsItAndItBeatsAllOthers, ()) {
   for (std::size_t k = 1; k < front.size(); ++k) RC_ASSERT(points[front[k - 1]].cost < points[front[k]].cost);
 }
 
-TEST(Front, LeavesOutWhatIsNotFinite) {
+TEST(Front, LeavesOutPointsThatAreNotFinite) {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<CostAndError> points{{1, infinity}, {NAN, 0}, {3, 2}, {infinity, 0}};
   EXPECT_EQ(pareto_front(points), std::vector<std::size_t>{2});
@@ -100,7 +100,7 @@ TEST(Front, LeavesOutWhatIsNotFinite) {
   EXPECT_EQ(cost_at_error(points, 1), infinity);
 }
 
-TEST(InterleavedTiming, AreTakenInTurnsAndTheFirstDoesNotCount) {
+TEST(InterleavedTiming, RoundsAreInterleavedAndTheFirstIsUntimed) {
   double now_s = 0;
   std::string order;
   const std::vector<std::function<void()>> cases{[&] {
@@ -121,7 +121,7 @@ TEST(InterleavedTiming, AreTakenInTurnsAndTheFirstDoesNotCount) {
   EXPECT_THROW(ratio(timings[0], Timing{}), std::invalid_argument);
 }
 
-TEST(InterleavedTiming, WhatIsMadeReadyDoesNotCountAndSlowOnesRunLess) {
+TEST(InterleavedTiming, PreparationIsUntimedAndLimitedCasesRunLess) {
   double now_s = 0;
   std::string order;
   std::vector<BenchmarkCase> cases(2);

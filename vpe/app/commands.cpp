@@ -11,7 +11,7 @@
 namespace vpe::app {
 
 int run(int argc, char** argv) {
-  // In the order in which --help lists them.
+  // In the order of --help.
   static constexpr AddCommand kCommands[] = {
       add_build, add_merge,    add_info,    add_verify,   add_query,  add_profile,  add_horizon, add_render,
       add_fly,   add_panorama, add_explore, add_overlook, add_report, add_settings, add_doctor,  add_manual};

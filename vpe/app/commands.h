@@ -16,7 +16,7 @@ void add_explore(CLI::App& program, Common& common);
 void add_settings(CLI::App& program, Common& common);
 void add_doctor(CLI::App& program, Common& common);
 
-// Runs one command line; returns the exit code. Messages go to stderr, results to stdout.
+// Runs one command line and returns the exit code. Prints messages on stderr and results on stdout.
 int run(int argc, char** argv);
 
 }  // namespace vpe::app

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One line of the report: what was looked at, what will be used and why.
+// One line of the report: what was examined, what will be used, and why.
 struct Finding {
   enum class State { kGood, kNote, kBad };
   std::string what;
@@ -44,10 +44,10 @@ Finding find_display() {
   for (const char* name : {"WAYLAND_DISPLAY", "DISPLAY"}) {
     if (const char* value = std::getenv(name); value != nullptr && *value != '\0') {
       return {"display", State::kGood,
-              std::string(name) + "=" + value + "; not used: pictures and films need none"};
+              std::string(name) + "=" + value + "; not used: images and films need none"};
     }
   }
-  return {"display", State::kGood, "none; none is needed for pictures and films"};
+  return {"display", State::kGood, "none; images and films need none"};
 }
 
 Finding find_opengl() {
@@ -57,7 +57,7 @@ Finding find_opengl() {
     if (!info.software) return {"OpenGL", State::kGood, text};
     return {
         "OpenGL", State::kNote,
-        text + "; in software: no GPU with a driver for OpenGL 4.5 was found, drawing is slow but the same"};
+        text + "; in software: no GPU with a driver for OpenGL 4.5 was found; images are the same, but slow"};
   } catch (const std::runtime_error& e) {
     return {"OpenGL", State::kBad, e.what()};
   }
@@ -73,7 +73,7 @@ Finding find_threads(const Common& common) {
   const int machine = base::default_threads();
   if (common.threads == 0) return {"threads", State::kGood, std::to_string(machine) + ", all of this machine"};
   return {"threads", common.threads > machine ? State::kNote : State::kGood,
-          std::to_string(common.threads) + " of --threads; this machine runs " + std::to_string(machine)};
+          std::to_string(common.threads) + " by --threads; this machine runs " + std::to_string(machine)};
 }
 
 Finding find_memory(const Common& common) {
@@ -113,7 +113,7 @@ Finding find_cache() {
   std::string text = folder.string() + ": " + std::to_string(planets) + " planets, " + gigabytes(bytes) + "; " +
                      gigabytes(left) + " free";
   if (!fs::exists(embedded_planet_path(), none))
-    text += "; the embedded Mars is built at its first use, in minutes";
+    text += "; the embedded Mars is built at its first use, which takes minutes";
   return {"cache", left < 2e9 ? State::kNote : State::kGood, text};
 }
 
@@ -160,14 +160,15 @@ void doctor(const Common& common) {
   for (const Finding& f : findings) {
     if (f.state == State::kBad) bad += (bad.empty() ? "" : ", ") + f.what;
   }
-  if (!bad.empty()) throw std::runtime_error("something is in the way of drawing: " + bad + " (see above)");
+  if (!bad.empty())
+    throw std::runtime_error("some requirements of drawing are not met: " + bad + " (see above)");
 }
 
 }  // namespace
 
 void add_doctor(CLI::App& program, Common& common) {
-  CLI::App* command = add_command(
-      program, "doctor", "Say what of this machine will be used, and what is in the way", common, true);
+  CLI::App* command = add_command(program, "doctor",
+                                  "Check this machine: OpenGL, threads, memory, cache, ffmpeg", common, true);
   command->callback([&common] { doctor(common); });
 }
 

@@ -1,5 +1,3 @@
-#include "vpe/app/commands.h"
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -7,14 +5,15 @@
 #include <memory>
 #include <string>
 
-#include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/commands.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/pose_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 #ifdef VPE_HAS_WINDOW
 #include "vpe/app/cli/output.h"
-#include "vpe/app/film/flight_file.h"
+#include "vpe/app/film/film_plan.h"
 #include "vpe/app/panorama/panorama_painter.h"
 #include "vpe/app/window_painter.h"
 #include "vpe/explore/files/hotspots.h"
@@ -47,23 +46,12 @@ bool sets(const RenderOptions& options, const std::string& key) {
   return false;
 }
 
-// What a session remembers of a planet: its file, from anywhere; the embedded one has none.
-std::string known_as(const std::string& planet) {
+// Returns the planet's path as a session file records it: absolute, or empty for the embedded Mars.
+std::string recorded_path(const std::string& planet) {
   return planet.empty() ? planet : std::filesystem::absolute(planet).lexically_normal().string();
 }
 
-mars::Pose parse_start(const std::string& text) {
-  const auto n = parse_numbers(text);
-  if (!n || n->size() < 3 || n->size() > 6 || !mars::is_valid({(*n)[0], (*n)[1]})) {
-    throw UsageError("--pose '" + text +
-                     "': expected LON,LAT,ALT,YAW,PITCH,ROLL (degrees, latitude within -90..90; metres above "
-                     "the sphere)");
-  }
-  const auto angle = [&](std::size_t k) { return k < n->size() ? (*n)[k] : 0.0; };
-  return {(*n)[0], (*n)[1], (*n)[2], angle(3), angle(4), angle(5)};
-}
-
-// Everything but the planet. Wrong usage is told before any work.
+// Returns everything except the planet. Throws for wrong usage before any work.
 window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common& common,
                                 const vpe::explore::Preferences& preferences,
                                 const vpe::explore::LastSession& last) {
@@ -98,11 +86,11 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.session.interest = parse_interest(arguments.image);
   setup.session.fov_deg = arguments.fov_deg;
   if (!sets(arguments.image, "lod.frame_ms")) {
-    const std::string trouble =
+    const std::string error =
         setup.session.settings.set("lod.frame_ms", base::format_number(preferences.draw_budget_ms));
-    if (!trouble.empty()) throw std::logic_error(trouble);
+    if (!error.empty()) throw std::logic_error(error);
   }
-  if (!arguments.pose.empty()) setup.session.start = parse_start(arguments.pose);
+  if (!arguments.pose.empty()) setup.session.start = parse_pose("--pose", arguments.pose).pose;
   const vpe::explore::LastSession fresh;
   setup.display.scales_size = arguments.size.empty() && last.window_width_px == fresh.window_width_px &&
                               last.window_height_px == fresh.window_height_px;
@@ -115,12 +103,9 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   }
   setup.display.scale = arguments.scale > 0 ? arguments.scale : preferences.ui_scale;
   setup.display.instead =
-      "set DISPLAY to an X server, or work without a window: 'vpe render' draws a picture, 'vpe fly' a flight, "
-      "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this one out of sight";
-  const bool rays = arguments.image.backend == kAutoBackend
-                        ? last.backend == vpe::explore::SessionBackend::kVoxel
-                        : arguments.image.backend == kRayBackend;
-  setup.backend = rays ? window::Backend::kRays : window::Backend::kPolygons;
+      "set DISPLAY to an X server, or work without a window: 'vpe render' draws an image, 'vpe fly' a flight, "
+      "'vpe panorama' a panorama, and 'xvfb-run vpe explore' runs this command on a virtual display";
+  setup.backend = arguments.image.backend.value_or(last.backend);
   setup.sun = sun_for;
   setup.threads = common.threads;
   setup.open_planet = [common](const std::string& dropped) { return open_planet(dropped, common); };
@@ -141,7 +126,7 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     if (!common.quiet) std::fprintf(stderr, "vpe: note: %s\n", e.what());
   }
   window::check_display(make_setup(arguments, common, preferences, last).display);
-  std::string file = known_as(arguments.planet);
+  std::string file = recorded_path(arguments.planet);
   auto planet = open_planet(arguments.planet, common);
   bool is_first = true;
   ExploreArguments here = arguments;
@@ -159,12 +144,12 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     setup.make_painter = [planet, common] { return std::make_unique<WindowPainter>(planet, common); };
     window::ExploreWindow shown(std::move(setup));
     shown.run();
-    if (const std::string words = shown.exit_message(); !words.empty())
-      std::fprintf(stderr, "vpe: note: %s\n", words.c_str());
-    // Flights, logs, spots and regions are of one planet; how it is drawn goes on.
+    if (const std::string message = shown.exit_message(); !message.empty())
+      std::fprintf(stderr, "vpe: note: %s\n", message.c_str());
+    // Flights, logs, hotspots and regions belong to one planet; the appearance stays for the next.
     here.pose = here.log = here.flight = here.hotspots = "";
     here.image.interest.clear();
-    here.image.backend = kAutoBackend;
+    here.image.backend.reset();
     here.size = "";
     here.fov_deg = shown.session().screen().fov_deg;
     shown.session().leave_flight();
@@ -172,15 +157,14 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     last.panels = shown.state().panels;
     last.planet = file;
     last.pose = shown.session().pose();
-    last.backend = shown.state().backend == window::Backend::kRays ? vpe::explore::SessionBackend::kVoxel
-                                                                   : vpe::explore::SessionBackend::kPolygon;
+    last.backend = shown.state().backend;
     const auto [width, height] = shown.display().size();
     last.window_width_px = width;
     last.window_height_px = height;
-    const std::string trouble = files.session.empty() ? "" : vpe::explore::save(last, files.session);
-    if (!trouble.empty() && !common.quiet) std::fprintf(stderr, "vpe: note: %s\n", trouble.c_str());
+    const std::string error = files.session.empty() ? "" : vpe::explore::save(last, files.session);
+    if (!error.empty() && !common.quiet) std::fprintf(stderr, "vpe: note: %s\n", error.c_str());
     planet = shown.next_planet();
-    file = known_as(shown.next_planet_file());
+    file = recorded_path(shown.next_planet_file());
   }
 }
 
@@ -189,8 +173,7 @@ void explore(const ExploreArguments& arguments, const Common& common) {
 void explore(const ExploreArguments&, const Common&) {
   throw std::runtime_error(
       "this program was built without windows; install libglfw3-dev and libimgui-dev and build it again, or "
-      "work "
-      "without one: 'vpe render' draws a picture, 'vpe fly' a flight, 'vpe panorama' a panorama");
+      "work without a window: 'vpe render' draws an image, 'vpe fly' a flight, 'vpe panorama' a panorama");
 }
 
 #endif
@@ -200,23 +183,22 @@ void explore(const ExploreArguments&, const Common&) {
 void add_explore(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<ExploreArguments>();
   CLI::App* command = add_command(program, "explore", "Fly over a planet in a window", common, false);
-  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command->add_option(
       "--pose", arguments->pose,
-      "LON,LAT,ALT,YAW,PITCH,ROLL to begin at: degrees, metres above the sphere; the whole planet "
-      "when left out");
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of the window; as it was last when left out");
+      "LON,LAT,ALT,YAW,PITCH,ROLL of the camera at the start: degrees; ALT in metres above the sphere "
+      "(default: a view of the whole planet)");
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of the window, pixels (default: the last size)");
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(5, 120))
       ->capture_default_str();
-  command
-      ->add_option("--scale", arguments->scale,
-                   "Size of letters and panels; as the monitor has it when left out")
+  command->add_option("--scale", arguments->scale, "Scale of text and panels (default: the monitor's scale)")
       ->check(number_within(0.5, 4));
-  command->add_option("--flight", arguments->flight, "Flight to play and edit; where it is saved");
-  command->add_option("--spots", arguments->hotspots, "File of places that have a panorama to step into");
-  command->add_option("--log", arguments->log, "Record everything that happens, as a flight");
-  command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and end");
+  command->add_option("--flight", arguments->flight, "Flight file to play and edit; edits are saved to it");
+  command->add_option("--hotspots", arguments->hotspots, "File of hotspots: places with a panorama to open");
+  command->add_option("--log", arguments->log,
+                      "Record the session as a flight; zoom, backend, stereo and window size as comments only");
+  command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and exit");
   add_render_options(*command, arguments->image);
   command->callback([arguments, &common] { explore(*arguments, common); });
 }

@@ -1,7 +1,3 @@
-#include "vpe/app/commands.h"
-
-#include "vpe/explore/measure/profile.h"
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
@@ -9,8 +5,10 @@
 
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/commands.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/explore/measure/profile.h"
 
 namespace vpe::app {
 
@@ -36,7 +34,7 @@ nlohmann::json to_json(const paging::ProfilePoint& p) {
 void run_profile(const ProfileArguments& arguments, const Common& common) {
   auto [planet_name, places] = split_places(arguments.places);
   if (places.empty()) places = read_places(std::cin);
-  if (places.size() < 2) throw UsageError("a profile takes at least two places, LON,LAT in degrees");
+  if (places.size() < 2) throw UsageError("a profile needs at least two places, LON,LAT in degrees");
   const auto planet = open_planet(planet_name, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
@@ -66,13 +64,13 @@ void run_profile(const ProfileArguments& arguments, const Common& common) {
 void add_profile(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<ProfileArguments>();
   CLI::App* command =
-      add_command(program, "profile", "Heights, slopes and distances along great circles", common, true);
+      add_command(program, "profile", "Print heights, slopes and distances along great circles", common, true);
   command->add_option(
       "PLANET_AND_PLACES", arguments->places,
-      "[PLANET] LON,LAT LON,LAT... (degrees east, north); places from stdin when none is given");
+      "[PLANET] LON,LAT LON,LAT... (degrees east, north); without places, they are read from stdin");
   command
       ->add_option("--step", arguments->step_m,
-                   "Distance between points at most, metres (default: 1000 points)")
+                   "Largest distance between points, metres (default: 1000 points along the profile)")
       ->check(number_within(0.001, 1e7));
   command->callback([arguments, &common] { run_profile(*arguments, common); });
 }

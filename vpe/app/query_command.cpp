@@ -1,5 +1,3 @@
-#include "vpe/app/commands.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -10,6 +8,7 @@
 #include "paging/surface/query.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/commands.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
@@ -50,15 +49,15 @@ void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
 }
 
 void query(const std::vector<std::string>& arguments, const Common& common) {
-  PlanetAndPlaces asked = split_places(arguments);
-  std::vector<mars::LonLat>& places = asked.places;
+  PlanetAndPlaces request = split_places(arguments);
+  std::vector<mars::LonLat>& places = request.places;
   if (places.empty()) places = read_places(std::cin);
-  const auto planet = open_planet(asked.planet, common);
+  const auto planet = open_planet(request.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
 
-  // Answer in the order of the ground, tile by tile; print in the order asked.
+  // Answers are computed tile by tile, in Morton order, and printed in the order of the request.
   std::vector<std::size_t> order(places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const int level = meta.finest_level;
@@ -93,10 +92,10 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
 
 void add_query(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<std::vector<std::string>>();
-  CLI::App* command =
-      add_command(program, "query", "Elevation, slope, level, source and error at places", common, true);
+  CLI::App* command = add_command(
+      program, "query", "Print elevation, slope, level (from 0), source and error at places", common, true);
   command->add_option("PLANET_AND_PLACES", *arguments,
-                      "[PLANET] LON,LAT... (degrees east, north); places from stdin when none is given");
+                      "[PLANET] LON,LAT... (degrees east, north); without places, they are read from stdin");
   command->callback([arguments, &common] { query(*arguments, common); });
 }
 

@@ -1,10 +1,9 @@
-#include "vpe/app/commands.h"
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/commands.h"
 #include "vpe/base/number.h"
 #include "vpe/core/appearance/settings.h"
 
@@ -17,9 +16,9 @@ std::string range_text(const core::SettingInfo& info) {
   if (info.type != core::SettingType::kChoice) {
     return base::format_number(info.min) + " .. " + base::format_number(info.max);
   }
-  std::string words;
-  for (const std::string_view word : info.choices) words += (words.empty() ? "" : ", ") + std::string(word);
-  return words;
+  std::string choices;
+  for (const std::string_view word : info.choices) choices += (choices.empty() ? "" : ", ") + std::string(word);
+  return choices;
 }
 
 void settings(const Common& common) {
@@ -46,8 +45,8 @@ void settings(const Common& common) {
 }  // namespace
 
 void add_settings(CLI::App& program, Common& common) {
-  CLI::App* command =
-      add_command(program, "settings", "List what --set and a flight's set can change", common, true);
+  CLI::App* command = add_command(
+      program, "settings", "List the settings that --set, and 'set' in flights, can change", common, true);
   command->callback([&common] { settings(common); });
 }
 

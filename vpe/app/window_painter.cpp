@@ -18,30 +18,30 @@ core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double ti
   return result;
 }
 
-window::DrawnImage WindowPainter::paint(const window::ImageRequest& order) {
-  if (backend_ != order.backend) {
+window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
+  if (backend_ != request.backend) {
     renderer_.reset();
-    backend_.reset();  // until there is one: making it may fail
+    backend_.reset();  // stays empty when making the renderer fails
     RenderOptions options;
-    options.backend = window::to_string(order.backend);
+    options.backend = request.backend;
     renderer_ = make_renderer(options, common_, planet_);
-    backend_ = order.backend;
+    backend_ = request.backend;
   }
-  core::DrawRequest request = order.request;
-  request.want_range = request.want_range || overlay::needs_range(request.settings);
+  core::DrawRequest draw_request = request.draw;
+  draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);
   window::DrawnImage drawn;
-  const auto draw_one = [&](const core::DrawRequest& eye) { return draw(eye, order.flight_time_s); };
-  if (order.stereo) {
+  const auto draw_one = [&](const core::DrawRequest& one) { return draw(one, request.flight_time_s); };
+  if (request.stereo) {
     StereoArguments stereo;
-    stereo.layout = core::to_string(*order.stereo);
-    stereo.eye_base_m = order.eye_base_m;
-    StereoImage pair = draw_stereo(stereo, request, draw_one);
+    stereo.layout = core::to_string(*request.stereo);
+    stereo.eye_base_m = request.eye_base_m;
+    StereoImage pair = draw_stereo(stereo, draw_request, draw_one);
     drawn.image = std::move(pair.image);
     drawn.result = std::move(pair.left);
     drawn.result.settled = drawn.result.settled && pair.right.settled;
     return drawn;
   }
-  drawn.result = draw_one(request);
+  drawn.result = draw_one(draw_request);
   core::Frame& frame = drawn.result.frame;
   drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};

@@ -1,7 +1,8 @@
-// Images for a window: either backend, overlays, one eye or two.
+// Images for the exploration window: either backend, overlays, mono or stereo.
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
@@ -10,11 +11,12 @@
 
 namespace vpe::app {
 
-// Holds one backend at a time, so that --memory holds: changing it begins with nothing loaded.
+// Draws the window's image requests. Holds one backend at a time to keep within --memory: after a change of the
+// backend, nothing is loaded. One thread at a time.
 class WindowPainter : public window::Painter {
  public:
   WindowPainter(std::shared_ptr<const paging::PlanetFile> planet, Common common);
-  window::DrawnImage paint(const window::ImageRequest& order) override;
+  window::DrawnImage paint(const window::ImageRequest& request) override;
 
  private:
   core::DrawResult draw(const core::DrawRequest& request, double time_s);
@@ -22,7 +24,7 @@ class WindowPainter : public window::Painter {
   std::shared_ptr<const paging::PlanetFile> planet_;
   Common common_;
   FrameOverlays overlays_;
-  std::optional<window::Backend> backend_;
+  std::optional<core::Backend> backend_;
   std::unique_ptr<core::Renderer> renderer_;
 };
 

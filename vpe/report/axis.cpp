@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vpe/base/nice_ticks.h"
 #include "vpe/base/number.h"
 
 namespace vpe::report {
 namespace {
 
 constexpr int kMostTicks = 8;
-
-double round_step(double span) {
-  const double raw = span / (kMostTicks - 2);
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= raw) return factor * power;
-  }
-  return 10 * power;
-}
 
 }  // namespace
 
@@ -45,7 +37,7 @@ Axis::Axis(const std::vector<double>& values, bool logarithmic) : logarithmic_(l
     low -= low == 0 ? 1 : std::abs(low) / 2;
     high += high == 0 ? 1 : std::abs(high) / 2;
   }
-  step_ = round_step(high - low);
+  step_ = base::nice_step_above((high - low) / (kMostTicks - 2), 0);
   low_ = std::floor(low / step_ + 1e-9) * step_;
   high_ = std::ceil(high / step_ - 1e-9) * step_;
 }
@@ -61,9 +53,9 @@ std::vector<Tick> Axis::ticks() const {
   for (int k = 0; k <= count; ++k) {
     const double at = low_ + k * step_;
     if (!logarithmic_) {
-      // Multiples of a step are rounded: 0.30000000000000004 is no tick.
+      // Rounds the product of multiple and step: 0.30000000000000004 becomes 0.3.
       const double value = std::round(at / step_) * step_;
-      ticks.push_back({value, base::format_number(std::round(value * 1e12) / 1e12)});
+      ticks.push_back({value, base::format_rounded(value, 12)});
       continue;
     }
     const int decade = static_cast<int>(at);

@@ -1,4 +1,4 @@
-// One axis of a plot: which values it spans, where they stand, where its ticks are.
+// One axis of a plot: its range, the positions of values on it, and its ticks.
 #pragma once
 
 #include <string>
@@ -13,14 +13,18 @@ struct Tick {
 
 class Axis {
  public:
-  // Values that are not finite, and on a logarithmic axis values <= 0, do not count. Of none at all: 1 to 10.
+  // Spans the values and ends at ticks. Ignores values that are not finite, and on a logarithmic axis values
+  // <= 0. Spans 1 to 10 if no value is left.
   Axis(const std::vector<double>& values, bool logarithmic);
 
-  // 0 at the axis's lower end, 1 at the upper. Logarithmic: 0 for values <= 0.
+  // Returns the position of a value: 0 at the axis's lower end, 1 at the upper. On a logarithmic axis values
+  // <= 0 are at 0.
   double place(double value) const;
+  // Returns true for a value that a logarithmic axis cannot show.
   bool below(double value) const { return logarithmic_ && !(value > 0); }
 
-  // Logarithmic: decades, at most some eight of them; else multiples of 1, 2 or 5 times a power of ten.
+  // Returns decades on a logarithmic axis, at most about eight of them; else multiples of a nice step
+  // (vpe/base/nice_ticks.h).
   std::vector<Tick> ticks() const;
 
  private:

@@ -12,11 +12,11 @@ namespace {
 
 using Results = std::vector<core::DrawResult>;
 
-// What takes no longer is drawn once more before it is timed: what others have driven out of caches and memory,
-// pages that no statistics tell of among it, is back then.
+// Configurations that take no longer are drawn once more before they are timed. That restores what others
+// displaced from caches and memory, also pages that no statistics count.
 constexpr double kQuick_s = 0.1;
 
-// Of memory, for each of the renderers that are there at once.
+// Returns the share of memory for each of several renderers.
 double share_of(std::size_t renderers) {
   return 1.0 / static_cast<double>(std::max<std::size_t>(1, renderers));
 }
@@ -27,29 +27,29 @@ Results draw_all(core::Renderer& renderer, const std::vector<core::DrawRequest>&
     request.want_range = want_range;
     results.push_back(renderer.draw(request));
     if (!results.back().missing.empty()) {
-      throw std::runtime_error("a picture to be measured lacks " + results.back().missing.front().tile + ": " +
+      throw std::runtime_error("an image to be measured lacks " + results.back().missing.front().tile + ": " +
                                results.back().missing.front().why);
     }
   }
   return results;
 }
 
-core::Frame put_together(const Compose& compose, Results& results, const core::View& view) {
+core::Frame composed(const Compose& compose, Results& results, const core::View& view) {
   std::vector<core::Frame> frames;
   for (core::DrawResult& result : results) frames.push_back(std::move(result.frame));
   if (!compose && frames.size() != 1)
-    throw std::invalid_argument("measure: several pictures and no way to join them");
+    throw std::invalid_argument("measure: several images and no function to join them");
   core::Frame frame = compose ? compose(std::move(frames)) : std::move(frames.front());
   const glm::ivec2 size = core::drawn_size(view);
   if (frame.width != size.x || frame.height != size.y) {
-    throw std::invalid_argument("measure: a picture of " + std::to_string(frame.width) + "x" +
+    throw std::invalid_argument("measure: an image of " + std::to_string(frame.width) + "x" +
                                 std::to_string(frame.height) + " for a view of " + std::to_string(size.x) +
                                 "x" + std::to_string(size.y));
   }
   return frame;
 }
 
-// What a range image's own error makes of a shift.
+// Returns the shift that the range image's own error can add.
 double slack_px(const core::View& view, const std::vector<float>& range_m, double range_error) {
   float nearest = core::kSkyRange;
   float farthest = 0;
@@ -82,7 +82,7 @@ Measured measure_errors(const Configuration& configuration, const core::View& vi
   const std::unique_ptr<core::Renderer> renderer = options.make(configuration.renderer, 1.0);
   Results results = draw_all(*renderer, configuration.requests, configuration.has_ranges);
   for (std::size_t k = 0; k < results.size(); ++k) count(configuration.requests[k], results[k], measured);
-  const core::Frame frame = put_together(configuration.compose, results, view);
+  const core::Frame frame = composed(configuration.compose, results, view);
   if (configuration.has_colours) {
     measured.colour_rms = core::colour_rms(frame.colour, truth.colour);
     measured.similarity = core::structural_similarity(frame.colour, truth.colour, frame.width, frame.height);
@@ -115,22 +115,22 @@ void measure_times(const Subject& subject, const ErrorTimeOptions& options, std:
     return uploaded;
   };
   std::vector<BenchmarkCase> cases;
-  std::vector<int> interleaved(subject.configurations.size(), 0);
-  std::vector<bool> forgotten(subject.configurations.size(), false);  // what it needs, while others are drawn
+  std::vector<int> runs(subject.configurations.size(), 0);
+  std::vector<bool> is_displaced(subject.configurations.size(), false);  // its data, while others are drawn
   for (std::size_t k = 0; k < subject.configurations.size(); ++k) {
     BenchmarkCase benchmark_case;
     benchmark_case.most_rounds = subject.configurations[k].most_rounds;
     benchmark_case.prepare = [&, k](double last_s) {
       step("timing " + subject.configurations[k].sweep);
-      if (interleaved[k] == 1) {
-        forgotten[k] = draw(subject.configurations[k]) > 0;
-      } else if (interleaved[k] > 1 && (forgotten[k] || last_s < kQuick_s)) {
+      if (runs[k] == 1) {
+        is_displaced[k] = draw(subject.configurations[k]) > 0;
+      } else if (runs[k] > 1 && (is_displaced[k] || last_s < kQuick_s)) {
         draw(subject.configurations[k]);
       }
     };
     benchmark_case.run = [&, k] {
       const std::int64_t uploaded = draw(subject.configurations[k]);
-      if (interleaved[k]++ > 0) measured[k].pages_reloaded += uploaded;
+      if (runs[k]++ > 0) measured[k].pages_reloaded += uploaded;
     };
     cases.push_back(std::move(benchmark_case));
   }
@@ -154,21 +154,21 @@ bool Measured::within_stated() const { return !stated_px || shift.forward.max_px
 SubjectResult measure(const Subject& subject, const ErrorTimeOptions& options) {
   if (subject.configurations.empty() || subject.baseline >= subject.configurations.size() ||
       subject.references.empty())
-    throw std::invalid_argument("measure: a subject without ways, baseline or reference");
+    throw std::invalid_argument("measure: a subject without configurations, baseline or reference");
   const double configurations = static_cast<double>(subject.configurations.size());
   const double steps = static_cast<double>(subject.references.size()) + 2 * configurations +
                        (options.rounds + 1) * configurations;
   double done = 0;
-  const auto step = [&](const std::string& what, double many) {
+  const auto step = [&](const std::string& what, double size) {
     options.progress(subject.view + ", " + what, std::min(1.0, done / steps));
-    done += many;
+    done += size;
   };
   std::vector<core::Frame> truths;
   for (const Reference& reference : subject.references) {
     step("reference", 1);
     const std::unique_ptr<core::Renderer> renderer = options.make(reference.renderer, 1.0);
     Results results = draw_all(*renderer, reference.requests, reference.has_ranges);
-    truths.push_back(put_together(reference.compose, results, reference.view));
+    truths.push_back(composed(reference.compose, results, reference.view));
   }
   SubjectResult result{subject, {}};
   for (const Configuration& configuration : subject.configurations) {

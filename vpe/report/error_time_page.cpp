@@ -17,9 +17,10 @@ Series& series_of(Plot& plot, const std::string& name) {
 }
 
 std::string label(const Configuration& configuration) {
-  return configuration.knob + (configuration.is_chosen    ? " (default)"
-                               : configuration.is_default ? " (default of its backend)"
-                                                          : "");
+  const char* role = configuration.is_chosen    ? " (default)"
+                     : configuration.is_default ? " (default of its backend)"
+                                                : "";
+  return configuration.knob + role;
 }
 
 class Plots {
@@ -75,7 +76,7 @@ Plot summary_plot(const std::vector<SubjectResult>& results) {
   if (results.empty()) return plot;
   const Subject& first = results.front().subject;
   const Configuration& baseline = first.configurations.at(first.baseline);
-  plot.x_label = "time, to that of " + baseline.sweep + ", " + baseline.knob;
+  plot.x_label = "time, relative to " + baseline.sweep + ", " + baseline.knob;
   for (const ConfigurationOverViews& w : over_views(results)) {
     if (w.configuration.plot != baseline.plot || w.configuration.kind != ErrorKind::kShift) continue;
     Point point{
@@ -90,18 +91,20 @@ Page error_time_page(const ErrorTimeReport& report) {
   Page page{report.title, report.about, {}};
   Section all{
       "All views",
-      {"Large points are the defaults; the mark above a point is the largest shift that its certificates "
-       "state (median over the views), dashes join both."},
+      {"Large points are the defaults. The mark above a point is the largest shift that its certificates "
+       "state (median over the views); a dashed line joins the two."},
       {summary_plot(report.results)},
       {defaults_table(report.results), sweeps_table(report.results)}};
   page.sections.push_back(std::move(all));
   for (const SubjectResult& result : report.results) {
-    Section section{result.subject.view,
-                    {result.subject.about,
-                     "Large filled points are on the front: no way that shows the same is as quick and errs as "
-                     "little. Marks above points are stated bounds of the largest shift."},
-                    Plots(result).all(),
-                    {view_table(result)}};
+    Section section{
+        result.subject.view,
+        {result.subject.about,
+         "Large filled points are on the Pareto front: no configuration that shows the same image is "
+         "as fast and has as small an error. Marks above points are stated bounds of the largest "
+         "shift."},
+        Plots(result).all(),
+        {view_table(result)}};
     page.sections.push_back(std::move(section));
   }
   return page;

@@ -1,7 +1,8 @@
-// The report of error against time as plots and a page.
+// The report of error against time as plots, a page and JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
 #include "vpe/report/error_time_tables.h"
@@ -11,14 +12,15 @@ namespace vpe::report {
 
 struct ErrorTimeReport {
   std::string title;
-  std::vector<std::string> about;  // what was run, on what, when
+  std::vector<std::string> about;  // what was run, on which machine, when
   std::vector<SubjectResult> results;
 };
 
-// Medians over the views of all ways that are compared by shift and stand on the baseline's plot.
+// Returns the medians over the views of all configurations that are compared by shift and stand on the
+// baseline's plot.
 Plot summary_plot(const std::vector<SubjectResult>& results);
 
-// The same figures: all points are in the page, the tables in both.
+// Return the report as a page with all points, and as JSON with the same tables.
 Page error_time_page(const ErrorTimeReport& report);
 nlohmann::json error_time_json(const ErrorTimeReport& report);
 

@@ -10,7 +10,8 @@ namespace vpe::report {
 
 namespace {
 
-// Rivals of one name, all others infinitely slow. What is rounding's counts alike.
+// Returns the costs in one group, of all renderers or of one; configurations outside are infinitely slow.
+// Errors of rounding count as equal.
 std::vector<CostAndError> costs(const SubjectResult& result, const std::string& comparison_group,
                                 const std::string& renderer) {
   std::vector<CostAndError> points;

@@ -14,7 +14,7 @@ constexpr double kMegabyte = 1 << 20;
 
 struct Field {
   Column column;
-  bool in_page;  // of the many figures, those that people look for
+  bool in_page;  // one of the main figures
   Cell (*of)(const Configuration& configuration, const Measured& measured);
 };
 
@@ -22,53 +22,53 @@ const std::vector<Field>& fields() {
   using W = const Configuration&;
   using M = const Measured&;
   static const std::vector<Field> all{
-      {{"sweep", "what is varied"}, true, [](W w, M) { return Cell(w.sweep); }},
+      {{"sweep", "the setting that is varied"}, true, [](W w, M) { return Cell(w.sweep); }},
       {{"knob", "its value"}, true, [](W w, M) { return Cell(w.knob); }},
-      {{"default", "drawn when nothing is set; backend: when the backend alone is"},
+      {{"default", "yes: drawn when nothing is set; backend: drawn when only the backend is set"},
        true,
        [](W w, M) {
          return w.is_chosen ? Cell(std::string("yes")) : w.is_default ? Cell(std::string("backend")) : Cell();
        }},
-      {{"shift_median_px", "shift of drawn pixels against S, median"},
+      {{"shift_median_px", "shift of drawn pixels against the reference surface, median"},
        false,
        [](W w, M m) { return w.has_ranges ? number(m.shift.forward.median_px) : Cell(); }},
-      {{"shift_p99_px", "99 % of the drawn pixels are shifted by no more"},
+      {{"shift_p99_px", "99 % of the drawn pixels are shifted by at most this"},
        true,
        [](W w, M m) { return w.has_ranges ? number(m.shift.forward.p99_px) : Cell(); }},
       {{"shift_max_px", "largest shift of a drawn pixel"},
        true,
        [](W w, M m) { return w.has_ranges ? number(m.shift.forward.max_px) : Cell(); }},
-      {{"stated_px", "what the certificate states as the largest"},
+      {{"stated_px", "largest shift that the certificate states"},
        true,
        [](W, M m) { return number(m.stated_px); }},
-      {{"range_image_px", "what the range image adds by its own rounding"},
+      {{"range_image_px", "error that the range image adds by its own rounding"},
        false,
        [](W w, M m) { return w.has_ranges ? number(m.slack_px) : Cell(); }},
-      {{"within_stated", "whether the largest is within both"},
+      {{"within_stated", "whether the largest shift is within stated_px + range_image_px"},
        true,
        [](W, M m) { return m.stated_px ? yes(m.within_stated()) : Cell(); }},
-      {{"back_median_px", "how far from its place reference ground is found in the picture, median"},
+      {{"back_median_px", "distance at which the reference's terrain is found in the image, median"},
        false,
        [](W w, M m) { return w.has_ranges ? number(m.shift.backward.median_px) : Cell(); }},
-      {{"back_p99_px", "99 % of the reference's pixels are found no farther away"},
+      {{"back_p99_px", "99 % of the reference's pixels are found within this distance"},
        true,
        [](W w, M m) { return w.has_ranges ? number(m.shift.backward.p99_px) : Cell(); }},
-      {{"back_max_px", "largest of them"},
+      {{"back_max_px", "largest of these distances"},
        false,
        [](W w, M m) { return w.has_ranges ? number(m.shift.backward.max_px) : Cell(); }},
-      {{"skyline_p99_px", "rows between both skylines, on 99 % of the columns at most"},
+      {{"skyline_p99_px", "rows between both skylines: at most this on 99 % of the columns"},
        false,
        [](W w, M m) { return w.has_ranges && m.skyline.count > 0 ? number(m.skyline.p99) : Cell(); }},
-      {{"skyline_max_px", "rows between both skylines at most"},
+      {{"skyline_max_px", "rows between both skylines: largest"},
        true,
        [](W w, M m) { return w.has_ranges && m.skyline.count > 0 ? number(m.skyline.max) : Cell(); }},
-      {{"holes", "sky where there is ground all around"},
+      {{"holes", "pixels of sky with terrain all around"},
        false,
        [](W w, M m) { return w.has_ranges ? number(m.shift.sky_for_ground) : Cell(); }},
       {{"range_median", "relative range error, median"},
        false,
        [](W w, M m) { return w.has_ranges ? number(m.range.median) : Cell(); }},
-      {{"range_p99", "relative range error, 99 %"},
+      {{"range_p99", "relative range error, 99 % quantile"},
        true,
        [](W w, M m) { return w.has_ranges ? number(m.range.p99) : Cell(); }},
       {{"range_max", "relative range error, largest"},
@@ -89,18 +89,18 @@ const std::vector<Field>& fields() {
        [](W, M m) {
          return number(1e3 * *std::max_element(m.timing.round_s.begin(), m.timing.round_s.end()));
        }},
-      {{"ratio", "time to the baseline's, median over the rounds"},
+      {{"ratio", "time relative to the baseline, median over the rounds"},
        true,
        [](W, M m) { return number(m.ratio); }},
-      {{"triangles", "drawn, skirts included"},
+      {{"triangles", "number drawn, skirts included"},
        true,
        [](W, M m) { return m.triangles > 0 ? number(m.triangles) : Cell(); }},
-      {{"rays", "cast"}, true, [](W, M m) { return m.rays > 0 ? number(m.rays) : Cell(); }},
-      {{"tiles", "drawn or cast over"}, false, [](W, M m) { return number(m.tiles); }},
-      {{"memory_mb", "held by a renderer that drew this alone, MiB"},
+      {{"rays", "number of rays cast"}, true, [](W, M m) { return m.rays > 0 ? number(m.rays) : Cell(); }},
+      {{"tiles", "number drawn, or crossed by rays"}, false, [](W, M m) { return number(m.tiles); }},
+      {{"memory_mb", "held by a renderer that drew only this, MiB"},
        true,
        [](W, M m) { return number(static_cast<double>(m.bytes) / kMegabyte); }},
-      {{"pages_reloaded", "pages loaded while it was timed: where it is not 0, times are of loading too"},
+      {{"pages_reloaded", "pages loaded while it was timed: if not 0, times include loading"},
        false,
        [](W, M m) { return number(m.pages_reloaded); }},
   };
@@ -122,43 +122,46 @@ void add_rows(Table& table, const SubjectResult& result, bool page) {
 
 Table empty_points_table(const std::string& name, const std::string& caption, bool page) {
   Table table{name, caption, {}, {}};
-  if (!page) table.columns.push_back({"view", "where from"});
+  if (!page) table.columns.push_back({"view", "name of the view"});
   for (const Field& field : fields()) {
     if (!page || field.in_page) table.columns.push_back(field.column);
   }
-  table.columns.push_back({"front", "no other way that shows the same is as quick and errs as little"});
+  table.columns.push_back(
+      {"front",
+       "on the Pareto front: no configuration that shows the same image is as fast and has as small an error"});
   return table;
 }
 
 }  // namespace
 
 Table points_table(const std::vector<SubjectResult>& results) {
-  Table table = empty_points_table("error-time", "Every way of every view", false);
+  Table table = empty_points_table("error-time", "Every configuration of every view", false);
   for (const SubjectResult& result : results) add_rows(table, result, false);
   return table;
 }
 
 Table view_table(const SubjectResult& result) {
   Table table =
-      empty_points_table("points", "All ways; what a column is shows where its head is pointed at", true);
+      empty_points_table("points", "All configurations. Point at a column's head for its meaning.", true);
   add_rows(table, result, true);
   return table;
 }
 
 Table sweeps_table(const std::vector<SubjectResult>& results) {
-  Table table{"sweeps",
-              "Each sweep from coarse to fine: how far its error goes, and whether it falls all the way",
-              {{"view", "where from"},
-               {"sweep", "what is varied"},
-               {"coarsest", "first value"},
-               {"finest", "last value"},
-               {"points", "how many"},
-               {"largest_error", "shift of 99 % of the pixels, px; of colours their RMS"},
-               {"smallest_error", "the same"},
-               {"decades", "between both; errors of rounding count as 0.001 px or 0.05 steps of colour"},
-               {"worst_rise", "largest factor from a point to the next finer one: up to 1 where errors fall"},
-               {"within_stated", "no measured shift exceeds what its certificate states"}},
-              {}};
+  Table table{
+      "sweeps",
+      "Each sweep from coarse to fine: the range of its error, and whether the error falls at every step",
+      {{"view", "name of the view"},
+       {"sweep", "the setting that is varied"},
+       {"coarsest", "first value"},
+       {"finest", "last value"},
+       {"points", "number of values"},
+       {"largest_error", "shift of 99 % of the pixels, px; for colours the RMS"},
+       {"smallest_error", "likewise"},
+       {"decades", "between the two; errors of rounding count as 0.001 px or 0.05 steps of colour"},
+       {"worst_rise", "largest factor from a point to the next finer one; at most 1 if errors fall"},
+       {"within_stated", "no measured shift exceeds what its certificate states"}},
+      {}};
   for (const SubjectResult& result : results) {
     for (const SweepSummary& s : summarize_sweeps(result)) {
       table.add({s.view, s.sweep, s.coarsest, s.finest, static_cast<double>(s.points), s.largest_error,
@@ -171,18 +174,18 @@ Table sweeps_table(const std::vector<SubjectResult>& results) {
 Table defaults_table(const std::vector<SubjectResult>& results) {
   Table table{
       "defaults",
-      "What is drawn when nothing is set, or no more than the backend, against the shortest time at which "
-      "any way errs no more",
-      {{"view", "where from"},
-       {"default", "yes: drawn when nothing is set; backend: when the backend alone is"},
-       {"sweep", "what is varied"},
-       {"knob", "the default"},
-       {"error", "shift of 99 % of the pixels, px; of samples the RMS of colours"},
+      "The images drawn when nothing is set, or only the backend, compared with the fastest configuration "
+      "whose error is no larger",
+      {{"view", "name of the view"},
+       {"default", "yes: drawn when nothing is set; backend: drawn when only the backend is set"},
+       {"sweep", "the setting that is varied"},
+       {"knob", "the default value"},
+       {"error", "shift of 99 % of the pixels, px; for samples the RMS of colours"},
        {"time_ms", "median of the rounds"},
-       {"front_ms", "of the quickest way that errs no more"},
-       {"front", "that way"},
-       {"over_front", "time to the front's"},
-       {"over_own_front", "the same among ways of the same backend"}},
+       {"front_ms", "time of the fastest configuration whose error is no larger"},
+       {"front", "that configuration"},
+       {"over_front", "time relative to the front"},
+       {"over_own_front", "the same among configurations of the same backend"}},
       {}};
   for (const SubjectResult& result : results) {
     for (const DefaultPlace& p : place_defaults(result)) {

@@ -8,9 +8,13 @@
 
 namespace vpe::report {
 
-Table points_table(const std::vector<SubjectResult>& results);    // a row a way and view, all that was measured
-Table view_table(const SubjectResult& result);                    // a row a way, what people look for
-Table sweeps_table(const std::vector<SubjectResult>& results);    // a row a sweep and view
-Table defaults_table(const std::vector<SubjectResult>& results);  // a row a default and view
+// Returns a row for each configuration and view, with all figures.
+Table points_table(const std::vector<SubjectResult>& results);
+// Returns a row for each configuration of one view, with the main figures.
+Table view_table(const SubjectResult& result);
+// Returns a row for each sweep and view.
+Table sweeps_table(const std::vector<SubjectResult>& results);
+// Returns a row for each default and view.
+Table defaults_table(const std::vector<SubjectResult>& results);
 
 }  // namespace vpe::report

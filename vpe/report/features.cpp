@@ -15,13 +15,13 @@ struct NamedFigure {
 };
 
 constexpr NamedFigure kFigures[] = {
-    {"peak_mb", &SceneCost::peak_mb, 1, "memory of the process at most"},
-    {"startup_s", &SceneCost::startup_s, 1, "from starting the process to the first finished picture"},
-    {"frame_ms", &SceneCost::frame_s, 1e3, "of a picture whose tiles are there"},
-    {"processor_ms", &SceneCost::processor_s, 1e3, "of all threads for such a picture"},
-    {"resident_mb", &SceneCost::resident_mb, 1, "tiles' payloads held, as counted"}};
+    {"peak_mb", &SceneCost::peak_mb, 1, "largest memory of the process"},
+    {"startup_s", &SceneCost::startup_s, 1, "from starting the process to the first finished image"},
+    {"frame_ms", &SceneCost::frame_s, 1e3, "time of an image whose tiles are loaded"},
+    {"processor_ms", &SceneCost::processor_s, 1e3, "processor time of all threads for such an image"},
+    {"resident_mb", &SceneCost::resident_mb, 1, "payloads of tiles held, as the renderer counts them"}};
 
-Cell cell(const std::optional<double>& value, double factor = 1) {
+Cell scaled_cell(const std::optional<double>& value, double factor = 1) {
   return value ? Cell(*value * factor) : Cell();
 }
 
@@ -41,28 +41,29 @@ SceneCost median_cost(std::span<const SceneCost> rounds) {
 
 Table feature_table(std::span<const FeatureCost> costs) {
   Table table{"features",
-              "What each thing costs: not used (off), used (on), and in a program that was built without it "
-              "(never). Empty: does not apply; the note says why.",
-              {{"feature", "what a scene can do without"},
-               {"backend", "that draws"},
-               {"compared", "the scene without it"}},
+              "Cost of each feature: not used (off), used (on), and in a program built without it (never). "
+              "Empty: does not apply; the note says why.",
+              {{"feature", "feature that a scene can do without"},
+               {"backend", "backend that draws"},
+               {"compared", "the scene without the feature"}},
               {}};
   for (const NamedFigure& named : kFigures) {
     for (const char* state : {"off", "on", "never"})
       table.columns.push_back(
           {std::string(named.name) + "_" + state, std::string(named.meaning) + ", " + state});
   }
-  table.columns.push_back({"frame_ratio", "frame on to off, in turns within one process"});
-  table.columns.push_back({"never_ratio", "processor time of a picture, off to never, processes in turns"});
+  table.columns.push_back({"frame_ratio", "time of a frame, on to off, in interleaved rounds of one process"});
+  table.columns.push_back(
+      {"never_ratio", "processor time of an image, off to never, of interleaved processes"});
   table.columns.push_back({"note", ""});
   for (const FeatureCost& cost : costs) {
     std::vector<Cell> row{cost.feature, cost.backend, cost.compared};
     for (const NamedFigure& named : kFigures) {
       for (const SceneCost* state : {&cost.off, &cost.on, &cost.never})
-        row.push_back(cell(state->*named.figure, named.factor));
+        row.push_back(scaled_cell(state->*named.figure, named.factor));
     }
-    row.push_back(cell(cost.frame_ratio));
-    row.push_back(cell(cost.never_ratio));
+    row.push_back(scaled_cell(cost.frame_ratio));
+    row.push_back(scaled_cell(cost.never_ratio));
     row.emplace_back(cost.note);
     table.add(std::move(row));
   }

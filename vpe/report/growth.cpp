@@ -8,8 +8,8 @@
 namespace vpe::report {
 namespace {
 
-// Two-sided 95 % points of Student's t by degrees of freedom; the last serves all larger ones: on the safe
-// side.
+// Two-sided 95 % points of Student's t by degrees of freedom. The last one serves all larger ones, which makes
+// their intervals too wide rather than too narrow.
 constexpr std::array<double, 30> kStudent95{
     12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131,
     2.120,  2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
@@ -17,7 +17,8 @@ constexpr std::array<double, 30> kStudent95{
 }  // namespace
 
 Growth fit_growth(std::span<const double> x, std::span<const double> y) {
-  if (x.size() != y.size() || x.size() < 2) throw std::invalid_argument("fit_growth: two points or more");
+  if (x.size() != y.size() || x.size() < 2)
+    throw std::invalid_argument("fit_growth: two points or more are needed");
   const auto n = static_cast<double>(x.size());
   double mean_x = 0;
   double mean_y = 0;
@@ -35,7 +36,7 @@ Growth fit_growth(std::span<const double> x, std::span<const double> y) {
     xx += dx * dx;
     xy += dx * (std::log(y[k]) - mean_y);
   }
-  if (xx < 1e-18) throw std::invalid_argument("fit_growth: all x are the same");
+  if (xx < 1e-18) throw std::invalid_argument("fit_growth: all x are equal");
 
   Growth growth;
   growth.points = static_cast<int>(x.size());

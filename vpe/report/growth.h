@@ -1,4 +1,4 @@
-// How a cost grows: y = c x^p, fitted as a straight line of logarithms.
+// Fits how a cost grows: y = c x^p, as a straight line through the logarithms.
 #pragma once
 
 #include <span>
@@ -13,8 +13,8 @@ struct Growth {
   int points = 0;
 };
 
-// Least squares of ln y over ln x. half_width is infinite for two points. Throws std::invalid_argument for
-// fewer than two points, for less than two different x, and for values that are not finite and positive.
+// Fits ln y over ln x by least squares. half_width is infinite for two points. Throws std::invalid_argument for
+// fewer than two points, for fewer than two different x, and for values that are not finite and positive.
 Growth fit_growth(std::span<const double> x, std::span<const double> y);
 
 }  // namespace vpe::report

@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "vpe/base/quantile.h"
+
 namespace vpe::report {
 
 Clock wall_clock() {
@@ -12,24 +14,19 @@ Clock wall_clock() {
       [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
+double median(std::vector<double> values) { return base::median_mean(values); }
 
 double Timing::median_s() const { return median(round_s); }
 
 std::vector<Timing> time_interleaved(std::span<const BenchmarkCase> cases, int rounds, const Clock& clock) {
-  if (rounds < 1) throw std::invalid_argument("time_in_turns: at least one round");
+  if (rounds < 1) throw std::invalid_argument("time_interleaved: at least one round is needed");
   std::vector<Timing> timings(cases.size());
   std::vector<double> last_s(cases.size(), std::numeric_limits<double>::quiet_NaN());
   for (int round = -1; round < rounds; ++round) {
     for (std::size_t k = 0; k < cases.size(); ++k) {
       const BenchmarkCase& benchmark_case = cases[k];
-      const bool is_rare = benchmark_case.most_rounds < rounds;
-      if (is_rare && (round < 0 || round >= benchmark_case.most_rounds)) continue;
+      const bool is_limited = benchmark_case.most_rounds < rounds;
+      if (is_limited && (round < 0 || round >= benchmark_case.most_rounds)) continue;
       if (benchmark_case.prepare) benchmark_case.prepare(last_s[k]);
       const double begin_s = clock();
       benchmark_case.run();
@@ -50,7 +47,7 @@ std::vector<Timing> time_interleaved(std::span<const std::function<void()>> case
 
 double ratio(const Timing& timing, const Timing& baseline) {
   const std::size_t rounds = std::min(timing.round_s.size(), baseline.round_s.size());
-  if (rounds == 0) throw std::invalid_argument("ratio: one of both was not timed");
+  if (rounds == 0) throw std::invalid_argument("ratio: one of the two was not timed");
   std::vector<double> ratios;
   for (std::size_t k = 0; k < rounds; ++k) ratios.push_back(timing.round_s[k] / baseline.round_s[k]);
   return median(std::move(ratios));

@@ -1,4 +1,4 @@
-// Time, measured so that a busy machine hits all that are compared alike.
+// Measures times in interleaved rounds, so that a busy machine slows down all compared cases alike.
 #pragma once
 
 #include <functional>
@@ -8,36 +8,47 @@
 
 namespace vpe::report {
 
-// Seconds since some moment, never running backwards.
+// Returns seconds since some moment; never runs backwards.
 using Clock = std::function<double()>;
+
+// Returns the clock that all processes share.
 Clock wall_clock();
 
 struct Timing {
-  std::vector<double> round_s;  // a round each, in their order
+  std::vector<double> round_s;  // one time for each round, in their order
+
+  // Returns the median over the rounds, NaN for none.
   double median_s() const;
 };
 
-// What is timed, and what makes it ready, which is not.
+// A case that is timed, and its preparation, which is not.
 struct BenchmarkCase {
   std::function<void()> run;
-  // Before each run, given how long the last one took (NaN: none yet); may be left out.
+  // Is called before each run with the time of the last run (NaN: none yet). May be empty.
   std::function<void(double last_s)> prepare;
-  // Runs in so many of the rounds that count at most, the first ones, and then not in the one that does not.
+  // Limits the timed rounds that the case runs in; it then skips the untimed round, too. Smaller: slow cases
+  // hold up the others less, and their medians are less reliable.
   int most_rounds = std::numeric_limits<int>::max();
 };
 
-// Runs every contestant once a round, in turns: first one round that does not count, then `rounds` that do. The
-// clock is read right before and right after each. Throws std::invalid_argument for rounds < 1.
+// Runs every case once a round: one untimed round, then `rounds` timed ones. Reads the clock right before and
+// right after each run. Throws std::invalid_argument for rounds < 1.
+//
+// Typical usage:
+//   const std::vector<Timing> timings = time_interleaved(cases, 7);
+//   const double slowdown = ratio(timings[1], timings[0]);
 std::vector<Timing> time_interleaved(std::span<const BenchmarkCase> cases, int rounds,
                                      const Clock& clock = wall_clock());
 std::vector<Timing> time_interleaved(std::span<const std::function<void()>> cases, int rounds,
                                      const Clock& clock = wall_clock());
 
-// How many times as long as the other, in the median of the rounds that both have: what disturbs a round
-// disturbs both. Throws std::invalid_argument where one has none.
+// Returns how many times as long the timing takes as the baseline: the median of the ratios in each round that
+// both have, because what disturbs a round disturbs both. Throws std::invalid_argument if they have no round in
+// common.
 double ratio(const Timing& timing, const Timing& baseline);
 
-// Of an even number the mean of the two in the middle; NaN of none.
+// Returns the median, of an even count the mean of the two in the middle (base::median_mean). Returns NaN for
+// no values.
 double median(std::vector<double> values);
 
 }  // namespace vpe::report

@@ -51,7 +51,7 @@ Growth fit_rounds(const Law& law) {
 }  // namespace
 
 std::vector<LawSample> timed_samples(std::span<const double> x, std::span<const Timing> timings) {
-  if (x.size() != timings.size()) throw std::invalid_argument("timed_samples: a timing for each x");
+  if (x.size() != timings.size()) throw std::invalid_argument("timed_samples: a timing for each x is needed");
   std::vector<LawSample> samples;
   for (std::size_t k = 0; k < x.size(); ++k) samples.push_back({x[k], timings[k].round_s});
   return samples;
@@ -78,19 +78,19 @@ std::optional<LawFit> fit(const Law& law) {
 
 Table law_table(std::span<const Law> laws) {
   Table table{"scaling-laws",
-              "Fitted exponents p of y = c x^p. half_width: of the interval that holds the true one with 95 %.",
-              {{"axis", "what is varied"},
-               {"what", "what is measured"},
-               {"x", "varied, with its unit"},
-               {"y", "measured, with its unit"},
-               {"exponent", "fitted"},
-               {"half_width", "of the 95 % interval; of two x from the scatter of the rounds alone"},
+              "Fitted exponents p of y = c x^p. half_width: half the interval that contains p with 95 %.",
+              {{"axis", "size that is varied"},
+               {"what", "case that is measured"},
+               {"x", "varied size, with its unit"},
+               {"y", "measured value, with its unit"},
+               {"exponent", "fitted exponent"},
+               {"half_width", "half the 95 % interval; for two x from the scatter of the rounds alone"},
                {"factor", "y at x = 1"},
-               {"points", "different x"},
-               {"least", "exponent asked for, at least"},
-               {"most", "exponent asked for, at most"},
-               {"holds", "the exponent is as asked for"},
-               {"surely", "so is, or so is not, all of its interval"}},
+               {"points", "number of different x"},
+               {"least", "least exponent aimed at"},
+               {"most", "largest exponent aimed at"},
+               {"holds", "the exponent meets the aim"},
+               {"surely", "the whole interval meets the aim, or the whole interval misses it"}},
               {}};
   for (const Law& law : laws) {
     std::vector<Cell> row{law.axis, law.what, law.x_name, law.y_name};
@@ -112,16 +112,16 @@ Table law_table(std::span<const Law> laws) {
 
 Table sample_table(std::span<const Law> laws) {
   Table table{"scaling-samples",
-              "What was measured: median, least and most over the rounds, which all contestants ran in turns.",
-              {{"axis", "what is varied"},
-               {"what", "what is measured"},
-               {"x_name", "varied, with its unit"},
-               {"x", "its value"},
-               {"y_name", "measured, with its unit"},
+              "All measurements: median, least and most over the interleaved rounds.",
+              {{"axis", "size that is varied"},
+               {"what", "case that is measured"},
+               {"x_name", "varied size, with its unit"},
+               {"x", "value of that size"},
+               {"y_name", "measured value, with its unit"},
                {"median", "over the rounds"},
                {"least", "over the rounds"},
                {"most", "over the rounds"},
-               {"rounds", "how many"}},
+               {"rounds", "number of rounds"}},
               {}};
   for (const Law& law : laws) {
     for (const LawSample& sample : law.samples) {

@@ -1,5 +1,7 @@
 #include "vpe/report/page.h"
 
+#include "vpe/base/number.h"
+
 namespace vpe::report {
 namespace {
 
@@ -19,19 +21,13 @@ th, td { border-bottom: 1px solid var(--line); padding: .15rem .6rem; text-align
 th.word, td.word { text-align: left; }
 )";
 
-// People read four digits; the CSV file has all of them.
+// Returns four significant digits for people; the CSV file has all.
 std::string to_short_text(const Cell& cell) {
   const auto* value = std::get_if<double>(&cell);
   if (value == nullptr) return to_text(cell);
   const std::string whole = to_text(cell);
   if (whole.size() <= 7) return whole;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", *value);
-  std::string shorter = text;
-  for (char& c : shorter) {
-    if (c == ',') c = '.';
-  }
-  return shorter;
+  return base::format_general(*value, 4);
 }
 
 void add_table(std::string& html, const Table& table) {

@@ -1,4 +1,4 @@
-// A report as one HTML file that needs nothing beside it.
+// A report as one HTML file that needs no other file.
 #pragma once
 
 #include <string>
@@ -18,14 +18,14 @@ struct Section {
 
 struct Page {
   std::string title;
-  std::vector<std::string> paragraphs;  // what was run, on what, when
+  std::vector<std::string> paragraphs;  // what was run, on which machine, when
   std::vector<Section> sections;
 };
 
-// HTML 5, light and dark, without scripts and without anything fetched. All text is escaped.
+// Returns HTML 5 in light and dark colours, without scripts and without external resources. Escapes all text.
 std::string to_html(const Page& page);
 
-// "&", "<", ">" and quotes as in HTML and XML.
+// Escapes "&", "<", ">" and quotes for HTML and XML.
 std::string escape_markup(const std::string& text);
 
 }  // namespace vpe::report

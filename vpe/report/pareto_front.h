@@ -1,4 +1,4 @@
-// Which of many ways are not beaten: the Pareto front of cost and error.
+// The Pareto front of cost and error: the configurations that no other one beats.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,16 @@
 namespace vpe::report {
 
 struct CostAndError {
-  double cost = 0;  // as time
+  double cost = 0;  // such as a time
   double error = 0;
 };
 
-// Indices of the points that no other beats: none costs no more and errs no more, and is better in one of
-// both. Of equal points the first. By rising cost. Points that are not finite are never on it.
+// Returns the indices of the points that no other point beats, by rising cost. A point beats another if neither
+// its cost nor its error is larger and one of them is smaller. Of equal points the first is on the front.
+// Points that are not finite are never on it.
 std::vector<std::size_t> pareto_front(std::span<const CostAndError> points);
 
-// The smallest cost on the front at an error no larger than this; infinite where there is none.
+// Returns the smallest cost of a finite point whose error is at most `error`; infinity if there is none.
 double cost_at_error(std::span<const CostAndError> points, double error);
 
 }  // namespace vpe::report

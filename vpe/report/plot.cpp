@@ -17,7 +17,7 @@ constexpr double kTop = 36;
 constexpr double kBottom = 52;
 constexpr double kLegend = 190;
 
-// Okabe and Ito's colours, told apart by most eyes, on white and on black.
+// The colours of Okabe and Ito, which most people can distinguish, on white and on black.
 constexpr std::array<const char*, 7> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#8c8c8c"};
 constexpr int kShapes = 5;
@@ -51,7 +51,7 @@ std::string polygon(double x, double y, double size, const std::vector<std::arra
   return "<polygon points=\"" + points + "\"";
 }
 
-// Left open for attributes.
+// Returns an element without its end, for more attributes.
 std::string shape(int which, double x, double y, double size) {
   switch (which % kShapes) {
     case 0: return "<circle" + attribute("cx", x) + attribute("cy", y) + attribute("r", size);
@@ -112,8 +112,8 @@ class Drawing {
     text_ += "<rect" + attribute("x", kLeft) + attribute("y", kTop) + attribute("width", width_) +
              attribute("height", height_) + " fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.6\"/>\n";
     text_ += text_at(kLeft + width_ / 2, kTop + height_ + 40, "middle", plot_.x_label);
-    const std::string turned = " transform=\"rotate(-90 16 " + number(kTop + height_ / 2) + ")\"";
-    text_ += text_at(16, kTop + height_ / 2, "middle", plot_.y_label, turned);
+    const std::string rotated = " transform=\"rotate(-90 16 " + number(kTop + height_ / 2) + ")\"";
+    text_ += text_at(16, kTop + height_ / 2, "middle", plot_.y_label, rotated);
   }
 
   void draw(const Series& series, int number_of_series) {
@@ -133,7 +133,7 @@ class Drawing {
       }
       marks += shape(number_of_series, x, y, point.marked ? 5.5 : 3.5) + stroke + " fill=\"" +
                (point.marked ? colour : std::string("none")) + "\"><title>" +
-               escape_markup(told(series, point)) + "</title>" + closing(number_of_series) + "\n";
+               escape_markup(tooltip(series, point)) + "</title>" + closing(number_of_series) + "\n";
     }
     if (series.joined && !path.empty()) {
       text_ += "<path d=\"" + path + "\" fill=\"none\" stroke-opacity=\"0.6\"" + stroke + "/>\n";
@@ -149,7 +149,7 @@ class Drawing {
     return number_of_series % kShapes == 0 ? "</circle>" : "</polygon>";
   }
 
-  std::string told(const Series& series, const Point& point) const {
+  std::string tooltip(const Series& series, const Point& point) const {
     std::string text = series.name + (point.label.empty() ? "" : ", " + point.label) + ": " +
                        base::format_number(point.x) + ", " + base::format_number(point.y);
     if (point.bound) text += "; at most " + base::format_number(*point.bound) + " stated";

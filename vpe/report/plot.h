@@ -1,4 +1,4 @@
-// Plots as SVG, without a library or a file beside them: they stand in a page that is one file.
+// Plots as SVG text, without a library and without a second file, so that a page with plots is one file.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@ namespace vpe::report {
 struct Point {
   double x = 0;
   double y = 0;
-  std::string label;            // shown beside the point where it is pointed at, as in "tolerance 0.5"
-  std::optional<double> bound;  // what was stated for y: a tick above the point, joined to it
-  bool marked = false;          // drawn large and filled: on the front
+  std::string label;            // shown when the point is pointed at, such as "tolerance 0.5"
+  std::optional<double> bound;  // stated bound of y: a mark above the point, joined to it
+  bool marked = false;          // drawn large and filled
 };
 
 struct Series {
@@ -32,12 +32,13 @@ struct Plot {
   int height_px = 440;
 };
 
-// On a logarithmic axis values <= 0 stand on the lower border, and say so where they are pointed at; values
-// that are not finite are left out. Axes end at decades (logarithmic) or at round numbers. Series differ in
-// colour and in the shape of their points, which the legend shows. The same plot, the same text.
+// Returns an SVG element. On a logarithmic axis, values <= 0 stand on the lower border and say so when they are
+// pointed at. Leaves out values that are not finite. Axes end at decades (logarithmic) or at round numbers.
+// Series differ in colour and in the shape of their points, which the legend shows. Equal plots give equal
+// text.
 std::string to_svg(const Plot& plot);
 
-// The same for a file of its own: black on white, wherever it is shown.
+// Returns the text of a file: black on white, on any background.
 std::string to_svg_file(const Plot& plot);
 
 }  // namespace vpe::report

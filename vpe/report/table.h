@@ -1,4 +1,4 @@
-// What was measured, a row a measurement: for programs as CSV and JSON, for people in a page (page.h).
+// Measurements as tables: CSV and JSON for programs, a page for people (page.h).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,11 +9,11 @@
 namespace vpe::report {
 
 struct Column {
-  std::string name;  // as in CSV: small letters, the unit at the end, as in "shift_p99_px"
+  std::string name;  // in CSV and JSON: small letters, the unit at the end, such as "shift_p99_px"
   std::string meaning;
 };
 
-// Nothing: not measured here, or does not apply. Numbers that are not finite are written as that too.
+// std::monostate: not measured, or does not apply. Numbers that are not finite are written the same way.
 using Cell = std::variant<std::monostate, double, std::string>;
 
 struct Table {
@@ -22,17 +22,19 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;  // each as long as columns
 
-  // Throws std::invalid_argument for a row of another length.
+  // Adds a row. Throws std::invalid_argument for a row of another length.
   void add(std::vector<Cell> row);
 };
 
-// The shortest text that reads back to the same bits, in every locale; what is not finite is "".
+// Returns the shortest text that reads back to the same bits, in every locale; "" for numbers that are not
+// finite.
 std::string to_text(const Cell& cell);
 
-// RFC 4180, names first, lines ending in "\n".
+// Returns CSV (RFC 4180) with a line of names first; lines end in "\n".
 std::string to_csv(const Table& table);
 
-// {"name", "caption", "columns": [{"name", "meaning"}], "rows": [{name: value}]}; null for nothing.
+// Returns {"name", "caption", "columns": [{"name", "meaning"}], "rows": [{name: value}]}, with null for cells
+// without a value.
 nlohmann::json to_json(const Table& table);
 
 }  // namespace vpe::report

@@ -1,4 +1,4 @@
-// Folders of frames: what a second run keeps and what it makes again.
+// Folders of frames: which frames a second run keeps, and which it makes again.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tests/app/support/film_fixture.h"
-#include "vpe/app/film/film_folder.h"
+#include "vpe/app/film/film_target.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/image/png_text.h"
 
@@ -20,7 +20,7 @@ using nlohmann::json;
 
 class FilmFolder : public FilmTest {
  protected:
-  // Frames of "out" whose bytes differ from those of "old".
+  // Returns the frames of "out" whose bytes differ from those of "old".
   static int changed(const std::map<std::string, std::string>& old,
                      const std::map<std::string, std::string>& now) {
     int n = 0;
@@ -33,7 +33,7 @@ class FilmFolder : public FilmTest {
   static void write_bytes(const fs::path& file, const std::vector<std::uint8_t>& bytes) {
     write_text(file, std::string(bytes.begin(), bytes.end()));
   }
-  // A machine on which no triangles can be drawn.
+  // Returns a command on a machine that cannot draw triangles.
   Result fly_without_egl(const std::string& output, const Words& more = {}) const {
     Command command = fly_command(output, more);
     command.arguments.insert(command.arguments.end(), {"--backend", "polygon"});
@@ -42,7 +42,7 @@ class FilmFolder : public FilmTest {
   }
 };
 
-TEST_F(FilmFolder, NothingIsDrawnWhenEveryFrameIsThere) {
+TEST_F(FilmFolder, NothingIsDrawnWhenEveryFrameIsStored) {
   expect_counts("out", kFrames, 0, {"--stats", "a.csv", "--log", "a.flight", "--backend", "polygon"});
   const auto first = files("out");
   EXPECT_EQ(first.size(), std::size_t{kFrames});
@@ -52,7 +52,7 @@ TEST_F(FilmFolder, NothingIsDrawnWhenEveryFrameIsThere) {
   EXPECT_TRUE(says(again.out, {"24 frames, all there already"}));
   EXPECT_EQ(files("out"), first);
   EXPECT_EQ(read_text(dir_ / "a.flight"), read_text(dir_ / "b.flight"));
-  // The same rows, but what only drawing tells: times and what caches hold.
+  // The same rows, except for what only drawing tells: times and the state of caches.
   std::istringstream a(read_text(dir_ / "a.csv"));
   std::istringstream b(read_text(dir_ / "b.csv"));
   const auto cells = [](const std::string& line) {
@@ -101,8 +101,7 @@ TEST_F(FilmFolder, DamagedAndMissingFramesAreMadeAgainAndForeignFilesStay) {
   fs::remove(dir_ / "out" / frame_name(16));
   write_text(dir_ / "out" / frame_name(17), "");
   write_text(dir_ / "out" / frame_name(18), whole.at(frame_name(19)));  // a good frame, but another one
-  // Right checksums all over, but no pixels; and what another version made (its fingerprint differs:
-  // FilmFrame).
+  // Valid checksums, but no pixels; and a frame of another version (its fingerprint differs: FilmFrame).
   const auto texts = vpe::core::read_png_text(bytes_of(whole.at(frame_name(20))));
   ASSERT_TRUE(texts);
   ASSERT_EQ(texts->at(0).keyword, vpe::app::kFingerprintKey);
@@ -111,9 +110,9 @@ TEST_F(FilmFolder, DamagedAndMissingFramesAreMadeAgainAndForeignFilesStay) {
   write_bytes(dir_ / "out" / frame_name(20), vpe::core::with_png_text(bytes_of(empty), *texts));
   auto other = *vpe::core::read_png_text(bytes_of(whole.at(frame_name(21))));
   other[0].text = std::string(32, '0');
-  const auto panorama_image = vpe::core::read_image(dir_ / "out" / frame_name(21));
+  const auto image = vpe::core::read_image(dir_ / "out" / frame_name(21));
   write_bytes(dir_ / "out" / frame_name(21),
-              vpe::core::with_png_text(vpe::core::encode_png(panorama_image.pixels, 64, 48), other));
+              vpe::core::with_png_text(vpe::core::encode_png(image.pixels, 64, 48), other));
   const std::map<std::string, std::string> foreign{
       {"notes.txt", "mine"}, {"frame_x.png", "mine"},   {"frame_000000.png.bak", "mine"},
       {"x.png.tmp", "mine"}, {"frame_999999.png", "x"}, {"frame_000003.PNG", "mine"}};
@@ -132,7 +131,7 @@ TEST_F(FilmFolder, AnEditRemakesTheFramesThatChange) {
   expect_counts("out", 14, 10);
   const auto turned = files("out");
   EXPECT_EQ(changed(before, turned), 14);
-  // A setting counts from its time on: frame 20.
+  // A setting has effect from its time on: frame 20.
   write_text(dir_ / "f.flight", film_flight("lon=-41 lat=-7 alt=300000", "at 10 set exaggeration=3\n"));
   expect_counts("out", 4, 20);
   EXPECT_EQ(changed(turned, files("out")), 4);
@@ -141,7 +140,7 @@ TEST_F(FilmFolder, AnEditRemakesTheFramesThatChange) {
   write_text(dir_ / "f.flight", film_flight());
   expect_counts("out", 14, 10);
   EXPECT_EQ(files("out"), before);
-  // The sun, by its own option and as a setting; a palette, by what its file holds.
+  // The sun, by its own option and as a setting; a palette, by its file's content.
   const Words sun{"--sun", "2026-11-20T12:00Z"};
   expect_counts("out", kFrames, 0, sun);
   EXPECT_GT(changed(before, files("out")), kFrames / 2);
@@ -152,7 +151,7 @@ TEST_F(FilmFolder, AnEditRemakesTheFramesThatChange) {
   expect_counts("out", 0, kFrames, palette);
   write_text(dir_ / "p.txt", "-8000 0 0 1\n9000 255 255 255\n");
   expect_counts("out", kFrames, 0, palette);
-  // What changes every image, or may.
+  // Inputs that change every image, or may do so.
   expect_counts("out", kFrames, 0, {"--memory", "512"});
   expect_counts("out", 0, kFrames, {"--memory", "512", "--threads", "1"});
 }
@@ -186,8 +185,8 @@ TEST_F(FilmFolder, SelectionsAndPartsFillOneFolder) {
   expect_counts("out", 0, 0, {"--part", "1/100"});
 }
 
-// Which backend draws depends on the machine when none is named; what is there decides first.
-TEST_F(FilmFolder, WhoBeganAFilmGoesOnWithIt) {
+// Without --backend the machine decides, but stored frames come first.
+TEST_F(FilmFolder, TheBackendThatBeganAFilmContinuesIt) {
   const auto drawn_by = [&](const std::string& folder, Words more, int made, int kept) {
     more.emplace_back("--json");
     const Result result = fly(folder, more);
@@ -202,16 +201,16 @@ TEST_F(FilmFolder, WhoBeganAFilmGoesOnWithIt) {
              "at 12 pose lon=-60 lat=-10 alt=60000 yaw=60 pitch=-30\n");
   EXPECT_EQ(drawn_by("parts", {"--part", "1/2"}, kFrames / 2, 0), "polygon");
   EXPECT_EQ(drawn_by("parts", {}, kFrames / 2, kFrames / 2), "polygon");
-  EXPECT_EQ(drawn_by("rays", {"--frames", "0-7", "--backend", "voxel", "--set", "rays.mode=multires"}, 8, 0),
-            "voxel");
-  EXPECT_EQ(drawn_by("rays", {"--part", "1/2"}, 4, 8), "voxel");
-  EXPECT_EQ(drawn_by("rays", {}, kFrames / 2, kFrames / 2), "voxel");
-  // Exact rays are not what would be chosen.
-  EXPECT_EQ(drawn_by("exact", {"--frames", "0-7", "--backend", "voxel"}, 8, 0), "voxel");
+  EXPECT_EQ(drawn_by("rays", {"--frames", "0-7", "--backend", "ray", "--set", "rays.mode=multires"}, 8, 0),
+            "ray");
+  EXPECT_EQ(drawn_by("rays", {"--part", "1/2"}, 4, 8), "ray");
+  EXPECT_EQ(drawn_by("rays", {}, kFrames / 2, kFrames / 2), "ray");
+  // auto would not choose exact rays.
+  EXPECT_EQ(drawn_by("exact", {"--frames", "0-7", "--backend", "ray"}, 8, 0), "ray");
   EXPECT_EQ(drawn_by("exact", {"--part", "1/1"}, kFrames, 0), "polygon");
 }
 
-// A film of many frames, of which one is not for rays: every setting of the flight counts, however short.
+// One of many frames does not suit rays: every setting of the flight counts, however briefly it holds.
 TEST_F(FilmFolder, OneWireframeOfManyFramesMakesTriangles) {
   const auto backend = [&](const std::string& more) {
     write_text(
@@ -268,16 +267,16 @@ TEST_F(FilmFolder, DeadWritersFilesGoAndLivingOnesStay) {
   for (const std::string& file : living) EXPECT_TRUE(exists(file)) << file;
 }
 
-TEST_F(FilmFolder, AStoppedFilmSaysHowFarItIsAndContinues) {
+TEST_F(FilmFolder, AStoppedFilmReportsItsProgressAndContinues) {
   expect_counts("whole", kFrames, 0);
-  for (const auto& [signal, code] : {std::pair{SIGTERM, 143}}) {  // FlySignals has the other
+  for (const auto& [signal, code] : {std::pair{SIGTERM, 143}}) {  // FlySignals tests the other
     const std::string out = "out" + std::to_string(code);
     Command command = fly_command(out);
     command.signal = signal;
     command.when = [&] { return exists(out + "/" + frame_name(2)); };
     const Result result = run(command);
     ASSERT_TRUE(result.signalled);
-    if (result.exit_code == 0) continue;  // it was faster
+    if (result.exit_code == 0) continue;  // it ended before the signal
     EXPECT_EQ(result.exit_code, code);
     const auto there = static_cast<int>(files(out).size());
     EXPECT_TRUE(
@@ -288,7 +287,7 @@ TEST_F(FilmFolder, AStoppedFilmSaysHowFarItIsAndContinues) {
   }
 }
 
-TEST_F(FilmFolder, AFullDiskIsSaidAndTheFilmContinues) {
+TEST_F(FilmFolder, AFullDiskIsReportedAndTheFilmContinues) {
   expect_counts("out", 6, 0, {"--frames", "0-5"});
   Command command = fly_command("out");
   // Files of more than 2 kB cannot be written, as on a full disk.
@@ -318,16 +317,16 @@ TEST_F(FilmFolder, FramesThatFailDoNotStopTheFilm) {
   EXPECT_EQ(static_cast<int>(files("out").size()), kFrames - failed);
   const json manifest = parse_json(read_text(dir_ / "out/manifest.json"));
   EXPECT_EQ(manifest["complete"], false);
-  int told = 0;
+  int reported = 0;
   for (const json& frame : manifest["frames"]) {
     EXPECT_EQ(frame.contains("failed"), !exists("out/" + frame_name(frame["index"])));
-    told += frame.contains("failed") ? 1 : 0;
+    reported += frame.contains("failed") ? 1 : 0;
   }
-  EXPECT_EQ(told, failed);
+  EXPECT_EQ(reported, failed);
   EXPECT_TRUE(says(result.err, {"out: " + std::to_string(failed) + " of 24 frames failed", "frame 0: ", "p.vpe",
                                 "damaged", "and " + std::to_string(failed - 5) + " more",
-                                "the same command makes only what is missing"}));
-  // Mended, only those are made.
+                                "the same command makes only the missing frames"}));
+  // After the repair, only those are made.
   fs::copy_file(planet(), dir_ / "p.vpe", fs::copy_options::overwrite_existing);
   const json again = parse_json(vpe(words).out);
   EXPECT_EQ(again["made"], failed);

@@ -1,4 +1,4 @@
-// Films that are killed at any moment and continued: frame by frame the same as without.
+// Films that are killed at random moments and continued equal uninterrupted films, frame by frame.
 #include <chrono>
 #include <csignal>
 
@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 class FilmKill : public FilmTest {
  protected:
-  // One run, killed after a random time below `longest_s`; whether it was.
+  // Runs once and kills the run after a random time below `longest_s`. Returns true if it was killed.
   bool kill_once(const std::string& output, test_support::Random& random, double longest_s) const {
     const auto end =
         std::chrono::steady_clock::now() + std::chrono::duration<double>(random.uniform(0, longest_s));
@@ -22,7 +22,7 @@ class FilmKill : public FilmTest {
     EXPECT_TRUE(result.signal == SIGKILL || result.exit_code == 0) << result.err;
     return result.signal == SIGKILL;
   }
-  // How long a whole run takes here.
+  // Returns the time that a whole run takes.
   double time_of(const std::string& output) const {
     const auto start = std::chrono::steady_clock::now();
     EXPECT_EQ(fly(output).exit_code, 0);
@@ -34,7 +34,7 @@ class FilmKill : public FilmTest {
     test_support::Random random(seed);
     for (int n = 0; n < kills;) {
       fs::remove_all(dir_ / "out");
-      // Killed again and again until it is done.
+      // Killed repeatedly until it is done.
       while (n < kills && kill_once("out", random, whole_s)) ++n;
       const Result last = fly("out");
       ASSERT_EQ(last.exit_code, 0) << last.err;
@@ -50,7 +50,7 @@ class FilmKill : public FilmTest {
       fs::remove(dir_ / "x.mp4.json");
       while (n < kills && kill_once("x.mp4", random, 0.7 * whole_s)) {
         ++n;
-        // What has the film's name is the film.
+        // A file under the film's name is the whole film.
         if (exists("x.mp4")) {
           EXPECT_EQ(decoded("x.mp4"), expected);
         }

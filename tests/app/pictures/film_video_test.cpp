@@ -1,4 +1,4 @@
-// Videos: segments, joined without a trace, and known again when complete.
+// Videos: segments, joined seamlessly, and recognized when complete.
 #include <algorithm>
 #include <future>
 
@@ -37,7 +37,7 @@ class FilmVideo : public FilmTest {
     expect_even(film, r.frames, r.den == 1 ? std::string(r.text) + "/1" : r.text, r.num, r.den, r.segment);
     EXPECT_EQ(leftovers(), Words{});
   }
-  // Every frame at its time, at one rate, with key frames at the segments' beginnings.
+  // Expects every frame at its time, a constant rate, and key frames at the start of each segment.
   void expect_even(const std::string& film, int frames, const std::string& rate, std::int64_t num,
                    std::int64_t den, int segment) const {
     const json stream = probe(film, {"-count_frames", "-show_streams"})["streams"].at(0);
@@ -72,7 +72,7 @@ TEST_F(FilmVideo, IsEven) { make_even("a:b ü.mp4", {"2", 2, 1, 17, 8}); }
 
 class LongFilmVideo : public FilmVideo {};
 
-// The last segment has two frames, or segments are no whole microseconds long.
+// The last segment has two frames, or the length of segments is no whole number of microseconds.
 TEST_F(LongFilmVideo, IsEvenAtOtherRates) {
   make_even("a.mp4", {"10", 10, 1, 42, 40});
   make_even("b.mp4", {"2997/100", 2997, 100, 600, 120});
@@ -80,7 +80,7 @@ TEST_F(LongFilmVideo, IsEvenAtOtherRates) {
   make_even("d.mp4", {"240", 240, 1, 1000, 240});
 }
 
-TEST_F(FilmVideo, CanBeEnteredAnywhere) {
+TEST_F(FilmVideo, CanBeSeekedAnywhere) {
   expect_counts("x.mp4", kFrames, 0);
   Command all;
   all.program = find_program("ffmpeg");
@@ -132,7 +132,7 @@ TEST_F(FilmVideo, ACompleteFilmIsKeptAndADamagedOneMadeAgain) {
 }
 
 TEST_F(FilmVideo, PartsMakeSegmentsThatARunWithoutPartJoins) {
-  expect_counts("whole.mp4", kFrames, 0, {"--backend", "polygon"});  // as parts are
+  expect_counts("whole.mp4", kFrames, 0, {"--backend", "polygon"});  // like parts
   auto one = std::async(std::launch::async, [&] { expect_counts("x.mp4", kSegment, 0, {"--part", "1/2"}); });
   auto two = std::async(std::launch::async, [&] {
     expect_counts("x.mp4", 2 * kSegment, 0, {"--part", "2/2"});
@@ -143,7 +143,7 @@ TEST_F(FilmVideo, PartsMakeSegmentsThatARunWithoutPartJoins) {
   EXPECT_FALSE(exists("x.mp4.json"));
   EXPECT_TRUE(exists("x.mp4.parts/manifest.part-1-of-2.json"));
   EXPECT_TRUE(says(fly("x.mp4", {"--part", "2/2"}).out, {"all there already", "without --part"}));
-  // An edit keeps the first segment; a damaged one is made again; what is not ours stays.
+  // An edit keeps the first segment; a damaged one is made again; foreign files stay.
   write_text(dir_ / "f.flight", film_flight("lon=-41 lat=-7 alt=300000"));
   expect_counts("x.mp4", kSegment, 0, {"--part", "3/3"});
   write_text(dir_ / "f.flight", film_flight());
@@ -169,7 +169,7 @@ TEST_F(LongFilmVideo, AnFfmpegThatDiesLeavesWholeSegments) {
   command.environment["PATH"] = path("bin");
   const Result result = run(command);
   EXPECT_EQ(result.exit_code, 1) << "signal " << result.signal;
-  EXPECT_TRUE(says(result.err, {"x.mp4", "ffmpeg says: No space left on device", "8 of 24 frames are there",
+  EXPECT_TRUE(says(result.err, {"x.mp4", "ffmpeg reports: No space left on device", "8 of 24 frames are there",
                                 "the same command continues"}));
   EXPECT_EQ(leftovers(), Words{"x.mp4.parts"});
   EXPECT_EQ(files("x.mp4.parts").size(), 2U);

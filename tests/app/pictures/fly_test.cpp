@@ -48,7 +48,7 @@ TEST_F(Fly, RegionsOfInterestAreDrawnAndLogged) {
     return all;
   };
   ASSERT_EQ(fly("plain", {"--stats", "plain.csv", "--backend", "polygon"}).exit_code, 0);
-  // From the second half on the planet is finer, and from the start on it is as an option says.
+  // In the second half the planet is finer; the regions of the option count from the start.
   std::string text = small_flight();
   const std::size_t end = text.find("at 2 pose");
   ASSERT_NE(end, std::string::npos) << text;
@@ -148,7 +148,7 @@ class FlySignals : public Fly {
  protected:
   void SetUp() override {
     Fly::SetUp();
-    // A hundred thousand frames: it ends by the signal or not at all.
+    // A hundred thousand frames: only the signal ends it.
     write_text(dir_ / "long.flight",
                "flight 1\nview size=96x54 fps=100\nat 0 pose lon=0 lat=0 alt=500000 pitch=-40\n"
                "at 1000 pose lon=90 lat=0 alt=500000 pitch=-40\n");
@@ -171,7 +171,7 @@ TEST_F(FlySignals, WhileFramesAreDrawn) {
     EXPECT_TRUE(says(result.err, {"stopped"}));
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(leftovers(), Words{});
-    // Frames that are there are whole.
+    // Existing frames are whole.
     const std::vector<std::string> frames = names(out);
     EXPECT_GE(frames.size(), 6U);
     for (const std::string& name : frames)
@@ -189,7 +189,7 @@ TEST_F(FlySignals, WhileAVideoIsMade) {
       EXPECT_TRUE(result.signalled);
       EXPECT_EQ(result.exit_code, code) << "signal " << result.signal;
       EXPECT_TRUE(says(result.err, {"stopped", "of 100000 frames are there", "the same command continues"}));
-      // Whole segments stay, to be continued; nothing half-written does.
+      // Whole segments stay for the next run; nothing half-written does.
       EXPECT_EQ(leftovers(), Words{std::string(name) + ".parts"});
       fs::remove_all(dir_ / (std::string(name) + ".parts"));
       fs::remove(dir_ / "s.csv");
@@ -200,7 +200,7 @@ TEST_F(FlySignals, WhileAVideoIsMade) {
 }
 
 TEST_F(Fly, FfmpegThatFails) {
-  // Stands for a full disk or an ffmpeg without an encoder.
+  // Simulates a full disk or an ffmpeg without an encoder.
   fs::create_directory(dir_ / "bin");
   write_text(dir_ / "bin/ffmpeg", "#!/bin/sh\necho 'Unknown encoder' >&2\nexit 3\n");
   fs::permissions(dir_ / "bin/ffmpeg", fs::perms::owner_all);
@@ -208,7 +208,7 @@ TEST_F(Fly, FfmpegThatFails) {
   command.environment["PATH"] = path("bin");
   const Result result = run(command);
   EXPECT_EQ(result.exit_code, 1) << "signal " << result.signal;
-  EXPECT_TRUE(says(result.err, {"x.mp4", "ffmpeg says: Unknown encoder", "folder to get PNG frames"}));
+  EXPECT_TRUE(says(result.err, {"x.mp4", "ffmpeg reports: Unknown encoder", "folder to get PNG frames"}));
   EXPECT_EQ(leftovers(), Words{});
   EXPECT_FALSE(exists("x.mp4"));
 }
@@ -222,7 +222,7 @@ TEST_F(Fly, FramesThatCannotBeWritten) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
-TEST_F(Fly, UnderTheTerrainIsSaid) {
+TEST_F(Fly, WarnsOfPosesUnderTheTerrain) {
   write_text(dir_ / "low.flight",
              "flight 1\nview size=32x18 fps=10\nat 0 pose lon=-149 lat=0 alt=-20000\nat 1 pose lon=-149 lat=1 "
              "alt=-20000\n");

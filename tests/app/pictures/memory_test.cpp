@@ -1,4 +1,4 @@
-// --memory bounds what a process takes.
+// --memory bounds the memory of the process.
 #include <algorithm>
 #include <sstream>
 

@@ -1,4 +1,4 @@
-// Overlays as people ask for them: in images, as layers, in films.
+// Overlays as users request them: in images, as layers, in films.
 #include <png.h>
 
 #include "tests/app/support/app_fixture.h"
@@ -54,18 +54,18 @@ TEST_F(OverlayApp, TheImageIsThePlainOneUnderTheLayer) {
   more.insert(more.end(), {"--overlay-layer", "layer.png"});
   ASSERT_EQ(render(more, "without.png").exit_code, 0);
   EXPECT_TRUE(read_text(dir_ / "without.png") == read_text(dir_ / "plain.png"));
-  auto panorama_image = vpe::core::read_image(dir_ / "plain.png");
+  auto image = vpe::core::read_image(dir_ / "plain.png");
   const auto layer = read_layer(dir_ / "layer.png");
   ASSERT_EQ(layer.width, 320);
-  const auto before = panorama_image.pixels;
-  vpe::overlay::composite(layer, panorama_image.pixels);
-  EXPECT_TRUE(panorama_image.pixels != before);
-  EXPECT_TRUE(panorama_image.pixels == vpe::core::read_image(dir_ / "with.png").pixels);
+  const auto before = image.pixels;
+  vpe::overlay::composite(layer, image.pixels);
+  EXPECT_TRUE(image.pixels != before);
+  EXPECT_TRUE(image.pixels == vpe::core::read_image(dir_ / "with.png").pixels);
   EXPECT_EQ(leftovers(), Words{});
 }
 
 TEST_F(OverlayApp, EachOneOnAndOffLeavesThePlainImage) {
-  // Contours are drawn only where the ground is right enough for them.
+  // Contours are drawn only where the terrain is accurate enough for them.
   const Words exact{"--tolerance", "0"};
   ASSERT_EQ(render(exact, "plain.png").exit_code, 0);
   const Words words = all();
@@ -80,7 +80,7 @@ TEST_F(OverlayApp, EachOneOnAndOffLeavesThePlainImage) {
   }
 }
 
-TEST_F(OverlayApp, WrongUseIsToldBeforeAnyWork) {
+TEST_F(OverlayApp, WrongUsageIsReportedBeforeAnyWork) {
   const Words base{"render", planet().string(), "--pose", "0,0,9e6", "-o", "x.png"};
   const auto with = [&](const Words& more) {
     Words words = base;
@@ -97,7 +97,7 @@ TEST_F(OverlayApp, WrongUseIsToldBeforeAnyWork) {
   EXPECT_FALSE(exists("x.png"));
 }
 
-TEST_F(OverlayApp, FilmsHaveThemAndKnowWhatChanged) {
+TEST_F(OverlayApp, FilmsHaveThemAndDetectChanges) {
   const auto fly = [&](const Words& more) {
     Words words{"fly", "f.flight", planet().string(), "-o", "film", "--frames", "0-3", "--json"};
     words.insert(words.end(), more.begin(), more.end());
@@ -118,7 +118,7 @@ TEST_F(OverlayApp, FilmsHaveThemAndKnowWhatChanged) {
   const std::string named = read_text(dir_ / "film" / "frame_000001.png");
   EXPECT_TRUE(named != plain);
   EXPECT_EQ(fly({})["made"], 0);
-  // The same again, to the byte; and again when the names change.
+  // The same bytes again; other frames when the names change.
   EXPECT_EQ(fly({"--force"})["made"], 4);
   EXPECT_TRUE(read_text(dir_ / "film" / "frame_000001.png") == named);
   write_text(dir_ / "names.csv", "name,lon,lat\nThere,31,2\n");

@@ -19,13 +19,13 @@ namespace {
 
 using vpe::core::ShiftSummary;
 
-struct Stand {
+struct Place {
   std::string at;
   std::string height_m;
   std::string text() const { return at + " at " + height_m + " m"; }
 };
 
-// As frames have it.
+// Reads a range layer with the sky as in frames.
 std::vector<float> read_range(const std::filesystem::path& path) {
   std::vector<float> all = read_numbers<float>(path);
   std::replace_if(
@@ -38,7 +38,7 @@ struct Agreement {
   ShiftSummary triangles_in_rays;  // the other way round
 };
 
-// Steps between neighbouring columns.
+// Differences between neighbouring columns.
 struct Seams {
   double seam = 0;     // mean of all seams
   double inside = 0;   // mean of the columns about them
@@ -84,33 +84,33 @@ const Words kFacetsOfRays{"--projection", "facets"};
 
 class PolygonPanorama : public AppTest {
  protected:
-  void make(const std::string& planet, const Stand& stand, const std::string& output, int width,
+  void make(const std::string& planet, const Place& place, const std::string& output, int width,
             const Words& more) const {
     Words words{"panorama",
                 planet,
                 "--at",
-                stand.at,
+                place.at,
                 "--height",
-                stand.height_m,
+                place.height_m,
                 "-o",
                 output,
                 "-q",
                 "--width",
                 std::to_string(width),
-                "--planes",
+                "--aux-layers",
                 "range",
                 "--elevation=-40,25"};
     words.insert(words.end(), more.begin(), more.end());
     const Result result = vpe(words);
-    ASSERT_EQ(result.exit_code, 0) << stand.text() << ": " << result.err;
+    ASSERT_EQ(result.exit_code, 0) << place.text() << ": " << result.err;
   }
 
   // Eight facets of triangles, and the cylinder of rays four times as fine, so that its nearest pixel to a
   // facet's is at most an eighth of that away. Shifts are in pixels of the facets.
-  Agreement agreement(const std::string& planet, const Stand& stand, int width) const {
+  Agreement agreement(const std::string& planet, const Place& place, int width) const {
     constexpr int kFiner = 4;
-    make(planet, stand, "f.png", width, kTriangles);
-    make(planet, stand, "c.png", kFiner * width, {});
+    make(planet, place, "f.png", width, kTriangles);
+    make(planet, place, "c.png", kFiner * width, {});
     const auto described = panorama::describe(dir_ / "f.png");
     const panorama::PanoramaMap facets = described.map;
     const panorama::PanoramaMap cylinder = panorama::describe(dir_ / "c.png").map;
@@ -118,22 +118,22 @@ class PolygonPanorama : public AppTest {
     EXPECT_EQ(facets.facets, 8);
     const auto triangles = read_range(dir_ / "f.range.tif");
     const auto rays = read_range(dir_ / "c.range.tif");
-    const panorama::PoseOnSphere stand_there{
-        {described.viewpoint->lon_deg, described.viewpoint->lat_deg, *described.viewpoint->alt_m, 0, 0, 0},
-        mars::kMarsRadius_m};
+    const panorama::Viewpoint viewpoint =
+        panorama::viewpoint_at({described.viewpoint->lon_deg, described.viewpoint->lat_deg},
+                               *described.viewpoint->alt_m, mars::kMarsRadius_m);
     std::vector<double> forth;
     std::vector<double> back;
     for (const panorama::Strip& strip : panorama::strips_of(facets)) {
-      for (const panorama::Piece& piece : panorama::pieces_of(facets, stand_there, strip, 0)) {
+      for (const panorama::Piece& piece : panorama::pieces_of(facets, viewpoint, strip, 0)) {
         std::vector<float> by_triangles;
         std::vector<float> by_rays;
         for (int y = 0; y < piece.height; ++y) {
           for (int x = 0; x < piece.width; ++x) {
-            const auto place = static_cast<std::size_t>((piece.y + y) * facets.width_px + piece.x + x);
-            by_triangles.push_back(triangles[place]);
+            const auto index = static_cast<std::size_t>((piece.y + y) * facets.width_px + piece.x + x);
+            by_triangles.push_back(triangles[index]);
             const auto at = cylinder.to_pixel(facets.to_direction(static_cast<double>(piece.x + x) + 0.5,
                                                                   static_cast<double>(piece.y + y) + 0.5));
-            // Facets reach the elevations asked for in their middles, and less far beside them.
+            // Facets reach the requested elevations in their middles, and less beside them.
             if (!at) throw std::runtime_error("the cylinder does not show what a facet shows");
             const auto column = std::min(static_cast<std::int64_t>(at->x), cylinder.width_px - 1);
             const auto row = std::min(static_cast<std::int64_t>(at->y), cylinder.height_px - 1);
@@ -150,30 +150,30 @@ class PolygonPanorama : public AppTest {
     return {vpe::core::summarize(forth, 1), vpe::core::summarize(back, 1)};
   }
 
-  void expect_agreement(const std::string& planet, const std::vector<Stand>& stands, int width) const {
-    for (const Stand& stand : stands) {
-      const Agreement found = agreement(planet, stand, width);
-      SCOPED_TRACE(stand.text());
+  void expect_agreement(const std::string& planet, const std::vector<Place>& places, int width) const {
+    for (const Place& place : places) {
+      const Agreement found = agreement(planet, place, width);
+      SCOPED_TRACE(place.text());
       EXPECT_GT(found.rays_in_triangles.pixels, width * 100);
       EXPECT_LE(found.rays_in_triangles.share_over_1px, 0.005);
       EXPECT_LE(found.triangles_in_rays.share_over_1px, 0.005);
       EXPECT_GT(found.rays_in_triangles.median_px, 0);  // they are two images
       for (const ShiftSummary& s : {found.rays_in_triangles, found.triangles_in_rays}) {
         std::printf("%-32s median %.3f, 99 %% %.3f, 99.9 %% %.3f, largest %.2f px; over 1 px %.4f %% of %lld\n",
-                    stand.text().c_str(), s.median_px, s.p99_px, s.p999_px, s.max_px, 100 * s.share_over_1px,
+                    place.text().c_str(), s.median_px, s.p99_px, s.p999_px, s.max_px, 100 * s.share_over_1px,
                     static_cast<long long>(s.pixels));
       }
     }
   }
 
   // Both backends: facets of rays differ from view to view as those of triangles do.
-  void expect_no_seams(const std::string& planet, const std::vector<Stand>& stands, double at_most) const {
+  void expect_no_seams(const std::string& planet, const std::vector<Place>& places, double at_most) const {
     for (const Words& backend : {kTriangles, kFacetsOfRays}) {
       std::vector<vpe::core::RgbImage> images;
-      for (const Stand& stand : stands) {
+      for (const Place& place : places) {
         Words more = backend;
         more.insert(more.end(), {"--set", "sun.elevation=15", "--set", "shading=flat"});
-        make(planet, stand, "f.png", 1600, more);
+        make(planet, place, "f.png", 1600, more);
         images.push_back(vpe::core::read_image(dir_ / "f.png"));
         ASSERT_EQ(images.back().width, 1600);
       }
@@ -200,7 +200,7 @@ TEST_F(PolygonPanorama, SeamsAreNotSeen) {
 // error of the ground, so that no number of pixels bounds it: that is no reason to draw again.
 TEST_F(PolygonPanorama, ResumedAfterASignalItIsTheSame) {
   const Words capped{"--height", "1", "--set", "lod.triangles=60"};
-  for (const Words& camera : {Words{"--height", "4000", "--planes", "range"}, capped}) {
+  for (const Words& camera : {Words{"--height", "4000", "--aux-layers", "range"}, capped}) {
     // Wide enough for three strips.
     Words words{
         "panorama", planet().string(),       "--at",      "10,5",   "-o", "p.tif", "-q", "--json", "--width",
@@ -244,13 +244,13 @@ class LongPolygonPanorama : public PolygonPanorama {
   static constexpr int kWidth = 1600;
 
   // Canyons, a volcano's flank and scarp, a basin, plains, poles, the seam of longitudes.
-  static std::vector<Stand> over_mars() {
+  static std::vector<Place> over_mars() {
     return {{"-70,-11.1", "2"},  {"-70,-11.1", "500"},   {"-61.5,-13", "10000"}, {"-134.3,18.2", "2"},
             {"-131,18", "3000"}, {"137.37,-4.67", "50"}, {"70,-42", "10"},       {"180,30", "100"},
             {"0,90", "200"},     {"45,-90", "1000"},     {"-40,-5", "2000"},     {"20,10", "10000"}};
   }
   // About the place of the rover's mosaic of sol 1051.
-  static std::vector<Stand> over_gale() {
+  static std::vector<Place> over_gale() {
     return {{"137.37024,-4.66798364", "1.97"},
             {"137.37024,-4.66798364", "10"},
             {"137.4417,-4.5895", "2"},

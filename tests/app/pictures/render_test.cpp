@@ -45,13 +45,13 @@ TEST_F(Render, ImageRangeAndCertificate) {
   EXPECT_GT(report["stats"]["triangles"], 0);
   EXPECT_EQ(report["stats"]["tiles_drawn"], c["tiles_drawn"]);
 
-  const auto panorama_image = vpe::core::read_image(dir_ / "x.png");
-  EXPECT_EQ(panorama_image.width, 96);
-  EXPECT_EQ(panorama_image.height, 54);
+  const auto image = vpe::core::read_image(dir_ / "x.png");
+  EXPECT_EQ(image.width, 96);
+  EXPECT_EQ(image.height, 54);
   const auto range = vpe::core::read_tiff(dir_ / "r.tif");
   ASSERT_EQ(range.width, 96);
   ASSERT_EQ(range.height, 54);
-  // The upper rim looks at the horizontal, 23 degrees above the horizon; the lower one 60 degrees down.
+  // The upper edge looks at the horizontal, 23 degrees above the horizon; the lower one 60 degrees down.
   int sky = 0;
   for (int x = 0; x < 96; ++x) {
     EXPECT_EQ(range.pixels[static_cast<std::size_t>(x)], vpe::core::kSkyRange);
@@ -63,14 +63,14 @@ TEST_F(Render, ImageRangeAndCertificate) {
     sky += std::isinf(r) ? 1 : 0;
     if (!std::isinf(r)) {
       EXPECT_GT(r, 290e3F);
-      EXPECT_LT(r, 1.6e6F);  // the horizon's distance and some
+      EXPECT_LT(r, 1.6e6F);  // somewhat more than the horizon's distance
     }
   }
   EXPECT_GT(sky, 96 * 54 / 8);
   EXPECT_LT(sky, 96 * 54 / 2);
 }
 
-TEST_F(Render, WhatDrawsWhenNoBackendIsNamed) {
+TEST_F(Render, AutoChoosesTheBackend) {
   const auto backend = [&](Words more, const std::string& pose, const std::string& file = "x.png") {
     more.emplace_back("--json");
     const Result result = render(more, pose, file);
@@ -84,9 +84,9 @@ TEST_F(Render, WhatDrawsWhenNoBackendIsNamed) {
   EXPECT_EQ(backend({}, down), "polygon");
   EXPECT_EQ(backend({"--set", "mode=wireframe"}, far), "polygon");
   EXPECT_EQ(backend({"--explain-lod", "e.json"}, far), "polygon");
-  EXPECT_EQ(backend({"--backend", "auto"}, far, "a.png"), vpe::gl::has_gpu() ? "polygon" : "voxel");
+  EXPECT_EQ(backend({"--backend", "auto"}, far, "a.png"), vpe::gl::has_gpu() ? "polygon" : "ray");
   if (vpe::gl::has_gpu()) GTEST_SKIP() << "skipped: triangles are drawn wherever there is a GPU";
-  EXPECT_EQ(backend({"--backend", "voxel", "--set", "rays.mode=multires"}, far, "b.png"), "voxel");
+  EXPECT_EQ(backend({"--backend", "ray", "--set", "rays.mode=multires"}, far, "b.png"), "ray");
   EXPECT_EQ(read_text(dir_ / "a.png"), read_text(dir_ / "b.png"));
   // Where there is no OpenGL at all.
   Command command = command_for({"render", planet().string(), "--pose", far, "-o", "c.png", "--size", "96x54"});
@@ -105,7 +105,7 @@ TEST_F(Render, StraightDownTheRangeIsTheAltitudeOverTheTerrain) {
   };
   EXPECT_NEAR(middle_m({}, "31,1,100000,0,-90,0"), 100000 - ground, 1);
   EXPECT_NEAR(middle_m({"--height", "100000"}, "31,1,0,-90,0"), 100000, 1);
-  // The sag is not exaggerated, and small beside ten times the relief.
+  // The sagitta is not exaggerated, and small beside ten times the heights.
   EXPECT_NEAR(middle_m({"--set", "exaggeration=10"}, "31,1,100000,0,-90,0"), 100000 - 10 * ground, 1300);
 }
 
@@ -121,7 +121,7 @@ TEST_F(Render, SameImageAgainAndInOtherFormats) {
 }
 
 TEST_F(Render, TheSunOfADateOrASeason) {
-  const auto panorama_image = [&](const Words& more) {
+  const auto pixels_of = [&](const Words& more) {
     Words words{"--set", "mode=lit"};
     words.insert(words.end(), more.begin(), more.end());
     const Result result = render(words, "-74,-13.5,300000,0,-90,0", "s.png");
@@ -133,23 +133,23 @@ TEST_F(Render, TheSunOfADateOrASeason) {
     for (const vpe::base::Rgb& p : pixels) sum += p.r;
     return sum / static_cast<double>(pixels.size());
   };
-  const auto noon = panorama_image({"--sun", "Ls0,12:00"});
-  const auto evening = panorama_image({"--sun", "Ls0,17:30"});
-  const auto night = panorama_image({"--sun", "ls0,00:00"});
+  const auto noon = pixels_of({"--sun", "Ls0,12:00"});
+  const auto evening = pixels_of({"--sun", "Ls0,17:30"});
+  const auto night = pixels_of({"--sun", "ls0,00:00"});
   EXPECT_GT(brightness(noon), 1.3 * brightness(evening));
   EXPECT_GT(brightness(evening), 1.3 * brightness(night));
-  EXPECT_EQ(panorama_image({"--set", "sun=Ls0,17:30"}), evening);
-  EXPECT_EQ(panorama_image({"--sun", "Ls0,12:00", "--set", "sun=Ls0,17:30"}), evening);
-  EXPECT_EQ(panorama_image({"--sun", "local"}), panorama_image({}));
+  EXPECT_EQ(pixels_of({"--set", "sun=Ls0,17:30"}), evening);
+  EXPECT_EQ(pixels_of({"--sun", "Ls0,12:00", "--set", "sun=Ls0,17:30"}), evening);
+  EXPECT_EQ(pixels_of({"--sun", "local"}), pixels_of({}));
 
-  // By date, and by where that sun stands at the ground below the camera.
+  // By date, and by that sun's azimuth and elevation at the ground below the camera.
   const mars::LonLat below{-74, -13.5};
   const mars::MarsTime time = mars::mars_time(1795176000);  // 2026-11-20T12:00Z
-  const mars::SunPlace at =
-      mars::sun_place(below, mars::direction({time.subsolar_lon_deg, time.subsolar_lat_deg}));
-  const auto dated = panorama_image({"--sun", "2026-11-20T14:00+02:00"});
-  const auto put = panorama_image({"--set", "sun.azimuth=" + vpe::base::format_number(at.azimuth_deg), "--set",
-                                   "sun.elevation=" + vpe::base::format_number(at.elevation_deg)});
+  const mars::SunPosition at =
+      mars::sun_position(below, mars::direction({time.subsolar_lon_deg, time.subsolar_lat_deg}));
+  const auto dated = pixels_of({"--sun", "2026-11-20T14:00+02:00"});
+  const auto put = pixels_of({"--set", "sun.azimuth=" + vpe::base::format_number(at.azimuth_deg), "--set",
+                              "sun.elevation=" + vpe::base::format_number(at.elevation_deg)});
   ASSERT_EQ(dated.size(), put.size());
   for (std::size_t n = 0; n < put.size(); ++n) ASSERT_NEAR(dated[n].r, put[n].r, 1) << n;
   EXPECT_GT(brightness(dated), 1.3 * brightness(night));
@@ -162,7 +162,7 @@ TEST_F(Render, ExplainsTheLevelOfEveryDrawnTile) {
     const Result result = render(more, pose);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     json out = parse_json(read_text(dir_ / "e.json"));
-    // What is explained is what was drawn.
+    // The explained tiles are those that were drawn.
     const json stats = parse_json(result.out)["stats"];
     EXPECT_EQ(out["tiles"].size(), stats["tiles_drawn"]);
     EXPECT_EQ(out["triangles"], stats["triangles"]);
@@ -176,19 +176,20 @@ TEST_F(Render, ExplainsTheLevelOfEveryDrawnTile) {
     EXPECT_TRUE(tile["reason"] == "finest there" || tile["reason"] == "within tolerance") << tile.dump();
     EXPECT_EQ(tile["shift_levels"], 0);
     EXPECT_GT(tile["post_spacing_m"], 0);
-    EXPECT_GE(tile["lod"], 1);
+    EXPECT_GE(tile["lod"], 0);
   }
   // A coarse region over the whole planet.
   const json coarse = explain({"--interest", "0,0,1e8,-3"});
   EXPECT_LT(coarse["triangles"], plain["triangles"]);
   for (const json& tile : coarse["tiles"]) EXPECT_EQ(tile["interest"]["levels"], -3);
-  // The original rule: the same LOD wherever the scale is 0.
+  // The metric distance: the same level everywhere when the scale is 0. Levels count from 0, the numbers of the
+  // metric from 1.
   const json flat = explain(
-      {"--set", "lod.rule=hitchner", "--set", "lod.distance.scale=0", "--set", "lod.distance.offset=1.9"});
-  EXPECT_EQ(flat["rule"], "hitchner");
+      {"--set", "lod.metric=distance", "--set", "lod.distance.scale=0", "--set", "lod.distance.offset=1.9"});
+  EXPECT_EQ(flat["rule"], "distance");
   for (const json& tile : flat["tiles"]) {
-    EXPECT_EQ(tile["lod"], 1);  // (int) 1.9
-    EXPECT_EQ(tile["wanted_lod"], 1);
+    EXPECT_EQ(tile["lod"], 0);  // (int) 1.9 - 1
+    EXPECT_EQ(tile["wanted_lod"], 0);
     EXPECT_EQ(tile["distance"]["weighted"], 1.9);
   }
   const json spent = explain({"--tolerance", "0", "--set", "lod.triangles=5000"});
@@ -198,7 +199,7 @@ TEST_F(Render, ExplainsTheLevelOfEveryDrawnTile) {
 }
 
 TEST_F(Render, ADamagedTileIsNamed) {
-  // Grids of posts are what tolerance 0 draws, meshes what larger ones do.
+  // Tolerance 0 draws grids of posts, larger tolerances draw meshes.
   const std::vector<std::pair<std::string, std::string>> cases{{"heights", "0"}, {"mesh", "20"}};
   for (const auto& [table, tolerance] : cases) {
     SCOPED_TRACE(table);

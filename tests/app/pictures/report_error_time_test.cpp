@@ -1,5 +1,4 @@
-// vpe report error-time --short over a small rough planet: what must hold of every sweep, and of what is
-// written.
+// vpe report error-time --short over a small rough planet: properties of every sweep and of the files.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -59,7 +58,7 @@ void ReportErrorTime::no_shift_is_more_than_stated() const {
   EXPECT_GE(stated, 24);
 }
 
-// Levels by distance bound no error, and need not elsewhere (docs/error-and-time.md); here theirs fall too.
+// Levels by distance bound no error, and need not elsewhere (docs/design/reports.md); here theirs fall too.
 void ReportErrorTime::errors_fall_along_each_sweep() const {
   ASSERT_EQ(views(), (std::set<std::string>{"canyon floor", "high oblique"}));
   struct Errors {
@@ -85,7 +84,7 @@ void ReportErrorTime::errors_fall_along_each_sweep() const {
   EXPECT_EQ(sweeps.size(), least_decades.size());
 }
 
-// What costs time is counted: finer is more.
+// Counts of work rise along each sweep.
 void ReportErrorTime::work_rises_along_each_sweep() const {
   const auto expect_more = [&](const std::string& view, const std::string& sweep, const std::string& column) {
     const std::vector<nlohmann::json> all = points(view, sweep);
@@ -118,7 +117,7 @@ void ReportErrorTime::exact_rays_are_reference_and_baseline() const {
     EXPECT_EQ(exact.at("default"), "backend");
     EXPECT_LT(exact.at("shift_max_px").get<double>(), 1e-3);
   }
-  // What is drawn when nothing is named is one way a view, among images and among samples.
+  // The chosen configuration is one for each view, among images and among samples.
   std::multiset<std::string> chosen;
   for (const nlohmann::json& row : rows("defaults")) {
     if (row.at("default") == "yes") chosen.insert(row.at("view").get<std::string>());
@@ -167,7 +166,7 @@ TEST_F(ReportErrorTime, ShortRunHolds) {
   files_agree();
 }
 
-TEST_F(ReportErrorTime, WrongUsageIsTold) {
+TEST_F(ReportErrorTime, WrongUsageIsReported) {
   expect_failure({"report"}, 2, {"subcommand is required"});
   expect_failure({"report", "error-time"}, 2, {"--output is required"});
   expect_failure({"report", "error-time", planet().string(), "-o", "x", "--view", "moon"}, 2,

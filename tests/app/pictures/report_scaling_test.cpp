@@ -1,5 +1,5 @@
-// vpe report scaling, features and all at their smallest: what is counted, and that all files say the
-// same. Times are in them and are not judged.
+// vpe report scaling, features and all at their smallest: counts are checked, and that all files agree. Times
+// are not judged.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -88,8 +88,8 @@ TEST_F(Report, ScalingCountsWhatItVaries) {
     EXPECT_GT(planet["tiles"].get<double>(), planet["finest_posts"].get<double>() / (129 * 129));
     EXPECT_GT(planet["bytes"].get<double>(), planet["finest_posts"].get<double>());
   }
-  const json coarse = row(report["planets"], {{"side_posts", 257}, {"finest_level", 9}});
-  const json fine = row(report["planets"], {{"side_posts", 257}, {"finest_level", 13}});
+  const json coarse = row(report["planets"], {{"side_posts", 257}, {"finest_level", 8}});
+  const json fine = row(report["planets"], {{"side_posts", 257}, {"finest_level", 12}});
   EXPECT_NEAR(coarse["spacing_m"].get<double>() / fine["spacing_m"].get<double>(), 16, 1e-6);
 
   for (const json& sample : report["samples"]["rows"]) {
@@ -118,7 +118,7 @@ TEST_F(Report, ScalingRefusesWhatItCannotDo) {
   EXPECT_FALSE(exists("out"));
 }
 
-// Nothing is left of a run that is stopped, and what was there stays.
+// A stopped run leaves nothing and changes no old file.
 TEST_F(Report, ScalingStoppedLeavesNothing) {
   std::filesystem::create_directory(dir_ / "out");
   write_text(dir_ / "out/scaling.json", "old");
@@ -143,7 +143,7 @@ TEST_F(Report, FeaturesHoldWhatTheyUse) {
   expect_page("out/features.html", 0);
 
   const json& table = report["features"];
-  for (const char* backend : {"polygon", "voxel"}) {
+  for (const char* backend : {"polygon", "ray"}) {
     const auto of = [&](const char* feature) {
       return row(table, {{"feature", feature}, {"backend", backend}});
     };
@@ -193,14 +193,14 @@ TEST_F(LongReport, AllInOneFolder) {
       EXPECT_TRUE(there.contains(std::string(report) + kind)) << report;
   }
   for (const char* heading : {"Error against time: All views", "How costs grow: Exponents",
-                              "What things cost that a scene can do without: Costs"})
+                              "Cost of features that a scene can do without: Costs"})
     EXPECT_NE(page.find(heading), std::string::npos) << heading;
   for (const char* outside : {"<script", "src=", "href=", "@import", "url("})
     EXPECT_EQ(page.find(outside), std::string::npos);
   // Peaks are those of the processes, not of the one that started them.
   const json features = parse_json(read_text(dir_ / "all/features.json"));
   for (const json& one : features["features"]["rows"]) {
-    if (one["backend"] == "voxel" && !one["peak_mb_on"].is_null()) {
+    if (one["backend"] == "ray" && !one["peak_mb_on"].is_null()) {
       EXPECT_LT(one["peak_mb_on"].get<double>(), 250) << one;
     }
   }

@@ -1,4 +1,4 @@
-// Images for two eyes.
+// vpe render --stereo.
 #include <algorithm>
 #include <cmath>
 
@@ -28,8 +28,8 @@ class StereoRender : public AppTest {
   }
 };
 
-TEST_F(StereoRender, EyesSeeTheGroundShifted) {
-  // f = 80 / tan 20 degrees = 219.8 pixels: what is 300 km below moves by 20 pixels for a base of 27.3 km.
+TEST_F(StereoRender, TheEyesImagesAreShifted) {
+  // f = 80 / tan 20 degrees = 219.8 pixels: a point 300 km below moves by 20 pixels for a base of 27.3 km.
   const vpe::core::RgbImage pair = draw("p.png", {"--stereo", "sbs", "--eye-base", "27298"});
   ASSERT_EQ(pair.width, 2 * kWidth);
   ASSERT_EQ(pair.height, kHeight);
@@ -67,7 +67,7 @@ TEST_F(StereoRender, EyesSeeTheGroundShifted) {
   EXPECT_LT(apart, 0.5 * spread);
 }
 
-TEST_F(StereoRender, TheBaseIsAThirtiethOfTheNearest) {
+TEST_F(StereoRender, TheDefaultBaseIsAThirtiethOfTheNearestDistance) {
   const Result result = vpe(words("p.png", {"--stereo", "anaglyph", "--json", "--certificate", "c.json"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   draw("one.png", {"--range", "r.tif"});
@@ -95,7 +95,7 @@ TEST_F(StereoRender, WrongUsage) {
   const Result sky = vpe({"render", planet().string(), "--pose", "20,10,300000,0,60,0", "--size", "64x48",
                           "--stereo", "sbs", "-o", "x.png"});
   EXPECT_EQ(sky.exit_code, 1);
-  EXPECT_TRUE(says(sky.err, {"sky alone", "--eye-base"}));
+  EXPECT_TRUE(says(sky.err, {"shows only sky", "--eye-base"}));
 }
 
 }  // namespace

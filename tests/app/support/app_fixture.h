@@ -1,4 +1,4 @@
-// vpe in a folder of its own, with a cache of its own, and a small planet.
+// Fixture that runs vpe in a temporary folder, with a cache of its own and a small planet.
 #pragma once
 
 #include <functional>
@@ -22,34 +22,34 @@ struct Dem {
   double north_deg = 90;
   double cell_deg = 2;
   std::optional<double> no_data;
-  std::function<double(int column, int row)> height_m;  // left out: hills of some kilometres
+  std::function<double(int column, int row)> height_m;  // empty: hills of some kilometres
 };
 
-// An Int16 or, where height_m is given, Float32 GeoTIFF on the sphere of Mars.
+// Writes a GeoTIFF on the sphere of Mars: Float32 where height_m is given, else Int16.
 void write_dem(const std::filesystem::path& path, const Dem& dem = {});
 
 void write_text(const std::filesystem::path& path, const std::string& text);
 std::string read_text(const std::filesystem::path& path);
 
-// Other bytes in the middle of every payload of a planet file's table ("heights", "mesh"), its checksums as before.
+// Changes bytes in the middle of every payload of a planet file's table ("heights", "mesh"). Checksums stay.
 void damage_payloads(const std::filesystem::path& planet, const std::string& table);
 
-// Every part of a message that must be there: what, which file, why, what to do.
+// Checks that a message contains every part: what failed, which file, why, what to do.
 ::testing::AssertionResult says(const std::string& message, const Words& parts);
 
 class AppTest : public ::testing::Test {
  protected:
-  // Runs in dir_ with nothing of the user's.
+  // Runs vpe in dir_, without the user's files and variables.
   Result vpe(const Words& arguments, const std::string& input = "") const;
   Command command_for(const Words& arguments) const;
 
-  // Exit code, a message of these parts on stderr, nothing on stdout.
+  // Expects this exit code, a message of these parts on stderr, and nothing on stdout.
   void expect_failure(const Words& arguments, int exit_code, const Words& parts) const;
 
-  // A planet of 6 tiles of hills with posts about 42 km apart, made once for the whole program.
+  // Returns a planet of 6 tiles of hills with posts about 42 km apart, made once per process.
   static const std::filesystem::path& planet();
 
-  // Files in dir_ that only unfinished work has.
+  // Returns the files in dir_ that only unfinished work leaves.
   std::vector<std::string> leftovers() const;
   bool exists(const std::string& name) const { return std::filesystem::exists(dir_ / name); }
   std::string path(const std::string& name) const { return (dir_ / name).string(); }
@@ -57,10 +57,10 @@ class AppTest : public ::testing::Test {
   test_support::TempDir dir_;
 };
 
-// The whole text as JSON; fails the test otherwise.
+// Parses the whole text as JSON. Fails the test when it is not.
 nlohmann::json parse_json(const std::string& text);
 
-// Flight of two seconds at 10 frames/s over the planet.
+// Returns a flight of two seconds at 10 frames/s over the planet.
 std::string small_flight(const std::string& view = "fov=50 size=96x54 fps=10");
 
 }  // namespace app_test

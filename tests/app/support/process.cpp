@@ -65,7 +65,7 @@ Result run(const Command& command) {
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, (caught / "err").c_str(), O_WRONLY | O_CREAT, 0644);
   if (!command.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, command.folder.c_str());
-  // Whoever runs the tests in the background may have these ignored.
+  // Shells start background jobs with these signals ignored.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t defaults;

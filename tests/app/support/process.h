@@ -1,4 +1,4 @@
-// A program run as a subprocess.
+// Runs of a program as a subprocess.
 #pragma once
 
 #include <filesystem>
@@ -12,18 +12,18 @@ namespace app_test {
 struct Command {
   std::filesystem::path program;
   std::vector<std::string> arguments;
-  std::filesystem::path folder;                    // to run in; its output is caught in files beside it
-  std::map<std::string, std::string> environment;  // on top of ours
+  std::filesystem::path folder;                    // working directory
+  std::map<std::string, std::string> environment;  // in addition to this process's
   std::string input;                               // standard input
-  std::string output_to;                           // a file for stdout instead of catching it
+  std::string output_to;                           // file for stdout; then Result::out stays empty
   int signal = 0;                                  // sent once when() is true
   std::function<bool()> when;
-  double limit_s = 120;  // then it is killed
+  double limit_s = 120;  // time after which it is killed
 };
 
 struct Result {
   int exit_code = -1;      // -1 when a signal ended it
-  int signal = 0;          // that ended it
+  int signal = 0;          // the signal that ended it
   bool signalled = false;  // when() came true while it ran
   std::string out;
   std::string err;
@@ -32,7 +32,7 @@ struct Result {
 
 Result run(const Command& command);
 
-// Where a program lies on PATH; empty when it does not.
+// Returns the path of a program on PATH, or an empty path.
 std::filesystem::path find_program(const std::string& name);
 
 }  // namespace app_test

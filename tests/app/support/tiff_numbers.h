@@ -1,4 +1,4 @@
-// Numbers of tiled TIFF files, by libtiff.
+// Reader of tiled TIFF files with numbers.
 #pragma once
 
 #include <tiffio.h>
@@ -11,7 +11,7 @@
 
 namespace app_test {
 
-// Row by row, `samples` to a pixel. Throws std::runtime_error.
+// Returns all numbers row by row, `samples` per pixel. Throws std::runtime_error.
 template <class Number>
 std::vector<Number> read_numbers(const std::filesystem::path& path, int samples = 1) {
   TIFFSetWarningHandler(nullptr);

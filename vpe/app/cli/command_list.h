@@ -1,4 +1,4 @@
-// The commands of the program, of which some, as `vpe report error-time`, are two words.
+// The program's commands as CLI11 knows them.
 #pragma once
 
 #include <string>
@@ -10,11 +10,12 @@ class App;
 
 namespace vpe::app {
 
-// All that do something by themselves, in the order in which they were added.
+// Returns the commands that can be run, in the order in which they were added. A command with subcommands, such
+// as `report`, is not among them; its subcommands are.
 std::vector<CLI::App*> all_commands(CLI::App& program);
 std::vector<const CLI::App*> all_commands(const CLI::App& program);
 
-// As it is called, but for the program's own name: "report error-time".
+// Returns the words that call the command, without the program's own name: "report error-time".
 std::string command_words(const CLI::App& command);
 
 }  // namespace vpe::app

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "vpe/app/cli/command_list.h"
+#include "vpe/app/cli/former_options.h"
 #include "vpe/base/number.h"
 #include "vpe/base/user_folders.h"
 
@@ -23,7 +24,7 @@ namespace {
 
 class ConfigFile {
  public:
-  // done: the keys that files before this one have given, which goes on to the next.
+  // `done` holds the options that files before this one have set; apply() adds its own.
   ConfigFile(CLI::App& program, CLI::App& command, std::string path, std::set<std::string>& done)
       : program_(program), command_(command), path_(std::move(path)), done_(done) {}
 
@@ -50,12 +51,12 @@ class ConfigFile {
 
   static CLI::Option* option(CLI::App& command, std::string_view key) {
     if (key == "help" || key == "config") return nullptr;
-    return command.get_option_no_throw("--" + std::string(key));
+    return command.get_option_no_throw(std::string(current_option("--" + std::string(key))));
   }
 
   toml::table parse() const {
     std::ifstream in(path_, std::ios::binary);
-    // A folder opens, but cannot be read.
+    // A folder can be opened, but not read.
     if (!in || (in.peek(), in.bad())) {
       throw UsageError(path_ + ": cannot read the configuration: " + std::strerror(errno) + "; check the name");
     }
@@ -67,7 +68,7 @@ class ConfigFile {
     }
   }
 
-  // name: the command's words, or the first of them.
+  // `name` holds the command's words, or the first of them.
   void apply_table(const std::string& name, const toml::table& table) {
     const auto all = all_commands(program_);
     const auto at =
@@ -91,19 +92,25 @@ class ConfigFile {
     if (const auto* value = node.as_integer()) return std::to_string(value->get());
     if (const auto* value = node.as_floating_point()) return base::format_number(value->get());
     if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
-    fail(node, std::string(key) + ": expected a text, a number, true, false or a list of these");
+    fail(node, std::string(key) + ": expected text, a number, true, false or a list of these");
+  }
+
+  static std::string name_of(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
+
+  std::string value(const CLI::Option& option, const toml::node& node, std::string_view key) const {
+    return current_value(name_of(option), text(node, key));
   }
 
   void set(CLI::Option& option, std::string_view key, const toml::node& node) {
-    if (option.count() > 0 || !done_.insert(std::string(key)).second) return;
+    if (option.count() > 0 || !done_.insert(name_of(option)).second) return;
     if (option.get_expected_max() == 0) {
       if (!node.is_boolean()) fail(node, std::string(key) + ": expected true or false");
       if (!node.as_boolean()->get()) return;
-    }
-    if (const toml::array* list = node.as_array()) {
-      for (const toml::node& entry : *list) option.add_result(text(entry, key));
+      option.add_result(option.get_flag_value(option.get_lnames().front(), ""));
+    } else if (const toml::array* list = node.as_array()) {
+      for (const toml::node& entry : *list) option.add_result(value(option, entry, key));
     } else {
-      option.add_result(text(node, key));
+      option.add_result(value(option, node, key));
     }
     try {
       option.run_callback();
@@ -115,7 +122,7 @@ class ConfigFile {
   CLI::App& program_;
   CLI::App& command_;
   std::string path_;
-  std::set<std::string>& done_;  // false leaves no trace in a flag
+  std::set<std::string>& done_;  // a flag that is set to false leaves no trace in the option
 };
 
 void apply_environment(CLI::App& command) {
@@ -148,8 +155,8 @@ std::vector<fs::path> config_files() {
 }
 
 void add_config_option(CLI::App& command) {
-  // CLI11 calls this when the whole command line is read and before it misses required options; its own
-  // set_config() is silent on subcommands.
+  // CLI11 calls this after it has read the whole command line and before it checks for required options. Its
+  // own set_config() has no effect on subcommands.
   command
       .add_option_function<std::string>(
           "--config",
@@ -164,7 +171,7 @@ void add_config_option(CLI::App& command) {
             for (const fs::path& file : config_files())
               ConfigFile(program, command, file.string(), done).apply();
           },
-          "Read options from a TOML file")
+          "TOML file to read options from")
       ->force_callback();
 }
 

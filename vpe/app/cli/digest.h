@@ -1,5 +1,5 @@
-// Digests of what a film is made of: fingerprints of inputs, checksums of files. XXH3 with 128 bits: they guard
-// against accidents, not against people.
+// Digests: fingerprints of inputs and checksums of files. XXH3 with 128 bits, which guards against accidents,
+// not against attacks.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,11 @@
 
 namespace vpe::app {
 
-// Of a sequence of values, each with its type and length, so that different sequences are different bytes. The
-// same on every machine.
+// Digests a sequence of values. Every value enters with its type and length, so that different sequences are
+// different bytes. The result is the same on every machine. One thread at a time.
+//
+// Typical usage:
+//   const std::string fingerprint = Digest().add("render").add(std::int64_t{width}).add(fov_deg).hex();
 class Digest {
  public:
   Digest();
@@ -22,9 +25,10 @@ class Digest {
 
   Digest& add(std::string_view text);
   Digest& add(std::int64_t number);
-  Digest& add(double number);  // its bits
+  Digest& add(double number);  // by its bits: 0.0 and -0.0 differ
 
-  std::string hex() const;  // 32 hexadecimal digits
+  // Returns 32 hexadecimal digits.
+  std::string hex() const;
 
  private:
   struct State;
@@ -32,9 +36,9 @@ class Digest {
   std::unique_ptr<State> state_;
 };
 
-// Of bytes, as `xxh128sum` prints it.
+// Returns the checksum of the bytes as `xxh128sum` prints it.
 std::string checksum_of(std::span<const std::uint8_t> bytes);
-// Throws base::FileError.
+// Returns the checksum of a file's content. Throws base::FileError.
 std::string checksum_of(const std::filesystem::path& file);
 
 }  // namespace vpe::app

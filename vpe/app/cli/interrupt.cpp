@@ -7,15 +7,15 @@ namespace vpe::app {
 
 namespace {
 
-std::atomic<int> g_signal{0};  // signal handlers can reach nothing but a global
+std::atomic<int> g_signal{0};  // a signal handler reaches nothing but globals
 static_assert(std::atomic<int>::is_always_lock_free);
 
-void note(int signal) { g_signal.store(signal); }
+void record(int signal) { g_signal.store(signal); }
 
 }  // namespace
 
 InterruptGuard::InterruptGuard()
-    : interrupt_(std::signal(SIGINT, note)), terminate_(std::signal(SIGTERM, note)) {}
+    : interrupt_(std::signal(SIGINT, record)), terminate_(std::signal(SIGTERM, record)) {}
 
 InterruptGuard::~InterruptGuard() {
   std::signal(SIGINT, interrupt_);

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM as something that long work can ask about.
+// SIGINT and SIGTERM as a condition that long work checks.
 #pragma once
 
 #include <stdexcept>
@@ -6,6 +6,7 @@
 
 namespace vpe::app {
 
+// Ends the program with the exit code of the signal.
 class Interrupted : public std::runtime_error {
  public:
   explicit Interrupted(int signal, const std::string& what = "stopped")
@@ -16,8 +17,15 @@ class Interrupted : public std::runtime_error {
   int signal_;
 };
 
-// While one lives, SIGINT and SIGTERM are only noted; check() then throws Interrupted. Any thread may check.
-// Guards may nest; the main thread makes them.
+// Records SIGINT and SIGTERM instead of ending the process, as long as it lives. Guards may nest. Only the main
+// thread makes guards; any thread may check.
+//
+// Typical usage:
+//   const InterruptGuard guard;
+//   for (const Item& item : items) {
+//     InterruptGuard::check();
+//     process(item);
+//   }
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -25,11 +33,12 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
+  // Throws Interrupted once a signal has come.
   static void check();
 
  private:
   using Handler = void (*)(int);
-  Handler interrupt_;  // what was there before
+  Handler interrupt_;  // the handlers before this guard
   Handler terminate_;
 };
 

@@ -1,28 +1,16 @@
-// Figures as JSON, shared by the commands.
+// Results on standard output: JSON and fields of CSV.
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
-
-#include "paging/planet/planet_meta.h"
-#include "vpe/core/frame.h"
 
 namespace vpe::app {
 
-nlohmann::json planet_json(const paging::PlanetMeta& meta);
-nlohmann::json stats_json(const core::FrameStats& stats);
-
-// Quoted where it has to be.
-std::string csv_field(const std::string& text);
-
-// To stdout. Paths that are not UTF-8 get replacement characters.
+// Prints a JSON value on stdout, indented by two. Bytes that are not UTF-8, as file names may hold, are written
+// as replacement characters.
 void print_json(const nlohmann::json& json);
 
-// Tiles that could not be read (core::DrawResult::failures), as warnings.
-void warn_of(std::span<const std::string> failures);
-
-// Warns on stderr that numbers come from a made-up planet.
-void note_illustration(const paging::PlanetMeta& meta, bool quiet);
+// Returns the text as a field of CSV, quoted where it holds a comma, a quote or a line break.
+std::string csv_field(const std::string& text);
 
 }  // namespace vpe::app

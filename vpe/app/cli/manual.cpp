@@ -12,7 +12,7 @@ namespace vpe::app {
 
 namespace {
 
-// As roff wants text: no line begins with a control character, hyphens stay hyphens.
+// Returns text as roff needs it: no line begins with a control character, hyphens stay hyphens.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -29,7 +29,7 @@ std::string roff(const std::string& text) {
   return out;
 }
 
-// CLI11 puts limits behind the type: "INT:INT in [1 - 8]", "FLOAT:0.1 .. 9".
+// Describes an option's value. CLI11 appends limits to the type: "INT:INT in [1 - 8]", "FLOAT:0.1 .. 9".
 struct ValueText {
   std::string name;
   std::string limits;
@@ -83,7 +83,7 @@ std::string join(const std::vector<std::string>& words) {
 std::vector<std::string> long_options(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
-    if (option->get_group().empty()) continue;  // not for people
+    if (option->get_group().empty()) continue;  // hidden from users
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   std::sort(names.begin(), names.end());
@@ -93,17 +93,17 @@ std::vector<std::string> long_options(const CLI::App& command) {
 }  // namespace
 
 std::string man_page(const CLI::App& program) {
-  std::string page = std::string(".TH VPE 1 \"\" \"vpe ") + version() +
-                     "\" \"User commands\"\n.SH NAME\nvpe \\- " +
-                     roff("explores planets: builds planet files, asks them, draws them, flies over them") +
-                     "\n.SH SYNOPSIS\n.B vpe\n\\fICOMMAND\\fR [options]\n.SH DESCRIPTION\n" +
-                     roff(program.get_description()) + "\n" + roff(program.get_footer()) + "\n.SH COMMANDS\n";
+  std::string page =
+      std::string(".TH VPE 1 \"\" \"vpe ") + version() + "\" \"User commands\"\n.SH NAME\nvpe \\- " +
+      roff("explores planets: builds planet files, answers queries, draws images and panoramas, and flies") +
+      "\n.SH SYNOPSIS\n.B vpe\n\\fICOMMAND\\fR [options]\n.SH DESCRIPTION\n" + roff(program.get_description()) +
+      "\n" + roff(program.get_footer()) + "\n.SH COMMANDS\n";
   for (const CLI::App* command : all_commands(program)) {
     page += ".SS vpe " + roff(command_words(*command) + synopsis(*command)) + "\n" +
             roff(command->get_description()) + ".\n";
     for (const CLI::Option* option : command->get_options()) describe(*option, page);
   }
-  page += ".SH SETTINGS\n" + roff("Keys of --set, and of 'set' in flights.") + "\n";
+  page += ".SH SETTINGS\n" + roff("Keys of --set, and of the command 'set' in flights.") + "\n";
   for (const core::SettingInfo& info : core::Settings::list()) {
     page += ".TP\n.B " + roff(std::string(info.key)) + "\n" + roff(std::string(info.meaning)) + " (default " +
             roff(info.default_text.empty() ? "nothing" : info.default_text) + ")\n";
@@ -111,22 +111,21 @@ std::string man_page(const CLI::App& program) {
   page +=
       ".SH EXIT STATUS\n" +
       roff(
-          "0 success; 1 failure, told on standard error; 2 wrong usage; 130 or 143 after SIGINT or SIGTERM, "
-          "with what is done kept where it can be continued.") +
+          "0: success. 1: failure, explained on standard error. 2: wrong usage. 130 or 143: ended by SIGINT or "
+          "SIGTERM; finished work is kept where the same command can continue it.") +
       "\n.SH FILES\n.TP\n.I $XDG_CACHE_HOME/vpe\n" +
       roff(
-          "Planet files built from DEMs and the embedded Mars (~/.cache/vpe when the variable is not set); may "
-          "be "
-          "removed at any time.") +
+          "Planet files built from DEMs and from the embedded Mars (~/.cache/vpe when the variable is not "
+          "set). They may be removed at any time.") +
       "\n.TP\n.I $XDG_CONFIG_HOME/vpe/config.toml\n" +
       roff(
-          "Options of the user, as --config reads them (~/.config when the variable is not set); then "
-          "vpe/config.toml in each of $XDG_CONFIG_DIRS (/etc/xdg). The command line goes before the "
-          "environment, "
-          "that before --config, that before these.") +
-      "\n.SH ENVIRONMENT\n.TP\n.B VPE_MEMORY\n" + roff("as --memory, where that is not given.") +
-      "\n.TP\n.B VPE_THREADS\n" + roff("as --threads, where that is not given.") + "\n.TP\n.B VPE_EGL\n" +
-      roff("device or surfaceless: where to look for OpenGL; both when not set.") + "\n";
+          "The user's options, in the format of --config (~/.config when the variable is not set); then "
+          "vpe/config.toml in each of $XDG_CONFIG_DIRS (/etc/xdg). The command line takes precedence over the "
+          "environment, the environment over --config, and --config over these files.") +
+      "\n.SH ENVIRONMENT\n.TP\n.B VPE_MEMORY\n" + roff("Value of --memory where the option is not given.") +
+      "\n.TP\n.B VPE_THREADS\n" + roff("Value of --threads where the option is not given.") +
+      "\n.TP\n.B VPE_EGL\n" +
+      roff("device or surfaceless: the EGL platform to take OpenGL from; both are tried when not set.") + "\n";
   return page;
 }
 
@@ -177,7 +176,7 @@ std::string bash_completion(const CLI::App& program) {
          "      return\n"
          "    fi\n"
          "  fi\n"
-         "  # '=' is a word of its own to bash: --set KEY=VALUE arrives in up to three.\n"
+         "  # bash makes '=' a word of its own: --set KEY=VALUE arrives as up to three words.\n"
          "  if [ \"$before\" = --set ]; then\n"
          "    compopt -o nospace\n"
          "    COMPREPLY=($(compgen -W \"" +

@@ -11,10 +11,10 @@ namespace vpe::app {
 
 struct Common;
 
-// vpe.1 as roff.
+// Returns the manual page vpe.1 as roff.
 std::string man_page(const CLI::App& program);
 
-// A script that completes commands, options, keys of --set and their choices, and file names.
+// Returns a bash script that completes commands, options, keys of --set and their choices, and file names.
 std::string bash_completion(const CLI::App& program);
 
 // Adds the commands `man` and `completion`.

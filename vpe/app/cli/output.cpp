@@ -45,8 +45,7 @@ void check_output(const fs::path& path) {
 }
 
 void check_image_output(const fs::path& path) {
-  if (!core::is_image_path(path))
-    fail(path, "no known picture format; let the name end in .png, .jpg or .jpeg");
+  if (!core::is_image_path(path)) fail(path, "no known image format; let the name end in .png, .jpg or .jpeg");
   check_output(path);
 }
 
@@ -59,7 +58,7 @@ void check_range_output(const fs::path& path) {
 void check_stats_output(const fs::path& path) {
   const std::string end = extension(path);
   if (end != ".csv" && end != ".jsonl")
-    fail(path, "no known format of statistics; let the name end in .csv or .jsonl");
+    fail(path, "no known format for statistics; let the name end in .csv or .jsonl");
   check_output(path);
 }
 

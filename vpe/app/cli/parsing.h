@@ -16,7 +16,7 @@ bool is_sqlite(const std::string& path);
 // check ranges (mars::is_valid does).
 std::optional<mars::LonLat> parse_place(const std::string& text);
 
-// Parses numbers separated by commas. Returns nullopt if any is malformed.
+// Parses finite numbers separated by commas. Returns nullopt if any is malformed.
 std::optional<std::vector<double>> parse_numbers(const std::string& text);
 
 }  // namespace vpe::app

@@ -10,6 +10,7 @@
 #include <exception>
 
 #include "vpe/app/cli/config_file.h"
+#include "vpe/app/cli/former_options.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/base/number.h"
@@ -22,15 +23,14 @@ namespace vpe::app {
 
 namespace {
 
-// The arguments but the program's own name, last first, as CLI11 wants them.
-std::vector<std::string> reversed_arguments(int argc, char** argv) {
-  std::vector<std::string> arguments(argv + 1, argv + argc);
-  for (std::string& word : arguments) {
-    // CLI11 lets numbers like -5 be values, but takes -.5 for an option.
+// Returns the words of a command line last first, as CLI11 wants them.
+std::vector<std::string> reversed_arguments(std::vector<std::string> words) {
+  for (std::string& word : words) {
+    // CLI11 accepts numbers like -5 as values, but takes -.5 for an option.
     if (word.starts_with("-.") && parse_numbers(word)) word.insert(1, "0");
   }
-  std::reverse(arguments.begin(), arguments.end());
-  return arguments;
+  std::reverse(words.begin(), words.end());
+  return words;
 }
 
 void check_command_name(const CLI::App& program, const std::vector<std::string>& reversed) {
@@ -40,13 +40,13 @@ void check_command_name(const CLI::App& program, const std::vector<std::string>&
     if (command->get_name() == reversed.back()) return;
     names += (names.empty() ? "" : ", ") + command->get_name();
   }
-  throw UsageError("unknown command '" + reversed.back() + "'; there are " + names);
+  throw UsageError("unknown command '" + reversed.back() + "'; the commands are " + names);
 }
 
-// A full disk shows only when the results leave the buffer.
+// Returns the exit code. A full disk shows only when the results leave the buffer.
 int flush_results() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return kSuccess;
-  // Whoever closed the pipe, like head(1), knows.
+  // A reader that closed the pipe early, like head(1), needs no message.
   if (errno != EPIPE) std::fprintf(stderr, "vpe: cannot write to standard output: %s\n", std::strerror(errno));
   return kFailure;
 }
@@ -67,34 +67,37 @@ CLI::Validator number_within(double low, double high) {
 CLI::App* add_command(CLI::App& program, const std::string& name, const std::string& about, Common& common,
                       bool with_json) {
   CLI::App* command = program.add_subcommand(name, about);
-  command->add_option("--memory", common.memory_mb, "Memory for data, MB")
+  command->add_option("--memory", common.memory_mb, "Memory for tiles and other data, MB")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();
-  command->add_option("--threads", common.threads, "Worker threads, 0 = all cores")
+  command->add_option("--threads", common.threads, "Number of worker threads; 0 uses all cores")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->add_flag("--quiet,-q", common.quiet, "No progress, only errors");
+  command->add_flag("--quiet,-q", common.quiet, "Print no progress and no summary, only errors");
   add_config_option(*command);
-  if (with_json) command->add_flag("--json", common.json, "Print figures as JSON on stdout");
+  if (with_json) command->add_flag("--json", common.json, "Print results as JSON on stdout");
   return command;
 }
 
 const char* version() { return VPE_VERSION; }
 
 int run_program(int argc, char** argv, std::span<const AddCommand> commands) {
-  // The C locale throughout: a number means the same on every machine.
+  // In the C locale a number means the same on every machine.
   std::setlocale(LC_ALL, "C");
   std::signal(SIGPIPE, SIG_IGN);
-  CLI::App program("vpe explores planets: build planet files, ask them, draw them, fly over them.", "vpe");
+  CLI::App program(
+      "vpe explores planets: it builds planet files, answers queries, draws images and panoramas, and flies.",
+      "vpe");
   program.set_version_flag("--version", std::string("vpe ") + version());
   program.require_subcommand(1);
   program.footer(
-      "'vpe COMMAND --help' explains a command. Without a PLANET the embedded Mars (an illustration) is used.");
+      "'vpe COMMAND --help' explains a command. Without PLANET, the embedded Mars (an illustration) is used.");
   Common common;
   common.words.assign(argv + std::min(argc, 1), argv + argc);
+  use_current_names(common.words);
   for (const AddCommand add : commands) add(program, common);
   try {
-    std::vector<std::string> arguments = reversed_arguments(argc, argv);
+    std::vector<std::string> arguments = reversed_arguments(common.words);
     check_command_name(program, arguments);
     program.parse(std::move(arguments));
     return flush_results();

@@ -17,7 +17,7 @@ void ProgressLine::show(const std::string& what, double fraction) {
   if (first_fraction_ < 0) first_fraction_ = fraction;
   const auto now = Clock::now();
   const auto pause = terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(15000);
-  // Short work stays silent where nobody watches.
+  // Off a terminal, short work prints nothing.
   if (now - (shown_ || terminal_ ? last_ : start_) < pause) return;
   last_ = now;
   shown_ = true;

@@ -1,4 +1,4 @@
-// A line on stderr that says how far long work is and how long it will still take.
+// A line on stderr with the progress of long work and the time left.
 #pragma once
 
 #include <chrono>
@@ -6,15 +6,23 @@
 
 namespace vpe::app {
 
-// Shows nothing when quiet; on a terminal one line that is rewritten, else a line now and then.
+// Shows nothing when quiet. On a terminal it rewrites one line; elsewhere it prints a line every 15 seconds.
+//
+// Typical usage:
+//   ProgressLine line(common.quiet);
+//   for (int k = 0; k < count; ++k) {
+//     line.show("drawing", static_cast<double>(k) / count);
+//     draw(k);
+//   }
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
-  ~ProgressLine();  // ends the line
+  ~ProgressLine();  // clears the line on a terminal
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // fraction 0..1 of the whole; may be called as often as one likes, by one thread at a time.
+  // Shows the share of the work that is done, 0..1. Calls are cheap: most of them print nothing. One thread at
+  // a time.
   void show(const std::string& what, double fraction);
 
  private:
@@ -22,7 +30,7 @@ class ProgressLine {
   bool quiet_;
   bool terminal_;
   bool shown_ = false;
-  double first_fraction_ = -1;  // work that was done before is not counted into the speed
+  double first_fraction_ = -1;  // work done before the first call does not count into the speed
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_{};
 };

@@ -74,15 +74,15 @@ bool Subprocess::write(std::span<const std::uint8_t> bytes) {
 }
 
 bool Subprocess::finish() {
-  if (pid_ <= 0) return ended_well_;
+  if (pid_ <= 0) return succeeded_;
   if (pipe_ >= 0) ::close(pipe_);
   pipe_ = -1;
   int status = 0;
   while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }
   pid_ = -1;
-  ended_well_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  return ended_well_;
+  succeeded_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return succeeded_;
 }
 
 std::string Subprocess::text_of(int file) {

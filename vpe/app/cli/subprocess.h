@@ -10,25 +10,30 @@
 
 namespace vpe::app {
 
-// What it says is kept in memory, so that a full disk does not take its words away. It has a process group of
-// its own: Ctrl-C, which reaches a whole group, passes it by. One thread at a time. The destructor ends its
-// input and waits for it.
+// Runs a program, feeds its standard input, and keeps its output in memory, so that a full disk cannot lose its
+// messages. The program has a process group of its own: Ctrl-C, which reaches a whole group, does not reach it.
+// The destructor closes its input and waits for its end. One thread at a time.
+//
+// Typical usage:
+//   Subprocess ffmpeg({"ffmpeg", "-i", "-", "out.mp4"});
+//   if (!ffmpeg.write(bytes) || !ffmpeg.finish()) report(ffmpeg.stderr_text());
 class Subprocess {
  public:
-  // words[0] is looked for on PATH. Its standard input is fed by write(). Throws std::runtime_error with the
-  // system's words.
+  // Starts words[0], found on PATH, with the other words as arguments. Throws std::runtime_error with the
+  // system's message.
   explicit Subprocess(std::vector<std::string> words);
   ~Subprocess();
   Subprocess(const Subprocess&) = delete;
   Subprocess& operator=(const Subprocess&) = delete;
 
-  // False when it reads no more.
+  // Writes to the program's standard input. Returns false when the program reads no more.
   [[nodiscard]] bool write(std::span<const std::uint8_t> bytes);
 
-  // Ends its input and waits; true when it ended well.
+  // Closes the program's input and waits for its end. Returns true when it exited with status 0.
   [[nodiscard]] bool finish();
 
-  // What it has written to standard output and to standard error so far, without the newlines at the end.
+  // Return what the program has written to standard output and to standard error so far, without the newlines
+  // at the end.
   std::string output() const { return text_of(output_); }
   std::string stderr_text() const { return text_of(errors_); }
 
@@ -39,7 +44,7 @@ class Subprocess {
   int errors_ = -1;
   int pipe_ = -1;
   pid_t pid_ = -1;
-  bool ended_well_ = false;
+  bool succeeded_ = false;
 };
 
 }  // namespace vpe::app

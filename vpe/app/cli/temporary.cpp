@@ -35,9 +35,9 @@ bool is_old(const fs::path& file) {
   return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(24);
 }
 
-// Whether the writer of NAME.HOST-PID.tmp, or of NAME.tmp, is known to be gone.
+// Returns true if the writer of NAME.HOST-PID.tmp, or of NAME.tmp, is known to be gone.
 bool is_abandoned(const fs::path& file, std::string_view owner) {
-  if (owner.empty()) return true;  // this program names no file so
+  if (owner.empty()) return true;  // no version of this program names its files so
   const std::string here = "." + host() + "-";
   if (!owner.starts_with(here)) return is_old(file);
   const auto pid = base::parse_integer(owner.substr(here.size()));
@@ -45,7 +45,7 @@ bool is_abandoned(const fs::path& file, std::string_view owner) {
   return ::kill(static_cast<pid_t>(*pid), 0) != 0 && errno == ESRCH;
 }
 
-// What NAME.OWNER.tmp is half of: the longest NAME that is ours.
+// Returns the name of the file that NAME.OWNER.tmp was meant to become: the longest NAME that is ours.
 std::optional<std::string> name_in(const std::string& text,
                                    const std::function<bool(const std::string&)>& is_ours) {
   for (std::size_t end = text.size(); end != std::string::npos && end > 0; end = text.rfind('.', end - 1)) {

@@ -1,5 +1,5 @@
-// Names for files that are being written, so that several processes, also on several machines, may write into
-// one folder: NAME.HOST-PID.tmp.
+// Temporary files, NAME.HOST-PID.tmp, with names that allow several processes, also on several machines, to
+// write into one folder.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 
 namespace vpe::app {
 
-// Beside the file, and no other living process's.
+// Returns a name beside the file that no other living process uses.
 std::filesystem::path temporary_name(const std::filesystem::path& file);
 
-// Writes all or nothing under the file's name. Throws base::FileError.
+// Writes a file: under its name appears either the whole content or nothing. Throws base::FileError.
 void write_whole(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
-// Removes what dead processes left half-written of the files in a folder that is_ours() accepts by name: those
-// of this machine at once, those of others after a day. Never fails.
+// Removes temporary files that dead processes left in a folder, of those files whose name is_ours() accepts:
+// files of this machine at once, files of other machines after a day. Never fails.
 void remove_stale_temporaries(const std::filesystem::path& folder,
                               const std::function<bool(const std::string& name)>& is_ours);
 

@@ -9,7 +9,7 @@ namespace vpe::app {
 
 struct Common;
 
-// Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
+// Adds the command `fly` to the program (AddCommand of vpe/app/cli/program.h).
 void add_fly(CLI::App& program, Common& common);
 
 }  // namespace vpe::app

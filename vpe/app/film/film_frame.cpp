@@ -1,8 +1,7 @@
 #include "vpe/app/film/film_frame.h"
 
-#include <array>
 #include <limits>
-#include <utility>
+#include <nlohmann/json.hpp>
 
 namespace vpe::app {
 

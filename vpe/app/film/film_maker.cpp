@@ -1,12 +1,15 @@
 #include "vpe/app/film/film_maker.h"
 
 #include <algorithm>
-#include <memory>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/film/frame_sink.h"
 
 namespace vpe::app {
 
@@ -15,11 +18,93 @@ namespace {
 constexpr std::size_t kWaitingFrames = 3;
 constexpr const char* kIncomplete = "-incomplete";
 
-bool all_there(std::span<const FilmFrame> frames) {
-  return std::all_of(frames.begin(), frames.end(), [](const FilmFrame& f) { return f.is_there(); });
+bool all_done(std::span<const FilmFrame> frames) {
+  return std::all_of(frames.begin(), frames.end(), [](const FilmFrame& f) { return f.is_done(); });
 }
 
 }  // namespace
+
+// Runs jobs in order on a thread of its own, so that encoding runs beside drawing. At most `depth` jobs wait.
+// An exception of a job comes out of the next push() or of finish().
+class FrameSink {
+ public:
+  using Job = std::function<void()>;
+  explicit FrameSink(std::size_t depth);
+  ~FrameSink();  // drops waiting jobs
+  FrameSink(const FrameSink&) = delete;
+  FrameSink& operator=(const FrameSink&) = delete;
+
+  void push(Job job);
+  void finish();  // waits until all jobs are done
+
+ private:
+  void run();
+  void throw_if_failed();
+
+  std::size_t depth_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Job> waiting_;
+  bool closed_ = false;
+  std::exception_ptr error_;
+  std::thread thread_;
+};
+
+FrameSink::FrameSink(std::size_t depth) : depth_(depth), thread_([this] { run(); }) {}
+
+FrameSink::~FrameSink() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    waiting_.clear();
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void FrameSink::push(Job job) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return waiting_.size() < depth_ || error_; });
+  throw_if_failed();
+  waiting_.push_back(std::move(job));
+  changed_.notify_all();
+}
+
+void FrameSink::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+  throw_if_failed();
+}
+
+void FrameSink::throw_if_failed() {
+  if (error_) std::rethrow_exception(error_);
+}
+
+void FrameSink::run() {
+  for (;;) {
+    Job job;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return !waiting_.empty() || closed_; });
+      if (waiting_.empty()) return;
+      job = std::move(waiting_.front());
+      waiting_.pop_front();
+    }
+    changed_.notify_all();
+    try {
+      job();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      error_ = std::current_exception();
+      changed_.notify_all();
+      return;
+    }
+  }
+}
 
 FilmMaker::FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
                      const RenderOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays)
@@ -39,7 +124,7 @@ void FilmMaker::run(FilmReports& reports, ProgressLine& line) {
   const auto size = static_cast<std::size_t>(target_.group_size());
   for (std::size_t begin = 0; begin < frames_.size(); begin += size) {
     const std::size_t end = std::min(begin + size, frames_.size());
-    if (all_there(frames_.subspan(begin, end - begin))) {
+    if (all_done(frames_.subspan(begin, end - begin))) {
       for (std::size_t n = begin; n < end; ++n) report_kept(frames_[n]);
     } else {
       make_group(begin, end);
@@ -79,7 +164,7 @@ bool FilmMaker::draw(std::size_t n) {
   core::DrawResult result;
   core::DrawRequest request = planned.request;
   request.paging.timeout_s = options_.wait_s;
-  if (n + 1 < frames_.size() && !frames_[n + 1].is_there()) {
+  if (n + 1 < frames_.size() && !frames_[n + 1].is_done()) {
     request.paging.next = std::make_shared<const core::DrawRequest>(plan_.at(frames_[n + 1].index).request);
     request.paging.upcoming = {request.paging.next->view};
   }
@@ -91,12 +176,12 @@ bool FilmMaker::draw(std::size_t n) {
     throw;  // the next frame would not fit either
   } catch (const std::exception& e) {
     frame.state = FilmFrame::State::kFailed;
-    frame.trouble = e.what();
+    frame.error = e.what();
     return false;
   }
   if (reports_->stats) reports_->stats->row(frame.index, frame.time_s, result.stats, result.certificate);
   frame.figures = {result.stats, result.certificate};
-  // Made again by the next run.
+  // The next run makes it again.
   if (!result.missing.empty()) frame.fingerprint += kIncomplete;
   const auto image = std::make_shared<core::Frame>(std::move(result.frame));
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
@@ -117,7 +202,7 @@ void FilmMaker::report_kept(const FilmFrame& frame) {
 
 void FilmMaker::log(const FilmFrame& frame, const PlannedFrame& planned) {
   if (reports_->log)
-    reports_->log->frame(frame.time_s, planned.state.pose, planned.state.look, planned.settings,
+    reports_->log->frame(frame.time_s, planned.state.pose, planned.state.head, planned.settings,
                          planned.request.interest);
 }
 

@@ -1,4 +1,4 @@
-// Makes the frames of a film that are not there yet.
+// Makes the missing frames of a film.
 #pragma once
 
 #include <functional>
@@ -18,24 +18,31 @@
 
 namespace vpe::app {
 
+// Outputs beside the images.
 struct FilmReports {
   std::optional<scripts::StatsWriter> stats;  // a row for every frame that is kept or drawn
   std::optional<scripts::FlightLog> log;      // a pose for every frame
-  std::vector<std::string> failures;          // of tiles that cannot be read, each once
+  std::vector<std::string> failures;          // to read tiles, each once
 };
 
+class FrameSink;
+
+// Draws on the main thread while another thread encodes earlier frames. Used once, by the main thread.
+//
+// Typical usage:
+//   FilmMaker(plan, target, frames, first, options, make_renderer, overlays).run(reports, line);
 class FilmMaker {
  public:
   using MakeRenderer = std::function<std::unique_ptr<core::Renderer>()>;
 
-  // The renderer is made when the first frame has to be drawn. `first` is the number of frames[0] in the film.
+  // `first` is the number of frames[0] in the film. The renderer is made when the first frame has to be drawn.
   FilmMaker(const FilmPlan& plan, FilmTarget& target, std::span<FilmFrame> frames, std::int64_t first,
             const RenderOptions& options, MakeRenderer make_renderer, FrameOverlays& overlays);
 
-  // Draws what is missing, in order. A frame that the renderer cannot draw or not completely (unless
-  // the options allow it) is marked as failed, and its group
-  // is given up; the rest is made. Throws Interrupted, and std::runtime_error when frames cannot be written or
-  // nothing can be drawn: then frames that are there are marked so. Once only; main thread.
+  // Draws the missing frames, in order. A frame that cannot be drawn, or not completely (unless the options
+  // allow that), is marked as failed, and its group is abandoned; the other groups are made. Throws
+  // Interrupted, and std::runtime_error when frames cannot be written or nothing can be drawn; frames stored by
+  // then are marked as made.
   void run(FilmReports& reports, ProgressLine& line);
 
  private:
@@ -53,9 +60,9 @@ class FilmMaker {
   MakeRenderer make_renderer_;
   FrameOverlays& overlays_;
   std::unique_ptr<core::Renderer> renderer_;
-  FilmReports* reports_ = nullptr;
+  FilmReports* reports_ = nullptr;  // during run()
   ProgressLine* line_ = nullptr;
-  class FrameSink* sink_ = nullptr;
+  FrameSink* sink_ = nullptr;
 };
 
 }  // namespace vpe::app

@@ -1,13 +1,54 @@
 #include "vpe/app/film/film_plan.h"
 
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
 
+#include "vpe/app/cli/program.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/base/number.h"
 #include "vpe/overlay/overlay.h"
 
 namespace vpe::app {
 
-FilmPlan::FilmPlan(FilmBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
+scripts::Flight read_flight(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in)
+    throw std::runtime_error(path + ": cannot open the flight: " + std::strerror(errno) + "; check the name");
+  std::ostringstream text;
+  text << in.rdbuf();
+  scripts::ParsedFlight parsed = scripts::parse_flight(text.str(), path);
+  if (parsed.flight) return *parsed.flight;
+  std::string all;
+  for (const scripts::FlightError& e : parsed.errors)
+    all += (all.empty() ? "" : "\n     ") + scripts::to_string(e);
+  throw std::runtime_error(all);
+}
+
+FrameRange parse_frames(const std::string& text, std::int64_t count) {
+  if (text.empty()) return {0, count - 1, 1};
+  std::string_view rest = text;
+  std::optional<std::int64_t> step = 1;
+  if (const std::size_t x = rest.find('x'); x != std::string_view::npos) {
+    step = base::parse_integer(rest.substr(x + 1));
+    rest = rest.substr(0, x);
+  }
+  const std::size_t dash = rest.find('-');
+  const std::optional<std::int64_t> first = base::parse_integer(rest.substr(0, dash));
+  const std::optional<std::int64_t> last =
+      dash == std::string_view::npos ? first : base::parse_integer(rest.substr(dash + 1));
+  if (!first || !last || !step || *step < 1 || *first < 0 || *last < *first || *last >= count) {
+    throw UsageError("--frames '" + text + "': expected A-B or A-BxN within 0-" + std::to_string(count - 1));
+  }
+  return {*first, *last, *step};
+}
+
+FilmPlan::FilmPlan(RenderBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
                    std::vector<core::InterestRegion> interest)
     : basis_(std::move(basis)),
       view_(view),
@@ -29,10 +70,10 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   request.view.fov_deg = view_.fov_deg;
   request.settings = out.settings.values();
   request.interest = interest_;
-  for (const scripts::Interest& i : path_.interests(out.time_s)) {
-    request.interest.push_back({i.lon_deg, i.lat_deg, i.radius_m, i.levels});
+  for (const scripts::InterestCommand& command : path_.interests(out.time_s)) {
+    request.interest.push_back(command.region);
   }
-  // The sun stands still: azimuth and elevation, or the hour, are those at the ground below the flight's start.
+  // The sun does not move: azimuth and elevation, or the hour, hold at the ground below the flight's start.
   request.sun = sun_for(request.settings, start_);
   request.want_range = overlay::needs_range(request.settings);
   return out;

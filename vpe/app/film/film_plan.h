@@ -1,13 +1,35 @@
-// What a flight's frames look like: poses, settings, sun, and from them fingerprints.
+// Plan of a film: the flight's file, the selection of its frames, and for every frame the draw request and its
+// fingerprint.
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
+#include "scripts/flight.h"
 #include "scripts/path.h"
 #include "vpe/app/film/film_frame.h"
-#include "vpe/app/film/frame_range.h"
+#include "vpe/app/picture/fingerprint.h"
 
 namespace vpe::app {
+
+// Reads a flight from a file. Throws std::runtime_error that names the file and every bad line.
+scripts::Flight read_flight(const std::string& path);
+
+// The frames of a flight that one run makes: first, first + step, ... up to last.
+struct FrameRange {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+  std::int64_t step = 1;
+
+  std::int64_t count() const { return (last - first) / step + 1; }
+  // Returns the index in the flight of the range's n-th frame, from 0.
+  std::int64_t frame(std::int64_t n) const { return first + n * step; }
+};
+
+// Parses "A-B", "A-BxN" or "A", both ends included, for a flight of `count` frames. Empty text is all frames.
+// Throws UsageError.
+FrameRange parse_frames(const std::string& text, std::int64_t count);
 
 // One frame, ready to be drawn.
 struct PlannedFrame {
@@ -17,22 +39,30 @@ struct PlannedFrame {
   core::DrawRequest request;
 };
 
-// Immutable; every member may be called from any number of threads at once.
+// Turns times of a flight into draw requests. Immutable; any thread may call every member at any time.
+//
+// Typical usage:
+//   const FilmPlan plan(basis, flight.view, scripts::Path(flight, radius_m, terrain, exaggeration), settings);
+//   const PlannedFrame planned = plan.at(120);
+//   const core::DrawResult result = renderer.draw(planned.request);
 class FilmPlan {
  public:
-  // `base` are the settings before the flight's own, `interest` regions beside its own, from the start on.
-  FilmPlan(FilmBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
+  // `base` holds the settings before the flight's own. `interest` holds regions that count from the start on,
+  // beside the flight's own.
+  FilmPlan(RenderBasis basis, scripts::FlightView view, scripts::Path path, core::Settings base,
            std::vector<core::InterestRegion> interest = {});
 
   const scripts::Path& path() const { return path_; }
   const scripts::FlightView& view() const { return view_; }
 
+  // Returns a frame by its index in the flight.
   PlannedFrame at(std::int64_t frame) const;
-  // Frames number begin to end - 1 of a range, none of them there yet.
+
+  // Returns the frames number begin to end - 1 of a range, all in state kMissing.
   std::vector<FilmFrame> frames(const FrameRange& range, std::int64_t begin, std::int64_t end) const;
 
  private:
-  FilmBasis basis_;
+  RenderBasis basis_;
   scripts::FlightView view_;
   scripts::Path path_;
   core::Settings base_;

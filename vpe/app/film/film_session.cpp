@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <new>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/film/film_folder.h"
 
 namespace vpe::app {
 
@@ -22,12 +23,12 @@ FilmSession::FilmSession(FilmRequest request) : request_(std::move(request)) {
   target_ = std::move(video);
 }
 
-void FilmSession::look(const FilmPlan& plan, int threads) {
+void FilmSession::find_stored(const FilmPlan& plan, int threads) {
   const std::int64_t all = request_.range.count();
   const std::int64_t size = target_->group_size();
   const std::int64_t groups = (all + size - 1) / size;
-  first_ = std::min(all, request_.part.begin(groups) * size);
-  frames_ = plan.frames(request_.range, first_, std::min(all, request_.part.end(groups) * size));
+  first_ = std::min(all, request_.shard.begin(groups) * size);
+  frames_ = plan.frames(request_.range, first_, std::min(all, request_.shard.end(groups) * size));
   base::ThreadPool pool(threads);
   target_->keep(frames_, {first_, all}, pool);
 }
@@ -38,20 +39,20 @@ void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const RenderO
     ProgressLine line(quiet);
     FilmMaker(plan, *target_, frames_, first_, options, make_renderer, overlays).run(reports, line);
   } catch (const Interrupted& e) {
-    throw Interrupted(e.signal(), std::string(e.what()) + ": " + what_is_there(kind(), frames_));
+    throw Interrupted(e.signal(), std::string(e.what()) + ": " + progress_text(kind(), frames_));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
-    throw std::runtime_error(std::string(e.what()) + "; " + what_is_there(kind(), frames_));
+    throw std::runtime_error(std::string(e.what()) + "; " + progress_text(kind(), frames_));
   }
 }
 
-void FilmSession::finish(const FilmHead& head) {
+void FilmSession::finish(const ManifestHead& head) {
   const FilmCount n = count(frames_);
-  const bool is_whole = request_.part.of == 1 && n.there() == n.all;
+  const bool is_whole = request_.shard.of == 1 && n.done() == n.all;
   if (video_ == nullptr) {
     make_folder(request_.output);
-    manifest_ = manifest_of_folder(request_.output, request_.frames, request_.part);
+    manifest_ = manifest_of_folder(request_.output, request_.frames, request_.shard);
     write_manifest(manifest_, head, target_->describe(), frames_);
     return;
   }
@@ -63,11 +64,11 @@ void FilmSession::finish(const FilmHead& head) {
     video_->remove_parts();
     return;
   }
-  if (video_->is_complete()) return;  // a part of a film that is there
-  // The film's own manifest stays as long as the film is the old one.
+  if (video_->is_complete()) return;  // one shard of a film that is complete
+  // The film's own manifest stays as long as the old film does.
   const fs::path parts = parts_folder(request_.output);
   make_folder(parts);
-  manifest_ = manifest_of_folder(parts, "", request_.part);
+  manifest_ = manifest_of_folder(parts, "", request_.shard);
   write_manifest(manifest_, head, target_->describe(), frames_);
 }
 

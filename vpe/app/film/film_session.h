@@ -1,4 +1,4 @@
-// One run over a film: keep what is there, make what is missing, write down what was made.
+// One run over a film: finds stored frames, makes the missing ones, and writes the manifest.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "vpe/app/film/film_maker.h"
-#include "vpe/app/film/film_manifest.h"
 #include "vpe/app/film/film_summary.h"
 #include "vpe/app/film/film_target.h"
 #include "vpe/app/film/film_video.h"
@@ -20,36 +19,44 @@ struct FilmRequest {
   VideoFormat format;
   std::string frames;  // --frames as given
   FrameRange range;    // of the flight
-  Shard part;
+  Shard shard;
   bool remake = false;
 };
 
+// Runs a film through its steps. Main thread.
+//
+// Typical usage:
+//   FilmSession session(request);
+//   session.find_stored(plan, threads);
+//   session.make(plan, reports, options, make_renderer, overlays, quiet);
+//   session.finish(head);
 class FilmSession {
  public:
-  // For a video, throws when there is no ffmpeg and one is needed for sure.
+  // Throws std::runtime_error when the film is a video that surely needs ffmpeg and there is none.
   explicit FilmSession(FilmRequest request);
 
-  // Finds what this run has to do and what of it is done. Throws Interrupted.
-  void look(const FilmPlan& plan, int threads);
+  // Plans the frames of this run and marks those that an earlier run stored. May be called again with another
+  // plan. Throws Interrupted.
+  void find_stored(const FilmPlan& plan, int threads);
 
-  // Makes the rest. Throws Interrupted and std::runtime_error, both saying how far the film is.
+  // Makes the missing frames. Throws Interrupted and std::runtime_error, both with the film's progress.
   void make(const FilmPlan& plan, FilmReports& reports, const RenderOptions& options,
             const FilmMaker::MakeRenderer& make_renderer, FrameOverlays& overlays, bool quiet);
 
-  // The manifest; of a whole video also the film. Not to be called when make() threw.
-  void finish(const FilmHead& head);
+  // Writes the manifest, and joins a video whose frames are all stored. Must not be called after make() threw.
+  void finish(const ManifestHead& head);
 
   const std::vector<FilmFrame>& frames() const { return frames_; }
   FilmKind kind() const { return {request_.is_video, target_->group_size()}; }
-  // The video is made of the segments of several parts and is not joined yet.
+  // Returns true if the video consists of the segments of several parts and is not joined yet.
   bool is_left_unjoined() const { return video_ != nullptr && !video_->is_complete(); }
-  // Empty when none was written.
+  // Returns the manifest's path; empty when none was written.
   const std::filesystem::path& manifest() const { return manifest_; }
 
  private:
   FilmRequest request_;
   std::unique_ptr<FilmTarget> target_;
-  FilmVideo* video_ = nullptr;  // the target, if it is one
+  FilmVideo* video_ = nullptr;  // target_ if it is a video
   std::int64_t first_ = 0;      // number of frames_[0] in the film
   std::vector<FilmFrame> frames_;
   std::filesystem::path manifest_;

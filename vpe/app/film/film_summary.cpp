@@ -3,58 +3,131 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "vpe/app/cli/temporary.h"
+#include "vpe/base/file.h"
 
 namespace vpe::app {
 
+namespace fs = std::filesystem;
+using nlohmann::json;
+
 namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
+
+std::string part_name(const Shard& shard) {
+  return shard.of == 1 ? "" : ".part-" + std::to_string(shard.number) + "-of-" + std::to_string(shard.of);
+}
+
+std::string line(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+json to_json(const FilmFrame& frame) {
+  json out{{"index", frame.index}, {"time_s", frame.time_s}, {"fingerprint", frame.fingerprint}};
+  if (frame.is_done()) {
+    out["figures"] = to_json(frame.figures);
+    if (!frame.checksum.empty()) out["checksum"] = frame.checksum;
+  } else if (frame.state == FilmFrame::State::kFailed) {
+    out["failed"] = frame.error;
+  } else {
+    out["missing"] = true;
+  }
+  return out;
+}
 
 constexpr std::int64_t kNamedFailures = 5;
 
 std::string frames_text(std::int64_t n) { return std::to_string(n) + (n == 1 ? " frame" : " frames"); }
 
+// Largest bound and mean number of triangles over the frames that are done.
+struct FilmFigures {
+  double shift_bound_px = 0;
+  std::int64_t mean_triangles = 0;
+};
+
+FilmFigures figures_of(std::span<const FilmFrame> frames) {
+  FilmFigures out;
+  std::int64_t done = 0;
+  for (const FilmFrame& f : frames) {
+    if (!f.is_done()) continue;
+    ++done;
+    out.shift_bound_px = std::max(out.shift_bound_px, f.figures.certificate.shift_bound_px);
+    out.mean_triangles += f.figures.stats.triangles;
+  }
+  out.mean_triangles /= std::max<std::int64_t>(done, 1);
+  return out;
+}
+
 }  // namespace
 
-std::string what_is_there(const FilmKind& kind, std::span<const FilmFrame> frames) {
+fs::path manifest_of_folder(const fs::path& folder, const std::string& frames, const Shard& shard) {
+  return folder / ("manifest" + (frames.empty() ? "" : ".frames-" + frames) + part_name(shard) + ".json");
+}
+
+fs::path manifest_of_video(const fs::path& film, const fs::path& parts, const Shard& shard) {
+  return shard.of == 1 ? fs::path(film.string() + ".json") : parts / ("manifest" + part_name(shard) + ".json");
+}
+
+void write_manifest(const fs::path& path, const ManifestHead& head, const json& target,
+                    std::span<const FilmFrame> frames) {
+  json top{
+      {"program", "vpe " + head.program},
+      {"planet", {{"identity", head.planet}, {"illustration", head.illustration}}},
+      {"flight", head.flight},
+      {"fps", scripts::to_text(head.rate)},
+      {"size", std::to_string(head.width) + "x" + std::to_string(head.height)},
+      {"complete", std::all_of(frames.begin(), frames.end(), [](const FilmFrame& f) { return f.is_done(); })}};
+  if (!head.frames.empty()) top["selected"] = head.frames;
+  if (head.shard.of > 1) top["part"] = std::to_string(head.shard.number) + "/" + std::to_string(head.shard.of);
+  top.update(target);
+  std::string text = "{\n";
+  for (const auto& [key, value] : top.items()) text += line(key) + ": " + line(value) + ",\n";
+  text += "\"frames\": [";
+  for (std::size_t n = 0; n < frames.size(); ++n) text += (n == 0 ? "\n" : ",\n") + line(to_json(frames[n]));
+  write_whole(path, text + "\n]\n}\n");
+}
+
+json read_json(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return {};
+  try {
+    const std::vector<std::uint8_t> bytes = base::read_file(path, kMostBytes);
+    json value = json::parse(bytes, nullptr, false);
+    return value.is_discarded() ? json() : value;
+  } catch (const base::FileError&) {
+    return {};
+  }
+}
+
+std::string progress_text(const FilmKind& kind, std::span<const FilmFrame> frames) {
   const FilmCount n = count(frames);
-  return std::to_string(n.there()) + " of " + frames_text(n.all) + (n.all == 1 ? " is there" : " are there") +
+  return std::to_string(n.done()) + " of " + frames_text(n.all) + (n.all == 1 ? " is there" : " are there") +
          (kind.is_video ? ", in segments of " + std::to_string(kind.group_size) : "") +
          "; the same command continues";
 }
 
-std::string what_failed(const FilmKind& kind, const std::string& output, std::span<const FilmFrame> frames) {
+std::string failure_text(const FilmKind& kind, const std::string& output, std::span<const FilmFrame> frames) {
   const FilmCount n = count(frames);
   std::string text = output + ": " + std::to_string(n.failed) + " of " + frames_text(n.all) + " failed:";
   std::int64_t named = 0;
   for (const FilmFrame& f : frames) {
     if (f.state != FilmFrame::State::kFailed) continue;
     if (++named > kNamedFailures) break;
-    text += "\n     frame " + std::to_string(f.index) + ": " + f.trouble;
+    text += "\n     frame " + std::to_string(f.index) + ": " + f.error;
   }
   if (n.failed > kNamedFailures) text += "\n     and " + std::to_string(n.failed - kNamedFailures) + " more";
-  text += "\n     " + std::to_string(n.there()) + " are there";
+  text += "\n     " + std::to_string(n.done()) + " are there";
   if (kind.is_video) {
     text += ", in segments of " + std::to_string(kind.group_size) + "; the film is not joined";
   }
-  return text + "; once the cause is mended, the same command makes only what is missing";
+  return text + "; remove the cause, and the same command makes only the missing frames";
 }
 
-FilmFigures figures_of(std::span<const FilmFrame> frames) {
-  FilmFigures out;
-  std::int64_t there = 0;
-  for (const FilmFrame& f : frames) {
-    if (!f.is_there()) continue;
-    ++there;
-    out.shift_bound_px = std::max(out.shift_bound_px, f.figures.certificate.shift_bound_px);
-    out.mean_triangles += f.figures.stats.triangles;
-  }
-  out.mean_triangles /= std::max<std::int64_t>(there, 1);
-  return out;
-}
-
-nlohmann::json film_json(std::span<const FilmFrame> frames, double seconds) {
+json summary_json(std::span<const FilmFrame> frames, double seconds) {
   const FilmCount n = count(frames);
   const FilmFigures figures = figures_of(frames);
-  return {{"frames", n.there()},
+  return {{"frames", n.done()},
           {"made", n.made},
           {"kept", n.kept},
           {"failed", n.failed},
@@ -63,9 +136,9 @@ nlohmann::json film_json(std::span<const FilmFrame> frames, double seconds) {
           {"mean_triangles", figures.mean_triangles}};
 }
 
-std::string film_line(std::span<const FilmFrame> frames, double seconds) {
+std::string summary_text(std::span<const FilmFrame> frames, double seconds) {
   const FilmCount n = count(frames);
-  std::string text = frames_text(n.there());
+  std::string text = frames_text(n.done());
   if (n.kept > 0 && n.made > 0) {
     text += " (" + std::to_string(n.made) + " made, " + std::to_string(n.kept) + " kept)";
   } else if (n.kept > 0) {

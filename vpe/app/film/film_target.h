@@ -1,11 +1,12 @@
-// Where the frames of a film are kept from run to run: a folder of images (film_folder.h) or a video in
-// segments (film_video.h).
+// Storage of a film's frames from run to run: the interface, and its implementation as a folder of images.
+// film_video.h implements it as a video in segments.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string>
 
 #include "vpe/app/film/film_frame.h"
 #include "vpe/base/parallel.h"
@@ -13,39 +14,77 @@
 
 namespace vpe::app {
 
-// Which of a film's frames are meant.
-struct FilmPlace {
-  std::int64_t first = 0;  // of them, counted in the film
-  std::int64_t all = 0;    // frames of the film
+// Position of a run's frames among all frames of the film.
+struct FilmSlice {
+  std::int64_t first = 0;  // number of the run's first frame in the film
+  std::int64_t all = 0;    // number of frames in the film
 };
 
-// Frames are made in groups that are there as a whole or not at all: `group_size` frames each, the last one
-// what remains. Several processes may work on different groups of one film at once. Everything appears under
-// its name only when complete. Errors: std::runtime_error that names the file and says what to do.
+// Stores frames in groups of group_size() frames; the last group holds the rest. A group is stored as a whole
+// or not at all, and everything appears under its name only when it is complete. Several processes may work on
+// different groups of one film at the same time. Members throw std::runtime_error that names the file and says
+// what to do.
+//
+// Typical usage:
+//   target.keep(frames, slice, pool);            // marks what an earlier run left
+//   target.prepare();                            // only if a frame is missing
+//   for (FilmFrame& frame : group) target.add(number, frame, draw(frame));
+//   target.end_group(number, group);             // or abandon()
+//   target.finish(frames);                       // when the whole film is there
 class FilmTarget {
  public:
   virtual ~FilmTarget() = default;
 
   virtual std::int64_t group_size() const = 0;
 
-  // Marks those frames as kept, with figures and checksum, whose group is there, whole, and of the same
-  // fingerprints. The frames are whole groups of the film. Main thread.
-  virtual void keep(std::span<FilmFrame> frames, const FilmPlace& place, base::ThreadPool& pool) = 0;
+  // Marks the frames of every group that is stored whole and with equal fingerprints as kept, and sets their
+  // figures and checksums. The frames must be whole groups of the film. Main thread.
+  virtual void keep(std::span<FilmFrame> frames, const FilmSlice& slice, base::ThreadPool& pool) = 0;
 
-  // Called before the first group is made. Main thread.
+  // Prepares the storage before the first group is made. Main thread.
   virtual void prepare() = 0;
 
-  // The frames of a group in order, then its end, or abandon() instead; one thread at a time. Those that are
-  // there then are marked as made.
+  // add() takes the frames of a group in order; then end_group() stores the group, or abandon() drops it.
+  // Stored frames are marked as made. One thread at a time.
   virtual void add(std::int64_t group, FilmFrame& frame, const core::Frame& image) = 0;
   virtual void end_group(std::int64_t group, std::span<FilmFrame> frames) = 0;
   virtual void abandon() = 0;
 
-  // The whole film is there. Main thread.
+  // Completes the film when all its frames are stored. Main thread.
   virtual void finish(std::span<FilmFrame> frames) = 0;
 
-  // What a manifest says of the target itself.
+  // Returns the target's own keys of the manifest.
   virtual nlohmann::json describe() const = 0;
+};
+
+// Text chunks of a frame's PNG file.
+inline constexpr const char* kFingerprintKey = "vpe:fingerprint";
+inline constexpr const char* kFiguresKey = "vpe:figures";  // FrameFigures as JSON
+
+// Returns "frame_NNNNNN.png".
+std::string frame_file_name(std::int64_t index);
+
+// Stores a film as a folder of PNG files, each with its fingerprint and figures in text chunks. A group is one
+// frame.
+class FilmFolder : public FilmTarget {
+ public:
+  // With `remake`, stored frames are ignored and made again.
+  FilmFolder(std::filesystem::path folder, bool remake);
+
+  std::int64_t group_size() const override { return 1; }
+  void keep(std::span<FilmFrame> frames, const FilmSlice& slice, base::ThreadPool& pool) override;
+  void prepare() override;
+  void add(std::int64_t group, FilmFrame& frame, const core::Frame& image) override;
+  void end_group(std::int64_t, std::span<FilmFrame>) override {}
+  void abandon() override {}
+  void finish(std::span<FilmFrame>) override {}
+  nlohmann::json describe() const override;
+
+ private:
+  void keep(FilmFrame& frame) const;
+
+  std::filesystem::path folder_;
+  bool remake_;
 };
 
 }  // namespace vpe::app

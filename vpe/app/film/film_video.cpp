@@ -4,13 +4,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/temporary.h"
-#include "vpe/app/film/film_manifest.h"
+#include "vpe/app/film/film_summary.h"
 #include "vpe/base/file.h"
 
 namespace vpe::app {
@@ -38,24 +40,24 @@ bool is_ours(const std::string& name) {
   return rest == ".mp4" || rest == ".json";
 }
 
-bool same(const json& object, const char* key, const std::string& text) {
+bool has_text(const json& object, const char* key, const std::string& text) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() && found->get_ref<const std::string&>() == text;
 }
 
-// The checksum is that of the file that is there now.
+// Returns true if the object holds the checksum of the file as it is now.
 bool fits_checksum(const json& object, const fs::path& file) {
   std::error_code error;
-  return fs::is_regular_file(file, error) && same(object, "checksum", checksum_of(file));
+  return fs::is_regular_file(file, error) && has_text(object, "checksum", checksum_of(file));
 }
 
-// Marks frames as kept when a list of frames has the same from `first` on, with their figures.
+// Marks the frames as kept, with their figures, if the list holds equal frames from `first` on.
 bool mark_kept(std::span<FilmFrame> frames, const json& list, std::size_t first) {
   if (!list.is_array() || list.size() < first + frames.size()) return false;
   std::vector<FrameFigures> all;
   for (std::size_t n = 0; n < frames.size(); ++n) {
     const json& entry = list[first + n];
-    if (!entry.is_object() || !same(entry, "fingerprint", frames[n].fingerprint)) return false;
+    if (!entry.is_object() || !has_text(entry, "fingerprint", frames[n].fingerprint)) return false;
     const auto figures = figures_from(entry.value("figures", json()));
     if (!figures) return false;
     all.push_back(*figures);
@@ -106,27 +108,27 @@ std::string FilmVideo::fingerprint(std::span<const FilmFrame> frames) const {
   return digest.hex();
 }
 
-void FilmVideo::keep(std::span<FilmFrame> frames, const FilmPlace& place, base::ThreadPool& pool) {
-  if (remake_ || keep_film(frames, place) || !fs::exists(folder_)) return;
+void FilmVideo::keep(std::span<FilmFrame> frames, const FilmSlice& slice, base::ThreadPool& pool) {
+  if (remake_ || keep_film(frames, slice) || !fs::exists(folder_)) return;
   encoder();
   const auto size = static_cast<std::size_t>(group_);
   pool.run((frames.size() + size - 1) / size, [&](std::size_t n) {
     InterruptGuard::check();
     const std::size_t begin = n * size;
-    keep_segment(place.first / group_ + static_cast<std::int64_t>(n),
+    keep_segment(slice.first / group_ + static_cast<std::int64_t>(n),
                  frames.subspan(begin, std::min(size, frames.size() - begin)));
   });
 }
 
-bool FilmVideo::keep_film(std::span<FilmFrame> frames, const FilmPlace& place) {
+bool FilmVideo::keep_film(std::span<FilmFrame> frames, const FilmSlice& slice) {
   const json manifest = read_json(manifest_);
   if (!manifest.is_object()) return false;
   const json film = manifest.value("film", json());
   const json list = manifest.value("frames", json());
-  if (!film.is_object() || !same(film, "encoder_settings", encoder_settings(format_))) return false;
-  if (!list.is_array() || list.size() != static_cast<std::size_t>(place.all)) return false;
+  if (!film.is_object() || !has_text(film, "encoder_settings", encoder_settings(format_))) return false;
+  if (!list.is_array() || list.size() != static_cast<std::size_t>(slice.all)) return false;
   if (!fits_checksum(film, film_)) return false;
-  if (!mark_kept(frames, list, static_cast<std::size_t>(place.first))) return false;
+  if (!mark_kept(frames, list, static_cast<std::size_t>(slice.first))) return false;
   checksum_ = film["checksum"];
   complete_ = true;
   return true;
@@ -134,8 +136,8 @@ bool FilmVideo::keep_film(std::span<FilmFrame> frames, const FilmPlace& place) {
 
 void FilmVideo::keep_segment(std::int64_t group, std::span<FilmFrame> frames) const {
   const json sidecar = read_json(segment(group, ".json"));
-  if (!sidecar.is_object() || !same(sidecar, "fingerprint", fingerprint(frames))) return;
-  if (!same(sidecar, "encoder", encoder_) || !fits_checksum(sidecar, segment(group, ".mp4"))) return;
+  if (!sidecar.is_object() || !has_text(sidecar, "fingerprint", fingerprint(frames))) return;
+  if (!has_text(sidecar, "encoder", encoder_) || !fits_checksum(sidecar, segment(group, ".mp4"))) return;
   mark_kept(frames, sidecar.value("frames", json()), 0);
 }
 
@@ -160,7 +162,7 @@ void FilmVideo::add(std::int64_t group, FilmFrame& /*frame*/, const core::Frame&
 void FilmVideo::end_group(std::int64_t group, std::span<FilmFrame> frames) {
   writer_->close();
   writer_.reset();
-  // Killed before the next line is done: the segment has no sidecar that fits it, and is made again.
+  // After a kill before the sidecar is written, no sidecar fits the segment, and it is made again.
   const std::string checksum = checksum_of(segment(group, ".mp4"));
   json sidecar{{"fingerprint", fingerprint(frames)},
                {"encoder", encoder_},
@@ -205,7 +207,7 @@ void FilmVideo::remove_parts() const {
     if (is_ours(entry->path().filename().string())) files.push_back(entry->path());
   }
   for (const fs::path& file : files) fs::remove(file, error);
-  fs::remove(folder_, error);  // stays when something else is in it
+  fs::remove(folder_, error);  // fails when it holds other files
 }
 
 }  // namespace vpe::app

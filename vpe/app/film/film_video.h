@@ -1,36 +1,41 @@
-// A film as an .mp4, made of segments that are kept in FILE.mp4.parts/ until all are there.
+// A film as an .mp4, made of segments that are kept in FILE.mp4.parts/ until all of them exist.
 //
-//   FILE.mp4.parts/segment_NNNNNN.mp4    kSegment_s of the film, encoded on its own
-//   FILE.mp4.parts/segment_NNNNNN.json   its fingerprint, checksum, encoder and the figures of its frames
-//   FILE.mp4.json                        the film's manifest: the film is known by it when it is complete
+//   FILE.mp4.parts/segment_NNNNNN.mp4    kSegment_s of the film, encoded independently
+//   FILE.mp4.parts/segment_NNNNNN.json   its fingerprint, checksum, encoder, and the figures of its frames
+//   FILE.mp4.json                        the manifest, which identifies the complete film
 #pragma once
 
+#include <filesystem>
 #include <memory>
-#include <optional>
+#include <string>
 
 #include "vpe/app/film/film_target.h"
 #include "vpe/app/film/video.h"
 
 namespace vpe::app {
 
-// A stopped film loses at most a segment; each costs a key frame and a start of ffmpeg, which is some percent
-// in size and time at this length.
+// Length of a segment. Shorter: a stopped film loses less work; longer: fewer key frames and starts of ffmpeg,
+// which cost a few percent of size and time at this length.
 inline constexpr double kSegment_s = 4;
-// At any frame rate: enough frames for an encoder, and not minutes of work.
+// Bounds of a segment's length at any frame rate: enough frames for an encoder, but not minutes of work.
 inline constexpr std::int64_t kFewestSegmentFrames = 8;
 inline constexpr std::int64_t kMostSegmentFrames = 240;
+
+// Returns the number of frames of a segment.
 std::int64_t segment_frames(const scripts::FrameRate& rate);
 
+// Returns FILE.mp4.parts.
 std::filesystem::path parts_folder(const std::filesystem::path& film);
 
+// Stores a film as a video. A group is one segment.
 class FilmVideo : public FilmTarget {
  public:
-  // `manifest` is where the complete film's manifest lies; `remake`: nothing that is there counts. Throws when
-  // there is no ffmpeg, unless the film may be complete already.
+  // `manifest` is the path of the complete film's manifest. With `remake`, what is stored is ignored and made
+  // again. Throws std::runtime_error when there is no ffmpeg, unless the film may be complete already.
   FilmVideo(std::filesystem::path film, std::filesystem::path manifest, const VideoFormat& format, bool remake);
 
   std::int64_t group_size() const override { return group_; }
-  void keep(std::span<FilmFrame> frames, const FilmPlace& place, base::ThreadPool& pool) override;
+  void keep(std::span<FilmFrame> frames, const FilmSlice& slice, base::ThreadPool& pool) override;
   void prepare() override;
   void add(std::int64_t group, FilmFrame& frame, const core::Frame& image) override;
   void end_group(std::int64_t group, std::span<FilmFrame> frames) override;
@@ -39,9 +44,9 @@ class FilmVideo : public FilmTarget {
   void finish(std::span<FilmFrame> frames) override;
   nlohmann::json describe() const override;
 
-  // The film itself is there and as its manifest says.
+  // Returns true if the film exists and agrees with its manifest.
   bool is_complete() const { return complete_; }
-  // Removes the segments, and the folder when nothing else is in it.
+  // Removes the segments, and their folder when it holds nothing else.
   void remove_parts() const;
 
  private:
@@ -49,7 +54,7 @@ class FilmVideo : public FilmTarget {
   std::filesystem::path segment(std::int64_t group, const char* extension) const;
   std::string fingerprint(std::span<const FilmFrame> frames) const;
   const std::string& encoder();
-  bool keep_film(std::span<FilmFrame> frames, const FilmPlace& place);
+  bool keep_film(std::span<FilmFrame> frames, const FilmSlice& slice);
   void keep_segment(std::int64_t group, std::span<FilmFrame> frames) const;
 
   std::filesystem::path film_;

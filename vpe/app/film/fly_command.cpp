@@ -1,21 +1,18 @@
-#include "vpe/app/film/commands.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "paging/surface/surface.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/film/commands.h"
 #include "vpe/app/film/film_session.h"
-#include "vpe/app/film/flight_file.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/planet_argument.h"
@@ -58,7 +55,7 @@ FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& f
   request.format = {flight.view.width, flight.view.height, flight.view.fps};
   request.frames = arguments.frames;
   request.range = parse_frames(arguments.frames, count);
-  request.part = parse_shard(arguments.part);
+  request.shard = parse_shard(arguments.part);
   request.remake = arguments.force;
   request.is_video = check_film_output(arguments.output);
   if (!arguments.log.empty()) check_output(arguments.log);
@@ -73,13 +70,13 @@ void warn_of_terrain(const std::string& flight, const FilmPlan& plan, const scri
     std::fprintf(stderr, "vpe: warning: %s passes %.0f m under the terrain at %.2f s\n", flight.c_str(),
                  -lowest->height_m, lowest->time_s);
   } catch (const paging::PlanetError& e) {
-    // Frames that need the damaged place will say so themselves.
-    std::fprintf(stderr, "vpe: warning: not known whether %s keeps above the terrain: %s\n", flight.c_str(),
+    // Frames that need the damaged tile will report it themselves.
+    std::fprintf(stderr, "vpe: warning: cannot check whether %s stays above the terrain: %s\n", flight.c_str(),
                  e.what());
   }
 }
 
-// What is wrong with a gazetteer is told before the first frame.
+// Reports a bad gazetteer before the first frame.
 void load_names(FrameOverlays& overlays, core::Settings settings, const scripts::Flight& flight) {
   overlays.load(settings.values());
   for (const scripts::SetCommand& set : flight.sets) {
@@ -91,82 +88,90 @@ void report(const FlyArguments& arguments, const Common& common, const FilmSessi
             bool illustration) {
   const std::vector<FilmFrame>& frames = session.frames();
   if (common.json) {
-    nlohmann::json json = film_json(frames, seconds);
+    nlohmann::json json = summary_json(frames, seconds);
     json["output"] = arguments.output;
-    json["backend"] = arguments.image.backend;
+    json["backend"] = core::to_string(*arguments.image.backend);
     json["illustration"] = illustration;
     json["manifest"] =
         session.manifest().empty() ? nlohmann::json() : nlohmann::json(session.manifest().string());
     print_json(json);
   }
-  if (count(frames).failed > 0) throw std::runtime_error(what_failed(session.kind(), arguments.output, frames));
+  if (count(frames).failed > 0)
+    throw std::runtime_error(failure_text(session.kind(), arguments.output, frames));
   if (common.json || common.quiet) return;
-  std::printf("%s: %s\n", arguments.output.c_str(), film_line(frames, seconds).c_str());
+  std::printf("%s: %s\n", arguments.output.c_str(), summary_text(frames, seconds).c_str());
   if (session.is_left_unjoined()) {
-    std::printf("When all parts are there, the same command without --part joins them.\n");
+    std::printf("When all parts exist, the same command without --part joins them.\n");
   }
 }
 
 struct PlannedFilm {
-  std::string backend;
+  core::Backend backend;
   FilmPlan plan;
 };
 
-// All frames by one backend: as --backend says, or as suits the most of them, and then the other. Parts of a
-// film may be made on machines of different kinds, and must be alike: triangles come first there.
+// Returns true if rays can draw every frame as triangles would: nothing that the flight sets, however briefly,
+// is about triangles or changes the tolerance. Sampling frames would miss short settings.
+bool film_suits_rays(const FilmPlan& plan, const scripts::Flight& flight, const core::Settings& base) {
+  if (!flight.interests.empty()) return false;
+  core::DrawRequest request = plan.at(0).request;
+  return std::all_of(flight.sets.begin(), flight.sets.end(), [&](const scripts::SetCommand& set) {
+    core::Settings settings = base;
+    plan.path().apply_settings(set.time_s, settings);
+    request.settings = settings.values();
+    return set.key != "lod.tolerance" && suits_rays(request);
+  });
+}
+
+// Returns the plans of the film by its possible backends, the preferred one first: the backend of --backend, or
+// the one that suits most frames, then the other. One backend draws all frames. Parts of a film may be made on
+// different machines and must be alike, so polygons are preferred there.
 std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& common,
                                    const scripts::Flight& flight, const core::Settings& base,
                                    const paging::PlanetFile& planet, const scripts::TerrainHeight& terrain) {
+  const RenderOptions& image = arguments.image;
   const auto plan_of = [&](const BackendChoice& chosen) {
     return PlannedFilm{
         chosen.backend,
         FilmPlan({version(), planet.meta().identity, chosen.backend, common.memory_mb}, flight.view,
                  scripts::Path(flight, planet.radius_m(), terrain, base.values().exaggeration), chosen.settings,
-                 parse_interest(arguments.image))};
+                 parse_interest(image))};
   };
-  const RenderOptions& image = arguments.image;
-  std::vector<PlannedFilm> films{plan_of({kPolygonBackend, base})};
-  if (image.backend != kAutoBackend) return {plan_of({image.backend, base})};
-  // Whatever the flight sets, however shortly: looking at some of the frames would miss it.
-  if (!flight.interests.empty()) return films;
-  core::DrawRequest set_so = films.front().plan.at(0).request;
-  for (const scripts::SetCommand& set : flight.sets) {
-    core::Settings settings = base;
-    films.front().plan.path().apply_settings(set.time_s, settings);
-    set_so.settings = settings.values();
-    if (set.key == "lod.tolerance" || !suits_rays(set_so)) return films;
-  }
-  constexpr std::int64_t kMostLooked = 100;
+  if (image.backend) return {plan_of({*image.backend, base})};
+  std::vector<PlannedFilm> films{plan_of({core::Backend::kPolygon, base})};
+  const FilmPlan& plan = films.front().plan;
+  if (!film_suits_rays(plan, flight, base)) return films;
+  constexpr std::int64_t kMostSamples = 100;
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
-  const std::int64_t looked = std::min(count, kMostLooked);
+  const std::int64_t samples = std::min(count, kMostSamples);
   std::vector<core::DrawRequest> images;
-  for (std::int64_t k = 0; k < looked; ++k) images.push_back(films.front().plan.at(k * count / looked).request);
+  for (std::int64_t k = 0; k < samples; ++k) images.push_back(plan.at(k * count / samples).request);
   const BackendChoice rays = choose_backend(image, base, images, planet.radius_m(), false);
-  if (rays.backend != kRayBackend) return films;
+  if (rays.backend != core::Backend::kRay) return films;
   films.push_back(plan_of(rays));
   if (arguments.part.empty() && !gl::has_gpu()) std::swap(films[0], films[1]);
   return films;
 }
 
-// Looks for what is there of a film: who began it goes on with it.
-const PlannedFilm& look_for(FilmSession& session, const std::vector<PlannedFilm>& films, int threads) {
+// Returns the plan of which an earlier run stored frames, else the preferred plan: a film that was begun by one
+// backend is continued by it.
+const PlannedFilm& select_plan(FilmSession& session, const std::vector<PlannedFilm>& films, int threads) {
   for (const PlannedFilm& film : films) {
-    session.look(film.plan, threads);
+    session.find_stored(film.plan, threads);
     if (count(session.frames()).kept > 0) return film;
   }
-  if (films.size() > 1) session.look(films.front().plan, threads);
+  if (films.size() > 1) session.find_stored(films.front().plan, threads);
   return films.front();
 }
 
 void fly(FlyArguments& arguments, const Common& common) {
-  parse_interest(arguments.image);
+  parse_interest(arguments.image);  // throws for wrong usage before any work
   const scripts::Flight flight = flight_of(arguments);
   const core::Settings base = make_settings(arguments.image);
   const FilmRequest request = film_request(arguments, flight);
 
-  // A planet may be minutes of work: what can be wrong before is told before.
   const InterruptGuard guard;
-  FilmSession session(request);
+  FilmSession session(request);  // reports a missing ffmpeg before the planet is built, which may take minutes
   const auto planet = open_planet(arguments.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
@@ -175,7 +180,7 @@ void fly(FlyArguments& arguments, const Common& common) {
     return surface->at(mars::direction(place), exaggeration).height_m;
   };
   const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, *planet, terrain);
-  const PlannedFilm& film = look_for(session, films, common.threads);
+  const PlannedFilm& film = select_plan(session, films, common.threads);
   const FilmPlan& plan = film.plan;
   arguments.image.backend = film.backend;
   if (!common.quiet) warn_of_terrain(arguments.flight, plan, terrain);
@@ -188,15 +193,15 @@ void fly(FlyArguments& arguments, const Common& common) {
   auto start = std::chrono::steady_clock::now();
   const auto renderer = [&] {
     auto made = make_renderer(arguments.image, common, planet);
-    start = std::chrono::steady_clock::now();  // the rate is that of drawing and encoding
+    start = std::chrono::steady_clock::now();  // the rate counts drawing and encoding only
     return made;
   };
   session.make(plan, reports, arguments.image, renderer, overlays, common.quiet);
-  if (!common.quiet) warn_of(reports.failures);
+  if (!common.quiet) print_failures(reports.failures);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
   session.finish({version(), meta.identity, meta.illustration, fs::path(arguments.flight).filename().string(),
-                  flight.view.fps, flight.view.width, flight.view.height, arguments.frames, request.part});
+                  flight.view.fps, flight.view.width, flight.view.height, arguments.frames, request.shard});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report(arguments, common, session, seconds, meta.illustration);
 }
@@ -205,19 +210,21 @@ void fly(FlyArguments& arguments, const Common& common) {
 
 void add_fly(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<FlyArguments>();
-  CLI::App* command = add_command(
-      program, "fly", "Draw a scripted flight as a video or as frames; what is there already is kept", common,
-      true);
+  CLI::App* command =
+      add_command(program, "fly",
+                  "Draw a scripted flight as a video or as frames; continues an interrupted run", common, true);
   command->add_option("FLIGHT", arguments->flight, "Flight file")->required();
-  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
-  command->add_option("-o,--output", arguments->output, "Video (.mp4) or folder for PNG frames")->required();
-  command->add_option("--frames", arguments->frames, "A-B or A-BxN: only these frames");
-  command->add_option("--part", arguments->part,
-                      "k/n: only the k-th of n parts; auto: from SLURM's or MPI's variables");
-  command->add_flag("--force", arguments->force, "Make every frame again, also those that are there");
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT instead of the flight's own");
-  command->add_option("--log", arguments->log, "Write what was flown as a flight");
-  command->add_option("--stats", arguments->stats, "Write one row of figures a frame (.csv, .jsonl)");
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
+  command->add_option("-o,--output", arguments->output, "Video (.mp4), or folder for PNG frames")->required();
+  command->add_option("--frames", arguments->frames,
+                      "A-B or A-BxN: draw only frames A to B, or every N-th of them");
+  command->add_option(
+      "--part", arguments->part,
+      "k/n: draw only the k-th of n parts; auto: take k and n from the variables of SLURM or MPI");
+  command->add_flag("--force", arguments->force, "Draw every frame again, also those of an earlier run");
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (default: the size in the flight)");
+  command->add_option("--log", arguments->log, "Write the flown poses as a flight");
+  command->add_option("--stats", arguments->stats, "Write one row of figures per frame (.csv, .jsonl)");
   add_render_options(*command, arguments->image);
   command->callback([arguments, &common] { fly(*arguments, common); });
 }

@@ -22,8 +22,8 @@ Words& append(Words& words, const Words& more) {
 // ffmpeg takes a leading '-' for an option and a ':' for a protocol.
 std::string file_word(const fs::path& path) { return "file:" + path.string(); }
 
-// Ticks of the film's clock: a whole number a frame, and, as ffmpeg's muxer wants it, more than 10 000 a
-// second.
+// Ticks of the film's clock: a whole number per frame, and more than 10 000 per second, as ffmpeg's muxer
+// requires.
 struct Clock {
   std::int64_t ticks_per_s;
   std::int64_t ticks_per_frame;
@@ -74,7 +74,8 @@ std::string microseconds(double us) {
   return text;
 }
 
-// For ffmpeg's concat demuxer. Beginnings are rounded to its microseconds one by one, so that nothing adds up.
+// Returns the input of ffmpeg's concat demuxer. The start of each segment is rounded to its microseconds, so
+// that rounding errors do not add up.
 std::string join_list(std::span<const VideoSegment> segments, const scripts::FrameRate& rate) {
   std::string text = "ffconcat version 1.0\n";
   double begin_us = 0;
@@ -92,13 +93,14 @@ std::string join_list(std::span<const VideoSegment> segments, const scripts::Fra
   return text;
 }
 
-// Puts every time stamp back on its frame: what the concat demuxer says is within a microsecond of it.
+// Returns the bitstream filter that makes time stamps exact: the concat demuxer's are within a microsecond.
 std::string exact_times(const scripts::FrameRate& rate) {
   const std::string tick = std::to_string(clock_of(rate).ticks_per_frame);
   return "setts=dts=STARTDTS+N*" + tick + ":pts=round(PTS/" + tick + ")*" + tick + ":duration=" + tick;
 }
 
-struct Removed {  // in the end
+// Removes a file when it goes out of scope.
+struct Removed {
   fs::path path;
   ~Removed() {
     std::error_code ignored;
@@ -106,8 +108,8 @@ struct Removed {  // in the end
   }
 };
 
-std::string with_words(const std::string& what, const std::string& words) {
-  return words.empty() ? what : what + ": ffmpeg says: " + words;
+std::string with_message(const std::string& what, const std::string& words) {
+  return words.empty() ? what : what + ": ffmpeg reports: " + words;
 }
 
 }  // namespace
@@ -129,11 +131,11 @@ std::string encoder_settings(const VideoFormat& format) {
 std::string encoder_version(const fs::path& film) {
   Subprocess child = start_ffmpeg({"ffmpeg", "-version"}, film);
   if (!child.finish()) {
-    throw std::runtime_error(with_words(film.string() + ": ffmpeg does not run", child.stderr_text()) +
-                             "; mend it, or give a folder to get PNG frames");
+    throw std::runtime_error(with_message(film.string() + ": ffmpeg does not run", child.stderr_text()) +
+                             "; repair it, or give a folder to get PNG frames");
   }
-  const std::string stderr_text = child.output();
-  return stderr_text.substr(0, stderr_text.find('\n'));
+  const std::string text = child.output();
+  return text.substr(0, text.find('\n'));
 }
 
 VideoWriter::VideoWriter(fs::path path, const VideoFormat& format)
@@ -149,7 +151,7 @@ VideoWriter::~VideoWriter() {
 
 void VideoWriter::fail(const std::string& what) {
   static_cast<void>(ffmpeg_.finish());
-  throw std::runtime_error(with_words(path_.string() + ": " + what, ffmpeg_.stderr_text()));
+  throw std::runtime_error(with_message(path_.string() + ": " + what, ffmpeg_.stderr_text()));
 }
 
 void VideoWriter::add(const core::Frame& frame) {
@@ -178,7 +180,7 @@ void join_video(const fs::path& folder, std::span<const VideoSegment> segments, 
   Subprocess child = start_ffmpeg(words, film);
   if (!child.finish()) {
     throw std::runtime_error(
-        with_words(film.string() + ": cannot join the video", child.stderr_text()) +
+        with_message(film.string() + ": cannot join the video", child.stderr_text()) +
         "; check the free space there; its segments are kept, and the same command joins them");
   }
   std::error_code error;

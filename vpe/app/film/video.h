@@ -1,4 +1,4 @@
-// Frames to video files through ffmpeg: short segments, joined without encoding them again.
+// Video files by ffmpeg: short segments, joined without encoding them again.
 #pragma once
 
 #include <filesystem>
@@ -13,25 +13,30 @@
 namespace vpe::app {
 
 struct VideoFormat {
-  int width = 0;  // both even
+  int width = 0;  // pixels, both even
   int height = 0;
   scripts::FrameRate rate;
 };
 
-// Throws std::runtime_error that names the film when the size is odd.
+// Throws std::runtime_error that names the film when width or height is odd.
 void check_video_format(const std::filesystem::path& film, const VideoFormat& format);
 
-// How ffmpeg is told to encode: equal text, equal image from equal frames by one version of ffmpeg. The
-// number of its threads is fixed, because x264's output depends on it.
+// Returns ffmpeg's options. With one version of ffmpeg, equal options give equal video for equal frames: the
+// number of encoder threads is fixed, because x264's output depends on it.
 std::string encoder_settings(const VideoFormat& format);
 
-// First line of `ffmpeg -version`. Throws std::runtime_error, naming the film, when there is no ffmpeg that
+// Returns the first line of `ffmpeg -version`. Throws std::runtime_error that names the film when no ffmpeg
 // runs.
 std::string encoder_version(const std::filesystem::path& film);
 
-// A video of its own that begins with a key frame and refers to nothing outside. Frames are piped into ffmpeg,
-// which writes a temporary file; close() gives it its name. Throws std::runtime_error with ffmpeg's own words.
-// One that is not closed leaves nothing.
+// Writes one video, which begins with a key frame and refers to nothing outside. Frames are piped into ffmpeg,
+// which writes a temporary file; close() gives it its name. A writer that is not closed leaves no file. Throws
+// std::runtime_error with ffmpeg's message.
+//
+// Typical usage:
+//   VideoWriter writer("segment_000000.mp4", format);
+//   for (const core::Frame& frame : frames) writer.add(frame);
+//   writer.close();
 class VideoWriter {
  public:
   VideoWriter(std::filesystem::path path, const VideoFormat& format);
@@ -55,8 +60,8 @@ struct VideoSegment {
   std::int64_t frames = 0;
 };
 
-// Joins segments of one format into a film at a constant rate, under its name only when complete. Throws
-// std::runtime_error with ffmpeg's own words.
+// Joins segments of one format into a film with a constant frame rate. The film appears under its name only
+// when it is complete. Throws std::runtime_error with ffmpeg's message.
 void join_video(const std::filesystem::path& folder, std::span<const VideoSegment> segments,
                 const VideoFormat& format, const std::filesystem::path& film);
 

@@ -1,4 +1,4 @@
-// Commands that make panoramas, view them, and compute skylines.
+// The commands that make panoramas, view them, and compute skylines.
 #pragma once
 
 namespace CLI {
@@ -9,7 +9,7 @@ namespace vpe::app {
 
 struct Common;
 
-// Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
+// Add one command each to the program (AddCommand of vpe/app/cli/program.h).
 void add_panorama(CLI::App& program, Common& common);
 void add_overlook(CLI::App& program, Common& common);
 void add_horizon(CLI::App& program, Common& common);

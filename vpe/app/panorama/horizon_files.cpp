@@ -1,7 +1,5 @@
 #include "vpe/app/panorama/horizon_files.h"
 
-#include <cstdio>
-
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/base/file.h"
@@ -11,24 +9,21 @@ namespace vpe::app {
 
 namespace {
 
-std::string fixed(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
+using base::format_fixed;
 
-// Places to a millimetre, angles to well below the skyline's own exactness.
-constexpr int kPlaceDigits = 8;
-constexpr int kAngleDigits = 7;
+// Places to a millimetre, angles to well below the skyline's own accuracy.
+constexpr int kPlaceDecimals = 8;
+constexpr int kAngleDecimals = 7;
 
-// What rounds up to a whole turn is north.
+// Returns an azimuth, 0 where it would round to 360.
 std::string azimuth(double degrees) {
-  const std::string text = fixed(degrees, kAngleDigits);
-  return text == fixed(360, kAngleDigits) ? fixed(0, kAngleDigits) : text;
+  const std::string text = format_fixed(degrees, kAngleDecimals);
+  return text == format_fixed(360, kAngleDecimals) ? format_fixed(0, kAngleDecimals) : text;
 }
 
 std::string csv_point(const panorama::GroundPoint& p) {
-  return fixed(p.place.lon_deg, kPlaceDigits) + "," + fixed(p.place.lat_deg, kPlaceDigits) + ",";
+  return format_fixed(p.place.lon_deg, kPlaceDecimals) + "," + format_fixed(p.place.lat_deg, kPlaceDecimals) +
+         ",";
 }
 
 }  // namespace
@@ -36,8 +31,9 @@ std::string csv_point(const panorama::GroundPoint& p) {
 std::string skyline_csv(std::span<const panorama::GroundPoint> skyline) {
   std::string out = "azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m\n";
   for (const panorama::GroundPoint& p : skyline) {
-    out += base::format_number(p.direction.azimuth_deg) + "," + fixed(p.direction.elevation_deg, kAngleDigits) +
-           "," + fixed(p.range_m, 3) + "," + csv_point(p) + fixed(p.elevation_m, 3) + "\n";
+    out += base::format_number(p.direction.azimuth_deg) + "," +
+           format_fixed(p.direction.elevation_deg, kAngleDecimals) + "," + format_fixed(p.range_m, 3) + "," +
+           csv_point(p) + format_fixed(p.elevation_m, 3) + "\n";
   }
   return out;
 }
@@ -52,11 +48,12 @@ std::string landmarks_csv(std::span<const panorama::Landmark> landmarks) {
            base::format_number(l.feature.lat_deg) + "," +
            (diameter_km > 0 ? base::format_number(diameter_km) : std::string()) + "," +
            azimuth(l.centre.direction.azimuth_deg) + "," +
-           fixed(l.centre.direction.elevation_deg, kAngleDigits) + "," + fixed(l.centre.range_m, 3) + "," +
-           fixed(l.centre.elevation_m, 3) + "," + (l.hidden_by ? "0," : "1,");
+           format_fixed(l.centre.direction.elevation_deg, kAngleDecimals) + "," +
+           format_fixed(l.centre.range_m, 3) + "," + format_fixed(l.centre.elevation_m, 3) + "," +
+           (l.hidden_by ? "0," : "1,");
     if (l.hidden_by) {
-      out += csv_point(*l.hidden_by) + fixed(l.hidden_by->range_m, 3) + "," +
-             fixed(l.hidden_by->elevation_m, 3) + "," + csv_field(l.hidden_by_name) + "\n";
+      out += csv_point(*l.hidden_by) + format_fixed(l.hidden_by->range_m, 3) + "," +
+             format_fixed(l.hidden_by->elevation_m, 3) + "," + csv_field(l.hidden_by_name) + "\n";
     } else {
       out += ",,,,\n";
     }

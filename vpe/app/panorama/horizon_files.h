@@ -1,4 +1,4 @@
-// What vpe horizon writes.
+// The files and JSON objects that `vpe horizon` writes.
 #pragma once
 
 #include <filesystem>
@@ -12,19 +12,20 @@
 
 namespace vpe::app {
 
-// azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m
+// Returns CSV with the columns azimuth_deg,elevation_deg,range_m,lon_deg,lat_deg,elevation_m.
 std::string skyline_csv(std::span<const panorama::GroundPoint> skyline);
 
-// name,lon_deg,lat_deg,diameter_km,azimuth_deg,elevation_deg,range_m,elevation_m,visible and, where hidden,
-// hidden_by_lon_deg,hidden_by_lat_deg,hidden_by_range_m,hidden_by_elevation_m,hidden_by_name
+// Returns CSV with the columns name,lon_deg,lat_deg,diameter_km,azimuth_deg,elevation_deg,range_m,elevation_m,
+// visible, and for hidden ones hidden_by_lon_deg,hidden_by_lat_deg,hidden_by_range_m,hidden_by_elevation_m,
+// hidden_by_name.
 std::string landmarks_csv(std::span<const panorama::Landmark> landmarks);
 
 nlohmann::json point_json(const panorama::GroundPoint& point);
 nlohmann::json landmark_json(const panorama::Landmark& landmark);
 
-// Throws std::runtime_error where `folder` is a file or cannot be made or written to; makes it.
+// Makes the folder of a landscape. Throws std::runtime_error if it is a file or cannot be made or written to.
 void make_landscape_folder(const std::filesystem::path& folder);
-// Each file appears whole, landscape.ini last.
+// Writes the files of a Stellarium landscape, each complete or not at all, landscape.ini last.
 void write_landscape(const std::filesystem::path& folder, const panorama::StellariumPlace& place,
                      std::span<const panorama::GroundPoint> skyline);
 

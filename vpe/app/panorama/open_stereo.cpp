@@ -6,52 +6,55 @@
 
 namespace vpe::app {
 
-OpenEyes::OpenEyes(const EyesFiles& files, std::size_t budget_bytes, int threads)
+StereoPanorama::StereoPanorama(const PanoramaFiles& files, std::size_t budget_bytes, int threads)
     : left_{panorama::describe(files.panorama, files.layout), nullptr},
       budget_bytes_(budget_bytes / (files.right.empty() ? 1 : 2)),
       threads_(threads) {
   if (!files.right.empty()) right_ = Panorama{panorama::describe(files.right, files.layout), nullptr};
 }
 
-core::RgbImage OpenEyes::draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
-                              const CopyProgress& progress,
-                              const std::function<void(core::RgbImage&)>& finish) {
-  const auto eye = [&](Panorama& panorama, bool is_second) {
-    core::RgbImage image = look(panorama, is_second, view, progress);
+core::RgbImage StereoPanorama::draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
+                                    const CopyProgress& progress,
+                                    const std::function<void(core::RgbImage&)>& finish) {
+  const auto finished_eye = [&](Panorama& panorama, bool is_second) {
+    core::RgbImage image = draw_eye(panorama, is_second, view, progress);
     if (finish) finish(image);
     return image;
   };
-  core::RgbImage left = eye(left_, false);
+  core::RgbImage left = finished_eye(left_, false);
   if (!stereo) return left;
-  const core::RgbImage right = right_ ? eye(*right_, false) : eye(left_, true);
+  const core::RgbImage right = right_ ? finished_eye(*right_, false) : finished_eye(left_, true);
   return core::combine_stereo(left, right, *stereo);
 }
 
-core::RgbImage OpenEyes::look(Panorama& panorama, bool is_second, const core::View& view,
-                              const CopyProgress& progress) {
+core::RgbImage StereoPanorama::draw_eye(Panorama& panorama, bool is_second, const core::View& view,
+                                        const CopyProgress& progress) {
+  if (panorama.tiled_image == nullptr) open(panorama, progress);
   const panorama::PanoramaDescription& description = panorama.description;
-  if (panorama.tiled_image == nullptr) {
-    panorama::TiledImageOptions options;
-    options.budget_bytes = budget_bytes_;
-    options.cache_folder = [] {
-      const std::filesystem::path folder = cache_folder() / "pictures";
-      make_folder(folder);
-      return folder;
-    };
-    if (progress) {
-      options.progress = [&](double fraction) {
-        progress("copying " + description.image.filename().string() + " once, in tiles", fraction);
-      };
-    }
-    panorama.tiled_image = panorama::open_tiled_image(description.image, description.format, options);
-  }
   panorama::RenderViewOptions options;
   options.threads = threads_;
   if (is_second && description.pair == panorama::PairLayout::kSideBySide)
     options.origin.x_px = description.map.width_px;
   if (is_second && description.pair == panorama::PairLayout::kOverUnder)
     options.origin.y_px = description.map.height_px;
-  return panorama::look(*panorama.tiled_image, description.map, view, options);
+  return panorama::render_view(*panorama.tiled_image, description.map, view, options);
+}
+
+void StereoPanorama::open(Panorama& panorama, const CopyProgress& progress) const {
+  const panorama::PanoramaDescription& description = panorama.description;
+  panorama::TiledImageOptions options;
+  options.budget_bytes = budget_bytes_;
+  options.cache_folder = [] {
+    const std::filesystem::path folder = cache_folder() / "pictures";
+    make_folder(folder);
+    return folder;
+  };
+  if (progress) {
+    options.progress = [&](double fraction) {
+      progress("copying " + description.image.filename().string() + " once, in tiles", fraction);
+    };
+  }
+  panorama.tiled_image = panorama::open_tiled_image(description.image, description.format, options);
 }
 
 }  // namespace vpe::app

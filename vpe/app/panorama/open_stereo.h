@@ -1,4 +1,4 @@
-// A panorama's pixels for one eye or two, opened when a view first needs them.
+// The pixels of a panorama for one eye or two, opened when a view first needs them.
 #pragma once
 
 #include <filesystem>
@@ -15,27 +15,34 @@
 
 namespace vpe::app {
 
-struct EyesFiles {
+struct PanoramaFiles {
   std::string panorama;                        // of both eyes, or of the left one
-  std::string right;                           // empty: there is none of its own
-  std::optional<panorama::PairLayout> layout;  // whatever the JSON says
+  std::string right;                           // empty: the right eye has no file of its own
+  std::optional<panorama::PairLayout> layout;  // nullopt: that of the sidecar
 };
 
-// Of the copying that large images may need before the first view, fraction 0..1. May throw to stop it.
+// Reports the progress of the copy that a large image may need before the first view: a description, and a
+// fraction 0..1. May throw to stop it.
 using CopyProgress = std::function<void(const std::string& what, double fraction)>;
 
-// One thread at a time.
-class OpenEyes {
+// Draws views of a panorama, or of a pair of panoramas. Use it from one thread at a time.
+//
+// Typical usage:
+//   StereoPanorama panorama({"rim.png", "", {}}, budget_bytes, 0);
+//   const core::RgbImage image = panorama.draw(viewer.view(), std::nullopt);
+class StereoPanorama {
  public:
-  // Reads descriptions, no pixels. Throws as panorama::describe(). threads: 0 = all cores.
-  OpenEyes(const EyesFiles& files, std::size_t budget_bytes, int threads);
+  // Reads descriptions, no pixels. Images take at most budget_bytes of memory together. Smaller: tiles are read
+  // again more often. threads: 0 = all cores. Throws as panorama::describe().
+  StereoPanorama(const PanoramaFiles& files, std::size_t budget_bytes, int threads);
 
-  // Of the left eye's panorama.
+  // Returns the description of the left eye's panorama.
   const panorama::PanoramaDescription& description() const { return left_.description; }
   bool is_pair() const { return right_ || left_.description.pair != panorama::PairLayout::kNone; }
 
-  // A view whose axes are in the panorama's frame; `finish` is called for each eye's image before two are
-  // combined. Without stereo the left eye's. Throws as panorama::open_tiled_image() and panorama::look().
+  // Draws a view whose axes are in the panorama's frame: both eyes in the layout, or without stereo the left
+  // one. Calls `finish` for each eye's image before the two are combined. Throws as
+  // panorama::open_tiled_image() and panorama::render_view().
   core::RgbImage draw(const core::View& view, const std::optional<core::StereoLayout>& stereo,
                       const CopyProgress& progress = {},
                       const std::function<void(core::RgbImage&)>& finish = {});
@@ -46,10 +53,12 @@ class OpenEyes {
     std::unique_ptr<panorama::TiledImage> tiled_image;  // null until it is needed
   };
 
-  core::RgbImage look(Panorama& panorama, bool is_second, const core::View& view, const CopyProgress& progress);
+  core::RgbImage draw_eye(Panorama& panorama, bool is_second, const core::View& view,
+                          const CopyProgress& progress);
+  void open(Panorama& panorama, const CopyProgress& progress) const;
 
   Panorama left_;
-  std::optional<Panorama> right_;  // nothing: in the left one's file
+  std::optional<Panorama> right_;  // nullopt: the right eye is in the left one's file, or missing
   std::size_t budget_bytes_;       // of each image
   int threads_;
 };

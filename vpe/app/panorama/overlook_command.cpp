@@ -1,5 +1,4 @@
-#include "vpe/app/panorama/commands.h"
-
+// vpe overlook.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -9,8 +8,10 @@
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
+#include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/progress.h"
+#include "vpe/app/panorama/commands.h"
 #include "vpe/app/panorama/open_stereo.h"
 #include "vpe/app/panorama/overlook_places.h"
 #include "vpe/app/panorama/panorama_viewer.h"
@@ -34,7 +35,7 @@ struct OverlookArguments {
   double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;
   std::string size = "1280x720";
   std::string output;
-  std::vector<std::string> at;
+  std::vector<std::string> direction;
   std::vector<std::string> at_pixel;
   double scale = 0;
   bool compass = false;
@@ -45,8 +46,8 @@ struct Pair {
   double second = 0;
 };
 
-// For messages: a thousandth of a degree is less than anybody sees.
-std::string shown(double degrees) { return base::format_number(std::round(degrees * 1e3) / 1e3); }
+// Returns an angle for messages, to a thousandth of a degree.
+std::string shown(double degrees) { return base::format_rounded(degrees, 3); }
 
 Pair parse_pair(const std::string& option, const std::string& text, const char* expected) {
   const auto numbers = parse_numbers(text);
@@ -58,25 +59,26 @@ Pair parse_pair(const std::string& option, const std::string& text, const char* 
 panorama::Direction parse_direction(const std::string& option, const std::string& text) {
   const Pair pair = parse_pair(option, text, "AZIMUTH,ELEVATION (degrees, clockwise from north and up)");
   if (std::abs(pair.second) > 90.0)
-    throw UsageError(option + " '" + text + "': the second number is an angle up and must be within -90..90");
+    throw UsageError(option + " '" + text + "': the second number is an elevation and must be within -90..90");
   return {pair.first, pair.second};
 }
 
-EyesFiles files_of(const OverlookArguments& arguments) {
-  EyesFiles files{arguments.panorama, arguments.right, {}};
+PanoramaFiles files_of(const OverlookArguments& arguments) {
+  PanoramaFiles files{arguments.panorama, arguments.right, {}};
   if (!arguments.stereo_layout.empty()) files.layout = panorama::parse_pair_layout(arguments.stereo_layout);
   return files;
 }
 
-OpenEyes open_eyes(const OverlookArguments& arguments, const Common& common) {
-  OpenEyes eyes(files_of(arguments), memory_bytes(common) / 4 * 3,
-                common.threads);  // the rest is for the view itself
-  if (!arguments.stereo.empty() && !eyes.is_pair()) {
-    throw UsageError("--stereo " + arguments.stereo + ": '" + eyes.description().image.string() +
-                     "' is for one eye; give the other's picture with --right, or --stereo-layout if it holds "
-                     "both");
+StereoPanorama open_panorama(const OverlookArguments& arguments, const Common& common) {
+  // The rest of the memory is for the view.
+  StereoPanorama panorama(files_of(arguments), memory_bytes(common) / 4 * 3, common.threads);
+  if (!arguments.stereo.empty() && !panorama.is_pair()) {
+    throw UsageError(
+        "--stereo " + arguments.stereo + ": '" + panorama.description().image.string() +
+        "' is for one eye; give the other eye's image with --right, or --stereo-layout if it holds "
+        "both");
   }
-  return eyes;
+  return panorama;
 }
 
 panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama::PanoramaMap& map,
@@ -84,18 +86,18 @@ panorama::Viewer make_viewer(const OverlookArguments& arguments, const panorama:
   panorama::Viewer viewer(map, size.width, size.height);
   viewer.set_fov(arguments.fov_deg);
   if (std::abs(viewer.fov_deg() - arguments.fov_deg) > 1e-9 && !quiet) {
-    std::fprintf(
-        stderr,
-        "vpe: note: the field of view is %s degrees, not %s: a pixel of the picture is drawn at most %g wide\n",
-        shown(viewer.fov_deg()).c_str(), shown(arguments.fov_deg).c_str(),
-        panorama::ViewerLimits::kMaxMagnification);
+    std::fprintf(stderr,
+                 "vpe: note: the field of view is %s degrees, not %s: a pixel of the image is drawn at most %g "
+                 "wide\n",
+                 shown(viewer.fov_deg()).c_str(), shown(arguments.fov_deg).c_str(),
+                 panorama::ViewerLimits::kMaxMagnification);
   }
   if (!arguments.view) return viewer;
-  const panorama::Direction asked = parse_direction("--view", *arguments.view);
-  viewer.look_at(asked.azimuth_deg, asked.elevation_deg);
-  if (std::abs(viewer.pitch_deg() - asked.elevation_deg) > 1e-9 && !quiet) {
-    std::fprintf(stderr, "vpe: note: looks up %s degrees, not %s, to stay within the picture\n",
-                 shown(viewer.pitch_deg()).c_str(), shown(asked.elevation_deg).c_str());
+  const panorama::Direction wanted = parse_direction("--view", *arguments.view);
+  viewer.look_at(wanted.azimuth_deg, wanted.elevation_deg);
+  if (std::abs(viewer.pitch_deg() - wanted.elevation_deg) > 1e-9 && !quiet) {
+    std::fprintf(stderr, "vpe: note: the view looks up %s degrees, not %s, to stay within the image\n",
+                 shown(viewer.pitch_deg()).c_str(), shown(wanted.elevation_deg).c_str());
   }
   return viewer;
 }
@@ -109,7 +111,7 @@ overlay::Layer compass_of(const core::View& view) {
   return overlay::draw(overlays, scene);
 }
 
-core::RgbImage draw_view(OpenEyes& eyes, const core::View& view, const OverlookArguments& arguments,
+core::RgbImage draw_view(StereoPanorama& panorama, const core::View& view, const OverlookArguments& arguments,
                          const Common& common) {
   const InterruptGuard guard;
   ProgressLine progress(common.quiet);
@@ -119,7 +121,7 @@ core::RgbImage draw_view(OpenEyes& eyes, const core::View& view, const OverlookA
   };
   const overlay::Layer layer = arguments.compass ? compass_of(view) : overlay::Layer();
   const auto finish = [&layer](core::RgbImage& image) { overlay::composite(layer, image.pixels); };
-  core::RgbImage image = eyes.draw(view, core::parse_stereo(arguments.stereo), copying, finish);
+  core::RgbImage image = panorama.draw(view, core::parse_stereo(arguments.stereo), copying, finish);
   InterruptGuard::check();
   return image;
 }
@@ -135,26 +137,26 @@ nlohmann::json describe_view(const panorama::Viewer& viewer, int width, int heig
 void overlook(const OverlookArguments& arguments, const Common& common) {
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) base::keep_heap_compact();
-  // Wrong usage and what cannot be written are told before any work.
+  // Wrong usage and files that cannot be written are reported before any work.
   const Size size = parse_size(arguments.size);
   if (arguments.view) (void)parse_direction("--view", *arguments.view);
   std::vector<panorama::Direction> directions;
-  for (const std::string& text : arguments.at) directions.push_back(parse_direction("--at", text));
+  for (const std::string& text : arguments.direction)
+    directions.push_back(parse_direction("--direction", text));
   std::vector<Pair> pixels;
   for (const std::string& text : arguments.at_pixel)
-    pixels.push_back(parse_pair("--at-pixel", text, "X,Y (pixels of the picture, centres at .5)"));
+    pixels.push_back(parse_pair("--at-pixel", text, "X,Y (pixels of the image, centres at .5)"));
   if (!arguments.output.empty()) check_image_output(arguments.output);
   if (arguments.compass && !core::overlays_refused().empty())
     throw UsageError("--compass: " + std::string(core::overlays_refused()));
   const bool in_window = arguments.output.empty() && directions.empty() && pixels.empty();
   if (in_window) check_window();
 
-  OpenEyes eyes = open_eyes(arguments, common);
-  const panorama::PanoramaDescription& description = eyes.description();
+  StereoPanorama panorama = open_panorama(arguments, common);
+  const panorama::PanoramaDescription& description = panorama.description();
   if (!description.heading_is_known && arguments.compass) {
-    throw UsageError(
-        "--compass: '" + description.image.string() +
-        "' does not say where north is; leave it out, or describe the picture in a JSON beside it");
+    throw UsageError("--compass: '" + description.image.string() +
+                     "' does not say where north is; leave it out, or describe the image in a JSON beside it");
   }
   if (!description.heading_is_known && !common.quiet) {
     std::fprintf(stderr, "vpe: note: '%s' does not say where north is; azimuths are counted from its middle\n",
@@ -164,22 +166,23 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
                       {"projection", panorama::to_string(description.map.kind)},
                       {"described_by", description.sources}};
 
-  std::vector<ShownPlace> places;
-  for (const Pair& pixel : pixels) places.push_back(place_at_pixel(description, pixel.first, pixel.second));
-  for (const panorama::Direction& direction : directions) places.push_back(place_at(description, direction));
-  for (const ShownPlace& place : places) json["places"].push_back(to_json(place));
+  std::vector<panorama::ProbeResult> places;
+  for (const Pair& pixel : pixels) places.push_back(probe_pixel(description, pixel.first, pixel.second));
+  for (const panorama::Direction& direction : directions)
+    places.push_back(probe_direction(description, direction));
+  for (const panorama::ProbeResult& place : places) json["places"].push_back(to_json(place));
 
   if (in_window) {
-    PanoramaViewer request{
+    PanoramaViewerRequest request{
         files_of(arguments), {}, arguments.fov_deg, core::parse_stereo(arguments.stereo), size,
         arguments.scale};
-    if (arguments.view) request.look = parse_direction("--view", *arguments.view);
+    if (arguments.view) request.direction = parse_direction("--view", *arguments.view);
     const panorama::Viewer viewer = view_panorama(request, common);
     json["view"] = describe_view(viewer, viewer.size().x, viewer.size().y);
   }
   if (!arguments.output.empty()) {
     const panorama::Viewer viewer = make_viewer(arguments, description.map, size, common.quiet);
-    const core::RgbImage image = draw_view(eyes, viewer.view(), arguments, common);
+    const core::RgbImage image = draw_view(panorama, viewer.view(), arguments, common);
     core::write_image(arguments.output, image.pixels, image.width, image.height);
     json["output"] = arguments.output;
     json["view"] = describe_view(viewer, image.width, image.height);
@@ -189,7 +192,7 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
     return;
   }
   if (!places.empty()) std::printf("%s\n", csv_header(places.front()).c_str());
-  for (const ShownPlace& place : places) std::printf("%s\n", csv_line(place).c_str());
+  for (const panorama::ProbeResult& place : places) std::printf("%s\n", csv_line(place).c_str());
 }
 
 }  // namespace
@@ -197,44 +200,48 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
 void add_overlook(CLI::App& program, Common& common) {
   using Limits = panorama::ViewerLimits;
   auto arguments = std::make_shared<OverlookArguments>();
-  CLI::App* command = add_command(program, "overlook", "Look around in a panorama", common, true);
-  command->add_option("PANO", arguments->panorama, "Picture of a panorama, or the JSON that describes one")
+  CLI::App* command = add_command(
+      program, "overlook", "Panorama viewer: look around in a panorama, or print what it shows", common, true);
+  command->add_option("PANO", arguments->panorama, "Image of a panorama, or the JSON that describes one")
       ->required();
   command->add_option(
       "--view", arguments->view,
-      "YAW,PITCH: where to look, degrees clockwise from north and up; the middle when left out");
+      "YAW,PITCH: direction of the view, degrees clockwise from north and up (default: the image's middle)");
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(Limits::kMinFov_deg, Limits::kMaxFov_deg))
       ->capture_default_str();
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT of an eye's view, or of the window, pixels")
+  command
+      ->add_option("--size", arguments->size, "WIDTHxHEIGHT of the view of one eye, or of the window, pixels")
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output,
-                      "View to write (.png, .jpg); without it and --at a window opens");
-  command->add_option("--at", arguments->at, "AZIMUTH,ELEVATION: print what is there (degrees; repeatable)")
+                      "View to write (.png, .jpg); without it and --direction a window opens");
+  // --at is the former name; elsewhere it is a place.
+  command
+      ->add_option("--direction,--at", arguments->direction,
+                   "AZIMUTH,ELEVATION: print what is there (degrees; repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       ->add_option("--at-pixel", arguments->at_pixel,
-                   "X,Y: print what is at a pixel of the picture (centres at .5; repeatable)")
+                   "X,Y: print what is at a pixel of the image (centres at .5; repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--right", arguments->right, "The right eye's panorama; PANO is the left eye's");
   command
       ->add_option(
           "--stereo-layout", arguments->stereo_layout,
-          "Eyes that the picture holds: left and right (sbs), left above right (ou), one (none); as its "
-          "JSON says when left out")
+          "Eyes that the image holds: left and right (sbs), left above right (ou), one (none) (default: as its "
+          "JSON says)")
       ->check(CLI::IsMember({"sbs", "ou", "none"}));
   command
       ->add_option("--stereo", arguments->stereo,
                    "Draw both eyes: side by side (sbs), left above right (ou), red-cyan (anaglyph)")
       ->check(CLI::IsMember({"sbs", "ou", "anaglyph"}));
   command
-      ->add_option("--scale", arguments->scale,
-                   "Size of the window's letters; as the monitor has it when left out")
+      ->add_option("--scale", arguments->scale, "Size of the window's letters (default: that of the monitor)")
       ->check(number_within(0.5, 4));
   command->add_flag("--compass", arguments->compass,
-                    "Marks of azimuth along the view's lower edge; a window has them always");
+                    "Draw marks of azimuth along the view's lower edge; a window always has them");
   command->callback([arguments, &common] { overlook(*arguments, common); });
 }
 

@@ -1,4 +1,4 @@
-// What a panorama shows at a place of its image or in a direction, as the command line asks and prints it.
+// Answers of `vpe overlook` to --direction and --at-pixel: what a panorama shows there.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,15 +8,16 @@
 
 namespace vpe::app {
 
-using ShownPlace = panorama::ProbeResult;
+// Return what the panorama shows at a pixel or in a direction. Throw std::runtime_error with the image's extent
+// if it does not show the place.
+panorama::ProbeResult probe_pixel(const panorama::PanoramaDescription& description, double x, double y);
+panorama::ProbeResult probe_direction(const panorama::PanoramaDescription& description,
+                                      const panorama::Direction& direction);
 
-// Throws std::runtime_error that names the image and what it shows, when it does not show the place.
-ShownPlace place_at_pixel(const panorama::PanoramaDescription& description, double x, double y);
-ShownPlace place_at(const panorama::PanoramaDescription& description, const panorama::Direction& direction);
+nlohmann::json to_json(const panorama::ProbeResult& place);
 
-nlohmann::json to_json(const ShownPlace& place);
-// CSV, with the keys of the JSON; both of places of one description.
-std::string csv_header(const ShownPlace& place);
-std::string csv_line(const ShownPlace& place);
+// Return lines of CSV whose columns are the keys of the JSON. The header fits all places of one description.
+std::string csv_header(const panorama::ProbeResult& place);
+std::string csv_line(const panorama::ProbeResult& place);
 
 }  // namespace vpe::app

@@ -1,5 +1,4 @@
-#include "vpe/app/panorama/commands.h"
-
+// vpe panorama.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -8,16 +7,15 @@
 
 #include "paging/surface/surface.h"
 #include "panorama/metadata/sidecar.h"
-#include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
-#include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/panorama/commands.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/panorama/panorama_maker.h"
+#include "vpe/app/panorama/panorama_plan.h"
 #include "vpe/app/panorama/panorama_request.h"
 #include "vpe/app/panorama/panorama_stereo.h"
-#include "vpe/app/picture/fingerprint.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
@@ -28,213 +26,212 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
-// Lower, and the camera's own facet fills the image.
-constexpr double kLeastHeight_m = 0.01;
-
-void require_drawable(PanoramaRecipe& recipe) {
-  if (recipe.backend != "voxel" && recipe.backend != "polygon")
-    throw UsageError("backend '" + recipe.backend + "' is not known");
-  settle_overlays(recipe);
+double elapsed_s(SteadyClock::time_point start) {
+  return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
 
-// Elevation of the ground as drawn, and as it is.
-struct TerrainQuery {
-  double drawn_m = 0;
-  double height_m = 0;
+// Lower, the facet below the camera fills the image.
+constexpr double kLeastPanoramaHeight_m = 0.01;
+// Memory of a surface that answers a few questions.
+constexpr std::size_t kSmallSurfaceBytes = std::size_t{8} << 20;
+
+// Elevation below the camera, above the sphere.
+struct Ground {
+  double drawn_m = 0;   // with exaggeration
+  double height_m = 0;  // without
 };
 
-TerrainQuery ground_below(const std::shared_ptr<const paging::PlanetFile>& planet,
-                          const PanoramaRecipe& recipe) {
-  const paging::Surface surface(planet, std::size_t{8} << 20);
-  const glm::dvec3 direction = mars::direction({recipe.camera.lon_deg, recipe.camera.lat_deg});
-  return {surface.at(direction, recipe.settings.values().exaggeration).height_m,
+Ground ground_below(const std::shared_ptr<const paging::PlanetFile>& planet, const PanoramaRequest& request) {
+  const paging::Surface surface(planet, kSmallSurfaceBytes);
+  const glm::dvec3 direction = mars::direction({request.camera.lon_deg, request.camera.lat_deg});
+  return {surface.at(direction, request.settings.values().exaggeration).height_m,
           surface.at(direction).height_m};
 }
 
-void place_camera(PanoramaOrder& order, const TerrainQuery& ground) {
-  double& alt_m = order.recipe.camera.alt_m;
-  if (order.height_m) alt_m = ground.drawn_m + *order.height_m;
-  if (alt_m - ground.drawn_m >= kLeastHeight_m) return;
-  throw std::runtime_error(
-      "the eye is " + base::format_number(std::round(100 * (alt_m - ground.drawn_m)) / 100) +
-      " m above the ground, which lies " + base::format_number(std::round(100 * ground.drawn_m) / 100) +
-      " m above the sphere there; put it at least " + base::format_number(kLeastHeight_m) +
-      " m above (--height, --altitude)");
+void check_identity(const PanoramaRequest& request, const std::string& identity) {
+  if (request.from_sidecar.empty() || request.identity == identity) return;
+  throw std::runtime_error(request.from_sidecar + ": was made from a planet of identity " + request.identity +
+                           ", but " +
+                           (request.planet.empty() ? std::string("the embedded Mars") : request.planet) +
+                           " has " + identity + "; name the right planet file as PLANET");
 }
 
-std::string sidecar_text(const PanoramaOrder& order, const PanoramaJob& job, const paging::PlanetMeta& meta,
-                         const TerrainQuery& ground, const PanoramaFigures& figures, const Common& common) {
+void place_camera(PanoramaRequest& request, const Ground& ground) {
+  double& alt_m = request.camera.alt_m;
+  if (request.height_m) alt_m = ground.drawn_m + *request.height_m;
+  const double height_m = alt_m - ground.drawn_m;
+  if (height_m >= kLeastPanoramaHeight_m) return;
+  throw std::runtime_error("the camera is " + base::format_rounded(height_m, 2) +
+                           " m above the ground, which lies " + base::format_rounded(ground.drawn_m, 2) +
+                           " m above the sphere there; put it at least " +
+                           base::format_number(kLeastPanoramaHeight_m) + " m above (--height, --altitude)");
+}
+
+core::DrawRequest draw_request_for(const PanoramaRequest& request) {
+  core::DrawRequest out;
+  out.settings = request.settings.values();
+  out.sun = sun_for(out.settings, request.camera);
+  const RenderOptions options = render_options(request);
+  out.interest = parse_interest(options);
+  out.paging.timeout_s = options.wait_s;
+  return out;
+}
+
+std::string sidecar_text(const PanoramaRequest& request, const PanoramaPlan& plan,
+                         const paging::PlanetMeta& meta, const Ground& ground, const PanoramaFigures& figures,
+                         const Common& common) {
   panorama::Sidecar sidecar;
-  sidecar.image = job.output.filename().string();
-  sidecar.map = job.map;
-  const mars::Pose& camera = order.recipe.camera;
+  sidecar.image = request.output.filename().string();
+  sidecar.map = plan.map;
+  const mars::Pose& camera = request.camera;
   sidecar.viewpoint =
-      panorama::Viewpoint{mars::normalize_lon_deg(camera.lon_deg), camera.lat_deg,  camera.alt_m,
-                          camera.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
-  auto json = nlohmann::ordered_json::parse(panorama::to_json(sidecar));
-  if (const auto& eyes = order.recipe.stereo) {
-    if (eyes->layout != core::StereoLayout::kAnaglyph) json["stereo"] = core::to_string(eyes->layout);
+      panorama::RecordedViewpoint{mars::normalize_lon_deg(camera.lon_deg), camera.lat_deg,  camera.alt_m,
+                                  camera.alt_m - ground.drawn_m,           ground.height_m, meta.datum};
+  auto json = panorama::to_json(sidecar);
+  if (const auto& eyes = request.stereo) {
+    if (!plan.is_red_cyan) json["stereo"] = core::to_string(eyes->layout);
     json["eye_base_m"] = eyes->base_m;
   }
   json["radius_m"] = meta.radius_m;
   json["illustration"] = meta.illustration;
-  for (const panorama::Plane plane : job.planes) {
-    const panorama::PlaneInfo& info = panorama::info_of(plane);
-    json["planes"][std::string(info.name)] = {{"file", plane_file(job.output, plane).filename().string()},
+  for (const panorama::Plane layer : request.layers) {
+    const panorama::PlaneInfo& info = panorama::info_of(layer);
+    json["planes"][std::string(info.name)] = {{"file", layer_file(request.output, layer).filename().string()},
                                               {"unit", info.unit},
                                               {"meaning", info.meaning}};
   }
   json["error"] = {{"tile_error_m", figures.geometric_error_m},
                    {"shift_bound_px", figures.shift_bound_px},
                    {"tiles_missing", figures.tiles_missing}};
-  json["vpe"] = {{"version", version()}, {"command", common.words}, {"recipe", to_json(order.recipe)}};
+  json["vpe"] = {{"version", version()}, {"command", common.words}, {"recipe", recipe_json(request)}};
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string fingerprint(const PanoramaOrder& order, const PanoramaJob& job, const core::DrawRequest& request,
-                        double radius_m) {
-  const PanoramaRecipe& recipe = order.recipe;
-  core::DrawRequest first = request;
-  first.view = panorama::pieces_of(job.map, {recipe.camera, radius_m}, job.strips.front(), 0).front().view;
-  Digest digest;
-  digest.add(
-      fingerprint_of({version(), recipe.identity, recipe.backend, recipe.memory_mb}, first, recipe.settings));
-  digest.add(panorama::to_json(panorama::Sidecar{"", job.map, std::nullopt}));
-  digest.add(static_cast<std::int64_t>(job.format == PanoramaFormat::kTiff));
-  for (const panorama::Plane plane : job.planes) digest.add(panorama::info_of(plane).name);
-  if (recipe.stereo) digest.add(to_json(recipe)["stereo"].dump());
-  return digest.hex();
+nlohmann::json report_json(const PanoramaRequest& request, const PanoramaPlan& plan, const PanoramaMaker& maker,
+                           const PanoramaTimes& times, double total_s) {
+  nlohmann::json layers = nlohmann::json::object();
+  for (const panorama::Plane layer : request.layers)
+    layers[std::string(panorama::info_of(layer).name)] = layer_file(request.output, layer).string();
+  nlohmann::json seconds{{"start", times.start},   {"casting", times.casting},   {"shading", times.shading},
+                         {"planes", times.layers}, {"encoding", times.encoding}, {"total", total_s}};
+  // Rays load tiles while they cast and shade.
+  seconds["paging"] =
+      request.backend == core::Backend::kPolygon ? nlohmann::json(times.paging) : nlohmann::json();
+  nlohmann::json report{{"output", request.output.string()},
+                        {"sidecar", sidecar_file(request.output).string()},
+                        {"planes", layers},
+                        {"projection", panorama::to_string(plan.map.kind)},
+                        {"width", plan.size.width_px},
+                        {"height", plan.size.height_px},
+                        {"rounded", plan.rounded},
+                        {"strips_made", maker.made()},
+                        {"strips_kept", maker.kept()},
+                        {"shift_bound_px", maker.figures().shift_bound_px},
+                        {"seconds", seconds}};
+  if (request.stereo) report["eye_base_m"] = request.stereo->base_m;
+  return report;
 }
 
-nlohmann::json report_json(const PanoramaJob& job, const PanoramaMaker& maker, const PanoramaTimes& times,
-                           double total_s, const panorama::PanoramaPlan& plan, const std::string& backend) {
-  nlohmann::json planes = nlohmann::json::object();
-  for (const panorama::Plane plane : job.planes)
-    planes[std::string(panorama::info_of(plane).name)] = plane_file(job.output, plane).string();
-  nlohmann::json seconds{{"start", times.start},   {"casting", times.casting},   {"shading", times.shading},
-                         {"planes", times.planes}, {"encoding", times.encoding}, {"total", total_s}};
-  // Rays load tiles in the midst of casting and shading.
-  seconds["paging"] = backend == "polygon" ? nlohmann::json(times.paging) : nlohmann::json();
-  return {{"output", job.output.string()},
-          {"sidecar", sidecar_file(job.output).string()},
-          {"planes", planes},
-          {"projection", panorama::to_string(job.map.kind)},
-          {"width", job.size.width_px},
-          {"height", job.size.height_px},
-          {"rounded", plan.rounded},
-          {"strips_made", maker.made()},
-          {"strips_kept", maker.kept()},
-          {"shift_bound_px", maker.figures().shift_bound_px},
-          {"seconds", seconds}};
+void print_summary(const PanoramaRequest& request, const PanoramaPlan& plan, double shift_bound_px,
+                   double total_s) {
+  std::printf("%s: %s of %lldx%lld pixels in %.1f s, geometry within %.2g px\n", request.output.c_str(),
+              panorama::to_string(plan.map.kind), static_cast<long long>(plan.size.width_px),
+              static_cast<long long>(plan.size.height_px), total_s, shift_bound_px);
+  if (request.stereo) std::printf("eyes %.4g m apart\n", request.stereo->base_m);
+}
+
+// Makes renderers of the request's backend. One that measured the eyes is used again, as it has terrain
+// already.
+class RendererSource {
+ public:
+  RendererSource(const PanoramaRequest& request, const Common& common,
+                 std::shared_ptr<const paging::PlanetFile> planet)
+      : options_(render_options(request)), common_(common), planet_(std::move(planet)) {}
+
+  std::unique_ptr<core::Renderer> make(int memory_mb) {
+    if (warm_) return std::move(warm_);
+    Common share = common_;
+    share.memory_mb = memory_mb;
+    return make_renderer(options_, share, planet_);
+  }
+
+  core::Renderer& make_warm(int memory_mb) {
+    warm_ = make(memory_mb);
+    return *warm_;
+  }
+
+ private:
+  RenderOptions options_;
+  const Common& common_;
+  std::shared_ptr<const paging::PlanetFile> planet_;
+  std::unique_ptr<core::Renderer> warm_;
+};
+
+// Chooses the base of a new pair; that of a sidecar is known. Then checks that both eyes are above the terrain.
+void resolve_eyes(PanoramaRequest& request, const PanoramaPlan& plan,
+                  const std::shared_ptr<const paging::PlanetFile>& planet,
+                  const core::DrawRequest& draw_request, RendererSource& renderers, int memory_mb) {
+  if (!request.stereo) return;
+  if (request.from_sidecar.empty()) {
+    core::Renderer& renderer = renderers.make_warm(renderer_memory_mb(request, plan, memory_mb));
+    request.stereo = measure_eyes(request, planet->radius_m(), draw_request, renderer);
+  }
+  require_eyes_above_ground(request, paging::Surface(planet, kSmallSurfaceBytes), kLeastPanoramaHeight_m);
 }
 
 void make_panorama(const PanoramaArguments& arguments, const Common& common) {
-  const auto start = Clock::now();
-  const auto seconds = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  PanoramaOrder order;
-  panorama::PanoramaPlan plan;
-  PanoramaJob job;
-  try {
-    order = arguments.again.empty() ? new_order(arguments, common) : order_again(arguments, common);
-    plan = panorama::plan_panorama(order.recipe.plan);
-  } catch (const panorama::PlanError& e) {
-    throw UsageError(e.what());
-  }
-  PanoramaRecipe& recipe = order.recipe;
-  require_drawable(recipe);
-  check_stereo_panorama(order.stereo, recipe);
-  std::optional<core::StereoLayout> layout = core::parse_stereo(order.stereo.layout);
-  if (recipe.stereo) layout = recipe.stereo->layout;
-  // What cannot be written is told before any work.
-  job.output = order.output;
-  job.format = panorama_format(job.output);
-  job.map = plan.map;
-  job.planes = recipe.planes;
-  job.software = std::string("vpe ") + version();
-  job.size = layout ? panorama::size_of_pair(job.map, *layout)
-                    : panorama::ImageSize{job.map.width_px, job.map.height_px};
-  job.is_red_cyan = layout == core::StereoLayout::kAnaglyph;
-  // GPano knows of one image.
-  job.has_gpano = job.map.kind != panorama::MapKind::kFacets && (!layout || job.is_red_cyan);
-  job.strips = panorama::strips_of(job.size.width_px, job.size.height_px);
-  check_panorama_size(job.output, job.size, common.memory_mb);
-  for (const panorama::Plane plane : job.planes) check_output(plane_file(job.output, plane));
-  check_sidecar(job.output);
+  const auto start = SteadyClock::now();
+  PanoramaRequest request = parse_panorama(arguments, common);
+  const PanoramaPlan plan = plan_panorama(request);
+  resolve_overlays(request);
+  check_stereo_panorama(request);
+  check_files(request, plan, common.memory_mb);
 
   const InterruptGuard guard;
-  const auto planet = open_planet(recipe.planet, common);
+  const auto planet = open_planet(request.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
-  if (!order.again.empty() && recipe.identity != meta.identity) {
-    throw std::runtime_error(order.again + ": was made from a planet of identity " + recipe.identity +
-                             ", but " +
-                             (recipe.planet.empty() ? std::string("the embedded Mars") : recipe.planet) +
-                             " has " + meta.identity + "; name the right planet file as PLANET");
-  }
-  recipe.identity = meta.identity;
+  check_identity(request, meta.identity);
+  request.identity = meta.identity;
   note_illustration(meta, common.quiet);
   if (!common.quiet) {
     for (const std::string& text : plan.rounded) std::fprintf(stderr, "vpe: %s\n", text.c_str());
   }
-  const TerrainQuery ground = ground_below(planet, recipe);
-  place_camera(order, ground);
+  const Ground ground = ground_below(planet, request);
+  place_camera(request, ground);
+  const core::DrawRequest draw_request = draw_request_for(request);
 
-  core::DrawRequest request;
-  request.settings = recipe.settings.values();
-  request.sun = sun_for(request.settings, recipe.camera);
-  RenderOptions options = arguments.panorama_image;
-  options.backend = recipe.backend;
-  options.interest = recipe.interest;
-  request.interest = parse_interest(options);
-  request.paging.timeout_s = options.wait_s;
-
-  remove_stale_files(job.output);
+  remove_stale_files(request.output);
   base::ThreadPool pool(common.threads);
   PanoramaTimes times;
-  const int memory_mb = recipe.memory_mb > 0 ? recipe.memory_mb : common.memory_mb;
-  std::unique_ptr<core::Renderer> warm;  // has the ground of the middle already
-  const auto renderer = [&](int share_mb) {
-    if (warm) return std::move(warm);
-    Common share = common;
-    share.memory_mb = share_mb;
-    return make_renderer(options, share, planet);
-  };
-  if (layout && !recipe.stereo) {
-    warm = renderer(renderer_memory_mb(job, memory_mb));
-    recipe.stereo = measure_eyes(order.stereo, recipe, planet->radius_m(), request, *warm);
-  }
-  if (recipe.stereo) {
-    const paging::Surface surface(planet, std::size_t{8} << 20);
-    require_eyes_above_ground(recipe, surface, kLeastHeight_m);
-  }
-  times.start = seconds();
-  PanoramaOverlays overlays(recipe, job.map, planet, pool, memory_bytes(common) / 2);
-  PanoramaMaker maker(job, recipe, request, fingerprint(order, job, request, planet->radius_m()), planet,
-                      renderer, overlays, pool, memory_mb);
+  const int memory_mb = request.memory_mb > 0 ? request.memory_mb : common.memory_mb;
+  RendererSource renderers(request, common, planet);
+  resolve_eyes(request, plan, planet, draw_request, renderers, memory_mb);
+  times.start = elapsed_s(start);
+  PanoramaOverlays overlays(request, plan.map, planet, pool, memory_bytes(common) / 2);
+  PanoramaMaker maker(request, plan,
+                      {draw_request, fingerprint_of(request, plan, draw_request, planet->radius_m()), planet,
+                       [&](int share_mb) { return renderers.make(share_mb); }, memory_mb},
+                      overlays, pool);
   {
     ProgressLine line(common.quiet);
     const auto strips = maker.run(line, times);
-    const auto joining = Clock::now();
-    job.sidecar = sidecar_text(order, job, meta, ground, maker.figures(), common);
-    join_strips(job, strips, pool, [&](double part) {
+    const auto joining = SteadyClock::now();
+    const std::string sidecar = sidecar_text(request, plan, meta, ground, maker.figures(), common);
+    join_strips(request, plan, sidecar, strips, pool, [&](double part) {
       InterruptGuard::check();
       line.show("joining", 0.95 + 0.05 * part);
     });
     std::error_code ignored;
-    fs::remove_all(strips_folder(job.output), ignored);
-    times.encoding += std::chrono::duration<double>(Clock::now() - joining).count();
+    fs::remove_all(strips_folder(request.output), ignored);
+    times.encoding += elapsed_s(joining);
   }
-  if (!common.quiet) warn_of(maker.failures());
+  if (!common.quiet) print_failures(maker.failures());
   if (common.json) {
-    auto report = report_json(job, maker, times, seconds(), plan, recipe.backend);
-    if (recipe.stereo) report["eye_base_m"] = recipe.stereo->base_m;
-    print_json(report);
+    print_json(report_json(request, plan, maker, times, elapsed_s(start)));
   } else if (!common.quiet) {
-    std::printf("%s: %s of %lldx%lld pixels in %.1f s, geometry within %.2g px\n", job.output.c_str(),
-                panorama::to_string(job.map.kind), static_cast<long long>(job.size.width_px),
-                static_cast<long long>(job.size.height_px), seconds(), maker.figures().shift_bound_px);
-    if (recipe.stereo) std::printf("eyes %.4g m apart\n", recipe.stereo->base_m);
+    print_summary(request, plan, maker.figures().shift_bound_px, elapsed_s(start));
   }
 }
 
@@ -243,40 +240,40 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
 void add_panorama(CLI::App& program, Common& common) {
   using Limits = panorama::PlanLimits;
   auto arguments = std::make_shared<PanoramaArguments>();
-  CLI::App* command = add_command(program, "panorama",
-                                  "Draw a panorama; what an interrupted run has drawn is kept", common, true);
-  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
-  command->add_option("--at", arguments->at, "LON,LAT of the eye, degrees");
-  command->add_option("--height", arguments->height_m, "Of the eye above the ground, metres")
+  CLI::App* command = add_command(
+      program, "panorama", "Draw a panorama; an interrupted run continues where it was stopped", common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
+  command->add_option("--at", arguments->at, "LON,LAT of the camera, degrees");
+  command->add_option("--height", arguments->height_m, "Height of the camera above the ground, metres")
       ->check(number_within(0, 1e10));
-  command->add_option("--altitude", arguments->altitude_m, "Of the eye above the sphere, metres")
+  command->add_option("--altitude", arguments->altitude_m, "Altitude of the camera above the sphere, metres")
       ->check(number_within(-1e6, 1e10));
-  command->add_option(
-      "-o,--output", arguments->output,
-      "Picture (.tif of any size, .png, .jpg); its description goes to the same name with .json");
-  command->add_option(
-      "--projection", arguments->projection,
-      "facets, cylinder or equirectangular; cylinder for rays, facets for triangles when left out");
+  command->add_option("-o,--output", arguments->output,
+                      "Image (.tif of any size, .png, .jpg); its sidecar gets the same name with .json");
+  command->add_option("--projection", arguments->projection,
+                      "facets, cylinder or equirectangular (default: cylinder for rays, facets for triangles)");
   CLI::Option* facets =
-      command->add_option("--facets", arguments->facets, "Planes to the turn, 3 to 64")->capture_default_str();
+      command->add_option("--facets", arguments->facets, "Number of planes to the full circle, 3 to 64")
+          ->capture_default_str();
   const auto is_yaw = number_within(-Limits::kMaxYaw_deg, Limits::kMaxYaw_deg);
-  CLI::Option* yaw = command->add_option(
-      "--yaw", arguments->yaw_deg, "Azimuth of facet 0's middle, or of a whole turn's left edge, degrees");
+  CLI::Option* yaw =
+      command->add_option("--yaw", arguments->yaw_deg,
+                          "Azimuth of the middle of facet 0, or of the left edge of a full circle, degrees");
   yaw->check(is_yaw)->capture_default_str();
   command->add_option("--from", arguments->from_deg, "Azimuth of the left edge, degrees")->check(is_yaw);
   command->add_option("--to", arguments->to_deg, "Azimuth of the right edge, degrees")->check(is_yaw);
   command->add_option("--elevation", arguments->elevation,
-                      "MIN,MAX elevation, degrees; -45,45 or, equirectangular, -90,90 when left out");
+                      "MIN,MAX elevation, degrees (default: -45,45; equirectangular: -90,90)");
   CLI::Option* width =
-      command->add_option("--width", arguments->width_px, "Columns of the picture; 4096 when left out");
+      command->add_option("--width", arguments->width_px, "Columns of the image (default: 4096)");
   command->add_option("--degrees-per-pixel", arguments->degrees_per_pixel, "Degrees of azimuth a column")
       ->excludes(width);
-  command->add_option("--planes", arguments->planes,
+  command->add_option("--aux-layers", arguments->aux_layers,
                       "Also write rasters: any of range,lonlat,elevation,slope,incidence (.tif)");
-  command->add_option("--again", arguments->again,
-                      "PANO.json: make the same picture again, as it says; goes with PLANET and -o only");
-  arguments->panorama_image.backend = kRayBackend;
-  add_render_options(*command, arguments->panorama_image);
+  command->add_option("--from-sidecar", arguments->from_sidecar,
+                      "PANO.json: make the same image again from its recipe; takes PLANET and -o only");
+  arguments->render.backend = core::Backend::kRay;
+  add_render_options(*command, arguments->render);
   add_eye_options(*command, arguments->stereo);
   command->callback([arguments, facets, yaw, &common] {
     arguments->has_facets = facets->count() > 0;

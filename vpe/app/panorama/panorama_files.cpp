@@ -22,118 +22,128 @@ namespace {
 
 constexpr int kJpegQuality = 92;
 
-fs::path with_end(const fs::path& image, const std::string& end) {
+using Done = std::function<void(double)>;
+
+std::string software() { return std::string("vpe ") + version(); }
+
+fs::path with_extension(const fs::path& image, const std::string& extension) {
   fs::path path = image;
-  return path.replace_extension(end);
+  return path.replace_extension(extension);
 }
 
-// Empty for images that GPano cannot describe.
-std::string packet_of(const PanoramaJob& job) {
-  if (!job.has_gpano) return {};
+// Returns the XMP packet, or "" for images that GPano cannot describe.
+std::string packet_of(const PanoramaPlan& plan) {
+  if (!plan.has_gpano) return {};
   try {
-    panorama::GPano gpano = panorama::gpano_of(job.map);
+    panorama::GPano gpano = panorama::gpano_of(plan.map);
     gpano.use_viewer = true;
-    gpano.stitching_software = job.software;
+    gpano.stitching_software = software();
     return panorama::to_xmp(gpano);
   } catch (const panorama::MetadataError&) {
-    return {};  // the sidecar has it all
+    return {};  // the sidecar still describes the image
   }
 }
 
-void copy_tiles(panorama::BigTiffWriter& writer, const PanoramaJob& job,
-                const std::vector<panorama::StripFile>& strips,
-                std::size_t first_of_strip(const StripLayout&, std::size_t), std::size_t plane,
-                const std::function<void(double)>& done) {
-  std::int64_t across = 0;
-  for (std::size_t n = 0; n < strips.size(); ++n) {
-    const StripLayout layout = layout_of(job.format, job.size.height_px, job.strips[n], job.planes.size());
-    const std::size_t first = first_of_strip(layout, plane);
-    for (std::int64_t y = 0; y < layout.tiles_down; ++y) {
-      for (std::int64_t x = 0; x < layout.tiles_across; ++x) {
-        writer.put(across + x, y,
-                   strips[n].block(first + static_cast<std::size_t>(y * layout.tiles_across + x)));
-      }
+// Joins the strips of one run. References are kept.
+class StripJoiner {
+ public:
+  StripJoiner(const PanoramaRequest& request, const PanoramaPlan& plan,
+              const std::vector<panorama::StripFile>& strips, base::ThreadPool& pool)
+      : request_(request), plan_(plan), strips_(strips), pool_(pool) {}
+
+  void write_layer(base::OutputFile& file, std::size_t number, const Done& done) const {
+    const panorama::SampleFormat format = panorama::info_of(request_.layers[number]).format;
+    panorama::BigTiffWriter writer(file, plan_.size.width_px, plan_.size.height_px, format,
+                                   {software(), "", true});
+    copy_tiles(
+        writer,
+        [number](const StripLayout& layout) { return 1 + layout.image_blocks() + number * layout.tiles(); },
+        done);
+    writer.finish();
+  }
+
+  void write_image(base::OutputFile& file, const Done& done) const {
+    const panorama::ImageSize& size = plan_.size;
+    const std::string packet = packet_of(plan_);
+    if (plan_.format != PanoramaFormat::kTiff) {
+      const auto writer =
+          plan_.format == PanoramaFormat::kPng
+              ? panorama::make_png_writer(file, size.width_px, size.height_px, packet, pool_)
+              : panorama::make_jpeg_writer(file, size.width_px, size.height_px, packet, kJpegQuality);
+      copy_rows(*writer, done);
+      return;
     }
-    across += layout.tiles_across;
-    done(static_cast<double>(n + 1) / static_cast<double>(strips.size()));
+    panorama::BigTiffWriter writer(file, size.width_px, size.height_px, panorama::kRgb,
+                                   {software(), packet, false});
+    copy_tiles(
+        writer, [](const StripLayout&) { return std::size_t{1}; }, [&](double part) { done(0.6 * part); });
+    writer.add_reduced_pages(pool_, [&](double part) { done(0.6 + 0.4 * part); });
+    writer.finish();
   }
-}
 
-std::size_t first_of_image(const StripLayout& /*layout*/, std::size_t /*plane*/) { return 1; }
-std::size_t first_of_plane(const StripLayout& layout, std::size_t plane) {
-  return 1 + layout.image_blocks() + plane * layout.tiles();
-}
+ private:
+  StripLayout layout(std::size_t strip) const {
+    return layout_of(plan_, plan_.strips[strip], request_.layers.size());
+  }
 
-void copy_rows(panorama::RowWriter& writer, const PanoramaJob& job,
-               const std::vector<panorama::StripFile>& strips, const std::function<void(double)>& done) {
-  const std::int64_t bands = layout_of(job.format, job.size.height_px, job.strips.front(), 0).bands;
-  const auto width = static_cast<std::size_t>(job.size.width_px);
-  std::vector<base::Rgb> rows;
-  for (std::int64_t band = 0; band < bands; ++band) {
-    const std::int64_t begin = band * StripLayout::kBandRows;
-    const auto count = static_cast<std::size_t>(std::min(StripLayout::kBandRows, job.size.height_px - begin));
-    rows.resize(count * width);
-    for (std::size_t n = 0; n < strips.size(); ++n) {
-      const std::vector<std::uint8_t> bytes = strips[n].block(1 + static_cast<std::size_t>(band));
-      const std::size_t row_bytes = static_cast<std::size_t>(job.strips[n].width) * sizeof(base::Rgb);
-      if (bytes.size() != count * row_bytes) throw std::runtime_error("a strip of another size");
-      for (std::size_t y = 0; y < count; ++y) {
-        std::memcpy(rows.data() + y * width + static_cast<std::size_t>(job.strips[n].x),
-                    bytes.data() + y * row_bytes, row_bytes);
+  void copy_tiles(panorama::BigTiffWriter& writer,
+                  const std::function<std::size_t(const StripLayout&)>& first_block, const Done& done) const {
+    std::int64_t across = 0;
+    for (std::size_t n = 0; n < strips_.size(); ++n) {
+      const StripLayout strip = layout(n);
+      const std::size_t first = first_block(strip);
+      for (std::int64_t y = 0; y < strip.tiles_down; ++y) {
+        for (std::int64_t x = 0; x < strip.tiles_across; ++x) {
+          writer.put(across + x, y,
+                     strips_[n].block(first + static_cast<std::size_t>(y * strip.tiles_across + x)));
+        }
       }
+      across += strip.tiles_across;
+      done(static_cast<double>(n + 1) / static_cast<double>(strips_.size()));
     }
-    writer.write(rows);
-    done(static_cast<double>(band + 1) / static_cast<double>(bands));
   }
-  writer.finish();
-}
 
-void write_image(base::OutputFile& file, const PanoramaJob& job, const std::vector<panorama::StripFile>& strips,
-                 base::ThreadPool& pool, const std::function<void(double)>& done) {
-  const panorama::ImageSize& size = job.size;
-  const std::string packet = packet_of(job);
-  if (job.format != PanoramaFormat::kTiff) {
-    const auto writer =
-        job.format == PanoramaFormat::kPng
-            ? panorama::make_png_writer(file, size.width_px, size.height_px, packet, pool)
-            : panorama::make_jpeg_writer(file, size.width_px, size.height_px, packet, kJpegQuality);
-    copy_rows(*writer, job, strips, done);
-    return;
+  void copy_rows(panorama::RowWriter& writer, const Done& done) const {
+    const std::int64_t bands = layout(0).bands;
+    const auto width = static_cast<std::size_t>(plan_.size.width_px);
+    std::vector<base::Rgb> rows;
+    for (std::int64_t band = 0; band < bands; ++band) {
+      const std::int64_t begin = band * StripLayout::kBandRows;
+      const auto count =
+          static_cast<std::size_t>(std::min(StripLayout::kBandRows, plan_.size.height_px - begin));
+      rows.resize(count * width);
+      for (std::size_t n = 0; n < strips_.size(); ++n) {
+        const panorama::Strip& strip = plan_.strips[n];
+        const std::vector<std::uint8_t> bytes = strips_[n].block(1 + static_cast<std::size_t>(band));
+        const std::size_t row_bytes = static_cast<std::size_t>(strip.width) * sizeof(base::Rgb);
+        if (bytes.size() != count * row_bytes) throw std::runtime_error("a strip has another size");
+        for (std::size_t y = 0; y < count; ++y) {
+          std::memcpy(rows.data() + y * width + static_cast<std::size_t>(strip.x), bytes.data() + y * row_bytes,
+                      row_bytes);
+        }
+      }
+      writer.write(rows);
+      done(static_cast<double>(band + 1) / static_cast<double>(bands));
+    }
+    writer.finish();
   }
-  panorama::BigTiffWriter writer(file, size.width_px, size.height_px, panorama::kRgb,
-                                 {job.software, packet, false});
-  copy_tiles(writer, job, strips, first_of_image, 0, [&](double part) { done(0.6 * part); });
-  writer.add_reduced_pages(pool, [&](double part) { done(0.6 + 0.4 * part); });
-  writer.finish();
-}
 
-}  // namespace
+  const PanoramaRequest& request_;
+  const PanoramaPlan& plan_;
+  const std::vector<panorama::StripFile>& strips_;
+  base::ThreadPool& pool_;
+};
 
-PanoramaFormat panorama_format(const fs::path& path) {
-  std::string end = path.extension().string();
-  for (char& c : end) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  std::optional<PanoramaFormat> format;
-  if (end == ".tif" || end == ".tiff") format = PanoramaFormat::kTiff;
-  if (end == ".png") format = PanoramaFormat::kPng;
-  if (end == ".jpg" || end == ".jpeg") format = PanoramaFormat::kJpeg;
-  if (!format) {
-    throw std::runtime_error(path.string() +
-                             ": cannot write: no known picture format; let the name end in .tif, .png or .jpg");
-  }
-  check_output(path);
-  return *format;
-}
-
-void check_panorama_size(const fs::path& path, const panorama::ImageSize& image, int memory_mb) {
+void check_size(const fs::path& path, const PanoramaPlan& plan, int memory_mb) {
+  if (plan.format == PanoramaFormat::kTiff) return;
+  const panorama::ImageSize& image = plan.size;
   const std::string size = std::to_string(image.width_px) + "x" + std::to_string(image.height_px);
-  const PanoramaFormat format = panorama_format(path);
-  if (format == PanoramaFormat::kTiff) return;
-  if (format == PanoramaFormat::kJpeg &&
+  if (plan.format == PanoramaFormat::kJpeg &&
       std::max(image.width_px, image.height_px) > panorama::kMaxJpegSide_px) {
     throw std::runtime_error(path.string() + ": cannot write " + size + " pixels: a JPEG has at most " +
                              std::to_string(panorama::kMaxJpegSide_px) + " a side; let the name end in .tif");
   }
-  // A band of rows, as it is and packed.
+  // One band of rows, unpacked and packed.
   const std::int64_t band_mb = 2 * StripLayout::kBandRows * image.width_px * 3 / (1 << 20);
   if (band_mb > memory_mb) {
     throw std::runtime_error(path.string() + ": cannot write " + size + " pixels: rows this long take " +
@@ -141,12 +151,6 @@ void check_panorama_size(const fs::path& path, const panorama::ImageSize& image,
                              std::to_string(memory_mb) + ")");
   }
 }
-
-fs::path plane_file(const fs::path& image, panorama::Plane plane) {
-  return with_end(image, "." + std::string(panorama::info_of(plane).name) + ".tif");
-}
-
-fs::path sidecar_file(const fs::path& image) { return with_end(image, ".json"); }
 
 void check_sidecar(const fs::path& image) {
   const fs::path path = sidecar_file(image);
@@ -158,52 +162,64 @@ void check_sidecar(const fs::path& image) {
   const auto json = nlohmann::json::parse(bytes, nullptr, false);
   if (json.is_object() && json.contains("vpe")) return;
   throw std::runtime_error(
-      path.string() + ": is there, and 'vpe panorama' did not write it; move it or choose another name for " +
+      path.string() + ": exists, and 'vpe panorama' did not write it; move it or choose another name for " +
       image.filename().string());
+}
+
+}  // namespace
+
+PanoramaFormat panorama_format(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  if (extension == ".tif" || extension == ".tiff") return PanoramaFormat::kTiff;
+  if (extension == ".png") return PanoramaFormat::kPng;
+  if (extension == ".jpg" || extension == ".jpeg") return PanoramaFormat::kJpeg;
+  throw std::runtime_error(path.string() +
+                           ": cannot write: no known image format; let the name end in .tif, .png or .jpg");
+}
+
+fs::path layer_file(const fs::path& image, panorama::Plane layer) {
+  return with_extension(image, "." + std::string(panorama::info_of(layer).name) + ".tif");
+}
+
+fs::path sidecar_file(const fs::path& image) { return with_extension(image, ".json"); }
+
+fs::path strips_folder(const fs::path& image) { return image.string() + ".parts"; }
+
+void check_files(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
+  check_output(request.output);
+  check_size(request.output, plan, memory_mb);
+  for (const panorama::Plane layer : request.layers) check_output(layer_file(request.output, layer));
+  check_sidecar(request.output);
 }
 
 void remove_stale_files(const fs::path& image) {
   std::vector<std::string> names{image.filename().string(), sidecar_file(image).filename().string()};
   for (const panorama::PlaneInfo& info : panorama::all_planes())
-    names.push_back(plane_file(image, info.plane).filename().string());
+    names.push_back(layer_file(image, info.plane).filename().string());
   const fs::path folder = image.has_parent_path() ? image.parent_path() : fs::path(".");
   remove_stale_temporaries(folder, [&](const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   });
 }
 
-fs::path strips_folder(const fs::path& image) { return image.string() + ".parts"; }
-
-StripLayout layout_of(PanoramaFormat format, std::int64_t height_px, const panorama::Strip& strip,
-                      std::size_t planes) {
-  const auto tiles = [](std::int64_t px) { return (px + panorama::kTile_px - 1) / panorama::kTile_px; };
-  StripLayout layout;
-  layout.in_tiles = format == PanoramaFormat::kTiff;
-  layout.tiles_across = tiles(strip.width);
-  layout.tiles_down = tiles(height_px);
-  layout.bands = (height_px + StripLayout::kBandRows - 1) / StripLayout::kBandRows;
-  layout.planes = planes;
-  return layout;
-}
-
-void join_strips(const PanoramaJob& job, const std::vector<panorama::StripFile>& strips, base::ThreadPool& pool,
+void join_strips(const PanoramaRequest& request, const PanoramaPlan& plan, const std::string& sidecar,
+                 const std::vector<panorama::StripFile>& strips, base::ThreadPool& pool,
                  const std::function<void(double)>& done) {
-  const double steps = static_cast<double>(1 + job.planes.size());
+  const StripJoiner joiner(request, plan, strips, pool);
+  const std::size_t layers = request.layers.size();
+  const double steps = static_cast<double>(1 + layers);
   std::vector<std::unique_ptr<base::OutputFile>> files;
   const auto make = [&](const fs::path& path) -> base::OutputFile& {
     return *files.emplace_back(std::make_unique<base::OutputFile>(path, temporary_name(path)));
   };
-  for (std::size_t n = 0; n < job.planes.size(); ++n) {
-    const panorama::SampleFormat format = panorama::info_of(job.planes[n]).format;
-    panorama::BigTiffWriter writer(make(plane_file(job.output, job.planes[n])), job.size.width_px,
-                                   job.size.height_px, format, {job.software, "", true});
-    copy_tiles(writer, job, strips, first_of_plane, n,
-               [&](double part) { done((static_cast<double>(n) + part) / steps); });
-    writer.finish();
+  for (std::size_t n = 0; n < layers; ++n) {
+    joiner.write_layer(make(layer_file(request.output, request.layers[n])), n,
+                       [&](double part) { done((static_cast<double>(n) + part) / steps); });
   }
-  write_image(make(job.output), job, strips, pool, [&](double part) { done((steps - 1.0 + part) / steps); });
+  joiner.write_image(make(request.output), [&](double part) { done((steps - 1.0 + part) / steps); });
   for (const auto& file : files) file->commit();
-  write_whole(sidecar_file(job.output), job.sidecar);
+  write_whole(sidecar_file(request.output), sidecar);
 }
 
 }  // namespace vpe::app

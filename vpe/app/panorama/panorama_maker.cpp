@@ -12,6 +12,7 @@
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/temporary.h"
+#include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/picture/image_options.h"
 
 namespace vpe::app {
@@ -22,7 +23,7 @@ using panorama::Strip;
 
 namespace {
 
-// As far as smoothing of edges looks, and more.
+// Smoothing of edges reads fewer pixels around a piece than this.
 constexpr int kSmoothingMargin_px = 8;
 
 class Stopwatch {
@@ -49,7 +50,7 @@ std::string text_of(const PanoramaFigures& figures) {
 std::optional<PanoramaFigures> figures_from(const std::vector<std::uint8_t>& text) {
   try {
     const auto json = nlohmann::json::parse(text);
-    // JSON has null for what nothing bounds.
+    // JSON has null for an error without a bound.
     const auto bound = [&json](const char* key) {
       const auto& value = json.at(key);
       return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
@@ -65,7 +66,7 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// Strips with ground that could not be drawn are made again by the next run.
+// Marks strips with terrain that could not be drawn: the next run draws them again.
 constexpr const char* kIncomplete = "-incomplete";
 
 bool is_strip_name(const std::string& name) { return name.starts_with("strip_"); }
@@ -81,29 +82,29 @@ void PanoramaFigures::add(const PanoramaFigures& other) {
 
 namespace {
 
-// What is held of the image comes out of the same memory: a strip, and a piece with its samples.
-int free_memory_mb(const PanoramaJob& job, int memory_mb) {
+// Returns what is left beside the image in memory: a strip, and a piece with its samples.
+int free_memory_mb(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
   constexpr std::size_t kPieceBytes = 24;
   constexpr int kLeast_mb = 64;
   const std::size_t pixel_bytes =
-      sizeof(base::Rgb) * (job.is_red_cyan ? 2 : 1) + (job.planes.empty() ? 0 : sizeof(float));
+      sizeof(base::Rgb) * (plan.is_red_cyan ? 2 : 1) + (request.layers.empty() ? 0 : sizeof(float));
   const std::size_t held =
-      static_cast<std::size_t>(job.strips.front().width * job.size.height_px) * pixel_bytes +
+      static_cast<std::size_t>(plan.strips.front().width * plan.size.height_px) * pixel_bytes +
       static_cast<std::size_t>(panorama::PlanLimits::kPiecePixels) * kPieceBytes;
   return std::max(kLeast_mb, memory_mb - static_cast<int>(held >> 20));
 }
 
 }  // namespace
 
-int planes_memory_mb(const PanoramaJob& job, int memory_mb) {
-  return job.planes.empty() ? 0 : free_memory_mb(job, memory_mb) / 4;
+int layers_memory_mb(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
+  return request.layers.empty() ? 0 : free_memory_mb(request, plan, memory_mb) / 4;
 }
 
-int renderer_memory_mb(const PanoramaJob& job, int memory_mb) {
-  return free_memory_mb(job, memory_mb) - planes_memory_mb(job, memory_mb);
+int renderer_memory_mb(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
+  return free_memory_mb(request, plan, memory_mb) - layers_memory_mb(request, plan, memory_mb);
 }
 
-// One strip while it is drawn: colours, and ranges where planes are wanted.
+// Holds one strip while it is drawn: colours, and ranges if there are auxiliary layers.
 struct PanoramaMaker::Canvas {
   std::int64_t width = 0;
   std::int64_t height = 0;
@@ -118,30 +119,27 @@ struct PanoramaMaker::Canvas {
   }
 };
 
-PanoramaMaker::PanoramaMaker(const PanoramaJob& job, const PanoramaRecipe& recipe,
-                             const core::DrawRequest& request, std::string fingerprint,
-                             std::shared_ptr<const paging::PlanetFile> planet, MakeRenderer make_renderer,
-                             PanoramaOverlays& overlays, base::ThreadPool& pool, int memory_mb)
-    : job_(job),
-      recipe_(recipe),
-      request_(request),
-      fingerprint_(std::move(fingerprint)),
-      planet_(std::move(planet)),
-      make_renderer_(std::move(make_renderer)),
+PanoramaMaker::PanoramaMaker(const PanoramaRequest& request, const PanoramaPlan& plan, Scene scene,
+                             PanoramaOverlays& overlays, base::ThreadPool& pool)
+    : request_(request),
+      plan_(plan),
+      scene_(std::move(scene)),
       overlays_(overlays),
       pool_(pool),
-      memory_mb_(memory_mb),
-      margin_px_(recipe.settings.values().smooth_edges ? kSmoothingMargin_px : 0) {}
+      margin_px_(request.settings.values().smooth_edges ? kSmoothingMargin_px : 0) {}
 
 fs::path PanoramaMaker::strip_path(std::size_t n) const {
   std::array<char, 40> name{};
   std::snprintf(name.data(), name.size(), "strip_%06zu", n);
-  return strips_folder(job_.output) / name.data();
+  return strips_folder(request_.output) / name.data();
+}
+
+StripLayout PanoramaMaker::layout(std::size_t n) const {
+  return layout_of(plan_, plan_.strips[n], request_.layers.size());
 }
 
 std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
-  const StripLayout layout = layout_of(job_.format, job_.size.height_px, job_.strips[n], job_.planes.size());
-  auto strip = panorama::StripFile::open(strip_path(n), fingerprint_, layout.blocks());
+  auto strip = panorama::StripFile::open(strip_path(n), scene_.fingerprint, layout(n).blocks());
   if (!strip) return std::nullopt;
   const auto figures = figures_from(strip->block(0));
   if (!figures) return std::nullopt;
@@ -151,18 +149,18 @@ std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
 }
 
 std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, PanoramaTimes& times) {
-  make_folder(strips_folder(job_.output));
-  remove_stale_temporaries(strips_folder(job_.output), is_strip_name);
+  make_folder(strips_folder(request_.output));
+  remove_stale_temporaries(strips_folder(request_.output), is_strip_name);
   std::vector<panorama::StripFile> strips;
-  for (std::size_t n = 0; n < job_.strips.size(); ++n) {
+  for (std::size_t n = 0; n < plan_.strips.size(); ++n) {
     try {
       InterruptGuard::check();
       auto kept = keep(n);
       strips.push_back(kept ? std::move(*kept) : make(n, line, times));
     } catch (const Interrupted& e) {
       throw Interrupted(e.signal(), std::string(e.what()) + ": " + std::to_string(strips.size()) + " of " +
-                                        std::to_string(job_.strips.size()) + " strips of " +
-                                        job_.output.string() + " are kept; the same command goes on");
+                                        std::to_string(plan_.strips.size()) + " strips of " +
+                                        request_.output.string() + " are kept; the same command continues");
     }
   }
   renderer_.reset();
@@ -170,99 +168,112 @@ std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, Panorama
   return strips;
 }
 
+void PanoramaMaker::prepare() {
+  overlays_.prepare();
+  const int surface_mb = layers_memory_mb(request_, plan_, scene_.memory_mb);
+  if (surface_mb > 0) {
+    surface_ = std::make_unique<paging::Surface>(scene_.planet, static_cast<std::size_t>(surface_mb) << 20);
+  }
+  renderer_ = scene_.make_renderer(renderer_memory_mb(request_, plan_, scene_.memory_mb));
+}
+
 panorama::StripFile PanoramaMaker::make(std::size_t n, ProgressLine& line, PanoramaTimes& times) {
-  const Strip& strip = job_.strips[n];
-  const StripLayout layout = layout_of(job_.format, job_.size.height_px, strip, job_.planes.size());
+  const Strip& strip = plan_.strips[n];
   Canvas canvas;
   canvas.x = strip.x;
   canvas.width = strip.width;
-  canvas.height = job_.size.height_px;
+  canvas.height = plan_.size.height_px;
   const std::size_t pixels = static_cast<std::size_t>(canvas.width * canvas.height);
   if (!renderer_) {
     const Stopwatch watch(times.start);
-    overlays_.prepare();
-    const int surface_mb = planes_memory_mb(job_, memory_mb_);
-    if (surface_mb > 0) surface_ = std::make_unique<paging::Surface>(planet_, std::size_t(surface_mb) << 20);
-    renderer_ = make_renderer_(renderer_memory_mb(job_, memory_mb_));
+    prepare();
   }
   canvas.colour.swap(colour_);
   canvas.colour.resize(pixels);
-  if (!job_.planes.empty()) canvas.range_m.resize(pixels);
+  if (!request_.layers.empty()) canvas.range_m.resize(pixels);
   const auto show = [&](double part) {
     InterruptGuard::check();
-    line.show("drawing", 0.95 * (static_cast<double>(n) + part) / static_cast<double>(job_.strips.size()));
+    line.show("drawing", 0.95 * (static_cast<double>(n) + part) / static_cast<double>(plan_.strips.size()));
   };
-  if (recipe_.stereo) {
+  if (request_.stereo) {
     draw_eyes(strip, canvas, show, times);
   } else {
-    canvas.pieces = panorama::pieces_of(job_.map, pose_on_sphere(), strip, margin_px_);
+    canvas.pieces = panorama::pieces_of(plan_.map, viewpoint(), strip, margin_px_);
     for (std::size_t k = 0; k < canvas.pieces.size(); ++k) {
       show(static_cast<double>(k) / static_cast<double>(canvas.pieces.size()));
       draw(canvas.pieces[k], strip, canvas, times);
     }
   }
   lay_overlays(canvas);
+  panorama::StripFile made = write(n, canvas, times);
+  colour_.swap(canvas.colour);
+  figures_.add(canvas.figures);
+  ++made_;
+  return made;
+}
+
+panorama::StripFile PanoramaMaker::write(std::size_t n, const Canvas& canvas, PanoramaTimes& times) {
   const fs::path path = strip_path(n);
+  const StripLayout strip = layout(n);
+  const std::string fingerprint = scene_.fingerprint + (canvas.figures.tiles_missing > 0 ? kIncomplete : "");
   base::OutputFile file(path, temporary_name(path));
-  const std::string fingerprint = fingerprint_ + (canvas.figures.tiles_missing > 0 ? kIncomplete : "");
   panorama::StripWriter writer(file, fingerprint);
   {
     const Stopwatch watch(times.encoding);
     writer.add(bytes_of(text_of(canvas.figures)));
-    add_image(writer, layout, canvas);
+    add_image(writer, strip, canvas);
   }
   {
-    const Stopwatch watch(times.planes);
-    for (const panorama::Plane plane : job_.planes) add_plane(writer, layout, canvas, plane);
+    const Stopwatch watch(times.layers);
+    for (const panorama::Plane layer : request_.layers) add_layer(writer, strip, canvas, layer);
   }
   const Stopwatch watch(times.encoding);
   writer.finish();
   file.commit();
-  colour_.swap(canvas.colour);
-  auto made = panorama::StripFile::open(path, fingerprint, layout.blocks());
-  if (!made) throw base::file_error("read back", path, "it is not what was written", "check the disk");
-  figures_.add(canvas.figures);
-  ++made_;
+  auto made = panorama::StripFile::open(path, fingerprint, strip.blocks());
+  if (!made) throw base::file_error("read back", path, "it differs from what was written", "check the disk");
   return std::move(*made);
 }
 
-// Over both eyes of a pair the same, as if infinitely far.
+// Draws the same overlays over both eyes of a pair, as if they were infinitely far away.
 void PanoramaMaker::lay_overlays(Canvas& canvas) {
-  const bool is_pair = recipe_.stereo && !job_.is_red_cyan;
+  const bool is_pair = request_.stereo && !plan_.is_red_cyan;
   if (!is_pair) return overlays_.lay({canvas.x, 0, canvas.width, canvas.height, canvas.colour});
-  std::vector<base::Rgb> part;
-  for (std::int64_t y = 0; y < job_.size.height_px; y += job_.map.height_px) {
-    for (std::int64_t x = 0; x < job_.size.width_px; x += job_.map.width_px) {
+  std::vector<base::Rgb> half;  // the part of one eye's image in this strip
+  for (std::int64_t y = 0; y < plan_.size.height_px; y += plan_.map.height_px) {
+    for (std::int64_t x = 0; x < plan_.size.width_px; x += plan_.map.width_px) {
       const std::int64_t begin = std::max(x, canvas.x);
-      const std::int64_t width = std::min(x + job_.map.width_px, canvas.x + canvas.width) - begin;
+      const std::int64_t width = std::min(x + plan_.map.width_px, canvas.x + canvas.width) - begin;
       if (width <= 0) continue;
-      part.clear();
+      half.clear();
       const auto row_of = [&](std::int64_t row) {
         return std::span(canvas.colour)
             .subspan(canvas.index(begin - canvas.x, y + row), static_cast<std::size_t>(width));
       };
-      for (std::int64_t row = 0; row < job_.map.height_px; ++row) {
+      for (std::int64_t row = 0; row < plan_.map.height_px; ++row) {
         const auto pixels = row_of(row);
-        part.insert(part.end(), pixels.begin(), pixels.end());
+        half.insert(half.end(), pixels.begin(), pixels.end());
       }
-      overlays_.lay({begin - x, 0, width, job_.map.height_px, part});
-      for (std::int64_t row = 0; row < job_.map.height_px; ++row)
-        std::copy_n(part.begin() + row * width, width, row_of(row).begin());
+      overlays_.lay({begin - x, 0, width, plan_.map.height_px, half});
+      for (std::int64_t row = 0; row < plan_.map.height_px; ++row)
+        std::copy_n(half.begin() + row * width, width, row_of(row).begin());
     }
   }
 }
 
-panorama::PoseOnSphere PanoramaMaker::pose_on_sphere() const { return {recipe_.camera, planet_->radius_m()}; }
+panorama::Viewpoint PanoramaMaker::viewpoint() const {
+  return panorama::viewpoint_of(request_.camera, scene_.planet->radius_m());
+}
 
-// In columns of a tile, as cutting them all at once could take more memory than the image.
+// Goes by columns of one tile: cutting the whole strip into pieces could take more memory than the image.
 void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                               PanoramaTimes& times) {
-  const bool is_mixed = job_.is_red_cyan;
+  const bool is_mixed = plan_.is_red_cyan;
   std::vector<base::Rgb> left;
   for (int begin = 0; begin < strip.width; begin += panorama::kTile_px) {
     const int width = std::min(static_cast<int>(panorama::kTile_px), strip.width - begin);
     const std::vector<Piece> pieces =
-        panorama::pair_pieces_of(job_.map, pose_on_sphere(), *recipe_.stereo, {strip.x + begin, width});
+        panorama::pair_pieces_of(plan_.map, viewpoint(), *request_.stereo, {strip.x + begin, width});
     const std::size_t of_left = is_mixed ? pieces.size() / 2 : pieces.size();
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       const double part = static_cast<double>(k) / static_cast<double>(pieces.size());
@@ -281,18 +292,15 @@ void PanoramaMaker::draw_eyes(const Strip& strip, Canvas& canvas, const std::fun
 }
 
 void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas, PanoramaTimes& times) {
-  core::DrawRequest request = request_;
-  request.view = piece.view;
-  request.want_range = !job_.planes.empty();
-  RenderOptions options;
-  options.allow_incomplete = recipe_.allow_incomplete;
-  options.wait_s = request_.paging.timeout_s;
-  const core::DrawResult result = renderer_->draw(request);
+  core::DrawRequest draw_request = scene_.draw_request;
+  draw_request.view = piece.view;
+  draw_request.want_range = !request_.layers.empty();
+  const core::DrawResult result = renderer_->draw(draw_request);
   failures_.insert(failures_.end(), result.failures.begin(), result.failures.end());
-  require_complete(options, result);
+  require_complete(render_options(request_), result);
   constexpr double kMs = 1e-3;
   const core::FrameStats& stats = result.stats;
-  if (recipe_.backend == "voxel") {
+  if (request_.backend == core::Backend::kRay) {
     times.casting += kMs * stats.select_ms;
     times.shading += kMs * (stats.draw_ms - stats.select_ms);
   } else {
@@ -309,7 +317,8 @@ void PanoramaMaker::draw(const Piece& piece, const Strip& strip, Canvas& canvas,
                       static_cast<std::size_t>(piece.margin_px);
     const std::size_t to = canvas.index(piece.x - strip.x, piece.y + row);
     std::copy_n(frame.colour.data() + from, piece.width, canvas.colour.data() + to);
-    if (request.want_range) std::copy_n(frame.range_m.data() + from, piece.width, canvas.range_m.data() + to);
+    if (draw_request.want_range)
+      std::copy_n(frame.range_m.data() + from, piece.width, canvas.range_m.data() + to);
   }
 }
 
@@ -318,7 +327,7 @@ void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& 
   constexpr std::int64_t kSide = panorama::kTile_px;
   const std::size_t pixel_bytes = format.pixel_bytes();
   const std::size_t row_bytes = pixel_bytes * kSide;
-  // What lies beyond the image repeats its edge.
+  // Pixels beyond the image repeat its edge.
   const auto fill_tile = [&](std::int64_t column, std::int64_t row, std::uint8_t* tile) {
     const std::int64_t columns = std::min(kSide, canvas.width - column);
     const std::int64_t rows = std::min(kSide, canvas.height - row);
@@ -339,7 +348,7 @@ void PanoramaMaker::add_tiles(panorama::StripWriter& writer, const StripLayout& 
     InterruptGuard::check();
     const std::size_t count = std::min(batch, layout.tiles() - begin);
     pool_.run(count, [&](std::size_t n) {
-      thread_local std::vector<std::uint8_t> tile;  // as the packer keeps its own
+      thread_local std::vector<std::uint8_t> tile;  // reused, like the packer's own buffer
       tile.resize(format.tile_bytes());
       const auto index = static_cast<std::int64_t>(begin + n);
       fill_tile(index % layout.tiles_across * kSide, index / layout.tiles_across * kSide, tile.data());
@@ -368,10 +377,10 @@ void PanoramaMaker::add_image(panorama::StripWriter& writer, const StripLayout& 
             });
 }
 
-void PanoramaMaker::add_plane(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
-                              panorama::Plane plane) const {
-  const panorama::SampleFormat& format = panorama::info_of(plane).format;
-  const double exaggeration = recipe_.settings.values().exaggeration;
+void PanoramaMaker::add_layer(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
+                              panorama::Plane layer) const {
+  const panorama::SampleFormat& format = panorama::info_of(layer).format;
+  const double exaggeration = request_.settings.values().exaggeration;
   const auto holds = [](const Piece& p, std::int64_t x, std::int64_t y) {
     return x >= p.x && x < p.x + p.width && y >= p.y && y < p.y + p.height;
   };
@@ -382,7 +391,7 @@ void PanoramaMaker::add_plane(panorama::StripWriter& writer, const StripLayout& 
         piece = &*std::find_if(canvas.pieces.begin(), canvas.pieces.end(),
                                [&](const Piece& p) { return holds(p, x, row); });
       }
-      panorama::measure(plane, *surface_, exaggeration, piece->view.camera.position_m,
+      panorama::measure(layer, *surface_, exaggeration, piece->view.camera.position_m,
                         panorama::line_of_sight(*piece, x, row),
                         canvas.range_m[canvas.index(x - canvas.x, row)], out);
       out += format.pixel_bytes();

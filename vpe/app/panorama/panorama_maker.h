@@ -1,4 +1,4 @@
-// Draws the strips of a panorama that are not there yet.
+// Draws the strips of a panorama that do not exist yet.
 #pragma once
 
 #include <functional>
@@ -7,26 +7,26 @@
 #include <vector>
 
 #include "paging/surface/surface.h"
-#include "panorama/panorama_plan.h"
+#include "panorama/image/strip_file.h"
 #include "vpe/app/cli/progress.h"
-#include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/panorama/panorama_overlays.h"
-#include "vpe/app/panorama/panorama_recipe.h"
+#include "vpe/app/panorama/panorama_plan.h"
+#include "vpe/app/panorama/panorama_request.h"
 #include "vpe/core/frame.h"
 
 namespace vpe::app {
 
 // Seconds of this run.
 struct PanoramaTimes {
-  double start = 0;    // until the first piece is asked for: planet file, plan, OpenGL
+  double start = 0;    // until the first piece is requested: planet file, plan, OpenGL
   double paging = 0;   // polygons: waiting for tiles; rays load them while they cast and shade
-  double casting = 0;  // rays: ranges; polygons: choosing and drawing
+  double casting = 0;  // rays: ranges; polygons: selecting and drawing
   double shading = 0;  // rays: colours; polygons: reading back
-  double planes = 0;
+  double layers = 0;
   double encoding = 0;  // packing, writing, joining
 };
 
-// The worst of all pieces.
+// The worst values of all pieces.
 struct PanoramaFigures {
   double geometric_error_m = 0;
   double shift_bound_px = 0;
@@ -36,27 +36,42 @@ struct PanoramaFigures {
   void add(const PanoramaFigures& other);
 };
 
-// Of memory_mb for all, what a renderer may take beside the strip that is drawn; and the planes' share of that.
-int renderer_memory_mb(const PanoramaJob& job, int memory_mb);
-int planes_memory_mb(const PanoramaJob& job, int memory_mb);
+// Return the shares of memory_mb that the renderer, and the surface behind the auxiliary layers, may take
+// beside the strip that is drawn.
+int renderer_memory_mb(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb);
+int layers_memory_mb(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb);
 
+// Draws strips by any renderer, one after another, and keeps each in a file as soon as it is complete. A run
+// that was interrupted continues with the strips it has.
+//
+// Typical usage:
+//   PanoramaMaker maker(request, plan, {draw_request, fingerprint, planet, make_renderer, memory_mb}, overlays,
+//                       pool);
+//   const auto strips = maker.run(progress_line, times);
 class PanoramaMaker {
  public:
   using MakeRenderer = std::function<std::unique_ptr<core::Renderer>(int memory_mb)>;
 
-  // `request` has the settings, sun and interest; its view is not used. `fingerprint` is of everything that the
-  // strips depend on. References are kept.
-  PanoramaMaker(const PanoramaJob& job, const PanoramaRecipe& recipe, const core::DrawRequest& request,
-                std::string fingerprint, std::shared_ptr<const paging::PlanetFile> planet,
-                MakeRenderer make_renderer, PanoramaOverlays& overlays, base::ThreadPool& pool, int memory_mb);
+  struct Scene {
+    core::DrawRequest draw_request;  // settings, sun and interest; its view is not used
+    std::string fingerprint;         // of everything that the strips depend on (panorama_plan.h)
+    std::shared_ptr<const paging::PlanetFile> planet;
+    MakeRenderer make_renderer;  // called when the first strip has to be drawn
+    int memory_mb = 0;           // for everything
+  };
 
-  // All strips, kept or made. Throws Interrupted, saying what is kept, and what renderers and writers throw.
+  // Keeps the references.
+  PanoramaMaker(const PanoramaRequest& request, const PanoramaPlan& plan, Scene scene,
+                PanoramaOverlays& overlays, base::ThreadPool& pool);
+
+  // Returns all strips, those of an earlier run and new ones. Throws Interrupted with the number of strips that
+  // are kept, and what renderers and writers throw.
   std::vector<panorama::StripFile> run(ProgressLine& line, PanoramaTimes& times);
 
-  int kept() const { return kept_; }
+  int kept() const { return kept_; }  // strips of an earlier run
   int made() const { return made_; }
   const PanoramaFigures& figures() const { return figures_; }
-  const std::vector<std::string>& failures() const { return failures_; }
+  const std::vector<std::string>& failures() const { return failures_; }  // tiles that could not be read
 
  private:
   struct Canvas;
@@ -64,33 +79,32 @@ class PanoramaMaker {
   std::filesystem::path strip_path(std::size_t n) const;
   std::optional<panorama::StripFile> keep(std::size_t n);
   panorama::StripFile make(std::size_t n, ProgressLine& line, PanoramaTimes& times);
+  void prepare();
+  panorama::StripFile write(std::size_t n, const Canvas& canvas, PanoramaTimes& times);
   void draw(const panorama::Piece& piece, const panorama::Strip& strip, Canvas& canvas, PanoramaTimes& times);
-  void lay_overlays(Canvas& canvas);
   void draw_eyes(const panorama::Strip& strip, Canvas& canvas, const std::function<void(double)>& show,
                  PanoramaTimes& times);
-  panorama::PoseOnSphere pose_on_sphere() const;
+  void lay_overlays(Canvas& canvas);
+  StripLayout layout(std::size_t n) const;
+  panorama::Viewpoint viewpoint() const;
   void add_image(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas) const;
-  void add_plane(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
-                 panorama::Plane plane) const;
-  // Pixels of one row of the strip from a column on, as the format has them.
+  void add_layer(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
+                 panorama::Plane layer) const;
+  // Writes pixels of one row of the strip from a column on, in the layer's format.
   using FillRow =
       std::function<void(std::int64_t column, std::int64_t row, std::int64_t count, std::uint8_t* out)>;
   void add_tiles(panorama::StripWriter& writer, const StripLayout& layout, const Canvas& canvas,
                  const panorama::SampleFormat& format, const FillRow& fill) const;
 
-  const PanoramaJob& job_;
-  const PanoramaRecipe& recipe_;
-  const core::DrawRequest& request_;
-  std::string fingerprint_;
-  std::shared_ptr<const paging::PlanetFile> planet_;
-  MakeRenderer make_renderer_;
+  const PanoramaRequest& request_;
+  const PanoramaPlan& plan_;
+  Scene scene_;
   PanoramaOverlays& overlays_;
   base::ThreadPool& pool_;
-  int memory_mb_;
   int margin_px_ = 0;
   std::unique_ptr<core::Renderer> renderer_;
   std::unique_ptr<paging::Surface> surface_;
-  std::vector<base::Rgb> colour_;  // a strip's, used again by the next
+  std::vector<base::Rgb> colour_;  // of one strip; the next one reuses it
   std::vector<std::string> failures_;
   PanoramaFigures figures_;
   int kept_ = 0;

@@ -16,17 +16,16 @@ namespace vpe::app {
 
 namespace {
 
-// Names that nothing hides, where the camera sees them.
-std::vector<overlay::PanoramaName> seen_names(const PanoramaRecipe& recipe,
-                                              const std::vector<core::Place>& places,
-                                              const std::shared_ptr<const paging::PlanetFile>& planet,
-                                              std::size_t memory_bytes, base::ThreadPool& pool) {
+// Returns the places that no terrain hides from the camera.
+std::vector<overlay::PanoramaName> visible_names(const PanoramaRequest& request,
+                                                 const std::vector<core::Place>& places,
+                                                 const std::shared_ptr<const paging::PlanetFile>& planet,
+                                                 std::size_t memory_bytes, base::ThreadPool& pool) {
   const paging::Surface surface(planet, memory_bytes);
-  const double exaggeration = recipe.settings.values().exaggeration;
+  const double exaggeration = request.settings.values().exaggeration;
   const double radius_m = planet->radius_m();
-  const mars::Pose& pose = recipe.camera;
-  const panorama::SkylineCamera camera =
-      panorama::skyline_camera({pose.lon_deg, pose.lat_deg}, pose.alt_m, radius_m);
+  const mars::Pose& pose = request.camera;
+  const panorama::Viewpoint camera = panorama::viewpoint_at({pose.lon_deg, pose.lat_deg}, pose.alt_m, radius_m);
   const double highest_m = radius_m + exaggeration * (planet->meta().highest_radius_m - radius_m);
   const double within_m = panorama::farthest_sight_m(radius_m + pose.alt_m,
                                                      planet->tree().lowest_radius_m(exaggeration), highest_m);
@@ -44,51 +43,52 @@ std::vector<overlay::PanoramaName> seen_names(const PanoramaRecipe& recipe,
 
 }  // namespace
 
-void settle_overlays(PanoramaRecipe& recipe) {
-  const core::SettingsValues& values = recipe.settings.values();
+void resolve_overlays(PanoramaRequest& request) {
+  const core::SettingsValues& values = request.settings.values();
   if (const std::string reason = overlay::not_for_panoramas(values); !reason.empty())
     throw UsageError("--set " + reason + "; leave it out");
   if (values.names.empty()) return;
   const std::string file = std::filesystem::absolute(values.names).lexically_normal().string();
-  if (const std::string trouble = recipe.settings.set("overlay.names", file); !trouble.empty())
+  if (const std::string trouble = request.settings.set("overlay.names", file); !trouble.empty())
     throw UsageError("--set overlay.names: " + trouble);
-  (void)core::read_gazetteer(file);  // for what may be wrong with it
+  (void)core::read_gazetteer(file);  // throws now if it cannot be used
   const std::string checksum = checksum_of(std::filesystem::path(file));
-  if (!recipe.names_checksum.empty() && recipe.names_checksum != checksum) {
-    throw std::runtime_error(file +
-                             ": was changed since the picture was made, so its names are others; put the old "
-                             "file there, or make a new picture with --set overlay.names=" +
-                             file);
+  if (!request.names_checksum.empty() && request.names_checksum != checksum) {
+    throw std::runtime_error(
+        file +
+        " has changed since the image was made, so its names differ; restore the old file, "
+        "or make a new image with --set overlay.names=" +
+        file);
   }
-  recipe.names_checksum = checksum;
+  request.names_checksum = checksum;
 }
 
-PanoramaOverlays::PanoramaOverlays(const PanoramaRecipe& recipe, const panorama::PanoramaMap& map,
+PanoramaOverlays::PanoramaOverlays(const PanoramaRequest& request, const panorama::PanoramaMap& map,
                                    std::shared_ptr<const paging::PlanetFile> planet, base::ThreadPool& pool,
                                    std::size_t memory_bytes)
-    : recipe_(recipe), map_(map), planet_(std::move(planet)), pool_(pool), memory_bytes_(memory_bytes) {
-  const std::string& file = recipe.settings.values().names;
+    : request_(request), map_(map), planet_(std::move(planet)), pool_(pool), memory_bytes_(memory_bytes) {
+  const std::string& file = request.settings.values().names;
   if (!file.empty()) places_ = core::read_gazetteer(file);
 }
 
 overlay::SpriteLayer PanoramaOverlays::lay_out() const {
-  const core::SettingsValues& values = recipe_.settings.values();
+  const core::SettingsValues& values = request_.settings.values();
   overlay::PanoramaScene scene;
   scene.width_px = map_.width_px;
   scene.height_px = map_.height_px;
-  scene.turn_px = std::llround(map_.turn_px);
+  scene.full_circle_px = std::llround(map_.turn_px);
   scene.left_azimuth_deg = map_.to_direction(0, map_.horizon_px).azimuth_deg;
   const double right_deg = map_.to_direction(static_cast<double>(map_.width_px), map_.horizon_px).azimuth_deg;
   const double span_deg = right_deg - scene.left_azimuth_deg;
   scene.span_deg = span_deg > 0 ? span_deg : span_deg + 360;
-  if (map_.width_px == scene.turn_px) scene.span_deg = 360;
-  // A facet has the fewest in its middle.
+  if (map_.width_px == scene.full_circle_px) scene.span_deg = 360;
+  // A facet has the fewest pixels a degree in its middle.
   scene.px_per_deg =
       map_.kind == panorama::MapKind::kFacets ? map_.focal_px * mars::kRadiansPerDegree : map_.turn_px / 360.0;
   scene.horizon_px = map_.horizon_px;
   scene.place = [this](double azimuth_deg, double elevation_deg) -> std::optional<glm::dvec2> {
     glm::dvec2 at = map_.place({azimuth_deg, elevation_deg});
-    // Its own edges belong to the image.
+    // The image's own edges belong to it.
     constexpr double kEdge_px = 1e-6;
     if (at.x < -kEdge_px) at.x += map_.turn_px;
     if (at.x > map_.turn_px - kEdge_px) at.x -= map_.turn_px;
@@ -97,17 +97,17 @@ overlay::SpriteLayer PanoramaOverlays::lay_out() const {
   };
   scene.appearance = values;
   scene.has_imagery = !planet_->image_keys().empty();
-  if (!places_.empty()) scene.names = seen_names(recipe_, places_, planet_, memory_bytes_, pool_);
+  if (!places_.empty()) scene.names = visible_names(request_, places_, planet_, memory_bytes_, pool_);
   return overlay::lay_out_panorama(values, scene);
 }
 
 void PanoramaOverlays::prepare() {
-  if (!sprites_ && overlay::any(recipe_.settings.values())) sprites_ = lay_out();
+  if (!sprites_ && overlay::any(request_.settings.values())) sprites_ = lay_out();
 }
 
-void PanoramaOverlays::lay(const overlay::ImageRegion& part) {
+void PanoramaOverlays::lay(const overlay::ImageRegion& region) {
   prepare();
-  if (sprites_) sprites_->lay(part);
+  if (sprites_) sprites_->composite(region);
 }
 
 }  // namespace vpe::app

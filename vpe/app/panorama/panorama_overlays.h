@@ -1,4 +1,4 @@
-// Overlays of panoramas: what vpe/overlay needs of a planet, of files and of the map.
+// Overlays of panoramas: gives vpe/overlay the planet, the files and the map that it needs.
 #pragma once
 
 #include <memory>
@@ -8,38 +8,39 @@
 
 #include "paging/planet/planet_file.h"
 #include "panorama/projection.h"
-#include "vpe/app/panorama/panorama_recipe.h"
+#include "vpe/app/panorama/panorama_request.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/gazetteer.h"
 #include "vpe/overlay/sprites.h"
 
 namespace vpe::app {
 
-// Makes the path of the names absolute, so that the recipe holds anywhere, and notes what the file says in
-// recipe.names_checksum. Throws UsageError for overlays that panoramas do not have, what core::read_gazetteer()
-// throws, and std::runtime_error when the recipe has another checksum: those names are not what was drawn.
-void settle_overlays(PanoramaRecipe& recipe);
+// Makes the path of the names file absolute, so that the recipe is valid in any folder, and stores the file's
+// checksum in request.names_checksum. Throws UsageError for overlays that panoramas do not have, what
+// core::read_gazetteer() throws, and std::runtime_error if the request has another checksum already: the names
+// would differ from those of the sidecar's image.
+void resolve_overlays(PanoramaRequest& request);
 
-// One image of one eye. One thread at a time. References are kept.
+// Draws the overlays of one eye's image. Use it from one thread at a time. References are kept.
 class PanoramaOverlays {
  public:
-  // Reads the names; nothing else is done before it is needed. The ground is held in `memory_bytes` at most,
-  // and let go of once everything has its place.
-  PanoramaOverlays(const PanoramaRecipe& recipe, const panorama::PanoramaMap& map,
+  // Reads the names file; defers all other work until it is needed. Holds at most `memory_bytes` of terrain,
+  // and releases it once the labels are placed.
+  PanoramaOverlays(const PanoramaRequest& request, const panorama::PanoramaMap& map,
                    std::shared_ptr<const paging::PlanetFile> planet, base::ThreadPool& pool,
                    std::size_t memory_bytes);
 
-  // Gives everything its place, once; nothing when no overlay is set. Throws what paging::Surface throws.
+  // Places all overlays, once. Does nothing if no overlay is set. Throws what paging::Surface throws.
   void prepare();
 
-  // Over a part of the image. Which parts it is cut into changes no pixel. Throws what overlay::Decals and
-  // paging::Surface throw.
-  void lay(const overlay::ImageRegion& part);
+  // Draws over a region of the image. The division into regions changes no pixel. Throws what
+  // overlay::SpriteLayer and paging::Surface throw.
+  void lay(const overlay::ImageRegion& region);
 
  private:
   overlay::SpriteLayer lay_out() const;
 
-  const PanoramaRecipe& recipe_;
+  const PanoramaRequest& request_;
   const panorama::PanoramaMap& map_;
   std::shared_ptr<const paging::PlanetFile> planet_;
   base::ThreadPool& pool_;

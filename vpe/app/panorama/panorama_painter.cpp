@@ -9,15 +9,15 @@ namespace vpe::app {
 
 namespace {
 
-// Nobody sees less.
+// Smaller steps of a progress bar cannot be seen.
 constexpr double kShownStep = 0.005;
 
 }  // namespace
 
-PanoramaPainter::PanoramaPainter(OpenEyes eyes, std::shared_ptr<window::CopyingState> copying)
-    : eyes_(std::move(eyes)), copying_(std::move(copying)) {}
+PanoramaPainter::PanoramaPainter(StereoPanorama panorama, std::shared_ptr<window::CopyingState> copying)
+    : panorama_(std::move(panorama)), copying_(std::move(copying)) {}
 
-window::DrawnImage PanoramaPainter::paint(const window::ImageRequest& order) {
+window::DrawnImage PanoramaPainter::paint(const window::ImageRequest& request) {
   const auto copied = [this](const std::string&, double fraction) {
     if (copying_->stop) throw std::runtime_error("stopped");
     const double shown = copying_->fraction;
@@ -25,11 +25,11 @@ window::DrawnImage PanoramaPainter::paint(const window::ImageRequest& order) {
     copying_->fraction = fraction;
     window::Display::wake();
   };
-  // What cannot be copied once is not tried again with every view.
+  // An image whose copy failed is not copied again with every view.
   if (!failure_.empty()) throw std::runtime_error(failure_);
   window::DrawnImage drawn;
   try {
-    drawn.image = eyes_.draw(order.request.view, order.stereo, copied);
+    drawn.image = panorama_.draw(request.draw.view, request.stereo, copied);
   } catch (const std::exception& e) {
     const bool copied_some = copying_->fraction.exchange(-1) >= 0;
     if (copied_some && !copying_->stop) failure_ = e.what();
@@ -40,13 +40,13 @@ window::DrawnImage PanoramaPainter::paint(const window::ImageRequest& order) {
   return drawn;
 }
 
-window::OverlookSetup overlook_setup(const EyesFiles& files, std::size_t budget_bytes, int threads) {
-  const OpenEyes eyes(files, budget_bytes, threads);  // so that what is wrong with the files is known now
+window::OverlookSetup overlook_setup(const PanoramaFiles& files, std::size_t budget_bytes, int threads) {
+  const StereoPanorama panorama(files, budget_bytes, threads);
   window::OverlookSetup setup;
-  setup.panorama = eyes.description();
-  setup.is_pair = eyes.is_pair();
+  setup.panorama = panorama.description();
+  setup.is_pair = panorama.is_pair();
   setup.make_painter = [files, budget_bytes, threads, copying = setup.copying] {
-    return std::make_unique<PanoramaPainter>(OpenEyes(files, budget_bytes, threads), copying);
+    return std::make_unique<PanoramaPainter>(StereoPanorama(files, budget_bytes, threads), copying);
   };
   return setup;
 }

@@ -1,7 +1,8 @@
-// Views of a panorama for a window.
+// Draws views of a panorama for a window.
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "vpe/app/panorama/open_stereo.h"
 #include "vpe/window/overlook_view.h"
@@ -11,18 +12,19 @@ namespace vpe::app {
 
 class PanoramaPainter : public window::Painter {
  public:
-  // `copying` is told how far the copying of large images is, and stops it.
-  PanoramaPainter(OpenEyes eyes, std::shared_ptr<window::CopyingState> copying);
-  window::DrawnImage paint(const window::ImageRequest& order) override;
+  // Reports the progress of copying a large image in `copying`, and stops when it asks for that.
+  PanoramaPainter(StereoPanorama panorama, std::shared_ptr<window::CopyingState> copying);
+  window::DrawnImage paint(const window::ImageRequest& request) override;
 
  private:
-  OpenEyes eyes_;
+  StereoPanorama panorama_;
   std::shared_ptr<window::CopyingState> copying_;
   std::string failure_;  // of copying
 };
 
-// What a window needs to show a panorama: an overlook's description, eyes and painter, all else as by default.
-// Throws as OpenEyes.
-window::OverlookSetup overlook_setup(const EyesFiles& files, std::size_t budget_bytes, int threads);
+// Returns the setup of a window that shows a panorama: its description, number of eyes and painter; the rest
+// has its defaults. Reads the descriptions now, so that faulty files are reported at once. Throws as
+// StereoPanorama.
+window::OverlookSetup overlook_setup(const PanoramaFiles& files, std::size_t budget_bytes, int threads);
 
 }  // namespace vpe::app

@@ -1,11 +1,11 @@
-#include "vpe/app/panorama/panorama_recipe.h"
-
+// The recipe of a panorama as JSON.
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
 #include "mars/geodesy/sphere.h"
 #include "panorama/image/metadata_error.h"
+#include "vpe/app/panorama/panorama_request.h"
 
 namespace vpe::app {
 
@@ -29,7 +29,7 @@ std::optional<Value> find(const json& from, const char* key) {
   const auto found = from.find(key);
   if (found == from.end()) return std::nullopt;
   try {
-    // The library makes a whole number of any other and of what does not fit.
+    // The library converts any number to a whole one, also one that does not fit.
     if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
       const bool fits = found->is_number_unsigned() ? std::in_range<Value>(found->get<std::uint64_t>())
                                                     : std::in_range<Value>(found->get<std::int64_t>());
@@ -47,10 +47,11 @@ Value needed(const json& from, const char* key) {
   throw MetadataError(std::string("recipe: ") + key + " is missing");
 }
 
+// Returns the object under a key.
 const json& object(const json& from, const char* key) {
   const auto found = from.is_object() ? from.find(key) : from.end();
   if (found == from.end() || !found->is_object()) {
-    throw MetadataError(std::string("recipe: ") + key + " is missing or no object {...}");
+    throw MetadataError(std::string("recipe: ") + key + " is missing or not an object {...}");
   }
   return *found;
 }
@@ -110,61 +111,75 @@ panorama::EyePair stereo_from(const json& from) {
   return eyes;
 }
 
+core::Backend backend_from(const std::string& text) {
+  const auto backend = core::parse_backend(text);
+  if (!backend) throw MetadataError("recipe: backend '" + text + "' is not known");
+  return *backend;
+}
+
+std::string layers_text(const std::vector<panorama::Plane>& layers) {
+  std::string text;
+  for (const panorama::Plane layer : layers)
+    text += (text.empty() ? "" : ",") + std::string(panorama::info_of(layer).name);
+  return text;
+}
+
+void set_setting(core::Settings& settings, const std::string& key, const json& value) {
+  const std::string trouble =
+      value.is_string() ? settings.set(key, value.get<std::string>()) : "it is not a text";
+  if (!trouble.empty()) throw MetadataError("recipe: settings: " + key + ": " + trouble);
+}
+
 }  // namespace
 
-nlohmann::ordered_json to_json(const PanoramaRecipe& recipe) {
+nlohmann::ordered_json recipe_json(const PanoramaRequest& request) {
   nlohmann::ordered_json out;
-  out["planet"] = {{"file", recipe.planet}, {"identity", recipe.identity}};
-  out["backend"] = recipe.backend;
-  out["eye"] = {
-      {"lon_deg", recipe.camera.lon_deg}, {"lat_deg", recipe.camera.lat_deg}, {"alt_m", recipe.camera.alt_m}};
-  out["plan"] = plan_json(recipe.plan);
-  std::string planes;
-  for (const panorama::Plane plane : recipe.planes)
-    planes += (planes.empty() ? "" : ",") + std::string(panorama::info_of(plane).name);
-  out["planes"] = planes;
-  if (recipe.stereo) out["stereo"] = stereo_json(*recipe.stereo);
-  out["interest"] = recipe.interest;
-  out["memory_mb"] = recipe.memory_mb;
-  out["allow_incomplete"] = recipe.allow_incomplete;
-  if (!recipe.names_checksum.empty()) out["names_checksum"] = recipe.names_checksum;
+  out["planet"] = {{"file", request.planet}, {"identity", request.identity}};
+  out["backend"] = core::to_string(request.backend);
+  out["eye"] = {{"lon_deg", request.camera.lon_deg},
+                {"lat_deg", request.camera.lat_deg},
+                {"alt_m", request.camera.alt_m}};
+  out["plan"] = plan_json(request.map);
+  out["planes"] = layers_text(request.layers);
+  if (request.stereo) out["stereo"] = stereo_json(*request.stereo);
+  out["interest"] = request.interest;
+  out["memory_mb"] = request.memory_mb;
+  out["allow_incomplete"] = request.allow_incomplete;
+  if (!request.names_checksum.empty()) out["names_checksum"] = request.names_checksum;
   nlohmann::ordered_json settings;
   for (const core::SettingInfo& info : core::Settings::list())
-    settings[std::string(info.key)] = recipe.settings.get(info.key).value_or("");
+    settings[std::string(info.key)] = request.settings.get(info.key).value_or("");
   out["settings"] = settings;
   return out;
 }
 
-PanoramaRecipe recipe_from(const json& from) {
-  PanoramaRecipe recipe;
+PanoramaRequest request_from_recipe(const json& from) {
+  PanoramaRequest request;
   const json& planet = object(from, "planet");
-  recipe.planet = needed<std::string>(planet, "file");
-  recipe.identity = needed<std::string>(planet, "identity");
-  recipe.backend = needed<std::string>(from, "backend");
+  request.planet = needed<std::string>(planet, "file");
+  request.identity = needed<std::string>(planet, "identity");
+  request.backend = backend_from(needed<std::string>(from, "backend"));
   const json& camera = object(from, "eye");
-  recipe.camera.lon_deg = needed<double>(camera, "lon_deg");
-  recipe.camera.lat_deg = needed<double>(camera, "lat_deg");
-  recipe.camera.alt_m = needed<double>(camera, "alt_m");
-  if (!mars::is_valid({recipe.camera.lon_deg, recipe.camera.lat_deg}) || !std::isfinite(recipe.camera.alt_m)) {
-    throw MetadataError("recipe: eye is no place; latitudes are -90 to 90");
+  request.camera.lon_deg = needed<double>(camera, "lon_deg");
+  request.camera.lat_deg = needed<double>(camera, "lat_deg");
+  request.camera.alt_m = needed<double>(camera, "alt_m");
+  if (!mars::is_valid({request.camera.lon_deg, request.camera.lat_deg}) ||
+      !std::isfinite(request.camera.alt_m)) {
+    throw MetadataError("recipe: eye: not a valid place; latitudes are -90 to 90");
   }
-  recipe.plan = plan_from(object(from, "plan"));
+  request.map = plan_from(object(from, "plan"));
   try {
-    recipe.planes = panorama::parse_planes(needed<std::string>(from, "planes"));
+    request.layers = panorama::parse_planes(needed<std::string>(from, "planes"));
   } catch (const panorama::PlanError& e) {
     throw MetadataError(std::string("recipe: ") + e.what());
   }
-  if (from.contains("stereo")) recipe.stereo = stereo_from(object(from, "stereo"));
-  recipe.interest = needed<std::vector<std::string>>(from, "interest");
-  recipe.memory_mb = needed<int>(from, "memory_mb");
-  recipe.allow_incomplete = needed<bool>(from, "allow_incomplete");
-  recipe.names_checksum = find<std::string>(from, "names_checksum").value_or("");
-  for (const auto& [key, text] : object(from, "settings").items()) {
-    const std::string trouble =
-        text.is_string() ? recipe.settings.set(key, text.get<std::string>()) : "it is not a text";
-    if (!trouble.empty()) throw MetadataError("recipe: settings: " + key + ": " + trouble);
-  }
-  return recipe;
+  if (from.contains("stereo")) request.stereo = stereo_from(object(from, "stereo"));
+  request.interest = needed<std::vector<std::string>>(from, "interest");
+  request.memory_mb = needed<int>(from, "memory_mb");
+  request.allow_incomplete = needed<bool>(from, "allow_incomplete");
+  request.names_checksum = find<std::string>(from, "names_checksum").value_or("");
+  for (const auto& [key, value] : object(from, "settings").items()) set_setting(request.settings, key, value);
+  return request;
 }
 
 }  // namespace vpe::app

@@ -1,9 +1,12 @@
 #include "vpe/app/panorama/panorama_request.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <string_view>
 
 #include "panorama/image/metadata_error.h"
-#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/parsing.h"
 #include "vpe/base/file.h"
 
 namespace vpe::app {
@@ -14,133 +17,152 @@ namespace {
 
 using panorama::MapKind;
 
-// The largest JSON that is read.
+// The largest sidecar that is read.
 constexpr std::uintmax_t kMostSidecarBytes = std::uintmax_t{1} << 24;
 
+core::Backend backend_of(const PanoramaArguments& arguments) {
+  return arguments.render.backend.value_or(core::Backend::kRay);  // rays for auto
+}
+
 MapKind kind_of(const PanoramaArguments& arguments) {
-  const bool is_polygons = arguments.panorama_image.backend == "polygon";
+  const bool is_polygons = backend_of(arguments) == core::Backend::kPolygon;
   if (arguments.projection.empty()) return is_polygons ? MapKind::kFacets : MapKind::kCylinder;
   for (const MapKind kind : {MapKind::kCylinder, MapKind::kEquirectangular, MapKind::kFacets}) {
     if (arguments.projection != panorama::to_string(kind)) continue;
     if (is_polygons && kind != MapKind::kFacets) {
       throw UsageError("--projection " + arguments.projection +
-                       ": triangles are drawn in planes only; use --projection facets or --backend voxel");
+                       ": triangles are drawn in planes only; use --projection facets or --backend ray");
     }
     return kind;
   }
   throw UsageError("--projection '" + arguments.projection + "': give facets, cylinder or equirectangular");
 }
 
-panorama::PlanOptions plan_options(const PanoramaArguments& arguments) {
-  panorama::PlanOptions plan;
-  plan.kind = kind_of(arguments);
-  if (arguments.has_facets && plan.kind != MapKind::kFacets) {
-    throw UsageError("--facets: a picture of projection " + std::string(panorama::to_string(plan.kind)) +
+panorama::PlanOptions map_of(const PanoramaArguments& arguments) {
+  panorama::PlanOptions map;
+  map.kind = kind_of(arguments);
+  if (arguments.has_facets && map.kind != MapKind::kFacets) {
+    throw UsageError("--facets: an image of projection " + std::string(panorama::to_string(map.kind)) +
                      " has none; add --projection facets");
   }
-  plan.facets = arguments.facets;
-  plan.yaw_deg = arguments.yaw_deg;
+  map.facets = arguments.facets;
+  map.yaw_deg = arguments.yaw_deg;
   if (arguments.from_deg.has_value() != arguments.to_deg.has_value()) {
-    throw UsageError("--from and --to belong together: the azimuths of the picture's left and right edge");
+    throw UsageError("--from and --to belong together: the azimuths of the image's left and right edge");
   }
-  if (arguments.from_deg) plan.arc = panorama::Arc{*arguments.from_deg, *arguments.to_deg};
-  if (plan.arc && arguments.has_yaw && plan.kind != MapKind::kFacets) {
-    throw UsageError("--yaw and --from both say where the picture begins; leave one out");
+  if (arguments.from_deg) map.arc = panorama::Arc{*arguments.from_deg, *arguments.to_deg};
+  if (map.arc && arguments.has_yaw && map.kind != MapKind::kFacets) {
+    throw UsageError("--yaw and --from both set the image's left edge; leave one out");
   }
   if (!arguments.elevation.empty()) {
     const auto numbers = parse_numbers(arguments.elevation);
     if (!numbers || numbers->size() != 2) {
       throw UsageError("--elevation '" + arguments.elevation + "': expected MIN,MAX in degrees");
     }
-    plan.lowest_deg = numbers->front();
-    plan.highest_deg = numbers->back();
+    map.lowest_deg = numbers->front();
+    map.highest_deg = numbers->back();
   }
-  plan.width_px = arguments.width_px;
-  plan.degrees_per_pixel = arguments.degrees_per_pixel;
-  return plan;
+  map.width_px = arguments.width_px;
+  map.degrees_per_pixel = arguments.degrees_per_pixel;
+  return map;
 }
 
 std::string absolute_planet(const std::string& argument) {
   return argument.empty() ? argument : fs::absolute(argument).lexically_normal().string();
 }
 
-// A configuration file may have defaults of these; who names them beside --again means something else.
-void check_alone(const Common& common) {
-  for (const char* name : {"--at",
-                           "--height",
-                           "--altitude",
-                           "--projection",
-                           "--facets",
-                           "--yaw",
-                           "--from",
-                           "--to",
-                           "--elevation",
-                           "--width",
-                           "--degrees-per-pixel",
-                           "--planes",
-                           "--set",
-                           "--backend",
-                           "--stereo",
-                           "--eye-base",
-                           "--tolerance",
-                           "--sun",
-                           "--interest",
-                           "--allow-incomplete"}) {
-    for (const std::string& word : common.words) {
-      if (word != name && !word.starts_with(std::string(name) + "=")) continue;
-      throw UsageError(std::string(name) + " and --again: the picture is made as the JSON says; leave one out");
-    }
+std::vector<panorama::Plane> layers_of(const PanoramaArguments& arguments) {
+  try {
+    return panorama::parse_planes(arguments.aux_layers);
+  } catch (const panorama::PlanError& e) {
+    throw UsageError(e.what());
   }
 }
 
-}  // namespace
-
-PanoramaOrder new_order(PanoramaArguments arguments, const Common& common) {
-  if (arguments.panorama_image.backend == kAutoBackend) arguments.panorama_image.backend = kRayBackend;
+PanoramaRequest request_from_options(const PanoramaArguments& arguments, const Common& common) {
   if (arguments.at.empty() || arguments.output.empty())
-    throw UsageError("--at LON,LAT and -o PANO are needed, or --again PANO.json");
+    throw UsageError("--at LON,LAT and -o PANO are required, or --from-sidecar PANO.json");
   const auto place = parse_place(arguments.at);
   if (!place) throw UsageError("--at '" + arguments.at + "': expected LON,LAT in degrees");
   if (!mars::is_valid(*place)) throw UsageError("--at '" + arguments.at + "': latitude must be within -90..90");
   if (arguments.height_m.has_value() == arguments.altitude_m.has_value()) {
     throw UsageError("give either --height (metres above the ground) or --altitude (metres above the sphere)");
   }
-  PanoramaOrder order;
-  PanoramaRecipe& recipe = order.recipe;
-  recipe.backend = arguments.panorama_image.backend;
-  recipe.plan = plan_options(arguments);
-  recipe.camera.lon_deg = place->lon_deg;
-  recipe.camera.lat_deg = place->lat_deg;
-  recipe.camera.alt_m = arguments.altitude_m.value_or(0);
-  recipe.settings = make_settings(arguments.panorama_image);
-  parse_interest(arguments.panorama_image);
-  recipe.interest = arguments.panorama_image.interest;
-  recipe.planes = panorama::parse_planes(arguments.planes);
-  recipe.planet = absolute_planet(arguments.planet);
-  recipe.memory_mb = recipe.backend == "polygon" ? common.memory_mb : 0;
-  recipe.allow_incomplete = arguments.panorama_image.allow_incomplete;
-  order.stereo = arguments.stereo;
-  order.height_m = arguments.height_m;
-  order.output = arguments.output;
-  return order;
+  PanoramaRequest request;
+  request.map = map_of(arguments);
+  request.camera.lon_deg = place->lon_deg;
+  request.camera.lat_deg = place->lat_deg;
+  request.camera.alt_m = arguments.altitude_m.value_or(0);
+  request.backend = backend_of(arguments);
+  request.settings = make_settings(arguments.render);
+  parse_interest(arguments.render);
+  request.interest = arguments.render.interest;
+  request.layers = layers_of(arguments);
+  check_stereo(arguments.stereo);
+  if (const auto layout = core::parse_stereo(arguments.stereo.layout)) {
+    request.stereo.emplace();
+    request.stereo->layout = *layout;
+    request.stereo->base_m = arguments.stereo.eye_base_m;
+  }
+  request.planet = absolute_planet(arguments.planet);
+  request.memory_mb = request.backend == core::Backend::kPolygon ? common.memory_mb : 0;
+  request.allow_incomplete = arguments.render.allow_incomplete;
+  request.height_m = arguments.height_m;
+  request.output = arguments.output;
+  return request;
 }
 
-PanoramaOrder order_again(const PanoramaArguments& arguments, const Common& common) {
-  check_alone(common);
-  const fs::path path = arguments.again;
+// Options that a sidecar's recipe sets. A configuration file may have defaults of these; naming one beside
+// --from-sidecar contradicts it.
+constexpr std::array<std::string_view, 20> kRecipeOptions{"--at",
+                                                          "--height",
+                                                          "--altitude",
+                                                          "--projection",
+                                                          "--facets",
+                                                          "--yaw",
+                                                          "--from",
+                                                          "--to",
+                                                          "--elevation",
+                                                          "--width",
+                                                          "--degrees-per-pixel",
+                                                          "--aux-layers",
+                                                          "--set",
+                                                          "--backend",
+                                                          "--stereo",
+                                                          "--eye-base",
+                                                          "--tolerance",
+                                                          "--sun",
+                                                          "--interest",
+                                                          "--allow-incomplete"};
+
+void check_options_beside_sidecar(const Common& common) {
+  for (const std::string& word : common.words) {
+    const std::string_view option = std::string_view(word).substr(0, word.find('='));
+    if (std::find(kRecipeOptions.begin(), kRecipeOptions.end(), option) == kRecipeOptions.end()) continue;
+    throw UsageError(std::string(option) +
+                     " and --from-sidecar: the image is made as the sidecar says; leave one out");
+  }
+}
+
+PanoramaRequest request_from_sidecar(const PanoramaArguments& arguments, const Common& common) {
+  check_options_beside_sidecar(common);
+  const fs::path path = arguments.from_sidecar;
   const std::vector<std::uint8_t> bytes = base::read_file(path, kMostSidecarBytes);
-  PanoramaOrder order;
+  const auto refused = [&path](const std::exception& e) {
+    return base::file_error("use", path, e.what(), "give the JSON that 'vpe panorama' wrote beside an image");
+  };
+  PanoramaRequest request;
   try {
-    const auto json = nlohmann::json::parse(bytes, nullptr, false);
-    const auto made = json.is_object() ? json.find("vpe") : json.end();
-    if (json.is_discarded()) throw panorama::MetadataError("not well-formed JSON");
-    if (made == json.end() || !made->is_object() || !made->contains("recipe")) {
+    const auto object = nlohmann::json::parse(bytes, nullptr, false);
+    const auto made = object.is_object() ? object.find("vpe") : object.end();
+    if (object.is_discarded()) throw panorama::MetadataError("not well-formed JSON");
+    if (made == object.end() || !made->is_object() || !made->contains("recipe")) {
       throw panorama::MetadataError("it has no \"vpe\" with a \"recipe\"");
     }
-    order.recipe = recipe_from(made->at("recipe"));
-    const std::string image = json.value("image", "");
+    request = request_from_recipe(made->at("recipe"));
+    const std::string image = object.value("image", "");
     if (arguments.output.empty() && image.empty()) throw panorama::MetadataError("it names no image");
-    order.output =
+    request.output =
         arguments.output.empty() ? path.parent_path() / fs::path(image).filename() : fs::path(arguments.output);
     const std::string by = made->value("version", "");
     if (by != version()) {
@@ -148,13 +170,31 @@ PanoramaOrder order_again(const PanoramaArguments& arguments, const Common& comm
                    path.c_str(), by.c_str(), version());
     }
   } catch (const panorama::MetadataError& e) {
-    throw base::file_error("use", path, e.what(), "give the JSON that 'vpe panorama' wrote beside a picture");
+    throw refused(e);
   } catch (const nlohmann::json::exception& e) {
-    throw base::file_error("use", path, e.what(), "give the JSON that 'vpe panorama' wrote beside a picture");
+    throw refused(e);
   }
-  if (!arguments.planet.empty()) order.recipe.planet = absolute_planet(arguments.planet);
-  order.again = arguments.again;
-  return order;
+  if (!arguments.planet.empty()) request.planet = absolute_planet(arguments.planet);
+  request.from_sidecar = arguments.from_sidecar;
+  return request;
+}
+
+}  // namespace
+
+PanoramaRequest parse_panorama(const PanoramaArguments& arguments, const Common& common) {
+  PanoramaRequest request = arguments.from_sidecar.empty() ? request_from_options(arguments, common)
+                                                           : request_from_sidecar(arguments, common);
+  request.wait_s = arguments.render.wait_s;
+  return request;
+}
+
+RenderOptions render_options(const PanoramaRequest& request) {
+  RenderOptions options;
+  options.backend = request.backend;
+  options.interest = request.interest;
+  options.wait_s = request.wait_s;
+  options.allow_incomplete = request.allow_incomplete;
+  return options;
 }
 
 }  // namespace vpe::app

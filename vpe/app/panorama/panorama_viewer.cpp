@@ -21,8 +21,9 @@ constexpr double kIdle_s = 0.5;
 window::DisplayOptions display_options() {
   window::DisplayOptions options;
   options.instead =
-      "set DISPLAY to an X server, or work without a window: --view YAW,PITCH -o VIEW.png draws a view, --at "
-      "AZIMUTH,ELEVATION says what is there, and 'xvfb-run vpe overlook PANO' runs this one out of sight";
+      "set DISPLAY to an X server, or work without a window: --view YAW,PITCH -o VIEW.png draws a view, "
+      "--direction AZIMUTH,ELEVATION prints what is there, and 'xvfb-run vpe overlook PANO' opens the window "
+      "on a virtual screen";
   return options;
 }
 
@@ -30,12 +31,12 @@ window::DisplayOptions display_options() {
 
 void check_window() { window::check_display(display_options()); }
 
-panorama::Viewer view_panorama(const PanoramaViewer& request, const Common& common) {
+panorama::Viewer view_panorama(const PanoramaViewerRequest& request, const Common& common) {
   window::OverlookWindowSetup setup;
   setup.preferences = explore::read_preferences(explore::explore_files().preferences);
-  // The rest of the memory is for views and for the window itself.
+  // The rest of the memory is for views and the window.
   setup.view = overlook_setup(request.files, memory_bytes(common) / 4 * 3, common.threads);
-  setup.view.look = request.look;
+  setup.view.look = request.direction;
   setup.view.fov_deg = request.fov_deg;
   setup.view.stereo = request.stereo;
   setup.view.images = std::filesystem::current_path();
@@ -44,7 +45,7 @@ panorama::Viewer view_panorama(const PanoramaViewer& request, const Common& comm
   setup.display.width = request.size.width;
   setup.display.height = request.size.height;
   setup.display.scale = request.scale;
-  // Ctrl+C ends the copying of a large image with nothing left over.
+  // Ctrl+C stops the copying of a large image and removes the unfinished copy.
   const InterruptGuard guard;
   window::OverlookWindow window(std::move(setup));
   while (window.step(kIdle_s)) InterruptGuard::check();
@@ -56,11 +57,11 @@ panorama::Viewer view_panorama(const PanoramaViewer& request, const Common& comm
 void check_window() {
   throw std::runtime_error(
       "this program was built without windows; install libglfw3-dev and libimgui-dev and build it again, or "
-      "work "
-      "without one: --view YAW,PITCH -o VIEW.png draws a view, --at AZIMUTH,ELEVATION says what is there");
+      "work without a window: --view YAW,PITCH -o VIEW.png draws a view, --direction AZIMUTH,ELEVATION prints "
+      "what is there");
 }
 
-panorama::Viewer view_panorama(const PanoramaViewer&, const Common&) {
+panorama::Viewer view_panorama(const PanoramaViewerRequest&, const Common&) {
   check_window();
   throw std::logic_error("check_window() throws");
 }

@@ -1,4 +1,4 @@
-// `vpe overlook` in a window.
+// The window of `vpe overlook`, the panorama viewer.
 #pragma once
 
 #include <optional>
@@ -11,19 +11,20 @@
 
 namespace vpe::app {
 
-struct PanoramaViewer {
-  EyesFiles files;
-  std::optional<panorama::Direction> look;  // to begin with; the middle when left out
-  double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;
+struct PanoramaViewerRequest {
+  PanoramaFiles files;
+  std::optional<panorama::Direction> direction;  // of the first view; nullopt: the middle of the image
+  double fov_deg = panorama::ViewerLimits::kDefaultFov_deg;  // vertical
   std::optional<core::StereoLayout> stereo;
   Size size;         // of the window
-  double scale = 0;  // of letters; 0: as the preferences or the monitor have it
+  double scale = 0;  // of letters; 0: that of the preferences, else of the monitor
 };
 
-// Throws std::runtime_error that says what to do instead when no window can be had.
+// Throws std::runtime_error that says what to do instead if no window can be opened.
 void check_window();
 
-// Until the window is closed; returns where it looked then. Throws Interrupted, and as window::OverlookWindow.
-panorama::Viewer view_panorama(const PanoramaViewer& request, const Common& common);
+// Shows the panorama until the window is closed. Returns the last view. Throws Interrupted, and as
+// window::OverlookWindow.
+panorama::Viewer view_panorama(const PanoramaViewerRequest& request, const Common& common);
 
 }  // namespace vpe::app

@@ -12,7 +12,7 @@ namespace vpe::app {
 namespace {
 
 void set(core::Settings& settings, const char* key, const std::string& text) {
-  if (const std::string trouble = settings.set(key, text); !trouble.empty()) throw std::logic_error(trouble);
+  if (const std::string error = settings.set(key, text); !error.empty()) throw std::logic_error(error);
 }
 
 core::Settings within_tolerance(core::Settings settings, const RenderOptions& options) {
@@ -37,15 +37,15 @@ bool suits_rays(const core::DrawRequest& request) {
 
 BackendChoice choose_backend(const RenderOptions& options, const core::Settings& settings,
                              std::span<const core::DrawRequest> images, double radius_m, bool has_gpu) {
-  if (options.backend != kAutoBackend) return {options.backend, settings};
+  if (options.backend) return {*options.backend, settings};
   const auto for_rays = std::count_if(images.begin(), images.end(), [&](const core::DrawRequest& request) {
     return glm::length(request.view.camera.position_m) < (1 + kFar) * radius_m &&
            core::reaches_horizon(request.view, radius_m);
   });
   const bool is_rays = !has_gpu && 2 * static_cast<std::size_t>(for_rays) >= images.size() &&
                        std::all_of(images.begin(), images.end(), suits_rays);
-  if (!is_rays) return {kPolygonBackend, settings};
-  return {kRayBackend, within_tolerance(settings, options)};
+  if (!is_rays) return {core::Backend::kPolygon, settings};
+  return {core::Backend::kRay, within_tolerance(settings, options)};
 }
 
 }  // namespace vpe::app

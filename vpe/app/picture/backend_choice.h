@@ -1,30 +1,34 @@
-// Which backend draws when none is named.
+// The backend of --backend auto.
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "vpe/app/picture/image_options.h"
 
 namespace vpe::app {
 
 struct BackendChoice {
-  std::string backend;      // kPolygonBackend or kRayBackend
-  core::Settings settings;  // as given, and what this backend needs to keep to the tolerance
+  core::Backend backend;
+  core::Settings settings;  // the settings given, changed where this backend needs it to keep to the tolerance
 };
 
-// Of --backend auto, for images that are all to be drawn by one backend; of another value that one, with the
-// settings as given. Both keep to lod.tolerance; without a GPU rays are the quicker where an image reaches the
-// horizon and the camera is near (docs/error-and-time.md). So it is rays when there is no GPU, half of the
-// images or more reach the horizon of a sphere of radius_m from less than kFar of it above, and they draw all
-// of them as asked: no wireframe, no tiles that are shown, no control of levels other than the tolerance. Rays
-// then draw cells of the tolerance, or exactly where that is finer than cells go; where --set names a key of
-// rays, as it says. Pure.
+// Distance of the camera above the sphere, in radii, from which on rays have no advantage.
 inline constexpr double kFar = 1.0 / 30;
+
+// Chooses the backend for images that are all drawn by one backend. A backend named in the options is taken,
+// with the settings unchanged.
+//
+// Both backends keep to lod.tolerance. Without a GPU, rays are faster where an image reaches the horizon and
+// the camera is near (docs/measurements/error-and-time.md). So the choice is rays when all of these hold: there
+// is no GPU; at least half of the images reach the horizon of a sphere of radius_m from less than kFar above
+// it; and rays can draw all of them as requested (suits_rays()). Rays then use cells of the tolerance, or mode
+// exact where the tolerance is finer than the smallest cell; where --set names a key of rays, the settings stay
+// unchanged. Pure.
 BackendChoice choose_backend(const RenderOptions& options, const core::Settings& settings,
                              std::span<const core::DrawRequest> images, double radius_m, bool has_gpu);
 
-// Whether rays draw this as triangles would: nothing of it is about triangles.
+// Returns true if nothing in the request is about triangles, so that rays draw the same image: no wireframe, no
+// inspection of tiles, no level control other than the tolerance.
 bool suits_rays(const core::DrawRequest& request);
 
 }  // namespace vpe::app

@@ -9,7 +9,7 @@ namespace vpe::app {
 
 struct Common;
 
-// Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
+// Adds the command `render` to the program (AddCommand of vpe/app/cli/program.h).
 void add_render(CLI::App& program, Common& common);
 
 }  // namespace vpe::app

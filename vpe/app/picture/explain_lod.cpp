@@ -1,5 +1,7 @@
 #include "vpe/app/picture/explain_lod.h"
 
+#include <nlohmann/json.hpp>
+
 #include "lod/explain.h"
 #include "lod/options.h"
 #include "mars/geodesy/sphere.h"
@@ -10,32 +12,32 @@ namespace vpe::app {
 namespace {
 
 nlohmann::json term_json(const char* x_name, const lod::ControlTerm& term) {
-  nlohmann::json json{{"levels", term.levels}, {"weight", term.weight}, {"weighted", term.weighted()}};
-  if (x_name != nullptr) json[x_name] = term.x;
-  return json;
+  nlohmann::json object{{"levels", term.levels}, {"weight", term.weight}, {"weighted", term.weighted()}};
+  if (x_name != nullptr) object[x_name] = term.x;
+  return object;
 }
 
 nlohmann::json tile_json(const lod::TileExplanation& e, bool by_distance) {
-  nlohmann::json json{{"tile", lod::to_string(e.key)},
-                      {"lod", e.lod},
-                      {"post_spacing_m", e.post_spacing_m},
-                      {"mesh", e.variant + 1},
-                      {"meshes", e.variants},
-                      {"min_distance_m", e.min_distance_m},
-                      {"angle_from_centre_deg", e.terms.centre_angle_rad / mars::kRadiansPerDegree},
-                      {"error_m", e.geometric_error_m},
-                      {"error_px", e.screen_space_error_px},
-                      {"centre", term_json("half_heights", e.terms.centre)},
-                      {"interest", term_json(nullptr, e.terms.interest)},
-                      {"sum", e.terms.sum},
-                      {"reason", lod::to_string(e.reason)}};
+  nlohmann::json object{{"tile", lod::to_string(e.key)},
+                        {"lod", e.key.level},
+                        {"post_spacing_m", e.post_spacing_m},
+                        {"mesh", e.variant + 1},
+                        {"meshes", e.variants},
+                        {"min_distance_m", e.min_distance_m},
+                        {"angle_from_centre_deg", e.terms.centre_angle_rad / mars::kRadiansPerDegree},
+                        {"error_m", e.geometric_error_m},
+                        {"error_px", e.screen_space_error_px},
+                        {"centre", term_json("half_heights", e.terms.centre)},
+                        {"interest", term_json(nullptr, e.terms.interest)},
+                        {"sum", e.terms.sum},
+                        {"reason", lod::to_string(e.reason)}};
   if (by_distance) {
-    json["distance"] = term_json("m", e.terms.distance);
-    json["wanted_lod"] = e.wanted;
+    object["distance"] = term_json("m", e.terms.distance);
+    object["wanted_lod"] = e.wanted_level;
   } else {
-    json["shift_levels"] = e.shift;
+    object["shift_levels"] = e.shift;
   }
-  return json;
+  return object;
 }
 
 }  // namespace
@@ -48,18 +50,18 @@ nlohmann::json explain_lod(const core::DrawRequest& request, const paging::Plane
   lod::SelectScratch scratch;
   lod::Selection selection;
   lod::select(options, planet.tree(), view, scratch, selection);
-  const bool by_distance = options.control.rule == core::LodMetric::kDistance;
+  const bool by_distance = options.control.metric == core::LodMetric::kDistance;
   nlohmann::json tiles = nlohmann::json::array();
   for (const lod::TileExplanation& e : lod::explain(options, planet.tree(), view, selection)) {
     tiles.push_back(tile_json(e, by_distance));
   }
-  nlohmann::json json{{"rule", by_distance ? "hitchner" : "error"},
-                      {"max_triangles", options.max_triangles},
-                      {"triangles", selection.triangles},
-                      {"budget_spent", selection.capped},
-                      {"tiles", tiles}};
-  if (!by_distance) json["tolerance_px"] = options.tolerance_px;
-  return json;
+  nlohmann::json object{{"rule", by_distance ? "distance" : "error"},
+                        {"max_triangles", options.max_triangles},
+                        {"triangles", selection.triangles},
+                        {"budget_spent", selection.capped},
+                        {"tiles", tiles}};
+  if (!by_distance) object["tolerance_px"] = options.tolerance_px;
+  return object;
 }
 
 }  // namespace vpe::app

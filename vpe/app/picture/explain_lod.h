@@ -1,15 +1,16 @@
-// Why every tile of an image has its level of detail, as JSON.
+// Explanation of the level of detail of every tile of an image, as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
 
 namespace vpe::app {
 
-// Of the image that a renderer with as much memory draws of the request, complete: the same options go
-// through the same selection. Numbers that are not finite are null.
+// Explains the tiles of the complete image that a polygon renderer with this much memory draws for the request:
+// the same options go through the same selection. Levels count from 0: the LOD numbers of Hitchner 1992 minus
+// one. Numbers that are not finite are null.
 nlohmann::json explain_lod(const core::DrawRequest& request, const paging::PlanetFile& planet,
                            std::size_t memory_bytes);
 

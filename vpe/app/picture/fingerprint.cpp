@@ -15,7 +15,7 @@ constexpr std::int64_t kEncoding = 3;
 
 void add(Digest& digest, const glm::dvec3& v) { digest.add(v.x).add(v.y).add(v.z); }
 
-// What a palette's file holds: its name stays when it is edited.
+// A palette's file may be edited under the same name, so its content counts.
 void add(Digest& digest, const core::Palette& palette) {
   digest.add(static_cast<std::int64_t>(palette.scale()));
   for (const core::PaletteStop& stop : palette.stops()) add(digest.add(stop.at), stop.rgb);
@@ -23,11 +23,11 @@ void add(Digest& digest, const core::Palette& palette) {
 
 }  // namespace
 
-std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& request,
+std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
                            const core::Settings& settings, double time_s) {
   const core::View& view = request.view;
   Digest digest;
-  digest.add(kEncoding).add(basis.program).add(basis.planet).add(basis.backend);
+  digest.add(kEncoding).add(basis.program).add(basis.planet).add(core::to_string(basis.backend));
   digest.add(std::int64_t{basis.memory_mb});
   digest.add(static_cast<std::int64_t>(view.projection)).add(view.fov_deg);
   digest.add(std::int64_t{view.width}).add(std::int64_t{view.height});
@@ -43,7 +43,7 @@ std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& requ
     digest.add(r.lon_deg).add(r.lat_deg).add(r.radius_m).add(std::int64_t{r.levels});
   }
   digest.add(request.coarsening);
-  // The registry's own text of a value gives back its bits.
+  // The registry's text of a number is parsed back to the same bits.
   for (const core::SettingInfo& info : core::Settings::list()) {
     digest.add(info.key).add(settings.get(info.key).value_or(""));
   }

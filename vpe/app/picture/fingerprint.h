@@ -3,22 +3,23 @@
 
 #include <string>
 
+#include "vpe/core/backend.h"
 #include "vpe/core/frame.h"
 
 namespace vpe::app {
 
-// What a frame's image depends on beside its DrawRequest. The number of threads is not among it.
-struct FilmBasis {
+// Inputs of an image beside its DrawRequest. The number of threads is not among them: it changes no pixel.
+struct RenderBasis {
   std::string program;  // version
   std::string planet;   // PlanetMeta::identity
-  std::string backend;
-  int memory_mb = 0;  // bounds triangles and textures
+  core::Backend backend = core::Backend::kPolygon;
+  int memory_mb = 0;  // bounds the number of triangles and the textures
 };
 
-// Digest of everything the image depends on, so that equal fingerprints mean equal images; of files that
-// the settings name, what they hold. Neither the name of the flight nor the number of the frame counts, and its
-// time only where the image shows it. Throws base::FileError.
-std::string fingerprint_of(const FilmBasis& basis, const core::DrawRequest& request,
+// Returns a digest of everything that the image depends on, so that equal fingerprints mean equal images. Files
+// that the settings name count by their content. The name of the flight and the number of the frame do not
+// count; the time counts only where the image shows it. Throws base::FileError.
+std::string fingerprint_of(const RenderBasis& basis, const core::DrawRequest& request,
                            const core::Settings& settings, double time_s = 0);
 
 }  // namespace vpe::app

@@ -1,4 +1,4 @@
-// Overlays of images and films: what vpe/overlay needs of a planet and of files.
+// Overlays of images and films, with the inputs that vpe/overlay needs from a planet and from files.
 #pragma once
 
 #include <map>
@@ -12,16 +12,24 @@
 
 namespace vpe::app {
 
-// One thread at a time.
+// Draws the overlays of one planet's images. Keeps gazetteers and the heights of their places from image to
+// image. One thread at a time.
+//
+// Typical usage:
+//   FrameOverlays overlays(planet);
+//   overlays.load(request.settings);  // reports a bad gazetteer before any work
+//   core::DrawResult result = renderer->draw(request);
+//   overlay::composite(overlays.layer(request, result.frame, result.certificate, time_s), result.frame.colour);
 class FrameOverlays {
  public:
   explicit FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet);
 
-  // Reads the names that the settings ask for, once. Throws what core::read_gazetteer() throws.
+  // Reads the gazetteer that the settings name, once. Throws what core::read_gazetteer() throws.
   void load(const core::Overlays& overlays);
 
-  // Of a frame that was drawn for the request, with its range image when overlay::needs_range(). Throws what
-  // overlay::draw() and paging::Surface throw.
+  // Draws the overlay layer of a frame that was drawn for the request, with its range image when
+  // overlay::needs_range(). Returns an empty layer when no overlay is set. Throws what overlay::draw() and
+  // paging::Surface throw.
   overlay::Layer layer(const core::DrawRequest& request, const core::Frame& frame,
                        const core::Certificate& certificate, double time_s);
 

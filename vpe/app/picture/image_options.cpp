@@ -3,11 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "mars/geodesy/mars_time.h"
 #include "mars/geodesy/sun.h"
-#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/cli/parsing.h"
 #include "vpe/base/heap.h"
 #include "vpe/base/number.h"
 #include "vpe/gl/polygon_renderer.h"
@@ -15,34 +16,44 @@
 
 namespace vpe::app {
 
+namespace {
+
+constexpr std::string_view kAuto = "auto";
+
+}  // namespace
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
   command
-      .add_option("--set", options.set, "KEY=VALUE of the settings registry (repeatable; see 'vpe settings')")
+      .add_option("--set", options.set, "KEY=VALUE: change a setting ('vpe settings' lists them; repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  const std::string polygon(core::to_string(core::Backend::kPolygon));
+  const std::string ray(core::to_string(core::Backend::kRay));
   command
-      .add_option("--backend", options.backend,
-                  "How to draw: polygon: triangles by OpenGL; voxel: a ray a pixel against the exact surface; "
-                  "auto: what is quicker within the tolerance (rays in views to the horizon from nearby when "
-                  "there is no "
-                  "GPU)")
-      ->check(CLI::IsMember({kAutoBackend, kPolygonBackend, kRayBackend}))
-      ->capture_default_str();
-  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error, pixels")
+      .add_option_function<std::string>(
+          "--backend", [&options](const std::string& text) { options.backend = core::parse_backend(text); },
+          "polygon: triangles, by OpenGL; ray: ray casting on the CPU, by default against the exact surface; "
+          "auto: the faster one within the tolerance (rays without a GPU, for nearby views that reach the "
+          "horizon)")
+      ->check(CLI::IsMember({std::string(kAuto), polygon, ray}))
+      ->default_str(std::string(options.backend ? core::to_string(*options.backend) : kAuto));
+  command.add_option("--tolerance", options.tolerance_px, "Largest geometric error in the image, pixels")
       ->check(number_within(0.0, 1000.0));
-  command.add_option(
-      "--sun", options.sun,
-      "Where the light comes from: a date as 2026-11-20T12:00Z, Ls90,15:00 (solar longitude and local "
-      "true solar time at the ground below the eye), or local");
-  command.add_option("--wait", options.wait_s, "Longest time to wait for the tiles of a picture, seconds")
+  command.add_option("--sun", options.sun,
+                     "Position of the sun: a date such as 2026-11-20T12:00Z; a season and hour such as "
+                     "Ls90,15:00 (solar longitude, and local true solar time at the ground below the camera); "
+                     "or local, for the azimuth and elevation of the settings");
+  command.add_option("--wait", options.wait_s, "Longest time to wait for the tiles of an image, seconds")
       ->check(number_within(0.0, 1e6))
       ->capture_default_str();
-  command.add_flag("--allow-incomplete", options.allow_incomplete,
-                   "Draw coarser ground where tiles cannot be read or do not come in time, instead of failing");
+  command.add_flag(
+      "--allow-incomplete", options.allow_incomplete,
+      "Draw coarser terrain where tiles cannot be read or do not arrive in time, instead of failing");
   command
-      .add_option("--interest", options.interest,
-                  "LON,LAT,RADIUS,LEVELS: a circle (degrees, metres) with so many levels of detail more or, "
-                  "negative, fewer (repeatable; overlapping circles add up)")
+      .add_option(
+          "--interest", options.interest,
+          "LON,LAT,RADIUS,LEVELS: draw a circle (degrees, metres) with LEVELS more levels of detail, or "
+          "fewer where LEVELS is negative (repeatable; overlapping circles add up)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
@@ -72,27 +83,27 @@ std::size_t memory_bytes(const Common& common) { return static_cast<std::size_t>
 core::Settings make_settings(const RenderOptions& options) {
   core::Settings settings;
   if (options.tolerance_px >= 0) {
-    const std::string trouble = settings.set("lod.tolerance", base::format_number(options.tolerance_px));
-    if (!trouble.empty()) throw UsageError("--tolerance: " + trouble);
+    const std::string error = settings.set("lod.tolerance", base::format_number(options.tolerance_px));
+    if (!error.empty()) throw UsageError("--tolerance: " + error);
   }
   if (!options.sun.empty()) {
-    const std::string trouble = settings.set("sun", options.sun);
-    if (!trouble.empty()) throw UsageError("--sun: " + trouble);
+    const std::string error = settings.set("sun", options.sun);
+    if (!error.empty()) throw UsageError("--sun: " + error);
   }
   for (const std::string& assignment : options.set) {
-    const std::string trouble = settings.assign(assignment);
-    if (!trouble.empty()) throw UsageError("--set " + assignment + ": " + trouble);
+    const std::string error = settings.assign(assignment);
+    if (!error.empty()) throw UsageError("--set " + assignment + ": " + error);
   }
   return settings;
 }
 
 std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet) {
-  // It costs a fifth of a film's time in page faults, so only who is short of memory pays.
+  // A compact heap costs a fifth of a film's time in page faults, so it is used only where memory is short.
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) base::keep_heap_compact();
-  if (options.backend == kAutoBackend) throw std::logic_error("make_renderer: a backend is chosen before");
-  if (options.backend == kRayBackend)
+  if (!options.backend) throw std::logic_error("make_renderer: no backend was chosen");
+  if (*options.backend == core::Backend::kRay)
     return voxel::make_ray_renderer(std::move(planet), {memory_bytes(common), common.threads});
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
@@ -105,14 +116,18 @@ void require_complete(const RenderOptions& options, const core::DrawResult& resu
   if (options.allow_incomplete || result.missing.empty()) return;
   const std::size_t count = result.missing.size();
   std::string text =
-      std::to_string(count) + (count == 1 ? " tile is" : " tiles are") + " missing in the picture:";
+      std::to_string(count) + (count == 1 ? " tile is" : " tiles are") + " missing in the image:";
   for (std::size_t n = 0; n < std::min(count, kNamed); ++n) {
     text += "\n     " + result.missing[n].tile + ": " + result.missing[n].why;
   }
   if (count > kNamed) text += "\n     and " + std::to_string(count - kNamed) + " more";
   throw std::runtime_error(text + "\n     --wait SECONDS waits longer (now " +
                            base::format_number(options.wait_s) +
-                           "); --allow-incomplete draws coarser ground there");
+                           "); --allow-incomplete draws coarser terrain there");
+}
+
+void print_failures(std::span<const std::string> failures) {
+  for (const std::string& failure : failures) std::fprintf(stderr, "vpe: warning: %s\n", failure.c_str());
 }
 
 glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose) {

@@ -1,57 +1,76 @@
-// Options and steps that every command that draws has in common.
+// Options and steps that all commands that draw share.
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/core/backend.h"
 #include "vpe/core/frame.h"
 
 namespace vpe::app {
 
-// Values of --backend.
-inline const std::string kAutoBackend = "auto";  // as backend_choice.h chooses
-inline const std::string kPolygonBackend = "polygon";
-inline const std::string kRayBackend = "voxel";
-
+// Values of the options that add_render_options() adds.
 struct RenderOptions {
-  std::vector<std::string> set;  // KEY=VALUE
-  std::string sun;               // as the setting; empty: as set
-  std::string backend = kAutoBackend;
-  double tolerance_px = -1;  // < 0: as set
-  double wait_s = 300;       // for the tiles of an image
+  std::vector<std::string> set;          // KEY=VALUE
+  std::string sun;                       // value of the setting; empty: the setting stays
+  std::optional<core::Backend> backend;  // nullopt: auto, the choice of choose_backend()
+  double tolerance_px = -1;              // < 0: the setting stays
+  // For the tiles of an image. Smaller: a slow disk or server fails the image sooner; larger: it is waited for.
+  double wait_s = 300;
   bool allow_incomplete = false;
   std::vector<std::string> interest;  // LON,LAT,RADIUS_M,LEVELS
 };
 
+// Adds --set, --backend, --tolerance, --sun, --wait, --allow-incomplete and --interest to a command. The values
+// in `options` at this moment are the defaults.
+//
+// Typical usage:
+//   add_render_options(*command, arguments->image);   // once, with the command's declaration
+//   core::DrawRequest request;                        // when the command runs
+//   const core::Settings settings = make_settings(arguments.image);
+//   request.settings = settings.values();
+//   request.interest = parse_interest(arguments.image);
+//   const auto renderer = make_renderer(arguments.image, common, planet);
+//   const core::DrawResult result = renderer->draw(request);
+//   require_complete(arguments.image, result);
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-// Default settings (sky, and image or elevation colours), then --tolerance and --sun, then every --set in
-// order. Throws UsageError naming the key.
+// Returns the default settings (sky, and image or elevation colours) changed by --tolerance, then --sun, then
+// every --set in order. Throws UsageError that names the key.
 core::Settings make_settings(const RenderOptions& options);
 
-// The regions of every --interest, in order. Throws UsageError that says what is expected.
+// Returns the regions of every --interest, in order. Throws UsageError that says what is expected.
 std::vector<core::InterestRegion> parse_interest(const RenderOptions& options);
 
+// Returns --memory in bytes.
 std::size_t memory_bytes(const Common& common);
-// Of a named backend.
+
+// Makes the renderer of the options' backend. Throws std::logic_error when that is auto, and what the backends
+// throw.
 std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet);
 
-// Throws std::runtime_error that names what is missing in an image, unless that is allowed.
+// Throws std::runtime_error that names the missing tiles of an image, unless the options allow them.
 void require_complete(const RenderOptions& options, const core::DrawResult& result);
 
-// Where the sun stands: for its date, or for season and hour, or azimuth and elevation, at the ground below a
-// pose.
+// Prints failures to read tiles (core::DrawResult::failures) as warnings on stderr.
+void print_failures(std::span<const std::string> failures);
+
+// Returns the direction towards the sun at the ground below a pose: for the setting's date, for its season and
+// hour, or for azimuth and elevation.
 glm::dvec3 sun_for(const core::SettingsValues& settings, const mars::Pose& pose);
 
+// Pixels.
 struct Size {
   int width = 0;
   int height = 0;
 };
-// "1280x720"; throws UsageError for anything else or a size outside ViewLimits.
+// Parses "1280x720". Throws UsageError for any other text and for a size outside core::ViewLimits.
 Size parse_size(const std::string& text);
 
 }  // namespace vpe::app

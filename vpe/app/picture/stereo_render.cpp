@@ -1,6 +1,7 @@
 #include "vpe/app/picture/stereo_render.h"
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "vpe/base/number.h"
@@ -20,7 +21,7 @@ double base_of_view(core::DrawRequest request,
   const auto base_m = core::comfortable_base_m(draw(request).frame.range_m);
   if (!base_m)
     throw std::runtime_error(
-        "--stereo: the view shows sky alone; say how far apart the eyes are with --eye-base");
+        "--stereo: the view shows only sky; set the distance between the eyes with --eye-base");
   return *base_m;
 }
 
@@ -35,11 +36,12 @@ core::RgbImage take_image(core::DrawResult& result) {
 void add_eye_options(CLI::App& command, StereoArguments& arguments) {
   command
       .add_option("--stereo", arguments.layout,
-                  "Draw two eyes: side by side (sbs), left above right (ou), red-cyan (anaglyph)")
+                  "Draw a stereo pair: sbs: side by side; ou: left eye above right eye; anaglyph: red-cyan")
       ->check(CLI::IsMember({"sbs", "ou", "anaglyph"}));
   command
-      .add_option("--eye-base", arguments.eye_base_m,
-                  "Distance between both eyes, metres; a thirtieth of the nearest ground's when left out")
+      .add_option(
+          "--eye-base", arguments.eye_base_m,
+          "Distance between the eyes, metres (default: a thirtieth of the distance to the nearest terrain)")
       ->check(number_within(kMinBase_m, kMaxBase_m));
 }
 
@@ -47,13 +49,13 @@ void add_stereo_options(CLI::App& command, StereoArguments& arguments) {
   add_eye_options(command, arguments);
   command
       .add_option("--convergence", arguments.convergence_m,
-                  "Distance at which both eyes see the same pixel, metres; infinitely far when left out")
+                  "Distance at which the eyes' images coincide, metres (default: infinity)")
       ->check(number_within(kMinConvergence_m, kMaxConvergence_m));
 }
 
 void check_stereo(const StereoArguments& arguments) {
   if (arguments.layout.empty() && (arguments.eye_base_m > 0 || arguments.convergence_m > 0))
-    throw UsageError("--eye-base and --convergence are for two eyes: add --stereo sbs, ou or anaglyph");
+    throw UsageError("--eye-base and --convergence need --stereo sbs, ou or anaglyph");
 }
 
 StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
@@ -64,9 +66,9 @@ StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawReques
   if (arguments.convergence_m > 0) convergence_m = arguments.convergence_m;
   const auto draw_eye = [&](double aside_m) {
     core::DrawRequest eye = request;
-    eye.view = core::eye_aside(request.view, aside_m, convergence_m);
-    if (const std::string trouble = core::check(eye.view); !trouble.empty())
-      throw UsageError("--stereo with eyes " + base::format_number(drawn.eye_base_m) + " m apart: " + trouble);
+    eye.view = core::eye_view(request.view, aside_m, convergence_m);
+    if (const std::string error = core::check(eye.view); !error.empty())
+      throw UsageError("--stereo with eyes " + base::format_number(drawn.eye_base_m) + " m apart: " + error);
     return draw(eye);
   };
   drawn.left = draw_eye(-0.5 * drawn.eye_base_m);

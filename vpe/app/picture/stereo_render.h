@@ -1,8 +1,7 @@
-// An image for two eyes.
+// Stereo images: two views of one scene in one image.
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "vpe/app/cli/program.h"
@@ -11,18 +10,21 @@
 
 namespace vpe::app {
 
+// Values of the options that add_stereo_options() adds.
 struct StereoArguments {
-  std::string layout;        // empty: one eye
-  double eye_base_m = 0;     // 0: what is nearest / core::kNearestToBase
-  double convergence_m = 0;  // 0: parallel
+  std::string layout;  // empty: no stereo
+  // Distance between both eyes; 0: the distance of the nearest ground / core::kNearestToBase. Smaller: less
+  // depth; larger: more depth, harder to fuse.
+  double eye_base_m = 0;
+  double convergence_m = 0;  // 0: parallel views
 };
 
-// --stereo, --eye-base.
+// Adds --stereo and --eye-base.
 void add_eye_options(CLI::App& command, StereoArguments& arguments);
-// The same and --convergence.
+// Adds --stereo, --eye-base and --convergence.
 void add_stereo_options(CLI::App& command, StereoArguments& arguments);
 
-// Wrong combinations; throws UsageError.
+// Throws UsageError for options that need --stereo and stand without it.
 void check_stereo(const StereoArguments& arguments);
 
 struct StereoImage {
@@ -32,9 +34,9 @@ struct StereoImage {
   core::DrawResult right;
 };
 
-// Draws the request from both eyes, each a request of its own; `draw` makes a finished image of one, overlays
-// included. Without a base it draws the range from the middle first. Throws std::runtime_error when that shows
-// sky alone.
+// Draws the request for both eyes, each as a request of its own. `draw` makes a finished image of one request,
+// overlays included. Without an eye base, this first draws the range from the middle. Throws std::runtime_error
+// when that shows sky alone.
 StereoImage draw_stereo(const StereoArguments& arguments, const core::DrawRequest& request,
                         const std::function<core::DrawResult(const core::DrawRequest&)>& draw);
 

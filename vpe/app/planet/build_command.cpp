@@ -1,12 +1,12 @@
-#include "mars/embedded/embedded.h"
-#include "vpe/app/planet/commands.h"
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 
+#include "mars/embedded/embedded.h"
+#include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/build_sources.h"
-#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/planet/commands.h"
 #include "vpe/app/planet/planet_build.h"
 #include "vpe/app/planet/shard_option.h"
 
@@ -36,14 +36,14 @@ paging::Region parse_region(const std::string& text) {
   return region;
 }
 
-// `embedded` stands for the embedded Mars, unless a file is called so.
+// Returns true for the word `embedded`, which stands for the embedded Mars unless a file has that name.
 bool is_embedded(const std::string& path) {
   std::error_code none;
   return path == "embedded" && !std::filesystem::exists(path, none);
 }
 
-// It is defined at every spacing: within regions it can be had as fine as asked for, else as it is built for
-// the cache.
+// Returns the finest spacing of the embedded Mars in this build. It is defined at every spacing: within regions
+// it is as fine as requested, elsewhere as fine as in the cached planet.
 double embedded_finest_m(const paging::BuildOptions& options) {
   return options.regions.empty() ? 0.0 : options.finest_spacing_m;
 }
@@ -52,8 +52,8 @@ void build(BuildArguments& arguments, const Common& common) {
   paging::BuildOptions& options = arguments.options;
   for (const std::string& text : arguments.regions) options.regions.push_back(parse_region(text));
   options.threads = common.threads;
-  options.part = parse_shard(arguments.part);
-  options.output = part_file_name(options.output, options.part);
+  options.shard = parse_shard(arguments.part);
+  options.output = shard_file_name(options.output, options.shard);
   std::vector<std::string> inputs = arguments.dems;
   inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
   check_planet_file(options.output, inputs);
@@ -63,7 +63,7 @@ void build(BuildArguments& arguments, const Common& common) {
                                      : mars::open_elevation(path));
   }
   const mars::Combined combined = combine_sources(std::move(dems), arguments.sources, options);
-  if (!common.quiet) say_findings(combined);
+  if (!common.quiet) print_findings(combined);
   std::vector<std::shared_ptr<const mars::ImageSource>> images;
   for (const std::string& path : arguments.images) {
     images.push_back(is_embedded(path) ? mars::embedded_image(embedded_finest_m(options))
@@ -72,14 +72,16 @@ void build(BuildArguments& arguments, const Common& common) {
   std::shared_ptr<const mars::ImageSource> image;
   if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);
 
-  const paging::BuildEstimate estimate = paging::estimate_build(options, *combined.source, image.get());
+  paging::BuildPlan plan = paging::plan_tiles(options, *combined.source);
+  const paging::BuildEstimate estimate = paging::estimate_build(options, plan, *combined.source, image.get());
   if (arguments.estimate) {
-    report_estimate(estimate, common);
+    print_estimate_only(estimate, common);
     return;
   }
-  say_estimate(estimate, common);
-  const paging::BuildSummary summary = run_build(options, *combined.source, image.get(), common);
-  report_build(summary, options.output, common, &combined);
+  print_estimate(estimate, common);
+  const paging::BuildSummary summary =
+      run_build(options, *combined.source, image.get(), common, std::move(plan));
+  print_build(summary, options.output, common, &combined);
 }
 
 }  // namespace
@@ -90,8 +92,9 @@ void add_build(CLI::App& program, Common& common) {
       add_command(program, "build", "Make a planet file from elevation and image rasters", common, true);
   paging::BuildOptions& o = arguments->options;
   command
-      ->add_option("DEM", arguments->dems,
-                   "Elevation rasters (anything GDAL reads), or 'embedded'; the finest decides at each place")
+      ->add_option(
+          "DEM", arguments->dems,
+          "Elevation rasters in any format of GDAL, or 'embedded'; at each place the finest one counts")
       ->required();
   command->add_option("--image", arguments->images, "Image rasters, or 'embedded'")
       ->expected(1)
@@ -99,21 +102,22 @@ void add_build(CLI::App& program, Common& common) {
   command->add_option("-o,--output", o.output, "Planet file to write")->required();
   command
       ->add_option("--region", arguments->regions,
-                   "WEST,SOUTH,EAST,NORTH: full resolution only there (repeatable)")
+                   "WEST,SOUTH,EAST,NORTH: build full resolution only in this box, degrees (repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--spacing", o.finest_spacing_m, "Finest post spacing, metres (default: as the sources)")
+  command
+      ->add_option("--spacing", o.finest_spacing_m,
+                   "Finest post spacing, metres (default: that of the rasters)")
       ->check(number_within(0.01, 1e6));
-  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing everywhere, metres")
+  command->add_option("--base-spacing", o.base_spacing_m, "Post spacing where nothing finer is built, metres")
       ->check(number_within(100.0, 1e6))
       ->capture_default_str();
   add_source_options(*command, arguments->sources);
   command->add_option(
       "--part", arguments->part,
-      "k/n: make the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: from SLURM's or "
-      "MPI's variables");
-  command->add_flag("--estimate", arguments->estimate,
-                    "Only say what the build would take: tiles, bytes, time");
+      "k/n: build only the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: take k and n from the "
+      "variables of SLURM or MPI");
+  command->add_flag("--estimate", arguments->estimate, "Only estimate the build: tiles, bytes, time");
   command->callback([arguments, &common] { build(*arguments, common); });
 }
 

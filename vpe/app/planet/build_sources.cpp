@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "mars/geodesy/bodies.h"
 #include "mars/sources/adjusted.h"
@@ -54,13 +55,14 @@ bool is_named(const std::string& path, const std::string& name) {
   return path == name || std::filesystem::path(path).filename().string() == name;
 }
 
-// Gives sources the datum that --datum names: those that are called so, or all that do not say their own.
+// Sets the datum that --datum states: of the source of that name, or of all sources without a datum of their
+// own.
 void name_datums(const SourceArguments& arguments, std::vector<Source>& sources) {
   std::vector<bool> named(sources.size(), false);
   for (const std::string& text : arguments.datums) {
     const std::size_t equals = text.rfind('=');
     const std::string name = equals == std::string::npos ? std::string() : text.substr(0, equals);
-    const std::string words = equals == std::string::npos ? text : text.substr(equals + 1);
+    const std::string value = equals == std::string::npos ? text : text.substr(equals + 1);
     bool found = false;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       const mars::SourceInfo info = sources[i]->infos().front();
@@ -68,12 +70,13 @@ void name_datums(const SourceArguments& arguments, std::vector<Source>& sources)
       found = true;
       named[i] = true;
       const double sphere_m = info.body_radius_m > 0 ? info.body_radius_m : mars::kMarsRadius_m;
-      const mars::VerticalDatum datum = checked_datum("--datum", words, sphere_m);
+      const mars::VerticalDatum datum = checked_datum("--datum", value, sphere_m);
       if (datum == info.datum) continue;
+      // Planet files store this text: it must not change.
       std::string treatment = "datum named as " + to_string(datum);
       if (info.datum.is_known())
         treatment += " against the product's own words (" + to_string(info.datum) + ")";
-      const mars::Adjust nothing = [](std::span<const glm::dvec3>, std::span<double>) {};
+      const mars::HeightAdjustment nothing = [](std::span<const glm::dvec3>, std::span<double>) {};
       sources[i] = mars::adjusted(sources[i], nothing, datum, treatment);
     }
     if (!found && !name.empty()) throw UsageError("--datum " + text + ": no raster is called '" + name + "'");
@@ -86,10 +89,11 @@ std::string number(double value, const char* format = "%.4g") {
   return text;
 }
 
-// Where the ground of an inset rises against its base: size in metres a kilometre, and towards where.
-std::string tilt_words(const mars::VerticalAlignment& level) {
-  const double tilt = std::hypot(level.tilt_east, level.tilt_north);
-  double azimuth = std::atan2(level.tilt_east, level.tilt_north) / mars::kRadiansPerDegree;
+// Describes the tilt of an inset against its base: metres per kilometre, and the azimuth towards which it
+// rises.
+std::string tilt_text(const mars::VerticalAlignment& alignment) {
+  const double tilt = std::hypot(alignment.tilt_east, alignment.tilt_north);
+  double azimuth = std::atan2(alignment.tilt_east, alignment.tilt_north) / mars::kRadiansPerDegree;
   if (azimuth < 0) azimuth += 360;
   return number(1000 * tilt) + " m/km rising towards " + number(azimuth, "%.0f") + " degrees";
 }
@@ -100,39 +104,42 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
   command
       .add_option(
           "--datum", a.datums,
-          "[NAME=]DATUM of rasters that do not say their own (or of NAME alone): areoid, radius, sphere, "
-          "sphere:RADIUS_M, ellipsoid:EQUATORIAL_M,POLAR_M (repeatable)")
+          "[NAME=]DATUM: vertical datum of the rasters that do not state one, or of the raster NAME alone: "
+          "areoid, radius, sphere, sphere:RADIUS_M or ellipsoid:EQUATORIAL_M,POLAR_M (repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_flag("--convert{base}", a.convert,
-                   "Bring all rasters to one datum, that of the coarsest; --convert=DATUM names another");
-  command.add_option("--areoid", a.areoid, "Raster of the areoid's radii (as MOLA's MEGA), to convert through");
+  command.add_flag(
+      "--to-datum{base}", a.to_datum,
+      "Convert all rasters to one vertical datum: that of the coarsest, or DATUM in --to-datum=DATUM");
+  command.add_option(
+      "--areoid", a.areoid,
+      "Raster of the areoid's radii, such as MOLA's MEGA, for conversions to and from the areoid");
   command
-      .add_option("--shape", a.shape,
-                  "sphere: heights stand on the sphere, whatever their datum; radius: true radii")
+      .add_option(
+          "--shape", a.shape,
+          "sphere: heights stand on the sphere, whatever their datum; radius: heights become true radii")
       ->check(CLI::IsMember({"sphere", "radius"}))
       ->capture_default_str();
   command
       .add_option(
-          "--level", a.level,
-          "fit: take offset and tilt out of every inset, by its rim; bend: bend what lies below around every "
-          "inset, so that it meets it and the inset keeps its heights")
-      ->check(CLI::IsMember({"none", "fit", "bend"}))
+          "--align", a.alignment,
+          "plane: remove offset and tilt of each inset, fitted along its boundary; edges: warp the base to "
+          "meet each inset, which keeps its heights")
+      ->check(CLI::IsMember({"none", "plane", "edges"}))
       ->capture_default_str();
   command
-      .add_option(
-          "--feather", a.feather_m,
-          "Width over which insets fade into what lies below, metres (default: 16 of their posts, at least 2 "
-          "of what lies below)")
+      .add_option("--feather", a.feather_m,
+                  "Width over which insets fade into the base, metres (default: 16 posts of the inset, but at "
+                  "least 2 of the base)")
       ->check(number_within(0.001, 1e7));
-  command.add_flag("--mask-blunders", a.reject_outliers,
-                   "Drop posts that what lies below shows to be impossible");
+  command.add_flag("--reject-outliers", a.reject_outliers,
+                   "Reject posts that deviate implausibly from the underlying raster");
   command
-      .add_option("--blunder", a.blunder_m,
-                  "Difference to what lies below that is always taken as terrain, metres")
+      .add_option("--blunder", a.outlier_floor_m,
+                  "Deviation from the underlying raster that is always accepted as terrain, metres")
       ->check(number_within(0.001, 1e6))
       ->capture_default_str();
-  command.add_option("--body", a.body, "Name of the body (default: as the rasters say)");
+  command.add_option("--body", a.body, "Name of the body (default: the body of the rasters)");
   command.add_option("--radius", a.radius_m, "Radius of the sphere, metres (default: the body's)")
       ->check(number_within(100.0, 1e9));
 }
@@ -144,51 +151,49 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
   mars::CombineOptions combine;
   combine.radius_m = options.radius_m;
   combine.true_radii = arguments.shape == "radius";
-  combine.convert = !arguments.convert.empty();
-  if (combine.convert && arguments.convert != "base") {
-    combine.datum = checked_datum("--convert", arguments.convert, options.radius_m);
+  combine.convert = !arguments.to_datum.empty();
+  if (combine.convert && arguments.to_datum != "base") {
+    combine.datum = checked_datum("--to-datum", arguments.to_datum, options.radius_m);
   }
   if (!arguments.areoid.empty()) {
     std::vector<Source> areoid{mars::open_elevation(arguments.areoid)};
     if (!areoid[0]->infos().front().datum.is_known()) name_datums(arguments, areoid);
     combine.areoid = areoid[0];
   }
-  using VerticalAlignment = mars::CombineOptions::VerticalAlignment;
-  combine.level = arguments.level == "fit"    ? VerticalAlignment::kPlane
-                  : arguments.level == "bend" ? VerticalAlignment::kEdges
-                                              : VerticalAlignment::kNone;
+  using Alignment = mars::CombineOptions::Alignment;
+  combine.alignment = arguments.alignment == "plane"   ? Alignment::kPlane
+                      : arguments.alignment == "edges" ? Alignment::kEdges
+                                                       : Alignment::kNone;
   combine.reject_outliers = arguments.reject_outliers;
-  combine.outliers.floor_m = arguments.blunder_m;
+  combine.outliers.floor_m = arguments.outlier_floor_m;
   combine.stack.feather_m = arguments.feather_m;
   mars::Combined combined = mars::combine_elevation(std::move(sources), combine);
   options.true_radii = combined.true_radii;
   return combined;
 }
 
-void say_findings(const mars::Combined& combined) {
-  for (const std::string& checkpoint : combined.notes)
-    std::fprintf(stderr, "vpe: note: %s\n", checkpoint.c_str());
+void print_findings(const mars::Combined& combined) {
+  for (const std::string& note : combined.notes) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
   for (const mars::CombineFinding& f : combined.findings) {
-    if (f.level) {
+    if (const auto& a = f.alignment) {
       std::fprintf(
           stderr,
-          "vpe: %s lies %s m above what is below it, with a tilt of %s (%lld posts of its rim); taken out: RMS "
-          "there was %s m, is %s m\n",
-          f.name.c_str(), number(f.level->offset_m).c_str(), tilt_words(*f.level).c_str(),
-          static_cast<long long>(f.level->posts), number(f.level->rms_before_m).c_str(),
-          number(f.level->rms_after_m).c_str());
+          "vpe: %s lies %s m above the base, with a tilt of %s (%lld posts along its boundary); removed: "
+          "the RMS difference there was %s m and is now %s m\n",
+          f.name.c_str(), number(a->offset_m).c_str(), tilt_text(*a).c_str(), static_cast<long long>(a->posts),
+          number(a->rms_before_m).c_str(), number(a->rms_after_m).c_str());
     }
-    if (f.bend) {
-      std::fprintf(stderr, "vpe: what lies below %s is bent to meet it, by %s m RMS at its rim, over %s km\n",
-                   f.name.c_str(), number(f.bend->rms_m).c_str(), number(1e-3 * f.bend->reach_m).c_str());
+    if (const auto& e = f.edge_matching) {
+      std::fprintf(stderr, "vpe: the base is warped to meet %s: by %s m RMS at its boundary, over %s km\n",
+                   f.name.c_str(), number(e->rms_m).c_str(), number(1e-3 * e->reach_m).c_str());
     }
     if (f.outliers && f.outliers->implausible > 0) {
       std::fprintf(
-          stderr, "vpe: %s: %.2g %% of its posts cannot be right, by up to %s m at %s,%s; %s\n", f.name.c_str(),
+          stderr, "vpe: %s: %.2g %% of its posts are implausible, by up to %s m at %s,%s; %s\n", f.name.c_str(),
           100.0 * static_cast<double>(f.outliers->implausible) / static_cast<double>(f.outliers->posts),
           number(f.outliers->worst_m).c_str(), base::format_number(f.outliers->worst_at.lon_deg).c_str(),
           base::format_number(f.outliers->worst_at.lat_deg).c_str(),
-          f.masked ? "dropped" : "--mask-blunders drops them");
+          f.masked ? "rejected" : "--reject-outliers rejects them");
     }
   }
 }
@@ -198,18 +203,15 @@ nlohmann::json findings_json(const mars::Combined& combined) {
   json list = json::array();
   for (const mars::CombineFinding& f : combined.findings) {
     json entry{{"name", f.name}, {"level", nullptr}, {"bend", nullptr}, {"implausible", nullptr}};
-    if (f.level) {
-      entry["level"] = {{"lon_deg", f.level->centre.lon_deg},     {"lat_deg", f.level->centre.lat_deg},
-                        {"offset_m", f.level->offset_m},          {"tilt_east", f.level->tilt_east},
-                        {"tilt_north", f.level->tilt_north},      {"rms_before_m", f.level->rms_before_m},
-                        {"rms_after_m", f.level->rms_after_m},    {"rim_posts", f.level->posts},
-                        {"rim_posts_left_out", f.level->left_out}};
+    if (const auto& a = f.alignment) {
+      entry["level"] = {
+          {"lon_deg", a->centre.lon_deg},  {"lat_deg", a->centre.lat_deg}, {"offset_m", a->offset_m},
+          {"tilt_east", a->tilt_east},     {"tilt_north", a->tilt_north},  {"rms_before_m", a->rms_before_m},
+          {"rms_after_m", a->rms_after_m}, {"rim_posts", a->posts},        {"rim_posts_left_out", a->left_out}};
     }
-    if (f.bend) {
-      entry["bend"] = {{"rms_m", f.bend->rms_m},
-                       {"largest_m", f.bend->largest_m},
-                       {"reach_m", f.bend->reach_m},
-                       {"rim_posts", f.bend->posts}};
+    if (const auto& e = f.edge_matching) {
+      entry["bend"] = {
+          {"rms_m", e->rms_m}, {"largest_m", e->largest_m}, {"reach_m", e->reach_m}, {"rim_posts", e->posts}};
     }
     if (f.outliers) {
       entry["implausible"] = {{"posts_compared", f.outliers->posts},

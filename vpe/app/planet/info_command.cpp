@@ -2,11 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "paging/surface/query.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/planet/planet_json.h"
 
 namespace vpe::app {
 
@@ -30,15 +33,15 @@ void info(const std::string& argument, const Common& common) {
     return std::string(text);
   };
   line("file", planet->path());
-  if (m.illustration) line("NOTE", "an illustration: numbers are not data");
+  if (m.illustration) line("NOTE", "an illustration: its numbers are not data");
   line("body", m.body + ", sphere of radius " + number(m.radius_m, "m"));
   line("vertical datum", paging::describe_datum(m));
   line("heights", number(m.lowest_radius_m - m.radius_m, "m") + " .. " +
                       number(m.highest_radius_m - m.radius_m, "m") + ", stored in steps of " +
                       number(m.quantum_m, "m"));
   line("tiles", std::to_string(m.tiles) + " (" + std::to_string(m.leaf_tiles) + " finest) of " +
-                    std::to_string(m.tile.intervals()) + " intervals, levels 1 .. " +
-                    std::to_string(m.finest_level + 1));
+                    std::to_string(m.tile.intervals()) + " intervals, levels 0 .. " +
+                    std::to_string(m.finest_level));
   line("finest posts", number(lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m), "m"));
   line("image",
        m.image_tiles == 0
@@ -61,8 +64,9 @@ void info(const std::string& argument, const Common& common) {
 
 void add_info(CLI::App& program, Common& common) {
   auto planet = std::make_shared<std::string>();
-  CLI::App* command = add_command(program, "info", "Say what a planet file holds", common, true);
-  command->add_option("PLANET", *planet, "Planet file or DEM; the embedded Mars when left out");
+  CLI::App* command = add_command(
+      program, "info", "Describe a planet file: body, datum, levels, sources, resampling error", common, true);
+  command->add_option("PLANET", *planet, "Planet file or DEM (default: the embedded Mars)");
   command->callback([planet, &common] { info(*planet, common); });
 }
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
-#include "vpe/app/planet/planet_argument.h"
 
 namespace vpe::app {
 

@@ -14,11 +14,11 @@ struct PlanetAndPlaces {
   std::vector<mars::LonLat> places;
 };
 
-// [PLANET] LON,LAT...: the first argument is a planet unless it is a place. Throws UsageError.
+// Splits the arguments [PLANET] LON,LAT...: the first one is a planet unless it is a place. Throws UsageError.
 PlanetAndPlaces split_places(const std::vector<std::string>& arguments);
 
-// A place a line; a header, empty lines and lines that begin with # are skipped. Throws UsageError with the
-// line.
+// Reads one place per line. Skips a header, empty lines, and lines that begin with #. Throws UsageError that
+// names the line.
 std::vector<mars::LonLat> read_places(std::istream& in);
 
 }  // namespace vpe::app

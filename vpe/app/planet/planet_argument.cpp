@@ -5,13 +5,14 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
+#include <cstdio>
 #include <cstring>
+#include <functional>
 
 #include "mars/embedded/embedded.h"
+#include "vpe/app/cli/parsing.h"
 #include "vpe/app/planet/build_sources.h"
 #include "vpe/app/planet/planet_build.h"
-#include "vpe/base/number.h"
 #include "vpe/base/user_folders.h"
 
 namespace vpe::app {
@@ -20,8 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Raised whenever the builder or the embedded planet changes what a cached file would hold; the second whenever
-// rasters are understood in another way.
+// The first is raised whenever the builder or the embedded planet changes the content of a cached file, the
+// second whenever rasters are interpreted differently.
 constexpr int kCacheGeneration = 3;
 constexpr int kRasterGeneration = 2;
 
@@ -40,10 +41,6 @@ class FileLock {
   int fd_;
 };
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 std::string hex(std::uint64_t x) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(x));
@@ -57,7 +54,7 @@ void build_into(const fs::path& target, const std::string& what,
   const mars::Combined combined = combine_sources({std::move(elevation)}, {}, options);
   if (!common.quiet) {
     std::fprintf(stderr, "Building %s once, into %s\n", what.c_str(), target.c_str());
-    say_findings(combined);
+    print_findings(combined);
   }
   options.output = target.string();
   options.threads = common.threads;
@@ -104,7 +101,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
                                mars::embedded_image().get(), common);
                   });
   }
-  if (ends_with(argument, ".vpe") || is_sqlite(argument)) return paging::PlanetFile::open(argument);
+  if (argument.ends_with(".vpe") || is_sqlite(argument)) return paging::PlanetFile::open(argument);
   const auto source = mars::open_elevation(argument);
   const mars::SourceInfo info = source->infos().front();
   const std::string path = fs::weakly_canonical(argument).string();
@@ -116,6 +113,11 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
   const std::string name = fs::path(argument).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
   return cached(name, argument,
                 [&](const fs::path& target) { build_into(target, argument, source, nullptr, common); });
+}
+
+void note_illustration(const paging::PlanetMeta& meta, bool quiet) {
+  if (!meta.illustration || quiet) return;
+  std::fprintf(stderr, "Note: this planet is an illustration; its numbers are not data about Mars.\n");
 }
 
 }  // namespace vpe::app

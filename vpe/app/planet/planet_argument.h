@@ -6,19 +6,24 @@
 #include <string>
 
 #include "paging/planet/planet_file.h"
-#include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
 
 namespace vpe::app {
 
-// $XDG_CACHE_HOME/vpe or ~/.cache/vpe; made when missing. Throws when there is neither, or it cannot be made.
+// Returns $XDG_CACHE_HOME/vpe or ~/.cache/vpe, and makes the folder unless it exists. Throws std::runtime_error
+// when neither variable is set, or when the folder cannot be made.
 std::filesystem::path cache_folder();
 
-// Where the embedded Mars is, once it is built. Throws as cache_folder().
+// Returns the path of the embedded Mars in the cache, whether it is built yet or not. Throws like
+// cache_folder().
 std::filesystem::path embedded_planet_path();
 
-// Opens a planet file; builds one into the cache first, once, where the argument is a DEM or empty. Concurrent
-// calls wait for the one that builds.
+// Opens a planet file. Where the argument is a DEM or empty, this first builds a planet file into the cache,
+// unless the cache has it; concurrent calls, also of other processes, wait for the one that builds. Throws what
+// building and paging::PlanetFile::open() throw.
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common);
+
+// Prints a note on stderr, unless quiet, when the planet is an illustration: its numbers are not data.
+void note_illustration(const paging::PlanetMeta& meta, bool quiet);
 
 }  // namespace vpe::app

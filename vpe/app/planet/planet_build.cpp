@@ -2,29 +2,33 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "mars/raster/raster_memory.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
+#include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/planet/build_sources.h"
-#include "vpe/app/planet/planet_argument.h"
+#include "vpe/app/planet/planet_json.h"
 
 namespace vpe::app {
 
 namespace {
 
-void say_what_is_kept(const std::string& output, const paging::BuildProgress& p) {
+void print_resumption(const std::string& output, const paging::BuildProgress& p) {
   const std::string part = output + ".part";
   if (p.replaced) {
-    std::fprintf(stderr, "vpe: %s was of other sources or options, or damaged; starting anew\n", part.c_str());
+    std::fprintf(stderr, "vpe: %s was made from other sources or options, or is damaged; starting anew\n",
+                 part.c_str());
   } else if (p.kept > 0) {
     std::fprintf(stderr, "Continuing %s\n", part.c_str());
   }
 }
 
-// work(progress function) with a line of progress, ended by signals.
+// Runs work(progress function) with a line of progress; signals end it.
 template <typename Work>
 paging::BuildSummary run(const std::string& output, const char* verb, const Common& common, const Work& work) {
   const InterruptGuard guard;
@@ -33,14 +37,14 @@ paging::BuildSummary run(const std::string& output, const char* verb, const Comm
     bool first = true;
     return work([&](const paging::BuildProgress& p) {
       InterruptGuard::check();
-      if (first && !common.quiet) say_what_is_kept(output, p);
+      if (first && !common.quiet) print_resumption(output, p);
       first = false;
       line.show(std::string(verb) + " (" + p.stage + ")", p.fraction);
     });
   } catch (const std::exception&) {
     std::error_code none;
     if (std::filesystem::exists(output + ".part", none)) {
-      std::fprintf(stderr, "vpe: what is built stays in %s.part; the same command continues it\n",
+      std::fprintf(stderr, "vpe: finished work stays in %s.part; the same command continues it\n",
                    output.c_str());
     }
     throw;
@@ -59,7 +63,7 @@ std::string duration(double seconds) {
   return text;
 }
 
-std::string in_words(const paging::BuildEstimate& e) {
+std::string estimate_text(const paging::BuildEstimate& e) {
   char text[200];
   std::snprintf(text, sizeof text,
                 "%lld tiles (%lld finest), %lld image tiles, %.1f million posts, about %.4g MB, about %s",
@@ -70,10 +74,10 @@ std::string in_words(const paging::BuildEstimate& e) {
 }
 
 void print_levels(const paging::PlanetMeta& meta) {
-  std::printf("%-6s %9s %9s %9s %10s %12s %11s %11s\n", "level", "posts, m", "tiles", "finest", "MB", "holes",
+  std::printf("%-6s %9s %9s %9s %10s %12s %11s %11s\n", "level", "posts, m", "tiles", "finest", "MB", "nodata",
               "RMS, m", "maximum, m");
   for (const paging::LevelSummary& l : meta.levels) {
-    std::printf("%-6d %9.4g %9lld %9lld %10.1f %12lld", l.level + 1,
+    std::printf("%-6d %9.4g %9lld %9lld %10.1f %12lld", l.level,
                 lod::post_spacing_m(l.level, meta.tile.intervals(), meta.radius_m),
                 static_cast<long long>(l.tiles), static_cast<long long>(l.leaf_tiles),
                 1e-6 * static_cast<double>(l.bytes), static_cast<long long>(l.nodata_posts));
@@ -88,34 +92,36 @@ void print_levels(const paging::PlanetMeta& meta) {
 }  // namespace
 
 paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
-                               const mars::ImageSource* image, const Common& common) {
-  // An analytic source is sampled one place at a time for the resampling error: enough for a figure that is
-  // stable to a few per cent.
-  // The allocator keeps about a third more than what rasters hold; the rest is for the tile index and scratch.
+                               const mars::ImageSource* image, const Common& common,
+                               std::optional<paging::BuildPlan> plan) {
+  // Half of --memory: the allocator keeps about a third more than rasters use, and the tile index and scratch
+  // memory need the rest.
   mars::set_raster_memory(static_cast<std::size_t>(common.memory_mb) << 19);
   const auto infos = elevation.infos();
+  // An analytic source is sampled one place at a time; so many places give a resampling error that is stable to
+  // a few per cent.
   if (!infos.empty() && infos.front().illustration) options.resampling_posts = 100'000;
   return run(options.output, "building", common, [&](const paging::ProgressFunction& progress) {
-    return paging::build_planet(options, elevation, image, progress);
+    return paging::build_planet(options, elevation, image, progress, std::move(plan));
   });
 }
 
-void say_estimate(const paging::BuildEstimate& estimate, const Common& common) {
+void print_estimate(const paging::BuildEstimate& estimate, const Common& common) {
   if (common.quiet) return;
-  std::fprintf(stderr, "To build: %s\n", in_words(estimate).c_str());
+  std::fprintf(stderr, "To build: %s\n", estimate_text(estimate).c_str());
   const double memory = 1048576.0 * common.memory_mb;
   if (static_cast<double>(estimate.memory_bytes) > memory / 4) {
     std::fprintf(
         stderr,
-        "vpe: warning: the index of so many tiles takes %.0f MB beside what --memory gives to rasters; "
-        "divide the build with --part\n",
+        "vpe: warning: the index of so many tiles takes %.0f MB beside the rasters' share of --memory; divide "
+        "the build with --part\n",
         1e-6 * static_cast<double>(estimate.memory_bytes));
   }
 }
 
-void report_estimate(const paging::BuildEstimate& e, const Common& common) {
+void print_estimate_only(const paging::BuildEstimate& e, const Common& common) {
   if (!common.json) {
-    std::printf("%s\n", in_words(e).c_str());
+    std::printf("%s\n", estimate_text(e).c_str());
     return;
   }
   print_json({{"tiles", e.leaf_tiles + e.inner_tiles},
@@ -130,7 +136,7 @@ void report_estimate(const paging::BuildEstimate& e, const Common& common) {
 
 paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common& common) {
   return run(options.output, "merging", common,
-             [&](const paging::ProgressFunction& progress) { return paging::merge_parts(options, progress); });
+             [&](const paging::ProgressFunction& progress) { return paging::merge_shards(options, progress); });
 }
 
 void check_planet_file(const std::string& output, const std::vector<std::string>& inputs) {
@@ -143,14 +149,14 @@ void check_planet_file(const std::string& output, const std::vector<std::string>
   }
   if (std::filesystem::file_size(output, none) > 0 && !none && !is_sqlite(output)) {
     throw std::runtime_error(output +
-                             ": is there and not a planet file; give another name, or remove it first");
+                             ": exists and is not a planet file; give another name, or remove it first");
   }
 }
 
-std::string part_file_name(const std::string& output, const base::Shard& part) {
-  if (part.is_all()) return output;
-  const std::string of = std::to_string(part.of);
-  std::string number = std::to_string(part.number);
+std::string shard_file_name(const std::string& output, const base::Shard& shard) {
+  if (shard.is_all()) return output;
+  const std::string of = std::to_string(shard.of);
+  std::string number = std::to_string(shard.number);
   number.insert(0, of.size() - number.size(), '0');
   std::filesystem::path path(output);
   const std::string extension = path.extension().string();
@@ -158,11 +164,11 @@ std::string part_file_name(const std::string& output, const base::Shard& part) {
   return path.string() + "." + number + "-of-" + of + extension;
 }
 
-void report_build(const paging::BuildSummary& summary, const std::string& output, const Common& common,
-                  const mars::Combined* combined) {
+void print_build(const paging::BuildSummary& summary, const std::string& output, const Common& common,
+                 const mars::Combined* combined) {
   const paging::PlanetMeta& meta = summary.meta;
-  std::int64_t holes = 0;
-  for (const paging::LevelSummary& level : meta.levels) holes += level.nodata_posts;
+  std::int64_t nodata_posts = 0;
+  for (const paging::LevelSummary& level : meta.levels) nodata_posts += level.nodata_posts;
   if (common.json) {
     nlohmann::json json = planet_json(meta);
     json["path"] = output;
@@ -172,7 +178,7 @@ void report_build(const paging::BuildSummary& summary, const std::string& output
       json["findings"] = findings_json(*combined);
       json["notes"] = combined->notes;
     }
-    if (meta.share) json["part"] = {{"number", meta.share->part.number}, {"of", meta.share->part.of}};
+    if (meta.shard) json["part"] = {{"number", meta.shard->id.number}, {"of", meta.shard->id.of}};
     print_json(json);
     return;
   }
@@ -182,12 +188,12 @@ void report_build(const paging::BuildSummary& summary, const std::string& output
               1e-6 * static_cast<double>(summary.posts), 1e-6 * static_cast<double>(summary.bytes));
   std::printf("resampling error against %lld source posts: RMS %.3g m, maximum %.3g m\n",
               static_cast<long long>(meta.resampling.posts), meta.resampling.rms_m, meta.resampling.max_m);
-  std::printf("posts without data: %lld (%.3g %%)\n", static_cast<long long>(holes),
-              100.0 * static_cast<double>(holes) / static_cast<double>(summary.posts));
+  std::printf("nodata posts: %lld (%.3g %%)\n", static_cast<long long>(nodata_posts),
+              100.0 * static_cast<double>(nodata_posts) / static_cast<double>(summary.posts));
   print_levels(meta);
-  if (meta.share) {
-    std::printf("Part %lld of %lld. When all are there, 'vpe merge PART... -o PLANET.vpe' joins them.\n",
-                static_cast<long long>(meta.share->part.number), static_cast<long long>(meta.share->part.of));
+  if (meta.shard) {
+    std::printf("Part %lld of %lld. When all parts exist, 'vpe merge PART... -o PLANET.vpe' joins them.\n",
+                static_cast<long long>(meta.shard->id.number), static_cast<long long>(meta.shard->id.of));
   }
 }
 

@@ -1,6 +1,8 @@
-// Building a planet file as users see it: progress, what is continued, what to do when it stops, what came out.
+// Builds and merges planet files with messages for the user: estimate, progress, what an earlier build left,
+// how to continue, and a summary.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,29 +15,38 @@
 
 namespace vpe::app {
 
-// paging::build_planet with progress on stderr. SIGINT and SIGTERM end it with Interrupted; then, and on every
-// error after the first tile, a line on stderr says that the same command continues.
+// Runs paging::build_planet() with progress on stderr. SIGINT and SIGTERM end it with Interrupted. After that,
+// and after any error that leaves an incomplete file, a line on stderr says that the same command continues. A
+// plan that was made before is not made again.
+//
+// Typical usage:
+//   check_planet_file(options.output, inputs);
+//   paging::BuildPlan plan = paging::plan_tiles(options, elevation);
+//   print_estimate(paging::estimate_build(options, plan, elevation, image), common);
+//   print_build(run_build(options, elevation, image, common, std::move(plan)), options.output, common);
 paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
-                               const mars::ImageSource* image, const Common& common);
+                               const mars::ImageSource* image, const Common& common,
+                               std::optional<paging::BuildPlan> plan = {});
 
-// What the build will take: on stderr, for a build that follows, or as the command's result on stdout, text or
-// JSON.
-void say_estimate(const paging::BuildEstimate& estimate, const Common& common);
-void report_estimate(const paging::BuildEstimate& estimate, const Common& common);
-
-// paging::merge_parts, likewise.
+// Runs paging::merge_shards() in the same way.
 paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common& common);
 
-// What a build would destroy or could not write, said before hours of work. Throws UsageError when `output` is
-// one of the inputs, std::runtime_error when it cannot be written or is there and no planet file.
+// Prints the estimate of a build that follows, on stderr.
+void print_estimate(const paging::BuildEstimate& estimate, const Common& common);
+// Prints the estimate as the command's result, on stdout, as text or JSON.
+void print_estimate_only(const paging::BuildEstimate& estimate, const Common& common);
+
+// Checks the output before hours of work. Throws UsageError when it is one of the inputs, and
+// std::runtime_error when it cannot be written, or exists and is not a planet file.
 void check_planet_file(const std::string& output, const std::vector<std::string>& inputs);
 
-// "mars.vpe" -> "mars.03-of-16.vpe", so that names sort as parts do; unchanged where there is one part.
-std::string part_file_name(const std::string& output, const base::Shard& part);
+// Returns the name of a part's file: "mars.vpe" becomes "mars.03-of-16.vpe", so that names sort like parts. The
+// name is unchanged where there is only one part.
+std::string shard_file_name(const std::string& output, const base::Shard& shard);
 
-// The summary on stdout: text, or JSON with --json, then with what was found out of the sources; nothing with
-// --quiet. combined may be null.
-void report_build(const paging::BuildSummary& summary, const std::string& output, const Common& common,
-                  const mars::Combined* combined = nullptr);
+// Prints the summary on stdout: as text, or as JSON, then with the findings about the sources (`combined` may
+// be null). Prints nothing when quiet, unless as JSON.
+void print_build(const paging::BuildSummary& summary, const std::string& output, const Common& common,
+                 const mars::Combined* combined = nullptr);
 
 }  // namespace vpe::app

@@ -19,12 +19,12 @@ std::optional<std::int64_t> number_in(const Environment& environment, const char
   if (text == nullptr || *text == '\0') return std::nullopt;
   const auto number = base::parse_integer(text);
   if (!number || *number < 0 || *number > kMostParts) {
-    throw UsageError(std::string("--part auto: ") + name + "='" + text + "' is not a count; say --part k/n");
+    throw UsageError(std::string("--part auto: ") + name + "='" + text + "' is not a count; give --part k/n");
   }
   return number;
 }
 
-// Rank and size as two variables, ranks from `least` on in steps.
+// Names of the variables that hold rank and number of parts; ranks start at `least` and advance by `step`.
 struct Source {
   const char* rank;
   const char* size;
@@ -36,11 +36,11 @@ constexpr std::array kSources{
     Source{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, Source{"PMI_RANK", "PMI_SIZE"},
     Source{"SLURM_PROCID", "SLURM_NTASKS"}};
 
-Shard part_from(const Source& source, std::int64_t rank, const Environment& environment) {
+Shard shard_from(const Source& source, std::int64_t rank, const Environment& environment) {
   const auto size = number_in(environment, source.size);
   if (!size) {
     throw UsageError(std::string("--part auto: ") + source.rank + " is set, but " + source.size +
-                     " is not; set it too, or say --part k/n");
+                     " is not; set it too, or give --part k/n");
   }
   const auto optional_number = [&](const char* name, std::int64_t otherwise) {
     return name == nullptr ? otherwise : number_in(environment, name).value_or(otherwise);
@@ -52,28 +52,28 @@ Shard part_from(const Source& source, std::int64_t rank, const Environment& envi
     throw UsageError(std::string("--part auto: ") + source.rank + "=" + std::to_string(rank) +
                      " does not fit " + std::to_string(*size) + " parts from " + std::to_string(least) + " on" +
                      (step == 1 ? "" : " in steps of " + std::to_string(step)) +
-                     (source.least == nullptr ? "; say --part k/n"
+                     (source.least == nullptr ? "; give --part k/n"
                                               : std::string("; number the array evenly and set ") +
-                                                    source.least + " to its first number, or say --part k/n"));
+                                                    source.least + " to its first number, or give --part k/n"));
   }
   return {offset / step + 1, *size};
 }
 
-Shard part_from(const Environment& environment) {
+Shard shard_from(const Environment& environment) {
   std::string names;
   for (const Source& source : kSources) {
-    if (const auto rank = number_in(environment, source.rank)) return part_from(source, *rank, environment);
+    if (const auto rank = number_in(environment, source.rank)) return shard_from(source, *rank, environment);
     names += std::string(names.empty() ? "" : ", ") + source.rank;
   }
   throw UsageError("--part auto: none of " + names +
-                   " is set; run it in a SLURM array or under mpirun or srun, or say --part k/n");
+                   " is set; run it in a SLURM array or under mpirun or srun, or give --part k/n");
 }
 
 }  // namespace
 
 Shard parse_shard(const std::string& text, const Environment& environment) {
   if (text.empty()) return {};
-  if (text == "auto") return part_from(environment);
+  if (text == "auto") return shard_from(environment);
   const std::size_t slash = text.find('/');
   std::optional<std::int64_t> number;
   std::optional<std::int64_t> of;

@@ -1,4 +1,4 @@
-// `--part`: which share of divided work this run does.
+// `--part`: the share of divided work that this run does.
 #pragma once
 
 #include <string>
@@ -11,12 +11,13 @@ namespace vpe::app {
 using base::Environment;
 using base::Shard;
 
-// "k/n", or "auto": from the variables of a SLURM array (SLURM_ARRAY_TASK_ID, _COUNT; _MIN, 0 when not set;
-// _STEP, 1 when not set), else of Open MPI (OMPI_COMM_WORLD_RANK, _SIZE), of PMI (PMI_RANK, PMI_SIZE), of srun
-// (SLURM_PROCID, SLURM_NTASKS), the first that is set. Throws UsageError.
+// Parses "k/n", or "auto", which reads the first of these environments that is set: a SLURM array
+// (SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT; SLURM_ARRAY_TASK_MIN, 0 when not set; SLURM_ARRAY_TASK_STEP, 1
+// when not set), Open MPI (OMPI_COMM_WORLD_RANK, OMPI_COMM_WORLD_SIZE), PMI (PMI_RANK, PMI_SIZE), srun
+// (SLURM_PROCID, SLURM_NTASKS). Empty text is all of the work. Throws UsageError.
 Shard parse_shard(const std::string& text, const Environment& environment);
 
-// parse_shard over the environment of this process.
+// The same with the environment of this process.
 Shard parse_shard(const std::string& text);
 
 }  // namespace vpe::app

@@ -73,11 +73,11 @@ void verify(const VerifyArguments& arguments, const Common& common) {
 
 void add_verify(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* command = add_command(program, "verify", "Check everything that a planet file holds", common, true);
+  CLI::App* command = add_command(program, "verify", "Check the whole content of a planet file", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file")->required();
   command->add_flag("--deep", arguments->deep,
-                    "Also measure errors of meshes again, on some of the finest tiles");
-  command->add_option("--sample", arguments->sample, "How many finest tiles --deep takes")
+                    "Also measure the errors of meshes again, on a sample of the finest tiles");
+  command->add_option("--sample", arguments->sample, "Number of finest tiles in the sample of --deep")
       ->check(number_within(1, 1e9))
       ->capture_default_str();
   command->callback([arguments, &common] { verify(*arguments, common); });

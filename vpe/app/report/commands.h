@@ -1,4 +1,4 @@
-// The command that measures error against run time.
+// The command `vpe report`, which measures errors, times and costs.
 #pragma once
 
 namespace CLI {
@@ -9,7 +9,7 @@ namespace vpe::app {
 
 struct Common;
 
-// Each adds its command to the program (AddCommand of vpe/app/cli/program.h).
+// Adds its command to the program (AddCommand of vpe/app/cli/program.h).
 void add_report(CLI::App& program, Common& common);
 
 }  // namespace vpe::app

@@ -9,13 +9,13 @@
 
 namespace vpe::app {
 
-// Whether this program has it.
+// Returns true if this program was built with Embree.
 bool has_embree();
 
-// Draws ranges of S of perspective views, without colours: all finest tiles with ground that the camera can
-// possibly see, as grids of floats relative to the camera, 16 rays at a time. The scene is built by the first
-// image of a camera, outside of any memory budget. States nothing of its error. Throws std::runtime_error with
-// Embree's words, and where it is not built in.
+// Makes a renderer of ranges of the reference surface, of perspective views, without colours. It casts 16 rays
+// at a time against all finest tiles with terrain that the camera may see (embree_scene.h). The first image of
+// a camera builds the scene, outside of any memory budget. Its certificates state no error. Throws
+// std::runtime_error with Embree's message, and if Embree is not built in.
 std::unique_ptr<core::Renderer> make_embree_renderer(std::shared_ptr<const paging::PlanetFile> planet,
                                                      int threads);
 

@@ -9,15 +9,17 @@
 
 #include "paging/surface/surface.h"
 #include "vpe/app/cli/json_output.h"
-#include "vpe/app/cli/processor_time.h"
+#include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/subprocess.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/report/interleaved_timing.h"
+#include "vpe/report/processor_time.h"
 
 namespace vpe::app {
 namespace {
 
-// Not ru_maxrss: on Linux that of a process counts what its parent held when it was started.
+// Returns the largest memory of this process. Avoids ru_maxrss where it can: on Linux that includes what the
+// parent held when it started the process.
 double peak_mb() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -51,30 +53,31 @@ core::View feature_view(const std::string& pose, const std::string& size,
   return view;
 }
 
-void run_probe(const ProbeRequest& order) {
-  const FeatureScene* scene = find_scene(order.scene);
-  if (scene == nullptr) throw UsageError("there is no scene '" + order.scene + "'");
+void run_probe(const ProbeRequest& request) {
+  const FeatureScene* scene = find_scene(request.scene);
+  if (scene == nullptr) throw UsageError("there is no scene '" + request.scene + "'");
   Common common;
-  common.memory_mb = order.memory_mb;
-  common.threads = order.threads;
+  common.memory_mb = request.memory_mb;
+  common.threads = request.threads;
   common.quiet = true;
-  const auto planet = open_planet(order.planet, common);
+  const auto planet = open_planet(request.planet, common);
   RenderOptions options;
-  options.backend = order.backend;
+  options.backend = request.backend;
   const std::unique_ptr<core::Renderer> renderer = make_renderer(options, common, planet);
-  const core::DrawRequest request = scene_request(*scene, feature_view(order.pose, order.size, planet));
-  ScenePainter painter(*scene, planet, order.statistics_file);
-  core::FrameStats stats = painter.paint(*renderer, request);
+  const core::DrawRequest draw_request =
+      scene_request(*scene, feature_view(request.pose, request.size, planet));
+  ScenePainter painter(*scene, planet, request.statistics_file);
+  core::FrameStats stats = painter.paint(*renderer, draw_request);
   const report::Clock clock = report::wall_clock();
   const double finished_s = clock();
   std::vector<double> frames_s;
   std::vector<double> processors_s;
-  for (int frame = 0; frame < order.frames; ++frame) {
+  for (int frame = 0; frame < request.frames; ++frame) {
     const double begin_s = clock();
-    const double before_s = processor_s();
-    stats = painter.paint(*renderer, request);
+    const double before_s = report::processor_s();
+    stats = painter.paint(*renderer, draw_request);
     frames_s.push_back(clock() - begin_s);
-    processors_s.push_back(processor_s() - before_s);
+    processors_s.push_back(report::processor_s() - before_s);
   }
   print_json({{"finished_s", finished_s},
               {"peak_mb", peak_mb()},
@@ -83,44 +86,44 @@ void run_probe(const ProbeRequest& order) {
               {"resident_mb", static_cast<double>(stats.bytes_resident) * 1e-6}});
 }
 
-report::SceneCost probe(const ProbeRequest& order) {
+report::SceneCost probe(const ProbeRequest& request) {
   const double begin_s = report::wall_clock()();
-  Subprocess child({order.program,
+  Subprocess child({request.program,
                     "report",
                     "features",
                     "--probe",
-                    order.scene,
+                    request.scene,
                     "--backend",
-                    order.backend,
+                    std::string(core::to_string(request.backend)),
                     "--pose",
-                    order.pose,
+                    request.pose,
                     "--size",
-                    order.size,
+                    request.size,
                     "--memory",
-                    std::to_string(order.memory_mb),
+                    std::to_string(request.memory_mb),
                     "--threads",
-                    std::to_string(order.threads),
+                    std::to_string(request.threads),
                     "--frames",
-                    std::to_string(order.frames),
+                    std::to_string(request.frames),
                     "--statistics",
-                    order.statistics_file,
+                    request.statistics_file,
                     "--",
-                    order.planet});
+                    request.planet});
   if (!child.finish()) {
-    throw std::runtime_error(order.program + " could not draw the scene '" + order.scene +
+    throw std::runtime_error(request.program + " could not draw the scene '" + request.scene +
                              "': " + child.stderr_text());
   }
-  const nlohmann::json json = nlohmann::json::parse(child.output(), nullptr, false);
-  if (!json.is_object() || !json.contains("finished_s")) {
-    throw std::runtime_error(order.program + " did not print what it measured of the scene '" + order.scene +
+  const nlohmann::json object = nlohmann::json::parse(child.output(), nullptr, false);
+  if (!object.is_object() || !object.contains("finished_s")) {
+    throw std::runtime_error(request.program + " did not print measurements of the scene '" + request.scene +
                              "': give one of the same version");
   }
   report::SceneCost cost;
-  cost.startup_s = json["finished_s"].get<double>() - begin_s;
-  cost.peak_mb = json["peak_mb"].get<double>();
-  cost.frame_s = json["frame_s"].get<double>();
-  cost.processor_s = json["processor_s"].get<double>();
-  cost.resident_mb = json["resident_mb"].get<double>();
+  cost.startup_s = object["finished_s"].get<double>() - begin_s;
+  cost.peak_mb = object["peak_mb"].get<double>();
+  cost.frame_s = object["frame_s"].get<double>();
+  cost.processor_s = object["processor_s"].get<double>();
+  cost.resident_mb = object["resident_mb"].get<double>();
   return cost;
 }
 

@@ -1,5 +1,5 @@
-// What `vpe report features` measures: every scene and backend, in processes of their own and in turns within
-// one.
+// Measures every scene of `vpe report features` with every backend: in processes of their own, and in
+// interleaved rounds within one process.
 #pragma once
 
 #include <functional>
@@ -15,40 +15,42 @@
 namespace vpe::app {
 
 struct FeaturePlan {
-  ProbeRequest order;   // but for program, scene and backend
+  ProbeRequest probe;   // without program, scene and backend
   std::string against;  // another program; empty: none
-  int rounds = 9;       // of frames
+  int rounds = 9;       // of frames; more: more reliable medians
   int starts = 3;       // of each process
 };
 
-// One scene and backend, and what was measured of it.
+// One scene and backend with its measurements.
 struct FeatureRow {
   const FeatureScene* scene = nullptr;
-  std::string backend;
+  core::Backend backend = core::Backend::kPolygon;
   report::SceneCost cost;           // of this program's processes
-  report::SceneCost never;          // of the other's, where it is asked
-  std::vector<double> processor_s;  // of a frame, a process each
+  report::SceneCost never;          // of the other program's, if it draws this scene
+  std::vector<double> processor_s;  // of a frame, one for each process
   std::vector<double> never_processor_s;
-  report::Timing interleaved;
-  std::optional<double> rest_ratio;  // image to the same without what no stage of it counts
+  report::Timing frames;
+  std::optional<double> rest_ratio;  // time of a frame, relative to the sum of its counted stages
 };
 
-// The rows that this program can draw of a planet, with nothing measured.
+// Returns the rows that this program can draw of a planet, without measurements.
 std::vector<FeatureRow> feature_rows(bool has_imagery);
 
-// How many processes measure_processes() will start.
+// Returns the number of processes that measure_processes() will start.
 int count_processes(const FeaturePlan& plan, const std::vector<FeatureRow>& rows);
 
-// `step` is called before each process, and may throw. Throws what probe() throws.
+// Measures all rows in processes. Calls `step` before each process; it may throw to stop. Throws what probe()
+// throws.
 void measure_processes(const FeaturePlan& plan, std::vector<FeatureRow>& rows,
                        const std::function<void()>& step);
 
-// Frames of all scenes of a backend in turns, each with a renderer of its own. On the context's thread.
-void measure_frames(const FeaturePlan& plan, std::vector<FeatureRow>& rows, const std::string& backend,
+// Measures the rows of one backend in interleaved rounds, each row with a renderer of its own. Call it on the
+// context's thread.
+void measure_frames(const FeaturePlan& plan, std::vector<FeatureRow>& rows, core::Backend backend,
                     const std::shared_ptr<gl::Context>& context,
                     const std::shared_ptr<const paging::PlanetFile>& planet);
 
-// What each thing costs: its scene against the one without it.
+// Returns the cost of each feature: its scene compared with the one without it.
 std::vector<report::FeatureCost> feature_costs(const std::vector<FeatureRow>& rows, bool has_other);
 
 }  // namespace vpe::app

@@ -2,72 +2,40 @@
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <glm/geometric.hpp>
 
 #include "lod/tree/posts.h"
 #include "paging/build/builder.h"
-#include "vpe/app/cli/processor_time.h"
+#include "vpe/report/processor_time.h"
+#include "vpe/report/value_noise.h"
 
 namespace vpe::app {
 namespace {
 
 constexpr std::uint64_t kSeed = 19960713;
 constexpr double kLongest_m = 20000;
-constexpr double kHeightOfWave = 0.02;    // of its length
-constexpr double kRootSpacing_m = 45000;  // that of the six tiles of level 0
-
-double lattice(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
-  std::uint64_t h = seed;
-  for (const std::int64_t c : {x, y, z}) {
-    h = (h ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15ULL;
-    h ^= h >> 29;
-  }
-  return static_cast<double>(h >> 11) * 0x1p-52 - 1.0;
-}
-
-double noise(const glm::dvec3& p, std::uint64_t seed) {
-  const glm::dvec3 cell(std::floor(p.x), std::floor(p.y), std::floor(p.z));
-  const glm::dvec3 f = p - cell;
-  const glm::dvec3 s = f * f * (3.0 - 2.0 * f);
-  const auto x = static_cast<std::int64_t>(cell.x);
-  const auto y = static_cast<std::int64_t>(cell.y);
-  const auto z = static_cast<std::int64_t>(cell.z);
-  double sum = 0;
-  for (int k = 0; k < 8; ++k) {
-    const int dx = k & 1;
-    const int dy = k >> 1 & 1;
-    const int dz = k >> 2;
-    const double weight = (dx ? s.x : 1.0 - s.x) * (dy ? s.y : 1.0 - s.y) * (dz ? s.z : 1.0 - s.z);
-    sum += weight * lattice(x + dx, y + dy, z + dz, seed);
-  }
-  return sum;
-}
+constexpr double kHeightOfWave = 0.02;    // as a share of its length
+constexpr double kRootSpacing_m = 45000;  // of the six tiles of level 0
 
 double height_m(const glm::dvec3& direction, double spacing_m) {
   double height = 0;
   std::uint64_t seed = kSeed;
   for (double wave = kLongest_m; wave >= 2 * spacing_m; wave *= 0.5)
-    height += kHeightOfWave * wave * noise(direction * (mars::kMarsRadius_m / wave), seed++);
+    height += kHeightOfWave * wave * report::value_noise(direction * (mars::kMarsRadius_m / wave), seed++);
   return height;
 }
 
-// Of this thread, while it lives.
+// Adds the processor time of this thread, while the object lives, to a sum.
 class Spent {
  public:
   explicit Spent(std::atomic<std::int64_t>& sum_ns) : sum_ns_(sum_ns) {}
-  ~Spent() { sum_ns_ += now_ns() - begin_ns_; }
+  ~Spent() { sum_ns_ += report::thread_processor_ns() - begin_ns_; }
   Spent(const Spent&) = delete;
   Spent& operator=(const Spent&) = delete;
 
  private:
-  static std::int64_t now_ns() {
-    timespec time{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-  }
   std::atomic<std::int64_t>& sum_ns_;
-  std::int64_t begin_ns_ = now_ns();
+  std::int64_t begin_ns_ = report::thread_processor_ns();
 };
 
 }  // namespace
@@ -138,14 +106,14 @@ PatchBuild build_patch(const PatchSpec& spec, const std::filesystem::path& file,
   options.base_spacing_m = kRootSpacing_m;
   options.tile_k = kPatchTileK;
   options.threads = threads;
-  const FractalPatch ground(spec);
-  const double begin_s = app::processor_s();
+  const FractalPatch terrain(spec);
+  const double begin_s = report::processor_s();
   const auto start = std::chrono::steady_clock::now();
   const paging::BuildSummary summary = paging::build_planet(
-      options, ground, nullptr, [&](const paging::BuildProgress& progress) { step(progress.fraction); });
+      options, terrain, nullptr, [&](const paging::BuildProgress& progress) { step(progress.fraction); });
   PatchBuild out;
   out.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  out.processor_s = app::processor_s() - begin_s - ground.processor_s();
+  out.processor_s = report::processor_s() - begin_s - terrain.processor_s();
   out.bytes = summary.bytes;
   out.finest_posts = summary.meta.leaf_tiles * summary.meta.tile.post_count();
   out.planet = paging::PlanetFile::open(file.string());

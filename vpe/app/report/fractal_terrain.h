@@ -1,4 +1,4 @@
-// Ground made up for measurements: a square patch of fine fractal ground on a coarse planet, of any size.
+// Made-up terrain for measurements: a square patch of fine fractal terrain of any size on a coarse planet.
 #pragma once
 
 #include <atomic>
@@ -13,9 +13,9 @@
 
 namespace vpe::app {
 
-inline constexpr int kPatchTileK = 7;  // tiles of 128 intervals, as the product's
+inline constexpr int kPatchTileK = 7;  // tiles of 128 intervals, the default of `vpe build`
 
-// The place of one tile, covered by finest tiles `levels_below` it: 128 * 2^levels_below + 1 posts a side.
+// The area of one tile, covered by finest tiles `levels_below` it: 128 * 2^levels_below + 1 posts a side.
 struct PatchSpec {
   lod::TileKey patch;
   int levels_below = 0;
@@ -25,9 +25,9 @@ struct PatchSpec {
   double spacing_m() const;
 };
 
-// Octaves of seeded noise as a function of direction: waves from 20 km down to twice the spacing asked for,
+// Octaves of seeded noise as a function of direction: waves from 20 km down to twice the requested spacing,
 // each half as long and half as high as the one before, so that tiles of all levels look alike and only their
-// number grows with the grid. Slopes are some 7 degrees (RMS). Fine in the patch and in what contains it,
+// number grows with the grid. Slopes are about 7 degrees (RMS). Fine in the patch and in tiles that contain it,
 // coarser from level to level elsewhere. The same bits on every machine. Any thread may call any member.
 class FractalPatch : public mars::ElevationSource {
  public:
@@ -38,10 +38,11 @@ class FractalPatch : public mars::ElevationSource {
               std::span<double> heights_m) const override;
   void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override;
   double spacing_in(const mars::Cap& cap) const override;
-  // Posts of the patch.
+  // Visits posts of the patch.
   void visit_posts(std::size_t max_posts, const mars::PostVisitor& visit) const override;
 
-  // Processor time that sample() and visit_posts() took so far, all threads together: not the builder's.
+  // Returns the processor time that sample() and visit_posts() took so far, of all threads together. It is not
+  // part of the builder's.
   double processor_s() const;
 
  private:
@@ -51,15 +52,15 @@ class FractalPatch : public mars::ElevationSource {
 
 struct PatchBuild {
   std::shared_ptr<const paging::PlanetFile> planet;
-  std::int64_t finest_posts = 0;  // of all finest tiles, those outside of the patch too
+  std::int64_t finest_posts = 0;  // of all finest tiles, also outside the patch
   std::int64_t patch_cells = 0;   // of the finest tiles in the patch
-  double processor_s = 0;         // without what the ground itself took
+  double processor_s = 0;         // without the time for the terrain itself
   double wall_s = 0;
   std::int64_t bytes = 0;
 };
 
-// Builds the planet file, replacing what is there. `step` is called with the fraction that is done, and may
-// throw. Throws what paging::build_planet() does.
+// Builds the planet file and replaces an old one. Calls `step` with the fraction that is done; it may throw to
+// stop. Throws what paging::build_planet() throws.
 PatchBuild build_patch(const PatchSpec& spec, const std::filesystem::path& file, int threads,
                        const std::function<void(double)>& step);
 

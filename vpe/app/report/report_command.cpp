@@ -1,16 +1,15 @@
-#include "vpe/app/report/commands.h"
-
 // vpe report.
 #include <CLI/CLI.hpp>
 
 #include "vpe/app/cli/program.h"
+#include "vpe/app/report/commands.h"
 #include "vpe/app/report/report_commands.h"
 
 namespace vpe::app {
 
 void add_report(CLI::App& program, Common& common) {
-  CLI::App* report =
-      program.add_subcommand("report", "Measure errors, times and growth, and write pages of them");
+  CLI::App* report = program.add_subcommand(
+      "report", "Measure errors, run times and how costs grow, and write pages with plots");
   report->require_subcommand(1);
   add_report_error_time(*report, common);
   add_report_scaling(*report, common);

@@ -1,5 +1,4 @@
-// The reports of `vpe report`: each adds itself as add_command() makes commands, and its callback does the
-// work.
+// The reports of `vpe report`.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 namespace vpe::app {
 
+// Add one report each as a command below `vpe report`.
 void add_report_error_time(CLI::App& report, Common& common);
 void add_report_scaling(CLI::App& report, Common& common);
 void add_report_features(CLI::App& report, Common& common);
@@ -17,14 +17,16 @@ void add_report_features(CLI::App& report, Common& common);
 struct ReportRequest {
   std::filesystem::path folder;
   std::string planet;     // file or DEM; empty: the embedded Mars
-  bool is_short = false;  // as --short has it
+  bool is_short = false;  // --short of each report
 };
-// Each with its defaults but for that; scaling builds planets of its own. Return what they wrote as a page.
-report::Page error_time_report(const ReportRequest& order, const Common& common);
-report::Page scaling_report(const ReportRequest& order, const Common& common);
-report::Page features_report(const ReportRequest& order, const Common& common);
 
-// All of them into one folder, and one page of all.
+// Make one report each with its other options at their defaults, write its files, and return it as a page.
+// Scaling builds planets of its own.
+report::Page error_time_report(const ReportRequest& request, const Common& common);
+report::Page scaling_report(const ReportRequest& request, const Common& common);
+report::Page features_report(const ReportRequest& request, const Common& common);
+
+// Adds the command that makes all reports in one folder, and one page of all.
 void add_report_all(CLI::App& report, Common& common);
 
 }  // namespace vpe::app

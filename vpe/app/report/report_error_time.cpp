@@ -34,8 +34,8 @@ struct ErrorTimeArguments {
   std::string planet;
   std::string output;
   bool is_short = false;
-  std::string size;  // empty: as suits
-  int rounds = 0;    // 0: as suits
+  std::string size;  // empty: the default, or that of --short
+  int rounds = 0;    // 0: the default, or that of --short
   std::vector<std::string> views;
   std::string baseline = kExactBaseline;
 };
@@ -79,16 +79,22 @@ class Renderers {
   std::shared_ptr<gl::Context> context_;
 };
 
-std::vector<std::string> about(const ErrorTimeArguments& arguments, const RunFacts& facts,
+std::vector<std::string> about(const ErrorTimeArguments& arguments, const report::RunFacts& facts,
                                const paging::PlanetMeta& meta, const Size& size, int rounds) {
-  std::vector<std::string> lines = to_paragraphs(facts);
+  std::vector<std::string> lines = report::to_paragraphs(facts);
   lines.push_back((arguments.planet.empty() ? std::string("The embedded Mars") : arguments.planet) +
-                  ", pictures of " + std::to_string(size.width) + "x" + std::to_string(size.height) +
+                  ", images of " + std::to_string(size.width) + "x" + std::to_string(size.height) +
                   ", 60 degrees high. Times are medians of " + std::to_string(rounds) +
-                  " rounds in turns, everything loaded, from the request to colours in memory.");
+                  " interleaved rounds, with everything loaded, from the request to colours in memory.");
   lines.emplace_back(
-      "Errors are measured against rays in mode exact, and their shifts against the exact surface S "
-      "(docs/numbers.md); docs/error-and-time.md says what each figure means.");
+      "Errors are measured against rays in mode exact, and shifts against the reference surface "
+      "(docs/guide/numbers-and-errors.md). docs/design/reports.md defines each figure.");
+  lines.emplace_back(
+      "Limits: untextured triangles have one colour each; Hitchner 1992 compared textures with Gouraud-shaded "
+      "meshes, so the comparison neither confirms nor contradicts that one. Rays in mode reference are a "
+      "simple march without tuning and no conventional ray caster; their time is no baseline for published "
+      "speed-ups. rays.cell bounds the geometric error in pixels; it is not the pixel-to-voxel ratio of "
+      "Cohen-Or 1996, as colours do not coarsen with it.");
   if (meta.illustration)
     lines.emplace_back("This planet is an illustration; its numbers are not data about Mars.");
   return lines;
@@ -104,9 +110,9 @@ void write_files(const fs::path& folder, const report::ErrorTimeReport& report, 
 void print_summary(const fs::path& folder, const report::ErrorTimeReport& report) {
   for (const report::SubjectResult& result : report.results) {
     for (const report::DefaultPlace& p : report::place_defaults(result)) {
-      std::printf("%-13s %s%-24s %-16s %8.4g  %8.4g ms  %.2f of the front, %.2f of its own\n", p.view.c_str(),
-                  p.is_chosen ? "* " : "  ", p.sweep.c_str(), p.knob.c_str(), p.error, p.time_ms, p.over_front,
-                  p.over_own_front);
+      std::printf("%-13s %s%-24s %-16s %8.4g  %8.4g ms  %.2f of the front, %.2f of its own front\n",
+                  p.view.c_str(), p.is_chosen ? "* " : "  ", p.sweep.c_str(), p.knob.c_str(), p.error,
+                  p.time_ms, p.over_front, p.over_own_front);
     }
   }
   std::printf("%s\n", (folder / "error-time.html").c_str());
@@ -130,7 +136,7 @@ report::Page error_time(const ErrorTimeArguments& arguments, const Common& commo
   const Size size = parse_size(!arguments.size.empty() ? arguments.size
                                : arguments.is_short    ? "320x180"
                                                        : "640x360");
-  constexpr int kLeastSide = 32;  // halves of it have windows of structural similarity
+  constexpr int kLeastSide = 32;  // half of it still has windows of structural similarity
   if (size.width < kLeastSide || size.height < kLeastSide)
     throw UsageError("--size " + arguments.size + ": each side must be at least " + std::to_string(kLeastSide));
   if (arguments.baseline == kEmbreeBaseline && !has_embree())
@@ -146,7 +152,7 @@ report::Page error_time(const ErrorTimeArguments& arguments, const Common& commo
   const paging::Surface surface(planet, memory_bytes(common) / 8);
   const std::vector<NamedView> views =
       chosen_views(arguments, arguments.planet.empty() ? embedded_views(surface) : views_of(surface));
-  RunFacts facts = read_run_facts(common);
+  report::RunFacts facts = read_run_facts(common);
   const Renderers renderers(planet, common);
   facts.opengl = renderers.info().renderer + ", " + renderers.info().version;
 
@@ -190,37 +196,37 @@ report::Page error_time(const ErrorTimeArguments& arguments, const Common& commo
 
 }  // namespace
 
-report::Page error_time_report(const ReportRequest& order, const Common& common) {
+report::Page error_time_report(const ReportRequest& request, const Common& common) {
   ErrorTimeArguments arguments;
-  arguments.output = order.folder.string();
-  arguments.planet = order.planet;
-  arguments.is_short = order.is_short;
+  arguments.output = request.folder.string();
+  arguments.planet = request.planet;
+  arguments.is_short = request.is_short;
   return error_time(arguments, common);
 }
 
 void add_report_error_time(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<ErrorTimeArguments>();
-  CLI::App* command = add_command(report, "error-time",
-                                  "Error against run time of every backend and mode, with plots", common, true);
-  command->add_option("PLANET", arguments->planet, "Planet file or DEM; the embedded Mars when left out");
+  CLI::App* command =
+      add_command(report, "error-time", "Measure error against run time of every backend and mode, with plots",
+                  common, true);
+  command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command->add_option("-o,--output", arguments->output, "Folder for error-time.html, .svg, .csv and .json")
       ->required();
-  command->add_flag("--short", arguments->is_short, "Two views, small pictures, few values of each knob");
+  command->add_flag("--short", arguments->is_short, "Two views, small images, few values of each setting");
   command
       ->add_option(
           "--view", arguments->views,
-          "Only this view (repeatable): orbit, high oblique, canyon floor, rim, crater, plain, grazing, "
-          "polar")
+          "Only this view (repeatable): orbit, high oblique, canyon floor, rim, crater, plain, grazing, polar")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (640x360; with --short 320x180)");
-  command->add_option("--rounds", arguments->rounds, "Of timing, in turns; 0: 5, with --short 3")
+  command->add_option("--size", arguments->size,
+                      "WIDTHxHEIGHT, pixels (default: 640x360; with --short 320x180)");
+  command->add_option("--rounds", arguments->rounds, "Interleaved rounds of timing; 0: 5, or 3 with --short")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   command
-      ->add_option(
-          "--baseline", arguments->baseline,
-          "What times are ratios to: rays in mode exact, or ranges alone by Embree, where it is built in")
+      ->add_option("--baseline", arguments->baseline,
+                   "Timing baseline: exact ray casting, or Embree (ranges only; if built in)")
       ->check(CLI::IsMember({kExactBaseline, kEmbreeBaseline}))
       ->capture_default_str();
   command->callback([arguments, &common] { error_time(*arguments, common); });

@@ -4,9 +4,10 @@
 
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/report/report_error_time_images.h"
+#include "vpe/app/report/report_error_time_panoramas.h"
 #include "vpe/base/number.h"
 #include "vpe/gl/polygon_renderer.h"
+#include "vpe/report/resampling.h"
 
 namespace vpe::app {
 
@@ -14,7 +15,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// Kinds of images that show the same; names of plots.
+// Groups of configurations that show the same image, and names of plots.
 constexpr const char* kGeometry = "geometry";
 constexpr const char* kTexture = "textures and levels";
 constexpr const char* kSamples = "samples";
@@ -73,7 +74,7 @@ class Planner {
     return subject_.configurations.back();
   }
 
-  // An image of the view itself, by these settings.
+  // Adds an image of the view itself, with these settings.
   report::Configuration& add_image(const std::string& sweep, const char* renderer, const Words& settings,
                                    const std::string& knob = "") {
     report::Configuration& configuration =
@@ -94,12 +95,13 @@ class Planner {
 
   void add_rays() {
     add_image("rays, exact", kRayImages, {}, "rays.mode=exact").is_default = true;
-    if (!options_.is_short) add_image("rays, plain", kRayImages, {"rays.mode=plain"}).most_rounds = 1;
+    if (!options_.is_short) add_image("rays, reference", kRayImages, {"rays.mode=reference"}).most_rounds = 1;
     for (const double cell : values(core::RayLimits::kMostCell_px, core::RayLimits::kLeastCell_px, 8)) {
       report::Configuration& configuration = add_image(
           "rays by cell", kRayImages, {"rays.mode=multires", "rays.cell=" + base::format_number(cell)},
           "rays.cell=" + base::format_number(cell));
-      configuration.is_chosen = chosen_ == kRayBackend && cell == core::SettingsValues().lod_tolerance_px;
+      configuration.is_chosen =
+          chosen_ == core::Backend::kRay && cell == core::SettingsValues().lod_tolerance_px;
     }
   }
 
@@ -109,14 +111,15 @@ class Planner {
           add_image("triangles by tolerance", kTriangles, {"lod.tolerance=" + base::format_number(tolerance)});
       configuration.colour_plot = kTexture;
       configuration.is_default = tolerance == core::SettingsValues().lod_tolerance_px;
-      configuration.is_chosen = configuration.is_default && chosen_ == kPolygonBackend;
+      configuration.is_chosen = configuration.is_default && chosen_ == core::Backend::kPolygon;
     }
   }
 
-  // Levels by distance as in 1992: a level fewer for each doubling, so that triangles are about as large in all
-  // of the image; at the finest level they are a pixel.
+  // Adds levels by distance (Hitchner 1992): one level fewer for each doubling, so that triangles have about
+  // the same size all over the image. At the finest level it is one pixel. Untextured triangles have one colour
+  // each; the paper's were Gouraud-shaded.
   void add_levels() {
-    const int finest = planet_.meta().finest_level + 1;
+    const int finest = planet_.meta().finest_level + 1;  // number of levels, as in the table
     const double spacing_m =
         lod::post_spacing_m(finest - 1, planet_.meta().tile.intervals(), planet_.radius_m());
     const double pixel_m = core::focal_px(base_.view) * spacing_m;
@@ -128,28 +131,28 @@ class Planner {
         for (int down = 1; down < level; ++down) {
           table += "," + base::format_number(pixel_m * (1 << (down - 1))) + ":" + std::to_string(level - down);
         }
-        Words settings{"lod.rule=hitchner", "lod.distance.table=" + table};
+        Words settings{"lod.metric=distance", "lod.distance.table=" + table};
         if (!textured) settings.insert(settings.end(), {"mode=coloured", "colour=image", "shading=flat"});
         report::Configuration& configuration = add_image(
             textured ? "textured, by level" : "untextured, by level", textured ? kTriangles : kPlainTriangles,
             settings,
-            "level " + std::to_string(level) + " within " + base::format_number(std::round(pixel_m)) + " m");
+            std::to_string(level) + " levels within " + base::format_number(std::round(pixel_m)) + " m");
         configuration.colour_plot = kTexture;
         if (!textured) configuration.plot = configuration.comparison_group = "";
       }
     }
   }
 
-  // Smaller images, as the reference has a thousand samples a pixel.
+  // Adds smaller images, because the reference takes a thousand samples a pixel.
   void add_samples() {
     core::DrawRequest small = base_;
     small.view.width = options_.width / 2;
     small.view.height = options_.height / 2;
     const std::size_t reference = subject_.references.size();
     const core::DrawRequest hard = with(small, {"edges=hard"}, view_.pose);
-    const int many = options_.is_short ? 16 : 32;
-    subject_.references.push_back(
-        {small.view, kRayImages, enlarged(hard, many), average(small.view, many), false});
+    const int samples_a_side = options_.is_short ? 16 : 32;
+    subject_.references.push_back({small.view, kRayImages, report::enlarged(hard, samples_a_side),
+                                   report::average(small.view, samples_a_side), false});
     const auto describe = [&](report::Configuration& configuration) {
       configuration.kind = report::ErrorKind::kColour;
       configuration.plot = configuration.comparison_group = kSamples;
@@ -159,56 +162,58 @@ class Planner {
     const std::string tolerance = base::format_number(core::SettingsValues().lod_tolerance_px);
     for (const char* renderer : {kRayImages, kTriangles}) {
       const bool is_rays = renderer == std::string(kRayImages);
-      // As they are drawn when nothing is named.
+      // The settings of --backend auto.
       const auto settings = [&](const std::string& one) {
         return is_rays ? Words{"rays.mode=multires", "rays.cell=" + tolerance, one} : Words{one};
       };
       const core::DrawRequest plain = with(small, settings("edges=hard"), view_.pose);
       const std::string sweep = std::string(renderer) + " by resolution";
       const int step = options_.is_short ? 4 : 2;
-      for (int times = options_.is_short ? 16 : 32; times > 1; times /= step) {
+      for (int factor = options_.is_short ? 16 : 32; factor > 1; factor /= step) {
         report::Configuration& configuration =
-            add(sweep, "1/" + std::to_string(times), renderer, {reduced(plain, times)});
-        configuration.compose = off_axis_magnification(small.view, times);
+            add(sweep, "1/" + std::to_string(factor), renderer, {report::reduced(plain, factor)});
+        configuration.compose = report::magnified(small.view, factor);
         describe(configuration);
       }
-      for (int times = 1; times <= many / 2; times *= step) {
+      for (int factor = 1; factor <= samples_a_side / 2; factor *= step) {
         report::Configuration& configuration =
-            add(sweep, std::to_string(times), renderer, enlarged(plain, times));
-        configuration.compose = average(small.view, times);
+            add(sweep, std::to_string(factor), renderer, report::enlarged(plain, factor));
+        configuration.compose = report::average(small.view, factor);
         describe(configuration);
       }
-      // Three values are no sweep.
+      // Three values of a setting are too few for a sweep.
       for (const int samples : {1, 2, 4}) {
         const std::string setting = "samples=" + std::to_string(samples);
         report::Configuration& configuration = add(std::string(renderer) + ", " + setting, setting, renderer,
                                                    {with(small, settings(setting), view_.pose)});
         describe(configuration);
-        configuration.is_chosen = samples == 1 && is_rays == (chosen_ == kRayBackend);
+        configuration.is_chosen = samples == 1 && is_rays == (chosen_ == core::Backend::kRay);
       }
     }
   }
 
   void add_panoramas() {
-    const Standing standing{view_.pose, planet_.radius_m(), with(base_, {"edges=hard"}, view_.pose)};
-    // No power of two: its pixel middles are those of no other.
+    const PanoramaView camera{view_.pose, planet_.radius_m(), with(base_, {"edges=hard"}, view_.pose)};
+    // No power of two, so that its pixel centres coincide with those of no other width.
     const panorama::PanoramaMap exact = cylinder_of(500);
     const std::size_t reference = subject_.references.size();
-    subject_.references.push_back({panorama::round_view(exact, {view_.pose, planet_.radius_m()}),
-                                   kRayImages,
-                                   requests_of(exact, standing),
-                                   {},
-                                   true});
+    subject_.references.push_back(
+        {panorama::round_view(exact, panorama::viewpoint_of(view_.pose, planet_.radius_m())),
+         kRayImages,
+         requests_of(exact, camera),
+         {},
+         true});
     std::vector<int> facets{0, 4, 8, 16};
     if (options_.is_short) facets = {0, 8};
     std::vector<std::int64_t> widths{128, 256, 512, 1024, 2048, 4096, 8192, 16384};
     if (options_.is_short) widths = {64, 256, 1024, 8192};
-    for (const int many : facets) {
-      const std::string sweep = many == 0 ? "cylinder by columns" : std::to_string(many) + " facets by columns";
+    for (const int count : facets) {
+      const std::string sweep =
+          count == 0 ? "cylinder by columns" : std::to_string(count) + " facets by columns";
       for (const std::int64_t width : widths) {
-        const panorama::PanoramaMap map = many == 0 ? cylinder_of(width) : facets_of(many, width);
+        const panorama::PanoramaMap map = count == 0 ? cylinder_of(width) : facets_of(count, width);
         report::Configuration& configuration =
-            add(sweep, std::to_string(width) + " columns", kRayImages, requests_of(map, standing));
+            add(sweep, std::to_string(width) + " columns", kRayImages, requests_of(map, camera));
         configuration.compose = resample(map, exact);
         configuration.plot = configuration.comparison_group = kPanorama;
         configuration.reference = reference;
@@ -227,7 +232,7 @@ class Planner {
   const paging::PlanetFile& planet_;
   ConfigurationOptions options_;
   core::DrawRequest base_;
-  std::string chosen_;  // backend, when none is named
+  core::Backend chosen_ = core::Backend::kPolygon;  // when none is named
   report::Subject subject_;
 };
 

@@ -1,4 +1,4 @@
-// The ways of `vpe report error-time`: which knobs are turned, how far, and what counts as exact.
+// The configurations of `vpe report error-time`: the swept settings, their values, and the exact references.
 #pragma once
 
 #include "paging/planet/planet_file.h"
@@ -7,7 +7,7 @@
 
 namespace vpe::app {
 
-// Names of renderers that ways ask for.
+// Names of the renderers that configurations use.
 inline constexpr const char* kTriangles = "triangles";
 inline constexpr const char* kPlainTriangles = "triangles without textures";
 inline constexpr const char* kRayImages = "rays";
@@ -16,12 +16,12 @@ inline constexpr const char* kEmbreeRanges = "Embree";
 struct ConfigurationOptions {
   int width = 640;
   int height = 360;
-  bool is_short = false;     // fewer values of every knob, smaller images of many samples and panoramas
-  bool has_gpu = false;      // for what is drawn when no backend is named
-  bool with_embree = false;  // which is the baseline then
+  bool is_short = false;     // fewer values of every setting, smaller images of many samples and panoramas
+  bool has_gpu = false;      // decides what is drawn when no backend is named
+  bool with_embree = false;  // adds Embree, as the baseline
 };
 
-// All sweeps of one view. The baseline is rays in mode exact, or Embree's ranges.
+// Returns all sweeps of one view. The baseline is rays in mode exact, or Embree's ranges.
 report::Subject subject_of(const NamedView& view, const paging::PlanetFile& planet,
                            const ConfigurationOptions& options);
 

@@ -31,20 +31,20 @@ constexpr Place kEmbedded[] = {
     {"polar", "1500 km above the north pole", 0, 89.9995, 1.5e6, 40, -80, false},
 };
 
-struct TerrainQuery {
+struct GroundPoint {
   mars::LonLat place;
   double height_m = 0;
 };
 
-TerrainQuery ground_at(const paging::Surface& surface, const mars::ChartRect& rect, double u, double v) {
+GroundPoint ground_at(const paging::Surface& surface, const mars::ChartRect& rect, double u, double v) {
   const glm::dvec3 direction =
       mars::chart_direction(rect.face, std::lerp(rect.u0, rect.u1, u), std::lerp(rect.v0, rect.v1, v));
   return {mars::lon_lat(direction), surface.at(direction).height_m};
 }
 
-// A finest tile of the deepest level, and what stands out on it.
+// The extremes of a finest tile of the deepest level.
 struct Landmarks {
-  TerrainQuery lowest, highest, middle;
+  GroundPoint lowest, highest, middle;
 };
 
 Landmarks landmarks(const paging::Surface& surface, const lod::TileKey& key) {
@@ -54,7 +54,7 @@ Landmarks landmarks(const paging::Surface& surface, const lod::TileKey& key) {
   found.lowest = found.highest = found.middle = ground_at(surface, rect, 0.5, 0.5);
   for (int j = 1; j < kSteps; ++j) {
     for (int i = 1; i < kSteps; ++i) {
-      const TerrainQuery ground =
+      const GroundPoint ground =
           ground_at(surface, rect, static_cast<double>(i) / kSteps, static_cast<double>(j) / kSteps);
       if (ground.height_m < found.lowest.height_m) found.lowest = ground;
       if (ground.height_m > found.highest.height_m) found.highest = ground;
@@ -63,16 +63,16 @@ Landmarks landmarks(const paging::Surface& surface, const lod::TileKey& key) {
   return found;
 }
 
-// Deepest tiles with data in their middle, the one with the most relief or with the least.
+// Returns the deepest tile with the largest or smallest range of heights among those with data in their middle.
 lod::TileKey deepest_tile(const paging::Surface& surface, bool roughest) {
   std::vector<lod::TileInfo> tiles;
   for (const lod::TileInfo& tile : surface.planet().tree().tiles()) {
     if (tile.key.level == surface.planet().meta().finest_level) tiles.push_back(tile);
   }
   std::stable_sort(tiles.begin(), tiles.end(), [&](const lod::TileInfo& a, const lod::TileInfo& b) {
-    const double height_error_a = a.max_height_m - a.min_height_m;
-    const double height_error_b = b.max_height_m - b.min_height_m;
-    return roughest ? height_error_a > height_error_b : height_error_a < height_error_b;
+    const double range_a_m = a.max_height_m - a.min_height_m;
+    const double range_b_m = b.max_height_m - b.min_height_m;
+    return roughest ? range_a_m > range_b_m : range_a_m < range_b_m;
   });
   for (const lod::TileInfo& tile : tiles) {
     const mars::ChartRect rect = lod::chart_rect(tile.key);
@@ -102,15 +102,13 @@ std::vector<NamedView> views_of(const paging::Surface& surface) {
   const double tile_m = spacing_m * meta.tile.intervals();
   const Landmarks rough = landmarks(surface, deepest_tile(surface, true));
   const Landmarks smooth = landmarks(surface, deepest_tile(surface, false));
-  const TerrainQuery pole{{0, 89.9995}, surface.at(mars::direction({0, 89.9995})).height_m};
+  const GroundPoint pole{{0, 89.9995}, surface.at(mars::direction({0, 89.9995})).height_m};
   std::vector<NamedView> views;
-  const auto add = [&](const char* name, const TerrainQuery& from, double height_m, double yaw_deg,
+  const auto add = [&](const char* name, const GroundPoint& from, double height_m, double yaw_deg,
                        double pitch_deg, bool panorama) {
-    const auto rounded = [](double value, double unit) {
-      return base::format_number(std::round(value / unit) * unit);
-    };
-    const std::string about = rounded(height_m, 1) + " m above the ground at " +
-                              rounded(from.place.lon_deg, 0.001) + ", " + rounded(from.place.lat_deg, 0.001);
+    const std::string about = base::format_rounded(height_m, 0) + " m above the ground at " +
+                              base::format_rounded(from.place.lon_deg, 3) + ", " +
+                              base::format_rounded(from.place.lat_deg, 3);
     views.push_back(
         {name, about,
          mars::Pose{from.place.lon_deg, from.place.lat_deg, from.height_m + height_m, yaw_deg, pitch_deg, 0},

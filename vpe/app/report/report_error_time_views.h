@@ -13,14 +13,16 @@ struct NamedView {
   std::string name;
   std::string about;
   mars::Pose pose;
-  bool panorama = false;  // near enough to the ground to look around
+  bool panorama = false;  // near enough to the ground for panoramas
 };
 
-// Of the embedded Mars: orbit, high oblique, canyon floor, rim, crater, plain, grazing, polar.
+// Returns the views of the embedded Mars: orbit, high oblique, canyon floor, rim, crater, plain, grazing,
+// polar.
 std::vector<NamedView> embedded_views(const paging::Surface& surface);
 
-// The same names for any planet: about its roughest and its smoothest finest tile with data, and at the pole.
-// Heights go by the posts' spacing there. Throws paging::PlanetError for tiles that cannot be read.
+// Returns views of the same names for any planet: at its roughest and its smoothest finest tile with data, and
+// at the pole. Heights scale with the post spacing there. Throws paging::PlanetError for tiles that cannot be
+// read.
 std::vector<NamedView> views_of(const paging::Surface& surface);
 
 }  // namespace vpe::app

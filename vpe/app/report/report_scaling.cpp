@@ -29,7 +29,7 @@ void check_sides(const char* option, const std::vector<int>& sides) {
   const bool rising = std::adjacent_find(sides.begin(), sides.end(), std::greater_equal<>()) == sides.end();
   if (sides.size() >= 2 && rising && std::all_of(sides.begin(), sides.end(), is_side)) return;
   throw UsageError(std::string(option) +
-                   ": expected two or more of 257, 513, 1025, 2049, 4097, 8193, 16385, rising");
+                   ": expected two or more of 257, 513, 1025, 2049, 4097, 8193, 16385, in rising order");
 }
 
 ScalingPlan make_plan(const ScalingArguments& arguments, const Common& common) {
@@ -44,7 +44,7 @@ ScalingPlan make_plan(const ScalingArguments& arguments, const Common& common) {
   return plan;
 }
 
-// Shares of the time that a run takes, for the progress.
+// Share of the time, for the progress.
 constexpr double kBuildShare = 0.6;
 
 class Steps {
@@ -75,23 +75,24 @@ double count_images(const ScalingPlan& plan) {
 }
 
 const char* about(const std::string& axis) {
-  if (axis == "builder") return "What a build costs, over the finest posts of the planet.";
+  if (axis == "builder") return "Cost of a build over the finest posts of the planet.";
   if (axis == "grid")
     return "Grids of posts 10 m apart, from a few kilometres to the whole patch, seen from 500 m above their "
            "middle.";
   if (axis == "depth")
-    return "One patch of 42 km, one eye, ever finer posts. The exponent is that of time over posts a side: the "
-           "power of two by which it grows for a doubling of the resolution, which is a level of the tree.";
+    return "One patch of 42 km and one camera, with ever finer posts. The exponent is that of time over posts "
+           "a side: time grows by 2 to that power for a doubling of the resolution, which is one level of the "
+           "tree.";
   if (axis == "image") return "One view in ever more pixels, from 500 m above the deepest planet.";
-  if (axis == "threads") return "The same view on more threads. threads^-1 is a perfect share.";
-  return "Ever faster over the deepest planet.";
+  if (axis == "threads") return "The same view on more threads. The exponent of perfect scaling is -1.";
+  return "Flights over the deepest planet at ever higher speed.";
 }
 
-report::Page make_page(const RunFacts& facts, const std::vector<report::Law>& laws,
+report::Page make_page(const report::RunFacts& facts, const std::vector<report::Law>& laws,
                        const report::Table& planets, const report::Table& flights) {
   report::Page page;
   page.title = "How costs grow";
-  page.paragraphs = to_paragraphs(facts);
+  page.paragraphs = report::to_paragraphs(facts);
   page.sections.push_back({"Exponents", {}, {}, {report::law_table(laws)}});
   std::string axis;
   for (const auto& [of, y_name] : report::law_plots(laws)) {
@@ -103,7 +104,7 @@ report::Page make_page(const RunFacts& facts, const std::vector<report::Law>& la
     axis = of;
     page.sections.back().plots.push_back(report::law_plot(laws, of, y_name));
   }
-  page.sections.push_back({"All that was measured", {}, {}, {report::sample_table(laws)}});
+  page.sections.push_back({"All measurements", {}, {}, {report::sample_table(laws)}});
   return page;
 }
 
@@ -114,8 +115,8 @@ void print_laws(const std::vector<report::Law>& laws) {
     std::printf("%-8s %-28s %-12s over %-40s ^ %s%s\n", law.axis.c_str(), law.what.c_str(), law.y_name.c_str(),
                 law.x_name.c_str(), report::exponent_text(fitted->growth).c_str(),
                 !fitted->holds   ? ""
-                : *fitted->holds ? "  as asked for"
-                                 : "  NOT as asked for");
+                : *fitted->holds ? "  meets the aim"
+                                 : "  MISSES the aim");
   }
 }
 
@@ -123,7 +124,7 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
   const ScalingPlan plan = make_plan(arguments, common);
   const std::filesystem::path folder = arguments.folder;
   check_report_folder(folder);
-  RunFacts facts = read_run_facts(common);
+  report::RunFacts facts = read_run_facts(common);
   const InterruptGuard guard;
   const std::shared_ptr<gl::Context> context = gl::Context::create();
   facts.opengl = context->info().renderer + ", " + context->info().version;
@@ -144,7 +145,7 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
   };
   measure("size of the grid", measure_grid);
   measure("depth of the planet", measure_depth);
-  measure("size of the picture", measure_image);
+  measure("size of the image", measure_image);
   measure("threads", measure_threads);
   what = "flights";
   FlightFigures flights = measure_flights(bench);
@@ -153,12 +154,9 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
   const report::Table fits = report::law_table(laws);
   const report::Table samples = report::sample_table(laws);
   const report::Table built = planets.table();
-  nlohmann::json json{{"run", to_json(facts)},
-                      {"load_after", load_now()},
-                      {"laws", report::to_json(fits)},
-                      {"samples", report::to_json(samples)},
-                      {"planets", report::to_json(built)},
-                      {"flights", report::to_json(flights.table)}};
+  nlohmann::json json{{"run", report::to_json(facts)},     {"load_after", report::load_now()},
+                      {"laws", report::to_json(fits)},     {"samples", report::to_json(samples)},
+                      {"planets", report::to_json(built)}, {"flights", report::to_json(flights.table)}};
   report::Page page = make_page(facts, laws, built, flights.table);
   write_report(folder, "scaling", page, json, {fits, samples, built, flights.table});
   if (common.json) {
@@ -172,10 +170,10 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
 
 }  // namespace
 
-report::Page scaling_report(const ReportRequest& order, const Common& common) {
+report::Page scaling_report(const ReportRequest& request, const Common& common) {
   ScalingArguments arguments;
-  arguments.folder = order.folder.string();
-  arguments.brief = order.is_short;
+  arguments.folder = request.folder.string();
+  arguments.brief = request.is_short;
   return report_scaling(arguments, common);
 }
 
@@ -183,22 +181,22 @@ void add_report_scaling(CLI::App& report, Common& common) {
   auto arguments = std::make_shared<ScalingArguments>();
   CLI::App* command = add_command(
       report, "scaling",
-      "How costs grow with grid, depth, picture, threads and speed: exponents, plots. Builds its own "
-      "planets. Each renderer may use --memory",
+      "Measure how costs grow with grid, depth, image size, threads and speed, with exponents and plots. "
+      "Builds its own planets. Each renderer may use --memory",
       common, true);
   command->add_option("-o,--output", arguments->folder, "Folder for scaling.html, scaling.json and CSV files")
       ->required();
   command
       ->add_option("--sizes", arguments->grid_sides,
-                   "Posts a side of the growing grids, 2^n + 1, as in 257,513")
+                   "Posts a side of the growing grids, 2^n + 1, such as 257,513")
       ->delimiter(',');
   command->add_option("--depths", arguments->depth_sides, "Posts a side of the ever finer grids, 2^n + 1")
       ->delimiter(',');
-  command->add_option("--rounds", arguments->rounds, "How often each time is taken")
+  command->add_option("--rounds", arguments->rounds, "Number of times that each image is timed")
       ->check(CLI::Range(1, 1000));
   command->add_flag("--full", arguments->full,
-                    "Grids up to 16385 posts a side and pictures up to 3840x2160: some 3 GB of disk");
-  command->add_flag("--short", arguments->brief, "The smallest sizes alone, under a minute");
+                    "Grids up to 16385 posts a side and images up to 3840x2160; needs about 3 GB of disk");
+  command->add_flag("--short", arguments->brief, "Only the smallest sizes; under a minute");
   command->callback([arguments, &common] { report_scaling(*arguments, common); });
 }
 

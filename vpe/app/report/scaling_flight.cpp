@@ -1,3 +1,4 @@
+// The flights of `vpe report scaling`.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -5,6 +6,7 @@
 
 #include "lod/frame_budget.h"
 #include "vpe/app/report/scaling_run.h"
+#include "vpe/base/quantile.h"
 
 namespace vpe::app {
 namespace {
@@ -12,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kAltitude_m = 2000;  // above the sphere: over the highest ground
-constexpr double kMargin = 0.05;      // of the patch at either end
+constexpr double kMargin = 0.05;      // of the patch, at either end
 constexpr double kAhead_s[] = {0.25, 1.0};
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
@@ -25,7 +27,7 @@ struct Flown {
   double flown_s = 0;
 
   double share_over_budget() const {
-    // A frame that is late by less than a tenth is not seen.
+    // Nobody sees that a frame is late by less than a tenth.
     const auto late =
         std::count_if(frame_ms.begin(), frame_ms.end(), [](double ms) { return ms > 1.1 * kFlightBudget_ms; });
     return static_cast<double>(late) / static_cast<double>(frame_ms.size());
@@ -46,9 +48,9 @@ class Course {
     length_m_ = mars::angle_between_rad(from_, to_) * (radius_m + kAltitude_m);
   }
 
-  // To and fro where the speed is enough to come to the end.
-  core::View at(double way_m) const {
-    const double part = way_m / length_m_;
+  // Returns the view after this distance. The course goes back and forth.
+  core::View at(double distance_m) const {
+    const double part = distance_m / length_m_;
     const double folded = std::abs(part - 2 * std::floor((part + 1) / 2));
     const mars::LonLat place = mars::lon_lat(mars::slerp(from_, to_, folded));
     const mars::LonLat end = mars::lon_lat(mars::slerp(from_, to_, 1.1));
@@ -69,15 +71,15 @@ class Course {
 };
 
 Flown fly(const ScalingBench& bench, const PatchSpec& spec, const Course& course, double speed_m_s) {
-  const std::unique_ptr<core::Renderer> renderer = make_configuration(bench, kPolygons, spec);
-  // The sun stands still, as over a film's start: another one is another look of every tile.
-  const core::DrawRequest first = configuration_request(kPolygons, course.at(0));
+  const std::unique_ptr<core::Renderer> renderer = make_scaling_renderer(bench, kPolygons, spec);
+  // The sun stands still: another direction would shade every tile anew.
+  const core::DrawRequest first = scaling_request(kPolygons, course.at(0));
   lod::FrameBudgetOptions budget;
   budget.budget_ms = kFlightBudget_ms;
   lod::FrameBudgetState state;
   Flown flown;
   renderer->draw(first);
-  // Not counted: at first all comes that lies ahead.
+  // At first, tiles for everything ahead arrive. That time is not counted.
   const double start_s = bench.plan.flight_s / 4;
   const auto start = Clock::now();
   while (flown.frame_ms.empty() || seconds(Clock::now() - start) < bench.plan.flight_s) {
@@ -99,7 +101,7 @@ Flown fly(const ScalingBench& bench, const PatchSpec& spec, const Course& course
       flown.incomplete += result.stats.tiles_missing > 0 ? 1 : 0;
     }
     lod::next_multiplier(budget, {request.coarsening, ms}, state);
-    // A window draws no more than its screen shows.
+    // A window draws no more frames than its screen shows.
     std::this_thread::sleep_until(begin + std::chrono::milliseconds(static_cast<int>(kFlightBudget_ms)));
   }
   flown.flown_s = seconds(Clock::now() - start) - start_s;
@@ -112,17 +114,17 @@ FlightFigures measure_flights(const ScalingBench& bench) {
   FlightFigures out;
   out.table = {
       "scaling-flights",
-      "Flights at 2 km over the deepest planet, in polygons, as a window draws them: a frame every 33 ms "
-      "at most, tiles come while it flies, the controller draws coarser to hold 33 ms.",
-      {{"speed_m_s", "over the ground"},
-       {"frames", "that were drawn"},
-       {"frame_median_ms", "time of a frame"},
-       {"frame_p95_ms", "time of a frame"},
-       {"late_share", "frames longer than 1.1 times the budget"},
-       {"pages_per_s", "meshes and textures that came"},
-       {"pages_per_km", "meshes and textures that came"},
-       {"incomplete_share", "frames in which coarser tiles stood in for missing ones"},
-       {"coarsening_median", "factor on the tolerance"}},
+      "Flights at 2 km over the deepest planet, in polygons, as a window draws them: at most a frame every "
+      "33 ms, tiles arrive during the flight, and the controller draws coarser to keep to 33 ms.",
+      {{"speed_m_s", "speed over the ground"},
+       {"frames", "number of frames drawn"},
+       {"frame_median_ms", "time of a frame, median"},
+       {"frame_p95_ms", "time of a frame, 95 % quantile"},
+       {"late_share", "share of frames longer than 1.1 times the budget"},
+       {"pages_per_s", "meshes and textures that arrived"},
+       {"pages_per_km", "meshes and textures that arrived"},
+       {"incomplete_share", "share of frames with coarser tiles in place of ones not loaded yet"},
+       {"coarsening_median", "factor on the tolerance, median"}},
       {}};
   report::Law pages{"speed", "polygons", "speed_m_s", "pages_per_s", {}, {}, {}};
   report::Law frames{"speed", "polygons", "speed_m_s", "frame_s", {}, {}, {}};
@@ -132,11 +134,10 @@ FlightFigures measure_flights(const ScalingBench& bench) {
     Flown flown = fly(bench, spec, course, speed_m_s);
     const double per_s = flown.pages / flown.flown_s;
     const double median_ms = report::median(flown.frame_ms);
-    std::vector<double> sorted = flown.frame_ms;
-    std::sort(sorted.begin(), sorted.end());
-    const double p95_ms = sorted[static_cast<std::size_t>(0.95 * static_cast<double>(sorted.size() - 1))];
-    out.table.add({speed_m_s, static_cast<double>(sorted.size()), median_ms, p95_ms, flown.share_over_budget(),
-                   per_s, 1e3 * per_s / speed_m_s, flown.share_incomplete(), report::median(flown.multiplier)});
+    const double p95_ms = base::quantile_floor(flown.frame_ms, 0.95);
+    out.table.add({speed_m_s, static_cast<double>(flown.frame_ms.size()), median_ms, p95_ms,
+                   flown.share_over_budget(), per_s, 1e3 * per_s / speed_m_s, flown.share_incomplete(),
+                   report::median(flown.multiplier)});
     pages.samples.push_back({speed_m_s, {per_s}});
     frames.samples.push_back({speed_m_s, {1e-3 * median_ms}});
   }

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 constexpr lod::TileKey kPlace{mars::Face::kPlusX, 7, 75, 52};
 constexpr int kGridFinestLevel = 12;  // posts of 10 m
-// Planets of fewer posts are built several times: they are done in seconds.
+// Planets of fewer posts are built several times, as each build takes seconds.
 constexpr double kFewPosts = 4e6;
 
 int levels_below(int side_posts) {
@@ -19,8 +19,8 @@ int levels_below(int side_posts) {
   return levels;
 }
 
-// Of a planet, for the progress: the patch and the tiles about it.
-double posts_about(const PatchSpec& spec) {
+// Returns an estimate of a planet's posts, in the patch and the tiles around it, for the progress.
+double estimated_posts(const PatchSpec& spec) {
   const double side = spec.side_posts();
   return side * side + 16641.0 * 9 * spec.finest_level();
 }
@@ -38,7 +38,7 @@ PatchSpec depth_patch(int side_posts) { return {kPlace, levels_below(side_posts)
 
 PatchSpec grid_patch(int side_posts) {
   const int below = levels_below(side_posts);
-  // The tile of its level about the middle of the place.
+  // The tile of the patch's level at the middle of the place.
   const mars::ChartRect rect = lod::chart_rect(kPlace);
   const mars::ChartPoint middle{kPlace.face, (rect.u0 + rect.u1) / 2, (rect.v0 + rect.v1) / 2};
   return {lod::tile_at(middle, kGridFinestLevel - below), below};
@@ -56,25 +56,25 @@ ScalingPlanets::~ScalingPlanets() {
 
 void ScalingPlanets::build(const std::vector<PatchSpec>& specs, int rounds,
                            const std::function<void(double)>& step) {
-  struct Turn {
+  struct PlannedBuild {
     PatchSpec spec;
     int round;
   };
-  std::vector<Turn> interleaved;
+  std::vector<PlannedBuild> builds;
   double all = 0;
   for (int round = 0; round < rounds; ++round) {
     for (const PatchSpec& spec : specs) {
-      if (built_.contains(name(spec)) || (round > 0 && posts_about(spec) > kFewPosts)) continue;
-      interleaved.push_back({spec, round});
-      all += posts_about(spec);
+      if (built_.contains(name(spec)) || (round > 0 && estimated_posts(spec) > kFewPosts)) continue;
+      builds.push_back({spec, round});
+      all += estimated_posts(spec);
     }
   }
   double done = 0;
-  for (const auto& [spec, round] : interleaved) {
-    const double part = posts_about(spec);
+  for (const auto& [spec, round] : builds) {
+    const double part = estimated_posts(spec);
     const fs::path file = folder_ / ("patch-" + std::to_string(spec.patch.level) + "-" +
                                      std::to_string(spec.side_posts()) + ".vpe");
-    if (round == 0 && built_.contains(name(spec))) continue;  // of both series
+    if (round == 0 && built_.contains(name(spec))) continue;  // both series have it
     Built& built = built_[name(spec)];
     built.spec = spec;
     built.build.planet.reset();
@@ -95,29 +95,28 @@ std::shared_ptr<const paging::PlanetFile> ScalingPlanets::planet(const PatchSpec
 report::Table ScalingPlanets::table() const {
   report::Table table{
       "scaling-planets",
-      "Planets that were built. Processor time is the builder's, without what the made-up ground "
-      "took; wall time is with it.",
-      {{"side_posts", "of the patch"},
-       {"spacing_m", "of its posts"},
-       {"patch_level", "of the tile that the patch is, 1 = a cube face"},
-       {"finest_level", "1 = a cube face"},
-       {"finest_posts", "of all finest tiles, those outside of the patch too"},
-       {"tiles", "in the file"},
-       {"bytes", "of the file"},
-       {"processor_s", "median"},
-       {"wall_s", "median"},
-       {"processor_us_per_post", "median"},
-       {"rounds", "how often it was built"}},
+      "The planets. Processor time is the builder's, without the time for the made-up terrain; wall time "
+      "includes it.",
+      {{"side_posts", "posts a side of the patch"},
+       {"spacing_m", "between its posts"},
+       {"patch_level", "level of the tile that the patch covers; 0 = a cube face"},
+       {"finest_level", "finest level of the planet; 0 = a cube face"},
+       {"finest_posts", "posts of all finest tiles, also outside the patch"},
+       {"tiles", "tiles in the file"},
+       {"bytes", "size of the file"},
+       {"processor_s", "processor time of a build, median"},
+       {"wall_s", "wall time of a build, median"},
+       {"processor_us_per_post", "processor time a finest post, median"},
+       {"rounds", "number of builds"}},
       {}};
   for (const auto& [key, built] : built_) {
     const double processor_s = report::median(built.processor_s);
     const auto posts = static_cast<double>(built.build.finest_posts);
     table.add({static_cast<double>(built.spec.side_posts()), built.spec.spacing_m(),
-               static_cast<double>(built.spec.patch.level + 1),
-               static_cast<double>(built.spec.finest_level() + 1), posts,
-               static_cast<double>(built.build.planet->tree().size()), static_cast<double>(built.build.bytes),
-               processor_s, report::median(built.wall_s), 1e6 * processor_s / posts,
-               static_cast<double>(built.processor_s.size())});
+               static_cast<double>(built.spec.patch.level), static_cast<double>(built.spec.finest_level()),
+               posts, static_cast<double>(built.build.planet->tree().size()),
+               static_cast<double>(built.build.bytes), processor_s, report::median(built.wall_s),
+               1e6 * processor_s / posts, static_cast<double>(built.processor_s.size())});
   }
   return table;
 }

@@ -13,30 +13,31 @@
 
 namespace vpe::app {
 
-// Grids of 10 m posts whose patch grows, and grids over one patch of 42 km whose posts get finer. `side_posts`
-// is 2^n + 1 with n from 8 to 14. Both are the same planet at 4097 posts.
+// Return a grid of 10 m posts whose patch grows with side_posts, and a grid over one patch of 42 km whose posts
+// get finer. side_posts is 2^n + 1 with n from 8 to 14. Both are the same planet at 4097 posts.
 PatchSpec grid_patch(int side_posts);
 PatchSpec depth_patch(int side_posts);
+// Returns true for a valid side_posts.
 bool is_side(int posts);
 
-// One thread.
+// Builds planets and keeps them until the end. Use it from one thread at a time.
 class ScalingPlanets {
  public:
-  // `folder` is made, and removed again with all that is in it.
+  // Makes the folder; the destructor removes it with its content.
   ScalingPlanets(std::filesystem::path folder, int threads);
   ~ScalingPlanets();
   ScalingPlanets(const ScalingPlanets&) = delete;
   ScalingPlanets& operator=(const ScalingPlanets&) = delete;
 
-  // Builds those that are not there yet, small ones `rounds` times. `step` is called with the fraction of the
-  // work that is done, and may throw.
+  // Builds the planets that do not exist yet, small ones `rounds` times. Calls `step` with the fraction of the
+  // work that is done; it may throw to stop.
   void build(const std::vector<PatchSpec>& specs, int rounds, const std::function<void(double)>& step);
 
   std::shared_ptr<const paging::PlanetFile> planet(const PatchSpec& spec) const;
 
-  // A row a planet.
+  // Returns a row for each planet.
   report::Table table() const;
-  // Of all planets: the builder's processor time, posts and bytes.
+  // Returns the laws of the builder over all planets: processor time, bytes and cells.
   std::vector<report::Law> laws() const;
 
  private:

@@ -5,10 +5,10 @@
 
 #include "mars/geodesy/sun.h"
 #include "paging/surface/surface.h"
-#include "vpe/app/cli/processor_time.h"
 #include "vpe/base/parallel.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/report/interleaved_timing.h"
+#include "vpe/report/processor_time.h"
 #include "vpe/voxel/ray_renderer.h"
 
 namespace vpe::app {
@@ -21,7 +21,7 @@ std::vector<int> doublings_to(int most) {
   return all;
 }
 
-// Images of one way, one for each x.
+// The images of one method, one for each x.
 class Images {
  public:
   explicit Images(const ScalingBench& bench) : bench_(bench) {}
@@ -30,7 +30,7 @@ class Images {
     shots_.push_back({x, std::move(renderer), request, {}, {}});
   }
 
-  // Times of frames, processor times of frames under the same law, and what was counted in each frame.
+  // Returns three laws: times of frames, their processor times, and what was counted in each frame.
   std::vector<report::Law> measure(report::Law time, report::Law count,
                                    const std::function<double(const core::DrawResult&)>& counted) {
     std::vector<std::function<void()>> cases;
@@ -39,16 +39,16 @@ class Images {
       x.push_back(shot.x);
       cases.emplace_back([this, &shot, &counted] {
         bench_.step();
-        const double begin_s = processor_s();
+        const double begin_s = report::processor_s();
         shot.count = counted(shot.renderer->draw(shot.request));
-        shot.processor_s.push_back(processor_s() - begin_s);
+        shot.processor_s.push_back(report::processor_s() - begin_s);
       });
     }
     report::Law processor = time;
     processor.y_name = "processor_s";
     time.samples = report::timed_samples(x, report::time_interleaved(cases, bench_.plan.rounds));
     for (Shot& shot : shots_) {
-      shot.processor_s.erase(shot.processor_s.begin());  // the round that does not count
+      shot.processor_s.erase(shot.processor_s.begin());  // the untimed round
       processor.samples.push_back({shot.x, shot.processor_s});
       count.samples.push_back({shot.x, {shot.count}});
     }
@@ -61,7 +61,7 @@ class Images {
     std::unique_ptr<core::Renderer> renderer;
     core::DrawRequest request;
     double count;
-    std::vector<double> processor_s;  // a round each
+    std::vector<double> processor_s;  // one for each round
   };
   const ScalingBench& bench_;
   std::vector<Shot> shots_;
@@ -71,18 +71,17 @@ double triangles(const core::DrawResult& result) { return static_cast<double>(re
 double rays(const core::DrawResult& result) { return static_cast<double>(result.frame.colour.size()); }
 double tiles(const core::DrawResult& result) { return static_cast<double>(result.stats.tiles_drawn); }
 
-std::vector<report::Law> measure_configuration(Images& images, const Configuration& configuration,
-                                               const std::string& axis, const std::string& what,
-                                               const std::string& x_name, std::optional<double> least,
-                                               std::optional<double> most) {
+std::vector<report::Law> measure_method(Images& images, const DrawMethod& method, const std::string& axis,
+                                        const std::string& what, const std::string& x_name,
+                                        std::optional<double> least, std::optional<double> most) {
   const report::Law time{axis, what, x_name, "frame_s", least, most, {}};
   report::Law count = time;
   count.least_exponent.reset();
   count.most_exponent.reset();
-  // Only of larger images are there more rays.
-  const bool counts_rays = !configuration.polygons && axis == "image";
-  count.y_name = configuration.polygons ? "triangles" : counts_rays ? "rays" : "tiles";
-  return images.measure(time, count, configuration.polygons ? triangles : counts_rays ? rays : tiles);
+  // Only larger images have more rays.
+  const bool counts_rays = !method.polygons && axis == "image";
+  count.y_name = method.polygons ? "triangles" : counts_rays ? "rays" : "tiles";
+  return images.measure(time, count, method.polygons ? triangles : counts_rays ? rays : tiles);
 }
 
 void append(std::vector<report::Law>& laws, std::vector<report::Law> more) {
@@ -124,28 +123,27 @@ ScalingPlan short_scaling() {
   return plan;
 }
 
-std::unique_ptr<core::Renderer> make_configuration(const ScalingBench& bench,
-                                                   const Configuration& configuration, const PatchSpec& spec,
-                                                   int threads) {
+std::unique_ptr<core::Renderer> make_scaling_renderer(const ScalingBench& bench, const DrawMethod& method,
+                                                      const PatchSpec& spec, int threads) {
   const auto planet = bench.planets.planet(spec);
-  if (!configuration.polygons) return voxel::make_ray_renderer(planet, {bench.plan.memory_bytes, threads});
+  if (!method.polygons) return voxel::make_ray_renderer(planet, {bench.plan.memory_bytes, threads});
   gl::RendererOptions options;
   options.memory_bytes = bench.plan.memory_bytes;
   options.threads = threads;
   return gl::make_polygon_renderer(bench.context, planet, options);
 }
 
-core::DrawRequest configuration_request(const Configuration& configuration, const core::View& view) {
+core::DrawRequest scaling_request(const DrawMethod& method, const core::View& view) {
   core::DrawRequest request;
   request.view = view;
-  request.settings.ray_mode = configuration.rays;
+  request.settings.ray_mode = method.rays;
   request.sun = mars::sun_direction(mars::lon_lat(view.camera.position_m), request.settings.sun_azimuth_deg,
                                     request.settings.sun_elevation_deg);
   return request;
 }
 
-core::View look_at(std::shared_ptr<const paging::PlanetFile> planet, const PatchSpec& spec, const Look& look,
-                   Size size) {
+core::View view_of(const PatchView& patch_view, std::shared_ptr<const paging::PlanetFile> planet,
+                   const PatchSpec& spec, Size size) {
   const double radius_m = planet->radius_m();
   const mars::ChartRect rect = lod::chart_rect(spec.patch);
   const glm::dvec3 middle =
@@ -154,7 +152,7 @@ core::View look_at(std::shared_ptr<const paging::PlanetFile> planet, const Patch
   const mars::LonLat place = mars::lon_lat(middle);
   core::View view;
   view.camera = mars::to_camera(
-      {place.lon_deg, place.lat_deg, ground_m + look.height_m, 22.5, look.pitch_deg, 0}, radius_m);
+      {place.lon_deg, place.lat_deg, ground_m + patch_view.height_m, 22.5, patch_view.pitch_deg, 0}, radius_m);
   view.width = size.width;
   view.height = size.height;
   return view;
@@ -162,16 +160,14 @@ core::View look_at(std::shared_ptr<const paging::PlanetFile> planet, const Patch
 
 std::vector<report::Law> measure_grid(const ScalingBench& bench) {
   std::vector<report::Law> laws;
-  for (const Configuration& configuration : {kPolygons, kExactRays, kMultiresRays}) {
+  for (const DrawMethod& method : {kPolygons, kExactRays, kMultiresRays}) {
     Images images(bench);
     for (const int side : bench.plan.grid_sides) {
       const PatchSpec spec = grid_patch(side);
-      const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.size);
-      images.add(side, make_configuration(bench, configuration, spec),
-                 configuration_request(configuration, view));
+      const core::View view = view_of(kNear, bench.planets.planet(spec), spec, bench.plan.size);
+      images.add(side, make_scaling_renderer(bench, method, spec), scaling_request(method, view));
     }
-    append(laws, measure_configuration(images, configuration, "grid", configuration.name,
-                                       "posts a side, all 10 m apart", {}, {}));
+    append(laws, measure_method(images, method, "grid", method.name, "posts a side, all 10 m apart", {}, {}));
   }
   return laws;
 }
@@ -180,17 +176,17 @@ std::vector<report::Law> measure_depth(const ScalingBench& bench) {
   constexpr double kMostGrowth = 0.1;
   std::vector<report::Law> laws;
   const PatchSpec deepest = depth_patch(bench.plan.depth_sides.back());
-  for (const Look& look : {kNear, kFar}) {
-    const core::View view = look_at(bench.planets.planet(deepest), deepest, look, bench.plan.size);
-    for (const Configuration& configuration : {kPolygons, kMultiresRays, kExactRays}) {
+  for (const PatchView& patch_view : {kNear, kFarView}) {
+    const core::View view = view_of(patch_view, bench.planets.planet(deepest), deepest, bench.plan.size);
+    for (const DrawMethod& method : {kPolygons, kMultiresRays, kExactRays}) {
       Images images(bench);
       for (const int side : bench.plan.depth_sides)
-        images.add(side, make_configuration(bench, configuration, depth_patch(side)),
-                   configuration_request(configuration, view));
-      const bool asked = configuration.polygons || configuration.rays == core::RayMode::kMultires;
-      append(laws, measure_configuration(images, configuration, "depth", configuration.name + " " + look.name,
-                                         "posts a side, all of one patch of 42 km", {},
-                                         asked ? std::optional(kMostGrowth) : std::nullopt));
+        images.add(side, make_scaling_renderer(bench, method, depth_patch(side)),
+                   scaling_request(method, view));
+      const bool has_aim = method.polygons || method.rays == core::RayMode::kMultires;
+      append(laws, measure_method(images, method, "depth", method.name + " " + patch_view.name,
+                                  "posts a side, all of one patch of 42 km", {},
+                                  has_aim ? std::optional(kMostGrowth) : std::nullopt));
     }
   }
   return laws;
@@ -199,33 +195,31 @@ std::vector<report::Law> measure_depth(const ScalingBench& bench) {
 std::vector<report::Law> measure_image(const ScalingBench& bench) {
   std::vector<report::Law> laws;
   const PatchSpec spec = depth_patch(bench.plan.depth_sides.back());
-  for (const Configuration& configuration : {kPolygons, kExactRays, kMultiresRays}) {
+  for (const DrawMethod& method : {kPolygons, kExactRays, kMultiresRays}) {
     Images images(bench);
     for (const Size& size : bench.plan.sizes) {
-      const core::View view = look_at(bench.planets.planet(spec), spec, kNear, size);
-      images.add(static_cast<double>(size.width) * size.height, make_configuration(bench, configuration, spec),
-                 configuration_request(configuration, view));
+      const core::View view = view_of(kNear, bench.planets.planet(spec), spec, size);
+      images.add(static_cast<double>(size.width) * size.height, make_scaling_renderer(bench, method, spec),
+                 scaling_request(method, view));
     }
-    append(laws, measure_configuration(images, configuration, "image", configuration.name, "pixels", {}, {}));
+    append(laws, measure_method(images, method, "image", method.name, "pixels", {}, {}));
   }
   return laws;
 }
 
 std::vector<report::Law> measure_threads(const ScalingBench& bench) {
-  // Within a tenth of threads^-1 on twice as many.
+  // Within a tenth of half the time with twice as many threads.
   const double least = -1 + std::log2(0.9);
   const double most = -1 + std::log2(1.1);
   std::vector<report::Law> laws;
   const PatchSpec spec = depth_patch(bench.plan.depth_sides.back());
-  const core::View view = look_at(bench.planets.planet(spec), spec, kNear, bench.plan.thread_size);
-  for (const Configuration& configuration : {kExactRays, kMultiresRays}) {
+  const core::View view = view_of(kNear, bench.planets.planet(spec), spec, bench.plan.thread_size);
+  for (const DrawMethod& method : {kExactRays, kMultiresRays}) {
     Images images(bench);
     for (const int threads : bench.plan.threads)
-      images.add(threads, make_configuration(bench, configuration, spec, threads),
-                 configuration_request(configuration, view));
-    for (report::Law& law :
-         measure_configuration(images, configuration, "threads", configuration.name, "threads", least, most)) {
-      // All threads together are asked for no less.
+      images.add(threads, make_scaling_renderer(bench, method, spec, threads), scaling_request(method, view));
+    for (report::Law& law : measure_method(images, method, "threads", method.name, "threads", least, most)) {
+      // The processor time of all threads together has no aim.
       if (law.y_name == "processor_s") law.least_exponent = law.most_exponent = {};
       laws.push_back(std::move(law));
     }

@@ -1,14 +1,17 @@
-#include "vpe/app/film/film_folder.h"
+#include "vpe/app/film/film_target.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/temporary.h"
+#include "vpe/base/file.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/image/png_text.h"
 
@@ -27,7 +30,7 @@ const std::string* find(const std::vector<core::PngText>& texts, const char* key
   return found == texts.end() ? nullptr : &found->text;
 }
 
-// "frame_" digits ".png", as frame_file_name() makes them.
+// Returns true for names that frame_file_name() makes.
 bool is_frame_name(const std::string& name) {
   constexpr std::string_view kBegin = "frame_";
   constexpr std::string_view kEnd = ".png";
@@ -51,7 +54,7 @@ std::string frame_file_name(std::int64_t index) {
 
 FilmFolder::FilmFolder(fs::path folder, bool remake) : folder_(std::move(folder)), remake_(remake) {}
 
-void FilmFolder::keep(std::span<FilmFrame> frames, const FilmPlace& /*place*/, base::ThreadPool& pool) {
+void FilmFolder::keep(std::span<FilmFrame> frames, const FilmSlice& /*slice*/, base::ThreadPool& pool) {
   if (remake_) return;
   pool.run(frames.size(), [&](std::size_t n) {
     InterruptGuard::check();
@@ -77,7 +80,7 @@ void FilmFolder::keep(FilmFrame& frame) const {
     frame.checksum = checksum_of(bytes);
     frame.state = FilmFrame::State::kKept;
   } catch (const core::ImageError&) {
-  } catch (const base::FileError&) {  // what cannot be read is made again; writing will say what is wrong
+  } catch (const base::FileError&) {  // the frame is made again; writing it reports what is wrong
   }
 }
 
@@ -95,5 +98,7 @@ void FilmFolder::add(std::int64_t /*group*/, FilmFrame& frame, const core::Frame
   frame.checksum = checksum_of(bytes);
   frame.state = FilmFrame::State::kMade;
 }
+
+json FilmFolder::describe() const { return json::object(); }
 
 }  // namespace vpe::app

@@ -1,0 +1,31 @@
+// Camera poses as values of options.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "mars/geodesy/pose.h"
+#include "paging/planet/planet_file.h"
+
+namespace vpe::app {
+
+// A pose as the user gave it, parsed and checked. Only the planet can tell the altitude of a height above the
+// terrain, so that is resolved later.
+struct ParsedPose {
+  mars::Pose pose;                 // alt_m has no meaning when height_m is set
+  std::optional<double> height_m;  // above the terrain as drawn, in place of pose.alt_m
+};
+
+// Parses "LON,LAT,ALT[,YAW[,PITCH[,ROLL]]]": degrees, ALT in metres above the sphere. With height_m, ALT may be
+// left out and is ignored when all six numbers are given. Throws UsageError that names the option: for text of
+// another form, a latitude outside -90..90, and an ALT farther than core::ViewLimits allow.
+ParsedPose parse_pose(const std::string& option, const std::string& text,
+                      std::optional<double> height_m = std::nullopt);
+
+// Returns the pose over the planet, whose terrain is drawn with this vertical exaggeration. Reads the planet's
+// tiles only for a height above the terrain; throws what paging::Surface throws.
+mars::Pose resolve(const ParsedPose& parsed, const std::shared_ptr<const paging::PlanetFile>& planet,
+                   double exaggeration);
+
+}  // namespace vpe::app
