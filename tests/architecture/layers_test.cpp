@@ -1,10 +1,11 @@
-// The arrows between folders (docs/architecture.md), checked on the sources themselves.
+// The arrows between folders and between their rooms (docs/design/architecture.md), checked on the sources.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -16,51 +17,115 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Layer {
-  std::string folder;
+  std::string folder;  // of the module, or of one of its rooms
   std::string name_space;
-  std::vector<std::string> may_use;  // besides itself
-  bool may_draw = false;             // OpenGL, EGL, GLFW, OSMesa
-  bool may_read_rasters = false;     // GDAL
-  bool may_letter = false;           // Cairo
+  std::vector<std::string>
+      may_use;            // besides itself: rooms of the own module, and other modules with all their rooms
+  bool may_draw = false;  // OpenGL, EGL, GLFW, OSMesa
+  bool may_read_rasters = false;  // GDAL
+  bool may_letter = false;        // Cairo
 };
+
+// Every module that a room of vpe/app may use.
+const std::vector<std::string> kBelowApp{"vpe/base", "mars",        "vpe/core",    "cull",      "lod",
+                                         "paging",   "scripts",     "vpe/overlay", "vpe/gl",    "vpe/voxel",
+                                         "panorama", "vpe/explore", "vpe/report",  "vpe/window"};
+
+std::vector<std::string> below_app(std::vector<std::string> rooms) {
+  rooms.insert(rooms.end(), kBelowApp.begin(), kBelowApp.end());
+  return rooms;
+}
 
 const std::vector<Layer>& layers() {
   static const std::vector<Layer> kLayers{
-      {"mars", "mars", {}, false, true},
-      {"vpe/core", "vpe::core", {"mars"}},
-      {"cull", "cull", {"mars", "vpe/core"}},
-      {"lod", "lod", {"mars", "vpe/core", "cull"}},
-      {"paging", "paging", {"mars", "vpe/core", "lod"}},
-      {"scripts", "scripts", {"mars", "vpe/core"}},
-      {"vpe/overlay", "vpe::overlay", {"mars", "vpe/core"}, false, false, true},
-      {"vpe/gl", "vpe::gl", {"mars", "vpe/core", "cull", "lod", "paging", "scripts"}, true},
-      {"vpe/voxel", "vpe::voxel", {"mars", "vpe/core", "lod", "paging"}},
-      {"panorama", "panorama", {"mars", "vpe/core", "paging"}},
-      {"vpe/explore", "vpe::explore", {"mars", "vpe/core", "lod", "paging", "scripts", "panorama"}},
-      {"vpe/report", "vpe::report", {"mars", "vpe/core"}},
+      {"vpe/base", "vpe::base", {}},
+      {"mars/geodesy", "mars", {"vpe/base"}, false, true},
+      {"mars/sources", "mars", {"vpe/base", "mars/geodesy"}, false, true},
+      {"mars/raster", "mars", {"vpe/base", "mars/geodesy", "mars/sources"}, false, true},
+      {"mars/embedded", "mars", {"vpe/base", "mars/geodesy", "mars/sources"}},
+      {"vpe/core/registry", "vpe::core", {"vpe/base", "mars"}},
+      {"vpe/core/appearance", "vpe::core", {"vpe/base", "mars", "vpe/core/registry"}},
+      {"vpe/core/image", "vpe::core", {"vpe/base", "mars"}},
+      {"vpe/core",
+       "vpe::core",
+       {"vpe/base", "mars", "vpe/core/registry", "vpe/core/appearance", "vpe/core/image"}},
+      {"cull", "cull", {"vpe/base", "mars", "vpe/core"}},
+      {"lod/tree", "lod", {"vpe/base", "mars", "vpe/core", "cull"}},
+      {"lod/mesh", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree"}},
+      {"lod", "lod", {"vpe/base", "mars", "vpe/core", "cull", "lod/tree", "lod/mesh"}},
+      {"paging/planet", "paging", {"vpe/base", "mars", "vpe/core", "lod"}},
+      {"paging/build", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
+      {"paging/surface", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet"}},
+      {"paging/shading", "paging", {"vpe/base", "mars", "vpe/core", "lod", "paging/planet", "paging/surface"}},
+      {"paging", "paging", {"vpe/base"}},
+      {"scripts", "scripts", {"vpe/base", "mars", "vpe/core"}},
+      {"vpe/overlay", "vpe::overlay", {"vpe/base", "mars", "vpe/core"}, false, false, true},
+      {"vpe/gl", "vpe::gl", {"vpe/base", "mars", "vpe/core", "cull", "lod", "paging", "scripts"}, true},
+      {"vpe/voxel/cast", "vpe::voxel", {"vpe/base", "mars", "vpe/core", "lod", "paging"}},
+      {"vpe/voxel/paint", "vpe::voxel", {"vpe/base", "mars", "vpe/core", "lod", "paging", "vpe/voxel/cast"}},
+      {"vpe/voxel",
+       "vpe::voxel",
+       {"vpe/base", "mars", "vpe/core", "lod", "paging", "vpe/voxel/cast", "vpe/voxel/paint"}},
+      {"panorama/image", "panorama", {"vpe/base", "mars", "vpe/core", "paging"}},
+      {"panorama", "panorama", {"vpe/base", "mars", "vpe/core", "paging", "panorama/image"}},
+      {"panorama/metadata", "panorama", {"vpe/base", "mars", "vpe/core", "panorama/image", "panorama"}},
+      {"panorama/viewer",
+       "panorama",
+       {"vpe/base", "mars", "vpe/core", "panorama/image", "panorama", "panorama/metadata"}},
+      {"panorama/horizon",
+       "panorama",
+       {"vpe/base", "mars", "vpe/core", "paging", "panorama/image", "panorama"}},
+      {"vpe/explore/input", "vpe::explore", {"vpe/base", "mars", "vpe/core"}},
+      {"vpe/explore/files",
+       "vpe::explore",
+       {"vpe/base", "mars", "vpe/core", "scripts", "panorama", "vpe/explore/input"}},
+      {"vpe/explore/measure",
+       "vpe::explore",
+       {"vpe/base", "mars", "vpe/core", "lod", "paging", "scripts", "vpe/explore/files"}},
+      {"vpe/explore",
+       "vpe::explore",
+       {"vpe/base", "mars", "vpe/core", "lod", "paging", "scripts", "panorama", "vpe/explore/input",
+        "vpe/explore/files", "vpe/explore/measure"}},
+      {"vpe/report", "vpe::report", {"vpe/base", "mars", "vpe/core"}},
       {"vpe/window",
        "vpe::window",
-       {"mars", "vpe/core", "lod", "paging", "scripts", "vpe/overlay", "panorama", "vpe/explore"},
+       {"vpe/base", "mars", "vpe/core", "lod", "paging", "scripts", "vpe/overlay", "panorama", "vpe/explore"},
        true},
-      {"vpe/app",
-       "vpe::app",
-       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel",
-        "panorama", "vpe/explore", "vpe/report", "vpe/window"},
+      {"vpe/app/cli", "vpe::app", kBelowApp, true},
+      {"vpe/app/planet", "vpe::app", below_app({"vpe/app/cli"}), true},
+      {"vpe/app/picture", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"}), true},
+      {"vpe/app/film", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture"}), true},
+      {"vpe/app/panorama", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture"}), true},
+      {"vpe/app/report", "vpe::app",
+       below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture", "vpe/app/film", "vpe/app/panorama"}),
        true},
-      {"tests",
-       "",
-       {"mars", "vpe/core", "cull", "lod", "paging", "scripts", "vpe/overlay", "vpe/gl", "vpe/voxel",
-        "panorama", "vpe/explore", "vpe/report", "vpe/window", "vpe/app"},
-       true,
+      {"vpe/app", "vpe::app",
+       below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture", "vpe/app/film", "vpe/app/panorama",
+                  "vpe/app/report"}),
        true},
+      {"tests", "", below_app({"vpe/app"}), true, true},
   };
   return kLayers;
 }
 
+// The module of a folder: all folders of one namespace.
+bool is_same_module(const Layer& a, const Layer& b) { return a.name_space == b.name_space; }
+
+bool may_use(const Layer& layer, const Layer& used) {
+  if (&layer == &used) return true;
+  return std::any_of(layer.may_use.begin(), layer.may_use.end(), [&](const std::string& allowed) {
+    return used.folder == allowed || (!is_same_module(layer, used) && used.folder.starts_with(allowed + "/"));
+  });
+}
+
+// The row whose folder holds the path: the longest one, as rooms lie in the folders of their modules.
 const Layer* layer_of(std::string_view path) {
-  const auto found = std::find_if(layers().begin(), layers().end(),
-                                  [path](const Layer& layer) { return path.starts_with(layer.folder + "/"); });
-  return found == layers().end() ? nullptr : &*found;
+  const Layer* found = nullptr;
+  for (const Layer& layer : layers()) {
+    const bool holds = path.starts_with(layer.folder + "/");
+    if (holds && (found == nullptr || layer.folder.size() > found->folder.size())) found = &layer;
+  }
+  return found;
 }
 
 bool is_drawing_header(const std::string& name) {
@@ -93,9 +158,7 @@ std::string include_problem(const Layer& layer, const std::string& name, bool qu
   if (!quoted) return "";
   const Layer* used = layer_of(name);
   if (used == nullptr) return "\"" + name + "\" is not given from the root of the repository";
-  const bool allowed = used == &layer || std::find(layer.may_use.begin(), layer.may_use.end(), used->folder) !=
-                                             layer.may_use.end();
-  return allowed ? "" : layer.folder + " must not use " + used->folder + " (" + name + ")";
+  return may_use(layer, *used) ? "" : layer.folder + " must not use " + used->folder + " (" + name + ")";
 }
 
 // Everything wrong with one source, each as "path:line: what".
@@ -184,12 +247,26 @@ TEST(Layers, ArrowsHaveNoCycle) {
   // The table is in the order of the arrows: each row uses only rows above it.
   for (std::size_t n = 0; n < layers().size(); ++n) {
     for (const std::string& used : layers()[n].may_use) {
-      const auto above = std::find_if(layers().begin(), layers().begin() + static_cast<std::ptrdiff_t>(n),
-                                      [&used](const Layer& layer) { return layer.folder == used; });
-      EXPECT_NE(above, layers().begin() + static_cast<std::ptrdiff_t>(n))
-          << layers()[n].folder << " uses " << used;
+      const auto end = layers().begin() + static_cast<std::ptrdiff_t>(n);
+      const bool is_above = std::any_of(layers().begin(), end, [&used](const Layer& layer) {
+        return layer.folder == used || layer.folder.starts_with(used + "/");
+      });
+      EXPECT_TRUE(is_above) << layers()[n].folder << " uses " << used;
+      const bool is_below = std::any_of(end, layers().end(), [&](const Layer& layer) {
+        return layer.folder == used ||
+               (layer.folder.starts_with(used + "/") && !is_same_module(layer, layers()[n]));
+      });
+      EXPECT_FALSE(is_below) << layers()[n].folder << " uses " << used;
     }
   }
+}
+
+TEST(Layers, NoRoomIsAHall) {
+  constexpr std::size_t kMostSources = 40;
+  const fs::path root = VPE_SOURCE_DIR;
+  std::map<fs::path, std::size_t> sources;
+  for (const fs::path& source : all_sources(root)) ++sources[source.parent_path()];
+  for (const auto& [folder, count] : sources) EXPECT_LE(count, kMostSources) << folder;
 }
 
 // What the checker says about a made-up source, joined.
@@ -203,8 +280,16 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   const std::string lod = "namespace lod {}\n";
   EXPECT_EQ(verdict("lod/a.cpp", "#include \"cull/frustum.h\"\n#include <vector>\n" + lod), "");
   EXPECT_EQ(verdict("lod/a.cpp", "\n#include \"paging/planet/planet_file.h\"\n" + lod),
-            "lod/a.cpp:2: lod must not use paging (paging/planet/planet_file.h)\n");
-  EXPECT_NE(verdict("mars/a.cpp", "  #  include \"vpe/core/view.h\"\nnamespace mars {}"), "");
+            "lod/a.cpp:2: lod must not use paging/planet (paging/planet/planet_file.h)\n");
+  EXPECT_EQ(
+      verdict("lod/mesh/a.cpp", "#include \"lod/tree/posts.h\"\n#include \"mars/geodesy/cube.h\"\n" + lod), "");
+  EXPECT_NE(verdict("lod/tree/a.cpp", "#include \"lod/mesh/mesh.h\"\n" + lod), "");
+  const std::string app = "namespace vpe::app {}\n";
+  EXPECT_EQ(verdict("vpe/app/film/a.cpp", "#include \"vpe/app/cli/program.h\"\n" + app), "");
+  EXPECT_NE(verdict("vpe/app/cli/a.cpp", "#include \"vpe/app/film/video.h\"\n" + app), "");
+  EXPECT_NE(verdict("vpe/app/picture/a.cpp", "#include \"vpe/app/panorama/commands.h\"\n" + app), "");
+  EXPECT_NE(verdict("vpe/app/panorama/a.cpp", "#include \"vpe/app/commands.h\"\n" + app), "");
+  EXPECT_NE(verdict("mars/sources/a.cpp", "  #  include \"vpe/core/view.h\"\nnamespace mars {}"), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"posts.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include \"../mars/cube.h\"\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "#include <paging/../GL/gl.h>\n#include <GL/gl.h>\n" + lod), "");
@@ -218,7 +303,7 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   for (const char* header : {"gdal_priv.h", "gdal.h", "ogr_spatialref.h", "cpl_conv.h", "gdal/gdal.h"}) {
     const std::string line = std::string("#include <") + header + ">\n";
     EXPECT_NE(verdict("paging/a.cpp", line + "namespace paging {}"), "") << header;
-    EXPECT_EQ(verdict("mars/a.cpp", line + "namespace mars {}"), "") << header;
+    EXPECT_EQ(verdict("mars/raster/a.cpp", line + "namespace mars {}"), "") << header;
     EXPECT_EQ(verdict("tests/mars/a.cpp", line), "") << header;
   }
   EXPECT_EQ(verdict("vpe/overlay/a.cpp", "#include <cairo.h>\nnamespace vpe::overlay {}"), "");

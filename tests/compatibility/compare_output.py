@@ -23,16 +23,7 @@ from pathlib import Path
 
 # Maps old words to new words. Extend these tables when an output's word changes on purpose.
 KEYS = {
-    "eye": "camera",
-    "lod": "level",
     "lod.rule": "lod.metric",
-    "picture": "image",
-    "picture_bound_px": "image_bound_px",
-    "planes": "aux_layers",
-    "rule": "metric",
-    "holes": "nodata_posts",
-    "share_without_data": "share_nodata",
-    "azimuths_over_ground_without_data": "azimuths_over_nodata",
 }
 VALUES = {
     "voxel": "ray",
@@ -42,7 +33,7 @@ VALUES = {
     "bend": "edges",
 }
 # Lists keys that hold a level of detail. Old versions count levels from 1 in front of people, new ones from 0.
-LEVELS = {"level", "lod"}
+LEVELS = {"level", "lod", "wanted_lod"}
 # Lists keys that hold a sentence. Its words are free.
 PROSE = {"what_this_means", "meaning", "reason", "treatment"}
 # Lists keys that name the program's version or the command line, or that hash something which does.
@@ -383,13 +374,14 @@ def tiff_pages(data):
             size = sizes[kind] * items
             if size > struct.calcsize(order + pointer):
                 (place,) = struct.unpack_from(order + pointer, data, place)
-            fields[tag] = (kind, data[place : place + size])
+            raw = data[place : place + size]
+            # An unsigned integer may be stored in any width that holds it.
+            fields[tag] = ("integers", struct.unpack(order + integers[kind] * items, raw)) if kind in (3, 4, 16) else (kind, raw)
             at += entry
         (at,) = struct.unpack_from(order + pointer, data, at)
 
         def numbers(tag):
-            kind, raw = fields[tag]
-            return struct.unpack(order + integers[kind] * (len(raw) // sizes[kind]), raw)
+            return fields[tag][1]
 
         pieces = []
         for offsets, lengths in ((273, 279), (324, 325)):

@@ -63,7 +63,7 @@ export XDG_CACHE_HOME=$work/cache XDG_CONFIG_HOME=$work/config
 export XDG_STATE_HOME=$work/state XDG_DATA_HOME=$work/data
 export VPE_THREADS=2 LC_ALL=C TZ=UTC
 unset VPE_MEMORY
-mkdir -p "$work"/{cache,config,state,data,in}
+mkdir -p "$work"/{cache,config,state,data,in/old,in/new}
 
 same=0 renamed=0 different=0 skipped=0
 
@@ -96,6 +96,11 @@ run() { # SIDE PROGRAM NAME ARGUMENT...
   return "$status"
 }
 
+# Prints the last message of a program that failed.
+fault() { # FILE
+  grep -v '^Run with --help' "$1" | tail -n 1
+}
+
 # Puts the words of the new version into `translated`.
 translate() { # ARGUMENT...
   local word before=
@@ -115,6 +120,7 @@ translate() { # ARGUMENT...
       *' --planes') word=--aux-layers ;;
       *' --again') word=--from-sidecar ;;
       *'/old-names.'*) word=${word/old-names/new-names} ;;
+      *'/old/names.'*) word=${word/'/old/names'/'/new/names'} ;;
     esac
     translated+=("$word")
     before=$word
@@ -140,7 +146,7 @@ check() { # NAME OUTPUT... -- ARGUMENT...
   run old "$old_vpe" "$name" "$@"
   status=$?
   if [ "$status" -ne "${expected:-0}" ]; then
-    report DIFFERS "$name" "the old program exits with $status: $(tail -n 1 "$work/old/$name.stderr")"
+    report DIFFERS "$name" "the old program exits with $status: $(fault "$work/old/$name.stderr")"
     return
   fi
   check_side "$name" new "$name" "$@"
@@ -156,7 +162,7 @@ check_side() { # TITLE SIDE NAME ARGUMENT...
   run "$side" "$new_vpe" "$name" "$@"
   status=$?
   if [ "$status" -ne "${expected:-0}" ]; then
-    report DIFFERS "$title" "the new program exits with $status: $(tail -n 1 "$work/$side/$name.stderr")"
+    report DIFFERS "$title" "the new program exits with $status: $(fault "$work/$side/$name.stderr")"
     return
   fi
   [ ${#outputs[@]} -gt 0 ] || report same "$title" "exit status $status"
@@ -190,7 +196,7 @@ check_new() { # NAME OUTPUT=REFERENCE... -- ARGUMENT...
       arguments=("${translated[@]}")
     fi
     if ! run "$side" "$new_vpe" "$name" "${arguments[@]}"; then
-      report DIFFERS "$title" "the new program fails: $(tail -n 1 "$work/$side/$name.stderr")"
+      report DIFFERS "$title" "the new program fails: $(fault "$work/$side/$name.stderr")"
       continue
     fi
     for pair in "${pairs[@]}"; do
@@ -226,8 +232,8 @@ at 3 end
 TEXT
 }
 flight >"$work/in/film.flight"
-flight "lod.rule=hitchner rays.mode=plain" >"$work/in/old-names.flight"
-flight "lod.metric=distance rays.mode=reference" >"$work/in/new-names.flight"
+flight "lod.rule=hitchner rays.mode=plain" >"$work/in/old/names.flight"
+flight "lod.metric=distance rays.mode=reference" >"$work/in/new/names.flight"
 cat >"$work/in/old-names.toml" <<'TEXT'
 [render]
 backend = "voxel"
@@ -360,7 +366,7 @@ seam=(--pose=179.99,0.01,20000,90,-10,-30 --size 320x200)
 rover=(--pose=137.37,-4.67,0,118,2,0 --height 40 --size 320x200)
 
 if ! run old "$old_vpe" probe render "$planets/embedded.vpe" "${near[@]}" --backend polygon -o probe.png; then
-  report skipped polygon "the old program cannot draw triangles: $(tail -n 1 "$work/old/probe.stderr")"
+  report skipped polygon "the old program cannot draw triangles: $(fault "$work/old/probe.stderr")"
   backends=(voxel)
 fi
 
@@ -433,9 +439,9 @@ for backend in "${backends[@]}"; do
   check "film-$backend" frames stats.csv log.flight -- fly "$in/film.flight" "$planets/embedded.vpe" \
     --backend "$backend" -q -o frames --stats stats.csv --log log.flight
 done
-check film-old-names frames log.flight -- fly "$in/old-names.flight" "$planets/embedded.vpe" --frames 18-29x2 \
+check film-old-names frames log.flight -- fly "$in/old/names.flight" "$planets/embedded.vpe" --frames 18-29x2 \
   --backend "${backends[0]}" -q -o frames --log log.flight
-check film-voxel-old-names frames -- fly "$in/old-names.flight" "$planets/embedded.vpe" --frames 18-29x2 \
+check film-voxel-old-names frames -- fly "$in/old/names.flight" "$planets/embedded.vpe" --frames 18-29x2 \
   --backend voxel -q -o frames
 check film-part frames -- fly "$in/film.flight" "$planets/embedded.vpe" --part 2/3 --backend voxel -q -o frames
 if [ -e "$work/old/film-voxel/log.flight" ]; then

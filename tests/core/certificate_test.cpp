@@ -27,7 +27,7 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.source_accuracy_m = 3;
   c.illustration = true;
   c.exaggeration = 2;
-  nlohmann::json json = nlohmann::json::parse(to_json(c));
+  nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   const std::string meaning = json.at("what_this_means");
   EXPECT_NE(meaning.find("not data"), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
@@ -56,7 +56,7 @@ TEST(Certificate, AbsentAndNotFiniteAreNull) {
   Certificate c;
   c.geometric_error_m = std::numeric_limits<double>::infinity();
   c.screen_space_error_px = std::numeric_limits<double>::quiet_NaN();
-  const nlohmann::json json = nlohmann::json::parse(to_json(c));
+  const nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   EXPECT_TRUE(json.at("source_accuracy_m").is_null());
   EXPECT_TRUE(json.at("share_without_data").is_null());
   EXPECT_TRUE(json.at("picture_bound_px").is_null());
@@ -72,7 +72,7 @@ TEST(Certificate, NumbersSurviveToTheBit) {
   Certificate c;
   c.geometric_error_m = 0.1 + 0.2;
   c.shift_bound_px = 5e-324;
-  const nlohmann::json json = nlohmann::json::parse(to_json(c));
+  const nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   EXPECT_EQ(json.at("tile_error_m").get<double>(), c.geometric_error_m);
   EXPECT_EQ(json.at("shift_bound_px").get<double>(), c.shift_bound_px);
 }

@@ -24,7 +24,7 @@ std::size_t at(int x, int y) { return static_cast<std::size_t>(y) * kWidth + sta
 // A slanted plane with any texture has no edge.
 TEST(EdgeFilter, LeavesTexturesOfPlanesAlone) {
   Random random(5);
-  std::vector<vpe::base::Rgb> colour(kPixels);
+  std::vector<Rgb> colour(kPixels);
   std::vector<float> depth(kPixels);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -33,10 +33,10 @@ TEST(EdgeFilter, LeavesTexturesOfPlanesAlone) {
       depth[at(x, y)] = 0.3F + 0.004F * static_cast<float>(x) - 0.005F * static_cast<float>(y);
     }
   }
-  const std::vector<vpe::base::Rgb> before = colour;
-  base::ThreadPool pool(2);
+  const std::vector<Rgb> before = colour;
+  ThreadPool pool(2);
   smooth_edges(colour, depth, kWidth, kHeight, pool);
-  // At the image's rim a neighbour is missing and the slope itself counts as a bend.
+  // At the image's edge one neighbour is absent, and the slope itself counts as a bend.
   for (int y = 1; y + 1 < kHeight; ++y) {
     for (int x = 1; x + 1 < kWidth; ++x) ASSERT_EQ(colour[at(x, y)], before[at(x, y)]) << x << " " << y;
   }
@@ -45,7 +45,7 @@ TEST(EdgeFilter, LeavesTexturesOfPlanesAlone) {
 // A bright half-plane before a dark sky, its outline in steps: closer to its true coverage after than before.
 TEST(EdgeFilter, BringsOutlinesCloserToTheirCoverage) {
   for (const double slope : {0.1, 0.25, 0.5, 1.0, -0.3}) {
-    std::vector<vpe::base::Rgb> colour(kPixels);
+    std::vector<Rgb> colour(kPixels);
     std::vector<float> depth(kPixels);
     std::vector<double> coverage(kPixels);
     const auto below = [&](double x, double y) { return y > 25 + slope * (x - 33); };
@@ -72,7 +72,7 @@ TEST(EdgeFilter, BringsOutlinesCloserToTheirCoverage) {
       return std::sqrt(sum);
     };
     const double before = error();
-    base::ThreadPool pool(2);
+    ThreadPool pool(2);
     smooth_edges(colour, depth, kWidth, kHeight, pool);
     EXPECT_LT(error(), 0.8 * before) << slope;
   }
@@ -80,7 +80,7 @@ TEST(EdgeFilter, BringsOutlinesCloserToTheirCoverage) {
 
 TEST(EdgeFilter, ThreadsDoNotMatterAndSizesAreChecked) {
   Random random(6);
-  std::vector<vpe::base::Rgb> colour(kPixels);
+  std::vector<Rgb> colour(kPixels);
   std::vector<float> depth(kPixels);
   for (std::size_t n = 0; n < kPixels; ++n) {
     colour[n] = {static_cast<std::uint8_t>(random.integer(0, 255)),
@@ -88,17 +88,17 @@ TEST(EdgeFilter, ThreadsDoNotMatterAndSizesAreChecked) {
                  static_cast<std::uint8_t>(random.integer(0, 255))};
     depth[n] = random.integer(0, 3) == 0 ? 0.0F : static_cast<float>(random.uniform(0.1, 1));
   }
-  std::vector<vpe::base::Rgb> many = colour;
-  base::ThreadPool one(1);
-  base::ThreadPool four(4);
+  std::vector<Rgb> many = colour;
+  ThreadPool one(1);
+  ThreadPool four(4);
   smooth_edges(colour, depth, kWidth, kHeight, one);
   smooth_edges(many, depth, kWidth, kHeight, four);
   EXPECT_EQ(colour, many);
   EXPECT_THROW(smooth_edges(colour, depth, kWidth + 1, kHeight, one), std::invalid_argument);
-  std::vector<vpe::base::Rgb> pixel(1);
+  std::vector<Rgb> pixel(1);
   const std::vector<float> sky(1);
   smooth_edges(pixel, sky, 1, 1, one);
-  EXPECT_EQ(pixel[0], vpe::base::Rgb());
+  EXPECT_EQ(pixel[0], Rgb());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Colour, range and skyline errors against closed forms and known errors put in.
+// Colour, range and skyline errors against closed forms and injected errors.
 #include "vpe/core/image_metrics.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::vector<vpe::base::Rgb> grey(std::size_t pixels, std::uint8_t value) {
   return {pixels, {value, value, value}};
 }
 
-// Waves of many lengths, so that every window has structure.
+// Returns waves of many lengths, so that every window has structure.
 std::vector<vpe::base::Rgb> image() {
   std::vector<vpe::base::Rgb> pixels;
   for (int y = 0; y < kSide; ++y) {
@@ -120,7 +120,7 @@ TEST(RangeError, IsRelativeAndLeavesOutSky) {
 TEST(Skyline, IsTheTopmostSurfaceOfEachColumn) {
   constexpr int kWidth = 5;
   constexpr int kHeight = 8;
-  // Columns: as drawn; two rows too low; gone; without any sky; sky alone.
+  // Columns: equal; two rows too low; without surface; without sky; only sky.
   const std::vector<int> truth{3, 3, 3, 0, kHeight};
   const std::vector<int> drawn{3, 5, kHeight, 0, kHeight};
   const auto ranges = [&](const std::vector<int>& tops) {

@@ -365,7 +365,7 @@ TEST(Image, PathsAreBytesAndTheLocaleDoesNotMatter) {
   std::setlocale(LC_ALL, old.c_str());
 }
 
-TEST(base::OutputFile, AppearsOnlyWithCommit) {
+TEST(OutputFile, AppearsOnlyWithCommit) {
   const test_support::TempDir folder;
   {
     base::OutputFile file(folder / "a.txt");

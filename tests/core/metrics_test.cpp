@@ -24,13 +24,13 @@ SurfaceRadius batched(const Radius& radius) {
   };
 }
 
-// Hills of 400 m, 12 km apart, and smaller ones.
+// Returns hills of 400 m, 12 km apart, and smaller ones.
 double hills(const glm::dvec3& d) {
   const glm::dvec3 p = d * kRadius_m;
   return kRadius_m + 400 * std::sin(p.y / 4000) * std::sin(p.z / 4000) + 100 * std::sin(p.y / 900 + p.z / 1300);
 }
 
-// Distance to the sphere of a radius, infinity where the ray misses; the camera is outside.
+// Returns the distance to the sphere of a radius, infinity if the ray misses it. The camera is outside.
 double cast_sphere(const glm::dvec3& camera, const glm::dvec3& ray, double radius_m) {
   const double along = -glm::dot(camera, ray);
   const double aside2 = glm::dot(camera, camera) - along * along;
@@ -38,7 +38,8 @@ double cast_sphere(const glm::dvec3& camera, const glm::dvec3& ray, double radiu
   return along - std::sqrt(radius_m * radius_m - aside2);
 }
 
-// First crossing of a surface with slopes below 1.7: the height above it, divided by 2, is always a safe step.
+// Returns the first intersection with a surface of slopes below 1.7: half the height above it is always a safe
+// step.
 double cast(const glm::dvec3& camera, const glm::dvec3& ray, const Radius& radius) {
   for (double t = 0; t < 150e3;) {
     const glm::dvec3 p = camera + ray * t;
@@ -83,7 +84,7 @@ class OnHills : public ::testing::Test {
     return compare_to_reference(view_, drawn, exact_, surface_);
   }
 
-  // Of the pixels whose reference is ground.
+  // Only the pixels whose reference is ground.
   ShiftSummary backward_on_ground(const std::vector<float>& drawn) const {
     std::vector<double> shift_px = backward_shift_px(view_, drawn, exact_);
     for (std::size_t n = 0; n < shift_px.size(); ++n) {
@@ -145,7 +146,7 @@ TEST_F(OnHills, ARaisedSurfaceShiftsByErrorTimesFocalOverRange) {
   }
 }
 
-// Straight down, range is all that shows an error.
+// Straight down, only the range shows an error.
 TEST(Metrics, ARaisedSphereSeenFromAboveShiftsBackwardsByTheSame) {
   const View view = make_view(10000, -90, 60, 60);
   const double deviation_m = 30;
@@ -210,7 +211,7 @@ TEST_F(OnHills, AMissingRidgeIsFoundBackwardsAndOnlyThere) {
     return hills(d) + 800 * std::exp(-across * across);
   };
   const std::vector<float> reference = draw_surface(view_, with_ridge);
-  // The drawn image lacks the ridge where it hides the far ground: ranges are S, but of what lies behind.
+  // The drawn image lacks the ridge where it hides the far ground: its ranges are on S, but behind the ridge.
   const ImageErrors errors =
       compare_to_reference(view_, draw_surface(view_, hills), reference, batched(with_ridge));
   EXPECT_GT(errors.backward.max_px, 10);
@@ -219,7 +220,7 @@ TEST_F(OnHills, AMissingRidgeIsFoundBackwardsAndOnlyThere) {
   const int worst_y = errors.backward.worst_y;
   ASSERT_GE(worst_x, 0);
   EXPECT_NE(reference[at(worst_x, worst_y)], exact_[at(worst_x, worst_y)]);
-  // With the ridge drawn all is well again.
+  // With the ridge drawn there is no error.
   EXPECT_EQ(compare_to_reference(view_, reference, reference, batched(with_ridge)).backward.max_px, 0);
 }
 
@@ -305,7 +306,7 @@ TEST_F(OnHills, WrongSizesAreRefused) {
   EXPECT_THROW(check_horizon(view_, small, kRadius_m, kRadius_m), std::invalid_argument);
 }
 
-// The same image through other projections: the measure knows their focal length.
+// The same image through other projections: the measure uses their focal length.
 TEST(Metrics, RoundProjections) {
   for (const Projection projection : {Projection::kCylinder, Projection::kEquirectangular}) {
     View view = make_view(1500, 0, 360, 57);

@@ -1,4 +1,4 @@
-// Palettes as files: both forms, bad input, and gdaldem color-relief as the judge.
+// Palettes as files: both forms, bad input, and gdaldem color-relief as oracle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -143,7 +143,7 @@ TEST(PaletteFile, TroubleWithTheFileItselfIsTold) {
   EXPECT_EQ(scale(-3500), glm::dvec3(2.5, 3.5, 4.5));
 }
 
-// What gdaldem paints, on a grid of values that spans the palette and more; both round to whole colours.
+// Compares with gdaldem on a grid of values beyond the palette; both round to whole colours.
 TEST(PaletteFile, AgreesWithGdaldem) {
   const auto gdaldem = app_test::find_program("gdaldem");
   if (gdaldem.empty()) GTEST_SKIP() << "skipped: no gdaldem";

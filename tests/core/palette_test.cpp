@@ -38,7 +38,7 @@ ColourScale scale_of(const std::string& palette, Colour colour = Colour::kElevat
   return ColourScale(a);
 }
 
-// Lightness, a and b of OKLab (B. Ottosson), of colours 0 to 255.
+// Returns lightness, a and b of OKLab (B. Ottosson) of colours 0 to 255.
 glm::dvec3 oklab(const glm::dvec3& rgb) {
   const auto linear = [](double x) {
     x /= 255;
@@ -90,7 +90,7 @@ TEST(Palette, RefusesStopsThatMakeNone) {
   bad(Scale::kValue, {{0, {kNan, 0, 0}}});
 }
 
-// A search through all stops, however they crowd.
+// Compares with a search through all stops, also if they are close together.
 TEST(Palette, FindsTheStopsOnBothSides) {
   rc::check([] {
     Random random(*rc::gen::arbitrary<std::uint32_t>());
@@ -143,7 +143,7 @@ TEST(Palette, EveryNameIsAPaletteInEachColour) {
   }
 }
 
-// Entries of the published tables of 256, none of them a stop of ours.
+// Entries of the published tables of 256 that are not stops here.
 TEST(Palette, PublishedMapsAreMetWithinTwo) {
   struct Entry {
     int at;

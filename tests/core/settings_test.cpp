@@ -5,16 +5,18 @@
 #include <limits>
 #include <locale>
 #include <set>
+#include <utility>
 
 #include "tests/support/support.h"
 #include "vpe/base/number.h"
+#include "vpe/core/registry/former_names.h"
 
 namespace vpe::core {
 namespace {
 
 using test_support::Random;
 
-// Another value than the default of a key of type kText.
+// Returns a value other than the default for a key of type kText.
 std::string other_text(std::string_view key) {
   if (key == "palette") return "viridis";
   if (key == "overlay.names") return "/dev/null";  // any file that can be read
@@ -22,42 +24,6 @@ std::string other_text(std::string_view key) {
 }
 
 bool holds(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
-
-TEST(Number, ReadsWhatItWritesToTheBit) {
-  Random random(1);
-  for (int i = 0; i < 20000; ++i) {
-    const double sign = random.integer(0, 1) == 0 ? -1.0 : 1.0;
-    const double value = sign * random.log_uniform(1e-300, 1e300);
-    const std::optional<double> read = base::parse_number(base::format_number(value));
-    ASSERT_TRUE(read.has_value()) << base::format_number(value);
-    ASSERT_EQ(*read, value);
-  }
-  for (const double value : {0.0, -0.0, 1e-6, 1e16, 123456789.0, std::numeric_limits<double>::denorm_min(),
-                             std::numeric_limits<double>::max()}) {
-    EXPECT_EQ(base::parse_number(base::format_number(value)), value);
-  }
-}
-
-TEST(Number, IsPlainWherePeopleRead) {
-  EXPECT_EQ(base::format_number(1000000), "1000000");
-  EXPECT_EQ(base::format_number(-74.25), "-74.25");
-  EXPECT_EQ(base::format_number(0.1), "0.1");
-  EXPECT_EQ(base::format_number(0), "0");
-  EXPECT_EQ(base::format_number(1e20), "1e+20");
-}
-
-TEST(Number, TakesOnlyWholeFiniteDecimals) {
-  EXPECT_EQ(base::parse_number("+1.5"), 1.5);
-  EXPECT_EQ(base::parse_number("-.5e1"), -5.0);
-  for (const char* text : {"", "+", "-", "+-1", "-+1", "++1", "1 ", " 1", "1,5", "1.5m", "nan", "inf", "-inf",
-                           "infinity", "0x10", "1e999", "1e", "--1", "1_000"}) {
-    EXPECT_FALSE(base::parse_number(text).has_value()) << text;
-  }
-  EXPECT_EQ(base::parse_integer("+3"), 3);
-  for (const char* text : {"", "3.0", "1e3", "99999999999999999999", "0x1"}) {
-    EXPECT_FALSE(base::parse_integer(text).has_value()) << text;
-  }
-}
 
 TEST(Settings, EveryKeyIsListedOnceWithADefaultThatIsAllowed) {
   std::set<std::string_view> names;
@@ -109,7 +75,7 @@ TEST(Settings, MapsKeysToTheirMembers) {
   EXPECT_EQ(settings.assign("sun.ambient=0.5"), "");
   EXPECT_EQ(settings.assign("lod.tolerance=0"), "");
   EXPECT_EQ(settings.assign("lod.triangles=100000"), "");
-  EXPECT_EQ(settings.assign("lod.rule=hitchner"), "");
+  EXPECT_EQ(settings.assign("lod.metric=distance"), "");
   EXPECT_EQ(settings.assign("lod.distance.scale=5e5"), "");
   EXPECT_EQ(settings.assign("lod.distance.offset=2"), "");
   EXPECT_EQ(settings.assign("lod.distance.weight=0.5"), "");
@@ -238,7 +204,7 @@ TEST(Settings, WrongWordsNameTheRightOnes) {
   EXPECT_TRUE(holds(settings.set("mode", "Lit"), "not allowed"));
 }
 
-TEST(Settings, ARejectedTextTellsWhyAndWhatIsAllowed) {
+TEST(Settings, ARejectedTextSaysWhyAndWhatIsAllowed) {
   Settings settings;
   const std::string problem = settings.set("palette", "viridish");
   EXPECT_TRUE(holds(problem, "palette=viridish is not allowed: no palette and no file has this name"))
@@ -331,6 +297,74 @@ TEST(Settings, UnknownKeysNameNearOnes) {
   EXPECT_LT(settings.set(std::string(1000000, 'x'), "1").size(), 1000u);
   EXPECT_EQ(settings, Settings());
   EXPECT_FALSE(settings.get("su").has_value());
+}
+
+// Splits "KEY=VALUE".
+std::pair<std::string, std::string> key_and_value(std::string_view assignment) {
+  const std::size_t equals = assignment.find('=');
+  return {std::string(assignment.substr(0, equals)), std::string(assignment.substr(equals + 1))};
+}
+
+TEST(Settings, FormerKeysMeanTheCurrentOnes) {
+  int rows = 0;
+  for (const FormerName& row : former_names()) {
+    if (row.kind != NameKind::kSetting) continue;
+    ++rows;
+    const Settings defaults;
+    EXPECT_TRUE(defaults.get(row.current).has_value()) << row.current;
+    EXPECT_EQ(defaults.get(row.former), defaults.get(row.current)) << row.former;
+    for (const SettingInfo& info : Settings::list()) {
+      EXPECT_NE(info.key, row.former);
+      if (info.key != row.current) continue;
+      for (const std::string_view choice : info.choices) {
+        Settings by_former;
+        Settings by_current;
+        EXPECT_EQ(by_former.set(row.former, choice), "");
+        EXPECT_EQ(by_current.set(row.current, choice), "");
+        EXPECT_EQ(by_former, by_current) << row.former << "=" << choice;
+      }
+    }
+    Settings settings;
+    EXPECT_TRUE(holds(settings.set(row.former, "\x01"), std::string(row.current) + "=")) << row.former;
+  }
+  EXPECT_GE(rows, 1);
+}
+
+TEST(Settings, FormerValuesMeanTheCurrentOnes) {
+  int rows = 0;
+  for (const FormerName& row : former_names()) {
+    if (row.kind != NameKind::kSettingValue) continue;
+    ++rows;
+    const auto [key, value] = key_and_value(row.current);
+    Settings by_former;
+    Settings by_current;
+    ASSERT_EQ(by_former.assign(row.former), "") << row.former;
+    ASSERT_EQ(by_current.assign(row.current), "") << row.current;
+    EXPECT_EQ(by_former, by_current) << row.former;
+    EXPECT_EQ(by_former.get(key), value);
+    EXPECT_NE(by_former, Settings()) << row.former << ": the test sees nothing in a default";
+    // A former key and a former value go together, as in scripts of earlier versions.
+    for (const FormerName& other : former_names()) {
+      if (other.kind != NameKind::kSetting || other.current != key) continue;
+      Settings both;
+      EXPECT_EQ(both.set(other.former, key_and_value(row.former).second), "");
+      EXPECT_EQ(both, by_current) << other.former;
+    }
+    const std::string message = by_former.set(key, "no-such-value");
+    EXPECT_FALSE(holds(message, key_and_value(row.former).second)) << message;
+    EXPECT_TRUE(holds(message, value)) << message;
+  }
+  EXPECT_GE(rows, 2);
+}
+
+TEST(FormerNames, LeaveOtherNamesAlone) {
+  EXPECT_EQ(current_name(NameKind::kSetting, "mode"), "mode");
+  EXPECT_EQ(current_name(NameKind::kSetting, "voxel"), "voxel");
+  EXPECT_EQ(current_value(NameKind::kSettingValue, "mode", "plain"), "plain");
+  EXPECT_EQ(current_value(NameKind::kSettingValue, "rays.mode", "plain"), "reference");
+  EXPECT_EQ(current_value(NameKind::kSettingValue, "rays.mode", "plai"), "plai");
+  EXPECT_EQ(current_value(NameKind::kSettingValue, "rays", "mode=plain"), "mode=plain");
+  EXPECT_EQ(current_value(NameKind::kOptionValue, "--backend", "voxel"), "ray");
 }
 
 TEST(Settings, AssignNeedsAnEqualsSign) {

@@ -33,7 +33,7 @@ TEST(Light, IsTheRootOfAmbientAndDiffuse) {
   }
 }
 
-// The integral of air_m()'s definition, by adaptive Simpson's rule along the straight line itself.
+// Returns the integral of air_m()'s definition by adaptive Simpson's rule along the straight line.
 class AirOracle {
  public:
   AirOracle(double camera_height_m, double up_sine)
@@ -44,14 +44,14 @@ class AirOracle {
   long double height_m(long double t) const {
     return std::hypot(r_ + t * up_, t * along_) - static_cast<long double>(kRadius_m);
   }
-  // Sine of the line's angle over the horizontal at t.
+  // Returns the sine of the line's elevation at t.
   double up_sine_at(long double t) const {
     const long double x = r_ + t * up_, y = t * along_;
     return static_cast<double>((x * up_ + y * along_) / std::hypot(x, y));
   }
   long double lowest_at() const { return std::max(0.0L, -r_ * up_); }
 
-  // Heights fall up to lowest_at() and rise from there: each side is below the top in one stretch.
+  // Heights fall up to lowest_at() and rise from there: each side is below the top in one interval.
   long double operator()(long double distance_m) const {
     const long double low = std::min(lowest_at(), distance_m);
     if (height_m(low) >= static_cast<long double>(kAirTop_m)) return 0;
@@ -93,7 +93,7 @@ class AirOracle {
   long double r_, up_, along_;
 };
 
-// Heights of eyes from the deepest ground to ten radii; lines that stay above that ground, wherever they point.
+// Heights of cameras from the deepest ground to ten radii; lines in any direction that stay above that ground.
 struct Line {
   double camera_height_m, up_sine, distance_m;
 };
@@ -143,7 +143,7 @@ TEST(Air, IsTheIntegralOfItsDensity) {
               worst, over_limbs, worst_over_limb);
   EXPECT_GT(in_air - over_limbs, 5000);
   EXPECT_GT(over_limbs, 1000);
-  // The stated bounds are not lazy.
+  // The stated bounds are not much too large.
   EXPECT_GT(worst, 0.3 * kAirError);
   EXPECT_GT(worst_over_limb, 0.3 * kAirLimbError);
 }
@@ -178,7 +178,7 @@ TEST(Air, ThereIsNoneOutsideOfIt) {
   EXPECT_EQ(air_m(kRadius_m, 1e6, -1, 1e6 - kAirTop_m - 1), 0);  // not yet in it
   EXPECT_NEAR(air_m(kRadius_m, 1e6, -1, 1e6 - kAirTop_m + 1), std::exp(-6.0), 1e-4);
   EXPECT_EQ(air_m(kRadius_m, 10, -0.5, 0), 0);
-  // From the ground straight up to beyond: all that there is.
+  // From the ground straight up through all the air.
   EXPECT_NEAR(air_m(kRadius_m, 0, 1, 1e7), kAirScale_m * (1 - std::exp(-6.0)), 0.01);
 }
 
@@ -203,7 +203,7 @@ TEST(Haze, IsLightByDayAndDarkByNight) {
     const glm::dvec3 here = haze_colour(n / 1000.0);
     EXPECT_GE(here.r, last);
     EXPECT_LE(here.r, last + 1);  // no step
-    // Of one hue.
+    // All have one hue.
     EXPECT_NEAR(here.g * kDust.r, here.r * kDust.g, 1e-9);
     EXPECT_NEAR(here.b * kDust.r, here.r * kDust.b, 1e-9);
     last = here.r;
@@ -223,7 +223,7 @@ TEST(Gamma, OneChangesNothing) {
   std::vector<vpe::base::Rgb> colours = every_byte();
   apply_gamma(colours, 1);
   EXPECT_EQ(colours, every_byte());
-  // Nor does the way through the table.
+  // The table does not change that either.
   apply_gamma(colours, 1 + 1e-12);
   EXPECT_EQ(colours, every_byte());
 }

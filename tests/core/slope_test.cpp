@@ -75,7 +75,7 @@ TEST(Slope, NorthAtThePolesIsAlongTheNamedMeridian) {
   EXPECT_NEAR(at(90), 270, 1e-12);
 }
 
-// Smooth random ground over a square, metres.
+// Returns smooth random ground over a square, metres.
 class Ground {
  public:
   explicit Ground(std::uint64_t seed) {
@@ -133,7 +133,7 @@ class Gdaldem {
     base::write_file(dir_ / "z.asc", std::string_view(grid));
   }
 
-  // Of inner posts, row after row.
+  // For inner posts, row after row.
   std::vector<double> run(const std::vector<std::string>& what) const {
     app_test::Command command;
     command.program = app_test::find_program("gdaldem");
@@ -175,7 +175,7 @@ class Gdaldem {
   std::vector<double> heights_;
 };
 
-// Aspect only where ground is steeper than this: below it, a small error turns it at will.
+// Aspect only where ground is steeper than this: below it, a small error changes it arbitrarily.
 constexpr double kSteep_deg = 2;
 
 Difference compare(const std::vector<glm::dvec3>& normals, const std::vector<double>& slope,
@@ -199,7 +199,7 @@ Difference compare(const std::vector<glm::dvec3>& normals, const std::vector<dou
   return d;
 }
 
-// The definition of gdaldem's ZevenbergenThorne is ours: half the difference of the two neighbours on each
+// gdaldem's ZevenbergenThorne has the same definition: half the difference of the two neighbours on each
 // axis. Its default, Horn, averages three such differences, weights 1 2 1, so it sees ground a little smoother.
 TEST(Slope, AgreesWithGdaldemOnAPlane) {
   if (app_test::find_program("gdaldem").empty()) GTEST_SKIP() << "skipped: no gdaldem";

@@ -1,4 +1,4 @@
-// Two eyes in one image.
+// Stereo pairs.
 #include "vpe/core/stereo.h"
 
 #include <gtest/gtest.h>
@@ -105,12 +105,12 @@ TEST(Stereo, EyesAreParallelOrMeetAtADistance) {
     return projected.xy.x;
   };
   const double f = vpe::core::focal_px(view);
-  const auto left = vpe::core::eye_aside(view, -base_m / 2, std::nullopt);
-  const auto right = vpe::core::eye_aside(view, base_m / 2, std::nullopt);
+  const auto left = vpe::core::eye_view(view, -base_m / 2, std::nullopt);
+  const auto right = vpe::core::eye_view(view, base_m / 2, std::nullopt);
   for (const double distance_m : {2.0, 10.0, 1000.0})
     EXPECT_NEAR(x_of(left, distance_m) - x_of(right, distance_m), f * base_m / distance_m, 1e-5);
-  const auto left10 = vpe::core::eye_aside(view, -base_m / 2, 10.0);
-  const auto right10 = vpe::core::eye_aside(view, base_m / 2, 10.0);
+  const auto left10 = vpe::core::eye_view(view, -base_m / 2, 10.0);
+  const auto right10 = vpe::core::eye_view(view, base_m / 2, 10.0);
   EXPECT_NEAR(x_of(left10, 10.0), 500.0, 1e-5);
   EXPECT_NEAR(x_of(right10, 10.0), 500.0, 1e-5);
   EXPECT_GT(x_of(left10, 5.0), x_of(right10, 5.0));  // nearer: in front of the screen

@@ -32,7 +32,7 @@ View random_view(test_support::Random& random, Projection projection) {
   return view;
 }
 
-// Image position to camera axes in long double, straight from the definition in view.h.
+// Converts an image position to camera axes in long double, directly by the definition in view.h.
 struct LongVec {
   long double right, up, forward;
 };
@@ -190,7 +190,7 @@ TEST(View, CylinderRowsAreEvenInTangentAndColumnsInAzimuth) {
                   1e-12);
     }
   }
-  // Quarter turns are exact.
+  // Multiples of 90 degrees are exact.
   EXPECT_EQ(pixel_ray(view, 2700, 500), glm::dvec3(0, 1, 0));
   EXPECT_TRUE(project(view, view.camera.position_m * 2.0).behind);  // the zenith is on no row
 }
@@ -322,9 +322,9 @@ TEST_F(BadView, FieldOfView) {
   expect("must be 0.001 to 180");
 }
 
-TEST_F(BadView, Eye) {
+TEST_F(BadView, Camera) {
   view_.camera.position_m.y = kNan;
-  expect("eye's position is not finite");
+  expect("camera's position is not finite");
   view_.camera.position_m.y = 1e300;
   expect("farther than");
   view_.camera = pose(0, 0, 1000, kNan, 0, 0);
@@ -345,14 +345,14 @@ TEST_F(BadView, Offset) {
   expect("past the zenith");
 }
 
-TEST_F(BadView, base::Shard) {
+TEST_F(BadView, SubRectangle) {
   for (const SubRectangle& part :
        {SubRectangle{-1, 0, 10, 10}, SubRectangle{0, 0, 10, 0}, SubRectangle{0, 0, 0, 10},
         SubRectangle{1, 1, 0, 0}, SubRectangle{1271, 0, 10, 10}, SubRectangle{0, 711, 10, 10},
         SubRectangle{0, 0, -5, 10},
         SubRectangle{std::numeric_limits<int>::max(), 0, std::numeric_limits<int>::max(), 1}}) {
     view_.part = part;
-    expect("does not lie inside the picture of 1280x720");
+    expect("does not lie inside the image of 1280x720");
   }
 }
 
@@ -371,8 +371,8 @@ TEST(View, PartOfAImageLargerThanCanBeDrawn) {
   EXPECT_NE(check(view), "");
 }
 
-// Against every pixel's corner, by the angle to the horizon; where the image ends within rounding of it
-// either answer will do.
+// Compares with every pixel's corner by the angle to the horizon. Where the image ends within rounding of the
+// horizon either answer is right.
 TEST(View, ReachesTheHorizonWhereAPixelDoes) {
   test_support::Random random(20261122);
   int reaches = 0;
