@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "vpe/core/appearance/appearance.h"
-#include "vpe/core/registry/level_table.h"
 #include "vpe/core/appearance/overlays.h"
+#include "vpe/core/registry/level_table.h"
 
 namespace vpe::core {
 
