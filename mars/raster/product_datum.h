@@ -17,6 +17,7 @@ namespace mars {
 // - the file name, where an archive distinguishes its products by it: a HiRISE DTM named DTE.. is above the
 //   areoid, DTR.. a radius; USGS's MOLA and HRSC-MOLA mosaics are above the areoid; an HRSC DTM named ..da4..
 //   is above the areoid, ..dt4.. above the sphere of 3396 km (HRSC archive SIS, HiRISE DTM README).
+// GdalElevation takes values above 1e6 m for radii, whatever this returns.
 VerticalDatum product_datum(const std::string& path, GDALDataset& dataset,
                             const std::optional<PdsLabel>& label);
 

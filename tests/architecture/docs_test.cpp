@@ -27,8 +27,9 @@ std::vector<fs::path> pages() {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator(kRoot))
     if (entry.path().extension() == ".md") found.push_back(entry.path());
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kRoot / "docs"))
-    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  for (const char* folder : {"docs", "tests"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kRoot / folder))
+      if (entry.path().extension() == ".md") found.push_back(entry.path());
   return found;
 }
 

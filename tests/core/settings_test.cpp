@@ -2,6 +2,8 @@
 
 #include <clocale>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <locale>
 #include <set>
@@ -38,6 +40,13 @@ TEST(Settings, EveryKeyIsListedOnceWithADefaultThatIsAllowed) {
   for (const char* key : {"mode", "colour", "exaggeration", "sun.azimuth", "sun.elevation"}) {
     EXPECT_TRUE(names.contains(key)) << key;
   }
+}
+
+TEST(Settings, EveryKeyIsInTheGuide) {
+  std::ifstream file(VPE_SOURCE_DIR "/docs/guide/settings.md");
+  const std::string guide{std::istreambuf_iterator<char>(file), {}};
+  for (const SettingInfo& info : Settings::list())
+    EXPECT_TRUE(holds(guide, "`" + std::string(info.key) + "`")) << info.key;
 }
 
 TEST(Settings, EachKeyChangesItsOwnValueAlone) {

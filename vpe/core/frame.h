@@ -56,7 +56,7 @@ struct FrameStats {
   std::int64_t pages_loading = 0;
   std::int64_t pages_uploaded = 0;  // for this frame
   std::int64_t pages_evicted = 0;
-  double select_ms = 0;
+  double select_ms = 0;   // selecting tiles; by rays: casting
   double occlude_ms = 0;  // for occlusion culling; part of load_ms
   double load_ms = 0;     // waiting for loaders, and uploading
   double draw_ms = 0;
@@ -121,9 +121,9 @@ class Renderer {
  public:
   virtual ~Renderer() = default;
 
-  // Draws one image. A tile that cannot be read is replaced by its nearest readable ancestor and listed as
-  // missing. Has one caller at a time, on the thread that made the renderer. Throws std::runtime_error with
-  // what failed, why, and what to do.
+  // Draws one image. The polygon backend replaces a tile that cannot be read by its nearest readable ancestor
+  // and lists it as missing; the ray backend throws. Has one caller at a time, on the thread that made the
+  // renderer. Throws std::runtime_error with what failed, why, and what to do.
   virtual DrawResult draw(const DrawRequest& request) = 0;
 };
 

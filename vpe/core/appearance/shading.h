@@ -55,7 +55,7 @@ inline constexpr double kDawnSine = -0.15;
 inline constexpr double kDaySine = 0.3;
 inline constexpr double kNight = 0.08;
 
-// Returns the colour that haze adds to ground for this sine of the sun's elevation.
+// Returns the colour that haze adds to ground for this sine of the sun's elevation at that ground.
 glm::dvec3 haze_colour(double sun_sine);
 
 // Replaces each channel x by x^(1 / gamma).

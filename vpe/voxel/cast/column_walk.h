@@ -24,7 +24,7 @@ struct CellRule {
   // Smaller: closer to the reference surface, slower; larger: coarser tiles, fewer to read and walk. 0: the
   // finest tiles alone, so the reference surface itself.
   double cell_px = 0;
-  double focal_px = 1;  // largest number of pixels per radian in the image
+  double focal_px = 1;  // pixels per radian at the image's centre (core::focal_px)
 };
 
 // Holds what all groups of one image share: camera, exaggeration, and the tiles' bounds seen from there.
