@@ -95,7 +95,7 @@ TEST_F(Profile, BadInput) {
   expect_failure({"profile", planet().string(), "0,0", "90,0", "--step", "0"}, 2, {"--step"});
   expect_failure({"profile", planet().string(), "0,0", "90,0", "--step", "0.001"}, 2,
                  {"points", "longer step"});
-  expect_failure({"profile", "0;0", "1,1", "2,2"}, 1, {"0;0"});
+  expect_failure({"profile", "0/0", "1,1", "2,2"}, 1, {"0/0"});
 }
 
 }  // namespace

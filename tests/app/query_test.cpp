@@ -57,11 +57,69 @@ TEST_F(Query, AnswersFollowTheRaster) {
 }
 
 TEST_F(Query, BothLongitudeConventions) {
-  const json answers = ask({"286,-13.5", "-74,-13.5", "180,10", "-180,10", "540,10"});
+  const json answers = ask({"286,-13.5", "-74,-13.5", "180,10", "-180,10"});
   EXPECT_EQ(answers[0], answers[1]);
   EXPECT_EQ(answers[2], answers[3]);
-  EXPECT_EQ(answers[2], answers[4]);
   EXPECT_EQ(answers[2]["lon_deg"], 180);
+}
+
+TEST_F(Query, PlacesInTheNotationsOfMaps) {
+  const json expected = ask({"-74,-13.5"});
+  for (const char* text :
+       {"13.5S,74W", "13.5 S, 286 E", "lat -13.5 lon -74", "74\u00b0W 13\u00b030'S", "286 0, -13 30"})
+    EXPECT_EQ(ask({text}), expected) << text;
+  EXPECT_EQ(ask({}, "13.5 S, 74 W\n"), expected);
+}
+
+TEST_F(Query, MalformedPlacesAreRefusedAndQuotedUnchanged) {
+  for (const char* text :
+       {"10 20,30", "2268.75,17", "1e300,0", "540,10", "18.4,97.5", "'137.3 -4.6'", "1;2;3"}) {
+    const Result result = vpe({"query", planet().string()}, std::string(text) + "\n");
+    EXPECT_EQ(result.exit_code, 2) << text;
+    EXPECT_TRUE(says(result.err, {"standard input, line 1", text, "expected"})) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(vpe({"query", planet().string(), text}).exit_code, 2) << text;
+  }
+}
+
+TEST_F(Query, TheHeaderSaysWhichColumnIsWhich) {
+  const json expected = ask({"77.5,18.4", "-74,-13.5"});
+  for (const char* table : {"lat,lon\n18.4,77.5\n-13.5,-74\n", "Latitude;Longitude\n18.4;77.5\n-13.5;-74\n",
+                            "y\tx\n18.4\t77.5\n-13.5\t-74\n", "lat_deg, lon_deg\n18.4N, 77.5E\n13.5 S, 74 W\n",
+                            "\"lat\",\"lon\"\n\"18.4\",77.5\n\"13 30 S\",\"286\"\n"})
+    EXPECT_EQ(ask({}, table), expected) << table;
+  // Columns x and y of a map projection are not the place if the table has it too.
+  json answers = ask({}, "x,y,lon,lat\n500,600,77.5,18.4\n");
+  EXPECT_EQ(answers[0]["lon_deg"], 77.5);
+  EXPECT_EQ(answers[0]["input"]["x"], "500");
+}
+
+TEST_F(Query, FurtherColumnsAreKept) {
+  const std::string table = "name,lon,lat,level\n\"Gale, west\",137,-5,7\nJezero,77.5,18.4,\n";
+  const json answers = ask({}, table);
+  EXPECT_EQ(answers[0]["input"], json({{"name", "Gale, west"}, {"level", "7"}}));
+  EXPECT_EQ(answers[1]["input"], json({{"name", "Jezero"}, {"level", ""}}));
+  const std::vector<std::string> lines = lines_of(vpe({"query", planet().string()}, table).out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_TRUE(lines[0].ends_with(",datum,name,input_level")) << lines[0];
+  EXPECT_TRUE(lines[1].ends_with(",\"Gale, west\",7")) << lines[1];
+  EXPECT_TRUE(lines[2].ends_with(",Jezero,")) << lines[2];
+}
+
+TEST_F(Query, HeadersThatNameNoPlaceAreRefused) {
+  for (const char* table :
+       {"name,value\n1,2\n", "lon,height\n1,2\n", "lon,longitude,lat\n1,2,3\n", "foo\n1,2\n", "x,lat\n1,2\n"}) {
+    const Result result = vpe({"query", planet().string()}, table);
+    EXPECT_EQ(result.exit_code, 2) << table;
+    EXPECT_TRUE(says(result.err, {"line 1", "a header must name one longitude and one latitude"}))
+        << result.err;
+  }
+  for (const char* table : {"lon,lat\n1\n", "lon,lat\n1,2,3\n", "lon,lat\n\"1,2\n", "lon,lat\n1,95\n",
+                            "lon,lat\n1 S,5\n", "lon,lat\n,5\n"}) {
+    const Result result = vpe({"query", planet().string()}, table);
+    EXPECT_EQ(result.exit_code, 2) << table;
+    EXPECT_TRUE(says(result.err, {"standard input, line 2"})) << result.err;
+  }
 }
 
 TEST_F(Query, StandardInput) {
@@ -70,7 +128,7 @@ TEST_F(Query, StandardInput) {
   EXPECT_EQ(ask({}, "lon,lat\r\n# where\r\n-74,-13.5\r\n\r\n 10 ,\t20"), expected);
   EXPECT_EQ(ask({}, "\xEF\xBB\xBF# places\nlon_deg,lat_deg\n286,-13.5\n10,20\n"), expected);
   EXPECT_EQ(ask({}, ""), json::array());
-  for (const char* text : {"1,2\nfoo\n", "1,2\nlon,lat\n", "1,2\n3;4\n", "lon,lat\n1\n", "1,2\n0,95\n"}) {
+  for (const char* text : {"1,2\nfoo\n", "1,2\nlon,lat\n", "1,2\n3/4\n", "lon,lat\n1\n", "1,2\n0,95\n"}) {
     const Result result = vpe({"query", planet().string()}, text);
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_TRUE(says(result.err, {"standard input, line 2"}));
@@ -116,6 +174,12 @@ TEST_F(Query, NoAnswerWhereNoSourceHasData) {
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[1].find("-100,10,,,,0,"), 0U) << lines[1];
   EXPECT_NEAR(std::stod(lines[2].substr(7)), answers[1]["elevation_m"].get<double>(), 0.0006) << lines[2];
+  // Answers come first, whatever the exit status.
+  EXPECT_EQ(vpe({"query", "half.vpe", "100,10", "--fail-on-nodata"}).exit_code, 0);
+  const Result failed = vpe({"query", "half.vpe", "-100,10", "100,10", "--fail-on-nodata"});
+  EXPECT_EQ(failed.exit_code, 1);
+  EXPECT_EQ(lines_of(failed.out), lines);
+  EXPECT_TRUE(says(failed.err, {"1 of 2 places have no data"})) << failed.err;
 }
 
 TEST_F(Query, ResultsThatCannotBeWritten) {

@@ -33,7 +33,7 @@ nlohmann::json to_json(const paging::ProfilePoint& p) {
 
 void run_profile(const ProfileArguments& arguments, const Common& common) {
   auto [planet_name, places] = split_places(arguments.places);
-  if (places.empty()) places = read_places(std::cin);
+  if (places.empty()) places = read_places(std::cin).places;
   if (places.size() < 2) throw UsageError("a profile needs at least two places, LON,LAT in degrees");
   const auto planet = open_planet(planet_name, common);
   const paging::PlanetMeta& meta = planet->meta();
@@ -67,7 +67,8 @@ void add_profile(CLI::App& program, Common& common) {
       add_command(program, "profile", "Print heights, slopes and distances along great circles", common, true);
   command->add_option(
       "PLANET_AND_PLACES", arguments->places,
-      "[PLANET] LON,LAT LON,LAT... (degrees east, north); without places, they are read from stdin");
+      "[PLANET] LON,LAT LON,LAT... (degrees east, north, or as 4.6S,222.6W); without places, they are "
+      "read from stdin");
   command
       ->add_option("--step", arguments->step_m,
                    "Largest distance between points, metres (default: 1000 points along the profile)")

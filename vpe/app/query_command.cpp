@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <iostream>
 #include <numeric>
+#include <stdexcept>
+#include <utility>
 
 #include "paging/surface/query.h"
 #include "vpe/app/cli/json_output.h"
@@ -42,16 +44,60 @@ void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
     std::snprintf(text, sizeof text, "%.*f", digits, x);
     return std::string(text);
   };
-  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s\n", base::format_number(a.place.lon_deg).c_str(),
+  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s", base::format_number(a.place.lon_deg).c_str(),
               base::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
               number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
               csv_field(a.source).c_str(), a.geometric_error_m, datum.c_str());
 }
 
-void query(const std::vector<std::string>& arguments, const Common& common) {
-  PlanetAndPlaces request = split_places(arguments);
-  std::vector<mars::LonLat>& places = request.places;
-  if (places.empty()) places = read_places(std::cin);
+struct QueryArguments {
+  std::vector<std::string> planet_and_places;
+  bool fail_on_nodata = false;
+};
+
+constexpr const char* kColumns =
+    "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum";
+
+// Returns the names of a table's further columns as the answer has them: a name that the answer uses itself gets
+// the prefix input_.
+std::vector<std::string> answer_names(const std::vector<std::string>& columns) {
+  std::vector<std::string> names = columns;
+  for (std::string& name : names)
+    if (("," + std::string(kColumns) + ",").find("," + name + ",") != std::string::npos) name = "input_" + name;
+  return names;
+}
+
+void print_json_answers(const std::vector<paging::PlaceAnswer>& answers, const PlaceTable& table,
+                        const paging::PlanetMeta& meta) {
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t n = 0; n < answers.size(); ++n) {
+    nlohmann::json& answer = list.emplace_back(to_json(answers[n], meta));
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      answer["input"][table.columns[c]] = table.cells[n][c];
+  }
+  print_json(list);
+}
+
+void print_csv_answers(const std::vector<paging::PlaceAnswer>& answers, const PlaceTable& table,
+                       const paging::PlanetMeta& meta) {
+  std::fputs(kColumns, stdout);
+  for (const std::string& name : answer_names(table.columns)) std::printf(",%s", csv_field(name).c_str());
+  std::puts("");
+  const std::string datum = csv_field(to_string(meta.datum));
+  for (std::size_t n = 0; n < answers.size(); ++n) {
+    print_csv(answers[n], datum);
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      std::printf(",%s", csv_field(table.cells[n][c]).c_str());
+    std::puts("");
+  }
+}
+
+void query(const QueryArguments& arguments, const Common& common) {
+  PlanetAndPlaces request = split_places(arguments.planet_and_places);
+  PlaceTable table;
+  table.places = std::move(request.places);
+  if (table.places.empty()) table = read_places(std::cin);
+  const std::vector<mars::LonLat>& places = table.places;
   const auto planet = open_planet(request.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
@@ -77,25 +123,28 @@ void query(const std::vector<std::string>& arguments, const Common& common) {
   });
 
   if (common.json) {
-    nlohmann::json list = nlohmann::json::array();
-    for (const paging::PlaceAnswer& a : answers) list.push_back(to_json(a, meta));
-    print_json(list);
-    return;
+    print_json_answers(answers, table, meta);
+  } else {
+    print_csv_answers(answers, table, meta);
   }
-  std::printf(
-      "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum\n");
-  const std::string datum = csv_field(to_string(meta.datum));
-  for (const paging::PlaceAnswer& a : answers) print_csv(a, datum);
+  const auto without = std::count_if(answers.begin(), answers.end(), [](const auto& a) { return a.nodata; });
+  if (arguments.fail_on_nodata && without > 0)
+    throw std::runtime_error(std::to_string(without) + " of " + std::to_string(answers.size()) +
+                             " places have no data");
 }
 
 }  // namespace
 
 void add_query(CLI::App& program, Common& common) {
-  auto arguments = std::make_shared<std::vector<std::string>>();
+  auto arguments = std::make_shared<QueryArguments>();
   CLI::App* command = add_command(
       program, "query", "Print elevation, slope, level (from 0), source and error at places", common, true);
-  command->add_option("PLANET_AND_PLACES", *arguments,
-                      "[PLANET] LON,LAT... (degrees east, north); without places, they are read from stdin");
+  command->add_option(
+      "PLANET_AND_PLACES", arguments->planet_and_places,
+      "[PLANET] LON,LAT... (degrees east, north, or as 4.6S,222.6W); without places, they are read "
+      "from stdin, one a line or as a table with columns lon and lat");
+  command->add_flag("--fail-on-nodata", arguments->fail_on_nodata,
+                    "Exit with status 1 after the answers if a place has no data");
   command->callback([arguments, &common] { query(*arguments, common); });
 }
 

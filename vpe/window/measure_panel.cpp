@@ -7,10 +7,10 @@
 #include <system_error>
 #include <utility>
 
+#include "mars/geodesy/place_text.h"
 #include "paging/planet/planet_meta.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
-#include "vpe/explore/measure/place_text.h"
 #include "vpe/window/imgui_helpers.h"
 #include "vpe/window/measure_marks.h"
 #include "vpe/window/profile_plot_view.h"
@@ -125,8 +125,8 @@ void MeasurePanel::draw_place(MeasureActions& actions, Widgets& widgets) {
           "##place", place_text_,
           "Longitude, latitude; also with E, W, N, S, or in degrees, minutes, seconds. Then press Enter.")) {
     std::string fault;
-    place_read_ = explore::read_place(place_text_, fault);
-    place_reply_ = place_read_ ? explore::place_text(*place_read_) : fault;
+    place_read_ = mars::parse_place(place_text_, fault);
+    place_reply_ = place_read_ ? mars::place_text(*place_read_) : fault;
     if (place_text_.empty()) place_reply_.clear();
   }
   if (place_reply_.empty())

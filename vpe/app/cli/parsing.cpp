@@ -6,6 +6,8 @@
 #include <memory>
 #include <string_view>
 
+#include "mars/geodesy/place_text.h"
+#include "vpe/app/cli/program.h"
 #include "vpe/base/number.h"
 
 namespace vpe::app {
@@ -29,10 +31,11 @@ std::optional<std::vector<double>> parse_numbers(const std::string& text) {
   return numbers;
 }
 
-std::optional<mars::LonLat> parse_place(const std::string& text) {
-  const auto numbers = parse_numbers(text);
-  if (!numbers || numbers->size() != 2) return std::nullopt;
-  return mars::LonLat{(*numbers)[0], (*numbers)[1]};
+mars::LonLat parse_place(const std::string& text, const std::string& where) {
+  std::string fault;
+  const auto place = mars::parse_place(text, fault);
+  if (!place) throw UsageError(where + "'" + text + "': " + fault);
+  return *place;
 }
 
 }  // namespace vpe::app

@@ -67,12 +67,7 @@ std::vector<double> azimuths_of(const HorizonArguments& a) {
   return out;
 }
 
-mars::LonLat place_of(const HorizonArguments& a) {
-  const auto place = parse_place(a.at);
-  if (!place) throw UsageError("--at '" + a.at + "': expected LON,LAT in degrees");
-  if (!mars::is_valid(*place)) throw UsageError("--at '" + a.at + "': latitude must be within -90..90");
-  return *place;
-}
+mars::LonLat place_of(const HorizonArguments& a) { return parse_place(a.at, "--at "); }
 
 void check(const HorizonArguments& a) {
   place_of(a);

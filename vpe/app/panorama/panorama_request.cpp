@@ -82,16 +82,14 @@ std::vector<panorama::Plane> layers_of(const PanoramaArguments& arguments) {
 PanoramaRequest request_from_options(const PanoramaArguments& arguments, const Common& common) {
   if (arguments.at.empty() || arguments.output.empty())
     throw UsageError("--at LON,LAT and -o PANO are required, or --from-sidecar PANO.json");
-  const auto place = parse_place(arguments.at);
-  if (!place) throw UsageError("--at '" + arguments.at + "': expected LON,LAT in degrees");
-  if (!mars::is_valid(*place)) throw UsageError("--at '" + arguments.at + "': latitude must be within -90..90");
+  const mars::LonLat place = parse_place(arguments.at, "--at ");
   if (arguments.height_m.has_value() == arguments.altitude_m.has_value()) {
     throw UsageError("give either --height (metres above the ground) or --altitude (metres above the sphere)");
   }
   PanoramaRequest request;
   request.map = map_of(arguments);
-  request.camera.lon_deg = place->lon_deg;
-  request.camera.lat_deg = place->lat_deg;
+  request.camera.lon_deg = place.lon_deg;
+  request.camera.lat_deg = place.lat_deg;
   request.camera.alt_m = arguments.altitude_m.value_or(0);
   request.backend = backend_of(arguments);
   request.settings = make_settings(arguments.render);

@@ -14,11 +14,22 @@ struct PlanetAndPlaces {
   std::vector<mars::LonLat> places;
 };
 
-// Splits the arguments [PLANET] LON,LAT...: the first one is a planet unless it is a place. Throws UsageError.
+// Splits the arguments [PLANET] PLACE...: the first one is a planet if it is a file, or no place
+// (mars/geodesy/place_text.h). Throws UsageError.
 PlanetAndPlaces split_places(const std::vector<std::string>& arguments);
 
-// Reads one place per line. Skips a header, empty lines, and lines that begin with #. Throws UsageError that
-// names the line.
-std::vector<mars::LonLat> read_places(std::istream& in);
+// Holds places with the further columns of their table.
+struct PlaceTable {
+  std::vector<mars::LonLat> places;
+  std::vector<std::string> columns;             // names of the further columns; empty without a header
+  std::vector<std::vector<std::string>> cells;  // of each place, as many as there are columns
+};
+
+// Reads one place a line. Skips empty lines and lines that begin with #. The first line may be a header. It
+// must name one longitude (lon, longitude, lon_deg, lng, long, x) and one latitude (lat, latitude, lat_deg, y),
+// in any order among other columns, whatever the case; x and y count only where no other name does. Its columns
+// are separated by commas, semicolons or tabs; a field may stand in double quotes. Without a header a line is a
+// place. Throws UsageError that names the line.
+PlaceTable read_places(std::istream& in);
 
 }  // namespace vpe::app

@@ -8,6 +8,7 @@
 
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
+#include "vpe/base/quote.h"
 
 namespace vpe::explore {
 
@@ -50,7 +51,7 @@ Bookmark read_line(std::string_view line, std::string& fault) {
   if (const auto number = base::parse_integer(key); number && *number >= 1 && *number <= kLastKey) {
     b.key = static_cast<int>(*number);
   } else if (key != "-") {
-    fault = "a key from 1 to 9, or - for none, found " + found_text(key);
+    fault = "a key from 1 to 9, or - for none, found " + base::quote_text(key);
     return b;
   }
   mars::Pose& p = b.view.pose;
@@ -62,7 +63,7 @@ Bookmark read_line(std::string_view line, std::string& fault) {
     const std::optional<double> number = base::parse_number(word);
     if (!number) {
       fault = std::string("a number for ") + names[n] +
-              (word.empty() ? ", found the end of the line" : ", found " + found_text(word));
+              (word.empty() ? ", found the end of the line" : ", found " + base::quote_text(word));
       return b;
     }
     *values[n] = *number;
@@ -70,7 +71,7 @@ Bookmark read_line(std::string_view line, std::string& fault) {
   b.name = trimmed(line);
   if (const std::string problem = problem_of(b.view); !problem.empty())
     fault = "numbers in their range: " + problem;
-  if (!is_one_line(b.name)) fault = "a name without control characters, found " + found_text(b.name);
+  if (!is_one_line(b.name)) fault = "a name without control characters, found " + base::quote_text(b.name);
   return b;
 }
 

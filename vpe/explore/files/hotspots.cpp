@@ -7,6 +7,7 @@
 
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
+#include "vpe/base/quote.h"
 
 namespace vpe::explore {
 
@@ -18,12 +19,12 @@ constexpr std::uintmax_t kLargestHotspotsFile = 16 << 20;
 Hotspot read_hotspot(const std::vector<std::string>& words, std::string& fault) {
   Hotspot hotspot;
   if (words[0] != "spot") {
-    fault = "a line that begins with spot, found " + found_text(words[0]);
+    fault = "a line that begins with spot, found " + base::quote_text(words[0]);
   } else if (words.size() != 6) {
     fault = "spot NAME LON LAT HEIGHT PANORAMA, found " + std::to_string(words.size()) +
             (words.size() == 1 ? " word" : " words") + "; a name or path with blanks needs double quotes";
   } else if (words[1].empty() || !is_one_line(words[1])) {
-    fault = "a name of at least one character and no control characters, found " + found_text(words[1]);
+    fault = "a name of at least one character and no control characters, found " + base::quote_text(words[1]);
   } else if (words[5].empty()) {
     fault = "the path of a panorama, found an empty word";
   }
@@ -53,7 +54,7 @@ ParsedHotspots parse_hotspots(std::string_view text, const std::filesystem::path
       const auto twin = std::find_if(parsed.hotspots.begin(), parsed.hotspots.end(),
                                      [&](const Hotspot& other) { return other.name == hotspot.name; });
       if (twin != parsed.hotspots.end()) {
-        fault = "a unique name, found " + found_text(hotspot.name) + " again after line " +
+        fault = "a unique name, found " + base::quote_text(hotspot.name) + " again after line " +
                 std::to_string(lines[static_cast<std::size_t>(twin - parsed.hotspots.begin())]);
       }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "vpe/base/number.h"
+#include "vpe/base/quote.h"
 
 namespace vpe::explore {
 
@@ -47,11 +48,11 @@ std::vector<std::string> split_words(std::string_view line, std::string& fault) 
       word += line[at];
     }
     if (at == line.size()) {
-      fault = "a closing quote after " + found_text(word);
+      fault = "a closing quote after " + base::quote_text(word);
       return {};
     }
     if (!ends_word(++at)) {
-      fault = "a blank after a closing quote, found " + found_text(line.substr(at));
+      fault = "a blank after a closing quote, found " + base::quote_text(line.substr(at));
       return {};
     }
   }
@@ -73,17 +74,8 @@ std::optional<double> number_word(std::string_view word, std::string_view what, 
   const std::optional<double> number = base::parse_number(word);
   if (number && *number >= min && *number <= max) return number;
   fault = std::string(what) + " from " + base::format_number(min) + " to " + base::format_number(max) +
-          ", found " + found_text(word);
+          ", found " + base::quote_text(word);
   return std::nullopt;
-}
-
-std::string found_text(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string found = "\"";
-  for (const char c : text.substr(0, kLongest)) {
-    found += is_control(c) || static_cast<unsigned char>(c) > 0x7f ? '?' : c;
-  }
-  return found + (text.size() > kLongest ? "...\"" : "\"");
 }
 
 bool is_one_line(std::string_view text) { return std::none_of(text.begin(), text.end(), is_control); }

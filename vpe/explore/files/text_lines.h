@@ -30,10 +30,6 @@ std::string as_word(std::string_view text);
 std::optional<double> number_word(std::string_view word, std::string_view what, double min, double max,
                                   std::string& fault);
 
-// Returns unexpected text for a message: in quotes, shortened, and safe for a terminal whatever bytes it
-// contains.
-std::string found_text(std::string_view text);
-
 // Returns true if the text contains no line ends and no other control characters.
 bool is_one_line(std::string_view text);
 

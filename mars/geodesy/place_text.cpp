@@ -1,4 +1,4 @@
-#include "vpe/explore/measure/place_text.h"
+#include "mars/geodesy/place_text.h"
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,16 @@
 #include <vector>
 
 #include "vpe/base/number.h"
-#include "vpe/explore/files/text_lines.h"
+#include "vpe/base/quote.h"
 
-namespace vpe::explore {
+namespace mars {
+
+namespace base = vpe::base;
 
 namespace {
 
+constexpr double kLargestLongitude_deg = 360;
+constexpr double kLargestLatitude_deg = 90;
 constexpr const char* kExpected =
     "longitude and latitude in degrees, as 137.44, -4.59 or 4.59 S 137.44 E or 137 26 30 E, 4 35 22 S";
 
@@ -58,9 +62,9 @@ constexpr std::string_view kMinus = "\u2212";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-class Reader {
+class PlaceReader {
  public:
-  explicit Reader(std::string_view text) : text_(text), lower_(text) {
+  explicit PlaceReader(std::string_view text) : text_(text), lower_(text) {
     for (char& c : lower_) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     decimal_comma_ = text.find(';') != std::string_view::npos;
   }
@@ -77,12 +81,12 @@ class Reader {
         ++at_;
       } else if (takes("\u00a0")) {  // no-break space
       } else if (is_digit(c) || c == '.' || c == '+' || c == '-' || text_.substr(at_).starts_with(kMinus)) {
-        if (!number(token)) return "a number, found " + found_text(text_.substr(at_));
+        if (!number(token)) return "a number, found " + base::quote_text(text_.substr(at_));
         tokens.push_back(token);
       } else if (word(token)) {
         tokens.push_back(token);
       } else {
-        return std::string(kExpected) + "; found " + found_text(text_.substr(at_));
+        return std::string(kExpected) + "; found " + base::quote_text(text_.substr(at_));
       }
     }
     return {};
@@ -151,16 +155,20 @@ struct Coordinate {
   double degrees = 0;
   std::optional<bool> is_lon;  // where it says so
   char letter = ' ';
+  std::size_t numbers = 0;
+  bool has_units = false;
 };
 
 std::string add_parts(std::span<const std::pair<Token, int>> parts, Coordinate& out) {
   if (parts.empty()) return kExpected;
+  out.numbers = parts.size();
   const Token& first = parts.front().first;
   constexpr std::array<double, 3> kParts{1, 60, 3600};
   int before = -1;
   for (std::size_t n = 0; n < parts.size(); ++n) {
     const auto& [token, given] = parts[n];
     const int unit = given >= 0 ? given : before + 1;
+    out.has_units = out.has_units || given >= 0;
     if (unit <= before || unit > 2 || (n == 0) != (unit == 0))
       return "degrees, then minutes, then seconds in each coordinate";
     if (n > 0 && token.is_signed) return "a sign before the degrees only, or a comma between the coordinates";
@@ -241,17 +249,46 @@ std::optional<Cut> cut(Tokens tokens) {
   return Cut{numbers[numbers.size() / 2], 0};
 }
 
-std::optional<mars::LonLat> rejected(std::string& fault, std::string why) {
+std::nullopt_t rejected(std::string& fault, std::string why) {
   fault = std::move(why);
   return std::nullopt;
 }
 
+// Returns the place if both numbers are within their limits. `has_letters`: the text says which is which.
+std::optional<LonLat> within_limits(double lon_deg, double lat_deg, bool has_letters, std::string& fault) {
+  if (!(std::abs(lat_deg) <= kLargestLatitude_deg))
+    return rejected(fault, "expected a latitude from -90 to 90, found " + base::format_number(lat_deg) +
+                               (has_letters ? "" : "; without letters the longitude comes first"));
+  if (!(std::abs(lon_deg) <= kLargestLongitude_deg))
+    return rejected(fault, "expected a longitude from -360 to 360, found " + base::format_number(lon_deg));
+  return LonLat{normalize_lon_deg(lon_deg), lat_deg};
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+// Returns the numbers of "NUMBER,NUMBER", which may have exponents; nullopt for other texts.
+std::optional<LonLat> plain_numbers(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return std::nullopt;
+  const auto lon = base::parse_number(trimmed(text.substr(0, comma)));
+  const auto lat = base::parse_number(trimmed(text.substr(comma + 1)));
+  if (!lon || !lat) return std::nullopt;
+  return LonLat{*lon, *lat};
+}
+
 }  // namespace
 
-std::optional<mars::LonLat> read_place(std::string_view text, std::string& fault) {
+std::optional<LonLat> parse_place(std::string_view text, std::string& fault) {
   if (text.size() > kLongestPlaceText) return rejected(fault, std::string("expected ") + kExpected);
+  if (const auto plain = plain_numbers(text))
+    return within_limits(plain->lon_deg, plain->lat_deg, false, fault);
   std::vector<Token> tokens;
-  if (std::string wrong = Reader(text).read(tokens); !wrong.empty())
+  if (std::string wrong = PlaceReader(text).read(tokens); !wrong.empty())
     return rejected(fault, "expected " + wrong);
   const Tokens all(tokens);
   const std::optional<Cut> middle = cut(all);
@@ -261,23 +298,42 @@ std::optional<mars::LonLat> read_place(std::string_view text, std::string& fault
   std::string wrong = read_coordinate(all.first(middle->at), a);
   if (wrong.empty()) wrong = read_coordinate(all.subspan(middle->at + middle->between), b);
   if (!wrong.empty()) return rejected(fault, "expected " + wrong);
+  const bool has_letters = a.is_lon || b.is_lon;
+  if (!has_letters && !a.has_units && !b.has_units && (a.numbers == 1) != (b.numbers == 1))
+    return rejected(fault, "expected minutes in both coordinates or in none, or letters or units");
   if (a.is_lon && b.is_lon && *a.is_lon == *b.is_lon)
     return rejected(fault, std::string("expected a longitude and a latitude, found two ") +
                                (*a.is_lon ? "longitudes" : "latitudes"));
   const bool lon_first = a.is_lon ? *a.is_lon : !b.is_lon.value_or(false);
-  const Coordinate& lon = lon_first ? a : b;
-  const Coordinate& lat = lon_first ? b : a;
-  if (!(std::abs(lat.degrees) <= 90)) {
-    const bool has_letters = a.is_lon || b.is_lon;
-    return rejected(fault, "expected a latitude from -90 to 90, found " + base::format_number(lat.degrees) +
-                               (has_letters ? "" : "; without letters the longitude comes first"));
-  }
-  if (!(std::abs(lon.degrees) <= 360))
-    return rejected(fault, "expected a longitude from -360 to 360, found " + base::format_number(lon.degrees));
-  return mars::LonLat{mars::normalize_lon_deg(lon.degrees), lat.degrees};
+  return within_limits((lon_first ? a : b).degrees, (lon_first ? b : a).degrees, has_letters, fault);
 }
 
-std::string place_text(mars::LonLat place) {
+std::optional<double> parse_coordinate(std::string_view text, Axis axis, std::string& fault) {
+  const bool is_lon = axis == Axis::kLongitude;
+  const std::string name = is_lon ? "longitude" : "latitude";
+  const std::string expected = "expected a " + name + " in degrees, as " +
+                               (is_lon ? "137.44 or 222.56 W or 137 26 24 E" : "-4.59 or 4.59 S or 4 35 24 S");
+  if (text.size() > kLongestPlaceText) return rejected(fault, expected);
+  Coordinate out;
+  if (const auto plain = base::parse_number(trimmed(text))) {
+    out.degrees = *plain;
+  } else {
+    std::vector<Token> tokens;
+    if (!PlaceReader(text).read(tokens).empty() ||
+        std::any_of(tokens.begin(), tokens.end(), [](const Token& t) { return t.kind == Token::Kind::kComma; }))
+      return rejected(fault, expected);
+    if (const std::string wrong = read_coordinate(tokens, out); !wrong.empty())
+      return rejected(fault, wrong == kExpected ? expected : "expected " + wrong);
+    if (out.is_lon.value_or(is_lon) != is_lon) return rejected(fault, expected);
+  }
+  const double limit = is_lon ? kLargestLongitude_deg : kLargestLatitude_deg;
+  if (!(std::abs(out.degrees) <= limit))
+    return rejected(fault, "expected a " + name + " from -" + base::format_number(limit) + " to " +
+                               base::format_number(limit) + ", found " + base::format_number(out.degrees));
+  return is_lon ? normalize_lon_deg(out.degrees) : out.degrees;
+}
+
+std::string place_text(LonLat place) {
   constexpr int kDigits = 6;
   const std::string degree = "\u00b0 ";
   std::string text =
@@ -287,4 +343,4 @@ std::string place_text(mars::LonLat place) {
          (place.lat_deg < 0 ? "S" : "N");
 }
 
-}  // namespace vpe::explore
+}  // namespace mars

@@ -1,13 +1,14 @@
 // Text of places: reads coordinates in the notations of maps and papers, and writes them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "mars/geodesy/sphere.h"
 
-namespace vpe::explore {
+namespace mars {
 
 inline constexpr std::size_t kLongestPlaceText = 200;
 
@@ -21,13 +22,21 @@ inline constexpr std::size_t kLongestPlaceText = 200;
 //   seconds are below 60.
 // - A comma or semicolon separates the coordinates. If there is a semicolon, a comma between digits is a
 //   decimal comma.
-// - A sign together with a letter is rejected, since it is ambiguous.
+// - A sign together with a letter is rejected, since it is ambiguous; so are numbers without letters and units
+//   of which only one coordinate has minutes ("10 20, 30").
+// - Two numbers with a comma between them may have exponents.
 // Returns the longitude in (-180, 180]. For other texts returns nullopt and sets `fault` to what was expected.
 // Pure.
-std::optional<mars::LonLat> read_place(std::string_view text, std::string& fault);
+std::optional<LonLat> parse_place(std::string_view text, std::string& fault);
 
-// Returns a place for display: "74.200000° W (285.800000° E), 13.500000° S". read_place() reads the part
+enum class Axis : std::uint8_t { kLongitude, kLatitude };
+
+// Parses one coordinate in the same notations: "222.5583 W" is a longitude of 137.4417. Returns nullopt and sets
+// `fault` to what was expected, also for a letter of the other axis. Pure.
+std::optional<double> parse_coordinate(std::string_view text, Axis axis, std::string& fault);
+
+// Returns a place for display: "74.200000° W (285.800000° E), 13.500000° S". parse_place() reads the part
 // outside of the brackets to 5e-7 degrees.
-std::string place_text(mars::LonLat place);
+std::string place_text(LonLat place);
 
-}  // namespace vpe::explore
+}  // namespace mars

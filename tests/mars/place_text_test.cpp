@@ -1,4 +1,4 @@
-#include "vpe/explore/measure/place_text.h"
+#include "mars/geodesy/place_text.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -7,16 +7,16 @@
 
 #include "vpe/base/number.h"
 
-namespace vpe::explore {
+namespace mars {
 namespace {
 
 // Measures in degrees of latitude, far from the poles.
-double apart_deg(mars::LonLat a, mars::LonLat b) {
+double apart_deg(LonLat a, LonLat b) {
   return std::max(std::abs(std::remainder(a.lon_deg - b.lon_deg, 360.0)), std::abs(a.lat_deg - b.lat_deg));
 }
 
 TEST(PlaceText, OnePlaceInManyNotations) {
-  const mars::LonLat place{137.4417, -4.5895};
+  const LonLat place{137.4417, -4.5895};
   for (const char* text : {
            "137.4417,-4.5895",
            "137.4417, -4.5895",
@@ -53,7 +53,7 @@ TEST(PlaceText, OnePlaceInManyNotations) {
            "137 deg 26 min 30.12'' E, 4 deg 35.37 min S",
        }) {
     std::string fault;
-    const auto read = read_place(text, fault);
+    const auto read = parse_place(text, fault);
     ASSERT_TRUE(read.has_value()) << text << ": " << fault;
     EXPECT_LT(apart_deg(*read, place), 1e-9) << text << ": " << place_text(*read);
   }
@@ -62,7 +62,7 @@ TEST(PlaceText, OnePlaceInManyNotations) {
 TEST(PlaceText, AmbiguousTextIsRejectedWithTheExpectedForm) {
   const auto fault_of = [](std::string_view text) {
     std::string fault;
-    EXPECT_FALSE(read_place(text, fault).has_value()) << text;
+    EXPECT_FALSE(parse_place(text, fault).has_value()) << text;
     EXPECT_TRUE(fault.starts_with("expected ")) << text << ": " << fault;
     return fault;
   };
@@ -91,16 +91,44 @@ TEST(PlaceText, AmbiguousTextIsRejectedWithTheExpectedForm) {
   EXPECT_TRUE(has(fault_of("1.2.3, 5"), "number"));
   EXPECT_TRUE(has(fault_of("4d35m22s, 137"), "longitude and latitude"));  // seconds or south?
   fault_of("nan, 0");
-  fault_of("1e2, 0");
+  fault_of("1e2 0");
+  EXPECT_TRUE(has(fault_of("10 20,30"), "minutes in both"));
+  EXPECT_TRUE(has(fault_of("1e300, 0"), "-360 to 360"));
   fault_of(std::string(100000, '1'));
 }
 
 TEST(PlaceText, MinusZeroDegreesAreMinus) {
   std::string fault;
-  EXPECT_EQ(read_place("-0 30, -0 15 0", fault)->lon_deg, -0.5);
-  EXPECT_EQ(read_place("-0 30, -0 15 0", fault)->lat_deg, -0.25);
-  EXPECT_EQ(read_place("360, 90", fault)->lon_deg, 0);
-  EXPECT_EQ(read_place("-180, 0", fault)->lon_deg, 180);
+  EXPECT_EQ(parse_place("-0 30, -0 15 0", fault)->lon_deg, -0.5);
+  EXPECT_EQ(parse_place("-0 30, -0 15 0", fault)->lat_deg, -0.25);
+  EXPECT_EQ(parse_place("360, 90", fault)->lon_deg, 0);
+  EXPECT_EQ(parse_place("-180, 0", fault)->lon_deg, 180);
+}
+
+TEST(PlaceText, PlainNumbersMayHaveExponents) {
+  std::string fault;
+  const auto read = parse_place(" -1e1 , +5e0 ", fault);
+  ASSERT_TRUE(read.has_value()) << fault;
+  EXPECT_EQ(read->lon_deg, -10);
+  EXPECT_EQ(read->lat_deg, 5);
+}
+
+TEST(PlaceText, OneCoordinate) {
+  std::string fault;
+  for (const char* text : {"222.5", "137.5 W", "-137.5", "137 30 W", "W 137\u00b030'", "2225e-1", " 222.5\t"}) {
+    const auto lon = parse_coordinate(text, Axis::kLongitude, fault);
+    ASSERT_TRUE(lon.has_value()) << text << ": " << fault;
+    EXPECT_EQ(*lon, -137.5) << text;
+  }
+  EXPECT_EQ(parse_coordinate("4 30 S", Axis::kLatitude, fault), -4.5);
+  EXPECT_EQ(parse_coordinate("lat -4.5", Axis::kLatitude, fault), -4.5);
+  for (const char* text : {"", "a", "4 S", "10, 20", "361", "nan", "4,5", "10 60"}) {
+    fault.clear();
+    EXPECT_FALSE(parse_coordinate(text, Axis::kLongitude, fault).has_value()) << text;
+    EXPECT_TRUE(fault.starts_with("expected ")) << text << ": " << fault;
+  }
+  EXPECT_FALSE(parse_coordinate("90.5", Axis::kLatitude, fault).has_value());
+  EXPECT_FALSE(parse_coordinate("4 E", Axis::kLatitude, fault).has_value());
 }
 
 TEST(PlaceText, ShowsHowItWasUnderstood) {
@@ -108,8 +136,8 @@ TEST(PlaceText, ShowsHowItWasUnderstood) {
   EXPECT_EQ(place_text({137.4417, 4}), "137.441700\u00b0 E, 4.000000\u00b0 N");
 }
 
-mars::LonLat any_place() {
-  return {mars::normalize_lon_deg(*rc::gen::inRange(-1'800'000'000, 1'800'000'000) / 1e7),
+LonLat any_place() {
+  return {normalize_lon_deg(*rc::gen::inRange(-1'800'000'000, 1'800'000'000) / 1e7),
           *rc::gen::inRange(-900'000'000, 900'000'001) / 1e7};
 }
 
@@ -120,28 +148,28 @@ std::string in_seconds(double degrees) {
 }
 
 RC_GTEST_PROP(PlaceText, EveryPlaceReadsBackFromEveryNotation, ()) {
-  const mars::LonLat place = any_place();
+  const LonLat place = any_place();
   const double east = place.lon_deg < 0 ? place.lon_deg + 360 : place.lon_deg;
-  const std::string lon = base::format_number(place.lon_deg);
-  const std::string lat = base::format_number(place.lat_deg);
+  const std::string lon = vpe::base::format_number(place.lon_deg);
+  const std::string lat = vpe::base::format_number(place.lat_deg);
   const std::string letter_ns = place.lat_deg < 0 ? "S" : "N";
   const std::string letter_ew = place.lon_deg < 0 ? "W" : "E";
-  const std::string lat_size = base::format_number(std::abs(place.lat_deg));
+  const std::string lat_size = vpe::base::format_number(std::abs(place.lat_deg));
   std::string outside = place_text(place);
   if (const auto open = outside.find(" ("); open != std::string::npos)
     outside.erase(open, outside.find(')') - open + 1);
   const std::vector<std::pair<std::string, double>> texts{
       {lon + "," + lat, 1e-12},
       {lon + " " + lat, 1e-12},
-      {base::format_number(east) + ", " + lat, 1e-12},
+      {vpe::base::format_number(east) + ", " + lat, 1e-12},
       {"lat " + lat + " lon " + lon, 1e-12},
-      {lat_size + letter_ns + " " + base::format_number(std::fmod(360 - east, 360)) + "W", 1e-12},
+      {lat_size + letter_ns + " " + vpe::base::format_number(std::fmod(360 - east, 360)) + "W", 1e-12},
       {in_seconds(place.lon_deg) + letter_ew + " " + in_seconds(place.lat_deg) + letter_ns, 2e-8},
       {letter_ns + in_seconds(place.lat_deg) + letter_ew + in_seconds(place.lon_deg), 2e-8},
       {outside, 5.1e-7}};
   for (const auto& [text, error_deg] : texts) {
     std::string fault;
-    const auto read = read_place(text, fault);
+    const auto read = parse_place(text, fault);
     if (!read) RC_FAIL(text + ": " + fault);
     if (!(apart_deg(*read, place) <= error_deg)) RC_FAIL(text + " was read as " + place_text(*read));
   }
@@ -154,12 +182,12 @@ RC_GTEST_PROP(PlaceText, AnyTextIsAPlaceOrAReason, ()) {
   std::string text;
   for (const std::string& next : *rc::gen::container<std::vector<std::string>>(piece)) text += next;
   std::string fault;
-  const auto read = read_place(text, fault);
+  const auto read = parse_place(text, fault);
   if (read)
-    RC_ASSERT(mars::is_valid(*read) && read->lon_deg > -180 && read->lon_deg <= 180);
+    RC_ASSERT(is_valid(*read) && read->lon_deg > -180 && read->lon_deg <= 180);
   else
     RC_ASSERT(fault.starts_with("expected "));
 }
 
 }  // namespace
-}  // namespace vpe::explore
+}  // namespace mars
