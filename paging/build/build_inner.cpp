@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "paging/build/build_grid.h"
+#include "paging/build/nodata_fill.h"
 
 namespace paging {
 
@@ -51,19 +52,24 @@ lod::Posts sample_inner(const SampleInputs& sampling, const lod::TileKey& key) {
   const std::vector<glm::dvec3> directions = post_directions(key, lines);
   lod::Posts posts{key, n, std::vector<double>(directions.size())};
   std::map<int, std::vector<std::size_t>> by_level;
+  std::vector<int> levels;
   for (std::size_t p = 0; p < directions.size(); ++p) {
-    by_level[sampling.plan.coarsest_level_at(key.face, lines.u[p % lines.u.size()],
-                                             lines.v[p / lines.u.size()])]
-        .push_back(p);
+    levels.push_back(
+        sampling.plan.coarsest_level_at(key.face, lines.u[p % lines.u.size()], lines.v[p / lines.u.size()]));
+    by_level[levels.back()].push_back(p);
   }
+  bool has_nodata = false;
   for (const auto& [level, some] : by_level) {
     std::vector<glm::dvec3> at;
     for (const std::size_t p : some) at.push_back(directions[p]);
     std::vector<double> heights(at.size());
     sampling.elevation.sample(at, lod::post_spacing_m(level, n, meta.radius_m), heights);
-    for (std::size_t m = 0; m < some.size(); ++m)
-      posts.height_m[some[m]] = std::isfinite(heights[m]) ? heights[m] : meta.fill_m;
+    for (std::size_t m = 0; m < some.size(); ++m) {
+      posts.height_m[some[m]] = heights[m];
+      has_nodata = has_nodata || !std::isfinite(heights[m]);
+    }
   }
+  if (has_nodata) fill_nodata(sampling, key, levels, posts.height_m);
   const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m, directions);
   for (std::size_t p = 0; p < quanta.size(); ++p) posts.height_m[p] = quanta[p] * meta.quantum_m;
   return posts;

@@ -3,6 +3,7 @@
 
 #include "lod/mesh/error_meter.h"
 #include "paging/build/build_grid.h"
+#include "paging/build/nodata_fill.h"
 #include "vpe/base/mutation.h"
 
 namespace paging {
@@ -18,9 +19,11 @@ constexpr double kLastMeshShare = 0.1;
 constexpr double kVariantStep = 0.25;
 constexpr int kMaxMeshVariants = 12;
 
-// Border posts take the spacing of the coarsest tile that has them, so that both sides sample the same.
+// Border posts take the spacing of the coarsest tile that has them, so that both sides sample the same. Sets the
+// levels of these posts.
 void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int coarser_neighbour_mask,
-                      const std::vector<glm::dvec3>& directions, std::vector<double>& heights) {
+                      const std::vector<glm::dvec3>& directions, std::vector<double>& heights,
+                      std::vector<int>& levels) {
   const int n = sampling.meta.tile.intervals();
   const int side = n + 1;
   const auto spacing = [&](int level) { return lod::post_spacing_m(level, n, sampling.meta.radius_m); };
@@ -30,7 +33,10 @@ void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int
     for (int a = 0; a <= n; a += 2) at.push_back(directions[edge_post(edge, a, side)]);
     std::vector<double> values(at.size());
     sampling.elevation.sample(at, spacing(key.level - 1), values);
-    for (int a = 0; a <= n; a += 2) heights[edge_post(edge, a, side)] = values[static_cast<std::size_t>(a / 2)];
+    for (int a = 0; a <= n; a += 2) {
+      heights[edge_post(edge, a, side)] = values[static_cast<std::size_t>(a / 2)];
+      levels[edge_post(edge, a, side)] = key.level - 1;
+    }
   }
   for (int corner = 0; corner < 4; ++corner) {
     const bool east = (corner & 1) != 0;
@@ -39,6 +45,7 @@ void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int
     const int level = sampling.plan.coarsest_level_at_corner(key, east, north);
     if (level == key.level) continue;
     sampling.elevation.sample(std::span(&directions[post], 1), spacing(level), std::span(&heights[post], 1));
+    levels[post] = level;
   }
 }
 
@@ -68,14 +75,15 @@ SampledLeaf sample_leaf(const SampleInputs& sampling, const lod::TileKey& key) {
   leaf.posts = {key, n, std::vector<double>(leaf.directions.size())};
   std::vector<double>& heights = leaf.posts.height_m;
   sampling.elevation.sample(leaf.directions, lod::post_spacing_m(key.level, n, meta.radius_m), heights);
-  resample_borders(sampling, key, leaf.coarser_neighbour_mask, leaf.directions, heights);
+  std::vector<int> levels(heights.size(), key.level);
+  resample_borders(sampling, key, leaf.coarser_neighbour_mask, leaf.directions, heights, levels);
 
   leaf.nodata.resize(heights.size());
   for (std::size_t p = 0; p < heights.size(); ++p) {
     if (std::isfinite(heights[p]) || mutated(Guard::kNodataHeights)) continue;
     leaf.nodata[p] = leaf.any_nodata = true;
-    heights[p] = meta.fill_m;
   }
+  if (leaf.any_nodata) fill_nodata(sampling, key, levels, heights);
   leaf.quanta = to_quanta(heights, meta.quantum_m, leaf.directions);
   for (std::size_t p = 0; p < heights.size(); ++p) heights[p] = leaf.quanta[p] * meta.quantum_m;
   for (const lod::Edge edge : lod::kEdges) {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <vector>
 
+#include "lod/tree/facet_mask.h"
 #include "mars/geodesy/cube.h"
 #include "mars/sources/source.h"
 #include "paging/planet/planet_meta.h"
@@ -40,8 +42,13 @@ inline GridPosition between_lines(double x, int level, std::int32_t index, int i
   return {before, static_cast<float>(line - static_cast<double>(before))};
 }
 
-// Returns the index of the nearest line.
-inline std::size_t nearest(const GridPosition& at) { return at.index + (at.rest >= 0.5F ? 1 : 0); }
+// Returns whether the ground at a place has no data: whether a post that spans it has none. `nodata` has a flag
+// for each post, in rows of `side`, or none.
+inline bool is_nodata(const std::vector<bool>& nodata, const GridPosition& x, const GridPosition& y,
+                      std::size_t side) {
+  return !nodata.empty() && lod::is_flagged(nodata, y.index * side + x.index, side, static_cast<double>(x.rest),
+                                            static_cast<double>(y.rest));
+}
 
 // Interpolates values at the crossings of a grid of `side` lines; get(index) returns the value at a crossing.
 template <typename T, typename Get>

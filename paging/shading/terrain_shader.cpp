@@ -196,7 +196,7 @@ std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, 
   const auto side = static_cast<std::size_t>(ground.side);
   const GridPosition x = between_lines(place.u, key.level, key.i, n);
   const GridPosition y = between_lines(place.v, key.level, key.j, n);
-  if (!ground.nodata.empty() && ground.nodata[nearest(y) * side + nearest(x)]) return std::nullopt;
+  if (is_nodata(ground.nodata, x, y, side)) return std::nullopt;
   Ground at;
   at.up = direction;
   const int grid_level = key.level + planet_->meta().tile.k;

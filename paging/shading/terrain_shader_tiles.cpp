@@ -110,7 +110,7 @@ void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int s
       texel[1] = to_byte(c.y);
       texel[2] = to_byte(c.z);
       texel[3] = 255;
-      if (!ground->nodata.empty() && ground->nodata[nearest(gyp) * ground_side + nearest(gxp)]) {
+      if (is_nodata(ground->nodata, gxp, gyp, ground_side)) {
         texel[3] = 0;
         out.nodata = true;
       }

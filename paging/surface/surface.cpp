@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+
+#include "lod/tree/facet_mask.h"
 
 namespace paging {
 
@@ -120,18 +123,28 @@ SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const
                                      &out.normal, exaggeration);
   out.radius_m = planet_radius_m() + out.height_m;
   if (!tile->data.nodata.empty()) {
-    const auto nearest = [](const std::vector<double>& lines, double x) {
-      const auto above = std::lower_bound(lines.begin(), lines.end(), x);
-      if (above == lines.begin()) return std::size_t{0};
-      if (above == lines.end()) return lines.size() - 1;
-      const auto at = static_cast<std::size_t>(above - lines.begin());
-      return lines[at] - x < x - lines[at - 1] ? at : at - 1;
+    const lod::GridLines& lines = tile->lines;
+    const auto interval = [](const std::vector<double>& at, double x) {
+      return static_cast<std::size_t>(std::upper_bound(at.begin() + 1, at.end() - 1, x) - at.begin() - 1);
     };
-    const std::size_t i = nearest(tile->lines.u, point.u);
-    const std::size_t j = nearest(tile->lines.v, point.v);
-    out.nodata = tile->data.nodata[j * static_cast<std::size_t>(tile->data.posts.side()) + i];
+    const auto fraction = [](const std::vector<double>& at, std::size_t k, double x) {
+      return std::clamp((x - at[k]) / (at[k + 1] - at[k]), 0.0, 1.0);
+    };
+    const std::size_t i = interval(lines.u, point.u);
+    const std::size_t j = interval(lines.v, point.v);
+    const auto side = static_cast<std::size_t>(tile->data.posts.side());
+    out.nodata = lod::is_flagged(tile->data.nodata, j * side + i, side, fraction(lines.u, i, point.u),
+                                 fraction(lines.v, j, point.v));
   }
   return out;
+}
+
+bool Surface::is_below(const glm::dvec3& place_m, double exaggeration) const {
+  const double distance_m = glm::length(place_m);
+  if (!(distance_m > 0)) return true;
+  const lod::TileKey key = finest_tile(planet_->tree(), mars::chart_point(place_m));
+  if (distance_m > planet_radius_m() + exaggeration * planet_->tree().find(key)->max_height_m) return false;
+  return distance_m < at(place_m / distance_m, exaggeration).radius_m;
 }
 
 void Surface::radius(std::span<const glm::dvec3> directions, std::span<double> radius_m,

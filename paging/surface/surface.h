@@ -29,7 +29,7 @@ struct SurfacePoint {
   double radius_m = 0;         // from the planet's centre
   glm::dvec3 normal{0, 0, 1};  // of the facet, outward, body-fixed
   lod::TileKey tile;           // the finest tile there
-  bool nodata = false;         // the nearest post has no source data
+  bool nodata = false;         // a post of the facet has no data (at a post: that post)
 };
 
 // Samples and casts against the surface of a planet file, which it reads tile by tile into a cache. Any thread
@@ -55,6 +55,10 @@ class Surface {
   // on the ground.
   void radius(std::span<const glm::dvec3> directions, std::span<double> radius_m,
               double exaggeration = 1.0) const;
+
+  // Returns whether a place (metres from the planet's centre) lies below the surface, as cast() has it. Reads a
+  // tile only if the place is not above all of it. Throws PlanetError.
+  bool is_below(const glm::dvec3& place_m, double exaggeration = 1.0) const;
 
   // Restricts a ray to a segment, in metres along it.
   struct RaySegment {

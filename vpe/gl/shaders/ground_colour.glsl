@@ -52,6 +52,23 @@ float air_length() {
 layout(location = 0) out vec4 colour;
 #ifdef NODATA
 void show_nodata(inout vec4 colour, bool has_data);
+
+#ifndef FACETS
+bool has_data_at(ivec2 texel, ivec2 size) {
+  return texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0).a > 0.5;
+}
+
+// Returns whether the texels that span the facet have data. Texels lie at posts or on facets between them, and
+// cells are split from south-west to north-east, as those of the reference surface.
+bool facet_has_data(vec2 at) {
+  ivec2 size = textureSize(surface, 0);
+  vec2 place = at * vec2(size) - 0.5;
+  ivec2 cell = ivec2(floor(place));
+  vec2 rest = place - vec2(cell);
+  ivec2 third = rest.x >= rest.y ? ivec2(1, 0) : ivec2(0, 1);
+  return has_data_at(cell, size) && has_data_at(cell + third, size) && has_data_at(cell + 1, size);
+}
+#endif
 #endif
 
 void colour_ground() {
@@ -70,8 +87,7 @@ void colour_ground() {
 #endif
 #ifdef NODATA
 #ifndef FACETS
-  ivec2 size = textureSize(surface, 0);
-  bool has_data = texelFetch(surface, clamp(ivec2(at * vec2(size)), ivec2(0), size - 1), 0).a > 0.5;
+  bool has_data = facet_has_data(at);
 #endif
   show_nodata(colour, has_data);
 #endif

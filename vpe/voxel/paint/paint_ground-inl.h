@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstring>
 
+#include "lod/tree/facet_mask.h"
 #include "vpe/voxel/paint/paint_block-inl.h"
 #include "vpe/voxel/paint/paint_shading-inl.h"
 
@@ -165,7 +166,7 @@ inline HWY_NOINLINE void take_texels(Block& block) {
   }
 }
 
-// Marks pixels whose nearest post has no data, and sets the visible share of the sun.
+// Marks pixels on facets with a nodata post, and sets the visible share of the sun.
 inline HWY_NOINLINE void take_nodata_and_sun(const paging::NormalTile& tile, std::uint32_t pixels,
                                              Block& block) {
   const auto side = static_cast<std::size_t>(tile.side);
@@ -174,8 +175,8 @@ inline HWY_NOINLINE void take_nodata_and_sun(const paging::NormalTile& tile, std
     const auto at = static_cast<std::size_t>(block.posts.at[i] - &tile.posts.data()->normal.x) / 4;
     const float x = block.posts.x[i], y = block.posts.y[i];
     if (!tile.nodata.empty()) {
-      const std::size_t nearest = at + (x >= 0.5F ? 1 : 0) + (y >= 0.5F ? side : 0);
-      if (tile.nodata[nearest]) block.nodata |= std::uint32_t{1} << i;
+      if (lod::is_flagged(tile.nodata, at, side, static_cast<double>(x), static_cast<double>(y)))
+        block.nodata |= std::uint32_t{1} << i;
     }
     if (!tile.sees_sun.empty()) {
       const auto seen = [&](std::size_t k) { return static_cast<float>(tile.sees_sun[at + k]); };
