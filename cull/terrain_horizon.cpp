@@ -12,7 +12,7 @@ namespace cull {
 namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
-constexpr double kBinsInHalf = TerrainHorizon::kBins / 2;
+constexpr double kBinsInHalf = 0.5 * TerrainHorizon::kBins;
 // Two azimuths closer than this, in bins, may be in the wrong order; twice the rounding that kNearest_rad
 // leaves.
 constexpr double kSame = 1e-8 * TerrainHorizon::kBinsPerSide;

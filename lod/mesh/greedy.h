@@ -15,7 +15,7 @@
 namespace lod {
 
 // Returns a TileMesh in its canonical form, from triangles of posts j * (intervals + 1) + i.
-TileMesh canonical_mesh(int intervals, std::vector<std::uint32_t> posts,
+TileMesh canonical_mesh(int intervals, const std::vector<std::uint32_t>& posts,
                         const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 // Throws std::invalid_argument unless the borders are ascending, inside the grid, and have both ends.
@@ -269,7 +269,7 @@ class GreedyMesher {
       triangles.push_back({vertex(topology_.from(h)).post, vertex(topology_.to(h)).post,
                            vertex(topology_.to(topology_.next(h))).post});
     }
-    return canonical_mesh(intervals, std::move(posts), triangles);
+    return canonical_mesh(intervals, posts, triangles);
   }
 
   static constexpr int kEvenLevel = 5;

@@ -19,7 +19,7 @@ void check_borders(const BorderPosts& borders, int intervals) {
   }
 }
 
-TileMesh canonical_mesh(int intervals, std::vector<std::uint32_t> posts,
+TileMesh canonical_mesh(int intervals, const std::vector<std::uint32_t>& posts,
                         const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   const auto side = static_cast<std::uint32_t>(intervals) + 1;
   TileMesh mesh;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "vpe/base/mutation.h"
+#include "vpe/base/number.h"
 
 namespace lod {
 
@@ -169,6 +170,43 @@ std::optional<int> TileTree::coarsest_beside_coarser(const TileInfo& tile) const
 double TileTree::geometric_error_m(const TileInfo& tile, const ErrorTerms& terms, double exaggeration) const {
   return error_bound(terms, exaggeration, tile.min_height_m, tile.max_height_m, radius_m_) +
          edge_shift_m(tile, exaggeration);
+}
+
+double TileTree::steepest_slope(const TileInfo& tile, double exaggeration) const {
+  const double lowest_m = radius_m_ + exaggeration * tile.min_height_m;
+  if (!(lowest_m > 0)) return std::numeric_limits<double>::infinity();
+  const double ground = exaggeration * tile.steepest_slope * (radius_m_ + tile.max_height_m) / lowest_m;
+  if (tile.has_children) return ground;
+  // Lines of posts are nowhere nearer to each other than half the nominal spacing.
+  const double least_m = 0.5 * nominal_side_m(tile.key.level, radius_m_) / shape_.intervals();
+  return ground + edge_shift_m(tile, exaggeration) / least_m;
+}
+
+double TileTree::steepest_slope(double exaggeration) const {
+  double steepest = 0;
+  for (const TileInfo& tile : tiles_) {
+    if (tile.has_children && exaggeration != 1.0) continue;  // its finest tiles add edge_shift_m()
+    steepest = std::max(steepest, steepest_slope(tile, exaggeration));
+    if (exaggeration == 1.0 && tile.key.level > 0) break;  // slopes do not grow below the roots
+  }
+  return steepest;
+}
+
+double TileTree::exaggeration_limit() const {
+  double lowest_m = 0;
+  for (const TileInfo& tile : tiles_) {
+    if (tile.key.level > 0) break;
+    lowest_m = std::min(lowest_m, tile.min_height_m);
+  }
+  return lowest_m < 0 ? radius_m_ / -lowest_m : std::numeric_limits<double>::infinity();
+}
+
+void TileTree::require_drawable(double exaggeration) const {
+  const double limit = exaggeration_limit();
+  if (exaggeration < limit) return;
+  throw std::invalid_argument("an exaggeration of " + vpe::base::format_general(exaggeration, 6) +
+                              " takes the lowest ground to the planet's centre; it must be less than " +
+                              vpe::base::format_general(limit, 6));
 }
 
 // On an edge between posts of radius R + x h the radius is r(x) = 1 / sum(m / (R + x h)). A post kept on the

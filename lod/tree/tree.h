@@ -118,6 +118,18 @@ class TileTree {
   // and if all finest tiles have one level.
   double edge_shift_m(const TileInfo& tile, double exaggeration) const;
 
+  // Returns an upper bound of the tangent of the slope of the reference surface in the tile at an exaggeration.
+  // Never grows from a tile to its children, but for edge_shift_m() at finest tiles.
+  double steepest_slope(const TileInfo& tile, double exaggeration) const;
+  // Returns the same over the whole planet.
+  double steepest_slope(double exaggeration) const;
+
+  // Returns the exaggeration at which the lowest post reaches the planet's centre: ground can be drawn at smaller
+  // ones only. Infinite if no post lies below the sphere.
+  double exaggeration_limit() const;
+  // Throws std::invalid_argument for an exaggeration that cannot be drawn. The message names the limit.
+  void require_drawable(double exaggeration) const;
+
   // Returns a lower bound of the radius of the reference surface, with the sagitta of its facets: the occluder
   // for the horizon.
   double lowest_radius_m(double exaggeration) const;

@@ -225,13 +225,13 @@ void find_candidates(const glm::dvec3& centre, double reach, int level, std::vec
         const double keep = fraction16(bits, 48);
         if (rr < inner || rr >= outer || keep >= chance) continue;
         const double r = std::sqrt(rr);
-        const glm::dvec3 place_{x / r, y / r, z / r};
+        const glm::dvec3 unit{x / r, y / r, z / r};
         const std::uint64_t more = mix_bits(bits + 0x632be59bd9b4e019ULL);
         // N(>D) ~ D^-2 between the level's ends.
         const double diameter_m = smallest_m / std::sqrt(1.0 - 0.75 * fraction16(more, 32));
         const double limit = reach + diameter_m * 0.5 * kEjectaReach / kRadius_m;
-        if (chord2(place_, centre) > limit * limit) continue;
-        out.push_back({shape(place_, diameter_m, level, more), static_cast<float>(keep)});
+        if (chord2(unit, centre) > limit * limit) continue;
+        out.push_back({shape(unit, diameter_m, level, more), static_cast<float>(keep)});
       }
     }
   }

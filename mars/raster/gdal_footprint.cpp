@@ -60,8 +60,9 @@ Footprint::Footprint(const Georeference& georeference) {
     for (int part_column = 0; part_column < kParts; ++part_column) {
       std::array<glm::dvec2, kPoints * kPoints> pixels;
       for (int i = 0; i < kPoints * kPoints; ++i) {
-        const double u = part_column + (i % kPoints) / (kPoints - 1.0);
-        const double v = part_row + (i / kPoints) / (kPoints - 1.0);
+        const int row = i / kPoints;
+        const double u = part_column + (i - row * kPoints) / (kPoints - 1.0);
+        const double v = part_row + row / (kPoints - 1.0);
         pixels[static_cast<std::size_t>(i)] = {grid.width * u / kParts - 0.5, grid.height * v / kParts - 0.5};
       }
       std::array<glm::dvec3, kPoints * kPoints> points;
