@@ -59,7 +59,7 @@ Finding find_opengl() {
         "OpenGL", State::kNote,
         text + "; in software: no GPU with a driver for OpenGL 4.5 was found; images are the same, but slow"};
   } catch (const std::runtime_error& e) {
-    return {"OpenGL", State::kBad, e.what()};
+    return {"OpenGL", State::kBad, std::string(e.what()) + "; images are drawn by rays where none is named"};
   }
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mars/sources/source.h"
+#include "vpe/base/number.h"
 
 namespace vpe::core {
 
@@ -15,7 +16,12 @@ std::string meaning(const Certificate& c) {
       "the planet file; picture_bound_px: the same, tighter, where the picture's ranges are known. "
       "resampling_*: that surface against the posts of its own sources. source_accuracy_m: the sources "
       "against the planet, one sigma, null where unknown.";
-  if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped.";
+  if (c.corner_stretch > 1) {
+    text += " Pixels are those of the picture's middle; towards its corners they are stretched, up to " +
+            base::format_rounded(c.corner_stretch, 2) + " times.";
+  }
+  if (c.is_below_ground) text += " The camera is below the ground: nothing is claimed about the picture.";
+  if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped or grey.";
   if (c.illustration) text += " The elevations are an illustration, not data.";
   if (c.tiles_missing > 0 || c.tiles_substituted > 0) {
     text += " Missing or substituted tiles are not covered by the bounds.";
@@ -61,6 +67,8 @@ nlohmann::ordered_json to_json(const Certificate& c) {
   if (c.source_accuracy_m) json["source_accuracy_m"] = *c.source_accuracy_m;
   json["illustration"] = c.illustration;
   json["exaggeration"] = c.exaggeration;
+  json["corner_stretch"] = c.corner_stretch;
+  json["below_ground"] = c.is_below_ground;
   return json;
 }
 

@@ -33,7 +33,11 @@ struct Certificate {
   double resampling_rms_m = 0;
   std::optional<double> source_accuracy_m;  // of the least accurate source; absent: unknown
   bool illustration = false;                // the elevations are invented, not data
+  bool is_below_ground = false;             // the camera is; nothing is claimed about the image
   double exaggeration = 1;
+  // Largest length in the image of what is one pixel long at its middle: 1 / cos^2 of the angle to the farthest
+  // corner of a perspective image, else 1. Bounds in pixels are of the middle.
+  double corner_stretch = 1;
 };
 
 // Describes what every backend states alike: the tolerance of the request and the errors of the planet file.

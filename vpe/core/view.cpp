@@ -84,6 +84,17 @@ double focal_px(const View& view) {
   return 0.5 * view.height / std::tan(0.5 * fov_rad);
 }
 
+double corner_stretch(const View& view) {
+  if (view.projection != Projection::kPerspective) return 1;
+  const SubRectangle part = drawn_part(view);
+  const double cx = 0.5 * view.width + view.principal_offset_px.x;
+  const double cy = 0.5 * view.height + view.principal_offset_px.y;
+  const double x = std::max(std::abs(part.x - cx), std::abs(part.x + part.width - cx));
+  const double y = std::max(std::abs(part.y - cy), std::abs(part.y + part.height - cy));
+  const double f = focal_px(view);
+  return 1 + (x * x + y * y) / (f * f);
+}
+
 glm::dvec3 pixel_ray(const View& view, double x, double y) {
   const mars::Axes& axes = view.camera.axes;
   const glm::dvec2 from_principal = glm::dvec2(x, y) - principal_point(view);

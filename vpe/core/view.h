@@ -68,6 +68,10 @@ std::string check(const View& view);
 // principal point covers e f / d pixels.
 double focal_px(const View& view);
 
+// Returns the largest length in the drawn part of what is one pixel long at the principal point and as far away:
+// 1 / cos^2 of the angle to the farthest corner of a perspective image, 1 for other projections.
+double corner_stretch(const View& view);
+
 // Returns the unit direction, body-fixed, of the ray through image position (x, y), which may lie outside the
 // image. The error of the angle is at most kPixelRayError_rad; the length is 1 within 4e-16.
 inline constexpr double kPixelRayError_rad = 2e-15;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "lod/tree/posts.h"
 
@@ -73,16 +74,26 @@ void CameraClearance::update(const core::View& view) {
 }
 
 // Depth interpolation loses precision on triangles that reach from the near plane to far away, so the near
-// plane is as far out as the ground allows: some fiftieth of the camera's height is only passed by slopes over
-// 88 degrees.
-double CameraClearance::near_plane_m(const core::View& view, double nearest_tile_m) const {
+// plane is as far out as the ground allows. Ground of slope s that lies h below the camera is no nearer than
+// h / sqrt(1 + s^2). A fiftieth of the height is only passed by slopes over 88 degrees.
+double CameraClearance::near_plane_m(const lod::Selection& cover, const core::View& view) const {
   // In the image's corners depth is less than distance.
   const double f = core::focal_px(view);
   const double x = 0.5 * view.width + std::abs(view.principal_offset_px.x);
   const double y = 0.5 * view.height + std::abs(view.principal_offset_px.y);
   const double cosine = f / std::sqrt(f * f + x * x + y * y);
-  if (std::isfinite(nearest_tile_m) && nearest_tile_m > 1000.0) return 0.5 * cosine * nearest_tile_m;
-  return std::clamp(0.03 * cosine * clearance_m_ / std::max(1.0, streamer_.exaggeration()), 0.003, 1000.0);
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const lod::SelectedTile& tile : cover.tiles) nearest_m = std::min(nearest_m, tile.min_distance_m);
+  if (std::isfinite(nearest_m) && nearest_m > 1000.0) return 0.5 * cosine * nearest_m;
+  const double exaggeration = streamer_.exaggeration();
+  const double usual_m = 0.03 * clearance_m_ / std::max(1.0, exaggeration);
+  double slope = 0;
+  for (const lod::SelectedTile& tile : cover.tiles)
+    if (tile.min_distance_m < usual_m)
+      slope = std::max(slope, planet_.tree().steepest_slope(planet_.tree()[tile.index], exaggeration));
+  // Meshes within their error of the ground may be steeper than it.
+  const double above_walls_m = 0.5 * clearance_m_ / std::hypot(1.0, slope);
+  return std::clamp(cosine * std::min(usual_m, above_walls_m), 0.003, 1000.0);
 }
 
 }  // namespace vpe::gl

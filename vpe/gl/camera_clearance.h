@@ -18,7 +18,7 @@ namespace vpe::gl {
 //
 //   if (const auto page = clearance.needed_page(view)) streamer.request(*page, urgency);
 //   clearance.update(view);
-//   const double near_m = clearance.near_plane_m(view, nearest_tile_m);
+//   const double near_m = clearance.near_plane_m(cover, view);
 class CameraClearance {
  public:
   CameraClearance(const paging::PlanetFile& planet, const TileStreamer& streamer)
@@ -39,9 +39,8 @@ class CameraClearance {
   // are not resident.
   double clearance_m() const { return clearance_m_; }
 
-  // Returns the distance of the near plane, metres, 0.003 or more. nearest_tile_m: no tile is nearer to the
-  // camera; infinite if there are none.
-  double near_plane_m(const core::View& view, double nearest_tile_m) const;
+  // Returns the distance of the near plane, metres, 0.003 or more. cover: the tiles to draw.
+  double near_plane_m(const lod::Selection& cover, const core::View& view) const;
 
  private:
   double camera_height_m(const core::View& view) const;

@@ -17,17 +17,6 @@ constexpr double kRounding = 1.0 / (1 << 24);
 // Roundings of the vertex stage, as a part of the distance: a few of 2^-24.
 constexpr double kTransformError = 4e-7;
 
-// Steepest dr / d(angle) / r of a tile with heights times x.
-double exaggerated_slope(const lod::TileInfo& tile, double x, const lod::TileTree& tree) {
-  const double radius_m = tree.radius_m();
-  const double ground = x * tile.steepest_slope * (radius_m + tile.max_height_m) /
-                        std::max(1.0, radius_m + x * tile.min_height_m);
-  if (tile.has_children) return ground;
-  // Lines of posts are nowhere nearer to each other than half the nominal spacing.
-  const double least_m = 0.5 * lod::nominal_side_m(tile.key.level, radius_m) / tree.shape().intervals();
-  return ground + tree.edge_shift_m(tile, x) / least_m;
-}
-
 // Shift of a point of a tile at a distance by float storage.
 double storage_px(const CertifiedTile& t, double distance_m, double focal_px) {
   const double stored_m =
@@ -52,7 +41,7 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
     const double distance_m = std::max(tile.min_distance_m, optics.near_m);
     const double stored_px = storage_px(t, distance_m, optics.focal_px);
     const lod::TileInfo& info = tree[tile.index];
-    slope = std::max(slope, exaggerated_slope(info, optics.exaggeration, tree));
+    slope = std::max(slope, tree.steepest_slope(info, optics.exaggeration));
     surface_px = std::max(surface_px, tile.screen_space_error_px + stored_px);
     c.geometric_error_m = std::max(c.geometric_error_m, tile.geometric_error_m);
     c.screen_space_error_px = std::max(c.screen_space_error_px, tile.screen_space_error_px);
@@ -87,7 +76,7 @@ double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree&
   }
   double slope = 0;
   for (const CertifiedTile& t : tiles)
-    slope = std::max(slope, exaggerated_slope(tree[t.tile->index], optics.exaggeration, tree));
+    slope = std::max(slope, tree.steepest_slope(tree[t.tile->index], optics.exaggeration));
   const double steep = std::sqrt(1.0 + slope * slope);
   double bound_px = 0;
   for (std::size_t k = 0; k < tiles.size(); ++k) {

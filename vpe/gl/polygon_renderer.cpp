@@ -1,4 +1,5 @@
 #include "vpe/gl/polygon_renderer.h"
+#include "paging/surface/surface.h"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/inspect.h"
 #include "vpe/core/appearance/shading.h"
+#include "vpe/core/below_ground.h"
 #include "vpe/core/image/edge_filter.h"
 #include "vpe/gl/certify.h"
 #include "vpe/gl/shaders.h"
@@ -42,12 +44,16 @@ glm::vec4 level_tint(int level) {
           kShare};
 }
 
+// For the few tiles below the camera.
+constexpr std::size_t kSurfaceBytes = std::size_t{4} << 20;
+
 class PolygonRenderer : public core::Renderer {
  public:
   PolygonRenderer(std::shared_ptr<Context> context, std::shared_ptr<const paging::PlanetFile> planet,
                   const RendererOptions& options)
       : context_(std::move(context)),
         planet_(std::move(planet)),
+        surface_(planet_, kSurfaceBytes),
         pool_(options.threads),
         scene_(planet_, options),
         tiles_(planet_->radius_m()),
@@ -71,9 +77,12 @@ class PolygonRenderer : public core::Renderer {
   std::optional<double> nodata_share(core::Mode mode, const Target& image) const;
   core::Certificate certify(const core::DrawRequest& request, const ClipProjection& clip,
                             const core::Frame& frame);
+  void state(const core::DrawRequest& request, core::Certificate& c) const;
+  bool is_below_ground(const core::DrawRequest& request) const;
 
   std::shared_ptr<Context> context_;
   std::shared_ptr<const paging::PlanetFile> planet_;
+  paging::Surface surface_;  // below the camera
   base::ThreadPool pool_;
   TileScene scene_;
   TileDrawer tiles_;
@@ -149,6 +158,12 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
         bound_in_image(certified_, planet_->tree(), {tile_ids_, frame.range_m, kRangeError}, optics);
     c.image_bound_px = std::min(bound_px, c.shift_bound_px);
   }
+  state(request, c);
+  return c;
+}
+
+// States what does not depend on the tiles.
+void PolygonRenderer::state(const core::DrawRequest& request, core::Certificate& c) const {
   const paging::PlanetMeta& meta = planet_->meta();
   core::state_data(c,
                    {.tolerance_px = request.settings.lod_tolerance_px,
@@ -156,7 +171,19 @@ core::Certificate PolygonRenderer::certify(const core::DrawRequest& request, con
                     .resampling_rms_m = meta.resampling.rms_m,
                     .illustration = meta.illustration},
                    meta.sources);
-  return c;
+  c.exaggeration = request.settings.exaggeration;
+  c.corner_stretch = core::corner_stretch(request.view);
+}
+
+// Frames that do not wait must not read tiles; their cameras are kept above the ground by whoever moves them.
+// Where the ground cannot be read, what is drawn in its place is shown.
+bool PolygonRenderer::is_below_ground(const core::DrawRequest& request) const {
+  if (!request.paging.wait) return false;
+  try {
+    return surface_.is_below(request.view.camera.position_m, request.settings.exaggeration);
+  } catch (const paging::PlanetError&) {
+    return false;
+  }
 }
 
 // Gives the programs of this image's tiles what they need, and nothing else.
@@ -278,6 +305,12 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
   }
   core::DrawResult result;
   const core::SettingsValues& settings = request.settings;
+  planet_->tree().require_drawable(settings.exaggeration);
+  if (is_below_ground(request)) {
+    state(request, result.certificate);
+    core::draw_below_ground(request, result);
+    return result;
+  }
   scene_.prepare(request);
   scene_.report(result);
 

@@ -295,12 +295,6 @@ std::size_t TileCover::bytes() const {
   return sum;
 }
 
-double TileCover::nearest_m() const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const lod::SelectedTile& t : drawn_.drawn.tiles) nearest = std::min(nearest, t.min_distance_m);
-  return nearest;
-}
-
 void TileCover::record_draw_time(double draw_ms) {
   if (!occluding_) {
     culling_.skip_frame();

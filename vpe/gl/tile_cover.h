@@ -62,8 +62,6 @@ class TileCover {
   std::span<const SceneTile> tiles() const { return tiles_; }
   // Returns the bytes of their meshes and textures.
   std::size_t bytes() const;
-  // Returns a distance than which no tile is nearer to the camera, metres; infinite if there are no tiles.
-  double nearest_m() const;
 
   // Returns what the frame's view needs, and flags of what of it is hidden and not resident. No flags: none.
   const lod::Selection& wanted() const { return wanted_; }

@@ -39,7 +39,7 @@ class TileScene {
 
   // Returns the distance of the near plane for the frame's view, metres.
   double near_plane_m(const core::View& view) const {
-    return clearance_.near_plane_m(view, cover_.nearest_m());
+    return clearance_.near_plane_m(cover_.cover(), view);
   }
 
   // Takes the time in which the tiles of the frame were drawn, milliseconds.

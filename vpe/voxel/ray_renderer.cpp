@@ -15,6 +15,7 @@
 #include "vpe/base/parallel.h"
 #include "vpe/core/appearance/inspect.h"
 #include "vpe/core/appearance/shading.h"
+#include "vpe/core/below_ground.h"
 #include "vpe/core/image/edge_filter.h"
 #include "vpe/voxel/cast/range_caster.h"
 #include "vpe/voxel/frame_prefetcher.h"
@@ -99,7 +100,9 @@ core::View shifted(core::View view, const glm::dvec2& offset) {
 core::Certificate RayRenderer::certify(const core::DrawRequest& request, const core::Frame& frame,
                                        std::int64_t nodata_pixels, const ColumnWalk::Usage& usage) const {
   core::Certificate c;
-  c.quantisation_px = RangeCaster::range_error(request.view) * core::focal_px(request.view);
+  // A range that is off by d / sin(incidence) puts the point d beside its facet, so d / cos(slope) above it.
+  c.quantisation_px = caster_.range_error(request.view, request.settings.exaggeration) *
+                      core::focal_px(request.view) * std::hypot(1.0, usage.steepest_slope);
   c.geometric_error_m = usage.geometric_error_m;
   c.screen_space_error_px = usage.screen_space_error_px;
   c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px;
@@ -115,6 +118,7 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
                     .illustration = meta.illustration},
                    meta.sources);
   c.exaggeration = request.settings.exaggeration;
+  c.corner_stretch = core::corner_stretch(request.view);
   return c;
 }
 
@@ -182,6 +186,13 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);
+  planet_->tree().require_drawable(request.settings.exaggeration);
+  if (caster_.surface().is_below(request.view.camera.position_m, request.settings.exaggeration)) {
+    core::DrawResult below;
+    below.certificate = certify(request, below.frame, 0, {});
+    core::draw_below_ground(request, below);
+    return below;
+  }
   const auto start = Clock::now();
   core::DrawResult result;
   core::Frame& frame = result.frame;
@@ -241,6 +252,16 @@ std::string why_not(const core::DrawRequest& request) {
     return "the ray backend has no triangles to show: use --backend polygon for this mode";
   if (request.cull_view || request.settings.inspect != core::Inspect::kNone)
     return "the ray backend draws no tiles: --cull-from and inspect show those of --backend polygon";
+  const core::SettingsValues& values = request.settings;
+  const core::SettingsValues defaults;
+  const char* control = nullptr;
+  if (!request.interest.empty() && values.lod_interest_weight != 0) control = "regions of interest";
+  if (values.lod_metric != defaults.lod_metric) control = "lod.metric=distance";
+  if (values.lod_centre_weight != 0) control = "lod.centre.weight";
+  if (values.lod_triangles != 0) control = "lod.triangles";
+  if (control != nullptr)
+    return std::string("the ray backend has no level control but rays.cell: ") + control +
+           " acts with --backend polygon only";
   return {};
 }
 

@@ -1,8 +1,10 @@
 // Videos: segments, joined seamlessly, and recognized when complete.
 #include <algorithm>
+#include <cmath>
 #include <future>
 
 #include "tests/app/support/film_fixture.h"
+#include "tests/support/worst.h"
 
 namespace app_test {
 namespace {
@@ -95,6 +97,50 @@ TEST_F(FilmVideo, CanBeSeekedAnywhere) {
     one.arguments.insert(one.arguments.end() - 1, {"-frames:v", "1"});
     EXPECT_EQ(run(one).out, images.substr(static_cast<std::size_t>(k) * kSize, kSize)) << k;
   }
+}
+
+// Players of HD expect BT.709. Compared are means over squares, which do not see the coarser grid of chroma.
+TEST_F(FilmVideo, ColoursAreThoseOfTheFramesAndTagged) {
+  write_text(dir_ / "f.flight",
+             "flight 1\nview size=320x192 fps=2\nat 0 pose lon=0 lat=0 alt=900000 pitch=-60\n"
+             "at 1 pose lon=1 lat=0 alt=900000 pitch=-60\n");
+  for (const char* output : {"frames", "x.mp4"})
+    ASSERT_EQ(vpe({"fly", "f.flight", planet().string(), "-o", output, "-q"}).exit_code, 0);
+  const json stream = probe("x.mp4", {"-show_streams"})["streams"].at(0);
+  EXPECT_EQ(stream["color_space"], "bt709");
+  EXPECT_EQ(stream["color_primaries"], "bt709");
+  EXPECT_EQ(stream["color_transfer"], "bt709");
+  EXPECT_EQ(stream["color_range"], "tv");
+  const auto decode = [&](const Words& input) {
+    Command command;
+    command.program = find_program("ffmpeg");
+    command.arguments = {"-v", "error"};
+    command.arguments.insert(command.arguments.end(), input.begin(), input.end());
+    command.arguments.insert(command.arguments.end(),
+                             {"-vf", "scale=flags=accurate_rnd+full_chroma_int", "-frames:v", "2", "-f",
+                              "rawvideo", "-pix_fmt", "rgb24", "-"});
+    return run(command).out;
+  };
+  const std::string film = decode({"-i", path("x.mp4")});
+  const std::string frames = decode({"-framerate", "2", "-i", path("frames/frame_%06d.png")});
+  constexpr std::size_t kWidth = 320, kHeight = 192, kSquare = 32;
+  ASSERT_EQ(film.size(), 2 * 3 * kWidth * kHeight);
+  ASSERT_EQ(frames.size(), film.size());
+  double worst = 0;
+  for (std::size_t frame = 0; frame < 2; ++frame)
+    for (std::size_t y0 = 0; y0 < kHeight; y0 += kSquare)
+      for (std::size_t x0 = 0; x0 < kWidth; x0 += kSquare)
+        for (std::size_t c = 0; c < 3; ++c) {
+          double sum = 0;
+          for (std::size_t n = 0; n < kSquare * kSquare; ++n) {
+            const std::size_t at = 3 * ((frame * kHeight + y0 + n / kSquare) * kWidth + x0 + n % kSquare) + c;
+            sum += static_cast<double>(static_cast<unsigned char>(film[at])) -
+                   static_cast<double>(static_cast<unsigned char>(frames[at]));
+          }
+          worst = std::max(worst, std::abs(sum / (kSquare * kSquare)));
+        }
+  test_support::record_worst("film: colours of squares of 32 px", worst, 1.5, "of 255");
+  EXPECT_LE(worst, 1.5);
 }
 
 TEST_F(FilmVideo, ACompleteFilmIsKeptAndADamagedOneMadeAgain) {

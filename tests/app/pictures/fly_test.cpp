@@ -222,13 +222,19 @@ TEST_F(Fly, FramesThatCannotBeWritten) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
-TEST_F(Fly, WarnsOfPosesUnderTheTerrain) {
+TEST_F(Fly, FailsBeforeDrawingWhereItPassesBelowTheGround) {
   write_text(dir_ / "low.flight",
-             "flight 1\nview size=32x18 fps=10\nat 0 pose lon=-149 lat=0 alt=-20000\nat 1 pose lon=-149 lat=1 "
+             "flight 1\nview size=32x18 fps=10\nat 0 pose lon=-149 lat=0 alt=20000\nat 1 pose lon=-149 lat=1 "
              "alt=-20000\n");
   const Result result = fly("low", {}, "low.flight");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(says(result.err, {"warning", "low.flight", "under the terrain", " m "}));
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_TRUE(
+      says(result.err, {"low.flight", "below the ground at 0.9 s", "149.0", " W", "--allow-underground"}))
+      << result.err;
+  EXPECT_FALSE(exists("low"));
+  const Result allowed = fly("low", {"--allow-underground"}, "low.flight");
+  EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
+  EXPECT_TRUE(exists("low/frame_000009.png"));
 }
 
 }  // namespace

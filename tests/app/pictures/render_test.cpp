@@ -94,6 +94,50 @@ TEST_F(Render, AutoChoosesTheBackend) {
   EXPECT_EQ(run(command).exit_code, 0);
 }
 
+TEST_F(Render, WithoutOpenGLRaysDrawWhatNobodyNamed) {
+  const auto without_gl = [&](const Words& words) {
+    Command command = command_for(words);
+    command.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = path("none.json");
+    return run(command);
+  };
+  Words down{"render", planet().string(), "--pose", "-74,-13.5,60000,20,-90,0",
+             "-o",     "c.png",           "--size", "96x54"};
+  const Result result = without_gl(down);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(says(result.err, {"drawn by rays, as there is no OpenGL"})) << result.err;
+  EXPECT_TRUE(exists("c.png"));
+  for (const Words& named : {Words{"--backend", "polygon"}, Words{"--set", "mode=wireframe"},
+                             Words{"--explain-lod", "e.json"}, Words{"--allow-incomplete"}}) {
+    Words words = down;
+    words.insert(words.end(), named.begin(), named.end());
+    EXPECT_EQ(without_gl(words).exit_code, 1) << named.front();
+  }
+  write_text(dir_ / "f.flight",
+             "flight 1\nview size=32x18 fps=2\nat 0 pose lon=137 lat=0 alt=9e6 pitch=-90\n"
+             "at 1 pose lon=138 lat=0 alt=9e6 pitch=-90\n");
+  const Result film = without_gl({"fly", "f.flight", planet().string(), "-o", "f"});
+  EXPECT_EQ(film.exit_code, 0) << film.err;
+  EXPECT_TRUE(says(film.err, {"drawn by rays, as there is no OpenGL"})) << film.err;
+  EXPECT_TRUE(says(without_gl({"doctor"}).out, {"drawn by rays"}));
+}
+
+TEST_F(Render, RaysRefuseWhatTheyCannotDo) {
+  const std::string pose = "-74,-13.5,60000,20,-20,0";
+  for (const Words& words : {Words{"--explain-lod", "e.json"}, Words{"--allow-incomplete"},
+                             Words{"--interest", "-74,-13.5,1e5,2"}, Words{"--set", "lod.metric=distance"},
+                             Words{"--set", "lod.centre.weight=3"}, Words{"--set", "lod.triangles=10"}}) {
+    Words all{"--backend", "ray"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Result result = render(all, pose, "no.png");
+    EXPECT_NE(result.exit_code, 0) << words.back();
+    EXPECT_TRUE(says(result.err, {"polygon"}) || says(result.err, {"triangles"})) << result.err;
+    EXPECT_FALSE(exists("no.png")) << words.back();
+    // Nobody named rays: triangles do it.
+    const Result automatic = render(words, pose, "yes.png");
+    EXPECT_EQ(automatic.exit_code, 0) << automatic.err;
+  }
+}
+
 TEST_F(Render, StraightDownTheRangeIsTheAltitudeOverTheTerrain) {
   const json answer = parse_json(vpe({"query", planet().string(), "31,1", "--json"}).out)[0];
   const double ground = answer["elevation_m"].get<double>();
@@ -105,8 +149,58 @@ TEST_F(Render, StraightDownTheRangeIsTheAltitudeOverTheTerrain) {
   };
   EXPECT_NEAR(middle_m({}, "31,1,100000,0,-90,0"), 100000 - ground, 1);
   EXPECT_NEAR(middle_m({"--height", "100000"}, "31,1,0,-90,0"), 100000, 1);
+  EXPECT_NEAR(middle_m({"--height", "100000"}, "31,1,777,0,-90,0"), 100000, 1);
   // The sagitta is not exaggerated, and small beside ten times the heights.
   EXPECT_NEAR(middle_m({"--set", "exaggeration=10"}, "31,1,100000,0,-90,0"), 100000 - 10 * ground, 1300);
+}
+
+TEST_F(Render, PosesThatCanBeReadInTwoWaysAreToldOrRefused) {
+  const Words height{"--height", "100000"};
+  const Result five = render(height, "31,1,0,-90,0", "x.png", "33x33");
+  EXPECT_TRUE(says(five.err, {"'31,1,0,-90,0' with --height is read as yaw 0, pitch -90, roll 0"})) << five.err;
+  for (const char* pose : {"31,1,0", "31,1,0,-90"}) {
+    const Result result = render(height, pose, "y.png", "33x33");
+    EXPECT_EQ(result.exit_code, 2) << pose;
+    EXPECT_TRUE(says(result.err, {pose, "--height", "ALT"})) << result.err;
+  }
+  EXPECT_EQ(render({}, "1e300,0,100000,0,-90,0", "y.png").exit_code, 2);
+  EXPECT_EQ(render({}, "361,0,100000,0,-90,0", "y.png").exit_code, 2);
+}
+
+TEST_F(Render, ACameraBelowTheGroundIsRefusedUnlessAllowed) {
+  const json answer = parse_json(vpe({"query", planet().string(), "31,1", "--json"}).out)[0];
+  const std::string pose = "31,1," + std::to_string(answer["elevation_m"].get<double>() - 200) + ",0,-10,0";
+  for (const char* backend : {"polygon", "ray"}) {
+    const Result result = render({"--backend", backend}, pose, "below.png");
+    EXPECT_EQ(result.exit_code, 1) << backend;
+    EXPECT_TRUE(says(result.err, {pose, "200 m below the ground", "--height", "--allow-underground"}))
+        << result.err;
+    EXPECT_FALSE(exists("below.png"));
+    const Result allowed = render({"--backend", backend, "--allow-underground", "--certificate", "c.json"},
+                                  pose, std::string(backend) + ".png");
+    EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
+    EXPECT_TRUE(says(allowed.out, {"below the ground"})) << allowed.out;
+    const json certificate = parse_json(read_text(dir_ / "c.json"));
+    EXPECT_TRUE(certificate["shift_bound_px"].is_null());
+    EXPECT_TRUE(certificate["picture_bound_px"].is_null());
+    EXPECT_EQ(certificate["below_ground"], true);
+  }
+  EXPECT_EQ(read_text(dir_ / "polygon.png"), read_text(dir_ / "ray.png"));
+  EXPECT_EQ(render({"--height", "-3"}, "31,1", "y.png").exit_code, 1);
+  const Result beyond = render({}, "31,1,-9000000,0,80,0", "y.png");
+  EXPECT_EQ(beyond.exit_code, 2);
+  EXPECT_TRUE(says(beyond.err, {"not above the planet's centre"})) << beyond.err;
+}
+
+TEST_F(Render, WideImagesSayWhatTheirCornersAre) {
+  const Result result = render({"--fov", "150", "--certificate", "c.json"}, "31,1,100000,0,-40,0", "wide.png");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(says(result.out, {"px in the corners"})) << result.out;
+  const json certificate = parse_json(read_text(dir_ / "c.json"));
+  const double edge = std::tan(75 * M_PI / 180);
+  EXPECT_NEAR(certificate["corner_stretch"].get<double>(), 1 + edge * edge * (1 + std::pow(96.0 / 54, 2)),
+              1e-6);
+  EXPECT_TRUE(says(certificate["what_this_means"].get<std::string>(), {"towards its corners"}));
 }
 
 TEST_F(Render, SameImageAgainAndInOtherFormats) {
@@ -118,6 +212,46 @@ TEST_F(Render, SameImageAgainAndInOtherFormats) {
   ASSERT_EQ(render({"--set", "mode=wireframe"}, "-74,-13.5,300000,20,-40,5", "Bild mit Ü.png").exit_code, 0);
   EXPECT_NE(read_text(dir_ / "Bild mit Ü.png"), read_text(dir_ / "a.png"));
   EXPECT_EQ(leftovers(), Words{});
+}
+
+TEST_F(Render, TheSunOfADateIsToldWithANoteAtNight) {
+  const std::string gale = "137.44,-4.6,100000,0,-90,0";
+  const Result night = render({"--sun", "2015-07-21T12:00Z"}, gale);
+  EXPECT_EQ(night.exit_code, 0) << night.err;
+  EXPECT_TRUE(says(night.err, {"Sun: Ls 16.1, LTST 00:12, azimuth ", "elevation -86", "It is night there"}))
+      << night.err;
+  const json told = parse_json(render({"--sun", "2015-07-21T12:00Z", "--json"}, gale).out)["sun"];
+  EXPECT_EQ(told["night"], true);
+  EXPECT_NEAR(told["solar_longitude_deg"].get<double>(), 16.1, 0.06);
+  EXPECT_NEAR(told["true_solar_time_h"].get<double>(), 0.2, 0.02);
+  const Result day = render({"--sun", "Ls90,15:00"}, gale);
+  EXPECT_TRUE(says(day.err, {"Sun: Ls 90.0, LTST 15:00"})) << day.err;
+  EXPECT_EQ(day.err.find("night"), std::string::npos);
+  EXPECT_EQ(render({"--sun", "Ls90,15:00", "-q"}, gale).err, "");
+  EXPECT_EQ(render({}, gale).err.find("Sun:"), std::string::npos);
+  EXPECT_TRUE(parse_json(render({"--json"}, gale).out)["sun"].is_null());
+  write_text(dir_ / "f.flight",
+             "flight 1\nview size=32x18 fps=2\nat 0 pose lon=137 lat=0 alt=900000 pitch=-60\n"
+             "at 1 pose lon=138 lat=0 alt=900000 pitch=-60\n");
+  const Result film =
+      vpe({"fly", "f.flight", planet().string(), "-o", "f", "--json", "--sun", "2015-07-21T12:00Z"});
+  EXPECT_TRUE(says(film.err, {"Sun: Ls 16.1", "night"})) << film.err;
+  EXPECT_EQ(parse_json(film.out)["sun"]["night"], true);
+  const Result panorama = vpe({"panorama", planet().string(), "--at", "137.44,-4.6", "--height", "1000", "-o",
+                               "p.png", "--width", "128", "--json", "--sun", "2015-07-21T12:00Z"});
+  EXPECT_TRUE(says(panorama.err, {"Sun: Ls 16.1", "night"})) << panorama.err;
+  EXPECT_EQ(parse_json(panorama.out)["sun"]["night"], true);
+}
+
+TEST_F(Render, DatesAreThoseOfMars) {
+  Dem dem;
+  dem.radius_m = 1737400;
+  write_dem(dir_ / "moon.tif", dem);
+  ASSERT_EQ(vpe({"build", "moon.tif", "-o", "moon.vpe", "--base-spacing", "100000"}).exit_code, 0);
+  const Result result = vpe({"render", "moon.vpe", "--pose", "0,0,1e6,0,-90,0", "-o", "x.png", "--size",
+                             "32x32", "--sun", "2015-07-21T12:00Z"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(says(result.err, {"Moon", "sun.azimuth"})) << result.err;
 }
 
 TEST_F(Render, TheSunOfADateOrASeason) {

@@ -24,7 +24,7 @@ void write_dem(const fs::path& path, const Dem& dem) {
   if (file == nullptr) throw std::runtime_error("cannot make " + path.string());
   if (dem.georeference) {
     OGRSpatialReference crs;
-    crs.SetFromUserInput("+proj=longlat +R=3396190 +no_defs");
+    crs.SetFromUserInput(("+proj=longlat +R=" + std::to_string(dem.radius_m) + " +no_defs").c_str());
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     file->SetSpatialRef(&crs);
     double transform[6] = {dem.west_deg, dem.cell_deg, 0, dem.north_deg, 0, -dem.cell_deg};

@@ -22,6 +22,7 @@ struct Dem {
   double north_deg = 90;
   double cell_deg = 2;
   std::optional<double> no_data;
+  double radius_m = 3396190;
   std::function<double(int column, int row)> height_m;  // empty: hills of some kilometres
 };
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "mars/geodesy/place_text.h"
 #include "paging/surface/surface.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
@@ -15,7 +16,9 @@
 #include "vpe/app/film/film_session.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/base/number.h"
 #include "vpe/gl/context.h"
 
 namespace vpe::app {
@@ -34,6 +37,7 @@ struct FlyArguments {
   std::string log;
   std::string stats;
   bool force = false;
+  bool allow_underground = false;
   RenderOptions image;
 };
 
@@ -63,16 +67,31 @@ FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& f
   return request;
 }
 
-void warn_of_terrain(const std::string& flight, const FilmPlan& plan, const scripts::TerrainHeight& terrain) {
+// Throws std::runtime_error with time and place if the flight passes below the ground.
+void require_above_ground(const std::string& flight, const FilmPlan& plan,
+                          const scripts::TerrainHeight& terrain) {
+  std::optional<scripts::Clearance> lowest;
   try {
-    const auto lowest = scripts::lowest_clearance(plan.path(), plan.view().fps, terrain);
-    if (!lowest || lowest->height_m >= 0) return;
-    std::fprintf(stderr, "vpe: warning: %s passes %.0f m under the terrain at %.2f s\n", flight.c_str(),
-                 -lowest->height_m, lowest->time_s);
+    lowest = scripts::lowest_clearance(plan.path(), plan.view().fps, terrain);
   } catch (const paging::PlanetError& e) {
     // Frames that need the damaged tile will report it themselves.
     std::fprintf(stderr, "vpe: warning: cannot check whether %s stays above the terrain: %s\n", flight.c_str(),
                  e.what());
+  }
+  if (!lowest || lowest->height_m >= 0) return;
+  throw std::runtime_error(flight + ": the camera passes " + base::format_rounded(-lowest->height_m, 2) +
+                           " m below the ground at " + base::format_rounded(lowest->time_s, 3) + " s, " +
+                           mars::place_text(lowest->place) +
+                           "; raise the flight there (--allow-underground draws such frames in one colour)");
+}
+
+// Returns why there is no OpenGL, or nullopt if there is.
+std::optional<std::string> opengl_problem() {
+  try {
+    if (!gl::has_gpu()) (void)gl::Context::create();
+    return std::nullopt;
+  } catch (const gl::ContextError& e) {
+    return e.what();
   }
 }
 
@@ -85,13 +104,14 @@ void load_names(FrameOverlays& overlays, core::Settings settings, const scripts:
 }
 
 void report(const FlyArguments& arguments, const Common& common, const FilmSession& session, double seconds,
-            bool illustration) {
+            bool illustration, const std::optional<SunStatement>& sun) {
   const std::vector<FilmFrame>& frames = session.frames();
   if (common.json) {
     nlohmann::json json = summary_json(frames, seconds);
     json["output"] = arguments.output;
     json["backend"] = core::to_string(*arguments.image.backend);
     json["illustration"] = illustration;
+    json["sun"] = to_json(sun);
     json["manifest"] =
         session.manifest().empty() ? nlohmann::json() : nlohmann::json(session.manifest().string());
     print_json(json);
@@ -140,7 +160,13 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
   if (image.backend) return {plan_of({*image.backend, base})};
   std::vector<PlannedFilm> films{plan_of({core::Backend::kPolygon, base})};
   const FilmPlan& plan = films.front().plan;
-  if (!film_suits_rays(plan, flight, base)) return films;
+  if (!film_suits_rays(plan, flight, base) || image.allow_incomplete) return films;
+  if (const auto problem = opengl_problem()) {
+    // Frames that triangles made elsewhere are found all the same.
+    note_rays_instead(*problem, common.quiet);
+    films.insert(films.begin(), plan_of(*rays_instead(image, base, {})));
+    return films;
+  }
   constexpr std::int64_t kMostSamples = 100;
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   const std::int64_t samples = std::min(count, kMostSamples);
@@ -183,7 +209,11 @@ void fly(FlyArguments& arguments, const Common& common) {
   const PlannedFilm& film = select_plan(session, films, common.threads);
   const FilmPlan& plan = film.plan;
   arguments.image.backend = film.backend;
-  if (!common.quiet) warn_of_terrain(arguments.flight, plan, terrain);
+  const core::DrawRequest first = plan.at(0).request;
+  require_known_sun(first.settings, meta.body);
+  const auto sun = sun_statement(first.settings, mars::lon_lat(first.view.camera.position_m));
+  if (!common.quiet) print_sun(sun);
+  if (!arguments.allow_underground) require_above_ground(arguments.flight, plan, terrain);
 
   FrameOverlays overlays(planet);
   load_names(overlays, base, flight);
@@ -203,7 +233,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   session.finish({version(), meta.identity, meta.illustration, fs::path(arguments.flight).filename().string(),
                   flight.view.fps, flight.view.width, flight.view.height, arguments.frames, request.shard});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report(arguments, common, session, seconds, meta.illustration);
+  report(arguments, common, session, seconds, meta.illustration, sun);
 }
 
 }  // namespace
@@ -225,6 +255,8 @@ void add_fly(CLI::App& program, Common& common) {
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (default: the size in the flight)");
   command->add_option("--log", arguments->log, "Write the flown poses as a flight");
   command->add_option("--stats", arguments->stats, "Write one row of figures per frame (.csv, .jsonl)");
+  command->add_flag("--allow-underground", arguments->allow_underground,
+                    "Draw frames below the ground in one colour, instead of failing before the first frame");
   add_render_options(*command, arguments->image);
   command->callback([arguments, &common] { fly(*arguments, common); });
 }

@@ -45,9 +45,16 @@ Words input_words(const VideoFormat& format) {
           "-framerate", scripts::to_text(format.rate)};
 }
 
+// Colours are those of BT.709 within the limits of television, and the file says so: players take untagged HD for
+// that, whatever matrix made it.
 Words encoder_words(const VideoFormat& format) {
-  Words words{"-c:v",     "libx264", "-preset",  "veryfast", "-crf",         "18",
-              "-pix_fmt", "yuv420p", "-threads", "4",        "-x264-params", "open-gop=0"};
+  Words words{"-vf",
+              "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+full_chroma_inp,"
+              "format=yuv420p"};
+  append(words,
+         {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"});
+  append(words, {"-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-threads", "4", "-x264-params",
+                 "open-gop=0"});
   return append(words, timescale(format));
 }
 

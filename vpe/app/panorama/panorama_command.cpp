@@ -17,6 +17,7 @@
 #include "vpe/app/panorama/panorama_request.h"
 #include "vpe/app/panorama/panorama_stereo.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 
@@ -200,7 +201,10 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   }
   const Ground ground = ground_below(planet, request);
   place_camera(request, ground);
+  require_known_sun(request.settings.values(), meta.body);
   const core::DrawRequest draw_request = draw_request_for(request);
+  const auto sun = sun_statement(draw_request.settings, {request.camera.lon_deg, request.camera.lat_deg});
+  if (!common.quiet) print_sun(sun);
 
   remove_stale_files(request.output);
   base::ThreadPool pool(common.threads);
@@ -229,7 +233,9 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   }
   if (!common.quiet) print_failures(maker.failures());
   if (common.json) {
-    print_json(report_json(request, plan, maker, times, elapsed_s(start)));
+    nlohmann::json report = report_json(request, plan, maker, times, elapsed_s(start));
+    report["sun"] = to_json(sun);
+    print_json(report);
   } else if (!common.quiet) {
     print_summary(request, plan, maker.figures().shift_bound_px, elapsed_s(start));
   }

@@ -1,6 +1,7 @@
 #include "vpe/app/picture/backend_choice.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <stdexcept>
 
@@ -30,9 +31,7 @@ core::Settings within_tolerance(core::Settings settings, const RenderOptions& op
 bool suits_rays(const core::DrawRequest& request) {
   const core::SettingsValues& values = request.settings;
   const core::SettingsValues defaults;
-  return voxel::why_not(request).empty() && request.interest.empty() &&
-         values.lod_metric == defaults.lod_metric && values.lod_triangles == 0 &&
-         values.shading == defaults.shading && values.lod_centre_weight == 0;
+  return voxel::why_not(request).empty() && values.shading == defaults.shading;
 }
 
 BackendChoice choose_backend(const RenderOptions& options, const core::Settings& settings,
@@ -42,10 +41,25 @@ BackendChoice choose_backend(const RenderOptions& options, const core::Settings&
     return glm::length(request.view.camera.position_m) < (1 + kFar) * radius_m &&
            core::reaches_horizon(request.view, radius_m);
   });
-  const bool is_rays = !has_gpu && 2 * static_cast<std::size_t>(for_rays) >= images.size() &&
+  const bool is_rays = !has_gpu && !options.allow_incomplete &&
+                       2 * static_cast<std::size_t>(for_rays) >= images.size() &&
                        std::all_of(images.begin(), images.end(), suits_rays);
   if (!is_rays) return {core::Backend::kPolygon, settings};
   return {core::Backend::kRay, within_tolerance(settings, options)};
+}
+
+std::optional<BackendChoice> rays_instead(const RenderOptions& options, const core::Settings& settings,
+                                          std::span<const core::DrawRequest> images) {
+  const bool suits = !options.allow_incomplete &&
+                     std::all_of(images.begin(), images.end(), [](const core::DrawRequest& request) {
+                       return voxel::why_not(request).empty();
+                     });
+  if (!suits) return std::nullopt;
+  return BackendChoice{core::Backend::kRay, within_tolerance(settings, options)};
+}
+
+void note_rays_instead(const std::string& reason, bool quiet) {
+  if (!quiet) std::fprintf(stderr, "Note: drawn by rays, as there is no OpenGL: %s\n", reason.c_str());
 }
 
 }  // namespace vpe::app

@@ -1,7 +1,9 @@
 // The backend of --backend auto.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 
 #include "vpe/app/picture/image_options.h"
 
@@ -21,7 +23,8 @@ inline constexpr double kFar = 1.0 / 30;
 // Both backends keep to lod.tolerance. Without a GPU, rays are faster where an image reaches the horizon and
 // the camera is near (docs/measurements/error-and-time.md). So the choice is rays when all of these hold: there
 // is no GPU; at least half of the images reach the horizon of a sphere of radius_m from less than kFar above
-// it; and rays can draw all of them as requested (suits_rays()). Rays then use cells of the tolerance, or mode
+// it; rays can draw all of them as requested (suits_rays()); and incomplete images are not allowed, which rays
+// cannot make. Rays then use cells of the tolerance, or mode
 // exact where the tolerance is finer than the smallest cell; where --set names a key of rays, the settings stay
 // unchanged. Pure.
 BackendChoice choose_backend(const RenderOptions& options, const core::Settings& settings,
@@ -30,5 +33,12 @@ BackendChoice choose_backend(const RenderOptions& options, const core::Settings&
 // Returns true if nothing in the request is about triangles, so that rays draw the same image: no wireframe, no
 // inspection of tiles, no level control other than the tolerance.
 bool suits_rays(const core::DrawRequest& request);
+
+// Returns the choice of rays for images that are to be drawn by triangles, for a machine without OpenGL; nullopt
+// if rays cannot draw them. Pure.
+std::optional<BackendChoice> rays_instead(const RenderOptions& options, const core::Settings& settings,
+                                          std::span<const core::DrawRequest> images);
+// Says so on stderr. `reason`: the words of gl::ContextError.
+void note_rays_instead(const std::string& reason, bool quiet);
 
 }  // namespace vpe::app

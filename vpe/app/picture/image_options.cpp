@@ -103,6 +103,8 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
   constexpr int kTightMemory_mb = 512;
   if (common.memory_mb < kTightMemory_mb) base::keep_heap_compact();
   if (!options.backend) throw std::logic_error("make_renderer: no backend was chosen");
+  if (*options.backend == core::Backend::kRay && options.allow_incomplete)
+    throw UsageError("--allow-incomplete: the ray backend draws complete images only; use --backend polygon");
   if (*options.backend == core::Backend::kRay)
     return voxel::make_ray_renderer(std::move(planet), {memory_bytes(common), common.threads});
   gl::RendererOptions renderer;

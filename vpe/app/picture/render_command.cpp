@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 
+#include "paging/surface/surface.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
@@ -16,6 +19,7 @@
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/app/picture/stereo_render.h"
+#include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
@@ -39,6 +43,7 @@ struct RenderArguments {
   std::string overlay_layer;
   std::string size = "1280x720";
   double fov_deg = 60;
+  bool allow_underground = false;
   RenderOptions image;
   StereoArguments stereo;
 };
@@ -121,6 +126,8 @@ core::DrawRequest resolve_request(const ParsedRender& parsed,
 void resolve_backend(RenderArguments& arguments, const core::Settings& settings, core::DrawRequest& request,
                      double radius_m) {
   RenderOptions& image = arguments.image;
+  if (image.backend == core::Backend::kRay && !arguments.explain_lod.empty())
+    throw UsageError("--explain-lod explains triangles, and --backend ray draws none; leave one of them out");
   if (!image.backend && !arguments.explain_lod.empty()) image.backend = core::Backend::kPolygon;
   const BackendChoice chosen = choose_backend(image, settings, {&request, 1}, radius_m, gl::has_gpu());
   image.backend = chosen.backend;
@@ -160,6 +167,10 @@ void print_levels(const core::FrameStats& stats, const paging::PlanetFile& plane
   }
 }
 
+mars::LonLat place_below(const core::DrawRequest& request) {
+  return mars::lon_lat(request.view.camera.position_m);
+}
+
 void print_summary(const RenderArguments& arguments, const core::DrawRequest& request,
                    const core::DrawResult& result) {
   std::string what = base::format_number(static_cast<double>(result.stats.triangles)) + " triangles";
@@ -167,9 +178,18 @@ void print_summary(const RenderArguments& arguments, const core::DrawRequest& re
     const glm::ivec2 size = core::drawn_size(request.view);
     what = base::format_number(static_cast<double>(size.x) * size.y * request.settings.samples) + " rays";
   }
-  std::printf("%s: %s in %d tiles, geometry within %.2f px (%.3g m)\n", arguments.output.c_str(), what.c_str(),
-              result.stats.tiles_drawn, result.certificate.shift_bound_px,
-              result.certificate.geometric_error_m);
+  const core::Certificate& c = result.certificate;
+  if (c.is_below_ground) {
+    std::printf("%s: the camera is below the ground\n", arguments.output.c_str());
+    return;
+  }
+  // Wide images are stretched so much that the middle does not speak for the rest.
+  constexpr double kWideStretch = 4;
+  std::string corners;
+  if (c.corner_stretch > kWideStretch)
+    corners = ", up to " + base::format_fixed(c.shift_bound_px * c.corner_stretch, 2) + " px in the corners";
+  std::printf("%s: %s in %d tiles, geometry within %.2f px (%.3g m)%s\n", arguments.output.c_str(),
+              what.c_str(), result.stats.tiles_drawn, c.shift_bound_px, c.geometric_error_m, corners.c_str());
 }
 
 void write_stereo(const RenderArguments& arguments, const Common& common, const StereoImage& drawn) {
@@ -203,6 +223,7 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
   if (common.json) {
     print_json({{"output", arguments.output},
                 {"backend", core::to_string(*arguments.image.backend)},
+                {"sun", to_json(sun_statement(request.settings, place_below(request)))},
                 {"certificate", certificate},
                 {"stats", to_json(result.stats)}});
   } else if (!common.quiet) {
@@ -211,18 +232,56 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
   }
 }
 
+// Makes the renderer. Without OpenGL rays take the place of triangles that nobody named, and of the backend and the
+// settings.
+std::unique_ptr<core::Renderer> renderer_for(RenderArguments& arguments, const Common& common,
+                                             const std::shared_ptr<const paging::PlanetFile>& planet,
+                                             const core::Settings& settings, core::DrawRequest& request,
+                                             bool is_backend_named) {
+  try {
+    return make_renderer(arguments.image, common, planet);
+  } catch (const gl::ContextError& e) {
+    const auto rays = rays_instead(arguments.image, settings, {&request, 1});
+    if (is_backend_named || !rays) throw;
+    note_rays_instead(e.what(), common.quiet);
+    arguments.image.backend = rays->backend;
+    request.settings = rays->settings.values();
+    return make_renderer(arguments.image, common, planet);
+  }
+}
+
+void require_above_ground(const RenderArguments& arguments,
+                          const std::shared_ptr<const paging::PlanetFile>& planet,
+                          const core::DrawRequest& request) {
+  const paging::Surface surface(planet, std::size_t{8} << 20);
+  const glm::dvec3& camera_m = request.view.camera.position_m;
+  if (arguments.allow_underground || !surface.is_below(camera_m, request.settings.exaggeration)) return;
+  const double ground_m = surface.at(camera_m, request.settings.exaggeration).height_m;
+  const double alt_m = glm::length(camera_m) - planet->radius_m();
+  throw std::runtime_error("the camera at " + arguments.pose + " is " +
+                           base::format_rounded(ground_m - alt_m, 2) + " m below the ground, which lies " +
+                           base::format_rounded(ground_m, 2) +
+                           " m above the sphere there; give a larger ALT, or --height above the ground "
+                           "(--allow-underground draws what is there: nothing)");
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const ParsedRender parsed = parse(arguments);
+  if (!common.quiet && !parsed.pose.note.empty()) std::fprintf(stderr, "Note: %s.\n", parsed.pose.note.c_str());
   check_outputs(arguments, parsed.settings.values());
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
+  require_known_sun(parsed.settings.values(), planet->meta().body);
   core::DrawRequest request = resolve_request(parsed, planet);
+  if (!common.quiet) print_sun(sun_statement(request.settings, place_below(request)));
+  const bool is_backend_named = arguments.image.backend.has_value() || !arguments.explain_lod.empty();
   resolve_backend(arguments, parsed.settings, request, planet->radius_m());
-  const auto renderer = make_renderer(arguments.image, common, planet);
+  require_above_ground(arguments, planet, request);
+  const auto renderer = renderer_for(arguments, common, planet, parsed.settings, request, is_backend_named);
   // Makes the finished image of one camera.
   const auto draw = [&](const core::DrawRequest& one) {
     core::DrawResult result = renderer->draw(one);
@@ -274,6 +333,8 @@ void add_render(CLI::App& program, Common& common) {
       ->check(number_within(core::ViewLimits::kMinFov_deg, core::ViewLimits::kMaxFov_deg))
       ->capture_default_str();
   add_stereo_options(*command, arguments->stereo);
+  command->add_flag("--allow-underground", arguments->allow_underground,
+                    "Draw one colour for a camera below the ground, instead of failing");
   add_render_options(*command, arguments->image);
   command->callback([arguments, &common] { render(*arguments, common); });
 }

@@ -134,6 +134,7 @@ ColumnWalk::Usage ColumnWalk::usage() const {
     const auto level = static_cast<std::size_t>(info.key.level);
     if (usage.tiles_by_level.size() <= level) usage.tiles_by_level.resize(level + 1);
     ++usage.tiles_by_level[level];
+    usage.steepest_slope = std::max(usage.steepest_slope, tree_.steepest_slope(info, exaggeration_));
     if (!info.has_children) continue;
     double geometric_error_m = measured_error_m(tile);
     if (!std::isfinite(geometric_error_m)) {
@@ -158,6 +159,7 @@ void ColumnWalk::Usage::add(const Usage& other) {
     tiles_by_level[level] = std::max(tiles_by_level[level], other.tiles_by_level[level]);
   screen_space_error_px = std::max(screen_space_error_px, other.screen_space_error_px);
   geometric_error_m = std::max(geometric_error_m, other.geometric_error_m);
+  steepest_slope = std::max(steepest_slope, other.steepest_slope);
 }
 
 // Leads one group over one face after the other.

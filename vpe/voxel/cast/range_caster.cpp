@@ -116,7 +116,21 @@ ColumnWalk::Usage RangeCaster::cast(const core::View& view, const RangeOptions& 
     }
   }
   cast_single_rays(view, options.exaggeration, pool, range_m);
-  return {};
+  ColumnWalk::Usage usage;
+  usage.steepest_slope = surface_.planet().tree().steepest_slope(options.exaggeration);
+  return usage;
+}
+
+double RangeCaster::range_error(const core::View& view, double exaggeration) const {
+  double lowest_m = std::numeric_limits<double>::infinity();
+  double highest_m = -lowest_m;
+  for (const lod::TileInfo& tile : surface_.planet().tree().tiles()) {
+    if (tile.key.level > 0) break;  // heights nest
+    lowest_m = std::min(lowest_m, tile.min_height_m);
+    highest_m = std::max(highest_m, tile.max_height_m);
+  }
+  const bool is_high = exaggeration * (highest_m - lowest_m) > 0.1 * surface_.planet_radius_m();
+  return is_high ? kWideRangeError : range_error(view);
 }
 
 void RangeCaster::cast_upright(const core::View& view, const ColumnWalk& walk, ScratchPool& scratches,

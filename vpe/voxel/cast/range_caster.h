@@ -53,7 +53,8 @@ class RangeCaster {
   // With cell_px 0 ranges are those of paging::Surface::cast() but for rounding: the relative error is below
   // range_error(view) / sine of incidence. They do not depend on the number of threads or on earlier casts.
   //
-  // Returns the tiles that columns used and the bound of their error; nothing for single rays. Throws
+  // Returns the tiles that columns used, the bound of their error and their steepest slope; for single rays the
+  // steepest slope of the planet alone. Throws
   // paging::PlanetError for tiles that cannot be read.
   //
   // A cast uses the memory of a SectorCaster: one thread at a time may call it for each of them. Without one,
@@ -73,6 +74,8 @@ class RangeCaster {
   static double range_error(const core::View& view) {
     return view.fov_deg > kWide_deg ? kWideRangeError : kRangeError;
   }
+  // Returns the error for the planet's own ground.
+  double range_error(const core::View& view, double exaggeration) const;
 
   const paging::Surface& surface() const { return surface_; }
   const HeightGridStore& store() const { return store_; }

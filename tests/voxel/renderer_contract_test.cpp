@@ -1,0 +1,199 @@
+// Promises of core::Renderer that both backends keep.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/gl/gl_fixture.h"
+#include "tests/support/worst.h"
+#include "vpe/core/backend.h"
+#include "vpe/voxel/ray_renderer.h"
+
+namespace {
+
+namespace core = vpe::core;
+using core::Backend;
+using test_support::build_fake;
+using test_support::bumpy_height;
+using test_support::FakeElevation;
+using test_support::request_for;
+
+class RendererContract : public test_support::GlTest, public ::testing::WithParamInterface<Backend> {
+ protected:
+  std::unique_ptr<core::Renderer> make(std::shared_ptr<const paging::PlanetFile> planet) {
+    if (GetParam() == Backend::kPolygon) return renderer(std::move(planet));
+    return vpe::voxel::make_ray_renderer(std::move(planet), {std::size_t{256} << 20, 2});
+  }
+  bool is_rays() const { return GetParam() == Backend::kRay; }
+
+  // Returns the largest forward shift of an image over the bound that it states.
+  double shift_over_bound(core::Renderer& draw, const paging::Surface& surface,
+                          const core::DrawRequest& request) {
+    const core::DrawResult result = draw.draw(request);
+    const double x = request.settings.exaggeration;
+    const core::SurfaceRadius radius = [&](std::span<const glm::dvec3> directions, std::span<double> radius_m) {
+      surface.radius(directions, radius_m, x);
+    };
+    const auto shifts = core::forward_shift_px(request.view, result.frame.range_m, radius);
+    const core::ShiftSummary shift = core::summarize(shifts, core::drawn_size(request.view).x);
+    EXPECT_GT(shift.pixels, 0);
+    EXPECT_LE(result.certificate.image_bound_px.value(), result.certificate.shift_bound_px);
+    // Triangles: ranges of the depth buffer have an error of their own.
+    double range_px = 0;
+    if (!is_rays()) {
+      float nearest = core::kSkyRange;
+      float farthest = 0;
+      for (const float range : result.frame.range_m) {
+        nearest = std::min(nearest, range);
+        if (std::isfinite(range)) farthest = std::max(farthest, range);
+      }
+      range_px = vpe::gl::kRangeError * (1.0 + farthest / nearest) * core::focal_px(request.view);
+    }
+    return shift.max_px / (*result.certificate.image_bound_px + range_px);
+  }
+};
+
+// Walls of 4 km between posts some 60 m apart: slopes of 89 degrees.
+double walls(const glm::dvec3& d) {
+  const mars::LonLat p = mars::lon_lat(d);
+  const auto i = static_cast<int>(std::floor(p.lon_deg * 32));
+  const auto j = static_cast<int>(std::floor(p.lat_deg * 32));
+  return (i + j) % 2 == 0 ? 0.0 : 4000.0;
+}
+
+TEST_P(RendererContract, CertificatesHoldOnWalls) {
+  const auto planet = build_fake(
+      dir_ / "walls.vpe",
+      FakeElevation(walls, test_support::fine_around(mars::direction({0.5, 0.5}), 0.008, 60)), 100000);
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto draw = make(planet);
+  double worst = 0;
+  for (const mars::Pose& pose : {mars::Pose{0.5, 0.5, 9000, 30, -30, 0},
+                                 {0.51, 0.49, 6000, 200, -45, 10},
+                                 {0.47, 0.5, 4500, 90, -20, 0},
+                                 {0.5, 0.53, 15000, 120, -80, 0}})
+    worst = std::max(worst, shift_over_bound(*draw, surface, request_for(pose, planet->radius_m(), 160, 120)));
+  test_support::record_worst(is_rays() ? "rays: forward shift, walls" : "polygons: forward shift, walls", worst,
+                             1, "of the certificate");
+  EXPECT_LE(worst, 1);
+}
+
+TEST_P(RendererContract, CertificatesHoldUnderExaggeration) {
+  const auto rough = [](const glm::dvec3& d) {
+    return 0.05 * bumpy_height(d) + 300 * std::sin(400 * d.x) * std::sin(370 * d.y) * std::cos(390 * d.z);
+  };
+  const auto planet = build_fake(dir_ / "rough.vpe", FakeElevation(rough), 10000);
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto draw = make(planet);
+  double worst = 0;
+  for (const double exaggeration : {5.0, 100.0}) {
+    for (const mars::Pose& pose : {mars::Pose{20, 10, 60000, 30, -20, 0},
+                                   {-100, -40, 90000, 300, -50, 0},
+                                   {60, 70, 70000, 120, -5, 20}}) {
+      core::DrawRequest request = request_for(pose, planet->radius_m(), 160, 120);
+      request.settings.exaggeration = exaggeration;
+      if (surface.is_below(request.view.camera.position_m, exaggeration)) continue;
+      worst = std::max(worst, shift_over_bound(*draw, surface, request));
+    }
+  }
+  test_support::record_worst(
+      is_rays() ? "rays: forward shift, exaggerated" : "polygons: forward shift, exaggerated", worst, 1,
+      "of the certificate");
+  EXPECT_LE(worst, 1);
+}
+
+TEST_P(RendererContract, ACameraBelowTheGroundSeesOneColourAndClaimsNothing) {
+  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 50000);
+  const paging::Surface surface(planet, std::size_t{1} << 26);
+  const auto draw = make(planet);
+  const double ground_m = surface.at(mars::direction({20, 30})).height_m;
+  core::DrawRequest request = request_for({20, 30, ground_m - 5, 40, -10, 0}, planet->radius_m(), 40, 30);
+  EXPECT_TRUE(surface.is_below(request.view.camera.position_m));
+  core::DrawResult below = draw->draw(request);
+  EXPECT_TRUE(below.certificate.is_below_ground);
+  EXPECT_TRUE(std::isinf(below.certificate.shift_bound_px));
+  EXPECT_TRUE(std::isinf(below.certificate.image_bound_px.value()));
+  ASSERT_EQ(below.frame.colour.size(), 1200U);
+  const vpe::base::Rgb colour = below.frame.colour.front();
+  EXPECT_EQ(colour.r, 32);  // the same with every backend
+  EXPECT_EQ(std::count(below.frame.colour.begin(), below.frame.colour.end(), colour), 1200);
+  EXPECT_EQ(std::count(below.frame.range_m.begin(), below.frame.range_m.end(), 0.0F), 1200);
+  request.want_range = false;
+  EXPECT_TRUE(draw->draw(request).frame.range_m.empty());
+  // Above the ground, and below it only where it is exaggerated.
+  request.view.camera = mars::to_camera({20, 30, ground_m + 5, 40, -10, 0}, planet->radius_m());
+  EXPECT_FALSE(draw->draw(request).certificate.is_below_ground);
+  request.settings.exaggeration = ground_m > 0 ? 2 : 0.5;
+  EXPECT_EQ(draw->draw(request).certificate.is_below_ground, std::abs(ground_m) > 10);
+}
+
+TEST_P(RendererContract, ExaggerationThroughTheCentreIsRefused) {
+  const auto planet =
+      build_fake(dir_ / "p.vpe", FakeElevation([](const glm::dvec3& d) { return 1e6 * d.x; }), 400000);
+  const auto draw = make(planet);
+  core::DrawRequest request = request_for({20, 0, 2e7, 0, -90, 0}, planet->radius_m(), 40, 30);
+  request.settings.exaggeration = 3;
+  EXPECT_FALSE(draw->draw(request).frame.colour.empty());
+  request.settings.exaggeration = 3.5;
+  try {
+    draw->draw(request);
+    ADD_FAILURE() << "was drawn";
+  } catch (const std::exception& e) {
+    EXPECT_NE(std::string(e.what()).find("must be less than 3.39"), std::string::npos) << e.what();
+  }
+}
+
+// Level control other than the tolerance acts or is refused, and is never ignored.
+TEST_P(RendererContract, LevelControlActsOrIsRefused) {
+  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 20000);
+  const auto draw = make(planet);
+  core::DrawRequest plain = request_for({20, 30, 400000, 40, -60, 0}, planet->radius_m(), 64, 48);
+  plain.settings.lod_tolerance_px = 4;
+  const core::DrawResult before = draw->draw(plain);
+  std::vector<core::DrawRequest> controlled(4, plain);
+  controlled[0].interest = {{20, 30, 300000, 3}};
+  controlled[1].settings.lod_metric = core::LodMetric::kDistance;
+  controlled[2].settings.lod_centre_weight = 3;
+  controlled[3].settings.lod_triangles = 2000;
+  for (std::size_t n = 0; n < controlled.size(); ++n) {
+    SCOPED_TRACE(n);
+    if (is_rays()) {
+      EXPECT_NE(vpe::voxel::why_not(controlled[n]), "");
+      EXPECT_THROW(draw->draw(controlled[n]), std::runtime_error);
+    } else {
+      EXPECT_NE(draw->draw(controlled[n]).stats.triangles, before.stats.triangles);
+    }
+  }
+  // What has no effect by its weight is not asked for.
+  core::DrawRequest off = controlled[0];
+  off.settings.lod_interest_weight = 0;
+  EXPECT_EQ(draw->draw(off).frame.colour, before.frame.colour);
+}
+
+// A wall close before a camera that is high above the foot of the wall.
+TEST_P(RendererContract, WallsBesideTheCameraAreNotSeenThrough) {
+  const auto planet = build_fake(
+      dir_ / "walls.vpe",
+      FakeElevation(walls, test_support::fine_around(mars::direction({0.5, 0.5}), 0.008, 60)), 100000);
+  const paging::Surface surface(planet, std::size_t{1} << 27);
+  const auto draw = make(planet);
+  int views = 0;
+  for (double lon = 0.485; lon < 0.515; lon += 0.0005) {
+    for (const double yaw : {90.0, 270.0}) {
+      const core::DrawRequest request = request_for({lon, 0.505, 3500, yaw, 0, 0}, planet->radius_m(), 40, 30);
+      if (surface.is_below(request.view.camera.position_m)) continue;
+      const double wall_m =
+          surface.cast(request.view.camera.position_m, core::pixel_ray(request.view, 20.5, 15.5));
+      if (!(wall_m < 100)) continue;
+      ++views;
+      const core::DrawResult result = draw->draw(request);
+      const double drawn_m = static_cast<double>(result.frame.range_m[15 * 40 + 20]);
+      EXPECT_NEAR(drawn_m, wall_m, 0.05 * wall_m + 1) << lon << " " << yaw;
+    }
+  }
+  EXPECT_GT(views, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, RendererContract, ::testing::Values(Backend::kPolygon, Backend::kRay),
+                         [](const auto& backend) { return std::string(core::to_string(backend.param)); });
+
+}  // namespace
