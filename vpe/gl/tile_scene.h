@@ -38,9 +38,7 @@ class TileScene {
   const std::shared_ptr<const core::ColourScale>& scale() const { return streamer_.scale(); }
 
   // Returns the distance of the near plane for the frame's view, metres.
-  double near_plane_m(const core::View& view) const {
-    return clearance_.near_plane_m(cover_.cover(), view);
-  }
+  double near_plane_m(const core::View& view) const { return clearance_.near_plane_m(cover_.cover(), view); }
 
   // Takes the time in which the tiles of the frame were drawn, milliseconds.
   void record_draw_time(double draw_ms) { cover_.record_draw_time(draw_ms); }
