@@ -1,4 +1,5 @@
 // Malformed files: one clear message, exit 1, nothing half-written.
+#include <fstream>
 #include <limits>
 
 #include "tests/app/support/app_fixture.h"
@@ -64,6 +65,35 @@ TEST_F(BadInput, OnePixelGivesAPlanetWithOneHeightThere) {
   const auto answers = parse_json(vpe({"query", "one.vpe", "--json", "12,20", "100,20"}).out);
   EXPECT_NEAR(answers[0]["elevation_m"].get<double>(), 1234, 135);  // the sagitta of posts 42 km apart
   EXPECT_TRUE(answers[1]["elevation_m"].is_null());
+}
+
+// Fill values that no nodata value declares, as rasters of radii have them.
+TEST_F(BadInput, HeightsAtOrBelowTheCentreAreRefusedByPlace) {
+  Dem dem;
+  dem.height_m = [](int column, int row) { return column == 40 && row == 60 ? 0 : 3396290; };
+  write_dem(dir_ / "radii.tif", dem);
+  expect_bad_dem("radii.tif", {"radii.tif: the height at lon -", "centre", "-a_nodata", "--radius"});
+  dem.height_m = [](int, int) { return 0; };
+  write_dem(dir_ / "zeros.tif", dem);
+  expect_failure({"build", "zeros.tif", "--datum", "radius", "-o", "z.vpe", "--base-spacing", "100000"}, 1,
+                 {"zeros.tif: ", "centre"});
+  dem.height_m = [](int column, int row) { return column == 40 && row == 60 ? -32768e3 : 1200; };
+  write_dem(dir_ / "fill.tif", dem);
+  expect_bad_dem("fill.tif", {"fill.tif: the height at lon -99 lat -31 is -32768000 m", "centre"});
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+// The mean of all heights fills nodata, so a wild height must not get into it.
+TEST_F(BadInput, AHeightTooLargeToStoreIsReportedWhereItIs) {
+  Dem dem;
+  dem.west_deg = 10;
+  dem.north_deg = 20;
+  dem.cell_deg = 0.1;
+  dem.no_data = -1;
+  dem.height_m = [](int column, int row) { return column == 40 && row == 60 ? 4e9 : 1200; };
+  write_dem(dir_ / "wild.tif", dem);
+  expect_bad_dem("wild.tif", {"wild.tif: the height at lon 14.05 lat 13.95 is 4000000000 m", "-a_nodata"});
+  EXPECT_EQ(leftovers(), Words{});
 }
 
 TEST_F(BadInput, OneBadDemAmongGoodOnes) {

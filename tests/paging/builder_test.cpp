@@ -2,9 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <functional>
+#include <mutex>
 #include <set>
 
+#include "paging/build/source_heights.h"
 #include "tests/paging/planet_fixture.h"
 #include "tests/support/worst.h"
 
@@ -44,6 +50,29 @@ TEST(Builder, PostsAreTheSource) {
     }
   }
   EXPECT_GT(constrained, 0);
+}
+
+// Heights of a large part of the radius in steps from post to post, and posts close to the centre.
+TEST(Builder, SteepGroundOfSmallBodiesIsBuiltOrRefused) {
+  TempDir dir;
+  const auto steps = [](double low, double high) {
+    return [=](const glm::dvec3& d) {
+      const double side = std::floor(40 * d.x) + std::floor(40 * d.y) + std::floor(40 * d.z);
+      return mars::kMarsRadius_m * (std::fmod(std::abs(side), 2) == 0 ? low : high);
+    };
+  };
+  for (const double low : {-0.3, -0.9, -0.998}) {
+    SCOPED_TRACE(low);
+    const FakeElevation source(steps(low, 0.3), fine_around(kCorner, 0.05, 40000));
+    const auto planet = build_fake(dir / "p.vpe", source, 400000);
+    EXPECT_NEAR(planet->meta().highest_radius_m, 1.3 * mars::kMarsRadius_m, 1);
+  }
+  for (const double low : {-0.9995, -1.0, -1.5, -1e30}) {
+    SCOPED_TRACE(low);
+    const FakeElevation source(steps(low, 0.3), fine_around(kCorner, 0.05, 40000));
+    EXPECT_THROW(build_fake(dir / "q.vpe", source, 400000), paging::UnusableSource);
+    EXPECT_FALSE(std::filesystem::exists(dir / "q.vpe.part"));
+  }
 }
 
 // The reference surface from both sides of every tile border, at posts and between them.
