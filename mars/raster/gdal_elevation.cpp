@@ -60,6 +60,9 @@ BandFormat band_format(const GdalRaster& raster) {
     const double value = band->GetNoDataValue(&has_nodata);
     if (has_nodata != 0) format.nodata_value = value;
   }
+  // The nodata value of signed bytes may be stated as signed or as stored.
+  if (raster.is_signed_byte(1) && format.nodata_value && *format.nodata_value > 127)
+    *format.nodata_value -= 256;
   format.special_values = raster.nodata();
   // A mask derived from the nodata value adds nothing.
   const int mask = band->GetMaskFlags();

@@ -30,6 +30,11 @@ void check_bands(const std::string& path, GDALDataset& dataset) {
   }
 }
 
+bool stores_signed_bytes(GDALRasterBand& band) {
+  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
+}
+
 // Throws if a raw file is too short. GDAL reads zeros beyond the end of some, as if they were sparse.
 void check_raw_size(const std::string& path, GDALDataset& dataset) {
   for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
@@ -58,6 +63,8 @@ GdalRaster::GdalRaster(const std::string& path)
   check_bands(file_.path, *dataset);
   check_raw_size(file_.path, *dataset);
   nodata_ = nodata_values(*dataset, file_.label);
+  for (int i = 1; i <= dataset->GetRasterCount(); ++i)
+    signed_bytes_.push_back(stores_signed_bytes(*dataset->GetRasterBand(i)));
   const LabelGeoreference label =
       file_.georeference ? *file_.georeference : label_georeference(file_.path, *dataset);
   georeference_.emplace(file_.path, *dataset, label);
@@ -124,6 +131,15 @@ void GdalRaster::read(int band, int overview, const PixelWindow& window, int str
   const GdalScope scope;
   const auto dataset = acquire();
   read_pixels(file_.path, band_of(*dataset, band, overview), window, stride, values, scope);
+  if constexpr (std::is_floating_point_v<T>) {
+    if (!is_signed_byte(band)) return;
+    for (int row = 0; row < window.rows; ++row) {
+      T* line = values + std::ptrdiff_t{row} * stride;
+      for (int column = 0; column < window.columns; ++column) {
+        if (line[column] > 127) line[column] -= 256;
+      }
+    }
+  }
 }
 
 void GdalRaster::read_mask(int band, int overview, const PixelWindow& window, int stride,

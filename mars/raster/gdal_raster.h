@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mars/raster/gdal_file.h"
 #include "mars/raster/gdal_footprint.h"
@@ -35,15 +36,19 @@ class GdalRaster {
   const std::optional<PdsLabel>& label() const { return file_.label; }
   const NodataValues& nodata() const { return nodata_; }
 
+  // Returns true if the stored bytes of a band, counted from 1, are signed (PIXELTYPE=SIGNEDBYTE): GDAL before
+  // 3.7 reads them as unsigned.
+  bool is_signed_byte(int band) const { return signed_bytes_[static_cast<std::size_t>(band - 1)]; }
+
   // Returns name, size and time of all its files, and the resolution.
   SourceInfo info() const;
 
   // Lends a handle that the caller does not share with other threads.
   GdalPool<GDALDataset>::Lease acquire() const { return handles_.acquire(); }
 
-  // read() reads pixels of a band (counted from 1) as T into rows that are `stride` values apart; read_mask()
-  // reads the mask of a band (255 = valid, 0 = nodata). overview < 0 selects full resolution. Throw
-  // SourceError.
+  // read() reads pixels of a band (counted from 1) as T into rows that are `stride` values apart. Signed bytes
+  // are signed in float and double, and as stored in unsigned char. read_mask() reads the mask of a band (255 =
+  // valid, 0 = nodata). overview < 0 selects full resolution. Throw SourceError.
   template <class T>
   void read(int band, int overview, const PixelWindow& window, int stride, T* values) const;
   void read_mask(int band, int overview, const PixelWindow& window, int stride, unsigned char* values) const;
@@ -52,6 +57,7 @@ class GdalRaster {
   RasterFile file_;
   mutable GdalPool<GDALDataset> handles_;
   NodataValues nodata_;
+  std::vector<bool> signed_bytes_;  // by band
   std::optional<Georeference> georeference_;
   std::optional<Footprint> footprint_;
 };
