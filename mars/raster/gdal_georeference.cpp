@@ -13,6 +13,7 @@
 #include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_crs.h"
 #include "mars/raster/gdal_scope.h"
+#include "mars/raster/iau_crs.h"
 
 namespace mars {
 namespace {
@@ -64,7 +65,19 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     throw source_error(path, "has a geotransform but no coordinate system", "",
                        "name the body's, e.g. gdal_edit.py -a_srs IAU_2015:49900 FILE");
   }
-  transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, label.lon_shift_deg);
+  if (auto restored = restored_iau_crs(crs)) crs = *restored;
+  if (!correct_axis_order(crs, to_map, grid_)) {
+    const bool lat_first = crs.GetDataAxisToSRSAxisMapping()[0] == 1;
+    note_ = std::string("both axes of its map may be latitudes; its columns are taken to run along the ") +
+            (lat_first ? "latitude" : "longitude, which counts west") +
+            " (gdalwarp -t_srs IAU_2015:CODE of a " + "planetocentric system makes it plain)";
+  }
+  try {
+    transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, label.lon_shift_deg);
+  } catch (const SourceError&) {
+    if (!remove_iau_codes(crs)) throw;
+    transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, label.lon_shift_deg);
+  }
   centric_scale_ = label.centric_scale.value_or(transformer_->centric_scale());
 
   const double to_m = crs.IsGeographic() || !crs.IsProjected()
