@@ -92,10 +92,16 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     const double some_height_m = first_height();
     {
       const auto dataset = raster_->acquire();
-      info_.datum = product_datum(raster_->path(), *dataset, raster_->label());
+      const ProductDatum product = product_datum(raster_->path(), *dataset, raster_->label());
+      const bool is_radius = std::abs(some_height_m) > kLargestHeight_m;
+      info_.datum = is_radius ? VerticalDatum::radius() : product.datum;
       info_.body_radius_m = body_radius_m(*dataset);
+      if (product.by_name && !is_radius) {
+        info_.notes.push_back(info_.name + ": by its name alone its heights are of datum '" +
+                              to_string(info_.datum) + "' (--datum states another)");
+      }
+      note_bands(*dataset);
     }
-    if (std::abs(some_height_m) > kLargestHeight_m) info_.datum = VerticalDatum::radius();
     find_poles();
   }
 
@@ -189,6 +195,19 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   };
   using Cursor = TileCursor<Tile, Fetch>;
   Cursor make_cursor() const { return Cursor(0, Fetch{this}); }
+
+  // Adds a note if other bands could be meant.
+  void note_bands(GDALDataset& dataset) {
+    int bands = 0;
+    for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
+      if (dataset.GetRasterBand(i)->GetColorInterpretation() != GCI_AlphaBand) ++bands;
+    }
+    if (bands < 2) return;
+    const char* name = dataset.GetRasterBand(1)->GetDescription();
+    info_.notes.push_back(info_.name + " has " + std::to_string(bands) + " bands; the first" +
+                          (name[0] != '\0' ? " ('" + std::string(name) + "')" : "") +
+                          " is taken for elevation (gdal_translate -b N makes a raster of another one)");
+  }
 
   std::shared_ptr<const Tile> load(const TileId& id) const {
     auto tile = std::make_shared<Tile>();

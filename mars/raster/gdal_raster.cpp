@@ -81,6 +81,7 @@ SourceInfo GdalRaster::info() const {
   SourceInfo info;
   info.name = file_.path;
   info.resolution_m = georeference_->resolution_m();
+  if (!georeference_->note().empty()) info.notes.push_back(info.name + ": " + georeference_->note());
   std::vector<std::string> files = file_.files;
   if (files.empty()) {
     const CPLStringList known(acquire()->GetFileList());

@@ -46,6 +46,12 @@ VerticalDatum datum_of_name(const std::string& path) {
   if (std::regex_match(name, match, hrsc)) {
     return match[1] == "a" ? VerticalDatum::areoid() : VerticalDatum::sphere(3'396'000);
   }
+  // The names of both images of the stereo pair come before it.
+  static const std::regex ctx(
+      "[a-z][0-9]{2}_[0-9]{6}_[0-9]{4}_x[a-z]_[0-9]{2}[ns][0-9]{3}w.*-dem(-geoid-adj)?(\\.[a-z]+)*");
+  if (std::regex_match(name, match, ctx)) {
+    return match[1].matched ? VerticalDatum::areoid() : VerticalDatum::sphere(3'396'190);
+  }
   if (name.starts_with("mars_mgs_mola_dem") || name.starts_with("mars_hrsc_mola_blenddem")) {
     return VerticalDatum::areoid();
   }
@@ -54,19 +60,20 @@ VerticalDatum datum_of_name(const std::string& path) {
 
 }  // namespace
 
-VerticalDatum product_datum(const std::string& path, GDALDataset& dataset,
-                            const std::optional<PdsLabel>& label) {
+ProductDatum product_datum(const std::string& path, GDALDataset& dataset,
+                           const std::optional<PdsLabel>& label) {
   const GdalScope scope;
   if (label) {
     const VerticalDatum datum = pds_datum(*label);
-    if (datum.is_known()) return datum;
+    if (datum.is_known()) return {datum, false};
   }
   const OGRSpatialReference* crs = dataset.GetSpatialRef();
   if (crs != nullptr) {
     const VerticalDatum datum = datum_of_crs(*crs);
-    if (datum.is_known()) return datum;
+    if (datum.is_known()) return {datum, false};
   }
-  return datum_of_name(path);
+  const VerticalDatum datum = datum_of_name(path);
+  return {datum, datum.is_known()};
 }
 
 double body_radius_m(GDALDataset& dataset) {

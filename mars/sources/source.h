@@ -50,6 +50,7 @@ struct SourceInfo {
   std::optional<double> accuracy_m;  // one sigma, vertical, if the product states it
   bool illustration = false;         // true for synthetic planets, which must not be taken for data
   std::string treatment;             // changes made to the product's own values; empty: none
+  std::vector<std::string> notes;    // sentences for the user about how it is read; not recorded
 };
 
 // Receives directions and the source's own values there, in metres. Blocks come in any order.

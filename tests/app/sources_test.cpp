@@ -65,6 +65,51 @@ TEST_F(Sources, DatumsAreNamedRefusedAndConverted) {
   EXPECT_TRUE(says(vpe({"info", "p.vpe"}).out, {"vertical datum", "areoid"}));
 }
 
+TEST_F(Sources, ASilentDatumIsStatedOrDeclaredTheSame) {
+  write_globe_and_inset(590);
+  Result result = build({"--datum", "globe.tif=areoid"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(says(result.err, {"inset.tif does not state its vertical datum", "m above", "globe.tif",
+                                "--datum inset.tif=areoid"}));
+  EXPECT_EQ(leftovers(), Words{});
+  result = build({"--datum", "globe.tif=areoid", "--datum", "inset.tif=same", "--json", "-q"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(parse_json(result.out)["datum"], "areoid");
+  EXPECT_TRUE(says(parse_json(result.out)["sources"].dump(), {"datum named as areoid"}));
+  EXPECT_EQ(build({}).exit_code, 1);
+  EXPECT_EQ(build({"--datum", "same"}).exit_code, 0);
+  expect_failure({"build", "globe.tif", "-o", "p.vpe", "--datum", "other.tif=same"}, 2, {"other.tif"});
+}
+
+TEST_F(Sources, MoreBandsAreNoted) {
+  write_globe_and_inset(0);
+  const std::string band =
+      "<VRTRasterBand dataType=\"Int16\" band=\"B\"><Description>height</Description><SimpleSource><SourceFilename "
+      "relativeToVRT=\"1\">globe.tif</SourceFilename></SimpleSource></VRTRasterBand>";
+  std::string second = band;
+  second[second.find("\"B\"") + 1] = '2';
+  std::string first = band;
+  first[first.find("\"B\"") + 1] = '1';
+  write_text(dir_ / "two.vrt",
+             "<VRTDataset rasterXSize=\"180\" rasterYSize=\"90\"><SRS>+proj=longlat +R=3396190 +no_defs</SRS>"
+             "<GeoTransform>-180,2,0,90,0,-2</GeoTransform>" +
+                 first + second + "</VRTDataset>");
+  const Result result = vpe({"build", "two.vrt", "-o", "p.vpe", "--base-spacing", "100000"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(says(result.err, {"two.vrt has 2 bands", "the first ('height')", "gdal_translate -b"}));
+}
+
+TEST_F(Sources, ImagesOfAnotherBodyAreRefused) {
+  write_dem(dir_ / "m.tif");
+  write_text(dir_ / "moon.vrt",
+             "<VRTDataset rasterXSize=\"36\" rasterYSize=\"18\"><SRS>+proj=longlat +R=1737400 +no_defs</SRS>"
+             "<GeoTransform>-180,10,0,90,0,-10</GeoTransform><VRTRasterBand dataType=\"Byte\" band=\"1\"/>"
+             "</VRTDataset>");
+  expect_failure({"build", "m.tif", "--image", "moon.vrt", "-o", "p.vpe"}, 1,
+                 {"moon.vrt", "1737400", "3396190", "--body"});
+  EXPECT_EQ(leftovers(), Words{});
+}
+
 TEST_F(Sources, TrueRadii) {
   write_globe_and_inset(0);
   const Result result = build({"--datum", "ellipsoid:3396190,3376200", "--shape", "radius", "--json", "-q"});
