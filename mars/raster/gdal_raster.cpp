@@ -92,6 +92,7 @@ SourceInfo GdalRaster::info() const {
     if (VSIStatL(each.c_str(), &stat) != 0) continue;
     info.size_bytes += static_cast<std::int64_t>(stat.st_size);
     info.mtime_s = std::max(info.mtime_s, static_cast<std::int64_t>(stat.st_mtime));
+    if (auto stamp = file_stamp(each)) info.files.push_back(std::move(*stamp));
   }
   return info;
 }

@@ -192,6 +192,8 @@ class Build {
     stages_.begin("checking", 1, 0.02);
     auto sums = measure_resampling(sampling_, stored_, options_.resampling_posts, shard_.leaves, threads_,
                                    [this] { stages_.report_again(); });
+    check_files(meta_.sources);
+    check_files(meta_.image_sources);
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
     set_resampling(meta_, sums);
     if (!options_.shard.is_all()) {

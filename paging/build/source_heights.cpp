@@ -52,4 +52,14 @@ void check_heights(std::span<const glm::dvec3> directions, std::span<const doubl
   }
 }
 
+void check_files(std::span<const mars::SourceInfo> sources) {
+  for (const mars::SourceInfo& source : sources) {
+    const std::string path = mars::changed_file(source.files);
+    if (path.empty()) continue;
+    throw UnusableSource(path +
+                         ": has changed while the planet was built from it, which would have old and new " +
+                         "values side by side; build again when the file is complete");
+  }
+}
+
 }  // namespace paging

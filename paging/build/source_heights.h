@@ -1,4 +1,4 @@
-// Checks the heights of sources before they become posts of a planet.
+// Checks the heights of sources before they become posts of a planet, and their files afterwards.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -23,5 +23,9 @@ inline constexpr double kLeastRadius = 1e-3;
 // kLeastRadius above the planet's centre. Ignores nodata, i.e. heights that are not finite. The message names the file and the place.
 void check_heights(std::span<const glm::dvec3> directions, std::span<const double> heights_m,
                    const PlanetMeta& meta, const mars::ElevationSource& elevation);
+
+// Throws UnusableSource if a file of one of the sources has changed since it was opened: the tiles are of both
+// versions.
+void check_files(std::span<const mars::SourceInfo> sources);
 
 }  // namespace paging

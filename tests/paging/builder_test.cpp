@@ -75,6 +75,59 @@ TEST(Builder, SteepGroundOfSmallBodiesIsBuiltOrRefused) {
   }
 }
 
+// Overwrites its file in the middle of the build, as a download or a program that is still writing does.
+class ChangingElevation final : public FakeElevation {
+ public:
+  ChangingElevation(std::filesystem::path file, std::function<void()> change)
+      : FakeElevation(bumpy_height), stamp_(*mars::file_stamp(file.string())), change_(std::move(change)) {}
+  std::vector<mars::SourceInfo> infos() const override {
+    auto infos = FakeElevation::infos();
+    infos[0].files = {stamp_};
+    return infos;
+  }
+  void sample(std::span<const glm::dvec3> directions, double spacing_m,
+              std::span<double> heights_m) const override {
+    std::call_once(once_, change_);
+    FakeElevation::sample(directions, spacing_m, heights_m);
+  }
+
+ private:
+  mars::FileStamp stamp_;
+  std::function<void()> change_;
+  mutable std::once_flag once_;
+};
+
+TEST(Builder, ASourceThatChangesDuringTheBuildIsRefused) {
+  TempDir dir;
+  const std::filesystem::path file = dir / "dem.bin";
+  const auto write = [&](const std::string& text) { std::ofstream(file, std::ios::binary) << text; };
+  const std::string whole(100'000, 'a');
+  write(whole);
+  const auto time = std::filesystem::last_write_time(file);
+  const auto message = [&](const std::function<void()>& change) -> std::string {
+    try {
+      build_fake(dir / "p.vpe", ChangingElevation(file, change), 1e6);
+    } catch (const paging::UnusableSource& e) {
+      EXPECT_FALSE(std::filesystem::exists(dir / "p.vpe"));
+      EXPECT_FALSE(std::filesystem::exists(dir / "p.vpe.part"));
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message([] {}), "");
+  std::filesystem::remove(dir / "p.vpe");
+  EXPECT_NE(message([&] { write(whole + "b"); }).find("dem.bin: has changed"), std::string::npos);
+  write(whole);
+  EXPECT_NE(message([&] { std::filesystem::last_write_time(file, time + std::chrono::milliseconds(7)); }), "");
+  // Size and time are kept.
+  EXPECT_NE(message([&] {
+              write(std::string(100'000, 'b'));
+              std::filesystem::last_write_time(file, time + std::chrono::milliseconds(7));
+            }),
+            "");
+  EXPECT_NE(message([&] { std::filesystem::remove(file); }), "");
+}
+
 // The reference surface from both sides of every tile border, at posts and between them.
 TEST(Builder, SurfaceIsWatertightAcrossAllBorders) {
   TempDir dir;
