@@ -146,7 +146,8 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
 
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
     if (max_posts == 0) return;
-    const double posts = static_cast<double>(grid_.width) * grid_.height;
+    double posts = 0;
+    for (const PixelWindow& w : raster_->windows()) posts += static_cast<double>(w.columns) * w.rows;
     const int stride =
         std::max(1, static_cast<int>(std::ceil(std::sqrt(posts / static_cast<double>(max_posts)))));
     auto cursor = make_cursor();
@@ -154,24 +155,28 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     std::vector<glm::dvec3> directions;
     std::vector<glm::dvec3> kept;
     std::vector<double> heights_m;
-    for (int row = std::min(stride, grid_.height) / 2; row < grid_.height; row += stride) {
-      pixels.clear();
-      kept.clear();
-      heights_m.clear();
-      for (int column = std::min(stride, grid_.width) / 2; column < grid_.width; column += stride) {
-        const double stored = cursor.at(column, row).values[cursor.offset(column, row)];
-        if (std::isnan(stored)) continue;
-        pixels.emplace_back(column, row);
-        heights_m.push_back(metres(stored));
+    for (const PixelWindow& w : raster_->windows()) {
+      for (int r = std::min(stride, w.rows) / 2; r < w.rows; r += stride) {
+        const int row = w.row + r;
+        pixels.clear();
+        kept.clear();
+        heights_m.clear();
+        for (int c = std::min(stride, w.columns) / 2; c < w.columns; c += stride) {
+          const int column = w.column + c;
+          const double stored = cursor.at(column, row).values[cursor.offset(column, row)];
+          if (std::isnan(stored)) continue;
+          pixels.emplace_back(column, row);
+          heights_m.push_back(metres(stored));
+        }
+        directions.resize(pixels.size());
+        raster_->georeference().to_directions(pixels, directions);
+        for (std::size_t i = 0; i < directions.size(); ++i) {
+          if (!std::isfinite(directions[i].x)) continue;
+          heights_m[kept.size()] = heights_m[i];
+          kept.push_back(directions[i]);
+        }
+        if (!kept.empty()) visit(kept, std::span<const double>(heights_m).first(kept.size()));
       }
-      directions.resize(pixels.size());
-      raster_->georeference().to_directions(pixels, directions);
-      for (std::size_t i = 0; i < directions.size(); ++i) {
-        if (!std::isfinite(directions[i].x)) continue;
-        heights_m[kept.size()] = heights_m[i];
-        kept.push_back(directions[i]);
-      }
-      if (!kept.empty()) visit(kept, std::span<const double>(heights_m).first(kept.size()));
     }
   }
 
@@ -361,15 +366,18 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   // Returns the first valid height found. Reads no more than it needs. Throws SourceError if there is none.
   double first_height() const {
     auto cursor = make_cursor();
-    for (int row = 0; row < grid_.height; row += kTileSide) {
-      for (int column = 0; column < grid_.width; column += kTileSide) {
-        const Tile& tile = cursor.at(column, row);
-        const PixelWindow window = tile_window(grid_, {0, column / kTileSide, row / kTileSide});
-        for (int r = 0; r < window.rows; ++r) {
-          const T* line = tile.values.data() + std::ptrdiff_t{r} * kTileStride;
-          const T* found =
-              std::find_if(line, line + window.columns, [](T value) { return !std::isnan(value); });
-          if (found != line + window.columns) return metres(*found);
+    for (const PixelWindow& w : raster_->windows()) {
+      for (int row = w.row; row < w.row + w.rows; row = (row / kTileSide + 1) * kTileSide) {
+        for (int column = w.column; column < w.column + w.columns;
+             column = (column / kTileSide + 1) * kTileSide) {
+          const Tile& tile = cursor.at(column, row);
+          const PixelWindow window = tile_window(grid_, {0, column / kTileSide, row / kTileSide});
+          for (int r = 0; r < window.rows; ++r) {
+            const T* line = tile.values.data() + std::ptrdiff_t{r} * kTileStride;
+            const T* found =
+                std::find_if(line, line + window.columns, [](T value) { return !std::isnan(value); });
+            if (found != line + window.columns) return metres(*found);
+          }
         }
       }
     }

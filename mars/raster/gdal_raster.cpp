@@ -30,6 +30,24 @@ void check_bands(const std::string& path, GDALDataset& dataset) {
   }
 }
 
+// Returns what the file tells about a window. Where it has no pixels, they have the nodata value, or are zeros,
+// which are values, if there is none.
+Coverage coverage_of(GDALDataset& dataset, const PixelWindow& w) {
+  bool has_data = false;
+  bool has_gaps = false;
+  for (int i = 1; i <= dataset.GetRasterCount() && !(has_data && has_gaps); ++i) {
+    GDALRasterBand* band = dataset.GetRasterBand(i);
+    int has_nodata = 0;
+    band->GetNoDataValue(&has_nodata);
+    if (has_nodata == 0) return Coverage::kAll;
+    const int status = band->GetDataCoverageStatus(w.column, w.row, w.columns, w.rows, 0, nullptr);
+    if ((status & GDAL_DATA_COVERAGE_STATUS_UNIMPLEMENTED) != 0) return Coverage::kAll;
+    has_data = has_data || (status & GDAL_DATA_COVERAGE_STATUS_DATA) != 0;
+    has_gaps = has_gaps || (status & GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0;
+  }
+  return !has_data ? Coverage::kNone : has_gaps ? Coverage::kSome : Coverage::kAll;
+}
+
 bool stores_signed_bytes(GDALRasterBand& band) {
   const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
   return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
@@ -68,7 +86,15 @@ GdalRaster::GdalRaster(const std::string& path)
   const LabelGeoreference label =
       file_.georeference ? *file_.georeference : label_georeference(file_.path, *dataset);
   georeference_.emplace(file_.path, *dataset, label);
-  footprint_.emplace(*georeference_);
+  // Asking a remote file would fetch its whole index.
+  windows_ =
+      is_remote(file_.path)
+          ? std::vector<PixelWindow>{{0, 0, grid().width, grid().height}}
+          : data_windows(grid(), [&](const PixelWindow& window) { return coverage_of(*dataset, window); });
+  footprint_.emplace(*georeference_, windows_);
+  // Without any data the place of the whole raster is checked.
+  if (windows_.empty())
+    footprint_.emplace(*georeference_, std::vector<PixelWindow>{{0, 0, grid().width, grid().height}});
   if (footprint_->is_empty()) {
     throw source_error(file_.path, "lies nowhere on the planet",
                        "its pixels cannot be transformed to longitude and latitude",

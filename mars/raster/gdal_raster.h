@@ -33,6 +33,9 @@ class GdalRaster {
   const Georeference& georeference() const { return *georeference_; }
   const PixelGrid& grid() const { return georeference_->grid(); }
   const Footprint& footprint() const { return *footprint_; }
+  // Returns windows outside of which all pixels are nodata, see data_windows(). Sparse GeoTIFFs and mosaics (VRT)
+  // tell which parts they have; all other rasters are one window.
+  const std::vector<PixelWindow>& windows() const { return windows_; }
   const std::optional<PdsLabel>& label() const { return file_.label; }
   const NodataValues& nodata() const { return nodata_; }
 
@@ -59,6 +62,7 @@ class GdalRaster {
   NodataValues nodata_;
   std::vector<bool> signed_bytes_;  // by band
   std::optional<Georeference> georeference_;
+  std::vector<PixelWindow> windows_;
   std::optional<Footprint> footprint_;
 };
 

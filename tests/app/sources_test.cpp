@@ -99,6 +99,55 @@ TEST_F(Sources, MoreBandsAreNoted) {
   EXPECT_TRUE(says(result.err, {"two.vrt has 2 bands", "the first ('height')", "gdal_translate -b"}));
 }
 
+TEST_F(Sources, TheSagOfCoarseFacetsIsNoted) {
+  write_dem(dir_ / "m.tif");
+  const Result coarse = vpe({"build", "m.tif", "-o", "p.vpe", "--base-spacing", "100000"});
+  EXPECT_TRUE(says(coarse.err, {"41.71 km apart", "up to 213 m below", "--base-spacing"}));
+  const Result finer = vpe({"build", "m.tif", "-o", "p.vpe", "--base-spacing", "6000"});
+  EXPECT_EQ(finer.err.find("facets"), std::string::npos) << finer.err;
+}
+
+// Only the part that a mosaic has is built finely, however large it says to be.
+TEST_F(Sources, AMosaicWithOnePartCostsThatPart) {
+  Dem part;
+  part.width = 50;
+  part.height = 40;
+  part.west_deg = 10;
+  part.north_deg = 20;
+  part.cell_deg = 0.0018;
+  part.height_m = [](int column, int row) { return 500 + column + row; };
+  write_dem(dir_ / "part.tif", part);
+  const auto mosaic = [&](const std::string& source) {
+    // Columns 105556 and rows 33889 of 200 000 x 18 000, 0.0018 degrees each.
+    return "<VRTDataset rasterXSize=\"200000\" rasterYSize=\"18000\"><SRS>+proj=longlat +R=3396190 +no_defs</SRS>"
+           "<GeoTransform>-180,0.0018,0,25,0,-0.0018</GeoTransform><VRTRasterBand dataType=\"Float32\" "
+           "band=\"1\"><NoDataValue>-32768</NoDataValue>" +
+           source + "</VRTRasterBand></VRTDataset>";
+  };
+  write_text(dir_ / "m.vrt",
+             mosaic("<SimpleSource><SourceFilename relativeToVRT=\"1\">part.tif</SourceFilename>"
+                    "<SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"50\" "
+                    "ySize=\"40\"/><DstRect xOff=\"105556\" yOff=\"2778\" xSize=\"50\" "
+                    "ySize=\"40\"/></SimpleSource>"));
+  const Words words{"build", "m.vrt", "-o", "p.vpe", "--base-spacing", "100000", "--json", "-q"};
+  Words estimate = words;
+  estimate.push_back("--estimate");
+  const Result estimated = vpe(estimate);
+  ASSERT_EQ(estimated.exit_code, 0) << estimated.err;
+  EXPECT_LT(parse_json(estimated.out)["posts"].get<double>(), 20e6);
+  ASSERT_EQ(vpe(words).exit_code, 0);
+  const auto at = parse_json(vpe({"query", "p.vpe", "10.0450,19.9643", "--json"}).out)[0];
+  EXPECT_NEAR(at["elevation_m"].get<double>(), 500 + 24 + 19, 3);
+  // Without any part it is refused at once.
+  write_text(dir_ / "none.vrt", mosaic(""));
+  expect_failure({"build", "none.vrt", "-o", "q.vpe"}, 1, {"none.vrt", "holds no elevation"});
+  std::string huge = mosaic("");
+  huge.replace(huge.find("200000"), 6, "2000000000").replace(huge.find("18000"), 5, "1000000000");
+  huge.replace(huge.find("0.0018"), 6, "1.8e-7").replace(huge.find("-0.0018"), 7, "-1.8e-7");
+  write_text(dir_ / "huge.vrt", huge);
+  expect_failure({"build", "huge.vrt", "-o", "q.vpe"}, 1, {"huge.vrt", "holds no elevation"});
+}
+
 TEST_F(Sources, ImagesOfAnotherBodyAreRefused) {
   write_dem(dir_ / "m.tif");
   write_text(dir_ / "moon.vrt",
