@@ -96,6 +96,7 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
       const bool is_radius = std::abs(some_height_m) > kLargestHeight_m;
       info_.datum = is_radius ? VerticalDatum::radius() : product.datum;
       info_.body_radius_m = body_radius_m(*dataset);
+      info_.body = body_name(*dataset, raster_->label());
       if (product.by_name && !is_radius) {
         info_.notes.push_back(info_.name + ": by its name alone its heights are of datum '" +
                               to_string(info_.datum) + "' (--datum states another)");

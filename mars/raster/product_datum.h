@@ -28,4 +28,8 @@ ProductDatum product_datum(const std::string& path, GDALDataset& dataset, const 
 // Returns the equatorial radius of the body of the dataset's coordinate system, 0 if it has none.
 double body_radius_m(GDALDataset& dataset);
 
+// Returns the name of the body that a label (PDS3, PDS4, ISIS) or the names of the coordinate system and its datum
+// state, "" if they state none: as bodies() has it if it is known there.
+std::string body_name(GDALDataset& dataset, const std::optional<PdsLabel>& label);
+
 }  // namespace mars

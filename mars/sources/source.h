@@ -49,6 +49,7 @@ struct SourceInfo {
   double quantum_m = 0;              // step of its values; 0: floating point
   VerticalDatum datum;               // of the values that sample() gives
   double body_radius_m = 0;          // equatorial radius of the product's body; 0: not stated
+  std::string body;                  // name of the body that the product states; empty: none
   std::optional<double> accuracy_m;  // one sigma, vertical, if the product states it
   bool illustration = false;         // true for synthetic planets, which must not be taken for data
   std::string treatment;             // changes made to the product's own values; empty: none

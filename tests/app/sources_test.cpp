@@ -201,6 +201,27 @@ TEST_F(Sources, BodiesByNameAndBySource) {
   expect_failure(with({"--body", "Nibiru"}), 2, {"Nibiru", "--radius"});
 }
 
+// Maps of small bodies are on spheres of any radius.
+TEST_F(Sources, BodiesThatTheRasterNames) {
+  const auto body_of = [&](const std::string& crs) {
+    write_text(dir_ / "b.vrt",
+               "<VRTDataset rasterXSize=\"180\" rasterYSize=\"90\"><SRS>" + crs +
+                   "</SRS><GeoTransform>-180,2,0,90,0,-2</GeoTransform><VRTRasterBand dataType=\"Int16\" "
+                   "band=\"1\"/></VRTDataset>");
+    const Result result = vpe({"build", "b.vrt", "-o", "b.vpe", "--base-spacing", "100000", "--json", "-q"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const json built = parse_json(result.out);
+    return std::pair(built["body"].get<std::string>(), built["radius_m"].get<double>());
+  };
+  const auto system = [](const std::string& name, const std::string& radius) {
+    return "GEOGCS[\"GCS_" + name + "_2000\",DATUM[\"D_" + name + "_2000\",SPHEROID[\"s\"," + radius +
+           ",0]],PRIMEM[\"m\",0],UNIT[\"degree\",0.0174532925199433]]";
+  };
+  EXPECT_EQ(body_of(system("Vesta", "285000")), std::pair(std::string("Vesta"), 285000.0));
+  EXPECT_EQ(body_of(system("Bennu", "285000")), std::pair(std::string("unnamed"), 285000.0));
+  EXPECT_EQ(body_of(system("Mars", "3396000")), std::pair(std::string("Mars"), 3396190.0));
+}
+
 TEST_F(Sources, BadOptions) {
   write_globe_and_inset(0);
   const Words base{"build", "globe.tif", "inset.tif", "-o", "p.vpe"};

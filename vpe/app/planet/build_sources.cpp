@@ -36,8 +36,19 @@ double body_radius_m(const std::vector<Source>& sources) {
   return mars::kMarsRadius_m;
 }
 
+// Returns the name of the body that the first of these states, "" if none does.
+std::string stated_body(const std::vector<Source>& sources) {
+  for (const Source& source : sources) {
+    for (const mars::SourceInfo& info : source->infos()) {
+      if (!info.body.empty()) return info.body;
+    }
+  }
+  return "";
+}
+
 void choose_body(const SourceArguments& arguments, const std::vector<Source>& sources,
                  paging::BuildOptions& options) {
+  const double own_m = body_radius_m(sources);
   const mars::Body* body = nullptr;
   if (!arguments.body.empty()) {
     body = mars::find_body(std::string_view(arguments.body));
@@ -45,14 +56,15 @@ void choose_body(const SourceArguments& arguments, const std::vector<Source>& so
       throw UsageError("--body " + arguments.body + ": its radius is not known here; give --radius too");
     }
   } else {
-    body = mars::find_body(arguments.radius_m > 0 ? arguments.radius_m : body_radius_m(sources));
+    body = mars::find_body(arguments.radius_m > 0 ? arguments.radius_m : own_m);
   }
   options.body = !arguments.body.empty() ? arguments.body
                  : body != nullptr       ? std::string(body->name)
                                          : "unnamed";
-  options.radius_m = arguments.radius_m > 0 ? arguments.radius_m
-                     : body != nullptr      ? body->radius_m
-                                            : body_radius_m(sources);
+  options.radius_m = arguments.radius_m > 0 ? arguments.radius_m : body != nullptr ? body->radius_m : own_m;
+  // Small bodies have maps on spheres of any radius; their products name them.
+  const std::string stated = stated_body(sources);
+  if (arguments.body.empty() && arguments.radius_m <= 0 && !stated.empty()) options.body = stated;
 }
 
 bool is_named(const std::string& path, const std::string& name) {
