@@ -12,6 +12,7 @@
 
 #include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_crs.h"
+#include "mars/raster/gdal_file.h"
 #include "mars/raster/gdal_scope.h"
 #include "mars/raster/iau_crs.h"
 
@@ -36,7 +37,8 @@ glm::dvec3 crs_direction(glm::dvec2 p, double centric_scale) {
 }
 
 const char* const kNoGeoreference =
-    "give it one, e.g. gdal_translate -a_srs IAU_2015:49900 -a_ullr WEST NORTH EAST SOUTH IN OUT.tif";
+    "give it one, e.g. gdal_translate -a_srs IAU_2015:CODE -a_ullr WEST NORTH EAST SOUTH IN OUT.tif, where CODE is "
+    "that of its body: 49900 for Mars, 30100 for the Moon";
 
 }  // namespace
 
@@ -49,8 +51,11 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     to_map = *label.to_map;
   } else if (dataset.GetGeoTransform(to_map.data()) != CE_None) {
     const bool points = dataset.GetGCPCount() > 0;
+    const std::string sibling = points ? "" : sibling_advice(path);
     throw source_error(path, "has no georeference", points ? "only ground control points" : "",
-                       points ? "warp it first with gdalwarp -t_srs" : kNoGeoreference);
+                       points            ? "warp it first with gdalwarp -t_srs"
+                       : sibling.empty() ? kNoGeoreference
+                                         : sibling + ", or " + kNoGeoreference);
   }
   OGRSpatialReference crs;
   if (!label.crs.empty()) {
@@ -62,8 +67,10 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     crs = *dataset.GetSpatialRef();
   }
   if (crs.IsEmpty()) {
-    throw source_error(path, "has a geotransform but no coordinate system", "",
-                       "name the body's, e.g. gdal_edit.py -a_srs IAU_2015:49900 FILE");
+    throw source_error(
+        path, "has a geotransform but no coordinate system", "",
+        "name that of its body with gdal_edit.py -a_srs IAU_2015:CODE FILE: 49900 for Mars, 30100 for "
+        "the Moon");
   }
   if (auto restored = restored_iau_crs(crs)) crs = *restored;
   if (!correct_axis_order(crs, to_map, grid_)) {

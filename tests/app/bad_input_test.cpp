@@ -96,6 +96,35 @@ TEST_F(BadInput, AHeightTooLargeToStoreIsReportedWhereItIs) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
+TEST_F(BadInput, FilesBesideTheRightOneAreHintedAt) {
+  fs::create_directory(dir_ / "folder");
+  expect_bad_dem("folder", {"cannot open as a raster", "it is a folder", "give a raster in it"});
+  // The pixels of a raster whose label has the same name.
+  write_dem(dir_ / "pixels.tif");
+  const std::string raw(2 * 180 * 90, '\1');
+  write_text(dir_ / "dem.dat", raw);
+  write_text(dir_ / "dem.vrt",
+             "<VRTDataset rasterXSize=\"180\" rasterYSize=\"90\"><SRS>+proj=longlat +R=3396190 +no_defs</SRS>"
+             "<GeoTransform>-180,2,0,90,0,-2</GeoTransform><VRTRasterBand dataType=\"Int16\" band=\"1\" "
+             "subClass=\"VRTRawRasterBand\"><SourceFilename relativeToVRT=\"1\">dem.dat</SourceFilename>"
+             "</VRTRasterBand></VRTDataset>");
+  expect_bad_dem("dem.dat", {"cannot open as a raster", "give the file that describes it: 'dem.vrt'"});
+  EXPECT_EQ(vpe({"build", "dem.vrt", "-o", "x.vpe", "--estimate"}).exit_code, 0);
+  Dem dem;
+  dem.georeference = false;
+  write_dem(dir_ / "nowhere.tif", dem);
+  expect_bad_dem("nowhere.tif", {"IAU_2015:CODE", "49900 for Mars, 30100 for the Moon"});
+}
+
+TEST_F(BadInput, WordsAfterADoubleDashAreNoOptions) {
+  const std::string planet = this->planet().string();
+  const std::string answer = vpe({"query", planet, "-10,5"}).out;
+  EXPECT_EQ(vpe({"query", planet, "--", "-10,5"}).out, answer);
+  EXPECT_EQ(vpe({"query", "--", planet, "-10,5"}).out, answer);
+  fs::copy_file(planet, dir_ / "-p.vpe");
+  EXPECT_NE(vpe({"query", "--", "-p.vpe", "-10,5"}).out, "");
+}
+
 TEST_F(BadInput, OneBadDemAmongGoodOnes) {
   write_dem(dir_ / "good.tif");
   write_text(dir_ / "bad.tif", "no");
@@ -121,6 +150,13 @@ TEST_F(BadInput, PlanetFiles) {
                whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
     expect_bad_planet("cut.vpe", {"damaged", "build it again"});
   }
+}
+
+TEST_F(BadInput, APlanetFileThatMayNotBeRead) {
+  fs::copy_file(planet(), dir_ / "secret.vpe");
+  fs::permissions(dir_ / "secret.vpe", fs::perms::none);
+  if (std::ifstream(dir_ / "secret.vpe").good()) GTEST_SKIP() << "this user may read everything";
+  expect_bad_planet("secret.vpe", {"cannot open", "Permission denied", "readable"});
 }
 
 TEST_F(BadInput, FlippedBitsAreDetectedOrDoNotMatter) {
