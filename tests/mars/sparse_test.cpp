@@ -88,8 +88,8 @@ std::string sparse_tiff(const test_support::TempDir& folder, bool with_nodata) {
   GDALAllRegister();
   const std::string path = (folder / "sparse.tif").string();
   const char* const options[] = {"TILED=YES", "SPARSE_OK=TRUE", nullptr};
-  auto* made = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(path.c_str(), 7200, 3600, 1, GDT_Float32,
-                                                                        const_cast<char**>(options));
+  auto* made = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      path.c_str(), 7200, 3600, 1, GDT_Float32, const_cast<char**>(options));
   OGRSpatialReference crs;
   crs.SetFromUserInput(source_files::kSphere.c_str());
   made->SetSpatialRef(&crs);
@@ -97,8 +97,8 @@ std::string sparse_tiff(const test_support::TempDir& folder, bool with_nodata) {
   made->SetGeoTransform(to_map.data());
   if (with_nodata) made->GetRasterBand(1)->SetNoDataValue(-9999);
   std::vector<float> values(100, 1234);
-  EXPECT_EQ(made->GetRasterBand(1)->RasterIO(GF_Write, 5000, 1000, 10, 10, values.data(), 10, 10, GDT_Float32, 0, 0,
-                                             nullptr),
+  EXPECT_EQ(made->GetRasterBand(1)->RasterIO(GF_Write, 5000, 1000, 10, 10, values.data(), 10, 10, GDT_Float32,
+                                             0, 0, nullptr),
             CE_None);
   GDALClose(made);
   return path;
