@@ -149,7 +149,7 @@ inline void PostField::scan_row(const Plane& plane, std::uint32_t j, int first, 
   double row_worst = one[0] > one[1] ? one[0] : one[1];
   if (k < count && error(k) > row_worst) row_worst = error(k);
   if (row_worst <= worst.geometric_error_m) return;
-  for (k = 0; error(k) != row_worst;) ++k;
+  for (k = 0; k + 1 < count && error(k) != row_worst;) ++k;
   worst = {row_worst, static_cast<std::uint32_t>(row + static_cast<std::size_t>(first + k))};
 }
 

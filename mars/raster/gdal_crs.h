@@ -16,9 +16,9 @@ namespace mars {
 // so that no change of datum can occur. Handles axes in any order or pointing west, other units and prime
 // meridians.
 //
-// Where a geographic CRS counts longitudes to the west, GDAL 3.6.2 puts the latitude first, along the columns:
-// so does gdalwarp -t_srs IAU_2015:49901, and so it is read here. A GeoTIFF then loses which axis is which;
-// projected CRSs (IAU_2015:49911: x grows to the west) lose their direction there. A VRT keeps both.
+// Where a geographic CRS counts longitudes to the west, GDAL 3.6.2 puts the latitude first, along the columns, as
+// gdalwarp -t_srs IAU_2015:49901 does; gdal_translate -a_srs leaves the longitude there. iau_crs.h tells these
+// apart, and restores the directions that a GeoTIFF loses.
 //
 // Any number of threads may call const members at once.
 class CrsTransformer {

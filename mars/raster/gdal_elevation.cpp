@@ -60,6 +60,9 @@ BandFormat band_format(const GdalRaster& raster) {
     const double value = band->GetNoDataValue(&has_nodata);
     if (has_nodata != 0) format.nodata_value = value;
   }
+  // The nodata value of signed bytes may be stated as signed or as stored.
+  if (raster.is_signed_byte(1) && format.nodata_value && *format.nodata_value > 127)
+    *format.nodata_value -= 256;
   format.special_values = raster.nodata();
   // A mask derived from the nodata value adds nothing.
   const int mask = band->GetMaskFlags();
@@ -89,10 +92,17 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     const double some_height_m = first_height();
     {
       const auto dataset = raster_->acquire();
-      info_.datum = product_datum(raster_->path(), *dataset, raster_->label());
+      const ProductDatum product = product_datum(raster_->path(), *dataset, raster_->label());
+      const bool is_radius = std::abs(some_height_m) > kLargestHeight_m;
+      info_.datum = is_radius ? VerticalDatum::radius() : product.datum;
       info_.body_radius_m = body_radius_m(*dataset);
+      info_.body = body_name(*dataset, raster_->label());
+      if (product.by_name && !is_radius) {
+        info_.notes.push_back(info_.name + ": by its name alone its heights are of datum '" +
+                              to_string(info_.datum) + "' (--datum states another)");
+      }
+      note_bands(*dataset);
     }
-    if (std::abs(some_height_m) > kLargestHeight_m) info_.datum = VerticalDatum::radius();
     find_poles();
   }
 
@@ -137,7 +147,8 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
 
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
     if (max_posts == 0) return;
-    const double posts = static_cast<double>(grid_.width) * grid_.height;
+    double posts = 0;
+    for (const PixelWindow& w : raster_->windows()) posts += static_cast<double>(w.columns) * w.rows;
     const int stride =
         std::max(1, static_cast<int>(std::ceil(std::sqrt(posts / static_cast<double>(max_posts)))));
     auto cursor = make_cursor();
@@ -145,24 +156,28 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     std::vector<glm::dvec3> directions;
     std::vector<glm::dvec3> kept;
     std::vector<double> heights_m;
-    for (int row = std::min(stride, grid_.height) / 2; row < grid_.height; row += stride) {
-      pixels.clear();
-      kept.clear();
-      heights_m.clear();
-      for (int column = std::min(stride, grid_.width) / 2; column < grid_.width; column += stride) {
-        const double stored = cursor.at(column, row).values[cursor.offset(column, row)];
-        if (std::isnan(stored)) continue;
-        pixels.emplace_back(column, row);
-        heights_m.push_back(metres(stored));
+    for (const PixelWindow& w : raster_->windows()) {
+      for (int r = std::min(stride, w.rows) / 2; r < w.rows; r += stride) {
+        const int row = w.row + r;
+        pixels.clear();
+        kept.clear();
+        heights_m.clear();
+        for (int c = std::min(stride, w.columns) / 2; c < w.columns; c += stride) {
+          const int column = w.column + c;
+          const double stored = cursor.at(column, row).values[cursor.offset(column, row)];
+          if (std::isnan(stored)) continue;
+          pixels.emplace_back(column, row);
+          heights_m.push_back(metres(stored));
+        }
+        directions.resize(pixels.size());
+        raster_->georeference().to_directions(pixels, directions);
+        for (std::size_t i = 0; i < directions.size(); ++i) {
+          if (!std::isfinite(directions[i].x)) continue;
+          heights_m[kept.size()] = heights_m[i];
+          kept.push_back(directions[i]);
+        }
+        if (!kept.empty()) visit(kept, std::span<const double>(heights_m).first(kept.size()));
       }
-      directions.resize(pixels.size());
-      raster_->georeference().to_directions(pixels, directions);
-      for (std::size_t i = 0; i < directions.size(); ++i) {
-        if (!std::isfinite(directions[i].x)) continue;
-        heights_m[kept.size()] = heights_m[i];
-        kept.push_back(directions[i]);
-      }
-      if (!kept.empty()) visit(kept, std::span<const double>(heights_m).first(kept.size()));
     }
   }
 
@@ -186,6 +201,19 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   };
   using Cursor = TileCursor<Tile, Fetch>;
   Cursor make_cursor() const { return Cursor(0, Fetch{this}); }
+
+  // Adds a note if other bands could be meant.
+  void note_bands(GDALDataset& dataset) {
+    int bands = 0;
+    for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
+      if (dataset.GetRasterBand(i)->GetColorInterpretation() != GCI_AlphaBand) ++bands;
+    }
+    if (bands < 2) return;
+    const char* name = dataset.GetRasterBand(1)->GetDescription();
+    info_.notes.push_back(info_.name + " has " + std::to_string(bands) + " bands; the first" +
+                          (name[0] != '\0' ? " ('" + std::string(name) + "')" : "") +
+                          " is taken for elevation (gdal_translate -b N makes a raster of another one)");
+  }
 
   std::shared_ptr<const Tile> load(const TileId& id) const {
     auto tile = std::make_shared<Tile>();
@@ -339,15 +367,18 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   // Returns the first valid height found. Reads no more than it needs. Throws SourceError if there is none.
   double first_height() const {
     auto cursor = make_cursor();
-    for (int row = 0; row < grid_.height; row += kTileSide) {
-      for (int column = 0; column < grid_.width; column += kTileSide) {
-        const Tile& tile = cursor.at(column, row);
-        const PixelWindow window = tile_window(grid_, {0, column / kTileSide, row / kTileSide});
-        for (int r = 0; r < window.rows; ++r) {
-          const T* line = tile.values.data() + std::ptrdiff_t{r} * kTileStride;
-          const T* found =
-              std::find_if(line, line + window.columns, [](T value) { return !std::isnan(value); });
-          if (found != line + window.columns) return metres(*found);
+    for (const PixelWindow& w : raster_->windows()) {
+      for (int row = w.row; row < w.row + w.rows; row = (row / kTileSide + 1) * kTileSide) {
+        for (int column = w.column; column < w.column + w.columns;
+             column = (column / kTileSide + 1) * kTileSide) {
+          const Tile& tile = cursor.at(column, row);
+          const PixelWindow window = tile_window(grid_, {0, column / kTileSide, row / kTileSide});
+          for (int r = 0; r < window.rows; ++r) {
+            const T* line = tile.values.data() + std::ptrdiff_t{r} * kTileStride;
+            const T* found =
+                std::find_if(line, line + window.columns, [](T value) { return !std::isnan(value); });
+            if (found != line + window.columns) return metres(*found);
+          }
         }
       }
     }

@@ -6,8 +6,12 @@
 #include <gdal_pam.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "mars/raster/gdal_remote.h"
 #include "mars/raster/pds_image.h"
@@ -107,7 +111,32 @@ std::optional<RasterFile> by_label(const std::string& path) {
   return file;
 }
 
+// Returns the files beside `path` that have its name with another extension and that a driver of GDAL claims.
+std::vector<std::string> siblings(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> found;
+  std::error_code error;
+  const fs::path own(path);
+  const fs::path folder = own.has_parent_path() ? own.parent_path() : fs::path(".");
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& file = entry->path();
+    if (file.stem() != own.stem() || file.filename() == own.filename()) continue;
+    if (GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, nullptr, nullptr) == nullptr &&
+        !label_in(file.string()))
+      continue;
+    found.push_back((own.parent_path() / file.filename()).string());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 }  // namespace
+
+std::string sibling_advice(const std::string& path) {
+  std::string names;
+  for (const std::string& name : siblings(path)) names += (names.empty() ? "'" : ", '") + name + "'";
+  return names.empty() ? "" : "give the file that describes it: " + names;
+}
 
 RasterFile find_raster(const std::string& path) {
   const GdalScope scope;
@@ -132,12 +161,16 @@ Pointer open_raster(const RasterFile& file) {
     return dataset;
   VSIStatBufL stat{};
   errno = 0;
-  if (VSIStatExL(file.path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) != 0 &&
+  if (VSIStatExL(file.path.c_str(), &stat, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG) != 0 &&
       file.path.find(':') == std::string::npos) {
     throw source_error(file.path, "cannot open", std::strerror(errno != 0 ? errno : ENOENT), "check the name");
   }
+  if (VSI_ISDIR(stat.st_mode)) {
+    throw source_error(file.path, "cannot open as a raster", "it is a folder", "give a raster in it");
+  }
+  const std::string advice = sibling_advice(file.path);
   throw source_error(file.path, "cannot open as a raster", scope.message(),
-                     advice_for(file.path, "give a raster that gdalinfo can show"));
+                     advice_for(file.path, advice.empty() ? "give a raster that gdalinfo can show" : advice));
 }
 
 }  // namespace mars

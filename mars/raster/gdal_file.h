@@ -27,6 +27,10 @@ struct RasterFile {
 // as raw rasters by their label. Throws SourceError.
 RasterFile find_raster(const std::string& path);
 
+// Returns advice that names the files beside `path` that may be its label or header (PDS4, ISIS3, ENVI), or "".
+// Must be called inside a GdalScope.
+std::string sibling_advice(const std::string& path);
+
 // Opens a new handle. Throws SourceError.
 GdalPool<GDALDataset>::Pointer open_raster(const RasterFile& file);
 

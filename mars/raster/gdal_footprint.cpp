@@ -51,42 +51,116 @@ bool overlap(const Cap& a, const Cap& b) {
   return reach > 3.1 || glm::length(a.centre - b.centre) <= 2 * std::sin(reach / 2) * (1 + 1e-12);
 }
 
+// Returns the cap of a rectangle of pixels, with a margin.
+Cap rectangle_cap(const Georeference& georeference, const glm::dvec2& corner, const glm::dvec2& size) {
+  std::array<glm::dvec2, kPoints * kPoints> pixels;
+  for (int i = 0; i < kPoints * kPoints; ++i) {
+    const int row = i / kPoints;
+    const glm::dvec2 along((i - row * kPoints) / (kPoints - 1.0), row / (kPoints - 1.0));
+    pixels[static_cast<std::size_t>(i)] = corner + size * along - 0.5;
+  }
+  std::array<glm::dvec3, kPoints * kPoints> points;
+  georeference.to_directions(pixels, points);
+  Cap cap = enclose(points);
+  if (cap.radius_rad >= 0) cap.radius_rad += 4 * georeference.resolution_m() / kMarsRadius_m;
+  return cap;
+}
+
+// Returns one of the kParts x kParts parts of a raster, which may be empty in small ones.
+PixelWindow part_of(const PixelGrid& grid, int part_column, int part_row) {
+  const auto edge = [](int size, int part) {
+    return static_cast<int>(static_cast<long>(size) * part / kParts);
+  };
+  const int column = edge(grid.width, part_column);
+  const int row = edge(grid.height, part_row);
+  return {column, row, edge(grid.width, part_column + 1) - column, edge(grid.height, part_row + 1) - row};
+}
+
+// Divides windows with some data until they are small or kMostQuestions have been asked.
+class WindowSearch {
+ public:
+  explicit WindowSearch(const std::function<Coverage(const PixelWindow&)>& coverage) : coverage_(coverage) {}
+
+  void add(const PixelWindow& window, std::vector<PixelWindow>& found) {
+    if (window.columns <= 0 || window.rows <= 0) return;
+    const Coverage coverage = ++questions_ > kMostQuestions ? Coverage::kAll : coverage_(window);
+    left_out_ = left_out_ || coverage == Coverage::kNone;
+    if (coverage == Coverage::kNone) return;
+    const bool is_wide = window.columns > kSmallWindow;
+    const bool is_high = window.rows > kSmallWindow;
+    if (coverage == Coverage::kAll || (!is_wide && !is_high)) {
+      found.push_back(window);
+      return;
+    }
+    const int columns = is_wide ? window.columns / 2 : window.columns;
+    const int rows = is_high ? window.rows / 2 : window.rows;
+    add({window.column, window.row, columns, rows}, found);
+    add({window.column + columns, window.row, window.columns - columns, rows}, found);
+    add({window.column, window.row + rows, columns, window.rows - rows}, found);
+    add({window.column + columns, window.row + rows, window.columns - columns, window.rows - rows}, found);
+  }
+
+  bool has_left_out() const { return left_out_; }
+
+ private:
+  static constexpr int kSmallWindow = 256;
+  static constexpr int kMostQuestions = 4096;
+
+  const std::function<Coverage(const PixelWindow&)>& coverage_;
+  int questions_ = 0;
+  bool left_out_ = false;
+};
+
 }  // namespace
 
-Footprint::Footprint(const Georeference& georeference) {
+std::vector<PixelWindow> data_windows(const PixelGrid& grid,
+                                      const std::function<Coverage(const PixelWindow&)>& coverage) {
+  std::vector<PixelWindow> found;
+  WindowSearch search(coverage);
+  for (int row = 0; row < kParts; ++row) {
+    for (int column = 0; column < kParts; ++column) search.add(part_of(grid, column, row), found);
+  }
+  if (!search.has_left_out()) return {{0, 0, grid.width, grid.height}};
+  return found;
+}
+
+Footprint::Footprint(const Georeference& georeference, const std::vector<PixelWindow>& windows) {
   const PixelGrid& grid = georeference.grid();
-  const double pixel_rad = georeference.resolution_m() / kMarsRadius_m;
+  const glm::dvec2 size = glm::dvec2(grid.width, grid.height) / double{kParts};
+  const bool is_whole =
+      windows.size() == 1 && windows[0].columns == grid.width && windows[0].rows == grid.height;
+  std::size_t next = 0;  // windows have the order of the parts
   for (int part_row = 0; part_row < kParts; ++part_row) {
     for (int part_column = 0; part_column < kParts; ++part_column) {
-      std::array<glm::dvec2, kPoints * kPoints> pixels;
-      for (int i = 0; i < kPoints * kPoints; ++i) {
-        const int row = i / kPoints;
-        const double u = part_column + (i - row * kPoints) / (kPoints - 1.0);
-        const double v = part_row + row / (kPoints - 1.0);
-        pixels[static_cast<std::size_t>(i)] = {grid.width * u / kParts - 0.5, grid.height * v / kParts - 0.5};
+      Area area{rectangle_cap(georeference, size * glm::dvec2(part_column, part_row), size), {}};
+      const PixelWindow pixels = part_of(grid, part_column, part_row);
+      while (next < windows.size() && !is_whole && pixels.columns > 0 && pixels.rows > 0 &&
+             windows[next].column >= pixels.column && windows[next].column < pixels.column + pixels.columns &&
+             windows[next].row >= pixels.row && windows[next].row < pixels.row + pixels.rows) {
+        const PixelWindow& w = windows[next++];
+        const Cap cap = rectangle_cap(georeference, {w.column, w.row}, {w.columns, w.rows});
+        if (cap.radius_rad >= 0) area.windows.push_back(cap);
       }
-      std::array<glm::dvec3, kPoints * kPoints> points;
-      georeference.to_directions(pixels, points);
-      Cap part = enclose(points);
-      if (part.radius_rad < 0) continue;
-      part.radius_rad += 4 * pixel_rad;
-      parts_.push_back(part);
+      if (area.cap.radius_rad >= 0 && (is_whole || !area.windows.empty())) areas_.push_back(std::move(area));
     }
   }
   whole_ = {{1, 0, 0}, kPi};
   glm::dvec3 sum(0);
-  for (const Cap& part : parts_) sum += part.centre;
-  if (glm::length(sum) < 0.1 * static_cast<double>(parts_.size())) return;
+  for (const Area& area : areas_) sum += area.cap.centre;
+  if (glm::length(sum) < 0.1 * static_cast<double>(areas_.size())) return;
   whole_ = {glm::normalize(sum), 0};
-  for (const Cap& part : parts_) {
+  for (const Area& area : areas_) {
     whole_.radius_rad =
-        std::max(whole_.radius_rad, angle_between_rad(whole_.centre, part.centre) + part.radius_rad);
+        std::max(whole_.radius_rad, angle_between_rad(whole_.centre, area.cap.centre) + area.cap.radius_rad);
   }
 }
 
 bool Footprint::touches(const Cap& cap) const {
-  return overlap(whole_, cap) &&
-         std::any_of(parts_.begin(), parts_.end(), [&](const Cap& part) { return overlap(part, cap); });
+  return overlap(whole_, cap) && std::ranges::any_of(areas_, [&](const Area& area) {
+           return overlap(area.cap, cap) &&
+                  (area.windows.empty() ||
+                   std::ranges::any_of(area.windows, [&](const Cap& window) { return overlap(window, cap); }));
+         });
 }
 
 }  // namespace mars

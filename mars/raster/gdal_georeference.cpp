@@ -12,7 +12,9 @@
 
 #include "mars/geodesy/sphere.h"
 #include "mars/raster/gdal_crs.h"
+#include "mars/raster/gdal_file.h"
 #include "mars/raster/gdal_scope.h"
+#include "mars/raster/iau_crs.h"
 
 namespace mars {
 namespace {
@@ -35,7 +37,8 @@ glm::dvec3 crs_direction(glm::dvec2 p, double centric_scale) {
 }
 
 const char* const kNoGeoreference =
-    "give it one, e.g. gdal_translate -a_srs IAU_2015:49900 -a_ullr WEST NORTH EAST SOUTH IN OUT.tif";
+    "give it one, e.g. gdal_translate -a_srs IAU_2015:CODE -a_ullr WEST NORTH EAST SOUTH IN OUT.tif, where CODE is "
+    "that of its body: 49900 for Mars, 30100 for the Moon";
 
 }  // namespace
 
@@ -48,8 +51,11 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     to_map = *label.to_map;
   } else if (dataset.GetGeoTransform(to_map.data()) != CE_None) {
     const bool points = dataset.GetGCPCount() > 0;
+    const std::string sibling = points ? "" : sibling_advice(path);
     throw source_error(path, "has no georeference", points ? "only ground control points" : "",
-                       points ? "warp it first with gdalwarp -t_srs" : kNoGeoreference);
+                       points            ? "warp it first with gdalwarp -t_srs"
+                       : sibling.empty() ? kNoGeoreference
+                                         : sibling + ", or " + kNoGeoreference);
   }
   OGRSpatialReference crs;
   if (!label.crs.empty()) {
@@ -61,10 +67,24 @@ Georeference::Georeference(const std::string& path, GDALDataset& dataset, const 
     crs = *dataset.GetSpatialRef();
   }
   if (crs.IsEmpty()) {
-    throw source_error(path, "has a geotransform but no coordinate system", "",
-                       "name the body's, e.g. gdal_edit.py -a_srs IAU_2015:49900 FILE");
+    throw source_error(
+        path, "has a geotransform but no coordinate system", "",
+        "name that of its body with gdal_edit.py -a_srs IAU_2015:CODE FILE: 49900 for Mars, 30100 for "
+        "the Moon");
   }
-  transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, label.lon_shift_deg);
+  if (auto restored = restored_iau_crs(crs)) crs = *restored;
+  if (!correct_axis_order(crs, to_map, grid_)) {
+    const bool lat_first = crs.GetDataAxisToSRSAxisMapping()[0] == 1;
+    note_ = std::string("both axes of its map may be latitudes; its columns are taken to run along the ") +
+            (lat_first ? "latitude" : "longitude, which counts west") +
+            " (gdalwarp -t_srs IAU_2015:CODE of a " + "planetocentric system makes it plain)";
+  }
+  try {
+    transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, label.lon_shift_deg);
+  } catch (const SourceError&) {
+    if (!remove_iau_codes(crs)) throw;
+    transformer_ = std::make_unique<CrsTransformer>(path, crs, to_map, label.lon_shift_deg);
+  }
   centric_scale_ = label.centric_scale.value_or(transformer_->centric_scale());
 
   const double to_m = crs.IsGeographic() || !crs.IsProjected()

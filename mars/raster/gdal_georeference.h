@@ -34,6 +34,9 @@ class Georeference {
 
   const PixelGrid& grid() const { return grid_; }
 
+  // Returns what the user should know about an assumption on the axes, without the file's name, or "".
+  const std::string& note() const { return note_; }
+
   // Returns the smaller side of a pixel in metres where the map is true to scale.
   double resolution_m() const { return resolution_m_; }
 
@@ -67,6 +70,7 @@ class Georeference {
 
   std::unique_ptr<CrsTransformer> transformer_;
   PixelGrid grid_;
+  std::string note_;
   double resolution_m_ = 0;
   double centric_scale_ = 1;  // k in: tan(planetocentric latitude) = k tan(latitude of the CRS)
   std::optional<Linear> linear_;

@@ -7,6 +7,7 @@
 #include "mars/raster/gdal_image_decode.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/raster/gdal_tiles.h"
+#include "mars/raster/product_datum.h"
 #include "mars/sources/source.h"
 #include "mars/sources/stack.h"
 
@@ -26,6 +27,7 @@ class GdalImage final : public ImageSource, public BoundaryAware {
   GdalImage(std::unique_ptr<GdalRaster> raster, ImageFormat format)
       : raster_(std::move(raster)), format_(std::move(format)), info_(raster_->info()) {
     info_.quantum_m = 0;
+    info_.body_radius_m = body_radius_m(*raster_->acquire());
     for (PixelGrid grid = raster_->grid();; grid = raster_->grid().reduced(static_cast<int>(grids_.size()))) {
       grids_.push_back(grid);
       if (grid.width <= 1 && grid.height <= 1) break;

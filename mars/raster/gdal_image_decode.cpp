@@ -35,7 +35,8 @@ ImageFormat read_format(const GdalRaster& raster) {
   }
   format.bytes = true;
   for (const int i : format.colour_bands) {
-    format.bytes = format.bytes && dataset->GetRasterBand(i)->GetRasterDataType() == GDT_Byte;
+    format.bytes =
+        format.bytes && dataset->GetRasterBand(i)->GetRasterDataType() == GDT_Byte && !raster.is_signed_byte(i);
   }
   format.masked = format.alpha_band == 0 && (first->GetMaskFlags() & GMF_ALL_VALID) == 0;
   const GDALColorTable* table = first->GetColorTable();
@@ -95,6 +96,14 @@ ImageFormat image_format(const GdalRaster& raster) {
   ImageFormat format = read_format(raster);
   // Special pixels of 8 bits are black and white, which is right for saturated ones.
   if (!format.bytes) format.nodata = raster.nodata();
+  // GDAL makes no mask of a negative nodata value of bytes.
+  if (raster.is_signed_byte(format.colour_bands[0])) {
+    const GdalScope scope;
+    const auto dataset = raster.acquire();
+    int has_nodata = 0;
+    const double value = dataset->GetRasterBand(format.colour_bands[0])->GetNoDataValue(&has_nodata);
+    if (has_nodata != 0) format.nodata.values.push_back(value > 127 ? value - 256 : value);
+  }
   if (!format.bytes) find_stretch(raster, format);
   return format;
 }

@@ -30,6 +30,29 @@ void check_bands(const std::string& path, GDALDataset& dataset) {
   }
 }
 
+// Returns what the file tells about a window. Where it has no pixels, they have the nodata value, or are zeros,
+// which are values, if there is none.
+Coverage coverage_of(GDALDataset& dataset, const PixelWindow& w) {
+  bool has_data = false;
+  bool has_gaps = false;
+  for (int i = 1; i <= dataset.GetRasterCount() && !(has_data && has_gaps); ++i) {
+    GDALRasterBand* band = dataset.GetRasterBand(i);
+    int has_nodata = 0;
+    band->GetNoDataValue(&has_nodata);
+    if (has_nodata == 0) return Coverage::kAll;
+    const int status = band->GetDataCoverageStatus(w.column, w.row, w.columns, w.rows, 0, nullptr);
+    if ((status & GDAL_DATA_COVERAGE_STATUS_UNIMPLEMENTED) != 0) return Coverage::kAll;
+    has_data = has_data || (status & GDAL_DATA_COVERAGE_STATUS_DATA) != 0;
+    has_gaps = has_gaps || (status & GDAL_DATA_COVERAGE_STATUS_EMPTY) != 0;
+  }
+  return !has_data ? Coverage::kNone : has_gaps ? Coverage::kSome : Coverage::kAll;
+}
+
+bool stores_signed_bytes(GDALRasterBand& band) {
+  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
+}
+
 // Throws if a raw file is too short. GDAL reads zeros beyond the end of some, as if they were sparse.
 void check_raw_size(const std::string& path, GDALDataset& dataset) {
   for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
@@ -58,10 +81,20 @@ GdalRaster::GdalRaster(const std::string& path)
   check_bands(file_.path, *dataset);
   check_raw_size(file_.path, *dataset);
   nodata_ = nodata_values(*dataset, file_.label);
+  for (int i = 1; i <= dataset->GetRasterCount(); ++i)
+    signed_bytes_.push_back(stores_signed_bytes(*dataset->GetRasterBand(i)));
   const LabelGeoreference label =
       file_.georeference ? *file_.georeference : label_georeference(file_.path, *dataset);
   georeference_.emplace(file_.path, *dataset, label);
-  footprint_.emplace(*georeference_);
+  // Asking a remote file would fetch its whole index.
+  windows_ =
+      is_remote(file_.path)
+          ? std::vector<PixelWindow>{{0, 0, grid().width, grid().height}}
+          : data_windows(grid(), [&](const PixelWindow& window) { return coverage_of(*dataset, window); });
+  footprint_.emplace(*georeference_, windows_);
+  // Without any data the place of the whole raster is checked.
+  if (windows_.empty())
+    footprint_.emplace(*georeference_, std::vector<PixelWindow>{{0, 0, grid().width, grid().height}});
   if (footprint_->is_empty()) {
     throw source_error(file_.path, "lies nowhere on the planet",
                        "its pixels cannot be transformed to longitude and latitude",
@@ -74,6 +107,7 @@ SourceInfo GdalRaster::info() const {
   SourceInfo info;
   info.name = file_.path;
   info.resolution_m = georeference_->resolution_m();
+  if (!georeference_->note().empty()) info.notes.push_back(info.name + ": " + georeference_->note());
   std::vector<std::string> files = file_.files;
   if (files.empty()) {
     const CPLStringList known(acquire()->GetFileList());
@@ -84,6 +118,7 @@ SourceInfo GdalRaster::info() const {
     if (VSIStatL(each.c_str(), &stat) != 0) continue;
     info.size_bytes += static_cast<std::int64_t>(stat.st_size);
     info.mtime_s = std::max(info.mtime_s, static_cast<std::int64_t>(stat.st_mtime));
+    if (auto stamp = file_stamp(each)) info.files.push_back(std::move(*stamp));
   }
   return info;
 }
@@ -124,6 +159,15 @@ void GdalRaster::read(int band, int overview, const PixelWindow& window, int str
   const GdalScope scope;
   const auto dataset = acquire();
   read_pixels(file_.path, band_of(*dataset, band, overview), window, stride, values, scope);
+  if constexpr (std::is_floating_point_v<T>) {
+    if (!is_signed_byte(band)) return;
+    for (int row = 0; row < window.rows; ++row) {
+      T* line = values + std::ptrdiff_t{row} * stride;
+      for (int column = 0; column < window.columns; ++column) {
+        if (line[column] > 127) line[column] -= 256;
+      }
+    }
+  }
 }
 
 void GdalRaster::read_mask(int band, int overview, const PixelWindow& window, int stride,

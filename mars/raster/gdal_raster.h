@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mars/raster/gdal_file.h"
 #include "mars/raster/gdal_footprint.h"
@@ -32,8 +33,15 @@ class GdalRaster {
   const Georeference& georeference() const { return *georeference_; }
   const PixelGrid& grid() const { return georeference_->grid(); }
   const Footprint& footprint() const { return *footprint_; }
+  // Returns windows outside of which all pixels are nodata, see data_windows(). Sparse GeoTIFFs and mosaics (VRT)
+  // tell which parts they have; all other rasters are one window.
+  const std::vector<PixelWindow>& windows() const { return windows_; }
   const std::optional<PdsLabel>& label() const { return file_.label; }
   const NodataValues& nodata() const { return nodata_; }
+
+  // Returns true if the stored bytes of a band, counted from 1, are signed (PIXELTYPE=SIGNEDBYTE): GDAL before
+  // 3.7 reads them as unsigned.
+  bool is_signed_byte(int band) const { return signed_bytes_[static_cast<std::size_t>(band - 1)]; }
 
   // Returns name, size and time of all its files, and the resolution.
   SourceInfo info() const;
@@ -41,9 +49,9 @@ class GdalRaster {
   // Lends a handle that the caller does not share with other threads.
   GdalPool<GDALDataset>::Lease acquire() const { return handles_.acquire(); }
 
-  // read() reads pixels of a band (counted from 1) as T into rows that are `stride` values apart; read_mask()
-  // reads the mask of a band (255 = valid, 0 = nodata). overview < 0 selects full resolution. Throw
-  // SourceError.
+  // read() reads pixels of a band (counted from 1) as T into rows that are `stride` values apart. Signed bytes
+  // are signed in float and double, and as stored in unsigned char. read_mask() reads the mask of a band (255 =
+  // valid, 0 = nodata). overview < 0 selects full resolution. Throw SourceError.
   template <class T>
   void read(int band, int overview, const PixelWindow& window, int stride, T* values) const;
   void read_mask(int band, int overview, const PixelWindow& window, int stride, unsigned char* values) const;
@@ -52,7 +60,9 @@ class GdalRaster {
   RasterFile file_;
   mutable GdalPool<GDALDataset> handles_;
   NodataValues nodata_;
+  std::vector<bool> signed_bytes_;  // by band
   std::optional<Georeference> georeference_;
+  std::vector<PixelWindow> windows_;
   std::optional<Footprint> footprint_;
 };
 

@@ -210,8 +210,14 @@ PdsPlacement pds_placement(const PdsLabel& label) {
   const auto samples_agree = [&](double edge_offset) {
     return !even || !west || same_lon(west_edge(edge_offset), placement.east(*west), *resolution);
   };
+  // A file with fewer lines than its map has the edges of its columns all the same.
+  const auto east = number("EASTERNMOST_LONGITUDE");
+  const bool columns_are_edges =
+      even && west && east && samples && resolution && *resolution > 0 && !bounds_are_edges &&
+      std::abs(std::remainder(std::abs(*east - *west) * *resolution - *samples, 360 * *resolution)) <=
+          kAgree_px;
   for (const double edge_offset : {kCountsFromOne, kCountsFromZero, kCountsFromHalf}) {
-    if (!lines_agree(edge_offset) || !samples_agree(edge_offset)) continue;
+    if (!(columns_are_edges || lines_agree(edge_offset)) || !samples_agree(edge_offset)) continue;
     placement.edge_offset_px = edge_offset;
     placement.edge_is_confirmed = true;
     if (even) {

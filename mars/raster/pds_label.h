@@ -57,8 +57,9 @@ struct PdsPlacement {
 };
 
 // Returns the convention whose edge agrees within a quarter of a pixel with MAXIMUM_LATITUDE (and
-// WESTERNMOST_LONGITUDE of cylindrical maps), or for polar maps with the middle of the image. Returns GDAL's
-// own if none agrees, or if the label's latitudes do not span its lines (bounds of the data: HiRISE, HRSC). A
+// WESTERNMOST_LONGITUDE of cylindrical maps), or for polar maps with the middle of the image. If the label's
+// latitudes do not span its lines, but its longitudes span the samples of a cylindrical map, these alone decide.
+// Returns GDAL's own if none agrees, or if neither spans the file (bounds of the data: HiRISE, HRSC). A
 // label that does not state the kind of its latitudes has planetographic ones if its longitudes count west (the
 // pairing of the IAU).
 PdsPlacement pds_placement(const PdsLabel& label);

@@ -30,11 +30,11 @@ std::optional<Axes> axes(const PdsLabel& label) {
   return Axes{*a, b, c};
 }
 
-enum class Body { kSphere, kPolarSphere, kEither };  // kEither: the ellipsoid with planetographic latitudes
+enum class Figure { kSphere, kPolarSphere, kEither };  // kEither: the ellipsoid with planetographic latitudes
 
 struct Projection {
   std::string words;  // PROJ string without the body and the central meridian
-  Body body = Body::kSphere;
+  Figure body = Figure::kSphere;
 };
 
 std::string text_of(double value) {
@@ -70,20 +70,20 @@ std::optional<Projection> projection(const PdsLabel& label, const PdsPlacement& 
   if (type == "ORTHOGRAPHIC") return Projection{"ortho" + at_centre};
   if (type == "POLAR STEREOGRAPHIC" || (type == "STEREOGRAPHIC" && std::abs(centre) == 90)) {
     const std::string pole = centre < 0 ? "-90" : "90";
-    return Projection{"stere +lat_0=" + pole + " +lat_ts=" + pole, Body::kPolarSphere};
+    return Projection{"stere +lat_0=" + pole + " +lat_ts=" + pole, Figure::kPolarSphere};
   }
   if (type == "STEREOGRAPHIC") return Projection{"stere" + at_centre};
-  if (type == "MERCATOR") return Projection{"merc +lat_ts=" + text_of(centre), Body::kEither};
-  if (type == "TRANSVERSE MERCATOR") return Projection{"tmerc" + at_centre, Body::kEither};
-  if (type == "LAMBERT AZIMUTHAL EQUAL AREA") return Projection{"laea" + at_centre, Body::kEither};
+  if (type == "MERCATOR") return Projection{"merc +lat_ts=" + text_of(centre), Figure::kEither};
+  if (type == "TRANSVERSE MERCATOR") return Projection{"tmerc" + at_centre, Figure::kEither};
+  if (type == "LAMBERT AZIMUTHAL EQUAL AREA") return Projection{"laea" + at_centre, Figure::kEither};
   if (type == "CYLINDRICAL EQUAL AREA") {
     const auto parallel = number("FIRST_STANDARD_PARALLEL");
-    return Projection{"cea +lat_ts=" + text_of(parallel.value_or(centre)), Body::kEither};
+    return Projection{"cea +lat_ts=" + text_of(parallel.value_or(centre)), Figure::kEither};
   }
   if (type == "LAMBERT CONFORMAL" || type == "LAMBERT CONFORMAL CONIC" || type == "ALBERS") {
     const auto both = parallels();
     if (!both) return std::nullopt;
-    return Projection{(type == "ALBERS" ? "aea" : "lcc") + at_centre + *both, Body::kEither};
+    return Projection{(type == "ALBERS" ? "aea" : "lcc") + at_centre + *both, Figure::kEither};
   }
   return std::nullopt;
 }
@@ -149,9 +149,9 @@ std::optional<LabelGeoreference> pds_map(const std::string& path, const PdsLabel
   }
 
   LabelGeoreference georeference;
-  const bool ellipsoid = flattened && placement.planetographic && projected->body != Body::kSphere;
-  const double radius_m = projected->body == Body::kPolarSphere && !ellipsoid ? body->c_m : body->a_m;
-  const auto scale_m = pixel_m(label, radius_m, projected->body == Body::kPolarSphere || ellipsoid);
+  const bool ellipsoid = flattened && placement.planetographic && projected->body != Figure::kSphere;
+  const double radius_m = projected->body == Figure::kPolarSphere && !ellipsoid ? body->c_m : body->a_m;
+  const auto scale_m = pixel_m(label, radius_m, projected->body == Figure::kPolarSphere || ellipsoid);
   if (!scale_m) return std::nullopt;
   georeference.crs =
       "+proj=" + projected->words +

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mars/sources/convert.h"
+#include "mars/sources/source_checks.h"
 #include "mars/sources/stack_walk.h"
 #include "vpe/base/number.h"
 #include "vpe/base/quantile.h"
@@ -34,13 +35,6 @@ std::string difference(const ElevationSource& a, const ElevationSource& b) {
          " above the second (median of " + std::to_string(off.size()) + " places)";
 }
 
-void check_body(const SourceInfo& info, double radius_m) {
-  if (info.body_radius_m <= 0 || std::abs(info.body_radius_m / radius_m - 1) <= kBodyMismatch) return;
-  throw SourceError(info.name + ": its body has a radius of " + metres(info.body_radius_m, 0) +
-                    ", but the planet has one of " + metres(radius_m, 0) +
-                    "; name the body (--body or --radius), or leave this raster out");
-}
-
 // Returns the datum of the planet.
 VerticalDatum choose_datum(const std::vector<Source>& coarsest_first, const CombineOptions& options) {
   const VerticalDatum sphere = VerticalDatum::sphere(options.radius_m);
@@ -68,9 +62,16 @@ VerticalDatum choose_datum(const std::vector<Source>& coarsest_first, const Comb
   return first.kind == DatumKind::kRadius ? sphere : first;
 }
 
+// Returns true if the user states that this source has the datum of the others, whichever that is.
+bool is_of_any_datum(const SourceInfo& info, const CombineOptions& options) {
+  return !info.datum.is_known() && !options.convert && !options.true_radii &&
+         options.same_datum.contains(info.name);
+}
+
 // Returns the conversion of one source. Adds a note if its datum is only assumed.
 Conversion conversion_of(const SourceInfo& info, const VerticalDatum& datum, const CombineOptions& options,
                          std::vector<std::string>& notes) {
+  if (is_of_any_datum(info, options)) return {};
   if (!info.datum.is_known() && !options.convert && !options.true_radii) {
     notes.push_back(info.name + " does not state its vertical datum" +
                     (datum.is_known() ? "; '" + to_string(datum) + "' is assumed, as for the others" : "") +
@@ -125,10 +126,18 @@ Source aligned_and_checked(Source inset, const Source& base, const CombineOption
 
 Combined combine_elevation(std::vector<Source> sources, const CombineOptions& options) {
   std::vector<Source> order = by_resolution(std::move(sources), options.stack);
-  for (const Source& source : order) check_body(source->infos().front(), options.radius_m);
-  std::reverse(order.begin(), order.end());
   Combined combined;
+  std::set<std::string> silent;  // sources whose datum is only assumed
+  for (const Source& source : order) {
+    const SourceInfo info = source->infos().front();
+    check_body(info, options.radius_m);
+    combined.notes.insert(combined.notes.end(), info.notes.begin(), info.notes.end());
+    if (!info.datum.is_known() && !is_of_any_datum(info, options)) silent.insert(info.name);
+  }
+  std::reverse(order.begin(), order.end());
   combined.datum = choose_datum(order, options);
+  for (const Source& source : order)
+    check_range(*source, source->infos().front(), options.radius_m, combined.notes);
   combined.true_radii = options.true_radii || (combined.datum == VerticalDatum::sphere(options.radius_m) &&
                                                std::any_of(order.begin(), order.end(), [](const Source& s) {
                                                  return s->infos().front().datum.kind == DatumKind::kRadius;
@@ -142,6 +151,7 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
         in_datum(source, conversion_of(info, combined.datum, options, combined.notes), combined.datum);
     if (!below.empty()) {
       Source base = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
+      check_silent_datums(*layer, *base, silent, options.same_datum);
       layer = aligned_and_checked(std::move(layer), base, options, finding, combined.notes);
       if (options.alignment == CombineOptions::Alignment::kEdges) {
         finding.edge_matching = fit_edge_matching(*layer, *base, options.radius_m);

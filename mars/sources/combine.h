@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct CombineOptions {
   bool convert = false;
   // Target of the conversion. Unknown: the datum of the coarsest source that states its own.
   VerticalDatum datum;
+  // Names of sources of unknown datum that have that of the others, whatever these differ by. Others of unknown
+  // datum are refused if they differ too much, see check_silent_datums().
+  std::set<std::string> same_datum;
   std::shared_ptr<const ElevationSource> areoid;  // see conversion()
   Alignment alignment = Alignment::kNone;
   bool check_outliers = true;    // costs one more look at a subset of the posts
@@ -59,14 +63,11 @@ struct Combined {
   VerticalDatum datum;
   bool true_radii = false;               // also true if all given sources are radii
   std::vector<CombineFinding> findings;  // the coarsest source first
-  std::vector<std::string> notes;        // sentences for the user
+  std::vector<std::string> notes;        // sentences for the user, those of the sources among them
 };
 
-// Largest accepted difference between the radius of a source's body and radius_m, relative.
-inline constexpr double kBodyMismatch = 0.2;
-
 // Combines the sources. Throws SourceError if there are none, if a datum does not fit (the message states the
-// median difference where both sources have data), or if a body's radius differs by more than kBodyMismatch.
+// median difference where both sources have data), or if a check of source_checks.h fails.
 Combined combine_elevation(std::vector<std::shared_ptr<const ElevationSource>> sources,
                            const CombineOptions& options);
 

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "mars/geodesy/datum.h"
+#include "mars/sources/file_stamp.h"
 #include "vpe/base/rgb.h"
 
 namespace mars {
@@ -43,13 +44,16 @@ struct SourceInfo {
   std::string name;                  // path as given, or the name of a built-in source
   std::int64_t size_bytes = 0;       // 0 for built-in sources
   std::int64_t mtime_s = 0;          // seconds since 1970, 0 for built-in sources
+  std::vector<FileStamp> files;      // its local files when it was opened; not recorded
   double resolution_m = 0;           // post spacing where it is finest
   double quantum_m = 0;              // step of its values; 0: floating point
   VerticalDatum datum;               // of the values that sample() gives
   double body_radius_m = 0;          // equatorial radius of the product's body; 0: not stated
+  std::string body;                  // name of the body that the product states; empty: none
   std::optional<double> accuracy_m;  // one sigma, vertical, if the product states it
   bool illustration = false;         // true for synthetic planets, which must not be taken for data
   std::string treatment;             // changes made to the product's own values; empty: none
+  std::vector<std::string> notes;    // sentences for the user about how it is read; not recorded
 };
 
 // Receives directions and the source's own values there, in metres. Blocks come in any order.

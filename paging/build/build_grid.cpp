@@ -2,27 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
-
-#include "mars/geodesy/sphere.h"
-#include "vpe/base/number.h"
 
 namespace paging {
 
 namespace {
-
-[[noreturn]] void refuse_height(double height_m, double quantum_m, const glm::dvec3* direction) {
-  using vpe::base::format_number;
-  std::string place;
-  if (direction != nullptr) {
-    const mars::LonLat at = mars::lon_lat(*direction);
-    place = " at lon " + format_number(at.lon_deg) + " lat " + format_number(at.lat_deg);
-  }
-  throw PlanetError("the height" + place + " is " + format_number(height_m) +
-                    " m, which cannot be stored in steps of " + format_number(quantum_m) +
-                    " m: mark such values as nodata in the raster (gdal_edit.py -a_nodata)");
-}
 
 bool along_j(lod::Edge edge) { return edge == lod::Edge::kWest || edge == lod::Edge::kEast; }
 
@@ -81,16 +64,10 @@ PackedMesh pack_mesh(lod::TileMesh mesh, const lod::Posts& posts, double quantum
   return packed;
 }
 
-std::vector<std::int32_t> to_quanta(const std::vector<double>& heights, double quantum_m,
-                                    std::span<const glm::dvec3> directions) {
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+std::vector<std::int32_t> to_quanta(const std::vector<double>& heights, double quantum_m) {
   std::vector<std::int32_t> quanta(heights.size());
-  for (std::size_t n = 0; n < heights.size(); ++n) {
-    const double q = std::round(heights[n] / quantum_m);
-    if (!(std::abs(q) <= kMost))
-      refuse_height(heights[n], quantum_m, n < directions.size() ? &directions[n] : nullptr);
-    quanta[n] = static_cast<std::int32_t>(q);
-  }
+  for (std::size_t n = 0; n < heights.size(); ++n)
+    quanta[n] = static_cast<std::int32_t>(std::round(heights[n] / quantum_m));
   return quanta;
 }
 

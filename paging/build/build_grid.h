@@ -14,10 +14,8 @@ std::size_t edge_post(lod::Edge edge, int along, int side);
 // Returns the unit directions of a tile's posts, row by row.
 std::vector<glm::dvec3> post_directions(const lod::TileKey& key, const lod::GridLines& lines);
 
-// Rounds heights to quanta. Throws PlanetError for a height that does not fit a 32-bit number of quanta. The
-// message names its place when directions are given.
-std::vector<std::int32_t> to_quanta(const std::vector<double>& heights_m, double quantum_m,
-                                    std::span<const glm::dvec3> directions = {});
+// Rounds heights that have passed check_heights() to quanta.
+std::vector<std::int32_t> to_quanta(const std::vector<double>& heights_m, double quantum_m);
 
 // Selects the border posts that a mesh keeps, out of every step-th post of each edge.
 lod::BorderPosts borders_of(const lod::Posts& posts, const lod::GridLines& lines,

@@ -3,6 +3,7 @@
 
 #include "paging/build/build_grid.h"
 #include "paging/build/nodata_fill.h"
+#include "paging/build/source_heights.h"
 
 namespace paging {
 
@@ -64,13 +65,14 @@ lod::Posts sample_inner(const SampleInputs& sampling, const lod::TileKey& key) {
     for (const std::size_t p : some) at.push_back(directions[p]);
     std::vector<double> heights(at.size());
     sampling.elevation.sample(at, lod::post_spacing_m(level, n, meta.radius_m), heights);
+    check_heights(at, heights, meta, sampling.elevation);
     for (std::size_t m = 0; m < some.size(); ++m) {
       posts.height_m[some[m]] = heights[m];
       has_nodata = has_nodata || !std::isfinite(heights[m]);
     }
   }
   if (has_nodata) fill_nodata(sampling, key, levels, posts.height_m);
-  const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m, directions);
+  const std::vector<std::int32_t> quanta = to_quanta(posts.height_m, meta.quantum_m);
   for (std::size_t p = 0; p < quanta.size(); ++p) posts.height_m[p] = quanta[p] * meta.quantum_m;
   return posts;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "paging/build/source_heights.h"
 #include "vpe/base/number.h"
 
 #ifndef VPE_VERSION
@@ -29,10 +30,12 @@ double choose_quantum(const std::vector<mars::SourceInfo>& sources, double fines
   return std::clamp(std::exp2(std::floor(std::log2(step))), 1.0 / 4096.0, 1.0);
 }
 
-double mean_height(const mars::ElevationSource& source) {
+double mean_height(const mars::ElevationSource& source, const PlanetMeta& meta) {
   double sum = 0;
   std::int64_t count = 0;
-  source.visit_posts(20000, [&](std::span<const glm::dvec3>, std::span<const double> heights) {
+  source.visit_posts(20000, [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
+    // One wild height would become the fill of all nodata.
+    check_heights(directions, heights, meta, source);
     for (const double h : heights) {
       if (!std::isfinite(h)) continue;
       sum += h;
@@ -134,7 +137,7 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
   if (options.true_radii) meta.shape = "radius";
   meta.quantum_m =
       options.quantum_m > 0 ? options.quantum_m : choose_quantum(meta.sources, options.finest_spacing_m);
-  meta.fill_m = std::round(mean_height(elevation) / meta.quantum_m) * meta.quantum_m;
+  meta.fill_m = std::round(mean_height(elevation, meta) / meta.quantum_m) * meta.quantum_m;
   for (const mars::SourceInfo& s : meta.sources) meta.illustration = meta.illustration || s.illustration;
   if (image != nullptr) meta.image_sources = image->infos();
   return meta;

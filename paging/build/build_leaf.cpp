@@ -4,6 +4,7 @@
 #include "lod/mesh/error_meter.h"
 #include "paging/build/build_grid.h"
 #include "paging/build/nodata_fill.h"
+#include "paging/build/source_heights.h"
 #include "vpe/base/mutation.h"
 
 namespace paging {
@@ -78,13 +79,14 @@ SampledLeaf sample_leaf(const SampleInputs& sampling, const lod::TileKey& key) {
   std::vector<int> levels(heights.size(), key.level);
   resample_borders(sampling, key, leaf.coarser_neighbour_mask, leaf.directions, heights, levels);
 
+  check_heights(leaf.directions, heights, meta, sampling.elevation);
   leaf.nodata.resize(heights.size());
   for (std::size_t p = 0; p < heights.size(); ++p) {
     if (std::isfinite(heights[p]) || mutated(Guard::kNodataHeights)) continue;
     leaf.nodata[p] = leaf.any_nodata = true;
   }
   if (leaf.any_nodata) fill_nodata(sampling, key, levels, heights);
-  leaf.quanta = to_quanta(heights, meta.quantum_m, leaf.directions);
+  leaf.quanta = to_quanta(heights, meta.quantum_m);
   for (std::size_t p = 0; p < heights.size(); ++p) heights[p] = leaf.quanta[p] * meta.quantum_m;
   for (const lod::Edge edge : lod::kEdges) {
     if ((leaf.coarser_neighbour_mask >> static_cast<int>(edge) & 1) == 0) continue;

@@ -12,6 +12,7 @@
 #include "paging/build/build_steps.h"
 #include "paging/build/planet_writer.h"
 #include "paging/build/shard_plan.h"
+#include "paging/build/source_heights.h"
 #include "paging/build/stages.h"
 #include "paging/planet/planet_file.h"
 #include "vpe/base/parallel.h"
@@ -38,6 +39,16 @@ class Build {
   }
 
   BuildSummary run() {
+    try {
+      return run_stages();
+    } catch (const UnusableSource&) {
+      writer_.discard();
+      throw;
+    }
+  }
+
+ private:
+  BuildSummary run_stages() {
     std::map<lod::TileKey, NodeRow> stored;
     for (NodeRow& row : writer_.nodes()) stored.emplace(*lod::unpack(row.key), std::move(row));
     build_leaves(stored);
@@ -47,7 +58,6 @@ class Build {
     return finish();
   }
 
- private:
   // Stage 1 makes the finest tiles: heights and meshes.
   void build_leaves(const std::map<lod::TileKey, NodeRow>& stored) {
     const std::span<const lod::TileKey> leaves = shard_.leaves;
@@ -182,6 +192,8 @@ class Build {
     stages_.begin("checking", 1, 0.02);
     auto sums = measure_resampling(sampling_, stored_, options_.resampling_posts, shard_.leaves, threads_,
                                    [this] { stages_.report_again(); });
+    check_files(meta_.sources);
+    check_files(meta_.image_sources);
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
     set_resampling(meta_, sums);
     if (!options_.shard.is_all()) {

@@ -90,7 +90,8 @@ BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& e
 // planning twice. With options.shard, the file holds that shard of the tiles and is no planet file yet;
 // PlanetMeta::shard is set.
 //
-// Throws PlanetError, DatabaseError, mars::SourceError, std::runtime_error (too many tiles).
+// Throws PlanetError, DatabaseError, mars::SourceError, std::runtime_error (too many tiles). After
+// UnusableSource (source_heights.h) no OUTPUT.part is left.
 //
 // Typical usage:
 //   BuildOptions options;

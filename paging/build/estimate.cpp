@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "paging/build/build_inputs.h"
+#include "paging/build/build_steps.h"
 #include "paging/build/shard_plan.h"
 #include "vpe/base/parallel.h"
 
@@ -38,6 +39,10 @@ BuildEstimate estimate_build(const BuildOptions& options, const BuildPlan& plan,
     out.image_tiles = options.shard.end(count) - options.shard.begin(count);
   }
   out.posts = out.leaf_tiles * tile.post_count();
+  int coarsest = lod::kMaxLevel;
+  for (const lod::TileKey& key : shard.leaves) coarsest = std::min(coarsest, key.level);
+  out.coarsest_spacing_m = lod::post_spacing_m(coarsest, tile.intervals(), options.radius_m);
+  out.largest_sagitta_m = facet_sagitta_m(out.coarsest_spacing_m, options.radius_m);
   const auto leaf_posts = static_cast<double>(out.posts);
   const auto inner_posts = static_cast<double>(out.inner_tiles * tile.post_count());
   const double texels = static_cast<double>(out.image_tiles) * (kImageIntervals + 1) * (kImageIntervals + 1);

@@ -14,6 +14,10 @@ struct BuildEstimate {
   double processor_s = 0;         // of all threads together
   double wall_s = 0;              // when the threads have a core each
   std::int64_t memory_bytes = 0;  // that the tile index takes while it is built, caches not included
+  double coarsest_spacing_m = 0;  // of the finest posts anywhere
+  // Largest distance of the flat facets there below the sphere through their posts. Stated errors of tiles do not
+  // include it: they are measured from these facets.
+  double largest_sagitta_m = 0;
 };
 
 // Estimates a build from its plan and from rates measured on one machine (docs/measurements/scaling.md).

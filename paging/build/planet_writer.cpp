@@ -70,7 +70,7 @@ PlanetWriter::PlanetWriter(const std::string& path, const std::string& fingerpri
 PlanetWriter::~PlanetWriter() {
   if (finished_) return;
   sql_.reset();
-  if (partial_.db && uncommitted_ && !broken_) {
+  if (partial_.db && uncommitted_ && !broken_ && !discarded_) {
     try {
       partial_.db->execute("COMMIT");
       partial_.holds_tiles = true;
@@ -79,7 +79,7 @@ PlanetWriter::~PlanetWriter() {
     }
   }
   partial_.db.reset();
-  if (!partial_.holds_tiles) remove_partial_file(part_path_);
+  if (!partial_.holds_tiles || discarded_) remove_partial_file(part_path_);
 }
 
 // An error may have undone the whole transaction (SQLite, "Response to errors within a transaction"), so

@@ -43,7 +43,7 @@ class PlanetWriter {
   // make equal tiles. `commit_s` is the time between commits: a build that is killed loses less when it is
   // smaller, and writes faster when it is larger.
   PlanetWriter(const std::string& path, const std::string& fingerprint, double commit_s = 1.0);
-  // Without publish(), keeps the .part file, or removes it when it holds no tiles.
+  // Without publish(), keeps the .part file, or removes it when it holds no tiles or after discard().
   ~PlanetWriter();
   PlanetWriter(const PlanetWriter&) = delete;
   PlanetWriter& operator=(const PlanetWriter&) = delete;
@@ -78,6 +78,9 @@ class PlanetWriter {
   // Finishes after seal(): writes meta again, syncs the file to disk and renames it to its final name.
   void publish(const PlanetMeta& meta);
 
+  // Lets the destructor remove the .part file, because no later build can use it.
+  void discard() { discarded_ = true; }
+
  private:
   struct Statements;
 
@@ -98,6 +101,7 @@ class PlanetWriter {
   bool uncommitted_ = false;               // something was written since the last commit
   std::unique_ptr<DatabaseError> broken_;  // the first error of writing
   bool finished_ = false;
+  bool discarded_ = false;
   std::unique_ptr<Statements> sql_;
 };
 

@@ -1,6 +1,10 @@
 #include "paging/planet/planet_file.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "paging/planet/sqlite.h"
@@ -79,6 +83,9 @@ PlanetFile::PlanetFile(const std::string& path)
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw PlanetError(path + ": no such planet file; make one with 'vpe build DEM -o " + path + "'");
+  }
+  if (std::filesystem::is_regular_file(path, error) && ::access(path.c_str(), R_OK) != 0) {
+    throw PlanetError(path + ": cannot open: " + std::strerror(errno) + "; it must be readable (chmod u+r)");
   }
   try {
     Database probe(path, Database::Mode::kReadOnly);

@@ -1,4 +1,5 @@
 // Malformed files: one clear message, exit 1, nothing half-written.
+#include <fstream>
 #include <limits>
 
 #include "tests/app/support/app_fixture.h"
@@ -66,6 +67,64 @@ TEST_F(BadInput, OnePixelGivesAPlanetWithOneHeightThere) {
   EXPECT_TRUE(answers[1]["elevation_m"].is_null());
 }
 
+// Fill values that no nodata value declares, as rasters of radii have them.
+TEST_F(BadInput, HeightsAtOrBelowTheCentreAreRefusedByPlace) {
+  Dem dem;
+  dem.height_m = [](int column, int row) { return column == 40 && row == 60 ? 0 : 3396290; };
+  write_dem(dir_ / "radii.tif", dem);
+  expect_bad_dem("radii.tif", {"radii.tif: the height at lon -", "centre", "-a_nodata", "--radius"});
+  dem.height_m = [](int, int) { return 0; };
+  write_dem(dir_ / "zeros.tif", dem);
+  expect_failure({"build", "zeros.tif", "--datum", "radius", "-o", "z.vpe", "--base-spacing", "100000"}, 1,
+                 {"zeros.tif: ", "centre"});
+  dem.height_m = [](int column, int row) { return column == 40 && row == 60 ? -32768e3 : 1200; };
+  write_dem(dir_ / "fill.tif", dem);
+  expect_bad_dem("fill.tif", {"fill.tif: the height at lon -99 lat -31 is -32768000 m", "centre"});
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+// The mean of all heights fills nodata, so a wild height must not get into it.
+TEST_F(BadInput, AHeightTooLargeToStoreIsReportedWhereItIs) {
+  Dem dem;
+  dem.west_deg = 10;
+  dem.north_deg = 20;
+  dem.cell_deg = 0.1;
+  dem.no_data = -1;
+  dem.height_m = [](int column, int row) { return column == 40 && row == 60 ? 4e9 : 1200; };
+  write_dem(dir_ / "wild.tif", dem);
+  expect_bad_dem("wild.tif", {"wild.tif: the height at lon 14.05 lat 13.95 is 4000000000 m", "-a_nodata"});
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+TEST_F(BadInput, FilesBesideTheRightOneAreHintedAt) {
+  fs::create_directory(dir_ / "folder");
+  expect_bad_dem("folder", {"cannot open as a raster", "it is a folder", "give a raster in it"});
+  // The pixels of a raster whose label has the same name.
+  write_dem(dir_ / "pixels.tif");
+  const std::string raw(2 * 180 * 90, '\1');
+  write_text(dir_ / "dem.dat", raw);
+  write_text(dir_ / "dem.vrt",
+             "<VRTDataset rasterXSize=\"180\" rasterYSize=\"90\"><SRS>+proj=longlat +R=3396190 +no_defs</SRS>"
+             "<GeoTransform>-180,2,0,90,0,-2</GeoTransform><VRTRasterBand dataType=\"Int16\" band=\"1\" "
+             "subClass=\"VRTRawRasterBand\"><SourceFilename relativeToVRT=\"1\">dem.dat</SourceFilename>"
+             "</VRTRasterBand></VRTDataset>");
+  expect_bad_dem("dem.dat", {"cannot open as a raster", "give the file that describes it: 'dem.vrt'"});
+  EXPECT_EQ(vpe({"build", "dem.vrt", "-o", "x.vpe", "--estimate"}).exit_code, 0);
+  Dem dem;
+  dem.georeference = false;
+  write_dem(dir_ / "nowhere.tif", dem);
+  expect_bad_dem("nowhere.tif", {"IAU_2015:CODE", "49900 for Mars, 30100 for the Moon"});
+}
+
+TEST_F(BadInput, WordsAfterADoubleDashAreNoOptions) {
+  const std::string planet = this->planet().string();
+  const std::string answer = vpe({"query", planet, "-10,5"}).out;
+  EXPECT_EQ(vpe({"query", planet, "--", "-10,5"}).out, answer);
+  EXPECT_EQ(vpe({"query", "--", planet, "-10,5"}).out, answer);
+  fs::copy_file(planet, dir_ / "-p.vpe");
+  EXPECT_NE(vpe({"query", "--", "-p.vpe", "-10,5"}).out, "");
+}
+
 TEST_F(BadInput, OneBadDemAmongGoodOnes) {
   write_dem(dir_ / "good.tif");
   write_text(dir_ / "bad.tif", "no");
@@ -91,6 +150,13 @@ TEST_F(BadInput, PlanetFiles) {
                whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
     expect_bad_planet("cut.vpe", {"damaged", "build it again"});
   }
+}
+
+TEST_F(BadInput, APlanetFileThatMayNotBeRead) {
+  fs::copy_file(planet(), dir_ / "secret.vpe");
+  fs::permissions(dir_ / "secret.vpe", fs::perms::none);
+  if (std::ifstream(dir_ / "secret.vpe").good()) GTEST_SKIP() << "this user may read everything";
+  expect_bad_planet("secret.vpe", {"cannot open", "Permission denied", "readable"});
 }
 
 TEST_F(BadInput, FlippedBitsAreDetectedOrDoNotMatter) {

@@ -65,6 +65,100 @@ TEST_F(Sources, DatumsAreNamedRefusedAndConverted) {
   EXPECT_TRUE(says(vpe({"info", "p.vpe"}).out, {"vertical datum", "areoid"}));
 }
 
+TEST_F(Sources, ASilentDatumIsStatedOrDeclaredTheSame) {
+  write_globe_and_inset(590);
+  Result result = build({"--datum", "globe.tif=areoid"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(says(result.err, {"inset.tif does not state its vertical datum", "m above", "globe.tif",
+                                "--datum inset.tif=areoid"}));
+  EXPECT_EQ(leftovers(), Words{});
+  result = build({"--datum", "globe.tif=areoid", "--datum", "inset.tif=same", "--json", "-q"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(parse_json(result.out)["datum"], "areoid");
+  EXPECT_TRUE(says(parse_json(result.out)["sources"].dump(), {"datum named as areoid"}));
+  EXPECT_EQ(build({}).exit_code, 1);
+  EXPECT_EQ(build({"--datum", "same"}).exit_code, 0);
+  expect_failure({"build", "globe.tif", "-o", "p.vpe", "--datum", "other.tif=same"}, 2, {"other.tif"});
+}
+
+TEST_F(Sources, MoreBandsAreNoted) {
+  write_globe_and_inset(0);
+  const std::string band =
+      "<VRTRasterBand dataType=\"Int16\" band=\"B\"><Description>height</Description><SimpleSource><SourceFilename "
+      "relativeToVRT=\"1\">globe.tif</SourceFilename></SimpleSource></VRTRasterBand>";
+  std::string second = band;
+  second[second.find("\"B\"") + 1] = '2';
+  std::string first = band;
+  first[first.find("\"B\"") + 1] = '1';
+  write_text(dir_ / "two.vrt",
+             "<VRTDataset rasterXSize=\"180\" rasterYSize=\"90\"><SRS>+proj=longlat +R=3396190 +no_defs</SRS>"
+             "<GeoTransform>-180,2,0,90,0,-2</GeoTransform>" +
+                 first + second + "</VRTDataset>");
+  const Result result = vpe({"build", "two.vrt", "-o", "p.vpe", "--base-spacing", "100000"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(says(result.err, {"two.vrt has 2 bands", "the first ('height')", "gdal_translate -b"}));
+}
+
+TEST_F(Sources, TheSagOfCoarseFacetsIsNoted) {
+  write_dem(dir_ / "m.tif");
+  const Result coarse = vpe({"build", "m.tif", "-o", "p.vpe", "--base-spacing", "100000"});
+  EXPECT_TRUE(says(coarse.err, {"41.71 km apart", "up to 213 m below", "--base-spacing"}));
+  const Result finer = vpe({"build", "m.tif", "-o", "p.vpe", "--base-spacing", "6000"});
+  EXPECT_EQ(finer.err.find("facets"), std::string::npos) << finer.err;
+}
+
+// Only the part that a mosaic has is built finely, however large it says to be.
+TEST_F(Sources, AMosaicWithOnePartCostsThatPart) {
+  Dem part;
+  part.width = 50;
+  part.height = 40;
+  part.west_deg = 10;
+  part.north_deg = 20;
+  part.cell_deg = 0.0018;
+  part.height_m = [](int column, int row) { return 500 + column + row; };
+  write_dem(dir_ / "part.tif", part);
+  const auto mosaic = [&](const std::string& source) {
+    // Columns 105556 and rows 33889 of 200 000 x 18 000, 0.0018 degrees each.
+    return "<VRTDataset rasterXSize=\"200000\" rasterYSize=\"18000\"><SRS>+proj=longlat +R=3396190 +no_defs</SRS>"
+           "<GeoTransform>-180,0.0018,0,25,0,-0.0018</GeoTransform><VRTRasterBand dataType=\"Float32\" "
+           "band=\"1\"><NoDataValue>-32768</NoDataValue>" +
+           source + "</VRTRasterBand></VRTDataset>";
+  };
+  write_text(dir_ / "m.vrt",
+             mosaic("<SimpleSource><SourceFilename relativeToVRT=\"1\">part.tif</SourceFilename>"
+                    "<SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"50\" "
+                    "ySize=\"40\"/><DstRect xOff=\"105556\" yOff=\"2778\" xSize=\"50\" "
+                    "ySize=\"40\"/></SimpleSource>"));
+  const Words words{"build", "m.vrt", "-o", "p.vpe", "--base-spacing", "100000", "--json", "-q"};
+  Words estimate = words;
+  estimate.push_back("--estimate");
+  const Result estimated = vpe(estimate);
+  ASSERT_EQ(estimated.exit_code, 0) << estimated.err;
+  EXPECT_LT(parse_json(estimated.out)["posts"].get<double>(), 20e6);
+  ASSERT_EQ(vpe(words).exit_code, 0);
+  const auto at = parse_json(vpe({"query", "p.vpe", "10.0450,19.9643", "--json"}).out)[0];
+  EXPECT_NEAR(at["elevation_m"].get<double>(), 500 + 24 + 19, 3);
+  // Without any part it is refused at once.
+  write_text(dir_ / "none.vrt", mosaic(""));
+  expect_failure({"build", "none.vrt", "-o", "q.vpe"}, 1, {"none.vrt", "holds no elevation"});
+  std::string huge = mosaic("");
+  huge.replace(huge.find("200000"), 6, "2000000000").replace(huge.find("18000"), 5, "1000000000");
+  huge.replace(huge.find("0.0018"), 6, "1.8e-7").replace(huge.find("-0.0018"), 7, "-1.8e-7");
+  write_text(dir_ / "huge.vrt", huge);
+  expect_failure({"build", "huge.vrt", "-o", "q.vpe"}, 1, {"huge.vrt", "holds no elevation"});
+}
+
+TEST_F(Sources, ImagesOfAnotherBodyAreRefused) {
+  write_dem(dir_ / "m.tif");
+  write_text(dir_ / "moon.vrt",
+             "<VRTDataset rasterXSize=\"36\" rasterYSize=\"18\"><SRS>+proj=longlat +R=1737400 +no_defs</SRS>"
+             "<GeoTransform>-180,10,0,90,0,-10</GeoTransform><VRTRasterBand dataType=\"Byte\" band=\"1\"/>"
+             "</VRTDataset>");
+  expect_failure({"build", "m.tif", "--image", "moon.vrt", "-o", "p.vpe"}, 1,
+                 {"moon.vrt", "1737400", "3396190", "--body"});
+  EXPECT_EQ(leftovers(), Words{});
+}
+
 TEST_F(Sources, TrueRadii) {
   write_globe_and_inset(0);
   const Result result = build({"--datum", "ellipsoid:3396190,3376200", "--shape", "radius", "--json", "-q"});
@@ -105,6 +199,27 @@ TEST_F(Sources, BodiesByNameAndBySource) {
   EXPECT_EQ(built["radius_m"], 3397200);
   expect_failure(with({"--body", "moon"}), 1, {"m.tif", "3396190", "1737400", "--body"});
   expect_failure(with({"--body", "Nibiru"}), 2, {"Nibiru", "--radius"});
+}
+
+// Maps of small bodies are on spheres of any radius.
+TEST_F(Sources, BodiesThatTheRasterNames) {
+  const auto body_of = [&](const std::string& crs) {
+    write_text(dir_ / "b.vrt",
+               "<VRTDataset rasterXSize=\"180\" rasterYSize=\"90\"><SRS>" + crs +
+                   "</SRS><GeoTransform>-180,2,0,90,0,-2</GeoTransform><VRTRasterBand dataType=\"Int16\" "
+                   "band=\"1\"/></VRTDataset>");
+    const Result result = vpe({"build", "b.vrt", "-o", "b.vpe", "--base-spacing", "100000", "--json", "-q"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const json built = parse_json(result.out);
+    return std::pair(built["body"].get<std::string>(), built["radius_m"].get<double>());
+  };
+  const auto system = [](const std::string& name, const std::string& radius) {
+    return "GEOGCS[\"GCS_" + name + "_2000\",DATUM[\"D_" + name + "_2000\",SPHEROID[\"s\"," + radius +
+           ",0]],PRIMEM[\"m\",0],UNIT[\"degree\",0.0174532925199433]]";
+  };
+  EXPECT_EQ(body_of(system("Vesta", "285000")), std::pair(std::string("Vesta"), 285000.0));
+  EXPECT_EQ(body_of(system("Bennu", "285000")), std::pair(std::string("unnamed"), 285000.0));
+  EXPECT_EQ(body_of(system("Mars", "3396000")), std::pair(std::string("Mars"), 3396190.0));
 }
 
 TEST_F(Sources, BadOptions) {

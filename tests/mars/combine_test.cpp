@@ -106,6 +106,93 @@ TEST_F(Combine, UnknownDatumsAreReported) {
   EXPECT_FALSE(mars::combine_elevation({inset}, {}).datum.is_known());
 }
 
+// A sphere and the areoid differ by kilometres: a raster that states neither cannot join another in silence.
+TEST_F(Combine, SilentDatumsThatDifferAreRefused) {
+  const auto lower = [](LonLat p) { return hills(p) - 590; };
+  const Source base = raster("base", kBase, hills);
+  const Source silent_base = raster("silent_base", kBase, hills, {});
+  const Source inset = raster("inset", kInset, lower, {});
+  const Source known_inset = raster("known_inset", kInset, lower);
+  expect_parts(message({base, inset}),
+               {"inset.tif does not state its vertical datum", "lies 590.", "base.tif", "median of",
+                "robust spread", "--datum inset.tif=areoid or", "sphere:RADIUS_M", "--to-datum"});
+  // The one that does not state it is named, whichever is finer.
+  expect_parts(message({silent_base, known_inset}),
+               {"silent_base.tif does not state", "inset.tif lies 590.", "--datum silent_base.tif=areoid"});
+  expect_parts(message({silent_base, inset}),
+               {"inset.tif does not state", " m below", "--datum inset.tif=same"});
+  // Also below others that agree.
+  const Source middle = raster("middle", {-3, 3.4, 2, -1.6, 500, 500}, hills);
+  expect_parts(message({base, middle, inset}), {"inset.tif does not state", "middle.tif"});
+  // Both ways out: its datum, or that it is that of the others.
+  EXPECT_EQ(message({base, known_inset}), "");
+  CombineOptions options;
+  options.same_datum = {inset->infos().front().name};
+  EXPECT_EQ(message({silent_base, inset}, options), "");
+  EXPECT_EQ(mars::combine_elevation({silent_base, inset}, options).notes.size(), 1U);  // about the base
+}
+
+TEST_F(Combine, SilentDatumsAreRefusedByFigure) {
+  const Source base = raster("base", kBase, [](LonLat) { return 100.0; });
+  const auto refused = [&](double off_m, double noise_m) {
+    test_support::Random random(3);
+    const Source inset = raster("i" + std::to_string(off_m) + "_" + std::to_string(noise_m), kInset,
+                                [&](LonLat) { return 100 + off_m + random.uniform(-noise_m, noise_m); }, {});
+    return !message({base, inset}).empty();
+  };
+  // Without noise the spread counts as 10 m: 30 m are accepted.
+  EXPECT_FALSE(refused(29, 0));
+  EXPECT_TRUE(refused(31, 0));
+  EXPECT_TRUE(refused(-31, 0));
+  // Uniform noise of +-100 m has a robust spread of 74 m: 50 m are accepted.
+  EXPECT_FALSE(refused(45, 100));
+  EXPECT_TRUE(refused(55, 100));
+}
+
+TEST_F(Combine, NamesOfCtxProductsDecideWhenNothingElseDoes) {
+  const std::string pair = "B01_009861_1753_XI_04S222W__B06_011984_1754_XN_04S222W";
+  const Source sphere = raster(pair + "-DEM", kInset, hills, {});
+  const Source areoid = raster(pair + "-DEM-geoid-adj", kInset, hills, {});
+  EXPECT_EQ(sphere->infos().front().datum, VerticalDatum::sphere(3396190));
+  EXPECT_EQ(areoid->infos().front().datum, VerticalDatum::areoid());
+  expect_parts(message({sphere, areoid}), {"'sphere:3396190'", "'areoid'", "--to-datum"});
+  const Combined combined = mars::combine_elevation({areoid}, {});
+  ASSERT_EQ(combined.notes.size(), 1U);
+  expect_parts(combined.notes[0], {"-DEM-geoid-adj.tif: by its name alone", "'areoid'", "--datum"});
+  // Names of others say nothing.
+  EXPECT_FALSE(raster("my-DEM", kInset, hills, {})->infos().front().datum.is_known());
+  EXPECT_FALSE(raster(pair + "-DEM-hs", kInset, hills, {})->infos().front().datum.is_known());
+}
+
+TEST_F(Combine, RadiiOfSmallBodiesAreNoHeights) {
+  const std::string vesta = "+proj=longlat +R=255000 +no_defs";
+  CombineOptions options;
+  options.radius_m = 255'000;
+  const auto radii = [](LonLat p) { return 255'000 + 20 * hills(p); };
+  expect_parts(message({raster("r", kBase, radii, {}, vesta)}, options),
+               {"r.tif", "255000", "distances from its centre", "--datum r.tif=radius"});
+  EXPECT_EQ(message({raster("s", kBase, radii, VerticalDatum::radius(), vesta)}, options), "");
+  expect_parts(message({raster("h", kBase, hills, VerticalDatum::radius(), vesta)}, options),
+               {"h.tif", "no distances from its centre", "--datum h.tif="});
+  EXPECT_EQ(message({raster("h", kBase, hills, {}, vesta)}, options), "");
+}
+
+TEST_F(Combine, ReliefBeyondTheRadiusIsNoted) {
+  const std::string small = "+proj=longlat +R=3500 +no_defs";
+  CombineOptions options;
+  options.radius_m = 3500;
+  const auto notes = [&](double step_m) {
+    return mars::combine_elevation({raster(
+                                       "b", kBase, [&](LonLat p) { return p.lon_deg > 3 ? step_m : 0; },
+                                       VerticalDatum::sphere(3500), small)},
+                                   options)
+        .notes;
+  };
+  EXPECT_TRUE(notes(3400).empty());
+  ASSERT_EQ(notes(65535).size(), 1U);
+  expect_parts(notes(65535)[0], {"b.tif", "65535 m", "3500 m", "nodata"});
+}
+
 TEST_F(Combine, ConvertsThroughTheAreoid) {
   const auto areoid_radius = [](LonLat p) { return 3396000 + 40 * p.lon_deg + 25 * p.lat_deg; };
   const Source areoid = raster("areoid", kBase, areoid_radius, VerticalDatum::radius());

@@ -227,14 +227,21 @@ TEST_P(SamePlanet, AcrossThePrimeMeridian) {
   compare(kPrimeMeridian);
 }
 
-TEST(WestDegrees, WrittenByHandAndImpossibleAreRefused) {
+// Columns that can be no latitudes are longitudes, as gdal_translate -a_srs leaves them.
+TEST(WestDegrees, WrittenByHandAreReadAndImpossibleAreRefused) {
   const test_support::TempDir folder;
-  source_files::write_text(
-      folder / "h.vrt",
-      "<VRTDataset rasterXSize=\"4\" rasterYSize=\"4\"><SRS>IAU_2015:49901</SRS>"
-      "<GeoTransform>-140,1,0,-2,0,-1</GeoTransform><VRTRasterBand dataType=\"Byte\" band=\"1\"/>"
-      "</VRTDataset>");
-  const std::string message = source_files::elevation_error((folder / "h.vrt").string());
+  const auto write = [&](const char* geotransform) {
+    source_files::write_text(
+        folder / "h.vrt",
+        std::string("<VRTDataset rasterXSize=\"4\" rasterYSize=\"4\"><SRS>IAU_2015:49901</SRS><GeoTransform>") +
+            geotransform + "</GeoTransform><VRTRasterBand dataType=\"Byte\" band=\"1\"/></VRTDataset>");
+    return (folder / "h.vrt").string();
+  };
+  const mars::GdalRaster raster(write("-140,1,0,-2,0,-1"));
+  const glm::dvec2 pixel = pds_files::pixel_of(raster, {138.5, -3});
+  EXPECT_NEAR(pixel.x, 1, 1e-6);
+  EXPECT_NEAR(pixel.y, 0.5, 0.05);  // graphic latitudes lie farther from the equator
+  const std::string message = source_files::elevation_error(write("-140,1,0,-102,0,-1"));
   EXPECT_NE(message.find("lies nowhere on the planet"), std::string::npos) << message;
 }
 

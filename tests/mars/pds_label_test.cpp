@@ -125,6 +125,26 @@ TEST(PdsLabel, ArchiveTilesOfMegdr128) {
   EXPECT_EQ(p.grid, (mars::DegreeGrid{90, 0, 128}));
 }
 
+TEST(PdsLabel, LongitudesShowTheConventionOfAFileThatIsCutShort) {
+  // The label of MEGT00N090HB with half of the lines.
+  const auto placement = [](const std::string& lines, const std::string& samples, const std::string& east) {
+    return pds_placement(parse_pds_label(
+        "OBJECT = IMAGE\nLINES = " + lines + "\nLINE_SAMPLES = " + samples +
+        "\nEND_OBJECT\nOBJECT = IMAGE_MAP_PROJECTION\nMAP_PROJECTION_TYPE = \"SIMPLE CYLINDRICAL\"\n"
+        "CENTER_LATITUDE = 0.0 <DEGREE>\nCENTER_LONGITUDE = 180.0 <DEGREE>\nMAP_RESOLUTION = 128.0 "
+        "<PIXEL/DEGREE>\nMAXIMUM_LATITUDE = 0.0 <DEGREE>\nMINIMUM_LATITUDE = -44.0 <DEGREE>\n"
+        "WESTERNMOST_LONGITUDE = 90.0 <DEGREE>\nEASTERNMOST_LONGITUDE = " +
+        east +
+        " <DEGREE>\nLINE_PROJECTION_OFFSET = 0.5\nSAMPLE_PROJECTION_OFFSET = 11520.5\nEND_OBJECT\nEND\n"));
+  };
+  const mars::PdsPlacement cut = placement("2816", "11520", "180.0");
+  EXPECT_EQ(cut.edge_offset_px, mars::kCountsFromOne);
+  EXPECT_EQ(cut.grid, (mars::DegreeGrid{90, 0, 128}));
+  // Bounds of the data in both directions confirm nothing.
+  EXPECT_FALSE(placement("2816", "11000", "180.0").edge_is_confirmed);
+  EXPECT_FALSE(placement("2816", "11520", "179.0").edge_is_confirmed);
+}
+
 TEST(PdsLabel, StatesTheDatum) {
   const auto datum = [](const std::string& words) {
     return mars::pds_datum(parse_pds_label("OBJECT = IMAGE\n" + words + "\nEND_OBJECT\nEND\n"));

@@ -97,6 +97,34 @@ TEST(GdalElevation, PolesOfGridRegisteredMaps) {
   EXPECT_NEAR(height_at(*source, {-5, 0}), 900 + 35.0 / 2, 1e-6);
 }
 
+// GDAL 3.6 reads them as unsigned and tells the sign in the metadata of the band.
+TEST(GdalElevation, SignedBytes) {
+  const test_support::TempDir folder;
+  const auto stored = [](int column, int row) { return 10 * column - 10 * row; };
+  Raster raster;
+  raster.width = 8;
+  raster.height = 8;
+  raster.type = GDT_Byte;
+  raster.options = {"PIXELTYPE=SIGNEDBYTE"};
+  raster.geotransform = box(0, 8, 8, 0, 8, 8);
+  raster.value = [&](int, int column, int row) { return (stored(column, row) + 256) % 256; };
+  for (const double nodata : {-40.0, 216.0}) {
+    raster.nodata = nodata;
+    const std::string path = source_files::write(folder / "s.tif", raster);
+    const auto source = mars::open_elevation(path);
+    for (int row = 0; row < 8; ++row) {
+      for (int column = 0; column < 8; ++column) {
+        const double height_m = height_at(*source, {column + 0.5, 7.5 - row});
+        if (stored(column, row) == -40) {
+          EXPECT_TRUE(std::isnan(height_m)) << height_m;
+        } else {
+          EXPECT_NEAR(height_m, stored(column, row), 1e-9) << column << " " << row;
+        }
+      }
+    }
+  }
+}
+
 TEST(GdalElevation, LinearPathAgreesWithProj) {
   const test_support::TempDir folder;
   test_support::Random random(31);

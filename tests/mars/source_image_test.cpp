@@ -127,6 +127,24 @@ TEST(GdalImage, WideValuesAreStretchedBetweenPercentiles) {
   }
 }
 
+TEST(GdalImage, SignedBytesAreStretchedInTheirOrder) {
+  const test_support::TempDir folder;
+  Raster raster = patch(1, GDT_Byte);
+  raster.options = {"PIXELTYPE=SIGNEDBYTE"};
+  raster.nodata = -5;
+  raster.value = [](int, int column, int row) {
+    return (60 * column - 100 - (row == 3 ? 0 : 5) * row + 256) % 256;
+  };
+  const auto image = mars::open_image(source_files::write(folder / "s.tif", raster));
+  for (const double lat : {0.5, 3.5}) {
+    int before = -1;
+    for (const double lon : {0.5, 1.5, 2.5, 3.5}) {
+      EXPECT_GT(look(*image, {lon, lat}, 1).colour.r, before) << lon;
+      before = look(*image, {lon, lat}, 1).colour.r;
+    }
+  }
+}
+
 TEST(GdalImage, AveragesOverTheTexel) {
   // A checkerboard of single pixels: any texel of some pixels is grey, at every phase.
   const test_support::TempDir folder;

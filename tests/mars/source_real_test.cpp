@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/combine.h"
 #include "mars/sources/source.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/support.h"
@@ -228,6 +229,30 @@ TEST(RealData, InsetsFadeIntoTheGlobe) {
     }
   }
   EXPECT_GT(inside, 10000);
+}
+
+// The CTX DTM above the sphere lies 594 m below MOLA's heights at Gale; the same above the areoid agrees.
+TEST(RealData, ASilentDtmAboveTheSphereIsRefusedOverMola) {
+  const std::string pair = "gale-ctx20/B01_009861_1753_XI_04S222W__B06_011984_1754_XN_04S222W-DEM";
+  VPE_NEED_SHARED(mola, "mola8/mola8_topo.lbl");
+  VPE_NEED_SHARED(sphere, pair + ".tif");
+  VPE_NEED_SHARED(areoid, pair + "-geoid-adj.tif");
+  const test_support::TempDir folder;
+  const auto message = [&](const std::filesystem::path& file, const std::string& name) -> std::string {
+    std::filesystem::copy_file(file, folder / name);
+    try {
+      mars::combine_elevation(
+          {mars::open_elevation(mola.string()), mars::open_elevation((folder / name).string())}, {});
+    } catch (const mars::SourceError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string refused = message(sphere, "s.tif");
+  EXPECT_NE(refused.find("s.tif does not state its vertical datum"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("lies 594."), std::string::npos) << refused;
+  EXPECT_EQ(message(areoid, "a.tif"), "");
+  EXPECT_NE(message(sphere, sphere.filename().string()).find("'sphere:3396190'"), std::string::npos);
 }
 
 }  // namespace

@@ -2,9 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <functional>
+#include <mutex>
 #include <set>
 
+#include "paging/build/source_heights.h"
 #include "tests/paging/planet_fixture.h"
 #include "tests/support/worst.h"
 
@@ -44,6 +50,82 @@ TEST(Builder, PostsAreTheSource) {
     }
   }
   EXPECT_GT(constrained, 0);
+}
+
+// Heights of a large part of the radius in steps from post to post, and posts close to the centre.
+TEST(Builder, SteepGroundOfSmallBodiesIsBuiltOrRefused) {
+  TempDir dir;
+  const auto steps = [](double low, double high) {
+    return [=](const glm::dvec3& d) {
+      const double side = std::floor(40 * d.x) + std::floor(40 * d.y) + std::floor(40 * d.z);
+      return mars::kMarsRadius_m * (std::fmod(std::abs(side), 2) == 0 ? low : high);
+    };
+  };
+  for (const double low : {-0.3, -0.9, -0.998}) {
+    SCOPED_TRACE(low);
+    const FakeElevation source(steps(low, 0.3), fine_around(kCorner, 0.05, 40000));
+    const auto planet = build_fake(dir / "p.vpe", source, 400000);
+    EXPECT_NEAR(planet->meta().highest_radius_m, 1.3 * mars::kMarsRadius_m, 1);
+  }
+  for (const double low : {-0.9995, -1.0, -1.5, -1e30}) {
+    SCOPED_TRACE(low);
+    const FakeElevation source(steps(low, 0.3), fine_around(kCorner, 0.05, 40000));
+    EXPECT_THROW(build_fake(dir / "q.vpe", source, 400000), paging::UnusableSource);
+    EXPECT_FALSE(std::filesystem::exists(dir / "q.vpe.part"));
+  }
+}
+
+// Overwrites its file in the middle of the build, as a download or a program that is still writing does.
+class ChangingElevation final : public FakeElevation {
+ public:
+  ChangingElevation(std::filesystem::path file, std::function<void()> change)
+      : FakeElevation(bumpy_height), stamp_(*mars::file_stamp(file.string())), change_(std::move(change)) {}
+  std::vector<mars::SourceInfo> infos() const override {
+    auto infos = FakeElevation::infos();
+    infos[0].files = {stamp_};
+    return infos;
+  }
+  void sample(std::span<const glm::dvec3> directions, double spacing_m,
+              std::span<double> heights_m) const override {
+    std::call_once(once_, change_);
+    FakeElevation::sample(directions, spacing_m, heights_m);
+  }
+
+ private:
+  mars::FileStamp stamp_;
+  std::function<void()> change_;
+  mutable std::once_flag once_;
+};
+
+TEST(Builder, ASourceThatChangesDuringTheBuildIsRefused) {
+  TempDir dir;
+  const std::filesystem::path file = dir / "dem.bin";
+  const auto write = [&](const std::string& text) { std::ofstream(file, std::ios::binary) << text; };
+  const std::string whole(100'000, 'a');
+  write(whole);
+  const auto time = std::filesystem::last_write_time(file);
+  const auto message = [&](const std::function<void()>& change) -> std::string {
+    try {
+      build_fake(dir / "p.vpe", ChangingElevation(file, change), 1e6);
+    } catch (const paging::UnusableSource& e) {
+      EXPECT_FALSE(std::filesystem::exists(dir / "p.vpe"));
+      EXPECT_FALSE(std::filesystem::exists(dir / "p.vpe.part"));
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message([] {}), "");
+  std::filesystem::remove(dir / "p.vpe");
+  EXPECT_NE(message([&] { write(whole + "b"); }).find("dem.bin: has changed"), std::string::npos);
+  write(whole);
+  EXPECT_NE(message([&] { std::filesystem::last_write_time(file, time + std::chrono::milliseconds(7)); }), "");
+  // Size and time are kept.
+  EXPECT_NE(message([&] {
+              write(std::string(100'000, 'b'));
+              std::filesystem::last_write_time(file, time + std::chrono::milliseconds(7));
+            }),
+            "");
+  EXPECT_NE(message([&] { std::filesystem::remove(file); }), "");
 }
 
 // The reference surface from both sides of every tile border, at posts and between them.

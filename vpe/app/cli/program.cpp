@@ -29,6 +29,12 @@ std::vector<std::string> reversed_arguments(std::vector<std::string> words) {
     // CLI11 accepts numbers like -5 as values, but takes -.5 for an option.
     if (word.starts_with("-.") && parse_numbers(word)) word.insert(1, "0");
   }
+  // CLI11 ends a command at "--". What follows is never an option: numbers are none, and names get a folder.
+  if (const auto end = std::ranges::find(words, "--"); end != words.end()) {
+    for (auto word = words.erase(end); word != words.end(); ++word) {
+      if (word->starts_with('-') && word->size() > 1 && !parse_numbers(*word)) word->insert(0, "./");
+    }
+  }
   std::reverse(words.begin(), words.end());
   return words;
 }

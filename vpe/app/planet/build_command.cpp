@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "mars/embedded/embedded.h"
+#include "mars/sources/source_checks.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/build_sources.h"
@@ -68,6 +69,7 @@ void build(BuildArguments& arguments, const Common& common) {
   for (const std::string& path : arguments.images) {
     images.push_back(is_embedded(path) ? mars::embedded_image(embedded_finest_m(options))
                                        : mars::open_image(path));
+    mars::check_body(images.back()->infos().front(), options.radius_m);
   }
   std::shared_ptr<const mars::ImageSource> image;
   if (!images.empty()) image = images.size() == 1 ? images.front() : mars::stack_images(images);

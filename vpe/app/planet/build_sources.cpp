@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "mars/geodesy/bodies.h"
 #include "mars/sources/adjusted.h"
@@ -16,11 +17,14 @@ namespace {
 
 using Source = std::shared_ptr<const mars::ElevationSource>;
 
+constexpr const char* kSameDatum = "same";
+
 mars::VerticalDatum checked_datum(const std::string& option, const std::string& text, double radius_m) {
   const auto datum = mars::parse_datum(text, radius_m);
   if (datum) return *datum;
   throw UsageError(option + " '" + text +
-                   "': expected areoid, radius, sphere, sphere:RADIUS_M or ellipsoid:EQUATORIAL_M,POLAR_M");
+                   "': expected areoid, radius, sphere, sphere:RADIUS_M or ellipsoid:EQUATORIAL_M,POLAR_M" +
+                   (option == "--datum" ? ", or same" : ""));
 }
 
 double body_radius_m(const std::vector<Source>& sources) {
@@ -32,8 +36,19 @@ double body_radius_m(const std::vector<Source>& sources) {
   return mars::kMarsRadius_m;
 }
 
+// Returns the name of the body that the first of these states, "" if none does.
+std::string stated_body(const std::vector<Source>& sources) {
+  for (const Source& source : sources) {
+    for (const mars::SourceInfo& info : source->infos()) {
+      if (!info.body.empty()) return info.body;
+    }
+  }
+  return "";
+}
+
 void choose_body(const SourceArguments& arguments, const std::vector<Source>& sources,
                  paging::BuildOptions& options) {
+  const double own_m = body_radius_m(sources);
   const mars::Body* body = nullptr;
   if (!arguments.body.empty()) {
     body = mars::find_body(std::string_view(arguments.body));
@@ -41,18 +56,43 @@ void choose_body(const SourceArguments& arguments, const std::vector<Source>& so
       throw UsageError("--body " + arguments.body + ": its radius is not known here; give --radius too");
     }
   } else {
-    body = mars::find_body(arguments.radius_m > 0 ? arguments.radius_m : body_radius_m(sources));
+    body = mars::find_body(arguments.radius_m > 0 ? arguments.radius_m : own_m);
   }
   options.body = !arguments.body.empty() ? arguments.body
                  : body != nullptr       ? std::string(body->name)
                                          : "unnamed";
-  options.radius_m = arguments.radius_m > 0 ? arguments.radius_m
-                     : body != nullptr      ? body->radius_m
-                                            : body_radius_m(sources);
+  options.radius_m = arguments.radius_m > 0 ? arguments.radius_m : body != nullptr ? body->radius_m : own_m;
+  // Small bodies have maps on spheres of any radius; their products name them.
+  const std::string stated = stated_body(sources);
+  if (arguments.body.empty() && arguments.radius_m <= 0 && !stated.empty()) options.body = stated;
 }
 
 bool is_named(const std::string& path, const std::string& name) {
   return path == name || std::filesystem::path(path).filename().string() == name;
+}
+
+// Holds a --datum option: [NAME=]DATUM.
+struct DatumOption {
+  std::string text;
+  std::string name;  // empty: all sources without a datum of their own
+  std::string datum;
+};
+
+DatumOption datum_option(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) return {text, "", text};
+  return {text, text.substr(0, equals), text.substr(equals + 1)};
+}
+
+// Returns the source with the datum that the user states.
+Source with_datum(const Source& source, const mars::VerticalDatum& datum) {
+  const mars::SourceInfo info = source->infos().front();
+  if (datum == info.datum) return source;
+  // Planet files store this text: it must not change.
+  std::string treatment = "datum named as " + to_string(datum);
+  if (info.datum.is_known()) treatment += " against the product's own words (" + to_string(info.datum) + ")";
+  const mars::HeightAdjustment nothing = [](std::span<const glm::dvec3>, std::span<double>) {};
+  return mars::adjusted(source, nothing, datum, treatment);
 }
 
 // Sets the datum that --datum states: of the source of that name, or of all sources without a datum of their
@@ -60,33 +100,65 @@ bool is_named(const std::string& path, const std::string& name) {
 void name_datums(const SourceArguments& arguments, std::vector<Source>& sources) {
   std::vector<bool> named(sources.size(), false);
   for (const std::string& text : arguments.datums) {
-    const std::size_t equals = text.rfind('=');
-    const std::string name = equals == std::string::npos ? std::string() : text.substr(0, equals);
-    const std::string value = equals == std::string::npos ? text : text.substr(equals + 1);
+    const DatumOption option = datum_option(text);
+    if (option.datum == kSameDatum) continue;
     bool found = false;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       const mars::SourceInfo info = sources[i]->infos().front();
-      if (name.empty() ? info.datum.is_known() || named[i] : !is_named(info.name, name)) continue;
+      if (option.name.empty() ? info.datum.is_known() || named[i] : !is_named(info.name, option.name)) continue;
       found = true;
       named[i] = true;
       const double sphere_m = info.body_radius_m > 0 ? info.body_radius_m : mars::kMarsRadius_m;
-      const mars::VerticalDatum datum = checked_datum("--datum", value, sphere_m);
-      if (datum == info.datum) continue;
-      // Planet files store this text: it must not change.
-      std::string treatment = "datum named as " + to_string(datum);
-      if (info.datum.is_known())
-        treatment += " against the product's own words (" + to_string(info.datum) + ")";
-      const mars::HeightAdjustment nothing = [](std::span<const glm::dvec3>, std::span<double>) {};
-      sources[i] = mars::adjusted(sources[i], nothing, datum, treatment);
+      sources[i] = with_datum(sources[i], checked_datum("--datum", option.datum, sphere_m));
     }
-    if (!found && !name.empty()) throw UsageError("--datum " + text + ": no raster is called '" + name + "'");
+    if (!found && !option.name.empty())
+      throw UsageError("--datum " + text + ": no raster is called '" + option.name + "'");
   }
+}
+
+// Gives the sources of --datum [NAME=]same the datum of the coarsest raster that has one. Where none has, returns
+// their names.
+std::set<std::string> name_same_datums(const SourceArguments& arguments, std::vector<Source>& sources) {
+  const mars::ElevationSource* coarsest = nullptr;
+  for (const Source& source : sources) {
+    if (source->infos().front().datum.is_known() &&
+        (coarsest == nullptr ||
+         source->infos().front().resolution_m > coarsest->infos().front().resolution_m)) {
+      coarsest = source.get();
+    }
+  }
+  const mars::VerticalDatum datum =
+      coarsest != nullptr ? coarsest->infos().front().datum : mars::VerticalDatum();
+  std::set<std::string> same;
+  for (const std::string& text : arguments.datums) {
+    const DatumOption option = datum_option(text);
+    if (option.datum != kSameDatum) continue;
+    bool found = false;
+    for (Source& source : sources) {
+      const mars::SourceInfo info = source->infos().front();
+      if (option.name.empty() ? info.datum.is_known() : !is_named(info.name, option.name)) continue;
+      found = true;
+      if (datum.is_known()) {
+        source = with_datum(source, datum);
+      } else {
+        same.insert(info.name);
+      }
+    }
+    if (!found && !option.name.empty())
+      throw UsageError("--datum " + text + ": no raster is called '" + option.name + "'");
+  }
+  return same;
 }
 
 std::string number(double value, const char* format = "%.4g") {
   char text[48];
   std::snprintf(text, sizeof text, format, value);
   return text;
+}
+
+std::string percentage(const mars::OutlierReport& report) {
+  const double percent = 100.0 * static_cast<double>(report.implausible) / static_cast<double>(report.posts);
+  return number(percent, percent < 10 ? "%.2g" : "%.0f");
 }
 
 // Describes the tilt of an inset against its base: metres per kilometre, and the azimuth towards which it
@@ -105,7 +177,8 @@ void add_source_options(CLI::App& command, SourceArguments& a) {
       .add_option(
           "--datum", a.datums,
           "[NAME=]DATUM: vertical datum of the rasters that do not state one, or of the raster NAME alone: "
-          "areoid, radius, sphere, sphere:RADIUS_M or ellipsoid:EQUATORIAL_M,POLAR_M (repeatable)")
+          "areoid, radius, sphere, sphere:RADIUS_M, ellipsoid:EQUATORIAL_M,POLAR_M, or same: that of the other "
+          "rasters, whatever they differ by (repeatable)")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_flag(
@@ -149,6 +222,7 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
   choose_body(arguments, sources, options);
   name_datums(arguments, sources);
   mars::CombineOptions combine;
+  combine.same_datum = name_same_datums(arguments, sources);
   combine.radius_m = options.radius_m;
   combine.true_radii = arguments.shape == "radius";
   combine.convert = !arguments.to_datum.empty();
@@ -188,12 +262,11 @@ void print_findings(const mars::Combined& combined) {
                    f.name.c_str(), number(e->rms_m).c_str(), number(1e-3 * e->reach_m).c_str());
     }
     if (f.outliers && f.outliers->implausible > 0) {
-      std::fprintf(
-          stderr, "vpe: %s: %.2g %% of its posts are implausible, by up to %s m at %s,%s; %s\n", f.name.c_str(),
-          100.0 * static_cast<double>(f.outliers->implausible) / static_cast<double>(f.outliers->posts),
-          number(f.outliers->worst_m).c_str(), base::format_number(f.outliers->worst_at.lon_deg).c_str(),
-          base::format_number(f.outliers->worst_at.lat_deg).c_str(),
-          f.masked ? "rejected" : "--reject-outliers rejects them");
+      std::fprintf(stderr, "vpe: %s: %s %% of its posts are implausible, by up to %s m at %s,%s; %s\n",
+                   f.name.c_str(), percentage(*f.outliers).c_str(), number(f.outliers->worst_m).c_str(),
+                   base::format_number(f.outliers->worst_at.lon_deg).c_str(),
+                   base::format_number(f.outliers->worst_at.lat_deg).c_str(),
+                   f.masked ? "rejected" : "--reject-outliers rejects them");
     }
   }
 }

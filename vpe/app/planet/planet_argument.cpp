@@ -24,7 +24,7 @@ namespace {
 // The first is raised whenever the builder or the embedded planet changes the content of a cached file, the
 // second whenever rasters are interpreted differently.
 constexpr int kCacheGeneration = 3;
-constexpr int kRasterGeneration = 2;
+constexpr int kRasterGeneration = 3;
 
 class FileLock {
  public:

@@ -18,6 +18,8 @@ namespace vpe::app {
 
 namespace {
 
+constexpr double kNotedSagitta_m = 10;
+
 void print_resumption(const std::string& output, const paging::BuildProgress& p) {
   const std::string part = output + ".part";
   if (p.replaced) {
@@ -109,6 +111,13 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
 void print_estimate(const paging::BuildEstimate& estimate, const Common& common) {
   if (common.quiet) return;
   std::fprintf(stderr, "To build: %s\n", estimate_text(estimate).c_str());
+  if (estimate.largest_sagitta_m > kNotedSagitta_m) {
+    std::fprintf(
+        stderr,
+        "vpe: note: the coarsest posts are %.4g km apart, and the flat facets between them lie up to %.3g m "
+        "below the sphere through them; a smaller --base-spacing makes them rounder\n",
+        1e-3 * estimate.coarsest_spacing_m, estimate.largest_sagitta_m);
+  }
   const double memory = 1048576.0 * common.memory_mb;
   if (static_cast<double>(estimate.memory_bytes) > memory / 4) {
     std::fprintf(
