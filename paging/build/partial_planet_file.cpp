@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "paging/planet/codec.h"
+#include "paging/planet/planet_database.h"
 #include "paging/planet/planet_meta.h"
 
 namespace paging {
@@ -49,6 +50,7 @@ bool rows_are_intact(const Database& db, const char* sql) {
 // Returns whether every row is as it was written, and every tile has all of its rows. Damage is not repaired:
 // neither a killed build nor a sudden power loss leaves any, and a disk that changes bits cannot be relied on.
 bool is_intact(Database& db) {
+  check_schema(db);
   Statement check(db, "PRAGMA integrity_check(1)");
   if (!check.step() || check.text(0) != "ok") return false;
   for (const char* sql :

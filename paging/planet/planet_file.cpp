@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "paging/planet/planet_database.h"
 #include "paging/planet/sqlite.h"
 #include "vpe/core/image/image.h"
 
@@ -31,7 +32,7 @@ std::vector<int> parse_sources(const std::string& text) {
 // Holds a read connection with its prepared statements.
 struct PlanetFile::Connection {
   explicit Connection(const std::string& path)
-      : db(path, Database::Mode::kReadOnly),
+      : db(open_planet_database(path)),
         heights(db, "SELECT checksum, data FROM heights WHERE key = ?"),
         nodata(db, "SELECT checksum, data FROM missing WHERE key = ?"),
         node(db, "SELECT steps, sources FROM node WHERE key = ?"),
@@ -81,14 +82,7 @@ PlanetFile::PlanetFile(const std::string& path)
     throw PlanetError(path + ": no such planet file; make one with 'vpe build DEM -o " + path + "'");
   }
   try {
-    Database probe(path, Database::Mode::kReadOnly);
-    if (probe.integer("PRAGMA application_id") != kApplicationId) {
-      throw PlanetError(path + ": an SQLite database, but not a planet file of vpe");
-    }
-    std::map<std::string, std::string> rows;
-    Statement all(probe, "SELECT key, value FROM meta");
-    while (all.step()) rows[all.text(0)] = all.text(1);
-    meta_ = from_rows(rows, path);
+    meta_ = from_rows(read_meta_rows(open_planet_database(path)), path);
     if (meta_.shard) {
       const std::string of = std::to_string(meta_.shard->id.of);
       throw PlanetError(path + ": part " + std::to_string(meta_.shard->id.number) + " of " + of +

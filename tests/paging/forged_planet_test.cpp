@@ -1,0 +1,92 @@
+// Planet files whose checksums are right and whose content is not: refused by name, or reported by verify().
+#include "tests/paging/forged_planet.h"
+
+#include <gtest/gtest.h>
+
+#include "paging/build/shard_file.h"
+#include "paging/planet/verify.h"
+#include "tests/paging/planet_fixture.h"
+
+namespace {
+
+using paging::PlanetError;
+using paging::PlanetFile;
+using test_support::build_fake;
+using test_support::bumpy_height;
+using test_support::FakeElevation;
+using test_support::forge;
+
+class ForgedPlanet : public testing::Test {
+ protected:
+  void SetUp() override { build_fake(path_, FakeElevation(bumpy_height), 400000); }
+
+  // Returns what open() says, or an empty text.
+  std::string refusal() const {
+    try {
+      PlanetFile::open(path_);
+    } catch (const PlanetError& e) {
+      return e.what();
+    }
+    return {};
+  }
+  void expect_refused(const std::string& word) const {
+    const std::string text = refusal();
+    EXPECT_NE(text.find(word), std::string::npos) << "'" << word << "' is not in: " << text;
+    EXPECT_NE(text.find(path_), std::string::npos) << text;
+  }
+  // Returns what opening or verify() finds.
+  std::string findings() const {
+    std::string all = refusal();
+    if (!all.empty()) return all;
+    for (const paging::Problem& p : paging::verify(*PlanetFile::open(path_), {.threads = 1}).problems)
+      all += p.where + ": " + p.what + "\n";
+    return all;
+  }
+  void run_sql(const std::string& sql) const {
+    paging::Database(path_, paging::Database::Mode::kCreate).execute(sql);
+  }
+  std::string number_in_meta(const std::string& key, double change) const {
+    paging::Database db(path_, paging::Database::Mode::kReadOnly);
+    paging::Statement value(db, "SELECT value FROM meta WHERE key = '" + key + "'");
+    value.step();
+    return "UPDATE meta SET value = '" + std::to_string(std::stod(value.text(0)) + change) + "' WHERE key = '" +
+           key + "'";
+  }
+
+  test_support::TempDir dir_;
+  std::string path_ = (dir_ / "p.vpe").string();
+};
+
+TEST_F(ForgedPlanet, NothingIsFoundWhereNothingWasChanged) {
+  test_support::forge_checksums(path_);
+  EXPECT_EQ(findings(), "");
+}
+
+// A view may never end: the schema is looked at before a row is read.
+TEST_F(ForgedPlanet, ViewsInPlaceOfTables) {
+  const auto original = dir_ / "original.vpe";
+  std::filesystem::copy_file(path_, original);
+  for (const std::string table : {"meta", "node", "variant", "posts_error", "heights", "missing", "mesh", "image"}) {
+    SCOPED_TRACE(table);
+    run_sql("ALTER TABLE " + table + " RENAME TO kept; CREATE VIEW " + table +
+            " AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x AS key, 'v' AS value, "
+            "x AS checksum, x AS data, x AS variant FROM c");
+    expect_refused("'" + table + "' is a view");
+    EXPECT_THROW(paging::ShardFile{path_}, PlanetError);
+    std::filesystem::copy_file(original, path_, std::filesystem::copy_options::overwrite_existing);
+  }
+  run_sql("ALTER TABLE heights RENAME TO kept; CREATE TABLE heights(key INTEGER PRIMARY KEY, checksum INTEGER, data "
+          "AS (zeroblob(1 << 30)))");
+  expect_refused("computed");
+  std::filesystem::copy_file(original, path_, std::filesystem::copy_options::overwrite_existing);
+  run_sql("CREATE TRIGGER t AFTER DELETE ON meta BEGIN DELETE FROM node; END");
+  expect_refused("trigger");
+}
+
+TEST_F(ForgedPlanet, MetaOfMillionsOfRows) {
+  run_sql("WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c WHERE x < 20000) "
+          "INSERT INTO meta SELECT 'k' || x, 'v' FROM c");
+  expect_refused("too many rows");
+}
+
+}  // namespace
