@@ -85,13 +85,11 @@ bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::Sourc
                     [](const auto& x, const auto& y) { return tie(x) == tie(y) && x.datum == y.datum; });
 }
 
-constexpr const char* kChecksumKey = "checksum";
-
 // Covers all other rows, including those of later minor formats.
 std::string checksum(const std::map<std::string, std::string>& rows) {
   Bytes bytes;
   for (const auto& [key, value] : rows) {
-    if (key == kChecksumKey) continue;
+    if (key == kMetaChecksumKey) continue;
     for (const std::string* part : {&key, &value}) {
       bytes.insert(bytes.end(), part->begin(), part->end());
       bytes.push_back(0);
@@ -150,7 +148,7 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"illustration", m.illustration ? "true" : "false"}};
   if (!m.levels.empty()) rows["levels"] = to_text(m.levels);
   if (m.shard) rows["part"] = to_text(*m.shard);
-  rows[kChecksumKey] = checksum(rows);
+  rows[kMetaChecksumKey] = checksum(rows);
   return rows;
 }
 
@@ -169,7 +167,7 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     throw PlanetError(path + ": planet file format " + format + " is newer than this program reads (" +
                       std::to_string(kFormatMajor) + ".x); update vpe");
   }
-  if (text(kChecksumKey) != checksum(rows)) {
+  if (text(kMetaChecksumKey) != checksum(rows)) {
     throw PlanetError(path + ": damaged: the table meta has a wrong checksum; build the file again");
   }
   PlanetMeta m;

@@ -23,6 +23,7 @@ inline constexpr int kFormatMinor = 2;
 inline constexpr double kMinRadius_m = 1;     // of a planet, included
 inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
+inline constexpr const char* kMetaChecksumKey = "checksum";  // its row covers all other rows of `meta`
 
 // Reports a planet file that cannot be used. what() names the file, the problem and what to do.
 class PlanetError : public std::runtime_error {
