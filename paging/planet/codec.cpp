@@ -186,7 +186,7 @@ Bytes encode_mesh(const PackedMesh& packed) {
   return compress(raw, kMeshLevel);
 }
 
-PackedMesh decode_mesh(std::span<const std::uint8_t> packed) {
+PackedMesh decode_mesh(std::span<const std::uint8_t> packed, int expected_intervals) {
   const Bytes raw = decompress(packed, kMaxPayload);
   Reader in(raw);
   PackedMesh out;
@@ -195,6 +195,10 @@ PackedMesh decode_mesh(std::span<const std::uint8_t> packed) {
   const std::uint32_t triangles = in.varint();
   if (intervals == 0 || intervals > 1024 || vertices < 3 || vertices > 65536 || triangles > 2 * vertices) {
     throw CodecError("mesh: sizes out of range");
+  }
+  if (static_cast<int>(intervals) != expected_intervals) {
+    throw CodecError("mesh: " + std::to_string(intervals) + " intervals instead of " +
+                     std::to_string(expected_intervals));
   }
   out.mesh.intervals = static_cast<int>(intervals);
   out.mesh.vertices.reserve(vertices);

@@ -18,16 +18,6 @@ std::string damaged(const std::string& path, const lod::TileKey& key, const std:
   return path + ": tile " + lod::to_string(key) + " is damaged (" + what + "); build the planet file again";
 }
 
-std::vector<int> parse_sources(const std::string& text) {
-  std::vector<int> out;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t used = 0;
-    out.push_back(std::stoi(text.substr(at), &used));
-    at += used + 1;
-  }
-  return out;
-}
-
 PlanetError replaced(const std::string& path) {
   return PlanetError(
       path + ": another planet file was written there while this one was in use; run the command again");
@@ -141,6 +131,9 @@ void PlanetFile::read_index(const Database& db) {
   std::vector<lod::TileInfo> tiles;
   tiles.reserve(rows.size());
   for (NodeRow& row : rows) {
+    const std::vector<int> sources = *source_indices(row.sources);
+    if (!sources.empty() && std::ranges::max(sources) >= static_cast<int>(meta_.sources.size()))
+      throw damage("the tile index is wrong at row " + std::to_string(row.key) + ": no such source");
     tiles.push_back({*lod::unpack(row.key), row.min_m, row.max_m, row.inner,
                      row.posts_terms ? lod::StatedTerms(*row.posts_terms) : lod::StatedTerms(),
                      std::move(row.variants), row.slope});
@@ -207,7 +200,9 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
       found.mask = verified(connection.nodata, row, path_, key, "nodata mask");
       return found;
     });
-    out.source = parse_sources(stored.sources);
+    const auto sources = source_indices(stored.sources);
+    if (!sources) throw PlanetError(damaged(path_, key, "list of sources '" + stored.sources + "'"));
+    out.source = *sources;
     out.coarser_neighbour_mask = stored.coarser_neighbour_mask;
     const std::vector<std::int32_t> quanta = decode_heights(stored.packed, meta_.tile.posts());
     out.posts.key = key;
@@ -227,13 +222,15 @@ TileHeights PlanetFile::heights(const lod::TileKey& key, double exaggeration) co
 
 PackedMesh PlanetFile::mesh(const lod::TileKey& key, int variant) const {
   const std::int64_t row = lod::pack(key);
+  const lod::TileInfo* tile = tree_->find(key);
+  if (tile == nullptr) throw PlanetError(damaged(path_, key, "not in the index"));
   try {
     const auto packed = read([&](Connection& connection) {
       connection.mesh.bind(1, row).bind(2, static_cast<std::int64_t>(variant));
       return verified(connection.mesh, row + variant, path_, key, "mesh");
     });
     if (!packed) throw PlanetError(damaged(path_, key, "mesh " + std::to_string(variant) + " is missing"));
-    return decode_mesh(*packed);
+    return decode_mesh(*packed, mesh_intervals(meta_.tile, tile->has_children));
   } catch (const DatabaseError& e) {
     throw PlanetError(damaged(path_, key, e.what()));
   } catch (const CodecError& e) {

@@ -8,6 +8,12 @@
 
 namespace paging {
 
+namespace {
+
+constexpr std::int64_t kEdgeMasks = 16;
+
+}  // namespace
+
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows) {
   Statement nodes(db,
                   "SELECT key, min_m, max_m, inner, steps, sources, checksum, slope, face, level, i, j "
@@ -43,6 +49,7 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
     }
     const std::optional<lod::TileKey> key = lod::unpack(row.key);
     if (!key || checksum(row) != nodes.integer(6)) return row.key;
+    if (!source_indices(row.sources) || nodes.integer(4) < 0 || nodes.integer(4) >= kEdgeMasks) return row.key;
     // The columns that help people with SQL must agree with the key.
     if (nodes.integer(8) != static_cast<std::int64_t>(key->face) || nodes.integer(9) != key->level ||
         nodes.integer(10) != std::int64_t{key->i} || nodes.integer(11) != std::int64_t{key->j}) {

@@ -1,10 +1,13 @@
 #include "paging/planet/planet_meta.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "paging/planet/codec.h"
+#include "vpe/base/number.h"
 
 namespace paging {
 
@@ -206,9 +209,23 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     if (rows.contains("part")) m.shard = shard_from_text(text("part"));
   } catch (const json::exception& e) {
     throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
+  } catch (const std::invalid_argument& e) {
+    throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
   }
   check_ranges(m, path);
   return m;
+}
+
+std::optional<std::vector<int>> source_indices(const std::string& sources) {
+  std::vector<int> numbers;
+  for (std::size_t begin = 0; begin < sources.size();) {
+    const std::size_t end = std::min(sources.find(',', begin), sources.size());
+    const auto number = vpe::base::parse_integer(std::string_view(sources).substr(begin, end - begin));
+    if (!number || *number < 0 || *number > std::numeric_limits<int>::max()) return std::nullopt;
+    numbers.push_back(static_cast<int>(*number));
+    begin = end + 1;
+  }
+  return numbers;
 }
 
 namespace {

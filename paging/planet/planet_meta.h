@@ -81,12 +81,21 @@ struct NodeRow {
   std::vector<lod::MeshVariant> variants;
   std::optional<lod::ErrorTerms> posts_terms;  // of an inner tile; has a checksum of its own (format 1.2)
 };
+// Returns the numbers of NodeRow::sources, or nullopt if it is not a list of numbers from 0 on.
+std::optional<std::vector<int>> source_indices(const std::string& sources);
+
+// Returns the intervals of the grid that a tile's meshes are made on: an inner tile is meshed over its
+// children's posts.
+inline int mesh_intervals(const lod::TileShape& shape, bool inner) {
+  return (inner ? 2 : 1) * shape.intervals();
+}
+
 // Returns the checksum of a row's canonical bytes; the second one covers posts_terms alone.
 std::int64_t checksum(const NodeRow& row);
 std::int64_t posts_checksum(const NodeRow& row);
 
-// Reads the whole tile index in key order. Returns the key of the first row that does not match its checksum,
-// if any; `rows` then ends before it. Throws DatabaseError.
+// Reads the whole tile index in key order. Returns the key of the first row that does not match its checksum, or
+// that no builder writes, if any; `rows` then ends before it. Throws DatabaseError.
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows);
 
 // Summarizes what the tables hold of each level, except the resampling error; `posts` is the number of posts of

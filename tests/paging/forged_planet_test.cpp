@@ -62,6 +62,36 @@ TEST_F(ForgedPlanet, NothingIsFoundWhereNothingWasChanged) {
   EXPECT_EQ(findings(), "");
 }
 
+TEST_F(ForgedPlanet, SourcesThatAreNoNumbers) {
+  for (const char* sources : {"x", "0,,x", "0x", "99999999999999999999", "-1", "7"}) {
+    SCOPED_TRACE(sources);
+    forge(path_, std::string("UPDATE node SET sources = '") + sources + "' WHERE key = (SELECT max(key) FROM node)");
+    expect_refused("the tile index is wrong at row");
+  }
+}
+
+TEST_F(ForgedPlanet, MeshesOfAnotherGrid) {
+  const auto planet = PlanetFile::open(path_);
+  const lod::TileKey key = planet->tree()[0].key;
+  for (const int intervals : {1, 7, 16, 64}) {
+    SCOPED_TRACE(intervals);
+    const lod::TileMesh full = lod::mesh_full(intervals);
+    const paging::PackedMesh mesh{full, std::vector<std::int32_t>(full.vertices.size())};
+    {
+      paging::Database db(path_, paging::Database::Mode::kCreate);
+      const paging::Bytes data = paging::encode_mesh(mesh);
+      paging::Statement(db, "UPDATE mesh SET data = ? WHERE key = ? AND variant = 0")
+          .bind(1, std::span(data))
+          .bind(2, lod::pack(key))
+          .step();
+      db.execute("UPDATE variant SET triangles = " + std::to_string(full.triangle_count()) + " WHERE key = " +
+                 std::to_string(lod::pack(key)) + " AND variant = 0");
+    }
+    test_support::forge_checksums(path_);
+    EXPECT_NE(findings().find("intervals instead of"), std::string::npos) << findings();
+  }
+}
+
 // A view may never end: the schema is looked at before a row is read.
 TEST_F(ForgedPlanet, ViewsInPlaceOfTables) {
   const auto original = dir_ / "original.vpe";
