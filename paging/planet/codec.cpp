@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kHeightsLevel = 2;
 constexpr int kMeshLevel = 3;
-constexpr std::size_t kMaxPayload = std::size_t{1} << 26;
+// Above 65 536 vertices of two numbers and 131 072 triangles of three, each number of at most five bytes.
+constexpr std::size_t kMaxMeshBytes = std::size_t{1} << 22;
 
 std::uint32_t zigzag(std::int32_t x) {
   return (static_cast<std::uint32_t>(x) << 1) ^ static_cast<std::uint32_t>(x >> 31);
@@ -187,7 +188,7 @@ Bytes encode_mesh(const PackedMesh& packed) {
 }
 
 PackedMesh decode_mesh(std::span<const std::uint8_t> packed, int expected_intervals) {
-  const Bytes raw = decompress(packed, kMaxPayload);
+  const Bytes raw = decompress(packed, kMaxMeshBytes);
   Reader in(raw);
   PackedMesh out;
   const std::uint32_t intervals = in.varint();

@@ -262,7 +262,7 @@ ImageTile PlanetFile::image(const lod::TileKey& key) const {
       return verified(connection.image, row, path_, key, "image");
     });
     if (!packed) throw PlanetError(damaged(path_, key, "image is missing"));
-    vpe::core::RgbImage decoded = vpe::core::decode_jpeg(*packed);
+    vpe::core::RgbImage decoded = vpe::core::decode_jpeg(*packed, std::int64_t{kImageSide} * kImageSide);
     if (decoded.width != kImageSide || decoded.height != kImageSide) {
       throw PlanetError(damaged(path_, key, "image of the wrong size"));
     }

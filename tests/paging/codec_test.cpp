@@ -120,6 +120,20 @@ TEST(Codec, DamagedBytesThrowOrDecode) {
   EXPECT_GT(refused, 500);
 }
 
+// A few kilobytes of zeros must not take tens of megabytes for every thread that reads.
+TEST(Codec, MeshesUnpackToNoMoreThanMeshesNeed) {
+  const auto says = [](std::size_t size) {
+    try {
+      paging::decode_mesh(paging::compress(Bytes(size), 1), 64);
+    } catch (const paging::CodecError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(says(std::size_t{5} << 20).find("not a frame of the expected size"), std::string::npos);
+  EXPECT_NE(says(1 << 20).find("sizes out of range"), std::string::npos);
+}
+
 // The same below zstd: wrong numbers inside a valid frame.
 TEST(Codec, WrongNumbersInsideAFrameThrowOrDecode) {
   Random random(15);

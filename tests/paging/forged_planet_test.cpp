@@ -6,6 +6,7 @@
 #include "paging/build/shard_file.h"
 #include "paging/planet/verify.h"
 #include "tests/paging/planet_fixture.h"
+#include "vpe/core/image/image.h"
 
 namespace {
 
@@ -117,6 +118,39 @@ TEST_F(ForgedPlanet, MetaOfMillionsOfRows) {
   run_sql("WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c WHERE x < 20000) "
           "INSERT INTO meta SELECT 'k' || x, 'v' FROM c");
   expect_refused("too many rows");
+}
+
+class ForgedImage : public testing::Test {};
+
+// Reading must not unpack an image that is larger than a tile's.
+TEST_F(ForgedImage, LargerThanATile) {
+  test_support::TempDir dir;
+  const std::string path = (dir / "p.vpe").string();
+  paging::BuildOptions options;
+  options.output = path;
+  options.base_spacing_m = 400000;
+  options.tile_k = 5;
+  options.threads = 1;
+  options.resampling_posts = 100;
+  const test_support::FakeImage image;
+  paging::build_planet(options, FakeElevation(bumpy_height), &image);
+  const lod::TileKey key = PlanetFile::open(path)->image_keys().front();
+  constexpr int kSide = 300;
+  const std::vector<vpe::base::Rgb> pixels(std::size_t{kSide} * kSide);
+  {
+    const paging::Bytes data = vpe::core::encode_jpeg(pixels, kSide, kSide, 50);
+    paging::Database db(path, paging::Database::Mode::kCreate);
+    paging::Statement(db, "UPDATE image SET data = ? WHERE key = ?").bind(1, std::span(data)).bind(2, lod::pack(key)).step();
+  }
+  test_support::forge_checksums(path);
+  try {
+    PlanetFile::open(path)->image(key);
+    FAIL();
+  } catch (const PlanetError& e) {
+    // The limit is that of the header, before pixels are unpacked.
+    EXPECT_NE(std::string(e.what()).find("66049"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find(lod::to_string(key)), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
