@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "paging/planet/check_meta.h"
 #include "paging/planet/planet_database.h"
 #include "vpe/base/file.h"
 #include "vpe/core/image/image.h"
@@ -152,6 +153,8 @@ void PlanetFile::read_index(const Database& db) {
   while (images.step()) image_keys_.push_back(images.integer(0));
   if (static_cast<std::int64_t>(image_keys_.size()) != meta_.image_tiles)
     throw damage("image tiles are missing");
+  if (const std::string wrong = unsafe_meta(meta_, tree_->tiles(), image_keys_); !wrong.empty())
+    throw damage(wrong);
   Statement masks(db, "SELECT key FROM missing");
   while (masks.step()) {
     const auto key = lod::unpack(masks.integer(0));

@@ -90,6 +90,12 @@ inline int mesh_intervals(const lod::TileShape& shape, bool inner) {
   return (inner ? 2 : 1) * shape.intervals();
 }
 
+// Bounds how far a facet of a finest tile's cells lies below the sphere through its posts: a point of a flat
+// triangle is within longest edge / sqrt(3) of a post.
+inline double facet_sagitta_m(double spacing_m, double radius_m) {
+  return 2.5 * spacing_m * spacing_m / (6.0 * radius_m);
+}
+
 // Returns the checksum of a row's canonical bytes; the second one covers posts_terms alone.
 std::int64_t checksum(const NodeRow& row);
 std::int64_t posts_checksum(const NodeRow& row);

@@ -66,7 +66,8 @@ TEST_F(ForgedPlanet, NothingIsFoundWhereNothingWasChanged) {
 TEST_F(ForgedPlanet, SourcesThatAreNoNumbers) {
   for (const char* sources : {"x", "0,,x", "0x", "99999999999999999999", "-1", "7"}) {
     SCOPED_TRACE(sources);
-    forge(path_, std::string("UPDATE node SET sources = '") + sources + "' WHERE key = (SELECT max(key) FROM node)");
+    forge(path_,
+          std::string("UPDATE node SET sources = '") + sources + "' WHERE key = (SELECT max(key) FROM node)");
     expect_refused("the tile index is wrong at row");
   }
 }
@@ -85,29 +86,57 @@ TEST_F(ForgedPlanet, MeshesOfAnotherGrid) {
           .bind(1, std::span(data))
           .bind(2, lod::pack(key))
           .step();
-      db.execute("UPDATE variant SET triangles = " + std::to_string(full.triangle_count()) + " WHERE key = " +
-                 std::to_string(lod::pack(key)) + " AND variant = 0");
+      db.execute("UPDATE variant SET triangles = " + std::to_string(full.triangle_count()) +
+                 " WHERE key = " + std::to_string(lod::pack(key)) + " AND variant = 0");
     }
     test_support::forge_checksums(path_);
     EXPECT_NE(findings().find("intervals instead of"), std::string::npos) << findings();
   }
 }
 
+TEST_F(ForgedPlanet, BoundsAndCountsThatAreNotOfTheTiles) {
+  const auto original = dir_ / "original.vpe";
+  std::filesystem::copy_file(path_, original);
+  const auto finds = [&](const std::string& sql, const std::string& word) {
+    SCOPED_TRACE(sql);
+    forge(path_, sql);
+    EXPECT_NE(findings().find(word), std::string::npos) << findings();
+    std::filesystem::copy_file(original, path_, std::filesystem::copy_options::overwrite_existing);
+  };
+  finds(number_in_meta("lowest_radius_m", 1), "lowest_radius_m");
+  finds(number_in_meta("lowest_radius_m", -1), "lowest_radius_m");
+  finds(number_in_meta("highest_radius_m", 1), "highest_radius_m");
+  finds(number_in_meta("highest_radius_m", -1), "highest_radius_m");
+  finds("UPDATE meta SET value = '-5' WHERE key = 'leaf_tiles'", "leaf_tiles");
+  finds("UPDATE meta SET value = '77' WHERE key = 'finest_level'", "finest_level");
+  finds("UPDATE meta SET value = '3' WHERE key = 'finest_image_level'", "finest_image_level");
+  finds("UPDATE meta SET value = '12345' WHERE key = 'resampling_max_m'", "resampling");
+  finds("UPDATE meta SET value = '0.00001' WHERE key = 'resampling_rms_m'", "resampling");
+  finds("UPDATE meta SET value = '-1' WHERE key = 'resampling_posts'", "resampling");
+  finds("UPDATE meta SET value = replace(value, '\"level\":0', '\"level\":78') WHERE key = 'levels'", "levels");
+  finds("UPDATE meta SET value = replace(value, '\"bytes\":', '\"bytes\":1') WHERE key = 'levels'", "levels");
+  finds("UPDATE meta SET value = replace(value, '\"holes\":', '\"holes\":1') WHERE key = 'levels'", "levels");
+  finds("UPDATE meta SET value = 'no datum' WHERE key = 'datum'", "datum");
+}
+
 // A view may never end: the schema is looked at before a row is read.
 TEST_F(ForgedPlanet, ViewsInPlaceOfTables) {
   const auto original = dir_ / "original.vpe";
   std::filesystem::copy_file(path_, original);
-  for (const std::string table : {"meta", "node", "variant", "posts_error", "heights", "missing", "mesh", "image"}) {
+  for (const std::string table :
+       {"meta", "node", "variant", "posts_error", "heights", "missing", "mesh", "image"}) {
     SCOPED_TRACE(table);
-    run_sql("ALTER TABLE " + table + " RENAME TO kept; CREATE VIEW " + table +
-            " AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x AS key, 'v' AS value, "
-            "x AS checksum, x AS data, x AS variant FROM c");
+    run_sql(
+        "ALTER TABLE " + table + " RENAME TO kept; CREATE VIEW " + table +
+        " AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x AS key, 'v' AS value, "
+        "x AS checksum, x AS data, x AS variant FROM c");
     expect_refused("'" + table + "' is a view");
     EXPECT_THROW(paging::ShardFile{path_}, PlanetError);
     std::filesystem::copy_file(original, path_, std::filesystem::copy_options::overwrite_existing);
   }
-  run_sql("ALTER TABLE heights RENAME TO kept; CREATE TABLE heights(key INTEGER PRIMARY KEY, checksum INTEGER, data "
-          "AS (zeroblob(1 << 30)))");
+  run_sql(
+      "ALTER TABLE heights RENAME TO kept; CREATE TABLE heights(key INTEGER PRIMARY KEY, checksum INTEGER, data "
+      "AS (zeroblob(1 << 30)))");
   expect_refused("computed");
   std::filesystem::copy_file(original, path_, std::filesystem::copy_options::overwrite_existing);
   run_sql("CREATE TRIGGER t AFTER DELETE ON meta BEGIN DELETE FROM node; END");
@@ -115,8 +144,9 @@ TEST_F(ForgedPlanet, ViewsInPlaceOfTables) {
 }
 
 TEST_F(ForgedPlanet, MetaOfMillionsOfRows) {
-  run_sql("WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c WHERE x < 20000) "
-          "INSERT INTO meta SELECT 'k' || x, 'v' FROM c");
+  run_sql(
+      "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c WHERE x < 20000) "
+      "INSERT INTO meta SELECT 'k' || x, 'v' FROM c");
   expect_refused("too many rows");
 }
 
@@ -140,7 +170,10 @@ TEST_F(ForgedImage, LargerThanATile) {
   {
     const paging::Bytes data = vpe::core::encode_jpeg(pixels, kSide, kSide, 50);
     paging::Database db(path, paging::Database::Mode::kCreate);
-    paging::Statement(db, "UPDATE image SET data = ? WHERE key = ?").bind(1, std::span(data)).bind(2, lod::pack(key)).step();
+    paging::Statement(db, "UPDATE image SET data = ? WHERE key = ?")
+        .bind(1, std::span(data))
+        .bind(2, lod::pack(key))
+        .step();
   }
   test_support::forge_checksums(path);
   try {
