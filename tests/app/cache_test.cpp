@@ -139,5 +139,20 @@ TEST_F(Cache, ThatMayNotBeWrittenToIsRead) {
   fs::permissions(dir_ / "cache" / "vpe", fs::perms::owner_all);
 }
 
+// GeoPackages are SQLite files as planets are.
+TEST_F(Cache, GeoPackagesAreRasters) {
+  write_flat(dir_ / "data.tif", 1000);
+  {
+    const std::unique_ptr<GDALDataset> from(GDALDataset::Open((dir_ / "data.tif").c_str()));
+    const std::unique_ptr<GDALDataset> copy(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
+        (dir_ / "data.gpkg").c_str(), from.get(), 0, nullptr, nullptr, nullptr));
+    ASSERT_TRUE(copy);
+  }
+  EXPECT_NEAR(height("data.gpkg"), 1000, 5);
+  // A planet file needs no ending.
+  fs::copy_file(planet(), dir_ / "planet.db");
+  EXPECT_EQ(vpe({"info", "planet.db"}).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace app_test

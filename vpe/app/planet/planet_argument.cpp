@@ -12,7 +12,7 @@
 
 #include "mars/embedded/embedded.h"
 #include "mars/sources/source.h"
-#include "vpe/app/cli/parsing.h"
+#include "paging/planet/planet_database.h"
 #include "vpe/app/planet/build_sources.h"
 #include "vpe/app/planet/planet_build.h"
 #include "vpe/base/user_folders.h"
@@ -160,7 +160,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
 }
 
 bool is_raster_argument(const std::string& argument) {
-  return !argument.empty() && !argument.ends_with(".vpe") && !is_sqlite(argument);
+  return !argument.empty() && !argument.ends_with(".vpe") && !paging::is_planet_database(argument);
 }
 
 void note_illustration(const paging::PlanetMeta& meta, bool quiet) {

@@ -19,7 +19,7 @@ std::filesystem::path cache_folder();
 std::filesystem::path embedded_planet_path();
 
 // Returns true if open_planet() takes the argument for a raster: it is not empty, does not end in ".vpe", and the
-// file, if there is one, is not a database of SQLite.
+// file, if there is one, is not a planet file.
 bool is_raster_argument(const std::string& argument);
 
 // Opens a planet file. Where the argument is a DEM or empty, this first builds a planet file into the cache,
