@@ -154,5 +154,15 @@ TEST_F(Cache, GeoPackagesAreRasters) {
   EXPECT_EQ(vpe({"info", "planet.db"}).exit_code, 0);
 }
 
+TEST_F(Cache, InfoNamesTheRaster) {
+  const std::string name = "two\nlines.tif";
+  write_flat(dir_ / name, 1000);
+  const Result result = vpe({"info", name});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(says(result.out, {"raster             two\\nlines.tif\n", "its planet file"}));
+  EXPECT_EQ(parse_json(vpe({"info", name, "--json"}).out)["raster"], name);
+  EXPECT_TRUE(parse_json(vpe({"info", planet().string(), "--json"}).out)["raster"].is_null());
+}
+
 }  // namespace
 }  // namespace app_test
