@@ -8,6 +8,7 @@
 
 #include "paging/planet/codec.h"
 #include "vpe/base/number.h"
+#include "vpe/core/json_text.h"
 
 namespace paging {
 
@@ -134,8 +135,8 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"tile_k", std::to_string(m.tile.k)},
       {"quantum_m", json(m.quantum_m).dump()},
       {"fill_m", json(m.fill_m).dump()},
-      {"sources", to_json(m.sources).dump()},
-      {"image_sources", to_json(m.image_sources).dump()},
+      {"sources", vpe::core::json_text(to_json(m.sources))},
+      {"image_sources", vpe::core::json_text(to_json(m.image_sources))},
       {"resampling_max_m", json(m.resampling.max_m).dump()},
       {"resampling_rms_m", json(m.resampling.rms_m).dump()},
       {"resampling_posts", std::to_string(m.resampling.posts)},

@@ -164,5 +164,20 @@ TEST_F(Cache, InfoNamesTheRaster) {
   EXPECT_TRUE(parse_json(vpe({"info", planet().string(), "--json"}).out)["raster"].is_null());
 }
 
+TEST_F(Cache, NamesThatAreNotUtf8) {
+  const std::string name = "caf\xe9.tif";
+  write_flat(dir_ / name, 1000);
+  EXPECT_NEAR(height(name), 1000, 5);
+  const Result built = vpe({"build", name, "-o", "caf\xe9.vpe", "--base-spacing", "100000", "--json"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_EQ(parse_json(built.out)["sources"][0]["name"], "caf\xef\xbf\xbd.tif");
+  EXPECT_EQ(vpe({"verify", "caf\xe9.vpe"}).exit_code, 0);
+  const Result drawn = vpe({"panorama", "caf\xe9.vpe", "--at", "10,10", "--height", "1000", "-o", "caf\xe9.png",
+                            "--width", "256", "-q"});
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  const Result seen = vpe({"overlook", "caf\xe9.png", "--view", "10,0", "--size", "64x48", "-o", "view.png"});
+  EXPECT_EQ(seen.exit_code, 0) << seen.err;
+}
+
 }  // namespace
 }  // namespace app_test

@@ -2,10 +2,11 @@
 
 #include <cstdio>
 
+#include "vpe/core/json_text.h"
 
 namespace vpe::app {
 
-void print_json(const nlohmann::json& json) { std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str()); }
+void print_json(const nlohmann::json& json) { std::printf("%s\n", core::json_text(json, 2).c_str()); }
 
 std::string on_one_line(const std::string& text) {
   constexpr const char* kDigits = "0123456789abcdef";
