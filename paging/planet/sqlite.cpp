@@ -30,7 +30,7 @@ void Database::fail(const std::string& operation) const {
   const int code = db_ ? sqlite3_extended_errcode(db_.get()) & 0xff : SQLITE_NOMEM;
   throw DatabaseError(
       path_ + ": cannot " + operation + ": " + message +
-          (code == SQLITE_FULL ? "; free some space" : ""),
+          (code == SQLITE_FULL ? "; free some space there, or in the folder of temporary files" : ""),
       code);
 }
 
