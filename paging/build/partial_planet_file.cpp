@@ -11,6 +11,7 @@ namespace paging {
 
 namespace fs = std::filesystem;
 
+const char* const kRaisePageLimit = "PRAGMA max_page_count = 4294967294";
 const char* const kDropPartialTables = "DROP TABLE IF EXISTS recipe; DROP TABLE IF EXISTS note";
 const char* const kKeepShardTables = "DELETE FROM note WHERE number >= 0";
 
@@ -23,6 +24,7 @@ constexpr const char* kPartialTables =
 std::unique_ptr<Database> open_exclusively(const std::string& path) {
   auto db = std::make_unique<Database>(path, Database::Mode::kCreate);
   db->execute("PRAGMA page_size = 8192");
+  db->execute(kRaisePageLimit);
   // New pages need no rollback: the journal costs little here, and a killed build leaves whole transactions.
   db->execute("PRAGMA journal_mode = TRUNCATE");
   db->execute("PRAGMA synchronous = NORMAL");

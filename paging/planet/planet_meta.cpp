@@ -26,6 +26,7 @@ CREATE TABLE missing(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
 CREATE TABLE mesh(id INTEGER PRIMARY KEY, key INTEGER, variant INTEGER, checksum INTEGER, data BLOB);
 CREATE UNIQUE INDEX mesh_key ON mesh(key, variant);
 CREATE TABLE image(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
+CREATE INDEX image_keys ON image(key);
 )sql";
 
 namespace {

@@ -310,6 +310,30 @@ std::int64_t process_bytes(const std::string& key) {
   return -1;
 }
 
+class FineImage : public test_support::FakeImage {
+ public:
+  double spacing_in(const mars::Cap&) const override { return 5000; }
+};
+
+TEST(PlanetFile, OpeningReadsNoImages) {
+  TempDir dir;
+  paging::BuildOptions options;
+  options.output = (dir / "p.vpe").string();
+  options.base_spacing_m = 400000;
+  options.tile_k = 5;
+  options.resampling_posts = 100;
+  const FineImage image;
+  paging::build_planet(options, FakeElevation(bumpy_height), &image);
+  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(options.output));
+  const std::int64_t before = process_bytes("rchar");
+  if (before < 0) GTEST_SKIP() << "no /proc/self/io";
+  const auto planet = PlanetFile::open(options.output);
+  EXPECT_GT(planet->image_keys().size(), 100U);
+  const std::int64_t read = process_bytes("rchar") - before;
+  EXPECT_LT(read, 2000 * static_cast<std::int64_t>(planet->image_keys().size()));
+  EXPECT_LT(10 * read, size);
+}
+
 // SQLite sorts in temporary files: payloads must not be sorted, because they may be larger than the folder of such
 // files.
 TEST(PlanetFile, SummingLevelsWritesNothing) {
