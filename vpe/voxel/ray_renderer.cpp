@@ -41,6 +41,7 @@ class RayRenderer : public core::Renderer {
         caster_(planet_, share(options, kCastShare)),
         painter_(planet_, share(options, kPaintShare)),
         pool_(options.threads),
+        max_image_bytes_(options.max_image_bytes),
         prefetcher_(caster_, painter_, pool_, options.memory_bytes) {}
 
   core::DrawResult draw(const core::DrawRequest& request) override;
@@ -51,6 +52,7 @@ class RayRenderer : public core::Renderer {
   }
 
   core::DrawResult draw_image(const core::DrawRequest& request);
+  void check_size(const core::DrawRequest& request) const;
   bool has_room_for_next() const;
   ColumnWalk::Usage cast(const core::DrawRequest& request, std::vector<float>& range_m);
   ColumnWalk::Usage draw_samples(const core::DrawRequest& request, core::Frame& frame,
@@ -62,6 +64,7 @@ class RayRenderer : public core::Renderer {
   RangeCaster caster_;
   ImagePainter painter_;
   base::ThreadPool pool_;
+  std::size_t max_image_bytes_;
   FramePrefetcher prefetcher_;
   // Kept so that the next image need not allocate them.
   std::vector<float> range_m_;
@@ -178,10 +181,23 @@ core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
   }
 }
 
+void RayRenderer::check_size(const core::DrawRequest& request) const {
+  const glm::ivec2 size = core::drawn_size(request.view);
+  const std::size_t bytes = ray_image_bytes(std::int64_t{size.x} * size.y, request.settings.samples);
+  if (bytes <= max_image_bytes_) return;
+  const auto megabytes = [](std::size_t n) { return std::to_string((n + 0xfffff) >> 20); };
+  throw std::runtime_error("an image of " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                           " pixels takes " + megabytes(bytes) + " MB with the ray backend, more than the " +
+                           megabytes(max_image_bytes_) +
+                           " MB that it may take beside the ground; give --memory " + megabytes(bytes) +
+                           " or more if the machine has twice that, or a smaller --size");
+}
+
 core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   if (const std::string trouble = why_not(request); !trouble.empty()) throw std::runtime_error(trouble);
+  check_size(request);
   const auto start = Clock::now();
   core::DrawResult result;
   core::Frame& frame = result.frame;
@@ -233,6 +249,12 @@ RangeOptions range_options(const core::DrawRequest& request) {
   if (request.settings.ray_mode == core::RayMode::kMultires || request.coarsening > 1)
     options.cell_px = request.settings.ray_cell_px * std::max(1.0, request.coarsening);
   return options;
+}
+
+std::size_t ray_image_bytes(std::int64_t pixels, int samples) {
+  constexpr std::size_t kBytesPerPixel = 67;  // measured: 8192 x 8192 and 16384 x 16384 pixels
+  constexpr std::size_t kBytesPerSum = sizeof(glm::ivec3) + sizeof(float);
+  return static_cast<std::size_t>(pixels) * (kBytesPerPixel + (samples > 1 ? kBytesPerSum : 0));
 }
 
 std::string why_not(const core::DrawRequest& request) {

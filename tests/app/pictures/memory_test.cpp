@@ -42,6 +42,20 @@ TEST_F(Memory, Render) {
   }
 }
 
+TEST_F(Memory, RayImagesThatAreTooLargeAreRefusedBeforeTheyAreDrawn) {
+  const auto render = [&](const std::string& size, const std::string& memory) {
+    return vpe({"render", planet().string(), "--backend", "ray", "--pose", "-170,-13,200000,90,-30,0", "--size",
+                size, "-o", "x.png", "-q", "--memory", memory});
+  };
+  const Result small = render("1920x1080", "64");
+  EXPECT_EQ(small.exit_code, 0) << small.err;
+  const Result large = render("8192x8192", "64");
+  EXPECT_EQ(large.exit_code, 1);
+  EXPECT_TRUE(says(large.err, {"8192x8192", "4288 MB", "--memory", "--size"}));
+  EXPECT_LT(large.peak_bytes, small.peak_bytes);
+  EXPECT_EQ(leftovers(), Words{});
+}
+
 TEST_F(Memory, Fly) {
   const auto peak_of = [&](const std::string& file, const std::string& size, const std::string& memory,
                            const std::string& stats) {

@@ -19,6 +19,8 @@ namespace vpe::app {
 namespace {
 
 constexpr std::string_view kAuto = "auto";
+// What a ray image may take whatever --memory is: 2560x1440 pixels need 247 MB.
+constexpr std::size_t kLeastImageBytes = std::size_t{256} << 20;
 
 }  // namespace
 
@@ -104,7 +106,10 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
   if (common.memory_mb < kTightMemory_mb) base::keep_heap_compact();
   if (!options.backend) throw std::logic_error("make_renderer: no backend was chosen");
   if (*options.backend == core::Backend::kRay)
-    return voxel::make_ray_renderer(std::move(planet), {memory_bytes(common), common.threads});
+    return voxel::make_ray_renderer(std::move(planet),
+                                    {.memory_bytes = memory_bytes(common),
+                                     .threads = common.threads,
+                                     .max_image_bytes = std::max(memory_bytes(common), kLeastImageBytes)});
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;
