@@ -6,10 +6,13 @@
 #include <rawdataset.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 #include <type_traits>
 
 #include "mars/raster/gdal_labels.h"
 #include "mars/raster/gdal_remote.h"
+#include "vpe/base/file.h"
 
 namespace mars {
 namespace {
@@ -181,6 +184,90 @@ void GdalRaster::read_mask(int band, int overview, const PixelWindow& window, in
 template void GdalRaster::read(int, int, const PixelWindow&, int, float*) const;
 template void GdalRaster::read(int, int, const PixelWindow&, int, double*) const;
 template void GdalRaster::read(int, int, const PixelWindow&, int, unsigned char*) const;
+
+namespace {
+
+constexpr int kMaxVirtualDepth = 16;
+
+// Collects the state of files, each once.
+class StateOfFiles {
+ public:
+  void add(const std::string& name) {
+    if (!seen_.insert(name).second) return;
+    if (name.starts_with("/vsi")) {
+      add_virtual(name);
+    } else if (!add_local(name)) {
+      // Parts of a mosaic may be absent; a name with a colon may be no file's, so that no file was looked at.
+      add_line(name, "absent");
+      state_.is_certain = state_.is_certain && name.find(':') == std::string::npos;
+    }
+  }
+
+  // Adds all files of a raster; those of virtual rasters have parts of their own.
+  void add_all(const RasterFile& file, GDALDataset& dataset, int depth) {
+    for (const std::string& name : file.files) add(name);
+    const CPLStringList names(dataset.GetFileList());
+    for (int n = 0; n < names.size(); ++n) {
+      const std::string name = names[n];
+      const bool is_new = !seen_.contains(name);
+      add(name);
+      if (!is_new || depth == kMaxVirtualDepth || name == file.path || !is_virtual(name)) continue;
+      const RasterFile part{name, name, {}, std::nullopt, std::nullopt};
+      add_all(part, *open_raster(part), depth + 1);
+    }
+  }
+
+  RasterState take() { return std::move(state_); }
+
+ private:
+  static bool is_virtual(const std::string& name) {
+    GDALDriverH driver = GDALIdentifyDriver(name.c_str(), nullptr);
+    return driver != nullptr && EQUAL(GDALGetDriverShortName(driver), "VRT");
+  }
+
+  void add_line(const std::string& name, const std::string& what) { state_.text += name + '\n' + what + '\n'; }
+
+  bool add_local(const std::string& name) {
+    const auto stamp = vpe::base::file_stamp(name);
+    if (!stamp) return false;
+    std::error_code none;
+    add_line(std::filesystem::weakly_canonical(name, none).string(),
+             std::to_string(stamp->size_bytes) + ' ' + std::to_string(stamp->modified_ns));
+    return true;
+  }
+
+  // Adds a file of one of GDAL's file systems, and the local archive that it lies in.
+  void add_virtual(const std::string& name) {
+    VSIStatBufL stat{};
+    const bool is_there = VSIStatL(name.c_str(), &stat) == 0;
+    add_line(name, is_there ? std::to_string(stat.st_size) + ' ' + std::to_string(stat.st_mtime) : "absent");
+    std::string rest = name;
+    while (rest.starts_with("/vsi")) rest.erase(0, std::min(rest.find('/', 1), rest.size() - 1) + 1);
+    std::erase_if(rest, [](char c) { return c == '{' || c == '}'; });
+    for (std::size_t end = rest.find('/', 1);; end = rest.find('/', end + 1)) {
+      const std::string prefix = rest.substr(0, end);
+      std::error_code none;
+      if (std::filesystem::is_regular_file(prefix, none) && add_local(prefix)) return;
+      if (end == std::string::npos) break;
+    }
+    const bool is_in_remote_archive = name.find("/vsi", 1) != std::string::npos;
+    state_.is_certain = state_.is_certain && is_there && stat.st_mtime > 0 && !is_in_remote_archive;
+  }
+
+  RasterState state_;
+  std::set<std::string> seen_;
+};
+
+}  // namespace
+
+RasterState raster_state(const std::string& path) {
+  const GdalScope scope;
+  const RasterFile file = find_raster(raster_name(path));
+  StateOfFiles state;
+  if (file.path.starts_with("/vsi") || vpe::base::file_stamp(file.path)) state.add(file.path);
+  state.add_all(file, *open_raster(file), 0);
+  return state.take();
+}
 
 std::string raster_library() { return GDALVersionInfo("--version"); }
 

@@ -107,6 +107,16 @@ class ImageSource {
 std::shared_ptr<const ElevationSource> open_elevation(const std::string& path);
 std::shared_ptr<const ImageSource> open_image(const std::string& path);
 
+// Describes the state of a raster's files.
+struct RasterState {
+  std::string text;        // differs if any of the files was replaced or written to
+  bool is_certain = true;  // false: the time of some file is not known, so that a change may not show
+};
+
+// Returns name, size and time of all files that open_elevation(path) or open_image(path) reads, with the parts of
+// virtual rasters, of theirs, and the archives that files lie in. Throws SourceError.
+RasterState raster_state(const std::string& path);
+
 // Returns name and version of the library that reads rasters, for reports.
 std::string raster_library();
 

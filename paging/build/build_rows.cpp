@@ -1,19 +1,6 @@
-#include <sstream>
-
 #include "paging/build/build_steps.h"
 
 namespace paging {
-
-namespace {
-
-std::set<int> sources_of_row(const NodeRow& row) {
-  std::set<int> sources;
-  std::istringstream numbers(row.sources);
-  for (std::string number; std::getline(numbers, number, ',');) sources.insert(std::stoi(number));
-  return sources;
-}
-
-}  // namespace
 
 Node node_of(const NodeRow& row) {
   Node node;
@@ -22,7 +9,8 @@ Node node_of(const NodeRow& row) {
   node.slope = row.slope;
   node.inner = row.inner;
   node.coarser_neighbour_mask = row.coarser_neighbour_mask;
-  node.sources = sources_of_row(row);
+  const std::vector<int> sources = source_indices(row.sources).value();  // read_nodes() has checked it
+  node.sources.insert(sources.begin(), sources.end());
   node.variants = row.variants;
   if (row.posts_terms) node.posts_terms = *row.posts_terms;
   return node;

@@ -112,12 +112,6 @@ Bytes make_image_tile(const mars::ImageSource& image, const lod::TileKey& key, d
 NodeRow to_row(const lod::TileKey& key, const Node& node);
 Node node_of(const NodeRow& row);
 
-// Bounds how far a facet of the tile's finest cells lies below the sphere through its posts: a point of a flat
-// triangle is within longest edge / sqrt(3) of a post.
-inline double facet_sagitta_m(double spacing_m, double radius_m) {
-  return 2.5 * spacing_m * spacing_m / (6.0 * radius_m);
-}
-
 // Reads a stored tile's posts with constrained borders: the finest ones of a leaf, its own of an inner tile.
 lod::Posts read_posts(const StoredTiles& stored, const lod::TileKey& key);
 // Returns the heights of a stored mesh's vertices in metres.

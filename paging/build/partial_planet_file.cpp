@@ -4,12 +4,14 @@
 #include <vector>
 
 #include "paging/planet/codec.h"
+#include "paging/planet/planet_database.h"
 #include "paging/planet/planet_meta.h"
 
 namespace paging {
 
 namespace fs = std::filesystem;
 
+const char* const kRaisePageLimit = "PRAGMA max_page_count = 4294967294";
 const char* const kDropPartialTables = "DROP TABLE IF EXISTS recipe; DROP TABLE IF EXISTS note";
 const char* const kKeepShardTables = "DELETE FROM note WHERE number >= 0";
 
@@ -22,6 +24,7 @@ constexpr const char* kPartialTables =
 std::unique_ptr<Database> open_exclusively(const std::string& path) {
   auto db = std::make_unique<Database>(path, Database::Mode::kCreate);
   db->execute("PRAGMA page_size = 8192");
+  db->execute(kRaisePageLimit);
   // New pages need no rollback: the journal costs little here, and a killed build leaves whole transactions.
   db->execute("PRAGMA journal_mode = TRUNCATE");
   db->execute("PRAGMA synchronous = NORMAL");
@@ -49,6 +52,7 @@ bool rows_are_intact(const Database& db, const char* sql) {
 // Returns whether every row is as it was written, and every tile has all of its rows. Damage is not repaired:
 // neither a killed build nor a sudden power loss leaves any, and a disk that changes bits cannot be relied on.
 bool is_intact(Database& db) {
+  check_schema(db);
   Statement check(db, "PRAGMA integrity_check(1)");
   if (!check.step() || check.text(0) != "ok") return false;
   for (const char* sql :

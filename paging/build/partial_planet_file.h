@@ -34,6 +34,8 @@ PartialPlanetFile open_partial_file(const std::string& path, const std::string& 
 // Removes the file and what SQLite keeps beside it.
 void remove_partial_file(const std::string& path);
 
+// SQL that lets a connection write files of up to 35 TB; SQLite's own limit is a quarter of that.
+extern const char* const kRaisePageLimit;
 // SQL that leaves only what a finished planet file has.
 extern const char* const kDropPartialTables;
 // SQL that leaves what a shard has besides: the fingerprint, and checkpoints with numbers below 0.

@@ -263,6 +263,7 @@ void PlanetWriter::seal(PlanetMeta& meta) {
 void PlanetWriter::publish(const PlanetMeta& meta) {
   {
     Database db(part_path_, Database::Mode::kCreate);
+    db.execute(kRaisePageLimit);
     db.execute("BEGIN");
     db.execute(meta.shard ? kKeepShardTables : kDropPartialTables);
     db.execute("DELETE FROM meta");

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "paging/build/build_inputs.h"
+#include "paging/planet/planet_database.h"
 
 namespace paging {
 
@@ -12,13 +13,8 @@ ShardFile::ShardFile(const std::string& path) : path_(path) {
     throw PlanetError(path + ": no such file; make it with 'vpe build ... --part k/n'");
   }
   try {
-    db_ = std::make_unique<Database>(path, Database::Mode::kReadOnly);
-    if (db_->integer("PRAGMA application_id") != kApplicationId) {
-      throw PlanetError(path + ": an SQLite database, but not a file of vpe");
-    }
-    std::map<std::string, std::string> rows;
-    Statement all(*db_, "SELECT key, value FROM meta");
-    while (all.step()) rows[all.text(0)] = all.text(1);
+    db_ = std::make_unique<Database>(open_planet_database(path));
+    const std::map<std::string, std::string> rows = read_meta_rows(*db_);
     if (rows.empty()) {
       throw PlanetError(path + ": a build that has not ended; run it again to continue it");
     }

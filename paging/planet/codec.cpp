@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kHeightsLevel = 2;
 constexpr int kMeshLevel = 3;
-constexpr std::size_t kMaxPayload = std::size_t{1} << 26;
+// Above 65 536 vertices of two numbers and 131 072 triangles of three, each number of at most five bytes.
+constexpr std::size_t kMaxMeshBytes = std::size_t{1} << 22;
 
 std::uint32_t zigzag(std::int32_t x) {
   return (static_cast<std::uint32_t>(x) << 1) ^ static_cast<std::uint32_t>(x >> 31);
@@ -186,8 +187,8 @@ Bytes encode_mesh(const PackedMesh& packed) {
   return compress(raw, kMeshLevel);
 }
 
-PackedMesh decode_mesh(std::span<const std::uint8_t> packed) {
-  const Bytes raw = decompress(packed, kMaxPayload);
+PackedMesh decode_mesh(std::span<const std::uint8_t> packed, int expected_intervals) {
+  const Bytes raw = decompress(packed, kMaxMeshBytes);
   Reader in(raw);
   PackedMesh out;
   const std::uint32_t intervals = in.varint();
@@ -195,6 +196,10 @@ PackedMesh decode_mesh(std::span<const std::uint8_t> packed) {
   const std::uint32_t triangles = in.varint();
   if (intervals == 0 || intervals > 1024 || vertices < 3 || vertices > 65536 || triangles > 2 * vertices) {
     throw CodecError("mesh: sizes out of range");
+  }
+  if (static_cast<int>(intervals) != expected_intervals) {
+    throw CodecError("mesh: " + std::to_string(intervals) + " intervals instead of " +
+                     std::to_string(expected_intervals));
   }
   out.mesh.intervals = static_cast<int>(intervals);
   out.mesh.vertices.reserve(vertices);

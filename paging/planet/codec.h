@@ -46,7 +46,8 @@ struct PackedMesh {
 // Packs a mesh. Normalizes order and rotation of the triangles, so decode_mesh() may return the same set of
 // triangles in another order.
 Bytes encode_mesh(const PackedMesh& mesh);
-PackedMesh decode_mesh(std::span<const std::uint8_t> packed);
+// `intervals` is that of the grid which the mesh must be made on.
+PackedMesh decode_mesh(std::span<const std::uint8_t> packed, int intervals);
 
 // Returns the 63-bit checksum (XXH3) of a row's key and payload. Never negative, because SQLite integers are
 // signed.

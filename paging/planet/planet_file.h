@@ -10,6 +10,7 @@
 #include "lod/tree/tree.h"
 #include "paging/planet/codec.h"
 #include "paging/planet/planet_meta.h"
+#include "paging/planet/sqlite.h"
 #include "vpe/base/object_pool.h"
 
 namespace paging {
@@ -32,7 +33,8 @@ struct ImageTile {
 };
 
 // Reads a planet file. Every const member may be called from any thread; each call uses one of a pool of
-// connections to the database.
+// connections to the database. All of them read the planet that open() found: if another file has taken the
+// path, or the file was written to, members that would need it throw PlanetError.
 //
 // Typical usage:
 //   const std::shared_ptr<const PlanetFile> planet = PlanetFile::open("mars.vpe");
@@ -44,6 +46,10 @@ class PlanetFile {
   // another kind or of a newer major format, or is incomplete or damaged.
   static std::shared_ptr<const PlanetFile> open(const std::string& path);
   ~PlanetFile();
+
+  // Opens a connection of the caller's own to the same planet. Throws PlanetError if the path belongs to another
+  // planet now; DatabaseError.
+  Database connect() const;
 
   const std::string& path() const { return path_; }
   const PlanetMeta& meta() const { return meta_; }
@@ -70,10 +76,14 @@ class PlanetFile {
  private:
   struct Connection;
   explicit PlanetFile(const std::string& path);
-  void read_index(Connection& connection);
+  void read_index(const Database& db);
+  // Returns what fetch(connection) returns, if the file was not written to until then.
+  template <class Read>
+  auto read(const Read& fetch) const;
 
   std::string path_;
   PlanetMeta meta_;
+  std::string meta_checksum_;  // differs between planets
   std::unique_ptr<lod::TileTree> tree_;
   std::vector<std::int64_t> image_keys_;   // sorted
   std::vector<std::int64_t> nodata_keys_;  // of tiles with nodata posts and of all above them, sorted

@@ -8,6 +8,12 @@
 
 namespace paging {
 
+namespace {
+
+constexpr std::int64_t kEdgeMasks = 16;
+
+}  // namespace
+
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows) {
   Statement nodes(db,
                   "SELECT key, min_m, max_m, inner, steps, sources, checksum, slope, face, level, i, j "
@@ -43,6 +49,7 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
     }
     const std::optional<lod::TileKey> key = lod::unpack(row.key);
     if (!key || checksum(row) != nodes.integer(6)) return row.key;
+    if (!source_indices(row.sources) || nodes.integer(4) < 0 || nodes.integer(4) >= kEdgeMasks) return row.key;
     // The columns that help people with SQL must agree with the key.
     if (nodes.integer(8) != static_cast<std::int64_t>(key->face) || nodes.integer(9) != key->level ||
         nodes.integer(10) != std::int64_t{key->i} || nodes.integer(11) != std::int64_t{key->j}) {
@@ -54,19 +61,20 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
 }
 
 std::vector<LevelSummary> summarize_levels(const Database& db, std::size_t posts) {
+  // Grouped here and not by SQL: SQLite would sort the rows with their payloads, in temporary files.
   std::map<std::int64_t, LevelSummary> levels;
-  Statement tiles(db, "SELECT level, count(*), sum(NOT inner) FROM node GROUP BY level");
+  Statement tiles(db, "SELECT level, inner FROM node");
   while (tiles.step()) {
     LevelSummary& level = levels[tiles.integer(0)];
-    level.tiles = tiles.integer(1);
-    level.leaf_tiles = tiles.integer(2);
+    ++level.tiles;
+    level.leaf_tiles += tiles.integer(1) == 0 ? 1 : 0;
   }
   for (const std::string table : {"heights", "missing", "mesh", "image"}) {
-    Statement rows(db, "SELECT key >> 54 & 31, count(*), sum(length(data)) FROM " + table + " GROUP BY 1");
+    Statement rows(db, "SELECT key >> 54 & 31, length(data) FROM " + table);
     while (rows.step()) {
       LevelSummary& level = levels[rows.integer(0)];
-      level.bytes += rows.integer(2);
-      if (table == "image") level.image_tiles = rows.integer(1);
+      level.bytes += rows.integer(1);
+      level.image_tiles += table == "image" ? 1 : 0;
     }
   }
   Statement masks(db, "SELECT key >> 54 & 31, data FROM missing JOIN node USING (key) WHERE NOT inner");

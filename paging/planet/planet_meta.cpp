@@ -1,10 +1,14 @@
 #include "paging/planet/planet_meta.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "paging/planet/codec.h"
+#include "vpe/base/number.h"
+#include "vpe/core/json_text.h"
 
 namespace paging {
 
@@ -22,6 +26,7 @@ CREATE TABLE missing(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
 CREATE TABLE mesh(id INTEGER PRIMARY KEY, key INTEGER, variant INTEGER, checksum INTEGER, data BLOB);
 CREATE UNIQUE INDEX mesh_key ON mesh(key, variant);
 CREATE TABLE image(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
+CREATE INDEX image_keys ON image(key);
 )sql";
 
 namespace {
@@ -85,13 +90,11 @@ bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::Sourc
                     [](const auto& x, const auto& y) { return tie(x) == tie(y) && x.datum == y.datum; });
 }
 
-constexpr const char* kChecksumKey = "checksum";
-
 // Covers all other rows, including those of later minor formats.
 std::string checksum(const std::map<std::string, std::string>& rows) {
   Bytes bytes;
   for (const auto& [key, value] : rows) {
-    if (key == kChecksumKey) continue;
+    if (key == kMetaChecksumKey) continue;
     for (const std::string* part : {&key, &value}) {
       bytes.insert(bytes.end(), part->begin(), part->end());
       bytes.push_back(0);
@@ -133,8 +136,8 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"tile_k", std::to_string(m.tile.k)},
       {"quantum_m", json(m.quantum_m).dump()},
       {"fill_m", json(m.fill_m).dump()},
-      {"sources", to_json(m.sources).dump()},
-      {"image_sources", to_json(m.image_sources).dump()},
+      {"sources", vpe::core::json_text(to_json(m.sources))},
+      {"image_sources", vpe::core::json_text(to_json(m.image_sources))},
       {"resampling_max_m", json(m.resampling.max_m).dump()},
       {"resampling_rms_m", json(m.resampling.rms_m).dump()},
       {"resampling_posts", std::to_string(m.resampling.posts)},
@@ -150,7 +153,7 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"illustration", m.illustration ? "true" : "false"}};
   if (!m.levels.empty()) rows["levels"] = to_text(m.levels);
   if (m.shard) rows["part"] = to_text(*m.shard);
-  rows[kChecksumKey] = checksum(rows);
+  rows[kMetaChecksumKey] = checksum(rows);
   return rows;
 }
 
@@ -169,7 +172,7 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     throw PlanetError(path + ": planet file format " + format + " is newer than this program reads (" +
                       std::to_string(kFormatMajor) + ".x); update vpe");
   }
-  if (text(kChecksumKey) != checksum(rows)) {
+  if (text(kMetaChecksumKey) != checksum(rows)) {
     throw PlanetError(path + ": damaged: the table meta has a wrong checksum; build the file again");
   }
   PlanetMeta m;
@@ -208,9 +211,23 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     if (rows.contains("part")) m.shard = shard_from_text(text("part"));
   } catch (const json::exception& e) {
     throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
+  } catch (const std::invalid_argument& e) {
+    throw PlanetError(path + ": damaged: meta '" + current + "': " + e.what() + "; build the file again");
   }
   check_ranges(m, path);
   return m;
+}
+
+std::optional<std::vector<int>> source_indices(const std::string& sources) {
+  std::vector<int> numbers;
+  for (std::size_t begin = 0; begin < sources.size();) {
+    const std::size_t end = std::min(sources.find(',', begin), sources.size());
+    const auto number = vpe::base::parse_integer(std::string_view(sources).substr(begin, end - begin));
+    if (!number || *number < 0 || *number > std::numeric_limits<int>::max()) return std::nullopt;
+    numbers.push_back(static_cast<int>(*number));
+    begin = end + 1;
+  }
+  return numbers;
 }
 
 namespace {

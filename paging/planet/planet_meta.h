@@ -23,6 +23,7 @@ inline constexpr int kFormatMinor = 2;
 inline constexpr double kMinRadius_m = 1;     // of a planet, included
 inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
+inline constexpr const char* kMetaChecksumKey = "checksum";  // its row covers all other rows of `meta`
 
 // Reports a planet file that cannot be used. what() names the file, the problem and what to do.
 class PlanetError : public std::runtime_error {
@@ -80,12 +81,27 @@ struct NodeRow {
   std::vector<lod::MeshVariant> variants;
   std::optional<lod::ErrorTerms> posts_terms;  // of an inner tile; has a checksum of its own (format 1.2)
 };
+// Returns the numbers of NodeRow::sources, or nullopt if it is not a list of numbers from 0 on.
+std::optional<std::vector<int>> source_indices(const std::string& sources);
+
+// Returns the intervals of the grid that a tile's meshes are made on: an inner tile is meshed over its
+// children's posts.
+inline int mesh_intervals(const lod::TileShape& shape, bool inner) {
+  return (inner ? 2 : 1) * shape.intervals();
+}
+
+// Bounds how far a facet of a finest tile's cells lies below the sphere through its posts: a point of a flat
+// triangle is within longest edge / sqrt(3) of a post.
+inline double facet_sagitta_m(double spacing_m, double radius_m) {
+  return 2.5 * spacing_m * spacing_m / (6.0 * radius_m);
+}
+
 // Returns the checksum of a row's canonical bytes; the second one covers posts_terms alone.
 std::int64_t checksum(const NodeRow& row);
 std::int64_t posts_checksum(const NodeRow& row);
 
-// Reads the whole tile index in key order. Returns the key of the first row that does not match its checksum,
-// if any; `rows` then ends before it. Throws DatabaseError.
+// Reads the whole tile index in key order. Returns the key of the first row that does not match its checksum, or
+// that no builder writes, if any; `rows` then ends before it. Throws DatabaseError.
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows);
 
 // Summarizes what the tables hold of each level, except the resampling error; `posts` is the number of posts of

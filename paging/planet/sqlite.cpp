@@ -2,6 +2,13 @@
 
 namespace paging {
 
+namespace {
+
+// Of a value that is read: more than any payload, and than the sources of a mosaic of 100 000 parts.
+constexpr int kMaxValueBytes = 1 << 28;
+
+}  // namespace
+
 Database::Database(const std::string& path, Mode mode) : path_(path) {
   const int flags = mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   sqlite3* db = nullptr;
@@ -10,13 +17,20 @@ Database::Database(const std::string& path, Mode mode) : path_(path) {
   db_.reset(db);
   if (code != SQLITE_OK) fail("open");
   sqlite3_extended_result_codes(db, 1);
+  // Files come from anywhere: their schema may call no function with side effects, and pages are checked.
+  sqlite3_db_config(db, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 0);
+  if (mode == Mode::kReadOnly) sqlite3_limit(db, SQLITE_LIMIT_LENGTH, kMaxValueBytes);
+  execute("PRAGMA cell_size_check = ON");
 }
 
 void Database::fail(const std::string& operation) const {
   const char* message = db_ ? sqlite3_errmsg(db_.get()) : "out of memory";
   const int code = db_ ? sqlite3_extended_errcode(db_.get()) & 0xff : SQLITE_NOMEM;
   throw DatabaseError(
-      path_ + ": cannot " + operation + ": " + message + (code == SQLITE_FULL ? "; free some space" : ""),
+      path_ + ": cannot " + operation + ": " + message +
+          (code == SQLITE_FULL ? "; free some space there, or in the folder of temporary files" : ""),
       code);
 }
 

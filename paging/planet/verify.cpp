@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include "paging/planet/check_meta.h"
 #include "paging/planet/sqlite.h"
 #include "paging/planet/verify_tile.h"
 #include "vpe/base/parallel.h"
@@ -12,7 +13,7 @@ namespace {
 
 void check_database(const PlanetFile& planet, VerifyReport& report) {
   try {
-    Database db(planet.path(), Database::Mode::kReadOnly);
+    Database db = planet.connect();
     Statement check(db, "PRAGMA integrity_check(5)");
     while (check.step()) {
       if (check.text(0) != "ok") report.problems.push_back({"database", check.text(0)});
@@ -26,6 +27,7 @@ void check_database(const PlanetFile& planet, VerifyReport& report) {
       variants += static_cast<std::int64_t>(tile.variants.size());
       meshes += static_cast<std::int64_t>(tile.variants.size()) - (tile.has_children ? 0 : 1);
     }
+    const auto posts = static_cast<std::size_t>(planet.meta().tile.post_count());
     const auto expect_rows = [&](const char* table, std::int64_t count) {
       const std::int64_t found = db.integer(std::string("SELECT count(*) FROM ") + table);
       if (found == count) return;
@@ -36,7 +38,10 @@ void check_database(const PlanetFile& planet, VerifyReport& report) {
     expect_rows("variant", variants);
     expect_rows("mesh", meshes);
     expect_rows("image", planet.meta().image_tiles);
-  } catch (const DatabaseError& e) {
+    for (const std::string& wrong :
+         wrong_meta(planet.meta(), planet.tree().tiles(), summarize_levels(db, posts)))
+      report.problems.push_back({"meta", wrong});
+  } catch (const std::runtime_error& e) {  // DatabaseError, PlanetError, CodecError
     report.problems.push_back({"database", e.what()});
   }
 }

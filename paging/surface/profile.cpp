@@ -11,8 +11,6 @@ namespace paging {
 
 namespace {
 
-constexpr double kNearlyOpposite_rad = 1e-6;
-
 ProfilePoint point_at(const Surface& surface, const glm::dvec3& direction) {
   const SurfacePoint s = surface.at(direction);
   ProfilePoint p;

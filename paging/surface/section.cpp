@@ -13,7 +13,6 @@ namespace paging {
 
 namespace {
 
-constexpr double kNearlyOpposite_rad = 1e-6;
 // A chord is walked, not the circle; over an arc this long it stays near the sphere, so that rounding does.
 constexpr double kLongestChord_rad = mars::kPi / 4;
 

@@ -11,6 +11,9 @@
 
 namespace paging {
 
+// Two places whose angle is within this of a half circle have no great circle of their own.
+inline constexpr double kNearlyOpposite_rad = 1e-6;
+
 // Holds a straight line on one facet, from one of its borders (or the section's start) to the next. Body-fixed,
 // metres from the planet's centre.
 struct SectionPiece {

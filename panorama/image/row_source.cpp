@@ -13,7 +13,8 @@ class TiffRows : public RowSource {
   TiffRows(const TiffPage& page, std::size_t max_bytes) : tiles_({page}), level_(page.level) {
     const auto columns = static_cast<std::size_t>(level_.tile_columns());
     if (tile_bytes(level_) > max_bytes / columns) {
-      throw vpe::base::file_error("read", page.path, "a row of its tiles or strips does not fit into memory",
+      throw vpe::base::file_error("read", page.file->path(),
+                                  "a row of its tiles or strips does not fit into memory",
                                   "give more --memory, or convert it: gdal_translate -of COG IN.tif OUT.tif");
     }
     row_of_tiles_.resize(columns);

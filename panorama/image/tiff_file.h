@@ -15,6 +15,12 @@ class TiffFile {
  public:
   // Opens a file. Throws vpe::base::FileError.
   explicit TiffFile(std::filesystem::path path);
+  // Opens the file that `other` has open, also when another one has taken its path since. Throws
+  // vpe::base::FileError.
+  struct Same {
+    const TiffFile& other;
+  };
+  explicit TiffFile(Same same);
 
   TIFF* get() const { return tiff_.get(); }
   const std::filesystem::path& path() const { return path_; }
@@ -30,6 +36,8 @@ class TiffFile {
   vpe::base::FileError damaged() const;
 
  private:
+  TiffFile(std::filesystem::path path, const std::filesystem::path& opened);
+
   std::filesystem::path path_;
   vpe::core::TiffHandle tiff_;
 };

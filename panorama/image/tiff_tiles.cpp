@@ -32,9 +32,10 @@ std::string unreadable(const TiffFile& file) {
   return {};
 }
 
-TiffPage page_of(const TiffFile& file) {
+TiffPage page_of(const std::shared_ptr<const TiffFile>& opened) {
+  const TiffFile& file = *opened;
   TiffPage page;
-  page.path = file.path();
+  page.file = opened;
   page.directory = TIFFCurrentDirOffset(file.get());
   page.is_tiled = TIFFIsTiled(file.get()) != 0;
   const auto width_px = file.field<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
@@ -66,10 +67,11 @@ bool is_reduced(const ImageLevel& full, const ImageLevel& level) {
   return std::abs(rows - static_cast<double>(level.height_px)) <= 1.5;
 }
 
-void add_reduced(const TiffFile& file, std::vector<TiffPage>& pages) {
+void add_reduced(const std::shared_ptr<const TiffFile>& opened, std::vector<TiffPage>& pages) {
+  const TiffFile& file = *opened;
   const auto kind = file.field<std::uint32_t>(TIFFTAG_SUBFILETYPE, 0);
   if ((kind & FILETYPE_REDUCEDIMAGE) == 0 || (kind & FILETYPE_MASK) != 0 || !unreadable(file).empty()) return;
-  const TiffPage page = page_of(file);
+  const TiffPage page = page_of(opened);
   if (is_reduced(pages.front().level, page.level)) pages.push_back(page);
 }
 
@@ -93,18 +95,19 @@ std::size_t tile_bytes(const ImageLevel& level) {
 }
 
 std::vector<TiffPage> list_pages(const std::filesystem::path& path) {
-  const TiffFile file(path);
+  const auto opened = std::make_shared<const TiffFile>(path);
+  const TiffFile& file = *opened;
   if (const std::string trouble = unreadable(file); !trouble.empty())
     throw vpe::base::file_error("read", path, trouble, kConvert);
-  std::vector<TiffPage> pages{page_of(file)};
+  std::vector<TiffPage> pages{page_of(opened)};
   std::uint16_t below = 0;
   const std::uint64_t* offsets = nullptr;
   std::vector<std::uint64_t> children;
   if (TIFFGetField(file.get(), TIFFTAG_SUBIFD, &below, &offsets) == 1 && offsets != nullptr)
     children.assign(offsets, offsets + std::min<int>(below, kMaxPages));
-  for (int n = 0; n < kMaxPages && TIFFReadDirectory(file.get()) == 1; ++n) add_reduced(file, pages);
+  for (int n = 0; n < kMaxPages && TIFFReadDirectory(file.get()) == 1; ++n) add_reduced(opened, pages);
   for (const std::uint64_t offset : children) {
-    if (TIFFSetSubDirectory(file.get(), offset) == 1) add_reduced(file, pages);
+    if (TIFFSetSubDirectory(file.get(), offset) == 1) add_reduced(opened, pages);
   }
   std::stable_sort(pages.begin(), pages.end(),
                    [](const TiffPage& a, const TiffPage& b) { return a.level.width_px > b.level.width_px; });
@@ -123,7 +126,7 @@ TiffTiles::TiffTiles(std::vector<TiffPage> pages) : pages_(std::move(pages)) {
 }
 
 std::unique_ptr<TiffTiles::Handle> TiffTiles::open(const TiffPage& page) {
-  auto handle = std::make_unique<Handle>(page.path);
+  auto handle = std::make_unique<Handle>(*page.file);
   TIFF* tiff = handle->file.get();
   if (TIFFSetSubDirectory(tiff, page.directory) != 1) throw handle->file.damaged();
   if (handle->file.field<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_JPEG)

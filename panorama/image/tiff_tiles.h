@@ -15,9 +15,9 @@ namespace panorama {
 
 // Describes one image in a TIFF file: the first one, or a reduced copy of it.
 struct TiffPage {
-  std::filesystem::path path;
-  std::uint64_t directory = 0;  // offset in the file
-  ImageLevel level;             // strips count as tiles as wide as the image
+  std::shared_ptr<const TiffFile> file;  // stays open, so that all handles are of one file
+  std::uint64_t directory = 0;           // offset in the file
+  ImageLevel level;                      // strips count as tiles as wide as the image
   bool is_tiled = false;
 };
 
@@ -41,7 +41,7 @@ class TiffTiles : public TileSource {
 
  private:
   struct Handle {
-    explicit Handle(const std::filesystem::path& path) : file(path) {}
+    explicit Handle(const TiffFile& open) : file(TiffFile::Same{open}) {}
     TiffFile file;
     std::vector<std::uint8_t> bytes;
   };

@@ -11,6 +11,7 @@
 #include "panorama/metadata/xml.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
+#include "vpe/core/json_text.h"
 
 namespace panorama {
 
@@ -90,7 +91,8 @@ std::optional<Found> find_sidecar(const fs::path& image) {
     if (!is_file(path)) continue;
     const std::string text = text_of(path);
     const Sidecar sidecar = reading(quoted(path), [&] { return read_sidecar(text); });
-    const bool is_of_this = sidecar.image.empty() || sidecar.image == image.filename();
+    const bool is_of_this =
+        sidecar.image.empty() || sidecar.image == vpe::core::text_in_json(image.filename().string());
     if (path == beside && !is_of_this) {
       throw file_error("use", path, "it describes the image '" + sidecar.image + "', not " + quoted(image),
                        "correct its \"image\" or rename it");

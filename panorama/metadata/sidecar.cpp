@@ -7,6 +7,7 @@
 #include "mars/geodesy/sphere.h"
 #include "panorama/metadata/xml.h"
 #include "vpe/base/number.h"
+#include "vpe/core/json_text.h"
 
 namespace panorama {
 
@@ -300,8 +301,6 @@ nlohmann::ordered_json to_json(const Sidecar& sidecar) {
   return root;
 }
 
-std::string to_text(const Sidecar& sidecar) {
-  return to_json(sidecar).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
+std::string to_text(const Sidecar& sidecar) { return vpe::core::json_text(to_json(sidecar), 1) + "\n"; }
 
 }  // namespace panorama

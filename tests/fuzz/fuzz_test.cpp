@@ -68,6 +68,7 @@ TEST(Fuzz, RoverLabels) { run(fuzz::kRover, 20000, 1005); }
 TEST(Fuzz, GPano) { run(fuzz::kGpano, 10000, 1006); }
 TEST(Fuzz, Sidecars) { run(fuzz::kSidecar, 20000, 1007); }
 TEST(Fuzz, Images) { run(fuzz::kImage, 3000, 1008); }
+TEST(Fuzz, ForgedPlanets) { run(fuzz::kForged, 800, 1009); }
 TEST(Fuzz, Planets) { run(fuzz::kPlanet, 1500, 1003); }
 
 }  // namespace

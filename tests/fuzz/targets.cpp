@@ -88,18 +88,18 @@ void run_payload(std::span<const std::uint8_t> bytes) {
         break;
       }
       case 2: {
-        const paging::PackedMesh mesh = paging::decode_mesh(rest);
+        const paging::PackedMesh mesh = paging::decode_mesh(rest, 8);
         require(mesh.height_q.size() == mesh.mesh.vertices.size(), "a height for each vertex");
         for (const std::uint16_t v : mesh.mesh.triangles)
           require(v < mesh.mesh.vertices.size(), "indices in range");
         for (const lod::MeshVertex& v : mesh.mesh.vertices) {
           require(v.i <= mesh.mesh.intervals && v.j <= mesh.mesh.intervals, "vertices in the grid");
         }
-        const paging::PackedMesh again = paging::decode_mesh(paging::encode_mesh(mesh));
+        const paging::PackedMesh again = paging::decode_mesh(paging::encode_mesh(mesh), 8);
         require(again.height_q == mesh.height_q && again.mesh.vertices == mesh.mesh.vertices, "meshes survive");
         break;
       }
-      default: vpe::core::decode_jpeg(rest, 1 << 16); break;
+      default: vpe::core::decode_jpeg(rest, 257 * 257); break;
     }
   } catch (const paging::CodecError&) {
   } catch (const std::runtime_error&) {

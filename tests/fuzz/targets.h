@@ -28,6 +28,10 @@ extern const Target kPayload;
 // Opens whole planet files, reads every payload and runs verify().
 extern const Target kPlanet;
 
+// Changes values, payloads and the schema of a planet file, computes all checksums again, then reads, verifies and
+// queries it. The bytes select the changes.
+extern const Target kForged;
+
 // Parses labels of PDS images, derives their placement, and opens the image with the label attached, as a user
 // does.
 extern const Target kLabel;

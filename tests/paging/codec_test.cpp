@@ -85,7 +85,7 @@ TEST(Codec, MeshSurvives) {
   Random random(13);
   for (const int intervals : {8, 64, 128}) {
     const paging::PackedMesh mesh = random_mesh(random, intervals);
-    const paging::PackedMesh back = paging::decode_mesh(paging::encode_mesh(mesh));
+    const paging::PackedMesh back = paging::decode_mesh(paging::encode_mesh(mesh), intervals);
     EXPECT_EQ(back.mesh.intervals, mesh.mesh.intervals);
     EXPECT_EQ(back.mesh.vertices, mesh.mesh.vertices);
     EXPECT_EQ(back.height_q, mesh.height_q);
@@ -111,13 +111,27 @@ TEST(Codec, DamagedBytesThrowOrDecode) {
       if (round % 2 == 0) {
         paging::decode_heights(damaged, 65);
       } else {
-        paging::decode_mesh(damaged);
+        paging::decode_mesh(damaged, 64);
       }
     } catch (const paging::CodecError&) {
       ++refused;
     }
   }
   EXPECT_GT(refused, 500);
+}
+
+// A few kilobytes of zeros must not take tens of megabytes for every thread that reads.
+TEST(Codec, MeshesUnpackToNoMoreThanMeshesNeed) {
+  const auto says = [](std::size_t size) {
+    try {
+      paging::decode_mesh(paging::compress(Bytes(size), 1), 64);
+    } catch (const paging::CodecError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(says(std::size_t{5} << 20).find("not a frame of the expected size"), std::string::npos);
+  EXPECT_NE(says(1 << 20).find("sizes out of range"), std::string::npos);
 }
 
 // The same below zstd: wrong numbers inside a valid frame.
@@ -130,7 +144,7 @@ TEST(Codec, WrongNumbersInsideAFrameThrowOrDecode) {
     damaged[static_cast<std::size_t>(random.integer(0, static_cast<int>(damaged.size()) - 1))] =
         static_cast<std::uint8_t>(random.integer(0, 255));
     try {
-      const paging::PackedMesh mesh = paging::decode_mesh(paging::compress(damaged, 1));
+      const paging::PackedMesh mesh = paging::decode_mesh(paging::compress(damaged, 1), 16);
       for (const std::uint16_t index : mesh.mesh.triangles) ASSERT_LT(index, mesh.mesh.vertices.size());
     } catch (const paging::CodecError&) {
       ++refused;

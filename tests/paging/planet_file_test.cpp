@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <mutex>
+#include <set>
+#include <thread>
 
 #include "paging/planet/sqlite.h"
+#include "tests/paging/forged_planet.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace {
@@ -99,20 +103,8 @@ TEST(PlanetFile, RefusesNewerAndIncompleteFiles) {
 // Changes the format of a file, and makes meta's checksum match.
 void set_format(const std::filesystem::path& path, const std::string& format) {
   change(path, "UPDATE meta SET value = '" + format + "' WHERE key = 'format'");
-  paging::Bytes bytes;
-  {
-    // As docs/design/planet-file.md describes it.
-    paging::Database db(path.string(), paging::Database::Mode::kReadOnly);
-    paging::Statement rows(db, "SELECT key, value FROM meta WHERE key <> 'checksum' ORDER BY key");
-    while (rows.step()) {
-      for (const std::string& part : {rows.text(0), rows.text(1)}) {
-        bytes.insert(bytes.end(), part.begin(), part.end());
-        bytes.push_back(0);
-      }
-    }
-  }
-  change(path,
-         "UPDATE meta SET value = '" + std::to_string(paging::checksum(0, bytes)) + "' WHERE key = 'checksum'");
+  paging::Database db(path.string(), paging::Database::Mode::kCreate);
+  test_support::forge_meta_checksum(db);
 }
 
 // Files of format 1.0 have no summary by level. Files up to 1.1 do not state how far the posts of inner tiles
@@ -232,6 +224,135 @@ TEST(PlanetFile, FlippedBitsAreNeverBelieved) {
     }
   }
   EXPECT_GT(refused, 30);
+}
+
+// Two planets of equal tiles and different heights.
+class ReplacedPlanet : public testing::Test {
+ protected:
+  void SetUp() override {
+    build_fake(path_, FakeElevation(bumpy_height), 400000);
+    build_fake(other_, FakeElevation([](const glm::dvec3& d) { return bumpy_height(d) + 5000; }), 400000);
+  }
+
+  // Reads all heights. Returns what is thrown, or an empty text. Expects that heights are those of `first`.
+  static std::string read_as(const PlanetFile& planet, const std::vector<std::vector<double>>& first) {
+    try {
+      for (std::size_t n = 0; n < first.size(); ++n) {
+        const auto heights = planet.heights(planet.tree().tiles()[n].key);
+        EXPECT_EQ(heights.posts.height_m, first[n]) << "of the other planet";
+        if (heights.posts.height_m != first[n]) break;
+      }
+    } catch (const PlanetError& e) {
+      return e.what();
+    }
+    return {};
+  }
+  static std::vector<std::vector<double>> heights_of(const PlanetFile& planet) {
+    std::vector<std::vector<double>> all;
+    for (const lod::TileInfo& tile : planet.tree().tiles())
+      all.push_back(planet.heights(tile.key).posts.height_m);
+    return all;
+  }
+
+  TempDir dir_;
+  std::filesystem::path path_ = dir_ / "p.vpe";
+  std::filesystem::path other_ = dir_ / "other.vpe";
+};
+
+TEST_F(ReplacedPlanet, ByRenamingIsNeverMixed) {
+  const auto planet = PlanetFile::open(path_.string());
+  const auto first = heights_of(*planet);
+  std::filesystem::rename(other_, path_);
+  // Threads that find no idle connection open the path again.
+  std::mutex mutex;
+  std::set<std::string> said;
+  std::vector<std::thread> threads;
+  for (int n = 0; n < 16; ++n) {
+    threads.emplace_back([&] {
+      for (int round = 0; round < 20; ++round) {
+        const std::string text = read_as(*planet, first);
+        const std::lock_guard lock(mutex);
+        said.insert(text);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  said.erase("");
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said.begin()->find("another planet file was written there"), std::string::npos) << *said.begin();
+  EXPECT_NE(said.begin()->find(path_.string()), std::string::npos) << *said.begin();
+  EXPECT_THROW(planet->connect(), PlanetError);
+}
+
+TEST_F(ReplacedPlanet, ByWritingInPlaceIsNeverRead) {
+  const auto planet = PlanetFile::open(path_.string());
+  const auto first = heights_of(*planet);
+  std::filesystem::copy_file(other_, path_, std::filesystem::copy_options::overwrite_existing);
+  EXPECT_NE(read_as(*planet, first).find("another planet file"), std::string::npos);
+}
+
+TEST_F(ReplacedPlanet, ByTheSameContentIsReadOn) {
+  const auto planet = PlanetFile::open(path_.string());
+  const auto first = heights_of(*planet);
+  std::filesystem::copy_file(path_, dir_ / "copy.vpe");
+  std::filesystem::rename(dir_ / "copy.vpe", path_);
+  EXPECT_NO_THROW(planet->connect());
+  std::filesystem::last_write_time(path_, std::filesystem::file_time_type::clock::now());
+  EXPECT_EQ(read_as(*planet, first), "");
+}
+
+// Bytes that this process has passed to read or write calls.
+std::int64_t process_bytes(const std::string& key) {
+  std::ifstream file("/proc/self/io");
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(key + ": ")) return std::stoll(line.substr(key.size() + 2));
+  }
+  return -1;
+}
+
+class FineImage : public test_support::FakeImage {
+ public:
+  double spacing_in(const mars::Cap&) const override { return 5000; }
+};
+
+TEST(PlanetFile, OpeningReadsNoImages) {
+  TempDir dir;
+  paging::BuildOptions options;
+  options.output = (dir / "p.vpe").string();
+  options.base_spacing_m = 400000;
+  options.tile_k = 5;
+  options.resampling_posts = 100;
+  const FineImage image;
+  paging::build_planet(options, FakeElevation(bumpy_height), &image);
+  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(options.output));
+  const std::int64_t before = process_bytes("rchar");
+  if (before < 0) GTEST_SKIP() << "no /proc/self/io";
+  const auto planet = PlanetFile::open(options.output);
+  EXPECT_GT(planet->image_keys().size(), 100U);
+  const std::int64_t read = process_bytes("rchar") - before;
+  EXPECT_LT(read, 2000 * static_cast<std::int64_t>(planet->image_keys().size()));
+  EXPECT_LT(10 * read, size);
+}
+
+// SQLite sorts in temporary files: payloads must not be sorted, because they may be larger than the folder of such
+// files.
+TEST(PlanetFile, SummingLevelsWritesNothing) {
+  TempDir dir;
+  paging::Database db((dir / "p.vpe").string(), paging::Database::Mode::kCreate);
+  db.execute(paging::kSchema);
+  db.execute("BEGIN");
+  for (const char* table : {"heights", "image"}) {
+    db.execute("WITH RECURSIVE c(x) AS (SELECT 0 UNION ALL SELECT x + 1 FROM c WHERE x < 999) INSERT INTO " +
+               std::string(table) + " SELECT x << 30, 0, randomblob(20000) FROM c");
+  }
+  db.execute("COMMIT");
+  const std::int64_t before = process_bytes("wchar");
+  if (before < 0) GTEST_SKIP() << "no /proc/self/io";
+  const std::vector<paging::LevelSummary> levels = paging::summarize_levels(db, 1);
+  ASSERT_EQ(levels.size(), 1U);
+  EXPECT_EQ(levels[0].bytes, 2 * 1000 * 20000);
+  EXPECT_EQ(levels[0].image_tiles, 1000);
+  EXPECT_LT(process_bytes("wchar") - before, 100000);
 }
 
 }  // namespace

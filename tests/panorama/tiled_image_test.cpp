@@ -249,6 +249,17 @@ TEST(OpenImage, TiledTiffWithoutCopiesKeepsItsOwnPixels) {
     EXPECT_NE(entry.path().filename(), "level-0.tif");
 }
 
+// Handles that are opened later are of the file that was opened first.
+TEST(OpenImage, ReplacedWhileItIsInUse) {
+  const test_support::TempDir folder;
+  write_tiled(folder / "a.tif", pattern(kWidth, kHeight));
+  const auto tiled_image =
+      panorama::open_tiled_image(folder / "a.tif", ImageFileFormat::kTiff, options(folder, 0));
+  write_tiled(folder / "b.tif", {kWidth, kHeight, std::vector<vpe::base::Rgb>(std::size_t{kWidth} * kHeight)});
+  fs::rename(folder / "b.tif", folder / "a.tif");
+  expect_pattern(*tiled_image, kWidth, kHeight);
+}
+
 TEST(OpenImage, TiffOfOtherProgramsWithReducedPages) {
   const test_support::TempDir folder;
   vpe::core::write_image(folder / "a.png", pattern(kWidth, kHeight).pixels, kWidth, kHeight);

@@ -12,8 +12,8 @@
 
 namespace test_support {
 
-HttpServer::HttpServer(std::filesystem::path folder, Decide decide)
-    : folder_(std::move(folder)), decide_(std::move(decide)) {
+HttpServer::HttpServer(std::filesystem::path folder, Decide decide, bool states_times)
+    : folder_(std::move(folder)), decide_(std::move(decide)), states_times_(states_times) {
   socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -90,10 +90,9 @@ void HttpServer::answer(int connection) {
     head = "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes " + std::to_string(first) + "-" +
            std::to_string(last) + "/" + std::to_string(all.size()) + "\r\n";
   }
-  head +=
-      "Accept-Ranges: bytes\r\nLast-Modified: Sat, 21 Nov 2026 08:00:00 GMT\r\nConnection: "
-      "close\r\nContent-Length: " +
-      std::to_string(last - first + 1) + "\r\n\r\n";
+  if (states_times_) head += "Last-Modified: Sat, 21 Nov 2026 08:00:00 GMT\r\n";
+  head += "Accept-Ranges: bytes\r\nConnection: close\r\nContent-Length: " + std::to_string(last - first + 1) +
+          "\r\n\r\n";
   const std::string body = method == "HEAD" ? "" : all.substr(first, last - first + 1);
   send(head + (fate == Fate::kCut ? body.substr(0, body.size() / 2) : body));
 }

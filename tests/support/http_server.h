@@ -22,7 +22,8 @@ class HttpServer {
   // Returns the fate of the n-th request (from 0). Called from the server's thread.
   using Decide = std::function<Fate(int n, const std::string& method)>;
 
-  explicit HttpServer(std::filesystem::path folder, Decide decide = {});
+  // `states_times`: answers say when a file was changed (always the same time).
+  explicit HttpServer(std::filesystem::path folder, Decide decide = {}, bool states_times = true);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
@@ -37,6 +38,7 @@ class HttpServer {
 
   std::filesystem::path folder_;
   Decide decide_;
+  bool states_times_;
   int socket_ = -1;
   int port_ = 0;
   std::atomic<int> requests_{0};

@@ -16,6 +16,8 @@
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/subprocess.h"
 #include "vpe/app/planet/planet_argument.h"
+#include "vpe/base/cpu_limits.h"
+#include "vpe/base/number.h"
 #include "vpe/base/parallel.h"
 #include "vpe/gl/context.h"
 
@@ -69,11 +71,31 @@ Finding find_configuration() {
   return {"config", State::kGood, text.empty() ? "no file of the user or the system" : text};
 }
 
+// Says what limits the default number of threads on this machine.
+std::string limits_text(const base::CpuLimits& limits) {
+  std::string text = std::to_string(limits.threads()) + " of " + std::to_string(limits.machine);
+  if (limits.threads() >= limits.machine) return std::to_string(limits.machine) + ", all of this machine";
+  if (limits.affinity <= limits.threads()) return text + " of this machine, by CPU affinity";
+  return text + " of this machine, by the control group's quota of " + base::format_general(*limits.quota, 3) +
+         " processors";
+}
+
 Finding find_threads(const Common& common) {
-  const int machine = base::default_threads();
-  if (common.threads == 0) return {"threads", State::kGood, std::to_string(machine) + ", all of this machine"};
-  return {"threads", common.threads > machine ? State::kNote : State::kGood,
-          std::to_string(common.threads) + " by --threads; this machine runs " + std::to_string(machine)};
+  const base::CpuLimits limits = base::cpu_limits();
+  const int threads = common.threads > 0 ? common.threads : base::default_threads();
+  Finding finding{"threads", State::kGood, limits_text(limits)};
+  if (common.threads > 0) {
+    finding.text = std::to_string(common.threads) + " by --threads; without it " + finding.text;
+    if (common.threads > limits.threads()) finding.state = State::kNote;
+  }
+  const char* slurm = std::getenv("SLURM_CPUS_PER_TASK");
+  const auto task = base::parse_integer(slurm == nullptr ? "" : slurm);
+  if (task && *task > 0 && *task < threads) {
+    finding.state = State::kNote;
+    finding.text += "; SLURM_CPUS_PER_TASK is " + std::to_string(*task) +
+                    ", and the job is not confined to them; give --threads $SLURM_CPUS_PER_TASK";
+  }
+  return finding;
 }
 
 Finding find_memory(const Common& common) {

@@ -1,5 +1,7 @@
 #include "vpe/base/file.h"
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <memory>
 #include <system_error>
@@ -12,6 +14,12 @@ namespace {
 constexpr std::string_view kDiskAdvice = "check the free space and the permissions there";
 
 std::string system_message(int error) { return std::generic_category().message(error); }
+
+FileStamp stamp_of(const struct stat& file) {
+  return {static_cast<std::uint64_t>(file.st_dev), static_cast<std::uint64_t>(file.st_ino),
+          static_cast<std::int64_t>(file.st_size),
+          std::int64_t{file.st_mtim.tv_sec} * 1'000'000'000 + std::int64_t{file.st_mtim.tv_nsec}};
+}
 
 }  // namespace
 
@@ -75,6 +83,18 @@ void write_file(const std::filesystem::path& path, std::span<const std::uint8_t>
 
 void write_file(const std::filesystem::path& path, std::string_view text) {
   write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+std::optional<FileStamp> file_stamp(const std::filesystem::path& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return std::nullopt;
+  return stamp_of(file);
+}
+
+std::optional<FileStamp> file_stamp(int descriptor) {
+  struct stat file {};
+  if (::fstat(descriptor, &file) != 0) return std::nullopt;
+  return stamp_of(file);
 }
 
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {

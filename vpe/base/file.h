@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -59,6 +60,23 @@ class OutputFile {
 // Writes a whole file by means of OutputFile. Throws FileError.
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
+
+// Describes a state of a file. Two stamps of one name differ if another file has taken the name, or if the file
+// was written to in between.
+struct FileStamp {
+  std::uint64_t device = 0;
+  std::uint64_t inode = 0;
+  std::int64_t size_bytes = 0;
+  std::int64_t modified_ns = 0;  // since 1970
+
+  bool operator==(const FileStamp&) const = default;
+  // Returns true if both are of one file, whatever was written to it.
+  bool is_same_file(const FileStamp& other) const { return device == other.device && inode == other.inode; }
+};
+
+// Return the stamp of the file that has this name now, or of an open file; nullopt if there is none.
+std::optional<FileStamp> file_stamp(const std::filesystem::path& path);
+std::optional<FileStamp> file_stamp(int descriptor);
 
 // Returns the bytes of a whole file. Throws FileError, also for a folder and for more than max_bytes.
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes);

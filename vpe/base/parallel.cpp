@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "vpe/base/cpu_limits.h"
+
 namespace vpe::base {
 
 namespace {
@@ -158,9 +160,7 @@ struct ThreadPool::Crew {
   }
 };
 
-int default_threads() {
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads);
-}
+int default_threads() { return std::min(cpu_limits().threads(), kMaxThreads); }
 
 ThreadPool::ThreadPool(int threads)
     : crew_(std::make_shared<Crew>(threads > 0 ? std::min(threads, kMaxThreads) : default_threads())) {}

@@ -19,7 +19,7 @@ namespace vpe::base {
 
 inline constexpr int kMaxThreads = 256;
 
-// Returns the number of threads that the machine runs at once, 1 to kMaxThreads.
+// Returns the number of threads that can run at once by cpu_limits(), 1 to kMaxThreads.
 int default_threads();
 
 // Runs loops on a fixed set of threads.

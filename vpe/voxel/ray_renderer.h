@@ -22,6 +22,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -39,7 +41,14 @@ struct RayOptions {
   // Threads of casting and painting, the caller included; 0: as many as the machine runs at once. Fewer leave
   // processors to other work; images do not depend on it.
   int threads = 0;
+  // Beside the budget, an image takes ray_image_bytes() while it is drawn. draw() refuses a larger image than
+  // this before it reads a tile: by throwing std::runtime_error with what the image takes.
+  std::size_t max_image_bytes = std::numeric_limits<std::size_t>::max();
 };
+
+// Returns the memory that the pixels of an image take: range, colours, and copies while it is smoothed and written.
+// The samples of its columns take as much as half of max_image_bytes besides; larger images are cast in bands.
+std::size_t ray_image_bytes(std::int64_t pixels, int samples);
 
 // Returns the reason why the ray backend cannot draw the request, for users, or "" if it can. Wireframes,
 // markers, a cull view and inspection show meshes or tiles, which the ray backend does not draw.

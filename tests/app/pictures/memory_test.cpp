@@ -42,6 +42,24 @@ TEST_F(Memory, Render) {
   }
 }
 
+TEST_F(Memory, RayImagesThatAreTooLargeAreRefusedBeforeTheyAreDrawn) {
+  const auto render = [&](const std::string& size, const std::string& memory) {
+    return vpe({"render", planet().string(), "--backend", "ray", "--pose", "-170,-13,200000,90,-30,0", "--size",
+                size, "-o", "x.png", "-q", "--memory", memory});
+  };
+  const Result small = render("1920x1080", "64");
+  EXPECT_EQ(small.exit_code, 0) << small.err;
+  // Cast in bands: 67 bytes a pixel, 1.1 GB, without.
+  const Result banded = render("4096x4000", "64");
+  EXPECT_EQ(banded.exit_code, 0) << banded.err;
+  EXPECT_LT(banded.peak_bytes, small.peak_bytes + (std::int64_t{600} << 20));
+  const Result large = render("8192x8192", "64");
+  EXPECT_EQ(large.exit_code, 1);
+  EXPECT_TRUE(says(large.err, {"8192x8192", "1024 MB", "--memory", "--size"})) << large.err;
+  EXPECT_LT(large.peak_bytes, small.peak_bytes);
+  EXPECT_EQ(leftovers(), Words{});
+}
+
 TEST_F(Memory, Fly) {
   const auto peak_of = [&](const std::string& file, const std::string& size, const std::string& memory,
                            const std::string& stats) {

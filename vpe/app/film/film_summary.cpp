@@ -7,6 +7,7 @@
 
 #include "vpe/app/cli/temporary.h"
 #include "vpe/base/file.h"
+#include "vpe/core/json_text.h"
 
 namespace vpe::app {
 
@@ -21,7 +22,7 @@ std::string part_name(const Shard& shard) {
   return shard.of == 1 ? "" : ".part-" + std::to_string(shard.number) + "-of-" + std::to_string(shard.of);
 }
 
-std::string line(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+std::string line(const json& value) { return core::json_text(value); }
 
 json to_json(const FilmFrame& frame) {
   json out{{"index", frame.index}, {"time_s", frame.time_s}, {"fingerprint", frame.fingerprint}};

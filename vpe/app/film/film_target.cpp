@@ -14,6 +14,7 @@
 #include "vpe/base/file.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/image/png_text.h"
+#include "vpe/core/json_text.h"
 
 namespace vpe::app {
 
@@ -92,7 +93,7 @@ void FilmFolder::prepare() {
 
 void FilmFolder::add(std::int64_t /*group*/, FilmFrame& frame, const core::Frame& image) {
   const std::vector<core::PngText> texts{{kFingerprintKey, frame.fingerprint},
-                                         {kFiguresKey, to_json(frame.figures).dump()}};
+                                         {kFiguresKey, core::json_text(to_json(frame.figures))}};
   const auto bytes = core::with_png_text(core::encode_png(image.colour, image.width, image.height), texts);
   write_whole(folder_ / frame_file_name(frame.index), bytes);
   frame.checksum = checksum_of(bytes);

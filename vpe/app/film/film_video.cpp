@@ -14,6 +14,7 @@
 #include "vpe/app/cli/temporary.h"
 #include "vpe/app/film/film_summary.h"
 #include "vpe/base/file.h"
+#include "vpe/core/json_text.h"
 
 namespace vpe::app {
 
@@ -173,7 +174,7 @@ void FilmVideo::end_group(std::int64_t group, std::span<FilmFrame> frames) {
     sidecar["frames"].push_back(
         {{"fingerprint", f.fingerprint}, {"checksum", f.checksum}, {"figures", to_json(f.figures)}});
   }
-  write_whole(segment(group, ".json"), sidecar.dump() + "\n");
+  write_whole(segment(group, ".json"), core::json_text(sidecar) + "\n");
   for (FilmFrame& f : frames) f.state = FilmFrame::State::kMade;
 }
 

@@ -20,6 +20,7 @@
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
+#include "vpe/core/json_text.h"
 
 namespace vpe::app {
 
@@ -107,7 +108,7 @@ std::string sidecar_text(const PanoramaRequest& request, const PanoramaPlan& pla
                    {"shift_bound_px", figures.shift_bound_px},
                    {"tiles_missing", figures.tiles_missing}};
   json["vpe"] = {{"version", version()}, {"command", common.words}, {"recipe", recipe_json(request)}};
-  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return core::json_text(json, 1) + "\n";
 }
 
 nlohmann::json report_json(const PanoramaRequest& request, const PanoramaPlan& plan, const PanoramaMaker& maker,

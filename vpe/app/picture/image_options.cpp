@@ -19,6 +19,8 @@ namespace vpe::app {
 namespace {
 
 constexpr std::string_view kAuto = "auto";
+// What a ray image may take whatever --memory is: 2560x1440 pixels need 247 MB.
+constexpr std::size_t kLeastImageBytes = std::size_t{256} << 20;
 
 }  // namespace
 
@@ -106,7 +108,10 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
   if (*options.backend == core::Backend::kRay && options.allow_incomplete)
     throw UsageError("--allow-incomplete: the ray backend draws complete images only; use --backend polygon");
   if (*options.backend == core::Backend::kRay)
-    return voxel::make_ray_renderer(std::move(planet), {memory_bytes(common), common.threads});
+    return voxel::make_ray_renderer(std::move(planet),
+                                    {.memory_bytes = memory_bytes(common),
+                                     .threads = common.threads,
+                                     .max_image_bytes = std::max(memory_bytes(common), kLeastImageBytes)});
   gl::RendererOptions renderer;
   renderer.memory_bytes = memory_bytes(common);
   renderer.threads = common.threads;

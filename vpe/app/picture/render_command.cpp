@@ -25,6 +25,7 @@
 #include "vpe/base/number.h"
 #include "vpe/core/appearance/inspect.h"
 #include "vpe/core/image/image.h"
+#include "vpe/core/json_text.h"
 #include "vpe/gl/context.h"
 
 namespace vpe::app {
@@ -196,7 +197,8 @@ void write_stereo(const RenderArguments& arguments, const Common& common, const 
   core::write_image(arguments.output, drawn.image.pixels, drawn.image.width, drawn.image.height);
   const nlohmann::json certificates{{"left", core::to_json(drawn.left.certificate)},
                                     {"right", core::to_json(drawn.right.certificate)}};
-  if (!arguments.certificate.empty()) base::write_file(arguments.certificate, certificates.dump(1) + "\n");
+  if (!arguments.certificate.empty())
+    base::write_file(arguments.certificate, core::json_text(certificates, 1) + "\n");
   if (common.json) {
     print_json({{"output", arguments.output},
                 {"backend", core::to_string(*arguments.image.backend)},
@@ -215,10 +217,11 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
   core::write_image(arguments.output, frame.colour, frame.width, frame.height);
   if (!arguments.range.empty()) core::write_tiff(arguments.range, frame.range_m, frame.width, frame.height);
   const nlohmann::ordered_json certificate = core::to_json(result.certificate);
-  if (!arguments.certificate.empty()) base::write_file(arguments.certificate, certificate.dump(2) + "\n\n");
+  if (!arguments.certificate.empty())
+    base::write_file(arguments.certificate, core::json_text(certificate, 2) + "\n\n");
   if (!arguments.explain_lod.empty()) {
     const nlohmann::json levels = explain_lod(request, planet, memory_bytes(common));
-    base::write_file(arguments.explain_lod, levels.dump(2) + "\n");
+    base::write_file(arguments.explain_lod, core::json_text(levels, 2) + "\n");
   }
   if (common.json) {
     print_json({{"output", arguments.output},

@@ -21,18 +21,20 @@ void info(const std::string& argument, const Common& common) {
   if (common.json) {
     nlohmann::json json = planet_json(m);
     json["path"] = planet->path();
+    json["raster"] = is_raster_argument(argument) ? nlohmann::json(argument) : nlohmann::json();
     print_json(json);
     return;
   }
   const auto line = [](const char* what, const std::string& value) {
-    std::printf("%-18s %s\n", what, value.c_str());
+    std::printf("%-18s %s\n", what, on_one_line(value).c_str());
   };
   const auto number = [](double x, const char* unit) {
     char text[64];
     std::snprintf(text, sizeof text, "%.6g %s", x, unit);
     return std::string(text);
   };
-  line("file", planet->path());
+  if (is_raster_argument(argument)) line("raster", argument);
+  line(is_raster_argument(argument) ? "its planet file" : "file", planet->path());
   if (m.illustration) line("NOTE", "an illustration: its numbers are not data");
   line("body", m.body + ", sphere of radius " + number(m.radius_m, "m"));
   line("vertical datum", paging::describe_datum(m));

@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
+#include <span>
 
 #include "mars/embedded/embedded.h"
-#include "vpe/app/cli/parsing.h"
+#include "mars/sources/source.h"
+#include "paging/planet/planet_database.h"
 #include "vpe/app/planet/build_sources.h"
 #include "vpe/app/planet/planet_build.h"
 #include "vpe/base/user_folders.h"
@@ -29,15 +31,27 @@ constexpr int kRasterGeneration = 3;
 class FileLock {
  public:
   explicit FileLock(const fs::path& path) : fd_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
-    if (fd_ < 0) throw std::runtime_error(path.string() + ": cannot open: " + std::strerror(errno));
-    while (::flock(fd_, LOCK_EX) != 0 && errno == EINTR) {
+    if (fd_ < 0) fail("open", path);
+    int failed = 0;
+    while ((failed = ::flock(fd_, LOCK_EX)) != 0 && errno == EINTR) {
     }
+    if (failed == 0) return;
+    const int error = errno;
+    ::close(fd_);
+    errno = error;
+    fail("lock", path);
   }
   ~FileLock() { ::close(fd_); }
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 
  private:
+  [[noreturn]] static void fail(const std::string& operation, const fs::path& path) {
+    throw std::runtime_error(path.string() + ": cannot " + operation + ": " + std::strerror(errno) +
+                             "; set XDG_CACHE_HOME to a folder that can be written to, or make a planet file "
+                             "with 'vpe build' and give that");
+  }
+
   int fd_;
 };
 
@@ -61,20 +75,49 @@ void build_into(const fs::path& target, const std::string& what,
   run_build(options, *combined.source, image, common);
 }
 
+// Opens a planet of the cache. Returns null if it is not there, or, after a note, if it is damaged.
+std::shared_ptr<const paging::PlanetFile> find_cached(const fs::path& target, const std::string& what) {
+  std::error_code none;
+  if (!fs::exists(target, none)) return nullptr;
+  try {
+    return paging::PlanetFile::open(target.string());
+  } catch (const paging::PlanetError& e) {
+    std::fprintf(stderr, "vpe: %s; building %s again\n", e.what(), what.c_str());
+    return nullptr;
+  }
+}
+
+// Opens the planet of this name in the cache; builds it first if it is not there, or unless it may be reused.
 std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what,
+                                                 bool may_reuse,
                                                  const std::function<void(const fs::path&)>& build) {
   const fs::path folder = cache_folder();
   const fs::path target = folder / (name + ".vpe");
+  // Without the lock: a cache that may not be written to can be read. Planets appear in it when complete.
+  if (may_reuse) {
+    if (auto planet = find_cached(target, what)) return planet;
+  }
   const FileLock lock(folder / (name + ".lock"));
-  if (fs::exists(target)) {
-    try {
-      return paging::PlanetFile::open(target.string());
-    } catch (const paging::PlanetError& e) {
-      std::fprintf(stderr, "vpe: %s; building %s again\n", e.what(), what.c_str());
-    }
+  if (may_reuse) {
+    if (auto planet = find_cached(target, what)) return planet;  // of a process that built it meanwhile
   }
   build(target);
   return paging::PlanetFile::open(target.string());
+}
+
+// Returns a name that is different for every raster and state of its files.
+std::string cache_name(const std::string& raster, const mars::RasterState& state) {
+  std::error_code none;
+  // What is not a path of a file ("NETCDF:x.nc:z") may name one relative to the current folder; a URL does not.
+  const bool is_url = raster.find("://") != std::string::npos;
+  const std::string place = is_url                     ? raster
+                            : fs::exists(raster, none) ? fs::weakly_canonical(raster).string()
+                                                       : raster + '\n' + fs::current_path(none).string();
+  const std::string identity =
+      place + '\n' + state.text + std::to_string(kCacheGeneration) + '\n' + std::to_string(kRasterGeneration);
+  const std::int64_t sum =
+      paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
+  return fs::path(raster).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
 }
 
 }  // namespace
@@ -95,24 +138,29 @@ fs::path embedded_planet_path() {
 
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {
   if (argument.empty()) {
-    return cached(embedded_planet_path().stem().string(), "the embedded Mars (an illustration)",
+    return cached(embedded_planet_path().stem().string(), "the embedded Mars (an illustration)", true,
                   [&](const fs::path& target) {
                     build_into(target, "the embedded Mars (an illustration)", mars::embedded_elevation(),
                                mars::embedded_image().get(), common);
                   });
   }
-  if (argument.ends_with(".vpe") || is_sqlite(argument)) return paging::PlanetFile::open(argument);
-  const auto source = mars::open_elevation(argument);
-  const mars::SourceInfo info = source->infos().front();
-  const std::string path = fs::weakly_canonical(argument).string();
-  const std::string identity = path + '\n' + std::to_string(info.size_bytes) + '\n' +
-                               std::to_string(info.mtime_s) + '\n' + std::to_string(kCacheGeneration) + '\n' +
-                               std::to_string(kRasterGeneration);
-  const std::int64_t sum =
-      paging::checksum(0, std::span(reinterpret_cast<const std::uint8_t*>(identity.data()), identity.size()));
-  const std::string name = fs::path(argument).stem().string() + "-" + hex(static_cast<std::uint64_t>(sum));
-  return cached(name, argument,
-                [&](const fs::path& target) { build_into(target, argument, source, nullptr, common); });
+  if (!is_raster_argument(argument)) return paging::PlanetFile::open(argument);
+  // Before the raster is opened: what is read is then never older than the state.
+  const mars::RasterState state = mars::raster_state(argument);
+  if (!state.is_certain && !common.quiet) {
+    std::fprintf(
+        stderr,
+        "vpe: note: %s does not state when it was changed, so its planet is built by every command; 'vpe "
+        "build' makes a planet file to keep\n",
+        argument.c_str());
+  }
+  return cached(cache_name(argument, state), argument, state.is_certain, [&](const fs::path& target) {
+    build_into(target, argument, mars::open_elevation(argument), nullptr, common);
+  });
+}
+
+bool is_raster_argument(const std::string& argument) {
+  return !argument.empty() && !argument.ends_with(".vpe") && !paging::is_planet_database(argument);
 }
 
 void note_illustration(const paging::PlanetMeta& meta, bool quiet) {

@@ -18,9 +18,14 @@ std::filesystem::path cache_folder();
 // cache_folder().
 std::filesystem::path embedded_planet_path();
 
+// Returns true if open_planet() takes the argument for a raster: it is not empty, does not end in ".vpe", and the
+// file, if there is one, is not a planet file.
+bool is_raster_argument(const std::string& argument);
+
 // Opens a planet file. Where the argument is a DEM or empty, this first builds a planet file into the cache,
-// unless the cache has it; concurrent calls, also of other processes, wait for the one that builds. Throws what
-// building and paging::PlanetFile::open() throw.
+// unless the cache has one of the same files in the same state; concurrent calls, also of other processes, wait
+// for the one that builds. A planet in the cache is read without writing there. Throws what building and
+// paging::PlanetFile::open() throw.
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common);
 
 // Prints a note on stderr, unless quiet, when the planet is an illustration: its numbers are not data.

@@ -17,6 +17,7 @@
 #include "vpe/app/report/report_folder.h"
 #include "vpe/base/number.h"
 #include "vpe/base/parallel.h"
+#include "vpe/core/json_text.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/report/error_time_page.h"
 #include "vpe/voxel/ray_renderer.h"
@@ -102,7 +103,7 @@ std::vector<std::string> about(const ErrorTimeArguments& arguments, const report
 
 void write_files(const fs::path& folder, const report::ErrorTimeReport& report, const report::Page& page) {
   write_whole(folder / "error-time.csv", report::to_csv(report::points_table(report.results)));
-  write_whole(folder / "error-time.json", report::error_time_json(report).dump(1) + "\n");
+  write_whole(folder / "error-time.json", core::json_text(report::error_time_json(report), 1) + "\n");
   write_whole(folder / "error-time.svg", report::to_svg_file(report::summary_plot(report.results)));
   write_whole(folder / "error-time.html", report::to_html(page));
 }
