@@ -10,8 +10,8 @@
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/base/file.h"
+#include "vpe/base/temporary.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/image/png_text.h"
 
@@ -22,7 +22,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
+constexpr std::uintmax_t kMostFrameBytes = std::uintmax_t{1} << 32;
 
 const std::string* find(const std::vector<core::PngText>& texts, const char* keyword) {
   const auto found =
@@ -67,7 +67,7 @@ void FilmFolder::keep(FilmFrame& frame) const {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return;
   try {
-    const std::vector<std::uint8_t> bytes = base::read_file(file, kMostBytes);
+    const std::vector<std::uint8_t> bytes = base::read_file(file, kMostFrameBytes);
     const auto texts = core::read_png_text(bytes);
     if (!texts) return;
     const std::string* fingerprint = find(*texts, kFingerprintKey);
@@ -86,7 +86,7 @@ void FilmFolder::keep(FilmFrame& frame) const {
 
 void FilmFolder::prepare() {
   make_folder(folder_);
-  remove_stale_temporaries(
+  base::remove_stale_temporaries(
       folder_, [](const std::string& name) { return is_frame_name(name) || is_manifest_name(name); });
 }
 
@@ -94,7 +94,7 @@ void FilmFolder::add(std::int64_t /*group*/, FilmFrame& frame, const core::Frame
   const std::vector<core::PngText> texts{{kFingerprintKey, frame.fingerprint},
                                          {kFiguresKey, to_json(frame.figures).dump()}};
   const auto bytes = core::with_png_text(core::encode_png(image.colour, image.width, image.height), texts);
-  write_whole(folder_ / frame_file_name(frame.index), bytes);
+  base::write_file(folder_ / frame_file_name(frame.index), bytes);
   frame.checksum = checksum_of(bytes);
   frame.state = FilmFrame::State::kMade;
 }

@@ -11,9 +11,9 @@
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/film/film_summary.h"
 #include "vpe/base/file.h"
+#include "vpe/base/temporary.h"
 
 namespace vpe::app {
 
@@ -148,10 +148,11 @@ void FilmVideo::prepare() {
 }
 
 void FilmVideo::remove_stale() const {
-  remove_stale_temporaries(folder_, is_ours);
+  base::remove_stale_temporaries(folder_, is_ours);
   const fs::path beside = film_.has_parent_path() ? film_.parent_path() : fs::path(".");
-  remove_stale_temporaries(beside, [film = film_.filename().string(), manifest = manifest_.filename().string()](
-                                       const std::string& name) { return name == film || name == manifest; });
+  base::remove_stale_temporaries(beside,
+                                 [film = film_.filename().string(), manifest = manifest_.filename().string()](
+                                     const std::string& name) { return name == film || name == manifest; });
 }
 
 void FilmVideo::add(std::int64_t group, FilmFrame& /*frame*/, const core::Frame& image) {
@@ -173,7 +174,7 @@ void FilmVideo::end_group(std::int64_t group, std::span<FilmFrame> frames) {
     sidecar["frames"].push_back(
         {{"fingerprint", f.fingerprint}, {"checksum", f.checksum}, {"figures", to_json(f.figures)}});
   }
-  write_whole(segment(group, ".json"), sidecar.dump() + "\n");
+  base::write_file(segment(group, ".json"), sidecar.dump() + "\n");
   for (FilmFrame& f : frames) f.state = FilmFrame::State::kMade;
 }
 

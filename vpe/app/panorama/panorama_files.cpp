@@ -11,8 +11,8 @@
 #include "panorama/image/tile_codec.h"
 #include "panorama/metadata/gpano.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/base/file.h"
+#include "vpe/base/temporary.h"
 
 namespace vpe::app {
 
@@ -198,7 +198,7 @@ void remove_stale_files(const fs::path& image) {
   for (const panorama::PlaneInfo& info : panorama::all_planes())
     names.push_back(layer_file(image, info.plane).filename().string());
   const fs::path folder = image.has_parent_path() ? image.parent_path() : fs::path(".");
-  remove_stale_temporaries(folder, [&](const std::string& name) {
+  base::remove_stale_temporaries(folder, [&](const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   });
 }
@@ -211,7 +211,7 @@ void join_strips(const PanoramaRequest& request, const PanoramaPlan& plan, const
   const double steps = static_cast<double>(1 + layers);
   std::vector<std::unique_ptr<base::OutputFile>> files;
   const auto make = [&](const fs::path& path) -> base::OutputFile& {
-    return *files.emplace_back(std::make_unique<base::OutputFile>(path, temporary_name(path)));
+    return *files.emplace_back(std::make_unique<base::OutputFile>(path));
   };
   for (std::size_t n = 0; n < layers; ++n) {
     joiner.write_layer(make(layer_file(request.output, request.layers[n])), n,
@@ -219,7 +219,7 @@ void join_strips(const PanoramaRequest& request, const PanoramaPlan& plan, const
   }
   joiner.write_image(make(request.output), [&](double part) { done((steps - 1.0 + part) / steps); });
   for (const auto& file : files) file->commit();
-  write_whole(sidecar_file(request.output), sidecar);
+  base::write_file(sidecar_file(request.output), sidecar);
 }
 
 }  // namespace vpe::app

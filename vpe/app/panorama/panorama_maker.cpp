@@ -11,9 +11,10 @@
 #include "panorama/image/tile_codec.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/base/file.h"
+#include "vpe/base/temporary.h"
 
 namespace vpe::app {
 
@@ -150,7 +151,7 @@ std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
 
 std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, PanoramaTimes& times) {
   make_folder(strips_folder(request_.output));
-  remove_stale_temporaries(strips_folder(request_.output), is_strip_name);
+  base::remove_stale_temporaries(strips_folder(request_.output), is_strip_name);
   std::vector<panorama::StripFile> strips;
   for (std::size_t n = 0; n < plan_.strips.size(); ++n) {
     try {
@@ -216,7 +217,7 @@ panorama::StripFile PanoramaMaker::write(std::size_t n, const Canvas& canvas, Pa
   const fs::path path = strip_path(n);
   const StripLayout strip = layout(n);
   const std::string fingerprint = scene_.fingerprint + (canvas.figures.tiles_missing > 0 ? kIncomplete : "");
-  base::OutputFile file(path, temporary_name(path));
+  base::OutputFile file(path);
   panorama::StripWriter writer(file, fingerprint);
   {
     const Stopwatch watch(times.encoding);
