@@ -189,7 +189,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   load_names(overlays, base, flight);
   FilmReports reports;
   if (!arguments.stats.empty()) reports.stats.emplace(arguments.stats);
-  if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view);
+  if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view, scripts::LineFile::Mode::kWhole);
   auto start = std::chrono::steady_clock::now();
   const auto renderer = [&] {
     auto made = make_renderer(arguments.image, common, planet);
