@@ -47,6 +47,108 @@ class Outputs : public AppTest {
   }
 };
 
+TEST_F(Outputs, AreNoInputs) {
+  write_dem(dir_ / "dem.tif");
+  write_text(dir_ / "f.flight", small_flight());
+  write_text(dir_ / "names.csv", "name,lon,lat,diameter\nA,1,2,3\n");
+  fs::create_symlink("p.vpe", dir_ / "link.json");
+  fs::create_hard_link(dir_ / "p.vpe", dir_ / "hard.csv");
+  const Words parts{"is also an input", "another name"};
+  expect_refused(render({"-o", "x.png", "--certificate", "p.vpe"}), 2, "p.vpe", parts);
+  expect_refused(render({"-o", "x.png", "--certificate", "link.json"}), 2, "p.vpe", parts);
+  expect_refused(render({"-o", "x.png", "--explain-lod", "./p.vpe"}), 2, "p.vpe", parts);
+  expect_refused(render({"-o", "x.png", "--range", "dem.tif"}, "dem.tif"), 2, "dem.tif", parts);
+  expect_refused(horizon({"-o", "p.vpe"}), 2, "p.vpe", parts);
+  expect_refused(horizon({"-o", "hard.csv"}), 2, "hard.csv", parts);
+  expect_refused(horizon({"-o", "x.csv", "--names", "names.csv", "--features", "names.csv"}), 2, "names.csv",
+                 parts);
+  expect_refused(fly({"-o", "frames", "--log", "f.flight"}), 2, "f.flight", parts);
+  expect_refused(panorama({"-o", "dem.tif"}, "dem.tif"), 2, "dem.tif", parts);
+  expect_refused({"build", "dem.tif", "-o", "dem.tif"}, 2, "dem.tif", parts);
+  for (const char* name : {"x.png", "x.csv", "frames"}) EXPECT_FALSE(exists(name)) << name;
+}
+
+TEST_F(Outputs, DifferFromEachOther) {
+  const Words parts{"is also the output of", "own name"};
+  expect_made(render({"-o", "x.png"}));
+  expect_refused(render({"-o", "x.png", "--overlay-layer", "./x.png", "--set", "overlay.graticule=on"}), 2,
+                 "x.png", parts);
+  fs::create_symlink("y.json", dir_ / "z.json");  // neither exists
+  const Result result = vpe(render({"-o", "x.png", "--certificate", "y.json", "--explain-lod", "z.json"}));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(says(result.err, parts));
+  EXPECT_FALSE(exists("y.json"));
+  expect_made(render({"-o", "x.png", "--certificate", "/dev/null", "--explain-lod", "/dev/null"}));
+}
+
+TEST_F(Outputs, ReplaceOnlyFilesOfTheirKind) {
+  write_text(dir_ / "f.flight", small_flight());
+  write_text(dir_ / "mine.flight", small_flight());
+  write_text(dir_ / "note.txt", "mine\n");
+  write_text(dir_ / "package.json", "{\"name\": \"mine\"}\n");
+  write_dem(dir_ / "other.tif");
+  write_text(dir_ / "empty", "");
+  fs::create_directory(dir_ / "frames");
+  write_text(dir_ / "frames/frame_000000.png", "mine");
+  write_text(dir_ / "film.mp4.json", "{\"title\": \"mine\"}\n");
+  fs::create_directory(dir_ / "land");
+  write_text(dir_ / "land/landscape.ini", "[landscape]\nauthor = somebody\n");
+  fs::copy_file(dir_ / "other.tif", dir_ / "q.range.tif");
+  const Words parts{"exists and is not", "move it"};
+  expect_refused(render({"-o", "x.png", "--certificate", "package.json"}), 1, "package.json", parts);
+  expect_refused(render({"-o", "x.png", "--certificate", "p2.vpe"}), 0, "p.vpe", {});
+  expect_refused(render({"-o", "x.png", "--range", "other.tif"}), 1, "other.tif", parts);
+  expect_refused(horizon({"-o", "note.txt"}), 1, "note.txt", parts);
+  expect_refused(horizon({"--landscape", "land"}), 1, "land/landscape.ini", parts);
+  expect_refused(fly({"-o", "frames"}), 1, "frames/frame_000000.png", parts);
+  expect_refused(fly({"-o", "film.mp4"}), 1, "film.mp4.json", parts);
+  expect_refused(fly({"-o", "new", "--log", "mine.flight"}), 1, "mine.flight", parts);
+  expect_refused(panorama({"-o", "other.tif"}), 1, "other.tif", parts);
+  expect_refused(panorama({"-o", "q.png", "--aux-layers", "range"}), 1, "q.range.tif", parts);
+  // Their own files are replaced, and so are empty ones.
+  for (int n = 0; n < 2; ++n) {
+    expect_made(render({"-o", "v.png", "--certificate", "c.json", "--range", "r.tif", "--explain-lod", "e.json",
+                        "--backend", "ray"}));
+    expect_made(render({"-o", "v.png", "--stereo", "sbs", "--certificate", "s.json"}));
+    expect_made(horizon({"-o", "h.csv", "--landscape", "own"}));
+    expect_made(panorama({"-o", "r.tif.tif", "--aux-layers", "range,lonlat"}));
+    expect_made(render({"-o", "v.png", "--certificate", "empty"}));
+    write_text(dir_ / "empty", "");
+  }
+}
+
+TEST_F(Outputs, ANewPlanetReplacesNoStrangersDatabase) {
+  write_dem(dir_ / "dem.tif");
+  paging::Database(path("notes.sqlite"), paging::Database::Mode::kCreate)
+      .execute("CREATE TABLE t(x); INSERT INTO t VALUES(1)");
+  const Words parts{"notes.sqlite", "is not a planet file", "another name"};
+  const Words build{"build", "dem.tif", "--base-spacing", "100000", "-o", "notes.sqlite"};
+  expect_refused(build, 1, "notes.sqlite", parts);
+  fs::create_symlink("notes.sqlite", dir_ / "n.vpe");
+  expect_refused({"build", "dem.tif", "-o", "n.vpe"}, 1, "notes.sqlite", {"n.vpe", "is not a planet file"});
+  expect_refused({"build", "dem.tif", "-o", "/dev/null"}, 1, "dem.tif",
+                 {"/dev/null", "a planet is a database"});
+}
+
+TEST_F(Outputs, FollowLinksAndFillPipes) {
+  fs::create_directory(dir_ / "store");
+  fs::create_symlink("store/view.png", dir_ / "latest.png");
+  fs::create_symlink("store/x.vpe", dir_ / "x.vpe");
+  write_dem(dir_ / "dem.tif");
+  expect_made(render({"-o", "latest.png"}));
+  expect_made(render({"-o", "latest.png"}));
+  EXPECT_TRUE(fs::is_symlink(dir_ / "latest.png"));
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(dir_ / "store/view.png")));
+  expect_made({"build", "dem.tif", "--base-spacing", "100000", "-q", "-o", "x.vpe"});
+  EXPECT_TRUE(fs::is_symlink(dir_ / "x.vpe"));
+  EXPECT_TRUE(exists("store/x.vpe"));
+  ASSERT_EQ(::mkfifo(path("pipe.png").c_str(), 0600), 0);
+  auto reader = std::async(std::launch::async, [&] { return read_text(dir_ / "pipe.png"); });
+  expect_made(render({"-o", "pipe.png"}));
+  EXPECT_TRUE(reader.get() == read_text(dir_ / "latest.png"));
+  EXPECT_TRUE(fs::is_fifo(dir_ / "pipe.png"));
+}
+
 // A log and statistics of a stopped film replace nothing.
 TEST_F(Outputs, AStoppedFilmLeavesTheFormerLog) {
   write_text(dir_ / "f.flight", small_flight());

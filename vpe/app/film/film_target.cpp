@@ -11,6 +11,7 @@
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/base/file.h"
+#include "vpe/base/number.h"
 #include "vpe/base/temporary.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/image/png_text.h"
@@ -50,6 +51,19 @@ std::string frame_file_name(std::int64_t index) {
   std::array<char, 40> name{};
   std::snprintf(name.data(), name.size(), "frame_%06lld.png", static_cast<long long>(index));
   return name.data();
+}
+
+void check_frame_files(const fs::path& folder, const FrameRange& range) {
+  constexpr std::size_t kNumberAt = 6;  // in frame_000000.png
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!is_frame_name(name)) continue;
+    const auto index = base::parse_integer(name.substr(kNumberAt, name.size() - kNumberAt - 4));
+    if (!index || *index < range.first || *index > range.last || (*index - range.first) % range.step != 0)
+      continue;
+    if (name == frame_file_name(*index)) check_kind(entry->path(), FileKind::kFrame);
+  }
 }
 
 FilmFolder::FilmFolder(fs::path folder, bool remake) : folder_(std::move(folder)), remake_(remake) {}

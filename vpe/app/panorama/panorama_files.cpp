@@ -159,6 +159,7 @@ void check_sidecar(const fs::path& image) {
   if (!fs::exists(path, error)) return;
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 24;
   const auto bytes = base::read_file(path, kMostBytes);
+  if (bytes.empty()) return;
   const auto json = nlohmann::json::parse(bytes, nullptr, false);
   if (json.is_object() && json.contains("vpe")) return;
   throw std::runtime_error(
@@ -187,9 +188,22 @@ fs::path sidecar_file(const fs::path& image) { return with_extension(image, ".js
 fs::path strips_folder(const fs::path& image) { return image.string() + ".parts"; }
 
 void check_files(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
-  check_output(request.output);
+  const core::SettingsValues& settings = request.settings.values();
+  std::vector<fs::path> inputs{request.planet, settings.names, settings.palette};
+  const fs::path sidecar = sidecar_file(request.output);
+  std::error_code none;
+  // An image that is made again gets its own sidecar again.
+  if (!fs::equivalent(request.from_sidecar, sidecar, none)) inputs.emplace_back(request.from_sidecar);
+  std::vector<Output> outputs{{"-o", request.output, FileKind::kPanorama}};
+  for (const panorama::Plane layer : request.layers)
+    outputs.push_back({"--aux-layers", layer_file(request.output, layer), FileKind::kPanoramaPlane});
   check_size(request.output, plan, memory_mb);
-  for (const panorama::Plane layer : request.layers) check_output(layer_file(request.output, layer));
+  check_outputs(outputs, inputs);
+  for (const fs::path& input : inputs) {
+    if (fs::equivalent(sidecar, input, none))
+      throw UsageError(sidecar.string() + ": is an input; choose another name for " +
+                       request.output.filename().string());
+  }
   check_sidecar(request.output);
 }
 

@@ -72,7 +72,6 @@ ParsedRender parse(const RenderArguments& arguments) {
 
 void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
   if (path.empty()) return;
-  check_image_output(path);
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
   if (extension != ".png")
@@ -83,11 +82,13 @@ void check_overlay_layer(const std::string& path, const core::Overlays& overlays
   }
 }
 
-void check_outputs(const RenderArguments& arguments, const core::SettingsValues& settings) {
-  check_image_output(arguments.output);
-  if (!arguments.range.empty()) check_range_output(arguments.range);
-  if (!arguments.certificate.empty()) check_output(arguments.certificate);
-  if (!arguments.explain_lod.empty()) check_output(arguments.explain_lod);
+void check_render_outputs(const RenderArguments& arguments, const core::SettingsValues& settings) {
+  check_outputs({{"-o", arguments.output, FileKind::kImage},
+                 {"--range", arguments.range, FileKind::kRange},
+                 {"--certificate", arguments.certificate, FileKind::kCertificate},
+                 {"--explain-lod", arguments.explain_lod, FileKind::kExplanation},
+                 {"--overlay-layer", arguments.overlay_layer, FileKind::kImage}},
+                {arguments.planet, settings.names, settings.palette});
   check_overlay_layer(arguments.overlay_layer, settings);
   check_stereo(arguments.stereo);
   if (arguments.stereo.layout.empty()) return;
@@ -214,7 +215,7 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const ParsedRender parsed = parse(arguments);
-  check_outputs(arguments, parsed.settings.values());
+  check_render_outputs(arguments, parsed.settings.values());
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 

@@ -56,7 +56,7 @@ void build(BuildArguments& arguments, const Common& common) {
   options.output = shard_file_name(options.output, options.shard);
   std::vector<std::string> inputs = arguments.dems;
   inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
-  check_planet_file(options.output, inputs);
+  options.output = check_planet_file(options.output, inputs);
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
   for (const std::string& path : arguments.dems) {
     dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "paging/build/merge.h"
-#include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/planet_build.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 void merge(paging::MergeOptions& options, const Common& common) {
   options.threads = common.threads;
-  check_planet_file(options.output, options.shards);
+  options.output = check_planet_file(options.output, options.shards);
   print_build(run_merge(options, common), options.output, common);
 }
 

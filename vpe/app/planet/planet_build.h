@@ -20,7 +20,7 @@ namespace vpe::app {
 // plan that was made before is not made again.
 //
 // Typical usage:
-//   check_planet_file(options.output, inputs);
+//   options.output = check_planet_file(options.output, inputs);
 //   paging::BuildPlan plan = paging::plan_tiles(options, elevation);
 //   print_estimate(paging::estimate_build(options, plan, elevation, image), common);
 //   print_build(run_build(options, elevation, image, common, std::move(plan)), options.output, common);
@@ -36,9 +36,9 @@ void print_estimate(const paging::BuildEstimate& estimate, const Common& common)
 // Prints the estimate as the command's result, on stdout, as text or JSON.
 void print_estimate_only(const paging::BuildEstimate& estimate, const Common& common);
 
-// Checks the output before hours of work. Throws UsageError when it is one of the inputs, and
-// std::runtime_error when it cannot be written, or exists and is not a planet file.
-void check_planet_file(const std::string& output, const std::vector<std::string>& inputs);
+// Checks the output before hours of work, and returns the file that it names through symbolic links. Throws
+// what check_outputs() throws.
+std::string check_planet_file(const std::string& output, const std::vector<std::string>& inputs);
 
 // Returns the name of a part's file: "mars.vpe" becomes "mars.03-of-16.vpe", so that names sort like parts. The
 // name is unchanged where there is only one part.
