@@ -149,6 +149,16 @@ TEST_F(Outputs, FollowLinksAndFillPipes) {
   EXPECT_TRUE(fs::is_fifo(dir_ / "pipe.png"));
 }
 
+// Two images in one folder that share the name of their sidecar and layers.
+TEST_F(Outputs, APanoramaKeepsTheSidecarOfAnother) {
+  expect_made(panorama({"-o", "pano.png", "--aux-layers", "range"}));
+  expect_refused(panorama({"-o", "pano.jpg"}), 1, "pano.json", {"pano.json", "'pano.png'", "recipe"});
+  expect_refused(panorama({"-o", "pano.jpg", "--aux-layers", "range"}), 1, "pano.range.tif", {"pano.json"});
+  EXPECT_FALSE(exists("pano.jpg"));
+  expect_made(panorama({"-o", "pano.png"}));
+  expect_made({"panorama", "--from-sidecar", "pano.json"});
+}
+
 // A log and statistics of a stopped film replace nothing.
 TEST_F(Outputs, AStoppedFilmLeavesTheFormerLog) {
   write_text(dir_ / "f.flight", small_flight());

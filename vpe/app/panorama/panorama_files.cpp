@@ -161,10 +161,13 @@ void check_sidecar(const fs::path& image) {
   const auto bytes = base::read_file(path, kMostBytes);
   if (bytes.empty()) return;
   const auto json = nlohmann::json::parse(bytes, nullptr, false);
-  if (json.is_object() && json.contains("vpe")) return;
-  throw std::runtime_error(
-      path.string() + ": exists, and 'vpe panorama' did not write it; move it or choose another name for " +
-      image.filename().string());
+  const std::string advice = "; move it or choose another name for " + image.filename().string();
+  if (!json.is_object() || !json.contains("vpe"))
+    throw std::runtime_error(path.string() + ": exists, and 'vpe panorama' did not write it" + advice);
+  const auto described = json.find("image");
+  if (described == json.end() || !described->is_string() || *described == image.filename().string()) return;
+  throw std::runtime_error(path.string() + ": describes the image '" + described->get<std::string>() +
+                           "', which would lose its recipe" + advice);
 }
 
 }  // namespace

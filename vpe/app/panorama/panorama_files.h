@@ -25,7 +25,7 @@ std::filesystem::path strips_folder(const std::filesystem::path& image);
 
 // Checks that every file can be written, before any work. Throws what check_outputs() throws, and
 // std::runtime_error where the format cannot hold the size, or a file of the sidecar's name was not written by
-// this program.
+// this program or describes another image.
 void check_files(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb);
 
 // Removes unfinished files of the image, its layers and its sidecar that a killed run left.
