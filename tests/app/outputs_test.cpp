@@ -159,6 +159,20 @@ TEST_F(Outputs, APanoramaKeepsTheSidecarOfAnother) {
   expect_made({"panorama", "--from-sidecar", "pano.json"});
 }
 
+TEST_F(Outputs, APanoramaRemovesOnlyItsOwnStrips) {
+  fs::create_directory(dir_ / "pano.png.parts");
+  const Words foreign{"raw.txt", "strip_of_mine.txt", "strip_000001.bak"};
+  for (const std::string& name : foreign) write_text(dir_ / "pano.png.parts" / name, "mine");
+  write_text(dir_ / "pano.png.parts/strip_000077", "of a wider panorama");
+  expect_made(panorama({"-o", "pano.png"}));
+  for (const std::string& name : foreign) EXPECT_TRUE(exists("pano.png.parts/" + name)) << name;
+  EXPECT_FALSE(exists("pano.png.parts/strip_000077"));
+  EXPECT_FALSE(exists("pano.png.parts/strip_000000"));
+  for (const std::string& name : foreign) fs::remove(dir_ / "pano.png.parts" / name);
+  expect_made(panorama({"-o", "pano.png"}));
+  EXPECT_FALSE(exists("pano.png.parts"));
+}
+
 // A log and statistics of a stopped film replace nothing.
 TEST_F(Outputs, AStoppedFilmLeavesTheFormerLog) {
   write_text(dir_ / "f.flight", small_flight());

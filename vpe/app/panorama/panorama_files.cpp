@@ -1,10 +1,13 @@
 #include "vpe/app/panorama/panorama_files.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "panorama/image/big_tiff.h"
 #include "panorama/image/row_file.h"
@@ -170,6 +173,14 @@ void check_sidecar(const fs::path& image) {
                            "', which would lose its recipe" + advice);
 }
 
+// Returns true for names that strip_file() makes.
+bool is_strip_name(const std::string& name) {
+  constexpr std::string_view kBegin = "strip_";
+  constexpr std::size_t kFewestDigits = 6;
+  return name.starts_with(kBegin) && name.size() >= kBegin.size() + kFewestDigits &&
+         name.find_first_not_of("0123456789", kBegin.size()) == std::string::npos;
+}
+
 }  // namespace
 
 PanoramaFormat panorama_format(const fs::path& path) {
@@ -189,6 +200,28 @@ fs::path layer_file(const fs::path& image, panorama::Plane layer) {
 fs::path sidecar_file(const fs::path& image) { return with_extension(image, ".json"); }
 
 fs::path strips_folder(const fs::path& image) { return image.string() + ".parts"; }
+
+fs::path strip_file(const fs::path& image, std::size_t number) {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "strip_%06zu", number);
+  return strips_folder(image) / name.data();
+}
+
+void remove_stale_strips(const fs::path& image) {
+  base::remove_stale_temporaries(strips_folder(image), is_strip_name);
+}
+
+void remove_strips(const fs::path& image) {
+  remove_stale_strips(image);
+  std::error_code error;
+  std::vector<fs::path> files;
+  const fs::path folder = strips_folder(image);
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_strip_name(entry->path().filename().string())) files.push_back(entry->path());
+  }
+  for (const fs::path& file : files) fs::remove(file, error);
+  fs::remove(folder, error);  // fails when it holds other files
+}
 
 void check_files(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
   const core::SettingsValues& settings = request.settings.values();
