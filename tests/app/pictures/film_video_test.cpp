@@ -209,5 +209,30 @@ TEST_F(FilmVideo, IsNotJoinedWhenFramesFail) {
   EXPECT_EQ(leftovers(), Words{});
 }
 
+// ffmpeg takes names for URLs in places.
+TEST_F(FilmVideo, NamesMayHoldWhatUrlsGiveAMeaning) {
+  for (const char* folder : {"", "dir#1?x/"}) {
+    for (const char* name : {"film #2.mp4", "a?b=1&c.mp4", "100%41.mp4", "it's \\ \"x\"\n.mp4"}) {
+      const std::string film = std::string(folder) + name;
+      SCOPED_TRACE(film);
+      fs::create_directories(dir_ / folder);
+      const Result result = fly(film, {"--frames", "0-9"});
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_TRUE(exists(film));
+    }
+  }
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+// Segments of another folder, with the name that is left over by the cut, are not taken.
+TEST_F(FilmVideo, ANumberSignLeadsToNoOtherFolder) {
+  ASSERT_EQ(fly("plain.mp4").exit_code, 0);
+  fs::create_directory(dir_ / "dir");
+  fs::copy_file(dir_ / "plain.mp4", dir_ / "segment_000000.mp4");
+  ASSERT_EQ(fly("film#.mp4", {"--frames", "0-9"}).exit_code, 0);
+  ASSERT_EQ(fly("film.mp4", {"--frames", "0-9"}).exit_code, 0);
+  EXPECT_EQ(decoded("film#.mp4"), decoded("film.mp4"));
+}
+
 }  // namespace
 }  // namespace app_test

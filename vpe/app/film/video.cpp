@@ -59,8 +59,8 @@ Words segment_words(const VideoFormat& format, const fs::path& to) {
   return append(words, {"-f", "mp4", file_word(to)});
 }
 
-Subprocess start_ffmpeg(const Words& words, const fs::path& film) try {
-  return Subprocess(words);
+Subprocess start_ffmpeg(const Words& words, const fs::path& film, const fs::path& folder = {}) try {
+  return Subprocess(words, folder);
 } catch (const std::runtime_error& e) {
   throw std::runtime_error(film.string() + ": " + e.what() +
                            "; install ffmpeg, or give a folder to get PNG frames");
@@ -155,11 +155,14 @@ void join_video(const fs::path& folder, std::span<const VideoSegment> segments, 
   list.flush();
   base::OutputFile joined(film);
   Words words = ffmpeg();
-  append(words, {"-f", "concat", "-safe", "0", "-i", file_word(list.temporary()), "-c", "copy"});
+  // The demuxer takes the list's name for a URL: a folder with '#' or '?' in its name would be cut there. So
+  // ffmpeg runs in the folder, and sees no other name than those that vpe makes.
+  const std::string list_name = list.temporary().filename().string();
+  append(words, {"-f", "concat", "-safe", "0", "-i", file_word(list_name), "-c", "copy"});
   append(words, {"-bsf:v", exact_times(format.rate)});
   append(words, timescale(format));
-  append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(joined.temporary())});
-  Subprocess child = start_ffmpeg(words, film);
+  append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(fs::absolute(joined.temporary()))});
+  Subprocess child = start_ffmpeg(words, film, folder);
   if (!child.finish()) {
     throw std::runtime_error(
         with_message(film.string() + ": cannot join the video", child.stderr_text()) +
