@@ -124,10 +124,59 @@ TEST_F(Outputs, ANewPlanetReplacesNoStrangersDatabase) {
   const Words parts{"notes.sqlite", "is not a planet file", "another name"};
   const Words build{"build", "dem.tif", "--base-spacing", "100000", "-o", "notes.sqlite"};
   expect_refused(build, 1, "notes.sqlite", parts);
+  expect_refused(with(build, {"--force"}), 1, "notes.sqlite", parts);
   fs::create_symlink("notes.sqlite", dir_ / "n.vpe");
   expect_refused({"build", "dem.tif", "-o", "n.vpe"}, 1, "notes.sqlite", {"n.vpe", "is not a planet file"});
   expect_refused({"build", "dem.tif", "-o", "/dev/null"}, 1, "dem.tif",
                  {"/dev/null", "a planet is a database"});
+}
+
+TEST_F(Outputs, AFinishedPlanetIsReplacedByForceOnly) {
+  write_dem(dir_ / "dem.tif");
+  write_dem(dir_ / "flat.tif", {.height_m = [](int, int) { return 5.0; }});
+  const Words build{"build", "dem.tif", "--base-spacing", "100000", "-q", "-o", "x.vpe"};
+  const auto identity = [&] { return paging::PlanetFile::open(path("x.vpe"))->meta().identity; };
+  expect_made(build);
+  const std::string first = identity();
+  expect_made(build);  // the same again
+  struct Other {
+    Words words;
+    Words parts;
+  };
+  for (const Other& other :
+       {Other{{"build", "flat.tif", "--base-spacing", "100000"}, {"dem.tif", "not flat.tif"}},
+        Other{{"build", "dem.tif", "flat.tif", "--base-spacing", "100000"}, {"dem.tif", "flat.tif"}},
+        Other{{"build", "dem.tif", "--base-spacing", "20000"}, {"finest tiles", "--base-spacing"}},
+        Other{{"build", "dem.tif", "--base-spacing", "100000", "--image", "dem.tif"},
+              {"image sources are none"}},
+        Other{{"build", "dem.tif", "--base-spacing", "100000", "--datum", "areoid"}, {"datum"}}}) {
+    SCOPED_TRACE(other.parts.front());
+    expect_refused(with(other.words, {"-q", "-o", "x.vpe"}), 1, "x.vpe",
+                   with({"x.vpe", "is another planet", "--force"}, other.parts));
+    EXPECT_FALSE(exists("x.vpe.part"));
+  }
+  const auto time = fs::last_write_time(dir_ / "dem.tif");
+  fs::last_write_time(dir_ / "dem.tif", time + std::chrono::seconds(7));
+  expect_refused(build, 1, "x.vpe", {"dem.tif has changed"});
+  fs::last_write_time(dir_ / "dem.tif", time);
+  // A damaged file is built again, as messages about it advise.
+  damage_payloads(dir_ / "x.vpe", "heights");
+  expect_made(build);
+  EXPECT_EQ(identity(), first);
+  expect_made({"build", "flat.tif", "--base-spacing", "100000", "-q", "-o", "x.vpe", "--force"});
+  EXPECT_NE(identity(), first);
+  // Parts and merging.
+  for (const char* part : {"1/2", "2/2"}) expect_made(with(build, {"--part", part}));
+  expect_made(with(build, {"--part", "2/2"}));
+  expect_refused({"build", "flat.tif", "--base-spacing", "100000", "-o", "x.vpe", "--part", "1/2"}, 1,
+                 "x.1-of-2.vpe", {"x.1-of-2.vpe", "not flat.tif", "--force"});
+  const Words merge{"merge", "x.1-of-2.vpe", "x.2-of-2.vpe", "-q", "-o", "x.vpe"};
+  expect_refused(merge, 1, "x.vpe", {"x.vpe", "flat.tif, not dem.tif", "--force"});
+  expect_made(with(merge, {"--force"}));
+  EXPECT_EQ(identity(), first);
+  expect_made(merge);
+  expect_refused({"merge", "x.1-of-2.vpe", "x.2-of-2.vpe", "-o", "x.1-of-2.vpe"}, 2, "x.1-of-2.vpe",
+                 {"is also an input"});
 }
 
 TEST_F(Outputs, FollowLinksAndFillPipes) {

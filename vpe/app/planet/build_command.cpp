@@ -21,6 +21,7 @@ struct BuildArguments {
   SourceArguments sources;
   std::string part;
   bool estimate = false;
+  bool force = false;
   paging::BuildOptions options;
 };
 
@@ -78,6 +79,8 @@ void build(BuildArguments& arguments, const Common& common) {
     print_estimate_only(estimate, common);
     return;
   }
+  if (!arguments.force && std::filesystem::exists(options.output))
+    require_same_content(options.output, paging::planned_content(options, plan, *combined.source, image.get()));
   print_estimate(estimate, common);
   const paging::BuildSummary summary =
       run_build(options, *combined.source, image.get(), common, std::move(plan));
@@ -117,6 +120,7 @@ void add_build(CLI::App& program, Common& common) {
       "--part", arguments->part,
       "k/n: build only the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: take k and n from the "
       "variables of SLURM or MPI");
+  command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
   command->add_flag("--estimate", arguments->estimate, "Only estimate the build: tiles, bytes, time");
   command->callback([arguments, &common] { build(*arguments, common); });
 }

@@ -144,6 +144,15 @@ std::string check_planet_file(const std::string& output, const std::vector<std::
   return base::resolve_links(output).string();
 }
 
+void require_same_content(const std::string& output, const paging::PlannedContent& planned) {
+  std::string texts;
+  for (const std::string& text : paging::differences(output, planned))
+    texts += (texts.empty() ? "" : "; ") + text;
+  if (texts.empty()) return;
+  throw std::runtime_error(output + ": exists and is another planet: " + texts +
+                           "; give another name, or --force to replace it");
+}
+
 std::string shard_file_name(const std::string& output, const base::Shard& shard) {
   if (shard.is_all()) return output;
   const std::string of = std::to_string(shard.of);
