@@ -80,12 +80,14 @@ std::int64_t segment_frames(const scripts::FrameRate& rate) {
 
 fs::path parts_folder(const fs::path& film) { return film.string() + ".parts"; }
 
-FilmVideo::FilmVideo(fs::path film, fs::path manifest, const VideoFormat& format, bool remake)
+FilmVideo::FilmVideo(fs::path film, fs::path manifest, const VideoFormat& format, FolderLock::Use use,
+                     bool remake)
     : film_(std::move(film)),
       manifest_(std::move(manifest)),
       folder_(parts_folder(film_)),
       format_(format),
       group_(segment_frames(format.rate)),
+      use_(use),
       remake_(remake) {
   check_video_format(film_, format_);
   std::error_code error;
@@ -108,8 +110,13 @@ std::string FilmVideo::fingerprint(std::span<const FilmFrame> frames) const {
   return digest.hex();
 }
 
+void FilmVideo::lock() {
+  if (!lock_) lock_ = std::make_unique<FolderLock>(folder_, use_, film_);
+}
+
 void FilmVideo::keep(std::span<FilmFrame> frames, const FilmSlice& slice, base::ThreadPool& pool) {
   if (remake_ || keep_film(frames, slice) || !fs::exists(folder_)) return;
+  lock();
   encoder();
   const auto size = static_cast<std::size_t>(group_);
   pool.run((frames.size() + size - 1) / size, [&](std::size_t n) {
@@ -143,7 +150,7 @@ void FilmVideo::keep_segment(std::int64_t group, std::span<FilmFrame> frames) co
 
 void FilmVideo::prepare() {
   encoder();
-  make_folder(folder_);
+  lock();
   remove_stale();
 }
 
@@ -180,6 +187,7 @@ void FilmVideo::end_group(std::int64_t group, std::span<FilmFrame> frames) {
 
 void FilmVideo::finish(std::span<FilmFrame> frames) {
   if (complete_) return;
+  lock();
   encoder();
   const auto all = static_cast<std::int64_t>(frames.size());
   std::vector<VideoSegment> segments;

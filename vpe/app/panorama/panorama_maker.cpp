@@ -10,7 +10,6 @@
 
 #include "panorama/image/tile_codec.h"
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/cli/output.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/base/file.h"
@@ -143,7 +142,8 @@ std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
 }
 
 std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, PanoramaTimes& times) {
-  make_folder(strips_folder(request_.output));
+  lock_ =
+      std::make_unique<FolderLock>(strips_folder(request_.output), FolderLock::Use::kAlone, request_.output);
   remove_stale_strips(request_.output);
   std::vector<panorama::StripFile> strips;
   for (std::size_t n = 0; n < plan_.strips.size(); ++n) {
