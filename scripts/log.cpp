@@ -8,20 +8,32 @@
 
 namespace scripts {
 
-LineFile::LineFile(std::filesystem::path path)
-    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wb"), &std::fclose) {
-  if (file_ == nullptr) fail("open for writing");
+LineFile::LineFile(std::filesystem::path path, Mode mode)
+    : path_(std::move(path)), live_(nullptr, &std::fclose) {
+  if (mode == Mode::kWhole) {
+    whole_ = std::make_unique<vpe::base::OutputFile>(path_);
+    return;
+  }
+  live_.reset(std::fopen(path_.c_str(), "wb"));
+  if (live_ == nullptr) fail("open for writing");
 }
 
 void LineFile::write(std::string_view lines) {
-  if (std::fwrite(lines.data(), 1, lines.size(), file_.get()) != lines.size() ||
-      std::fflush(file_.get()) != 0) {
+  if (whole_ != nullptr) {
+    whole_->write({reinterpret_cast<const std::uint8_t*>(lines.data()), lines.size()});
+  } else if (std::fwrite(lines.data(), 1, lines.size(), live_.get()) != lines.size() ||
+             std::fflush(live_.get()) != 0) {
     fail("write");
   }
 }
 
 void LineFile::close() {
-  if (file_ != nullptr && std::fclose(file_.release()) != 0) fail("close");
+  if (whole_ != nullptr) {
+    whole_->commit();
+    whole_.reset();
+  } else if (live_ != nullptr && std::fclose(live_.release()) != 0) {
+    fail("close");
+  }
 }
 
 void LineFile::fail(const char* operation) const {
@@ -29,8 +41,9 @@ void LineFile::fail(const char* operation) const {
                            "; check the folder, its permissions and the space left");
 }
 
-FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view) : file_(path) {
-  file_.write(version_line() + to_line(view));
+FlightLog::FlightLog(const std::filesystem::path& path, const FlightView& view, LineFile::Mode mode)
+    : file_(path, mode) {
+  file_.write(version_line() + "# log of vpe\n" + to_line(view));
 }
 
 void FlightLog::frame(double time_s, const mars::Pose& pose, const mars::HeadAngles& head,

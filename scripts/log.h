@@ -11,30 +11,38 @@
 
 #include "mars/geodesy/pose.h"
 #include "scripts/flight.h"
+#include "vpe/base/file.h"
 #include "vpe/core/appearance/settings.h"
 
 namespace scripts {
 
-// Writes a text file line by line. Each line reaches the operating system at once, so that it survives a crash
-// of the program. Members throw std::runtime_error; the message names the file, the operation and the system's
-// message.
+// Writes a text file line by line. Members throw std::runtime_error; the message names the file, the operation
+// and the system's message.
 class LineFile {
  public:
-  explicit LineFile(std::filesystem::path path);
+  enum class Mode {
+    kLive,   // under its name from the start; each line reaches the operating system at once, and so survives a
+             // crash of the program. The former file is lost.
+    kWhole,  // under its name when it is closed; until then, and without close(), the former file stays
+  };
+
+  LineFile(std::filesystem::path path, Mode mode);
   // Writes lines that end with newlines.
   void write(std::string_view lines);
-  // Closes the file. The destructor closes it too, but cannot report errors.
+  // Closes the file. The destructor closes a live file too, but cannot report errors, and removes a whole one.
   void close();
 
  private:
   [[noreturn]] void fail(const char* operation) const;
 
   std::filesystem::path path_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::unique_ptr<vpe::base::OutputFile> whole_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> live_;
 };
 
-// Writes a flight with one pose for each frame (`--log F.flight`). Once the first frame is written, the file
-// is a valid flight at any moment, also without end(). Replayed at the same times it gives the same poses to
+// Writes a flight with one pose for each frame (`--log F.flight`). The second line is the comment "# log of
+// vpe", by which logs are told from flights. Once the first frame is written, a live file is a valid flight at
+// any moment, also without end(). Replayed at the same times it gives the same poses to
 // the bit (scripts/path.h). Members throw what LineFile throws.
 //
 // Typical usage:
@@ -43,7 +51,8 @@ class LineFile {
 //   log.end(duration_s);
 class FlightLog {
  public:
-  FlightLog(const std::filesystem::path& path, const FlightView& view);
+  FlightLog(const std::filesystem::path& path, const FlightView& view,
+            LineFile::Mode mode = LineFile::Mode::kLive);
 
   // Writes the pose, and head and settings where they have changed since the last frame. Times must ascend.
   // `interest` are all regions so far; those that the last frame did not have are written. (A flight cannot

@@ -94,7 +94,8 @@ bool is_json(const std::filesystem::path& path) {
 
 }  // namespace
 
-StatsWriter::StatsWriter(const std::filesystem::path& path) : json_(is_json(path)), file_(path) {
+StatsWriter::StatsWriter(const std::filesystem::path& path)
+    : json_(is_json(path)), file_(path, LineFile::Mode::kWhole) {
   if (!json_) file_.write(csv_header());
 }
 

@@ -3,6 +3,7 @@
 // Typical usage:
 //   StatsWriter stats("frames.csv");
 //   stats.row(frame, time_s, result.stats, result.certificate);
+//   stats.close();
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,8 @@ namespace scripts {
 // core::FrameStats, then of the certificate "tile_error_m" (Certificate::geometric_error_m), "tile_error_px"
 // (screen_space_error_px), shift_bound_px and tiles_substituted. tiles_by_level is "3;5;0" in CSV and an array
 // in JSON. A value that is not finite, and a negative bytes_resident or number of pages (unknown), is an empty
-// field or null. Numbers are the same in every locale. Each row is flushed. Members throw what LineFile throws.
+// field or null. Numbers are the same in every locale. The file appears under its name with
+// close(). Members throw what LineFile throws.
 class StatsWriter {
  public:
   // Selects the format by the extension. Throws std::runtime_error for any other extension.

@@ -1,6 +1,10 @@
 #include "paging/build/partial_planet_file.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 #include <vector>
 
 #include "paging/planet/codec.h"
@@ -78,6 +82,67 @@ bool is_intact(Database& db) {
          db.integer("SELECT count(*) FROM variant") == variants;
 }
 
+constexpr std::size_t kDatabaseHeaderBytes = 100;
+
+std::string first_bytes(const std::string& path) {
+  std::string bytes(kDatabaseHeaderBytes, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+bool holds_only_zeros(std::string_view bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](char c) { return c == '\0'; });
+}
+
+// Returns true if SQLite may have written the journal. One that was not synced begins with zeros.
+bool is_journal(const std::string& path) {
+  constexpr std::string_view kMagic = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+  const std::string bytes = first_bytes(path);
+  return bytes.empty() || bytes.starts_with(kMagic) || holds_only_zeros(bytes.substr(0, 12));
+}
+
+[[noreturn]] void refuse_foreign(const std::string& path, const std::string& part) {
+  throw DatabaseError(path + ": cannot write '" + part +
+                      "': a file of this name exists that is not an unfinished planet file of vpe; move it, or "
+                      "give the planet file another name");
+}
+
+// Throws unless everything at `path`, and beside it where SQLite would remove it, is this program's.
+void require_own_files(const std::string& path) {
+  std::error_code error;
+  const std::string journal = path + "-journal";
+  const bool has_journal = fs::exists(journal, error);
+  if (has_journal && !is_journal(journal)) refuse_foreign(journal, path);
+  if (fs::exists(path, error)) {
+    if (!fs::is_regular_file(path, error)) refuse_foreign(path, path);
+    if (!std::ifstream(path, std::ios::binary)) {
+      throw DatabaseError(path +
+                              ": cannot read the unfinished planet file; change its permissions, or give the "
+                              "planet file another name",
+                          SQLITE_CANTOPEN);
+    }
+    const std::string bytes = first_bytes(path);
+    // Before its first commit a killed build leaves an empty file, or later pages and the journal that undoes
+    // them.
+    const bool may_be_undone = bytes.empty() || (has_journal && holds_only_zeros(bytes));
+    if (!may_be_undone && !is_planet_file(path)) refuse_foreign(path, path);
+    if (!bytes.empty()) return;  // side files of a database of ours are SQLite's
+  }
+  // SQLite removes these beside an empty database.
+  for (const char* suffix : {"-wal", "-shm"}) {
+    if (fs::exists(path + suffix, error)) refuse_foreign(path + suffix, path);
+  }
+}
+
+// Returns true for errors that say what the file holds, in contrast to what the disk, the permissions, the
+// memory or another process allow.
+bool tells_of_content(const DatabaseError& error) {
+  return error.code() == SQLITE_CORRUPT || error.code() == SQLITE_NOTADB || error.code() == SQLITE_ERROR ||
+         error.code() == SQLITE_SCHEMA || error.code() == SQLITE_FORMAT;
+}
+
 // Continues the partial file at `path`; returns no database when it must be made again.
 PartialPlanetFile continue_partial_file(const std::string& path, const std::string& fingerprint) {
   try {
@@ -90,30 +155,39 @@ PartialPlanetFile continue_partial_file(const std::string& path, const std::stri
     const bool holds_tiles = db->integer("SELECT count(*) FROM node") > 0;
     return {std::move(db), PartialFileStart::kContinued, holds_tiles};
   } catch (const DatabaseError& e) {
-    if (e.busy()) {
-      throw DatabaseError(path + ": another build is writing it; wait for it, or give another output name",
-                          e.code());
-    }
-    return {nullptr, PartialFileStart::kReplaced, false};  // not a database, or too damaged to read
+    if (!tells_of_content(e)) throw;
+    return {nullptr, PartialFileStart::kReplaced, false};  // damaged
   }
 }
 
 }  // namespace
 
 PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint) {
-  PartialPlanetFile partial;
-  if (fs::exists(path)) {
-    partial = continue_partial_file(path, fingerprint);
-    if (partial.db) return partial;
+  require_own_files(path);
+  try {
+    PartialPlanetFile partial;
+    if (fs::exists(path)) {
+      partial = continue_partial_file(path, fingerprint);
+      if (partial.db) return partial;
+    }
+    remove_partial_file(path);
+    partial.db = open_exclusively(path);
+    partial.db->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
+    partial.db->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
+    partial.db->execute(kSchema);
+    partial.db->execute(kPartialTables);
+    Statement(*partial.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(fingerprint)).step();
+    return partial;
+  } catch (const DatabaseError& e) {
+    if (e.busy()) {
+      throw DatabaseError(path + ": another build is writing it; wait for it, or give another output name",
+                          e.code());
+    }
+    // Nothing was committed: an empty file would seem to be work that can be continued.
+    std::error_code error;
+    if (fs::file_size(path, error) == 0 && !error) remove_partial_file(path);
+    throw;
   }
-  remove_partial_file(path);
-  partial.db = open_exclusively(path);
-  partial.db->execute("PRAGMA application_id = " + std::to_string(kApplicationId));
-  partial.db->execute("PRAGMA user_version = " + std::to_string(kFormatMajor));
-  partial.db->execute(kSchema);
-  partial.db->execute(kPartialTables);
-  Statement(*partial.db, "INSERT INTO recipe VALUES(?)").bind(1, std::string_view(fingerprint)).step();
-  return partial;
 }
 
 void remove_partial_file(const std::string& path) {

@@ -27,11 +27,13 @@ struct PartialPlanetFile {
 
 // Opens the partial file at `path` to continue it, or makes a new one with the tables of a planet file, the
 // fingerprint and the table of checkpoints. Continues only a file with the same fingerprint that is undamaged;
-// the check reads the whole of it. Throws DatabaseError; its busy() is true while another build writes the
-// file.
+// the check reads the whole of it. Replaces one that is damaged or has another fingerprint. Throws
+// DatabaseError and leaves the file as it is in all other cases: it cannot be read or written, the disk is
+// full, or a file of another program has this name or that of a journal beside it; busy() is true while another
+// build writes the file.
 PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint);
 
-// Removes the file and what SQLite keeps beside it.
+// Removes the file and what SQLite keeps beside it. They must be this program's.
 void remove_partial_file(const std::string& path);
 
 // SQL that lets a connection write files of up to 35 TB; SQLite's own limit is a quarter of that.

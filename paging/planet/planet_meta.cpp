@@ -1,8 +1,10 @@
 #include "paging/planet/planet_meta.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -113,6 +115,19 @@ void check_ranges(const PlanetMeta& m, const std::string& path) {
 }
 
 }  // namespace
+
+bool is_planet_file(const std::string& path) {
+  // "The Database Header" of the SQLite file format: the application_id is big-endian, at byte 68.
+  constexpr std::string_view kBegin("SQLite format 3\0", 16);
+  constexpr std::size_t kAt = 68;
+  std::array<char, kAt + 4> head{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(head.data(), head.size()) || !std::string_view(head.data(), head.size()).starts_with(kBegin))
+    return false;
+  std::uint32_t id = 0;
+  for (std::size_t n = kAt; n < head.size(); ++n) id = id << 8U | static_cast<std::uint8_t>(head[n]);
+  return id == static_cast<std::uint32_t>(kApplicationId);
+}
 
 bool PlanetMeta::operator==(const PlanetMeta& o) const {
   return body == o.body && radius_m == o.radius_m && datum == o.datum && shape == o.shape &&

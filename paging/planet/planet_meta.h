@@ -25,6 +25,10 @@ inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
 inline constexpr const char* kMetaChecksumKey = "checksum";  // its row covers all other rows of `meta`
 
+// Returns true if the file begins as a planet file of this program does, complete or not, sound or not. Does not
+// throw.
+bool is_planet_file(const std::string& path);
+
 // Reports a planet file that cannot be used. what() names the file, the problem and what to do.
 class PlanetError : public std::runtime_error {
  public:

@@ -28,10 +28,10 @@ Database::Database(const std::string& path, Mode mode) : path_(path) {
 void Database::fail(const std::string& operation) const {
   const char* message = db_ ? sqlite3_errmsg(db_.get()) : "out of memory";
   const int code = db_ ? sqlite3_extended_errcode(db_.get()) & 0xff : SQLITE_NOMEM;
-  throw DatabaseError(
-      path_ + ": cannot " + operation + ": " + message +
-          (code == SQLITE_FULL ? "; free some space there, or in the folder of temporary files" : ""),
-      code);
+  const char* advice = code == SQLITE_FULL ? "; free some space there, or in the folder of temporary files"
+                       : code == SQLITE_READONLY ? "; change its permissions, or those of its folder"
+                                                 : "";
+  throw DatabaseError(path_ + ": cannot " + operation + ": " + message + advice, code);
 }
 
 void Database::execute(const std::string& sql) {

@@ -41,12 +41,19 @@ TEST_F(BuildFailure, FullDisk) {
   // Too small for the tables, for the first tiles, and for the last ones.
   for (const std::uintmax_t bytes : {std::uintmax_t{16384}, size / 8, size * 9 / 10}) {
     SCOPED_TRACE(bytes);
-    const Result result =
-        on_small_disk(std::to_string(bytes),
-                      build + "disk/x.vpe; echo exit $?; test -e disk/x.vpe.part && echo kept; grow; " + build +
-                          "disk/x.vpe && cp disk/x.vpe . && ls disk");
+    const Result result = on_small_disk(
+        std::to_string(bytes),
+        build +
+            "disk/x.vpe; echo exit $?; test -e disk/x.vpe.part && echo kept; "
+            // Tried again while something else has filled the rest of the disk.
+            "cat /dev/zero > disk/log 2>/dev/null; sum() { cksum < disk/x.vpe.part 2>/dev/null; }; "
+            "before=$(sum); " +
+            build +
+            "disk/x.vpe; test \"$before\" = \"$(sum)\" && echo same; "
+            "rm disk/log; grow; " +
+            build + "disk/x.vpe && cp disk/x.vpe . && ls disk");
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_TRUE(says(result.out, {"exit 1\n"}));
+    EXPECT_TRUE(says(result.out, {"exit 1\n", "same\n"}));
     EXPECT_TRUE(says(result.err, {"disk/x.vpe.part", "disk is full", "free some space"}));
     // The message is true: either there is work to continue, and it is continued, or there is none.
     const bool kept = result.out.find("kept") != std::string::npos;

@@ -44,7 +44,7 @@ TEST_F(Signals, StopABuild) {
 TEST_F(Signals, KeepTheExistingFile) {
   write_dem(dir_ / "x.tif");
   std::filesystem::copy_file(planet(), dir_ / "x.vpe");
-  Command command = command_for({"build", "x.tif", "-o", "x.vpe"});
+  Command command = command_for({"build", "x.tif", "-o", "x.vpe", "--force"});
   command.signal = SIGINT;
   command.when = [&] { return holds_part(dir_.path()); };
   EXPECT_EQ(run(command).exit_code, 130);

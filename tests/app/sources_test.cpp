@@ -26,8 +26,8 @@ class Sources : public AppTest {
     write_dem(dir_ / "inset.tif", inset);
   }
   Result build(const Words& more) const {
-    Words words{"build",          "globe.tif", "inset.tif", "-o",   "p.vpe",
-                "--base-spacing", "100000",    "--spacing", "20000"};
+    Words words{"build", "--force",        "globe.tif", "inset.tif", "-o",
+                "p.vpe", "--base-spacing", "100000",    "--spacing", "20000"};
     words.insert(words.end(), more.begin(), more.end());
     return vpe(words);
   }
@@ -186,7 +186,7 @@ TEST_F(Sources, AlignmentIsReported) {
 
 TEST_F(Sources, BodiesByNameAndBySource) {
   write_dem(dir_ / "m.tif");
-  Words words{"build", "m.tif", "-o", "m.vpe", "--base-spacing", "100000", "--json", "-q"};
+  Words words{"build", "m.tif", "-o", "m.vpe", "--force", "--base-spacing", "100000", "--json", "-q"};
   const auto with = [&](const Words& more) {
     Words all = words;
     all.insert(all.end(), more.begin(), more.end());

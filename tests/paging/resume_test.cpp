@@ -1,11 +1,13 @@
 // Builds that are stopped, killed or fail continue where they ended, and give the same content.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
 
+#include "paging/planet/sqlite.h"
 #include "tests/paging/planet_fixture.h"
 
 namespace {
@@ -257,10 +259,75 @@ TEST_F(Resume, OtherOptionsStartAnew) {
   EXPECT_NE(summary.meta.identity, whole().identity);
 }
 
-TEST_F(Resume, RubbishUnderThePartialFilesNameIsReplaced) {
+// Limits the size of files that this process writes, as a full disk does.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &former_);
+    const rlimit limit{bytes, former_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &former_);
+    ::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit former_{};
+  void (*handler_)(int);
+};
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+// An error that says nothing about the content (no space, no permission, ...) leaves the partial file.
+TEST_F(Resume, APartialFileThatCannotBeWrittenIsKept) {
+  EXPECT_THROW(build(options(),
+                     [](const paging::BuildProgress& p) {
+                       if (p.fraction > 0.7) throw std::runtime_error("stop");
+                     }),
+               std::runtime_error);
+  const std::string part = options().output + ".part";
   {
-    std::ofstream out(options().output + ".part", std::ios::binary);
-    out << std::string(20000, 'x');
+    // As when a build is killed after its last tile: `meta` has rows, which are deleted first.
+    paging::Database db(part, paging::Database::Mode::kCreate);
+    db.execute("INSERT INTO meta VALUES('format', '1.2')");
+  }
+  const std::string before = content_of(part);
+  {
+    const FileSizeLimit full(0);
+    EXPECT_THROW(build(options()), paging::DatabaseError);
+  }
+  EXPECT_TRUE(content_of(part) == before);
+  EXPECT_GT(build(options()).kept, 0);
+  expect_whole();
+}
+
+// What another program left under the names that a build uses is neither overwritten nor removed.
+TEST_F(Resume, FilesOfOthersAreKept) {
+  paging::Database(options().output + ".other", paging::Database::Mode::kCreate)
+      .execute("PRAGMA application_id = 7; CREATE TABLE t(x); INSERT INTO t VALUES(1)");
+  const std::string database = content_of(options().output + ".other");
+  for (const char* suffix : {".part", ".part-journal", ".part-wal", ".part-shm"}) {
+    for (const std::string& content : {std::string("mine\n"), std::string(20000, 'x'), database}) {
+      SCOPED_TRACE(suffix + content.substr(0, 6));
+      const std::string file = options().output + suffix;
+      std::ofstream(file, std::ios::binary) << content;
+      std::string message;
+      try {
+        build(options());
+      } catch (const paging::DatabaseError& e) {
+        message = e.what();
+      }
+      EXPECT_NE(message.find(file), std::string::npos) << message;
+      EXPECT_NE(message.find("move it"), std::string::npos) << message;
+      EXPECT_TRUE(content_of(file) == content);
+      std::filesystem::remove(file);
+    }
   }
   EXPECT_EQ(build(options()).kept, 0);
   expect_whole();

@@ -189,6 +189,9 @@ TEST(StatsWriter, JsonLinesAreObjectsWithTheSameFields) {
   StatsWriter csv(folder / "s.csv");
   json.row(7, 0.1, some_stats(), some_certificate());
   csv.row(7, 0.1, some_stats(), some_certificate());
+  EXPECT_FALSE(std::filesystem::exists(folder / "s.csv"));
+  json.close();
+  csv.close();
   const nlohmann::json row = nlohmann::json::parse(read_file(folder / "s.jsonl"));
   EXPECT_EQ(row["frame"], 7);
   EXPECT_EQ(row["t_s"], 0.1);

@@ -59,7 +59,8 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   setup.preferences = preferences;
   setup.log = arguments.log;
   setup.flight_file = arguments.flight;
-  if (!arguments.log.empty()) check_output(arguments.log);
+  check_outputs({{"--log", arguments.log, FileKind::kFlightLog}},
+                {arguments.planet, arguments.flight, arguments.hotspots});
   if (!arguments.flight.empty() && std::filesystem::exists(arguments.flight))
     setup.flight = read_flight(arguments.flight);
   setup.bookmarks = vpe::explore::explore_files().bookmarks;

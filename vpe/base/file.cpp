@@ -1,13 +1,20 @@
 #include "vpe/base/file.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <memory>
 #include <system_error>
 #include <utility>
 
+#include "vpe/base/temporary.h"
+
 namespace vpe::base {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -30,15 +37,30 @@ FileError file_error(std::string_view operation, const std::filesystem::path& pa
   return FileError(message.append("; ").append(advice));
 }
 
-OutputFile::OutputFile(std::filesystem::path path) : OutputFile(path, path.string() + ".tmp") {}
-
-OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path temporary)
-    : path_(std::move(path)), temporary_(std::move(temporary)) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored)) {
-    throw file_error("write", path_, system_message(EISDIR), "give the name of a file");
+fs::path resolve_links(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as the kernel's
+  std::error_code none;
+  const fs::file_status status = fs::status(path, none);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return path;
+  fs::path target = path;
+  for (int links = 0; fs::is_symlink(target, none); ++links) {
+    if (links == kMostLinks) throw file_error("write", path, system_message(ELOOP), "remove the symbolic link");
+    const fs::path next = fs::read_symlink(target, none);
+    target = target.parent_path() / next;  // `next` alone where it is absolute
   }
-  stream_ = std::fopen(temporary_.c_str(), "w+b");
+  return target;
+}
+
+OutputFile::OutputFile(const fs::path& path) : path_(path), target_(resolve_links(path)) {
+  std::error_code none;
+  const fs::file_status status = fs::status(target_, none);
+  if (fs::is_directory(status))
+    throw file_error("write", path_, system_message(EISDIR), "give the name of a file");
+  if (fs::is_block_file(status) || fs::is_socket(status))
+    throw file_error("write", path_, "it is a device or socket", "give the name of a file");
+  is_stream_ = fs::is_fifo(status) || fs::is_character_file(status);
+  const fs::path beside = is_stream_ ? fs::temp_directory_path(none) / "vpe-output" : target_;
+  stream_ = make_temporary(beside, temporary_);
   if (stream_ == nullptr) {
     throw file_error("write", path_, system_message(errno),
                      "check that the folder exists and may be written to");
@@ -58,6 +80,32 @@ void OutputFile::write(std::span<const std::uint8_t> bytes) {
   }
 }
 
+void OutputFile::flush() {
+  if (std::fflush(stream_) != 0) throw file_error("write", path_, system_message(errno), kDiskAdvice);
+}
+
+// Returns an error number, or 0.
+int OutputFile::copy_to_stream() const {
+  const int from = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (from < 0) return errno;
+  const int to = ::open(target_.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+  int error = to < 0 ? errno : 0;
+  std::array<char, 1 << 16> buffer{};
+  while (error == 0) {
+    const ssize_t count = ::read(from, buffer.data(), buffer.size());
+    if (count < 0) error = errno;
+    if (count <= 0) break;
+    for (ssize_t done = 0; error == 0 && done < count;) {
+      const ssize_t written = ::write(to, buffer.data() + done, static_cast<std::size_t>(count - done));
+      if (written > 0) done += written;
+      if (written < 0 && errno != EINTR) error = errno;
+    }
+  }
+  ::close(from);
+  if (to >= 0 && ::close(to) != 0 && error == 0) error = errno;
+  return error;
+}
+
 void OutputFile::commit() {
   // fwrite buffers: a full disk may not be noticed before this.
   const bool was_flushed = std::fflush(stream_) == 0 && std::ferror(stream_) == 0;
@@ -67,12 +115,13 @@ void OutputFile::commit() {
   std::error_code failure;
   if (!was_flushed || !was_closed) {
     failure.assign(was_flushed ? close_error : flush_error, std::generic_category());
+  } else if (is_stream_) {
+    failure.assign(copy_to_stream(), std::generic_category());
   } else {
-    std::filesystem::rename(temporary_, path_, failure);
+    fs::rename(temporary_, target_, failure);
   }
-  if (!failure) return;
-  std::remove(temporary_.c_str());
-  throw file_error("write", path_, failure.message(), kDiskAdvice);
+  if (failure || is_stream_) std::remove(temporary_.c_str());
+  if (failure) throw file_error("write", path_, failure.message(), kDiskAdvice);
 }
 
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {

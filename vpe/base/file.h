@@ -31,29 +31,40 @@ class FileError : public std::runtime_error {
 FileError file_error(std::string_view operation, const std::filesystem::path& path, std::string_view reason,
                      std::string_view advice);
 
-// Writes a file under a temporary name, PATH.tmp unless another is given. commit() renames it to PATH and
-// replaces the former file. Without commit() the destructor removes the temporary file and leaves PATH
-// unchanged. Only one writer at a time may use a temporary name.
+// Returns the file that `path` names through symbolic links, which need not exist. Links that lead to a device or
+// a pipe are not followed. Throws FileError for links that go in circles.
+std::filesystem::path resolve_links(const std::filesystem::path& path);
+
+// Writes a file under a temporary name beside it, as make_temporary() does. commit() renames it to its final
+// name and replaces the former file. Without commit() the destructor removes the temporary file and leaves the
+// former one unchanged. A symbolic link stays: the file that it leads to is replaced. Several writers may write
+// the same file; the last one to commit wins. A pipe or character device (/dev/stdout) gets the whole content
+// at commit(), which waits for the reader of a pipe.
 class OutputFile {
  public:
   // Throws FileError if the file cannot be made.
-  explicit OutputFile(std::filesystem::path path);
-  OutputFile(std::filesystem::path path, std::filesystem::path temporary);
+  explicit OutputFile(const std::filesystem::path& path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  // The file that is written until commit(). Another program may fill it.
   const std::filesystem::path& temporary() const { return temporary_; }
   std::FILE* stream() const { return stream_; }  // open for reading and writing
 
-  // Throw FileError, for example if the disk is full.
+  // Throw FileError, for example if the disk is full. After flush() the temporary file holds what was written.
   void write(std::span<const std::uint8_t> bytes);
+  void flush();
   void commit();
 
  private:
+  int copy_to_stream() const;
+
   std::filesystem::path path_;
+  std::filesystem::path target_;  // path_ without links
   std::filesystem::path temporary_;
+  bool is_stream_ = false;  // a pipe or character device
   std::FILE* stream_ = nullptr;
 };
 

@@ -256,8 +256,8 @@ TEST_F(FilmFolder, DeadWritersFilesGoAndLivingOnesStay) {
     return "out/" + file + "." + host.data() + "-" + std::to_string(pid) + ".tmp";
   };
   fs::create_directory(dir_ / "out");
-  const Words stale{name(frame_name(3), dead), name("manifest.json", dead), "out/frame_000004.png.tmp"};
-  const Words living{name(frame_name(3), ::getpid()), name("other.png", dead),
+  const Words stale{name(frame_name(3), dead), name("manifest.json", dead)};
+  const Words living{name(frame_name(3), ::getpid()), name("other.png", dead), "out/frame_000004.png.tmp",
                      "out/frame_000005.png.far.away-12.tmp"};
   for (const auto& list : {stale, living}) {
     for (const std::string& file : list) write_text(dir_ / file, "half");

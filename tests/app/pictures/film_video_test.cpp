@@ -1,4 +1,8 @@
 // Videos: segments, joined seamlessly, and recognized when complete.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <future>
@@ -252,6 +256,76 @@ TEST_F(FilmVideo, IsNotJoinedWhenFramesFail) {
   EXPECT_EQ(again["kept"], kSegment);
   EXPECT_EQ(again["made"], kFrames - kSegment);
   EXPECT_TRUE(exists("x.mp4"));
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+// ffmpeg takes names for URLs in places.
+TEST_F(FilmVideo, NamesMayHoldWhatUrlsGiveAMeaning) {
+  for (const char* folder : {"", "dir#1?x/"}) {
+    for (const char* name : {"film #2.mp4", "a?b=1&c.mp4", "100%41.mp4", "it's \\ \"x\"\n.mp4"}) {
+      const std::string film = std::string(folder) + name;
+      SCOPED_TRACE(film);
+      fs::create_directories(dir_ / folder);
+      const Result result = fly(film, {"--frames", "0-9"});
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_TRUE(exists(film));
+    }
+  }
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+// Segments of another folder, with the name that is left over by the cut, are not taken.
+TEST_F(FilmVideo, ANumberSignLeadsToNoOtherFolder) {
+  ASSERT_EQ(fly("plain.mp4").exit_code, 0);
+  fs::create_directory(dir_ / "dir");
+  fs::copy_file(dir_ / "plain.mp4", dir_ / "segment_000000.mp4");
+  ASSERT_EQ(fly("film#.mp4", {"--frames", "0-9"}).exit_code, 0);
+  ASSERT_EQ(fly("film.mp4", {"--frames", "0-9"}).exit_code, 0);
+  EXPECT_EQ(decoded("film#.mp4"), decoded("film.mp4"));
+}
+
+// Holds a folder as another vpe does.
+class Held {
+ public:
+  Held(const fs::path& folder, int operation) : file_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY)) {
+    EXPECT_EQ(::flock(file_, operation), 0);
+  }
+  ~Held() { ::close(file_); }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+ private:
+  int file_;
+};
+
+TEST_F(FilmVideo, OneRunAtATimeMakesAFilm) {
+  fs::create_directory(dir_ / "x.mp4.parts");
+  {
+    const Held alone(dir_ / "x.mp4.parts", LOCK_EX);
+    for (const Words& more : {Words{}, Words{"--part", "1/3"}}) {
+      const Result result = fly("x.mp4", more);
+      EXPECT_EQ(result.exit_code, 1);
+      EXPECT_TRUE(says(result.err, {"x.mp4", "another vpe is making it", "x.mp4.parts", "wait for it"}));
+    }
+  }
+  {
+    const Held shared(dir_ / "x.mp4.parts", LOCK_SH);
+    EXPECT_EQ(fly("x.mp4").exit_code, 1);
+    EXPECT_EQ(fly("x.mp4", {"--part", "1/3"}).exit_code, 0);
+  }
+  expect_counts("x.mp4", kFrames - kSegment, kSegment);
+  EXPECT_EQ(leftovers(), Words{});
+}
+
+TEST_F(FilmVideo, TwoRunsAtOnceMakeOneFilm) {
+  ASSERT_EQ(fly("whole.mp4").exit_code, 0);
+  auto other = std::async(std::launch::async, [&] { return fly("x.mp4"); });
+  for (const Result& result : {fly("x.mp4"), other.get()}) {
+    if (result.exit_code != 0) {
+      EXPECT_TRUE(says(result.err, {"another vpe is making it"}));
+    }
+  }
+  EXPECT_EQ(decoded("x.mp4"), decoded("whole.mp4"));
   EXPECT_EQ(leftovers(), Words{});
 }
 

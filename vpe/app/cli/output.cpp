@@ -10,6 +10,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "vpe/app/cli/program.h"
+#include "vpe/base/file.h"
+#include "vpe/base/temporary.h"
 #include "vpe/core/image/image.h"
 
 namespace vpe::app {
@@ -29,13 +32,88 @@ std::string extension(const fs::path& path) {
   return text;
 }
 
+// Returns true for what is written to instead of replaced.
+bool is_stream(const fs::path& path) {
+  std::error_code none;
+  const fs::file_status status = fs::status(path, none);
+  return fs::is_fifo(status) || fs::is_character_file(status);
+}
+
+// Returns true if both paths are, or would become, one file.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return !error;
+  const fs::path whole = fs::weakly_canonical(base::resolve_links(a), error);
+  return !error && whole == fs::weakly_canonical(base::resolve_links(b), error) && !error;
+}
+
+void check_name(const Output& output) {
+  switch (output.kind) {
+    case FileKind::kImage: return check_image_output(output.path);
+    case FileKind::kRange: return check_range_output(output.path);
+    case FileKind::kStatistics: return check_stats_output(output.path);
+    case FileKind::kPlanet:
+      if (is_stream(output.path)) fail(output.path, "a planet is a database; give the name of a file");
+      return check_output(output.path);
+    default: return check_output(output.path);
+  }
+}
+
+void check_distinct(const Output& output, std::span<const Output> earlier, std::span<const fs::path> inputs) {
+  for (const fs::path& input : inputs) {
+    if (input.empty() || !is_same_file(output.path, input)) continue;
+    throw UsageError(output.option + " " + output.path.string() + ": is also an input, '" + input.string() +
+                     "'; give the output another name");
+  }
+  for (const Output& other : earlier) {
+    if (other.path.empty() || !is_same_file(output.path, other.path)) continue;
+    throw UsageError(output.option + " " + output.path.string() + ": is also the output of " + other.option +
+                     "; give each its own name");
+  }
+}
+
+void remove_stale(const fs::path& path) {
+  const fs::path target = base::resolve_links(path);
+  base::remove_stale_temporaries(
+      target.has_parent_path() ? target.parent_path() : fs::path("."),
+      [name = target.filename().string()](const std::string& other) { return other == name; });
+}
+
 }  // namespace
+
+void check_outputs(const std::vector<Output>& outputs, const std::vector<fs::path>& inputs) {
+  for (std::size_t n = 0; n < outputs.size(); ++n) {
+    const Output& output = outputs[n];
+    if (output.path.empty()) continue;
+    check_name(output);
+    if (is_stream(output.path)) continue;
+    check_distinct(output, std::span(outputs).first(n), inputs);
+    check_kind(output.path, output.kind);
+    remove_stale(output.path);
+  }
+}
+
+void check_kind(const fs::path& path, FileKind kind) {
+  std::error_code none;
+  if (fs::is_directory(path, none)) fail(path, "it is a directory; move it, or give the output another name");
+  if (!fs::exists(path, none) || fs::file_size(path, none) == 0 || is_of_kind(path, kind)) return;
+  fail(path,
+       std::string("it exists and is not ") + name_of(kind) + "; move it, or give the output another name");
+}
 
 void check_output(const fs::path& path) {
   std::error_code error;
-  if (!path.has_filename() || fs::is_directory(path, error))
-    fail(path, "it is a folder; give the name of a file");
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path target = base::resolve_links(path);
+  const fs::file_status status = fs::status(target, error);
+  if (!path.has_filename() || fs::is_directory(status)) fail(path, "it is a folder; give the name of a file");
+  if (fs::is_block_file(status) || fs::is_socket(status))
+    fail(path, "it is a device or socket; give the name of a file");
+  if (is_stream(target)) {
+    if (::access(target.c_str(), W_OK) != 0)
+      fail(path, std::string(std::strerror(errno)) + "; give another name");
+    return;
+  }
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error))
     fail(path, "there is no folder '" + folder.string() + "'; make it first");
   if (::access(folder.c_str(), W_OK) != 0) {
@@ -66,6 +144,7 @@ bool check_film_output(const fs::path& path) {
   const std::string end = extension(path);
   if (end == ".mp4") {
     check_output(path);
+    if (is_stream(path)) fail(path, "a film is read back; give the name of a file");
     return true;
   }
   constexpr std::array kOtherFiles{".mov", ".mkv", ".avi", ".webm", ".m4v", ".gif", ".png", ".jpg", ".jpeg"};

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,9 +20,9 @@ namespace vpe::app {
 //   if (!ffmpeg.write(bytes) || !ffmpeg.finish()) report(ffmpeg.stderr_text());
 class Subprocess {
  public:
-  // Starts words[0], found on PATH, with the other words as arguments. Throws std::runtime_error with the
-  // system's message.
-  explicit Subprocess(std::vector<std::string> words);
+  // Starts words[0], found on PATH, with the other words as arguments, in a folder; an empty path is the current
+  // one. Throws std::runtime_error with the system's message.
+  explicit Subprocess(std::vector<std::string> words, const std::filesystem::path& folder = {});
   ~Subprocess();
   Subprocess(const Subprocess&) = delete;
   Subprocess& operator=(const Subprocess&) = delete;

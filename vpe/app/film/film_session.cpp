@@ -17,8 +17,9 @@ FilmSession::FilmSession(FilmRequest request) : request_(std::move(request)) {
     target_ = std::make_unique<FilmFolder>(request_.output, request_.remake);
     return;
   }
-  auto video = std::make_unique<FilmVideo>(request_.output, manifest_of_video(request_.output, {}, {}),
-                                           request_.format, request_.remake);
+  auto video = std::make_unique<FilmVideo>(
+      request_.output, manifest_of_video(request_.output, {}, {}), request_.format,
+      request_.shard.is_all() ? FolderLock::Use::kAlone : FolderLock::Use::kShared, request_.remake);
   video_ = video.get();
   target_ = std::move(video);
 }

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "vpe/app/cli/temporary.h"
 #include "vpe/base/file.h"
 #include "vpe/core/json_text.h"
 
@@ -16,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
+constexpr std::uintmax_t kMostManifestBytes = std::uintmax_t{1} << 32;
 
 std::string part_name(const Shard& shard) {
   return shard.of == 1 ? "" : ".part-" + std::to_string(shard.number) + "-of-" + std::to_string(shard.of);
@@ -24,7 +23,7 @@ std::string part_name(const Shard& shard) {
 
 std::string line(const json& value) { return core::json_text(value); }
 
-json to_json(const FilmFrame& frame) {
+json frame_json(const FilmFrame& frame) {
   json out{{"index", frame.index}, {"time_s", frame.time_s}, {"fingerprint", frame.fingerprint}};
   if (frame.is_done()) {
     out["figures"] = to_json(frame.figures);
@@ -85,15 +84,15 @@ void write_manifest(const fs::path& path, const ManifestHead& head, const json& 
   std::string text = "{\n";
   for (const auto& [key, value] : top.items()) text += line(key) + ": " + line(value) + ",\n";
   text += "\"frames\": [";
-  for (std::size_t n = 0; n < frames.size(); ++n) text += (n == 0 ? "\n" : ",\n") + line(to_json(frames[n]));
-  write_whole(path, text + "\n]\n}\n");
+  for (std::size_t n = 0; n < frames.size(); ++n) text += (n == 0 ? "\n" : ",\n") + line(frame_json(frames[n]));
+  base::write_file(path, text + "\n]\n}\n");
 }
 
 json read_json(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return {};
   try {
-    const std::vector<std::uint8_t> bytes = base::read_file(path, kMostBytes);
+    const std::vector<std::uint8_t> bytes = base::read_file(path, kMostManifestBytes);
     json value = json::parse(bytes, nullptr, false);
     return value.is_discarded() ? json() : value;
   } catch (const base::FileError&) {

@@ -10,8 +10,9 @@
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/base/file.h"
+#include "vpe/base/number.h"
+#include "vpe/base/temporary.h"
 #include "vpe/core/image/image.h"
 #include "vpe/core/image/png_text.h"
 #include "vpe/core/json_text.h"
@@ -23,7 +24,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 32;
+constexpr std::uintmax_t kMostFrameBytes = std::uintmax_t{1} << 32;
 
 const std::string* find(const std::vector<core::PngText>& texts, const char* keyword) {
   const auto found =
@@ -53,6 +54,19 @@ std::string frame_file_name(std::int64_t index) {
   return name.data();
 }
 
+void check_frame_files(const fs::path& folder, const FrameRange& range) {
+  constexpr std::size_t kNumberAt = 6;  // in frame_000000.png
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!is_frame_name(name)) continue;
+    const auto index = base::parse_integer(name.substr(kNumberAt, name.size() - kNumberAt - 4));
+    if (!index || *index < range.first || *index > range.last || (*index - range.first) % range.step != 0)
+      continue;
+    if (name == frame_file_name(*index)) check_kind(entry->path(), FileKind::kFrame);
+  }
+}
+
 FilmFolder::FilmFolder(fs::path folder, bool remake) : folder_(std::move(folder)), remake_(remake) {}
 
 void FilmFolder::keep(std::span<FilmFrame> frames, const FilmSlice& /*slice*/, base::ThreadPool& pool) {
@@ -68,7 +82,7 @@ void FilmFolder::keep(FilmFrame& frame) const {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return;
   try {
-    const std::vector<std::uint8_t> bytes = base::read_file(file, kMostBytes);
+    const std::vector<std::uint8_t> bytes = base::read_file(file, kMostFrameBytes);
     const auto texts = core::read_png_text(bytes);
     if (!texts) return;
     const std::string* fingerprint = find(*texts, kFingerprintKey);
@@ -87,7 +101,7 @@ void FilmFolder::keep(FilmFrame& frame) const {
 
 void FilmFolder::prepare() {
   make_folder(folder_);
-  remove_stale_temporaries(
+  base::remove_stale_temporaries(
       folder_, [](const std::string& name) { return is_frame_name(name) || is_manifest_name(name); });
 }
 
@@ -95,7 +109,7 @@ void FilmFolder::add(std::int64_t /*group*/, FilmFrame& frame, const core::Frame
   const std::vector<core::PngText> texts{{kFingerprintKey, frame.fingerprint},
                                          {kFiguresKey, core::json_text(to_json(frame.figures))}};
   const auto bytes = core::with_png_text(core::encode_png(image.colour, image.width, image.height), texts);
-  write_whole(folder_ / frame_file_name(frame.index), bytes);
+  base::write_file(folder_ / frame_file_name(frame.index), bytes);
   frame.checksum = checksum_of(bytes);
   frame.state = FilmFrame::State::kMade;
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "vpe/app/film/film_frame.h"
+#include "vpe/app/film/film_plan.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/frame.h"
 
@@ -63,6 +64,10 @@ inline constexpr const char* kFiguresKey = "vpe:figures";  // FrameFigures as JS
 
 // Returns "frame_NNNNNN.png".
 std::string frame_file_name(std::int64_t index);
+
+// Checks that no file of another program has the name of one of these frames. Throws std::runtime_error with
+// its name.
+void check_frame_files(const std::filesystem::path& folder, const FrameRange& range);
 
 // Stores a film as a folder of PNG files, each with its fingerprint and figures in text chunks. A group is one
 // frame.

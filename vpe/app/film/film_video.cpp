@@ -11,9 +11,9 @@
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/film/film_summary.h"
 #include "vpe/base/file.h"
+#include "vpe/base/temporary.h"
 #include "vpe/core/json_text.h"
 
 namespace vpe::app {
@@ -81,12 +81,14 @@ std::int64_t segment_frames(const scripts::FrameRate& rate) {
 
 fs::path parts_folder(const fs::path& film) { return film.string() + ".parts"; }
 
-FilmVideo::FilmVideo(fs::path film, fs::path manifest, const VideoFormat& format, bool remake)
+FilmVideo::FilmVideo(fs::path film, fs::path manifest, const VideoFormat& format, FolderLock::Use use,
+                     bool remake)
     : film_(std::move(film)),
       manifest_(std::move(manifest)),
       folder_(parts_folder(film_)),
       format_(format),
       group_(segment_frames(format.rate)),
+      use_(use),
       remake_(remake) {
   check_video_format(film_, format_);
   std::error_code error;
@@ -109,8 +111,13 @@ std::string FilmVideo::fingerprint(std::span<const FilmFrame> frames) const {
   return digest.hex();
 }
 
+void FilmVideo::lock() {
+  if (!lock_) lock_ = std::make_unique<FolderLock>(folder_, use_, film_);
+}
+
 void FilmVideo::keep(std::span<FilmFrame> frames, const FilmSlice& slice, base::ThreadPool& pool) {
   if (remake_ || keep_film(frames, slice) || !fs::exists(folder_)) return;
+  lock();
   encoder();
   const auto size = static_cast<std::size_t>(group_);
   pool.run((frames.size() + size - 1) / size, [&](std::size_t n) {
@@ -144,15 +151,16 @@ void FilmVideo::keep_segment(std::int64_t group, std::span<FilmFrame> frames) co
 
 void FilmVideo::prepare() {
   encoder();
-  make_folder(folder_);
+  lock();
   remove_stale();
 }
 
 void FilmVideo::remove_stale() const {
-  remove_stale_temporaries(folder_, is_ours);
+  base::remove_stale_temporaries(folder_, is_ours);
   const fs::path beside = film_.has_parent_path() ? film_.parent_path() : fs::path(".");
-  remove_stale_temporaries(beside, [film = film_.filename().string(), manifest = manifest_.filename().string()](
-                                       const std::string& name) { return name == film || name == manifest; });
+  base::remove_stale_temporaries(beside,
+                                 [film = film_.filename().string(), manifest = manifest_.filename().string()](
+                                     const std::string& name) { return name == film || name == manifest; });
 }
 
 void FilmVideo::add(std::int64_t group, FilmFrame& /*frame*/, const core::Frame& image) {
@@ -174,12 +182,13 @@ void FilmVideo::end_group(std::int64_t group, std::span<FilmFrame> frames) {
     sidecar["frames"].push_back(
         {{"fingerprint", f.fingerprint}, {"checksum", f.checksum}, {"figures", to_json(f.figures)}});
   }
-  write_whole(segment(group, ".json"), core::json_text(sidecar) + "\n");
+  base::write_file(segment(group, ".json"), core::json_text(sidecar) + "\n");
   for (FilmFrame& f : frames) f.state = FilmFrame::State::kMade;
 }
 
 void FilmVideo::finish(std::span<FilmFrame> frames) {
   if (complete_) return;
+  lock();
   encoder();
   const auto all = static_cast<std::int64_t>(frames.size());
   std::vector<VideoSegment> segments;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "vpe/app/cli/folder_lock.h"
 #include "vpe/app/film/film_target.h"
 #include "vpe/app/film/video.h"
 
@@ -30,9 +31,12 @@ std::filesystem::path parts_folder(const std::filesystem::path& film);
 // Stores a film as a video. A group is one segment.
 class FilmVideo : public FilmTarget {
  public:
-  // `manifest` is the path of the complete film's manifest. With `remake`, what is stored is ignored and made
-  // again. Throws std::runtime_error when there is no ffmpeg, unless the film may be complete already.
-  FilmVideo(std::filesystem::path film, std::filesystem::path manifest, const VideoFormat& format, bool remake);
+  // `manifest` is the path of the complete film's manifest. `use` says whether other processes may make other
+  // groups at the same time; then none may join them. With `remake`, what is stored is ignored and made again.
+  // Throws std::runtime_error when there is no ffmpeg, unless the film may be complete already. Other members
+  // throw it if another process makes the film.
+  FilmVideo(std::filesystem::path film, std::filesystem::path manifest, const VideoFormat& format,
+            FolderLock::Use use, bool remake);
 
   std::int64_t group_size() const override { return group_; }
   void keep(std::span<FilmFrame> frames, const FilmSlice& slice, base::ThreadPool& pool) override;
@@ -50,6 +54,7 @@ class FilmVideo : public FilmTarget {
   void remove_parts() const;
 
  private:
+  void lock();
   void remove_stale() const;
   std::filesystem::path segment(std::int64_t group, const char* extension) const;
   std::string fingerprint(std::span<const FilmFrame> frames) const;
@@ -62,6 +67,8 @@ class FilmVideo : public FilmTarget {
   std::filesystem::path folder_;
   VideoFormat format_;
   std::int64_t group_;
+  FolderLock::Use use_;
+  std::unique_ptr<FolderLock> lock_;  // from the moment at which stored segments are read
   bool remake_;
   bool complete_ = false;
   std::string encoder_;

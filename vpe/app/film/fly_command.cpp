@@ -51,7 +51,38 @@ scripts::Flight flight_of(const FlyArguments& arguments) {
   return flight;
 }
 
-FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& flight) {
+// Returns the files that the film reads, also those that settings of the flight name.
+std::vector<fs::path> inputs_of(const FlyArguments& arguments, const scripts::Flight& flight,
+                                core::Settings settings) {
+  std::vector<fs::path> inputs{arguments.flight, arguments.planet};
+  const auto add = [&] {
+    inputs.emplace_back(settings.values().names);
+    inputs.emplace_back(settings.values().palette);
+  };
+  add();
+  for (const scripts::SetCommand& set : flight.sets) {
+    if (set.key.find("names") == std::string::npos && set.key != "palette") continue;
+    if (settings.set(set.key, set.text).empty()) add();
+  }
+  return inputs;
+}
+
+void check_film_files(const FlyArguments& arguments, const FilmRequest& request,
+                      const std::vector<fs::path>& inputs) {
+  std::vector<Output> outputs{{"--log", arguments.log, FileKind::kFlightLog},
+                              {"--stats", arguments.stats, FileKind::kStatistics}};
+  if (request.is_video) {
+    outputs.push_back({"-o", request.output, FileKind::kVideo});
+    outputs.push_back({"-o", manifest_of_video(request.output, {}, {}), FileKind::kManifest});
+  } else {
+    check_frame_files(request.output, request.range);
+    check_kind(manifest_of_folder(request.output, request.frames, request.shard), FileKind::kManifest);
+  }
+  check_outputs(outputs, inputs);
+}
+
+FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& flight,
+                         const core::Settings& settings) {
   const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   if (count == 0) throw std::runtime_error(arguments.flight + ": the flight is shorter than one frame");
   FilmRequest request;
@@ -62,8 +93,7 @@ FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& f
   request.shard = parse_shard(arguments.part);
   request.remake = arguments.force;
   request.is_video = check_film_output(arguments.output);
-  if (!arguments.log.empty()) check_output(arguments.log);
-  if (!arguments.stats.empty()) check_stats_output(arguments.stats);
+  check_film_files(arguments, request, inputs_of(arguments, flight, settings));
   return request;
 }
 
@@ -194,7 +224,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   parse_interest(arguments.image);  // throws for wrong usage before any work
   const scripts::Flight flight = flight_of(arguments);
   const core::Settings base = make_settings(arguments.image);
-  const FilmRequest request = film_request(arguments, flight);
+  const FilmRequest request = film_request(arguments, flight, base);
 
   const InterruptGuard guard;
   FilmSession session(request);  // reports a missing ffmpeg before the planet is built, which may take minutes
@@ -219,7 +249,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   load_names(overlays, base, flight);
   FilmReports reports;
   if (!arguments.stats.empty()) reports.stats.emplace(arguments.stats);
-  if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view);
+  if (!arguments.log.empty()) reports.log.emplace(arguments.log, flight.view, scripts::LineFile::Mode::kWhole);
   auto start = std::chrono::steady_clock::now();
   const auto renderer = [&] {
     auto made = make_renderer(arguments.image, common, planet);

@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "vpe/app/cli/temporary.h"
-
 namespace vpe::app {
 
 namespace fs = std::filesystem;
@@ -68,8 +66,8 @@ Words segment_words(const VideoFormat& format, const fs::path& to) {
   return append(words, {"-f", "mp4", file_word(to)});
 }
 
-Subprocess start_ffmpeg(const Words& words, const fs::path& film) try {
-  return Subprocess(words);
+Subprocess start_ffmpeg(const Words& words, const fs::path& film, const fs::path& folder = {}) try {
+  return Subprocess(words, folder);
 } catch (const std::runtime_error& e) {
   throw std::runtime_error(film.string() + ": " + e.what() +
                            "; install ffmpeg, or give a folder to get PNG frames");
@@ -106,15 +104,6 @@ std::string exact_times(const scripts::FrameRate& rate) {
   return "setts=dts=STARTDTS+N*" + tick + ":pts=round(PTS/" + tick + ")*" + tick + ":duration=" + tick;
 }
 
-// Removes a file when it goes out of scope.
-struct Removed {
-  fs::path path;
-  ~Removed() {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-  }
-};
-
 std::string with_message(const std::string& what, const std::string& words) {
   return words.empty() ? what : what + ": ffmpeg reports: " + words;
 }
@@ -145,20 +134,14 @@ std::string encoder_version(const fs::path& film) {
   return text.substr(0, text.find('\n'));
 }
 
-VideoWriter::VideoWriter(fs::path path, const VideoFormat& format)
-    : path_(std::move(path)),
-      temporary_(temporary_name(path_)),
-      ffmpeg_(start_ffmpeg(segment_words(format, temporary_), path_)) {}
+VideoWriter::VideoWriter(const fs::path& path, const VideoFormat& format)
+    : file_(path), ffmpeg_(start_ffmpeg(segment_words(format, file_.temporary()), path)) {}
 
-VideoWriter::~VideoWriter() {
-  static_cast<void>(ffmpeg_.finish());
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
-}
+VideoWriter::~VideoWriter() { static_cast<void>(ffmpeg_.finish()); }
 
 void VideoWriter::fail(const std::string& what) {
   static_cast<void>(ffmpeg_.finish());
-  throw std::runtime_error(with_message(path_.string() + ": " + what, ffmpeg_.stderr_text()));
+  throw std::runtime_error(with_message(file_.path().string() + ": " + what, ffmpeg_.stderr_text()));
 }
 
 void VideoWriter::add(const core::Frame& frame) {
@@ -168,31 +151,31 @@ void VideoWriter::add(const core::Frame& frame) {
 
 void VideoWriter::close() {
   if (!ffmpeg_.finish()) fail("ffmpeg failed");
-  std::error_code error;
-  fs::rename(temporary_, path_, error);
-  if (error)
-    throw std::runtime_error(path_.string() + ": cannot rename the finished video: " + error.message());
+  file_.commit();
 }
 
 void join_video(const fs::path& folder, std::span<const VideoSegment> segments, const VideoFormat& format,
                 const fs::path& film) {
-  const Removed list{temporary_name(folder / "join.txt")};
-  write_whole(list.path, join_list(segments, format.rate));
-  const Removed joined{temporary_name(film)};
+  base::OutputFile list(folder / "join.txt");  // never committed
+  const std::string text = join_list(segments, format.rate);
+  list.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  list.flush();
+  base::OutputFile joined(film);
   Words words = ffmpeg();
-  append(words, {"-f", "concat", "-safe", "0", "-i", file_word(list.path), "-c", "copy"});
+  // The demuxer takes the list's name for a URL: a folder with '#' or '?' in its name would be cut there. So
+  // ffmpeg runs in the folder, and sees no other name than those that vpe makes.
+  const std::string list_name = list.temporary().filename().string();
+  append(words, {"-f", "concat", "-safe", "0", "-i", file_word(list_name), "-c", "copy"});
   append(words, {"-bsf:v", exact_times(format.rate)});
   append(words, timescale(format));
-  append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(joined.path)});
-  Subprocess child = start_ffmpeg(words, film);
+  append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(fs::absolute(joined.temporary()))});
+  Subprocess child = start_ffmpeg(words, film, folder);
   if (!child.finish()) {
     throw std::runtime_error(
         with_message(film.string() + ": cannot join the video", child.stderr_text()) +
         "; check the free space there; its segments are kept, and the same command joins them");
   }
-  std::error_code error;
-  fs::rename(joined.path, film, error);
-  if (error) throw std::runtime_error(film.string() + ": cannot rename the finished video: " + error.message());
+  joined.commit();
 }
 
 }  // namespace vpe::app

@@ -8,6 +8,7 @@
 
 #include "scripts/frame_rate.h"
 #include "vpe/app/cli/subprocess.h"
+#include "vpe/base/file.h"
 #include "vpe/core/frame.h"
 
 namespace vpe::app {
@@ -31,7 +32,7 @@ std::string encoder_version(const std::filesystem::path& film);
 
 // Writes one video, which begins with a key frame and refers to nothing outside. Frames are piped into ffmpeg,
 // which writes a temporary file; close() gives it its name. A writer that is not closed leaves no file. Throws
-// std::runtime_error with ffmpeg's message.
+// std::runtime_error with ffmpeg's message, and base::FileError.
 //
 // Typical usage:
 //   VideoWriter writer("segment_000000.mp4", format);
@@ -39,7 +40,7 @@ std::string encoder_version(const std::filesystem::path& film);
 //   writer.close();
 class VideoWriter {
  public:
-  VideoWriter(std::filesystem::path path, const VideoFormat& format);
+  VideoWriter(const std::filesystem::path& path, const VideoFormat& format);
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
@@ -50,8 +51,7 @@ class VideoWriter {
  private:
   [[noreturn]] void fail(const std::string& what);
 
-  std::filesystem::path path_;
-  std::filesystem::path temporary_;
+  base::OutputFile file_;
   Subprocess ffmpeg_;
 };
 
@@ -61,7 +61,7 @@ struct VideoSegment {
 };
 
 // Joins segments of one format into a film with a constant frame rate. The film appears under its name only
-// when it is complete. Throws std::runtime_error with ffmpeg's message.
+// when it is complete. Throws std::runtime_error with ffmpeg's message, and base::FileError.
 void join_video(const std::filesystem::path& folder, std::span<const VideoSegment> segments,
                 const VideoFormat& format, const std::filesystem::path& film);
 

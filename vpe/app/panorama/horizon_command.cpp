@@ -80,9 +80,14 @@ void check(const HorizonArguments& a) {
   if (!a.features.empty() && a.names.empty()) throw UsageError("--features requires --names FILE");
   if (a.output.empty() && a.features.empty() && a.landscape.empty())
     throw UsageError("nothing to write; give -o SKYLINE.csv");
-  if (!a.output.empty()) check_output(a.output);
-  if (!a.features.empty()) check_output(a.features);
-  if (!a.landscape.empty()) make_landscape_folder(a.landscape);
+  std::vector<Output> outputs{{"-o", a.output, FileKind::kSkyline},
+                              {"--features", a.features, FileKind::kLandmarks}};
+  if (!a.landscape.empty()) {
+    make_folder(a.landscape);
+    const auto files = landscape_files(a.landscape);
+    outputs.insert(outputs.end(), files.begin(), files.end());
+  }
+  check_outputs(outputs, {a.planet, a.names});
 }
 
 // Ranges of the arc, with a column more on each side.

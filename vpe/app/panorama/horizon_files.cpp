@@ -1,7 +1,6 @@
 #include "vpe/app/panorama/horizon_files.h"
 
 #include "vpe/app/cli/json_output.h"
-#include "vpe/app/cli/output.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 
@@ -82,10 +81,9 @@ nlohmann::json landmark_json(const panorama::Landmark& l) {
   return out;
 }
 
-void make_landscape_folder(const std::filesystem::path& folder) {
-  make_folder(folder);
-  check_output(folder / panorama::kStellariumList);
-  check_output(folder / "landscape.ini");
+std::vector<Output> landscape_files(const std::filesystem::path& folder) {
+  return {{"--landscape", folder / panorama::kStellariumList, FileKind::kHorizonList},
+          {"--landscape", folder / "landscape.ini", FileKind::kLandscape}};
 }
 
 void write_landscape(const std::filesystem::path& folder, const panorama::StellariumPlace& place,

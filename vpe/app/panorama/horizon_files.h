@@ -5,10 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "panorama/horizon/landmarks.h"
 #include "panorama/horizon/skyline.h"
 #include "panorama/horizon/stellarium.h"
+#include "vpe/app/cli/output.h"
 
 namespace vpe::app {
 
@@ -23,8 +25,8 @@ std::string landmarks_csv(std::span<const panorama::Landmark> landmarks);
 nlohmann::json point_json(const panorama::GroundPoint& point);
 nlohmann::json landmark_json(const panorama::Landmark& landmark);
 
-// Makes the folder of a landscape. Throws std::runtime_error if it is a file or cannot be made or written to.
-void make_landscape_folder(const std::filesystem::path& folder);
+// Returns what write_landscape() writes, to be checked before the work.
+std::vector<Output> landscape_files(const std::filesystem::path& folder);
 // Writes the files of a Stellarium landscape, each complete or not at all, landscape.ini last.
 void write_landscape(const std::filesystem::path& folder, const panorama::StellariumPlace& place,
                      std::span<const panorama::GroundPoint> skyline);

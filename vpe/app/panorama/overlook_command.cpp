@@ -146,7 +146,7 @@ void overlook(const OverlookArguments& arguments, const Common& common) {
   std::vector<Pair> pixels;
   for (const std::string& text : arguments.at_pixel)
     pixels.push_back(parse_pair("--at-pixel", text, "X,Y (pixels of the image, centres at .5)"));
-  if (!arguments.output.empty()) check_image_output(arguments.output);
+  check_outputs({{"-o", arguments.output, FileKind::kImage}}, {arguments.panorama, arguments.right});
   if (arguments.compass && !core::overlays_refused().empty())
     throw UsageError("--compass: " + std::string(core::overlays_refused()));
   const bool in_window = arguments.output.empty() && directions.empty() && pixels.empty();

@@ -228,8 +228,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
       InterruptGuard::check();
       line.show("joining", 0.95 + 0.05 * part);
     });
-    std::error_code ignored;
-    fs::remove_all(strips_folder(request.output), ignored);
+    remove_strips(request.output);
     times.encoding += elapsed_s(joining);
   }
   if (!common.quiet) print_failures(maker.failures());

@@ -1,18 +1,21 @@
 #include "vpe/app/panorama/panorama_files.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "panorama/image/big_tiff.h"
 #include "panorama/image/row_file.h"
 #include "panorama/image/tile_codec.h"
 #include "panorama/metadata/gpano.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/base/file.h"
+#include "vpe/base/temporary.h"
 
 namespace vpe::app {
 
@@ -159,11 +162,23 @@ void check_sidecar(const fs::path& image) {
   if (!fs::exists(path, error)) return;
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 24;
   const auto bytes = base::read_file(path, kMostBytes);
+  if (bytes.empty()) return;
   const auto json = nlohmann::json::parse(bytes, nullptr, false);
-  if (json.is_object() && json.contains("vpe")) return;
-  throw std::runtime_error(
-      path.string() + ": exists, and 'vpe panorama' did not write it; move it or choose another name for " +
-      image.filename().string());
+  const std::string advice = "; move it or choose another name for " + image.filename().string();
+  if (!json.is_object() || !json.contains("vpe"))
+    throw std::runtime_error(path.string() + ": exists, and 'vpe panorama' did not write it" + advice);
+  const auto described = json.find("image");
+  if (described == json.end() || !described->is_string() || *described == image.filename().string()) return;
+  throw std::runtime_error(path.string() + ": describes the image '" + described->get<std::string>() +
+                           "', which would lose its recipe" + advice);
+}
+
+// Returns true for names that strip_file() makes.
+bool is_strip_name(const std::string& name) {
+  constexpr std::string_view kBegin = "strip_";
+  constexpr std::size_t kFewestDigits = 6;
+  return name.starts_with(kBegin) && name.size() >= kBegin.size() + kFewestDigits &&
+         name.find_first_not_of("0123456789", kBegin.size()) == std::string::npos;
 }
 
 }  // namespace
@@ -186,10 +201,45 @@ fs::path sidecar_file(const fs::path& image) { return with_extension(image, ".js
 
 fs::path strips_folder(const fs::path& image) { return image.string() + ".parts"; }
 
+fs::path strip_file(const fs::path& image, std::size_t number) {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "strip_%06zu", number);
+  return strips_folder(image) / name.data();
+}
+
+void remove_stale_strips(const fs::path& image) {
+  base::remove_stale_temporaries(strips_folder(image), is_strip_name);
+}
+
+void remove_strips(const fs::path& image) {
+  remove_stale_strips(image);
+  std::error_code error;
+  std::vector<fs::path> files;
+  const fs::path folder = strips_folder(image);
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_strip_name(entry->path().filename().string())) files.push_back(entry->path());
+  }
+  for (const fs::path& file : files) fs::remove(file, error);
+  fs::remove(folder, error);  // fails when it holds other files
+}
+
 void check_files(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb) {
-  check_output(request.output);
+  const core::SettingsValues& settings = request.settings.values();
+  std::vector<fs::path> inputs{request.planet, settings.names, settings.palette};
+  const fs::path sidecar = sidecar_file(request.output);
+  std::error_code none;
+  // An image that is made again gets its own sidecar again.
+  if (!fs::equivalent(request.from_sidecar, sidecar, none)) inputs.emplace_back(request.from_sidecar);
+  std::vector<Output> outputs{{"-o", request.output, FileKind::kPanorama}};
+  for (const panorama::Plane layer : request.layers)
+    outputs.push_back({"--aux-layers", layer_file(request.output, layer), FileKind::kPanoramaPlane});
   check_size(request.output, plan, memory_mb);
-  for (const panorama::Plane layer : request.layers) check_output(layer_file(request.output, layer));
+  check_outputs(outputs, inputs);
+  for (const fs::path& input : inputs) {
+    if (fs::equivalent(sidecar, input, none))
+      throw UsageError(sidecar.string() + ": is an input; choose another name for " +
+                       request.output.filename().string());
+  }
   check_sidecar(request.output);
 }
 
@@ -198,7 +248,7 @@ void remove_stale_files(const fs::path& image) {
   for (const panorama::PlaneInfo& info : panorama::all_planes())
     names.push_back(layer_file(image, info.plane).filename().string());
   const fs::path folder = image.has_parent_path() ? image.parent_path() : fs::path(".");
-  remove_stale_temporaries(folder, [&](const std::string& name) {
+  base::remove_stale_temporaries(folder, [&](const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   });
 }
@@ -211,7 +261,7 @@ void join_strips(const PanoramaRequest& request, const PanoramaPlan& plan, const
   const double steps = static_cast<double>(1 + layers);
   std::vector<std::unique_ptr<base::OutputFile>> files;
   const auto make = [&](const fs::path& path) -> base::OutputFile& {
-    return *files.emplace_back(std::make_unique<base::OutputFile>(path, temporary_name(path)));
+    return *files.emplace_back(std::make_unique<base::OutputFile>(path));
   };
   for (std::size_t n = 0; n < layers; ++n) {
     joiner.write_layer(make(layer_file(request.output, request.layers[n])), n,
@@ -219,7 +269,7 @@ void join_strips(const PanoramaRequest& request, const PanoramaPlan& plan, const
   }
   joiner.write_image(make(request.output), [&](double part) { done((steps - 1.0 + part) / steps); });
   for (const auto& file : files) file->commit();
-  write_whole(sidecar_file(request.output), sidecar);
+  base::write_file(sidecar_file(request.output), sidecar);
 }
 
 }  // namespace vpe::app

@@ -20,11 +20,17 @@ PanoramaFormat panorama_format(const std::filesystem::path& path);
 // Return the names of the files beside an image.
 std::filesystem::path layer_file(const std::filesystem::path& image, panorama::Plane layer);
 std::filesystem::path sidecar_file(const std::filesystem::path& image);
-// Returns the folder that holds strips until all are complete.
+// Returns the folder that holds strips until all are complete, and the name of a strip in it.
 std::filesystem::path strips_folder(const std::filesystem::path& image);
+std::filesystem::path strip_file(const std::filesystem::path& image, std::size_t number);
+// Removes unfinished strips that a killed run left.
+void remove_stale_strips(const std::filesystem::path& image);
+// Removes all strips, and their folder when it holds nothing else.
+void remove_strips(const std::filesystem::path& image);
 
-// Checks that every file can be written, before any work. Throws std::runtime_error where a name cannot be
-// used, the format cannot hold the size, or a file of the sidecar's name was not written by this program.
+// Checks that every file can be written, before any work. Throws what check_outputs() throws, and
+// std::runtime_error where the format cannot hold the size, or a file of the sidecar's name was not written by
+// this program or describes another image.
 void check_files(const PanoramaRequest& request, const PanoramaPlan& plan, int memory_mb);
 
 // Removes unfinished files of the image, its layers and its sidecar that a killed run left.

@@ -10,10 +10,9 @@
 
 #include "panorama/image/tile_codec.h"
 #include "vpe/app/cli/interrupt.h"
-#include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/panorama/panorama_files.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/base/file.h"
 
 namespace vpe::app {
 
@@ -68,8 +67,6 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 
 // Marks strips with terrain that could not be drawn: the next run draws them again.
 constexpr const char* kIncomplete = "-incomplete";
-
-bool is_strip_name(const std::string& name) { return name.starts_with("strip_"); }
 
 }  // namespace
 
@@ -128,11 +125,7 @@ PanoramaMaker::PanoramaMaker(const PanoramaRequest& request, const PanoramaPlan&
       pool_(pool),
       margin_px_(request.settings.values().smooth_edges ? kSmoothingMargin_px : 0) {}
 
-fs::path PanoramaMaker::strip_path(std::size_t n) const {
-  std::array<char, 40> name{};
-  std::snprintf(name.data(), name.size(), "strip_%06zu", n);
-  return strips_folder(request_.output) / name.data();
-}
+fs::path PanoramaMaker::strip_path(std::size_t n) const { return strip_file(request_.output, n); }
 
 StripLayout PanoramaMaker::layout(std::size_t n) const {
   return layout_of(plan_, plan_.strips[n], request_.layers.size());
@@ -149,8 +142,9 @@ std::optional<panorama::StripFile> PanoramaMaker::keep(std::size_t n) {
 }
 
 std::vector<panorama::StripFile> PanoramaMaker::run(ProgressLine& line, PanoramaTimes& times) {
-  make_folder(strips_folder(request_.output));
-  remove_stale_temporaries(strips_folder(request_.output), is_strip_name);
+  lock_ =
+      std::make_unique<FolderLock>(strips_folder(request_.output), FolderLock::Use::kAlone, request_.output);
+  remove_stale_strips(request_.output);
   std::vector<panorama::StripFile> strips;
   for (std::size_t n = 0; n < plan_.strips.size(); ++n) {
     try {
@@ -216,7 +210,7 @@ panorama::StripFile PanoramaMaker::write(std::size_t n, const Canvas& canvas, Pa
   const fs::path path = strip_path(n);
   const StripLayout strip = layout(n);
   const std::string fingerprint = scene_.fingerprint + (canvas.figures.tiles_missing > 0 ? kIncomplete : "");
-  base::OutputFile file(path, temporary_name(path));
+  base::OutputFile file(path);
   panorama::StripWriter writer(file, fingerprint);
   {
     const Stopwatch watch(times.encoding);

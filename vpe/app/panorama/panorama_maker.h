@@ -8,6 +8,7 @@
 
 #include "paging/surface/surface.h"
 #include "panorama/image/strip_file.h"
+#include "vpe/app/cli/folder_lock.h"
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/panorama/panorama_overlays.h"
 #include "vpe/app/panorama/panorama_plan.h"
@@ -65,7 +66,7 @@ class PanoramaMaker {
                 PanoramaOverlays& overlays, base::ThreadPool& pool);
 
   // Returns all strips, those of an earlier run and new ones. Throws Interrupted with the number of strips that
-  // are kept, and what renderers and writers throw.
+  // are kept, std::runtime_error if another process makes the image, and what renderers and writers throw.
   std::vector<panorama::StripFile> run(ProgressLine& line, PanoramaTimes& times);
 
   int kept() const { return kept_; }  // strips of an earlier run
@@ -102,6 +103,7 @@ class PanoramaMaker {
   PanoramaOverlays& overlays_;
   base::ThreadPool& pool_;
   int margin_px_ = 0;
+  std::unique_ptr<FolderLock> lock_;  // of the strips' folder, during and after run()
   std::unique_ptr<core::Renderer> renderer_;
   std::unique_ptr<paging::Surface> surface_;
   std::vector<base::Rgb> colour_;  // of one strip; the next one reuses it

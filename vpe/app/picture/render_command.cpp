@@ -78,7 +78,6 @@ ParsedRender parse(const RenderArguments& arguments) {
 
 void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
   if (path.empty()) return;
-  check_image_output(path);
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
   if (extension != ".png")
@@ -89,11 +88,13 @@ void check_overlay_layer(const std::string& path, const core::Overlays& overlays
   }
 }
 
-void check_outputs(const RenderArguments& arguments, const core::SettingsValues& settings) {
-  check_image_output(arguments.output);
-  if (!arguments.range.empty()) check_range_output(arguments.range);
-  if (!arguments.certificate.empty()) check_output(arguments.certificate);
-  if (!arguments.explain_lod.empty()) check_output(arguments.explain_lod);
+void check_render_outputs(const RenderArguments& arguments, const core::SettingsValues& settings) {
+  check_outputs({{"-o", arguments.output, FileKind::kImage},
+                 {"--range", arguments.range, FileKind::kRange},
+                 {"--certificate", arguments.certificate, FileKind::kCertificate},
+                 {"--explain-lod", arguments.explain_lod, FileKind::kExplanation},
+                 {"--overlay-layer", arguments.overlay_layer, FileKind::kImage}},
+                {arguments.planet, settings.names, settings.palette});
   check_overlay_layer(arguments.overlay_layer, settings);
   check_stereo(arguments.stereo);
   if (arguments.stereo.layout.empty()) return;
@@ -272,7 +273,7 @@ void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const ParsedRender parsed = parse(arguments);
   if (!common.quiet && !parsed.pose.note.empty()) std::fprintf(stderr, "Note: %s.\n", parsed.pose.note.c_str());
-  check_outputs(arguments, parsed.settings.values());
+  check_render_outputs(arguments, parsed.settings.values());
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 

@@ -22,6 +22,7 @@ struct BuildArguments {
   SourceArguments sources;
   std::string part;
   bool estimate = false;
+  bool force = false;
   paging::BuildOptions options;
 };
 
@@ -57,7 +58,7 @@ void build(BuildArguments& arguments, const Common& common) {
   options.output = shard_file_name(options.output, options.shard);
   std::vector<std::string> inputs = arguments.dems;
   inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
-  check_planet_file(options.output, inputs);
+  options.output = check_planet_file(options.output, inputs);
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
   for (const std::string& path : arguments.dems) {
     dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))
@@ -80,6 +81,8 @@ void build(BuildArguments& arguments, const Common& common) {
     print_estimate_only(estimate, common);
     return;
   }
+  if (!arguments.force && std::filesystem::exists(options.output))
+    require_same_content(options.output, paging::planned_content(options, plan, *combined.source, image.get()));
   print_estimate(estimate, common);
   const paging::BuildSummary summary =
       run_build(options, *combined.source, image.get(), common, std::move(plan));
@@ -119,6 +122,7 @@ void add_build(CLI::App& program, Common& common) {
       "--part", arguments->part,
       "k/n: build only the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: take k and n from the "
       "variables of SLURM or MPI");
+  command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
   command->add_flag("--estimate", arguments->estimate, "Only estimate the build: tiles, bytes, time");
   command->callback([arguments, &common] { build(*arguments, common); });
 }

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "paging/build/merge.h"
-#include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/planet_build.h"
 
@@ -12,21 +11,31 @@ namespace vpe::app {
 
 namespace {
 
-void merge(paging::MergeOptions& options, const Common& common) {
+struct MergeArguments {
+  paging::MergeOptions options;
+  bool force = false;
+};
+
+void merge(MergeArguments& arguments, const Common& common) {
+  paging::MergeOptions& options = arguments.options;
   options.threads = common.threads;
-  check_planet_file(options.output, options.shards);
+  options.output = check_planet_file(options.output, options.shards);
+  if (!arguments.force && std::filesystem::exists(options.output))
+    require_same_content(options.output, paging::planned_content(options.shards));
   print_build(run_merge(options, common), options.output, common);
 }
 
 }  // namespace
 
 void add_merge(CLI::App& program, Common& common) {
-  auto options = std::make_shared<paging::MergeOptions>();
+  auto arguments = std::make_shared<MergeArguments>();
+  paging::MergeOptions& options = arguments->options;
   CLI::App* command = add_command(
       program, "merge", "Join the parts that 'vpe build --part' made into one planet file", common, true);
-  command->add_option("PART", options->shards, "All parts of one build, in any order")->required();
-  command->add_option("-o,--output", options->output, "Planet file to write")->required();
-  command->callback([options, &common] { merge(*options, common); });
+  command->add_option("PART", options.shards, "All parts of one build, in any order")->required();
+  command->add_option("-o,--output", options.output, "Planet file to write")->required();
+  command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
+  command->callback([arguments, &common] { merge(*arguments, common); });
 }
 
 }  // namespace vpe::app

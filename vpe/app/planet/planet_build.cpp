@@ -9,10 +9,10 @@
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/planet/build_sources.h"
 #include "vpe/app/planet/planet_json.h"
+#include "vpe/base/file.h"
 
 namespace vpe::app {
 
@@ -148,18 +148,18 @@ paging::BuildSummary run_merge(const paging::MergeOptions& options, const Common
              [&](const paging::ProgressFunction& progress) { return paging::merge_shards(options, progress); });
 }
 
-void check_planet_file(const std::string& output, const std::vector<std::string>& inputs) {
-  check_output(output);
-  std::error_code none;
-  for (const std::string& input : inputs) {
-    if (std::filesystem::equivalent(input, output, none)) {
-      throw UsageError("-o " + output + ": is also an input; give the planet file another name");
-    }
-  }
-  if (std::filesystem::file_size(output, none) > 0 && !none && !is_sqlite(output)) {
-    throw std::runtime_error(output +
-                             ": exists and is not a planet file; give another name, or remove it first");
-  }
+std::string check_planet_file(const std::string& output, const std::vector<std::string>& inputs) {
+  check_outputs({{"-o", output, FileKind::kPlanet}}, {inputs.begin(), inputs.end()});
+  return base::resolve_links(output).string();
+}
+
+void require_same_content(const std::string& output, const paging::PlannedContent& planned) {
+  std::string texts;
+  for (const std::string& text : paging::differences(output, planned))
+    texts += (texts.empty() ? "" : "; ") + text;
+  if (texts.empty()) return;
+  throw std::runtime_error(output + ": exists and is another planet: " + texts +
+                           "; give another name, or --force to replace it");
 }
 
 std::string shard_file_name(const std::string& output, const base::Shard& shard) {

@@ -10,6 +10,7 @@
 #include "paging/build/builder.h"
 #include "paging/build/estimate.h"
 #include "paging/build/merge.h"
+#include "paging/build/overwrite_check.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/base/shard.h"
 
@@ -20,7 +21,7 @@ namespace vpe::app {
 // plan that was made before is not made again.
 //
 // Typical usage:
-//   check_planet_file(options.output, inputs);
+//   options.output = check_planet_file(options.output, inputs);
 //   paging::BuildPlan plan = paging::plan_tiles(options, elevation);
 //   print_estimate(paging::estimate_build(options, plan, elevation, image), common);
 //   print_build(run_build(options, elevation, image, common, std::move(plan)), options.output, common);
@@ -36,9 +37,13 @@ void print_estimate(const paging::BuildEstimate& estimate, const Common& common)
 // Prints the estimate as the command's result, on stdout, as text or JSON.
 void print_estimate_only(const paging::BuildEstimate& estimate, const Common& common);
 
-// Checks the output before hours of work. Throws UsageError when it is one of the inputs, and
-// std::runtime_error when it cannot be written, or exists and is not a planet file.
-void check_planet_file(const std::string& output, const std::vector<std::string>& inputs);
+// Checks the output before hours of work, and returns the file that it names through symbolic links. Throws
+// what check_outputs() throws.
+std::string check_planet_file(const std::string& output, const std::vector<std::string>& inputs);
+
+// Throws std::runtime_error that names the differences if a finished planet file at `output` has other sources
+// or tiles than the one to be made, and --force is the advice.
+void require_same_content(const std::string& output, const paging::PlannedContent& planned);
 
 // Returns the name of a part's file: "mars.vpe" becomes "mars.03-of-16.vpe", so that names sort like parts. The
 // name is unchanged where there is only one part.

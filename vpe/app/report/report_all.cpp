@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_folder.h"
+#include "vpe/base/file.h"
 
 namespace vpe::app {
 
@@ -29,7 +29,7 @@ void report_all(const ReportRequest& request, const Common& common) {
   append(page, error_time_report(request, common));
   append(page, scaling_report(request, common));
   append(page, features_report(request, common));
-  write_whole(request.folder / "report.html", report::to_html(page));
+  base::write_file(request.folder / "report.html", report::to_html(page));
   if (!common.quiet) std::printf("%s\n", (request.folder / "report.html").c_str());
 }
 

@@ -8,15 +8,16 @@
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/progress.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/report/embree_ranges.h"
 #include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_error_time_configurations.h"
 #include "vpe/app/report/report_folder.h"
+#include "vpe/base/file.h"
 #include "vpe/base/number.h"
 #include "vpe/base/parallel.h"
+#include "vpe/base/temporary.h"
 #include "vpe/core/json_text.h"
 #include "vpe/gl/polygon_renderer.h"
 #include "vpe/report/error_time_page.h"
@@ -102,10 +103,10 @@ std::vector<std::string> about(const ErrorTimeArguments& arguments, const report
 }
 
 void write_files(const fs::path& folder, const report::ErrorTimeReport& report, const report::Page& page) {
-  write_whole(folder / "error-time.csv", report::to_csv(report::points_table(report.results)));
-  write_whole(folder / "error-time.json", core::json_text(report::error_time_json(report), 1) + "\n");
-  write_whole(folder / "error-time.svg", report::to_svg_file(report::summary_plot(report.results)));
-  write_whole(folder / "error-time.html", report::to_html(page));
+  base::write_file(folder / "error-time.csv", report::to_csv(report::points_table(report.results)));
+  base::write_file(folder / "error-time.json", core::json_text(report::error_time_json(report), 1) + "\n");
+  base::write_file(folder / "error-time.svg", report::to_svg_file(report::summary_plot(report.results)));
+  base::write_file(folder / "error-time.html", report::to_html(page));
 }
 
 void print_summary(const fs::path& folder, const report::ErrorTimeReport& report) {
@@ -146,7 +147,8 @@ report::Page error_time(const ErrorTimeArguments& arguments, const Common& commo
   const fs::path folder = arguments.output;
   make_folder(folder);
   check_output(folder / "error-time.html");
-  remove_stale_temporaries(folder, [](const std::string& name) { return name.starts_with("error-time."); });
+  base::remove_stale_temporaries(folder,
+                                 [](const std::string& name) { return name.starts_with("error-time."); });
 
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);

@@ -6,11 +6,11 @@
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/progress.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/report/feature_run.h"
 #include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_folder.h"
+#include "vpe/base/temporary.h"
 
 namespace vpe::app {
 namespace {
@@ -60,7 +60,7 @@ report::Page report_features(FeatureArguments& arguments, const Common& common) 
   const auto planet = open_planet(probe.planet, common);
   probe.planet = planet->path();
   static_cast<void>(feature_view(probe.pose, probe.size, planet));
-  const Scratch scratch(temporary_name(folder / "statistics").string() + ".csv");
+  const Scratch scratch(base::temporary_name(folder / "statistics").string() + ".csv");
   probe.statistics_file = scratch.name();
 
   std::vector<FeatureRow> rows = feature_rows(planet->meta().finest_image_level >= 0);

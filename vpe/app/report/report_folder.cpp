@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vpe/app/cli/output.h"
-#include "vpe/app/cli/temporary.h"
+#include "vpe/base/file.h"
 #include "vpe/core/json_text.h"
 
 namespace vpe::app {
@@ -19,9 +19,10 @@ void check_report_folder(const std::filesystem::path& folder) {
 
 void write_report(const std::filesystem::path& folder, const std::string& name, const report::Page& page,
                   const nlohmann::json& json, const std::vector<report::Table>& tables) {
-  for (const report::Table& table : tables) write_whole(folder / (table.name + ".csv"), report::to_csv(table));
-  write_whole(folder / (name + ".json"), core::json_text(json, 1) + "\n");
-  write_whole(folder / (name + ".html"), report::to_html(page));
+  for (const report::Table& table : tables)
+    base::write_file(folder / (table.name + ".csv"), report::to_csv(table));
+  base::write_file(folder / (name + ".json"), core::json_text(json, 1) + "\n");
+  base::write_file(folder / (name + ".html"), report::to_html(page));
 }
 
 }  // namespace vpe::app

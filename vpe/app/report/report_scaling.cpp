@@ -7,10 +7,10 @@
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/progress.h"
-#include "vpe/app/cli/temporary.h"
 #include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_folder.h"
 #include "vpe/app/report/scaling_run.h"
+#include "vpe/base/temporary.h"
 
 namespace vpe::app {
 namespace {
@@ -130,7 +130,7 @@ report::Page report_scaling(const ScalingArguments& arguments, const Common& com
   facts.opengl = context->info().renderer + ", " + context->info().version;
   Steps steps(common.quiet, count_images(plan));
 
-  ScalingPlanets planets(temporary_name(folder / "planets"), common.threads);
+  ScalingPlanets planets(base::temporary_name(folder / "planets"), common.threads);
   std::vector<PatchSpec> specs;
   for (const int side : plan.grid_sides) specs.push_back(grid_patch(side));
   for (const int side : plan.depth_sides) specs.push_back(depth_patch(side));

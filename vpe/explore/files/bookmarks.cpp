@@ -1,7 +1,5 @@
 #include "vpe/explore/files/bookmarks.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <system_error>
@@ -168,15 +166,12 @@ ParsedBookmarks load_bookmarks(const fs::path& path) {
 
 void save_bookmarks(const fs::path& path, const Bookmarks& bookmarks) {
   std::error_code error;
-  const fs::path target = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+  const fs::path target = base::resolve_links(path);
   if (const fs::path folder = target.parent_path(); !folder.empty()) {
     fs::create_directories(folder, error);
     if (error) throw base::file_error("create the folder", folder, error.message(), "check its permissions");
   }
-  const std::string text = bookmarks.to_text();
-  base::OutputFile file(target, target.string() + "." + std::to_string(getpid()) + ".tmp");
-  file.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  file.commit();
+  base::write_file(target, bookmarks.to_text());
 }
 
 }  // namespace vpe::explore

@@ -1,10 +1,8 @@
 #include "vpe/explore/files/user_files.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <span>
 #include <system_error>
 
 #include "vpe/base/file.h"
@@ -39,12 +37,7 @@ std::optional<std::string> read_user_file(const fs::path& file) {
 
 void write_user_file(const fs::path& file, std::string_view text) {
   create_folders(file.parent_path());
-  std::error_code failure;
-  fs::path target = fs::canonical(file, failure);
-  if (failure) target = file;
-  base::OutputFile out(target, target.string() + "." + std::to_string(::getpid()) + ".tmp");
-  out.write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  out.commit();
+  base::write_file(file, text);
 }
 
 }  // namespace vpe::explore
