@@ -18,7 +18,7 @@ namespace {
 
 const char* const kConvert = "convert it to GeoTIFF first, e.g. with ISIS (pds2isis, then gdal_translate)";
 
-std::string upper(std::string text) {
+std::string upper(const std::string& text) {
   CPLString result(text);
   return result.toupper();
 }
@@ -64,7 +64,7 @@ std::optional<Pointer> parse_pointer(std::string text) {
       return std::nullopt;
     }
   }
-  if (parts.size() < 1) return std::nullopt;
+  if (parts.empty()) return std::nullopt;
   return pointer;
 }
 

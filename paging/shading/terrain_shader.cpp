@@ -172,13 +172,13 @@ glm::dvec3 TerrainShader::image_at(const glm::dvec3& direction, double footprint
   const int level = level_for(footprint_m, kImageIntervals, planet_->radius_m());
   const auto key = planet_->image_key(lod::tile_at(place, level));
   if (!key) throw PlanetError(planet_->path() + ": has no image; use --set mode=coloured");
-  if (!cursor.image || cursor.image_key != *key) {
-    cursor.image = image(*key);
-    cursor.image_key = *key;
+  if (!cursor.image_ || cursor.image_key_ != *key) {
+    cursor.image_ = image(*key);
+    cursor.image_key_ = *key;
   }
   return bilinear<glm::vec3>(between_lines(place.u, key->level, key->i, kImageIntervals),
                              between_lines(place.v, key->level, key->j, kImageIntervals), kImageSide,
-                             [&](std::size_t k) { return rgb(cursor.image->texels[k]); });
+                             [&](std::size_t k) { return rgb(cursor.image_->texels[k]); });
 }
 
 std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, double footprint_m,
@@ -188,11 +188,11 @@ std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, 
   const mars::ChartPoint place = mars::chart_point(direction);
   const int level = params.flat ? lod::kMaxLevel : level_for(footprint_m, n, radius);
   const lod::TileKey key = deepest(lod::tile_at(place, level));
-  if (!cursor.ground || cursor.ground_key != key) {
-    cursor.ground = normals(key, params);
-    cursor.ground_key = key;
+  if (!cursor.ground_ || cursor.ground_key_ != key) {
+    cursor.ground_ = normals(key, params);
+    cursor.ground_key_ = key;
   }
-  const NormalTile& ground = *cursor.ground;
+  const NormalTile& ground = *cursor.ground_;
   const auto side = static_cast<std::size_t>(ground.side);
   const GridPosition x = between_lines(place.u, key.level, key.i, n);
   const GridPosition y = between_lines(place.v, key.level, key.j, n);

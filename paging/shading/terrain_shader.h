@@ -123,10 +123,10 @@ class TerrainShader {
   // Keeps the tiles that colour_at() used last. Use one for each thread and each shader.
   class Cursor {
     friend class TerrainShader;
-    std::shared_ptr<const NormalTile> ground;
-    lod::TileKey ground_key;
-    std::shared_ptr<const ImageTile> image;
-    lod::TileKey image_key;
+    std::shared_ptr<const NormalTile> ground_;
+    lod::TileKey ground_key_;
+    std::shared_ptr<const ImageTile> image_;
+    lod::TileKey image_key_;
   };
 
   // Computes the colour, 0 to 255 and not clamped, of the terrain in a direction: the same definition without

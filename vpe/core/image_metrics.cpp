@@ -33,7 +33,8 @@ std::array<double, kWindow> gaussian() {
   std::array<double, kWindow> weights{};
   double sum = 0;
   for (int k = 0; k < kWindow; ++k) {
-    const double x = k - kWindow / 2;
+    constexpr int kMiddle = kWindow / 2;
+    const double x = k - kMiddle;
     weights[static_cast<std::size_t>(k)] = std::exp(-x * x / (2 * kSigma_px * kSigma_px));
     sum += weights[static_cast<std::size_t>(k)];
   }

@@ -73,8 +73,10 @@ void draw_scale_bar(LabelLayout& layout, const VisibleTerrain& terrain) {
   if (!centre.is_ground) return;
   const core::View& view = terrain.scene().view;
   const core::SubRectangle part = core::drawn_part(view);
-  const double x = part.x + terrain.width() / 2 + 0.5;
-  const double y = part.y + terrain.height() / 2 + 0.5;
+  const int column = terrain.width() / 2;
+  const int row = terrain.height() / 2;
+  const double x = part.x + column + 0.5;
+  const double y = part.y + row + 0.5;
   const glm::dvec3 across = core::pixel_ray(view, x + 0.5, y) - core::pixel_ray(view, x - 0.5, y);
   const double m_per_px = glm::length(centre.point_m - view.camera.position_m) * glm::length(across);
   const double length_m = base::nice_step_below(0.22 * canvas.width() * m_per_px);

@@ -83,7 +83,7 @@ void draw_control_panel(explore::Session& session, WindowState& state, Widgets& 
 }
 
 void draw_explore_help(const ViewArea& area) {
-  static const char* kMouse[][2] = {
+  static constexpr const char* kMouse[][2] = {
       {"left drag", "move the ground with the cursor; in a flight: look around"},
       {"wheel", "zoom to the ground under the cursor; in a flight: field of view"},
       {"right or middle drag, Shift + left drag", "tilt and rotate about the middle of the view"},
