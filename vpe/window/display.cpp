@@ -26,8 +26,8 @@ struct Display::State {
 namespace {
 
 const char* const kFonts[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-                        "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
-                        "/usr/share/fonts/TTF/DejaVuSans.ttf"};
+                              "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
+                              "/usr/share/fonts/TTF/DejaVuSans.ttf"};
 constexpr float kLetters_px = 14;
 
 Display::State& state_of(GLFWwindow* window) {
