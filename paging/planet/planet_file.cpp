@@ -16,7 +16,7 @@ namespace paging {
 
 namespace {
 
-constexpr int kImageSide = kImageIntervals + 1;
+constexpr int kTexelsPerSide = kImageIntervals + 1;
 constexpr int kReadTries = 20;
 
 std::string damaged(const std::string& path, const lod::TileKey& key, const std::string& what) {
@@ -272,8 +272,8 @@ ImageTile PlanetFile::image(const lod::TileKey& key) const {
       return verified(connection.image, row, path_, key, "image");
     });
     if (!packed) throw PlanetError(damaged(path_, key, "image is missing"));
-    vpe::core::RgbImage decoded = vpe::core::decode_jpeg(*packed, std::int64_t{kImageSide} * kImageSide);
-    if (decoded.width != kImageSide || decoded.height != kImageSide) {
+    vpe::core::RgbImage decoded = vpe::core::decode_jpeg(*packed, std::int64_t{kTexelsPerSide} * kTexelsPerSide);
+    if (decoded.width != kTexelsPerSide || decoded.height != kTexelsPerSide) {
       throw PlanetError(damaged(path_, key, "image of the wrong size"));
     }
     return {std::move(decoded.pixels)};
