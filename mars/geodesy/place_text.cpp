@@ -19,7 +19,7 @@ namespace {
 constexpr double kLargestLongitude_deg = 360;
 constexpr double kLargestLatitude_deg = 90;
 constexpr const char* kExpected =
-    "longitude and latitude in degrees, as 137.44, -4.59 or 4.59 S 137.44 E or 137 26 30 E, 4 35 22 S";
+    "longitude and latitude, LON,LAT in degrees, as 137.44, -4.59 or 4.59 S 137.44 E or 137 26 30 E, 4 35 22 S";
 
 struct Token {
   enum class Kind { kNumber, kUnit, kLetter, kName, kComma };
@@ -62,9 +62,9 @@ constexpr std::string_view kMinus = "\u2212";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-class PlaceReader {
+class Tokenizer {
  public:
-  explicit PlaceReader(std::string_view text) : text_(text), lower_(text) {
+  explicit Tokenizer(std::string_view text) : text_(text), lower_(text) {
     for (char& c : lower_) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     decimal_comma_ = text.find(';') != std::string_view::npos;
   }
@@ -288,7 +288,7 @@ std::optional<LonLat> parse_place(std::string_view text, std::string& fault) {
   if (const auto plain = plain_numbers(text))
     return within_limits(plain->lon_deg, plain->lat_deg, false, fault);
   std::vector<Token> tokens;
-  if (std::string wrong = PlaceReader(text).read(tokens); !wrong.empty())
+  if (std::string wrong = Tokenizer(text).read(tokens); !wrong.empty())
     return rejected(fault, "expected " + wrong);
   const Tokens all(tokens);
   const std::optional<Cut> middle = cut(all);
@@ -319,7 +319,7 @@ std::optional<double> parse_coordinate(std::string_view text, Axis axis, std::st
     out.degrees = *plain;
   } else {
     std::vector<Token> tokens;
-    if (!PlaceReader(text).read(tokens).empty() ||
+    if (!Tokenizer(text).read(tokens).empty() ||
         std::any_of(tokens.begin(), tokens.end(), [](const Token& t) { return t.kind == Token::Kind::kComma; }))
       return rejected(fault, expected);
     if (const std::string wrong = read_coordinate(tokens, out); !wrong.empty())

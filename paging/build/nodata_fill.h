@@ -15,7 +15,7 @@ namespace paging {
 //
 // The height of a post at level l is the first of these that has data: the sources at the spacing of l; the
 // mean of the eight posts of level l around it; its one, two or four neighbours on the lines of level l - 1,
-// each found in the same way. Of these, those without data near them weigh a quarter. It is fill_m if there is
+// each found in the same way. Of these, those with no data near them weigh a quarter. It is fill_m if there is
 // no data down to the corners of the cube. So it is a function of the post and its level alone: tiles agree on
 // the posts that they share. Throws mars::SourceError.
 void fill_nodata(const SampleInputs& sampling, const lod::TileKey& key, std::span<const int> level,

@@ -148,7 +148,7 @@ TEST_F(Horizon, ALandscape) {
 TEST_F(Horizon, BadInput) {
   const std::string p = planet().string();
   expect_failure({"horizon", p, "--height", "2", "-o", "s.csv"}, 2, {"--at"});
-  expect_failure({"horizon", p, "--at", "1;2", "--height", "2", "-o", "s.csv"}, 2, {"--at '1;2'", "LON,LAT"});
+  expect_failure({"horizon", p, "--at", "1/2", "--height", "2", "-o", "s.csv"}, 2, {"--at '1/2'", "LON,LAT"});
   expect_failure({"horizon", p, "--at", "1,91", "--height", "2", "-o", "s.csv"}, 2, {"1,91", "latitude"});
   expect_failure(words({"-o", "s.csv"}), 2, {"--height", "--altitude"});
   expect_failure(words({"-o", "s.csv", "--height", "1", "--altitude", "1"}), 2,

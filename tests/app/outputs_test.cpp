@@ -108,7 +108,7 @@ TEST_F(Outputs, ReplaceOnlyFilesOfTheirKind) {
   // Their own files are replaced, and so are empty ones.
   for (int n = 0; n < 2; ++n) {
     expect_made(render({"-o", "v.png", "--certificate", "c.json", "--range", "r.tif", "--explain-lod", "e.json",
-                        "--backend", "ray"}));
+                        "--backend", "polygon"}));
     expect_made(render({"-o", "v.png", "--stereo", "sbs", "--certificate", "s.json"}));
     expect_made(horizon({"-o", "h.csv", "--landscape", "own"}));
     expect_made(panorama({"-o", "r.tif.tif", "--aux-layers", "range,lonlat"}));
@@ -133,7 +133,9 @@ TEST_F(Outputs, ANewPlanetReplacesNoStrangersDatabase) {
 
 TEST_F(Outputs, AFinishedPlanetIsReplacedByForceOnly) {
   write_dem(dir_ / "dem.tif");
-  write_dem(dir_ / "flat.tif", {.height_m = [](int, int) { return 5.0; }});
+  Dem flat;
+  flat.height_m = [](int, int) { return 5.0; };
+  write_dem(dir_ / "flat.tif", flat);
   const Words build{"build", "dem.tif", "--base-spacing", "100000", "-q", "-o", "x.vpe"};
   const auto identity = [&] { return paging::PlanetFile::open(path("x.vpe"))->meta().identity; };
   expect_made(build);

@@ -208,7 +208,8 @@ TEST_F(Sources, BodiesThatTheRasterNames) {
                "<VRTDataset rasterXSize=\"180\" rasterYSize=\"90\"><SRS>" + crs +
                    "</SRS><GeoTransform>-180,2,0,90,0,-2</GeoTransform><VRTRasterBand dataType=\"Int16\" "
                    "band=\"1\"/></VRTDataset>");
-    const Result result = vpe({"build", "b.vrt", "-o", "b.vpe", "--base-spacing", "100000", "--json", "-q"});
+    const Result result =
+        vpe({"build", "b.vrt", "-o", "b.vpe", "--base-spacing", "100000", "--json", "-q", "--force"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const json built = parse_json(result.out);
     return std::pair(built["body"].get<std::string>(), built["radius_m"].get<double>());

@@ -42,13 +42,13 @@ TEST_F(Usage, CommandsAndOptions) {
 
 TEST_F(Usage, Places) {
   const std::string p = planet().string();
-  expect_failure({"query", p, "0,91"}, 2, {"'0,91'", "latitude", "-90..90"});
+  expect_failure({"query", p, "0,91"}, 2, {"'0,91'", "latitude", "-90 to 90"});
   expect_failure({"query", p, "0,-90.001"}, 2, {"latitude"});
   expect_failure({"query", p, "nan,0"}, 2, {"'nan,0'", "LON,LAT"});
   expect_failure({"query", p, "0,inf"}, 2, {"'0,inf'", "LON,LAT"});
   expect_failure({"query", p, "1,2,3"}, 2, {"'1,2,3'", "LON,LAT"});
   expect_failure({"query", p, "1,2", "there"}, 2, {"'there'", "LON,LAT"});
-  expect_failure({"query", "nan,0"}, 2, {"'nan,0'", "neither a file nor LON,LAT"});
+  expect_failure({"query", "nan,0"}, 2, {"'nan,0'", "neither a file nor a place"});
   expect_failure({"query", "0,91"}, 2, {"latitude"});
 }
 

@@ -27,11 +27,15 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.source_accuracy_m = 3;
   c.illustration = true;
   c.exaggeration = 2;
+  c.corner_stretch = 2.5;
+  c.is_below_ground = true;
   nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   const std::string meaning = json.at("what_this_means");
   EXPECT_NE(meaning.find("not data"), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
   EXPECT_NE(meaning.find("striped"), std::string::npos);
+  EXPECT_NE(meaning.find("stretched, up to 2.5 times"), std::string::npos);
+  EXPECT_NE(meaning.find("below the ground"), std::string::npos);
   json.erase("what_this_means");
   EXPECT_EQ(json, nlohmann::json({{"tile_error_m", 1.25},
                                   {"tile_error_px", 0.5},
@@ -49,7 +53,9 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
                                   {"resampling_rms_m", 0.75},
                                   {"source_accuracy_m", 3.0},
                                   {"illustration", true},
-                                  {"exaggeration", 2.0}}));
+                                  {"exaggeration", 2.0},
+                                  {"corner_stretch", 2.5},
+                                  {"below_ground", true}}));
 }
 
 TEST(Certificate, AbsentAndNotFiniteAreNull) {

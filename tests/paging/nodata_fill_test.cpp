@@ -35,9 +35,9 @@ class SpacingElevation : public FakeElevation {
 
 // Returns hills with a hole over a corner of the cube and another one within a face.
 double hills_with_holes(const glm::dvec3& d) {
-  const bool is_hole = glm::length(d - glm::normalize(glm::dvec3(1, 1, 1))) < 0.3 ||
+  const bool is_nodata = glm::length(d - glm::normalize(glm::dvec3(1, 1, 1))) < 0.3 ||
                        glm::length(d - glm::normalize(glm::dvec3(1, 0.1, 0.2))) < 0.11;
-  return is_hole ? kNaN : 4000 + bumpy_height(d);
+  return is_nodata ? kNaN : 4000 + bumpy_height(d);
 }
 
 // Calls visit(tile, post, neighbour) for neighbouring posts of all finest tiles.

@@ -153,7 +153,7 @@ TEST_P(RendererContract, LevelControlActsOrIsRefused) {
   controlled[0].interest = {{20, 30, 300000, 3}};
   controlled[1].settings.lod_metric = core::LodMetric::kDistance;
   controlled[2].settings.lod_centre_weight = 3;
-  controlled[3].settings.lod_triangles = 2000;
+  controlled[3].settings.lod_triangles = 300;
   for (std::size_t n = 0; n < controlled.size(); ++n) {
     SCOPED_TRACE(n);
     if (is_rays()) {

@@ -4,6 +4,7 @@
 
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/stereo_render.h"
+#include "vpe/voxel/ray_renderer.h"
 
 namespace vpe::app {
 
@@ -19,13 +20,16 @@ core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double ti
 }
 
 window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
-  if (backend_ != request.backend) {
+  // Levels that are controlled are drawn by triangles, whatever is chosen.
+  const core::Backend backend =
+      voxel::level_control(request.draw).empty() ? request.backend : core::Backend::kPolygon;
+  if (backend_ != backend) {
     renderer_.reset();
     backend_.reset();  // stays empty when making the renderer fails
     RenderOptions options;
-    options.backend = request.backend;
+    options.backend = backend;
     renderer_ = make_renderer(options, common_, planet_);
-    backend_ = request.backend;
+    backend_ = backend;
   }
   core::DrawRequest draw_request = request.draw;
   draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);

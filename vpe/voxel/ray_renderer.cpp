@@ -299,16 +299,18 @@ std::string why_not(const core::DrawRequest& request) {
     return "the ray backend has no triangles to show: use --backend polygon for this mode";
   if (request.cull_view || request.settings.inspect != core::Inspect::kNone)
     return "the ray backend draws no tiles: --cull-from and inspect show those of --backend polygon";
-  const core::SettingsValues& values = request.settings;
-  const core::SettingsValues defaults;
-  const char* control = nullptr;
-  if (!request.interest.empty() && values.lod_interest_weight != 0) control = "regions of interest";
-  if (values.lod_metric != defaults.lod_metric) control = "lod.metric=distance";
-  if (values.lod_centre_weight != 0) control = "lod.centre.weight";
-  if (values.lod_triangles != 0) control = "lod.triangles";
-  if (control != nullptr)
-    return std::string("the ray backend has no level control but rays.cell: ") + control +
+  if (const std::string_view control = level_control(request); !control.empty())
+    return "the ray backend has no level control but rays.cell: " + std::string(control) +
            " acts with --backend polygon only";
+  return {};
+}
+
+std::string_view level_control(const core::DrawRequest& request) {
+  const core::SettingsValues& values = request.settings;
+  if (values.lod_triangles != 0) return "lod.triangles";
+  if (values.lod_centre_weight != 0) return "lod.centre.weight";
+  if (values.lod_metric != core::SettingsValues().lod_metric) return "lod.metric=distance";
+  if (!request.interest.empty() && values.lod_interest_weight != 0) return "regions of interest";
   return {};
 }
 

@@ -26,6 +26,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "paging/planet/planet_file.h"
 #include "vpe/core/frame.h"
@@ -53,6 +54,9 @@ std::size_t ray_image_bytes(std::int64_t pixels, int samples);
 // Returns the reason why the ray backend cannot draw the request, for users, or "" if it can. Wireframes,
 // markers, a cull view and inspection show meshes or tiles, which the ray backend does not draw.
 std::string why_not(const core::DrawRequest& request);
+
+// Returns the level control of a request that only triangles have, for messages; "" if there is none.
+std::string_view level_control(const core::DrawRequest& request);
 
 // Returns how the ranges of a request are cast: the mode of the settings, and cells that grow with the
 // request's coarsening. In modes exact and reference a coarsening above 1 also leads to coarser cells.

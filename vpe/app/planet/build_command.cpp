@@ -59,6 +59,7 @@ void build(BuildArguments& arguments, const Common& common) {
   std::vector<std::string> inputs = arguments.dems;
   inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
   options.output = check_planet_file(options.output, inputs);
+  limit_rasters(common);
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
   for (const std::string& path : arguments.dems) {
     dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))

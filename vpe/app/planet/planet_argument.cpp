@@ -155,6 +155,7 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
         argument.c_str());
   }
   return cached(cache_name(argument, state), argument, state.is_certain, [&](const fs::path& target) {
+    limit_rasters(common);
     build_into(target, argument, mars::open_elevation(argument), nullptr, common);
   });
 }

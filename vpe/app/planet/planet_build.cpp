@@ -93,12 +93,16 @@ void print_levels(const paging::PlanetMeta& meta) {
 
 }  // namespace
 
-paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
-                               const mars::ImageSource* image, const Common& common,
-                               std::optional<paging::BuildPlan> plan) {
+void limit_rasters(const Common& common) {
   // Half of --memory: the allocator keeps about a third more than rasters use, and the tile index and scratch
   // memory need the rest.
   mars::set_raster_memory(static_cast<std::size_t>(common.memory_mb) << 19);
+}
+
+paging::BuildSummary run_build(paging::BuildOptions options, const mars::ElevationSource& elevation,
+                               const mars::ImageSource* image, const Common& common,
+                               std::optional<paging::BuildPlan> plan) {
+  limit_rasters(common);
   const auto infos = elevation.infos();
   // An analytic source is sampled one place at a time; so many places give a resampling error that is stable to
   // a few per cent.
