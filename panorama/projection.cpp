@@ -113,7 +113,7 @@ std::optional<glm::dvec2> PanoramaMap::to_pixel(const Direction& direction) cons
 bool PanoramaMap::is_full_turn() const { return std::abs(static_cast<double>(width_px) - turn_px) < 1.0; }
 
 std::string check(const PanoramaMap& map) {
-  using Limits = PanoramaLimits;
+  using MapLimits = PanoramaLimits;
   if (std::string problem = check_facets(map); !problem.empty()) return problem;
   if (map.width_px < 1 || map.height_px < 1 || map.width_px > kMaxSide_px || map.height_px > kMaxSide_px) {
     return "image size " + std::to_string(map.width_px) + "x" + std::to_string(map.height_px) +
@@ -121,27 +121,27 @@ std::string check(const PanoramaMap& map) {
   }
   const double width_px = static_cast<double>(map.width_px);
   const double height_px = static_cast<double>(map.height_px);
-  if (!(map.turn_px >= width_px / Limits::kMaxTurns && map.turn_px <= Limits::kMaxTurn_px)) {
+  if (!(map.turn_px >= width_px / MapLimits::kMaxTurns && map.turn_px <= MapLimits::kMaxTurn_px)) {
     return format_number(map.turn_px) + " columns to a full circle of 360 degrees: an image of " +
            std::to_string(map.width_px) + " columns needs at least half as many, and at most " +
-           format_number(Limits::kMaxTurn_px) + " are allowed";
+           format_number(MapLimits::kMaxTurn_px) + " are allowed";
   }
-  if (!(std::abs(map.turn_azimuth_deg) <= Limits::kMaxAzimuth_deg)) {
+  if (!(std::abs(map.turn_azimuth_deg) <= MapLimits::kMaxAzimuth_deg)) {
     return "azimuth " + format_number(map.turn_azimuth_deg) + " degrees: must be within +-" +
-           format_number(Limits::kMaxAzimuth_deg);
+           format_number(MapLimits::kMaxAzimuth_deg);
   }
   if (!(map.crop_left_px >= 0.0 && map.crop_left_px < map.turn_px)) {
     return format_number(map.crop_left_px) +
            " columns cut at the left: must be 0 to less than a full circle (" + format_number(map.turn_px) +
            ")";
   }
-  if (!(map.focal_px > 0.0 && map.focal_px <= Limits::kMaxTurn_px)) {
+  if (!(map.focal_px > 0.0 && map.focal_px <= MapLimits::kMaxTurn_px)) {
     return "focal length of " + format_number(map.focal_px) + " pixels: must be more than 0 and at most " +
-           format_number(Limits::kMaxTurn_px);
+           format_number(MapLimits::kMaxTurn_px);
   }
-  if (!(std::abs(map.horizon_px) <= Limits::kMaxTurn_px)) {
+  if (!(std::abs(map.horizon_px) <= MapLimits::kMaxTurn_px)) {
     return "horizon at row " + format_number(map.horizon_px) + ": must be within +-" +
-           format_number(Limits::kMaxTurn_px);
+           format_number(MapLimits::kMaxTurn_px);
   }
   // Rows of labels are often stated at pixel centres, so half of the first and last row may be too much.
   const double farthest_px = std::max(map.horizon_px, height_px - map.horizon_px);

@@ -112,9 +112,9 @@ inline PostField::Plane PostField::plane(const Corner& a, const Corner& b, const
 
 inline void PostField::scan_row(const Plane& plane, std::uint32_t j, int first, int end,
                                 WorstPost& worst) const {
-  using Pair = double __attribute__((vector_size(16)));
+  using TwoDoubles = double __attribute__((vector_size(16)));
   const auto load = [](const double* from) {
-    Pair pair;
+    TwoDoubles pair;
     std::memcpy(&pair, from, sizeof pair);
     return pair;
   };
@@ -129,13 +129,13 @@ inline void PostField::scan_row(const Plane& plane, std::uint32_t j, int first, 
     return std::abs((w[k] - (w_row + plane.dx * (x[k] - plane.x))) * weight[k]);
   };
   const auto pair_error = [&](int k) {
-    const Pair e = (load(w + k) - (w_row + plane.dx * (load(x + k) - plane.x))) * load(weight + k);
+    const TwoDoubles e = (load(w + k) - (w_row + plane.dx * (load(x + k) - plane.x))) * load(weight + k);
     return -e > e ? -e : e;
   };
-  const auto larger = [](Pair a, Pair b) { return a > b ? a : b; };
+  const auto larger = [](TwoDoubles a, TwoDoubles b) { return a > b ? a : b; };
   // Two independent maxima, so that one does not wait for the other.
-  Pair one{0.0, 0.0};
-  Pair two{0.0, 0.0};
+  TwoDoubles one{0.0, 0.0};
+  TwoDoubles two{0.0, 0.0};
   int k = 0;
   for (; k + 3 < count; k += 4) {
     one = larger(one, pair_error(k));
