@@ -60,13 +60,13 @@ std::string csv_header(const panorama::ProbeResult& place) {
 
 std::string csv_line(const panorama::ProbeResult& place) {
   // The tenth decimal of a longitude is a fraction of a millimetre.
-  constexpr int kPlaceDecimals = 10;
+  constexpr int kLonLatDecimals = 10;
   std::string line = format_fixed(place.x, 3) + "," + format_fixed(place.y, 3) + "," +
                      format_fixed(place.direction.azimuth_deg, 6) + "," +
                      format_fixed(place.direction.elevation_deg, 6);
   for (const auto& [name, value] : place.values) {
     const bool is_place = name == "lon_deg" || name == "lat_deg";
-    line += "," + (value ? format_fixed(*value, is_place ? kPlaceDecimals : 3) : std::string());
+    line += "," + (value ? format_fixed(*value, is_place ? kLonLatDecimals : 3) : std::string());
   }
   return line;
 }
