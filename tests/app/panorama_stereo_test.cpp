@@ -26,7 +26,8 @@ class StereoPanorama : public AppTest {
   Words words(const std::string& output, const Words& more = {}) const {
     Words all{"panorama", planet().string(), "--at", "10,5", "--height", "4000", "-o", output, "-q"};
     for (const auto& [name, value] : {std::pair("--width", "500"), std::pair("--elevation", "-30,20")}) {
-      if (std::none_of(more.begin(), more.end(), [&](const std::string& w) { return w.starts_with(name); }))
+      if (std::none_of(more.begin(), more.end(),
+                       [option = name](const std::string& w) { return w.starts_with(option); }))
         all.push_back(std::string(name) + "=" + value);
     }
     all.insert(all.end(), more.begin(), more.end());
