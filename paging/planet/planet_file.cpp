@@ -272,7 +272,8 @@ ImageTile PlanetFile::image(const lod::TileKey& key) const {
       return verified(connection.image, row, path_, key, "image");
     });
     if (!packed) throw PlanetError(damaged(path_, key, "image is missing"));
-    vpe::core::RgbImage decoded = vpe::core::decode_jpeg(*packed, std::int64_t{kTexelsPerSide} * kTexelsPerSide);
+    vpe::core::RgbImage decoded =
+        vpe::core::decode_jpeg(*packed, std::int64_t{kTexelsPerSide} * kTexelsPerSide);
     if (decoded.width != kTexelsPerSide || decoded.height != kTexelsPerSide) {
       throw PlanetError(damaged(path_, key, "image of the wrong size"));
     }

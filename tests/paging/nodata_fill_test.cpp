@@ -36,7 +36,7 @@ class SpacingElevation : public FakeElevation {
 // Returns hills with a hole over a corner of the cube and another one within a face.
 double hills_with_holes(const glm::dvec3& d) {
   const bool is_nodata = glm::length(d - glm::normalize(glm::dvec3(1, 1, 1))) < 0.3 ||
-                       glm::length(d - glm::normalize(glm::dvec3(1, 0.1, 0.2))) < 0.11;
+                         glm::length(d - glm::normalize(glm::dvec3(1, 0.1, 0.2))) < 0.11;
   return is_nodata ? kNaN : 4000 + bumpy_height(d);
 }
 
