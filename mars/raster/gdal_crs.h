@@ -16,8 +16,8 @@ namespace mars {
 // so that no change of datum can occur. Handles axes in any order or pointing west, other units and prime
 // meridians.
 //
-// Where a geographic CRS counts longitudes to the west, GDAL 3.6.2 puts the latitude first, along the columns, as
-// gdalwarp -t_srs IAU_2015:49901 does; gdal_translate -a_srs leaves the longitude there. iau_crs.h tells these
+// Takes the latitude first, along the columns, where a geographic CRS counts longitudes to the west: so does GDAL
+// 3.6.2 in gdalwarp -t_srs IAU_2015:49901; gdal_translate -a_srs leaves the longitude there. iau_crs.h tells these
 // apart, and restores the directions that a GeoTIFF loses.
 //
 // Any number of threads may call const members at once.

@@ -21,18 +21,8 @@ using test_support::FakeElevation;
 using test_support::FakeImage;
 using test_support::fine_around;
 using test_support::Random;
+using test_support::SpacingElevation;
 using test_support::TempDir;
-
-// Gives hills with a nodata area, and an offset that shows at which spacing a post was sampled.
-class SpacingElevation : public FakeElevation {
- public:
-  using FakeElevation::FakeElevation;
-  void sample(std::span<const glm::dvec3> directions, double spacing_m,
-              std::span<double> heights_m) const override {
-    FakeElevation::sample(directions, spacing_m, heights_m);
-    for (double& h : heights_m) h += 20 * std::log2(spacing_m);
-  }
-};
 
 double height_with_nodata(const glm::dvec3& d) {
   return d.y > 0.98 ? std::numeric_limits<double>::quiet_NaN() : bumpy_height(d);

@@ -18,20 +18,10 @@ using test_support::bumpy_height;
 using test_support::FakeElevation;
 using test_support::fine_around;
 using test_support::Random;
+using test_support::SpacingElevation;
 using test_support::TempDir;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-// Gives heights that tell at which spacing they were sampled.
-class SpacingElevation : public FakeElevation {
- public:
-  using FakeElevation::FakeElevation;
-  void sample(std::span<const glm::dvec3> directions, double spacing_m,
-              std::span<double> heights_m) const override {
-    FakeElevation::sample(directions, spacing_m, heights_m);
-    for (double& h : heights_m) h += 5 * std::log2(spacing_m);
-  }
-};
 
 // Returns hills with a hole over a corner of the cube and another one within a face.
 double hills_with_holes(const glm::dvec3& d) {

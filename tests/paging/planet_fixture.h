@@ -31,6 +31,17 @@ inline FakeElevation::Spacing fine_around(const glm::dvec3& centre, double reach
   };
 }
 
+// Adds to each height an offset that shows at which spacing it was sampled.
+class SpacingElevation : public FakeElevation {
+ public:
+  using FakeElevation::FakeElevation;
+  void sample(std::span<const glm::dvec3> directions, double spacing_m,
+              std::span<double> heights_m) const override {
+    FakeElevation::sample(directions, spacing_m, heights_m);
+    for (double& h : heights_m) h += 20 * std::log2(spacing_m);
+  }
+};
+
 // Gives colours that are a function of the place.
 class FakeImage : public mars::ImageSource {
  public:

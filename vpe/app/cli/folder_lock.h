@@ -7,7 +7,7 @@
 namespace vpe::app {
 
 // Holds a folder for one process, or for all that share it, as long as it lives. The lock ends with the process.
-// Where the file system knows no locks, it holds nothing.
+// Holds nothing where the file system knows no locks.
 //
 // Typical usage:
 //   const FolderLock lock("film.mp4.parts", FolderLock::Use::kAlone, "film.mp4");

@@ -1,4 +1,4 @@
-// Where the sun of a date stands.
+// The sun of a date in the sky of a place.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
