@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "tests/paging/planet_fixture.h"
 #include "tests/window/window_fixture.h"
@@ -22,9 +23,10 @@ inline std::shared_ptr<const paging::PlanetFile> planet() {
 class ExploreWindowTest : public WindowTest<ExploreWindow> {
  protected:
   void open(int width = 960, int height = 540, core::Backend backend = core::Backend::kRay) {
-    ExploreSetup setup = std::move(extra_);
+    ExploreSetup setup = std::exchange(extra_, {});
     setup.folder = folder_.path();
     setup.bookmarks = folder_ / "bookmarks";
+    setup.state = folder_ / "state";
     setup.planet = planet_;
     setup.surface = std::make_shared<const paging::Surface>(planet_, std::size_t{32} << 20);
     setup.backend = backend;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <regex>
 
 #include "mars/geodesy/sun.h"
 #include "tests/window/explore_window_fixture.h"
@@ -206,6 +207,173 @@ TEST_F(ExploreWindowTest, AnImageThatCannotBeDrawnIsReplacedByAMessage) {
   settle();
   EXPECT_TRUE(window_->state().image_error.empty());
   EXPECT_TRUE(window_->shows_final_image());
+}
+
+// Numbers that were typed are kept however the field is left, except by Esc.
+TEST_F(ExploreWindowTest, ATypedNumberIsKeptWhenTheFieldIsLeft) {
+  open();
+  const auto type = [&](const std::string& digits) {
+    const WidgetPlace p = place_of("Heading");
+    click(p.x0 + 0.2 * (p.x1 - p.x0), (p.y0 + p.y1) / 2);
+    for (const char digit : digits) key(std::string(1, digit));
+  };
+  type("55");
+  EXPECT_NE(window_->session().pose().yaw_deg, 5);  // not while it is typed
+  key("Tab");
+  settle();
+  EXPECT_EQ(window_->session().pose().yaw_deg, 55);
+  EXPECT_FALSE(window_->state().large_map);
+  type("66");
+  click(700, 200);  // into the view
+  settle();
+  EXPECT_EQ(window_->session().pose().yaw_deg, 66);
+  type("77");
+  click("Pitch");
+  iterate(5);
+  EXPECT_EQ(window_->session().pose().yaw_deg, 77);
+  type("88");
+  click("Appearance");  // the field is gone
+  settle();
+  EXPECT_EQ(window_->session().pose().yaw_deg, 88);
+  click("Control");
+  settle();
+  type("99");
+  key("Escape");
+  settle();
+  EXPECT_EQ(window_->session().pose().yaw_deg, 88);
+  const WidgetPlace p = place_of("Heading");
+  const double step_px = (p.y1 - p.y0) * 0.5;
+  // The last two squares of the field are the steps; the label follows.
+  click(p.x0 + 11 * (p.y1 - p.y0) * 14 / 20 - step_px, (p.y0 + p.y1) / 2);
+  settle();
+  EXPECT_NE(window_->session().pose().yaw_deg, 88);
+}
+
+// All keys arrive between two frames.
+TEST_F(ExploreWindowTest, AQuicklyTypedNumberIsTaken) {
+  open();
+  const WidgetPlace p = place_of("Heading");
+  click(p.x0 + 0.2 * (p.x1 - p.x0), (p.y0 + p.y1) / 2);
+  robot_->key("2");
+  robot_->key("3");
+  robot_->key("Return");
+  settle();
+  EXPECT_EQ(window_->session().pose().yaw_deg, 23);
+  key("w");  // the keyboard belongs to the view again
+  EXPECT_FALSE(ImGui::GetIO().WantTextInput);
+}
+
+TEST_F(ExploreWindowTest, TabGivesNoFieldTheKeyboard) {
+  open();
+  click("Flight");
+  key("p");
+  key("p");
+  key("Tab");
+  EXPECT_TRUE(window_->state().large_map);
+  click("Undo");
+  key("Tab");
+  settle();
+  EXPECT_FALSE(window_->state().large_map);
+  EXPECT_FALSE(ImGui::GetIO().WantTextInput);
+}
+
+TEST_F(ExploreWindowTest, TheFlightPanelStaysAtItsPlace) {
+  open();
+  click("Flight");
+  key("p");
+  settle();
+  window_->session().player();
+  iterate(3);
+  const WidgetPlace before = place_of("Save");
+  ASSERT_EQ(window_->session().follow(true), "");
+  window_->session().player()->set_look_offset({10, 5, 0});
+  settle();
+  EXPECT_EQ(place_of("Save").y0, before.y0);
+}
+
+// A program that is killed leaves a copy, and the next one offers it.
+TEST_F(ExploreWindowTest, AnUnsavedFlightOutlivesTheProgram) {
+  open();
+  key("p");
+  iterate(3);
+  std::filesystem::path copy;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "state")) copy = entry.path();
+  ASSERT_FALSE(copy.empty());
+  EXPECT_EQ(copy.extension(), ".flight");
+  const scripts::Flight flight = window_->session().flights().editor()->flight();
+  window_.reset();  // without exit_message(), as if it were killed
+  // No process has this number.
+  const std::filesystem::path of_dead =
+      folder_ / "state" /
+      std::regex_replace(copy.filename().string(), std::regex("-[0-9]+\\.flight$"), "-999999999.flight");
+  std::filesystem::rename(copy, of_dead);
+  open();
+  EXPECT_NE(window_->state().message.find("unsaved flight"), std::string::npos) << window_->state().message;
+  click("Flight");
+  click("Restore");
+  ASSERT_NE(window_->session().flights().editor(), nullptr);
+  EXPECT_EQ(window_->session().flights().editor()->flight(), flight);
+  EXPECT_TRUE(window_->session().flights().editor()->is_changed());
+  iterate(3);
+  EXPECT_TRUE(std::filesystem::exists(copy));
+  EXPECT_FALSE(std::filesystem::exists(of_dead));
+  click("Save");
+  iterate(3);
+  EXPECT_FALSE(std::filesystem::exists(copy));
+}
+
+TEST_F(ExploreWindowTest, TheSessionIsKeptWhileItRuns) {
+  int kept = 0;
+  mars::Pose last;
+  extra_.keep_session = [&](const ExploreWindow& shown) {
+    ++kept;
+    last = shown.session().pose();
+  };
+  open();
+  const int before = kept;
+  window_->session().put({12, 3, 90000, 10, -40, 0});
+  const double begun = glfwGetTime();
+  while (glfwGetTime() < begun + 10 && kept == before) iterate(1);
+  settle();
+  EXPECT_GT(kept, before);
+  EXPECT_EQ(last.lon_deg, 12);
+  const int rest = kept;
+  const double still = glfwGetTime();
+  while (glfwGetTime() < still + 2.5) iterate(1);
+  EXPECT_EQ(kept, rest);
+}
+
+// Messages and the sign of recording are seen also without panels.
+TEST_F(ExploreWindowTest, HiddenPanelsHideNoMessage) {
+  open();
+  key("h");
+  settle();
+  core::RgbImage plain;
+  window_->capture(&plain);
+  key("F1");
+  key("F1");
+  settle();
+  ASSERT_FALSE(plain.pixels.empty());
+  key("l");  // begins to record: a message, and a sign
+  settle();
+  core::RgbImage with_note;
+  window_->capture(&with_note);
+  key("F1");
+  settle();
+  core::RgbImage recording;
+  ASSERT_FALSE(with_note.pixels.empty());
+  const auto is_red = [](const core::RgbImage& image) {
+    const auto x = static_cast<std::size_t>(image.width - 18);
+    const base::Rgb pixel = image.pixels[18 * static_cast<std::size_t>(image.width) + x];
+    return pixel.r > 200 && pixel.g < 80;
+  };
+  EXPECT_FALSE(is_red(plain));
+  EXPECT_TRUE(is_red(with_note));
+  const auto lower_left = [](const core::RgbImage& image) {
+    const auto row = static_cast<std::ptrdiff_t>(image.width) * (image.height - 18);
+    return std::vector<base::Rgb>(image.pixels.begin() + row + 12, image.pixels.begin() + row + 200);
+  };
+  EXPECT_NE(lower_left(plain), lower_left(with_note));
 }
 
 TEST_F(ExploreWindowTest, AFlightThatWasNotSavedIsKept) {

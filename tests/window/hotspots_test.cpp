@@ -53,6 +53,7 @@ TEST_F(HotspotsTest, EnterOpensAndEscapeLeaves) {
   key("Return");
   settle();
   ASSERT_NE(window_->overlook(), nullptr);
+  EXPECT_NEAR(std::remainder(window_->overlook()->viewer().yaw_deg() - before.yaw_deg, 360.0), 0, 1e-3);
   const double yaw_deg = window_->overlook()->viewer().yaw_deg();
   robot_->key_down("Right");
   iterate(10);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 // After the system's: X names many things.
@@ -26,6 +27,7 @@ Screen::Screen(int width, int height) {
   process_ = fork();
   if (process_ == 0) {
     close(ends[0]);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // a test that is aborted must leave no server
     const int nowhere = open("/dev/null", O_WRONLY);
     dup2(nowhere, 2);
     execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", size.c_str(), "-nolisten", "tcp",

@@ -64,6 +64,7 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   if (!arguments.flight.empty() && std::filesystem::exists(arguments.flight))
     setup.flight = read_flight(arguments.flight);
   setup.bookmarks = vpe::explore::explore_files().bookmarks;
+  setup.state = vpe::explore::explore_files().session.parent_path();
   if (!arguments.hotspots.empty()) {
     const vpe::explore::ParsedHotspots parsed = vpe::explore::load_hotspots(arguments.hotspots);
     std::string wrong;
@@ -113,6 +114,19 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   return setup;
 }
 
+// Writes the session file. Returns "", or what went wrong; there is no file if there is no folder for it.
+std::string keep_session(const window::ExploreWindow& shown, const std::string& planet,
+                         const std::filesystem::path& file, vpe::explore::LastSession& last) {
+  last.panels = shown.state().panels;
+  last.planet = planet;
+  last.pose = shown.session().pose();
+  last.backend = shown.state().backend;
+  const auto [width, height] = shown.display().size();
+  last.window_width_px = width;
+  last.window_height_px = height;
+  return file.empty() ? "" : vpe::explore::save(last, file);
+}
+
 void explore(const ExploreArguments& arguments, const Common& common) {
   const vpe::explore::ExploreFiles files = vpe::explore::explore_files();
   const vpe::explore::Preferences preferences = vpe::explore::read_preferences(files.preferences);
@@ -143,6 +157,10 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     constexpr std::size_t kSurfaceShare = 8;
     setup.surface = std::make_shared<const paging::Surface>(planet, memory_bytes(common) / kSurfaceShare);
     setup.make_painter = [planet, common] { return std::make_unique<WindowPainter>(planet, common); };
+    const auto keep = [&files, &last, &file](const window::ExploreWindow& shown) {
+      return keep_session(shown, file, files.session, last);
+    };
+    setup.keep_session = [keep](const window::ExploreWindow& shown) { (void)keep(shown); };
     window::ExploreWindow shown(std::move(setup));
     shown.run();
     if (const std::string message = shown.exit_message(); !message.empty())
@@ -155,14 +173,7 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     here.fov_deg = shown.session().screen().fov_deg;
     shown.session().leave_flight();
     settings = shown.session().settings();
-    last.panels = shown.state().panels;
-    last.planet = file;
-    last.pose = shown.session().pose();
-    last.backend = shown.state().backend;
-    const auto [width, height] = shown.display().size();
-    last.window_width_px = width;
-    last.window_height_px = height;
-    const std::string error = files.session.empty() ? "" : vpe::explore::save(last, files.session);
+    const std::string error = keep(shown);
     if (!error.empty() && !common.quiet) std::fprintf(stderr, "vpe: note: %s\n", error.c_str());
     planet = shown.next_planet();
     file = recorded_path(shown.next_planet_file());

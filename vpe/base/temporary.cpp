@@ -32,9 +32,6 @@ std::string host() {
   return text.empty() ? "localhost" : text;
 }
 
-// Returns ".HOST-PID" of this process.
-std::string own_mark() { return "." + host() + "-" + std::to_string(::getpid()); }
-
 bool is_old(const fs::path& file) {
   std::error_code error;
   const auto written = fs::last_write_time(file, error);
@@ -63,15 +60,6 @@ bool is_mark(std::string_view mark) {
   return false;
 }
 
-// Returns true if the writer of NAME.HOST-PID.tmp is known to be gone.
-bool is_abandoned(const fs::path& file, std::string_view mark) {
-  if (!is_mark(mark)) return false;
-  const std::string here = "." + host() + "-";
-  const auto pid = mark.starts_with(here) ? process_in(mark.substr(here.size())) : std::nullopt;
-  if (!pid) return is_old(file);
-  return ::kill(static_cast<pid_t>(*pid), 0) != 0 && errno == ESRCH;
-}
-
 // Returns the name of the file that NAME.MARK.tmp was meant to become: the longest NAME that is ours.
 std::optional<std::string> name_in(const std::string& text,
                                    const std::function<bool(const std::string&)>& is_ours) {
@@ -83,8 +71,18 @@ std::optional<std::string> name_in(const std::string& text,
 
 }  // namespace
 
+std::string process_mark() { return "." + host() + "-" + std::to_string(::getpid()); }
+
+bool is_abandoned(const fs::path& file, std::string_view mark) {
+  if (!is_mark(mark)) return false;
+  const std::string here = "." + host() + "-";
+  const auto pid = mark.starts_with(here) ? process_in(mark.substr(here.size())) : std::nullopt;
+  if (!pid) return is_old(file);
+  return ::kill(static_cast<pid_t>(*pid), 0) != 0 && errno == ESRCH;
+}
+
 std::FILE* make_temporary(const fs::path& file, fs::path& temporary) {
-  const std::string begin = file.string() + own_mark();
+  const std::string begin = file.string() + process_mark();
   for (int attempt = 1; attempt <= kMostAttempts; ++attempt) {
     temporary = begin + (attempt > 1 ? "-" + std::to_string(attempt) : "") + std::string(kEnd);
     const int fd = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -94,7 +92,7 @@ std::FILE* make_temporary(const fs::path& file, fs::path& temporary) {
   return nullptr;
 }
 
-fs::path temporary_name(const fs::path& file) { return file.string() + own_mark() + std::string(kEnd); }
+fs::path temporary_name(const fs::path& file) { return file.string() + process_mark() + std::string(kEnd); }
 
 void remove_stale_temporaries(const fs::path& folder,
                               const std::function<bool(const std::string& name)>& is_ours) {

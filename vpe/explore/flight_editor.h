@@ -96,8 +96,16 @@ class FlightEditor {
 
   // Returns true if the flight differs from the one given to the constructor or last marked as saved.
   bool is_changed() const { return !(flight_ == saved_); }
-  void mark_saved() { saved_ = flight_; }
-  void mark_unsaved() { saved_ = {}; }
+  void mark_saved() {
+    saved_ = flight_;
+    ++saves_;
+  }
+  void mark_unsaved() {
+    saved_ = {};
+    ++saves_;
+  }
+  // Returns a number that changes whenever mark_saved() or mark_unsaved() is called.
+  std::uint64_t saves() const { return saves_; }
 
  private:
   struct Step {
@@ -116,6 +124,7 @@ class FlightEditor {
   scripts::Flight flight_;
   std::uint64_t revision_ = 1;
   scripts::Flight saved_;
+  std::uint64_t saves_ = 0;
   std::deque<Step> undo_;
   std::deque<Step> redo_;
   std::string drag_;  // name of the undo step that a move may continue

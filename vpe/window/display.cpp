@@ -7,6 +7,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,8 @@ struct Display::State {
   double to_pixels = 1;  // from screen coordinates
   double x = 0;
   double y = 0;
+  std::vector<int> pressed;  // keys since the last frame
+  std::vector<int> held;     // keys that are down for one frame more than they were
 };
 
 namespace {
@@ -49,6 +52,7 @@ void on_key(GLFWwindow* window, int key, int, int action, int modifiers) {
                                        : Event::Kind::kKeyRelease;
   event.code = key;
   event.modifiers = modifiers;
+  if (action == GLFW_PRESS) state_of(window).pressed.push_back(key);
   add(window, event);
 }
 
@@ -238,7 +242,28 @@ void Display::wake() { glfwPostEmptyEvent(); }
 void Display::begin_frame() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+#if IMGUI_VERSION_NUM < 18700
+  // ImGui would not see a key that is pressed and released between two frames.
+  bool(&down)[512] = ImGui::GetIO().KeysDown;
+  for (const int key : std::exchange(state_->pressed, {})) {
+    if (key < 0 || key >= 512 || down[key]) continue;
+    down[key] = true;
+    state_->held.push_back(key);
+  }
+#else
+  state_->pressed.clear();
+#endif
   ImGui::NewFrame();
+  // Tab leads from one text to the next; elsewhere it is a key of the window.
+  ImGui::PushAllowKeyboardFocus(ImGui::GetIO().WantTextInput);
+}
+
+bool Display::has_input_left() {
+#if IMGUI_VERSION_NUM < 18700
+  return false;
+#else
+  return ImGui::GetCurrentContext()->InputEventsQueue.Size > 0;
+#endif
 }
 
 core::RgbImage Display::read_back() const {
@@ -256,7 +281,11 @@ core::RgbImage Display::read_back() const {
 }
 
 void Display::end_frame(core::RgbImage* shown) {
+  ImGui::PopAllowKeyboardFocus();
   ImGui::Render();
+#if IMGUI_VERSION_NUM < 18700
+  for (const int key : std::exchange(state_->held, {})) ImGui::GetIO().KeysDown[key] = false;
+#endif
   int width = 0;
   int height = 0;
   framebuffer(width, height);

@@ -89,6 +89,8 @@ class Display {
   // is null.
   void begin_frame();
   void end_frame(core::RgbImage* shown = nullptr);
+  // Returns true if ImGui has kept input for the next frame, so that another one is due.
+  static bool has_input_left();
 
   struct State;  // for the library's callbacks
 

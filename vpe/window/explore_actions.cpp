@@ -4,6 +4,7 @@
 
 #include "vpe/base/file.h"
 #include "vpe/core/image/image.h"
+#include "vpe/explore/files/user_files.h"
 #include "vpe/window/explore_window.h"
 
 namespace vpe::window {
@@ -104,10 +105,32 @@ std::string ExploreWindow::exit_message() {
   const fs::path file = new_file(setup_.folder, "unsaved-", ".flight");
   try {
     base::write_file(file, editor->to_text());
+    session_.flights().editor()->mark_saved();
+    (void)backup_.update(session_.flights().editor());
     return "the flight was not saved; a copy is in " + file.string();
   } catch (const std::exception& e) {
+    std::error_code unknown;
+    if (fs::exists(backup_.file(), unknown))
+      return std::string("the flight was not saved: ") + e.what() + "; a copy is in " + backup_.file().string();
     return std::string("the flight was not saved and is lost: ") + e.what();
   }
+}
+
+void ExploreWindow::restore_flight(const fs::path& copy) {
+  try {
+    const std::optional<std::string> text = explore::read_user_file(copy);
+    if (!text) throw std::runtime_error(copy.string() + ": the copy is gone");
+    const scripts::ParsedFlight parsed = scripts::parse_flight(*text, copy.string());
+    if (!parsed.flight) throw std::runtime_error(scripts::to_string(parsed.errors.front()));
+    if (const std::string error = session_.flights().load(*parsed.flight); !error.empty())
+      throw std::runtime_error(error);
+    session_.flights().editor()->mark_unsaved();
+    backup_.adopt(copy);
+    show_message("the unsaved flight is open");
+  } catch (const std::exception& e) {
+    show_message(e.what(), true);
+  }
+  flight_.offer(backup_.abandoned());
 }
 
 std::string ExploreWindow::act(const explore::Action& action) {
@@ -169,7 +192,7 @@ std::string ExploreWindow::act(const explore::Action& action) {
       measure_.add(*under_cursor_);
       return {};
     case Kind::kEnterOverlook: {
-      if (std::string error = guide_.enter(); !error.empty()) return error;
+      if (std::string error = guide_.enter(session_); !error.empty()) return error;
       const explore::Hotspot& hotspot = *guide_.inside_hotspot();
       show_message(hotspot.name + ": press Esc to leave");
       session_.release();

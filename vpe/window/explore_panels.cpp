@@ -118,6 +118,30 @@ void draw_explore_help(const ViewArea& area) {
   ImGui::End();
 }
 
+// Draws a message over the lower left of a view whose panels are hidden.
+void draw_note(const ViewArea& area, const std::string& text, bool is_error, double scale) {
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const double margin = 10 * scale;
+  const double most = std::max(40.0, area.width - 4 * margin);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, static_cast<float>(most));
+  const double top = area.y + area.height - margin - static_cast<double>(size.y);
+  list.AddRectFilled(at(area.x + margin, top - margin),
+                     at(area.x + 3 * margin + static_cast<double>(size.x), top + static_cast<double>(size.y)),
+                     IM_COL32(0, 0, 0, 170), 4);
+  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at(area.x + 2 * margin, top - margin / 2),
+               ImGui::ColorConvertFloat4ToU32(is_error ? kErrorColour : kSuccessColour), text.c_str(), nullptr,
+               static_cast<float>(most));
+}
+
+// Draws a red dot at the upper right of the view while the session is recorded.
+void draw_recording_sign(const ViewArea& area, double scale) {
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const double radius = 6 * scale;
+  const ImVec2 middle = at(area.x + area.width - 3 * radius, area.y + 3 * radius);
+  list.AddCircleFilled(middle, static_cast<float>(radius * 1.35), IM_COL32(0, 0, 0, 150));
+  list.AddCircleFilled(middle, static_cast<float>(radius), IM_COL32(235, 40, 30, 255));
+}
+
 }  // namespace
 
 void ExploreWindow::draw_frame() {
@@ -140,9 +164,13 @@ void ExploreWindow::draw_frame() {
   if (state_.panels) {
     draw_side();
     draw_status();
+  } else if (!state_.message.empty()) {
+    draw_note(view_area_, state_.message, state_.message_is_error, display_.scale());
   }
+  if (recorder_.is_recording()) draw_recording_sign(view_area_, display_.scale());
   if (state_.help) draw_explore_help(view_area_);
   display_.end_frame(std::exchange(capture_, nullptr));
+  if (Display::has_input_left()) frames_due_ = std::max(frames_due_, kFramesAfterChange);
   ++frames_;
 }
 
@@ -173,6 +201,7 @@ void ExploreWindow::draw_side() {
     if (widgets_.tab("Flight")) {
       const FlightActions actions = flight_.draw(session_, recorder_.is_recording(), widgets_);
       if (actions.record) set_recording(*actions.record);
+      if (actions.restore) restore_flight(*actions.restore);
       if (!actions.message.empty()) show_message(actions.message, actions.message_is_error);
       ImGui::EndTabItem();
     }

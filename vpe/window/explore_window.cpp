@@ -22,6 +22,7 @@ constexpr double kIdle_s = 0.5;
 constexpr double kMessage_s = 6;  // for which it is shown
 constexpr double kError_s = 30;
 constexpr double kPoll_s = 1.0 / 60;  // of devices that send no events
+constexpr double kKeepSession_s = 2;
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
@@ -35,6 +36,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       measure_(setup_.surface, [] { Display::wake(); }),
       flight_(setup_.flight_file, setup_.folder),
       guide_(setup_.hotspots, setup_.open_overlook),
+      backup_(setup_.state),
       live_({setup_.session.settings.values().lod_frame_ms}),
       devices_(setup_.preferences, std::move(setup_.devices)),
       history_(session_.ground().radius_m),
@@ -56,7 +58,11 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   };
   for (const std::string& error : devices_.errors()) add(error);
   if (setup_.flight) add(session_.flights().load(*setup_.flight));
-  if (!errors.empty()) show_message(errors, true);
+  flight_.offer(backup_.abandoned());
+  if (!errors.empty())
+    show_message(errors, true);
+  else if (!backup_.abandoned().empty())
+    show_message("an earlier session left an unsaved flight: 'Restore' in the panel 'Flight' opens it");
 }
 
 ExploreWindow::~ExploreWindow() { (void)recorder_.stop(now_s()); }
@@ -113,6 +119,7 @@ bool ExploreWindow::step(double wait_s) {
   }
   const double shown_s = now_s() - state_.message_since_s;
   if (!state_.message.empty() && shown_s > (state_.message_is_error ? kError_s : kMessage_s)) clear_message();
+  keep_work(busy);
   if (step_overlook(input, dt_s)) return !display_.should_close();
   explore::Controls controls = input.controls;
   controls.speed *= state_.speed;
@@ -129,6 +136,24 @@ bool ExploreWindow::step(double wait_s) {
     --frames_due_;
   }
   return !display_.should_close();
+}
+
+// Keeps the flight as it is between two drags, and the session when the view has come to rest.
+void ExploreWindow::keep_work(bool is_busy) {
+  if (!ImGui::IsAnyMouseDown()) {
+    if (const std::string error = backup_.update(session_.flights().editor()); !error.empty())
+      show_message(error, true);
+  }
+  if (!setup_.keep_session || is_busy || now_s() - session_kept_s_ < kKeepSession_s) return;
+  const mars::Pose& p = session_.pose();
+  const KeptSession now{{p.lon_deg, p.lat_deg, p.alt_m, p.yaw_deg, p.pitch_deg, p.roll_deg},
+                        state_.backend,
+                        state_.panels,
+                        display_.size()};
+  if (session_kept_ == now) return;
+  session_kept_s_ = now_s();
+  session_kept_ = now;
+  setup_.keep_session(*this);
 }
 
 void ExploreWindow::handle(const Event& event) {

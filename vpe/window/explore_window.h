@@ -1,6 +1,7 @@
 // The window of `vpe explore`: the view, the map, panels and a status line.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <deque>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "vpe/explore/files/bookmarks.h"
 #include "vpe/explore/files/preferences.h"
 #include "vpe/explore/files/view_history.h"
+#include "vpe/explore/flight_backup.h"
 #include "vpe/explore/live_image.h"
 #include "vpe/explore/session.h"
 #include "vpe/window/devices.h"
@@ -34,6 +36,8 @@ namespace vpe::window {
 // Opens a planet file, or builds one from a raster. Throws if this is not possible.
 using OpenPlanet = std::function<std::shared_ptr<const paging::PlanetFile>(const std::string& file)>;
 
+class ExploreWindow;
+
 struct ExploreSetup {
   std::shared_ptr<const paging::PlanetFile> planet;
   std::shared_ptr<const paging::Surface> surface;
@@ -50,7 +54,11 @@ struct ExploreSetup {
   DeviceSources devices;
   std::filesystem::path bookmarks;  // file; empty: there are no bookmarks
   std::filesystem::path folder;     // for images, logs and flights; empty: the working directory
-  std::filesystem::path log;        // file to record from the start; empty: none
+  std::filesystem::path state;      // folder for copies of unsaved flights; empty: there are none
+  // Called with a window whose view or panels have changed, after a while and at most every few seconds, so that
+  // the session can be kept before the program ends. May be empty.
+  std::function<void(const ExploreWindow&)> keep_session;
+  std::filesystem::path log;  // file to record from the start; empty: none
   std::optional<scripts::Flight> flight;
   std::string flight_file;  // where the flight is saved
   bool panels = true;       // shown at the start
@@ -133,9 +141,11 @@ class ExploreWindow {
   bool step(double wait_s);
 
   explore::Session& session() { return session_; }
+  const explore::Session& session() const { return session_; }
   const WindowState& state() const { return state_; }
   const Widgets& widgets() const { return widgets_; }
   Display& display() { return display_; }
+  const Display& display() const { return display_; }
   const Devices& devices() const { return devices_; }
   // Returns the image shown last, or null before the first, and its pixels.
   const DrawnImage* drawn() const { return drawn_ ? &*drawn_ : nullptr; }
@@ -159,6 +169,15 @@ class ExploreWindow {
   static constexpr double kImageWait_s = 0.1;   // limit of waiting for an image in one iteration
   static constexpr int kFramesAfterChange = 3;  // ImGui settles within these
 
+  // What keep_session() was called for.
+  struct KeptSession {
+    std::array<double, 6> pose;  // the fields of mars::Pose
+    core::Backend backend;
+    bool panels;
+    std::pair<int, int> size;
+    bool operator==(const KeptSession&) const = default;
+  };
+
   void handle(const Event& event);
   void handle_button(const Event& event);
   void lay_out();
@@ -177,6 +196,8 @@ class ExploreWindow {
   void show_message(std::string text, bool is_error = false);
   void clear_message();
   void save_image();
+  void keep_work(bool is_busy);
+  void restore_flight(const std::filesystem::path& copy);
   void set_recording(bool on, const std::filesystem::path& file = {});
   double now_s() const;
 
@@ -189,6 +210,9 @@ class ExploreWindow {
   MeasurePanel measure_;
   FlightPanel flight_;
   HotspotGuide guide_;
+  explore::FlightBackup backup_;
+  double session_kept_s_ = 0;
+  std::optional<KeptSession> session_kept_;
   std::optional<mars::LonLat> under_cursor_;  // in view or map
   Texture view_texture_;
   explore::LiveImage live_;

@@ -63,9 +63,16 @@ FlightActions FlightPanel::draw(explore::Session& session, bool is_recording, Wi
   if (session.flights().editor() != nullptr)
     draw_waypoints(session, actions, widgets);
   else
-    ImGui::TextDisabled("Ctrl + click on the map adds a waypoint there");
+    draw_empty(actions, widgets);
   ImGui::EndChild();
   return actions;
+}
+
+void FlightPanel::draw_empty(FlightActions& actions, Widgets& widgets) const {
+  ImGui::TextDisabled("Ctrl + click on the map adds a waypoint there");
+  if (abandoned_.empty()) return;
+  if (widgets.button("Restore", ("open the unsaved flight " + abandoned_.front().string()).c_str()))
+    actions.restore = abandoned_.front();
 }
 
 void FlightPanel::draw_player(explore::Session& session, Widgets& widgets) {
@@ -85,9 +92,11 @@ void FlightPanel::draw_player(explore::Session& session, Widgets& widgets) {
     ImGui::SameLine();
     bool loops = player->loops();
     if (widgets.check("Loop", loops)) player->set_loop(loops);
-    if (player->look_offset().yaw_deg != 0 || player->look_offset().pitch_deg != 0) {
-      if (widgets.button("Look ahead", "return to the flight's own direction")) player->reset_look_offset();
-    }
+    // The button is always there, so that those below stay at their places.
+    const bool looks_aside = player->look_offset().yaw_deg != 0 || player->look_offset().pitch_deg != 0;
+    ImGui::BeginDisabled(!looks_aside);
+    if (widgets.button("Look ahead", "return to the flight's own direction")) player->reset_look_offset();
+    ImGui::EndDisabled();
   } else if (!session.flights().problem().empty()) {
     ImGui::TextWrapped("%s", session.flights().problem().c_str());
   }

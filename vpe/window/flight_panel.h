@@ -13,8 +13,9 @@ namespace vpe::window {
 
 // Holds what the window has to do after the panel was drawn.
 struct FlightActions {
-  std::optional<bool> record;  // start or stop recording
-  std::string message;         // empty: nothing new
+  std::optional<bool> record;                    // start or stop recording
+  std::optional<std::filesystem::path> restore;  // copy of an unsaved flight to open
+  std::string message;                           // empty: nothing new
   bool message_is_error = false;
 };
 
@@ -27,17 +28,22 @@ class FlightPanel {
   // Draws the panel inside its tab.
   FlightActions draw(explore::Session& session, bool is_recording, Widgets& widgets);
 
+  // Sets the copies of unsaved flights that a button offers while there is no flight.
+  void offer(std::vector<std::filesystem::path> abandoned) { abandoned_ = std::move(abandoned); }
+
   // Returns the ground speed to waypoints that are added.
   double ground_speed_m_s() const { return ground_speed_m_s_; }
 
  private:
   static void draw_player(explore::Session& session, Widgets& widgets);
+  void draw_empty(FlightActions& actions, Widgets& widgets) const;
   void draw_waypoints(explore::Session& session, FlightActions& actions, Widgets& widgets);
   void draw_list(const std::vector<scripts::Waypoint>& waypoints, Widgets& widgets);
   void save(explore::FlightEditor& editor, FlightActions& actions);
 
   std::string file_;
   std::filesystem::path folder_;
+  std::vector<std::filesystem::path> abandoned_;
   double ground_speed_m_s_ = 1000;
   int waypoint_ = 0;  // selected in the list
 };

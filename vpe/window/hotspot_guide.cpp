@@ -64,13 +64,16 @@ const explore::Hotspot* HotspotGuide::within_reach() const {
                                                                                   : nullptr;
 }
 
-std::string HotspotGuide::enter() {
+std::string HotspotGuide::enter(const explore::Session& session) {
   if (inside_ != nullptr) return {};
   if (hotspots_.empty()) return "there are no hotspots; --hotspots FILE defines them";
   if (within_reach() == nullptr) return "no hotspot is near enough to open its panorama";
   inside_ = std::move(ahead_);
   inside_index_ = ahead_index_;
   state_ = {};
+  const mars::CameraPose camera{inside_camera_m(), session.view().camera.axes};
+  const mars::Pose pose = mars::to_pose(camera, session.ground().radius_m);
+  inside_->look_at(pose.yaw_deg, inside_->viewer().pitch_deg());
   return {};
 }
 

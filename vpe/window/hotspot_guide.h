@@ -40,8 +40,8 @@ class HotspotGuide {
   // Returns the hotspot that can be entered, or null.
   const explore::Hotspot* within_reach() const;
 
-  // Enters the hotspot within reach. Returns what is wrong, or "".
-  std::string enter();
+  // Enters the hotspot within reach, with the heading of the session's view. Returns what is wrong, or "".
+  std::string enter(const explore::Session& session);
   void leave() { inside_.reset(); }
   // Returns the panorama that was entered, or null.
   OverlookView* inside() { return inside_.get(); }

@@ -9,8 +9,11 @@ namespace vpe::window {
 void Widgets::record(std::string_view label) {
   const ImVec2 a = ImGui::GetItemRectMin();
   const ImVec2 b = ImGui::GetItemRectMax();
-  const std::string name = group_.empty() ? std::string(label) : group_ + "/" + std::string(label);
-  places_[name] = {a.x, a.y, b.x, b.y};
+  places_[name_of(label)] = {a.x, a.y, b.x, b.y};
+}
+
+std::string Widgets::name_of(std::string_view label) const {
+  return group_.empty() ? std::string(label) : group_ + "/" + std::string(label);
 }
 
 void Widgets::show_tip(const char* text) const {
@@ -77,13 +80,22 @@ bool Widgets::choose(const char* label, int& index, std::span<const std::string>
 
 bool Widgets::number(const char* label, double& value, double low, double high, double step, const char* format,
                      const char* tip) {
-  double edited = value;
+  // GetID() would tell ImGui 1.86 that the field is not part of the group that InputDouble() makes.
+  const std::string name = name_of(label);
+  const bool is_typed = typed_ && typed_->first == name;
+  double edited = is_typed ? typed_->second : value;
   const bool changed =
-      ImGui::InputDouble(label, &edited, step, step * 10, format,
-                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+      ImGui::InputDouble(label, &edited, step, step * 10, format, ImGuiInputTextFlags_AutoSelectAll);
+  const bool is_active = ImGui::IsItemActive();
   record(label);
   show_tip(tip);
-  if (!changed || !(edited == edited)) return false;
+  // Without text input the change is a step.
+  if (is_active && (ImGui::GetIO().WantTextInput || is_typed)) {
+    if (changed) typed_ = std::pair{name, edited};
+    return false;
+  }
+  if (is_typed) typed_.reset();
+  if ((!changed && !is_typed) || !(edited == edited)) return false;
   edited = std::clamp(edited, low, high);
   if (edited == value) return false;
   value = edited;

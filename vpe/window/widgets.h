@@ -37,7 +37,8 @@ class Widgets {
   bool check(const char* label, bool& on, const char* tip = nullptr);
   bool tab(const char* label);  // if true, call ImGui::EndTabItem() after it
   bool choose(const char* label, int& index, std::span<const std::string> names, const char* tip = nullptr);
-  // A number that is typed or stepped. Typed text takes effect with Enter.
+  // A number that is typed or stepped. Typed text takes effect with Enter, or when the field is left; Esc drops
+  // it.
   bool number(const char* label, double& value, double low, double high, double step, const char* format,
               const char* tip = nullptr);
   bool slide(const char* label, double& value, double low, double high, const char* format, bool logarithmic,
@@ -49,11 +50,13 @@ class Widgets {
 
  private:
   void show_tip(const char* text) const;
+  std::string name_of(std::string_view label) const;
 
   std::map<std::string, WidgetPlace> places_;
   std::string group_;
   std::map<unsigned, std::string> drafts_;  // texts that are being typed
   unsigned editing_ = 0;
+  std::optional<std::pair<std::string, double>> typed_;  // field and number that is being typed
 };
 
 }  // namespace vpe::window
