@@ -66,6 +66,7 @@ ShadingParams shading_params(const vpe::core::Appearance& a, const glm::dvec3& s
     shading.diffuse = a.sun_diffuse;
     shading.shadows = a.shadows;
   }
+  if (shading.colour_source == ColourSource::kPlain) shading.plain = a.plain_ground;
   if (shows_scale(shading.colour_source) || shows_scale(shading.hue)) shading.scale = std::move(scale);
   return shading;
 }
@@ -147,7 +148,7 @@ glm::dvec3 TerrainShader::source_colour(ColourSource source, const Ground& at,
     case ColourSource::kImageAtPosts: return at.image;
     case ColourSource::kPlain: break;
   }
-  return vpe::core::kPlainGround;
+  return params.plain;
 }
 
 glm::dvec3 TerrainShader::colour(const Ground& at, const ShadingParams& params) const {

@@ -24,7 +24,7 @@ namespace paging {
 
 // Selects where colours come from.
 enum class ColourSource {
-  kPlain,  // vpe::core::kPlainGround
+  kPlain,  // ShadingParams::plain
   kElevation,
   kSlope,
   kAspect,
@@ -47,6 +47,7 @@ struct ShadingParams {
   double ambient = 0.05;    // light without sun
   double diffuse = 1.235;   // light of a sun in the zenith
   double exaggeration = 1;
+  glm::dvec3 plain = vpe::core::kPlainGround;           // of kPlain
   std::shared_ptr<const vpe::core::ColourScale> scale;  // where elevation, slope or aspect is shown
   // Two scales are equal when they are one object.
   bool operator==(const ShadingParams&) const = default;

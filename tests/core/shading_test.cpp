@@ -10,11 +10,14 @@
 
 #include "mars/geodesy/sphere.h"
 #include "tests/support/support.h"
+#include "vpe/core/appearance/sky.h"
 
 namespace vpe::core {
 namespace {
 
 using test_support::Random;
+
+const glm::dvec3 kDust = air_of(Atmosphere::kMars).haze;
 
 constexpr double kRadius_m = mars::kMarsRadius_m;
 
@@ -194,13 +197,13 @@ TEST(Haze, TwoPercentOfContrastAreLeftAtTheVisibility) {
 }
 
 TEST(Haze, IsLightByDayAndDarkByNight) {
-  EXPECT_EQ(haze_colour(1), kDust);
-  EXPECT_EQ(haze_colour(0.3), kDust);
-  EXPECT_EQ(haze_colour(-0.15), haze_colour(-1));
-  EXPECT_GT(haze_colour(-1).r, 0);
-  double last = haze_colour(-1).r;
+  EXPECT_EQ(haze_colour(kDust, 1), kDust);
+  EXPECT_EQ(haze_colour(kDust, 0.3), kDust);
+  EXPECT_EQ(haze_colour(kDust, -0.15), haze_colour(kDust, -1));
+  EXPECT_GT(haze_colour(kDust, -1).r, 0);
+  double last = haze_colour(kDust, -1).r;
   for (int n = -999; n <= 1000; ++n) {
-    const glm::dvec3 here = haze_colour(n / 1000.0);
+    const glm::dvec3 here = haze_colour(kDust, n / 1000.0);
     EXPECT_GE(here.r, last);
     EXPECT_LE(here.r, last + 1);  // no step
     // All have one hue.

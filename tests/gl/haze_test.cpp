@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "tests/gl/gl_fixture.h"
+#include "vpe/core/appearance/sky.h"
 
 namespace {
 
@@ -68,8 +69,9 @@ TEST_F(Haze, EveryPixelIsDimmedByTheAirInFrontOfIt) {
             const double left = core::transmittance(
                 core::air_m(radius_m, camera_m - radius_m, glm::dot(ray, up), range_m), visibility_m);
             const glm::dvec3 hit = r.view.camera.position_m + range_m * ray;
-            const glm::dvec3 wanted =
-                glm::mix(core::haze_colour(glm::dot(glm::normalize(hit), r.sun)), before, left);
+            const glm::dvec3 wanted = glm::mix(core::haze_colour(core::air_of(core::Atmosphere::kMars).haze,
+                                                                 glm::dot(glm::normalize(hit), r.sun)),
+                                               before, left);
             const glm::dvec3 off = glm::abs(got - wanted);
             const double most = std::max({off.x, off.y, off.z});
             worst = std::max(worst, most);

@@ -319,6 +319,30 @@ TEST(Names, AreHiddenBehindGroundBeyondTheHorizonAndOutside) {
   EXPECT_TRUE(is_named(Sight({}, sight.view), {"behind it", 20, 10.6, 0}));
 }
 
+// A feature whose centre is hidden has its name at its highest visible point.
+TEST(Names, StandWhereTheirFeaturesAreSeen) {
+  const Ball ball{{20, 10}, 8000, 0.01, 1};
+  const Sight sight(ball, view_at({20, 9, 5000, 0, -2, 0}, 640, 360));
+  Overlays overlays;
+  overlays.names = "places";
+  const auto painted_by = [&](const Place& place, bool with_ground, const Sight& seen) {
+    Scene scene = seen.scene();
+    if (with_ground) scene.ground_m = [&](const glm::dvec3& up) { return seen.ball.height_m(up); };
+    const std::vector<Place> places{place};
+    scene.places = places;
+    return painted(vpe::overlay::draw(overlays, scene));
+  };
+  // Behind the cone, 36 km of ground: too small to be seen around it, and large enough to be seen over its foot.
+  EXPECT_EQ(painted_by({"behind it", 20, 10.6, 2000}, true, sight), 0U);
+  EXPECT_EQ(painted_by({"around it", 20, 10.6, 120000}, false, sight), 0U);
+  EXPECT_GT(painted_by({"around it", 20, 10.6, 120000}, true, sight), 20U);
+  EXPECT_EQ(painted_by({"the antipode", -160, -9, 120000}, true, sight), 0U);
+  EXPECT_EQ(painted_by({"beyond the horizon", 22, 18, 20000}, true, sight), 0U);
+  const Sight plain({}, sight.view);
+  EXPECT_EQ(painted_by({"beyond the horizon", 20, 18, 600000}, true, plain), 0U);
+  EXPECT_GT(painted_by({"reaches over the horizon", 20, 18, 900000}, true, plain), 20U);
+}
+
 TEST(Names, EarlierPlacesWinAndNoneOverlap) {
   const Sight sight({}, view_at({20, 6, 2e5, 0, -90, 0}, 640, 360));
   Overlays overlays;

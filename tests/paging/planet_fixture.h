@@ -13,13 +13,14 @@ namespace test_support {
 // Builds a planet file from a fake source and opens it.
 inline std::shared_ptr<const paging::PlanetFile> build_fake(const std::filesystem::path& path,
                                                             const FakeElevation& source, double base_spacing_m,
-                                                            int threads = 2) {
+                                                            int threads = 2, const std::string& body = "Mars") {
   paging::BuildOptions options;
   options.output = path.string();
   options.base_spacing_m = base_spacing_m;
   options.threads = threads;
   options.tile_k = 5;
   options.resampling_posts = 5000;
+  options.body = body;
   paging::build_planet(options, source, nullptr);
   return paging::PlanetFile::open(path.string());
 }

@@ -25,11 +25,38 @@ double sphere_range(const glm::dvec3& camera_m, const glm::dvec3& ray) {
   return along - std::sqrt(half2);
 }
 
-std::vector<Landmark> seen(const Viewpoint& camera, const std::vector<Place>& features, double within_m) {
+std::vector<Landmark> seen(const Viewpoint& camera, const std::vector<Place>& features, double within_m,
+                           panorama::Extent extent = panorama::Extent::kCentre) {
   ThreadPool pool(2);
   return panorama::landmarks(
       camera, features, within_m, [](const glm::dvec3&) { return kR; },
-      [&](const glm::dvec3& ray) { return sphere_range(camera.position_m, ray); }, pool);
+      [&](const glm::dvec3& ray) { return sphere_range(camera.position_m, ray); }, pool, extent);
+}
+
+TEST(Landmarks, OfWhichAnotherPointIsVisible) {
+  const mars::LonLat at{40, -20};
+  constexpr double kAlt = 5000;
+  const Viewpoint camera = panorama::viewpoint_at(at, kAlt, kR);
+  const double dip = mars::horizon_dip_rad(kAlt, kR);
+  const mars::LonLat p = mars::destination(at, 50, 1.5 * dip);  // half of the horizon's distance behind it
+  const double to_horizon_m = 0.5 * dip * kR;
+  const auto one = [&](double diameter_m, double within_m, panorama::Extent extent) {
+    return seen(camera, {{"it", p.lon_deg, p.lat_deg, diameter_m}}, within_m, extent);
+  };
+  const double far_m = 1e6;
+  EXPECT_FALSE(one(3 * to_horizon_m, far_m, panorama::Extent::kCentre).at(0).seen_at);
+  EXPECT_FALSE(one(1.9 * to_horizon_m, far_m, panorama::Extent::kPoints).at(0).seen_at);
+  const Landmark reaches = one(3 * to_horizon_m, far_m, panorama::Extent::kPoints).at(0);
+  ASSERT_TRUE(reaches.seen_at);
+  EXPECT_TRUE(reaches.hidden_by);
+  EXPECT_LE(reaches.seen_at->range_m, mars::horizon_distance_m(kAlt, kR) + 1);
+  EXPECT_LE(mars::distance_rad(reaches.seen_at->place, p) * kR, 1.5 * to_horizon_m);
+  EXPECT_GE(reaches.seen_at->direction.elevation_deg, -dip / mars::kRadiansPerDegree - 0.3);
+  // Its centre is beyond the limit, and another point is not.
+  const double limit_m = mars::horizon_distance_m(kAlt, kR) + 100;
+  EXPECT_TRUE(one(3 * to_horizon_m, limit_m, panorama::Extent::kCentre).empty());
+  EXPECT_TRUE(one(3 * to_horizon_m, limit_m, panorama::Extent::kPoints).at(0).seen_at);
+  EXPECT_TRUE(one(1.9 * to_horizon_m, limit_m, panorama::Extent::kPoints).empty());
 }
 
 TEST(Landmarks, VisibleUpToTheHorizonAndHiddenByTheGroundBefore) {

@@ -55,10 +55,11 @@ class PaintedByPoint {
     namespace core = vpe::core;
     const glm::dvec3& camera = request.view.camera.position_m;
     const double radius = planet_->radius_m();
+    const core::SkyAir& air = core::air_of(request.settings.atmosphere);
     if (std::isinf(range_m)) {
       if (request.settings.background == core::Background::kBlack) return glm::dvec3(0);
       if (request.settings.background == core::Background::kWhite) return glm::dvec3(255);
-      return core::sky_colour(camera, ray, request.sun, radius);
+      return core::sky_colour(air, camera, ray, request.sun, radius);
     }
     const glm::dvec3 up = glm::normalize(camera + range_m * ray);
     const glm::dvec3 ground =
@@ -67,10 +68,10 @@ class PaintedByPoint {
                    0.0, 255.0);
     if (!(request.settings.haze_visibility_m > 0.0)) return ground;
     const double camera_radius = glm::length(camera);
-    const double air =
+    const double length_m =
         core::air_m(radius, camera_radius - radius, glm::dot(ray, camera) / camera_radius, range_m);
-    return glm::mix(core::haze_colour(glm::dot(up, request.sun)), ground,
-                    core::transmittance(air, request.settings.haze_visibility_m));
+    return glm::mix(core::haze_colour(air.haze, glm::dot(up, request.sun)), ground,
+                    core::transmittance(length_m, request.settings.haze_visibility_m));
   }
 
   std::shared_ptr<const paging::PlanetFile> planet_;

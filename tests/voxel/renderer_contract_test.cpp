@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "mars/geodesy/sun.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/worst.h"
+#include "vpe/core/appearance/sky.h"
 #include "vpe/core/backend.h"
 #include "vpe/voxel/ray_renderer.h"
 
@@ -191,6 +193,59 @@ TEST_P(RendererContract, WallsBesideTheCameraAreNotSeenThrough) {
     }
   }
   EXPECT_GT(views, 0);
+}
+
+// Sky and plain ground have the colours of the planet's body, or those that are asked for.
+TEST_P(RendererContract, TheSkyIsThatOfTheBody) {
+  const glm::dvec3 sun = mars::sun_direction({20, 30}, 100, 40);
+  const auto image = [&](const char* body, core::Atmosphere atmosphere) {
+    const auto planet =
+        build_fake(dir_ / (std::string(body) + ".vpe"), FakeElevation(bumpy_height), 200000, 2, body);
+    const paging::Surface surface(planet, std::size_t{1} << 26);
+    const double ground_m = surface.at(mars::direction({20, 30})).height_m;
+    core::DrawRequest request = request_for({20, 30, ground_m + 100, 40, 20, 0}, planet->radius_m(), 80, 60);
+    request.view.fov_deg = 100;
+    request.sun = sun;
+    request.settings.mode = core::Mode::kLit;
+    request.settings.atmosphere = atmosphere;
+    const core::DrawResult result = make(planet)->draw(request);
+    core::Appearance resolved = request.settings;
+    core::for_body(resolved, body);
+    int sky = 0;
+    for (int y = 0; y < 60; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        const auto p = static_cast<std::size_t>(y * 80 + x);
+        const vpe::base::Rgb c = result.frame.colour[p];
+        if (std::isfinite(result.frame.range_m[p])) continue;
+        const glm::dvec3 wanted =
+            core::sky_colour(core::air_of(resolved.atmosphere), request.view.camera.position_m,
+                             core::pixel_ray(request.view, x + 0.5, y + 0.5), request.sun, planet->radius_m());
+        ++sky;
+        EXPECT_LE(std::abs(c.r - wanted.r), 2) << body << " " << x << " " << y;
+        EXPECT_LE(std::abs(c.g - wanted.g), 2) << body << " " << x << " " << y;
+        EXPECT_LE(std::abs(c.b - wanted.b), 2) << body << " " << x << " " << y;
+      }
+    }
+    EXPECT_GT(sky, 1000);
+    return result.frame.colour;
+  };
+  const auto mars_image = image("Mars", core::Atmosphere::kAuto);
+  const auto moon = image("Moon", core::Atmosphere::kAuto);
+  const auto dusty_moon = image("Moon", core::Atmosphere::kMars);
+  const auto earth = image("Earth", core::Atmosphere::kAuto);
+  const auto clear_mars = image("Mars", core::Atmosphere::kNone);
+  const std::size_t up = 10 * 80 + 40;
+  EXPECT_EQ(moon[up], (vpe::base::Rgb{0, 0, 0}));
+  EXPECT_EQ(clear_mars[up], (vpe::base::Rgb{0, 0, 0}));
+  EXPECT_EQ(dusty_moon[up], mars_image[up]);
+  EXPECT_GT(mars_image[up].r, mars_image[up].b);
+  EXPECT_GT(earth[up].b, earth[up].r);
+  // The sky overhead is no darker than half of the sky above the horizon.
+  const std::size_t low = 38 * 80 + 40;
+  EXPECT_GT(2 * mars_image[up].g, mars_image[low].g);
+  const std::size_t ground = 58 * 80 + 40;
+  EXPECT_EQ(moon[ground].r, moon[ground].b);
+  EXPECT_GT(mars_image[ground].r, mars_image[ground].b);
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, RendererContract, ::testing::Values(Backend::kPolygon, Backend::kRay),

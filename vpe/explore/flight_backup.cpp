@@ -25,9 +25,9 @@ FlightBackup::FlightBackup(fs::path folder) : folder_(std::move(folder)) {
 
 std::string FlightBackup::update(const FlightEditor* editor) {
   if (file_.empty()) return {};
-  const std::pair<std::uint64_t, std::uint64_t> now =
-      editor == nullptr ? std::pair<std::uint64_t, std::uint64_t>{0, 0}
-                        : std::pair{editor->revision(), editor->saves()};
+  const std::pair<std::uint64_t, std::uint64_t> now = editor == nullptr
+                                                          ? std::pair<std::uint64_t, std::uint64_t>{0, 0}
+                                                          : std::pair{editor->revision(), editor->saves()};
   if (now == seen_) return {};
   seen_ = now;
   if (editor != nullptr && editor->is_changed()) {

@@ -1,5 +1,6 @@
 #include "vpe/gl/polygon_renderer.h"
 #include "paging/surface/surface.h"
+#include "vpe/core/appearance/sky.h"
 
 #include <algorithm>
 #include <array>
@@ -116,6 +117,15 @@ void PolygonRenderer::draw_sky(const core::DrawRequest& request, const ClipProje
   glUniform2f(sky_uniform("altitude"), static_cast<float>(r - planet_->radius_m()),
               static_cast<float>(planet_->radius_m()));
   glUniform3fv(sky_uniform("sun"), 1, &sun[0]);
+  const core::SkyAir& air = core::air_of(request.settings.atmosphere);
+  glUniform4f(sky_uniform("air"), static_cast<float>(core::colour_depth(air, r - planet_->radius_m())),
+              static_cast<float>(0.3 * air.zenith_depth), static_cast<float>(air.scale_height_m),
+              static_cast<float>(air.lowest_m));
+  const std::array colours{glm::vec3(air.zenith), glm::vec3(air.dust), glm::vec3(air.glow), glm::vec3(air.sun)};
+  glUniform3fv(sky_uniform("zenith"), 1, &colours[0][0]);
+  glUniform3fv(sky_uniform("dust"), 1, &colours[1][0]);
+  glUniform3fv(sky_uniform("glow"), 1, &colours[2][0]);
+  glUniform3fv(sky_uniform("disc"), 1, &colours[3][0]);
   glDepthFunc(GL_EQUAL);
   glDepthMask(GL_FALSE);
   glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -208,7 +218,8 @@ void PolygonRenderer::set_material(const core::DrawRequest& request) {
     palette_ = wanted;
   }
   tiles_.set_exaggeration(appearance.exaggeration);
-  tiles_.set_air({glm::vec3(request.sun), static_cast<float>(appearance.haze_visibility_m)});
+  tiles_.set_air({glm::vec3(request.sun), static_cast<float>(appearance.haze_visibility_m),
+                  glm::vec3(core::air_of(appearance.atmosphere).haze / 255.0)});
   if (appearance.background != core::Background::kSky) sky_program_ = {};
 }
 
@@ -225,7 +236,7 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProj
   glDepthFunc(GL_GREATER);
   draws_.clear();
   const PaintMethod method = scene_.material().method;
-  const glm::vec3 plain = wireframe || markers ? kLineColour : glm::vec3(core::kPlainGround / 255.0);
+  const glm::vec3 plain = wireframe || markers ? kLineColour : glm::vec3(request.settings.plain_ground / 255.0);
   for (const SceneTile& t : scene_.tiles()) {
     TileDraw& draw = draws_.emplace_back();
     draw.mesh = t.mesh;
@@ -297,7 +308,9 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, ClipProjectio
   }
 }
 
-core::DrawResult PolygonRenderer::draw(const core::DrawRequest& request) {
+core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
+  core::DrawRequest request = asked;
+  core::for_body(request.settings, planet_->meta().body);
   if (const std::string trouble = core::check(request.view); !trouble.empty())
     throw std::runtime_error(trouble);
   if (request.view.projection != core::Projection::kPerspective) {

@@ -53,6 +53,11 @@ inline constexpr auto kSkyUniforms = std::to_array<std::string_view>({
     "up",          // vec3: local vertical at the camera
     "altitude",    // vec2: camera above the sphere, radius; m
     "sun",         // vec3: towards the sun
+    "air",         // vec4: optical depths of colours and of the sun straight up, scale height, lowest height; m
+    "zenith",      // vec3: colour of thin air
+    "dust",        // vec3: colour of thick air
+    "glow",        // vec3: colour of thick air before the sun
+    "disc",        // vec3: colour of the sun
 });
 
 // Returns the place of a name in a table. A name that the table does not have is a compile error.

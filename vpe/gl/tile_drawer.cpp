@@ -110,8 +110,7 @@ void TileDrawer::use(const Program& program, const TileFeatures& features, TileP
   }
   if (features.haze) {
     const auto extinction = static_cast<float>(core::kKoschmieder / air_.visibility_m);
-    const glm::vec3 dust(core::kDust / 255.0);
-    glUniform4f(tile_uniform("haze"), dust.x, dust.y, dust.z, extinction);
+    glUniform4f(tile_uniform("haze"), air_.haze.x, air_.haze.y, air_.haze.z, extinction);
     const double r = glm::length(view.camera.position_m);
     const glm::vec3 up = rotation * glm::vec3(view.camera.position_m / r);
     glUniform3fv(tile_uniform("up"), 1, &up[0]);

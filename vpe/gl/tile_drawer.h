@@ -33,6 +33,7 @@ struct TileDraw {
 struct Air {
   glm::vec3 sun{1, 0, 0};  // towards the sun, body-fixed, unit
   float visibility_m = 0;  // 0: clear
+  glm::vec3 haze{0};       // colour in full light, 0 to 1
 };
 
 // Holds the colours of heights from low to high, metres, evenly spaced.

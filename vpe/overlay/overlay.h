@@ -48,6 +48,8 @@ struct Scene {
   std::span<const core::Place> places;  // of Overlays::names; earlier ones have priority
   // Returns the height of a place on the ground above the sphere, metres, without exaggeration. Empty: 0.
   std::function<double(const core::Place&)> height_m;
+  // Returns the same in a unit direction. Empty: a place whose centre is hidden has no name.
+  std::function<double(const glm::dvec3&)> ground_m;
 };
 
 // Returns true if anything is to be drawn. If not, neither draw() nor its caller does any work.
@@ -77,9 +79,10 @@ inline constexpr double kHiddenShare = 0.01;
 //   shows sky.
 // - north_arrow: direction at the image's centre, on a disc that lies on the terrain but is tilted by at least
 //   30 degrees, to be readable. If the centre shows sky, the direction below the camera. Absent at the poles.
-// - names: hidden if, in all of the 3 x 3 pixels about the place, the image shows sky or terrain that is nearer
-//   than the place by more than kHiddenShare of its distance; and if the place's diameter is known and less
-//   than 4 px (at 720 rows).
+// - names: a point is hidden if, in all of the 3 x 3 pixels about it, the image shows sky or terrain that is
+//   nearer than the point by more than kHiddenShare of its distance. A name stands at the place's centre; if that
+//   is hidden or outside, at the highest visible one of core::points_within(). Names are left out if there is
+//   none, and if the place's diameter is known and less than 4 px (at 720 rows).
 // - compass: marks (vpe/overlay/compass.h) along an edge, at the columns that their azimuths have in the
 //   image's middle row, or along the line of elevation 0. Absent at the poles, and if the middle row comes
 //   within 2 degrees of the zenith or nadir.

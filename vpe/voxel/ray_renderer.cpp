@@ -1,4 +1,5 @@
 #include "vpe/voxel/ray_renderer.h"
+#include "vpe/core/appearance/sky.h"
 
 #include <algorithm>
 #include <array>
@@ -201,8 +202,10 @@ ColumnWalk::Usage RayRenderer::cast(const core::DrawRequest& request, std::vecto
 }
 
 core::DrawResult RayRenderer::draw(const core::DrawRequest& request) {
+  core::DrawRequest for_planet = request;
+  core::for_body(for_planet.settings, planet_->meta().body);
   try {
-    return draw_image(request);
+    return draw_image(for_planet);
   } catch (...) {
     prefetcher_.stop();
     throw;

@@ -9,6 +9,7 @@
 #include "panorama/horizon/landmarks.h"
 #include "vpe/app/cli/digest.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/core/appearance/sky.h"
 #include "vpe/overlay/overlay.h"
 #include "vpe/overlay/panorama_overlay.h"
 
@@ -16,7 +17,7 @@ namespace vpe::app {
 
 namespace {
 
-// Returns the places that no terrain hides from the camera.
+// Returns the places of which the camera sees the centre, or another point.
 std::vector<overlay::PanoramaName> visible_names(const PanoramaRequest& request,
                                                  const std::vector<core::Place>& places,
                                                  const std::shared_ptr<const paging::PlanetFile>& planet,
@@ -31,12 +32,14 @@ std::vector<overlay::PanoramaName> visible_names(const PanoramaRequest& request,
                                                      planet->tree().lowest_radius_m(exaggeration), highest_m);
   const auto landmarks = panorama::landmarks(
       camera, places, within_m, [&](const glm::dvec3& up) { return surface.at(up, exaggeration).radius_m; },
-      [&](const glm::dvec3& ray) { return surface.cast(camera.position_m, ray, exaggeration); }, pool);
+      [&](const glm::dvec3& ray) { return surface.cast(camera.position_m, ray, exaggeration); }, pool,
+      panorama::Extent::kPoints);
   std::vector<overlay::PanoramaName> names;
   for (const panorama::Landmark& l : landmarks) {
-    if (l.hidden_by) continue;
-    names.push_back({l.feature.name, l.centre.direction.azimuth_deg, l.centre.direction.elevation_deg,
-                     l.centre.range_m, l.feature.diameter_m});
+    if (l.hidden_by && !l.seen_at) continue;
+    const panorama::GroundPoint& at = l.seen_at ? *l.seen_at : l.centre;
+    names.push_back({l.feature.name, at.direction.azimuth_deg, at.direction.elevation_deg, at.range_m,
+                     l.feature.diameter_m});
   }
   return names;
 }
@@ -96,6 +99,7 @@ overlay::SpriteLayer PanoramaOverlays::lay_out() const {
     return at;
   };
   scene.appearance = values;
+  core::for_body(scene.appearance, planet_->meta().body);
   scene.has_imagery = !planet_->image_keys().empty();
   if (!places_.empty()) scene.names = visible_names(request_, places_, planet_, memory_bytes_, pool_);
   return overlay::lay_out_panorama(values, scene);

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "vpe/core/appearance/sky.h"
+
 namespace vpe::app {
 
 FrameOverlays::FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet)
@@ -29,6 +31,7 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core
   scene.range_m = frame.range_m;
   scene.radius_m = planet_->radius_m();
   scene.appearance = settings;
+  core::for_body(scene.appearance, planet_->meta().body);
   scene.shift_px = certificate.image_bound_px.value_or(certificate.shift_bound_px);
   scene.has_imagery = has_imagery_;
   scene.time_s = time_s;
@@ -42,6 +45,7 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core
       }
       return height_m;
     };
+    scene.ground_m = [this](const glm::dvec3& direction) { return surface_.at(direction).height_m; };
   }
   return overlay::draw(settings, scene);
 }

@@ -2,6 +2,7 @@
 // docs/design/appearance.md).
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <string>
 
 namespace vpe::core {
@@ -32,6 +33,12 @@ enum class Colour {
 };
 
 enum class Background { kBlack, kWhite, kSky };
+
+// The colour, 0 to 255, of ground of Mars that shows no value and no imagery.
+inline constexpr glm::dvec3 kPlainGround{178, 142, 112};
+
+// The air of background=sky and of haze; sky.h, air_of(). kAuto: that of the planet's body.
+enum class Atmosphere { kAuto, kNone, kMars, kEarth, kVenus, kTitan };
 
 // Holds both ends of palette=hsv. Hue runs from one to the other; it passes through 0 only if the values are
 // given so that it does (for example 350 to 370).
@@ -67,6 +74,9 @@ struct Appearance : HsvRamp {
   double haze_visibility_m = 0;  // shading.h, transmittance(); 0: clear air, else smaller: denser haze
   double marker_px = 3;
   Background background = Background::kSky;
+  Atmosphere atmosphere = Atmosphere::kAuto;
+  // Colour of ground that shows no value and no imagery. It has no key: for_body() sets it.
+  glm::dvec3 plain_ground = kPlainGround;
 
   bool operator==(const Appearance&) const = default;
 };

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "mars/geodesy/sphere.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
 
@@ -159,6 +160,24 @@ Place place_of(const Reader& reader, const Columns& columns, const std::vector<s
 }
 
 }  // namespace
+
+std::vector<glm::dvec3> points_within(const Place& place, double planet_radius_m) {
+  constexpr int kPoints = 16;
+  constexpr double kMost_rad = 0.5;
+  const double radius_rad = 0.5 * place.diameter_m / planet_radius_m;
+  std::vector<glm::dvec3> points;
+  if (!(radius_rad > 0) || radius_rad > kMost_rad) return points;
+  const mars::LocalFrame frame = mars::local_frame({place.lon_deg, place.lat_deg});
+  for (const double share : {0.25, 0.5, 0.75, 0.95}) {
+    const double away_rad = share * radius_rad;
+    for (int n = 0; n < kPoints; ++n) {
+      const mars::SinCos azimuth = mars::sin_cos_deg(360.0 / kPoints * n);
+      points.push_back(std::cos(away_rad) * frame.up +
+                       std::sin(away_rad) * (azimuth.cos * frame.north + azimuth.sin * frame.east));
+    }
+  }
+  return points;
+}
 
 std::vector<Place> parse_gazetteer(std::string_view text, const std::string& file) {
   Reader reader(text, file);

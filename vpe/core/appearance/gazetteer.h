@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,10 @@ struct Place {
 
   bool operator==(const Place&) const = default;
 };
+
+// Returns unit directions of points spread over the circle of a place on a planet: four rings of 16
+// points, at 0.25, 0.5, 0.75 and 0.95 of its radius. Returns none if the diameter is not known, or a quarter of the planet or more.
+std::vector<glm::dvec3> points_within(const Place& place, double planet_radius_m);
 
 // Reads CSV by RFC 4180: quotes, also around commas and line ends; LF or CRLF; UTF-8, a byte order mark is
 // skipped. The first record names the columns, in any order and case; other columns are ignored:

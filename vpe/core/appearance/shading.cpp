@@ -35,10 +35,10 @@ double transmittance(double air_m, double visibility_m) {
   return visibility_m > 0.0 ? std::exp(-kKoschmieder * air_m / visibility_m) : 1.0;
 }
 
-glm::dvec3 haze_colour(double sun_sine) {
+glm::dvec3 haze_colour(const glm::dvec3& haze, double sun_sine) {
   const double s = std::clamp((sun_sine - kDawnSine) / (kDaySine - kDawnSine), 0.0, 1.0);
   const double day = s * s * (3.0 - 2.0 * s);
-  return kDust * (kNight + (1.0 - kNight) * day);
+  return haze * (kNight + (1.0 - kNight) * day);
 }
 
 void apply_gamma(std::span<base::Rgb> colours, double gamma) {

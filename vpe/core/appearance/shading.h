@@ -11,9 +11,6 @@
 
 namespace vpe::core {
 
-// The colour, 0 to 255, of ground that shows no value and no imagery.
-inline constexpr glm::dvec3 kPlainGround{178, 142, 112};
-
 // Returns the factor on a colour: the square root, which stands for a display's gamma, of ambient + diffuse *
 // incidence. `incidence` is the cosine between normal and sun, or 0 if that is negative or the sun is hidden.
 // The factor may exceed 1; colours are clipped at 255 at the very end.
@@ -46,17 +43,15 @@ double air_m(double planet_radius_m, double camera_height_m, double up_sine, dou
 // visibility), which is 2 % at the visibility. Returns 1 for visibility 0, clear air.
 double transmittance(double air_m, double visibility_m);
 
-// The colour of dust in full light.
-inline constexpr glm::dvec3 kDust{212, 173, 135};
-
 // Dust is dark if the sine of the sun's elevation is below kDawnSine, and in full light above kDaySine. The
 // share kNight of the light always remains.
 inline constexpr double kDawnSine = -0.15;
 inline constexpr double kDaySine = 0.3;
 inline constexpr double kNight = 0.08;
 
-// Returns the colour that haze adds to ground for this sine of the sun's elevation at that ground.
-glm::dvec3 haze_colour(double sun_sine);
+// Returns the colour that haze adds to ground for this sine of the sun's elevation at that ground. `haze` is its
+// colour in full light (SkyAir::haze).
+glm::dvec3 haze_colour(const glm::dvec3& haze, double sun_sine);
 
 // Replaces each channel x by x^(1 / gamma).
 void apply_gamma(std::span<base::Rgb> colours, double gamma);

@@ -27,10 +27,12 @@ struct alignas(64) RayAir {
 
 // Paints the block's sky. Requires ray_angles().
 inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
-  const core::SkyAir& air = core::kSkyAir;
+  const core::SkyAir& air = core::air_of(job.request->settings.atmosphere);
   const double height = std::max(job.camera_radius_m - job.radius_m, 0.0);
   const double r = job.radius_m + height;
-  const double limb = core::limb_mass(job.radius_m);
+  const double limb = core::limb_mass(air, job.radius_m);
+  const auto colour_depth = static_cast<float>(core::colour_depth(air, height));
+  const auto sun_depth = static_cast<float>(-0.3 * air.zenith_depth);
   const double sun_up = glm::dot(job.request->sun, job.up);
   RayAir rays;
   const Doubles dd;
@@ -61,7 +63,8 @@ inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
     const auto rise = hn::Load(d, rays.e + i);
     const auto climbs = hn::Div(hn::Set(d, 1.0F), line(d, hn::Max(rise, hn::Zero(d)), 1 / limb, 1));
     const auto mass = hn::IfThenElse(hn::Lt(rise, hn::Zero(d)), falls, climbs);
-    const auto depth = hn::Mul(hn::Mul(hn::Set(d, static_cast<float>(air.zenith_depth)), density), mass);
+    const auto thickness = hn::Mul(density, mass);
+    const auto depth = hn::Mul(thickness, hn::Set(d, colour_depth));
     const auto day = line(d, smooth_step(d, hn::Load(d, rays.c + i), core::kDawnSine, core::kDaySine),
                           core::kNight, 1 - core::kNight);
     const auto beside = hn::Load(d, rays.d + i);
@@ -74,7 +77,7 @@ inline HWY_NOINLINE void paint_sky(const PaintJob& job, Block& block) {
     const auto veil = hn::Mul(hn::Sub(hn::Set(d, 1.0F), exponential(d, hn::Neg(depth))), day);
     const auto disc =
         hn::Mul(hn::Sub(hn::Set(d, 1.0F), smooth_step(d, beside, 1 - air.disc_full, 1 - air.disc_rim)),
-                exponential(d, hn::Mul(depth, hn::Set(d, -0.3F))));
+                exponential(d, hn::Mul(thickness, hn::Set(d, sun_depth))));
     float* const out[3] = {block.red + i, block.green + i, block.blue + i};
     const auto sky = hn::Gt(hn::Load(d, block.is_sky + i), hn::Zero(d));
     for (int c = 0; c < 3; ++c) {
@@ -94,6 +97,7 @@ inline HWY_NOINLINE void paint_haze(const PaintJob& job, double visibility_m, Bl
   const double camera_height = r - job.radius_m;
   const double top = job.radius_m + core::kAirTop_m;
   const glm::dvec3& sun = job.request->sun;
+  const glm::dvec3& haze = core::air_of(job.request->settings.atmosphere).haze;
   // A height above the sphere loses less to rounding as rise / (sqrt(radius^2 + rise) + radius).
   const auto rise_at = [&](double height) { return height * (2 * job.radius_m + height); };
   RayAir rays;
@@ -146,7 +150,7 @@ inline HWY_NOINLINE void paint_haze(const PaintJob& job, double visibility_m, Bl
                           core::kNight, 1 - core::kNight);
     float* const out[3] = {block.red + i, block.green + i, block.blue + i};
     for (int c = 0; c < 3; ++c) {
-      const auto dust = hn::Mul(day, hn::Set(d, static_cast<float>(core::kDust[c])));
+      const auto dust = hn::Mul(day, hn::Set(d, static_cast<float>(haze[c])));
       const auto ground = clamp(d, hn::Load(d, out[c]), 0, 255);
       hn::Store(hn::Add(dust, hn::Mul(left, hn::Sub(ground, dust))), d, out[c]);
     }

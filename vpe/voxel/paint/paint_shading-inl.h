@@ -146,7 +146,7 @@ inline HWY_NOINLINE void paint_shading(const PaintJob& job, Block& block) {
   }
   if (scaled) take_scale(*job.scale, *shading.scale, value, block.ground, of_image ? hue : block.texel);
   for (int i = 0; i < kBlock; i += lanes) {
-    Triple<hn::Vec<Floats>> colour = triple(d, core::kPlainGround);
+    Triple<hn::Vec<Floats>> colour = triple(d, shading.plain);
     auto unused = hn::Zero(d);
     if (of_image || scaled) hn::LoadInterleaved4(d, block.texel[i], colour.x, colour.y, colour.z, unused);
     if (of_image && scaled) {
