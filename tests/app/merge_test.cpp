@@ -74,6 +74,25 @@ TEST_F(Merge, TheSchedulerSelectsThePart) {
   EXPECT_TRUE(exists("x.3-of-4.vpe"));
 }
 
+TEST_F(Merge, ATaskThatIsSentAgainKeepsItsPart) {
+  const auto task = [&](const char* option, const char* id, const char* count, const char* least) {
+    Command command = command_for(build_words("x.vpe", {"--part", option}));
+    command.environment = {
+        {"SLURM_ARRAY_TASK_ID", id}, {"SLURM_ARRAY_TASK_COUNT", count}, {"SLURM_ARRAY_TASK_MIN", least}};
+    return run(command);
+  };
+  const Result alone = task("auto", "3", "1", "3");
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_TRUE(says(alone.err, {"--part auto", "auto/n", "SLURM_ARRAY_TASK_COUNT=1"})) << alone.err;
+  EXPECT_EQ(task("auto/4", "3", "1", "3").exit_code, 0);
+  EXPECT_TRUE(exists("x.3-of-4.vpe"));
+  const Result two = task("auto", "3", "2", "3");  // 3 and 4 of the same array
+  EXPECT_EQ(two.exit_code, 2);
+  EXPECT_TRUE(says(two.err, {"1 of 2", "x.3-of-4.vpe", "auto/4"})) << two.err;
+  EXPECT_FALSE(exists("x.vpe"));
+  EXPECT_FALSE(exists("x.1-of-2.vpe"));
+}
+
 TEST(MergeNames, SortLikeParts) {
   EXPECT_EQ(vpe::app::shard_file_name("a/mars.vpe", {7, 12}), "a/mars.07-of-12.vpe");
   EXPECT_EQ(vpe::app::shard_file_name("a.b/mars", {2, 2}), "a.b/mars.2-of-2");

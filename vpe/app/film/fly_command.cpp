@@ -280,7 +280,7 @@ void add_fly(CLI::App& program, Common& common) {
                       "A-B or A-BxN: draw only frames A to B, or every N-th of them");
   command->add_option(
       "--part", arguments->part,
-      "k/n: draw only the k-th of n parts; auto: take k and n from the variables of SLURM or MPI");
+      "k/n: draw only the k-th of n parts; auto/n: take k from the variables of SLURM or MPI; auto: k and n");
   command->add_flag("--force", arguments->force, "Draw every frame again, also those of an earlier run");
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (default: the size in the flight)");
   command->add_option("--log", arguments->log, "Write the flown poses as a flight");
