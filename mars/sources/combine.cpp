@@ -151,7 +151,7 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
         in_datum(source, conversion_of(info, combined.datum, options, combined.notes), combined.datum);
     if (!below.empty()) {
       Source base = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
-      check_silent_datums(*layer, *base, silent, options.same_datum);
+      check_silent_datums(*layer, *base, options.radius_m, silent, options.same_datum);
       layer = aligned_and_checked(std::move(layer), base, options, finding, combined.notes);
       if (options.alignment == CombineOptions::Alignment::kEdges) {
         finding.edge_matching = fit_edge_matching(*layer, *base, options.radius_m);
