@@ -99,9 +99,31 @@ TEST(MergeNames, SortLikeParts) {
   EXPECT_EQ(vpe::app::shard_file_name("mars.vpe", {1, 1}), "mars.vpe");
 }
 
+TEST_F(Merge, PartsAreDescribedAndVerified) {
+  const auto built = json_of(build_words("x.vpe", {"--part", "1/2"}));
+  const auto info = json_of({"info", "x.1-of-2.vpe", "--json"});
+  EXPECT_EQ(info["part"], (nlohmann::json{{"number", 1}, {"of", 2}}));
+  for (const char* equal : {"tiles", "identity", "sources", "path"})
+    EXPECT_EQ(info[equal], built[equal]) << equal;
+  EXPECT_TRUE(says(vpe({"info", "x.1-of-2.vpe"}).out, {"part               1 of 2", "vpe merge"}));
+  const auto sound = json_of({"verify", "x.1-of-2.vpe", "--json"});
+  EXPECT_EQ(sound["sound"], true);
+  EXPECT_EQ(sound["tiles"], built["tiles"]);
+  EXPECT_EQ(sound["image_tiles"], built["image_tiles"]);
+  EXPECT_TRUE(says(vpe({"verify", "x.1-of-2.vpe"}).out, {"x.1-of-2.vpe: sound as a part: "}));
+  expect_failure({"verify", "x.1-of-2.vpe", "--deep"}, 2, {"--deep", "vpe merge"});
+  for (const char* table : {"heights", "mesh", "image"}) {
+    std::filesystem::copy_file(dir_ / "x.1-of-2.vpe", dir_ / "damaged.vpe",
+                               std::filesystem::copy_options::overwrite_existing);
+    damage_payloads(dir_ / "damaged.vpe", table);
+    expect_failure({"verify", "damaged.vpe"}, 1,
+                   {"damaged.vpe: ", "problems", "wrong checksum", "build the part again"});
+  }
+}
+
 TEST_F(Merge, MessagesSayWhatToDo) {
   vpe(build_words("x.vpe", {"--part", "1/2"}));
-  expect_failure({"info", "x.1-of-2.vpe"}, 1, {"x.1-of-2.vpe: part 1 of 2 of a planet", "vpe merge"});
+  expect_failure({"query", "x.1-of-2.vpe", "1,2"}, 1, {"x.1-of-2.vpe: part 1 of 2 of a planet", "vpe merge"});
   expect_failure({"merge", "x.1-of-2.vpe", "-o", "y.vpe"}, 1, {"of 2 parts 1 are missing: 2", "--part"});
   expect_failure({"merge", "x.1-of-2.vpe", "-o", "x.1-of-2.vpe"}, 2, {"x.1-of-2.vpe", "also an input"});
   expect_failure({"merge", "absent.vpe", "-o", "y.vpe"}, 1, {"absent.vpe", "no such file"});

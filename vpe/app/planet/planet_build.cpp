@@ -191,7 +191,6 @@ void print_build(const paging::BuildSummary& summary, const std::string& output,
       json["findings"] = findings_json(*combined);
       json["notes"] = combined->notes;
     }
-    if (meta.shard) json["part"] = {{"number", meta.shard->id.number}, {"of", meta.shard->id.of}};
     print_json(json);
     return;
   }
