@@ -4,9 +4,12 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <mutex>
 #include <random>
 
 #include "mars/raster/gdal_remote.h"
+#include "mars/raster/remote_watch.h"
 #include "mars/sources/source.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/http_server.h"
@@ -66,6 +69,11 @@ TEST_F(Remote, UrlsBecomeGdalNames) {
   EXPECT_EQ(mars::raster_name("https://a/b.tif"), "/vsicurl/https://a/b.tif");
   EXPECT_EQ(mars::raster_name("/vsicurl/http://a/b.tif"), "/vsicurl/http://a/b.tif");
   EXPECT_EQ(mars::raster_name("http.tif"), "http.tif");
+  EXPECT_EQ(mars::raster_name("s3://a/b.tif"), "/vsis3/a/b.tif");
+  EXPECT_EQ(mars::raster_name("gs://a/b.tif"), "/vsigs/a/b.tif");
+  EXPECT_EQ(mars::raster_name("az://a/b.tif"), "/vsiaz/a/b.tif");
+  for (const char* remote : {"/vsis3/a/b.tif", "/vsigs/a/b.tif", "/vsizip//vsiaz/a/b.zip/c.tif"})
+    EXPECT_TRUE(mars::is_remote(remote)) << remote;
   EXPECT_TRUE(mars::is_remote("/vsizip/vsicurl/http://a/b.zip/c.tif"));
   EXPECT_FALSE(mars::is_remote("a/b.tif"));
 }
@@ -110,6 +118,81 @@ TEST_F(Remote, PermanentFailuresNameTheAddress) {
   const std::string said = message(server.url("absent.tif"));
   EXPECT_NE(said.find("absent.tif: cannot open"), std::string::npos) << said;
   EXPECT_NE(said.find("404"), std::string::npos) << said;
+}
+
+// Variables of GDAL, during the lifetime.
+class Environment {
+ public:
+  explicit Environment(std::vector<std::pair<const char*, std::string>> variables)
+      : variables_(std::move(variables)) {
+    for (const auto& [name, value] : variables_) ::setenv(name, value.c_str(), 1);
+  }
+  ~Environment() {
+    for (const auto& [name, value] : variables_) ::unsetenv(name);
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  std::vector<std::pair<const char*, std::string>> variables_;
+};
+
+TEST_F(Remote, ObjectStoresAreRetried) {
+  std::filesystem::create_directory(dir_ / "store");
+  std::filesystem::rename(dir_ / "x.tif", dir_ / "store" / "x.tif");
+  std::mt19937 random(5);
+  HttpServer server(dir_.path(), [&](int, const std::string&) {
+    return std::uniform_int_distribution<int>(0, 3)(random) == 0 ? Fate::kUnavailable : Fate::kServe;
+  });
+  const std::string address = server.url("");
+  const Environment variables({{"AWS_S3_ENDPOINT", address.substr(7, address.size() - 8)},
+                               {"AWS_HTTPS", "NO"},
+                               {"AWS_VIRTUAL_HOSTING", "FALSE"},
+                               {"AWS_NO_SIGN_REQUEST", "YES"}});
+  EXPECT_EQ(heights("s3://store/x.tif"), heights((dir_ / "store" / "x.tif").string()));
+  EXPECT_GT(server.failed(), 2);
+  EXPECT_EQ(mars::open_elevation("s3://store/x.tif")->infos().front().name, "/vsis3/store/x.tif");
+  const std::string said = message("s3://store/absent.tif");
+  EXPECT_NE(said.find("check the address and the network"), std::string::npos) << said;
+}
+
+TEST_F(Remote, AbsentCredentialsAreNamedAtOnce) {
+  const Environment variables({{"AWS_EC2_METADATA_DISABLED", "YES"},
+                               {"CPL_AWS_AUTODETECT_EC2", "NO"},
+                               {"AWS_CONFIG_FILE", "/nowhere"},
+                               {"CPL_AWS_CREDENTIALS_FILE", "/nowhere"}});
+  const std::string said = message("s3://store/x.tif");
+  EXPECT_NE(said.find("AWS_NO_SIGN_REQUEST"), std::string::npos) << said;
+  EXPECT_NE(said.find("give credentials"), std::string::npos) << said;
+}
+
+TEST_F(Remote, WhatIsNoRasterIsSaidToBeNone) {
+  std::ofstream(dir_ / "page.tif") << "<html>not a raster</html>";
+  const HttpServer server(dir_.path());
+  const std::string said = message(server.url("page.tif"));
+  EXPECT_NE(said.find("give a raster that gdalinfo can show"), std::string::npos) << said;
+  EXPECT_EQ(said.find("the network"), std::string::npos) << said;
+}
+
+TEST_F(Remote, AServerThatHangsIsGivenUpAndWatched) {
+  const Environment variables({{"GDAL_HTTP_LOW_SPEED_TIME", "1"}, {"GDAL_HTTP_LOW_SPEED_LIMIT", "1"}});
+  std::mutex mutex;
+  std::string address;
+  double longest_s = 0;
+  mars::set_remote_watch([&](const mars::RemoteWait& wait) {
+    const std::lock_guard lock(mutex);
+    address = wait.address;
+    longest_s = std::max(longest_s, wait.seconds);
+  });
+  // It hangs at first, and then serves.
+  const HttpServer slow(dir_.path(),
+                        [](int n, const std::string&) { return n < 2 ? Fate::kHang : Fate::kServe; });
+  EXPECT_EQ(heights(slow.url("x.tif")), heights((dir_ / "x.tif").string()));
+  EXPECT_EQ(slow.failed(), 2);
+  mars::set_remote_watch({});
+  const std::lock_guard lock(mutex);
+  EXPECT_GT(longest_s, 0.5);
+  EXPECT_NE(address.find(slow.url("x.tif")), std::string::npos) << address;
 }
 
 TEST_F(Remote, AServerThatStaysUnavailableEndsTheReading) {

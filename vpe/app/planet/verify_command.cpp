@@ -11,6 +11,7 @@
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/progress.h"
+#include "vpe/app/planet/remote_wait.h"
 
 namespace vpe::app {
 
@@ -45,6 +46,7 @@ bool is_part_of_planet(const std::string& path) {
 
 void verify(const VerifyArguments& arguments, const Common& common) {
   const InterruptGuard guard;
+  require_local_planet(arguments.planet);
   const bool is_part = is_part_of_planet(arguments.planet);
   if (is_part && arguments.deep)
     throw UsageError(arguments.planet + ": --deep needs the whole planet; merge the parts first ('vpe merge')");
