@@ -136,6 +136,10 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
   }
   std::reverse(order.begin(), order.end());
   combined.datum = choose_datum(order, options);
+  if (options.convert && options.datum.kind == DatumKind::kRadius) {
+    combined.notes.push_back("distances from the centre are stored as heights above the sphere, datum '" +
+                             to_string(combined.datum) + "'; 'vpe query --json' has the distance as radius_m");
+  }
   for (const Source& source : order)
     check_range(*source, source->infos().front(), options.radius_m, combined.notes);
   combined.true_radii = options.true_radii || (combined.datum == VerticalDatum::sphere(options.radius_m) &&

@@ -59,9 +59,10 @@ void watch_remote_reads(bool quiet) { mars::set_remote_watch(WaitReporter(quiet)
 
 void require_local_planet(const std::string& name) {
   if (!mars::is_remote(mars::raster_name(name))) return;
-  throw std::runtime_error(name +
-                           ": planet files are read from a disk, not from a server; fetch it first, for example "
-                           "with curl -O, and give the file's name");
+  throw std::runtime_error(
+      name +
+      ": planet files are read from a disk, not from a server; fetch it first, for example "
+      "with curl -O, and give the file's name");
 }
 
 }  // namespace vpe::app
