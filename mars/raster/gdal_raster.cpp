@@ -111,6 +111,7 @@ SourceInfo GdalRaster::info() const {
   const RemoteScope remote(file_.path);
   SourceInfo info;
   info.name = file_.path;
+  info.is_remote = is_remote(file_.path);
   info.resolution_m = georeference_->resolution_m();
   if (!georeference_->note().empty()) info.notes.push_back(info.name + ": " + georeference_->note());
   std::vector<std::string> files = file_.files;

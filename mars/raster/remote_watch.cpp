@@ -26,7 +26,8 @@ class Watcher {
   void set(RemoteWatch watch) {
     const std::lock_guard lock(mutex_);
     watch_ = watch ? std::make_shared<const RemoteWatch>(std::move(watch)) : nullptr;
-    if (watch_ && !thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    if (watch_ && !thread_.joinable())
+      thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 
   int begin(std::string address) {

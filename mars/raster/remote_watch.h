@@ -14,7 +14,7 @@ struct RemoteWait {
   double seconds = 0;   // since it began, attempts and pauses included
 };
 
-// Called a few times a second, from a thread of its own, with the read that lasts longest.
+// Receives the read that lasts longest, a few times a second, on a thread of its own.
 using RemoteWatch = std::function<void(const RemoteWait& wait)>;
 
 // Sets the watch of the process. Without one, reads are not watched.

@@ -23,7 +23,7 @@ std::string metres(double value, int decimals = 1) { return vpe::base::format_fi
 std::string difference(const ElevationSource& a, const ElevationSource& b) {
   std::vector<double> off;
   std::vector<double> other;
-  b.visit_posts(kComparedPosts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
+  b.visit_means(kComparedPosts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
     other.resize(directions.size());
     a.sample(directions, 0, other);
     for (std::size_t i = 0; i < other.size(); ++i) {

@@ -125,7 +125,7 @@ void check_range(const ElevationSource& source, const SourceInfo& info, double r
                  std::vector<std::string>& notes) {
   double low_m = std::numeric_limits<double>::infinity();
   double high_m = -low_m;
-  source.visit_posts(kRangePosts, [&](std::span<const glm::dvec3>, std::span<const double> heights_m) {
+  source.visit_means(kRangePosts, [&](std::span<const glm::dvec3>, std::span<const double> heights_m) {
     for (const double h : heights_m) {
       if (!std::isfinite(h)) continue;
       low_m = std::min(low_m, h);
@@ -166,7 +166,7 @@ void check_silent_datums(const ElevationSource& layer, const ElevationSource& ba
   std::map<int, Differences> found;  // by the base's source
   std::vector<double> base_m;
   std::vector<int> origin;
-  layer.visit_posts(kDatumPosts,
+  layer.visit_means(kDatumPosts,
                     [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
                       base_m.resize(directions.size());
                       origin.resize(directions.size());

@@ -18,7 +18,8 @@ TEST(Latitude, AnglesOfCentreAndNormal) {
     // The point of the ellipse whose normal has this angle, by its parametric latitude.
     const double parametric = std::atan2(mars.polar_m * std::sin(graphic_deg * M_PI / 180),
                                          mars.equatorial_m * std::cos(graphic_deg * M_PI / 180));
-    const double at_centre = std::atan2(mars.polar_m * std::sin(parametric), mars.equatorial_m * std::cos(parametric));
+    const double at_centre =
+        std::atan2(mars.polar_m * std::sin(parametric), mars.equatorial_m * std::cos(parametric));
     EXPECT_NEAR(centric_deg, at_centre * 180 / M_PI, 1e-12);
   }
   EXPECT_EQ(mars::planetocentric_lat_deg(90, mars), 90);

@@ -38,21 +38,24 @@ void note_latitudes(const paging::PlanetMeta& meta) {
   constexpr double kMiddle_deg = 45;
   const double off_km = 1e-3 * meta.radius_m * mars::kRadiansPerDegree *
                         (kMiddle_deg - mars::planetocentric_lat_deg(kMiddle_deg, *spheroid));
-  std::fprintf(stderr,
-               "vpe: note: latitudes are taken for planetocentric ones; planetographic (geodetic) ones would lie up "
-               "to %s km from there (--latitude planetographic converts them)\n",
-               base::format_rounded(off_km, 1).c_str());
+  std::fprintf(
+      stderr,
+      "vpe: note: latitudes are taken for planetocentric ones; planetographic (geodetic) ones would lie up "
+      "to %s km from there (--latitude planetographic converts them)\n",
+      base::format_rounded(off_km, 1).c_str());
 }
 
 }  // namespace
 
 void add_latitude_option(CLI::App& command, std::string& text) {
-  command.add_option("--latitude", text,
-                     "Latitudes of the given places: planetocentric (default), planetographic (geodetic), or "
-                     "planetographic:EQUATORIAL_M,POLAR_M; answers are planetocentric")
+  command
+      .add_option("--latitude", text,
+                  "Latitudes of the given places: planetocentric (default), planetographic (geodetic), or "
+                  "planetographic:EQUATORIAL_M,POLAR_M; answers are planetocentric")
       ->check([](const std::string& given) {
         if (given == kPlanetocentric || given == kPlanetographic || named_spheroid(given)) return std::string();
-        return "expected planetocentric, planetographic or planetographic:EQUATORIAL_M,POLAR_M, found '" + given + "'";
+        return "expected planetocentric, planetographic or planetographic:EQUATORIAL_M,POLAR_M, found '" +
+               given + "'";
       });
 }
 

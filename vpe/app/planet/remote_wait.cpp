@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "mars/raster/gdal_remote.h"
 #include "mars/raster/remote_watch.h"
@@ -18,7 +19,13 @@ namespace {
 
 constexpr double kGraceAfterSignal_s = 1;
 
-// Called by one thread.
+// Returns the URL, as users give it, of what GDAL names /vsicurl/URL.
+std::string address_of(const mars::RemoteWait& wait) {
+  constexpr std::string_view kPrefix = "/vsicurl/";
+  return wait.address.starts_with(kPrefix) ? wait.address.substr(kPrefix.size()) : wait.address;
+}
+
+// Reports reads that last. Used by one thread.
 class WaitReporter {
  public:
   explicit WaitReporter(bool quiet) : quiet_(quiet) {}
@@ -32,7 +39,7 @@ class WaitReporter {
     if (const int signal = InterruptGuard::pending(); signal != 0) {
       if (!seconds_at_signal_) seconds_at_signal_ = wait.seconds;
       if (wait.seconds - *seconds_at_signal_ > kGraceAfterSignal_s) {
-        std::fprintf(stderr, "vpe: stopped while waiting for %s\n", wait.address.c_str());
+        std::fprintf(stderr, "vpe: stopped while waiting for %s\n", address_of(wait).c_str());
         std::_Exit(kSignalBase + signal);
       }
     }
@@ -42,7 +49,7 @@ class WaitReporter {
     std::fprintf(stderr,
                  "vpe: note: still waiting for %s after %s s; a server that sends nothing for 30 s "
                  "(GDAL_HTTP_LOW_SPEED_TIME) is asked again, and given up after %s s\n",
-                 wait.address.c_str(), base::format_rounded(wait.seconds, 0).c_str(),
+                 address_of(wait).c_str(), base::format_rounded(wait.seconds, 0).c_str(),
                  base::format_rounded(mars::kRemotePatience_s, 0).c_str());
   }
 
