@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "mars/raster/gdal_blocks.h"
 #include "mars/raster/gdal_boundary.h"
 #include "mars/raster/gdal_overviews.h"
 #include "mars/raster/gdal_raster.h"

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "mars/raster/gdal_remote.h"
 #include "mars/raster/pds_image.h"
 #include "mars/raster/pds_map.h"
+#include "mars/remote/gdal_remote.h"
 
 namespace mars {
 namespace {

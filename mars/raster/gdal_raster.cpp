@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "mars/raster/gdal_labels.h"
-#include "mars/raster/gdal_remote.h"
+#include "mars/remote/gdal_remote.h"
 #include "vpe/base/file.h"
 
 namespace mars {

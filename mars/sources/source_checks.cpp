@@ -98,16 +98,16 @@ void check_difference(const std::string& layer, const std::string& base, bool la
   std::ranges::transform(off_m, away_m.begin(), [median_m](double off) { return std::abs(off - median_m); });
   const double spread_m = 1.4826 * vpe::base::median_upper(away_m);
   if (std::abs(median_m) <= std::min(kDatumStep_m, kDatumSpreads * std::max(spread_m, kLeastSpread_m))) return;
-  const double relief_m = explained();
-  if (std::abs(median_m) <= relief_m) return;
+  const double between_posts_m = explained();
+  if (std::abs(median_m) <= between_posts_m) return;
   const std::string silent = layer_is_silent ? layer : base;
   const std::string other = layer_is_silent ? base : layer;
   const std::string option = "--datum " + option_name(silent) + "=";
   throw SourceError(silent + " does not state its vertical datum, and where both have data " + layer +
                     " lies " + in_metres(std::abs(median_m)) + (median_m < 0 ? " below " : " above ") + base +
                     " (median of " + std::to_string(off_m.size()) + " places, robust spread " +
-                    in_metres(spread_m) + "; relief between the coarser posts explains " + in_metres(relief_m) +
-                    "); name its datum (" + option + "areoid or " + option +
+                    in_metres(spread_m) + "; relief between the coarser posts explains " +
+                    in_metres(between_posts_m) + "); name its datum (" + option + "areoid or " + option +
                     "sphere:RADIUS_M; --to-datum converts it), or state that it is that of " + other + " (" +
                     option + (datum.is_known() ? to_string(datum) : "same") + ") and the difference is real");
 }

@@ -20,7 +20,8 @@ void check_lon_lat(const mars::LonLat& place) {
 }
 
 bool is_near(const mars::LonLat& a, const mars::LonLat& b) {
-  return std::abs(std::remainder(a.lon_deg - b.lon_deg, 360.0)) < 1e-6 && std::abs(a.lat_deg - b.lat_deg) < 1e-6;
+  return std::abs(std::remainder(a.lon_deg - b.lon_deg, 360.0)) < 1e-6 &&
+         std::abs(a.lat_deg - b.lat_deg) < 1e-6;
 }
 
 // What is written without brackets is read again.
@@ -43,24 +44,27 @@ void run_place(std::span<const std::uint8_t> bytes) {
     check_round_trip(*place);
     std::string none;
     const auto padded = mars::parse_place(" " + text + "\n", none);
-    require(text.size() + 2 > mars::kLongestPlaceText || (padded && is_near(*padded, *place)), "blanks around mean nothing");
+    require(text.size() + 2 > mars::kLongestPlaceText || (padded && is_near(*padded, *place)),
+            "blanks around mean nothing");
   }
   const std::array limits{360.0, 90.0};
   for (const mars::Axis axis : {mars::Axis::kLongitude, mars::Axis::kLatitude}) {
     std::string why;
     const auto degrees = mars::parse_coordinate(text, axis, why);
     require(degrees || why.starts_with("expected "), "a coordinate or a fault");
-    require(!degrees || std::abs(*degrees) <= limits[static_cast<std::size_t>(axis)], "coordinates have limits");
+    require(!degrees || std::abs(*degrees) <= limits[static_cast<std::size_t>(axis)],
+            "coordinates have limits");
   }
 }
 
 std::vector<Bytes> place_seeds() {
   std::vector<Bytes> seeds;
   for (const char* text :
-       {"137.4417, -4.5895", "-1e1,+5", "137,4417; -4,5895", "4.5895 S, 222.5583 W", "E 137 26 30.12 S 4 35 22.2",
-        "137\u00b026'30.12\"E 4\u00b035'22.2\"S", "latitude: -4.5895, longitude: 137.4417",
-        "[137 deg 26 min 30.12'' E, 4 deg 35.37 min S]", "137:26:30.12 E, 4:35:22.2 S",
-        "137\u00b0 26\u2032 30.12\u2033 \u22124\u00b0 35\u2032 22.2\u2033", "360,90", "-360 -90", "4d35'22.2\"S"})
+       {"137.4417, -4.5895", "-1e1,+5", "137,4417; -4,5895", "4.5895 S, 222.5583 W",
+        "E 137 26 30.12 S 4 35 22.2", "137\u00b026'30.12\"E 4\u00b035'22.2\"S",
+        "latitude: -4.5895, longitude: 137.4417", "[137 deg 26 min 30.12'' E, 4 deg 35.37 min S]",
+        "137:26:30.12 E, 4:35:22.2 S", "137\u00b0 26\u2032 30.12\u2033 \u22124\u00b0 35\u2032 22.2\u2033",
+        "360,90", "-360 -90", "4d35'22.2\"S"})
     seeds.push_back(place_bytes(text));
   return seeds;
 }

@@ -10,8 +10,8 @@
 #include <random>
 #include <utility>
 
-#include "mars/raster/gdal_remote.h"
-#include "mars/raster/remote_watch.h"
+#include "mars/remote/gdal_remote.h"
+#include "mars/remote/remote_watch.h"
 #include "mars/sources/source.h"
 #include "tests/mars/source_files.h"
 #include "tests/support/http_server.h"

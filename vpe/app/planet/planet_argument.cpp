@@ -11,7 +11,7 @@
 #include <span>
 
 #include "mars/embedded/embedded.h"
-#include "mars/raster/gdal_remote.h"
+#include "mars/remote/gdal_remote.h"
 #include "mars/sources/source.h"
 #include "paging/planet/planet_database.h"
 #include "vpe/app/planet/build_sources.h"

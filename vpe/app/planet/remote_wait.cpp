@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "mars/raster/gdal_remote.h"
-#include "mars/raster/remote_watch.h"
+#include "mars/remote/gdal_remote.h"
+#include "mars/remote/remote_watch.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/base/number.h"

@@ -1,4 +1,4 @@
-#include "mars/raster/remote_watch.h"
+#include "mars/remote/remote_watch.h"
 
 #include <chrono>
 #include <condition_variable>

@@ -1,4 +1,4 @@
-#include "mars/raster/gdal_remote.h"
+#include "mars/remote/gdal_remote.h"
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "mars/raster/remote_watch.h"
+#include "mars/remote/remote_watch.h"
 
 namespace mars {
 
