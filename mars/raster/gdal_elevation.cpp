@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "mars/raster/gdal_boundary.h"
+#include "mars/raster/gdal_overviews.h"
 #include "mars/raster/gdal_raster.h"
 #include "mars/raster/gdal_tiles.h"
 #include "mars/raster/product_datum.h"
@@ -87,7 +91,17 @@ template <class T>
 class GdalElevation final : public ElevationSource, public BoundaryAware, public Maskable {
  public:
   GdalElevation(std::shared_ptr<const GdalRaster> raster, const BandFormat& format)
-      : raster_(std::move(raster)), grid_(raster_->grid()), format_(format), info_(raster_->info()) {
+      : raster_(std::move(raster)),
+        grid_(raster_->grid()),
+        format_(format),
+        info_(raster_->info()),
+        levels_{{-1, grid_, {1, 1}, 1}} {
+    if (info_.is_remote) {
+      levels_ = raster_levels(*raster_, format.masked);
+      blocks_ = std::make_shared<const BlockReader<T>>(raster_, levels_);
+    }
+    // Planet files store this text: it must not change.
+    if (levels_.size() > 1) info_.treatment = "coarse posts from its overviews";
     info_.quantum_m = GDALDataTypeIsFloating(format.type) != 0 ? 0.0 : std::abs(format.scale);
     const double some_height_m = first_height();
     {
@@ -111,6 +125,8 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
         grid_(whole.grid_),
         format_(whole.format_),
         info_(whole.info_),
+        levels_{whole.levels_.front()},
+        blocks_(whole.blocks_),
         mask_(std::move(mask)),
         mask_margin_(margin) {
     info_.treatment = add_treatment(info_.treatment, treatment);
@@ -124,19 +140,24 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
 
   std::vector<SourceInfo> infos() const override { return {info_}; }
 
-  void sample(std::span<const glm::dvec3> directions, double /*spacing_m*/,
+  void sample(std::span<const glm::dvec3> directions, double spacing_m,
               std::span<double> heights_m) const override {
-    auto cursor = make_cursor();
+    const std::size_t index = level_for(levels_, spacing_m / info_.resolution_m);
+    const RasterLevel& level = levels_[index];
+    auto cursor = make_cursor(index);
     for_pixels(raster_->georeference(), directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
-      for (std::size_t i = 0; i < pixels.size(); ++i) heights_m[start + i] = height(cursor, pixels[i]);
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const glm::dvec2 pixel = index == 0 ? pixels[i] : level.from_raster(pixels[i]);
+        heights_m[start + i] = height(cursor, level.grid, pixel);
+      }
     });
   }
 
   void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
-    auto cursor = make_cursor();
+    auto cursor = make_cursor(0);
     for_pixels(raster_->georeference(), directions, [&](std::size_t start, std::span<const glm::dvec2> pixels) {
       for (std::size_t i = 0; i < pixels.size(); ++i) {
-        source_index[start + i] = std::isnan(height(cursor, pixels[i])) ? -1 : 0;
+        source_index[start + i] = std::isnan(height(cursor, grid_, pixels[i])) ? -1 : 0;
       }
     });
   }
@@ -146,44 +167,25 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   }
 
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
-    if (max_posts == 0) return;
-    double posts = 0;
-    for (const PixelWindow& w : raster_->windows()) posts += static_cast<double>(w.columns) * w.rows;
-    const int stride =
-        std::max(1, static_cast<int>(std::ceil(std::sqrt(posts / static_cast<double>(max_posts)))));
-    auto cursor = make_cursor();
-    std::vector<glm::dvec2> pixels;
-    std::vector<glm::dvec3> directions;
-    std::vector<glm::dvec3> kept;
-    std::vector<double> heights_m;
-    for (const PixelWindow& w : raster_->windows()) {
-      for (int r = std::min(stride, w.rows) / 2; r < w.rows; r += stride) {
-        const int row = w.row + r;
-        pixels.clear();
-        kept.clear();
-        heights_m.clear();
-        for (int c = std::min(stride, w.columns) / 2; c < w.columns; c += stride) {
-          const int column = w.column + c;
-          const double stored = cursor.at(column, row).values[cursor.offset(column, row)];
-          if (std::isnan(stored)) continue;
-          pixels.emplace_back(column, row);
-          heights_m.push_back(metres(stored));
-        }
-        directions.resize(pixels.size());
-        raster_->georeference().to_directions(pixels, directions);
-        for (std::size_t i = 0; i < directions.size(); ++i) {
-          if (!std::isfinite(directions[i].x)) continue;
-          heights_m[kept.size()] = heights_m[i];
-          kept.push_back(directions[i]);
-        }
-        if (!kept.empty()) visit(kept, std::span<const double>(heights_m).first(kept.size()));
-      }
-    }
+    visit_posts_in(max_posts, {}, visit);
+  }
+
+  void visit_posts_in(std::size_t max_posts, const WantedCap& wanted, const PostVisitor& visit) const override {
+    visit_level(0, raster_->windows(), max_posts, wanted, visit);
+  }
+
+  void visit_means(std::size_t max_posts, const PostVisitor& visit) const override {
+    const double posts = static_cast<double>(grid_.width) * grid_.height;
+    const std::size_t index =
+        level_for(levels_, std::sqrt(posts / static_cast<double>(std::max<std::size_t>(max_posts, 1))));
+    if (index == 0) return visit_posts(max_posts, visit);
+    const PixelGrid& grid = levels_[index].grid;
+    visit_level(index, {{0, 0, grid.width, grid.height}}, max_posts, {}, visit);
   }
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                          std::span<double> posts) const override {
-    auto cursor = make_cursor();
+    auto cursor = make_cursor(0);
     const auto has_data = [&cursor](int column, int row) {
       return !std::isnan(cursor.at(column, row).values[Cursor::offset(column, row)]);
     };
@@ -200,7 +202,56 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     }
   };
   using Cursor = TileCursor<Tile, Fetch>;
-  Cursor make_cursor() const { return Cursor(0, Fetch{this}); }
+  Cursor make_cursor(std::size_t level) const { return Cursor(static_cast<int>(level), Fetch{this}); }
+
+  // Visits a regular subset of the pixels of a level within windows of it.
+  void visit_level(std::size_t index, const std::vector<PixelWindow>& windows, std::size_t max_posts,
+                   const WantedCap& wanted, const PostVisitor& visit) const {
+    if (max_posts == 0) return;
+    double posts = 0;
+    for (const PixelWindow& w : windows) posts += static_cast<double>(w.columns) * w.rows;
+    const int stride =
+        std::max(1, static_cast<int>(std::ceil(std::sqrt(posts / static_cast<double>(max_posts)))));
+    auto cursor = make_cursor(index);
+    std::map<std::pair<int, int>, bool> wanted_tiles;
+    const auto is_wanted = [&](int column, int row) {
+      if (!wanted) return true;
+      const auto [found, is_new] = wanted_tiles.try_emplace({column / kTileSide, row / kTileSide}, true);
+      if (is_new)
+        found->second =
+            wanted(cap_of(raster_->georeference(), levels_[index],
+                          tile_window(levels_[index].grid, {0, column / kTileSide, row / kTileSide})));
+      return found->second;
+    };
+    std::vector<glm::dvec2> pixels;
+    std::vector<glm::dvec3> directions;
+    std::vector<glm::dvec3> kept;
+    std::vector<double> heights_m;
+    for (const PixelWindow& w : windows) {
+      for (int r = std::min(stride, w.rows) / 2; r < w.rows; r += stride) {
+        const int row = w.row + r;
+        pixels.clear();
+        kept.clear();
+        heights_m.clear();
+        for (int c = std::min(stride, w.columns) / 2; c < w.columns; c += stride) {
+          const int column = w.column + c;
+          if (!is_wanted(column, row)) continue;
+          const double stored = cursor.at(column, row).values[cursor.offset(column, row)];
+          if (std::isnan(stored)) continue;
+          pixels.push_back(levels_[index].to_raster({column, row}));
+          heights_m.push_back(metres(stored));
+        }
+        directions.resize(pixels.size());
+        raster_->georeference().to_directions(pixels, directions);
+        for (std::size_t i = 0; i < directions.size(); ++i) {
+          if (!std::isfinite(directions[i].x)) continue;
+          heights_m[kept.size()] = heights_m[i];
+          kept.push_back(directions[i]);
+        }
+        if (!kept.empty()) visit(kept, std::span<const double>(heights_m).first(kept.size()));
+      }
+    }
+  }
 
   // Adds a note if other bands could be meant.
   void note_bands(GDALDataset& dataset) {
@@ -218,12 +269,17 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
   std::shared_ptr<const Tile> load(const TileId& id) const {
     auto tile = std::make_shared<Tile>();
     tile->values.resize(static_cast<std::size_t>(kTileStride) * kTileStride);
-    const PixelWindow window = tile_window(grid_, id);
-    raster_->read(1, -1, window, kTileStride, tile->values.data());
+    const RasterLevel& level = levels_[static_cast<std::size_t>(id.level)];
+    const PixelWindow window = tile_window(level.grid, id);
+    const auto read = [&](const PixelWindow& part, int stride, T* values) {
+      if (blocks_) return blocks_->read(static_cast<std::size_t>(id.level), part, stride, values);
+      raster_->read(1, level.overview, part, stride, values);
+    };
+    read(window, kTileStride, tile->values.data());
     std::vector<T> first_column;
     if (grid_.wraps && window.columns < kTileStride) {
       first_column.resize(static_cast<std::size_t>(window.rows));
-      raster_->read(1, -1, {0, window.row, 1, window.rows}, 1, first_column.data());
+      read({0, window.row, 1, window.rows}, 1, first_column.data());
     }
     apply_mask(window, kTileStride, tile->values);
     if (!first_column.empty()) apply_mask({0, window.row, 1, window.rows}, 1, first_column);
@@ -307,9 +363,9 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
 
   double metres(double stored) const { return format_.offset + format_.scale * stored; }
 
-  double height(Cursor& cursor, const glm::dvec2& pixel) const {
+  double height(Cursor& cursor, const PixelGrid& grid, const glm::dvec2& pixel) const {
     PixelNeighbourhood place;
-    if (!locate(grid_, pixel.x, pixel.y, place)) return kNaN;
+    if (!locate(grid, pixel.x, pixel.y, place)) return kNaN;
     const T* p = cursor.at(place.column, place.row).values.data() + Cursor::offset(place.column, place.row);
     const double v00 = p[0], v10 = p[1], v01 = p[kTileStride], v11 = p[kTileStride + 1];
     const double fx = place.fx, fy = place.fy;
@@ -341,18 +397,22 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
     return std::isnan(value) ? (fx < 0.5 ? left : right) : value;
   }
 
+  // The mean of a row of an overview does as well as that of the polar row, which lies all over the file.
   void find_poles() {
+    const RasterLevel& level = levels_.back();
     for (const bool first : {true, false}) {
-      if (first ? grid_.has_first_pole() : grid_.has_last_pole()) {
-        pole_[first ? 0 : 1] = row_mean(first ? grid_.first_polar_row() : grid_.last_polar_row());
+      if (first ? level.grid.has_first_pole() : level.grid.has_last_pole()) {
+        pole_[first ? 0 : 1] =
+            row_mean(level, first ? level.grid.first_polar_row() : level.grid.last_polar_row());
       }
     }
   }
 
-  double row_mean(int row) const {
-    std::vector<T> values(static_cast<std::size_t>(grid_.width));
-    raster_->read(1, -1, {0, row, grid_.width, 1}, grid_.width, values.data());
-    apply_mask({0, row, grid_.width, 1}, grid_.width, values);
+  double row_mean(const RasterLevel& level, int row) const {
+    const int width = level.grid.width;
+    std::vector<T> values(static_cast<std::size_t>(width));
+    raster_->read(1, level.overview, {0, row, width, 1}, width, values.data());
+    apply_mask({0, row, width, 1}, width, values);
     mark_nodata(values);
     double sum = 0;
     int count = 0;
@@ -366,13 +426,23 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
 
   // Returns the first valid height found. Reads no more than it needs. Throws SourceError if there is none.
   double first_height() const {
-    auto cursor = make_cursor();
-    for (const PixelWindow& w : raster_->windows()) {
+    if (levels_.size() > 1) {
+      const PixelGrid& grid = levels_.back().grid;
+      if (const auto found = first_height(levels_.size() - 1, {{0, 0, grid.width, grid.height}})) return *found;
+    }
+    if (const auto found = first_height(0, raster_->windows())) return *found;
+    throw source_error(raster_->path(), "holds no elevation", "every pixel is nodata or not a number",
+                       "check its nodata value with gdalinfo -stats");
+  }
+
+  std::optional<double> first_height(std::size_t level, const std::vector<PixelWindow>& windows) const {
+    auto cursor = make_cursor(level);
+    for (const PixelWindow& w : windows) {
       for (int row = w.row; row < w.row + w.rows; row = (row / kTileSide + 1) * kTileSide) {
         for (int column = w.column; column < w.column + w.columns;
              column = (column / kTileSide + 1) * kTileSide) {
           const Tile& tile = cursor.at(column, row);
-          const PixelWindow window = tile_window(grid_, {0, column / kTileSide, row / kTileSide});
+          const PixelWindow window = tile_window(levels_[level].grid, {0, column / kTileSide, row / kTileSide});
           for (int r = 0; r < window.rows; ++r) {
             const T* line = tile.values.data() + std::ptrdiff_t{r} * kTileStride;
             const T* found =
@@ -382,15 +452,16 @@ class GdalElevation final : public ElevationSource, public BoundaryAware, public
         }
       }
     }
-    throw source_error(raster_->path(), "holds no elevation", "every pixel is nodata or not a number",
-                       "check its nodata value with gdalinfo -stats");
+    return std::nullopt;
   }
 
   std::shared_ptr<const GdalRaster> raster_;
   PixelGrid grid_;
   BandFormat format_;
   SourceInfo info_;
-  PostMask mask_;  // empty: all posts are used
+  std::vector<RasterLevel> levels_;  // remote rasters: also the overviews, for posts that are farther apart
+  std::shared_ptr<const BlockReader<T>> blocks_;  // of remote rasters, else null
+  PostMask mask_;                                 // empty: all posts are used
   int mask_margin_ = 0;
   mutable TileCache<Tile> tiles_;
   mutable TileCache<BoundaryTile> boundaries_;

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "mars/raster/gdal_remote.h"
 #include "mars/raster/pds_image.h"
 #include "mars/raster/pds_map.h"
+#include "mars/remote/gdal_remote.h"
 
 namespace mars {
 namespace {
@@ -43,11 +43,15 @@ bool exists(const std::string& path) {
   return VSIStatExL(path.c_str(), &stat, VSI_STAT_EXISTS_FLAG) == 0;
 }
 
-// Returns true if the file exists. Retries, because a transient failure of a server must not hide a label. Must
-// be called inside a GdalScope, like first_bytes().
-bool is_there(const std::string& path) {
-  if (exists(path)) return true;
-  return is_remote(path) && attempt_with_retries(path, [&] { return try_open(path) != nullptr; });
+// Returns true if the file exists. Retries, because a transient failure of a server must not hide a label. Throws
+// SourceError if a remote raster cannot be opened. Must be called inside a GdalScope, like first_bytes().
+bool is_there(const std::string& path, const GdalScope& scope) {
+  if (!is_remote(path)) return exists(path);
+  const RemoteScope remote(path);
+  if (exists(path) || attempt_with_retries(path, [&] { return try_open(path) != nullptr; })) return true;
+  const std::string message = scope.message();
+  throw source_error(path, "cannot open as a raster", message,
+                     advice_for(path, message, "give a raster that gdalinfo can show"));
 }
 
 std::string first_bytes(const std::string& path, std::size_t size) {
@@ -140,7 +144,7 @@ std::string sibling_advice(const std::string& path) {
 
 RasterFile find_raster(const std::string& path) {
   const GdalScope scope;
-  if (is_there(path)) {
+  if (is_there(path, scope)) {
     if (auto file = by_label(path)) return *file;
     if (!CPLString(CPLGetExtension(path.c_str())).tolower().compare("img") && !try_open(path)) {
       for (const char* extension : {"lbl", "LBL"}) {
@@ -168,9 +172,11 @@ Pointer open_raster(const RasterFile& file) {
   if (VSI_ISDIR(stat.st_mode)) {
     throw source_error(file.path, "cannot open as a raster", "it is a folder", "give a raster in it");
   }
-  const std::string advice = sibling_advice(file.path);
-  throw source_error(file.path, "cannot open as a raster", scope.message(),
-                     advice_for(file.path, advice.empty() ? "give a raster that gdalinfo can show" : advice));
+  const std::string message = scope.message();
+  const std::string advice = is_remote(file.path) ? "" : sibling_advice(file.path);
+  throw source_error(
+      file.path, "cannot open as a raster", message,
+      advice_for(file.path, message, advice.empty() ? "give a raster that gdalinfo can show" : advice));
 }
 
 }  // namespace mars

@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "mars/raster/gdal_labels.h"
-#include "mars/raster/gdal_remote.h"
+#include "mars/remote/gdal_remote.h"
 #include "vpe/base/file.h"
 
 namespace mars {
@@ -80,6 +80,7 @@ void check_raw_size(const std::string& path, GDALDataset& dataset) {
 GdalRaster::GdalRaster(const std::string& path)
     : file_(find_raster(raster_name(path))), handles_([this] { return open_raster(file_); }) {
   const GdalScope scope;
+  const RemoteScope remote(file_.path);
   const auto dataset = handles_.acquire();
   check_bands(file_.path, *dataset);
   check_raw_size(file_.path, *dataset);
@@ -107,8 +108,10 @@ GdalRaster::GdalRaster(const std::string& path)
 
 SourceInfo GdalRaster::info() const {
   const GdalScope scope;
+  const RemoteScope remote(file_.path);
   SourceInfo info;
   info.name = file_.path;
+  info.is_remote = is_remote(file_.path);
   info.resolution_m = georeference_->resolution_m();
   if (!georeference_->note().empty()) info.notes.push_back(info.name + ": " + georeference_->note());
   std::vector<std::string> files = file_.files;
@@ -145,9 +148,10 @@ void read_pixels(const std::string& path, GDALRasterBand* source, const PixelWin
       })) {
     return;
   }
-  throw source_error(path,
-                     "cannot read rows " + std::to_string(w.row) + " to " + std::to_string(w.row + w.rows - 1),
-                     scope.message(), advice_for(path, "the file may be cut short or damaged: fetch it again"));
+  const std::string message = scope.message();
+  throw source_error(
+      path, "cannot read rows " + std::to_string(w.row) + " to " + std::to_string(w.row + w.rows - 1), message,
+      advice_for(path, message, "the file may be cut short or damaged: fetch it again"));
 }
 
 GDALRasterBand* band_of(GDALDataset& dataset, int band, int overview) {
@@ -263,6 +267,7 @@ class StateOfFiles {
 RasterState raster_state(const std::string& path) {
   const GdalScope scope;
   const RasterFile file = find_raster(raster_name(path));
+  const RemoteScope remote(file.path);
   StateOfFiles state;
   if (file.path.starts_with("/vsi") || vpe::base::file_stamp(file.path)) state.add(file.path);
   state.add_all(file, *open_raster(file), 0);

@@ -58,13 +58,13 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
   double spacing_in(const Cap& cap) const override { return source_->spacing_in(cap); }
 
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
-    std::vector<double> own_m;
-    source_->visit_posts(max_posts,
-                         [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
-                           own_m.assign(heights_m.begin(), heights_m.end());
-                           adjustment_(directions, own_m);
-                           visit(directions, own_m);
-                         });
+    source_->visit_posts(max_posts, adjusting(visit));
+  }
+  void visit_posts_in(std::size_t max_posts, const WantedCap& wanted, const PostVisitor& visit) const override {
+    source_->visit_posts_in(max_posts, wanted, adjusting(visit));
+  }
+  void visit_means(std::size_t max_posts, const PostVisitor& visit) const override {
+    source_->visit_means(max_posts, adjusting(visit));
   }
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
@@ -80,6 +80,16 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
   }
 
  private:
+  // Returns a visitor of own heights that passes adjusted ones on. The result must not outlive `visit`.
+  PostVisitor adjusting(const PostVisitor& visit) const {
+    return [this, &visit, own_m = std::vector<double>()](std::span<const glm::dvec3> directions,
+                                                         std::span<const double> heights_m) mutable {
+      own_m.assign(heights_m.begin(), heights_m.end());
+      adjustment_(directions, own_m);
+      visit(directions, own_m);
+    };
+  }
+
   std::shared_ptr<const ElevationSource> source_;
   HeightAdjustment adjustment_;
   std::vector<SourceInfo> infos_;

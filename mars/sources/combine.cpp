@@ -23,7 +23,7 @@ std::string metres(double value, int decimals = 1) { return vpe::base::format_fi
 std::string difference(const ElevationSource& a, const ElevationSource& b) {
   std::vector<double> off;
   std::vector<double> other;
-  b.visit_posts(kComparedPosts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
+  b.visit_means(kComparedPosts, [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
     other.resize(directions.size());
     a.sample(directions, 0, other);
     for (std::size_t i = 0; i < other.size(); ++i) {
@@ -136,6 +136,10 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
   }
   std::reverse(order.begin(), order.end());
   combined.datum = choose_datum(order, options);
+  if (options.convert && options.datum.kind == DatumKind::kRadius) {
+    combined.notes.push_back("distances from the centre are stored as heights above the sphere, datum '" +
+                             to_string(combined.datum) + "'; 'vpe query --json' has the distance as radius_m");
+  }
   for (const Source& source : order)
     check_range(*source, source->infos().front(), options.radius_m, combined.notes);
   combined.true_radii = options.true_radii || (combined.datum == VerticalDatum::sphere(options.radius_m) &&
@@ -151,7 +155,7 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
         in_datum(source, conversion_of(info, combined.datum, options, combined.notes), combined.datum);
     if (!below.empty()) {
       Source base = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
-      check_silent_datums(*layer, *base, silent, options.same_datum);
+      check_silent_datums(*layer, *base, options.radius_m, silent, options.same_datum);
       layer = aligned_and_checked(std::move(layer), base, options, finding, combined.notes);
       if (options.alignment == CombineOptions::Alignment::kEdges) {
         finding.edge_matching = fit_edge_matching(*layer, *base, options.radius_m);

@@ -51,6 +51,7 @@ struct SourceInfo {
   double body_radius_m = 0;          // equatorial radius of the product's body; 0: not stated
   std::string body;                  // name of the body that the product states; empty: none
   std::optional<double> accuracy_m;  // one sigma, vertical, if the product states it
+  bool is_remote = false;            // read over a network; not recorded
   bool illustration = false;         // true for synthetic planets, which must not be taken for data
   std::string treatment;             // changes made to the product's own values; empty: none
   std::vector<std::string> notes;    // sentences for the user about how it is read; not recorded
@@ -59,6 +60,9 @@ struct SourceInfo {
 // Receives directions and the source's own values there, in metres. Blocks come in any order.
 using PostVisitor =
     std::function<void(std::span<const glm::dvec3> directions, std::span<const double> heights_m)>;
+
+// Returns true if posts in a cap are wanted. Empty: all are.
+using WantedCap = std::function<bool(const Cap& cap)>;
 
 class ElevationSource {
  public:
@@ -85,6 +89,18 @@ class ElevationSource {
   // Calls visit() with a regular subset of the source's own posts, at most about max_posts of them. The build
   // measures the resampling error on them. Posts that another source overrides or blends are left out.
   virtual void visit_posts(std::size_t max_posts, const PostVisitor& visit) const = 0;
+
+  // Does the same, but may leave out posts that lie in no wanted cap, so that they need not be read.
+  virtual void visit_posts_in(std::size_t max_posts, const WantedCap& /*wanted*/,
+                              const PostVisitor& visit) const {
+    visit_posts(max_posts, visit);
+  }
+
+  // Calls visit() with about max_posts heights spread over the source, for figures about the whole of it, such as
+  // its mean. They may be means of neighbouring posts, where those are cheaper to read.
+  virtual void visit_means(std::size_t max_posts, const PostVisitor& visit) const {
+    visit_posts(max_posts, visit);
+  }
 };
 
 class ImageSource {

@@ -68,24 +68,28 @@ class ElevationStack final : public ElevationSource {
   }
 
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {
+    visit_posts_in(max_posts, {}, visit);
+  }
+
+  void visit_posts_in(std::size_t max_posts, const WantedCap& wanted, const PostVisitor& visit) const override {
     const std::size_t each = std::max<std::size_t>(max_posts / sources_.size(), max_posts > 0 ? 1 : 0);
     std::vector<Blend> blends;
     std::vector<glm::dvec3> kept;
     std::vector<double> kept_m;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
-      sources_[s]->visit_posts(each,
-                               [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
-                                 blends.assign(directions.size(), {});
-                                 blend(directions, resolution_m_, blends);
-                                 kept.clear();
-                                 kept_m.clear();
-                                 for (std::size_t i = 0; i < directions.size(); ++i) {
-                                   if (!blends[i].single || blends[i].main != static_cast<int>(s)) continue;
-                                   kept.push_back(directions[i]);
-                                   kept_m.push_back(heights_m[i]);
-                                 }
-                                 if (!kept.empty()) visit(kept, kept_m);
-                               });
+      const auto keep_own = [&](std::span<const glm::dvec3> directions, std::span<const double> heights_m) {
+        blends.assign(directions.size(), {});
+        blend(directions, resolution_m_, blends);
+        kept.clear();
+        kept_m.clear();
+        for (std::size_t i = 0; i < directions.size(); ++i) {
+          if (!blends[i].single || blends[i].main != static_cast<int>(s)) continue;
+          kept.push_back(directions[i]);
+          kept_m.push_back(heights_m[i]);
+        }
+        if (!kept.empty()) visit(kept, kept_m);
+      };
+      sources_[s]->visit_posts_in(each, wanted, keep_own);
     }
   }
 

@@ -33,7 +33,7 @@ double choose_quantum(const std::vector<mars::SourceInfo>& sources, double fines
 double mean_height(const mars::ElevationSource& source, const PlanetMeta& meta) {
   double sum = 0;
   std::int64_t count = 0;
-  source.visit_posts(20000, [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
+  source.visit_means(20000, [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
     // One wild height would become the fill of all nodata.
     check_heights(directions, heights, meta, source);
     for (const double h : heights) {

@@ -102,14 +102,34 @@ class Meter {
 }  // namespace
 
 std::vector<ResamplingSum> measure_resampling(const SampleInputs& sampling, const StoredTiles& stored,
-                                              std::size_t most_posts, std::span<const lod::TileKey> leaves,
-                                              int threads, const std::function<void()>& step) {
+                                              std::size_t most_posts, const mars::WantedCap& wanted,
+                                              std::span<const lod::TileKey> leaves, int threads,
+                                              const std::function<void()>& step) {
   Meter meter(sampling.plan, stored, leaves, threads, step);
-  sampling.elevation.visit_posts(most_posts,
-                                 [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
-                                   meter.add(directions, heights);
-                                 });
+  sampling.elevation.visit_posts_in(
+      most_posts, wanted, [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
+        meter.add(directions, heights);
+      });
   return meter.finish();
+}
+
+mars::WantedCap wanted_posts(const BuildOptions& options, const PlanetMeta& meta,
+                             std::span<const lod::TileKey> leaves) {
+  const bool is_regional =
+      !options.regions.empty() &&
+      std::ranges::any_of(meta.sources, [](const mars::SourceInfo& s) { return s.is_remote; });
+  if (!is_regional && options.shard.is_all()) return {};
+  std::vector<mars::Cap> own;
+  if (!options.shard.is_all()) {
+    for (const lod::TileKey& leaf : leaves) own.push_back(lod::bounding_cap(leaf));
+  }
+  return [&options, is_regional, own = std::move(own)](const mars::Cap& cap) {
+    if (is_regional && std::ranges::none_of(options.regions, [&](const Region& r) { return touches(r, cap); }))
+      return false;
+    return options.shard.is_all() || std::ranges::any_of(own, [&](const mars::Cap& tile) {
+             return mars::angle_between_rad(tile.centre, cap.centre) <= tile.radius_rad + cap.radius_rad;
+           });
+  };
 }
 
 }  // namespace paging

@@ -190,7 +190,8 @@ class Build {
 
     // Stage 5 measures the reference surface against the sources' own posts.
     stages_.begin("checking", 1, 0.02);
-    auto sums = measure_resampling(sampling_, stored_, options_.resampling_posts, shard_.leaves, threads_,
+    auto sums = measure_resampling(sampling_, stored_, options_.resampling_posts,
+                                   wanted_posts(options_, meta_, shard_.leaves), shard_.leaves, threads_,
                                    [this] { stages_.report_again(); });
     check_files(meta_.sources);
     check_files(meta_.image_sources);

@@ -73,6 +73,37 @@ TEST(FilmPart, AutoReadsEachEnvironment) {
   expect_part(part("auto", both), 4, 4);
 }
 
+TEST(FilmPart, AutoOfACountTakesTheNumberOfTheTask) {
+  const auto task = [](const char* id, const char* count, const char* least) {
+    return Variables{{"SLURM_ARRAY_TASK_ID", id},
+                     {"SLURM_ARRAY_TASK_COUNT", count},
+                     {"SLURM_ARRAY_TASK_MIN", least},
+                     {"SLURM_PROCID", "0"},
+                     {"SLURM_NTASKS", "1"}};
+  };
+  expect_part(part("auto/6", task("3", "6", "1")), 3, 6);
+  expect_part(part("auto/6", task("3", "1", "3")), 3, 6);  // sent again alone
+  expect_part(part("auto/6", task("5", "2", "3")), 5, 6);  // and with another
+  expect_part(part("auto/1", task("1", "1", "1")), 1, 1);
+  for (const char* id : {"0", "7"}) EXPECT_THROW(part("auto/6", task(id, "6", "0")), UsageError) << id;
+  expect_part(part("auto/5", {{"PMI_RANK", "0"}, {"PMI_SIZE", "5"}}), 1, 5);
+  EXPECT_THROW(part("auto/6", {{"PMI_RANK", "0"}, {"PMI_SIZE", "5"}}), UsageError);
+  EXPECT_THROW(part("auto/6"), UsageError);
+  for (const char* bad : {"auto/", "auto/0", "auto/x", "auto/2/3", "auto/-1", "auto6"})
+    EXPECT_THROW(part(bad, task("1", "6", "1")), UsageError) << bad;
+}
+
+TEST(FilmPart, AutoOfOneTaskOfAnArrayIsRefused) {
+  try {
+    part("auto",
+         {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "1"}, {"SLURM_ARRAY_TASK_MIN", "3"}});
+    FAIL();
+  } catch (const UsageError& e) {
+    EXPECT_NE(std::string(e.what()).find("auto/n"), std::string::npos) << e.what();
+  }
+  expect_part(part("auto", {{"PMI_RANK", "0"}, {"PMI_SIZE", "1"}}), 1, 1);
+}
+
 TEST(FilmPart, AutoReportsWhatIsMissingOrDoesNotFit) {
   const auto message = [](const Variables& variables) -> std::string {
     try {

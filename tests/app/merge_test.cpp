@@ -74,15 +74,56 @@ TEST_F(Merge, TheSchedulerSelectsThePart) {
   EXPECT_TRUE(exists("x.3-of-4.vpe"));
 }
 
+TEST_F(Merge, ATaskThatIsSentAgainKeepsItsPart) {
+  const auto task = [&](const char* option, const char* id, const char* count, const char* least) {
+    Command command = command_for(build_words("x.vpe", {"--part", option}));
+    command.environment = {
+        {"SLURM_ARRAY_TASK_ID", id}, {"SLURM_ARRAY_TASK_COUNT", count}, {"SLURM_ARRAY_TASK_MIN", least}};
+    return run(command);
+  };
+  const Result alone = task("auto", "3", "1", "3");
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_TRUE(says(alone.err, {"--part auto", "auto/n", "SLURM_ARRAY_TASK_COUNT=1"})) << alone.err;
+  EXPECT_EQ(task("auto/4", "3", "1", "3").exit_code, 0);
+  EXPECT_TRUE(exists("x.3-of-4.vpe"));
+  const Result two = task("auto", "3", "2", "3");  // 3 and 4 of the same array
+  EXPECT_EQ(two.exit_code, 2);
+  EXPECT_TRUE(says(two.err, {"1 of 2", "x.3-of-4.vpe", "auto/4"})) << two.err;
+  EXPECT_FALSE(exists("x.vpe"));
+  EXPECT_FALSE(exists("x.1-of-2.vpe"));
+}
+
 TEST(MergeNames, SortLikeParts) {
   EXPECT_EQ(vpe::app::shard_file_name("a/mars.vpe", {7, 12}), "a/mars.07-of-12.vpe");
   EXPECT_EQ(vpe::app::shard_file_name("a.b/mars", {2, 2}), "a.b/mars.2-of-2");
   EXPECT_EQ(vpe::app::shard_file_name("mars.vpe", {1, 1}), "mars.vpe");
 }
 
+TEST_F(Merge, PartsAreDescribedAndVerified) {
+  const auto built = json_of(build_words("x.vpe", {"--part", "1/2"}));
+  const auto info = json_of({"info", "x.1-of-2.vpe", "--json"});
+  EXPECT_EQ(info["part"], (nlohmann::json{{"number", 1}, {"of", 2}}));
+  for (const char* equal : {"tiles", "identity", "sources", "path"})
+    EXPECT_EQ(info[equal], built[equal]) << equal;
+  EXPECT_TRUE(says(vpe({"info", "x.1-of-2.vpe"}).out, {"part               1 of 2", "vpe merge"}));
+  const auto sound = json_of({"verify", "x.1-of-2.vpe", "--json"});
+  EXPECT_EQ(sound["sound"], true);
+  EXPECT_EQ(sound["tiles"], built["tiles"]);
+  EXPECT_EQ(sound["image_tiles"], built["image_tiles"]);
+  EXPECT_TRUE(says(vpe({"verify", "x.1-of-2.vpe"}).out, {"x.1-of-2.vpe: sound as a part: "}));
+  expect_failure({"verify", "x.1-of-2.vpe", "--deep"}, 2, {"--deep", "vpe merge"});
+  for (const char* table : {"heights", "mesh", "image"}) {
+    std::filesystem::copy_file(dir_ / "x.1-of-2.vpe", dir_ / "damaged.vpe",
+                               std::filesystem::copy_options::overwrite_existing);
+    damage_payloads(dir_ / "damaged.vpe", table);
+    expect_failure({"verify", "damaged.vpe"}, 1,
+                   {"damaged.vpe: ", "problems", "wrong checksum", "build the part again"});
+  }
+}
+
 TEST_F(Merge, MessagesSayWhatToDo) {
   vpe(build_words("x.vpe", {"--part", "1/2"}));
-  expect_failure({"info", "x.1-of-2.vpe"}, 1, {"x.1-of-2.vpe: part 1 of 2 of a planet", "vpe merge"});
+  expect_failure({"query", "x.1-of-2.vpe", "1,2"}, 1, {"x.1-of-2.vpe: part 1 of 2 of a planet", "vpe merge"});
   expect_failure({"merge", "x.1-of-2.vpe", "-o", "y.vpe"}, 1, {"of 2 parts 1 are missing: 2", "--part"});
   expect_failure({"merge", "x.1-of-2.vpe", "-o", "x.1-of-2.vpe"}, 2, {"x.1-of-2.vpe", "also an input"});
   expect_failure({"merge", "absent.vpe", "-o", "y.vpe"}, 1, {"absent.vpe", "no such file"});

@@ -71,6 +71,33 @@ TEST_F(Query, PlacesInTheNotationsOfMaps) {
   EXPECT_EQ(ask({}, "13.5 S, 74 W\n"), expected);
 }
 
+// A planetographic latitude of Mars is up to 20 km from the planetocentric one.
+TEST_F(Query, LatitudesMayBePlanetographic) {
+  const json graphic = ask({"10,45", "10,-90", "--latitude", "planetographic"});
+  const double centric_deg = std::atan(std::pow(3376.2 / 3396.19, 2)) * 180 / M_PI;
+  EXPECT_NEAR(graphic[0]["lat_deg"].get<double>(), centric_deg, 1e-9);
+  EXPECT_GT((45 - centric_deg) * M_PI / 180 * 3396, 19.9);
+  EXPECT_EQ(graphic[1]["lat_deg"], -90);
+  EXPECT_TRUE(graphic[0]["radius_m"].is_null());  // the datum is not stated
+  std::ostringstream place;
+  place.precision(17);
+  place << "10," << centric_deg;
+  EXPECT_NEAR(ask({place.str()})[0]["elevation_m"].get<double>(), graphic[0]["elevation_m"].get<double>(),
+              1e-6);
+  EXPECT_NEAR(ask({"10,45", "--latitude", "planetographic:1000,500"})[0]["lat_deg"].get<double>(),
+              std::atan(0.25) * 180 / M_PI, 1e-9);
+  EXPECT_EQ(ask({"10,45", "--latitude", "planetocentric"})[0]["lat_deg"], 45);
+  expect_failure({"query", planet().string(), "10,45", "--latitude", "geodetic"}, 2,
+                 {"--latitude", "geodetic"});
+  // Where the datum is an ellipsoid, either kind is likely.
+  write_dem(dir_ / "x.tif");
+  vpe({"build", "x.tif", "-o", "e.vpe", "--base-spacing", "100000", "--datum", "ellipsoid:3396190,3376200"});
+  EXPECT_TRUE(says(vpe({"query", "e.vpe", "10,45"}).err, {"note: latitudes", "up to 20 km", "--latitude"}));
+  EXPECT_EQ(vpe({"query", "e.vpe", "10,45", "--latitude", "planetocentric"}).err, "");
+  const Result profile = vpe({"profile", "e.vpe", "10,45", "20,45", "--latitude", "planetographic", "--json"});
+  EXPECT_NEAR(parse_json(profile.out)["points"][0]["lat_deg"].get<double>(), centric_deg, 1e-9);
+}
+
 TEST_F(Query, MalformedPlacesAreRefusedAndQuotedUnchanged) {
   for (const char* text :
        {"10 20,30", "2268.75,17", "1e300,0", "540,10", "18.4,97.5", "'137.3 -4.6'", "1;2;3"}) {

@@ -172,6 +172,16 @@ TEST_F(Sources, TrueRadii) {
   EXPECT_TRUE(says(vpe({"info", "p.vpe"}).out, {"true radii"}));
 }
 
+TEST_F(Sources, RadiiAreAnsweredAsSuch) {
+  write_globe_and_inset(0);
+  const Result result = build({"--datum", "ellipsoid:3396190,3376200", "--to-datum=radius", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(
+      says(result.err, {"distances from the centre are stored as heights", "sphere:3396190", "radius_m"}));
+  const json answer = parse_json(vpe({"query", "p.vpe", "10,40", "--json"}).out)[0];
+  EXPECT_NEAR(answer["radius_m"].get<double>(), 3396190 + answer["elevation_m"].get<double>(), 1e-6);
+}
+
 TEST_F(Sources, AlignmentIsReported) {
   write_globe_and_inset(700);
   Result result = build({"--align", "plane", "--datum", "areoid"});

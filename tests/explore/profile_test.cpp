@@ -1,5 +1,8 @@
 #include "vpe/explore/measure/profile.h"
 
+#include <rapidcheck.h>
+
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -40,6 +43,44 @@ TEST_F(Profiles, TotalsAreThoseOfThePoints) {
     EXPECT_LE(p.lowest_m, point.lowest_m);
     EXPECT_GE(p.highest_m, point.highest_m);
   }
+}
+
+// Any places in any order: those given are points of the profile as they are, and distances only grow.
+TEST_F(Profiles, GoThroughAnyPlaces) {
+  EXPECT_TRUE(rc::check([] {
+    const auto count = *rc::gen::inRange(2, 6);
+    std::vector<mars::LonLat> places;
+    for (int n = 0; n < count; ++n) {
+      // Poles, the seam, equal and opposite places among others.
+      const double lon_deg =
+          *rc::gen::oneOf(rc::gen::element(-360.0, -180.0, 0.0, 90.0, 180.0, 270.0, 360.0),
+                          rc::gen::map(rc::gen::inRange(-36000, 36001), [](int x) { return x / 100.0; }));
+      const double lat_deg =
+          *rc::gen::oneOf(rc::gen::element(-90.0, 0.0, 90.0),
+                          rc::gen::map(rc::gen::inRange(-9000, 9001), [](int x) { return x / 100.0; }));
+      places.push_back({lon_deg, lat_deg});
+    }
+    Profile p;
+    try {
+      p = make_profile(surface(), places, {.most_points = 60});
+    } catch (const std::invalid_argument& e) {
+      RC_ASSERT(std::string(e.what()) != "");
+      return;
+    }
+    std::vector<mars::LonLat> given;
+    for (std::size_t n = 0; n < p.points.size(); ++n) {
+      const paging::ProfilePoint& point = p.points[n];
+      RC_ASSERT(std::isfinite(point.height_m) && std::abs(point.place.lat_deg) <= 90);
+      RC_ASSERT(point.place.lon_deg > -180 && point.place.lon_deg <= 180);
+      if (n > 0) RC_ASSERT(point.distance_m >= p.points[n - 1].distance_m);
+      if (n > 0) RC_ASSERT(point.ground_distance_m >= p.points[n - 1].ground_distance_m);
+      if (point.waypoint) given.push_back(point.place);
+    }
+    RC_ASSERT(given.size() >= 2U && given.size() <= places.size());
+    RC_ASSERT(given.front().lon_deg == mars::normalize_lon_deg(places.front().lon_deg));
+    RC_ASSERT(given.front().lat_deg == places.front().lat_deg);
+    RC_ASSERT(given.back().lat_deg == places.back().lat_deg);
+  }));
 }
 
 // The path crosses a ridge whose length along the ground is known.

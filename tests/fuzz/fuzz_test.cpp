@@ -68,6 +68,9 @@ TEST(Fuzz, RoverLabels) { run(fuzz::kRover, 20000, 1005); }
 TEST(Fuzz, GPano) { run(fuzz::kGpano, 10000, 1006); }
 TEST(Fuzz, Sidecars) { run(fuzz::kSidecar, 20000, 1007); }
 TEST(Fuzz, Images) { run(fuzz::kImage, 3000, 1008); }
+TEST(Fuzz, Places) { run(fuzz::kPlace, 100000, 1010); }
+TEST(Fuzz, TablesOfPlaces) { run(fuzz::kTable, 50000, 1011); }
+TEST(Fuzz, AxisOrders) { run(fuzz::kAxes, 500, 1012); }
 TEST(Fuzz, ForgedPlanets) { run(fuzz::kForged, 800, 1009); }
 TEST(Fuzz, Planets) { run(fuzz::kPlanet, 1500, 1003); }
 

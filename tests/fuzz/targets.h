@@ -42,6 +42,15 @@ extern const Target kRover;
 extern const Target kGpano;
 extern const Target kSidecar;
 
+// Reads places and coordinates in the notations of maps, and tables of places with and without a header. What is
+// read is within limits, and places survive being written.
+extern const Target kPlace;
+extern const Target kTable;
+
+// Corrects systems of authority IAU_2015 for georeferences of any numbers: latitudes run along the axis that can
+// have them.
+extern const Target kAxes;
+
 // Reads PNG, JPEG and TIFF as panoramas and planes: headers, views, rows, and inserting an XMP packet.
 extern const Target kImage;
 

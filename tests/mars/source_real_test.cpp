@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/adjusted.h"
 #include "mars/sources/combine.h"
 #include "mars/sources/source.h"
 #include "tests/mars/source_files.h"
@@ -102,6 +103,37 @@ TEST(RealData, AreoidIsARadius) {
   EXPECT_GT(pole_m, 3376000);
   EXPECT_LT(pole_m, 3380000);
   EXPECT_GT(height_at(*source, {0, 0}), 3395000);
+}
+
+// 1 m posts over posts of 7.4 km: 104 m of relief between two of them, which is no other datum. Offsets of the
+// spheres and areoids in use are refused all the same.
+TEST(RealData, ReliefBetweenPostsIsNoOtherDatum) {
+  VPE_NEED_SHARED(mola, "mola8/mola8_topo.lbl");
+  VPE_NEED_SHARED(rover, "gale-hirise1/missionDEM.tif");
+  VPE_NEED_SHARED(ctx, "gale-ctx20/gale_ctx20_mosaic.tif");
+  VPE_NEED_SHARED(region, "gale-mola128/gale_megt128.lbl");
+  const auto globe = mars::open_elevation(mola.string());
+  const auto fits = [&](const std::filesystem::path& path, double off_m) {
+    const auto inset = mars::adjusted(
+        mars::open_elevation(path.string()),
+        [off_m](std::span<const glm::dvec3>, std::span<double> heights_m) {
+          for (double& height : heights_m) height += off_m;
+        },
+        {}, "");
+    try {
+      mars::combine_elevation({globe, inset}, {});
+      return true;
+    } catch (const mars::SourceError& e) {
+      EXPECT_NE(std::string(e.what()).find("does not state its vertical datum"), std::string::npos) << e.what();
+      return false;
+    }
+  };
+  for (const auto& path : {rover, ctx, region}) EXPECT_TRUE(fits(path, 0)) << path;
+  for (const double off_m : {-590.0, -190.0, 590.0}) {
+    for (const auto& path : {rover, ctx, region}) EXPECT_FALSE(fits(path, off_m)) << path << ' ' << off_m;
+  }
+  // The rover's ground is 104 m below the base's facet; 190 m higher it is nearer to it.
+  for (const auto& path : {ctx, region}) EXPECT_FALSE(fits(path, 190)) << path;
 }
 
 TEST(RealData, GaleInsetsAgreeWithMola) {

@@ -30,6 +30,7 @@ HttpServer::HttpServer(std::filesystem::path folder, Decide decide, bool states_
 HttpServer::~HttpServer() {
   stop_ = true;
   thread_.join();
+  for (const int connection : open_) ::close(connection);
   ::close(socket_);
 }
 
@@ -43,17 +44,20 @@ void HttpServer::serve() {
     if (::poll(&waiting, 1, 20) <= 0) continue;
     const int connection = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC);
     if (connection < 0) continue;
-    answer(connection);
-    ::close(connection);
+    if (answer(connection)) {
+      open_.push_back(connection);
+    } else {
+      ::close(connection);
+    }
   }
 }
 
-void HttpServer::answer(int connection) {
+bool HttpServer::answer(int connection) {
   std::string request;
   char buffer[4096];
   while (request.find("\r\n\r\n") == std::string::npos) {
     const ssize_t got = ::recv(connection, buffer, sizeof buffer, 0);
-    if (got <= 0) return;
+    if (got <= 0) return false;
     request.append(buffer, static_cast<std::size_t>(got));
   }
   const auto send = [&](const std::string& text) {
@@ -68,9 +72,10 @@ void HttpServer::answer(int connection) {
   const std::string path = request.substr(path_at + 1, request.find(' ', path_at) - path_at - 1);
   const Fate fate = decide_ ? decide_(requests_++, method) : (++requests_, Fate::kServe);
   failed_ += fate == Fate::kServe ? 0 : 1;
-  if (fate == Fate::kHangUp) return;
+  if (fate == Fate::kHangUp || fate == Fate::kHang) return fate == Fate::kHang;
   const auto status = [&](const char* text) {
     send(std::string("HTTP/1.1 ") + text + "\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
+    return false;
   };
   if (fate == Fate::kUnavailable) return status("503 Service Unavailable");
   if (fate == Fate::kForbidden) return status("403 Forbidden");
@@ -94,7 +99,9 @@ void HttpServer::answer(int connection) {
   head += "Accept-Ranges: bytes\r\nConnection: close\r\nContent-Length: " + std::to_string(last - first + 1) +
           "\r\n\r\n";
   const std::string body = method == "HEAD" ? "" : all.substr(first, last - first + 1);
+  bytes_ += static_cast<std::int64_t>(body.size());
   send(head + (fate == Fate::kCut ? body.substr(0, body.size() / 2) : body));
+  return false;
 }
 
 }  // namespace test_support

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace test_support {
 
@@ -18,6 +20,7 @@ class HttpServer {
     kForbidden,    // 403
     kCut,          // the connection ends in the middle of the body
     kHangUp,       // it ends before any answer
+    kHang,         // it stays open, and nothing is sent
   };
   // Returns the fate of the n-th request (from 0). Called from the server's thread.
   using Decide = std::function<Fate(int n, const std::string& method)>;
@@ -31,10 +34,12 @@ class HttpServer {
   std::string url(const std::string& file) const;  // http://127.0.0.1:PORT/file
   int requests() const { return requests_; }
   int failed() const { return failed_; }
+  std::int64_t bytes() const { return bytes_; }  // of all files sent, without headers
 
  private:
   void serve();
-  void answer(int connection);
+  // Returns true if the connection stays open.
+  bool answer(int connection);
 
   std::filesystem::path folder_;
   Decide decide_;
@@ -43,6 +48,8 @@ class HttpServer {
   int port_ = 0;
   std::atomic<int> requests_{0};
   std::atomic<int> failed_{0};
+  std::atomic<std::int64_t> bytes_{0};
+  std::vector<int> open_;  // connections that hang
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -6,6 +6,7 @@
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
+#include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/explore/measure/profile.h"
@@ -16,6 +17,7 @@ namespace {
 
 struct ProfileArguments {
   std::vector<std::string> places;
+  std::string latitude;
   double step_m = 0;
 };
 
@@ -38,6 +40,7 @@ void run_profile(const ProfileArguments& arguments, const Common& common) {
   const auto planet = open_planet(planet_name, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
+  make_planetocentric(places, arguments.latitude, meta, common.quiet);
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
   explore::Profile profile;
   try {
@@ -69,6 +72,7 @@ void add_profile(CLI::App& program, Common& common) {
       "PLANET_AND_PLACES", arguments->places,
       "[PLANET] LON,LAT LON,LAT... (degrees east, north, or as 4.6S,222.6W); without places, they are "
       "read from stdin");
+  add_latitude_option(*command, arguments->latitude);
   command
       ->add_option("--step", arguments->step_m,
                    "Largest distance between points, metres (default: 1000 points along the profile)")

@@ -11,6 +11,7 @@
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
+#include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
@@ -27,6 +28,9 @@ nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& m
           {"lat_deg", a.place.lat_deg},
           {"elevation_m", value(a.elevation_m)},
           {"datum", to_string(meta.datum)},
+          {"radius_m", meta.datum.is_geometric()
+                           ? value(mars::radius_at(meta.datum, mars::direction(a.place), a.elevation_m))
+                           : json()},
           {"slope_deg", value(a.slope_deg)},
           {"aspect_deg", value(a.aspect_deg)},
           {"level", a.level},
@@ -52,6 +56,7 @@ void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
 
 struct QueryArguments {
   std::vector<std::string> planet_and_places;
+  std::string latitude;
   bool fail_on_nodata = false;
 };
 
@@ -97,10 +102,11 @@ void query(const QueryArguments& arguments, const Common& common) {
   PlaceTable table;
   table.places = std::move(request.places);
   if (table.places.empty()) table = read_places(std::cin);
-  const std::vector<mars::LonLat>& places = table.places;
   const auto planet = open_planet(request.planet, common);
   const paging::PlanetMeta& meta = planet->meta();
   note_illustration(meta, common.quiet);
+  make_planetocentric(table.places, arguments.latitude, meta, common.quiet);
+  const std::vector<mars::LonLat>& places = table.places;
   const paging::Surface surface(planet, static_cast<std::size_t>(common.memory_mb) << 19);
 
   // Answers are computed tile by tile, in Morton order, and printed in the order of the request.
@@ -143,6 +149,7 @@ void add_query(CLI::App& program, Common& common) {
       "PLANET_AND_PLACES", arguments->planet_and_places,
       "[PLANET] LON,LAT... (degrees east, north, or as 4.6S,222.6W); without places, they are read "
       "from stdin, one a line or as a table with columns lon and lat");
+  add_latitude_option(*command, arguments->latitude);
   command->add_flag("--fail-on-nodata", arguments->fail_on_nodata,
                     "Exit with status 1 after the answers if a place has no data");
   command->callback([arguments, &common] { query(*arguments, common); });

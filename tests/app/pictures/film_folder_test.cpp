@@ -185,6 +185,22 @@ TEST_F(FilmFolder, SelectionsAndPartsFillOneFolder) {
   expect_counts("out", 0, 0, {"--part", "1/100"});
 }
 
+TEST_F(FilmFolder, JoiningNamesTheFramesThatAreMissing) {
+  expect_counts("out", 8, 0, {"--part", "2/3"});
+  fs::remove(dir_ / "out" / frame_name(9));
+  const Result join = fly("out", {"--join"});
+  EXPECT_EQ(join.exit_code, 1);
+  EXPECT_TRUE(
+      says(join.err, {"out: 17 of 24 frames are missing: 0-7, 9, 16-23 (parts 1, 2, 3 of 3)", "--part"}))
+      << join.err;
+  EXPECT_FALSE(exists("out/" + frame_name(0)));
+  const Result made = fly("out");
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_TRUE(says(made.err, {"note: out: 17 of 24 frames are missing: 0-7, 9, 16-23", "--join"})) << made.err;
+  expect_counts("out", 0, kFrames, {"--join"});
+  EXPECT_EQ(fly("out", {"--join", "--part", "1/2"}).exit_code, 2);
+}
+
 // Without --backend the machine decides, but stored frames come first.
 TEST_F(FilmFolder, TheBackendThatBeganAFilmContinuesIt) {
   const auto drawn_by = [&](const std::string& folder, Words more, int made, int kept) {

@@ -206,6 +206,18 @@ TEST_F(FilmVideo, PartsMakeSegmentsThatARunWithoutPartJoins) {
   EXPECT_EQ(files("x.mp4.parts"), (std::map<std::string, std::string>{{"notes.txt", "mine"}}));
 }
 
+TEST_F(FilmVideo, PartsWithNothingToDoSaySo) {
+  const Result idle = fly("x.mp4", {"--part", "1/8"});
+  EXPECT_EQ(idle.exit_code, 0) << idle.err;
+  EXPECT_TRUE(says(
+      idle.err, {"x.mp4 has 3 segments of 8 frames, so 5 of 8 parts have nothing to do", "3 parts are enough"}))
+      << idle.err;
+  const Result join = fly("x.mp4", {"--join"});
+  EXPECT_EQ(join.exit_code, 1);
+  EXPECT_TRUE(says(join.err, {"x.mp4: 24 of 24 frames are missing: 0-23 (parts 3, 6, 8 of 8)"})) << join.err;
+  EXPECT_FALSE(exists("x.mp4"));
+}
+
 TEST_F(LongFilmVideo, AnFfmpegThatDiesLeavesWholeSegments) {
   expect_counts("whole.mp4", kFrames, 0);
   fs::create_directory(dir_ / "bin");

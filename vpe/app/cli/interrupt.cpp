@@ -22,8 +22,10 @@ InterruptGuard::~InterruptGuard() {
   std::signal(SIGTERM, terminate_);
 }
 
+int InterruptGuard::pending() { return g_signal.load(); }
+
 void InterruptGuard::check() {
-  if (const int signal = g_signal.load(); signal != 0) throw Interrupted(signal);
+  if (const int signal = pending(); signal != 0) throw Interrupted(signal);
 }
 
 }  // namespace vpe::app

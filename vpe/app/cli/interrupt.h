@@ -35,6 +35,8 @@ class InterruptGuard {
 
   // Throws Interrupted once a signal has come.
   static void check();
+  // Returns the signal that has come, 0 for none.
+  static int pending();
 
  private:
   using Handler = void (*)(int);

@@ -27,11 +27,23 @@ FilmSession::FilmSession(FilmRequest request) : request_(std::move(request)) {
 void FilmSession::find_stored(const FilmPlan& plan, int threads) {
   const std::int64_t all = request_.range.count();
   const std::int64_t size = target_->group_size();
-  const std::int64_t groups = (all + size - 1) / size;
-  first_ = std::min(all, request_.shard.begin(groups) * size);
-  frames_ = plan.frames(request_.range, first_, std::min(all, request_.shard.end(groups) * size));
+  first_ = std::min(all, request_.shard.begin(groups()) * size);
+  frames_ = plan.frames(request_.range, first_, std::min(all, request_.shard.end(groups()) * size));
   base::ThreadPool pool(threads);
   target_->keep(frames_, {first_, all}, pool);
+}
+
+std::int64_t FilmSession::groups() const {
+  const std::int64_t size = target_->group_size();
+  return (request_.range.count() + size - 1) / size;
+}
+
+std::string FilmSession::missing_from_parts() const {
+  const FilmCount n = count(frames_);
+  if (!request_.shard.is_all() || request_.remake || n.done() == n.all) return {};
+  const auto parts = parts_begun(request_.is_video ? parts_folder(request_.output) : request_.output,
+                                 request_.is_video ? "" : request_.frames);
+  return parts ? missing_text(kind(), frames_, parts) : std::string();
 }
 
 void FilmSession::make(const FilmPlan& plan, FilmReports& reports, const RenderOptions& options,

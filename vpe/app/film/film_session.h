@@ -47,6 +47,10 @@ class FilmSession {
   void finish(const ManifestHead& head);
 
   const std::vector<FilmFrame>& frames() const { return frames_; }
+  // Returns the number of groups that parts divide among them: frames, or segments of a video.
+  std::int64_t groups() const;
+  // Returns text about missing frames for a run over the whole film whose parts were made by other runs, else "".
+  std::string missing_from_parts() const;
   FilmKind kind() const { return {request_.is_video, target_->group_size()}; }
   // Returns true if the video consists of the segments of several parts and is not joined yet.
   bool is_left_unjoined() const { return video_ != nullptr && !video_->is_complete(); }

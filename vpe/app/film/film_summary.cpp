@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "vpe/base/file.h"
+#include "vpe/base/number.h"
 #include "vpe/core/json_text.h"
 
 namespace vpe::app {
@@ -39,6 +41,16 @@ json frame_json(const FilmFrame& frame) {
 constexpr std::int64_t kNamedFailures = 5;
 
 std::string frames_text(std::int64_t n) { return std::to_string(n) + (n == 1 ? " frame" : " frames"); }
+
+// Returns the first words, separated by commas, and how many more there are.
+std::string list_text(std::span<const std::string> words) {
+  constexpr std::size_t kNamedWords = 20;
+  std::string text;
+  for (const std::string& word : words.first(std::min(kNamedWords, words.size())))
+    text += (text.empty() ? "" : ", ") + word;
+  if (words.size() > kNamedWords) text += " and " + std::to_string(words.size() - kNamedWords) + " more";
+  return text;
+}
 
 // Largest bound and mean number of triangles over the frames that are done.
 struct FilmFigures {
@@ -122,6 +134,53 @@ std::string failure_text(const FilmKind& kind, const std::string& output, std::s
     text += ", in segments of " + std::to_string(kind.group_size) + "; the film is not joined";
   }
   return text + "; remove the cause, and the same command makes only the missing frames";
+}
+
+std::optional<std::int64_t> parts_begun(const fs::path& folder, const std::string& frames) {
+  const std::string begin = "manifest" + (frames.empty() ? "" : ".frames-" + frames) + ".part-";
+  std::optional<std::int64_t> most;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const std::size_t of = name.find("-of-");
+    if (!name.starts_with(begin) || !name.ends_with(".json") || of == std::string::npos) continue;
+    const auto count = base::parse_integer(name.substr(of + 4, name.size() - of - 9));
+    if (count && *count > most.value_or(0)) most = count;
+  }
+  return most;
+}
+
+std::string missing_text(const FilmKind& kind, std::span<const FilmFrame> frames,
+                         std::optional<std::int64_t> parts) {
+  const auto all = static_cast<std::int64_t>(frames.size());
+  const std::int64_t groups = (all + kind.group_size - 1) / kind.group_size;
+  std::vector<std::string> ranges;
+  std::vector<std::string> numbers;
+  std::int64_t missing = 0;
+  std::int64_t part = 1;
+  std::int64_t last_part = 0;
+  for (std::int64_t n = 0; n < all; ++n) {
+    if (frames[static_cast<std::size_t>(n)].is_done()) continue;
+    ++missing;
+    const std::int64_t first = frames[static_cast<std::size_t>(n)].index;
+    if (n == 0 || frames[static_cast<std::size_t>(n - 1)].is_done()) {
+      std::int64_t end = n;
+      while (end < all && !frames[static_cast<std::size_t>(end)].is_done()) ++end;
+      const std::int64_t last = frames[static_cast<std::size_t>(end - 1)].index;
+      ranges.push_back(std::to_string(first) + (last == first ? "" : "-" + std::to_string(last)));
+    }
+    if (!parts) continue;
+    while (part < *parts && Shard{part, *parts}.end(groups) <= n / kind.group_size) ++part;
+    if (part != last_part) numbers.push_back(std::to_string(part));
+    last_part = part;
+  }
+  std::string text = std::to_string(missing) + " of " + frames_text(all) +
+                     (missing == 1 ? " is missing: " : " are missing: ") + list_text(ranges);
+  if (parts) {
+    text += (numbers.size() == 1 ? " (part " : " (parts ") + list_text(numbers) + " of " +
+            std::to_string(*parts) + ")";
+  }
+  return text;
 }
 
 json summary_json(std::span<const FilmFrame> frames, double seconds) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -53,6 +54,15 @@ std::string progress_text(const FilmKind& kind, std::span<const FilmFrame> frame
 
 // Returns a message with the first few failed frames, why they failed, and what to do.
 std::string failure_text(const FilmKind& kind, const std::string& output, std::span<const FilmFrame> frames);
+
+// Returns the largest n of manifests of parts k of n of these frames in `folder`, where runs over parts leave
+// theirs; nullopt if there are none.
+std::optional<std::int64_t> parts_begun(const std::filesystem::path& folder, const std::string& frames);
+
+// Returns text such as "48 of 240 frames are missing: 24-47, 216-239 (parts 2 and 10 of 10)", for all frames of a
+// film. The parts are named if the film was divided into `parts`.
+std::string missing_text(const FilmKind& kind, std::span<const FilmFrame> frames,
+                         std::optional<std::int64_t> parts);
 
 // Returns the keys frames, made, kept, failed, seconds, shift_bound_px (the largest) and mean_triangles.
 nlohmann::json summary_json(std::span<const FilmFrame> frames, double seconds);

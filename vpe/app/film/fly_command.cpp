@@ -38,6 +38,7 @@ struct FlyArguments {
   std::string stats;
   bool force = false;
   bool allow_underground = false;
+  bool join = false;
   RenderOptions image;
 };
 
@@ -91,6 +92,8 @@ FilmRequest film_request(const FlyArguments& arguments, const scripts::Flight& f
   request.frames = arguments.frames;
   request.range = parse_frames(arguments.frames, count);
   request.shard = parse_shard(arguments.part);
+  if (arguments.join && (!arguments.part.empty() || arguments.force))
+    throw UsageError("--join joins all parts and draws nothing; leave --part and --force out");
   request.remake = arguments.force;
   request.is_video = check_film_output(arguments.output);
   check_film_files(arguments, request, inputs_of(arguments, flight, settings));
@@ -130,6 +133,34 @@ void load_names(FrameOverlays& overlays, core::Settings settings, const scripts:
   overlays.load(settings.values());
   for (const scripts::SetCommand& set : flight.sets) {
     if (settings.set(set.key, set.text).empty()) overlays.load(settings.values());
+  }
+}
+
+// Throws std::runtime_error if frames are missing that --join must not draw. Else notes what is missing of parts, and
+// parts that have nothing to do.
+void check_parts(const FlyArguments& arguments, const FilmSession& session, const Shard& shard, bool quiet) {
+  const FilmCount n = count(session.frames());
+  const std::string missing = session.missing_from_parts();
+  if (arguments.join && n.done() < n.all) {
+    throw std::runtime_error(
+        arguments.output + ": " +
+        (missing.empty() ? missing_text(session.kind(), session.frames(), std::nullopt) : missing) +
+        "; make them with --part, or leave --join out to make them here");
+  }
+  if (quiet) return;
+  if (!missing.empty()) {
+    std::fprintf(stderr, "vpe: note: %s: %s; they are made now (--join would only name them)\n",
+                 arguments.output.c_str(), missing.c_str());
+  }
+  if (shard.of > session.groups()) {
+    const std::string groups = std::to_string(session.groups());
+    std::fprintf(stderr, "vpe: note: %s has %s %s, so %s of %s parts have nothing to do; %s parts are enough\n",
+                 arguments.output.c_str(), groups.c_str(),
+                 session.kind().is_video
+                     ? ("segments of " + std::to_string(session.kind().group_size) + " frames").c_str()
+                     : "frames",
+                 std::to_string(shard.of - session.groups()).c_str(), std::to_string(shard.of).c_str(),
+                 groups.c_str());
   }
 }
 
@@ -238,6 +269,7 @@ void fly(FlyArguments& arguments, const Common& common) {
   const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, *planet, terrain);
   const PlannedFilm& film = select_plan(session, films, common.threads);
   const FilmPlan& plan = film.plan;
+  check_parts(arguments, session, request.shard, common.quiet);
   arguments.image.backend = film.backend;
   const core::DrawRequest first = plan.at(0).request;
   require_known_sun(first.settings, meta.body);
@@ -280,7 +312,10 @@ void add_fly(CLI::App& program, Common& common) {
                       "A-B or A-BxN: draw only frames A to B, or every N-th of them");
   command->add_option(
       "--part", arguments->part,
-      "k/n: draw only the k-th of n parts; auto: take k and n from the variables of SLURM or MPI");
+      "k/n: draw only the k-th of n parts; auto/n: take k from the variables of SLURM or MPI; auto: k and n");
+  command->add_flag(
+      "--join", arguments->join,
+      "Draw nothing: join the parts of a video, or check those of a folder; names missing frames");
   command->add_flag("--force", arguments->force, "Draw every frame again, also those of an earlier run");
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT, pixels (default: the size in the flight)");
   command->add_option("--log", arguments->log, "Write the flown poses as a flight");

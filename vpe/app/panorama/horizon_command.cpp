@@ -16,6 +16,7 @@
 #include "vpe/app/panorama/commands.h"
 #include "vpe/app/panorama/horizon_files.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
@@ -29,6 +30,7 @@ namespace {
 struct HorizonArguments {
   std::string planet;
   std::string at;
+  std::string latitude;
   std::optional<double> height_m;
   std::optional<double> altitude_m;
   double from_deg = 0;
@@ -154,8 +156,9 @@ struct Camera {
   double height_m = 0;  // above the ground
 };
 
-Camera camera_of(const HorizonArguments& a, const paging::Surface& surface) {
-  const mars::LonLat place = place_of(a);
+Camera camera_of(const HorizonArguments& a, const paging::Surface& surface, const paging::PlanetMeta& meta,
+                 bool quiet) {
+  const mars::LonLat place = planetocentric(place_of(a), a.latitude, meta, quiet);
   const double ground_m = surface.at(mars::direction(place)).height_m;
   Camera camera{{place.lon_deg, place.lat_deg, 0, 0, 0, 0},
                 a.height_m ? *a.height_m : *a.altitude_m - ground_m};
@@ -249,7 +252,7 @@ void horizon(const HorizonArguments& a, const Common& common) {
   note_illustration(meta, common.quiet);
   const voxel::RangeCaster caster(planet, memory_bytes(common));
   const paging::Surface& surface = caster.surface();
-  const auto [pose, height_m] = camera_of(a, surface);
+  const auto [pose, height_m] = camera_of(a, surface, planet->meta(), common.quiet);
   const mars::LonLat place{pose.lon_deg, pose.lat_deg};
   const panorama::Viewpoint camera = panorama::viewpoint_at(place, pose.alt_m, planet->radius_m());
   const panorama::GroundRange range = [&](const glm::dvec3& ray) {
@@ -299,6 +302,7 @@ void add_horizon(CLI::App& program, Common& common) {
       common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command->add_option("--at", arguments->at, "LON,LAT of the camera, degrees")->required();
+  add_latitude_option(*command, arguments->latitude);
   command->add_option("--height", arguments->height_m, "Height of the camera above the ground, metres")
       ->check(number_within(0, 1e10));
   command->add_option("--altitude", arguments->altitude_m, "Altitude of the camera above the sphere, metres")

@@ -20,6 +20,7 @@
 #include "vpe/app/picture/pose_option.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
+#include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
 #include "vpe/base/number.h"
@@ -37,6 +38,7 @@ struct RenderArguments {
   std::string pose;
   std::optional<double> height_m;
   std::optional<std::string> cull_from;
+  std::string latitude;
   std::string output;
   std::string range;
   std::string certificate;
@@ -271,7 +273,7 @@ void require_above_ground(const RenderArguments& arguments,
 
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
-  const ParsedRender parsed = parse(arguments);
+  ParsedRender parsed = parse(arguments);
   if (!common.quiet && !parsed.pose.note.empty()) std::fprintf(stderr, "Note: %s.\n", parsed.pose.note.c_str());
   check_render_outputs(arguments, parsed.settings.values());
   const std::string& names = parsed.settings.values().names;
@@ -280,6 +282,12 @@ void render(RenderArguments& arguments, const Common& common) {
   const auto planet = open_planet(arguments.planet, common);
   note_illustration(planet->meta(), common.quiet);
   require_known_sun(parsed.settings.values(), planet->meta().body);
+  const auto convert = [&](mars::Pose& pose, bool quiet) {
+    pose.lat_deg =
+        planetocentric({pose.lon_deg, pose.lat_deg}, arguments.latitude, planet->meta(), quiet).lat_deg;
+  };
+  convert(parsed.pose.pose, common.quiet);
+  if (parsed.cull_pose) convert(*parsed.cull_pose, true);
   core::DrawRequest request = resolve_request(parsed, planet);
   if (!common.quiet) print_sun(sun_statement(request.settings, place_below(request)));
   const bool is_backend_named = arguments.image.backend.has_value() || !arguments.explain_lod.empty();
@@ -317,6 +325,7 @@ void add_render(CLI::App& program, Common& common) {
       ->add_option("--pose", arguments->pose,
                    "LON,LAT,ALT,YAW,PITCH,ROLL of the camera: degrees; ALT in metres above the sphere")
       ->required();
+  add_latitude_option(*command, arguments->latitude);
   command
       ->add_option("--height", arguments->height_m,
                    "Height of the camera above the terrain, metres; replaces ALT")

@@ -55,6 +55,7 @@ void build(BuildArguments& arguments, const Common& common) {
   for (const std::string& text : arguments.regions) options.regions.push_back(parse_region(text));
   options.threads = common.threads;
   options.shard = parse_shard(arguments.part);
+  require_count_of_parts(arguments.part, options.output, options.shard);
   options.output = shard_file_name(options.output, options.shard);
   std::vector<std::string> inputs = arguments.dems;
   inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
@@ -121,8 +122,8 @@ void add_build(CLI::App& program, Common& common) {
   add_source_options(*command, arguments->sources);
   command->add_option(
       "--part", arguments->part,
-      "k/n: build only the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto: take k and n from the "
-      "variables of SLURM or MPI");
+      "k/n: build only the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto/n: take k from the "
+      "variables of SLURM or MPI; auto: k and n");
   command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
   command->add_flag("--estimate", arguments->estimate, "Only estimate the build: tiles, bytes, time");
   command->callback([arguments, &common] { build(*arguments, common); });

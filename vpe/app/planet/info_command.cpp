@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "paging/planet/planet_database.h"
 #include "paging/surface/query.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
@@ -15,12 +17,23 @@ namespace vpe::app {
 
 namespace {
 
+// Returns what a file with one part of a divided build states; nullopt for other arguments. Throws
+// paging::PlanetError and paging::DatabaseError.
+std::optional<paging::PlanetMeta> meta_of_part(const std::string& path) {
+  if (!paging::is_planet_database(path)) return std::nullopt;
+  const auto rows = paging::read_meta_rows(paging::open_planet_database(path));
+  if (!rows.contains("part")) return std::nullopt;
+  return paging::from_rows(rows, path);
+}
+
 void info(const std::string& argument, const Common& common) {
-  const auto planet = open_planet(argument, common);
-  const paging::PlanetMeta& m = planet->meta();
+  const auto part = meta_of_part(argument);
+  const auto planet = part ? nullptr : open_planet(argument, common);
+  const std::string path = part ? argument : planet->path();
+  const paging::PlanetMeta& m = part ? *part : planet->meta();
   if (common.json) {
     nlohmann::json json = planet_json(m);
-    json["path"] = planet->path();
+    json["path"] = path;
     json["raster"] = is_raster_argument(argument) ? nlohmann::json(argument) : nlohmann::json();
     print_json(json);
     return;
@@ -34,7 +47,11 @@ void info(const std::string& argument, const Common& common) {
     return std::string(text);
   };
   if (is_raster_argument(argument)) line("raster", argument);
-  line(is_raster_argument(argument) ? "its planet file" : "file", planet->path());
+  line(is_raster_argument(argument) ? "its planet file" : "file", path);
+  if (part) {
+    line("part", std::to_string(m.shard->id.number) + " of " + std::to_string(m.shard->id.of) +
+                     "; 'vpe merge PART... -o PLANET.vpe' joins them");
+  }
   if (m.illustration) line("NOTE", "an illustration: its numbers are not data");
   line("body", m.body + ", sphere of radius " + number(m.radius_m, "m"));
   line("vertical datum", paging::describe_datum(m));

@@ -6,6 +6,7 @@
 #include "paging/build/merge.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/planet_build.h"
+#include "vpe/app/planet/remote_wait.h"
 
 namespace vpe::app {
 
@@ -19,6 +20,7 @@ struct MergeArguments {
 void merge(MergeArguments& arguments, const Common& common) {
   paging::MergeOptions& options = arguments.options;
   options.threads = common.threads;
+  for (const std::string& shard : options.shards) require_local_planet(shard);
   options.output = check_planet_file(options.output, options.shards);
   if (!arguments.force && std::filesystem::exists(options.output))
     require_same_content(options.output, paging::planned_content(options.shards));

@@ -11,10 +11,12 @@
 #include <span>
 
 #include "mars/embedded/embedded.h"
+#include "mars/remote/gdal_remote.h"
 #include "mars/sources/source.h"
 #include "paging/planet/planet_database.h"
 #include "vpe/app/planet/build_sources.h"
 #include "vpe/app/planet/planet_build.h"
+#include "vpe/app/planet/remote_wait.h"
 #include "vpe/base/user_folders.h"
 
 namespace vpe::app {
@@ -109,7 +111,7 @@ std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const 
 std::string cache_name(const std::string& raster, const mars::RasterState& state) {
   std::error_code none;
   // What is not a path of a file ("NETCDF:x.nc:z") may name one relative to the current folder; a URL does not.
-  const bool is_url = raster.find("://") != std::string::npos;
+  const bool is_url = mars::is_remote(mars::raster_name(raster));
   const std::string place = is_url                     ? raster
                             : fs::exists(raster, none) ? fs::weakly_canonical(raster).string()
                                                        : raster + '\n' + fs::current_path(none).string();
@@ -144,7 +146,11 @@ std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argumen
                                mars::embedded_image().get(), common);
                   });
   }
-  if (!is_raster_argument(argument)) return paging::PlanetFile::open(argument);
+  if (!is_raster_argument(argument)) {
+    require_local_planet(argument);
+    return paging::PlanetFile::open(argument);
+  }
+  watch_remote_reads(common.quiet);
   // Before the raster is opened: what is read is then never older than the state.
   const mars::RasterState state = mars::raster_state(argument);
   if (!state.is_certain && !common.quiet) {

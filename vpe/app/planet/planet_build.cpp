@@ -12,6 +12,7 @@
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/planet/build_sources.h"
 #include "vpe/app/planet/planet_json.h"
+#include "vpe/app/planet/remote_wait.h"
 #include "vpe/base/file.h"
 
 namespace vpe::app {
@@ -94,6 +95,7 @@ void print_levels(const paging::PlanetMeta& meta) {
 }  // namespace
 
 void limit_rasters(const Common& common) {
+  watch_remote_reads(common.quiet);
   // Half of --memory: the allocator keeps about a third more than rasters use, and the tile index and scratch
   // memory need the rest.
   mars::set_raster_memory(static_cast<std::size_t>(common.memory_mb) << 19);
@@ -191,7 +193,6 @@ void print_build(const paging::BuildSummary& summary, const std::string& output,
       json["findings"] = findings_json(*combined);
       json["notes"] = combined->notes;
     }
-    if (meta.shard) json["part"] = {{"number", meta.shard->id.number}, {"of", meta.shard->id.of}};
     print_json(json);
     return;
   }

@@ -41,29 +41,31 @@ json levels_json(const paging::PlanetMeta& m) {
 }  // namespace
 
 json planet_json(const paging::PlanetMeta& m) {
-  return {{"body", m.body},
-          {"radius_m", m.radius_m},
-          {"datum", to_string(m.datum)},
-          {"shape", m.shape},
-          {"illustration", m.illustration},
-          {"tile_intervals", m.tile.intervals()},
-          {"height_quantum_m", m.quantum_m},
-          {"tiles", m.tiles},
-          {"finest_tiles", m.leaf_tiles},
-          {"posts", m.leaf_tiles * m.tile.post_count()},
-          {"levels", m.finest_level + 1},
-          {"finest_post_spacing_m", lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m)},
-          {"lowest_m", m.lowest_radius_m - m.radius_m},
-          {"highest_m", m.highest_radius_m - m.radius_m},
-          {"image_tiles", m.image_tiles},
-          {"resampling_max_m", m.resampling.max_m},
-          {"resampling_rms_m", m.resampling.rms_m},
-          {"resampling_posts", m.resampling.posts},
-          {"by_level", levels_json(m)},
-          {"sources", sources_json(m.sources)},
-          {"image_sources", sources_json(m.image_sources)},
-          {"program", m.program},
-          {"identity", m.identity}};
+  json out{{"body", m.body},
+           {"radius_m", m.radius_m},
+           {"datum", to_string(m.datum)},
+           {"shape", m.shape},
+           {"illustration", m.illustration},
+           {"tile_intervals", m.tile.intervals()},
+           {"height_quantum_m", m.quantum_m},
+           {"tiles", m.tiles},
+           {"finest_tiles", m.leaf_tiles},
+           {"posts", m.leaf_tiles * m.tile.post_count()},
+           {"levels", m.finest_level + 1},
+           {"finest_post_spacing_m", lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m)},
+           {"lowest_m", m.lowest_radius_m - m.radius_m},
+           {"highest_m", m.highest_radius_m - m.radius_m},
+           {"image_tiles", m.image_tiles},
+           {"resampling_max_m", m.resampling.max_m},
+           {"resampling_rms_m", m.resampling.rms_m},
+           {"resampling_posts", m.resampling.posts},
+           {"by_level", levels_json(m)},
+           {"sources", sources_json(m.sources)},
+           {"image_sources", sources_json(m.image_sources)},
+           {"program", m.program},
+           {"identity", m.identity}};
+  if (m.shard) out["part"] = {{"number", m.shard->id.number}, {"of", m.shard->id.of}};
+  return out;
 }
 
 }  // namespace vpe::app
