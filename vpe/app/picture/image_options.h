@@ -55,7 +55,8 @@ std::size_t memory_bytes(const Common& common);
 std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet);
 
-// Throws std::runtime_error that names the missing tiles of an image, unless the options allow them.
+// Throws std::runtime_error that names the missing tiles of an image, unless the options allow them. Unreadable
+// tiles come first: tiles below them are missing for the same reason.
 void require_complete(const RenderOptions& options, const core::DrawResult& result);
 
 // Prints failures to read tiles (core::DrawResult::failures) as warnings on stderr.
