@@ -7,6 +7,7 @@
 
 #include "paging/surface/surface.h"
 #include "panorama/metadata/sidecar.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
@@ -281,6 +282,13 @@ void add_panorama(CLI::App& program, Common& common) {
   arguments->render.backend = core::Backend::kRay;
   add_render_options(*command, arguments->render);
   add_eye_options(*command, arguments->stereo);
+  add_examples(
+      *command,
+      {{"the full circle from eye height",
+        "vpe panorama mars.vpe --at -59.2,-13.7 --height 2 -o rim.png --width 6000"},
+       {"the south, finely, with marks of azimuth",
+        "vpe panorama mars.vpe --at -59.2,-13.7 --height 2 --from 150 --to 210 --elevation=-10,15 --degrees-per-pixel 0.01 --set overlay.compass=on -o south.tif"},
+       {"the same image again", "vpe panorama --from-sidecar rim.json -o same.png"}});
   command->callback([arguments, facets, yaw, &common] {
     arguments->has_facets = facets->count() > 0;
     arguments->has_yaw = yaw->count() > 0;

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "paging/surface/surface.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
@@ -272,7 +273,7 @@ void require_above_ground(const RenderArguments& arguments,
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const ParsedRender parsed = parse(arguments);
-  if (!common.quiet && !parsed.pose.note.empty()) std::fprintf(stderr, "Note: %s.\n", parsed.pose.note.c_str());
+  if (!common.quiet && !parsed.pose.note.empty()) std::fprintf(stderr, "vpe: note: %s\n", parsed.pose.note.c_str());
   check_render_outputs(arguments, parsed.settings.values());
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
@@ -340,6 +341,14 @@ void add_render(CLI::App& program, Common& common) {
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw one colour for a camera below the ground, instead of failing");
   add_render_options(*command, arguments->image);
+  add_examples(
+      *command,
+      {{"from 2 km above the ground, to the east, 5 degrees down",
+        "vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 -o view.png"},
+       {"the globe in colours of elevation",
+        "vpe render mars.vpe --pose -75,5,9000000,0,-90,0 --fov 50 --set mode=coloured -o globe.png"},
+       {"range of every pixel, bounds of the error, sun by date",
+        "vpe render mars.vpe --pose -59.2,-13.7,5000 --sun 2026-11-20T12:00Z -o view.png --range view.tif --certificate view.json"}});
   command->callback([arguments, &common] { render(*arguments, common); });
 }
 

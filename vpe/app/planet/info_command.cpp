@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "paging/surface/query.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/planet_argument.h"
@@ -69,6 +70,8 @@ void add_info(CLI::App& program, Common& common) {
   CLI::App* command = add_command(
       program, "info", "Describe a planet file: body, datum, levels, sources, resampling error", common, true);
   command->add_option("PLANET", *planet, "Planet file or DEM (default: the embedded Mars)");
+  add_examples(*command, {{"what a planet file holds", "vpe info mars.vpe"},
+                          {"all figures, with every level, for a program", "vpe info mars.vpe --json"}});
   command->callback([planet, &common] { info(*planet, common); });
 }
 
