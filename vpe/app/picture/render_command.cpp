@@ -11,6 +11,7 @@
 
 #include "paging/surface/surface.h"
 #include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
@@ -191,8 +192,9 @@ void print_summary(const RenderArguments& arguments, const core::DrawRequest& re
   std::string corners;
   if (c.corner_stretch > kWideStretch)
     corners = ", up to " + base::format_fixed(c.shift_bound_px * c.corner_stretch, 2) + " px in the corners";
-  std::printf("%s: %s in %d tiles, geometry within %.2f px (%.3g m)%s\n", arguments.output.c_str(),
-              what.c_str(), result.stats.tiles_drawn, c.shift_bound_px, c.geometric_error_m, corners.c_str());
+  std::printf("%s: %s in %d tiles, geometry within %.2f px (%s)%s\n", arguments.output.c_str(), what.c_str(),
+              result.stats.tiles_drawn, c.shift_bound_px, length_text(c.geometric_error_m, 3).c_str(),
+              corners.c_str());
 }
 
 void write_stereo(const RenderArguments& arguments, const Common& common, const StereoImage& drawn) {
@@ -208,7 +210,8 @@ void write_stereo(const RenderArguments& arguments, const Common& common, const 
                 {"certificate", certificates},
                 {"stats", {{"left", to_json(drawn.left.stats)}, {"right", to_json(drawn.right.stats)}}}});
   } else if (!common.quiet) {
-    std::printf("%s: eyes %.4g m apart, geometry within %.2f px\n", arguments.output.c_str(), drawn.eye_base_m,
+    std::printf("%s: eyes %s apart, geometry within %.2f px\n", arguments.output.c_str(),
+                length_text(drawn.eye_base_m).c_str(),
                 std::max(drawn.left.certificate.shift_bound_px, drawn.right.certificate.shift_bound_px));
   }
 }
@@ -273,7 +276,8 @@ void require_above_ground(const RenderArguments& arguments,
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const ParsedRender parsed = parse(arguments);
-  if (!common.quiet && !parsed.pose.note.empty()) std::fprintf(stderr, "vpe: note: %s\n", parsed.pose.note.c_str());
+  if (!common.quiet && !parsed.pose.note.empty())
+    std::fprintf(stderr, "vpe: note: %s\n", parsed.pose.note.c_str());
   check_render_outputs(arguments, parsed.settings.values());
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
