@@ -200,6 +200,7 @@ void render(RenderArguments& arguments, const Common& common) {
   if (!common.quiet && !parsed.pose.note.empty())
     std::fprintf(stderr, "vpe: note: %s\n", parsed.pose.note.c_str());
   check_render_outputs(arguments, parsed.settings.values());
+  note_contours(arguments.image, parsed.settings.values(), common.quiet);
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 
