@@ -14,15 +14,6 @@ namespace {
 
 constexpr char kDiskAdvice[] = "check the free space and the permissions there";
 
-// GDAL's tag for the value that means nodata, which libtiff does not know by itself.
-constexpr std::uint32_t kNodataTag = 42113;
-
-bool set_nodata(TIFF* tiff, const char* text) {
-  char name[] = "GDALNoDataValue";
-  const TIFFFieldInfo field{kNodataTag, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
-  return TIFFMergeFieldInfo(tiff, &field, 1) == 0 && TIFFSetField(tiff, kNodataTag, text) == 1;
-}
-
 }  // namespace
 
 BigTiffWriter::BigTiffWriter(vpe::base::OutputFile& file, std::int64_t width_px, std::int64_t height_px,
@@ -62,7 +53,7 @@ void BigTiffWriter::begin_page(std::int64_t width_px, std::int64_t height_px, bo
     ok = ok && TIFFSetField(tiff, TIFFTAG_XMLPACKET, static_cast<std::uint32_t>(tags_.xmp.size()),
                             tags_.xmp.data()) == 1;
   }
-  if (tags_.nodata) ok = ok && set_nodata(tiff, "nan");
+  if (!is_reduced) ok = ok && set_metadata(tiff, tags_.metadata);
   if (!ok) fail();
 }
 

@@ -22,14 +22,15 @@
 #include "vpe/base/file.h"
 #include "vpe/base/parallel.h"
 #include "vpe/core/image/tiff_handle.h"
+#include "vpe/core/image/tiff_metadata.h"
 
 namespace panorama {
 
 // Describes a file besides its pixels.
 struct BigTiffTags {
   std::string software;
-  std::string xmp;      // a packet for the first page, or empty
-  bool nodata = false;  // marks NaN as nodata, in GDAL's tag; for floating point
+  std::string xmp;                        // a packet for the first page, or empty
+  vpe::core::TiffMetadata metadata = {};  // of the first page
 };
 
 // Writes one file. For one thread; packing may run on others.

@@ -77,6 +77,22 @@ TEST_F(Panorama, FacetsAndEquirectangularDescribeThemselves) {
   EXPECT_NEAR(image.pixels.back().r, image.pixels[image.pixels.size() - 200].r, 2);
 }
 
+// One sample a pixel leaves stair steps, and the filter of edges needs plane images.
+TEST_F(Panorama, RoundImagesHaveFourSamplesUnlessANumberIsNamed) {
+  const auto pixels = [&](const Words& more) {
+    Words all{"--width", "400", "--elevation=-20,10"};
+    all.insert(all.end(), more.begin(), more.end());
+    make("p.png", all);
+    return vpe::core::read_image(dir_ / "p.png").pixels;
+  };
+  const auto one = pixels({"--set", "samples=1"});
+  EXPECT_EQ(pixels({}), pixels({"--set", "samples=4"}));
+  EXPECT_NE(pixels({}), one);
+  EXPECT_EQ(pixels({"--set", "edges=hard"}), one);
+  const Words facets{"--projection", "facets"};
+  EXPECT_EQ(pixels(facets), pixels({"--projection", "facets", "--set", "samples=1"}));
+}
+
 TEST_F(Panorama, AtAPoleItIsTheOneOfItsMeridian) {
   make("n.png", {"--width", "360", "--elevation=-20,10"});
   const auto at_pole = [&](const std::string& name, const std::string& lon) {

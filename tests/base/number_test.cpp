@@ -93,6 +93,11 @@ TEST(FormatRounded, HasNoTrailingDigits) {
   EXPECT_EQ(format_rounded(1.0009, 3), "1.001");
   EXPECT_EQ(format_rounded(1.0001, 3), "1");
   EXPECT_EQ(format_rounded(-7.5, 0), "-8");
+  EXPECT_EQ(format_significant(41707.1, 4), "41710");
+  EXPECT_EQ(format_significant(3489.6, 3), "3490");
+  EXPECT_EQ(format_significant(-20.532597351137156, 4), "-20.53");
+  EXPECT_EQ(format_significant(0.09151, 2), "0.092");
+  EXPECT_EQ(format_significant(0, 3), "0");
   for (int n = -10'000; n < 10'000; ++n) {
     const double value = n * 0.001;
     EXPECT_LE(format_rounded(value, 3).size(), 7U) << n;

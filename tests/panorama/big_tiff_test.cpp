@@ -30,6 +30,12 @@ struct BigTiff : ::testing::Test {
   vpe::base::ThreadPool pool{2};
 };
 
+vpe::core::TiffMetadata nan_is_nodata() {
+  vpe::core::TiffMetadata metadata;
+  metadata.nodata = "nan";
+  return metadata;
+}
+
 using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
 Tiff open(const std::filesystem::path& path) { return {TIFFOpen(path.c_str(), "r"), TIFFClose}; }
 
@@ -134,7 +140,7 @@ void expect_numbers(const std::filesystem::path& path, int samples) {
   std::vector<std::vector<Number>> tiles;
   {
     OutputFile file(path);
-    BigTiffWriter writer(file, kWidth, kHeight, format, {"someone", "", true});
+    BigTiffWriter writer(file, kWidth, kHeight, format, {"someone", "", nan_is_nodata()});
     for (int n = 0; n < 2; ++n) {
       std::vector<Number> tile(static_cast<std::size_t>(kTile_px * kTile_px * samples));
       for (Number& value : tile) value = static_cast<Number>(normal(random));
@@ -238,7 +244,8 @@ TEST_F(BigTiff, TagsSayWhatThePixelsAre) {
   for (const SampleFormat format : {kRgb, SampleFormat{1, 4}, SampleFormat{2, 8}}) {
     {
       OutputFile file(path);
-      BigTiffWriter writer(file, 10, 20, format, {"someone", "<x/>", format != kRgb});
+      BigTiffWriter writer(file, 10, 20, format,
+                           {"someone", "<x/>", format == kRgb ? vpe::core::TiffMetadata{} : nan_is_nodata()});
       writer.put(0, 0, pack_tile(std::vector<std::uint8_t>(format.tile_bytes()), format));
       writer.finish();
       file.commit();

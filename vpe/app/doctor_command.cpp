@@ -12,6 +12,7 @@
 
 #include "mars/sources/source.h"
 #include "vpe/app/cli/config_file.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/cli/subprocess.h"
@@ -191,6 +192,8 @@ void doctor(const Common& common) {
 void add_doctor(CLI::App& program, Common& common) {
   CLI::App* command = add_command(program, "doctor",
                                   "Check this machine: OpenGL, threads, memory, cache, ffmpeg", common, true);
+  add_examples(*command, {{"what drawing will use, and what is missing", "vpe doctor"},
+                          {"the state under other limits", "vpe doctor --threads 4 --memory 512 --json"}});
   command->callback([&common] { doctor(common); });
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
 #include "vpe/app/picture/image_options.h"
@@ -212,6 +213,11 @@ void add_explore(CLI::App& program, Common& common) {
                       "Record the session as a flight; zoom, backend, stereo and window size as comments only");
   command->add_flag("--print-settings", arguments->print_settings, "Print the preferences in effect and exit");
   add_render_options(*command, arguments->image);
+  add_examples(*command,
+               {{"the whole planet", "vpe explore mars.vpe"},
+                {"begin at a place, in ray casting, with shadows",
+                 "vpe explore mars.vpe --pose -59.2,-13.7,8000,90,-10 --backend ray --set shadows=on"},
+                {"record the session as a flight", "vpe explore mars.vpe --log session.flight"}});
   command->callback([arguments, &common] { explore(*arguments, common); });
 }
 

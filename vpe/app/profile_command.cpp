@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
@@ -77,6 +78,10 @@ void add_profile(CLI::App& program, Common& common) {
       ->add_option("--step", arguments->step_m,
                    "Largest distance between points, metres (default: 1000 points along the profile)")
       ->check(number_within(0.001, 1e7));
+  add_examples(*command,
+               {{"heights every 2 km along a great circle",
+                 "vpe profile mars.vpe -70,-13 -60,-14 --step 2000 > profile.csv"},
+                {"a way over three places", "vpe profile mars.vpe 137.30,-4.60 137.37,-4.67 137.45,-4.75"}});
   command->callback([arguments, &common] { run_profile(*arguments, common); });
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "paging/surface/query.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
@@ -152,6 +153,10 @@ void add_query(CLI::App& program, Common& common) {
   add_latitude_option(*command, arguments->latitude);
   command->add_flag("--fail-on-nodata", arguments->fail_on_nodata,
                     "Exit with status 1 after the answers if a place has no data");
+  add_examples(*command, {{"two places, longitude first", "vpe query mars.vpe -59.2,-13.7 226.875,17.375"},
+                          {"a place as on maps", "vpe query mars.vpe 13.7S,59.2W"},
+                          {"a table of places with a header that names lon and lat",
+                           "vpe query mars.vpe --json < places.csv"}});
   command->callback([arguments, &common] { query(*arguments, common); });
 }
 

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
@@ -47,6 +48,8 @@ void settings(const Common& common) {
 void add_settings(CLI::App& program, Common& common) {
   CLI::App* command = add_command(
       program, "settings", "List the settings that --set, and 'set' in flights, can change", common, true);
+  add_examples(*command, {{"the table", "vpe settings"},
+                          {"with types, ranges and defaults for a program", "vpe settings --json"}});
   command->callback([&common] { settings(common); });
 }
 

@@ -73,6 +73,11 @@ std::string format_rounded(double value, int decimals) {
   return format_number(std::round(value * unit) / unit);
 }
 
+std::string format_significant(double value, int digits) {
+  const auto rounded = parse_number(print(value, std::chars_format::scientific, digits - 1));
+  return format_number(rounded.value_or(value));
+}
+
 std::string format_display(double value, int decimals) {
   constexpr double kMostPlain = 1e15;
   const bool is_plain = std::abs(value) < kMostPlain;

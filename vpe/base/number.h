@@ -32,6 +32,10 @@ std::string format_general(double value, int digits);
 // Returns the number rounded to at most this many decimals, without trailing zeros: "12.5", "0.35".
 std::string format_rounded(double value, int decimals);
 
+// Returns the number rounded to at most this many significant digits (at least 1), without trailing zeros, and
+// without an exponent where format_number() has none: "41710", "0.092".
+std::string format_significant(double value, int digits);
+
 // Returns the number for display, with this many decimals: "-12.50". A value that rounds to zero has no sign.
 // Numbers of 1e15 and more get an exponent. Returns "nan", "inf" or "-inf" for a value that is not finite.
 std::string format_display(double value, int decimals);

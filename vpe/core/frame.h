@@ -104,6 +104,7 @@ struct DrawRequest {
 struct MissingTile {
   std::string tile;
   std::string why;
+  bool is_unreadable = false;  // false: was not loaded in time, for instance below an unreadable tile
 };
 
 struct DrawResult {

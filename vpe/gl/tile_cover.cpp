@@ -332,7 +332,7 @@ void TileCover::report(core::DrawResult& result) const {
   for (const std::size_t n : drawn_.missing) {
     const lod::TileKey& key = wanted_.tiles[n].key;
     const std::string* why = streamer_.failure(key);
-    result.missing.push_back({lod::to_string(key), why == nullptr ? "not loaded yet" : *why});
+    result.missing.push_back({lod::to_string(key), why == nullptr ? "not loaded yet" : *why, why != nullptr});
   }
 }
 

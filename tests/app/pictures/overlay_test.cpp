@@ -50,6 +50,8 @@ TEST_F(OverlayApp, TheImageIsThePlainOneUnderTheLayer) {
   ASSERT_EQ(render({}, "plain.png").exit_code, 0);
   const Result result = render(all(), "with.png");
   ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(
+      says(result.err, {"contours are those of the ground as drawn, here within 1 px; --tolerance 0.1"}));
   Words more = all();
   more.insert(more.end(), {"--overlay-layer", "layer.png"});
   ASSERT_EQ(render(more, "without.png").exit_code, 0);

@@ -40,8 +40,7 @@ bool is_json(std::string_view head) {
 
 core::TiffHandle open_tiff(const fs::path& file) { return {file, "rm", core::TiffHandle::kMaxTableBytes}; }
 
-bool is_own_tiff(const fs::path& file) {
-  const core::TiffHandle tiff = open_tiff(file);
+bool is_own_tiff(const core::TiffHandle& tiff) {
   const char* software = nullptr;
   return tiff.get() != nullptr && TIFFGetField(tiff.get(), TIFFTAG_SOFTWARE, &software) == 1 &&
          std::string_view(software).starts_with("vpe ");
@@ -57,7 +56,8 @@ bool is_range_tiff(const fs::path& file) {
   TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, &samples);
   TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLEFORMAT, &format);
   if (bits != 32 || samples != 1 || format != SAMPLEFORMAT_IEEEFP) return false;
-  // ModelPixelScale, ModelTiepoint, ModelTransformation and GeoKeyDirectory of GeoTIFF; nodata of GDAL.
+  if (is_own_tiff(tiff)) return TIFFIsTiled(tiff.get()) == 0;  // layers of panoramas are tiled
+  // Older versions wrote no tags. ModelPixelScale, ModelTiepoint, ModelTransformation and GeoKeyDirectory of GeoTIFF; nodata of GDAL.
   constexpr std::array<std::uint32_t, 5> kForeignTags{33550, 33922, 34264, 34735, 42113};
   return std::none_of(kForeignTags.begin(), kForeignTags.end(), [&](std::uint32_t tag) {
     std::uint32_t count = 0;
@@ -104,8 +104,8 @@ bool is_of_kind(const fs::path& file, FileKind kind) {
   switch (kind) {
     case FileKind::kImage: return is_png(head) || is_jpeg(head);
     case FileKind::kRange: return is_range_tiff(file);
-    case FileKind::kPanorama: return is_png(head) || is_jpeg(head) || is_own_tiff(file);
-    case FileKind::kPanoramaPlane: return is_own_tiff(file);
+    case FileKind::kPanorama: return is_png(head) || is_jpeg(head) || is_own_tiff(open_tiff(file));
+    case FileKind::kPanoramaPlane: return is_own_tiff(open_tiff(file));
     case FileKind::kCertificate: return is_json(head) && contains(head, "\"shift_bound_px\"");
     case FileKind::kExplanation: return is_json(head) && contains(head, "\"budget_spent\"");
     case FileKind::kSkyline: return head.starts_with("azimuth_deg,elevation_deg,");

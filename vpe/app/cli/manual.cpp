@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vpe/app/cli/command_list.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/core/appearance/settings.h"
 
@@ -107,6 +108,12 @@ std::string man_page(const CLI::App& program) {
   for (const core::SettingInfo& info : core::Settings::list()) {
     page += ".TP\n.B " + roff(std::string(info.key)) + "\n" + roff(std::string(info.meaning)) + " (default " +
             roff(info.default_text.empty() ? "nothing" : info.default_text) + ")\n";
+  }
+  page += ".SH EXAMPLES\n" + roff("'vpe COMMAND --help' shows those of a command.") + "\n";
+  for (const CLI::App* command : all_commands(program)) {
+    const std::string examples = command->get_footer();
+    page += ".SS vpe " + roff(command_words(*command)) + "\n.nf\n" +
+            roff(examples.substr(std::min(examples.find('\n') + 1, examples.size()))) + "\n.fi\n";
   }
   page +=
       ".SH EXIT STATUS\n" +
@@ -214,8 +221,12 @@ std::string bash_completion(const CLI::App& program) {
 void add_manual(CLI::App& program, Common& common) {
   CLI::App* completion =
       add_command(program, "completion", "Print the completion script for bash", common, false);
+  add_examples(*completion, {{"in this shell", "vpe completion > vpe.bash && . ./vpe.bash"},
+                             {"in every shell of a user",
+                              "vpe completion > ~/.local/share/bash-completion/completions/vpe"}});
   completion->callback([&program] { std::fputs(bash_completion(program).c_str(), stdout); });
   CLI::App* page = add_command(program, "man", "Print the manual page (vpe man | man -l -)", common, false);
+  add_examples(*page, {{"read it", "vpe man | man -l -"}, {"install it", "vpe man > vpe.1"}});
   page->callback([&program] { std::fputs(man_page(program).c_str(), stdout); });
 }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <exception>
 
+#include "vpe/app/cli/command_list.h"
 #include "vpe/app/cli/config_file.h"
 #include "vpe/app/cli/former_options.h"
 #include "vpe/app/cli/interrupt.h"
@@ -47,6 +48,15 @@ void check_command_name(const CLI::App& program, const std::vector<std::string>&
     names += (names.empty() ? "" : ", ") + command->get_name();
   }
   throw UsageError("unknown command '" + reversed.back() + "'; the commands are " + names);
+}
+
+// Returns CLI11's words for wrong usage, and the help that says what is right.
+std::string usage_text(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
+  const std::string words = command_words(*command);
+  const std::string help = "vpe " + words + (words.empty() ? "" : " ") + "--help";
+  return std::string(error.what()) + "; '" + help + "' says what is expected";
 }
 
 // Returns the exit code. A full disk shows only when the results leave the buffer.
@@ -97,7 +107,12 @@ int run_program(int argc, char** argv, std::span<const AddCommand> commands) {
   program.set_version_flag("--version", std::string("vpe ") + version());
   program.require_subcommand(1);
   program.footer(
-      "'vpe COMMAND --help' explains a command. Without PLANET, the embedded Mars (an illustration) is used.");
+      "Examples:\n"
+      "  vpe render --pose -59.2,-13.7,0,90,-5,0 --height 2000 -o view.png\n"
+      "  vpe build mola.tif --image viking.tif -o mars.vpe\n"
+      "  vpe explore mars.vpe\n\n"
+      "'vpe COMMAND --help' explains a command, with examples. Without PLANET, the embedded Mars (an "
+      "illustration) is used.");
   Common common;
   common.words.assign(argv + std::min(argc, 1), argv + argc);
   use_current_names(common.words);
@@ -107,9 +122,12 @@ int run_program(int argc, char** argv, std::span<const AddCommand> commands) {
     check_command_name(program, arguments);
     program.parse(std::move(arguments));
     return flush_results();
+  } catch (const CLI::Success& e) {
+    program.exit(e);  // prints the help or the version
+    return flush_results();
   } catch (const CLI::ParseError& e) {
-    const int code = program.exit(e);
-    return code == 0 ? kSuccess : kUsage;
+    std::fprintf(stderr, "vpe: %s\n", usage_text(program, e).c_str());
+    return kUsage;
   } catch (const UsageError& e) {
     std::fprintf(stderr, "vpe: %s\n", e.what());
     return kUsage;

@@ -8,6 +8,7 @@
 
 #include "mars/geodesy/place_text.h"
 #include "paging/surface/surface.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
@@ -323,6 +324,11 @@ void add_fly(CLI::App& program, Common& common) {
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw frames below the ground in one colour, instead of failing before the first frame");
   add_render_options(*command, arguments->image);
+  add_examples(*command, {{"a video; the same command continues a stopped one",
+                           "vpe fly valles.flight mars.vpe -o film.mp4"},
+                          {"a quick look: every 45th frame, small",
+                           "vpe fly valles.flight mars.vpe -o preview --frames 0-299x45 --size 480x270"},
+                          {"one of four machines", "vpe fly valles.flight mars.vpe -o film.mp4 --part 1/4"}});
   command->callback([arguments, &common] { fly(*arguments, common); });
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
@@ -330,6 +331,13 @@ void add_horizon(CLI::App& program, Common& common) {
       ->check(number_within(1, 1e11));
   command->add_option("--landscape", arguments->landscape,
                       "Folder to make: the skyline as a Stellarium landscape");
+  add_examples(
+      *command,
+      {{"the skyline from eye height", "vpe horizon mars.vpe --at -59.2,-13.7 --height 2 -o skyline.csv"},
+       {"an arc across north, finely",
+        "vpe horizon mars.vpe --at -59.2,-13.7 --height 2 --from -20 --to 20 --step 0.01 -o north.csv"},
+       {"which named features can be seen, and what hides the others",
+        "vpe horizon mars.vpe --at -59.2,-13.7 --height 2 --names names.csv --features seen.csv"}});
   command->callback([arguments, &common] { horizon(*arguments, common); });
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "panorama/viewer/viewer.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
@@ -242,6 +243,10 @@ void add_overlook(CLI::App& program, Common& common) {
       ->check(number_within(0.5, 4));
   command->add_flag("--compass", arguments->compass,
                     "Draw marks of azimuth along the view's lower edge; a window always has them");
+  add_examples(*command, {{"in a window", "vpe overlook rim.png"},
+                          {"a view to azimuth 119, 5 degrees up, as a file",
+                           "vpe overlook rim.png --view 119,5 --fov 40 -o look.png"},
+                          {"what is in a direction", "vpe overlook rim.png --direction 119,-3 --json"}});
   command->callback([arguments, &common] { overlook(*arguments, common); });
 }
 

@@ -7,6 +7,8 @@
 
 #include "paging/surface/surface.h"
 #include "panorama/metadata/sidecar.h"
+#include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
@@ -138,10 +140,11 @@ nlohmann::json report_json(const PanoramaRequest& request, const PanoramaPlan& p
 
 void print_summary(const PanoramaRequest& request, const PanoramaPlan& plan, double shift_bound_px,
                    double total_s) {
-  std::printf("%s: %s of %lldx%lld pixels in %.1f s, geometry within %.2g px\n", request.output.c_str(),
+  std::printf("%s: %s of %lldx%lld pixels in %.1f s, geometry within %s px\n", request.output.c_str(),
               panorama::to_string(plan.map.kind), static_cast<long long>(plan.size.width_px),
-              static_cast<long long>(plan.size.height_px), total_s, shift_bound_px);
-  if (request.stereo) std::printf("eyes %.4g m apart\n", request.stereo->base_m);
+              static_cast<long long>(plan.size.height_px), total_s,
+              base::format_significant(shift_bound_px, 2).c_str());
+  if (request.stereo) std::printf("eyes %s apart\n", length_text(request.stereo->base_m).c_str());
 }
 
 // Makes renderers of the request's backend. One that measured the eyes is used again, as it has terrain
@@ -281,6 +284,13 @@ void add_panorama(CLI::App& program, Common& common) {
   arguments->render.backend = core::Backend::kRay;
   add_render_options(*command, arguments->render);
   add_eye_options(*command, arguments->stereo);
+  add_examples(
+      *command,
+      {{"the full circle from eye height",
+        "vpe panorama mars.vpe --at -59.2,-13.7 --height 2 -o rim.png --width 6000"},
+       {"the south, finely, with marks of azimuth",
+        "vpe panorama mars.vpe --at -59.2,-13.7 --height 2 --from 150 --to 210 --elevation=-10,15 --degrees-per-pixel 0.01 --set overlay.compass=on -o south.tif"},
+       {"the same image again", "vpe panorama --from-sidecar rim.json -o same.png"}});
   command->callback([arguments, facets, yaw, &common] {
     arguments->has_facets = facets->count() > 0;
     arguments->has_yaw = yaw->count() > 0;

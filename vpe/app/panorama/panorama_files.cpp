@@ -47,6 +47,19 @@ std::string packet_of(const PanoramaPlan& plan) {
   }
 }
 
+core::TiffMetadata metadata_of(const panorama::PlaneInfo& info) {
+  const std::string unit(info.unit);
+  core::TiffMetadata metadata;
+  if (info.plane == panorama::Plane::kLonLat) {
+    metadata.bands = {{"longitude", unit}, {"latitude", unit}};
+  } else {
+    metadata.bands = {{std::string(info.name), unit}};
+  }
+  metadata.items = {{"meaning", std::string(info.meaning)}};
+  metadata.nodata = "nan";
+  return metadata;
+}
+
 // Joins the strips of one run. References are kept.
 class StripJoiner {
  public:
@@ -55,9 +68,10 @@ class StripJoiner {
       : request_(request), plan_(plan), strips_(strips), pool_(pool) {}
 
   void write_layer(base::OutputFile& file, std::size_t number, const Done& done) const {
-    const panorama::SampleFormat format = panorama::info_of(request_.layers[number]).format;
+    const panorama::PlaneInfo& info = panorama::info_of(request_.layers[number]);
+    const panorama::SampleFormat format = info.format;
     panorama::BigTiffWriter writer(file, plan_.size.width_px, plan_.size.height_px, format,
-                                   {software(), "", true});
+                                   {software(), "", metadata_of(info)});
     copy_tiles(
         writer,
         [number](const StripLayout& layout) { return 1 + layout.image_blocks() + number * layout.tiles(); },
@@ -77,7 +91,7 @@ class StripJoiner {
       return;
     }
     panorama::BigTiffWriter writer(file, size.width_px, size.height_px, panorama::kRgb,
-                                   {software(), packet, false});
+                                   {software(), packet, {}});
     copy_tiles(
         writer, [](const StripLayout&) { return std::size_t{1}; }, [&](double part) { done(0.6 * part); });
     writer.add_reduced_pages(pool_, [&](double part) { done(0.6 + 0.4 * part); });

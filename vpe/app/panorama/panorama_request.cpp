@@ -79,6 +79,17 @@ std::vector<panorama::Plane> layers_of(const PanoramaArguments& arguments) {
   }
 }
 
+// Returns the settings of the options. Round images are drawn with several samples a pixel unless the user names a
+// number: the filter of `edges` needs plane images, and one sample leaves stair steps along the skyline.
+core::Settings settings_of(const PanoramaArguments& arguments, MapKind kind) {
+  core::Settings settings = make_settings(arguments.render);
+  const bool is_named = std::ranges::any_of(arguments.render.set, [](const std::string& text) {
+    return text.starts_with("samples=") || text == "edges=hard";
+  });
+  if (kind != MapKind::kFacets && !is_named) (void)settings.set("samples", "4");
+  return settings;
+}
+
 PanoramaRequest request_from_options(const PanoramaArguments& arguments, const Common& common) {
   if (arguments.at.empty() || arguments.output.empty())
     throw UsageError("--at LON,LAT and -o PANO are required, or --from-sidecar PANO.json");
@@ -92,7 +103,7 @@ PanoramaRequest request_from_options(const PanoramaArguments& arguments, const C
   request.camera.lat_deg = place.lat_deg;
   request.camera.alt_m = arguments.altitude_m.value_or(0);
   request.backend = backend_of(arguments);
-  request.settings = make_settings(arguments.render);
+  request.settings = settings_of(arguments, request.map.kind);
   parse_interest(arguments.render);
   request.interest = arguments.render.interest;
   request.layers = layers_of(arguments);

@@ -59,7 +59,7 @@ std::optional<BackendChoice> rays_instead(const RenderOptions& options, const co
 }
 
 void note_rays_instead(const std::string& reason, bool quiet) {
-  if (!quiet) std::fprintf(stderr, "Note: drawn by rays, as there is no OpenGL: %s\n", reason.c_str());
+  if (!quiet) std::fprintf(stderr, "vpe: note: drawn by rays, as there is no OpenGL: %s\n", reason.c_str());
 }
 
 }  // namespace vpe::app

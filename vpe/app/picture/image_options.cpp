@@ -22,6 +22,11 @@ constexpr std::string_view kAuto = "auto";
 // What a ray image may take whatever --memory is: 2560x1440 pixels need 247 MB.
 constexpr std::size_t kLeastImageBytes = std::size_t{256} << 20;
 
+// Returns "1 tile is", or "3 more tiles are" with the words between.
+std::string tiles_are(std::size_t count, const std::string& words = "") {
+  return std::to_string(count) + " " + words + (count == 1 ? "tile is" : "tiles are");
+}
+
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
@@ -82,6 +87,20 @@ std::vector<core::InterestRegion> parse_interest(const RenderOptions& options) {
 
 std::size_t memory_bytes(const Common& common) { return static_cast<std::size_t>(common.memory_mb) << 20; }
 
+void note_contours(const RenderOptions& options, const core::SettingsValues& settings, bool quiet) {
+  constexpr double kFine_px = 0.1;
+  const bool is_named =
+      options.tolerance_px >= 0 || std::ranges::any_of(options.set, [](const std::string& text) {
+        return text.starts_with("lod.tolerance=");
+      });
+  if (quiet || is_named || !settings.contours || settings.lod_tolerance_px <= kFine_px) return;
+  std::fprintf(
+      stderr,
+      "vpe: note: contours are those of the ground as drawn, here within %s px; --tolerance 0.1 makes them "
+      "finer\n",
+      base::format_number(settings.lod_tolerance_px).c_str());
+}
+
 core::Settings make_settings(const RenderOptions& options) {
   core::Settings settings;
   if (options.tolerance_px >= 0) {
@@ -121,16 +140,22 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
 void require_complete(const RenderOptions& options, const core::DrawResult& result) {
   constexpr std::size_t kNamed = 3;
   if (options.allow_incomplete || result.missing.empty()) return;
-  const std::size_t count = result.missing.size();
-  std::string text =
-      std::to_string(count) + (count == 1 ? " tile is" : " tiles are") + " missing in the image:";
-  for (std::size_t n = 0; n < std::min(count, kNamed); ++n) {
-    text += "\n     " + result.missing[n].tile + ": " + result.missing[n].why;
-  }
-  if (count > kNamed) text += "\n     and " + std::to_string(count - kNamed) + " more";
-  throw std::runtime_error(text + "\n     --wait SECONDS waits longer (now " +
-                           base::format_number(options.wait_s) +
-                           "); --allow-incomplete draws coarser terrain there");
+  std::vector<core::MissingTile> missing = result.missing;
+  const auto late = std::stable_partition(missing.begin(), missing.end(),
+                                          [](const core::MissingTile& m) { return m.is_unreadable; });
+  const auto unreadable = static_cast<std::size_t>(late - missing.begin());
+  const std::size_t not_loaded = missing.size() - unreadable;
+  const std::size_t named = std::min(unreadable > 0 ? unreadable : not_loaded, kNamed);
+  std::string text = tiles_are(missing.size()) + " missing in the image:";
+  for (std::size_t n = 0; n < named; ++n) text += "\n     " + missing[n].tile + ": " + missing[n].why;
+  if (unreadable > named) text += "\n     " + tiles_are(unreadable - named, "more ") + " unreadable";
+  if (unreadable > 0 && not_loaded > 0) text += "\n     " + tiles_are(not_loaded, "other ") + " not loaded yet";
+  if (unreadable == 0 && not_loaded > named)
+    text += "\n     and " + std::to_string(not_loaded - named) + " more";
+  text += unreadable > 0
+              ? "\n     'vpe verify' names all damage of the planet file; "
+              : "\n     --wait SECONDS waits longer (now " + base::format_number(options.wait_s) + "); ";
+  throw std::runtime_error(text + "--allow-incomplete draws coarser terrain there");
 }
 
 void print_failures(std::span<const std::string> failures) {

@@ -44,6 +44,10 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 // every --set in order. Throws UsageError that names the key.
 core::Settings make_settings(const RenderOptions& options);
 
+// Says on stderr that contours are those of the ground as drawn, if they are wanted and nobody named a tolerance:
+// overlays change no image, so they cannot ask for a finer one by themselves.
+void note_contours(const RenderOptions& options, const core::SettingsValues& settings, bool quiet);
+
 // Returns the regions of every --interest, in order. Throws UsageError that says what is expected.
 std::vector<core::InterestRegion> parse_interest(const RenderOptions& options);
 
@@ -55,7 +59,8 @@ std::size_t memory_bytes(const Common& common);
 std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, const Common& common,
                                               std::shared_ptr<const paging::PlanetFile> planet);
 
-// Throws std::runtime_error that names the missing tiles of an image, unless the options allow them.
+// Throws std::runtime_error that names the missing tiles of an image, unless the options allow them. Unreadable
+// tiles come first: tiles below them are missing for the same reason.
 void require_complete(const RenderOptions& options, const core::DrawResult& result);
 
 // Prints failures to read tiles (core::DrawResult::failures) as warnings on stderr.

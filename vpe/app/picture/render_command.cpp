@@ -10,6 +10,8 @@
 #include <stdexcept>
 
 #include "paging/surface/surface.h"
+#include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
@@ -17,7 +19,7 @@
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
-#include "vpe/app/picture/pose_option.h"
+#include "vpe/app/picture/render_request.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/planet/latitude_option.h"
@@ -33,101 +35,8 @@ namespace vpe::app {
 
 namespace {
 
-struct RenderArguments {
-  std::string planet;
-  std::string pose;
-  std::optional<double> height_m;
-  std::optional<std::string> cull_from;
-  std::string latitude;
-  std::string output;
-  std::string range;
-  std::string certificate;
-  std::string explain_lod;
-  std::string overlay_layer;
-  std::string size = "1280x720";
-  double fov_deg = 60;
-  bool allow_underground = false;
-  RenderOptions image;
-  StereoArguments stereo;
-};
-
-// The arguments, parsed and checked. Only what needs the planet is left to resolve_request().
-struct ParsedRender {
-  core::Settings settings;
-  ParsedPose pose;
-  std::optional<mars::Pose> cull_pose;  // of the view whose tiles are drawn
-  core::DrawRequest request;            // without camera, cull view and sun
-};
-
-ParsedRender parse(const RenderArguments& arguments) {
-  ParsedRender parsed;
-  parsed.settings = make_settings(arguments.image);
-  const core::SettingsValues& settings = parsed.settings.values();
-  core::DrawRequest& request = parsed.request;
-  const Size size = parse_size(arguments.size);
-  request.view.width = size.width;
-  request.view.height = size.height;
-  request.view.fov_deg = arguments.fov_deg;
-  request.interest = parse_interest(arguments.image);
-  request.settings = settings;
-  request.want_range =
-      !arguments.range.empty() || !arguments.certificate.empty() || overlay::needs_range(settings);
-  request.paging.timeout_s = arguments.image.wait_s;
-  parsed.pose = parse_pose("--pose", arguments.pose, arguments.height_m);
-  if (arguments.cull_from) parsed.cull_pose = parse_pose("--cull-from", *arguments.cull_from).pose;
-  return parsed;
-}
-
-void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
-  if (path.empty()) return;
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  if (extension != ".png")
-    throw UsageError("--overlay-layer " + path + ": a layer has alpha; let the name end in .png");
-  if (!overlay::any(overlays)) {
-    throw UsageError("--overlay-layer " + path +
-                     ": no overlay is set; for example, add --set overlay.graticule=on");
-  }
-}
-
-void check_render_outputs(const RenderArguments& arguments, const core::SettingsValues& settings) {
-  check_outputs({{"-o", arguments.output, FileKind::kImage},
-                 {"--range", arguments.range, FileKind::kRange},
-                 {"--certificate", arguments.certificate, FileKind::kCertificate},
-                 {"--explain-lod", arguments.explain_lod, FileKind::kExplanation},
-                 {"--overlay-layer", arguments.overlay_layer, FileKind::kImage}},
-                {arguments.planet, settings.names, settings.palette});
-  check_overlay_layer(arguments.overlay_layer, settings);
-  check_stereo(arguments.stereo);
-  if (arguments.stereo.layout.empty()) return;
-  if (!arguments.range.empty() || !arguments.explain_lod.empty() || !arguments.overlay_layer.empty()) {
-    throw UsageError(
-        "--range, --explain-lod and --overlay-layer describe the image of one eye; leave out --stereo, or "
-        "render each eye by itself");
-  }
-}
-
-void require_valid(const core::View& view) {
-  if (const std::string error = core::check(view); !error.empty()) throw UsageError(error);
-}
-
-core::DrawRequest resolve_request(const ParsedRender& parsed,
-                                  const std::shared_ptr<const paging::PlanetFile>& planet) {
-  core::DrawRequest request = parsed.request;
-  const mars::Pose pose = resolve(parsed.pose, planet, request.settings.exaggeration);
-  request.view.camera = mars::to_camera(pose, planet->radius_m());
-  require_valid(request.view);
-  request.sun = sun_for(request.settings, pose);
-  if (parsed.cull_pose) {
-    request.cull_view = request.view;
-    request.cull_view->camera = mars::to_camera(*parsed.cull_pose, planet->radius_m());
-    require_valid(*request.cull_view);
-  }
-  return request;
-}
-
 // Sets the backend of the options and the settings of the request. --explain-lod describes triangles.
-void resolve_backend(RenderArguments& arguments, const core::Settings& settings, core::DrawRequest& request,
+void resolve_backend(RenderArguments& arguments, core::Settings& settings, core::DrawRequest& request,
                      double radius_m) {
   RenderOptions& image = arguments.image;
   if (image.backend == core::Backend::kRay && !arguments.explain_lod.empty())
@@ -135,7 +44,8 @@ void resolve_backend(RenderArguments& arguments, const core::Settings& settings,
   if (!image.backend && !arguments.explain_lod.empty()) image.backend = core::Backend::kPolygon;
   const BackendChoice chosen = choose_backend(image, settings, {&request, 1}, radius_m, gl::has_gpu());
   image.backend = chosen.backend;
-  request.settings = chosen.settings.values();
+  settings = chosen.settings;
+  request.settings = settings.values();
 }
 
 nlohmann::json to_json(const core::FrameStats& s) {
@@ -192,14 +102,19 @@ void print_summary(const RenderArguments& arguments, const core::DrawRequest& re
   std::string corners;
   if (c.corner_stretch > kWideStretch)
     corners = ", up to " + base::format_fixed(c.shift_bound_px * c.corner_stretch, 2) + " px in the corners";
-  std::printf("%s: %s in %d tiles, geometry within %.2f px (%.3g m)%s\n", arguments.output.c_str(),
-              what.c_str(), result.stats.tiles_drawn, c.shift_bound_px, c.geometric_error_m, corners.c_str());
+  std::printf("%s: %s in %d tiles, geometry within %.2f px (%s)%s\n", arguments.output.c_str(), what.c_str(),
+              result.stats.tiles_drawn, c.shift_bound_px, length_text(c.geometric_error_m, 3).c_str(),
+              corners.c_str());
 }
 
-void write_stereo(const RenderArguments& arguments, const Common& common, const StereoImage& drawn) {
-  core::write_image(arguments.output, drawn.image.pixels, drawn.image.width, drawn.image.height);
-  const nlohmann::json certificates{{"left", core::to_json(drawn.left.certificate)},
-                                    {"right", core::to_json(drawn.right.certificate)}};
+void write_stereo(const RenderArguments& arguments, const Common& common, const StereoImage& drawn,
+                  RenderRecipe recipe, const paging::PlanetMeta& planet) {
+  const nlohmann::ordered_json certificates{{"left", core::to_json(drawn.left.certificate)},
+                                            {"right", core::to_json(drawn.right.certificate)}};
+  recipe.stereo.eye_base_m = drawn.eye_base_m;
+  core::ImageOptions options;
+  options.png_texts = recipe_texts(recipe, planet, certificates);
+  core::write_image(arguments.output, drawn.image.pixels, drawn.image.width, drawn.image.height, options);
   if (!arguments.certificate.empty())
     base::write_file(arguments.certificate, core::json_text(certificates, 1) + "\n");
   if (common.json) {
@@ -209,17 +124,24 @@ void write_stereo(const RenderArguments& arguments, const Common& common, const 
                 {"certificate", certificates},
                 {"stats", {{"left", to_json(drawn.left.stats)}, {"right", to_json(drawn.right.stats)}}}});
   } else if (!common.quiet) {
-    std::printf("%s: eyes %.4g m apart, geometry within %.2f px\n", arguments.output.c_str(), drawn.eye_base_m,
+    std::printf("%s: eyes %s apart, geometry within %.2f px\n", arguments.output.c_str(),
+                length_text(drawn.eye_base_m).c_str(),
                 std::max(drawn.left.certificate.shift_bound_px, drawn.right.certificate.shift_bound_px));
   }
 }
 
 void write_image_files(const RenderArguments& arguments, const Common& common, const core::DrawRequest& request,
-                       const core::DrawResult& result, const paging::PlanetFile& planet) {
+                       const core::DrawResult& result, const RenderRecipe& recipe,
+                       const paging::PlanetFile& planet) {
   const core::Frame& frame = result.frame;
-  core::write_image(arguments.output, frame.colour, frame.width, frame.height);
-  if (!arguments.range.empty()) core::write_tiff(arguments.range, frame.range_m, frame.width, frame.height);
   const nlohmann::ordered_json certificate = core::to_json(result.certificate);
+  core::ImageOptions options;
+  options.png_texts = recipe_texts(recipe, planet.meta(), certificate);
+  core::write_image(arguments.output, frame.colour, frame.width, frame.height, options);
+  if (!arguments.range.empty()) {
+    options.tiff_metadata = range_metadata(recipe.pose, request.view, planet.meta());
+    core::write_tiff(arguments.range, frame.range_m, frame.width, frame.height, options);
+  }
   if (!arguments.certificate.empty())
     base::write_file(arguments.certificate, core::json_text(certificate, 2) + "\n\n");
   if (!arguments.explain_lod.empty()) {
@@ -242,7 +164,7 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
 // settings.
 std::unique_ptr<core::Renderer> renderer_for(RenderArguments& arguments, const Common& common,
                                              const std::shared_ptr<const paging::PlanetFile>& planet,
-                                             const core::Settings& settings, core::DrawRequest& request,
+                                             core::Settings& settings, core::DrawRequest& request,
                                              bool is_backend_named) {
   try {
     return make_renderer(arguments.image, common, planet);
@@ -251,7 +173,8 @@ std::unique_ptr<core::Renderer> renderer_for(RenderArguments& arguments, const C
     if (is_backend_named || !rays) throw;
     note_rays_instead(e.what(), common.quiet);
     arguments.image.backend = rays->backend;
-    request.settings = rays->settings.values();
+    settings = rays->settings;
+    request.settings = settings.values();
     return make_renderer(arguments.image, common, planet);
   }
 }
@@ -264,7 +187,7 @@ void require_above_ground(const RenderArguments& arguments,
   if (arguments.allow_underground || !surface.is_below(camera_m, request.settings.exaggeration)) return;
   const double ground_m = surface.at(camera_m, request.settings.exaggeration).height_m;
   const double alt_m = glm::length(camera_m) - planet->radius_m();
-  throw std::runtime_error("the camera at " + arguments.pose + " is " +
+  throw std::runtime_error("the camera at " + *arguments.pose + " is " +
                            base::format_rounded(ground_m - alt_m, 2) + " m below the ground, which lies " +
                            base::format_rounded(ground_m, 2) +
                            " m above the sphere there; give a larger ALT, or --height above the ground "
@@ -273,9 +196,12 @@ void require_above_ground(const RenderArguments& arguments,
 
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
-  ParsedRender parsed = parse(arguments);
-  if (!common.quiet && !parsed.pose.note.empty()) std::fprintf(stderr, "Note: %s.\n", parsed.pose.note.c_str());
+  const std::string identity = take_recipe(arguments, common);
+  ParsedRender parsed = parse_view(arguments);
+  if (!common.quiet && !parsed.pose.note.empty())
+    std::fprintf(stderr, "vpe: note: %s\n", parsed.pose.note.c_str());
   check_render_outputs(arguments, parsed.settings.values());
+  note_contours(arguments.image, parsed.settings.values(), common.quiet);
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 
@@ -288,12 +214,19 @@ void render(RenderArguments& arguments, const Common& common) {
   };
   convert(parsed.pose.pose, common.quiet);
   if (parsed.cull_pose) convert(*parsed.cull_pose, true);
-  core::DrawRequest request = resolve_request(parsed, planet);
+  if (!identity.empty() && identity != planet->meta().identity) {
+    throw std::runtime_error(arguments.from_image + ": was made from a planet of identity " + identity +
+                             ", and " + planet->path() + " has " + planet->meta().identity +
+                             "; name that planet file");
+  }
+  auto [pose, request] = resolve_view(parsed, planet);
+  core::Settings settings = parsed.settings;
   if (!common.quiet) print_sun(sun_statement(request.settings, place_below(request)));
   const bool is_backend_named = arguments.image.backend.has_value() || !arguments.explain_lod.empty();
-  resolve_backend(arguments, parsed.settings, request, planet->radius_m());
+  resolve_backend(arguments, settings, request, planet->radius_m());
   require_above_ground(arguments, planet, request);
-  const auto renderer = renderer_for(arguments, common, planet, parsed.settings, request, is_backend_named);
+  const auto renderer = renderer_for(arguments, common, planet, settings, request, is_backend_named);
+  const RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
   // Makes the finished image of one camera.
   const auto draw = [&](const core::DrawRequest& one) {
     core::DrawResult result = renderer->draw(one);
@@ -309,9 +242,9 @@ void render(RenderArguments& arguments, const Common& common) {
     return result;
   };
   if (arguments.stereo.layout.empty()) {
-    write_image_files(arguments, common, request, draw(request), *planet);
+    write_image_files(arguments, common, request, draw(request), recipe, *planet);
   } else {
-    write_stereo(arguments, common, draw_stereo(arguments.stereo, request, draw));
+    write_stereo(arguments, common, draw_stereo(arguments.stereo, request, draw), recipe, planet->meta());
   }
 }
 
@@ -321,10 +254,8 @@ void add_render(CLI::App& program, Common& common) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* command = add_command(program, "render", "Draw one image", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
-  command
-      ->add_option("--pose", arguments->pose,
-                   "LON,LAT,ALT,YAW,PITCH,ROLL of the camera: degrees; ALT in metres above the sphere")
-      ->required();
+  command->add_option("--pose", arguments->pose,
+                      "LON,LAT,ALT,YAW,PITCH,ROLL of the camera: degrees; ALT in metres above the sphere");
   add_latitude_option(*command, arguments->latitude);
   command
       ->add_option("--height", arguments->height_m,
@@ -334,6 +265,10 @@ void add_render(CLI::App& program, Common& common) {
       "--cull-from", arguments->cull_from,
       "LON,LAT,ALT,YAW,PITCH,ROLL: select tiles for this pose, and draw them as seen from --pose");
   command->add_option("-o,--output", arguments->output, "Image to write (.png, .jpg)")->required();
+  command->add_option(
+      "--from-image", arguments->from_image,
+      "Draw an image of 'vpe render' (.png) again, as the recipe in it says; in place of --pose and "
+      "all that changes the image");
   command->add_option("--range", arguments->range, "Also write the range of every pixel, metres (.tif)");
   command->add_option("--certificate", arguments->certificate,
                       "Also write the bounds of the image's geometric error (.json)");
@@ -349,6 +284,15 @@ void add_render(CLI::App& program, Common& common) {
   command->add_flag("--allow-underground", arguments->allow_underground,
                     "Draw one colour for a camera below the ground, instead of failing");
   add_render_options(*command, arguments->image);
+  add_examples(
+      *command,
+      {{"from 2 km above the ground, to the east, 5 degrees down",
+        "vpe render mars.vpe --pose -59.2,-13.7,0,90,-5,0 --height 2000 -o view.png"},
+       {"the globe in colours of elevation",
+        "vpe render mars.vpe --pose -75,5,9000000,0,-90,0 --fov 50 --set mode=coloured -o globe.png"},
+       {"range of every pixel, bounds of the error, sun by date",
+        "vpe render mars.vpe --pose -59.2,-13.7,5000 --sun 2026-11-20T12:00Z -o view.png --range view.tif --certificate view.json"},
+       {"the same image again", "vpe render mars.vpe --from-image view.png -o same.png"}});
   command->callback([arguments, &common] { render(*arguments, common); });
 }
 

@@ -4,6 +4,7 @@
 
 #include "mars/embedded/embedded.h"
 #include "mars/sources/source_checks.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/parsing.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/build_sources.h"
@@ -126,6 +127,13 @@ void add_build(CLI::App& program, Common& common) {
       "variables of SLURM or MPI; auto: k and n");
   command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
   command->add_flag("--estimate", arguments->estimate, "Only estimate the build: tiles, bytes, time");
+  add_examples(
+      *command,
+      {{"elevation and imagery of the whole planet", "vpe build mola.tif --image viking.tif -o mars.vpe"},
+       {"a finer inset; at each place the finest raster decides",
+        "vpe build mola.tif ctx.tif --image viking.tif --image ortho.tif --align edges -o gale.vpe"},
+       {"full resolution in a box only, first its size and time",
+        "vpe build mola.tif --region -95,-20,-25,5 -o valles.vpe --estimate"}});
   command->callback([arguments, &common] { build(*arguments, common); });
 }
 

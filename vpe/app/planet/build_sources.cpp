@@ -150,15 +150,16 @@ std::set<std::string> name_same_datums(const SourceArguments& arguments, std::ve
   return same;
 }
 
-std::string number(double value, const char* format = "%.4g") {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+std::string number(double value) { return base::format_significant(value, 4); }
+
+std::string coordinates(const mars::LonLat& at) {
+  constexpr int kDecimals = 4;  // 6 m on Mars
+  return base::format_rounded(at.lon_deg, kDecimals) + "," + base::format_rounded(at.lat_deg, kDecimals);
 }
 
 std::string percentage(const mars::OutlierReport& report) {
   const double percent = 100.0 * static_cast<double>(report.implausible) / static_cast<double>(report.posts);
-  return number(percent, percent < 10 ? "%.2g" : "%.0f");
+  return percent < 10 ? base::format_significant(percent, 2) : base::format_rounded(percent, 0);
 }
 
 // Describes the tilt of an inset against its base: metres per kilometre, and the azimuth towards which it
@@ -167,7 +168,7 @@ std::string tilt_text(const mars::VerticalAlignment& alignment) {
   const double tilt = std::hypot(alignment.tilt_east, alignment.tilt_north);
   double azimuth = std::atan2(alignment.tilt_east, alignment.tilt_north) / mars::kRadiansPerDegree;
   if (azimuth < 0) azimuth += 360;
-  return number(1000 * tilt) + " m/km rising towards " + number(azimuth, "%.0f") + " degrees";
+  return number(1000 * tilt) + " m/km rising towards " + base::format_rounded(azimuth, 0) + " degrees";
 }
 
 }  // namespace
@@ -262,10 +263,9 @@ void print_findings(const mars::Combined& combined) {
                    f.name.c_str(), number(e->rms_m).c_str(), number(1e-3 * e->reach_m).c_str());
     }
     if (f.outliers && f.outliers->implausible > 0) {
-      std::fprintf(stderr, "vpe: %s: %s %% of its posts are implausible, by up to %s m at %s,%s; %s\n",
+      std::fprintf(stderr, "vpe: %s: %s %% of its posts are implausible, by up to %s m at %s; %s\n",
                    f.name.c_str(), percentage(*f.outliers).c_str(), number(f.outliers->worst_m).c_str(),
-                   base::format_number(f.outliers->worst_at.lon_deg).c_str(),
-                   base::format_number(f.outliers->worst_at.lat_deg).c_str(),
+                   coordinates(f.outliers->worst_at).c_str(),
                    f.masked ? "rejected" : "--reject-outliers rejects them");
     }
   }

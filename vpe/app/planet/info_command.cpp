@@ -1,6 +1,7 @@
 #include "vpe/app/planet/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,10 +9,14 @@
 
 #include "paging/planet/planet_database.h"
 #include "paging/surface/query.h"
+#include "vpe/app/cli/examples.h"
+#include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
+#include "vpe/app/planet/level_table.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/app/planet/planet_json.h"
+#include "vpe/base/number.h"
 
 namespace vpe::app {
 
@@ -26,6 +31,49 @@ std::optional<paging::PlanetMeta> meta_of_part(const std::string& path) {
   return paging::from_rows(rows, path);
 }
 
+void print_line(const char* what, const std::string& value) {
+  std::printf("%-18s %s\n", what, on_one_line(value).c_str());
+}
+
+// Prints a source, and each of its treatments on a line of its own.
+void print_source(const char* what, const mars::SourceInfo& s, const std::string& about) {
+  print_line(what, s.name + " (" + about + ")");
+  constexpr std::string_view kBetween = "; ";  // mars::add_treatment()
+  for (std::size_t at = 0; at < s.treatment.size();) {
+    const std::size_t end = std::min(s.treatment.find(kBetween, at), s.treatment.size());
+    print_line("", with_short_numbers(s.treatment.substr(at, end - at)));
+    at = end + kBetween.size();
+  }
+}
+
+void print_meta(const paging::PlanetMeta& m) {
+  constexpr int kRadiusDigits = 7;
+  if (m.illustration) print_line("NOTE", "an illustration: its numbers are not data");
+  print_line("body", m.body + ", sphere of radius " + length_text(m.radius_m, kRadiusDigits));
+  print_line("vertical datum", paging::describe_datum(m));
+  print_line("heights", base::format_rounded(m.lowest_radius_m - m.radius_m, 2) + " m" + " .. " +
+                            base::format_rounded(m.highest_radius_m - m.radius_m, 2) + " m" +
+                            ", stored in steps of " + length_text(m.quantum_m));
+  print_line("tiles", std::to_string(m.tiles) + " (" + std::to_string(m.leaf_tiles) + " finest) of " +
+                          std::to_string(m.tile.intervals()) + " intervals, levels 0 .. " +
+                          std::to_string(m.finest_level));
+  print_line("finest posts", length_text(lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m)));
+  print_line("image", m.image_tiles == 0 ? "none"
+                                         : std::to_string(m.image_tiles) + " tiles, finest texels " +
+                                               length_text(lod::post_spacing_m(
+                                                   m.finest_image_level, paging::kImageIntervals, m.radius_m)));
+  print_line("resampling error", resampling_text(m.resampling) + " of the whole planet");
+  if (const paging::LevelSummary* finest = finest_measured(m)) {
+    print_line("",
+               resampling_text(finest->resampling) + " at the finest level, " + std::to_string(finest->level));
+  }
+  for (const mars::SourceInfo& s : m.sources)
+    print_source("elevation from", s, length_text(s.resolution_m) + " posts, datum " + to_string(s.datum));
+  for (const mars::SourceInfo& s : m.image_sources)
+    print_source("image from", s, length_text(s.resolution_m) + " pixels");
+  print_line("built by", "vpe " + m.program + ", identity " + m.identity);
+}
+
 void info(const std::string& argument, const Common& common) {
   const auto part = meta_of_part(argument);
   const auto planet = part ? nullptr : open_planet(argument, common);
@@ -38,45 +86,14 @@ void info(const std::string& argument, const Common& common) {
     print_json(json);
     return;
   }
-  const auto line = [](const char* what, const std::string& value) {
-    std::printf("%-18s %s\n", what, on_one_line(value).c_str());
-  };
-  const auto number = [](double x, const char* unit) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6g %s", x, unit);
-    return std::string(text);
-  };
-  if (is_raster_argument(argument)) line("raster", argument);
-  line(is_raster_argument(argument) ? "its planet file" : "file", path);
+  if (is_raster_argument(argument)) print_line("raster", argument);
+  print_line(is_raster_argument(argument) ? "its planet file" : "file", path);
   if (part) {
-    line("part", std::to_string(m.shard->id.number) + " of " + std::to_string(m.shard->id.of) +
-                     "; 'vpe merge PART... -o PLANET.vpe' joins them");
+    print_line("part", std::to_string(m.shard->id.number) + " of " + std::to_string(m.shard->id.of) +
+                           "; 'vpe merge PART... -o PLANET.vpe' joins them");
   }
-  if (m.illustration) line("NOTE", "an illustration: its numbers are not data");
-  line("body", m.body + ", sphere of radius " + number(m.radius_m, "m"));
-  line("vertical datum", paging::describe_datum(m));
-  line("heights", number(m.lowest_radius_m - m.radius_m, "m") + " .. " +
-                      number(m.highest_radius_m - m.radius_m, "m") + ", stored in steps of " +
-                      number(m.quantum_m, "m"));
-  line("tiles", std::to_string(m.tiles) + " (" + std::to_string(m.leaf_tiles) + " finest) of " +
-                    std::to_string(m.tile.intervals()) + " intervals, levels 0 .. " +
-                    std::to_string(m.finest_level));
-  line("finest posts", number(lod::post_spacing_m(m.finest_level, m.tile.intervals(), m.radius_m), "m"));
-  line("image",
-       m.image_tiles == 0
-           ? "none"
-           : std::to_string(m.image_tiles) + " tiles, finest texels " +
-                 number(lod::post_spacing_m(m.finest_image_level, paging::kImageIntervals, m.radius_m), "m"));
-  line("resampling error", "RMS " + number(m.resampling.rms_m, "m") + ", maximum " +
-                               number(m.resampling.max_m, "m") + " over " + std::to_string(m.resampling.posts) +
-                               " source posts");
-  for (const mars::SourceInfo& s : m.sources) {
-    line("elevation from", s.name + " (" + number(s.resolution_m, "m") + " posts, datum " + to_string(s.datum) +
-                               ")" + (s.treatment.empty() ? "" : "; " + s.treatment));
-  }
-  for (const mars::SourceInfo& s : m.image_sources)
-    line("image from", s.name + " (" + number(s.resolution_m, "m") + " pixels)");
-  line("built by", "vpe " + m.program + ", identity " + m.identity);
+  print_meta(m);
+  print_level_table(m);
 }
 
 }  // namespace
@@ -86,6 +103,8 @@ void add_info(CLI::App& program, Common& common) {
   CLI::App* command = add_command(
       program, "info", "Describe a planet file: body, datum, levels, sources, resampling error", common, true);
   command->add_option("PLANET", *planet, "Planet file or DEM (default: the embedded Mars)");
+  add_examples(*command, {{"what a planet file holds", "vpe info mars.vpe"},
+                          {"all figures, with every level, for a program", "vpe info mars.vpe --json"}});
   command->callback([planet, &common] { info(*planet, common); });
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "paging/build/merge.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/planet/planet_build.h"
 #include "vpe/app/planet/remote_wait.h"
@@ -37,6 +38,10 @@ void add_merge(CLI::App& program, Common& common) {
   command->add_option("PART", options.shards, "All parts of one build, in any order")->required();
   command->add_option("-o,--output", options.output, "Planet file to write")->required();
   command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
+  add_examples(*command,
+               {{"the parts of a divided build", "vpe merge mars.1-of-2.vpe mars.2-of-2.vpe -o mars.vpe"},
+                {"over a planet file of another build",
+                 "vpe merge mars.1-of-2.vpe mars.2-of-2.vpe -o mars.vpe --force"}});
   command->callback([arguments, &common] { merge(*arguments, common); });
 }
 

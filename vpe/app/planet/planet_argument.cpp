@@ -172,7 +172,7 @@ bool is_raster_argument(const std::string& argument) {
 
 void note_illustration(const paging::PlanetMeta& meta, bool quiet) {
   if (!meta.illustration || quiet) return;
-  std::fprintf(stderr, "Note: this planet is an illustration; its numbers are not data about Mars.\n");
+  std::fprintf(stderr, "vpe: note: this planet is an illustration; its numbers are not data about Mars\n");
 }
 
 }  // namespace vpe::app

@@ -6,14 +6,17 @@
 #include <utility>
 
 #include "mars/raster/raster_memory.h"
+#include "vpe/app/cli/figures.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/progress.h"
 #include "vpe/app/planet/build_sources.h"
+#include "vpe/app/planet/level_table.h"
 #include "vpe/app/planet/planet_json.h"
 #include "vpe/app/planet/remote_wait.h"
 #include "vpe/base/file.h"
+#include "vpe/base/number.h"
 
 namespace vpe::app {
 
@@ -69,27 +72,11 @@ std::string duration(double seconds) {
 std::string estimate_text(const paging::BuildEstimate& e) {
   char text[200];
   std::snprintf(text, sizeof text,
-                "%lld tiles (%lld finest), %lld image tiles, %.1f million posts, about %.4g MB, about %s",
+                "%lld tiles (%lld finest), %lld image tiles, %.1f million posts, about %s, about %s",
                 static_cast<long long>(e.leaf_tiles + e.inner_tiles), static_cast<long long>(e.leaf_tiles),
                 static_cast<long long>(e.image_tiles), 1e-6 * static_cast<double>(e.posts),
-                1e-6 * static_cast<double>(e.bytes), duration(e.wall_s).c_str());
+                bytes_text(static_cast<double>(e.bytes)).c_str(), duration(e.wall_s).c_str());
   return text;
-}
-
-void print_levels(const paging::PlanetMeta& meta) {
-  std::printf("%-6s %9s %9s %9s %10s %12s %11s %11s\n", "level", "posts, m", "tiles", "finest", "MB", "nodata",
-              "RMS, m", "maximum, m");
-  for (const paging::LevelSummary& l : meta.levels) {
-    std::printf("%-6d %9.4g %9lld %9lld %10.1f %12lld", l.level,
-                lod::post_spacing_m(l.level, meta.tile.intervals(), meta.radius_m),
-                static_cast<long long>(l.tiles), static_cast<long long>(l.leaf_tiles),
-                1e-6 * static_cast<double>(l.bytes), static_cast<long long>(l.nodata_posts));
-    if (l.resampling.posts > 0) {
-      std::printf(" %11.3g %11.3g\n", l.resampling.rms_m, l.resampling.max_m);
-    } else {
-      std::printf(" %11s %11s\n", "-", "-");
-    }
-  }
 }
 
 }  // namespace
@@ -120,9 +107,9 @@ void print_estimate(const paging::BuildEstimate& estimate, const Common& common)
   if (estimate.largest_sagitta_m > kNotedSagitta_m) {
     std::fprintf(
         stderr,
-        "vpe: note: the coarsest posts are %.4g km apart, and the flat facets between them lie up to %.3g m "
-        "below the sphere through them; a smaller --base-spacing makes them rounder\n",
-        1e-3 * estimate.coarsest_spacing_m, estimate.largest_sagitta_m);
+        "vpe: note: the coarsest posts are %s apart, and the flat facets between them lie up to %s below the "
+        "sphere through them; a smaller --base-spacing makes them rounder\n",
+        length_text(estimate.coarsest_spacing_m).c_str(), length_text(estimate.largest_sagitta_m, 3).c_str());
   }
   const double memory = 1048576.0 * common.memory_mb;
   if (static_cast<double>(estimate.memory_bytes) > memory / 4) {
@@ -197,14 +184,19 @@ void print_build(const paging::BuildSummary& summary, const std::string& output,
     return;
   }
   if (common.quiet) return;
-  std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %.1f MB\n", output.c_str(),
+  std::printf("%s: %lld tiles (%lld finest), %.1f million posts, %s\n", output.c_str(),
               static_cast<long long>(meta.tiles), static_cast<long long>(meta.leaf_tiles),
-              1e-6 * static_cast<double>(summary.posts), 1e-6 * static_cast<double>(summary.bytes));
-  std::printf("resampling error against %lld source posts: RMS %.3g m, maximum %.3g m\n",
-              static_cast<long long>(meta.resampling.posts), meta.resampling.rms_m, meta.resampling.max_m);
-  std::printf("nodata posts: %lld (%.3g %%)\n", static_cast<long long>(nodata_posts),
-              100.0 * static_cast<double>(nodata_posts) / static_cast<double>(summary.posts));
-  print_levels(meta);
+              1e-6 * static_cast<double>(summary.posts),
+              bytes_text(static_cast<double>(summary.bytes)).c_str());
+  std::printf("resampling error of the whole planet: %s\n", resampling_text(meta.resampling).c_str());
+  if (const paging::LevelSummary* finest = finest_measured(meta)) {
+    std::printf("resampling error at the finest level, %d: %s\n", finest->level,
+                resampling_text(finest->resampling).c_str());
+  }
+  const double nodata = static_cast<double>(nodata_posts) / static_cast<double>(summary.posts);
+  std::printf("nodata posts: %lld (%s %%)\n", static_cast<long long>(nodata_posts),
+              base::format_significant(100 * nodata, 3).c_str());
+  print_level_table(meta);
   if (meta.shard) {
     std::printf("Part %lld of %lld. When all parts exist, 'vpe merge PART... -o PLANET.vpe' joins them.\n",
                 static_cast<long long>(meta.shard->id.number), static_cast<long long>(meta.shard->id.of));

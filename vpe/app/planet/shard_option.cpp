@@ -26,18 +26,18 @@ std::optional<std::int64_t> number_in(const Environment& environment, const char
 }
 
 // Names of the variables that hold rank and number of parts; ranks start at `least` and advance by `step`.
-struct Source {
+struct RankSource {
   const char* rank;
   const char* size;
   const char* least = nullptr;
   const char* step = nullptr;
 };
-constexpr std::array kSources{
-    Source{"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_STEP"},
-    Source{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, Source{"PMI_RANK", "PMI_SIZE"},
-    Source{"SLURM_PROCID", "SLURM_NTASKS"}};
+constexpr std::array kSources{RankSource{"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT",
+                                         "SLURM_ARRAY_TASK_MIN", "SLURM_ARRAY_TASK_STEP"},
+                              RankSource{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                              RankSource{"PMI_RANK", "PMI_SIZE"}, RankSource{"SLURM_PROCID", "SLURM_NTASKS"}};
 
-Shard shard_from(const Source& source, std::int64_t rank, const Environment& environment) {
+Shard shard_from(const RankSource& source, std::int64_t rank, const Environment& environment) {
   const auto size = number_in(environment, source.size);
   if (!size) {
     throw UsageError(std::string("--part auto: ") + source.rank + " is set, but " + source.size +
@@ -62,7 +62,7 @@ Shard shard_from(const Source& source, std::int64_t rank, const Environment& env
 
 Shard shard_from(const Environment& environment) {
   std::string names;
-  for (const Source& source : kSources) {
+  for (const RankSource& source : kSources) {
     if (const auto rank = number_in(environment, source.rank)) return shard_from(source, *rank, environment);
     names += std::string(names.empty() ? "" : ", ") + source.rank;
   }

@@ -7,6 +7,7 @@
 #include "paging/build/verify_shard.h"
 #include "paging/planet/planet_database.h"
 #include "paging/planet/verify.h"
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
@@ -96,6 +97,9 @@ void add_verify(CLI::App& program, Common& common) {
   command->add_option("--sample", arguments->sample, "Number of finest tiles in the sample of --deep")
       ->check(number_within(1, 1e9))
       ->capture_default_str();
+  add_examples(*command,
+               {{"all checksums, meshes and borders", "vpe verify mars.vpe"},
+                {"also the stated errors, on 500 finest tiles", "vpe verify mars.vpe --deep --sample 500"}});
   command->callback([arguments, &common] { verify(*arguments, common); });
 }
 

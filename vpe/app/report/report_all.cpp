@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/output.h"
 #include "vpe/app/report/report_commands.h"
 #include "vpe/app/report/report_folder.h"
@@ -45,6 +46,8 @@ void add_report_all(CLI::App& report, Common& common) {
   command->add_option("-o,--output", arguments->folder, "Folder for report.html and the files of each report")
       ->required();
   command->add_flag("--short", arguments->is_short, "Make each report with its own --short");
+  add_examples(*command, {{"everything, briefly", "vpe report all mars.vpe --short -o report"},
+                          {"everything", "vpe report all mars.vpe -o report"}});
   command->callback([arguments, &common] { report_all(*arguments, common); });
 }
 

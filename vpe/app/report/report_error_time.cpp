@@ -4,6 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/output.h"
@@ -232,6 +233,9 @@ void add_report_error_time(CLI::App& report, Common& common) {
                    "Timing baseline: exact ray casting, or Embree (ranges only; if built in)")
       ->check(CLI::IsMember({kExactBaseline, kEmbreeBaseline}))
       ->capture_default_str();
+  add_examples(*command, {{"a first look", "vpe report error-time mars.vpe --short -o error-time"},
+                          {"one view in more detail",
+                           "vpe report error-time mars.vpe --view rim --size 1280x720 --rounds 9 -o rim"}});
   command->callback([arguments, &common] { error_time(*arguments, common); });
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/progress.h"
@@ -159,6 +160,9 @@ void add_report_features(CLI::App& report, Common& common) {
                              std::string(core::to_string(core::Backend::kRay))}));
   command->add_option("--frames", probe.frames)->group("")->check(CLI::Range(1, 1000));
   command->add_option("--statistics", probe.statistics_file)->group("");
+  add_examples(*command, {{"small images", "vpe report features mars.vpe --short -o features"},
+                          {"against a program without overlays and windows",
+                           "vpe report features mars.vpe --against build/bare/vpe -o features"}});
   command->callback([arguments, &common] { report_or_probe(*arguments, common); });
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/progress.h"
@@ -197,6 +198,9 @@ void add_report_scaling(CLI::App& report, Common& common) {
   command->add_flag("--full", arguments->full,
                     "Grids up to 16385 posts a side and images up to 3840x2160; needs about 3 GB of disk");
   command->add_flag("--short", arguments->brief, "Only the smallest sizes; under a minute");
+  add_examples(*command,
+               {{"under a minute", "vpe report scaling --short -o scaling"},
+                {"grids of the sizes given", "vpe report scaling --sizes 257,513,1025 --rounds 5 -o scaling"}});
   command->callback([arguments, &common] { report_scaling(*arguments, common); });
 }
 

@@ -68,8 +68,9 @@ void write_image(const std::filesystem::path& path, std::span<const base::Rgb> p
                            "let the name end in .png, .jpg or .jpeg");
   }
   base::write_file(path, with_path("write", path, [&] {
-                     return is_png(path) ? encode_png(pixels, width, height, options.png_compression)
-                                         : encode_jpeg(pixels, width, height, options.jpeg_quality);
+                     if (!is_png(path)) return encode_jpeg(pixels, width, height, options.jpeg_quality);
+                     std::vector<std::uint8_t> png = encode_png(pixels, width, height, options.png_compression);
+                     return options.png_texts.empty() ? png : with_png_text(png, options.png_texts);
                    }));
 }
 

@@ -18,6 +18,8 @@
 
 #include "vpe/base/file.h"
 #include "vpe/base/rgb.h"
+#include "vpe/core/image/png_text.h"
+#include "vpe/core/image/tiff_metadata.h"
 
 namespace vpe::core {
 
@@ -58,6 +60,8 @@ struct ImageOptions {
   int png_compression = 1;
   // kNone: fastest, largest files.
   TiffCompression tiff = TiffCompression::kDeflate;
+  std::vector<PngText> png_texts;  // of RGB images
+  TiffMetadata tiff_metadata;
 };
 
 // Returns whether write_image() knows the extension of a path: .png, .jpg or .jpeg, in any case.

@@ -27,16 +27,16 @@ std::uint16_t tag_of(TiffCompression compression) {
   return COMPRESSION_NONE;
 }
 
-bool write_rows(TIFF* tiff, std::span<const float> values, int width, int height, TiffCompression compression) {
+bool write_rows(TIFF* tiff, std::span<const float> values, int width, int height, const ImageOptions& options) {
   const auto columns = static_cast<std::size_t>(width);
   const std::size_t rows_a_strip = std::max(std::size_t{1}, kStripBytes / (columns * sizeof(float)));
   TiffLayout layout;
   layout.width_px = static_cast<std::uint32_t>(width);
   layout.height_px = static_cast<std::uint32_t>(height);
   layout.bits = 32;
-  layout.compression = tag_of(compression);
+  layout.compression = tag_of(options.tiff);
   layout.tile_height_px = static_cast<std::uint32_t>(rows_a_strip);
-  bool ok = set_layout(tiff, layout);
+  bool ok = set_layout(tiff, layout) && set_metadata(tiff, options.tiff_metadata);
   // The library changes the rows that it is given.
   std::vector<float> strip;
   std::uint32_t index = 0;
@@ -60,7 +60,7 @@ void write_tiff(const std::filesystem::path& path, std::span<const float> values
   }
   base::OutputFile file(path);
   TiffHandle tiff(file.stream(), path, values.size_bytes() > kMaxClassicBytes ? "w8" : "w");
-  if (tiff.get() == nullptr || !write_rows(tiff.get(), values, width, height, options.tiff)) {
+  if (tiff.get() == nullptr || !write_rows(tiff.get(), values, width, height, options)) {
     throw base::file_error("write", path, tiff.words(), kDiskAdvice);
   }
   tiff.close();
