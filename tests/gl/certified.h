@@ -11,17 +11,6 @@
 
 namespace test_support {
 
-// Returns the error of the range image itself, which moves points along their rays.
-inline double range_error_px(const vpe::core::View& view, const std::vector<float>& range_m) {
-  float nearest = vpe::core::kSkyRange;
-  float farthest = 0;
-  for (const float range : range_m) {
-    nearest = std::min(nearest, range);
-    if (std::isfinite(range)) farthest = std::max(farthest, range);
-  }
-  return vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(view);
-}
-
 // Expects an image to be within its certificate.
 inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surface& surface,
                              const vpe::core::DrawRequest& request, const std::string& name) {
@@ -33,10 +22,8 @@ inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surfac
   EXPECT_EQ(errors.sky_for_ground, 0);
   EXPECT_EQ(errors.false_surface, 0);
   EXPECT_EQ(errors.invalid, 0);
-  const double range_px = range_error_px(request.view, result.frame.range_m);
   ASSERT_TRUE(result.certificate.image_bound_px.has_value());
-  record_worst("polygons: forward shift",
-               errors.forward.max_px / (*result.certificate.image_bound_px + range_px), 1,
+  record_worst("polygons: forward shift", errors.forward.max_px / *result.certificate.image_bound_px, 1,
                "of the certificate");
   EXPECT_LE(*result.certificate.image_bound_px, result.certificate.shift_bound_px);
   EXPECT_LE(errors.forward.p999_px, 1.0);

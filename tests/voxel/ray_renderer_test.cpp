@@ -74,6 +74,10 @@ TEST_F(Rays, RangesAreThoseOfTheReferenceSurfaceInEveryProjection) {
       }
       EXPECT_EQ(result.frame.width, 40);
       EXPECT_TRUE(result.settled);
+      const auto errors = core::compare_to_reference(request.view, result.frame.range_m,
+                                                     test_support::reference_ranges(surface, request.view),
+                                                     test_support::radius_of(surface), {1, 1});
+      EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px);
       EXPECT_LT(result.certificate.shift_bound_px, 1e-3);
     }
   }

@@ -37,18 +37,7 @@ class RendererContract : public test_support::GlTest, public ::testing::WithPara
     const core::ShiftSummary shift = core::summarize(shifts, core::drawn_size(request.view).x);
     EXPECT_GT(shift.pixels, 0);
     EXPECT_LE(result.certificate.image_bound_px.value(), result.certificate.shift_bound_px);
-    // Triangles: ranges of the depth buffer have an error of their own.
-    double range_px = 0;
-    if (!is_rays()) {
-      float nearest = core::kSkyRange;
-      float farthest = 0;
-      for (const float range : result.frame.range_m) {
-        nearest = std::min(nearest, range);
-        if (std::isfinite(range)) farthest = std::max(farthest, range);
-      }
-      range_px = vpe::gl::kRangeError * (1.0 + farthest / nearest) * core::focal_px(request.view);
-    }
-    return shift.max_px / (*result.certificate.image_bound_px + range_px);
+    return shift.max_px / *result.certificate.image_bound_px;
   }
 };
 
