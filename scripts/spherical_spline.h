@@ -7,9 +7,13 @@
 //
 // Between two knots the curve is a cubic Bezier whose linear steps are great-circle steps (de Casteljau by
 // slerp, Shoemake 1985). Its velocity at a knot is the non-uniform Catmull-Rom one, limited to twice the speed
-// of the slower of the two adjacent segments, so that the curve does not overshoot. It is zero beside a
-// segment that does not move: a hold stays still, and motion into and out of it is smooth. At both ends it is
-// the segment's own velocity. Therefore:
+// of the slower of the two adjacent segments, so that the curve does not overshoot: within a segment it is
+// never farther from the segment's start than 1.22 of the segment, and never faster than 2.5 of its mean speed
+// (control points -2/3 and 5/3 of the way give max 2 u + u^2 - 2 u^3 = 1.2198 and 2.5; on the sphere a great
+// circle is the worst case). For that, the inner control points of a segment longer than 1 rad are kept within
+// 1 rad of those of its great circle; else great-circle steps between them could lead round the other side.
+// The velocity is zero beside a segment that does not move: a hold stays still, and motion into and out of it
+// is smooth. At both ends it is the segment's own velocity. Therefore:
 //   - the curve and its velocity are continuous;
 //   - two knots give the great circle at constant speed;
 //   - knots on one great circle give a curve that stays on it;
@@ -80,6 +84,8 @@ class SphericalSpline {
   }
 
  private:
+  static constexpr double kFarthestControl_rad = 1.0;
+
   static Vec step(const Vec& p, const Vec& q, double u) { return follow(p, tangent_towards(p, q) * u); }
 
   Vec inner_velocity(std::size_t i) const {
@@ -90,7 +96,20 @@ class SphericalSpline {
     const Vec velocity = (before * after_s + after * before_s) / (before_s + after_s);
     const double limit = 2.0 * std::min(glm::length(before), glm::length(after));
     const double speed = glm::length(velocity);
-    return speed > limit ? velocity * (limit / speed) : velocity;
+    const Vec limited = speed > limit ? velocity * (limit / speed) : velocity;
+    const double share = std::min(share_near(limited, before, before_s), share_near(limited, after, after_s));
+    return share < 1.0 ? limited * share : limited;
+  }
+
+  // Returns the largest share of a velocity, at most 1, whose control point lies within kFarthestControl_rad of
+  // that of the great circle, `straight` radians a second over `span_s`.
+  static double share_near(const Vec& velocity, const Vec& straight, double span_s) {
+    const double reach = std::max(3.0 * kFarthestControl_rad / span_s, glm::length(straight));
+    const double a = glm::dot(velocity, velocity);
+    const double b = glm::dot(velocity, straight);
+    const double c = glm::dot(straight, straight) - reach * reach;  // at most 0: rest is always near enough
+    if (a - 2.0 * b + c <= 0.0) return 1.0;
+    return (b + std::sqrt(std::max(0.0, b * b - a * c))) / a;
   }
 
   std::vector<double> times_s_;

@@ -95,7 +95,7 @@ TEST(Palette, FindsTheStopsOnBothSides) {
   rc::check([] {
     Random random(*rc::gen::arbitrary<std::uint32_t>());
     const auto any = [&] {
-      return glm::dvec3(random.uniform(0, 255), random.uniform(0, 255), random.uniform(0, 255));
+      return glm::dvec3{random.uniform(0, 255), random.uniform(0, 255), random.uniform(0, 255)};
     };
     std::vector<PaletteStop> stops;
     double at = random.uniform(-1e4, 1e4);
@@ -302,7 +302,7 @@ TEST(Hsv, RoundTrip) {
     RC_ASSERT(back.hue_deg >= 0 && back.hue_deg < 360);
     RC_ASSERT(std::abs(back.saturation - hsv.saturation) < 1e-12);
     RC_ASSERT(std::abs(back.value - hsv.value) < 1e-12);
-    const glm::dvec3 rgb(random.integer(0, 255), random.integer(0, 255), random.integer(0, 255));
+    const glm::dvec3 rgb{random.integer(0, 255), random.integer(0, 255), random.integer(0, 255)};
     RC_ASSERT(furthest(to_rgb(to_hsv(rgb)), rgb) < 1e-9);
     const double turns = 360.0 * random.integer(-3, 3);
     RC_ASSERT(furthest(to_rgb({hsv.hue_deg + turns, hsv.saturation, hsv.value}), to_rgb(hsv)) < 1e-9);
@@ -347,7 +347,7 @@ TEST(Colourised, TakesHueAndSaturationAndKeepsValue) {
   rc::check([] {
     Random random(*rc::gen::arbitrary<std::uint32_t>());
     const auto any = [&] {
-      return glm::dvec3(random.uniform(0, 255), random.uniform(0, 255), random.uniform(0, 255));
+      return glm::dvec3{random.uniform(0, 255), random.uniform(0, 255), random.uniform(0, 255)};
     };
     const glm::dvec3 image = any();
     const glm::dvec3 colour = any();

@@ -282,7 +282,7 @@ TEST(LevelTable, ComesBackToTheBit) {
   Random random(5);
   for (int trial = 0; trial < 2000; ++trial) {
     LevelTable table;
-    double x = random.integer(0, 1) * random.log_uniform(1e-9, 1);
+    double x = random.integer(0, 1) == 0 ? 0 : random.log_uniform(1e-9, 1);
     for (int n = random.integer(0, 8); n > 0; --n) {
       table.push_back({x, random.uniform(-30, 30)});
       x += random.log_uniform(1e-3, 1e6);

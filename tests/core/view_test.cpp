@@ -23,8 +23,10 @@ mars::CameraPose pose(double lon_deg, double lat_deg, double alt_m, double yaw_d
 View random_view(test_support::Random& random, Projection projection) {
   View view;
   view.projection = projection;
-  view.camera = pose(random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(0.1, 3e7),
-                     random.uniform(0, 360), random.uniform(-90, 90), random.uniform(-180, 180));
+  const std::array<double, 6> p{random.uniform(-180, 180),    random.uniform(-90, 90),
+                                random.log_uniform(0.1, 3e7), random.uniform(0, 360),
+                                random.uniform(-90, 90),      random.uniform(-180, 180)};
+  view.camera = pose(p[0], p[1], p[2], p[3], p[4], p[5]);
   view.fov_deg = random.log_uniform(0.01, projection == Projection::kEquirectangular ? 120.0 : 170.0);
   view.width = random.integer(1, 4000);
   view.height = random.integer(1, 4000);
@@ -141,8 +143,8 @@ TEST(View, PerspectiveAgreesWithGlm) {
     const glm::dmat4 look = glm::lookAt(glm::dvec3(0), axes.forward, axes.up);
     const glm::dmat4 lens =
         glm::perspective(view.fov_deg * mars::kRadiansPerDegree, double(view.width) / view.height, 1.0, 1e6);
-    const glm::dvec3 point = axes.forward * random.uniform(10, 100) + axes.right * random.uniform(-50, 50) +
-                             axes.up * random.uniform(-50, 50);
+    const glm::dvec3 along{random.uniform(10, 100), random.uniform(-50, 50), random.uniform(-50, 50)};
+    const glm::dvec3 point = axes.forward * along.x + axes.right * along.y + axes.up * along.z;
     const glm::dvec3 window = glm::project(point, look, lens, glm::dvec4(0, 0, view.width, view.height));
     const Projected p = project(view, point);
     ASSERT_FALSE(p.behind);

@@ -40,7 +40,8 @@ mars::ChartRect rect_around(Random& random, const mars::ChartPoint& point, doubl
 }
 
 mars::ChartRect random_rect(Random& random) {
-  return rect_around(random, mars::chart_point(random.direction()), random.log_uniform(1e-6, 2.0));
+  const mars::ChartPoint centre = mars::chart_point(random.direction());
+  return rect_around(random, centre, random.log_uniform(1e-6, 2.0));
 }
 
 // Returns critical directions: random ones, poles, the antimeridian, the cube's edges and corners.
@@ -48,8 +49,8 @@ glm::dvec3 hostile_direction(Random& random) {
   glm::dvec3 d = random.direction();
   switch (random.integer(0, 5)) {
     case 0: d = {0, 0, random.integer(0, 1) == 0 ? 1.0 : -1.0}; break;
-    case 1: d = glm::normalize(glm::dvec3(-1, random.uniform(-1e-9, 1e-9), random.uniform(-1, 1))); break;
-    case 2: d = glm::normalize(glm::dvec3(1, random.integer(0, 1) * 2 - 1, random.uniform(-1, 1))); break;
+    case 1: d = glm::normalize(glm::dvec3{-1, random.uniform(-1e-9, 1e-9), random.uniform(-1, 1)}); break;
+    case 2: d = glm::normalize(glm::dvec3{1, random.integer(0, 1) * 2 - 1, random.uniform(-1, 1)}); break;
     case 3: d = glm::normalize(glm::dvec3(1, -1, random.integer(0, 1) * 2 - 1)); break;
     default: break;
   }
@@ -67,8 +68,8 @@ core::View random_view(Random& random, const glm::dvec3& camera_m) {
   const glm::dvec3 up = glm::normalize(camera_m);
   const glm::dvec3 east = mars::any_perpendicular(up);
   view.camera.position_m = camera_m;
-  view.camera.axes = mars::oriented_axes({east, glm::cross(up, east), up}, random.uniform(-180, 180),
-                                         random.uniform(-90, 90), random.uniform(-180, 180));
+  const glm::dvec3 turn_deg{random.uniform(-180, 180), random.uniform(-90, 90), random.uniform(-180, 180)};
+  view.camera.axes = mars::oriented_axes({east, glm::cross(up, east), up}, turn_deg.x, turn_deg.y, turn_deg.z);
   view.fov_deg = random.integer(0, 2) == 0 ? random.uniform(1, 170) : 60.0;
   view.width = random.integer(16, 1920);
   view.height = random.integer(16, 1080);
@@ -82,8 +83,8 @@ TEST(Volume, ContainsItsRegion) {
     const BoundingRegion region{random_rect(random), low, low + random.log_uniform(1e-3, 1e6)};
     const cull::BoundingHexahedron volume = cull::bounding_hexahedron(region);
     const double radius = random.integer(0, 1) == 0 ? region.min_radius_m : region.max_radius_m;
-    const glm::dvec3 point =
-        region_point(region.rect, random.integer(0, 2) * 0.5, random.uniform(0, 1), radius);
+    const glm::dvec2 at{random.integer(0, 2) * 0.5, random.uniform(0, 1)};
+    const glm::dvec3 point = region_point(region.rect, at.x, at.y, radius);
     const double along = glm::dot(volume.centre, point);
     for (std::size_t k = 0; k < 4; ++k) {
       ASSERT_LE(glm::dot(volume.centre, volume.corners_m[k]), along + 1e-8);
@@ -138,8 +139,8 @@ TEST(Chord, NearestAndFarthestAgreeWithASearch) {
     glm::dvec3 d = hostile_direction(random);
     if (random.integer(0, 1) == 0) {
       const double span = random.log_uniform(1e-9, 3.0);
-      d = glm::normalize(region_point(rect, random.uniform(0, 1), random.uniform(0, 1), 1.0) +
-                         span * random.direction());
+      const glm::dvec2 at{random.uniform(0, 1), random.uniform(0, 1)};
+      d = glm::normalize(region_point(rect, at.x, at.y, 1.0) + span * random.direction());
     }
     const double border = searched_chord2(rect, d);
     const double expected = inside(rect, d) ? 0.0 : border;
@@ -165,13 +166,14 @@ TEST(Distance, IsATightLowerBoundOverTheRegion) {
   Random random(23);
   int in_the_region = 0;
   for (int trial = 0; trial < 10000; ++trial) {
-    const glm::dvec3 camera_m = hostile_direction(random) * hostile_radius(random);
+    const glm::dvec3 away = hostile_direction(random);
+    const glm::dvec3 camera_m = away * hostile_radius(random);
     const cull::Camera camera = cull::make_camera(camera_m);
     mars::ChartRect rect = random_rect(random);
     if (random.integer(0, 1) == 0) {
-      rect =
-          rect_around(random, mars::chart_point(camera_m + random.direction() * random.log_uniform(0.1, 1e6)),
-                      random.log_uniform(1e-6, 1.0));
+      const glm::dvec3 aside = random.direction();
+      const mars::ChartPoint near = mars::chart_point(camera_m + aside * random.log_uniform(0.1, 1e6));
+      rect = rect_around(random, near, random.log_uniform(1e-6, 1.0));
     }
     const double low = kRadius_m + random.uniform(-8200, 15000);
     const double high = low + random.log_uniform(0.1, 1e4);
@@ -210,7 +212,8 @@ TEST(Frustum, NeverRejectsARegionWithAPointInTheImage) {
   Random random(24);
   int crossed = 0;
   for (int trial = 0; trial < 20000; ++trial) {
-    const glm::dvec3 camera_m = hostile_direction(random) * hostile_radius(random);
+    const glm::dvec3 away = hostile_direction(random);
+    const glm::dvec3 camera_m = away * hostile_radius(random);
     core::View view = random_view(random, camera_m);
     if (random.integer(0, 3) == 0)
       view.part = {view.width / 4, view.height / 3, view.width / 2, view.height / 2};
@@ -227,8 +230,8 @@ TEST(Frustum, NeverRejectsARegionWithAPointInTheImage) {
     const double r = glm::length(point);
     const mars::ChartRect rect = rect_around(random, mars::chart_point(point), random.log_uniform(1e-16, 1.0));
     // Rounding of the point itself may put it just outside its rectangle or region: give that much.
-    const BoundingRegion region{rect, r * (1 - 1e-15) - random.integer(0, 1) * random.log_uniform(0.01, 1e4),
-                                r * (1 + 1e-15) + random.integer(0, 1) * random.log_uniform(0.01, 1e4)};
+    const auto margin_m = [&] { return random.integer(0, 1) == 0 ? 0 : random.log_uniform(0.01, 1e4); };
+    const BoundingRegion region{rect, r * (1 - 1e-15) - margin_m(), r * (1 + 1e-15) + margin_m()};
     if (region.min_radius_m < 0.0) continue;
     const cull::Frustum frustum = cull::make_frustum(view);
     const auto mask =
@@ -258,7 +261,8 @@ TEST(Frustum, RejectsWhatIsClearlyOutside) {
   int outside = 0;
   int culled = 0;
   for (int trial = 0; trial < 10000; ++trial) {
-    const glm::dvec3 camera_m = random.direction() * (kRadius_m + random.log_uniform(100, 1e7));
+    const glm::dvec3 away = random.direction();
+    const glm::dvec3 camera_m = away * (kRadius_m + random.log_uniform(100, 1e7));
     core::View view = random_view(random, camera_m);
     view.fov_deg = 60.0;
     const BoundingRegion region{rect_around(random, mars::chart_point(random.direction()), 0.05), kRadius_m,
@@ -334,7 +338,8 @@ TEST(Horizon, NeverHidesATileWithAVisiblePoint) {
   int hidden = 0;
   int seen = 0;
   for (int trial = 0; trial < 20000; ++trial) {
-    const glm::dvec3 camera_m = hostile_direction(random) * hostile_radius(random);
+    const glm::dvec3 away = hostile_direction(random);
+    const glm::dvec3 camera_m = away * hostile_radius(random);
     const cull::Camera camera = cull::make_camera(camera_m);
     const double low = kLowest_m + random.uniform(0, 20000);
     const BoundingRegion region{random_rect(random), low, low + random.log_uniform(0.1, 10000)};
@@ -343,8 +348,9 @@ TEST(Horizon, NeverHidesATileWithAVisiblePoint) {
         cull::hidden(horizon, cull::nearest_chord2(region.rect, camera.direction), region.max_radius_m);
     hidden += gone ? 1 : 0;
     for (int sample = 0; sample < 8; ++sample) {
-      const glm::dvec3 point = region_point(region.rect, random.integer(0, 4) / 4.0, random.integer(0, 4) / 4.0,
-                                            random.uniform(region.min_radius_m, region.max_radius_m));
+      const glm::dvec2 at{random.integer(0, 4) / 4.0, random.integer(0, 4) / 4.0};
+      const glm::dvec3 point =
+          region_point(region.rect, at.x, at.y, random.uniform(region.min_radius_m, region.max_radius_m));
       const glm::dvec3 step = point - camera_m;
       const double t = std::clamp(-glm::dot(camera_m, step) / glm::dot(step, step), 0.0, 1.0);
       const bool visible = glm::length(camera_m + t * step) >= kLowest_m + 1e-6;
@@ -361,8 +367,8 @@ TEST(Horizon, WhatHasGroundBehindItIsNeverSeenAgainstTheSky) {
   int ground = 0;
   int loose = 0;
   for (int trial = 0; trial < 100000; ++trial) {
-    const cull::Camera camera =
-        cull::make_camera(random.direction() * (kLowest_m + random.log_uniform(1, 1e8)));
+    const glm::dvec3 away = random.direction();
+    const cull::Camera camera = cull::make_camera(away * (kLowest_m + random.log_uniform(1, 1e8)));
     const cull::Horizon horizon = cull::make_horizon(camera, kLowest_m);
     const double top = kLowest_m + random.log_uniform(1, 30000);
     const double angle = random.log_uniform(1e-6, 3.0);

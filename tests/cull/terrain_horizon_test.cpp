@@ -89,10 +89,12 @@ Scene random_scene(Random& random) {
   const double reach = random.log_uniform(1e-5, 0.3);
   const double low = ground - random.log_uniform(1, 5000);
   for (int block = random.integer(1, 3); block > 0; --block) {
-    const mars::ChartPoint near = mars::chart_point(up + reach * random.uniform(0, 2) * random.direction());
+    const double away = reach * random.uniform(0, 2);
+    const mars::ChartPoint near = mars::chart_point(up + away * random.direction());
     const double size = reach * random.log_uniform(0.05, 1);
-    for (Occluder& occluder : block_of_occluders(random, near, size, random.integer(1, 3), low,
-                                                 low + random.log_uniform(1, 20000))) {
+    const int count = random.integer(1, 3);
+    const double high = low + random.log_uniform(1, 20000);
+    for (Occluder& occluder : block_of_occluders(random, near, size, count, low, high)) {
       scene.occluders.push_back(std::move(occluder));
     }
   }
@@ -155,12 +157,12 @@ TEST(TerrainHorizon, HidesNoRegionWithAPointAboveAllOccluders) {
   int aside = 0;
   for (int trial = 0; trial < 1500; ++trial) {
     const Scene scene = random_scene(random);
-    const double margin = random.integer(0, 1) * random.log_uniform(1e-5, 1e-2);
+    const double margin = random.integer(0, 1) == 0 ? 0 : random.log_uniform(1e-5, 1e-2);
     horizon.begin(scene.camera, margin);
     for (const Occluder& occluder : scene.occluders) horizon.add(occluder.view());
     for (int tile = 0; tile < 20; ++tile) {
-      const mars::ChartPoint at =
-          mars::chart_point(scene.camera.direction + random.log_uniform(1e-5, 1) * random.direction());
+      const double away = random.log_uniform(1e-5, 1);
+      const mars::ChartPoint at = mars::chart_point(scene.camera.direction + away * random.direction());
       const double size = random.log_uniform(1e-6, 0.05);
       const cull::BoundingRegion region{{at.face, std::max(-1.0, at.u - size), std::min(1.0, at.u + size),
                                          std::max(-1.0, at.v - size), std::min(1.0, at.v + size)},

@@ -41,9 +41,9 @@ TEST_F(SphereSight, ClearanceIsTheSpheresAndSightEndsAtTheHorizon) {
     const SightPoint a{
         near ? mars::lon_lat(kPatch + 0.004 * random.direction()) : mars::lon_lat(random.direction()),
         random.log_uniform(near ? 5 : 2000, near ? 100 : 400000)};
-    const SightPoint b{
-        mars::destination(a.place, random.uniform(0, 360), random.uniform(0.001, near ? 0.012 : 1.2)),
-        random.log_uniform(near ? 5 : 2000, near ? 100 : 400000)};
+    const double bearing_deg = random.uniform(0, 360);
+    const SightPoint b{mars::destination(a.place, bearing_deg, random.uniform(0.001, near ? 0.012 : 1.2)),
+                       random.log_uniform(near ? 5 : 2000, near ? 100 : 400000)};
     const LineOfSight sight = line_of_sight(surface(), a, b);
     const double sphere_m = over_sphere_m(point_of(surface(), a), point_of(surface(), b), mars::kMarsRadius_m);
     EXPECT_GE(sight.clearance_m, sphere_m - sight.clearance_error_m);
@@ -135,9 +135,9 @@ TEST_F(BumpySight, AgreesWithManySamplesAndWithItself) {
     const bool near = n % 2 == 0;
     const SightPoint a{mars::lon_lat(near ? kPatch + 0.01 * random.direction() : random.direction()),
                        random.log_uniform(1, near ? 1000 : 1e6)};
-    const SightPoint b{
-        mars::destination(a.place, random.uniform(0, 360), random.log_uniform(1e-4, near ? 0.02 : 0.8)),
-        random.log_uniform(1, near ? 1000 : 1e6)};
+    const double bearing_deg = random.uniform(0, 360);
+    const SightPoint b{mars::destination(a.place, bearing_deg, random.log_uniform(1e-4, near ? 0.02 : 0.8)),
+                       random.log_uniform(1, near ? 1000 : 1e6)};
     expect_as_sampled(surface(), a, b);
   }
 }

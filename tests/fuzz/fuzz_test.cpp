@@ -57,7 +57,9 @@ void run(const fuzz::Target& target, int times, std::uint64_t seed) {
   target.run({});
   for (const fuzz::Bytes& bytes : seeds) target.run(bytes);
   for (int n = 0; n < times; ++n) {
-    target.run(damaged(seeds[any_place(random, seeds.size())], seeds[any_place(random, seeds.size())], random));
+    const auto& bytes = seeds[any_place(random, seeds.size())];
+    const auto& other = seeds[any_place(random, seeds.size())];
+    target.run(damaged(bytes, other, random));
   }
 }
 

@@ -11,7 +11,8 @@
 
 namespace test_support {
 
-// Returns the error of the range image itself, which moves points along their rays.
+// Returns the error of the range image itself (vpe::gl::kRangeError), which moves points along their rays, in
+// pixels. No certificate states it.
 inline double range_error_px(const vpe::core::View& view, const std::vector<float>& range_m) {
   float nearest = vpe::core::kSkyRange;
   float farthest = 0;
@@ -22,9 +23,10 @@ inline double range_error_px(const vpe::core::View& view, const std::vector<floa
   return vpe::gl::kRangeError * (1.0 + farthest / nearest) * vpe::core::focal_px(view);
 }
 
-// Expects an image to be within its certificate.
+// Expects an image to be within its certificate; with `range_share` 1 also by the error of its range image.
 inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surface& surface,
-                             const vpe::core::DrawRequest& request, const std::string& name) {
+                             const vpe::core::DrawRequest& request, const std::string& name,
+                             double range_share = 0) {
   const vpe::core::DrawResult result = renderer.draw(request);
   const std::vector<float> reference = reference_ranges(surface, request.view);
   const vpe::core::ImageErrors errors = vpe::core::compare_to_reference(request.view, result.frame.range_m,
@@ -33,8 +35,8 @@ inline void expect_certified(vpe::core::Renderer& renderer, const paging::Surfac
   EXPECT_EQ(errors.sky_for_ground, 0);
   EXPECT_EQ(errors.false_surface, 0);
   EXPECT_EQ(errors.invalid, 0);
-  const double range_px = range_error_px(request.view, result.frame.range_m);
   ASSERT_TRUE(result.certificate.image_bound_px.has_value());
+  const double range_px = range_share * range_error_px(request.view, result.frame.range_m);
   record_worst("polygons: forward shift",
                errors.forward.max_px / (*result.certificate.image_bound_px + range_px), 1,
                "of the certificate");

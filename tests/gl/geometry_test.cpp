@@ -107,11 +107,13 @@ TEST(Certify, BoundsWhatStorageMoves) {
   const lod::TileTree tree = fake::tree(fake::rough(3, 5));
   double tightest = 1e9;
   for (int trial = 0; trial < 20000; ++trial) {
-    const glm::dvec3 camera = random.direction() * (kRadius_m + random.log_uniform(1, 1e5));
+    const glm::dvec3 up = random.direction();
+    const glm::dvec3 camera = up * (kRadius_m + random.log_uniform(1, 1e5));
     const double distance_m = random.log_uniform(0.1, 1e6);
     const glm::dvec3 point = camera + distance_m * random.direction();
     const double edge_m = random.log_uniform(1, 1e5);
-    const glm::dvec3 centre = point + random.log_uniform(0.01, 1e5) * random.direction();
+    const double away_m = random.log_uniform(0.01, 1e5);
+    const glm::dvec3 centre = point + away_m * random.direction();
     std::array<glm::dvec3, 3> corners;
     for (glm::dvec3& c : corners) c = point + 0.5 * edge_m * random.direction();
     std::array<double, 3> weights{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};

@@ -84,7 +84,7 @@ class LongViews : public test_support::GlTest {
         const mars::Pose pose{p.place.lon_deg,        p.place.lat_deg, ground + height,
                               random.uniform(0, 360), pitch,           random.uniform(-40, 40)};
         expect_certified(draw, surface, request_for(pose, radius, kWidth, kHeight, 60),
-                         std::string(p.name) + " from " + std::to_string(height) + " m");
+                         std::string(p.name) + " from " + std::to_string(height) + " m", 1);
       }
     }
   }
@@ -93,7 +93,7 @@ class LongViews : public test_support::GlTest {
     Random random(82);
     for (int n = 0; n < 200; ++n) {
       expect_certified(draw, surface, random_request(random, n, surface, kWidth, kHeight),
-                       "random view " + std::to_string(n));
+                       "random view " + std::to_string(n), 1);
     }
   }
 };
@@ -126,8 +126,9 @@ TEST_F(LongViews, CertificatesAreNotLazy) {
     const auto reference = test_support::reference_ranges(surface, request.view);
     const auto errors = vpe::core::compare_to_reference(request.view, result.frame.range_m, reference,
                                                         test_support::radius_of(surface), {2, 2});
-    const double range_px = test_support::range_error_px(request.view, result.frame.range_m);
     const double bound_px = result.certificate.image_bound_px.value();
+    // Without this term one pixel of view 268 is beyond its bound (docs/design/open-points.md).
+    const double range_px = test_support::range_error_px(request.view, result.frame.range_m);
     ASSERT_LE(errors.forward.max_px, bound_px + range_px)
         << "view " << n << " " << vpe::core::to_json(errors) << vpe::core::to_json(result.certificate).dump(2);
     if (errors.forward.pixels < 4000) continue;  // nearly all sky

@@ -130,7 +130,7 @@ TEST_F(Nodata, StayOnTheGroundWhileTheCameraMoves) {
     for (int n = 0; n < 4000; ++n) {
       const double reach = std::min(0.4 * altitude_m / planet->radius_m(), 0.2);
       const glm::dvec3 d = glm::normalize(
-          middle_ + reach * glm::dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+          middle_ + reach * glm::dvec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
       const glm::dvec3 p = d * (planet->radius_m() + planet->meta().fill_m);
       const auto colour = [&](const DrawRequest& request, const DrawResult& result) {
         const auto xy = vpe::core::project(request.view, p).xy;

@@ -29,8 +29,9 @@ class OcclusionBase : public test_support::GlTest {
   DrawRequest random_request(Random& random) const {
     const glm::dvec3 centres[] = {test_support::kCanyon, test_support::kCrater, test_support::kBasin,
                                   test_support::kPole, random.direction()};
-    const glm::dvec3 at =
-        glm::normalize(centres[random.integer(0, 4)] + 0.004 * random.uniform(0, 1) * random.direction());
+    const glm::dvec3& centre = centres[random.integer(0, 4)];
+    const double away = 0.004 * random.uniform(0, 1);
+    const glm::dvec3 at = glm::normalize(centre + away * random.direction());
     const mars::LonLat place = mars::lon_lat(at);
     const double exaggeration = random.integer(0, 4) == 0 ? random.uniform(0.5, 4) : 1.0;
     const double height =

@@ -81,7 +81,7 @@ TEST_F(Paging, FramesAreCoveredAndTheirCertificatesTrue) {
                                                         test_support::radius_of(surface), {64, 64});
     SCOPED_TRACE("frame " + std::to_string(n) + " " + vpe::core::to_json(errors) + " " +
                  vpe::core::to_json(result.certificate).dump(2));
-    EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px * 1.01 + 0.5);
+    EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px);
     EXPECT_EQ(errors.invalid, 0);
     EXPECT_EQ(result.missing.empty(), result.stats.tiles_missing == 0);
     EXPECT_EQ(result.certificate.tiles_missing, result.stats.tiles_missing);

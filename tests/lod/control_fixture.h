@@ -23,9 +23,11 @@ inline core::View view_at(double lon, double lat, double alt_m, double yaw, doub
 }
 
 inline core::View random_view(Random& random) {
-  core::View view =
-      view_at(random.uniform(-180, 180), random.uniform(-90, 90), 8500 + random.log_uniform(10, 3e6),
-              random.uniform(0, 360), random.uniform(-90, 10));
+  const double lon = random.uniform(-180, 180);
+  const double lat = random.uniform(-90, 90);
+  const double alt = 8500 + random.log_uniform(10, 3e6);
+  const double yaw = random.uniform(0, 360);
+  core::View view = view_at(lon, lat, alt, yaw, random.uniform(-90, 10));
   view.fov_deg = random.uniform(20, 100);
   return view;
 }

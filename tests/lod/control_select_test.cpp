@@ -76,9 +76,9 @@ TEST(ControlSelection, TheDistanceMetricHoldsAtEveryTile) {
   int reached = 0;
   for (int trial = 0; trial < 600; ++trial) {
     const core::View view = random_view(random);
+    const lod::ControlFunction distance{random.log_uniform(1e4, 1e7), random.uniform(-2, 6), 1, {}};
     SelectOptions options =
-        by_distance({random.log_uniform(1e4, 1e7), random.uniform(-2, 6), 1, {}},
-                    {random.uniform(0, 1), random.uniform(-2, 1), random.uniform(0, 2), {}});
+        by_distance(distance, {random.uniform(0, 1), random.uniform(-2, 1), random.uniform(0, 2), {}});
     if (trial % 3 == 0) options.control.distance.table = {{0, 12}, {1e5, 8}, {1e6, 5}, {2e6, 3}};
     options.control.regions = {lod::control_region({0, 0, 1e6, random.integer(-3, 3)}, fake::kRadius_m)};
     const Selection s = selected(options, rough_tree(), view);

@@ -136,8 +136,9 @@ TEST(ControlFunctions, TheNearestPointToTheCentreIsFound) {
     const core::View view = random_view(random);
     const lod::CentreOfView centre = lod::centre_of_view(view);
     const int level = random.integer(0, 9);
+    const double away = random.uniform(0, 1);
     const glm::dvec3 near =
-        glm::normalize(view.camera.position_m / fake::kRadius_m + random.uniform(0, 1) * random.direction());
+        glm::normalize(view.camera.position_m / fake::kRadius_m + away * random.direction());
     const lod::TileKey key = lod::tile_at(mars::chart_point(near), level);
     const cull::BoundingRegion region{lod::chart_rect(key), fake::kRadius_m - random.uniform(0, 5000),
                                       fake::kRadius_m + 3000};

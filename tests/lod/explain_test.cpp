@@ -50,11 +50,14 @@ TEST(Explain, EveryReasonIsThatOfSelection) {
   for (int trial = 0; trial < 400; ++trial) {
     core::DrawRequest request;
     core::SettingsValues& s = request.settings;
-    request.view = view_at(random.uniform(-180, 180), random.uniform(-90, 90),
-                           8500 + random.log_uniform(10, 3e6), random.uniform(0, 360), random.uniform(-90, 0));
+    const double lon = random.uniform(-180, 180);
+    const double lat = random.uniform(-90, 90);
+    const double alt = 8500 + random.log_uniform(10, 3e6);
+    const double yaw = random.uniform(0, 360);
+    request.view = view_at(lon, lat, alt, yaw, random.uniform(-90, 0));
     s.lod_metric = random.integer(0, 1) == 0 ? core::LodMetric::kError : core::LodMetric::kDistance;
     s.lod_tolerance_px = random.log_uniform(0.2, 10);
-    s.lod_centre_weight = random.integer(0, 1) * random.uniform(0, 2);
+    s.lod_centre_weight = random.integer(0, 1) == 0 ? 0 : random.uniform(0, 2);
     s.exaggeration = random.integer(0, 1) == 0 ? 1 : random.log_uniform(0.2, 5);
     request.interest = {{0, 0, 1e6, random.integer(-2, 2)}};
     const SelectOptions options =

@@ -39,8 +39,8 @@ cull::BoundingRegion bounding_region(const lod::TileKey& key) {
 
 glm::dvec3 point_in(const cull::BoundingRegion& region, Random& random) {
   const mars::ChartRect& r = region.rect;
-  return mars::chart_direction(r.face, random.uniform(r.u0, r.u1), random.uniform(r.v0, r.v1)) *
-         random.uniform(region.min_radius_m, region.max_radius_m);
+  const glm::dvec2 at{random.uniform(r.u0, r.u1), random.uniform(r.v0, r.v1)};
+  return mars::chart_direction(r.face, at.x, at.y) * random.uniform(region.min_radius_m, region.max_radius_m);
 }
 
 TEST(OffAxisMagnification, BoundsWhatIsDrawn) {
@@ -52,15 +52,19 @@ TEST(OffAxisMagnification, BoundsWhatIsDrawn) {
   for (int trial = 0; trial < 40000; ++trial) {
     const mars::LonLat at = mars::lon_lat(random.direction());
     const double alt = random.log_uniform(9000, 3e7);
-    core::View view = view_of({at.lon_deg, at.lat_deg, alt, random.uniform(0, 360), random.uniform(-90, 10),
-                               random.uniform(-180, 180)},
-                              random.log_uniform(1, 150));
+    const mars::Pose pose{at.lon_deg,
+                          at.lat_deg,
+                          alt,
+                          random.uniform(0, 360),
+                          random.uniform(-90, 10),
+                          random.uniform(-180, 180)};
+    core::View view = view_of(pose, random.log_uniform(1, 150));
     if (trial % 3 == 0) view.principal_offset_px = {random.uniform(-900, 900), random.uniform(-500, 500)};
     if (trial % 5 == 0) view.part = {random.integer(0, 900), random.integer(0, 500), 200, 120};
     const core::SubRectangle shown =
         view.part.width > 0 ? view.part : core::SubRectangle{0, 0, view.width, view.height};
-    const glm::dvec3 ray = core::pixel_ray(view, shown.x + random.uniform(0, shown.width),
-                                           shown.y + random.uniform(0, shown.height));
+    const glm::dvec2 pixel{shown.x + random.uniform(0, shown.width), shown.y + random.uniform(0, shown.height)};
+    const glm::dvec3 ray = core::pixel_ray(view, pixel.x, pixel.y);
     const double middle = -glm::dot(view.camera.position_m, ray);
     const double lowest2 = glm::dot(view.camera.position_m, view.camera.position_m) - middle * middle;
     if (middle <= 0 || lowest2 >= kRadius_m * kRadius_m) continue;

@@ -142,9 +142,11 @@ TEST(ImageMotion, IsAtLeastWhatPointsMoveBy) {
     const double pitch = random.uniform(-80, -30);
     const double roll = random.uniform(-20, 20);
     const core::View a = view_at(0, 1e5, yaw, pitch, roll);
-    const auto turn = [&] { return random.integer(0, 1) * random.uniform(-0.05, 0.05); };
-    core::View b = view_at(random.integer(0, 1) * 1e-4, 1e5 + random.integer(0, 1) * random.uniform(-50, 50),
-                           yaw + turn(), pitch + turn(), roll + turn());
+    const auto some = [&](double most) { return random.integer(0, 1) == 0 ? 0 : random.uniform(-most, most); };
+    const double lon = random.integer(0, 1) * 1e-4;
+    const double alt = 1e5 + some(50);
+    const glm::dvec3 turn{some(0.05), some(0.05), some(0.05)};
+    core::View b = view_at(lon, alt, yaw + turn.x, pitch + turn.y, roll + turn.z);
     if (random.integer(0, 3) == 0) b.fov_deg *= random.uniform(0.999, 1.001);
     const double bound = lod::image_motion_px(a, b, 9.9e4);
     for (int sample = 0; sample < 20; ++sample) {

@@ -16,9 +16,11 @@ TEST(Reevaluate, TheSameViewSeesWhatSelectionSays) {
   const lod::TileTree tree = fake::tree(fake::rough(3, 8));
   test_support::Random random(31);
   for (int trial = 0; trial < 100; ++trial) {
-    const vpe::core::View view =
-        view_at(random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(9000, 1e7),
-                random.uniform(0, 360), random.uniform(-90, 0));
+    const double lon = random.uniform(-180, 180);
+    const double lat = random.uniform(-90, 90);
+    const double alt = random.log_uniform(9000, 1e7);
+    const double yaw = random.uniform(0, 360);
+    const vpe::core::View view = view_at(lon, lat, alt, yaw, random.uniform(-90, 0));
     lod::SelectScratch scratch;
     lod::Selection selection;
     lod::select({}, tree, lod::select_view(view), scratch, selection);
@@ -43,8 +45,10 @@ TEST(Reevaluate, DistancesBoundThoseFromTheOtherCamera) {
   test_support::Random random(32);
   for (int trial = 0; trial < 50; ++trial) {
     const double lon = random.uniform(-180, 180);
-    const vpe::core::View from = view_at(lon, random.uniform(-80, 80), random.log_uniform(1000, 1e6), 0, -20);
-    const vpe::core::View to = view_at(lon + 2, random.uniform(-80, 80), random.log_uniform(1000, 1e7), 0, -60);
+    const double from_lat = random.uniform(-80, 80);
+    const vpe::core::View from = view_at(lon, from_lat, random.log_uniform(1000, 1e6), 0, -20);
+    const double to_lat = random.uniform(-80, 80);
+    const vpe::core::View to = view_at(lon + 2, to_lat, random.log_uniform(1000, 1e7), 0, -60);
     lod::SelectScratch scratch;
     lod::Selection selection;
     lod::select({}, tree, lod::select_view(from), scratch, selection);
@@ -53,10 +57,10 @@ TEST(Reevaluate, DistancesBoundThoseFromTheOtherCamera) {
     for (const lod::SelectedTile& tile : selection.tiles) {
       const cull::BoundingRegion region = tree.region(tile.index, 1.0, tile.geometric_error_m);
       for (int sample = 0; sample < 5; ++sample) {
-        const glm::dvec3 point =
-            mars::chart_direction(region.rect.face, random.uniform(region.rect.u0, region.rect.u1),
-                                  random.uniform(region.rect.v0, region.rect.v1)) *
-            random.uniform(region.min_radius_m, region.max_radius_m);
+        const glm::dvec2 at{random.uniform(region.rect.u0, region.rect.u1),
+                            random.uniform(region.rect.v0, region.rect.v1)};
+        const glm::dvec3 point = mars::chart_direction(region.rect.face, at.x, at.y) *
+                                 random.uniform(region.min_radius_m, region.max_radius_m);
         ASSERT_LE(tile.min_distance_m, glm::length(point - to.camera.position_m));
       }
       worst = std::max(worst, tile.screen_space_error_px);

@@ -218,8 +218,8 @@ TEST(Select, DrawsEveryVisiblePlaceExactlyOnce) {
       // Anywhere, or where a pixel's ray meets a sphere within the terrain.
       glm::dvec3 point = random.direction();
       if (sample % 4 != 0) {
-        const glm::dvec3 ray =
-            core::pixel_ray(view, random.uniform(0, view.width), random.uniform(0, view.height));
+        const double x = random.uniform(0, view.width);
+        const glm::dvec3 ray = core::pixel_ray(view, x, random.uniform(0, view.height));
         const double r = fake::kRadius_m + options.exaggeration * random.uniform(-8000, 8000);
         const double b = glm::dot(ray, camera);
         const double root = b * b - glm::dot(camera, camera) + r * r;
@@ -379,8 +379,11 @@ TEST(Select, InheritedPlanesCullAsMuchAsAllPlanes) {
   const TileTree ball = fake::tree(fake::uniform(4));
   int culled = 0;
   for (int trial = 0; trial < 40; ++trial) {
-    core::View view = view_at(random.uniform(-180, 180), random.uniform(-90, 90), random.log_uniform(1e5, 1e7),
-                              random.uniform(0, 360), random.uniform(-90, -30));
+    const double lon = random.uniform(-180, 180);
+    const double lat = random.uniform(-90, 90);
+    const double alt = random.log_uniform(1e5, 1e7);
+    const double yaw = random.uniform(0, 360);
+    core::View view = view_at(lon, lat, alt, yaw, random.uniform(-90, -30));
     view.fov_deg = random.uniform(5, 90);
     const cull::Frustum frustum = cull::make_frustum(view);
     const cull::Camera camera = cull::make_camera(view.camera.position_m);
@@ -421,7 +424,7 @@ TEST(Select, IsTheSameWhateverWasSelectedBefore) {
   Selection reused;
   for (int trial = 0; trial < 300; ++trial) {
     SelectOptions options = tolerance(random.log_uniform(0.1, 100));
-    options.max_triangles = random.integer(0, 1) * random.integer(1, 100000);
+    options.max_triangles = random.integer(0, 1) == 0 ? 0 : random.integer(1, 100000);
     const core::View view = hostile_view(random, 1.0);
     lod::select(options, rough_tree(), lod::select_view(view), scratch, reused);
     const Selection fresh = selected(options, rough_tree(), view);

@@ -58,7 +58,7 @@ Selection random_selection(Random& random, const TileTree& tree, double exaggera
   lod::SelectOptions options;
   options.tolerance_px = random.log_uniform(0.05, 50);
   options.exaggeration = exaggeration;
-  options.max_triangles = random.integer(0, 1) * random.integer(5000, 200000);
+  options.max_triangles = random.integer(0, 1) == 0 ? 0 : random.integer(5000, 200000);
   lod::SelectScratch scratch;
   Selection s;
   lod::select(options, tree, lod::select_view(view), scratch, s);

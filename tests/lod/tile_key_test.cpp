@@ -209,8 +209,8 @@ TEST(TileKey, CapHoldsTheTileAndTouchesIt) {
     const mars::ChartRect rect = lod::chart_rect(key);
     EXPECT_NEAR(glm::length(cap.centre), 1.0, 1e-15);
     for (int sample = 0; sample < 20; ++sample) {
-      const glm::dvec3 d =
-          mars::chart_direction(rect.face, random.uniform(rect.u0, rect.u1), random.uniform(rect.v0, rect.v1));
+      const double u = random.uniform(rect.u0, rect.u1);
+      const glm::dvec3 d = mars::chart_direction(rect.face, u, random.uniform(rect.v0, rect.v1));
       ASSERT_LE(mars::angle_between_rad(d, cap.centre), cap.radius_rad) << lod::to_string(key);
     }
     double farthest = 0;

@@ -176,7 +176,8 @@ TEST(Cube, InteriorPointsAreOnOneFace) {
   test_support::Random random(4);
   for (int n = 0; n < 1000; ++n) {
     const auto face = static_cast<Face>(random.integer(0, 5));
-    const glm::dvec3 p = cube_point(face, random.uniform(-0.999, 0.999), random.uniform(-0.999, 0.999));
+    const double u = random.uniform(-0.999, 0.999);
+    const glm::dvec3 p = cube_point(face, u, random.uniform(-0.999, 0.999));
     ASSERT_EQ(charts_of(p).size(), 1U);
   }
 }
@@ -186,7 +187,8 @@ TEST(Cube, ChartPointInvertsChartDirectionWithinItsBound) {
   Bound direction_bound("chart_direction");
   Bound round_trip("chart_point: angle");
   for (int n = 0; n < 100000; ++n) {
-    const glm::dvec3 d = random.direction() * random.log_uniform(1e-290, 1e290);
+    const glm::dvec3 along = random.direction();
+    const glm::dvec3 d = along * random.log_uniform(1e-290, 1e290);
     const ChartPoint c = chart_point(d);
     ASSERT_LE(std::abs(c.u), 1.0);
     ASSERT_LE(std::abs(c.v), 1.0);

@@ -62,7 +62,8 @@ TEST(EmbeddedClose, ContinuousAmongRocksAndRipples) {
   for (const LonLat& p : {LonLat{-33.25, 19.1}, LonLat{-66.2333, -12.56}, LonLat{134.3, 47.7}, LonLat{178, 81},
                           LonLat{77.4, 18.5}, LonLat{-97, -7}, LonLat{-36, 14}}) {
     for (int i = 0; i < 400; ++i) {
-      a.push_back(glm::normalize(direction(p) + random.direction() * random.log_uniform(1e-7, 1e-3)));
+      const glm::dvec3 away = random.direction();
+      a.push_back(glm::normalize(direction(p) + away * random.log_uniform(1e-7, 1e-3)));
       b.push_back(glm::normalize(a.back() + random.direction() * (1e-3 / kMarsRadius_m)));
     }
   }

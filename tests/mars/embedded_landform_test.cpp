@@ -259,8 +259,8 @@ TEST(EmbeddedRegions, CapsReturnTheFinestSpacingOfTheirPlaces) {
     const Cap cap{k % 3 == 0 ? random.direction() : direction(near), random.log_uniform(1e-5, 0.3)};
     const double whole = source->spacing_in(cap);
     for (int i = 0; i < 8; ++i) {
-      const LonLat p =
-          destination(lon_lat(cap.centre), random.uniform(0, 360), cap.radius_rad * random.uniform(0, 1));
+      const double bearing_deg = random.uniform(0, 360);
+      const LonLat p = destination(lon_lat(cap.centre), bearing_deg, cap.radius_rad * random.uniform(0, 1));
       EXPECT_GE(source->spacing_in({direction(p), 0.0}), whole);
     }
     fine += whole < 3700.0;
@@ -285,8 +285,9 @@ TEST(EmbeddedRegions, DemoPathLiesOnTheFloorInsideItsCorridor) {
     for (int k = 0; k < 60; ++k) {
       const glm::dvec3 p = slerp(a, b, random.uniform(0, 1));
       line.push_back(p);
-      const LonLat beside = destination(lon_lat(p), random.uniform(0, 360),
-                                        random.uniform(0, 0.999) * kDemoHalfWidth_m / kMarsRadius_m);
+      const double bearing_deg = random.uniform(0, 360);
+      const LonLat beside =
+          destination(lon_lat(p), bearing_deg, random.uniform(0, 0.999) * kDemoHalfWidth_m / kMarsRadius_m);
       EXPECT_EQ(embedded_elevation()->spacing_in({direction(beside), 0.0}), kEmbeddedPosts.demo_m);
       EXPECT_EQ(embedded_image()->spacing_in({direction(beside), 0.0}), kEmbeddedTexels.demo_m);
     }

@@ -207,13 +207,14 @@ TEST(EmbeddedValue, ContinuousEverywhere) {
   };
   for (const LonLat& p : kPlaces) {
     for (int i = 0; i < 700; ++i) {
-      add(glm::normalize(direction(p) + random.direction() * random.log_uniform(1e-7, 0.06)));
+      const glm::dvec3 away = random.direction();
+      add(glm::normalize(direction(p) + away * random.log_uniform(1e-7, 0.06)));
     }
   }
   for (int i = 0; i < 200; ++i) {
     add(direction({180.0, random.uniform(-90, 90)}));
     add(direction({random.uniform(-180, 180), random.integer(0, 1) == 0 ? 90.0 : -90.0}));
-    add(glm::normalize(glm::dvec3(1.0, random.integer(0, 1) == 0 ? 1.0 : -1.0, random.uniform(-1, 1))));
+    add(glm::normalize(glm::dvec3{1.0, random.integer(0, 1) == 0 ? 1.0 : -1.0, random.uniform(-1, 1)}));
     add(glm::normalize(glm::dvec3(1.0, random.uniform(-1, 1), 1.0)));
   }
   const auto ha = heights(a, 32.0);

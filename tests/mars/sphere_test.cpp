@@ -110,7 +110,8 @@ TEST(Sphere, SinCosIsExactAtMultiplesOf90AndWithinItsBoundElsewhere) {
   for (int n = 0; n < 50000; ++n) {
     angles.push_back(random.uniform(-720, 720));
     angles.push_back(random.log_uniform(1e-300, 1e300));
-    angles.push_back(90 * random.integer(-8, 8) + random.log_uniform(1e-15, 1));
+    const int quarters = random.integer(-8, 8);
+    angles.push_back(90 * quarters + random.log_uniform(1e-15, 1));
   }
   Bound bound("sin_cos_deg: 2 ulp");
   for (const double angle : angles) {
@@ -215,7 +216,10 @@ TEST(Sphere, LonLatInvertsDirectionWithinItsBound) {
   test_support::Random random(5);
   std::vector<glm::dvec3> vectors;
   for (const LonLat place : test_places(random, 10000)) vectors.push_back(direction(place));
-  for (int n = 0; n < 20000; ++n) vectors.push_back(random.direction() * random.log_uniform(1e-300, 1e300));
+  for (int n = 0; n < 20000; ++n) {
+    const glm::dvec3 along = random.direction();
+    vectors.push_back(along * random.log_uniform(1e-300, 1e300));
+  }
   for (const double tiny : {5e-324, 1e-310, 1e-200, 1e-17, 0.0, -0.0}) {
     for (const double sign : {1.0, -1.0}) {
       vectors.insert(vectors.end(), {{-1, tiny * sign, 0},

@@ -46,8 +46,8 @@ core::View random_view(Random& random, const glm::dvec3& camera_m, double pitch)
   const glm::dvec3 up = glm::normalize(camera_m);
   const glm::dvec3 east = mars::any_perpendicular(up);
   view.camera.position_m = camera_m;
-  view.camera.axes = mars::oriented_axes({east, glm::cross(up, east), up}, random.uniform(-180, 180), pitch,
-                                         random.uniform(-30, 30));
+  const double yaw = random.uniform(-180, 180);
+  view.camera.axes = mars::oriented_axes({east, glm::cross(up, east), up}, yaw, pitch, random.uniform(-30, 30));
   view.width = 640;
   view.height = 400;
   view.fov_deg = random.integer(0, 3) == 0 ? random.log_uniform(5, 150) : 60.0;
@@ -264,12 +264,12 @@ TEST(NeverCull, ExaggeratedGroundHidesOnlyWhatItHides) {
   for (const double exaggeration : {0.3, 4.0}) {
     Totals totals;
     for (; totals.cameras < 100; ++totals.cameras) {
-      const glm::dvec3 d =
-          glm::normalize(test_support::kCanyon + random.log_uniform(1e-5, 0.05) * random.direction());
+      const double away = random.log_uniform(1e-5, 0.05);
+      const glm::dvec3 d = glm::normalize(test_support::kCanyon + away * random.direction());
       const double height = ground().surface().at(d).height_m;
-      const core::View view =
-          random_view(random, d * (ground().radius_m() + exaggeration * height + random.log_uniform(10, 1e4)),
-                      random.uniform(-30, 10));
+      const double radius_m = ground().radius_m() + exaggeration * height + random.log_uniform(10, 1e4);
+      const double pitch = random.uniform(-30, 10);
+      const core::View view = random_view(random, d * radius_m, pitch);
       check_occlusion(random, view, select(view, 4.0, exaggeration), pass, totals);
       if (HasFatalFailure()) return;
     }
@@ -288,9 +288,11 @@ HiddenTiles count_hidden(Random& random, const glm::dvec3& place, double spread_
   lod::OcclusionPass pass;
   HiddenTiles count;
   for (int n = 0; n < views; ++n) {
-    const glm::dvec3 d = glm::normalize(place + spread_rad * random.uniform(0, 1) * random.direction());
-    core::View view = random_view(random, d * (ground().surface().at(d).radius_m + random.log_uniform(2, 200)),
-                                  random.uniform(-5, 5));
+    const double away = spread_rad * random.uniform(0, 1);
+    const glm::dvec3 d = glm::normalize(place + away * random.direction());
+    const double radius_m = ground().surface().at(d).radius_m + random.log_uniform(2, 200);
+    const double pitch = random.uniform(-5, 5);
+    core::View view = random_view(random, d * radius_m, pitch);
     view.projection = core::Projection::kPerspective;
     view.fov_deg = 60;
     view.width = 1280;

@@ -49,9 +49,9 @@ TEST_F(Section, PiecesLieOnTheGroundAndInThePlane) {
       {{1, 0, 0}, {0, 1, 0}},   {{1, 1, 0}, {1, 1, 2}},    {{0.3, 0, 1}, {-0.3, 0, 1}},
       {{1, 0.2, 0.2}, kCorner}, {{-1, 0.9, 1}, {1, 1, 1}}, {{1, 0, 0}, {-0.9, 1e-3, 0.1}},
       {{1, 1, -1}, {1, 1, 1}},  {{1, 0, 0}, {1, 0, 0.5}}};
-  for (int n = 0; n < 20; ++n) paths.emplace_back(random.direction(), random.direction());
+  for (int n = 0; n < 20; ++n) paths.push_back({random.direction(), random.direction()});
   for (int n = 0; n < 20; ++n) {
-    paths.emplace_back(kCorner + 0.03 * random.direction(), kCorner + 0.03 * random.direction());
+    paths.push_back({kCorner + 0.03 * random.direction(), kCorner + 0.03 * random.direction()});
   }
   for (const auto& [from, to] : paths) {
     const auto all = pieces(from, to);

@@ -107,10 +107,11 @@ TEST(Surface, NoRayGetsThrough) {
   Random random(42);
   for (int n = 0; n < 30000; ++n) {
     glm::dvec3 up = random.direction();
-    glm::dvec3 target = random.direction() * random.uniform(0, 3.3e6);
+    glm::dvec3 target = random.direction();
+    target *= random.uniform(0, 3.3e6);
     if (n % 4 == 0) {
       // In the plane of a cube edge or a tile border, where rays run along shared lines.
-      up = glm::normalize(glm::dvec3(1, mars::face_line(random.integer(0, 8), 3), random.uniform(-1, 1)));
+      up = glm::normalize(glm::dvec3{1, mars::face_line(random.integer(0, 8), 3), random.uniform(-1, 1)});
       target = glm::dvec3(0);
     }
     const glm::dvec3 camera = up * (planet->radius_m() + random.log_uniform(20000, 1e8));

@@ -45,7 +45,8 @@ void view_panorama(const fs::path& path, int requests) {
   [[maybe_unused]] const std::int64_t resident_kib = of_process("status", "VmRSS:");
   for (int n = 0; n < requests; ++n) {
     panorama::Viewer viewer(map, 64, 36);
-    viewer.look_at(random.uniform(-1e4, 1e4), random.uniform(-90.0, 90.0));
+    const double azimuth_deg = random.uniform(-1e4, 1e4);
+    viewer.look_at(azimuth_deg, random.uniform(-90.0, 90.0));
     viewer.set_fov(random.log_uniform(0.05, 120.0));
     view_options.threads = 1;
     const vpe::core::RgbImage image = panorama::render_view(*tiled_image, map, viewer.view(), view_options);

@@ -202,11 +202,11 @@ TEST(GPano, HoldsMapsThatFallOnWholePixels) {
     const int turn = 2 * random.integer(10, 50000);
     const int width = random.integer(1, turn);
     const bool is_cylinder = random.integer(0, 1) == 1;
+    const int height = random.integer(1, is_cylinder ? 20000 : turn / 2);
+    const double north_deg = random.uniform(-400, 400);
     PanoramaMap map = is_cylinder
-                          ? panorama::cylinder_map(width, random.integer(1, 20000), turn,
-                                                   random.uniform(-400, 400), random.integer(-1000, 3000))
-                          : panorama::equirectangular_map(width, random.integer(1, turn / 2), turn,
-                                                          random.uniform(-400, 400), 0);
+                          ? panorama::cylinder_map(width, height, turn, north_deg, random.integer(-1000, 3000))
+                          : panorama::equirectangular_map(width, height, turn, north_deg, 0);
     if (!is_cylinder)
       map.horizon_px = turn / 4.0 - random.integer(0, turn / 2 - static_cast<int>(map.height_px));
     map.crop_left_px = random.integer(0, turn - 1);

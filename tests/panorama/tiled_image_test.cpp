@@ -62,7 +62,8 @@ TEST(TiledImage, KeepsWithinItsBudgetTheLastUsed) {
   EXPECT_EQ(fake.reads, 12);
   test_support::Random random(7);
   for (int n = 0; n < 10000; ++n) {
-    const auto tile = tiled_image.tile(0, random.integer(0, 99), random.integer(0, 9));
+    const int column = random.integer(0, 99);
+    const auto tile = tiled_image.tile(0, column, random.integer(0, 9));
     ASSERT_EQ(tile->pixels.size(), 64U * 64U);
     ASSERT_LE(tiled_image.bytes(), 10 * (kTileBytes + 200));
   }

@@ -131,7 +131,8 @@ TEST(Viewer, ZoomKeepsWhatIsUnderTheCursor) {
   int ends = 0;
   for (int n = 0; n < 2000; ++n) {
     Viewer viewer(kSphere, 900, 700);
-    viewer.look_at(random.uniform(-1000.0, 1000.0), random.uniform(-60.0, 60.0));
+    const double azimuth_deg = random.uniform(-1000.0, 1000.0);
+    viewer.look_at(azimuth_deg, random.uniform(-60.0, 60.0));
     viewer.set_fov(random.uniform(20.0, 80.0));
     const double x = random.uniform(0.0, 900.0);
     const double y = random.uniform(0.0, 700.0);

@@ -289,7 +289,7 @@ Flight random_flight(Random& random) {
   flight.view.height = random.integer(1, 32768);
   flight.view.fps = *parse_frame_rate(std::to_string(random.integer(1, 60000)) + "/" +
                                       std::to_string(random.integer(60, 1001)));
-  double t = random.integer(0, 1) * random.uniform(0, 5);
+  double t = random.integer(0, 1) == 0 ? 0 : random.uniform(0, 5);
   const int commands = random.integer(1, 30);
   for (int i = 0; i < commands; ++i) {
     if (i == 0 || random.integer(0, 1) == 0) {

@@ -65,7 +65,8 @@ Flight random_flight(Random& random) {
     flight.waypoints.push_back(w);
     flight.heads.push_back({t, random.uniform(-180, 180), random.uniform(-90, 90), random.uniform(-180, 180)});
     t += random.log_uniform(0.3, 30);
-    place = glm::normalize(place + random.direction() * random.log_uniform(1e-5, 0.95));
+    const glm::dvec3 away = random.direction();
+    place = glm::normalize(place + away * random.log_uniform(1e-5, 0.95));
   }
   if (random.integer(0, 1) == 0) flight.end_s = t;
   return flight;
@@ -170,7 +171,8 @@ TEST(Path, TwoPosesFlyTheGreatCircleAtConstantSpeed) {
   Random random(11);
   for (int i = 0; i < 300; ++i) {
     const mars::LonLat a = mars::lon_lat(random.direction());
-    const mars::LonLat b = mars::destination(a, random.uniform(0, 360), random.log_uniform(1e-6, 3.0));
+    const double bearing_deg = random.uniform(0, 360);
+    const mars::LonLat b = mars::destination(a, bearing_deg, random.log_uniform(1e-6, 3.0));
     Flight flight;
     flight.waypoints = {waypoint(0, a, 1000, 0, 0), waypoint(16, b, 5000, 90, 0)};
     const Path path(flight, kRadius_m, {});

@@ -14,7 +14,8 @@ TEST(Tangent, LengthIsTheAngleAndFollowingItArrives) {
   Random random(1);
   for (int i = 0; i < 20000; ++i) {
     const glm::dvec3 p = random.direction();
-    const glm::dvec3 q = glm::normalize(p + random.direction() * random.log_uniform(1e-12, 10));
+    const glm::dvec3 away = random.direction();
+    const glm::dvec3 q = glm::normalize(p + away * random.log_uniform(1e-12, 10));
     const glm::dvec3 tangent = tangent_towards(p, q);
     const double angle_rad = mars::angle_between_rad(p, q);
     ASSERT_NEAR(glm::length(tangent), angle_rad, 1e-15 + 2e-15 * angle_rad);
@@ -83,7 +84,8 @@ TEST(SphericalSpline, NeverOvershoots) {
     std::vector<glm::dvec3> points{random.direction()};
     for (int k = 0; k < 5; ++k) {
       times_s.push_back(times_s.back() + random.log_uniform(0.01, 100));
-      points.push_back(glm::normalize(points.back() + random.direction() * random.log_uniform(1e-4, 0.9)));
+      const glm::dvec3 away = random.direction();
+      points.push_back(glm::normalize(points.back() + away * random.log_uniform(1e-4, 0.9)));
     }
     const SphericalSpline<glm::dvec3> spline(times_s, points);
     for (std::size_t s = 0; s + 1 < points.size(); ++s) {
@@ -100,10 +102,42 @@ TEST(SphericalSpline, NeverOvershoots) {
   EXPECT_GT(worst, 1.01);
 }
 
+// Neighbours that are much faster or slower, in any direction, give the longest control points. Without a limit
+// on them segments over 77 degrees could lead round the other side of the sphere.
+TEST(SphericalSpline, LongSegmentsDoNotLeadRoundTheSphere) {
+  Random random(6);
+  double farthest = 0;
+  double fastest = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const glm::dvec3 a = random.direction();
+    const auto beside = [&](const glm::dvec3& p, double arc_rad) {
+      return follow(p, glm::normalize(glm::cross(p, random.direction())) * arc_rad);
+    };
+    const double arc_rad = random.uniform(0.5, 3.1);
+    const glm::dvec3 b = beside(a, arc_rad);
+    const glm::dvec3 before = beside(a, random.uniform(0.1, 3));
+    const glm::dvec3 after = beside(b, random.uniform(0.1, 3));
+    const double first_s = random.log_uniform(1e-3, 1);
+    const SphericalSpline<glm::dvec3> spline(
+        {0, first_s, first_s + 1, first_s + 1 + random.log_uniform(1e-3, 1)}, {before, a, b, after});
+    glm::dvec3 last = a;
+    for (int k = 1; k <= 50; ++k) {
+      const glm::dvec3 p = spline.at(first_s + k / 50.0);
+      farthest = std::max(farthest, mars::angle_between_rad(a, p) / arc_rad);
+      fastest = std::max(fastest, mars::angle_between_rad(last, p) * 50 / arc_rad);
+      last = p;
+    }
+  }
+  EXPECT_LE(farthest, 1.22);
+  EXPECT_GT(farthest, 1.1);
+  EXPECT_LE(fastest, 2.5);
+}
+
 TEST(SphericalSpline, RotatingTheKnotsRotatesTheCurve) {
   Random random(5);
   for (int i = 0; i < 200; ++i) {
-    const glm::dquat turn = glm::angleAxis(random.uniform(-3, 3), random.direction());
+    const double angle_rad = random.uniform(-3, 3);
+    const glm::dquat turn = glm::angleAxis(angle_rad, random.direction());
     std::vector<double> times_s;
     std::vector<glm::dvec3> points, turned;
     for (int k = 0; k < 5; ++k) {

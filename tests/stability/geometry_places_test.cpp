@@ -114,7 +114,7 @@ TEST(GeometryPlaces, PixelsComeBackAtAnyFieldOfView) {
                                        random.uniform(-90, 90), random.uniform(-180, 180)},
                                       mars::kMarsRadius_m);
         ASSERT_EQ(core::check(view), "");
-        const glm::dvec2 at(random.uniform(0, 1920), random.uniform(0, 1080));
+        const glm::dvec2 at{random.uniform(0, 1920), random.uniform(0, 1080)};
         const glm::dvec3 ray = core::pixel_ray(view, at.x, at.y);
         // As far as the ground is at least, so that the camera's own rounding does not count.
         const core::Projected back = core::project(view, view.camera.position_m + ray * 1e9);

@@ -24,9 +24,10 @@ struct Ray {
 };
 
 glm::dvec3 random_post(Random& random) {
-  return mars::chart_direction(static_cast<mars::Face>(random.integer(0, 5)),
-                               mars::face_line(random.integer(0, kFacePosts), 6),
-                               mars::face_line(random.integer(0, kFacePosts), 6));
+  const auto face = static_cast<mars::Face>(random.integer(0, 5));
+  const int i = random.integer(0, kFacePosts);
+  const int j = random.integer(0, kFacePosts);
+  return mars::chart_direction(face, mars::face_line(i, 6), mars::face_line(j, 6));
 }
 
 // Returns a camera over any place, often a pole, edge or post, from 1e-7 to ten radii above the reference

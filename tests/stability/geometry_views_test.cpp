@@ -29,6 +29,7 @@ struct Totals {
   double wrong = 0;   // show neither
   double range = 0;   // largest relative difference of the others, times the sine of incidence
   double wide = 0;    // the same in wide fields of view and over very large height differences
+  double radial = 0;  // largest distance from S, radially, of what certificates state
 };
 
 bool same(double seen, double exact) {
@@ -58,7 +59,8 @@ void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& v
                     exaggeration * (meta.highest_radius_m - meta.lowest_radius_m) > 0.1 * meta.radius_m;
   const glm::ivec2 size = core::drawn_size(view);
   std::vector<float> range(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y), -1.0F);
-  caster.cast(view, {exaggeration}, pool, range);
+  const auto usage = caster.cast(view, {exaggeration}, pool, range);
+  const double stated = caster.range_error(view, exaggeration) * std::hypot(1.0, usage.steepest_slope);
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
       const auto seen = static_cast<double>(range[static_cast<std::size_t>(y * size.x + x)]);
@@ -73,6 +75,9 @@ void check(RangeCaster& caster, vpe::base::ThreadPool& pool, const core::View& v
             caster.surface().at(view.camera.position_m + exact * ray, exaggeration).normal;
         double& range_error = wide ? totals.wide : totals.range;
         range_error = std::max(range_error, std::abs(glm::dot(normal, ray)) * std::abs(seen - exact) / exact);
+        const glm::dvec3 place = view.camera.position_m + seen * ray;
+        const double off_m = std::abs(glm::length(place) - caster.surface().at(place, exaggeration).radius_m);
+        totals.radial = std::max(totals.radial, off_m / seen / stated);
       } else if (seen_beside(caster.surface(), view, at, seen, exaggeration)) {
         totals.beside += 1;
       } else {
@@ -141,6 +146,8 @@ TEST(GeometryViews, PixelsAreTheCastsOfTheirRays) {
   record_worst(
       "ray images, over 150 degrees or relief over a tenth of the radius: range times sine of incidence",
       std::max(smooth.wide, rough.wide), RangeCaster::kWideRangeError, "of the range");
+  record_worst("ray images: radial distance from S", std::max(smooth.radial, rough.radial), 1,
+               "of the certificate");
   record_worst("ray images, smooth ground: pixels of neither their own ray nor one beside",
                smooth.wrong / smooth.pixels, 0, "of all");
   record_worst("ray images, walls and spikes: pixels of neither their own ray nor one beside",

@@ -46,7 +46,7 @@ int Random::integer(int low, int high) { return std::uniform_int_distribution<in
 glm::dvec3 Random::direction() {
   std::normal_distribution<double> normal;
   for (;;) {
-    const glm::dvec3 v(normal(engine_), normal(engine_), normal(engine_));
+    const glm::dvec3 v{normal(engine_), normal(engine_), normal(engine_)};
     const double length = glm::length(v);
     if (length > 1e-3) return v / length;
   }

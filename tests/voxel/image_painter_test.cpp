@@ -111,9 +111,9 @@ TEST_F(PaintedImage, AllProjectionsPartsAndSkiesAsDefined) {
   for (int n = 0; n < 60; ++n) {
     const mars::LonLat place = mars::lon_lat(random.direction());
     const double ground = surface.at(mars::direction(place)).height_m;
-    core::DrawRequest r = request({place.lon_deg, place.lat_deg, ground + random.log_uniform(2, 1e8),
-                                   random.uniform(0, 360), random.uniform(-90, 30), random.uniform(-180, 180)},
-                                  90, 60, random.log_uniform(5, 120));
+    const mars::Pose pose{place.lon_deg,          place.lat_deg,           ground + random.log_uniform(2, 1e8),
+                          random.uniform(0, 360), random.uniform(-90, 30), random.uniform(-180, 180)};
+    core::DrawRequest r = request(pose, 90, 60, random.log_uniform(5, 120));
     r.sun = random.direction();
     r.view.projection = static_cast<core::Projection>(n % 3);
     if (n % 2 == 0) r.view.part = {13, 7, 61, 40};

@@ -10,13 +10,17 @@
 #include "tests/gl/appearance_fixture.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/paging/rough_planet.h"
+#include "tests/voxel/stated_range.h"
 #include "vpe/core/image/image.h"
+#include "vpe/voxel/cast/range_caster.h"
 
 namespace {
 
 namespace core = vpe::core;
+using test_support::is_tie;
 using test_support::Random;
 using test_support::request_for;
+using vpe::voxel::RangeCaster;
 
 class Rays : public test_support::GlTest {
  protected:
@@ -32,9 +36,10 @@ class Rays : public test_support::GlTest {
                                           int height) {
     const mars::LonLat place = mars::lon_lat(random.direction());
     const double ground = surface.at(mars::direction(place)).height_m;
-    return request_for({place.lon_deg, place.lat_deg, ground + random.log_uniform(1.5, 3e7),
-                        random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)},
-                       surface.planet_radius_m(), width, height, random.log_uniform(5, 100));
+    const mars::Pose pose{
+        place.lon_deg,          place.lat_deg,           ground + random.log_uniform(1.5, 3e7),
+        random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)};
+    return request_for(pose, surface.planet_radius_m(), width, height, random.log_uniform(5, 100));
   }
 };
 
@@ -43,6 +48,7 @@ TEST_F(Rays, RangesAreThoseOfTheReferenceSurfaceInEveryProjection) {
   const paging::Surface surface(planet, std::size_t{1} << 27);
   const auto draw = rays(planet);
   Random random(91);
+  int ties = 0;
   for (const auto projection :
        {core::Projection::kPerspective, core::Projection::kCylinder, core::Projection::kEquirectangular}) {
     for (int n = 0; n < 4; ++n) {
@@ -50,20 +56,33 @@ TEST_F(Rays, RangesAreThoseOfTheReferenceSurfaceInEveryProjection) {
       request.view.projection = projection;
       request.view.part = {8, 6, 40, 30};
       const core::DrawResult result = draw->draw(request);
-      // Equal but for rounding (voxel/range_caster_test).
-      const std::vector<float> exact = test_support::reference_ranges(surface, request.view);
-      ASSERT_EQ(result.frame.range_m.size(), exact.size());
-      int differ = 0;
-      for (std::size_t k = 0; k < exact.size(); ++k) {
-        if (exact[k] == result.frame.range_m[k]) continue;
-        differ += std::abs(exact[k] - result.frame.range_m[k]) <= 2e-6F * exact[k] ? 0 : 1;
+      ASSERT_EQ(result.frame.range_m.size(), 1200U);
+      for (int k = 0; k < 1200; ++k) {
+        const glm::dvec3 ray = core::pixel_ray(request.view, 8.5 + k % 40, 6.5 + k / 40);
+        const test_support::CastRay cast{request.view.camera.position_m, ray};
+        const double exact = surface.cast(cast.camera_m, cast.direction);
+        const auto seen = static_cast<double>(result.frame.range_m[static_cast<std::size_t>(k)]);
+        if (seen == exact) continue;
+        // Equal but for rounding (voxel/range_caster_test), or beside a ridge that lies between two columns.
+        if (std::isfinite(seen) && std::isfinite(exact) &&
+            test_support::stated_range_error(surface, cast, seen, exact) <= RangeCaster::kRangeError)
+          continue;
+        EXPECT_EQ(projection, core::Projection::kPerspective) << k << ": " << seen << " for " << exact;
+        EXPECT_TRUE(is_tie(surface, cast, seen, 0.7 / core::focal_px(request.view)))
+            << k << ": " << seen << " for " << exact;
+        ++ties;
       }
-      EXPECT_EQ(differ, 0) << "of " << exact.size();
       EXPECT_EQ(result.frame.width, 40);
       EXPECT_TRUE(result.settled);
+      const auto errors = core::compare_to_reference(request.view, result.frame.range_m,
+                                                     test_support::reference_ranges(surface, request.view),
+                                                     test_support::radius_of(surface), {1, 1});
+      EXPECT_LE(errors.forward.max_px, result.certificate.shift_bound_px);
       EXPECT_LT(result.certificate.shift_bound_px, 1e-3);
     }
   }
+  // Of pixels a tenth of a radian wide (PerspectiveImagesAreExactButForWhatIsNarrowerThanAPixel).
+  EXPECT_LE(ties, 4 * 1200 / 100);
 }
 
 TEST_F(Rays, FlatPlanetIsTheSphere) {
@@ -135,10 +154,11 @@ TEST_F(Rays, MultiresKeepsItsCertificate) {
   const paging::Surface surface(planet, std::size_t{1} << 27);
   const auto draw = rays(planet);
   Random random(93);
+  int views_of_many_tiles = 0;  // the others cannot have fewer
   int coarser = 0;
   std::int64_t tiles = 0;
   std::int64_t exact_tiles = 0;
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 12 || (views_of_many_tiles < 8 && n < 100); ++n) {
     core::DrawRequest request = random_request(random, surface, 96, 64);
     request.settings.smooth_edges = false;
     const core::DrawResult exact = draw->draw(request);
@@ -152,12 +172,13 @@ TEST_F(Rays, MultiresKeepsItsCertificate) {
     EXPECT_LE(drawn.stats.tiles_by_level.size(), exact.stats.tiles_by_level.size());
     tiles += drawn.stats.tiles_drawn;
     exact_tiles += exact.stats.tiles_drawn;
+    views_of_many_tiles += exact.stats.tiles_drawn >= 8 ? 1 : 0;
     coarser += drawn.stats.tiles_drawn < exact.stats.tiles_drawn ? 1 : 0;
     // Frames that must be quick are coarser still.
     request.coarsening = 4;
     EXPECT_LE(draw->draw(request).stats.tiles_by_level.size(), drawn.stats.tiles_by_level.size());
   }
-  EXPECT_GE(coarser, 4);
+  EXPECT_GE(coarser, 8);
   EXPECT_LT(tiles, exact_tiles / 2);
 }
 
@@ -172,10 +193,11 @@ TEST_F(Rays, MultiresStatesNoMoreThanTheCell) {
   for (int n = 0; n < 40; ++n) {
     const mars::LonLat place = mars::lon_lat(n % 3 == 0 ? test_support::kCrater : test_support::kCanyon);
     const double exaggeration = n % 2 == 0 ? 1 : 6;
+    const mars::Pose pose{
+        place.lon_deg,          place.lat_deg,          exaggeration * 9000 + random.log_uniform(1000, 3e6),
+        random.uniform(0, 360), random.uniform(-90, 0), random.uniform(-180, 180)};
     core::DrawRequest request =
-        request_for({place.lon_deg, place.lat_deg, exaggeration * 9000 + random.log_uniform(1000, 3e6),
-                     random.uniform(0, 360), random.uniform(-90, 0), random.uniform(-180, 180)},
-                    surface.planet_radius_m(), 64, 48, random.log_uniform(5, 100));
+        request_for(pose, surface.planet_radius_m(), 64, 48, random.log_uniform(5, 100));
     request.want_range = false;
     request.settings.ray_mode = core::RayMode::kMultires;
     request.settings.ray_cell_px = random.log_uniform(0.1, 8);
@@ -381,9 +403,10 @@ TEST_F(LongRays, BackendsAgreeOverGale) {
     const mars::LonLat place{137.4417 + off_deg * std::cos(azimuth_rad),
                              -4.5895 + off_deg * std::sin(azimuth_rad)};
     const double ground = surface.at(mars::direction(place)).height_m;
-    return request_for({place.lon_deg, place.lat_deg, ground + random.log_uniform(1.5, 3e5),
-                        random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)},
-                       surface.planet_radius_m(), 240, 144, random.log_uniform(5, 100));
+    const mars::Pose pose{
+        place.lon_deg,          place.lat_deg,           ground + random.log_uniform(1.5, 3e5),
+        random.uniform(0, 360), random.uniform(-90, 10), random.uniform(-180, 180)};
+    return request_for(pose, surface.planet_radius_m(), 240, 144, random.log_uniform(5, 100));
   });
 }
 

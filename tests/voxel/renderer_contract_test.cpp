@@ -1,9 +1,12 @@
 // Promises of core::Renderer that both backends keep.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "mars/geodesy/sun.h"
+#include "paging/planet/sqlite.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/worst.h"
 #include "vpe/core/appearance/sky.h"
@@ -39,18 +42,7 @@ class RendererContract : public test_support::GlTest, public ::testing::WithPara
     const core::ShiftSummary shift = core::summarize(shifts, core::drawn_size(request.view).x);
     EXPECT_GT(shift.pixels, 0);
     EXPECT_LE(result.certificate.image_bound_px.value(), result.certificate.shift_bound_px);
-    // Triangles: ranges of the depth buffer have an error of their own.
-    double range_px = 0;
-    if (!is_rays()) {
-      float nearest = core::kSkyRange;
-      float farthest = 0;
-      for (const float range : result.frame.range_m) {
-        nearest = std::min(nearest, range);
-        if (std::isfinite(range)) farthest = std::max(farthest, range);
-      }
-      range_px = vpe::gl::kRangeError * (1.0 + farthest / nearest) * core::focal_px(request.view);
-    }
-    return shift.max_px / (*result.certificate.image_bound_px + range_px);
+    return shift.max_px / *result.certificate.image_bound_px;
   }
 };
 
@@ -246,6 +238,74 @@ TEST_P(RendererContract, TheSkyIsThatOfTheBody) {
   const std::size_t ground = 58 * 80 + 40;
   EXPECT_EQ(moon[ground].r, moon[ground].b);
   EXPECT_GT(mars_image[ground].r, mars_image[ground].b);
+}
+
+// The finest tiles of the planet cannot be read.
+TEST_P(RendererContract, DamagedTilesAreNeverDrawnInSilence) {
+  const auto path = dir_ / "damaged.vpe";
+  const double radius_m = build_fake(path, FakeElevation(bumpy_height), 100000)->radius_m();
+  {
+    paging::Database db(path.string(), paging::Database::Mode::kCreate);
+    for (const char* table : {"heights", "mesh"}) {
+      db.execute(std::string("UPDATE ") + table +
+                 " SET data = zeroblob(length(data)) WHERE key IN (SELECT key FROM node WHERE inner = 0)");
+    }
+  }
+  const auto draw = make(paging::PlanetFile::open(path));
+  core::DrawRequest request = request_for({20, 30, 40000, 30, -40, 0}, radius_m, 48, 36);
+  request.settings.lod_tolerance_px = 0.25;
+  if (is_rays()) {
+    try {
+      draw->draw(request);
+      ADD_FAILURE() << "drawn in silence";
+    } catch (const paging::PlanetError& e) {
+      const std::string text = e.what();
+      EXPECT_NE(text.find("damaged.vpe"), std::string::npos) << text;
+      EXPECT_NE(text.find("tile "), std::string::npos) << text;
+    }
+    return;
+  }
+  const core::DrawResult result = draw->draw(request);
+  ASSERT_FALSE(result.missing.empty());
+  ASSERT_FALSE(result.failures.empty());
+  EXPECT_EQ(result.certificate.tiles_missing, static_cast<int>(result.missing.size()));
+  for (const core::MissingTile& tile : result.missing) {
+    EXPECT_NE(tile.why.find("damaged.vpe"), std::string::npos) << tile.why;
+    EXPECT_NE(tile.why.find(tile.tile), std::string::npos) << tile.why;
+  }
+}
+
+// Triangles: a frame that may not wait for storage says what it lacks, and a later one is the same as if it had
+// waited. Rays read within the frame.
+TEST_P(RendererContract, FramesThatMayNotWaitSayWhatTheyLack) {
+  const auto planet = build_fake(dir_ / "p.vpe", FakeElevation(bumpy_height), 100000);
+  core::DrawRequest request = request_for({20, 30, 40000, 30, -40, 0}, planet->radius_m(), 48, 36);
+  request.settings.lod_tolerance_px = 0.25;
+  const core::DrawResult whole = make(planet)->draw(request);
+  ASSERT_TRUE(whole.missing.empty());
+  for (const bool wait : {false, true}) {
+    SCOPED_TRACE(wait ? "a time-out" : "no wait");
+    const auto slow =
+        is_rays() ? make(planet)
+                  : vpe::gl::make_polygon_renderer(
+                        context_, planet, {std::size_t{256} << 20, 2, [](const lod::TileKey& tile) {
+                                             if (tile.level > 0)
+                                               std::this_thread::sleep_for(std::chrono::milliseconds(5));
+                                           }});
+    request.paging.wait = wait;
+    request.paging.timeout_s = 0;
+    core::DrawResult result = slow->draw(request);
+    EXPECT_EQ(result.missing.empty(), is_rays());
+    for (int n = 0; n < 5000 && !result.settled; ++n) {
+      EXPECT_EQ(result.certificate.tiles_missing, static_cast<int>(result.missing.size()));
+      EXPECT_EQ(result.stats.tiles_missing, result.certificate.tiles_missing);
+      result = slow->draw(request);
+    }
+    EXPECT_TRUE(result.settled);
+    EXPECT_TRUE(result.missing.empty());
+    EXPECT_EQ(result.frame.range_m, whole.frame.range_m);
+    EXPECT_EQ(result.frame.colour, whole.frame.colour);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, RendererContract, ::testing::Values(Backend::kPolygon, Backend::kRay),

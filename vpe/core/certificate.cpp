@@ -14,6 +14,7 @@ std::string meaning(const Certificate& c) {
   std::string text =
       "shift_bound_px: no surface pixel of this picture is off by more than this against the exact surface of "
       "the planet file; picture_bound_px: the same, tighter, where the picture's ranges are known. "
+      "Where ridges are lower by as much, single pixels show what lies behind them. "
       "resampling_*: that surface against the posts of its own sources. source_accuracy_m: the sources "
       "against the planet, one sigma, null where unknown.";
   if (c.corner_stretch > 1) {

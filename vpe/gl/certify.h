@@ -35,6 +35,10 @@ struct FrameOptics {
 //   meshes lies within its tile's geometric error of S. Moved by s pixels in the image, which are s r / f
 //   metres across the ray at range r, it has S at most s r / f / cos(slope) farther above or below it.
 //
+// The meshes' errors hold everywhere, so the bound is also one for silhouettes: before the point that a pixel
+// shows (sky: anywhere) its ray passes no deeper below S, in pixels at that range, than shift_bound_px. What
+// stands higher is never missed; what does not may be, and ground far behind it shown in its place.
+//
 // intervals: of a tile's finest grid.
 core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileTree& tree, int intervals,
                           const FrameOptics& optics);

@@ -332,6 +332,27 @@ TEST_F(Render, ExplainsTheLevelOfEveryDrawnTile) {
   EXPECT_NE(spent.dump().find("budget spent"), std::string::npos);
 }
 
+TEST_F(Render, TooLittleMemoryForTheToleranceIsTold) {
+  write_dem(dir_ / "fine.tif");
+  ASSERT_EQ(vpe({"build", "fine.tif", "-o", "fine.vpe", "--base-spacing", "20000", "-q"}).exit_code, 0);
+  const auto drawn = [&](const Words& more) {
+    Words words{"render", "fine.vpe",    "--pose", "20,0,9e6,0,-90,0", "-o",     "x.png", "--size",
+                "64x48",  "--tolerance", "0",      "--backend",        "polygon"};
+    words.insert(words.end(), more.begin(), more.end());
+    return vpe(words);
+  };
+  const Result little = drawn({"--memory", "64"});
+  EXPECT_EQ(little.exit_code, 0) << little.err;
+  EXPECT_TRUE(
+      says(little.err, {"coarser than --tolerance 0", "--memory 64", "111848 triangles", "--backend ray"}));
+  for (const Words& more : {Words{"--memory", "1024"}, Words{"--memory", "64", "-q"},
+                            Words{"--memory", "64", "--set", "lod.triangles=1000"}}) {
+    const Result result = drawn(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.find("coarser than"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(Render, ADamagedTileIsNamed) {
   // Tolerance 0 draws grids of posts, larger tolerances draw meshes.
   const std::vector<std::pair<std::string, std::string>> cases{{"heights", "0"}, {"mesh", "20"}};

@@ -158,6 +158,23 @@ void require_complete(const RenderOptions& options, const core::DrawResult& resu
   throw std::runtime_error(text + "--allow-incomplete draws coarser terrain there");
 }
 
+void note_limited_by_memory(const RenderOptions& options, const Common& common,
+                            const core::DrawRequest& request, const core::DrawResult& result) {
+  const core::Certificate& c = result.certificate;
+  if (*options.backend != core::Backend::kPolygon || !voxel::level_control(request).empty() ||
+      request.coarsening > 1 || c.tiles_missing > 0 || c.tiles_substituted > 0)
+    return;
+  // Finest tiles have meshes without error, so nothing else keeps tiles from the tolerance.
+  if (!(c.screen_space_error_px > c.tolerance_px)) return;
+  const std::int64_t most = gl::most_triangles(memory_bytes(common));
+  std::fprintf(
+      stderr,
+      "vpe: note: coarser than --tolerance %s: --memory %lld is enough for %lld triangles; tiles are off "
+      "by up to %.3g m (%.2g px). Give more --memory, or use --backend ray\n",
+      base::format_number(c.tolerance_px).c_str(), static_cast<long long>(common.memory_mb),
+      static_cast<long long>(most), c.geometric_error_m, c.screen_space_error_px);
+}
+
 void print_failures(std::span<const std::string> failures) {
   for (const std::string& failure : failures) std::fprintf(stderr, "vpe: warning: %s\n", failure.c_str());
 }

@@ -63,6 +63,12 @@ std::unique_ptr<core::Renderer> make_renderer(const RenderOptions& options, cons
 // tiles come first: tiles below them are missing for the same reason.
 void require_complete(const RenderOptions& options, const core::DrawResult& result);
 
+// Prints a note on stderr, with what to do, if an image of triangles is coarser than its tolerance because
+// --memory is not enough for more triangles. Says nothing where lod.triangles or level control decide, and about
+// incomplete images.
+void note_limited_by_memory(const RenderOptions& options, const Common& common,
+                            const core::DrawRequest& request, const core::DrawResult& result);
+
 // Prints failures to read tiles (core::DrawResult::failures) as warnings on stderr.
 void print_failures(std::span<const std::string> failures);
 

@@ -231,7 +231,10 @@ void render(RenderArguments& arguments, const Common& common) {
   const auto draw = [&](const core::DrawRequest& one) {
     core::DrawResult result = renderer->draw(one);
     require_complete(arguments.image, result);
-    if (!common.quiet) print_failures(result.failures);
+    if (!common.quiet) {
+      print_failures(result.failures);
+      note_limited_by_memory(arguments.image, common, one, result);
+    }
     if (!overlay::any(one.settings)) return result;
     const overlay::Layer layer = FrameOverlays(planet).layer(one, result.frame, result.certificate, 0);
     if (arguments.overlay_layer.empty()) {

@@ -62,9 +62,10 @@ void cast_columns(std::span<const ColumnBatch> batches, const ColumnWalk& walk, 
       }
       walk.cast(azimuth.data(), batch.rows, scratch->tiles, group);
     }
-    const int end = static_cast<int>(highest);
-    for (int row = static_cast<int>(lowest); row < end; row += kBlockRows) {
-      const int rows = std::min(kBlockRows, end - row);
+    const int begin_row = static_cast<int>(lowest);
+    for (int end = static_cast<int>(highest); end > begin_row; end -= kBlockRows) {
+      const int row = std::max(begin_row, end - kBlockRows);
+      const int rows = end - row;
       for (int g = 0; g < groups; ++g)
         expand_rows(batch.rows, scratch->groups[static_cast<std::size_t>(g)], row, row + rows,
                     scratch->block[0].lane + g * lanes, task_columns);

@@ -70,7 +70,8 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
     }
   };
   const int ground = std::clamp(static_cast<int>(most), first, last);
-  for (int r = first; r < ground; ++r) {
+  for (int r = last - 1; r >= ground; --r) put(r, sky);
+  for (int r = ground - 1; r >= first; --r) {
     float* const starts = group.start + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
     float* const gains = group.gain + static_cast<std::ptrdiff_t>(r) * kMaxLanes;
     const V row = hn::Set(d, static_cast<float>(r));
@@ -93,7 +94,6 @@ void expand_as(const Rows& rows, ColumnGroup& group, int first, int last, float*
     }
     put(r, hn::IfThenElse(hn::Lt(row, resolved), hn::Div(length, per), sky));
   }
-  for (int r = ground; r < last; ++r) put(r, sky);
   hn::Store(start, d, group.run_start);
   hn::Store(gain, d, group.run_gain);
   hn::Store(from, d, group.run_slope);

@@ -334,14 +334,20 @@ class HorizonWalk {
     const V at_x = hn::MulAdd(share, hn::Sub(x, last_x_), last_x_);
     const V at_h = hn::MulAdd(share, hn::Sub(height, last_h_), last_h_);
     const V at = hn::Mul(inverse(at_x, at_h), reciprocal(d, hn::MulAdd(sigma1_, at_x, sigma0_)));
-    scatter(group_.start, lanes, at);
-    const M more = hn::And(lanes, hn::Gt(rows, hn::Add(row_, one)));
+    const V top = hn::Sub(rows, one);
+    V at_top = at;
+    const M more = hn::And(lanes, hn::Gt(top, row_));
     if (!hn::AllFalse(d, more)) {
       const V end = hn::Mul(inverse(x, height), per_sigma);
       const V rise = hn::Sub(reached, slope_);
       const M rises = hn::And(more, hn::Gt(rise, zero));
-      scatter(group_.gain, rises, hn::Div(hn::Sub(end, at), rise));
+      const V gain = hn::Div(hn::Sub(end, at), rise);
+      // From the event, which is nearer to the top row: from the first row of a run that begins straight below
+      // the camera the difference of two large numbers would be left.
+      at_top = hn::IfThenElse(rises, hn::MulAdd(gain, hn::Sub(model_.slope(top), reached), end), at);
+      scatter(group_.gain, rises, top, gain);
     }
+    scatter(group_.start, lanes, top, at_top);
     row_ = hn::IfThenElse(lanes, rows, row_);
     update_slope();
   }
@@ -354,12 +360,12 @@ class HorizonWalk {
   // Keeps a quotient of two zeros from being NaN.
   static V smallest_divisor() { return hn::Set(D(), T(1e-30)); }
 
-  // Stores values at each lane's next row.
-  void scatter(float* to, M lanes, V values) const {
+  // Stores a value for each lane at a row of its own.
+  void scatter(float* to, M lanes, V at_row, V values) const {
     const D d;
 #if HWY_TARGET <= HWY_AVX3
     if constexpr (sizeof(T) == 4) {
-      const __m512i row = _mm512_cvttps_epi32(row_.raw);
+      const __m512i row = _mm512_cvttps_epi32(at_row.raw);
       const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
       _mm512_mask_i32scatter_ps(to, lanes.raw, _mm512_add_epi32(_mm512_slli_epi32(row, 4), lane), values.raw,
                                 4);
@@ -368,7 +374,7 @@ class HorizonWalk {
 #endif
     alignas(64) T rows[kMaxLanes];
     alignas(64) T all[kMaxLanes];
-    hn::Store(row_, d, rows);
+    hn::Store(at_row, d, rows);
     hn::Store(values, d, all);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, lanes, bits);

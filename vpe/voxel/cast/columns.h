@@ -60,8 +60,9 @@ struct ColumnCamera {
 };
 
 // Holds the state of up to kMaxLanes neighbouring columns. Rows [row, row_end) of a column are not resolved
-// yet. A run of resolved rows that show one facet is stored at its first row: `start[row * kMaxLanes + lane]`
-// is the inverse horizontal distance there, which falls by `gain` per unit of slope. `start` is 0 elsewhere.
+// yet. A run of resolved rows that show one facet is stored at its last row: `start[row * kMaxLanes + lane]` is
+// the inverse horizontal distance there, which changes by `gain` (at most 0) per unit of slope. Lower rows are
+// nearer, so their inverse distances are sums of positive terms, exact but for rounding. `start` is 0 elsewhere.
 struct ColumnGroup {
   int columns = 0;
   alignas(64) double azimuth[3][kMaxLanes];  // A, in the axes of the current face
@@ -106,7 +107,8 @@ void update_least_slope(const Rows& rows, ColumnGroup& group);
 
 // Writes the ranges of rows [first, last) for all columns to out[(row - first) * stride + lane], and clears
 // `start` and `gain` of these rows. Ranges are metres from the camera, infinite where no ground was met. Calls
-// must take the rows from 0 upward, in any number of pieces. Requires last <= rows.count.
+// must take the rows from the highest resolved or wanted one downward, in any number of pieces. Requires last <=
+// rows.count.
 void expand_rows(const Rows& rows, ColumnGroup& group, int first, int last, float* out, std::ptrdiff_t stride);
 
 // Copies rows of floats. Strides count floats and may be negative. `stream` writes past the caches: faster for

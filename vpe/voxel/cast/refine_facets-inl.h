@@ -50,12 +50,13 @@ class RowRefiner {
   void set_rays(int k) {
     const D d;
     first_ = k;
-    index_ = hn::Add(hn::Iota(d, T(0)), hn::Set(d, static_cast<T>(k)));
-    const glm::dvec3& a = row_.first;
+    // Relative to the first ray, not to the row's: in wide fields of view that is many times as long.
+    const V index = hn::Iota(d, T(0));
+    const glm::dvec3 a = row_.first + static_cast<double>(k) * row_.step;
     const glm::dvec3& b = row_.step;
-    // |a + k b|^2
-    const V square = hn::MulAdd(index_, hn::MulAdd(index_, set(glm::dot(b, b)), set(2 * glm::dot(a, b))),
-                                set(glm::dot(a, a)));
+    // |a + index b|^2
+    const V square =
+        hn::MulAdd(index, hn::MulAdd(index, set(glm::dot(b, b)), set(2 * glm::dot(a, b))), set(glm::dot(a, a)));
     per_length_ = hn::Div(hn::Set(d, T(1)), hn::Sqrt(square));
     if (facets_ != nullptr) set_directions();
   }
@@ -133,8 +134,9 @@ class RowRefiner {
 
   // Expresses the rays' directions in the coordinates of the current grid.
   void set_directions() {
+    const V index = hn::Iota(D(), T(0));
     const auto along = [&](double a, double b) {
-      return hn::Mul(hn::MulAdd(index_, set(b), set(a)), per_length_);
+      return hn::Mul(hn::MulAdd(index, set(b), set(a + static_cast<double>(first_) * b)), per_length_);
     };
     dx_ = along(ray0_.x, ray1_.x);
     dy_ = along(ray0_.y, ray1_.y);
@@ -258,7 +260,6 @@ class RowRefiner {
   int grid_count_ = 0;
   glm::dvec4 ray0_{};
   glm::dvec4 ray1_{};
-  V index_ = hn::Zero(D());
   V per_length_ = hn::Zero(D());
   V camera_x_, camera_y_, camera_z_, dx_, dy_, dz_;
   V camera_rise_, ray_rise_;  // metres below the reference plane
