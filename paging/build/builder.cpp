@@ -190,14 +190,16 @@ class Build {
 
     // Stage 5 measures the reference surface against the sources' own posts.
     stages_.begin("checking", 1, 0.02);
-    auto sums = measure_resampling(sampling_, stored_, options_.resampling_posts, shard_.leaves, threads_,
-                                   [this] { stages_.report_again(); });
+    ResamplingReport resampling =
+        measure_resampling(sampling_, stored_, options_.resampling_posts, shard_.leaves, threads_,
+                           [this] { stages_.report_again(); });
+    writer_.put_resampling(resampling.tiles);
     check_files(meta_.sources);
     check_files(meta_.image_sources);
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
-    set_resampling(meta_, sums);
+    set_resampling(meta_, resampling.sums);
     if (!options_.shard.is_all()) {
-      meta_.shard = ShardMeta{options_.shard, options_.mesh_ratio, std::move(sums)};
+      meta_.shard = ShardMeta{options_.shard, options_.mesh_ratio, std::move(resampling.sums)};
       writer_.put_checkpoint(kSharedAncestorsCheckpoint, pack_shared_ancestors(shared_terms_));
     }
     writer_.seal(meta_);

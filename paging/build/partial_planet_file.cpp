@@ -61,8 +61,8 @@ bool is_intact(Database& db) {
   if (!check.step() || check.text(0) != "ok") return false;
   for (const char* sql :
        {"SELECT key, 0, checksum, data FROM heights", "SELECT key, 0, checksum, data FROM missing",
-        "SELECT key, variant, checksum, data FROM mesh", "SELECT key, 0, checksum, data FROM image",
-        "SELECT number, 0, checksum, data FROM note"}) {
+        "SELECT key, 0, checksum, data FROM origin", "SELECT key, variant, checksum, data FROM mesh",
+        "SELECT key, 0, checksum, data FROM image", "SELECT number, 0, checksum, data FROM note"}) {
     if (!rows_are_intact(db, sql)) return false;
   }
   std::vector<NodeRow> nodes;

@@ -27,6 +27,8 @@ ShardFile::ShardFile(const std::string& path) : path_(path) {
     fingerprint_.resize(fingerprint_.size() - line.size());
     heights_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM heights WHERE key = ?");
     nodata_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM missing WHERE key = ?");
+    if (has_table(*db_, "origin"))
+      origin_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM origin WHERE key = ?");
     mesh_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?");
     image_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM image WHERE key = ?");
     if (content_identity(*db_) != meta_.identity) damaged("its rows differ from those that were written");
@@ -84,17 +86,28 @@ Bytes ShardFile::verified(Statement& statement, std::int64_t key, std::int64_t s
 TilePayload ShardFile::payload(const NodeRow& row) {
   TilePayload payload;
   payload.heights = verified(heights_->bind(1, row.key), row.key, row.key, "heights");
-  nodata_->bind(1, row.key);
-  if (nodata_->step()) {
-    nodata_->reset();
-    payload.nodata = verified(nodata_->bind(1, row.key), row.key, row.key, "nodata mask");
-  }
+  const auto optional = [&](Statement& statement, const char* what) {
+    statement.bind(1, row.key);
+    if (!statement.step()) return Bytes();
+    statement.reset();
+    return verified(statement.bind(1, row.key), row.key, row.key, what);
+  };
+  payload.nodata = optional(*nodata_, "nodata mask");
+  if (origin_) payload.origin = optional(*origin_, "sources of the posts");
   // A finest tile's last variant is its full grid, without a mesh.
   const auto meshes = static_cast<std::int64_t>(row.variants.size()) - (row.inner ? 0 : 1);
   for (std::int64_t v = 0; v < meshes; ++v) {
     payload.meshes.push_back(verified(mesh_->bind(1, row.key).bind(2, v), row.key, row.key + v, "mesh"));
   }
   return payload;
+}
+
+std::vector<TileResampling> ShardFile::resampling() const {
+  try {
+    return read_resampling(*db_);
+  } catch (const DatabaseError& e) {
+    damaged(e.what());
+  }
 }
 
 std::vector<std::int64_t> ShardFile::image_keys() const {

@@ -33,6 +33,7 @@ class ShardFile {
   std::vector<NodeRow> nodes() const;
   std::map<lod::TileKey, SharedAncestorTerms> shared_ancestors() const;
   TilePayload payload(const NodeRow& row);
+  std::vector<TileResampling> resampling() const;
   std::vector<std::int64_t> image_keys() const;
   Bytes image(std::int64_t key);
 
@@ -46,6 +47,7 @@ class ShardFile {
   std::string fingerprint_;
   std::unique_ptr<Statement> heights_;
   std::unique_ptr<Statement> nodata_;
+  std::unique_ptr<Statement> origin_;  // null in shards of format 1.2
   std::unique_ptr<Statement> mesh_;
   std::unique_ptr<Statement> image_;
 };
