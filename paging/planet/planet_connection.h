@@ -54,7 +54,7 @@ struct PlanetFile::Connection {
   Statement node;
   Statement mesh;
   Statement image;
-  std::optional<Statement> origin;      // absent before format 1.3, as is the next one
+  std::optional<Statement> origin;  // absent before format 1.3, as is the next one
   std::optional<Statement> resampling;
 };
 

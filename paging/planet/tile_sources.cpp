@@ -52,12 +52,10 @@ std::int64_t checksum(const TileResampling& row) {
 std::vector<TileResampling> read_resampling(const Database& db) {
   std::vector<TileResampling> out;
   if (!has_table(db, "resampling")) return out;
-  Statement rows(db,
-                 "SELECT key, source, posts, max_m, rms_m, checksum FROM resampling ORDER BY key, source");
+  Statement rows(db, "SELECT key, source, posts, max_m, rms_m, checksum FROM resampling ORDER BY key, source");
   while (rows.step()) {
     const TileResampling row{
-        rows.integer(0),
-        {static_cast<int>(rows.integer(1)), {rows.real(3), rows.real(4), rows.integer(2)}}};
+        rows.integer(0), {static_cast<int>(rows.integer(1)), {rows.real(3), rows.real(4), rows.integer(2)}}};
     if (checksum(row) != rows.integer(5)) {
       throw PlanetError(db.path() + ": damaged: the table resampling is wrong at row " +
                         std::to_string(row.key) + "; build it again");
@@ -97,8 +95,8 @@ std::string wrong_resampling(const PlanetFile& planet, const Database& db) {
       ++stated;
       posts += own.error.posts;
       if (at == found.end() || at->second.max_m != own.error.max_m || at->second.posts != own.error.posts ||
-          std::abs(std::sqrt(at->second.squares_m2 / static_cast<double>(own.error.posts)) -
-                   own.error.rms_m) > 1e-6 * own.error.rms_m) {
+          std::abs(std::sqrt(at->second.squares_m2 / static_cast<double>(own.error.posts)) - own.error.rms_m) >
+              1e-6 * own.error.rms_m) {
         return "its rows of level " + std::to_string(level.level) + " differ from meta 'levels'";
       }
     }

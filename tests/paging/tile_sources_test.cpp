@@ -32,7 +32,9 @@ bool is_in_hole(const glm::dvec3& d) { return glm::length(d - kInset) > kInsetRa
 class Layer : public FakeElevation {
  public:
   Layer(std::string name, double resolution_m, Height height, Spacing spacing)
-      : FakeElevation(std::move(height), std::move(spacing)), name_(std::move(name)), resolution_m_(resolution_m) {}
+      : FakeElevation(std::move(height), std::move(spacing)),
+        name_(std::move(name)),
+        resolution_m_(resolution_m) {}
   std::vector<mars::SourceInfo> infos() const override {
     std::vector<mars::SourceInfo> infos = FakeElevation::infos();
     infos.front().name = name_;
@@ -179,9 +181,10 @@ TEST(TileSources, MergedShardsHaveThemToo) {
     while (all.step()) out.push_back(all.text(0));
     return out;
   };
-  for (const char* sql : {"SELECT key || ' ' || hex(data) FROM origin ORDER BY key",
-                          "SELECT key || ' ' || source || ' ' || posts || ' ' || max_m || ' ' || rms_m || ' ' || "
-                          "checksum FROM resampling ORDER BY key, source"}) {
+  for (const char* sql :
+       {"SELECT key || ' ' || hex(data) FROM origin ORDER BY key",
+        "SELECT key || ' ' || source || ' ' || posts || ' ' || max_m || ' ' || rms_m || ' ' || "
+        "checksum FROM resampling ORDER BY key, source"}) {
     EXPECT_FALSE(content(*merged, sql).empty());
     EXPECT_EQ(content(*merged, sql), content(*whole, sql));
   }
@@ -229,10 +232,17 @@ TEST(TileSources, VerifyFindsWhatCannotBeTrue) {
   EXPECT_TRUE(problems().empty());
   const auto copy = dir / "copy.vpe";
   std::filesystem::copy_file(path, copy);
-  for (const char* sql : {"DELETE FROM resampling WHERE key = (SELECT max(key) FROM resampling)",
-                          "UPDATE resampling SET posts = posts + 1",
-                          "UPDATE origin SET data = (SELECT data FROM origin ORDER BY key DESC LIMIT 1)",
-                          "UPDATE origin SET data = zeroblob(20)"}) {
+  std::string of_one_source;  // though the index says two
+  for (const std::uint8_t byte : paging::encode_numbers(std::vector<std::uint16_t>(17 * 17, 1))) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", byte);
+    of_one_source += digits;
+  }
+  for (const std::string& sql :
+       {std::string("DELETE FROM resampling WHERE key = (SELECT max(key) FROM resampling)"),
+        std::string("UPDATE resampling SET posts = posts + 1"),
+        "UPDATE origin SET data = x'" + of_one_source + "'",
+        std::string("UPDATE origin SET data = zeroblob(20)")}) {
     SCOPED_TRACE(sql);
     test_support::forge(path.string(), sql);
     EXPECT_FALSE(problems().empty());
