@@ -46,6 +46,7 @@ struct SourceInfo {
   std::int64_t size_bytes = 0;       // 0 for built-in sources
   std::int64_t mtime_s = 0;          // seconds since 1970, 0 for built-in sources
   std::vector<FileStamp> files;      // its local files when it was opened; not recorded
+  std::string content;               // hash of samples of these files; empty: not known, which open_ leaves
   double resolution_m = 0;           // post spacing where it is finest
   double quantum_m = 0;              // step of its values; 0: floating point
   VerticalDatum datum;               // of the values that sample() gives

@@ -11,6 +11,7 @@
 #include "paging/build/build_resampling.h"
 #include "paging/build/build_steps.h"
 #include "paging/build/planet_writer.h"
+#include "paging/build/shard_file.h"
 #include "paging/build/shard_plan.h"
 #include "paging/build/source_heights.h"
 #include "paging/build/stages.h"
@@ -254,6 +255,8 @@ BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSour
                           const mars::ImageSource* image, const ProgressFunction& progress,
                           std::optional<BuildPlan> plan) {
   const PlanetMeta meta = describe_planet(options, elevation, image);
+  if (!options.shard.is_all() && options.keep_shard)
+    if (const auto finished = finished_shard(options, meta)) return *finished;
   if (!plan) plan = plan_tiles(options, elevation);
   return Build(options, elevation, image, meta, std::move(*plan), progress).run();
 }

@@ -46,8 +46,9 @@ class CrossingMap {
     constexpr std::int64_t kCellsEach = 16;
     constexpr std::int64_t kFewCells = 4096;
     is_dense_ = columns_ <= kMostCells && rows <= kMostCells &&
-                columns_ * rows <= std::min<std::int64_t>(
-                                       kMostCells, kFewCells + kCellsEach * static_cast<std::int64_t>(crossings.size()));
+                columns_ * rows <=
+                    std::min<std::int64_t>(
+                        kMostCells, kFewCells + kCellsEach * static_cast<std::int64_t>(crossings.size()));
     if (!is_dense_) return;
     values_.resize(static_cast<std::size_t>(columns_ * rows));
     is_there_.resize(values_.size());

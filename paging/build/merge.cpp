@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "paging/build/build_inputs.h"
 #include "paging/build/build_steps.h"
 #include "paging/build/shard_file.h"
 #include "paging/build/stages.h"
@@ -29,8 +30,12 @@ std::vector<std::unique_ptr<ShardFile>> open_shards(const std::vector<std::strin
                         shard_name(first->id()) + "; give the parts of one build");
     }
     if (file->fingerprint() != first->fingerprint()) {
+      std::string texts;
+      for (const std::string& text :
+           fingerprint_differences(file->fingerprint(), first->fingerprint(), file->meta()))
+        texts += (texts.empty() ? "" : "; ") + text;
       throw PlanetError(path + ": made of other sources, with other options or by another version than " +
-                        first->path() + "; give the parts of one build");
+                        first->path() + " (" + texts + "); give the parts of one build");
     }
     const std::int64_t number = file->id().number;
     const auto [at, is_new] = by_number.emplace(number, std::move(file));

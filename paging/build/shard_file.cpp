@@ -7,6 +7,30 @@
 
 namespace paging {
 
+std::optional<BuildSummary> finished_shard(const BuildOptions& options, const PlanetMeta& described) {
+  std::error_code none;
+  if (!std::filesystem::exists(options.output, none)) return std::nullopt;
+  try {
+    Database db = open_planet_database(options.output);
+    Statement fingerprint(db, "SELECT text FROM recipe");
+    if (!fingerprint.step() || fingerprint.text(0) != build_fingerprint(options, described))
+      return std::nullopt;
+    BuildSummary summary;
+    summary.meta = from_rows(read_meta_rows(db), options.output);
+    if (!is_intact(db) || content_identity(db) != summary.meta.identity) return std::nullopt;
+    summary.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.output));
+    summary.posts = summary.meta.leaf_tiles * summary.meta.tile.post_count();
+    summary.mesh_triangles = db.integer("SELECT sum(triangles) FROM variant");
+    summary.kept = summary.meta.tiles + summary.meta.image_tiles;
+    summary.is_kept_whole = true;
+    return summary;
+  } catch (const PlanetError&) {
+    return std::nullopt;  // damaged, as below: it is built again
+  } catch (const DatabaseError&) {
+    return std::nullopt;
+  }
+}
+
 ShardFile::ShardFile(const std::string& path) : path_(path) {
   std::error_code none;
   if (!std::filesystem::exists(path, none)) {
@@ -25,6 +49,7 @@ ShardFile::ShardFile(const std::string& path) : path_(path) {
     const std::string line = fingerprint_line(id());
     if (!fingerprint_.ends_with(line)) damaged("its build fingerprint is that of another part");
     fingerprint_.resize(fingerprint_.size() - line.size());
+    fingerprint_ = portable_fingerprint(fingerprint_);
     heights_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM heights WHERE key = ?");
     nodata_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM missing WHERE key = ?");
     if (has_table(*db_, "origin"))

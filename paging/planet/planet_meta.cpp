@@ -47,6 +47,7 @@ json to_json(const mars::SourceInfo& s) {
   j["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
   if (s.body_radius_m > 0) j["body_radius_m"] = s.body_radius_m;
   if (!s.treatment.empty()) j["treatment"] = s.treatment;
+  if (!s.content.empty()) j["content"] = s.content;
   return j;
 }
 
@@ -70,6 +71,7 @@ mars::SourceInfo source_from(const json& j, double radius_m) {
   if (!j.at("accuracy_m").is_null()) s.accuracy_m = j.at("accuracy_m").get<double>();
   s.body_radius_m = j.value("body_radius_m", 0.0);
   s.treatment = j.value("treatment", std::string());
+  s.content = j.value("content", std::string());
   return s;
 }
 
@@ -87,7 +89,7 @@ std::vector<mars::SourceInfo> sources_from(const json& list, double radius_m) {
 
 auto tie(const mars::SourceInfo& s) {
   return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.accuracy_m, s.illustration,
-                  s.body_radius_m, s.treatment);
+                  s.body_radius_m, s.treatment, s.content);
 }
 
 bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::SourceInfo>& b) {

@@ -126,10 +126,10 @@ TEST(TileSources, ResamplingIsThatOfTheTileAndTheSource) {
     for (std::size_t n = 0; n < directions.size(); ++n) {
       if (!std::isfinite(heights[n])) continue;
       const paging::SurfacePoint point = surface.at(directions[n]);
-      const double error_m = std::abs(point.height_m - heights[n]);
+      const double deviation_m = std::abs(point.height_m - heights[n]);
       const int index = is_in_inset(directions[n]) ? 0 : 1;
-      sums[{lod::pack(point.tile), index}].add(error_m);
-      levels[{point.tile.level, index}].add(error_m);
+      sums[{lod::pack(point.tile), index}].add(deviation_m);
+      levels[{point.tile.level, index}].add(deviation_m);
       visited.push_back(directions[n]);
     }
   });
