@@ -71,7 +71,8 @@ std::map<std::string, std::string> values_of(const std::string& fingerprint) {
 
 // Replaces the number of a source by its file's name.
 std::string named(const std::string& label, const PlanetMeta& meta) {
-  const auto replace = [&](const std::string& what, const std::vector<mars::SourceInfo>& sources) -> std::string {
+  const auto replace = [&](const std::string& what,
+                           const std::vector<mars::SourceInfo>& sources) -> std::string {
     for (std::size_t n = 0; n < sources.size(); ++n) {
       const std::string begin = what + " " + std::to_string(n + 1) + " ";
       if (label.starts_with(begin)) return what + " " + sources[n].name + ": " + label.substr(begin.size());
@@ -138,7 +139,8 @@ std::vector<std::string> fingerprint_differences(const std::string& is, const st
     }
   }
   for (const auto& [label, value] : others)
-    if (!values.contains(label)) texts.push_back(named(label, meta) + " is " + shortened(value) + " there alone");
+    if (!values.contains(label))
+      texts.push_back(named(label, meta) + " is " + shortened(value) + " there alone");
   if (texts.size() > kMostDifferences) {
     const std::size_t more = texts.size() - kMostDifferences;
     texts.resize(kMostDifferences);
