@@ -55,6 +55,14 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
     source_->origin(directions, source_index);
   }
 
+  void sample_with_origin(std::span<const glm::dvec3> directions, double spacing_m, std::span<double> heights_m,
+                          std::span<int> source_index) const override {
+    source_->sample_with_origin(directions, spacing_m, heights_m, source_index);
+    adjustment_(directions, heights_m);
+    for (std::size_t i = 0; i < heights_m.size(); ++i)
+      if (!std::isfinite(heights_m[i])) source_index[i] = -1;
+  }
+
   double spacing_in(const Cap& cap) const override { return source_->spacing_in(cap); }
 
   void visit_posts(std::size_t max_posts, const PostVisitor& visit) const override {

@@ -9,6 +9,7 @@
 //   source->sample(directions, spacing_m, heights_m);  // NaN: nodata
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
@@ -45,6 +46,7 @@ struct SourceInfo {
   std::int64_t size_bytes = 0;       // 0 for built-in sources
   std::int64_t mtime_s = 0;          // seconds since 1970, 0 for built-in sources
   std::vector<FileStamp> files;      // its local files when it was opened; not recorded
+  std::string content;               // hash of samples of these files; empty: not known, which open_ leaves
   double resolution_m = 0;           // post spacing where it is finest
   double quantum_m = 0;              // step of its values; 0: floating point
   VerticalDatum datum;               // of the values that sample() gives
@@ -81,6 +83,15 @@ class ElevationSource {
   // Sets source_index[i] to the index into infos() of the source that decides the value at each direction, -1
   // for nodata.
   virtual void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const = 0;
+
+  // Samples as sample() does, to the bit, and sets source_index[i] to the index into infos() of the source that
+  // decides the value at this spacing, -1 for nodata. A source of several rasters overrides it, so that they are
+  // sampled once.
+  virtual void sample_with_origin(std::span<const glm::dvec3> directions, double spacing_m,
+                                  std::span<double> heights_m, std::span<int> source_index) const {
+    sample(directions, spacing_m, heights_m);
+    for (std::size_t i = 0; i < heights_m.size(); ++i) source_index[i] = std::isfinite(heights_m[i]) ? 0 : -1;
+  }
 
   // Returns the finest post spacing of the source anywhere in the cap, in metres, or infinity if there is no
   // data. Conservative: may count data that only touches the cap, never misses any.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -43,21 +44,16 @@ class ElevationStack final : public ElevationSource {
   void origin(std::span<const glm::dvec3> directions, std::span<int> source_index) const override {
     std::vector<Blend> blends(directions.size());
     blend(directions, resolution_m_, blends);
-    std::vector<std::vector<std::size_t>> by_source(sources_.size());
+    for (std::size_t i = 0; i < blends.size(); ++i) source_index[i] = blends[i].origin;
+  }
+
+  void sample_with_origin(std::span<const glm::dvec3> directions, double spacing_m, std::span<double> heights_m,
+                          std::span<int> source_index) const override {
+    std::vector<Blend> blends(directions.size());
+    blend(directions, spacing_m, blends);
     for (std::size_t i = 0; i < blends.size(); ++i) {
-      source_index[i] = -1;
-      if (blends[i].main >= 0) by_source[static_cast<std::size_t>(blends[i].main)].push_back(i);
-    }
-    std::vector<glm::dvec3> places;
-    std::vector<int> own;
-    for (std::size_t s = 0; s < by_source.size(); ++s) {
-      places.clear();
-      for (const std::size_t i : by_source[s]) places.push_back(directions[i]);
-      own.resize(places.size());
-      if (!places.empty()) sources_[s]->origin(places, own);
-      for (std::size_t k = 0; k < places.size(); ++k) {
-        if (own[k] >= 0) source_index[by_source[s][k]] = own[k] + static_cast<int>(first_info_[s]);
-      }
+      heights_m[i] = blends[i].height_m();
+      source_index[i] = blends[i].origin;
     }
   }
 
@@ -100,6 +96,7 @@ class ElevationStack final : public ElevationSource {
     double finest_m = kNaN;  // the value of the finest source, used where every share is zero
     double largest = -1;     // share of `main`
     int main = -1;
+    int origin = -1;     // index into infos_ of what decides within `main`
     bool single = true;  // one source alone makes the value
 
     double height_m() const { return single ? finest_m : weighted_m / weight; }
@@ -107,11 +104,13 @@ class ElevationStack final : public ElevationSource {
 
   void blend(std::span<const glm::dvec3> directions, double spacing_m, std::span<Blend> blends) const {
     std::vector<double> heights_m;
+    std::vector<int> own;
     walk_stack(
         sources_, options_, directions,
         [&](std::size_t s, std::span<const glm::dvec3> places, std::span<char> has) {
           heights_m.resize(places.size());
-          sources_[s]->sample(places, spacing_m, heights_m);
+          own.resize(places.size());
+          sources_[s]->sample_with_origin(places, spacing_m, heights_m, own);
           for (std::size_t i = 0; i < has.size(); ++i) has[i] = std::isnan(heights_m[i]) ? 0 : 1;
         },
         [&](std::size_t s, std::span<const std::size_t> places, std::span<const char> has,
@@ -128,6 +127,7 @@ class ElevationStack final : public ElevationSource {
             if (shares[i] > b.largest) {
               b.largest = shares[i];
               b.main = static_cast<int>(s);
+              b.origin = static_cast<int>(first_info_[s]) + std::max(own[i], 0);
             }
             b.weighted_m += heights_m[i] * shares[i];
             b.weight += shares[i];

@@ -29,6 +29,7 @@ struct SampledLeaf {
   lod::Posts posts;                  // multiples of the quantum, borders constrained
   std::vector<std::int32_t> quanta;  // as stored, not constrained
   std::vector<bool> nodata;
+  std::vector<int> source;  // of each post, -1: nodata; empty on a planet of one source
   bool any_nodata = false;
   int coarser_neighbour_mask = 0;  // NodeRow::coarser_neighbour_mask
   std::array<int, 4> border_step{1, 1, 1, 1};

@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "paging/build/source_content.h"
 #include "paging/build/source_heights.h"
 #include "vpe/base/number.h"
-
-#ifndef VPE_VERSION
-#define VPE_VERSION "0"
-#endif
 
 namespace paging {
 
 namespace {
-
-// Must be raised whenever equal sources and options give other tiles than before within a version of the
-// program.
-constexpr int kBuilderRevision = 5;
 
 // A power of two well below what the sources resolve: heights between their posts are interpolated, and a
 // coarse step would show as terraces in slopes and shading.
@@ -94,28 +86,6 @@ std::vector<lod::TileKey> plan_images(const BuildOptions& options, const mars::I
   return tiles;
 }
 
-std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& meta) {
-  const auto rows = to_rows(meta);  // sources with size and time among them
-  std::ostringstream text;
-  text << std::hexfloat;
-  text << "vpe " << VPE_VERSION << " builder " << kBuilderRevision << "\n";
-  for (const auto& [key, value] : rows) {
-    if (key != "checksum") text << key << " = " << value << "\n";
-  }
-  text << "base " << options.base_spacing_m << " finest " << options.finest_spacing_m << " mesh "
-       << options.mesh_ratio << " image " << options.finest_image_m << " quality " << options.image_quality
-       << "\n";
-  for (const Region& r : options.regions) {
-    text << "region " << r.west_deg << " " << r.south_deg << " " << r.east_deg << " " << r.north_deg << "\n";
-  }
-  if (!options.shard.is_all()) text << fingerprint_line(options.shard);
-  return text.str();
-}
-
-std::string fingerprint_line(const vpe::base::Shard& shard) {
-  return "part " + std::to_string(shard.number) + " of " + std::to_string(shard.of) + "\n";
-}
-
 BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& elevation) {
   return {lod::TileShape{options.tile_k}, options.radius_m, wanted_elevation(options, elevation)};
 }
@@ -140,6 +110,8 @@ PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSou
   meta.fill_m = std::round(mean_height(elevation, meta) / meta.quantum_m) * meta.quantum_m;
   for (const mars::SourceInfo& s : meta.sources) meta.illustration = meta.illustration || s.illustration;
   if (image != nullptr) meta.image_sources = image->infos();
+  for (auto* sources : {&meta.sources, &meta.image_sources})
+    for (mars::SourceInfo& s : *sources) s.content = content_of(s);
   return meta;
 }
 

@@ -14,13 +14,21 @@ namespace paging {
 PlanetMeta describe_planet(const BuildOptions& options, const mars::ElevationSource& elevation,
                            const mars::ImageSource* image);
 
-// Returns the build fingerprint: everything that the content of a planet file is a function of, as text. Equal
-// fingerprints make equal tiles.
+// Returns the build fingerprint: everything that the content of a planet file is a function of, as lines of text, and
+// paths and times of the sources. Equal fingerprints make equal tiles.
 std::string build_fingerprint(const BuildOptions& options, const PlanetMeta& described);
 
 // Returns the last line of the fingerprint of a divided build. The lines before it are those of the undivided
 // one.
 std::string fingerprint_line(const vpe::base::Shard& shard);
+
+// Returns a fingerprint without the paths and times of sources whose content it has: that of copies is the same.
+std::string portable_fingerprint(const std::string& fingerprint);
+
+// Returns in what two portable fingerprints differ, for people: "mesh ratio is 128, not 256". `meta`, of the first
+// one, names the sources.
+std::vector<std::string> fingerprint_differences(const std::string& is, const std::string& not_this,
+                                                 const PlanetMeta& meta);
 
 // Returns the wanted post spacing as a function of the place. Both arguments must outlive the function.
 WantedSpacing wanted_elevation(const BuildOptions& options, const mars::ElevationSource& source);

@@ -20,11 +20,21 @@ constexpr double kLastMeshShare = 0.1;
 constexpr double kVariantStep = 0.25;
 constexpr int kMaxMeshVariants = 12;
 
+// Samples heights, and the sources of posts on a planet of several.
+void sample_posts(const SampleInputs& sampling, std::span<const glm::dvec3> directions, double spacing_m,
+                  std::span<double> heights, std::span<int> source) {
+  if (source.empty()) {
+    sampling.elevation.sample(directions, spacing_m, heights);
+  } else {
+    sampling.elevation.sample_with_origin(directions, spacing_m, heights, source);
+  }
+}
+
 // Border posts take the spacing of the coarsest tile that has them, so that both sides sample the same. Sets the
 // levels of these posts.
 void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int coarser_neighbour_mask,
                       const std::vector<glm::dvec3>& directions, std::vector<double>& heights,
-                      std::vector<int>& levels) {
+                      std::vector<int>& source, std::vector<int>& levels) {
   const int n = sampling.meta.tile.intervals();
   const int side = n + 1;
   const auto spacing = [&](int level) { return lod::post_spacing_m(level, n, sampling.meta.radius_m); };
@@ -33,9 +43,11 @@ void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int
     std::vector<glm::dvec3> at;
     for (int a = 0; a <= n; a += 2) at.push_back(directions[edge_post(edge, a, side)]);
     std::vector<double> values(at.size());
-    sampling.elevation.sample(at, spacing(key.level - 1), values);
+    std::vector<int> origins(source.empty() ? 0 : at.size());
+    sample_posts(sampling, at, spacing(key.level - 1), values, origins);
     for (int a = 0; a <= n; a += 2) {
       heights[edge_post(edge, a, side)] = values[static_cast<std::size_t>(a / 2)];
+      if (!origins.empty()) source[edge_post(edge, a, side)] = origins[static_cast<std::size_t>(a / 2)];
       levels[edge_post(edge, a, side)] = key.level - 1;
     }
   }
@@ -45,19 +57,15 @@ void resample_borders(const SampleInputs& sampling, const lod::TileKey& key, int
     const std::size_t post = edge_post(north ? lod::Edge::kNorth : lod::Edge::kSouth, east ? n : 0, side);
     const int level = sampling.plan.coarsest_level_at_corner(key, east, north);
     if (level == key.level) continue;
-    sampling.elevation.sample(std::span(&directions[post], 1), spacing(level), std::span(&heights[post], 1));
+    sample_posts(sampling, std::span(&directions[post], 1), spacing(level), std::span(&heights[post], 1),
+                 source.empty() ? std::span<int>() : std::span(&source[post], 1));
     levels[post] = level;
   }
 }
 
-std::set<int> sources_of(const SampleInputs& sampling, const std::vector<glm::dvec3>& directions) {
+std::set<int> sources_of(const SampleInputs& sampling, const SampledLeaf& leaf) {
   if (sampling.meta.sources.size() == 1) return {0};
-  // Every seventh post: rows of 2^k + 1 posts make this a scattered pattern.
-  std::vector<glm::dvec3> some;
-  for (std::size_t n = 0; n < directions.size(); n += 7) some.push_back(directions[n]);
-  std::vector<int> origin(some.size());
-  sampling.elevation.origin(some, origin);
-  std::set<int> found(origin.begin(), origin.end());
+  std::set<int> found(leaf.source.begin(), leaf.source.end());
   found.erase(-1);
   return found;
 }
@@ -75,9 +83,11 @@ SampledLeaf sample_leaf(const SampleInputs& sampling, const lod::TileKey& key) {
   leaf.directions = post_directions(key, leaf.lines);
   leaf.posts = {key, n, std::vector<double>(leaf.directions.size())};
   std::vector<double>& heights = leaf.posts.height_m;
-  sampling.elevation.sample(leaf.directions, lod::post_spacing_m(key.level, n, meta.radius_m), heights);
+  if (meta.sources.size() > 1) leaf.source.resize(heights.size());
+  sample_posts(sampling, leaf.directions, lod::post_spacing_m(key.level, n, meta.radius_m), heights,
+               leaf.source);
   std::vector<int> levels(heights.size(), key.level);
-  resample_borders(sampling, key, leaf.coarser_neighbour_mask, leaf.directions, heights, levels);
+  resample_borders(sampling, key, leaf.coarser_neighbour_mask, leaf.directions, heights, leaf.source, levels);
 
   check_heights(leaf.directions, heights, meta, sampling.elevation);
   leaf.nodata.resize(heights.size());
@@ -104,10 +114,11 @@ Node build_leaf(const SampleInputs& sampling, const MeshInputs& meshing, PlanetW
   const lod::Posts& posts = leaf.posts;
   Node node;
   node.coarser_neighbour_mask = leaf.coarser_neighbour_mask;
-  node.sources = sources_of(sampling, leaf.directions);
+  node.sources = sources_of(sampling, leaf);
   TilePayload payload;
   payload.heights = encode_heights(leaf.quanta, n + 1);
   if (leaf.any_nodata) payload.nodata = encode_mask(leaf.nodata);
+  payload.origin = encode_origin(leaf.source, {node.sources.begin(), node.sources.end()});
   const auto [low, high] = std::minmax_element(posts.height_m.begin(), posts.height_m.end());
   node.min_m = *low;
   node.lowest_m = *low - facet_sagitta_m(lod::post_spacing_m(key.level, n, meta.radius_m), meta.radius_m);

@@ -21,25 +21,38 @@ struct SourcePost {
   double height_m = 0;
   mars::ChartPoint point;
   std::size_t leaf = kNowhere;  // index of the finest tile, when it is one of the given ones
+  int source = 0;               // index into PlanetMeta::sources
 };
 
 class Meter {
  public:
-  Meter(const BuildPlan& plan, const StoredTiles& stored, std::span<const lod::TileKey> leaves, int threads,
-        const std::function<void()>& step)
-      : plan_(plan), stored_(stored), leaves_(leaves), threads_(threads), step_(step) {}
+  Meter(const SampleInputs& sampling, const StoredTiles& stored, std::span<const lod::TileKey> leaves,
+        int threads, const std::function<void()>& step)
+      : sampling_(sampling),
+        stored_(stored),
+        leaves_(leaves),
+        threads_(threads),
+        step_(step),
+        by_leaf_(leaves.size()) {}
 
   void add(std::span<const glm::dvec3> directions, std::span<const double> heights) {
     for (std::size_t n = 0; n < directions.size(); ++n) {
       if (!std::isfinite(heights[n])) continue;
-      posts_.push_back({directions[n], heights[n], {}, kNowhere});
+      posts_.push_back({directions[n], heights[n], {}});
       if (posts_.size() >= kBatch) measure();
     }
   }
 
-  std::vector<ResamplingSum> finish() {
+  ResamplingReport finish() {
     measure();
-    return sums_;
+    ResamplingReport out;
+    for (std::size_t n = 0; n < leaves_.size(); ++n) {
+      for (const auto& [source, sum] : by_leaf_[n]) {
+        out.sums[{leaves_[n].level, source}].include(sum);
+        out.tiles.push_back({lod::pack(leaves_[n]), {source, sum.error()}});
+      }
+    }
+    return out;
   }
 
  private:
@@ -49,7 +62,7 @@ class Meter {
     for (SourcePost& p : posts) {
       p.point = mars::chart_point(p.direction);
       if (last == kNowhere || leaves_[last] != lod::tile_at(p.point, leaves_[last].level)) {
-        const lod::TileKey key = lod::tile_at(p.point, plan_.leaf_level(p.point));
+        const lod::TileKey key = lod::tile_at(p.point, sampling_.plan.leaf_level(p.point));
         const auto leaf = std::lower_bound(leaves_.begin(), leaves_.end(), key, morton_less);
         last =
             leaf == leaves_.end() || *leaf != key ? kNowhere : static_cast<std::size_t>(leaf - leaves_.begin());
@@ -58,10 +71,30 @@ class Meter {
     }
   }
 
+  // Only posts that one source alone makes are visited, so it is the origin of their place.
+  void find_sources(std::span<SourcePost> posts) const {
+    if (sampling_.meta.sources.size() < 2) return;
+    std::vector<glm::dvec3> directions;
+    std::vector<std::size_t> numbers;
+    for (std::size_t n = 0; n < posts.size(); ++n) {
+      if (posts[n].leaf == kNowhere) continue;
+      directions.push_back(posts[n].direction);
+      numbers.push_back(n);
+    }
+    std::vector<int> origin(directions.size());
+    sampling_.elevation.origin(directions, origin);
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      posts[numbers[n]].source = origin[n];
+      if (origin[n] < 0) posts[numbers[n]].leaf = kNowhere;
+    }
+  }
+
   void measure() {
     constexpr std::size_t kBlock = 4096;
     vpe::base::parallel_for((posts_.size() + kBlock - 1) / kBlock, threads_, [&](std::size_t n) {
-      locate(std::span(posts_).subspan(n * kBlock, std::min(kBlock, posts_.size() - n * kBlock)));
+      const auto block = std::span(posts_).subspan(n * kBlock, std::min(kBlock, posts_.size() - n * kBlock));
+      locate(block);
+      find_sources(block);
     });
     std::erase_if(posts_, [](const SourcePost& p) { return p.leaf == kNowhere; });
     std::sort(posts_.begin(), posts_.end(),
@@ -70,42 +103,38 @@ class Meter {
     for (std::size_t n = 0; n < posts_.size(); ++n) {
       if (n == 0 || posts_[n].leaf != posts_[n - 1].leaf) runs.push_back(n);
     }
-    std::mutex adding;
     vpe::base::parallel_for(runs.size(), threads_, [&](std::size_t r) {
       const std::size_t end = r + 1 < runs.size() ? runs[r + 1] : posts_.size();
       const lod::TileKey& key = leaves_[posts_[runs[r]].leaf];
       const lod::Posts posts = read_posts(stored_, key);
       const lod::GridLines lines = lod::grid_lines(key, posts.intervals);
-      ResamplingSum sum;
+      auto& sums = by_leaf_[posts_[runs[r]].leaf];
       for (std::size_t n = runs[r]; n < end; ++n) {
         const SourcePost& p = posts_[n];
         const double height_m = lod::surface_height(posts, lines, p.point.u, p.point.v, stored_.meta.radius_m);
-        sum.add(std::abs(height_m - p.height_m));
+        sums[p.source].add(std::abs(height_m - p.height_m));
       }
-      const std::lock_guard lock(adding);
-      sums_.resize(std::max(sums_.size(), static_cast<std::size_t>(key.level) + 1));
-      sums_[static_cast<std::size_t>(key.level)].include(sum);
     });
     posts_.clear();
     step_();
   }
 
-  const BuildPlan& plan_;
+  const SampleInputs& sampling_;
   const StoredTiles& stored_;
   std::span<const lod::TileKey> leaves_;
   int threads_;
   const std::function<void()>& step_;
   std::vector<SourcePost> posts_;
-  std::vector<ResamplingSum> sums_;
+  std::vector<std::map<int, ResamplingSum>> by_leaf_;  // by source
 };
 
 }  // namespace
 
-std::vector<ResamplingSum> measure_resampling(const SampleInputs& sampling, const StoredTiles& stored,
-                                              std::size_t most_posts, const mars::WantedCap& wanted,
-                                              std::span<const lod::TileKey> leaves, int threads,
-                                              const std::function<void()>& step) {
-  Meter meter(sampling.plan, stored, leaves, threads, step);
+ResamplingReport measure_resampling(const SampleInputs& sampling, const StoredTiles& stored,
+                                    std::size_t most_posts, const mars::WantedCap& wanted,
+                                    std::span<const lod::TileKey> leaves, int threads,
+                                    const std::function<void()>& step) {
+  Meter meter(sampling, stored, leaves, threads, step);
   sampling.elevation.visit_posts_in(
       most_posts, wanted, [&](std::span<const glm::dvec3> directions, std::span<const double> heights) {
         meter.add(directions, heights);

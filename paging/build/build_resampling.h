@@ -9,13 +9,19 @@
 
 namespace paging {
 
-// Returns, by level from 0 on, the errors at the source posts that lie in these finest tiles (in Morton order).
-// Posts outside of the wanted caps may be left out. Over the whole planet about `most_posts` posts are compared at most. The result is equal for any number of
-// threads and adds up over shards. step() is called now and then, from any thread.
-std::vector<ResamplingSum> measure_resampling(const SampleInputs& sampling, const StoredTiles& stored,
-                                              std::size_t most_posts, const mars::WantedCap& wanted,
-                                              std::span<const lod::TileKey> leaves, int threads,
-                                              const std::function<void()>& step);
+struct ResamplingReport {
+  ResamplingSums sums;
+  std::vector<TileResampling> tiles;  // of tiles with source posts, by key and source
+};
+
+// Measures the errors at the source posts that lie in these finest tiles (in Morton order).
+// Posts outside of the wanted caps may be left out. Over the whole planet about `most_posts` posts are compared at
+// most. The result is equal for any number of threads and adds up over shards. step() is called now and then, from
+// any thread.
+ResamplingReport measure_resampling(const SampleInputs& sampling, const StoredTiles& stored,
+                                    std::size_t most_posts, const mars::WantedCap& wanted,
+                                    std::span<const lod::TileKey> leaves, int threads,
+                                    const std::function<void()>& step);
 
 // Returns what the measuring of these finest tiles needs of the sources: caps that touch the tiles of a shard, and,
 // where a source is remote, a region. Empty: all.

@@ -11,6 +11,7 @@
 #include "paging/build/build_resampling.h"
 #include "paging/build/build_steps.h"
 #include "paging/build/planet_writer.h"
+#include "paging/build/shard_file.h"
 #include "paging/build/shard_plan.h"
 #include "paging/build/source_heights.h"
 #include "paging/build/stages.h"
@@ -190,15 +191,16 @@ class Build {
 
     // Stage 5 measures the reference surface against the sources' own posts.
     stages_.begin("checking", 1, 0.02);
-    auto sums = measure_resampling(sampling_, stored_, options_.resampling_posts,
-                                   wanted_posts(options_, meta_, shard_.leaves), shard_.leaves, threads_,
-                                   [this] { stages_.report_again(); });
+    ResamplingReport resampling = measure_resampling(
+        sampling_, stored_, options_.resampling_posts, wanted_posts(options_, meta_, shard_.leaves),
+        shard_.leaves, threads_, [this] { stages_.report_again(); });
+    writer_.put_resampling(resampling.tiles);
     check_files(meta_.sources);
     check_files(meta_.image_sources);
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
-    set_resampling(meta_, sums);
+    set_resampling(meta_, resampling.sums);
     if (!options_.shard.is_all()) {
-      meta_.shard = ShardMeta{options_.shard, options_.mesh_ratio, std::move(sums)};
+      meta_.shard = ShardMeta{options_.shard, options_.mesh_ratio, std::move(resampling.sums)};
       writer_.put_checkpoint(kSharedAncestorsCheckpoint, pack_shared_ancestors(shared_terms_));
     }
     writer_.seal(meta_);
@@ -253,6 +255,8 @@ BuildSummary build_planet(const BuildOptions& options, const mars::ElevationSour
                           const mars::ImageSource* image, const ProgressFunction& progress,
                           std::optional<BuildPlan> plan) {
   const PlanetMeta meta = describe_planet(options, elevation, image);
+  if (!options.shard.is_all() && options.keep_shard)
+    if (const auto finished = finished_shard(options, meta)) return *finished;
   if (!plan) plan = plan_tiles(options, elevation);
   return Build(options, elevation, image, meta, std::move(*plan), progress).run();
 }

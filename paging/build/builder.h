@@ -53,6 +53,7 @@ struct BuildOptions {
   // resampling error is less certain.
   std::size_t resampling_posts = 4'000'000;
   vpe::base::Shard shard;  // only this shard of the tiles, into a file for merge_shards()
+  bool keep_shard = true;  // a finished shard of the same sources and options is kept; false: built again
   // Seconds between commits: about what a killed build may lose. Smaller: loses less, writes more often.
   double commit_s = 1.0;
 };
@@ -74,6 +75,7 @@ struct BuildSummary {
   std::int64_t posts = 0;
   std::int64_t mesh_triangles = 0;  // of all stored meshes
   std::int64_t kept = 0;            // as BuildProgress::kept
+  bool is_kept_whole = false;       // the shard was there already: nothing was built
 };
 
 // Returns the tiles of a build. Reads no more of the source than its footprints. Throws std::runtime_error when
@@ -84,11 +86,12 @@ BuildPlan plan_tiles(const BuildOptions& options, const mars::ElevationSource& e
 // 600 bytes a tile. The content is a function of the options and sources. It does not depend on the number of
 // threads, nor on how often the build was stopped: a build that ends early (killed, disk full, an exception of
 // a source or of progress()) leaves OUTPUT.part, and the next build with the same options and sources
-// continues it. Other sources (by name, size and time), options or program versions start anew.
+// continues it. Other sources (by name, size, time and samples of their bytes), options or program versions
+// start anew.
 //
 // `image` may be null. `plan` may be what plan_tiles() returned for the same options and source, to save
 // planning twice. With options.shard, the file holds that shard of the tiles and is no planet file yet;
-// PlanetMeta::shard is set.
+// PlanetMeta::shard is set. Such a file that is finished already is kept, see BuildOptions::keep_shard.
 //
 // Throws PlanetError, DatabaseError, mars::SourceError, std::runtime_error (too many tiles). After
 // UnusableSource (source_heights.h) no OUTPUT.part is left.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "paging/build/build_inputs.h"
 #include "paging/build/build_steps.h"
 #include "paging/build/shard_file.h"
 #include "paging/build/stages.h"
@@ -29,8 +30,12 @@ std::vector<std::unique_ptr<ShardFile>> open_shards(const std::vector<std::strin
                         shard_name(first->id()) + "; give the parts of one build");
     }
     if (file->fingerprint() != first->fingerprint()) {
+      std::string texts;
+      for (const std::string& text :
+           fingerprint_differences(file->fingerprint(), first->fingerprint(), file->meta()))
+        texts += (texts.empty() ? "" : "; ") + text;
       throw PlanetError(path + ": made of other sources, with other options or by another version than " +
-                        first->path() + "; give the parts of one build");
+                        first->path() + " (" + texts + "); give the parts of one build");
     }
     const std::int64_t number = file->id().number;
     const auto [at, is_new] = by_number.emplace(number, std::move(file));
@@ -59,7 +64,9 @@ std::vector<std::unique_ptr<ShardFile>> open_shards(const std::vector<std::strin
 
 // Returns everything that the content of the merged file is a function of, as text.
 std::string fingerprint_of_merge(const std::vector<std::unique_ptr<ShardFile>>& shards) {
-  std::string text = "merge of\n" + shards.front()->fingerprint();
+  // With the format, because a merge that an older program began has not all tables.
+  std::string text = "merge to format " + std::to_string(kFormatMajor) + "." + std::to_string(kFormatMinor) +
+                     " of\n" + shards.front()->fingerprint();
   for (const auto& shard : shards) text += shard->meta().identity + "\n";
   return text;
 }
@@ -180,7 +187,7 @@ class Merge {
   }
 
   BuildSummary finish() {
-    std::vector<ResamplingSum> sums;
+    ResamplingSums sums;
     meta_.tiles = static_cast<std::int64_t>(shared_terms_.size());
     meta_.leaf_tiles = meta_.image_tiles = 0;
     for (const auto& shard : shards_) {
@@ -192,9 +199,8 @@ class Merge {
       meta_.highest_radius_m = std::max(meta_.highest_radius_m, m.highest_radius_m);
       meta_.finest_level = std::max(meta_.finest_level, m.finest_level);
       meta_.finest_image_level = std::max(meta_.finest_image_level, m.finest_image_level);
-      const std::vector<ResamplingSum>& own = m.shard->resampling;
-      sums.resize(std::max(sums.size(), own.size()));
-      for (std::size_t n = 0; n < own.size(); ++n) sums[n].include(own[n]);
+      for (const auto& [place, own] : m.shard->resampling) sums[place].include(own);
+      writer_.put_resampling(shard->resampling());
     }
     meta_.levels = writer_.levels(static_cast<std::size_t>(meta_.tile.post_count()));
     set_resampling(meta_, sums);

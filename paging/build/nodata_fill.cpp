@@ -7,11 +7,12 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
-#include <unordered_map>
+#include <utility>
 
 #include "lod/tree/posts.h"
 #include "mars/geodesy/cube.h"
 #include "mars/geodesy/sphere.h"
+#include "paging/build/crossing_map.h"
 
 namespace paging {
 
@@ -20,19 +21,6 @@ namespace {
 // Of a neighbour that is far from data, beside 1 for one that is not. With equal weights, each doubling of the
 // distance to the far side of a hole adds as much to the step at its near side.
 constexpr double kWeightOfFill = 0.25;
-
-// Crossing of two lines of a face's grid.
-struct Crossing {
-  std::int64_t i = 0;
-  std::int64_t j = 0;
-  bool operator==(const Crossing&) const = default;
-};
-struct CrossingHash {
-  std::size_t operator()(const Crossing& c) const {
-    return static_cast<std::size_t>(static_cast<std::uint64_t>(c.i) * 0x9e3779b97f4a7c15ULL +
-                                    static_cast<std::uint64_t>(c.j));
-  }
-};
 
 struct Height {
   double height_m = 0;
@@ -46,21 +34,25 @@ class Filler {
   Filler(const SampleInputs& sampling, mars::Face face, int finest)
       : sampling_(sampling), face_(face), grids_(static_cast<std::size_t>(finest) + 1) {}
 
-  // Asks for the height of a crossing.
-  void request(int grid_level, const Crossing& at) { grid(grid_level).requested.push_back(at); }
+  // Asks for the height of a crossing at which the sources have no data.
+  void request(int grid_level, const Crossing& at) {
+    grid(grid_level).requested.push_back(at);
+    grid(grid_level).known_without_data = grid(grid_level).requested.size();
+  }
 
   void fill() {
     for (int g = static_cast<int>(grids_.size()) - 1; g >= 0; --g) look_for_data(g);
     for (int g = 0; g < static_cast<int>(grids_.size()); ++g) interpolate(g);
   }
 
-  double height_m(int grid_level, const Crossing& at) { return grid(grid_level).found.at(at).height_m; }
+  double height_m(int grid_level, const Crossing& at) { return grid(grid_level).found.find(at)->height_m; }
 
  private:
   struct Grid {
     std::vector<Crossing> requested;
-    std::unordered_map<Crossing, double, CrossingHash> sampled;  // NaN: no data
-    std::unordered_map<Crossing, Height, CrossingHash> found;
+    std::size_t known_without_data = 0;  // so many of the first ones
+    CrossingMap<double> sampled;         // NaN: no data
+    CrossingMap<Height> found;
     std::vector<Crossing> far_from_data;  // to be interpolated
   };
 
@@ -80,15 +72,15 @@ class Filler {
     sampling_.elevation.sample(directions, spacing_m(grid_level), heights);
   }
 
-  // Samples crossings that were not sampled yet.
-  void sample(int grid_level, std::vector<Crossing> crossings) {
-    auto& sampled = grid(grid_level).sampled;
-    std::erase_if(crossings, [&](const Crossing& c) { return !sampled.try_emplace(c, 0.0).second; });
+  // Samples crossings, which have places in `sampled` that nobody has read.
+  void sample(int grid_level, std::span<const Crossing> crossings) {
     std::vector<glm::dvec3> directions;
+    directions.reserve(crossings.size());
     for (const Crossing& c : crossings) directions.push_back(direction(grid_level, c));
     std::vector<double> heights;
     sample(grid_level, directions, heights);
-    for (std::size_t n = 0; n < crossings.size(); ++n) sampled[crossings[n]] = heights[n];
+    auto& sampled = grid(grid_level).sampled;
+    for (std::size_t n = 0; n < crossings.size(); ++n) *sampled.find(crossings[n]) = heights[n];
   }
 
   bool is_on_face_edge(int grid_level, const Crossing& c) const {
@@ -125,7 +117,7 @@ class Filler {
       for (const double height_m : heights) add(height_m, 1.0);
     } else {
       const auto& sampled = grid(grid_level).sampled;
-      visit_around(c, [&](const Crossing& neighbour, double weight) { add(sampled.at(neighbour), weight); });
+      visit_around(c, [&](const Crossing& neighbour, double weight) { add(*sampled.find(neighbour), weight); });
     }
     return weights > 0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
   }
@@ -134,21 +126,32 @@ class Filler {
   void look_for_data(int g) {
     Grid& grid = this->grid(g);
     std::vector<Crossing>& requested = grid.requested;
-    std::sort(requested.begin(), requested.end(),
-              [](const Crossing& a, const Crossing& b) { return a.j != b.j ? a.j < b.j : a.i < b.i; });
-    requested.erase(std::unique(requested.begin(), requested.end()), requested.end());
-    sample(g, requested);
-    std::vector<Crossing> around;
-    for (const Crossing& c : requested) {
-      if (std::isfinite(grid.sampled[c]) || is_on_face_edge(g, c)) continue;
-      visit_around(c, [&](const Crossing& neighbour, double) { around.push_back(neighbour); });
+    grid.sampled = CrossingMap<double>(requested, 1);
+    grid.found = CrossingMap<Height>(requested, 0);
+    std::vector<Crossing> to_sample;
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < requested.size(); ++n) {
+      double* height_m = grid.sampled.add(requested[n]);
+      if (height_m == nullptr) continue;
+      *height_m = std::numeric_limits<double>::quiet_NaN();
+      if (n >= grid.known_without_data) to_sample.push_back(requested[n]);
+      requested[kept++] = requested[n];
     }
-    sample(g, std::move(around));
+    requested.resize(kept);
+    sample(g, to_sample);
+    to_sample.clear();
     for (const Crossing& c : requested) {
-      double height_m = grid.sampled[c];
+      if (std::isfinite(*grid.sampled.find(c)) || is_on_face_edge(g, c)) continue;
+      visit_around(c, [&](const Crossing& neighbour, double) {
+        if (grid.sampled.add(neighbour) != nullptr) to_sample.push_back(neighbour);
+      });
+    }
+    sample(g, to_sample);
+    for (const Crossing& c : requested) {
+      double height_m = *grid.sampled.find(c);
       if (!std::isfinite(height_m)) height_m = mean_around(g, c);
       if (std::isfinite(height_m)) {
-        grid.found[c] = {height_m, true};
+        *grid.found.add(c) = {height_m, true};
       } else {
         grid.far_from_data.push_back(c);
         if (g > 0)
@@ -170,12 +173,12 @@ class Filler {
       double weights = 0;
       if (g > 0)
         visit_coarser(c, [&](const Crossing& coarser) {
-          const Height& height = grid(g - 1).found.at(coarser);
+          const Height& height = *grid(g - 1).found.find(coarser);
           const double weight = height.is_near_data ? 1 : kWeightOfFill;
           sum += weight * height.height_m;
           weights += weight;
         });
-      grid(g).found[c] = {g > 0 ? sum / weights : sampling_.meta.fill_m, false};
+      *grid(g).found.add(c) = {g > 0 ? sum / weights : sampling_.meta.fill_m, false};
     }
   }
 

@@ -53,35 +53,6 @@ bool rows_are_intact(const Database& db, const char* sql) {
   return true;
 }
 
-// Returns whether every row is as it was written, and every tile has all of its rows. Damage is not repaired:
-// neither a killed build nor a sudden power loss leaves any, and a disk that changes bits cannot be relied on.
-bool is_intact(Database& db) {
-  check_schema(db);
-  Statement check(db, "PRAGMA integrity_check(1)");
-  if (!check.step() || check.text(0) != "ok") return false;
-  for (const char* sql :
-       {"SELECT key, 0, checksum, data FROM heights", "SELECT key, 0, checksum, data FROM missing",
-        "SELECT key, variant, checksum, data FROM mesh", "SELECT key, 0, checksum, data FROM image",
-        "SELECT number, 0, checksum, data FROM note"}) {
-    if (!rows_are_intact(db, sql)) return false;
-  }
-  std::vector<NodeRow> nodes;
-  if (read_nodes(db, nodes)) return false;
-  // A finest tile's last variant is its full grid, without a mesh.
-  std::int64_t meshes = 0;
-  std::int64_t variants = 0;
-  for (const NodeRow& node : nodes) {
-    variants += static_cast<std::int64_t>(node.variants.size());
-    meshes += static_cast<std::int64_t>(node.variants.size()) - (node.inner ? 0 : 1);
-  }
-  return db.integer("SELECT count(*) FROM heights JOIN node USING (key)") ==
-             static_cast<std::int64_t>(nodes.size()) &&
-         db.integer("SELECT count(*) FROM heights") == static_cast<std::int64_t>(nodes.size()) &&
-         db.integer("SELECT count(*) FROM mesh JOIN node USING (key)") == meshes &&
-         db.integer("SELECT count(*) FROM mesh") == meshes &&
-         db.integer("SELECT count(*) FROM variant") == variants;
-}
-
 constexpr std::size_t kDatabaseHeaderBytes = 100;
 
 std::string first_bytes(const std::string& path) {
@@ -161,6 +132,35 @@ PartialPlanetFile continue_partial_file(const std::string& path, const std::stri
 }
 
 }  // namespace
+
+// Damage is not repaired: neither a killed build nor a sudden power loss leaves any, and a disk that changes bits
+// cannot be relied on.
+bool is_intact(Database& db) {
+  check_schema(db);
+  Statement check(db, "PRAGMA integrity_check(1)");
+  if (!check.step() || check.text(0) != "ok") return false;
+  for (const char* sql :
+       {"SELECT key, 0, checksum, data FROM heights", "SELECT key, 0, checksum, data FROM missing",
+        "SELECT key, 0, checksum, data FROM origin", "SELECT key, variant, checksum, data FROM mesh",
+        "SELECT key, 0, checksum, data FROM image", "SELECT number, 0, checksum, data FROM note"}) {
+    if (!rows_are_intact(db, sql)) return false;
+  }
+  std::vector<NodeRow> nodes;
+  if (read_nodes(db, nodes)) return false;
+  // A finest tile's last variant is its full grid, without a mesh.
+  std::int64_t meshes = 0;
+  std::int64_t variants = 0;
+  for (const NodeRow& node : nodes) {
+    variants += static_cast<std::int64_t>(node.variants.size());
+    meshes += static_cast<std::int64_t>(node.variants.size()) - (node.inner ? 0 : 1);
+  }
+  return db.integer("SELECT count(*) FROM heights JOIN node USING (key)") ==
+             static_cast<std::int64_t>(nodes.size()) &&
+         db.integer("SELECT count(*) FROM heights") == static_cast<std::int64_t>(nodes.size()) &&
+         db.integer("SELECT count(*) FROM mesh JOIN node USING (key)") == meshes &&
+         db.integer("SELECT count(*) FROM mesh") == meshes &&
+         db.integer("SELECT count(*) FROM variant") == variants;
+}
 
 PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint) {
   require_own_files(path);

@@ -33,6 +33,10 @@ struct PartialPlanetFile {
 // build writes the file.
 PartialPlanetFile open_partial_file(const std::string& path, const std::string& fingerprint);
 
+// Returns whether every row of a partial file or shard is as it was written, and every tile has all of its rows.
+// Throws PlanetError, DatabaseError.
+bool is_intact(Database& db);
+
 // Removes the file and what SQLite keeps beside it. They must be this program's.
 void remove_partial_file(const std::string& path);
 

@@ -37,6 +37,8 @@ struct PlanetWriter::Statements {
   explicit Statements(const Database& db)
       : heights(db, "INSERT INTO heights VALUES(?, ?, ?)"),
         nodata(db, "INSERT INTO missing VALUES(?, ?, ?)"),
+        origin(db, "INSERT INTO origin VALUES(?, ?, ?)"),
+        resampling(db, "INSERT OR REPLACE INTO resampling VALUES(?, ?, ?, ?, ?, ?)"),
         image(db, "INSERT INTO image VALUES(?, ?, ?)"),
         checkpoint(db, "INSERT OR REPLACE INTO note VALUES(?, ?, ?)"),
         mesh(db, "INSERT INTO mesh VALUES(NULL, ?, ?, ?, ?)"),
@@ -48,6 +50,8 @@ struct PlanetWriter::Statements {
         read_mesh(db, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?") {}
   Statement heights;
   Statement nodata;
+  Statement origin;
+  Statement resampling;
   Statement image;
   Statement checkpoint;
   Statement mesh;
@@ -116,6 +120,7 @@ void PlanetWriter::put_tile(const NodeRow& row, const TilePayload& payload) {
   write([&] {
     put(sql_->heights, row.key, payload.heights);
     if (!payload.nodata.empty()) put(sql_->nodata, row.key, payload.nodata);
+    if (!payload.origin.empty()) put(sql_->origin, row.key, payload.origin);
     std::int64_t variant = 0;
     for (const Bytes& packed : payload.meshes) {
       sql_->mesh.bind(1, row.key).bind(2, variant).bind(3, checksum(row.key + variant, packed)).bind(4, packed);
@@ -166,6 +171,20 @@ void PlanetWriter::put_node(const NodeRow& row) {
       .bind(4, row.posts_terms->total_m)
       .bind(5, posts_checksum(row));
   sql_->posts_error.step();
+}
+
+void PlanetWriter::put_resampling(std::span<const TileResampling> rows) {
+  write([&] {
+    for (const TileResampling& row : rows) {
+      sql_->resampling.bind(1, row.key)
+          .bind(2, std::int64_t{row.of.source})
+          .bind(3, row.of.error.posts)
+          .bind(4, row.of.error.max_m)
+          .bind(5, row.of.error.rms_m)
+          .bind(6, checksum(row));
+      sql_->resampling.step();
+    }
+  });
 }
 
 void PlanetWriter::replace_nodes(std::span<const NodeRow> rows) {

@@ -16,6 +16,7 @@
 #include "paging/build/partial_planet_file.h"
 #include "paging/planet/codec.h"
 #include "paging/planet/planet_meta.h"
+#include "paging/planet/tile_sources.h"
 
 namespace paging {
 
@@ -23,6 +24,7 @@ namespace paging {
 struct TilePayload {
   Bytes heights;
   Bytes nodata;               // empty when every post has data
+  Bytes origin;               // encode_origin(); empty when all posts with data have one source
   std::vector<Bytes> meshes;  // by variant
 };
 
@@ -62,6 +64,8 @@ class PlanetWriter {
   // Stores an intermediate result by number; replaces an earlier one. publish() drops checkpoints, except that
   // a shard keeps those with numbers below 0.
   void put_checkpoint(std::int64_t number, std::span<const std::uint8_t> packed);
+  // Stores or replaces resampling errors of tiles, all of them or none.
+  void put_resampling(std::span<const TileResampling> rows);
   // Replaces rows of the tile index, all of them or none.
   void replace_nodes(std::span<const NodeRow> rows);
 

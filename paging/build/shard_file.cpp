@@ -7,6 +7,30 @@
 
 namespace paging {
 
+std::optional<BuildSummary> finished_shard(const BuildOptions& options, const PlanetMeta& described) {
+  std::error_code none;
+  if (!std::filesystem::exists(options.output, none)) return std::nullopt;
+  try {
+    Database db = open_planet_database(options.output);
+    Statement fingerprint(db, "SELECT text FROM recipe");
+    if (!fingerprint.step() || fingerprint.text(0) != build_fingerprint(options, described))
+      return std::nullopt;
+    BuildSummary summary;
+    summary.meta = from_rows(read_meta_rows(db), options.output);
+    if (!is_intact(db) || content_identity(db) != summary.meta.identity) return std::nullopt;
+    summary.bytes = static_cast<std::int64_t>(std::filesystem::file_size(options.output));
+    summary.posts = summary.meta.leaf_tiles * summary.meta.tile.post_count();
+    summary.mesh_triangles = db.integer("SELECT sum(triangles) FROM variant");
+    summary.kept = summary.meta.tiles + summary.meta.image_tiles;
+    summary.is_kept_whole = true;
+    return summary;
+  } catch (const PlanetError&) {
+    return std::nullopt;  // damaged, as below: it is built again
+  } catch (const DatabaseError&) {
+    return std::nullopt;
+  }
+}
+
 ShardFile::ShardFile(const std::string& path) : path_(path) {
   std::error_code none;
   if (!std::filesystem::exists(path, none)) {
@@ -25,8 +49,11 @@ ShardFile::ShardFile(const std::string& path) : path_(path) {
     const std::string line = fingerprint_line(id());
     if (!fingerprint_.ends_with(line)) damaged("its build fingerprint is that of another part");
     fingerprint_.resize(fingerprint_.size() - line.size());
+    fingerprint_ = portable_fingerprint(fingerprint_);
     heights_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM heights WHERE key = ?");
     nodata_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM missing WHERE key = ?");
+    if (has_table(*db_, "origin"))
+      origin_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM origin WHERE key = ?");
     mesh_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM mesh WHERE key = ? AND variant = ?");
     image_ = std::make_unique<Statement>(*db_, "SELECT checksum, data FROM image WHERE key = ?");
     if (content_identity(*db_) != meta_.identity) damaged("its rows differ from those that were written");
@@ -84,17 +111,28 @@ Bytes ShardFile::verified(Statement& statement, std::int64_t key, std::int64_t s
 TilePayload ShardFile::payload(const NodeRow& row) {
   TilePayload payload;
   payload.heights = verified(heights_->bind(1, row.key), row.key, row.key, "heights");
-  nodata_->bind(1, row.key);
-  if (nodata_->step()) {
-    nodata_->reset();
-    payload.nodata = verified(nodata_->bind(1, row.key), row.key, row.key, "nodata mask");
-  }
+  const auto optional = [&](Statement& statement, const char* what) {
+    statement.bind(1, row.key);
+    if (!statement.step()) return Bytes();
+    statement.reset();
+    return verified(statement.bind(1, row.key), row.key, row.key, what);
+  };
+  payload.nodata = optional(*nodata_, "nodata mask");
+  if (origin_) payload.origin = optional(*origin_, "sources of the posts");
   // A finest tile's last variant is its full grid, without a mesh.
   const auto meshes = static_cast<std::int64_t>(row.variants.size()) - (row.inner ? 0 : 1);
   for (std::int64_t v = 0; v < meshes; ++v) {
     payload.meshes.push_back(verified(mesh_->bind(1, row.key).bind(2, v), row.key, row.key + v, "mesh"));
   }
   return payload;
+}
+
+std::vector<TileResampling> ShardFile::resampling() const {
+  try {
+    return read_resampling(*db_);
+  } catch (const DatabaseError& e) {
+    damaged(e.what());
+  }
 }
 
 std::vector<std::int64_t> ShardFile::image_keys() const {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,10 @@
 #include "paging/planet/sqlite.h"
 
 namespace paging {
+
+// Returns the summary of the shard that options.output holds if it is complete and undamaged, which is read whole for
+// that, and its fingerprint is that of this build. `described` is describe_planet() of the same options and sources.
+std::optional<BuildSummary> finished_shard(const BuildOptions& options, const PlanetMeta& described);
 
 // Reads a shard. Used by one thread at a time. Members throw PlanetError when something is damaged; the message
 // names file and tile.
@@ -27,12 +32,13 @@ class ShardFile {
   const std::string& path() const { return path_; }
   const PlanetMeta& meta() const { return meta_; }  // `shard` is set
   const vpe::base::Shard& id() const { return meta_.shard->id; }
-  // Returns the build fingerprint of the undivided build.
+  // Returns the portable fingerprint (build_inputs.h) of the undivided build.
   const std::string& fingerprint() const { return fingerprint_; }
 
   std::vector<NodeRow> nodes() const;
   std::map<lod::TileKey, SharedAncestorTerms> shared_ancestors() const;
   TilePayload payload(const NodeRow& row);
+  std::vector<TileResampling> resampling() const;
   std::vector<std::int64_t> image_keys() const;
   Bytes image(std::int64_t key);
 
@@ -46,6 +52,7 @@ class ShardFile {
   std::string fingerprint_;
   std::unique_ptr<Statement> heights_;
   std::unique_ptr<Statement> nodata_;
+  std::unique_ptr<Statement> origin_;  // null in shards of format 1.2
   std::unique_ptr<Statement> mesh_;
   std::unique_ptr<Statement> image_;
 };

@@ -130,7 +130,10 @@ std::vector<std::string> wrong_meta(const PlanetMeta& meta, std::span<const lod:
     all.max_m = std::max(all.max_m, own.max_m);
     all.posts += own.posts;
     squares_m2 += own.rms_m * own.rms_m * static_cast<double>(own.posts);
-    if (n < levels.size()) levels[n].resampling = own;  // cannot be computed without the sources
+    if (n < levels.size()) {  // cannot be computed without the sources
+      levels[n].resampling = own;
+      levels[n].resampling_by_source = meta.levels[n].resampling_by_source;
+    }
   }
   all.rms_m = all.posts > 0 ? std::sqrt(squares_m2 / static_cast<double>(all.posts)) : 0.0;
   if (!sane || all.max_m != meta.resampling.max_m || all.posts != meta.resampling.posts ||

@@ -157,6 +157,27 @@ std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t 
   return nodata;
 }
 
+Bytes encode_numbers(std::span<const std::uint16_t> numbers) {
+  Bytes planes(2 * numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    planes[i] = static_cast<std::uint8_t>(numbers[i] & 0xffU);
+    planes[numbers.size() + i] = static_cast<std::uint8_t>(numbers[i] >> 8U);
+  }
+  return compress(planes, kMeshLevel);
+}
+
+std::vector<std::uint16_t> decode_numbers(std::span<const std::uint8_t> packed, std::size_t count,
+                                          std::size_t most) {
+  const Bytes planes = decompress(packed, 2 * count);
+  if (planes.size() != 2 * count) throw CodecError("sources: wrong number of posts");
+  std::vector<std::uint16_t> numbers(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    numbers[i] = static_cast<std::uint16_t>(planes[i] | planes[count + i] << 8);
+    if (numbers[i] > most) throw CodecError("sources: a post has a source that the tile does not have");
+  }
+  return numbers;
+}
+
 Bytes encode_mesh(const PackedMesh& packed) {
   const lod::TileMesh& mesh = packed.mesh;
   if (packed.height_q.size() != mesh.vertices.size())

@@ -1,4 +1,4 @@
-// Payloads of the planet file as compressed bytes: heights, nodata masks, meshes.
+// Payloads of the planet file as compressed bytes: heights, nodata masks, sources of posts, meshes.
 //
 // decode(encode(x)) == x, bit for bit. Every decoder checks sizes and ranges. It throws CodecError for bytes
 // that no encoder wrote, and never reads or writes out of bounds, whatever the bytes are. All functions are
@@ -37,6 +37,12 @@ std::vector<std::int32_t> decode_heights(std::span<const std::uint8_t> packed, i
 // Packs one flag for each post: true where no source has data.
 Bytes encode_mask(const std::vector<bool>& nodata);
 std::vector<bool> decode_mask(std::span<const std::uint8_t> packed, std::size_t count);
+
+// Packs one number for each post: low bytes, then high bytes, zstd. Sources of posts are such numbers.
+Bytes encode_numbers(std::span<const std::uint16_t> numbers);
+// Throws CodecError also for a number above `most`.
+std::vector<std::uint16_t> decode_numbers(std::span<const std::uint8_t> packed, std::size_t count,
+                                          std::size_t most);
 
 // Holds a mesh with the heights of its vertices. Vertices must be sorted by (j, i) and distinct.
 struct PackedMesh {

@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kMaxMetaRows = 10'000;
 
 constexpr const char* kNamesOfTheFormat =
-    "('meta', 'node', 'variant', 'posts_error', 'heights', 'missing', 'mesh', 'image', 'recipe', 'note')";
+    "('meta', 'node', 'variant', 'posts_error', 'heights', 'missing', 'origin', 'resampling', 'mesh', 'image', "
+    "'recipe', 'note')";
 
 [[noreturn]] void refuse_schema(const Database& db, const std::string& what) {
   throw PlanetError(db.path() + ": damaged or forged: " + what + "; build the planet file again");
@@ -47,6 +48,11 @@ void check_schema(const Database& db) {
     refuse_schema(db, "the column '" + columns.text(1) + "' of the table '" + columns.text(0) +
                           "' is computed where planet files store it");
   }
+}
+
+bool has_table(const Database& db, std::string_view name) {
+  Statement known(db, "SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?");
+  return known.bind(1, name).step();
 }
 
 std::map<std::string, std::string> read_meta_rows(const Database& db) {

@@ -8,6 +8,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "paging/planet/sqlite.h"
 
@@ -20,6 +21,10 @@ Database open_planet_database(const std::string& path);
 // Throws PlanetError if a name of the format belongs to anything but an ordinary table: a view or a virtual
 // table may never end, as may a computed column. Triggers are refused too. Throws DatabaseError.
 void check_schema(const Database& db);
+
+// Returns whether the database has a table. Files of older minor formats do not have all of them. Throws
+// DatabaseError.
+bool has_table(const Database& db, std::string_view name);
 
 // Returns the rows of the table `meta`. Throws PlanetError if there are more than any writer makes;
 // DatabaseError.

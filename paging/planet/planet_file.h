@@ -11,6 +11,7 @@
 #include "paging/planet/codec.h"
 #include "paging/planet/planet_meta.h"
 #include "paging/planet/sqlite.h"
+#include "paging/planet/tile_sources.h"
 #include "vpe/base/object_pool.h"
 
 namespace paging {
@@ -60,6 +61,8 @@ class PlanetFile {
   // damaged (checksum, codec). With an exaggeration (> 0), the posts are those of the reference surface drawn
   // with it; see put_on_coarser_edges().
   TileHeights heights(const lod::TileKey& key, double exaggeration = 1.0) const;
+  // Reads which sources the posts of a finest tile have. Throws as heights() does.
+  TileSources sources(const lod::TileKey& key) const;
   // Reads one mesh of a tile. Throws as heights() does.
   PackedMesh mesh(const lod::TileKey& key, int variant) const;
 

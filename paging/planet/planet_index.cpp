@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "paging/planet/codec.h"
+#include "paging/planet/planet_database.h"
 #include "paging/planet/planet_meta.h"
 #include "paging/planet/sqlite.h"
 
@@ -21,9 +22,8 @@ std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>&
   Statement variants(db, "SELECT key, relief_m, sag_m, total_m, triangles FROM variant ORDER BY key, variant");
   bool more = variants.step();
   // Files before format 1.2 do not have this table.
-  Statement known(db, "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'posts_error'");
   std::optional<Statement> posts;
-  if (known.step())
+  if (has_table(db, "posts_error"))
     posts.emplace(db, "SELECT key, relief_m, sag_m, total_m, checksum FROM posts_error ORDER BY key");
   bool more_posts = posts && posts->step();
   while (nodes.step()) {
@@ -93,18 +93,16 @@ std::vector<LevelSummary> summarize_levels(const Database& db, std::size_t posts
 std::string content_identity(const Database& db) {
   // In key order, so that the order in which threads finished has no effect.
   Bytes all;
-  for (const char* table : {"node", "heights", "missing", "image"}) {
-    Statement rows(db, std::string("SELECT checksum FROM ") + table + " ORDER BY key");
+  const auto add = [&](const std::string& table, const std::string& order) {
+    Statement rows(db, "SELECT checksum FROM " + table + " ORDER BY " + order);
     while (rows.step()) {
       const auto sum = static_cast<std::uint64_t>(rows.integer(0));
       for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
     }
-  }
-  Statement rows(db, "SELECT checksum FROM mesh ORDER BY key, variant");
-  while (rows.step()) {
-    const auto sum = static_cast<std::uint64_t>(rows.integer(0));
-    for (int shift = 0; shift < 64; shift += 8) all.push_back(static_cast<std::uint8_t>(sum >> shift));
-  }
+  };
+  for (const char* table : {"node", "heights", "missing", "image"}) add(table, "key");
+  add("mesh", "key, variant");
+  // Not of `origin` and other later tables: programs that do not know them must find the same.
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(checksum(kApplicationId, all)));
   return text;

@@ -25,6 +25,9 @@ CREATE TABLE variant(key INTEGER, variant INTEGER, relief_m REAL, sag_m REAL, to
 CREATE TABLE posts_error(key INTEGER PRIMARY KEY, relief_m REAL, sag_m REAL, total_m REAL, checksum INTEGER);
 CREATE TABLE heights(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
 CREATE TABLE missing(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
+CREATE TABLE origin(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
+CREATE TABLE resampling(key INTEGER, source INTEGER, posts INTEGER, max_m REAL, rms_m REAL, checksum INTEGER,
+  PRIMARY KEY(key, source)) WITHOUT ROWID;
 CREATE TABLE mesh(id INTEGER PRIMARY KEY, key INTEGER, variant INTEGER, checksum INTEGER, data BLOB);
 CREATE UNIQUE INDEX mesh_key ON mesh(key, variant);
 CREATE TABLE image(key INTEGER PRIMARY KEY, checksum INTEGER, data BLOB);
@@ -44,6 +47,7 @@ json to_json(const mars::SourceInfo& s) {
   j["accuracy_m"] = s.accuracy_m ? json(*s.accuracy_m) : json();
   if (s.body_radius_m > 0) j["body_radius_m"] = s.body_radius_m;
   if (!s.treatment.empty()) j["treatment"] = s.treatment;
+  if (!s.content.empty()) j["content"] = s.content;
   return j;
 }
 
@@ -67,6 +71,7 @@ mars::SourceInfo source_from(const json& j, double radius_m) {
   if (!j.at("accuracy_m").is_null()) s.accuracy_m = j.at("accuracy_m").get<double>();
   s.body_radius_m = j.value("body_radius_m", 0.0);
   s.treatment = j.value("treatment", std::string());
+  s.content = j.value("content", std::string());
   return s;
 }
 
@@ -84,7 +89,7 @@ std::vector<mars::SourceInfo> sources_from(const json& list, double radius_m) {
 
 auto tie(const mars::SourceInfo& s) {
   return std::tie(s.name, s.size_bytes, s.mtime_s, s.resolution_m, s.quantum_m, s.accuracy_m, s.illustration,
-                  s.body_radius_m, s.treatment);
+                  s.body_radius_m, s.treatment, s.content);
 }
 
 bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::SourceInfo>& b) {
@@ -93,7 +98,7 @@ bool equal(const std::vector<mars::SourceInfo>& a, const std::vector<mars::Sourc
 }
 
 // Covers all other rows, including those of later minor formats.
-std::string checksum(const std::map<std::string, std::string>& rows) {
+std::string meta_checksum(const std::map<std::string, std::string>& rows) {
   Bytes bytes;
   for (const auto& [key, value] : rows) {
     if (key == kMetaChecksumKey) continue;
@@ -168,7 +173,7 @@ std::map<std::string, std::string> to_rows(const PlanetMeta& m) {
       {"illustration", m.illustration ? "true" : "false"}};
   if (!m.levels.empty()) rows["levels"] = to_text(m.levels);
   if (m.shard) rows["part"] = to_text(*m.shard);
-  rows[kMetaChecksumKey] = checksum(rows);
+  rows[kMetaChecksumKey] = meta_checksum(rows);
   return rows;
 }
 
@@ -187,7 +192,7 @@ PlanetMeta from_rows(const std::map<std::string, std::string>& rows, const std::
     throw PlanetError(path + ": planet file format " + format + " is newer than this program reads (" +
                       std::to_string(kFormatMajor) + ".x); update vpe");
   }
-  if (text(kMetaChecksumKey) != checksum(rows)) {
+  if (text(kMetaChecksumKey) != meta_checksum(rows)) {
     throw PlanetError(path + ": damaged: the table meta has a wrong checksum; build the file again");
   }
   PlanetMeta m;

@@ -19,7 +19,7 @@ class Database;
 
 inline constexpr std::int64_t kApplicationId = 0x56504531;  // "VPE1"
 inline constexpr int kFormatMajor = 1;
-inline constexpr int kFormatMinor = 2;
+inline constexpr int kFormatMinor = 3;
 inline constexpr double kMinRadius_m = 1;     // of a planet, included
 inline constexpr double kMaxRadius_m = 1e12;  // excluded
 inline constexpr int kImageIntervals = 256;   // an image tile has 257 x 257 texels on its grid lines
@@ -108,7 +108,7 @@ std::int64_t posts_checksum(const NodeRow& row);
 // that no builder writes, if any; `rows` then ends before it. Throws DatabaseError.
 std::optional<std::int64_t> read_nodes(const Database& db, std::vector<NodeRow>& rows);
 
-// Summarizes what the tables hold of each level, except the resampling error; `posts` is the number of posts of
+// Summarizes what the tables hold of each level, except the resampling errors; `posts` is the number of posts of
 // a tile. Throws DatabaseError, CodecError.
 std::vector<LevelSummary> summarize_levels(const Database& db, std::size_t posts);
 

@@ -19,6 +19,16 @@ constexpr double kLargest_m = 0x1p22;
 
 Wide wide(const ResamplingSum& sum) { return Wide{sum.high} << 64 | Wide{sum.low}; }
 
+json error_json(const ResamplingError& error) {
+  return {
+      {"resampling_max_m", error.max_m}, {"resampling_rms_m", error.rms_m}, {"resampling_posts", error.posts}};
+}
+
+ResamplingError error_from(const json& j) {
+  return {j.at("resampling_max_m").get<double>(), j.at("resampling_rms_m").get<double>(),
+          j.at("resampling_posts").get<std::int64_t>()};
+}
+
 void set(ResamplingSum& sum, Wide squares) {
   sum.high = static_cast<std::uint64_t>(squares >> 64);
   sum.low = static_cast<std::uint64_t>(squares);
@@ -50,28 +60,37 @@ bool ShardMeta::operator==(const ShardMeta& o) const {
          resampling == o.resampling;
 }
 
-void set_resampling(PlanetMeta& meta, const std::vector<ResamplingSum>& by_level) {
+void set_resampling(PlanetMeta& meta, const ResamplingSums& sums) {
   ResamplingSum all;
-  for (const ResamplingSum& sum : by_level) all.include(sum);
+  std::map<int, ResamplingSum> by_level;
+  std::map<int, std::vector<SourceResampling>> by_source;
+  for (const auto& [place, sum] : sums) {
+    const auto [level, source] = place;
+    all.include(sum);
+    by_level[level].include(sum);
+    if (source >= 0) by_source[level].push_back({source, sum.error()});
+  }
   meta.resampling = all.error();
   for (LevelSummary& level : meta.levels) {
-    if (static_cast<std::size_t>(level.level) < by_level.size())
-      level.resampling = by_level[static_cast<std::size_t>(level.level)].error();
+    level.resampling = by_level[level.level].error();
+    level.resampling_by_source = by_source[level.level];
   }
 }
 
 std::string to_text(const std::vector<LevelSummary>& levels) {
   json list = json::array();
   for (const LevelSummary& l : levels) {
-    list.push_back({{"level", l.level},
-                    {"tiles", l.tiles},
-                    {"leaf_tiles", l.leaf_tiles},
-                    {"image_tiles", l.image_tiles},
-                    {"bytes", l.bytes},
-                    {"holes", l.nodata_posts},
-                    {"resampling_max_m", l.resampling.max_m},
-                    {"resampling_rms_m", l.resampling.rms_m},
-                    {"resampling_posts", l.resampling.posts}});
+    json& level = list.emplace_back(error_json(l.resampling));
+    level.update({{"level", l.level},
+                  {"tiles", l.tiles},
+                  {"leaf_tiles", l.leaf_tiles},
+                  {"image_tiles", l.image_tiles},
+                  {"bytes", l.bytes},
+                  {"holes", l.nodata_posts}});
+    for (const SourceResampling& own : l.resampling_by_source) {
+      json& entry = level["by_source"].emplace_back(error_json(own.error));
+      entry["source"] = own.source;
+    }
   }
   return list.dump();
 }
@@ -86,8 +105,11 @@ std::vector<LevelSummary> levels_from_text(const std::string& text) {
     l.image_tiles = j.at("image_tiles").get<std::int64_t>();
     l.bytes = j.at("bytes").get<std::int64_t>();
     l.nodata_posts = j.at("holes").get<std::int64_t>();
-    l.resampling = {j.at("resampling_max_m").get<double>(), j.at("resampling_rms_m").get<double>(),
-                    j.at("resampling_posts").get<std::int64_t>()};
+    l.resampling = error_from(j);
+    if (j.contains("by_source")) {
+      for (const json& own : j.at("by_source"))
+        l.resampling_by_source.push_back({own.at("source").get<int>(), error_from(own)});
+    }
     levels.push_back(l);
   }
   return levels;
@@ -95,11 +117,12 @@ std::vector<LevelSummary> levels_from_text(const std::string& text) {
 
 std::string to_text(const ShardMeta& shard) {
   json sums = json::array();
-  for (const ResamplingSum& s : shard.resampling) sums.push_back({s.max_m, s.posts, s.high, s.low});
+  for (const auto& [place, s] : shard.resampling)
+    sums.push_back({place.first, place.second, s.max_m, s.posts, s.high, s.low});
   return json{{"number", shard.id.number},
               {"of", shard.id.of},
               {"mesh_ratio", shard.mesh_ratio},
-              {"resampling", std::move(sums)}}
+              {"resampling_by_source", std::move(sums)}}
       .dump();
 }
 
@@ -108,9 +131,16 @@ ShardMeta shard_from_text(const std::string& text) {
   ShardMeta shard;
   shard.id = {j.at("number").get<std::int64_t>(), j.at("of").get<std::int64_t>()};
   shard.mesh_ratio = j.at("mesh_ratio").get<double>();
-  for (const json& s : j.at("resampling")) {
-    shard.resampling.push_back({s.at(0).get<double>(), s.at(1).get<std::int64_t>(),
-                                s.at(2).get<std::uint64_t>(), s.at(3).get<std::uint64_t>()});
+  const auto sum_from = [](const json& s, std::size_t at) {
+    return ResamplingSum{s.at(at).get<double>(), s.at(at + 1).get<std::int64_t>(),
+                         s.at(at + 2).get<std::uint64_t>(), s.at(at + 3).get<std::uint64_t>()};
+  };
+  if (j.contains("resampling_by_source")) {
+    for (const json& s : j.at("resampling_by_source"))
+      shard.resampling[{s.at(0).get<int>(), s.at(1).get<int>()}] = sum_from(s, 2);
+  } else {  // before format 1.3: by level, from 0 on
+    int level = 0;
+    for (const json& s : j.at("resampling")) shard.resampling[{level++, -1}] = sum_from(s, 0);
   }
   return shard;
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vpe/base/shard.h"
@@ -33,6 +35,18 @@ struct ResamplingSum {
   bool operator==(const ResamplingSum&) const = default;
 };
 
+// Sums of resampling errors by level and by index into PlanetMeta::sources; the index is -1 in shards of builders
+// before revision 6, which did not tell sources apart.
+using ResamplingSums = std::map<std::pair<int, int>, ResamplingSum>;
+
+// Describes the resampling error at the posts of one source.
+struct SourceResampling {
+  int source = 0;  // index into PlanetMeta::sources
+  ResamplingError error;
+
+  bool operator==(const SourceResampling&) const = default;
+};
+
 // Describes the tiles of one level.
 struct LevelSummary {
   int level = 0;
@@ -42,23 +56,24 @@ struct LevelSummary {
   std::int64_t bytes = 0;         // of heights, nodata masks, meshes and images, compressed
   std::int64_t nodata_posts = 0;  // of finest tiles; a post on a shared border counts in each tile
   ResamplingError resampling;     // over the source posts that lie in this level's finest tiles
+  std::vector<SourceResampling> resampling_by_source;  // the same by source; empty before format 1.3
 
   bool operator==(const LevelSummary&) const = default;
 };
 
 // Describes a file that holds one shard of a divided build. Kept as `part` in the table `meta`.
 struct ShardMeta {
-  vpe::base::Shard id;                    // which of how many
-  double mesh_ratio = 0;                  // BuildOptions::mesh_ratio, for the tiles that merging makes
-  std::vector<ResamplingSum> resampling;  // by level, from 0 on
+  vpe::base::Shard id;    // which of how many
+  double mesh_ratio = 0;  // BuildOptions::mesh_ratio, for the tiles that merging makes
+  ResamplingSums resampling;
 
   bool operator==(const ShardMeta&) const;
 };
 
 struct PlanetMeta;
 
-// Sets PlanetMeta::resampling and that of its levels from sums by level.
-void set_resampling(PlanetMeta& meta, const std::vector<ResamplingSum>& by_level);
+// Sets PlanetMeta::resampling and that of its levels.
+void set_resampling(PlanetMeta& meta, const ResamplingSums& sums);
 
 // Converts to JSON text.
 std::string to_text(const std::vector<LevelSummary>& levels);

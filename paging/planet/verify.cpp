@@ -41,6 +41,8 @@ void check_database(const PlanetFile& planet, VerifyReport& report) {
     for (const std::string& wrong :
          wrong_meta(planet.meta(), planet.tree().tiles(), summarize_levels(db, posts)))
       report.problems.push_back({"meta", wrong});
+    if (const std::string wrong = wrong_resampling(planet, db); !wrong.empty())
+      report.problems.push_back({"resampling", wrong});
   } catch (const std::runtime_error& e) {  // DatabaseError, PlanetError, CodecError
     report.problems.push_back({"database", e.what()});
   }

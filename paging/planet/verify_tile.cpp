@@ -141,6 +141,25 @@ void check_children(const PlanetFile& planet, const lod::TileInfo& tile, const T
   }
 }
 
+void check_sources(const PlanetFile& planet, const lod::TileKey& key, const TileHeights& own,
+                   TileFindings& out) {
+  try {
+    const TileSources sources = planet.sources(key);
+    if (sources.of_post.empty()) return;
+    std::vector<bool> is_used(sources.of_tile.size());
+    for (std::size_t n = 0; n < sources.of_post.size(); ++n) {
+      const std::size_t number = sources.of_post[n];
+      if (number > 0) is_used[number - 1] = true;
+      if ((number == 0) != (!own.nodata.empty() && own.nodata[n]))
+        return out.problem(key, "the sources of its posts differ from its nodata mask");
+    }
+    if (std::find(is_used.begin(), is_used.end(), false) != is_used.end())
+      out.problem(key, "the sources of its posts differ from the index");
+  } catch (const PlanetError& e) {
+    out.problem(key, e.what());
+  }
+}
+
 }  // namespace
 
 void TileFindings::problem(const lod::TileKey& key, const std::string& what) {
@@ -174,6 +193,7 @@ TileFindings check_tile(const PlanetFile& planet, const lod::TileInfo& tile) {
   if (tile.has_children) {
     check_children(planet, tile, *own, out);
   } else {
+    check_sources(planet, tile.key, *own, out);
     const auto [low, high] = std::minmax_element(own->posts.height_m.begin(), own->posts.height_m.end());
     const lod::GridLines lines = lod::grid_lines(tile.key, own->posts.intervals);
     if (*low != tile.min_height_m || *high != tile.max_height_m ||

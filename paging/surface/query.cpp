@@ -7,10 +7,30 @@
 
 namespace paging {
 
+namespace {
+
+ResamplingError of_source(const std::vector<SourceResampling>& list, int source) {
+  for (const SourceResampling& own : list)
+    if (own.source == source) return own.error;
+  return {};
+}
+
+// Files before format 1.3 do not tell sources apart.
+ResamplingError level_resampling(const PlanetMeta& meta, int level, int source) {
+  for (const LevelSummary& summary : meta.levels) {
+    if (summary.level != level) continue;
+    return meta.sources.size() == 1 ? summary.resampling : of_source(summary.resampling_by_source, source);
+  }
+  return {};
+}
+
+}  // namespace
+
 PlaceAnswer query(const Surface& surface, mars::LonLat place) {
   PlaceAnswer a;
   a.place = {mars::normalize_lon_deg(place.lon_deg), place.lat_deg};
-  const SurfacePoint point = surface.at(mars::direction(place));
+  const glm::dvec3 direction = mars::direction(place);
+  const SurfacePoint point = surface.at(direction);
   const PlanetMeta& meta = surface.planet().meta();
   a.nodata = point.nodata;
   a.elevation_m = point.height_m;
@@ -23,17 +43,17 @@ PlaceAnswer query(const Surface& surface, mars::LonLat place) {
   if (a.aspect_deg < 0) a.aspect_deg += 360;
   a.level = point.tile.level;
   a.spacing_m = lod::post_spacing_m(point.tile.level, meta.tile.intervals(), meta.radius_m);
-  const auto tile = surface.tile(point.tile);
-  for (const int s : tile->data.source) {
-    if (s >= 0 && s < static_cast<int>(meta.sources.size())) {
-      a.source += (a.source.empty() ? "" : ";") + meta.sources[static_cast<std::size_t>(s)].name;
-    }
-  }
   a.geometric_error_m = surface.planet().tree().find(point.tile)->variants.back().terms.total_m;
-  a.resampling = meta.resampling;
-  for (const LevelSummary& level : meta.levels) {
-    if (level.level == point.tile.level) a.resampling_here = level.resampling;
-  }
+  a.planet_resampling = meta.resampling;
+  const auto sources = surface.sources(point.tile);
+  a.tile_sources = sources->of_tile;
+  if (a.nodata) return a;
+  a.source = sources->at(nearest_post(*surface.tile(point.tile), mars::chart_point(direction)));
+  if (!a.source) return a;
+  a.resampling = of_source(sources->resampling, *a.source);
+  if (a.resampling.posts > 0) return a;
+  a.resampling = level_resampling(meta, point.tile.level, *a.source);
+  a.resampling_of_level = a.resampling.posts > 0;
   return a;
 }
 

@@ -60,6 +60,8 @@ namespace {
 
 // Small, because few tiles lie beside coarser ones.
 constexpr double kExaggeratedShare = 0.1;
+// Small, because a tile's sources take a quarter of the bytes of its heights at most, and only query() asks.
+constexpr double kSourcesShare = 0.02;
 
 std::size_t share_of(std::size_t bytes, double share) {
   return static_cast<std::size_t>(share * static_cast<double>(bytes));
@@ -69,7 +71,8 @@ std::size_t share_of(std::size_t bytes, double share) {
 
 Surface::Surface(std::shared_ptr<const PlanetFile> planet, std::size_t budget_bytes)
     : planet_(std::move(planet)),
-      cache_(share_of(budget_bytes, 1 - kExaggeratedShare)),
+      cache_(share_of(budget_bytes, 1 - kExaggeratedShare - kSourcesShare)),
+      sources_(share_of(budget_bytes, kSourcesShare)),
       exaggerated_(share_of(budget_bytes, kExaggeratedShare)) {
   constexpr int kTableLevels = 11;
   for (int level = 0; level < kTableLevels; ++level) {
@@ -114,6 +117,36 @@ lod::TileKey finest_tile(const lod::TileTree& tree, const mars::ChartPoint& poin
 
 }  // namespace
 
+std::shared_ptr<const TileSources> Surface::sources(const lod::TileKey& key) const {
+  return sources_.get(key, [&] {
+    auto made = std::make_shared<const TileSources>(planet_->sources(key));
+    const std::size_t bytes = made->bytes();
+    return std::pair(std::move(made), bytes);
+  });
+}
+
+namespace {
+
+// Holds a place among grid lines: the interval, and the fraction of it that lies before the place.
+struct PlaceBetweenLines {
+  std::size_t interval = 0;
+  double fraction = 0;
+};
+
+PlaceBetweenLines place_between(const std::vector<double>& lines, double x) {
+  const auto n =
+      static_cast<std::size_t>(std::upper_bound(lines.begin() + 1, lines.end() - 1, x) - lines.begin() - 1);
+  return {n, std::clamp((x - lines[n]) / (lines[n + 1] - lines[n]), 0.0, 1.0)};
+}
+
+}  // namespace
+
+std::size_t nearest_post(const SurfaceTile& tile, const mars::ChartPoint& point) {
+  const auto nearest = [](const PlaceBetweenLines& at) { return at.interval + (at.fraction > 0.5 ? 1 : 0); };
+  return nearest(place_between(tile.lines.v, point.v)) * static_cast<std::size_t>(tile.data.posts.side()) +
+         nearest(place_between(tile.lines.u, point.u));
+}
+
 SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const {
   const mars::ChartPoint point = mars::chart_point(direction);
   SurfacePoint out;
@@ -123,18 +156,10 @@ SurfacePoint Surface::at(const glm::dvec3& direction, double exaggeration) const
                                      &out.normal, exaggeration);
   out.radius_m = planet_radius_m() + out.height_m;
   if (!tile->data.nodata.empty()) {
-    const lod::GridLines& lines = tile->lines;
-    const auto interval = [](const std::vector<double>& at, double x) {
-      return static_cast<std::size_t>(std::upper_bound(at.begin() + 1, at.end() - 1, x) - at.begin() - 1);
-    };
-    const auto fraction = [](const std::vector<double>& at, std::size_t k, double x) {
-      return std::clamp((x - at[k]) / (at[k + 1] - at[k]), 0.0, 1.0);
-    };
-    const std::size_t i = interval(lines.u, point.u);
-    const std::size_t j = interval(lines.v, point.v);
+    const auto [i, x] = place_between(tile->lines.u, point.u);
+    const auto [j, y] = place_between(tile->lines.v, point.v);
     const auto side = static_cast<std::size_t>(tile->data.posts.side());
-    out.nodata = lod::is_flagged(tile->data.nodata, j * side + i, side, fraction(lines.u, i, point.u),
-                                 fraction(lines.v, j, point.v));
+    out.nodata = lod::is_flagged(tile->data.nodata, j * side + i, side, x, y);
   }
   return out;
 }

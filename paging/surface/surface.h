@@ -79,7 +79,9 @@ class Surface {
   // Returns a finest tile, or the own posts of a coarser one. With an exaggeration: its posts as drawn (see
   // PlanetFile::heights). Throws PlanetError.
   std::shared_ptr<const SurfaceTile> tile(const lod::TileKey& key, double exaggeration = 1.0) const;
-  std::size_t bytes_resident() const { return cache_.bytes() + exaggerated_.bytes(); }
+  // Returns the sources of a finest tile. Throws PlanetError.
+  std::shared_ptr<const TileSources> sources(const lod::TileKey& key) const;
+  std::size_t bytes_resident() const { return cache_.bytes() + exaggerated_.bytes() + sources_.bytes(); }
 
   // Returns the chart coordinate of the line between a tile's halves; `index` is i for u, j for v.
   double middle_line(int level, std::int32_t index) const;
@@ -88,6 +90,8 @@ class Surface {
   std::shared_ptr<const PlanetFile> planet_;
   std::vector<std::vector<double>> middles_;  // chart lines through the middles of tiles, by level and index
   mutable vpe::base::LruCache<lod::TileKey, SurfaceTile, lod::TileKeyHash> cache_;
+
+  mutable vpe::base::LruCache<lod::TileKey, TileSources, lod::TileKeyHash> sources_;
 
   // Exaggerated tiles are kept only beside coarser ones: all others are the same at every exaggeration.
   struct Exaggerated {
@@ -102,6 +106,10 @@ class Surface {
   };
   mutable vpe::base::LruCache<Exaggerated, SurfaceTile, ExaggeratedHash> exaggerated_;
 };
+
+// Returns the index of the post of a tile that is nearest to a place in it, by its chart coordinates. It is one
+// of the posts of the facet there. Pure.
+std::size_t nearest_post(const SurfaceTile& tile, const mars::ChartPoint& point);
 
 // Prepares a tile: computes grid lines, height range and block maxima. Pure.
 SurfaceTile prepare_tile(TileHeights heights);

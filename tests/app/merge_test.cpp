@@ -1,6 +1,7 @@
 // vpe build --part and vpe merge.
 #include <chrono>
 #include <csignal>
+#include <fstream>
 
 #include "tests/app/support/app_fixture.h"
 #include "vpe/app/planet/planet_build.h"
@@ -48,6 +49,75 @@ TEST_F(Merge, PrintsASummary) {
   vpe({"build", "x.tif", "-o", "x.vpe", "--base-spacing", "60000", "--part", "1/2"});
   const Result merged = vpe({"merge", "x.1-of-2.vpe", "x.2-of-2.vpe", "-o", "x.vpe"});
   EXPECT_TRUE(says(merged.out, {"x.vpe: ", "resampling error", "nodata posts: 0", "maximum, m"}));
+}
+
+// As on clusters that copy the sources to each node.
+TEST_F(Merge, PartsOfCopiesOfTheSourcesMerge) {
+  Dem fine;
+  fine.west_deg = 20;
+  fine.north_deg = 30;
+  fine.width = fine.height = 60;
+  fine.cell_deg = 0.25;
+  fine.height_m = [](int column, int row) { return 300.0 + 5 * column + row; };
+  for (const char* folder : {"a", "b"}) {
+    std::filesystem::create_directory(dir_ / folder);
+    write_dem(dir_ / folder / "x.tif");
+    write_dem(dir_ / folder / "fine.tif", fine);
+    std::filesystem::last_write_time(dir_ / folder / "x.tif", std::filesystem::file_time_type::clock::now() -
+                                                                  std::chrono::hours(*folder == 'a' ? 1 : 100));
+  }
+  const auto build = [&](const std::string& folder, const Words& more) {
+    Words words{"build",   folder + "/x.tif", folder + "/fine.tif",
+                "--align", "edges",           "--base-spacing",
+                "60000",   "--datum",         "areoid",
+                "-o",      "x.vpe",           "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return vpe(words);
+  };
+  ASSERT_EQ(build("a", {"--part", "1/2"}).exit_code, 0);
+  ASSERT_EQ(build("b", {"--part", "2/2"}).exit_code, 0);
+  const Result merged = vpe({"merge", "x.1-of-2.vpe", "x.2-of-2.vpe", "-o", "merged.vpe", "--json"});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  const auto whole = parse_json(build("b", {}).out);
+  EXPECT_EQ(parse_json(merged.out)["identity"], whole["identity"]);
+  // Other heights in a file of the same size.
+  fine.height_m = [](int column, int row) { return 301.0 + 5 * column + row; };
+  write_dem(dir_ / "b/fine.tif", fine);
+  ASSERT_EQ(build("b", {"--part", "2/2", "--force"}).exit_code, 0);
+  expect_failure({"merge", "x.1-of-2.vpe", "x.2-of-2.vpe", "-o", "other.vpe"}, 1,
+                 {"x.2-of-2.vpe: made of other sources", "x.1-of-2.vpe", "b/fine.tif: content is"});
+  // Other options are named too.
+  Words words = build_words("y.vpe", {"--part", "1/2"});
+  ASSERT_EQ(vpe(words).exit_code, 0);
+  words = build_words("y.vpe", {"--part", "2/2", "--spacing", "70000"});
+  ASSERT_EQ(vpe(words).exit_code, 0);
+  expect_failure({"merge", "y.1-of-2.vpe", "y.2-of-2.vpe", "-o", "z.vpe"}, 1,
+                 {"finest spacing is 70000, not 0"});
+}
+
+TEST_F(Merge, AFinishedPartIsKept) {
+  const Words words = build_words("x.vpe", {"--part", "1/2"});
+  const auto first = parse_json(vpe(words).out);
+  const auto part = dir_ / "x.1-of-2.vpe";
+  const auto written = std::filesystem::last_write_time(part);
+  const Result second = vpe(words);
+  EXPECT_EQ(second.exit_code, 0);
+  EXPECT_TRUE(says(second.err, {"x.1-of-2.vpe is finished", "kept", "--force"})) << second.err;
+  EXPECT_EQ(std::filesystem::last_write_time(part), written);
+  auto json = parse_json(second.out);
+  EXPECT_EQ(json["tiles_kept"], json["tiles"].get<int>() + json["image_tiles"].get<int>());
+  json["tiles_kept"] = first["tiles_kept"];
+  EXPECT_EQ(json, first);
+  // A damaged part is built again, as is any part with --force.
+  {
+    std::fstream file(part, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(part) / 2));
+    file.write("damage damage damage", 20);
+  }
+  const Result repaired = vpe(words);
+  EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
+  EXPECT_EQ(parse_json(repaired.out), first);
+  EXPECT_EQ(parse_json(vpe(build_words("x.vpe", {"--part", "1/2", "--force"})).out)["tiles_kept"], 0);
 }
 
 TEST_F(Merge, AnEstimateBuildsNothing) {

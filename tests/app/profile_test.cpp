@@ -39,6 +39,22 @@ TEST_F(Profile, FollowsTheGreatCircle) {
   EXPECT_EQ(points.back()["lon_deg"], 100);
 }
 
+TEST_F(Profile, TheResamplingErrorIsThatOfItsPoints) {
+  const json answer =
+      parse_json(vpe({"profile", planet().string(), "--json", "10,-5", "12,-5", "--step", "20000"}).out);
+  double largest_m = 0;
+  Words words{"query", planet().string(), "--json"};
+  for (const json& p : answer["points"])
+    words.push_back(std::to_string(p["lon_deg"].get<double>()) + "," +
+                    std::to_string(p["lat_deg"].get<double>()));
+  for (const json& at : parse_json(vpe(words).out))
+    largest_m =
+        std::max(largest_m, at["resampling_max_m"].is_null() ? 0.0 : at["resampling_max_m"].get<double>());
+  EXPECT_GT(largest_m, 0);
+  EXPECT_EQ(answer["resampling_max_m"], largest_m);
+  EXPECT_GT(answer["planet_resampling_max_m"].get<double>(), largest_m);
+}
+
 TEST_F(Profile, HeightsAreThoseOfQuery) {
   const json points = ask({"10,-5", "40,20", "355,3", "--step", "200000"});
   int given = 0;

@@ -128,7 +128,7 @@ TEST_F(Query, FurtherColumnsAreKept) {
   EXPECT_EQ(answers[1]["input"], json({{"name", "Jezero"}, {"level", ""}}));
   const std::vector<std::string> lines = lines_of(vpe({"query", planet().string()}, table).out);
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_TRUE(lines[0].ends_with(",datum,name,input_level")) << lines[0];
+  EXPECT_TRUE(lines[0].ends_with(",resampling_rms_m,name,input_level")) << lines[0];
   EXPECT_TRUE(lines[1].ends_with(",\"Gale, west\",7")) << lines[1];
   EXPECT_TRUE(lines[2].ends_with(",Jezero,")) << lines[2];
 }
@@ -169,18 +169,23 @@ TEST_F(Query, CsvAndJsonSayTheSame) {
   const std::vector<std::string> lines = lines_of(csv.out);
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0],
-            "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum");
+            "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum,"
+            "source_spacing_m,resampling_max_m,resampling_rms_m");
   for (std::size_t n = 0; n < 2; ++n) {
     std::istringstream row(lines[n + 1]);
     std::vector<std::string> cells;
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), 10U);
+    ASSERT_EQ(cells.size(), 13U);
     EXPECT_EQ(std::stod(cells[0]), answers[n]["lon_deg"]);
     EXPECT_EQ(std::stod(cells[1]), answers[n]["lat_deg"]);
     EXPECT_NEAR(std::stod(cells[2]), answers[n]["elevation_m"].get<double>(), 0.0006);
     EXPECT_NEAR(std::stod(cells[3]), answers[n]["slope_deg"].get<double>(), 0.0006);
     EXPECT_NEAR(std::stod(cells[4]), answers[n]["aspect_deg"].get<double>(), 0.006);
+    EXPECT_EQ(cells[7], answers[n]["source"]);
     EXPECT_EQ(cells[9], answers[n]["datum"]);
+    EXPECT_NEAR(std::stod(cells[10]), answers[n]["source_spacing_m"].get<double>(), 0.006);
+    EXPECT_NEAR(std::stod(cells[11]), answers[n]["resampling_max_m"].get<double>(), 0.0006);
+    EXPECT_NEAR(std::stod(cells[12]), answers[n]["resampling_rms_m"].get<double>(), 0.0006);
   }
 }
 
@@ -191,10 +196,13 @@ TEST_F(Query, NoAnswerWhereNoSourceHasData) {
   write_dem(dir_ / "half.tif", dem);
   ASSERT_EQ(vpe({"build", "half.tif", "-o", "half.vpe", "--base-spacing", "100000"}).exit_code, 0);
   const json answers = parse_json(vpe({"query", "half.vpe", "--json", "-100,10", "100,10"}).out);
-  for (const char* key : {"elevation_m", "slope_deg", "aspect_deg"}) {
+  for (const char* key : {"elevation_m", "slope_deg", "aspect_deg", "source_spacing_m", "tile_error_m",
+                          "resampling_max_m", "resampling_rms_m"}) {
     EXPECT_TRUE(answers[0][key].is_null()) << key;
     EXPECT_TRUE(answers[1][key].is_number()) << key;
   }
+  EXPECT_TRUE(answers[0]["source"].is_null());
+  EXPECT_EQ(answers[1]["source"], "half.tif");
   // The reference surface lies up to 128 m below the sphere between its few posts.
   EXPECT_NEAR(answers[1]["elevation_m"].get<double>(), 636, 64.1);
   const std::vector<std::string> lines = lines_of(vpe({"query", "half.vpe", "-100,10", "100,10"}).out);

@@ -64,15 +64,16 @@ TEST_F(ReadOuts, BothLongitudesAndTheirTexts) {
 
 TEST_F(ReadOuts, NamesTheSourceAndItsError) {
   const ReadOut r = read_out_at(surface(), mars::lon_lat(test_support::kPatch));
-  EXPECT_EQ(r.at.source, "fake");
-  EXPECT_EQ(text_of(r, "Source"), "fake");
+  EXPECT_EQ(r.source, "fake");
+  EXPECT_EQ(text_of(r, "Source"), "fake, posts 1000 m");
   EXPECT_EQ(r.datum, "sphere:3396190");
   EXPECT_NE(text_of(r, "Elevation").find("m (sphere:3396190)"), std::string::npos);
   EXPECT_LE(r.at.spacing_m, 2000);
   EXPECT_GT(r.at.level, read_out_at(surface(), {90, 0}).at.level);
   EXPECT_EQ(r.at.geometric_error_m, 0);
   EXPECT_GT(r.at.resampling.max_m, 0);
-  EXPECT_NE(text_of(r, "Resampling error"), "");
+  EXPECT_EQ(text_of(r, "Resampling error"), measured_length_text(r.at.resampling.rms_m) + " rms, " +
+                                                measured_length_text(r.at.resampling.max_m) + " most");
 }
 
 TEST_F(ReadOuts, TheSkyHasNoneAndUndergroundIsTheCamerasPlace) {

@@ -49,8 +49,9 @@ class Input {
   std::span<const std::uint8_t> bytes_;
 };
 
-constexpr std::array kTables{"heights", "mesh", "image", "missing", "node", "variant", "posts_error", "meta"};
-constexpr std::array kPayloads{"heights", "mesh", "image", "missing"};
+constexpr std::array kTables{"heights",    "mesh", "image",   "missing",     "origin",
+                             "resampling", "node", "variant", "posts_error", "meta"};
+constexpr std::array kPayloads{"heights", "mesh", "image", "missing", "origin"};
 constexpr std::array kNodeColumns{"min_m", "max_m", "slope", "inner", "steps", "sources"};
 constexpr std::array kTermColumns{"relief_m", "sag_m", "total_m"};
 constexpr std::array kMetaKeys{"format",

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "paging/planet/codec.h"
+#include "paging/planet/planet_database.h"
 #include "paging/planet/planet_meta.h"
 #include "paging/planet/sqlite.h"
+#include "paging/planet/tile_sources.h"
 
 namespace test_support {
 
@@ -74,15 +76,54 @@ inline void forge_index_checksums(paging::Database& db) {
   }
 }
 
+// Computes the checksums of the table `resampling` from its rows.
+inline void forge_resampling_checksums(paging::Database& db) {
+  std::vector<paging::TileResampling> all;
+  {
+    paging::Statement rows(db, "SELECT key, source, posts, max_m, rms_m FROM resampling");
+    while (rows.step()) {
+      all.push_back({rows.integer(0),
+                     {static_cast<int>(rows.integer(1)), {rows.real(3), rows.real(4), rows.integer(2)}}});
+    }
+  }
+  paging::Statement update(db, "UPDATE resampling SET checksum = ? WHERE key = ? AND source = ?");
+  for (const paging::TileResampling& row : all)
+    update.bind(1, paging::checksum(row)).bind(2, row.key).bind(3, std::int64_t{row.of.source}).step();
+}
+
 // Computes every checksum and the identity from the content as it is now.
 inline void forge_checksums(const std::string& path) {
   paging::Database db(path, paging::Database::Mode::kCreate);
   db.execute("BEGIN");
-  for (const char* table : {"heights", "missing", "mesh", "image"}) forge_payload_checksums(db, table);
+  for (const char* table : {"heights", "missing", "origin", "mesh", "image"})
+    forge_payload_checksums(db, table);
   forge_index_checksums(db);
+  forge_resampling_checksums(db);
   db.execute("UPDATE meta SET value = '" + paging::content_identity(db) + "' WHERE key = 'identity'");
   forge_meta_checksum(db);
   db.execute("COMMIT");
+}
+
+// Makes a file of format 1.2, 1.1 or 1.0 of one of a newer minor format: removes what it does not have.
+inline void make_older(const std::string& path, const std::string& format) {
+  paging::Database db(path, paging::Database::Mode::kCreate);
+  db.execute("DROP TABLE IF EXISTS origin; DROP TABLE IF EXISTS resampling");
+  // The figures by source in `levels` stay in an older file as keys that nobody reads; they are removed here.
+  {
+    const std::map<std::string, std::string> rows = paging::read_meta_rows(db);
+    if (rows.contains("levels")) {
+      std::vector<paging::LevelSummary> levels = paging::levels_from_text(rows.at("levels"));
+      for (paging::LevelSummary& level : levels) level.resampling_by_source.clear();
+      const std::string text = paging::to_text(levels);
+      paging::Statement update(db, "UPDATE meta SET value = ? WHERE key = 'levels'");
+      update.bind(1, std::string_view(text)).step();
+    }
+  }
+  if (format < "1.2") db.execute("DROP TABLE IF EXISTS posts_error");
+  if (format < "1.1") db.execute("DELETE FROM meta WHERE key = 'levels'");
+  db.execute("UPDATE meta SET value = '" + format + "' WHERE key = 'format'");
+  db.execute("UPDATE meta SET value = '" + paging::content_identity(db) + "' WHERE key = 'identity'");
+  forge_meta_checksum(db);
 }
 
 // Runs SQL that changes the content, then computes every checksum again.

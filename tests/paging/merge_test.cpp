@@ -81,17 +81,21 @@ class Merge : public testing::Test {
   static std::vector<std::string> rows_of(const std::string& path) {
     std::vector<std::string> rows;
     paging::Database db(path, paging::Database::Mode::kReadOnly);
-    for (const char* sql :
-         {"SELECT key || '=' || value FROM meta ORDER BY key",
-          "SELECT key || ' ' || checksum || ' ' || steps || ' ' || sources || ' ' || inner FROM node ORDER BY "
-          "key",
-          "SELECT key || ' ' || variant || ' ' || triangles FROM variant ORDER BY key, variant",
-          "SELECT key || ' ' || checksum FROM posts_error ORDER BY key",
-          "SELECT key || ' ' || hex(data) FROM heights ORDER BY key",
-          "SELECT key || ' ' || hex(data) FROM missing ORDER BY key",
-          "SELECT key || ' ' || variant || ' ' || hex(data) FROM mesh ORDER BY key, variant",
-          "SELECT key || ' ' || hex(data) FROM image ORDER BY key",
-          "SELECT name FROM sqlite_schema ORDER BY name"}) {
+    for (
+        const char* sql :
+        {"SELECT key || '=' || value FROM meta ORDER BY key",
+         "SELECT key || ' ' || checksum || ' ' || steps || ' ' || sources || ' ' || inner FROM node ORDER BY "
+         "key",
+         "SELECT key || ' ' || variant || ' ' || triangles FROM variant ORDER BY key, variant",
+         "SELECT key || ' ' || checksum FROM posts_error ORDER BY key",
+         "SELECT key || ' ' || hex(data) FROM heights ORDER BY key",
+         "SELECT key || ' ' || hex(data) FROM missing ORDER BY key",
+         "SELECT key || ' ' || hex(data) FROM origin ORDER BY key",
+         "SELECT key || ' ' || source || ' ' || posts || ' ' || max_m || ' ' || checksum FROM resampling ORDER BY "
+         "key, source",
+         "SELECT key || ' ' || variant || ' ' || hex(data) FROM mesh ORDER BY key, variant",
+         "SELECT key || ' ' || hex(data) FROM image ORDER BY key",
+         "SELECT name FROM sqlite_schema ORDER BY name"}) {
       paging::Statement all(db, sql);
       while (all.step()) rows.push_back(all.text(0));
     }

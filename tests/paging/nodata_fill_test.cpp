@@ -8,6 +8,7 @@
 #include <map>
 
 #include "lod/tree/facet_mask.h"
+#include "paging/build/crossing_map.h"
 #include "paging/planet/verify.h"
 #include "tests/paging/planet_fixture.h"
 
@@ -109,6 +110,141 @@ TEST(NodataFill, WithoutAnyDataNearTheMeanIsLeft) {
   const paging::Surface surface(planet, 1 << 24);
   EXPECT_NEAR(surface.at({0, 0, 1}).height_m, planet->meta().fill_m, 0.1);
   EXPECT_TRUE(surface.at({0, 0, 1}).nodata);
+}
+
+// An array and a hash table give the same answers.
+TEST(CrossingMap, KeepsWhatIsAddedWhereverItLies) {
+  using paging::Crossing;
+  Random random(12);
+  for (const int reach : {40, 100000000}) {
+    std::vector<Crossing> crossings;
+    for (int n = 0; n < 500; ++n) crossings.push_back({random.integer(0, reach), random.integer(0, reach)});
+    paging::CrossingMap<int> map(crossings, 1);
+    std::map<std::pair<std::int64_t, std::int64_t>, int> expected;
+    for (int n = 0; n < 500; ++n) {
+      const Crossing& c = crossings[static_cast<std::size_t>(n)];
+      const Crossing beside{c.i + 1, c.j - 1};
+      for (const Crossing& at : {c, beside}) {
+        int* value = map.add(at);
+        EXPECT_EQ(value != nullptr, expected.try_emplace({at.i, at.j}, n).second);
+        if (value != nullptr) *value = n;
+      }
+      EXPECT_EQ(map.find({c.i - 1, c.j}) != nullptr, expected.contains({c.i - 1, c.j}));
+    }
+    for (const auto& [at, value] : expected) EXPECT_EQ(*map.find({at.first, at.second}), value);
+  }
+}
+
+// The fill as paging/build/nodata_fill.h describes it, post by post and by recursion.
+class SlowFill {
+ public:
+  SlowFill(const paging::SampleInputs& sampling, mars::Face face) : sampling_(sampling), face_(face) {}
+
+  double height_m(int grid_level, std::int64_t i, std::int64_t j) { return find(grid_level, i, j).first; }
+
+ private:
+  using Place = std::array<std::int64_t, 3>;
+
+  glm::dvec3 direction(int g, std::int64_t i, std::int64_t j) const {
+    return mars::chart_direction(face_, mars::face_line(i, g), mars::face_line(j, g));
+  }
+  double sample(const glm::dvec3& d, int g) const {
+    double h = kNaN;
+    sampling_.elevation.sample({&d, 1}, spacing_m(g), {&h, 1});
+    return h;
+  }
+  double spacing_m(int g) const {
+    const lod::TileShape& tile = sampling_.meta.tile;
+    return std::ldexp(lod::post_spacing_m(0, tile.intervals(), sampling_.meta.radius_m), tile.k - g);
+  }
+
+  double mean_around(int g, std::int64_t i, std::int64_t j) const {
+    const std::int64_t last = std::int64_t{1} << g;
+    double sum = 0;
+    double weights = 0;
+    const auto add = [&](const glm::dvec3& d, double weight) {
+      const double h = sample(d, g);
+      if (std::isnan(h)) return;
+      sum += weight * h;
+      weights += weight;
+    };
+    if (i == 0 || j == 0 || i == last || j == last) {
+      const mars::LonLat place = mars::lon_lat(direction(g, i, j));
+      for (int n = 0; n < 8; ++n)
+        add(mars::direction(mars::destination(place, 45.0 * n, spacing_m(g) / sampling_.meta.radius_m)), 1.0);
+    } else {
+      for (int n = 0; n < 9; ++n)
+        if (n != 4) add(direction(g, i + n % 3 - 1, j + n / 3 - 1), n % 2 == 1 ? 1.0 : 0.5);
+    }
+    return weights > 0 ? sum / weights : kNaN;
+  }
+
+  // Returns the height, and whether there are data near.
+  std::pair<double, bool> find(int g, std::int64_t i, std::int64_t j) {
+    const auto known = found_.find(Place{g, i, j});
+    if (known != found_.end()) return known->second;
+    double h = sample(direction(g, i, j), g);
+    if (std::isnan(h)) h = mean_around(g, i, j);
+    const bool is_near_data = !std::isnan(h);
+    if (!is_near_data && g == 0) h = sampling_.meta.fill_m;
+    if (!is_near_data && g > 0) {
+      double sum = 0;
+      double weights = 0;
+      for (std::int64_t b = j >> 1; b <= (j + 1) >> 1; ++b) {
+        for (std::int64_t a = i >> 1; a <= (i + 1) >> 1; ++a) {
+          const auto [height_m, near] = find(g - 1, a, b);
+          sum += (near ? 1 : 0.25) * height_m;
+          weights += near ? 1 : 0.25;
+        }
+      }
+      h = sum / weights;
+    }
+    return found_[Place{g, i, j}] = {h, is_near_data};
+  }
+
+  const paging::SampleInputs& sampling_;
+  mars::Face face_;
+  std::map<Place, std::pair<double, bool>> found_;
+};
+
+// In tiles of posts side by side, and in coarse ones whose posts are those of far finer tiles.
+TEST(NodataFill, IsThatOfTheRecursion) {
+  paging::PlanetMeta meta;
+  meta.tile.k = 4;
+  meta.fill_m = 123;
+  const FakeElevation source(hills_with_holes);
+  const paging::BuildPlan plan(meta.tile, meta.radius_m,
+                               [](const lod::TileKey&, const mars::Cap&) { return 1e6; });
+  const paging::SampleInputs sampling{meta, plan, source};
+  const int side = meta.tile.posts();
+  Random random(8);
+  int filled = 0;
+  for (const lod::TileKey key :
+       {lod::TileKey{mars::Face::kPlusX, 0, 0, 0}, lod::TileKey{mars::Face::kPlusX, 1, 1, 1},
+        lod::TileKey{mars::Face::kPlusX, 3, 4, 5}, lod::TileKey{mars::Face::kPlusX, 3, 7, 7},
+        lod::TileKey{mars::Face::kPlusY, 2, 0, 3}, lod::TileKey{mars::Face::kPlusX, 5, 18, 19}}) {
+    for (const int most_finer : {0, 1, 12}) {
+      SCOPED_TRACE(lod::to_string(key) + " finer by " + std::to_string(most_finer));
+      SlowFill slow(sampling, key.face);
+      std::vector<double> heights;
+      std::vector<double> expected;
+      std::vector<int> levels;
+      for (int n = 0; n < side * side; ++n) {
+        const int level = key.level + random.integer(0, most_finer);
+        const int g = level + meta.tile.k;
+        const std::int64_t i = std::int64_t{key.i * (side - 1) + n % side} << (level - key.level);
+        const std::int64_t j = std::int64_t{key.j * (side - 1) + n / side} << (level - key.level);
+        const glm::dvec3 d = mars::chart_direction(key.face, mars::face_line(i, g), mars::face_line(j, g));
+        levels.push_back(level);
+        heights.push_back(hills_with_holes(d));
+        expected.push_back(std::isnan(heights.back()) ? slow.height_m(g, i, j) : heights.back());
+        filled += std::isnan(heights.back()) ? 1 : 0;
+      }
+      paging::fill_nodata(sampling, key, levels, heights);
+      EXPECT_EQ(heights, expected);
+    }
+  }
+  EXPECT_GT(filled, 500);
 }
 
 TEST(SurfaceNodata, IsThatOfTheFacetsPosts) {

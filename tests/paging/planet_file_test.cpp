@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "paging/planet/sqlite.h"
+#include "paging/planet/verify.h"
 #include "tests/paging/forged_planet.h"
 #include "tests/paging/planet_fixture.h"
 
@@ -100,15 +101,8 @@ TEST(PlanetFile, RefusesNewerAndIncompleteFiles) {
             std::string::npos);
 }
 
-// Changes the format of a file, and makes meta's checksum match.
-void set_format(const std::filesystem::path& path, const std::string& format) {
-  change(path, "UPDATE meta SET value = '" + format + "' WHERE key = 'format'");
-  paging::Database db(path.string(), paging::Database::Mode::kCreate);
-  test_support::forge_meta_checksum(db);
-}
-
 // Files of format 1.0 have no summary by level. Files up to 1.1 do not state how far the posts of inner tiles
-// are from the reference surface. Both can be opened.
+// are from the reference surface, those up to 1.2 not which source each post has. All can be opened and verified.
 TEST(PlanetFile, OlderFilesOpen) {
   TempDir dir;
   const auto path = dir / "p.vpe";
@@ -126,16 +120,20 @@ TEST(PlanetFile, OlderFilesOpen) {
     EXPECT_GT(inner(*planet), 0);
     EXPECT_EQ(stated(*planet), inner(*planet));
   }
-  change(path, "DROP TABLE posts_error");
-  set_format(path, "1.1");
+  test_support::make_older(path.string(), "1.2");
+  {
+    const auto planet = PlanetFile::open(path.string());
+    EXPECT_EQ(stated(*planet), inner(*planet));
+    EXPECT_TRUE(paging::verify(*planet, {.threads = 2}).problems.empty());
+  }
+  test_support::make_older(path.string(), "1.1");
   {
     const auto planet = PlanetFile::open(path.string());
     EXPECT_EQ(stated(*planet), 0);
     EXPECT_FALSE(planet->meta().levels.empty());
     read_all(*planet);
   }
-  change(path, "DELETE FROM meta WHERE key = 'levels'");
-  set_format(path, "1.0");
+  test_support::make_older(path.string(), "1.0");
   const auto planet = PlanetFile::open(path.string());
   EXPECT_TRUE(planet->meta().levels.empty());
   read_all(*planet);

@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 
+#include "paging/surface/query.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/json_output.h"
 #include "vpe/app/cli/program.h"
@@ -51,11 +53,19 @@ void run_profile(const ProfileArguments& arguments, const Common& common) {
   }
   if (common.json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const paging::ProfilePoint& p : profile.points) list.push_back(to_json(p));
+    double resampling_max_m = 0;
+    std::int64_t compared = 0;
+    for (const paging::ProfilePoint& p : profile.points) {
+      list.push_back(to_json(p));
+      const paging::ResamplingError here = paging::query(surface, p.place).resampling;
+      resampling_max_m = std::max(resampling_max_m, here.max_m);
+      compared += here.posts;
+    }
     print_json({{"datum", to_string(meta.datum)},
                 {"radius_m", meta.radius_m},
                 {"illustration", meta.illustration},
-                {"resampling_max_m", meta.resampling.max_m},
+                {"resampling_max_m", compared > 0 ? nlohmann::json(resampling_max_m) : nlohmann::json()},
+                {"planet_resampling_max_m", meta.resampling.max_m},
                 {"points", std::move(list)}});
     return;
   }

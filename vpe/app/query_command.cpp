@@ -22,9 +22,17 @@ namespace vpe::app {
 
 namespace {
 
+const mars::SourceInfo* source_of(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
+  return a.source ? &meta.sources.at(static_cast<std::size_t>(*a.source)) : nullptr;
+}
+
 nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
   using nlohmann::json;
   const auto value = [&](double x) { return a.nodata ? json() : json(x); };
+  const mars::SourceInfo* source = source_of(a, meta);
+  const bool has_error = a.resampling.posts > 0;
+  json tile_sources = json::array();
+  for (const int s : a.tile_sources) tile_sources.push_back(meta.sources.at(static_cast<std::size_t>(s)).name);
   return {{"lon_deg", a.place.lon_deg},
           {"lat_deg", a.place.lat_deg},
           {"elevation_m", value(a.elevation_m)},
@@ -36,23 +44,35 @@ nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& m
           {"aspect_deg", value(a.aspect_deg)},
           {"level", a.level},
           {"post_spacing_m", a.spacing_m},
-          {"source", a.source},
-          {"tile_error_m", a.geometric_error_m},
-          {"resampling_max_m", meta.resampling.max_m},
+          {"source", source != nullptr ? json(source->name) : json()},
+          {"source_spacing_m", source != nullptr ? json(source->resolution_m) : json()},
+          {"tile_sources", std::move(tile_sources)},
+          {"tile_error_m", value(a.geometric_error_m)},
+          {"resampling_max_m", has_error ? json(a.resampling.max_m) : json()},
+          {"resampling_rms_m", has_error ? json(a.resampling.rms_m) : json()},
+          {"resampling_posts", a.resampling.posts},
+          {"resampling_scope", has_error ? json(a.resampling_of_level ? "level" : "tile") : json()},
+          {"planet_resampling_max_m", meta.resampling.max_m},
           {"illustration", meta.illustration}};
 }
 
-void print_csv(const paging::PlaceAnswer& a, const std::string& datum) {
-  const auto number = [&](double x, int digits) {
-    if (a.nodata) return std::string();
-    char text[48];
-    std::snprintf(text, sizeof text, "%.*f", digits, x);
-    return std::string(text);
-  };
-  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%.3f,%s", base::format_number(a.place.lon_deg).c_str(),
+std::string fixed(double x, int digits) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f", digits, x);
+  return text;
+}
+
+void print_csv(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
+  const auto number = [&](double x, int digits) { return a.nodata ? "" : fixed(x, digits); };
+  const mars::SourceInfo* source = source_of(a, meta);
+  const auto error = [&](double x) { return a.resampling.posts > 0 ? fixed(x, 3) : ""; };
+  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%s,%s,%s,%s,%s", base::format_number(a.place.lon_deg).c_str(),
               base::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
               number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
-              csv_field(a.source).c_str(), a.geometric_error_m, datum.c_str());
+              source != nullptr ? csv_field(source->name).c_str() : "", number(a.geometric_error_m, 3).c_str(),
+              csv_field(to_string(meta.datum)).c_str(),
+              source != nullptr ? fixed(source->resolution_m, 2).c_str() : "",
+              error(a.resampling.max_m).c_str(), error(a.resampling.rms_m).c_str());
 }
 
 struct QueryArguments {
@@ -62,7 +82,8 @@ struct QueryArguments {
 };
 
 constexpr const char* kColumns =
-    "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum";
+    "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum,"
+    "source_spacing_m,resampling_max_m,resampling_rms_m";
 
 // Returns the names of a table's further columns as the answer has them: a name that the answer uses itself gets
 // the prefix input_.
@@ -89,9 +110,8 @@ void print_csv_answers(const std::vector<paging::PlaceAnswer>& answers, const Pl
   std::fputs(kColumns, stdout);
   for (const std::string& name : answer_names(table.columns)) std::printf(",%s", csv_field(name).c_str());
   std::puts("");
-  const std::string datum = csv_field(to_string(meta.datum));
   for (std::size_t n = 0; n < answers.size(); ++n) {
-    print_csv(answers[n], datum);
+    print_csv(answers[n], meta);
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       std::printf(",%s", csv_field(table.cells[n][c]).c_str());
     std::puts("");

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -86,9 +87,13 @@ void build(BuildArguments& arguments, const Common& common) {
   }
   if (!arguments.force && std::filesystem::exists(options.output))
     require_same_content(options.output, paging::planned_content(options, plan, *combined.source, image.get()));
+  options.keep_shard = !arguments.force;
   print_estimate(estimate, common);
   const paging::BuildSummary summary =
       run_build(options, *combined.source, image.get(), common, std::move(plan));
+  if (summary.is_kept_whole && !common.quiet)
+    std::fprintf(stderr, "%s is finished and of the same sources and options: kept (--force builds it again)\n",
+                 options.output.c_str());
   print_build(summary, options.output, common, &combined);
 }
 
@@ -125,7 +130,8 @@ void add_build(CLI::App& program, Common& common) {
       "--part", arguments->part,
       "k/n: build only the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto/n: take k from the "
       "variables of SLURM or MPI; auto: k and n");
-  command->add_flag("--force", arguments->force, "Replace a finished planet file of other sources or options");
+  command->add_flag("--force", arguments->force,
+                    "Replace a finished planet file of other sources or options; build a finished part again");
   command->add_flag("--estimate", arguments->estimate, "Only estimate the build: tiles, bytes, time");
   add_examples(
       *command,

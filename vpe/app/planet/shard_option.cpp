@@ -73,7 +73,7 @@ Shard shard_from(const Environment& environment) {
 // Returns part k of `of`, with k from the environment.
 Shard shard_of_count(std::int64_t of, const Environment& environment) {
   const std::string option = "--part auto/" + std::to_string(of);
-  for (const Source& source : kSources) {
+  for (const RankSource& source : kSources) {
     const auto rank = number_in(environment, source.rank);
     if (!rank) continue;
     const std::string said = option + ": " + source.rank + "=" + std::to_string(*rank);

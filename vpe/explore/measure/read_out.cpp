@@ -22,6 +22,15 @@ ReadOut read_out_at(const paging::Surface& surface, mars::LonLat place, double e
   const paging::PlanetMeta& meta = surface.planet().meta();
   out.datum = paging::describe_datum(meta);
   out.illustration = meta.illustration;
+  const auto info = [&](int source) -> const mars::SourceInfo& {
+    return meta.sources.at(static_cast<std::size_t>(source));
+  };
+  if (out.at.source) {
+    out.source = info(*out.at.source).name;
+    out.source_spacing_m = info(*out.at.source).resolution_m;
+  } else if (!out.at.nodata) {
+    for (const int s : out.at.tile_sources) out.source += (out.source.empty() ? "" : " or ") + info(s).name;
+  }
   const glm::dvec3 direction = mars::direction(place);
   out.point_m = surface.at(direction, exaggeration).radius_m * direction;
   return out;
@@ -64,11 +73,18 @@ std::vector<ReadOutLine> read_out_lines(const ReadOut& r) {
   }
   if (r.range_m) add("Range", measured_length_text(*r.range_m));
   add("Level", std::to_string(a.level) + ", posts " + measured_length_text(a.spacing_m));
-  if (!a.source.empty()) add("Source", a.source + (r.illustration ? ", not data" : ""));
-  const paging::ResamplingError& error = a.resampling_here.posts > 0 ? a.resampling_here : a.resampling;
-  if (error.posts > 0) {
-    add("Resampling error",
-        measured_length_text(error.rms_m) + " rms, " + measured_length_text(error.max_m) + " most");
+  if (!r.source.empty()) {
+    add("Source", r.source +
+                      (r.source_spacing_m > 0 ? ", posts " + measured_length_text(r.source_spacing_m) : "") +
+                      (r.illustration ? ", not data" : ""));
+  }
+  const auto error_text = [](const paging::ResamplingError& error) {
+    return measured_length_text(error.rms_m) + " rms, " + measured_length_text(error.max_m) + " most";
+  };
+  if (a.resampling.posts > 0) {
+    add("Resampling error", error_text(a.resampling));
+  } else if (!a.nodata && a.planet_resampling.posts > 0) {
+    add("Resampling error", error_text(a.planet_resampling) + " on the planet");
   }
   return lines;
 }

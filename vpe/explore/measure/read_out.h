@@ -11,9 +11,11 @@
 namespace vpe::explore {
 
 struct ReadOut {
-  paging::PlaceAnswer at;         // longitude in (-180, 180]
-  double lon_east_deg = 0;        // the same longitude in [0, 360)
-  std::string datum;              // of the elevation, paging::describe_datum()
+  paging::PlaceAnswer at;   // longitude in (-180, 180]
+  double lon_east_deg = 0;  // the same longitude in [0, 360)
+  std::string datum;        // of the elevation, paging::describe_datum()
+  std::string source;  // name of PlaceAnswer::source, or of all of the tile, joined by " or "; may be empty
+  double source_spacing_m = 0;    // of the posts of PlaceAnswer::source; 0: not known
   bool illustration = false;      // the planet is synthetic
   glm::dvec3 point_m{0, 0, 0};    // on the ground as drawn, body-fixed, from the planet's centre
   std::optional<double> range_m;  // from the camera to the ground as drawn; nullopt without a camera
