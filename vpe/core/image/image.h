@@ -60,8 +60,8 @@ struct ImageOptions {
   int png_compression = 1;
   // kNone: fastest, largest files.
   TiffCompression tiff = TiffCompression::kDeflate;
-  std::vector<PngText> png_texts;  // of RGB images
-  TiffMetadata tiff_metadata;
+  std::vector<PngText> png_texts = {};  // of RGB images
+  TiffMetadata tiff_metadata = {};
 };
 
 // Returns whether write_image() knows the extension of a path: .png, .jpg or .jpeg, in any case.
