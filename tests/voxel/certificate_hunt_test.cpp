@@ -46,11 +46,11 @@ class CertificateHunt : public test_support::GlTest, public ::testing::WithParam
 
   void add_planets() {
     const glm::dvec3 fine = glm::normalize(glm::dvec3(1, 1, 1));
-    add("levels", test_support::build_fake(
-                      dir_ / "levels.vpe",
-                      test_support::FakeElevation(test_support::bumpy_height,
-                                                  test_support::fine_around(fine, 0.05, 5000)),
-                      100000));
+    add("levels",
+        test_support::build_fake(dir_ / "levels.vpe",
+                                 test_support::FakeElevation(test_support::bumpy_height,
+                                                             test_support::fine_around(fine, 0.05, 5000)),
+                                 100000));
     int n = 0;
     for (const double radius_m : {1.0, 6e3, 3.4e6, 1e9}) {
       for (const double amplitude : {0.008, 0.3}) {
@@ -85,16 +85,16 @@ class CertificateHunt : public test_support::GlTest, public ::testing::WithParam
     const double dip_deg =
         mars::horizon_dip_rad(std::max(0.0, ground_m + height_m), radius_m) / mars::kRadiansPerDegree;
     const bool is_narrow = random.integer(0, 1) == 0;
-    const double fov_deg = is_adversarial
-                               ? (is_narrow ? random.log_uniform(0.02, 2) : random.uniform(120, 165))
-                               : random.log_uniform(2, 120);
+    const double fov_deg = is_adversarial ? (is_narrow ? random.log_uniform(0.02, 2) : random.uniform(120, 165))
+                                          : random.log_uniform(2, 120);
     const double pitch_deg =
         is_adversarial ? -dip_deg + random.uniform(-0.1, 0.1) * fov_deg : random.uniform(-90, 10);
     const double yaw_deg = random.uniform(-180, 180);
     const double roll_deg = random.uniform(-180, 180);
-    core::DrawRequest request = test_support::request_for(
-        {place.lon_deg, place.lat_deg, ground_m + height_m, yaw_deg, std::clamp(pitch_deg, -90.0, 90.0), roll_deg},
-        radius_m, 48, 36, fov_deg);
+    core::DrawRequest request =
+        test_support::request_for({place.lon_deg, place.lat_deg, ground_m + height_m, yaw_deg,
+                                   std::clamp(pitch_deg, -90.0, 90.0), roll_deg},
+                                  radius_m, 48, 36, fov_deg);
     request.settings.mode = core::Mode::kLit;
     request.settings.smooth_edges = false;
     request.settings.exaggeration = exaggeration;
