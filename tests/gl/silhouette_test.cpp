@@ -80,8 +80,8 @@ TEST_F(Silhouettes, ShowNothingThatLiesDeeperBehindGroundThanIsStated) {
         const double deep_px = test_support::deepest_px(surface, request.view, ray, seen_m, 1);
         worst = std::max(worst, deep_px / result.certificate.shift_bound_px);
         // Ground that is seen steeply may be nearer or farther by the error itself.
-        const double error_m = result.certificate.shift_bound_px * seen_m / core::focal_px(request.view);
-        if (std::isinf(seen_m) || std::abs(seen_m - exact_m) < 3 * error_m ||
+        const double bound_m = result.certificate.shift_bound_px * seen_m / core::focal_px(request.view);
+        if (std::isinf(seen_m) || std::abs(seen_m - exact_m) < 3 * bound_m ||
             !is_shown_by_no_ray(surface, request.view, ray, seen_m, result.certificate.shift_bound_px))
           continue;
         ++strange;

@@ -65,7 +65,8 @@ struct FrameStats {
 
 struct DrawRequest;
 
-// Describes how a frame treats tiles that are not loaded yet.
+// Describes how a frame treats tiles that are not loaded yet. The ray backend reads its tiles within the frame,
+// whatever stands here: its frames are always complete and settled, and take as long as storage does.
 struct PagingRequest {
   // True: the frame waits for all tiles of its view, so that its image does not depend on earlier frames; for
   // images and films. False: the frame is drawn at once with loaded tiles, coarser ones where finer ones are

@@ -93,7 +93,9 @@ double CameraClearance::near_plane_m(const lod::Selection& cover, const core::Vi
       slope = std::max(slope, planet_.tree().steepest_slope(planet_.tree()[tile.index], exaggeration));
   // Meshes within their error of the ground may be steeper than it.
   const double above_walls_m = 0.5 * clearance_m_ / std::hypot(1.0, slope);
-  return std::clamp(cosine * std::min(usual_m, above_walls_m), 0.003, 1000.0);
+  // 3 mm, and less on bodies smaller than Mars.
+  const double least_m = std::min(0.003, 1e-9 * planet_.radius_m());
+  return std::clamp(cosine * std::min(usual_m, above_walls_m), least_m, 1000.0);
 }
 
 }  // namespace vpe::gl

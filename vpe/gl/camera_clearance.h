@@ -39,7 +39,8 @@ class CameraClearance {
   // are not resident.
   double clearance_m() const { return clearance_m_; }
 
-  // Returns the distance of the near plane, metres, 0.003 or more. cover: the tiles to draw.
+  // Returns the distance of the near plane, metres: 0.003 or more, on bodies smaller than Mars 1e-9 radii or more.
+  // cover: the tiles to draw.
   double near_plane_m(const lod::Selection& cover, const core::View& view) const;
 
  private:
