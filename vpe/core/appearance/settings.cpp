@@ -135,8 +135,8 @@ const KeyRegistry<SettingsValues>& registry() {
        Declare::choice<&V::occlusion>(
            {word("auto", Occlusion::kAuto), word("off", Occlusion::kOff), word("on", Occlusion::kOn)}),
        "",
-       "leaves out what nearer ground hides, which changes no pixel; auto: in windows, while it saves more "
-       "time than it costs"},
+       "leaves out what nearer ground hides, which changes no pixel of complete images; auto: in windows, while "
+       "it saves more time than it costs"},
       {"rays.mode",
        Declare::choice<&V::ray_mode>({word("exact", RayMode::kExact), word("multires", RayMode::kMultires),
                                       word("reference", RayMode::kReference)}),
