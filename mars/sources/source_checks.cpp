@@ -182,7 +182,8 @@ void check_silent_datums(const ElevationSource& layer, const ElevationSource& ba
   for (auto& [source, differences] : found) {
     const std::string& name = below.at(static_cast<std::size_t>(source)).name;
     if (!is_checked(name)) continue;
-    const auto explained = [&] { return explained_m(base, radius_m, differences.places); };
+    const std::vector<glm::dvec3>& places = differences.places;
+    const auto explained = [&] { return explained_m(base, radius_m, places); };
     check_difference(own.name, name, layer_is_silent, own.datum, explained, differences.off_m);
   }
 }
