@@ -167,21 +167,19 @@ PlaceTable read_places(std::istream& in) {
 
 PlanetAndPlaces split_places(const std::vector<std::string>& arguments) {
   PlanetAndPlaces out;
-  for (std::size_t n = 0; n < arguments.size(); ++n) {
-    std::string fault;
-    std::error_code none;
-    if (n > 0) {
-      out.places.push_back(parse_place(arguments[n], ""));
-    } else if (std::filesystem::exists(arguments[0], none)) {
-      out.planet = arguments[0];
-    } else if (const auto place = mars::parse_place(arguments[0], fault)) {
-      out.places.push_back(*place);
-    } else if (arguments[0].find(',') != std::string::npos) {
-      throw UsageError("'" + arguments[0] + "': neither a file nor a place; " + fault);
-    } else {
-      out.planet = arguments[0];
-    }
-  }
+  if (arguments.empty()) return out;
+  const std::string& first = arguments.front();
+  std::string fault;
+  std::error_code none;
+  const bool is_file = std::filesystem::exists(first, none);
+  const std::optional<mars::LonLat> place = is_file ? std::nullopt : mars::parse_place(first, fault);
+  if (!is_file && !place && first.find(',') != std::string::npos)
+    throw UsageError("'" + first + "': neither a file nor a place; " + fault);
+  if (place)
+    out.places.push_back(*place);
+  else
+    out.planet = first;
+  for (std::size_t n = 1; n < arguments.size(); ++n) out.places.push_back(parse_place(arguments[n], ""));
   return out;
 }
 

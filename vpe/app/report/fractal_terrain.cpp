@@ -20,8 +20,11 @@ constexpr double kRootSpacing_m = 45000;  // of the six tiles of level 0
 double height_m(const glm::dvec3& direction, double spacing_m) {
   double height = 0;
   std::uint64_t seed = kSeed;
-  for (double wave = kLongest_m; wave >= 2 * spacing_m; wave *= 0.5)
+  double wave = kLongest_m;
+  while (wave >= 2 * spacing_m) {
     height += kHeightOfWave * wave * report::value_noise(direction * (mars::kMarsRadius_m / wave), seed++);
+    wave *= 0.5;
+  }
   return height;
 }
 

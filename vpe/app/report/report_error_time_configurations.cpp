@@ -85,7 +85,11 @@ class Planner {
 
   std::vector<double> values(double first, double last, double step_short) const {
     std::vector<double> all;
-    for (double value = first; value >= last; value /= options_.is_short ? step_short : 2) all.push_back(value);
+    double value = first;
+    while (value >= last) {
+      all.push_back(value);
+      value /= options_.is_short ? step_short : 2;
+    }
     return all;
   }
 

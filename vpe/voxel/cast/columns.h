@@ -64,7 +64,6 @@ struct ColumnCamera {
 // the inverse horizontal distance there, which changes by `gain` (at most 0) per unit of slope. Lower rows are
 // nearer, so their inverse distances are sums of positive terms, exact but for rounding. `start` is 0 elsewhere.
 struct ColumnGroup {
-  int columns = 0;
   alignas(64) double azimuth[3][kMaxLanes];  // A, in the axes of the current face
   alignas(64) double normal[3][kMaxLanes];   // A x U, in the axes of the current face
   alignas(64) double sector_a0[kMaxLanes];   // slope coefficients for RowKind::kSector
@@ -73,13 +72,14 @@ struct ColumnGroup {
   alignas(64) double sector_b1[kMaxLanes];
   alignas(64) float row[kMaxLanes];      // whole numbers
   alignas(64) float row_end[kMaxLanes];  // whole numbers; 0 for lanes beyond `columns`
-  float* start = nullptr;                // rows * kMaxLanes, at a multiple of 64 bytes
-  float* gain = nullptr;                 // rows * kMaxLanes, at a multiple of 64 bytes
-  double least_slope = 0;                // of all unresolved rows; infinite when there are none
   // The run that expand_rows() has reached.
   alignas(64) float run_start[kMaxLanes];
   alignas(64) float run_gain[kMaxLanes];
   alignas(64) float run_slope[kMaxLanes];
+  float* start = nullptr;  // rows * kMaxLanes, at a multiple of 64 bytes
+  float* gain = nullptr;   // rows * kMaxLanes, at a multiple of 64 bytes
+  double least_slope = 0;  // of all unresolved rows; infinite when there are none
+  int columns = 0;
 };
 
 // Provides the posts of one height grid to the kernel, when it asks for them.
