@@ -14,7 +14,7 @@ struct SkyAir {
   double zenith_depth = 0.25;  // optical depth from the sphere straight up; 0: a black sky
   // Light that is scattered more than once brightens the sky for a camera within the air: there the optical
   // depth that makes colours is larger by this factor, less 1, and falls with the density.
-  double inner_gain = 4;
+  double inner_gain = 6;
   double lowest_m = -8e3;               // no ray passes lower
   glm::dvec3 zenith{0.62, 0.48, 0.37};  // thin air
   glm::dvec3 dust{0.83, 0.68, 0.53};    // thick air
