@@ -26,8 +26,6 @@
 
 namespace vpe::app {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
