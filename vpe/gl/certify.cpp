@@ -35,14 +35,12 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
   double area = 0;
   double limited = 0;
   double slope = 0;
-  double surface_px = 0;
   for (const CertifiedTile& t : tiles) {
     const lod::SelectedTile& tile = *t.tile;
     const double distance_m = std::max(tile.min_distance_m, optics.near_m);
     const double stored_px = storage_px(t, distance_m, optics.focal_px);
     const lod::TileInfo& info = tree[tile.index];
     slope = std::max(slope, tree.steepest_slope(info, optics.exaggeration));
-    surface_px = std::max(surface_px, tile.screen_space_error_px + stored_px);
     c.geometric_error_m = std::max(c.geometric_error_m, tile.geometric_error_m);
     c.screen_space_error_px = std::max(c.screen_space_error_px, tile.screen_space_error_px);
     c.quantisation_m = std::max(c.quantisation_m, t.quantisation_m);
@@ -54,9 +52,14 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
     const double spacing_m = side_m / intervals;
     if (!info.has_children && spacing_m * optics.focal_px > tile.min_distance_m) limited += pixels * pixels;
   }
-  const double snap_px = optics.snap_px * std::sqrt(1.0 + slope * slope);
-  c.quantisation_px += snap_px;
-  c.shift_bound_px = surface_px + snap_px;
+  const double steep = std::sqrt(1.0 + slope * slope);
+  c.quantisation_px = (c.quantisation_px + optics.snap_px) * steep;
+  for (const CertifiedTile& t : tiles) {
+    const double distance_m = std::max(t.tile->min_distance_m, optics.near_m);
+    c.shift_bound_px = std::max(c.shift_bound_px, t.tile->screen_space_error_px +
+                                                      (storage_px(t, distance_m, optics.focal_px) +
+                                                       optics.snap_px) * steep);
+  }
   c.exaggeration = optics.exaggeration;
   c.share_at_data_limit = area > 0 ? limited / area : 0.0;
   return c;
@@ -90,7 +93,7 @@ double bound_in_image(std::span<const CertifiedTile> tiles, const lod::TileTree&
           tiles[k].tile->geometric_error_m + (skirt ? tiles[k].deepest_skirt_m : 0.0);
       bound_px =
           std::max(bound_px, geometric_error_m * optics.focal_px / distance_m +
-                                 storage_px(tiles[k], distance_m, optics.focal_px) + optics.snap_px * steep);
+                                 (storage_px(tiles[k], distance_m, optics.focal_px) + optics.snap_px) * steep);
     }
   }
   return bound_px;

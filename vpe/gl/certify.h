@@ -26,14 +26,15 @@ struct FrameOptics {
 
 // Returns a certificate with the terms of error, exaggeration, tiles_drawn and share_at_data_limit filled in.
 //
-// The bound of a pixel's shift is the sum of three terms:
+// The bound of a pixel's shift is the sum of three terms, the last two divided by cos(slope):
 // - The screen-space error of its tile.
 // - Float storage. A vertex v relative to a centre c is off by 2^-24 |v - c| or less, c - camera by 2^-24 of
 //   itself, and the vertex stage's arithmetic adds a part of |v - camera|. The vertices of the triangle at a
 //   point p are within its longest edge of p.
-// - snap_px / cos(slope), with the steepest slope of the reference surface S in the drawn tiles. A point of the
-//   meshes lies within its tile's geometric error of S. Moved by s pixels in the image, which are s r / f
-//   metres across the ray at range r, it has S at most s r / f / cos(slope) farther above or below it.
+// - snap_px.
+// The slope is the steepest of the reference surface S in the drawn tiles. A point of the meshes lies within its
+// tile's geometric error of S, measured along its radius. Moved by d metres in any direction (s pixels in the
+// image are s r / f metres across the ray at range r) it has S at most d / cos(slope) farther above or below it.
 //
 // The meshes' errors hold everywhere, so the bound is also one for silhouettes: before the point that a pixel
 // shows (sky: anywhere) its ray passes no deeper below S, in pixels at that range, than shift_bound_px. What

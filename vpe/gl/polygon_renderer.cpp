@@ -235,6 +235,9 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProj
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glDepthFunc(GL_GREATER);
   draws_.clear();
+  // What shows at a distance is at least this part of it before the camera, and a triangle's corners are within
+  // its longest edge of that.
+  const double corner_secant = std::sqrt(core::corner_stretch(request.view));
   const PaintMethod method = scene_.material().method;
   const glm::vec3 plain = wireframe || markers ? kLineColour : glm::vec3(request.settings.plain_ground / 255.0);
   for (const SceneTile& t : scene_.tiles()) {
@@ -242,6 +245,8 @@ void PolygonRenderer::draw_pass(const core::DrawRequest& request, const ClipProj
     draw.mesh = t.mesh;
     draw.key = t.tile->key;
     draw.skirt_m = t.skirt_m;
+    const double reach_m = clip.near_m + 2.0 * t.mesh->longest_edge_m;
+    draw.by_triangle = request.want_range || t.tile->min_distance_m < reach_m * corner_secant;
     if (!image) continue;
     draw.texture = t.texture;
     draw.flat = method == PaintMethod::kColour;

@@ -15,5 +15,6 @@ extern const std::string_view kSkyFragment;
 extern const std::string_view kSkyVertex;
 extern const std::string_view kSurfaceFragment;
 extern const std::string_view kTileVertex;
+extern const std::string_view kTriangleGeometry;
 
 }  // namespace vpe::gl::shader_text

@@ -77,7 +77,8 @@ struct TileFeatures {
   bool palette = false;  // colours come from the height of what is drawn
   bool nodata = false;   // nodata ground is striped and has alpha 0
   bool haze = false;
-  bool placed = false;  // texture coordinates come from positions, not from vertices: within 1e-7 of the face
+  bool placed = false;       // texture coordinates come from positions, not from vertices: within 1e-7 of the face
+  bool by_triangle = false;  // of surfaces: corners are put on the rasteriser's grid triangle by triangle
   auto operator<=>(const TileFeatures&) const = default;
 };
 

@@ -25,8 +25,9 @@ Program make_part(TilePart part, const TileFeatures& features) {
 
 }  // namespace
 
-TileFeatures TileDrawer::features_of(const TileDraw& tile) const {
+TileFeatures TileDrawer::features_of(const TileDraw& tile, TilePart part) const {
   TileFeatures features;
+  features.by_triangle = part == TilePart::kSurface && tile.by_triangle;
   if (first_with_id_ != nullptr) return features;
   features.facets = tile.texture != nullptr && tile.texture->intervals == 0;
   features.texture = tile.texture != nullptr && !features.facets;
@@ -37,22 +38,17 @@ TileFeatures TileDrawer::features_of(const TileDraw& tile) const {
   return features;
 }
 
-TileDrawer::Programs& TileDrawer::programs(const TileFeatures& features) {
-  auto at = programs_.find(features);
-  if (at == programs_.end()) {
-    at = programs_
-             .emplace(features,
-                      Programs{make_part(TilePart::kSurface, features), make_part(TilePart::kRibbon, features),
-                               make_part(TilePart::kSkirt, features)})
-             .first;
-  }
+const Program& TileDrawer::program(TilePart part, const TileFeatures& features) {
+  const std::pair key(part, features);
+  auto at = programs_.find(key);
+  if (at == programs_.end()) at = programs_.emplace(key, UsedProgram{make_part(part, features)}).first;
   at->second.used = true;
-  return at->second;
+  return at->second.program;
 }
 
 void TileDrawer::drop_unused() {
   std::erase_if(programs_, [](const auto& entry) { return !entry.second.used; });
-  for (auto& [features, programs] : programs_) programs.used = false;
+  for (auto& [key, program] : programs_) program.used = false;
 }
 
 void TileDrawer::set_palette(const PaletteTable* table) {
@@ -207,6 +203,7 @@ void TileDrawer::draw_part(const TileDraw& tile, const TileFeatures& features, T
   switch (part) {
     case TilePart::kSurface:
       use(tile, features, part, view, near_m);
+      if (features.by_triangle && features.facets) glUniform1i(tile_uniform("first_facet"), 0);
       draw_indices(mesh, GL_TRIANGLES, 0, mesh.ranges.surface);
       return;
     case TilePart::kRibbon:
@@ -231,15 +228,11 @@ void TileDrawer::draw_part(const TileDraw& tile, const TileFeatures& features, T
 void TileDrawer::draw(const core::View& view, const ClipProjection& projection,
                       std::span<const TileDraw> tiles) {
   glBindVertexArray(array_.name());
-  std::map<TileFeatures, std::vector<const TileDraw*>> by_features;
-  for (const TileDraw& tile : tiles) by_features[features_of(tile)].push_back(&tile);
   for (const TilePart part : {TilePart::kSurface, TilePart::kRibbon, TilePart::kSkirt}) {
+    std::map<TileFeatures, std::vector<const TileDraw*>> by_features;
+    for (const TileDraw& tile : tiles) by_features[features_of(tile, part)].push_back(&tile);
     for (const auto& [features, painted] : by_features) {
-      const Programs& made = programs(features);
-      use(part == TilePart::kSurface  ? made.surface
-          : part == TilePart::kRibbon ? made.ribbon
-                                      : made.skirt,
-          features, part, view, projection);
+      use(program(part, features), features, part, view, projection);
       for (const TileDraw* tile : painted) draw_part(*tile, features, part, view, projection.near_m);
     }
   }
@@ -252,8 +245,9 @@ void TileDrawer::draw_before_ground(const core::View& view, const ClipProjection
   nearer.near_m *= kNearer;
   glBindVertexArray(array_.name());
   for (const TileDraw& tile : tiles) {
-    const TileFeatures features = features_of(tile);
-    use(programs(features).surface, features, TilePart::kSurface, view, nearer);
+    TileFeatures features = features_of(tile, TilePart::kSurface);
+    features.by_triangle = false;
+    use(program(TilePart::kSurface, features), features, TilePart::kSurface, view, nearer);
     use(tile, features, TilePart::kSurface, view, nearer.near_m);
     draw_one(*tile.mesh);
   }
@@ -293,7 +287,7 @@ void TileDrawer::draw_borders(const core::View& view, const ClipProjection& proj
   glDepthMask(GL_FALSE);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
   const TileFeatures features;
-  use(programs(features).ribbon, features, TilePart::kRibbon, view, nearer);
+  use(program(TilePart::kRibbon, features), features, TilePart::kRibbon, view, nearer);
   glUniform3f(tile_uniform("ribbon"), 0.5F * static_cast<float>(size.x), 0.5F * static_cast<float>(size.y),
               kHalfWidth_px);
   for (TileDraw tile : tiles) {
