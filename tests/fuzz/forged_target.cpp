@@ -39,7 +39,8 @@ class Input {
     return all[byte() % N];
   }
   Bytes piece() {
-    const std::size_t size = std::min<std::size_t>(byte(), bytes_.size());
+    const std::size_t asked = byte();
+    const std::size_t size = std::min(asked, bytes_.size());
     Bytes out(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(size));
     bytes_ = bytes_.subspan(size);
     return out;
