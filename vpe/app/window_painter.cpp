@@ -15,7 +15,8 @@ core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double ti
   core::DrawResult result = renderer_->draw(request);
   if (!overlay::any(request.settings)) return result;
   overlays_.load(request.settings);
-  overlay::composite(overlays_.layer(request, result.frame, result.certificate, time_s), result.frame.colour);
+  const FrameGround ground{result.frame.range_m, result.certificate, {}};
+  overlay::composite(overlays_.layer(request, ground, time_s), result.frame.colour);
   return result;
 }
 

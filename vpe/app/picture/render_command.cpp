@@ -16,6 +16,7 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/picture/contour_ranges.h"
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
@@ -201,7 +202,6 @@ void render(RenderArguments& arguments, const Common& common) {
   if (!common.quiet && !parsed.pose.note.empty())
     std::fprintf(stderr, "vpe: note: %s\n", parsed.pose.note.c_str());
   check_render_outputs(arguments, parsed.settings.values());
-  note_contours(arguments.image, parsed.settings.values(), common.quiet);
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 
@@ -236,7 +236,13 @@ void render(RenderArguments& arguments, const Common& common) {
       note_limited_by_memory(arguments.image, common, one, result);
     }
     if (!overlay::any(one.settings)) return result;
-    const overlay::Layer layer = FrameOverlays(planet).layer(one, result.frame, result.certificate, 0);
+    FrameGround ground{result.frame.range_m, result.certificate, {}};
+    if (const auto finer = contour_request(one, result)) {
+      ground.contours = renderer->draw(*finer);
+      require_complete(arguments.image, *ground.contours);
+      if (!common.quiet) print_failures(ground.contours->failures);
+    }
+    const overlay::Layer layer = FrameOverlays(planet).layer(one, ground, 0);
     if (arguments.overlay_layer.empty()) {
       overlay::composite(layer, result.frame.colour);
     } else {

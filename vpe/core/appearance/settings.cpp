@@ -85,6 +85,9 @@ const KeyRegistry<SettingsValues>& registry() {
       {"overlay.contours.step", Declare::number<&V::contour_m>(0, 1e6), "m",
        "difference between the lines; 0 = a step that suits the image"},
       {"overlay.scale", Declare::toggle<&V::scale_bar>(), "",
+      {"overlay.contours.tolerance", Declare::number<&V::contour_tolerance_px>(0, 1000), "px",
+       "largest error of the ground that the lines are taken from; where the image is coarser, finer ground is "
+       "looked at for them alone; 0: the exact surface"},
        "bar of a round length at the ground in the image centre"},
       {"overlay.north", Declare::toggle<&V::north_arrow>(), "", "arrow to the north"},
       {"overlay.time", Declare::toggle<&V::time_code>(), "", "time of the frame in its flight"},
