@@ -23,6 +23,7 @@
 #include "vpe/app/picture/render_request.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
+#include "vpe/app/picture/view_palette.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
@@ -153,6 +154,7 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
     print_json({{"output", arguments.output},
                 {"backend", core::to_string(*arguments.image.backend)},
                 {"sun", to_json(sun_statement(request.settings, place_below(request)))},
+                {"palette", palette_json(recipe.palette)},
                 {"certificate", certificate},
                 {"stats", to_json(result.stats)}});
   } else if (!common.quiet) {
@@ -195,6 +197,18 @@ void require_above_ground(const RenderArguments& arguments,
                            "(--allow-underground draws what is there: nothing)");
 }
 
+// Takes the ends of the palette from the view, if the settings say so. Returns them.
+std::optional<core::PaletteEnds> take_palette_of_view(core::DrawRequest& request,
+                                                      const std::shared_ptr<const paging::PlanetFile>& planet,
+                                                      const Common& common) {
+  if (!needs_view_palette(request.settings, *planet)) return std::nullopt;
+  ViewPalette view(planet, common);
+  view.add(reduced(request));
+  take_ends(request.settings, view.ends());
+  if (!common.quiet) std::fprintf(stderr, "vpe: %s\n", palette_text(request.settings).c_str());
+  return core::PaletteEnds{*request.settings.palette_low, *request.settings.palette_high};
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const std::string identity = take_recipe(arguments, common);
@@ -226,7 +240,8 @@ void render(RenderArguments& arguments, const Common& common) {
   resolve_backend(arguments, settings, request, planet->radius_m());
   require_above_ground(arguments, planet, request);
   const auto renderer = renderer_for(arguments, common, planet, settings, request, is_backend_named);
-  const RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
+  RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
+  recipe.palette = take_palette_of_view(request, planet, common);
   // Makes the finished image of one camera.
   const auto draw = [&](const core::DrawRequest& one) {
     core::DrawResult result = renderer->draw(one);
