@@ -93,7 +93,9 @@ TEST_P(RendererContract, RangesAloneAreThoseOfTheImage) {
     EXPECT_TRUE(ranges.missing.empty());
     const bool is_same = ranges.frame.range_m == image.frame.range_m;
     EXPECT_EQ(is_same, is_rays() || tolerance_px == 2);
-    if (is_same) EXPECT_EQ(ranges.certificate.image_bound_px, image.certificate.image_bound_px);
+    if (is_same) {
+      EXPECT_EQ(ranges.certificate.image_bound_px, image.certificate.image_bound_px);
+    }
     EXPECT_LE(ranges.certificate.screen_space_error_px, tolerance_px);
     const core::DrawResult again = draw->draw(request);
     EXPECT_TRUE(again.frame.colour == image.frame.colour);

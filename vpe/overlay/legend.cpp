@@ -66,7 +66,7 @@ LegendScale legend_scale(Colour colour, double low, double high) {
 
 // Labels the ends of a range that was asked for, in place of ticks that are too near to them.
 void label_ends(LegendScale& legend, Colour colour, double low, double high) {
-  constexpr double kApart = 0.07;   // share of the bar that a label takes
+  constexpr double kApart = 0.1;    // share of the bar that a label takes
   constexpr double kDigits = 20.0;  // ends are rounded as finely as this part of the range needs
   const double span = std::abs(high - low);
   const bool in_km = legend.title == kElevationInKm;
