@@ -11,6 +11,7 @@
 
 #include "tests/support/support.h"
 #include "vpe/base/number.h"
+#include "vpe/core/appearance/palette.h"
 #include "vpe/core/registry/former_names.h"
 
 namespace vpe::core {
@@ -202,6 +203,28 @@ TEST(Settings, RangesIncludeTheirEndsAndNothingBeyond) {
   }
   Settings settings;
   EXPECT_TRUE(holds(settings.set("lod.triangles", "1.5"), "whole number"));
+}
+
+TEST(Settings, EndsOfThePaletteAreNumbersOrAuto) {
+  Settings settings;
+  EXPECT_EQ(settings.values().palette_low, 0.0);
+  for (const char* key : {"palette.low", "palette.high"}) {
+    EXPECT_EQ(settings.set(key, "auto"), "");
+    EXPECT_EQ(settings.get(key), "auto");
+    for (const char* text : {"Auto", "view", "auto ", "none"}) {
+      const std::string problem = settings.set(key, text);
+      EXPECT_TRUE(holds(problem, "a number from -1000000 to 1000000, or auto")) << problem;
+      EXPECT_EQ(settings.get(key), "auto");
+    }
+  }
+  EXPECT_TRUE(has_auto_ends(settings.values()));
+  EXPECT_FALSE(settings.values().palette_low || settings.values().palette_high);
+  EXPECT_THROW(ColourScale{settings.values()}, std::invalid_argument);
+  EXPECT_EQ(settings.set("palette.high", "1200.5"), "");
+  EXPECT_EQ(ends_of(settings.values(), {-300, 900}), (PaletteEnds{-300, 1200.5}));
+  EXPECT_EQ(settings.set("palette.low", "1"), "");
+  EXPECT_FALSE(has_auto_ends(settings.values()));
+  EXPECT_EQ(ends_of(settings.values(), {-300, 900}), (PaletteEnds{1, 1200.5}));
 }
 
 TEST(Settings, WrongWordsNameTheRightOnes) {

@@ -112,6 +112,56 @@ TEST(Contours, PixelsLieWithinAPixelOfTheirElevation) {
   }
 }
 
+// The image shows another ball, whose slopes are wrong by a pixel here and there.
+TEST(Contours, AreThoseOfFinerRangesWhereTheImageShowsTheSameGround) {
+  const Ball truth{{20, 10}, 20000, 0.08, 1};
+  Ball coarse = truth;
+  coarse.cone_m = 20900;
+  const View view = view_at({20, 9, 6e5, 0, -80, 0}, 200, 150);
+  const Sight image(coarse, view);
+  const Sight exact(truth, view);
+  Overlays contours;
+  contours.contours = true;
+  contours.contour_m = 3000;
+  Scene scene = image.scene();
+  scene.shift_px = 1;
+  const Layer before = vpe::overlay::draw(contours, scene);
+  const std::vector<float> finer = truth.range(view);
+  scene.contours = {finer, 0};
+  const Layer after = vpe::overlay::draw(contours, scene);
+  EXPECT_EQ(after.pixels, exact.draw(contours).pixels);
+  EXPECT_NE(before.pixels, after.pixels);
+  scene.contours->range_m = std::span(finer).subspan(1);
+  EXPECT_THROW(vpe::overlay::draw(contours, scene), std::invalid_argument);
+}
+
+// The finer ground has a hill that the image does not show: no line lies on it.
+TEST(Contours, OfFinerRangesEndAtTheSilhouettesOfTheImage) {
+  const View view = view_at({20, 8.6, 3000, 0, 0, 0}, 160, 120);
+  const Sight flat({}, view);
+  const Ball hill{{20, 10}, 9000, 0.02, 1};
+  Overlays contours;
+  contours.contours = true;
+  contours.contour_m = 1000;
+  const std::vector<float> finer = hill.range(view);
+  Scene scene = flat.scene();
+  scene.shift_px = 1;
+  scene.contours = {finer, 0};
+  const vpe::overlay::VisibleTerrain image(scene);
+  const std::vector<float> shown = vpe::overlay::ranges_of_same_ground(image, *scene.contours);
+  std::size_t hidden = 0;
+  for (std::size_t n = 0; n < shown.size(); ++n) {
+    const bool has_hill = std::isfinite(finer[n]) && !std::isfinite(scene.range_m[n]);
+    hidden += has_hill && std::isinf(shown[n]) ? 1U : 0U;
+  }
+  EXPECT_GT(hidden, 300U);
+  EXPECT_EQ(painted(vpe::overlay::draw(contours, scene)), 0U);
+  // Where the image shows it, lines are drawn.
+  Scene same = scene;
+  same.range_m = finer;
+  EXPECT_GT(painted(vpe::overlay::draw(contours, same)), 100U);
+}
+
 TEST(Contours, EveryFifthIsHeavierAndLabelledWithItsElevation) {
   const Ball ball{{20, 10}, 20000, 0.08, 1};
   const Sight sight(ball, view_at({20, 10, 5e5, 0, -90, 0}, 640, 480));

@@ -229,6 +229,37 @@ TEST(Legend, BarHasTheColoursOfTheScale) {
   EXPECT_EQ(best, 95);
 }
 
+// The round numbers within it end nine rows above the lower end.
+TEST(Legend, EndsThatAreAskedForAreLabelled) {
+  Overlays overlays;
+  overlays.legend = true;
+  Scene scene = hill_scene();
+  scene.appearance.palette_low = -490;
+  scene.appearance.palette_high = 490;
+  const Layer layer = vpe::overlay::draw(overlays, scene);
+  const auto is_white = [&](int x, int y) {
+    const Rgba p = at(layer, x, y);
+    return p.a == 255 && p.r == 255 && p.g == 255 && p.b == 255;
+  };
+  // The bar's outline ends with the lowest long run of white.
+  int bottom = 0;
+  int right = 0;
+  for (int y = layer.height / 2; y < layer.height; ++y) {
+    for (int x = 0, run = 0; x < layer.width; ++x) {
+      run = is_white(x, y) ? run + 1 : 0;
+      if (run < 9) continue;
+      bottom = y;
+      right = x;
+    }
+  }
+  ASSERT_GT(bottom, layer.height - 40);
+  int bright = 0;
+  for (int y = bottom - 2; y < bottom + 4; ++y) {
+    for (int x = right + 6; x < layer.width; ++x) bright += at(layer, x, y).r > 150 ? 1 : 0;
+  }
+  EXPECT_GT(bright, 10);
+}
+
 TEST(ScaleBar, IsARoundLengthAtTheCentre) {
   Overlays overlays;
   overlays.scale_bar = true;

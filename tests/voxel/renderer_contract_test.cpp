@@ -71,6 +71,38 @@ TEST_P(RendererContract, CertificatesHoldOnWalls) {
   EXPECT_LE(worst, 1);
 }
 
+// Ranges may be asked for between images, at another tolerance. They have no colours, and the images stay the
+// same.
+TEST_P(RendererContract, RangesAloneAreThoseOfTheImage) {
+  const auto planet = build_fake(dir_ / "bumpy.vpe", FakeElevation(bumpy_height), 50000);
+  const auto draw = make(planet);
+  core::DrawRequest request = request_for({20, 10, 3e5, 30, -40, 0}, planet->radius_m(), 160, 120);
+  request.settings.lod_tolerance_px = 2;
+  request.want_range = true;
+  const core::DrawResult image = draw->draw(request);
+  ASSERT_EQ(image.frame.colour.size(), 19200U);
+  EXPECT_TRUE(image.certificate.nodata_share);
+  core::DrawRequest alone = request;
+  alone.want_colour = false;
+  for (const double tolerance_px : {2.0, 0.1}) {
+    alone.settings.lod_tolerance_px = tolerance_px;
+    const core::DrawResult ranges = draw->draw(alone);
+    EXPECT_EQ(ranges.frame.width, 160);
+    EXPECT_TRUE(ranges.frame.colour.empty());
+    EXPECT_FALSE(ranges.certificate.nodata_share);
+    EXPECT_TRUE(ranges.missing.empty());
+    const bool is_same = ranges.frame.range_m == image.frame.range_m;
+    EXPECT_EQ(is_same, is_rays() || tolerance_px == 2);
+    if (is_same) {
+      EXPECT_EQ(ranges.certificate.image_bound_px, image.certificate.image_bound_px);
+    }
+    EXPECT_LE(ranges.certificate.screen_space_error_px, tolerance_px);
+    const core::DrawResult again = draw->draw(request);
+    EXPECT_TRUE(again.frame.colour == image.frame.colour);
+    EXPECT_TRUE(again.frame.range_m == image.frame.range_m);
+  }
+}
+
 TEST_P(RendererContract, CertificatesHoldUnderExaggeration) {
   const auto rough = [](const glm::dvec3& d) {
     return 0.05 * bumpy_height(d) + 300 * std::sin(400 * d.x) * std::sin(370 * d.y) * std::cos(390 * d.z);

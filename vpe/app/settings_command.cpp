@@ -15,7 +15,8 @@ namespace {
 std::string range_text(const core::SettingInfo& info) {
   if (info.type == core::SettingType::kTable || info.type == core::SettingType::kText) return info.grammar;
   if (info.type != core::SettingType::kChoice) {
-    return base::format_number(info.min) + " .. " + base::format_number(info.max);
+    return base::format_number(info.min) + " .. " + base::format_number(info.max) +
+           (info.word.empty() ? "" : ", or " + std::string(info.word));
   }
   std::string choices;
   for (const std::string_view word : info.choices) choices += (choices.empty() ? "" : ", ") + std::string(word);

@@ -15,8 +15,42 @@ core::DrawResult WindowPainter::draw(const core::DrawRequest& request, double ti
   core::DrawResult result = renderer_->draw(request);
   if (!overlay::any(request.settings)) return result;
   overlays_.load(request.settings);
-  overlay::composite(overlays_.layer(request, result.frame, result.certificate, time_s), result.frame.colour);
+  const FrameGround ground{result.frame.range_m, result.certificate, {}};
+  overlay::composite(overlays_.layer(request, ground, time_s), result.frame.colour);
   return result;
+}
+
+bool WindowPainter::is_same(const Sight& a, const Sight& b) {
+  const mars::Axes& x = a.view.camera.axes;
+  const mars::Axes& y = b.view.camera.axes;
+  return a.view.camera.position_m == b.view.camera.position_m && x.forward == y.forward && x.up == y.up &&
+         a.view.width == b.view.width && a.view.height == b.view.height && a.view.fov_deg == b.view.fov_deg &&
+         a.colour == b.colour && a.exaggeration == b.exaggeration;
+}
+
+// Takes the ends of the palette from the view, if the settings say so. While the view moves they stay as they
+// are, so that colours do; a view that is asked for a second time rests. Returns true if the ends are not those
+// of this view.
+bool WindowPainter::take_palette(core::DrawRequest& request, window::DrawnImage& drawn) {
+  if (!needs_view_palette(request.settings, *planet_)) {
+    palette_of_.reset();
+    before_.reset();
+    return false;
+  }
+  const Sight now{request.view, request.settings.colour, request.settings.exaggeration};
+  const bool rests = before_ && is_same(*before_, now);
+  const bool fits = palette_of_ && palette_of_->colour == now.colour;
+  if (!fits || (rests && !is_same(*palette_of_, now))) {
+    if (!view_palette_) view_palette_ = std::make_unique<ViewPalette>(planet_, common_);
+    view_palette_->clear();
+    view_palette_->add(reduced(request));
+    ends_ = view_palette_->ends();
+    palette_of_ = now;
+  }
+  before_ = now;
+  take_ends(request.settings, ends_);
+  drawn.palette = ends_;
+  return !is_same(*palette_of_, now);
 }
 
 window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
@@ -34,6 +68,7 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
   core::DrawRequest draw_request = request.draw;
   draw_request.want_range = draw_request.want_range || overlay::needs_range(draw_request.settings);
   window::DrawnImage drawn;
+  const bool has_other_palette = take_palette(draw_request, drawn);
   const auto draw_one = [&](const core::DrawRequest& one) { return draw(one, request.flight_time_s); };
   if (request.stereo) {
     StereoArguments stereo;
@@ -42,10 +77,11 @@ window::DrawnImage WindowPainter::paint(const window::ImageRequest& request) {
     StereoImage pair = draw_stereo(stereo, draw_request, draw_one);
     drawn.image = std::move(pair.image);
     drawn.result = std::move(pair.left);
-    drawn.result.settled = drawn.result.settled && pair.right.settled;
+    drawn.result.settled = drawn.result.settled && pair.right.settled && !has_other_palette;
     return drawn;
   }
   drawn.result = draw_one(draw_request);
+  drawn.result.settled = drawn.result.settled && !has_other_palette;
   core::Frame& frame = drawn.result.frame;
   drawn.image = {frame.width, frame.height, std::move(frame.colour)};
   frame = {};

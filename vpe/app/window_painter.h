@@ -7,6 +7,7 @@
 #include "paging/planet/planet_file.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/frame_overlays.h"
+#include "vpe/app/picture/view_palette.h"
 #include "vpe/window/painter.h"
 
 namespace vpe::app {
@@ -20,12 +21,25 @@ class WindowPainter : public window::Painter {
 
  private:
   core::DrawResult draw(const core::DrawRequest& request, double time_s);
+  bool take_palette(core::DrawRequest& request, window::DrawnImage& drawn);
 
   std::shared_ptr<const paging::PlanetFile> planet_;
   Common common_;
   FrameOverlays overlays_;
   std::optional<core::Backend> backend_;
   std::unique_ptr<core::Renderer> renderer_;
+
+  // The palette by the view: what its ends were taken from, and the view of the request before.
+  struct Sight {
+    core::View view;
+    core::Colour colour = core::Colour::kElevation;
+    double exaggeration = 1;
+  };
+  static bool is_same(const Sight& a, const Sight& b);
+  std::unique_ptr<ViewPalette> view_palette_;  // made for the first such image
+  std::optional<Sight> palette_of_;
+  std::optional<Sight> before_;
+  core::PaletteEnds ends_;
 };
 
 }  // namespace vpe::app

@@ -15,7 +15,7 @@ void draw_below_ground(const DrawRequest& request, DrawResult& result) {
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
   result.frame.width = size.x;
   result.frame.height = size.y;
-  result.frame.colour.assign(pixels, kColour);
+  result.frame.colour.assign(request.want_colour ? pixels : 0, kColour);
   result.frame.range_m.assign(request.want_range ? pixels : 0, 0.0F);
   result.certificate.is_below_ground = true;
   result.certificate.screen_space_error_px = std::numeric_limits<double>::infinity();

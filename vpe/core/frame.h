@@ -33,7 +33,7 @@ inline constexpr float kSkyRange = std::numeric_limits<float>::infinity();
 struct Frame {
   int width = 0;
   int height = 0;
-  std::vector<base::Rgb> colour;  // width * height
+  std::vector<base::Rgb> colour;  // width * height; empty if the request does not want it
   // Distance from the camera to the surface along the ray, metres; kSkyRange for sky. width * height if the
   // request wants it, else empty.
   std::vector<float> range_m;
@@ -90,6 +90,9 @@ struct DrawRequest {
   SettingsValues settings;
   glm::dvec3 sun{1, 0, 0};  // unit, body-fixed, towards the sun (mars::sun_direction)
   bool want_range = false;  // also returns Frame::range_m
+  // False: Frame::colour stays empty, and nothing is loaded for it; the certificate does not know the share of
+  // nodata. For ranges at another accuracy than that of the image.
+  bool want_colour = true;
   // If set, tiles are selected and culled for this view, but drawn as `view` sees them. Shows culling from
   // outside: ground that cull_view cannot see is absent.
   std::optional<View> cull_view;

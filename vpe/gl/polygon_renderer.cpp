@@ -73,6 +73,8 @@ class PolygonRenderer : public core::Renderer {
   void draw_sky(const core::DrawRequest& request, const ClipProjection& clip);
   void set_material(const core::DrawRequest& request);
   void draw_pass(const core::DrawRequest& request, const ClipProjection& clip, Target& to, bool image);
+  std::optional<double> draw_image(const core::DrawRequest& request, const ClipProjection& clip,
+                                   core::DrawResult& result);
   void read_range(const core::DrawRequest& request, ClipProjection clip, core::Frame& frame);
   Target& target(std::optional<Target>& slot, const glm::ivec2& size, int samples);
   std::optional<double> nodata_share(core::Mode mode, const Target& image) const;
@@ -313,30 +315,13 @@ void PolygonRenderer::read_range(const core::DrawRequest& request, ClipProjectio
   }
 }
 
-core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
-  core::DrawRequest request = asked;
-  core::for_body(request.settings, planet_->meta().body);
-  if (const std::string trouble = core::check(request.view); !trouble.empty())
-    throw std::runtime_error(trouble);
-  if (request.view.projection != core::Projection::kPerspective) {
-    throw std::runtime_error("the polygon backend draws perspective views only");
-  }
-  core::DrawResult result;
+// Draws the image's colours. Returns the share of nodata in it.
+std::optional<double> PolygonRenderer::draw_image(const core::DrawRequest& request, const ClipProjection& clip,
+                                                  core::DrawResult& result) {
   const core::SettingsValues& settings = request.settings;
-  planet_->tree().require_drawable(settings.exaggeration);
-  if (is_below_ground(request)) {
-    state(request, result.certificate);
-    core::draw_below_ground(request, result);
-    return result;
-  }
-  scene_.prepare(request);
-  scene_.report(result);
-
-  auto start = Clock::now();
   const glm::ivec2 size = core::drawn_size(request.view);
-  const ClipProjection clip = clip_projection(request.view, scene_.near_plane_m(request.view));
+  auto start = Clock::now();
   Target& image = target(colour_target_, size, settings.samples);
-  set_material(request);
   draw_pass(request, clip, image, true);
   glFinish();
   check_gl("draw");
@@ -344,8 +329,6 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
   scene_.record_draw_time(result.stats.draw_ms);
 
   start = Clock::now();
-  result.frame.width = size.x;
-  result.frame.height = size.y;
   image.read_colour(result.frame.colour);
   const std::optional<double> nodata = nodata_share(settings.mode, image);
   const bool lines = settings.mode == core::Mode::kWireframe || settings.mode == core::Mode::kMarkers;
@@ -356,11 +339,40 @@ core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
   if (smooth) core::smooth_edges(result.frame.colour, depth_, size.x, size.y, pool_);
   core::apply_gamma(result.frame.colour, settings.gamma);
   result.stats.draw_ms += ms_since(start);
-  start = Clock::now();
+  return nodata;
+}
+
+core::DrawResult PolygonRenderer::draw(const core::DrawRequest& asked) {
+  core::DrawRequest request = asked;
+  core::for_body(request.settings, planet_->meta().body);
+  if (const std::string trouble = core::check(request.view); !trouble.empty())
+    throw std::runtime_error(trouble);
+  if (request.view.projection != core::Projection::kPerspective) {
+    throw std::runtime_error("the polygon backend draws perspective views only");
+  }
+  core::DrawResult result;
+  planet_->tree().require_drawable(request.settings.exaggeration);
+  if (is_below_ground(request)) {
+    state(request, result.certificate);
+    core::draw_below_ground(request, result);
+    return result;
+  }
+  scene_.prepare(request);
+  scene_.report(result);
+
+  const glm::ivec2 size = core::drawn_size(request.view);
+  const ClipProjection clip = clip_projection(request.view, scene_.near_plane_m(request.view));
+  result.frame.width = size.x;
+  result.frame.height = size.y;
+  set_material(request);
+  std::optional<double> nodata;
+  if (request.want_colour) nodata = draw_image(request, clip, result);
+  const auto start = Clock::now();
   if (request.want_range) read_range(request, clip, result.frame);
   result.stats.read_ms += ms_since(start);
 
-  tiles_.drop_unused();
+  // The programs of images are kept while ranges are drawn between them.
+  if (request.want_colour) tiles_.drop_unused();
   result.certificate = certify(request, clip, result.frame);
   result.certificate.nodata_share = nodata;
   result.certificate.tiles_missing = result.stats.tiles_missing;

@@ -84,7 +84,13 @@ void TileStreamer::begin_frame(const core::DrawRequest& request) {
   uploaded_ = 0;
   evicted_ = 0;
   new_failures_.clear();
+  // The material stays that of the images before, so that their meshes serve and their textures are kept.
+  wants_textures_ = request.want_colour;
   set_shading(request);
+}
+
+bool TileStreamer::is_textured(const lod::TileKey& tile) const {
+  return wants_textures_ && gl::is_textured(tile, *planet_, material_);
 }
 
 void TileStreamer::set_shading(const core::DrawRequest& request) {
@@ -117,16 +123,21 @@ void TileStreamer::set_shading(const core::DrawRequest& request) {
 }
 
 void TileStreamer::drop_other_shadings() {
-  if (!std::exchange(has_other_shadings_, false)) return;
+  if (!wants_textures_ || !std::exchange(has_other_shadings_, false)) return;
   textures_.drop([&](const TextureDetail& t) { return t.shading != shading_; });
 }
 
 std::vector<TileNeed> TileStreamer::needs_of(const lod::Selection& selection, const core::View& view) const {
-  return tile_needs(selection.tiles, view, *planet_, *terrain_shader_, {material_, share(kTextureShare)});
+  std::vector<TileNeed> needs =
+      tile_needs(selection.tiles, view, *planet_, *terrain_shader_, {material_, share(kTextureShare)});
+  if (!wants_textures_) {
+    for (TileNeed& need : needs) need.texture = 0;
+  }
+  return needs;
 }
 
 TileNeed TileStreamer::coarse_need(const lod::TileKey& tile) const {
-  const bool textured = is_textured(tile, *planet_, material_);
+  const bool textured = is_textured(tile);
   return {{0, kTileCentre, needs_charts(tile, *planet_, material_)},
           !textured        ? 0
           : shading_->flat ? facet_texture(0)
@@ -167,9 +178,9 @@ bool TileStreamer::is_drawable(const lod::TileInfo& tile, int variant) {
   const bool mesh = meshes_.best(tile.key, frame_,
                                  [&](const MeshDetail& m) { return m.variant == variant ? 0 : -1; }) != nullptr;
   if (!mesh) return false;
-  return !is_textured(tile.key, *planet_, material_) ||
-         textures_.best(tile.key, frame_, [&](const TextureDetail& t) { return fits(t, variant) ? 0 : -1; }) !=
-             nullptr;
+  return !is_textured(tile.key) || textures_.best(tile.key, frame_, [&](const TextureDetail& t) {
+    return fits(t, variant) ? 0 : -1;
+  }) != nullptr;
 }
 
 const std::string* TileStreamer::failure(const lod::TileKey& tile) const {
@@ -223,7 +234,7 @@ void TileStreamer::upload(Pager::Loaded page) {
       break;
     }
     case PageKind::kTexture:
-      if (key.shading->flat != shading_->flat || !is_textured(key.tile, *planet_, material_)) return;
+      if (key.shading->flat != shading_->flat || !gl::is_textured(key.tile, *planet_, material_)) return;
       textures_.insert(key.tile, {key.detail, key.shading}, gl::upload(page.value.shaded), frame_);
       break;
     case PageKind::kGround:

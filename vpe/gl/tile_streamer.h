@@ -43,7 +43,7 @@ class TileStreamer {
 
   TileStreamer(std::shared_ptr<const paging::PlanetFile> planet, const RendererOptions& options);
 
-  // Begins a frame. Drops what a change of appearance makes useless.
+  // Begins a frame. Drops what a change of appearance makes useless. A frame without colours needs no textures.
   void begin_frame(const core::DrawRequest& request);
 
   const TileMaterial& material() const { return material_; }
@@ -122,6 +122,7 @@ class TileStreamer {
  private:
   std::size_t share(double part) const { return static_cast<std::size_t>(part * static_cast<double>(memory_)); }
   void set_shading(const core::DrawRequest& request);
+  bool is_textured(const lod::TileKey& tile) const;
   bool is_resident(const PageKey& page, std::uint64_t frame);
   std::vector<PageKey> absent_pages(const lod::Selection& selection, const core::View& view,
                                     std::uint64_t frame);
@@ -137,6 +138,7 @@ class TileStreamer {
   TileMaterial material_;
   std::shared_ptr<const ShadingParams> shading_;  // material_.shading, one object while it stays the same
   bool has_other_shadings_ = false;               // textures of earlier ones may be resident
+  bool wants_textures_ = true;                    // of this frame
   bool needs_occluders_ = false;                  // meshes are made with them, once a frame has needed them
   core::Appearance scale_appearance_;             // the appearance that scale_ was made for
   std::shared_ptr<const core::ColourScale> scale_;

@@ -24,6 +24,8 @@ bool shows_values(const Scene& scene) {
          (a.colour == Colour::kElevation || a.colour == Colour::kSlope || a.colour == Colour::kAspect);
 }
 
+constexpr const char* kElevationInKm = "Elevation, km";
+
 struct Tick {
   double value;
   std::string text;
@@ -50,7 +52,7 @@ LegendScale legend_scale(Colour colour, double low, double high) {
   const bool in_km =
       colour == Colour::kElevation && std::max(std::abs(low), std::abs(high)) >= kKilometresFrom_m;
   const double unit = in_km ? 1000 : 1;
-  legend.title = colour == Colour::kElevation ? in_km ? "Elevation, km" : "Elevation, m"
+  legend.title = colour == Colour::kElevation ? in_km ? kElevationInKm : "Elevation, m"
                  : colour == Colour::kSlope   ? "Slope"
                                               : "Aspect";
   const std::vector<double> values = base::nice_ticks_two_or_more(bottom / unit, top / unit, kTicks);
@@ -62,6 +64,21 @@ LegendScale legend_scale(Colour colour, double low, double high) {
   return legend;
 }
 
+// Labels the ends of a range that was asked for, in place of ticks that are too near to them.
+void label_ends(LegendScale& legend, Colour colour, double low, double high) {
+  constexpr double kApart = 0.1;    // share of the bar that a label takes
+  constexpr double kDigits = 20.0;  // ends are rounded as finely as this part of the range needs
+  const double span = std::abs(high - low);
+  const bool in_km = legend.title == kElevationInKm;
+  const double unit = in_km ? 1000 : 1;
+  const int decimals = base::step_decimals(base::nice_step_below(span / kDigits / unit));
+  for (const double end : {low, high}) {
+    std::erase_if(legend.ticks, [&](const Tick& tick) { return std::abs(tick.value - end) < kApart * span; });
+    legend.ticks.push_back(
+        {end, number_text(end / unit, decimals) + (colour == Colour::kElevation ? "" : "\u00b0")});
+  }
+}
+
 }  // namespace
 
 void draw_legend(LabelLayout& layout, const Scene& scene) {
@@ -69,7 +86,10 @@ void draw_legend(LabelLayout& layout, const Scene& scene) {
   Canvas& canvas = layout.canvas();
   const core::ColourScale scale(scene.appearance);
   if (scale.low() == scale.high()) return;  // a palette of one colour
-  const LegendScale legend = legend_scale(scene.appearance.colour, scale.low(), scale.high());
+  LegendScale legend = legend_scale(scene.appearance.colour, scale.low(), scale.high());
+  const bool is_whole_circle = !legend.ticks.empty() && legend.ticks.front().text == "N";
+  if (scene.appearance.palette_low != scene.appearance.palette_high && !is_whole_circle)
+    label_ends(legend, scene.appearance.colour, scale.low(), scale.high());
   const Font font = layout.font(14);
   const Font title_font = layout.font(14, true);
   const TextSize title = canvas.measure(legend.title, title_font);

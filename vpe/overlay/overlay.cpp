@@ -25,7 +25,15 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
   Canvas canvas(size.x, size.y);
   LabelLayout layout(canvas);
   std::vector<LineLabel> labels;
-  if (overlays.contours) labels = draw_contours(layout, *terrain, overlays.contour_m);
+  if (overlays.contours && scene.contours) {
+    const std::vector<float> range_m = ranges_of_same_ground(*terrain, *scene.contours);
+    Scene finer = scene;
+    finer.range_m = range_m;
+    finer.shift_px = scene.contours->shift_px;
+    labels = draw_contours(layout, VisibleTerrain(finer), overlays.contour_m);
+  } else if (overlays.contours) {
+    labels = draw_contours(layout, *terrain, overlays.contour_m);
+  }
   if (overlays.graticule) {
     const std::vector<LineLabel> more = draw_graticule(layout, *terrain, overlays.graticule_deg);
     labels.insert(labels.begin(), more.begin(), more.end());

@@ -35,13 +35,22 @@ namespace vpe::overlay {
 // draw. Colours are 0 where alpha is 0.
 using Layer = core::Image<core::Rgba>;
 
+// Ranges of the same view at another accuracy than the image's.
+struct FinerRanges {
+  std::span<const float> range_m;  // of the size of the image
+  double shift_px = 0;             // possible shift of their terrain in the image
+};
+
 struct Scene {
   core::View view;
   std::span<const float> range_m;  // core::Frame::range_m; required if needs_range()
   double radius_m = mars::kMarsRadius_m;
   core::Appearance appearance;  // for exaggeration and legend
   double shift_px = 0;          // possible shift of the terrain in the image (core::Certificate); for contours
-  bool has_imagery = true;      // mode textured shows imagery
+  // Ranges that contours are taken from; nullopt: from the image's own. They are used where the image shows the
+  // same ground, so lines end at the silhouettes of the image to within its shift.
+  std::optional<FinerRanges> contours;
+  bool has_imagery = true;  // mode textured shows imagery
   double time_s = 0;
   // North and up of the compass at the camera; nullopt: those of the ground below the camera.
   std::optional<mars::LocalFrame> frame;
@@ -68,8 +77,9 @@ inline constexpr double kHiddenShare = 0.01;
 // - graticule: lines where longitude and latitude of the terrain are multiples of the step, to within a pixel.
 //   Automatic steps put 4 to 10 lines of each kind into the middle nine tenths of the terrain in the image.
 // - contours: likewise for elevations, metres above the sphere without exaggeration. Every fifth line is
-//   heavier and labelled. The lines are those of the terrain as drawn, whose elevations may be wrong by
-//   shift_px * range / focal length. Lines fade where that is more than half of their distance in metres, and
+//   heavier and labelled. The lines are those of the terrain as drawn, or of Scene::contours, whose elevations
+//   may be wrong by shift_px * range / focal length. Lines fade where that is more than half of their distance
+// in metres, and
 //   disappear where it is all of it. Automatic steps are 1, 2, 5 times a power of ten, and large enough for
 //   that in the nearer half of the terrain.
 // - Neither crosses an edge where near terrain hides far terrain. Lines closer together than 5 px (at 720 rows)

@@ -11,6 +11,7 @@ namespace vpe::overlay {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr float kSky = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -127,6 +128,37 @@ std::vector<double> VisibleTerrain::elevations_m() const {
   const double radius_m = scene_.radius_m;
   const double factor = 1.0 / scene_.appearance.exaggeration;
   return values([=](const glm::dvec3& p) { return (glm::length(p) - radius_m) * factor; });
+}
+
+std::vector<float> ranges_of_same_ground(const VisibleTerrain& image, const FinerRanges& finer) {
+  constexpr double kFarthestShift_px = 4;
+  const Scene& scene = image.scene();
+  if (finer.range_m.size() != scene.range_m.size())
+    throw std::invalid_argument("finer ranges of another size than the image");
+  // A pixel at least: a silhouette may fall on either side of a pixel's centre. Bounds are of the middle.
+  const double shift_px = (scene.shift_px + finer.shift_px) * core::corner_stretch(scene.view);
+  const int reach = static_cast<int>(std::ceil(std::clamp(shift_px, 1.0, kFarthestShift_px)));
+  std::vector<float> out(finer.range_m.begin(), finer.range_m.end());
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      float& range_m = out[image.index(x, y)];
+      if (!std::isfinite(range_m)) continue;
+      float nearest_m = kSky;
+      float farthest_m = 0;
+      for (int v = std::max(0, y - reach); v <= std::min(image.height() - 1, y + reach); ++v) {
+        for (int u = std::max(0, x - reach); u <= std::min(image.width() - 1, x + reach); ++u) {
+          const float beside_m = scene.range_m[image.index(u, v)];
+          nearest_m = std::min(nearest_m, beside_m);
+          farthest_m = std::max(farthest_m, beside_m);
+        }
+      }
+      const auto here_m = static_cast<double>(range_m);
+      const bool is_same = here_m >= static_cast<double>(nearest_m) * (1 - kHiddenShare) &&
+                           here_m <= static_cast<double>(farthest_m) * (1 + kHiddenShare);
+      if (!is_same) range_m = kSky;
+    }
+  }
+  return out;
 }
 
 std::optional<CentralRange> central_range(const std::vector<double>& values, double period) {

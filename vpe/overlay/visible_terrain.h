@@ -61,6 +61,11 @@ class VisibleTerrain {
   glm::dvec3 down_{0, 0, 0};
 };
 
+// Returns the finer ranges where the image shows the same ground, and sky elsewhere: where no pixel of the
+// image within its shift shows ground as far away, but for kHiddenShare, the finer terrain is another hill.
+// Throws std::invalid_argument for ranges of another size.
+std::vector<float> ranges_of_same_ground(const VisibleTerrain& image, const FinerRanges& finer);
+
 // Range of the middle 90 % of values.
 struct CentralRange {
   double low;

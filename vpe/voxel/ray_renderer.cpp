@@ -116,8 +116,10 @@ core::Certificate RayRenderer::certify(const core::DrawRequest& request, const c
   c.shift_bound_px = usage.screen_space_error_px + c.quantisation_px;
   for (const int n : usage.tiles_by_level) c.tiles_drawn += n;
   c.image_bound_px = c.shift_bound_px;
-  c.nodata_share =
-      static_cast<double>(nodata_pixels) / static_cast<double>(std::max<std::size_t>(1, frame.colour.size()));
+  if (request.want_colour) {
+    c.nodata_share =
+        static_cast<double>(nodata_pixels) / static_cast<double>(std::max<std::size_t>(1, frame.colour.size()));
+  }
   const paging::PlanetMeta& meta = planet_->meta();
   core::state_data(c,
                    {.tolerance_px = request.settings.lod_tolerance_px,
@@ -243,12 +245,14 @@ core::DrawResult RayRenderer::draw_image(const core::DrawRequest& request) {
   frame.width = size.x;
   frame.height = size.y;
   const std::size_t pixels = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-  frame.colour.resize(pixels);
+  frame.colour.resize(request.want_colour ? pixels : 0);
   frame.range_m.swap(range_m_);
   frame.range_m.resize(pixels);
   ColumnWalk::Usage usage;
   std::int64_t nodata_pixels = 0;
-  if (request.settings.samples > 1) {
+  if (!request.want_colour) {
+    usage = cast(request, frame.range_m);
+  } else if (request.settings.samples > 1) {
     usage = draw_samples(request, frame, nodata_pixels);
   } else {
     usage = cast(request, frame.range_m);

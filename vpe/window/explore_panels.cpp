@@ -214,7 +214,7 @@ void ExploreWindow::draw_side() {
       ImGui::EndTabItem();
     }
     if (widgets_.tab("Appearance")) {
-      if (const std::string error = draw_appearance_panel(session_, widgets_); !error.empty())
+      if (const std::string error = draw_appearance_panel(session_, drawn(), widgets_); !error.empty())
         show_message(error, true);
       ImGui::EndTabItem();
     }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "vpe/core/appearance/palette.h"
 #include "vpe/core/backend.h"
 #include "vpe/core/frame.h"
 #include "vpe/core/image/image.h"
@@ -30,6 +31,7 @@ struct DrawnImage {
   core::RgbImage image;  // in stereo of another size than the view; empty after an error
   // Without its pixels. In stereo its figures and certificate are those of the left eye.
   core::DrawResult result;
+  std::optional<core::PaletteEnds> palette;  // the ends taken from a view, where the settings say so
   double seconds = 0;
   std::string error;  // empty if the image was drawn
 };

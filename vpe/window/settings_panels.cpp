@@ -16,7 +16,8 @@ namespace {
 // Draws rows of settings and applies changes.
 class SettingRows {
  public:
-  SettingRows(explore::Session& session, Widgets& widgets) : session_(session), widgets_(widgets) {}
+  SettingRows(explore::Session& session, const DrawnImage* drawn, Widgets& widgets)
+      : session_(session), drawn_(drawn), widgets_(widgets) {}
 
   // Draws the settings whose keys begin with `prefix` and with none of `without`.
   void group(std::string_view prefix, const std::vector<std::string_view>& without = {}) {
@@ -33,11 +34,20 @@ class SettingRows {
 
  private:
   void row(const core::SettingInfo& info);
+  double number_shown(const core::SettingInfo& info, const std::string& text) const;
 
   explore::Session& session_;
+  const DrawnImage* drawn_;
   Widgets& widgets_;
   std::string error_;
 };
+
+// Returns the number of a setting; where a word stands for it, the one in use.
+double SettingRows::number_shown(const core::SettingInfo& info, const std::string& text) const {
+  if (const auto number = base::parse_number(text)) return *number;
+  if (drawn_ == nullptr || !drawn_->palette) return 0;
+  return info.key == "palette.low" ? drawn_->palette->low : drawn_->palette->high;
+}
 
 void SettingRows::row(const core::SettingInfo& info) {
   const std::string key(info.key);
@@ -61,11 +71,21 @@ void SettingRows::row(const core::SettingInfo& info) {
     changed = widgets_.choose(key.c_str(), index, names, meaning.c_str());
     if (changed) next = names[static_cast<std::size_t>(index)];
   } else if (info.type == core::SettingType::kNumber || info.type == core::SettingType::kInteger) {
-    double value = base::parse_number(text).value_or(0.0);
+    double value = number_shown(info, text);
     const double step = info.type == core::SettingType::kInteger ? 1.0 : std::abs(value) >= 10 ? 1.0 : 0.1;
     changed = widgets_.number(key.c_str(), value, info.min, info.max, step, "%.6g", meaning.c_str());
     if (changed)
       next = base::format_number(info.type == core::SettingType::kInteger ? std::round(value) : value);
+    if (!info.word.empty()) {
+      const std::string label = std::string(info.word) + "##" + key;
+      const bool was = text == info.word;
+      bool is = was && !changed;
+      ImGui::SameLine();
+      if (widgets_.check(label.c_str(), is, "as the view asks for once it rests")) {
+        changed = true;
+        next = is ? std::string(info.word) : base::format_number(value);
+      }
+    }
   } else {
     changed = widgets_.text(key.c_str(), next, (meaning + ": " + info.grammar).c_str());
   }
@@ -75,8 +95,8 @@ void SettingRows::row(const core::SettingInfo& info) {
 
 }  // namespace
 
-std::string draw_appearance_panel(explore::Session& session, Widgets& widgets) {
-  SettingRows rows(session, widgets);
+std::string draw_appearance_panel(explore::Session& session, const DrawnImage* drawn, Widgets& widgets) {
+  SettingRows rows(session, drawn, widgets);
   ImGui::BeginChild("appearance");
   if (ImGui::CollapsingHeader("Ground", ImGuiTreeNodeFlags_DefaultOpen))
     rows.group("", {"lod.", "rays.", "cull.", "overlay.", "sun", "ramp.", "samples", "edges", "inspect", "haze",
@@ -92,7 +112,7 @@ std::string draw_appearance_panel(explore::Session& session, Widgets& widgets) {
 
 std::string draw_detail_panel(explore::Session& session, const DrawnImage* drawn,
                               const paging::PlanetFile& planet, Widgets& widgets) {
-  SettingRows rows(session, widgets);
+  SettingRows rows(session, drawn, widgets);
   ImGui::BeginChild("detail");
   if (ImGui::CollapsingHeader("Level of detail", ImGuiTreeNodeFlags_DefaultOpen)) rows.group("lod.");
   if (ImGui::CollapsingHeader("Rays", ImGuiTreeNodeFlags_DefaultOpen)) rows.group("rays.");

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "vpe/app/cli/interrupt.h"
+#include "vpe/app/picture/contour_ranges.h"
 
 namespace vpe::app {
 
@@ -162,6 +163,7 @@ bool FilmMaker::draw(std::size_t n) {
   const PlannedFrame planned = plan_.at(frame.index);
   log(frame, planned);
   core::DrawResult result;
+  std::optional<core::DrawResult> contours;
   core::DrawRequest request = planned.request;
   request.paging.timeout_s = options_.wait_s;
   if (n + 1 < frames_.size() && !frames_[n + 1].is_done()) {
@@ -172,6 +174,11 @@ bool FilmMaker::draw(std::size_t n) {
     result = renderer_->draw(request);
     reports_->failures.insert(reports_->failures.end(), result.failures.begin(), result.failures.end());
     require_complete(options_, result);
+    if (const auto finer = contour_request(request, result)) {
+      contours = renderer_->draw(*finer);
+      reports_->failures.insert(reports_->failures.end(), contours->failures.begin(), contours->failures.end());
+      require_complete(options_, *contours);
+    }
   } catch (const std::bad_alloc&) {
     throw;  // the next frame would not fit either
   } catch (const std::exception& e) {
@@ -182,12 +189,13 @@ bool FilmMaker::draw(std::size_t n) {
   if (reports_->stats) reports_->stats->row(frame.index, frame.time_s, result.stats, result.certificate);
   frame.figures = {result.stats, result.certificate};
   // The next run makes it again.
-  if (!result.missing.empty()) frame.fingerprint += kIncomplete;
+  if (!result.missing.empty() || (contours && !contours->missing.empty())) frame.fingerprint += kIncomplete;
   const auto image = std::make_shared<core::Frame>(std::move(result.frame));
+  const auto ground = std::make_shared<FrameGround>(
+      FrameGround{image->range_m, frame.figures.certificate, std::move(contours)});
   const std::int64_t group = (first_ + static_cast<std::int64_t>(n)) / target_.group_size();
-  sink_->push([this, group, &frame, image, request = planned.request] {
-    overlay::composite(overlays_.layer(request, *image, frame.figures.certificate, frame.time_s),
-                       image->colour);
+  sink_->push([this, group, &frame, image, ground, request = planned.request] {
+    overlay::composite(overlays_.layer(request, *ground, frame.time_s), image->colour);
     target_.add(group, frame, *image);
   });
   return true;

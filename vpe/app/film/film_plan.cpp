@@ -11,6 +11,7 @@
 
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/image_options.h"
+#include "vpe/app/picture/view_palette.h"
 #include "vpe/base/number.h"
 #include "vpe/overlay/overlay.h"
 
@@ -62,6 +63,10 @@ PlannedFrame FilmPlan::at(std::int64_t frame) const {
   out.time_s = scripts::frame_time(view_.fps, frame);
   out.settings = base_;
   path_.apply_settings(out.time_s, out.settings);
+  for (const FilmPalette& palette : palettes_) {
+    const core::SettingsValues& values = out.settings.values();
+    if (core::has_auto_ends(values) && values.colour == palette.colour) take_ends(out.settings, palette.ends);
+  }
   out.state = path_.at(out.time_s);
   core::DrawRequest& request = out.request;
   request.view.camera = out.state.camera;

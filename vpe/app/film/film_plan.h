@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scripts/flight.h"
 #include "scripts/path.h"
 #include "vpe/app/film/film_frame.h"
 #include "vpe/app/picture/fingerprint.h"
+#include "vpe/core/appearance/palette.h"
 
 namespace vpe::app {
 
@@ -39,7 +41,13 @@ struct PlannedFrame {
   core::DrawRequest request;
 };
 
-// Turns times of a flight into draw requests. Immutable; any thread may call every member at any time.
+// The ends of the palette where a film shows a value and takes them from its views (film_palette.h).
+struct FilmPalette {
+  core::Colour colour = core::Colour::kElevation;
+  core::PaletteEnds ends = {};
+};
+
+// Turns times of a flight into draw requests. Any thread may call every const member at any time.
 //
 // Typical usage:
 //   const FilmPlan plan(basis, flight.view, scripts::Path(flight, radius_m, terrain, exaggeration), settings);
@@ -55,6 +63,10 @@ class FilmPlan {
   const scripts::Path& path() const { return path_; }
   const scripts::FlightView& view() const { return view_; }
 
+  // Puts these ends in place of auto in the frames that at() returns from now on.
+  void take_palettes(std::vector<FilmPalette> palettes) { palettes_ = std::move(palettes); }
+  const std::vector<FilmPalette>& palettes() const { return palettes_; }
+
   // Returns a frame by its index in the flight.
   PlannedFrame at(std::int64_t frame) const;
 
@@ -68,6 +80,7 @@ class FilmPlan {
   core::Settings base_;
   std::vector<core::InterestRegion> interest_;
   mars::Pose start_;
+  std::vector<FilmPalette> palettes_;
 };
 
 }  // namespace vpe::app

@@ -90,6 +90,12 @@ void write_manifest(const fs::path& path, const ManifestHead& head, const json& 
       {"fps", scripts::to_text(head.rate)},
       {"size", std::to_string(head.width) + "x" + std::to_string(head.height)},
       {"complete", std::all_of(frames.begin(), frames.end(), [](const FilmFrame& f) { return f.is_done(); })}};
+  for (const FilmPalette& palette : head.palettes) {
+    const char* value = palette.colour == core::Colour::kSlope    ? "slope"
+                        : palette.colour == core::Colour::kAspect ? "aspect"
+                                                                  : "elevation";
+    top["palette"][value] = {{"low", palette.ends.low}, {"high", palette.ends.high}};
+  }
   if (!head.frames.empty()) top["selected"] = head.frames;
   if (head.shard.of > 1) top["part"] = std::to_string(head.shard.number) + "/" + std::to_string(head.shard.of);
   top.update(target);

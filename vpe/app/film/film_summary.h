@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "scripts/frame_rate.h"
 #include "vpe/app/film/film_frame.h"
+#include "vpe/app/film/film_plan.h"
 #include "vpe/app/planet/shard_option.h"
 
 namespace vpe::app {
@@ -24,6 +26,7 @@ struct ManifestHead {
   int height = 0;
   std::string frames;  // --frames as given
   Shard shard;
+  std::vector<FilmPalette> palettes;  // ends that were taken from the views
 };
 
 // Return the manifest's path: FOLDER/manifest.json for a folder, FILE.mp4.json for a video. A run over a part

@@ -14,10 +14,12 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/film/commands.h"
+#include "vpe/app/film/film_palette.h"
 #include "vpe/app/film/film_session.h"
 #include "vpe/app/picture/backend_choice.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/sun_statement.h"
+#include "vpe/app/picture/view_palette.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 #include "vpe/gl/context.h"
@@ -210,14 +212,20 @@ bool film_suits_rays(const FilmPlan& plan, const scripts::Flight& flight, const 
 // different machines and must be alike, so polygons are preferred there.
 std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& common,
                                    const scripts::Flight& flight, const core::Settings& base,
-                                   const paging::PlanetFile& planet, const scripts::TerrainHeight& terrain) {
+                                   const std::shared_ptr<const paging::PlanetFile>& planet,
+                                   const scripts::TerrainHeight& terrain) {
   const RenderOptions& image = arguments.image;
+  const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
+  std::optional<std::vector<FilmPalette>> palettes;  // the same for every backend
   const auto plan_of = [&](const BackendChoice& chosen) {
-    return PlannedFilm{
+    PlannedFilm film{
         chosen.backend,
-        FilmPlan({version(), planet.meta().identity, chosen.backend, common.memory_mb}, flight.view,
-                 scripts::Path(flight, planet.radius_m(), terrain, base.values().exaggeration), chosen.settings,
-                 parse_interest(image))};
+        FilmPlan({version(), planet->meta().identity, chosen.backend, common.memory_mb}, flight.view,
+                 scripts::Path(flight, planet->radius_m(), terrain, base.values().exaggeration),
+                 chosen.settings, parse_interest(image))};
+    if (!palettes) palettes = film_palettes(film.plan, count, planet, common);
+    film.plan.take_palettes(*palettes);
+    return film;
   };
   if (image.backend) return {plan_of({*image.backend, base})};
   std::vector<PlannedFilm> films{plan_of({core::Backend::kPolygon, base})};
@@ -230,11 +238,10 @@ std::vector<PlannedFilm> plan_film(const FlyArguments& arguments, const Common& 
     return films;
   }
   constexpr std::int64_t kMostSamples = 100;
-  const std::int64_t count = scripts::frame_count(flight.view.fps, scripts::duration_s(flight));
   const std::int64_t samples = std::min(count, kMostSamples);
   std::vector<core::DrawRequest> images;
   for (std::int64_t k = 0; k < samples; ++k) images.push_back(plan.at(k * count / samples).request);
-  const BackendChoice rays = choose_backend(image, base, images, planet.radius_m(), false);
+  const BackendChoice rays = choose_backend(image, base, images, planet->radius_m(), false);
   if (rays.backend != core::Backend::kRay) return films;
   films.push_back(plan_of(rays));
   if (arguments.part.empty() && !gl::has_gpu()) std::swap(films[0], films[1]);
@@ -267,7 +274,7 @@ void fly(FlyArguments& arguments, const Common& common) {
                            mars::LonLat place, double exaggeration) {
     return surface->at(mars::direction(place), exaggeration).height_m;
   };
-  const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, *planet, terrain);
+  const std::vector<PlannedFilm> films = plan_film(arguments, common, flight, base, planet, terrain);
   const PlannedFilm& film = select_plan(session, films, common.threads);
   const FilmPlan& plan = film.plan;
   check_parts(arguments, session, request.shard, common.quiet);
@@ -276,6 +283,9 @@ void fly(FlyArguments& arguments, const Common& common) {
   require_known_sun(first.settings, meta.body);
   const auto sun = sun_statement(first.settings, mars::lon_lat(first.view.camera.position_m));
   if (!common.quiet) print_sun(sun);
+  if (!common.quiet && needs_view_palette(base.values(), *planet)) {
+    std::fprintf(stderr, "vpe: %s\n", palette_text(first.settings).c_str());
+  }
   if (!arguments.allow_underground) require_above_ground(arguments.flight, plan, terrain);
 
   FrameOverlays overlays(planet);
@@ -294,7 +304,8 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
   session.finish({version(), meta.identity, meta.illustration, fs::path(arguments.flight).filename().string(),
-                  flight.view.fps, flight.view.width, flight.view.height, arguments.frames, request.shard});
+                  flight.view.fps, flight.view.width, flight.view.height, arguments.frames, request.shard,
+                  plan.palettes()});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report(arguments, common, session, seconds, meta.illustration, sun);
 }

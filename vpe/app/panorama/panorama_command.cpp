@@ -1,5 +1,6 @@
 // vpe panorama.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -20,6 +21,7 @@
 #include "vpe/app/panorama/panorama_stereo.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/sun_statement.h"
+#include "vpe/app/picture/view_palette.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 #include "vpe/core/json_text.h"
@@ -79,6 +81,30 @@ core::DrawRequest draw_request_for(const PanoramaRequest& request) {
   out.interest = parse_interest(options);
   out.paging.timeout_s = options.wait_s;
   return out;
+}
+
+// Takes the ends of the palette from all that the panorama shows, if the settings say so. The recipe has the
+// numbers.
+void take_palette_of_panorama(PanoramaRequest& request, const std::shared_ptr<const paging::PlanetFile>& planet,
+                              const Common& common) {
+  constexpr std::int64_t kMostColumns = 960;
+  if (!needs_view_palette(request.settings.values(), *planet)) return;
+  panorama::PlanOptions options = request.map;
+  options.degrees_per_pixel.reset();
+  options.width_px = std::min(kMostColumns, panorama::plan_panorama(request.map).map.width_px);
+  const panorama::PanoramaMap map = panorama::plan_panorama(options).map;
+  const panorama::Viewpoint viewpoint = panorama::viewpoint_of(request.camera, planet->radius_m());
+  core::DrawRequest sample;
+  sample.settings = request.settings.values();
+  ViewPalette view(planet, common);
+  for (const panorama::Strip& strip : panorama::strips_of(map)) {
+    for (const panorama::Piece& piece : panorama::pieces_of(map, viewpoint, strip, 0)) {
+      sample.view = piece.view;
+      view.add(sample);
+    }
+  }
+  take_ends(request.settings, view.ends());
+  if (!common.quiet) std::fprintf(stderr, "vpe: %s\n", palette_text(request.settings.values()).c_str());
 }
 
 std::string sidecar_text(const PanoramaRequest& request, const PanoramaPlan& plan,
@@ -204,6 +230,7 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   const Ground ground = ground_below(planet, request);
   place_camera(request, ground);
   require_known_sun(request.settings.values(), meta.body);
+  take_palette_of_panorama(request, planet, common);
   const core::DrawRequest draw_request = draw_request_for(request);
   const auto sun = sun_statement(draw_request.settings, {request.camera.lon_deg, request.camera.lat_deg});
   if (!common.quiet) print_sun(sun);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "vpe/app/picture/contour_ranges.h"
 #include "vpe/core/appearance/sky.h"
 
 namespace vpe::app {
@@ -21,18 +22,21 @@ void FrameOverlays::load(const core::Overlays& overlays) {
   names_.emplace(overlays.names, std::move(names));
 }
 
-overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const core::Frame& frame,
-                                    const core::Certificate& certificate, double time_s) {
+overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const FrameGround& ground,
+                                    double time_s) {
   const core::SettingsValues& settings = request.settings;
   if (!overlay::any(settings)) return {};
   load(settings);
   overlay::Scene scene;
   scene.view = request.view;
-  scene.range_m = frame.range_m;
+  scene.range_m = ground.range_m;
   scene.radius_m = planet_->radius_m();
   scene.appearance = settings;
   core::for_body(scene.appearance, planet_->meta().body);
-  scene.shift_px = certificate.image_bound_px.value_or(certificate.shift_bound_px);
+  scene.shift_px = shift_px(ground.certificate);
+  if (ground.contours) {
+    scene.contours = {ground.contours->frame.range_m, shift_px(ground.contours->certificate)};
+  }
   scene.has_imagery = has_imagery_;
   scene.time_s = time_s;
   if (!settings.names.empty()) {

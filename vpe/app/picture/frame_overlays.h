@@ -3,6 +3,8 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,13 @@
 
 namespace vpe::app {
 
+// The ranges of a frame, and those that its contours are taken from where they are others.
+struct FrameGround {
+  std::span<const float> range_m;
+  core::Certificate certificate;
+  std::optional<core::DrawResult> contours;  // of contour_request()
+};
+
 // Draws the overlays of one planet's images. Keeps gazetteers and the heights of their places from image to
 // image. One thread at a time.
 //
@@ -19,7 +28,9 @@ namespace vpe::app {
 //   FrameOverlays overlays(planet);
 //   overlays.load(request.settings);  // reports a bad gazetteer before any work
 //   core::DrawResult result = renderer->draw(request);
-//   overlay::composite(overlays.layer(request, result.frame, result.certificate, time_s), result.frame.colour);
+//   FrameGround ground{result.frame.range_m, result.certificate};
+//   if (const auto finer = contour_request(request, result)) ... ground.contours = renderer->draw(*finer)
+//   overlay::composite(overlays.layer(request, ground, time_s), result.frame.colour);
 class FrameOverlays {
  public:
   explicit FrameOverlays(std::shared_ptr<const paging::PlanetFile> planet);
@@ -30,8 +41,7 @@ class FrameOverlays {
   // Draws the overlay layer of a frame that was drawn for the request, with its range image when
   // overlay::needs_range(). Returns an empty layer when no overlay is set. Throws what overlay::draw() and
   // paging::Surface throw.
-  overlay::Layer layer(const core::DrawRequest& request, const core::Frame& frame,
-                       const core::Certificate& certificate, double time_s);
+  overlay::Layer layer(const core::DrawRequest& request, const FrameGround& ground, double time_s);
 
  private:
   struct Names {

@@ -87,20 +87,6 @@ std::vector<core::InterestRegion> parse_interest(const RenderOptions& options) {
 
 std::size_t memory_bytes(const Common& common) { return static_cast<std::size_t>(common.memory_mb) << 20; }
 
-void note_contours(const RenderOptions& options, const core::SettingsValues& settings, bool quiet) {
-  constexpr double kFine_px = 0.1;
-  const bool is_named =
-      options.tolerance_px >= 0 || std::ranges::any_of(options.set, [](const std::string& text) {
-        return text.starts_with("lod.tolerance=");
-      });
-  if (quiet || is_named || !settings.contours || settings.lod_tolerance_px <= kFine_px) return;
-  std::fprintf(
-      stderr,
-      "vpe: note: contours are those of the ground as drawn, here within %s px; --tolerance 0.1 makes them "
-      "finer\n",
-      base::format_number(settings.lod_tolerance_px).c_str());
-}
-
 core::Settings make_settings(const RenderOptions& options) {
   core::Settings settings;
   if (options.tolerance_px >= 0) {

@@ -44,10 +44,6 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 // every --set in order. Throws UsageError that names the key.
 core::Settings make_settings(const RenderOptions& options);
 
-// Says on stderr that contours are those of the ground as drawn, if they are wanted and nobody named a tolerance:
-// overlays change no image, so they cannot ask for a finer one by themselves.
-void note_contours(const RenderOptions& options, const core::SettingsValues& settings, bool quiet);
-
 // Returns the regions of every --interest, in order. Throws UsageError that says what is expected.
 std::vector<core::InterestRegion> parse_interest(const RenderOptions& options);
 

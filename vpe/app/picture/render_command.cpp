@@ -16,12 +16,14 @@
 #include "vpe/app/cli/output.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/backend_choice.h"
+#include "vpe/app/picture/contour_ranges.h"
 #include "vpe/app/picture/explain_lod.h"
 #include "vpe/app/picture/frame_overlays.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/render_request.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/app/picture/sun_statement.h"
+#include "vpe/app/picture/view_palette.h"
 #include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/file.h"
@@ -152,6 +154,7 @@ void write_image_files(const RenderArguments& arguments, const Common& common, c
     print_json({{"output", arguments.output},
                 {"backend", core::to_string(*arguments.image.backend)},
                 {"sun", to_json(sun_statement(request.settings, place_below(request)))},
+                {"palette", palette_json(recipe.palette)},
                 {"certificate", certificate},
                 {"stats", to_json(result.stats)}});
   } else if (!common.quiet) {
@@ -194,6 +197,18 @@ void require_above_ground(const RenderArguments& arguments,
                            "(--allow-underground draws what is there: nothing)");
 }
 
+// Takes the ends of the palette from the view, if the settings say so. Returns them.
+std::optional<core::PaletteEnds> take_palette_of_view(core::DrawRequest& request,
+                                                      const std::shared_ptr<const paging::PlanetFile>& planet,
+                                                      const Common& common) {
+  if (!needs_view_palette(request.settings, *planet)) return std::nullopt;
+  ViewPalette view(planet, common);
+  view.add(reduced(request));
+  take_ends(request.settings, view.ends());
+  if (!common.quiet) std::fprintf(stderr, "vpe: %s\n", palette_text(request.settings).c_str());
+  return core::PaletteEnds{*request.settings.palette_low, *request.settings.palette_high};
+}
+
 void render(RenderArguments& arguments, const Common& common) {
   // Wrong usage, outputs that cannot be written and a bad gazetteer are reported before any work.
   const std::string identity = take_recipe(arguments, common);
@@ -201,7 +216,6 @@ void render(RenderArguments& arguments, const Common& common) {
   if (!common.quiet && !parsed.pose.note.empty())
     std::fprintf(stderr, "vpe: note: %s\n", parsed.pose.note.c_str());
   check_render_outputs(arguments, parsed.settings.values());
-  note_contours(arguments.image, parsed.settings.values(), common.quiet);
   const std::string& names = parsed.settings.values().names;
   if (!names.empty()) (void)core::read_gazetteer(names);
 
@@ -226,7 +240,8 @@ void render(RenderArguments& arguments, const Common& common) {
   resolve_backend(arguments, settings, request, planet->radius_m());
   require_above_ground(arguments, planet, request);
   const auto renderer = renderer_for(arguments, common, planet, settings, request, is_backend_named);
-  const RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
+  RenderRecipe recipe = recipe_of(arguments, settings, pose, parsed, planet->meta());
+  recipe.palette = take_palette_of_view(request, planet, common);
   // Makes the finished image of one camera.
   const auto draw = [&](const core::DrawRequest& one) {
     core::DrawResult result = renderer->draw(one);
@@ -236,7 +251,13 @@ void render(RenderArguments& arguments, const Common& common) {
       note_limited_by_memory(arguments.image, common, one, result);
     }
     if (!overlay::any(one.settings)) return result;
-    const overlay::Layer layer = FrameOverlays(planet).layer(one, result.frame, result.certificate, 0);
+    FrameGround ground{result.frame.range_m, result.certificate, {}};
+    if (const auto finer = contour_request(one, result)) {
+      ground.contours = renderer->draw(*finer);
+      require_complete(arguments.image, *ground.contours);
+      if (!common.quiet) print_failures(ground.contours->failures);
+    }
+    const overlay::Layer layer = FrameOverlays(planet).layer(one, ground, 0);
     if (arguments.overlay_layer.empty()) {
       overlay::composite(layer, result.frame.colour);
     } else {

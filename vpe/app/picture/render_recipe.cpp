@@ -36,6 +36,7 @@ ordered_json recipe_json(const RenderRecipe& r) {
   if (!r.interest.empty()) out["interest"] = r.interest;
   if (!r.stereo.layout.empty()) out["stereo"] = eyes_json(r.stereo);
   if (r.allow_underground) out["allow_underground"] = true;
+  if (r.palette) out["palette"] = palette_json(r.palette);
   return out;
 }
 
@@ -68,6 +69,11 @@ RenderRecipe recipe_from(const nlohmann::json& top) {
 }
 
 }  // namespace
+
+nlohmann::json palette_json(const std::optional<core::PaletteEnds>& palette) {
+  if (!palette) return {};
+  return {{"low", palette->low}, {"high", palette->high}};
+}
 
 std::vector<std::string> changed_settings(const core::Settings& settings, bool overlays) {
   std::vector<std::string> changed;

@@ -10,6 +10,7 @@
 #include "mars/geodesy/pose.h"
 #include "paging/planet/planet_meta.h"
 #include "vpe/app/picture/stereo_render.h"
+#include "vpe/core/appearance/palette.h"
 #include "vpe/core/appearance/settings.h"
 #include "vpe/core/backend.h"
 #include "vpe/core/image/image.h"
@@ -28,8 +29,13 @@ struct RenderRecipe {
   std::vector<std::string> interest;
   StereoArguments stereo;
   bool allow_underground = false;
+  std::optional<core::PaletteEnds>
+      palette;         // those taken from the view; for readers, since they follow from the rest
   std::string planet;  // PlanetMeta::identity
 };
+
+// Returns an object with low and high, or null.
+nlohmann::json palette_json(const std::optional<core::PaletteEnds>& palette);
 
 // Returns the settings that differ from the defaults, as KEY=VALUE. Without `overlays` those are left out.
 std::vector<std::string> changed_settings(const core::Settings& settings, bool overlays = true);

@@ -18,6 +18,7 @@ constexpr double kMaxConvergence_m = 1e12;
 double base_of_view(core::DrawRequest request,
                     const std::function<core::DrawResult(const core::DrawRequest&)>& draw) {
   request.want_range = true;
+  static_cast<core::Overlays&>(request.settings) = {};
   const auto base_m = core::comfortable_base_m(draw(request).frame.range_m);
   if (!base_m)
     throw std::runtime_error(

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "mars/geodesy/sun.h"
+#include "vpe/app/picture/contour_ranges.h"
 #include "vpe/app/picture/stereo_render.h"
 #include "vpe/overlay/overlay.h"
 
@@ -72,8 +73,10 @@ ScenePainter::ScenePainter(const FeatureScene& scene, std::shared_ptr<const pagi
 core::FrameStats ScenePainter::paint(core::Renderer& renderer, const core::DrawRequest& request) {
   const auto draw = [&](const core::DrawRequest& eye) {
     core::DrawResult result = renderer.draw(eye);
-    if (overlays_)
-      overlay::composite(overlays_->layer(eye, result.frame, result.certificate, 0), result.frame.colour);
+    if (!overlays_) return result;
+    FrameGround ground{result.frame.range_m, result.certificate, {}};
+    if (const auto finer = contour_request(eye, result)) ground.contours = renderer.draw(*finer);
+    overlay::composite(overlays_->layer(eye, ground, 0), result.frame.colour);
     return result;
   };
   core::DrawResult result;

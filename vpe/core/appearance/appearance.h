@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 
 namespace vpe::core {
@@ -58,8 +59,10 @@ struct Appearance : HsvRamp {
   Shading shading = Shading::kGouraud;
   Colour colour = Colour::kElevation;
   std::string palette = "auto";  // a name, hsv, or a file; vpe/core/appearance/palette.h
-  double palette_low = 0;        // values at the palette's ends; if both are equal, a range that suits `colour`
-  double palette_high = 0;
+  // Values at the palette's ends; if both are equal, a range that suits `colour`. nullopt: as the view asks
+  // for, which whoever draws decides first (vpe/app/picture/view_palette.h); ColourScale refuses it.
+  std::optional<double> palette_low = 0.0;
+  std::optional<double> palette_high = 0.0;
   bool colourise = false;   // imagery keeps its brightness and takes hue and saturation from `colour`
   double exaggeration = 1;  // factor on elevations; larger: steeper ground and larger errors
   // Position of the sun: "local" (azimuth and elevation at the ground below the camera), a date, or Ls and

@@ -31,6 +31,9 @@ struct Overlays {
   double graticule_deg = 0;  // between lines; 0: a step that suits the image
   bool contours = false;
   double contour_m = 0;  // between lines; 0: a step that suits the image
+  // Largest error of the ground that contours are taken from. Smaller: truer lines, slower; 0: the reference
+  // surface itself. An image that is coarser gets ranges of its own for its contours.
+  double contour_tolerance_px = 0.1;
   bool scale_bar = false;
   bool north_arrow = false;
   bool time_code = false;

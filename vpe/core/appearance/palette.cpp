@@ -42,7 +42,9 @@ Palette palette_of(const Appearance& a) {
 
 Range range_of(const Appearance& a, const Palette& palette) {
   const Range usual = usual_range(a.colour);
-  if (a.palette_low != a.palette_high) return {a.palette_low, a.palette_high};
+  if (!a.palette_low || !a.palette_high)
+    throw std::invalid_argument("the ends of the palette were not taken from the view");
+  if (*a.palette_low != *a.palette_high) return {*a.palette_low, *a.palette_high};
   const bool has_values = palette.scale() == Palette::Scale::kValue;
   const bool is_of_metres = has_values && !palette_file(a.palette);
   if (!has_values || (is_of_metres && a.colour != Colour::kElevation)) return usual;
@@ -135,6 +137,10 @@ std::string palette_grammar() {
   std::string text = "auto, hsv";
   for (const std::string_view name : palette_names()) text.append(", ").append(name);
   return text + ", or a file with lines 'value r g b' (as gdaldem color-relief reads) or 'fraction r g b'";
+}
+
+PaletteEnds ends_of(const Appearance& a, const PaletteEnds& view) {
+  return {a.palette_low.value_or(view.low), a.palette_high.value_or(view.high)};
 }
 
 ColourScale::ColourScale(const Appearance& appearance)

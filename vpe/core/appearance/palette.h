@@ -85,6 +85,21 @@ std::string palette_problem(const std::string& palette);
 // Returns what palette_problem() accepts, in words.
 std::string palette_grammar();
 
+// The values at the ends of a palette.
+struct PaletteEnds {
+  double low = 0;
+  double high = 0;
+
+  bool operator==(const PaletteEnds&) const = default;
+};
+
+// Returns true if an end of the palette is to be taken from the view (palette.low=auto, palette.high=auto).
+inline bool has_auto_ends(const Appearance& a) { return !a.palette_low || !a.palette_high; }
+
+// Returns both ends with those of the view in place of auto. Ends that are equal then, of a view without ground
+// or of flat ground, mean the range that suits the value shown.
+PaletteEnds ends_of(const Appearance& a, const PaletteEnds& view);
+
 // Maps the value that `colour` shows to its colour. Regular type; const functions may be called from any
 // thread.
 //
@@ -94,8 +109,8 @@ std::string palette_grammar();
 // is stretched over elevation -8200 to 21300 m, slope 0 to 45 or aspect 0 to 360 degrees.
 class ColourScale {
  public:
-  // Reads the palette's file. Throws std::invalid_argument unless the colour is elevation, slope or aspect, and
-  // std::runtime_error as read_palette() does.
+  // Reads the palette's file. Throws std::invalid_argument unless the colour is elevation, slope or aspect and
+  // both ends are numbers, and std::runtime_error as read_palette() does.
   explicit ColourScale(const Appearance& appearance);
 
   double low() const { return low_; }  // ends of the range that a legend shows; low > high if reversed

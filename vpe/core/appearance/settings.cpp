@@ -39,10 +39,11 @@ const KeyRegistry<SettingsValues>& registry() {
        "post"},
       {"palette", Declare::text<&V::palette>(palette_grammar(), palette_problem), "",
        "colours of elevation, slope and aspect; auto: a palette that suits the value shown"},
-      {"palette.low", Declare::number<&V::palette_low>(-1e6, 1e6), "",
+      {"palette.low", Declare::number_or_word<&V::palette_low>(-1e6, 1e6, "auto"), "",
        "value at the palette's lower end, metres or degrees; both ends equal: a range that suits the value "
-       "shown"},
-      {"palette.high", Declare::number<&V::palette_high>(-1e6, 1e6), "", "value at the palette's upper end"},
+       "shown; auto: 2 % of what the view shows lie below"},
+      {"palette.high", Declare::number_or_word<&V::palette_high>(-1e6, 1e6, "auto"), "",
+       "value at the palette's upper end; auto: 2 % of what the view shows lie above"},
       {"ramp.low.hue", Declare::number<&V::low_hue_deg>(-360, 720), "deg", "palette=hsv: hue at the lower end"},
       {"ramp.low.saturation", Declare::number<&V::low_saturation>(0, 1), "",
        "palette=hsv: saturation at the lower end"},
@@ -84,6 +85,9 @@ const KeyRegistry<SettingsValues>& registry() {
       {"overlay.contours", Declare::toggle<&V::contours>(), "", "lines of equal elevation"},
       {"overlay.contours.step", Declare::number<&V::contour_m>(0, 1e6), "m",
        "difference between the lines; 0 = a step that suits the image"},
+      {"overlay.contours.tolerance", Declare::number<&V::contour_tolerance_px>(0, 1000), "px",
+       "largest error of the ground that the lines are taken from; where the image is coarser, finer ground is "
+       "looked at for them alone; 0: the exact surface"},
       {"overlay.scale", Declare::toggle<&V::scale_bar>(), "",
        "bar of a round length at the ground in the image centre"},
       {"overlay.north", Declare::toggle<&V::north_arrow>(), "", "arrow to the north"},
@@ -177,6 +181,10 @@ SettingInfo setting_info(const KeyInfo& key, const KeyValue& default_value) {
   if (const auto* number = std::get_if<NumberKey>(&key.type)) {
     info.min = number->min;
     info.max = number->max;
+  } else if (const auto* either = std::get_if<NumberOrWordKey>(&key.type)) {
+    info.min = either->min;
+    info.max = either->max;
+    info.word = either->word;
   } else if (const auto* integer = std::get_if<IntegerKey>(&key.type)) {
     info.type = SettingType::kInteger;
     info.min = integer->min;

@@ -91,6 +91,7 @@ struct SettingInfo {
   SettingType type = SettingType::kNumber;
   double min = 0;  // numbers and integers; both ends are allowed
   double max = 0;
+  std::string_view word;                  // allowed in place of a number; empty: none
   std::vector<std::string_view> choices;  // words allowed, for kChoice
   std::string grammar;                    // what is allowed, for kTable and kText
   std::string default_text;

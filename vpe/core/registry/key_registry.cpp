@@ -66,6 +66,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::optional<KeyValue> read_value(const KeyInfo& key, std::string_view text, const SwitchWords& words) {
   return std::visit(Overloaded{
                         [&](const NumberKey&) -> std::optional<KeyValue> { return base::parse_number(text); },
+                        [&](const NumberOrWordKey& k) -> std::optional<KeyValue> {
+                          if (text == k.word) return NumberOrWord();
+                          const std::optional<double> number = base::parse_number(text);
+                          if (!number) return std::nullopt;
+                          return NumberOrWord(number);
+                        },
                         [&](const IntegerKey& k) -> std::optional<KeyValue> {
                           const std::optional<std::int64_t> value = base::parse_integer(text);
                           if (!value || *value < k.min || *value > k.max) return std::nullopt;
@@ -90,6 +96,10 @@ bool is_allowed(const KeyInfo& key, const KeyValue& value) {
                         [&](const NumberKey& k) {
                           const auto number = std::get<double>(value);
                           return number >= k.min && number <= k.max;
+                        },
+                        [&](const NumberOrWordKey& k) {
+                          const std::optional<double> number = std::get<NumberOrWord>(value).number;
+                          return !number || (*number >= k.min && *number <= k.max);
                         },
                         [&](const IntegerKey& k) {
                           const int number = std::get<int>(value);
@@ -128,6 +138,10 @@ std::string print_value(const KeyInfo& key, const KeyValue& value, const SwitchW
   return std::visit(
       Overloaded{
           [&](const NumberKey&) { return base::format_number(std::get<double>(value)); },
+          [&](const NumberOrWordKey& k) {
+            const std::optional<double> number = std::get<NumberOrWord>(value).number;
+            return number ? base::format_number(*number) : std::string(k.word);
+          },
           [&](const IntegerKey&) { return std::to_string(std::get<int>(value)); },
           [&](const SwitchKey&) { return std::string(std::get<bool>(value) ? words.on : words.off); },
           [&](const ChoiceKey& k) {
@@ -155,6 +169,10 @@ std::string allowed_text(const KeyInfo& key, const SwitchWords& words) {
       Overloaded{
           [&](const NumberKey& k) {
             return "a number from " + base::format_number(k.min) + " to " + base::format_number(k.max) + unit;
+          },
+          [&](const NumberOrWordKey& k) {
+            return "a number from " + base::format_number(k.min) + " to " + base::format_number(k.max) + unit +
+                   ", or " + std::string(k.word);
           },
           [&](const IntegerKey& k) {
             return "a whole number from " + std::to_string(k.min) + " to " + std::to_string(k.max) + unit;

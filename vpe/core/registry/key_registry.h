@@ -36,6 +36,12 @@ struct NumberKey {
   double min = 0;  // both ends are allowed
   double max = 0;
 };
+// A number, or one word in place of it.
+struct NumberOrWordKey {
+  double min = 0;  // both ends are allowed
+  double max = 0;
+  std::string_view word;  // stands for no number
+};
 struct IntegerKey {
   int min = 0;  // both ends are allowed
   int max = 0;
@@ -55,10 +61,22 @@ struct TextKey {
 struct TableKey {};  // a LevelTable
 struct PoseKey {};   // six numbers in the order of mars::Pose, or none
 
-using KeyType = std::variant<NumberKey, IntegerKey, SwitchKey, ChoiceKey, TextKey, TableKey, PoseKey>;
+using KeyType =
+    std::variant<NumberKey, NumberOrWordKey, IntegerKey, SwitchKey, ChoiceKey, TextKey, TableKey, PoseKey>;
+
+// The value of a NumberOrWordKey. It is no plain optional, to which optional values of other types would
+// convert.
+struct NumberOrWord {
+  explicit NumberOrWord(std::optional<double> n = {}) : number(n) {}
+  explicit operator std::optional<double>() const { return number; }
+  bool operator==(const NumberOrWord&) const = default;
+
+  std::optional<double> number;  // nullopt: the word
+};
 
 // The value of a key: a number as double, an integer and a choice as int, a switch as bool.
-using KeyValue = std::variant<double, int, bool, std::string, LevelTable, std::optional<mars::Pose>>;
+using KeyValue =
+    std::variant<double, NumberOrWord, int, bool, std::string, LevelTable, std::optional<mars::Pose>>;
 
 // Describes one key.
 struct KeyInfo {
@@ -120,6 +138,11 @@ struct KeyMembers {
   template <auto... path>
   static KeyMember<Owner> number(double min, double max) {
     return bind<double, path...>(NumberKey{min, max});
+  }
+  // For members of type std::optional<double>; the word means nullopt.
+  template <auto... path>
+  static KeyMember<Owner> number_or_word(double min, double max, std::string_view word) {
+    return bind<NumberOrWord, path...>(NumberOrWordKey{min, max, word});
   }
   template <auto... path>
   static KeyMember<Owner> integer(int min, int max) {

@@ -1,0 +1,144 @@
+#include "vpe/app/picture/view_palette.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+
+#include "paging/shading/terrain_shader.h"
+#include "vpe/app/picture/image_options.h"
+#include "vpe/base/nice_ticks.h"
+#include "vpe/base/number.h"
+#include "vpe/base/quantile.h"
+#include "vpe/voxel/ray_renderer.h"
+
+namespace vpe::app {
+
+namespace {
+
+constexpr std::size_t kMostSampleBytes = std::size_t{192} << 20;
+// Slopes are read from a picture of reds: three levels a degree. Ground without data is grey.
+constexpr double kMostSlope_deg = 85;
+
+// Returns the settings of a picture whose reds are slopes.
+core::SettingsValues sample_settings(const core::SettingsValues& shown) {
+  core::SettingsValues out;
+  out.exaggeration = shown.exaggeration;
+  out.shading = shown.shading;
+  out.mode = core::Mode::kUnlit;
+  out.colour = core::Colour::kSlope;
+  out.palette = "hsv";
+  out.palette_low = 0;
+  out.palette_high = kMostSlope_deg;
+  out.low_hue_deg = out.high_hue_deg = 0;
+  out.low_saturation = out.high_saturation = 1;
+  out.low_value = 0;
+  out.high_value = 1;
+  out.background = core::Background::kBlack;
+  out.smooth_edges = false;
+  out.ray_mode = core::RayMode::kMultires;
+  return out;
+}
+
+}  // namespace
+
+bool needs_view_palette(const core::SettingsValues& settings, const paging::PlanetFile& planet) {
+  const bool is_value = settings.colour == core::Colour::kElevation ||
+                        settings.colour == core::Colour::kSlope || settings.colour == core::Colour::kAspect;
+  return core::has_auto_ends(settings) && is_value &&
+         (settings.legend || paging::needs_scale(settings, planet.meta().finest_image_level >= 0));
+}
+
+core::DrawRequest reduced(core::DrawRequest request) {
+  core::View& view = request.view;
+  if (view.part.width != 0) throw std::logic_error("reduced: the view has a part");
+  const double factor = std::min(1.0, static_cast<double>(kReducedSide_px) / std::max(view.width, view.height));
+  const auto side = [&](int px) { return std::max(1, static_cast<int>(std::lround(px * factor))); };
+  view.width = side(view.width);
+  view.height = side(view.height);
+  view.principal_offset_px *= factor;
+  return request;
+}
+
+std::optional<core::PaletteEnds> palette_ends(std::vector<double>& values) {
+  constexpr double kSteps = 20;
+  if (values.empty()) return std::nullopt;
+  const double low = base::quantile_round(values, kBeyondPaletteEnd);
+  const double high = base::quantile_round(values, 1 - kBeyondPaletteEnd);
+  // Noise of flat ground is not stretched to the whole palette.
+  constexpr double kLeastSpan = 1;
+  const double step = base::nice_step_below(std::max(high - low, kLeastSpan) / kSteps);
+  const auto multiple = [&](double n) {
+    const std::string text = base::format_fixed(n * step, base::step_decimals(step));
+    return base::parse_number(text).value_or(n * step) + 0.0;  // no negative zero
+  };
+  core::PaletteEnds ends{multiple(std::floor(low / step)), multiple(std::ceil(high / step))};
+  if (ends.high - ends.low < kLeastSpan) ends.high = multiple(std::round(ends.low / step) + kSteps);
+  return ends;
+}
+
+ViewPalette::ViewPalette(std::shared_ptr<const paging::PlanetFile> planet, const Common& common)
+    : planet_(std::move(planet)),
+      rays_(voxel::make_ray_renderer(
+          planet_,
+          {.memory_bytes = std::min(memory_bytes(common) / 4, kMostSampleBytes), .threads = common.threads})) {}
+
+ViewPalette::~ViewPalette() = default;
+
+void ViewPalette::add(const core::DrawRequest& request) {
+  is_circle_ = request.settings.colour == core::Colour::kAspect;
+  if (is_circle_) return;
+  const bool is_slope = request.settings.colour == core::Colour::kSlope;
+  core::DrawRequest sample;
+  sample.view = request.view;
+  sample.settings = sample_settings(request.settings);
+  sample.want_range = true;
+  const core::Frame frame = rays_->draw(sample).frame;
+  const core::SubRectangle part = core::drawn_part(sample.view);
+  for (int y = 0; y < frame.height; ++y) {
+    for (int x = 0; x < frame.width; ++x) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x);
+      const auto range_m = static_cast<double>(frame.range_m[pixel]);
+      const base::Rgb colour = frame.colour[pixel];
+      const bool has_data = colour.g == 0 && colour.b == 0;
+      if (!(range_m > 0) || !std::isfinite(range_m) || !has_data) continue;
+      if (is_slope) {
+        values_.push_back(colour.r * kMostSlope_deg / 255);
+        continue;
+      }
+      const glm::dvec3 ray = core::pixel_ray(sample.view, part.x + x + 0.5, part.y + y + 0.5);
+      const double radius_m = glm::length(sample.view.camera.position_m + ray * range_m);
+      values_.push_back((radius_m - planet_->radius_m()) / request.settings.exaggeration);
+    }
+  }
+}
+
+core::PaletteEnds ViewPalette::ends() {
+  if (is_circle_) return {0, 360};
+  return palette_ends(values_).value_or(core::PaletteEnds());
+}
+
+void take_ends(core::SettingsValues& settings, const core::PaletteEnds& view) {
+  const core::PaletteEnds ends = core::ends_of(settings, view);
+  settings.palette_low = ends.low;
+  settings.palette_high = ends.high;
+}
+
+void take_ends(core::Settings& settings, const core::PaletteEnds& view) {
+  const core::PaletteEnds ends = core::ends_of(settings.values(), view);
+  for (const auto& [key, value] : {std::pair("palette.low", ends.low), std::pair("palette.high", ends.high)}) {
+    if (const std::string problem = settings.set(key, base::format_number(value)); !problem.empty())
+      throw std::logic_error(problem);
+  }
+}
+
+std::string palette_text(const core::SettingsValues& settings) {
+  const char* unit = settings.colour == core::Colour::kElevation ? " m" : " degrees";
+  if (settings.palette_low == settings.palette_high)
+    return "palette of its usual range: the view shows no ground";
+  return "palette from " + base::format_number(settings.palette_low.value_or(0)) + " to " +
+         base::format_number(settings.palette_high.value_or(0)) + unit + ", by the view";
+}
+
+}  // namespace vpe::app
