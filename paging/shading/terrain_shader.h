@@ -82,10 +82,10 @@ struct NormalTile {
 struct ShadedTile {
   int intervals = 0;
   int channels = 4;
-  bool nodata = false;        // some alpha is 0; never with one channel
-  bool nodata_image = false;  // where alpha is 0 the colour is that of the image, without light and hue
+  bool nodata = false;  // some alpha is 0; never with one channel
   double brightest = 1;
-  std::vector<std::uint8_t> texels;
+  std::vector<std::uint8_t> texels = {};
+  bool nodata_image = false;  // where alpha is 0 the colour is the image's, without light and hue
   std::size_t bytes() const { return texels.capacity(); }
 };
 
@@ -137,9 +137,9 @@ class TerrainShader {
   std::optional<glm::dvec3> colour_at(const glm::dvec3& direction, double footprint_m,
                                       const ShadingParams& params, Cursor& cursor) const;
 
-  // Computes the image's colour in a direction, 0 to 255, as nodata ground shows it: without light and hue, which
-  // would be those of elevations that nobody has measured. Returns nullopt if `params` show no image. Throws
-  // PlanetError.
+  // Computes the image's colour in a direction, 0 to 255, as nodata ground shows it: without light and hue,
+  // which would be those of elevations that nobody has measured. Returns nullopt if `params` show no image.
+  // Throws PlanetError.
   std::optional<glm::dvec3> nodata_image_at(const glm::dvec3& direction, double footprint_m,
                                             const ShadingParams& params, Cursor& cursor) const;
 

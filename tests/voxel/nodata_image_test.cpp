@@ -193,7 +193,8 @@ TEST_F(NodataImage, IsThatOfEveryModeThatShowsImagery) {
     request.settings.shading = look.shading;
     request.settings.colourise = look.colourise;
     for (core::Renderer* draw : {triangles_.get(), rays_.get()}) {
-      SCOPED_TRACE(std::to_string(static_cast<int>(look.mode)) + std::to_string(static_cast<int>(look.shading)) +
+      SCOPED_TRACE(std::to_string(static_cast<int>(look.mode)) +
+                   std::to_string(static_cast<int>(look.shading)) +
                    (draw == rays_.get() ? " rays" : " triangles"));
       const Hole hole = this->hole(request, draw->draw(request));
       ASSERT_GT(hole.pixels, 1000);

@@ -31,8 +31,7 @@ double nodata_grey(double along, double pixel) {
   const double wide = std::max(pixel * periods, 1e-6);
   const double phase = along * periods - std::floor(along * periods);
   const double away = std::min(phase, 1 - phase);
-  const double stripes =
-      covered(away, 0.25 - 0.125 * grown, wide) + covered(0.5 - away, 0.125 * grown, wide);
+  const double stripes = covered(away, 0.25 - 0.125 * grown, wide) + covered(0.5 - away, 0.125 * grown, wide);
   const double dark = stripes + (0.5 - stripes) * smooth_step(0.25, 0.5, wide);
   return kNodataBright + (kNodataDark - kNodataBright) * dark;
 }

@@ -1,4 +1,5 @@
-// Stripes of nodata ground, for backends that shade on the CPU: the pattern of vpe/gl/shaders/nodata_pattern.glsl.
+// Stripes of nodata ground, for backends that shade on the CPU: the pattern of
+// vpe/gl/shaders/nodata_pattern.glsl.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,8 @@ inline constexpr double kNodataMean = 0.5 * (kNodataBright + kNodataDark);
 // this one, so that missing imagery has the plain greys.
 inline constexpr std::uint8_t kMissingImagery = 128;
 
-// Returns the grey of the stripes at a place. `along` is u + v of the face's chart there, `pixel` its change over
-// a pixel, both at least 0. Periods are 12 to 24 pixels, as long as they are not shorter than 2^-22. Pure.
+// Returns the grey of the stripes at a place. `along` is u + v of the face's chart there, `pixel` (at least 0)
+// its change over a pixel. Periods are 12 to 24 pixels, as long as they are not shorter than 2^-22. Pure.
 double nodata_grey(double along, double pixel);
 
 }  // namespace vpe::core

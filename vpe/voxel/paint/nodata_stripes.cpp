@@ -24,8 +24,8 @@ glm::dvec3 place_of(const PaintJob& job, int x, int y) {
 
 double along(const mars::ChartPoint& at) { return at.u + at.v; }
 
-// Returns the change of u + v from a pixel to that of its neighbours on either side whose range is nearer to its
-// own; 0 if both are sky or outside the image.
+// Returns the change of u + v from a pixel to that of its neighbours on either side whose range is nearer to
+// its own; 0 if both are sky or outside the image.
 double change(const PaintJob& job, const mars::ChartPoint& here, int x, int y, int dx, int dy) {
   const float range = job.range_m[index_of(job, x, y)];
   float least = std::numeric_limits<float>::infinity();

@@ -9,8 +9,8 @@
 namespace vpe::voxel {
 
 // Returns the factor on the image's colour at a pixel of the ground: core::nodata_grey() of its place, over
-// core::kMissingImagery. The width of a pixel is taken from the ranges of its neighbours. Compiled once, so equal on
-// all instruction sets.
+// core::kMissingImagery. The width of a pixel is taken from the ranges of its neighbours. Compiled once, so
+// equal on all instruction sets.
 float nodata_tone(const PaintJob& job, int x, int y);
 
 }  // namespace vpe::voxel
