@@ -29,7 +29,7 @@ glm::dvec3 image_at(const glm::dvec3& d) {
 }
 
 const glm::dvec3 kMiddle = mars::direction({10, 20});
-bool is_hole(const glm::dvec3& d) { return glm::length(d - kMiddle) < 0.25; }
+bool is_nodata(const glm::dvec3& d) { return glm::length(d - kMiddle) < 0.25; }
 // The image ends within the hole.
 double image_ends(const glm::dvec3& d) { return glm::dot(d - kMiddle, mars::direction({100, 0})) - 0.1; }
 
@@ -66,7 +66,7 @@ class NodataImage : public test_support::GlTest {
     options.tile_k = 5;
     options.resampling_posts = 1000;
     const HalfImage image;
-    const FakeElevation elevation([](const glm::dvec3& d) { return is_hole(d) ? NAN : bumpy_height(d); });
+    const FakeElevation elevation([](const glm::dvec3& d) { return is_nodata(d) ? NAN : bumpy_height(d); });
     paging::build_planet(options, elevation, &image);
     planet_ = paging::PlanetFile::open(options.output);
     surface_ = std::make_unique<paging::Surface>(planet_, std::size_t{64} << 20);
