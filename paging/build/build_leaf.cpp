@@ -6,6 +6,7 @@
 #include "paging/build/nodata_fill.h"
 #include "paging/build/source_heights.h"
 #include "vpe/base/mutation.h"
+#include "vpe/core/appearance/nodata_pattern.h"
 #include "vpe/core/image/image.h"
 
 namespace paging {
@@ -158,7 +159,8 @@ Bytes make_image_tile(const mars::ImageSource& image, const lod::TileKey& key, d
   std::vector<std::uint8_t> alpha(directions.size());
   image.sample(directions, lod::post_spacing_m(key.level, kImageIntervals, radius_m), colours, alpha);
   for (std::size_t n = 0; n < colours.size(); ++n) {
-    if (alpha[n] == 0) colours[n] = {128, 128, 128};
+    if (alpha[n] != 0) continue;
+    colours[n] = {vpe::core::kMissingImagery, vpe::core::kMissingImagery, vpe::core::kMissingImagery};
   }
   constexpr int kSide = kImageIntervals + 1;
   return vpe::core::encode_jpeg(colours, kSide, kSide, quality);

@@ -182,6 +182,12 @@ glm::dvec3 TerrainShader::image_at(const glm::dvec3& direction, double footprint
                              [&](std::size_t k) { return rgb(cursor.image_->texels[k]); });
 }
 
+std::optional<glm::dvec3> TerrainShader::nodata_image_at(const glm::dvec3& direction, double footprint_m,
+                                                         const ShadingParams& params, Cursor& cursor) const {
+  if (!shows_image(params.colour_source)) return std::nullopt;
+  return image_at(direction, footprint_m, cursor);
+}
+
 std::optional<glm::dvec3> TerrainShader::colour_at(const glm::dvec3& direction, double footprint_m,
                                                    const ShadingParams& params, Cursor& cursor) const {
   const int n = planet_->meta().tile.intervals();

@@ -84,7 +84,8 @@ struct ShadedTile {
   int channels = 4;
   bool nodata = false;  // some alpha is 0; never with one channel
   double brightest = 1;
-  std::vector<std::uint8_t> texels;
+  std::vector<std::uint8_t> texels = {};
+  bool nodata_image = false;  // where alpha is 0 the colour is the image's, without light and hue
   std::size_t bytes() const { return texels.capacity(); }
 };
 
@@ -135,6 +136,12 @@ class TerrainShader {
   // reference surface. Returns nullopt where the nearest post has no data. Throws PlanetError.
   std::optional<glm::dvec3> colour_at(const glm::dvec3& direction, double footprint_m,
                                       const ShadingParams& params, Cursor& cursor) const;
+
+  // Computes the image's colour in a direction, 0 to 255, as nodata ground shows it: without light and hue,
+  // which would be those of elevations that nobody has measured. Returns nullopt if `params` show no image.
+  // Throws PlanetError.
+  std::optional<glm::dvec3> nodata_image_at(const glm::dvec3& direction, double footprint_m,
+                                            const ShadingParams& params, Cursor& cursor) const;
 
   // Return the inputs of colours: posts of a tile that the planet has, texels of one that image_key()
   // returned. Throw PlanetError.

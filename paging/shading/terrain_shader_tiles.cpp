@@ -105,15 +105,13 @@ void TerrainShader::shade_block(const lod::TileKey& block, int x0, int y0, int s
                                                 at.sun * glm::dot(glm::normalize(at.normal), params.sun))));
         continue;
       }
-      const glm::vec3 c(colour(at, params));
+      const bool has_data = !is_nodata(ground->nodata, gxp, gyp, ground_side);
+      const glm::vec3 c(has_data || !out.nodata_image ? colour(at, params) : at.image);
       texel[0] = to_byte(c.x);
       texel[1] = to_byte(c.y);
       texel[2] = to_byte(c.z);
-      texel[3] = 255;
-      if (is_nodata(ground->nodata, gxp, gyp, ground_side)) {
-        texel[3] = 0;
-        out.nodata = true;
-      }
+      texel[3] = has_data ? 255 : 0;
+      out.nodata = out.nodata || !has_data;
     }
   }
 }
@@ -132,6 +130,7 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
                      (radius + params.exaggeration * height_m[v]));
   }
   ShadedTile out;
+  out.nodata_image = shows_image(params.colour_source);
   Ground at;
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     const std::array<std::uint32_t, 3> v{mesh.triangles[t], mesh.triangles[t + 1], mesh.triangles[t + 2]};
@@ -150,7 +149,6 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
                               between_lines(place.v, image_block.key.level, image_block.key.j, kImageIntervals),
                               kImageSide, [&](std::size_t k) { return rgb(image_block.tile->texels[k]); });
     }
-    const glm::vec3 c(colour(at, params));
     bool corner_is_nodata = false;
     for (const std::uint32_t corner : v) {
       if (!may_be_nodata) break;
@@ -162,6 +160,7 @@ ShadedTile TerrainShader::shade_facets(const lod::TileKey& key, const lod::TileM
                          posts->nodata[post(mesh.vertices[corner].j) * side + post(mesh.vertices[corner].i)];
     }
     out.nodata = out.nodata || corner_is_nodata;
+    const glm::vec3 c(corner_is_nodata && out.nodata_image ? at.image : colour(at, params));
     for (const std::uint8_t byte :
          {to_byte(c.x), to_byte(c.y), to_byte(c.z), std::uint8_t(corner_is_nodata ? 0 : 255)})
       out.texels.push_back(byte);
@@ -175,6 +174,7 @@ ShadedTile TerrainShader::shade(const lod::TileKey& key, int intervals, const Sh
   while (n << levels < intervals) ++levels;
   ShadedTile out;
   out.intervals = n << levels;
+  out.nodata_image = shows_image(params.colour_source);
   const int side = out.intervals + 1;
   // Light alone takes a quarter of the bytes, but has no alpha for nodata.
   if (params.colour_source == ColourSource::kPlain && params.lit && !planet_->has_nodata(key)) {

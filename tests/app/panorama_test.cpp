@@ -59,6 +59,62 @@ TEST_F(Panorama, EveryFormatHasTheSameImageAndItsDescription) {
   EXPECT_EQ(sidecar["vpe"]["recipe"]["settings"]["exaggeration"], "1");
 }
 
+// A datum on an ellipsoid: planetographic latitudes lie up to 20 km from planetocentric ones.
+TEST_F(Panorama, LatitudesMayBePlanetographic) {
+  write_dem(dir_ / "x.tif");
+  vpe({"build", "x.tif", "-o", "e.vpe", "--base-spacing", "100000", "--datum", "ellipsoid:3396190,3376200"});
+  const double centric_deg = std::atan(std::pow(3376.2 / 3396.19, 2)) * 180 / M_PI;
+  const auto at = [](const char* option, double lat_deg, const char* after) -> Words {
+    std::ostringstream text;
+    text.precision(17);
+    text << "10," << lat_deg << after;
+    return {option, text.str()};
+  };
+  const auto run = [&](const std::string& output, double lat_deg, const Words& more) {
+    Words all{"panorama", "e.vpe", "--height", "4000", "-o", output, "--backend", "polygon", "--width", "400"};
+    for (const Words& part : {at("--at", lat_deg, ""), at("--interest", lat_deg, ",50000,1"), more})
+      all.insert(all.end(), part.begin(), part.end());
+    return vpe(all);
+  };
+  const Result graphic = run("g.png", 45, {"--latitude", "planetographic"});
+  ASSERT_EQ(graphic.exit_code, 0) << graphic.err;
+  EXPECT_FALSE(says(graphic.err, {"note: latitudes"}));
+  ASSERT_EQ(run("c.png", centric_deg, {"--latitude", "planetocentric"}).exit_code, 0);
+  EXPECT_NEAR(panorama::describe(dir_ / "g.png").viewpoint->lat_deg, centric_deg, 1e-9);
+  EXPECT_TRUE(vpe::core::read_image(dir_ / "g.png").pixels == vpe::core::read_image(dir_ / "c.png").pixels);
+  const auto interest = [&](const char* sidecar) {
+    const auto all = parse_json(read_text(dir_ / sidecar))["vpe"]["recipe"]["interest"];
+    return all.at(0).get<std::string>().substr(0, 15);
+  };
+  EXPECT_EQ(interest("g.json"), interest("c.json"));
+  const Result plain = run("n.png", 45, {});
+  EXPECT_TRUE(says(plain.err, {"note: latitudes", "up to 20 km", "--latitude"})) << plain.err;
+  EXPECT_NEAR(panorama::describe(dir_ / "n.png").viewpoint->lat_deg, 45, 1e-12);
+  // A recipe has planetocentric latitudes.
+  const Result again = vpe({"panorama", "--from-sidecar", "g.json", "-o", "a.png"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_FALSE(says(again.err, {"note: latitudes"}));
+  EXPECT_NEAR(panorama::describe(dir_ / "a.png").viewpoint->lat_deg, centric_deg, 1e-9);
+  expect_failure({"panorama", "--from-sidecar", "g.json", "--latitude", "planetographic"}, 2,
+                 {"--latitude and --from-sidecar"});
+  // Images of render likewise; also where a configuration file asks for planetographic latitudes.
+  Words render{"render", "e.vpe", "--pose", "10,45,30000", "--latitude", "planetographic", "--size", "60x40"};
+  const Words region = at("--interest", 45, ",50000,1");
+  render.insert(render.end(), region.begin(), region.end());
+  render.insert(render.end(), {"-o", "r.png", "--backend", "polygon"});
+  ASSERT_EQ(vpe(render).exit_code, 0);
+  expect_failure({"render", "e.vpe", "--from-image", "r.png", "-o", "s.png", "--latitude", "planetographic"}, 2,
+                 {"--latitude and --from-image"});
+  write_text(dir_ / "c.toml", "[render]\nlatitude = \"planetographic\"\n");
+  const Result same = vpe({"render", "e.vpe", "--from-image", "r.png", "-o", "s.png", "--config", "c.toml"});
+  ASSERT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_EQ(read_text(dir_ / "s.png"), read_text(dir_ / "r.png"));
+  for (const char* command : {"panorama", "explore"}) {
+    expect_failure({command, "e.vpe", "--latitude", "geodetic"}, 2,
+                   {"--latitude", "expected planetocentric, planetographic", "'geodetic'"});
+  }
+}
+
 TEST_F(Panorama, FacetsAndEquirectangularDescribeThemselves) {
   make("f.png", {"--projection", "facets", "--facets", "5", "--width", "500", "--yaw", "10"});
   const auto facets = panorama::describe(dir_ / "f.png");

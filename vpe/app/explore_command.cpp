@@ -10,6 +10,7 @@
 #include "vpe/app/commands.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/pose_option.h"
+#include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 #ifdef VPE_HAS_WINDOW
@@ -29,6 +30,7 @@ namespace {
 struct ExploreArguments {
   std::string planet;
   std::string pose;
+  std::string latitude;
   std::string size;
   double fov_deg = 50;
   double scale = 0;
@@ -149,7 +151,13 @@ void explore(const ExploreArguments& arguments, const Common& common) {
   std::optional<core::Settings> settings;
   while (planet != nullptr) {
     note_illustration(planet->meta(), common.quiet);
+    make_interest_planetocentric(here.image.interest, here.latitude, planet->meta());
     window::ExploreSetup setup = make_setup(here, common, preferences, last);
+    if (!here.pose.empty()) {
+      mars::Pose& start = *setup.session.start;
+      start.lat_deg =
+          planetocentric({start.lon_deg, start.lat_deg}, here.latitude, planet->meta(), common.quiet).lat_deg;
+    }
     if (is_first && !setup.session.start && last.planet == file) setup.session.start = last.pose;
     if (settings) setup.session.settings = *settings;
     is_first = false;
@@ -201,6 +209,7 @@ void add_explore(CLI::App& program, Common& common) {
       "--pose", arguments->pose,
       "LON,LAT,ALT,YAW,PITCH,ROLL of the camera at the start: degrees; ALT in metres above the sphere "
       "(default: a view of the whole planet)");
+  add_latitude_option(*command, arguments->latitude);
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT of the window, pixels (default: the last size)");
   command->add_option("--fov", arguments->fov_deg, "Vertical field of view, degrees")
       ->check(number_within(5, 120))

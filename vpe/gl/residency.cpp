@@ -56,6 +56,7 @@ GpuTexture upload(const ShadedTile& tile) {
   out.light = tile.channels == 1;
   out.brightest = tile.brightest;
   out.nodata = tile.nodata;
+  out.nodata_image = tile.nodata_image;
   const bool facets = tile.intervals == 0;
   const auto count = static_cast<GLsizei>(tile.texels.size() / static_cast<std::size_t>(tile.channels));
   const GLsizei width = facets ? kFacetRow : tile.intervals + 1;

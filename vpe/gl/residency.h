@@ -39,10 +39,11 @@ inline constexpr int kFacetRow = 256;
 
 struct GpuTexture {
   Texture2D texture;
-  int intervals = 0;     // 0: facets
-  bool light = false;    // one channel: ShadedTile::channels
-  double brightest = 1;  // light of the value 255
-  bool nodata = false;   // ShadedTile::nodata
+  int intervals = 0;          // 0: facets
+  bool light = false;         // one channel: ShadedTile::channels
+  double brightest = 1;       // light of the value 255
+  bool nodata = false;        // ShadedTile::nodata
+  bool nodata_image = false;  // ShadedTile::nodata_image
   std::size_t bytes = 0;
 };
 // Uploads colours or light to a texture of its own. Throws std::runtime_error.

@@ -39,6 +39,7 @@ ShaderSources tile_shaders(TilePart part, const TileFeatures& features) {
   if (features.facets) define(head, "FACETS");
   if (features.palette) define(head, "PALETTE");
   if (features.nodata) define(head, "NODATA");
+  if (features.nodata_image) define(head, "NODATA_IMAGE");
   if (features.haze) define(head, "HAZE");
   if (features.placed) define(head, "PLACED");
   if (features.texture || features.nodata) define(head, "CHART");

@@ -72,10 +72,11 @@ consteval int sky_uniform(std::string_view name) { return uniform_location(kSkyU
 
 // Describes what the programs of a tile do. They hold nothing that an appearance does not use.
 struct TileFeatures {
-  bool texture = false;  // colours come from a texture: baked colours, or light times a colour
-  bool facets = false;   // colours come from a table with one colour for each triangle
-  bool palette = false;  // colours come from the height of what is drawn
-  bool nodata = false;   // nodata ground is striped and has alpha 0
+  bool texture = false;       // colours come from a texture: baked colours, or light times a colour
+  bool facets = false;        // colours come from a table with one colour for each triangle
+  bool palette = false;       // colours come from the height of what is drawn
+  bool nodata = false;        // nodata ground is striped and has alpha 0
+  bool nodata_image = false;  // the stripes are over the image
   bool haze = false;
   bool placed = false;       // texture coordinates come from positions, not from vertices: within 1e-7 of the face
   bool by_triangle = false;  // of surfaces: corners are put on the rasteriser's grid triangle by triangle

@@ -33,6 +33,7 @@ TileFeatures TileDrawer::features_of(const TileDraw& tile, TilePart part) const 
   features.texture = tile.texture != nullptr && !features.facets;
   features.palette = tile.texture == nullptr && tile.palette;
   features.nodata = tile.texture != nullptr && tile.texture->nodata && tile.mesh->charts;
+  features.nodata_image = features.nodata && tile.texture->nodata_image;
   features.haze = air_.visibility_m > 0.0F;
   features.placed = features.texture && !tile.mesh->charts;
   return features;

@@ -22,6 +22,7 @@
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/sun_statement.h"
 #include "vpe/app/picture/view_palette.h"
+#include "vpe/app/planet/latitude_option.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
 #include "vpe/core/json_text.h"
@@ -227,6 +228,10 @@ void make_panorama(const PanoramaArguments& arguments, const Common& common) {
   if (!common.quiet) {
     for (const std::string& text : plan.rounded) std::fprintf(stderr, "vpe: %s\n", text.c_str());
   }
+  mars::Pose& camera = request.camera;
+  camera.lat_deg =
+      planetocentric({camera.lon_deg, camera.lat_deg}, request.latitude, meta, common.quiet).lat_deg;
+  make_interest_planetocentric(request.interest, request.latitude, meta);
   const Ground ground = ground_below(planet, request);
   place_camera(request, ground);
   require_known_sun(request.settings.values(), meta.body);
@@ -278,6 +283,7 @@ void add_panorama(CLI::App& program, Common& common) {
       program, "panorama", "Draw a panorama; an interrupted run continues where it was stopped", common, true);
   command->add_option("PLANET", arguments->planet, "Planet file or DEM (default: the embedded Mars)");
   command->add_option("--at", arguments->at, "LON,LAT of the camera, degrees");
+  add_latitude_option(*command, arguments->latitude);
   command->add_option("--height", arguments->height_m, "Height of the camera above the ground, metres")
       ->check(number_within(0, 1e10));
   command->add_option("--altitude", arguments->altitude_m, "Altitude of the camera above the sphere, metres")

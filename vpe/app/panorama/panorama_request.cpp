@@ -102,6 +102,7 @@ PanoramaRequest request_from_options(const PanoramaArguments& arguments, const C
   request.camera.lon_deg = place.lon_deg;
   request.camera.lat_deg = place.lat_deg;
   request.camera.alt_m = arguments.altitude_m.value_or(0);
+  request.latitude = arguments.latitude;
   request.backend = backend_of(arguments);
   request.settings = settings_of(arguments, request.map.kind);
   parse_interest(arguments.render);
@@ -123,7 +124,7 @@ PanoramaRequest request_from_options(const PanoramaArguments& arguments, const C
 
 // Options that a sidecar's recipe sets. A configuration file may have defaults of these; naming one beside
 // --from-sidecar contradicts it.
-constexpr std::array<std::string_view, 20> kRecipeOptions{"--at",
+constexpr std::array<std::string_view, 21> kRecipeOptions{"--at",
                                                           "--height",
                                                           "--altitude",
                                                           "--projection",
@@ -142,7 +143,8 @@ constexpr std::array<std::string_view, 20> kRecipeOptions{"--at",
                                                           "--tolerance",
                                                           "--sun",
                                                           "--interest",
-                                                          "--allow-incomplete"};
+                                                          "--allow-incomplete",
+                                                          "--latitude"};
 
 void check_options_beside_sidecar(const Common& common) {
   for (const std::string& word : common.words) {
@@ -184,6 +186,7 @@ PanoramaRequest request_from_sidecar(const PanoramaArguments& arguments, const C
     throw refused(e);
   }
   if (!arguments.planet.empty()) request.planet = absolute_planet(arguments.planet);
+  request.latitude = "planetocentric";
   request.from_sidecar = arguments.from_sidecar;
   return request;
 }

@@ -30,6 +30,7 @@ namespace vpe::app {
 struct PanoramaArguments {
   std::string planet;
   std::string at;
+  std::string latitude;  // vpe/app/planet/latitude_option.h
   std::optional<double> height_m;
   std::optional<double> altitude_m;
   std::string output;
@@ -65,6 +66,7 @@ struct PanoramaRequest {
   std::string names_checksum;  // of the file of overlay.names, when it is set
 
   // How this run makes it.
+  std::string latitude;            // as --latitude: of camera and interest, until the planet is open
   std::optional<double> height_m;  // above the terrain as drawn, in place of camera.alt_m
   double wait_s = 300;             // for the tiles of a piece
   std::filesystem::path output;

@@ -9,6 +9,7 @@
 #include "mars/geodesy/mars_time.h"
 #include "mars/geodesy/sun.h"
 #include "vpe/app/cli/parsing.h"
+#include "vpe/app/planet/latitude_option.h"
 #include "vpe/base/heap.h"
 #include "vpe/base/number.h"
 #include "vpe/gl/polygon_renderer.h"
@@ -83,6 +84,19 @@ std::vector<core::InterestRegion> parse_interest(const RenderOptions& options) {
     regions.push_back({(*n)[0], (*n)[1], (*n)[2], static_cast<int>((*n)[3])});
   }
   return regions;
+}
+
+void make_interest_planetocentric(std::vector<std::string>& interest, const std::string& latitude,
+                                  const paging::PlanetMeta& meta) {
+  const auto spheroid = spheroid_of_places(latitude, meta);
+  if (!spheroid) return;
+  for (std::string& text : interest) {
+    auto numbers = parse_numbers(text);
+    if (!numbers || numbers->size() != 4) throw std::logic_error("--interest " + text + ": was not checked");
+    (*numbers)[1] = mars::planetocentric_lat_deg((*numbers)[1], *spheroid);
+    text.clear();
+    for (const double number : *numbers) text += (text.empty() ? "" : ",") + base::format_number(number);
+  }
 }
 
 std::size_t memory_bytes(const Common& common) { return static_cast<std::size_t>(common.memory_mb) << 20; }

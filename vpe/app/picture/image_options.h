@@ -47,6 +47,11 @@ core::Settings make_settings(const RenderOptions& options);
 // Returns the regions of every --interest, in order. Throws UsageError that says what is expected.
 std::vector<core::InterestRegion> parse_interest(const RenderOptions& options);
 
+// Makes the latitudes in texts of --interest planetocentric, as --latitude says
+// (vpe/app/planet/latitude_option.h). The texts must be ones that parse_interest() accepts.
+void make_interest_planetocentric(std::vector<std::string>& interest, const std::string& latitude,
+                                  const paging::PlanetMeta& meta);
+
 // Returns --memory in bytes.
 std::size_t memory_bytes(const Common& common);
 

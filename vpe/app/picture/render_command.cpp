@@ -228,6 +228,8 @@ void render(RenderArguments& arguments, const Common& common) {
   };
   convert(parsed.pose.pose, common.quiet);
   if (parsed.cull_pose) convert(*parsed.cull_pose, true);
+  make_interest_planetocentric(arguments.image.interest, arguments.latitude, planet->meta());
+  parsed.request.interest = parse_interest(arguments.image);
   if (!identity.empty() && identity != planet->meta().identity) {
     throw std::runtime_error(arguments.from_image + ": was made from a planet of identity " + identity +
                              ", and " + planet->path() + " has " + planet->meta().identity +

@@ -15,9 +15,9 @@ namespace {
 
 // Options that the recipe of an image sets. A configuration file may have defaults of these; naming one beside
 // --from-image contradicts it.
-constexpr std::array<std::string_view, 13> kOptionsOfRecipes{
-    "--pose",      "--height", "--cull-from", "--size",   "--fov",      "--set",        "--backend",
-    "--tolerance", "--sun",    "--interest",  "--stereo", "--eye-base", "--convergence"};
+constexpr std::array<std::string_view, 14> kOptionsOfRecipes{
+    "--pose",      "--height", "--cull-from", "--size",   "--fov",      "--set",         "--backend",
+    "--tolerance", "--sun",    "--interest",  "--stereo", "--eye-base", "--convergence", "--latitude"};
 
 void check_overlay_layer(const std::string& path, const core::Overlays& overlays) {
   if (path.empty()) return;
@@ -51,6 +51,7 @@ std::string take_recipe(RenderArguments& arguments, const Common& common) {
   }
   const RenderRecipe recipe = read_recipe(arguments.from_image);
   arguments.pose = pose_text(recipe.pose);
+  arguments.latitude = "planetocentric";
   arguments.height_m.reset();
   arguments.cull_from.reset();
   if (recipe.cull_pose) arguments.cull_from = pose_text(*recipe.cull_pose);

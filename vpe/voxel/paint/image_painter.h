@@ -38,7 +38,8 @@ class ImagePainter {
   // axis, at most 1000, and 0 for sky; only for perspective views. All three hold one entry for each pixel of
   // the drawn part, row by row from the top.
   //
-  // Colours are within 1/255 of TerrainShader::colour_at, core::air_m with core::haze_colour, and
+  // Colours are within 1/255 of TerrainShader::colour_at (nodata ground: nodata_image_at times nodata_tone(),
+  // or core::kNodataMean without an image), core::air_m with core::haze_colour, and
   // core::sky_colour. At steps of a palette, and where flat ground has no aspect, they are those of the value
   // rounded to float. They are the same to the bit for any number of threads, any instruction set and any
   // earlier image. Modes wireframe and markers are painted as their ground would be. Throws paging::PlanetError

@@ -224,14 +224,18 @@ inline HWY_NOINLINE void paint_ground(const PaintJob& job, Block& block) {
   paint_shading(job, block);
 }
 
-// Colours the block's ground by TerrainShader::colour_at, pixel by pixel.
+// Colours the block's ground by TerrainShader::colour_at, pixel by pixel; nodata ground by nodata_image_at.
 inline void paint_by_point(const PaintJob& job, PaintTiles& tiles, Block& block) {
   for (std::uint32_t left = block.ground; left != 0; left &= left - 1) {
     const int i = __builtin_ctz(left);
-    const glm::dvec3 place{block.place[0][i], block.place[1][i], block.place[2][i]};
-    const auto colour = job.shader->colour_at(
-        glm::normalize(place), static_cast<double>(block.range[i]) / job.focal_px, *job.shading, tiles.cursor);
-    if (!colour) block.nodata |= std::uint32_t{1} << i;
+    const glm::dvec3 place =
+        glm::normalize(glm::dvec3(block.place[0][i], block.place[1][i], block.place[2][i]));
+    const double footprint_m = static_cast<double>(block.range[i]) / job.focal_px;
+    auto colour = job.shader->colour_at(place, footprint_m, *job.shading, tiles.cursor);
+    if (!colour) {
+      block.nodata |= std::uint32_t{1} << i;
+      colour = job.shader->nodata_image_at(place, footprint_m, *job.shading, tiles.cursor);
+    }
     const glm::vec3 rgb = colour ? glm::vec3(*colour) : glm::vec3(0);
     block.red[i] = rgb.x;
     block.green[i] = rgb.y;

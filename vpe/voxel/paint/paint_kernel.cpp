@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "vpe/core/appearance/nodata_pattern.h"
+#include "vpe/voxel/paint/nodata_stripes.h"
 #include "vpe/voxel/paint/paint_job.h"
 
 // Highway compiles this file once for each instruction set and selects the best one at run time.
@@ -15,9 +17,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace vpe::voxel {
 namespace HWY_NAMESPACE {
-
-// Colour of nodata ground: the mean of the polygon backend's stripes.
-constexpr float kNodataGrey = 105;
 
 inline HWY_NOINLINE void store_colours(const Block& block, base::Rgb* out, int count) {
   const Floats d;
@@ -40,6 +39,24 @@ HWY_INLINE void begin(const PaintJob& job, PaintTiles& tiles, const PaintTile*& 
   if (block.ground != 0 && !job.by_point && !job.one_colour) locate(tiles, tile, block);
 }
 
+// Paints nodata ground: the image in stripes, or else in their mean. Requires colours of the ground.
+inline HWY_NOINLINE void paint_nodata(const PaintJob& job, Block& block) {
+  const bool of_image = paging::shows_image(job.shading->colour_source);
+  for (std::uint32_t left = block.nodata; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    if (!of_image) {
+      block.red[i] = block.green[i] = block.blue[i] = static_cast<float>(core::kNodataMean);
+      continue;
+    }
+    const float tone = nodata_tone(job, block.x + i, block.y);
+    // Without light and hue. paint_by_point() has left them out.
+    const float* const image = block.texel[i];
+    block.red[i] = tone * (job.by_point ? block.red[i] : image[0]);
+    block.green[i] = tone * (job.by_point ? block.green[i] : image[1]);
+    block.blue[i] = tone * (job.by_point ? block.blue[i] : image[2]);
+  }
+}
+
 // Returns the number of nodata pixels.
 HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
   const core::SettingsValues& settings = job.request->settings;
@@ -50,10 +67,7 @@ HWY_INLINE int finish(const PaintJob& job, PaintTiles& tiles, Block& block) {
       paint_ground(job, block);
     }
   }
-  for (std::uint32_t left = block.nodata; left != 0; left &= left - 1) {
-    const int i = __builtin_ctz(left);
-    block.red[i] = block.green[i] = block.blue[i] = kNodataGrey;
-  }
+  if (block.nodata != 0) paint_nodata(job, block);
   const bool hazy = settings.haze_visibility_m > 0.0 && block.ground != 0;
   const bool sky = settings.background == core::Background::kSky && block.sky != 0;
   if (hazy || sky) ray_angles(job, block);
