@@ -6,6 +6,7 @@
 #endif
 
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/sanitized.h"
 #include "vpe/gl/residency.h"
 
 namespace {
@@ -15,6 +16,7 @@ class Residency : public test_support::GlTest {
   // Without a GPU all objects are blocks of this process's heap.
   void SetUp() override {
 #if defined(__GLIBC__)
+    if (test_support::kIsSanitized) GTEST_SKIP() << "skipped: allocations go to the sanitizer";
     if (context_->info().renderer.find("llvmpipe") != std::string::npos) return;
 #endif
     GTEST_SKIP() << "skipped: allocations of OpenGL can be measured with llvmpipe and glibc only";

@@ -7,6 +7,7 @@
 #include "panorama/viewer/viewer.h"
 #include "tests/panorama/big_tiff_file.h"
 #include "tests/panorama/test_images.h"
+#include "tests/support/sanitized.h"
 
 namespace {
 
@@ -58,9 +59,8 @@ void view_panorama(const fs::path& path, int requests) {
   EXPECT_GT(tiled_image->reads(), requests / 4);
   // What was read of pixels are tiles; 16 bytes tell where each of them is.
   EXPECT_LT(bytes_asked_for() - before, tiled_image->reads() * 210'000 + 2'000'000);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  EXPECT_LT(of_process("status", "VmHWM:") - resident_kib, static_cast<std::int64_t>(kBudget >> 10));
-#endif
+  if (!test_support::kIsSanitized)
+    EXPECT_LT(of_process("status", "VmHWM:") - resident_kib, static_cast<std::int64_t>(kBudget >> 10));
 }
 
 TEST(BigImage, ViewsReadTheTilesThatTheyNeed) {

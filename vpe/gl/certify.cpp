@@ -56,9 +56,9 @@ core::Certificate certify(std::span<const CertifiedTile> tiles, const lod::TileT
   c.quantisation_px = (c.quantisation_px + optics.snap_px) * steep;
   for (const CertifiedTile& t : tiles) {
     const double distance_m = std::max(t.tile->min_distance_m, optics.near_m);
-    c.shift_bound_px = std::max(c.shift_bound_px, t.tile->screen_space_error_px +
-                                                      (storage_px(t, distance_m, optics.focal_px) +
-                                                       optics.snap_px) * steep);
+    c.shift_bound_px =
+        std::max(c.shift_bound_px, t.tile->screen_space_error_px +
+                                       (storage_px(t, distance_m, optics.focal_px) + optics.snap_px) * steep);
   }
   c.exaggeration = optics.exaggeration;
   c.share_at_data_limit = area > 0 ? limited / area : 0.0;

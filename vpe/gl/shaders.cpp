@@ -50,7 +50,7 @@ ShaderSources tile_shaders(TilePart part, const TileFeatures& features) {
       head, {shader_text::kGroundColour, features.nodata ? shader_text::kNodataPattern : std::string_view(),
              skirt ? shader_text::kSkirtFragment : shader_text::kSurfaceFragment});
   if (part != TilePart::kSurface || features.by_triangle) {
-    out.geometry = join(head, {skirt                         ? shader_text::kSkirtGeometry
+    out.geometry = join(head, {skirt                       ? shader_text::kSkirtGeometry
                                : part == TilePart::kRibbon ? shader_text::kRibbonGeometry
                                                            : shader_text::kTriangleGeometry,
                                shader_text::kInterpolate});

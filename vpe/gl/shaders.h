@@ -78,7 +78,7 @@ struct TileFeatures {
   bool nodata = false;        // nodata ground is striped and has alpha 0
   bool nodata_image = false;  // the stripes are over the image
   bool haze = false;
-  bool placed = false;       // texture coordinates come from positions, not from vertices: within 1e-7 of the face
+  bool placed = false;  // texture coordinates come from positions, not from vertices: within 1e-7 of the face
   bool by_triangle = false;  // of surfaces: corners are put on the rasteriser's grid triangle by triangle
   auto operator<=>(const TileFeatures&) const = default;
 };

@@ -1,0 +1,24 @@
+// What programs built with a sanitizer link besides: suppressions by the name of a library, and libraries that stay
+// loaded, so that reports can name them.
+#include <dlfcn.h>
+
+extern "C" {
+
+// Replaces that of the C library. A graphics driver is unloaded with its display; what it leaves behind would be
+// reported as of an unknown module.
+int dlclose(void* /*handle*/) { return 0; }
+
+// Returns what LeakSanitizer leaves out: memory that graphics drivers and text libraries keep until the end.
+const char* __lsan_default_suppressions() {
+  return "leak:_dri.so\nleak:libgallium\nleak:libEGL\nleak:libGLX\nleak:libGLdispatch\nleak:libOSMesa\nleak:libLLVM\n"
+         "leak:libfontconfig\nleak:libX11\nleak:libglfw\n";
+}
+
+// Returns what ThreadSanitizer leaves out: accesses by libraries that are not instrumented. Those of the program's
+// own code are reported whoever calls it.
+const char* __tsan_default_suppressions() {
+  return "race:_dri.so\nrace:libgallium\nrace:libEGL\nrace:libOSMesa\nrace:libLLVM\nrace:libfontconfig\n"
+         "race:libgdal\nrace:libproj\nrace:libsqlite3\nrace:libcurl\nrace:libcairo\nrace:libpango\n";
+}
+
+}  // extern "C"
