@@ -9,15 +9,15 @@ namespace {
 // Draws nothing, and states an error.
 class CountingRenderer : public core::Renderer {
  public:
-  explicit CountingRenderer(double error_px) : error_px_(error_px) {}
+  explicit CountingRenderer(double stated_px) : stated_px_(stated_px) {}
 
   core::DrawResult draw(const core::DrawRequest& request) override {
     ++draws;
     last = request;
     core::DrawResult result;
-    result.certificate.screen_space_error_px = error_px_;
+    result.certificate.screen_space_error_px = stated_px_;
     result.certificate.quantisation_px = kQuantisation_px;
-    result.certificate.shift_bound_px = error_px_ + kQuantisation_px;
+    result.certificate.shift_bound_px = stated_px_ + kQuantisation_px;
     return result;
   }
 
@@ -26,7 +26,7 @@ class CountingRenderer : public core::Renderer {
   core::DrawRequest last;
 
  private:
-  double error_px_;
+  double stated_px_;
 };
 
 // Returns the number of draws of an image with the contours that it needs.
@@ -45,17 +45,17 @@ core::DrawRequest with_contours(double tolerance_px = 0.1) {
 }
 
 TEST(ContourRanges, AreDrawnWhereTheImageIsCoarser) {
-  for (const double error_px : {0.0, 0.05, 0.1}) {
-    CountingRenderer renderer(error_px);
-    EXPECT_EQ(draws_of(renderer, with_contours()), 1) << error_px;
+  for (const double stated_px : {0.0, 0.05, 0.1}) {
+    CountingRenderer renderer(stated_px);
+    EXPECT_EQ(draws_of(renderer, with_contours()), 1) << stated_px;
   }
-  for (const double error_px : {0.11, 1.0, 20.0}) {
-    CountingRenderer renderer(error_px);
-    EXPECT_EQ(draws_of(renderer, with_contours()), 2) << error_px;
-    CountingRenderer content(error_px);
-    EXPECT_EQ(draws_of(content, with_contours(error_px)), 1) << error_px;
-    CountingRenderer none(error_px);
-    EXPECT_EQ(draws_of(none, core::DrawRequest()), 1) << error_px;
+  for (const double stated_px : {0.11, 1.0, 20.0}) {
+    CountingRenderer renderer(stated_px);
+    EXPECT_EQ(draws_of(renderer, with_contours()), 2) << stated_px;
+    CountingRenderer content(stated_px);
+    EXPECT_EQ(draws_of(content, with_contours(stated_px)), 1) << stated_px;
+    CountingRenderer none(stated_px);
+    EXPECT_EQ(draws_of(none, core::DrawRequest()), 1) << stated_px;
   }
 }
 

@@ -26,7 +26,9 @@ TEST_F(Memory, BoundsTheRastersOfABuild) {
   }
   EXPECT_EQ(identity[0], identity[1]);
   // The check reads all of the raster: 75 MB decoded, and as much in GDAL's blocks, where there is room.
-  if (!test_support::kIsSanitized) EXPECT_LT(peak[0] + (20 << 20), peak[1]);
+  if (!test_support::kIsSanitized) {
+    EXPECT_LT(peak[0] + (20 << 20), peak[1]);
+  }
   RecordProperty("peak_small", std::to_string(peak[0]));
   RecordProperty("peak_large", std::to_string(peak[1]));
 }

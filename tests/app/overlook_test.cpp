@@ -232,7 +232,9 @@ TEST_F(Overlook, LargeImagesWithinTheirMemory) {
                                "640x360", "--memory", "256", "--direction", "200,-3"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");  // no copies were made
-    if (!test_support::kIsSanitized) EXPECT_LT(result.peak_bytes, std::int64_t{256} << 20);
+    if (!test_support::kIsSanitized) {
+      EXPECT_LT(result.peak_bytes, std::int64_t{256} << 20);
+    }
   }
 }
 

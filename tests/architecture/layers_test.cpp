@@ -206,12 +206,13 @@ std::string read(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// Sources of the tree, relative to its root; hidden folders and build folders left out.
+// Sources of the tree, relative to its root; hidden folders, build folders and cmake/ left out.
 std::vector<fs::path> all_sources(const fs::path& root) {
   std::vector<fs::path> sources;
   for (auto entry = fs::recursive_directory_iterator(root); entry != fs::end(entry); ++entry) {
     const std::string name = entry->path().filename().string();
-    if (entry->is_directory() && (name.starts_with(".") || (entry.depth() == 0 && name.starts_with("build")))) {
+    const bool is_tooling = entry.depth() == 0 && (name.starts_with("build") || name == "cmake");
+    if (entry->is_directory() && (name.starts_with(".") || is_tooling)) {
       entry.disable_recursion_pending();
     } else if (entry->is_regular_file() && is_source(entry->path())) {
       sources.push_back(fs::relative(entry->path(), root));

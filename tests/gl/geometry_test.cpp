@@ -165,11 +165,11 @@ TEST(Certify, AddsTheTermsOfTheWorstTile) {
   EXPECT_EQ(c.tiles_drawn, 2);
   EXPECT_EQ(c.geometric_error_m, 50);
   EXPECT_EQ(c.screen_space_error_px, 0.9);
-  // The grid step's share for the steepest ground of the image, over the nearer tile's error.
-  EXPECT_NEAR(c.shift_bound_px, 0.9 + 0.02 * 4, 1e-3);
-  EXPECT_GT(c.shift_bound_px, 0.98);
+  // The shares of the grid step and of storage for the steepest ground of the image, over the nearer tile's error.
+  const double stored_px = (1e-9 + 4e-7 * (2000 + 100)) * 1000 / 2000;
+  EXPECT_NEAR(c.shift_bound_px, 0.9 + (0.02 + stored_px) * 4, 1e-12);
   const auto twice = vpe::gl::certify(tiles, tree, 32, {1000, 0.5, 0.02, 2});
-  EXPECT_NEAR(twice.shift_bound_px, 0.9 + 0.02 * std::sqrt(61.0), 1e-3);
+  EXPECT_NEAR(twice.shift_bound_px, 0.9 + (0.02 + stored_px) * std::sqrt(61.0), 1e-12);
   EXPECT_EQ(twice.exaggeration, 2);
 }
 
@@ -197,10 +197,11 @@ TEST(Certify, BoundsPartsWhereTheyAppear) {
     const std::array<float, 3> ranges{vpe::core::kSkyRange, near_m, far_m};
     return vpe::gl::bound_in_image(tiles, tree, {ids, ranges, 1e-6}, {1000, 0.5, 0.02, 1});
   };
-  EXPECT_NEAR(bound(TilePart::kSurface, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
-  EXPECT_NEAR(bound(TilePart::kRibbon, 4000, 8000), 2.0 / 4 + 0.02 * 4, 1e-3);
-  EXPECT_NEAR(bound(TilePart::kSkirt, 4000, 8000), (2.0 + 6.0) / 4 + 0.02 * 4, 1e-3);
-  EXPECT_NEAR(bound(TilePart::kSkirt, 32000, 4000), 2.0 / 4 + 0.02 * 4, 1e-3);
+  const double moved_px = 0.02 + (1e-9 + 4e-7 * (4000 + 100)) * 1000 / 4000;
+  EXPECT_NEAR(bound(TilePart::kSurface, 4000, 8000), 2.0 / 4 + moved_px * 4, 1e-5);
+  EXPECT_NEAR(bound(TilePart::kRibbon, 4000, 8000), 2.0 / 4 + moved_px * 4, 1e-5);
+  EXPECT_NEAR(bound(TilePart::kSkirt, 4000, 8000), (2.0 + 6.0) / 4 + moved_px * 4, 1e-5);
+  EXPECT_NEAR(bound(TilePart::kSkirt, 32000, 4000), 2.0 / 4 + moved_px * 4, 1e-5);
   // Ranges are known no better than their stated error.
   EXPECT_GT(bound(TilePart::kSurface, 4000, 4e9F), bound(TilePart::kSurface, 4000, 8000) - 1e-12);
   EXPECT_EQ(vpe::gl::bound_in_image(tiles, tree, {}, {1000, 0.5, 0.02, 1}), 0);

@@ -59,8 +59,9 @@ void view_panorama(const fs::path& path, int requests) {
   EXPECT_GT(tiled_image->reads(), requests / 4);
   // What was read of pixels are tiles; 16 bytes tell where each of them is.
   EXPECT_LT(bytes_asked_for() - before, tiled_image->reads() * 210'000 + 2'000'000);
-  if (!test_support::kIsSanitized)
+  if (!test_support::kIsSanitized) {
     EXPECT_LT(of_process("status", "VmHWM:") - resident_kib, static_cast<std::int64_t>(kBudget >> 10));
+  }
 }
 
 TEST(BigImage, ViewsReadTheTilesThatTheyNeed) {

@@ -112,12 +112,15 @@ TEST_F(OverlayApp, ContoursLieOnTheGroundAtDefaultSettings) {
   constexpr double kBetweenPosts_m = 7;
   const glm::dvec3 middle = mars::direction({31, 1});
   Dem dem;
+  dem.width = 720;
+  dem.height = 360;
+  dem.cell_deg = 0.5;
   dem.height_m = [&](int column, int row) {
-    const mars::LonLat at{-180 + 2 * (column + 0.5), 90 - 2 * (row + 0.5)};
+    const mars::LonLat at{-180 + 0.5 * (column + 0.5), 90 - 0.5 * (row + 0.5)};
     return ring_height_m(std::acos(std::clamp(glm::dot(mars::direction(at), middle), -1.0, 1.0)));
   };
   write_dem(dir_ / "rings.tif", dem);
-  ASSERT_EQ(vpe({"build", "rings.tif", "-o", "rings.vpe", "--base-spacing", "100000", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(vpe({"build", "rings.tif", "-o", "rings.vpe", "--base-spacing", "50000", "--quiet"}).exit_code, 0);
   vpe::core::View view;
   view.camera = mars::to_camera({46, 1, 1e5, 0, -90, 0}, mars::kMarsRadius_m);
   view.width = 640;

@@ -17,7 +17,7 @@ namespace vpe::app {
 namespace {
 
 constexpr std::size_t kMostSampleBytes = std::size_t{192} << 20;
-// Slopes are read from a picture of reds: three levels a degree. Ground without data is grey.
+// Slopes are read from a picture of reds: three levels a degree. Nodata ground is grey.
 constexpr double kMostSlope_deg = 85;
 
 // Returns the settings of a picture whose reds are slopes.
