@@ -8,13 +8,6 @@
 
 #include <cairo.h>
 
-// Fontconfig loses the pointer to some hundred bytes of font data that it keeps until the process ends. The
-// leak sanitizer must not report them.
-#if defined(__SANITIZE_ADDRESS__) || defined(__clang__)
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig\n"; }
-#endif
-
 namespace vpe::overlay {
 
 namespace {
