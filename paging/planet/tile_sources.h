@@ -1,4 +1,4 @@
-// Which source gave the height of each post of a finest tile, and how far the tile is from the sources' posts.
+// The source of the height of each post of a finest tile, and how far the tile is from the posts of its sources.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How far below the reference surface the rays of a drawn image pass: what its silhouettes are bounded by.
+// The depth below the reference surface that rays of a drawn image reach: the measure of its silhouettes.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Which source gave the height at a place, and how far the tile there is from that source's posts.
+// The source of the height at a place, and how far the tile there is from the posts of that source.
 #include "paging/planet/tile_sources.h"
 
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <utility>
 
@@ -58,10 +59,11 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   };
   for (const std::string& error : devices_.errors()) add(error);
   if (setup_.flight) add(session_.flights().load(*setup_.flight));
-  flight_.offer(backup_.abandoned());
+  const std::vector<std::filesystem::path> abandoned = backup_.abandoned();
+  flight_.offer(abandoned);
   if (!errors.empty())
     show_message(errors, true);
-  else if (!backup_.abandoned().empty())
+  else if (!abandoned.empty())
     show_message("an earlier session left an unsaved flight: 'Restore' in the panel 'Flight' opens it");
 }
 

@@ -169,7 +169,7 @@ class ExploreWindow {
   static constexpr double kImageWait_s = 0.1;   // limit of waiting for an image in one iteration
   static constexpr int kFramesAfterChange = 3;  // ImGui settles within these
 
-  // What keep_session() was called for.
+  // Holds the state that keep_session() wrote last.
   struct KeptSession {
     std::array<double, 6> pose;  // the fields of mars::Pose
     core::Backend backend;

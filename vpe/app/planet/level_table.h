@@ -1,4 +1,4 @@
-// What a planet file holds, level by level, for people.
+// The content of a planet file level by level, for people.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What GDAL and programs like it show of a TIFF besides its pixels: names and units of bands, nodata, metadata.
+// Metadata of TIFF files as GDAL and programs like it show them: names and units of bands, nodata, free items.
 #pragma once
 
 #include <tiffio.h>
