@@ -8,11 +8,15 @@ extern "C" {
 // reported as of an unknown module.
 int dlclose(void* /*handle*/) { return 0; }
 
-// Returns what LeakSanitizer leaves out: memory that graphics drivers and text libraries keep until the end.
+// Returns what LeakSanitizer leaves out: memory that drivers and text libraries keep until the end.
 const char* __lsan_default_suppressions() {
   return "leak:_dri.so\nleak:libgallium\nleak:libEGL\nleak:libGLX\nleak:libGLdispatch\nleak:libOSMesa\nleak:libLLVM\n"
-         "leak:libfontconfig\nleak:libX11\nleak:libglfw\n";
+         "leak:libfontconfig\nleak:libX11\nleak:libglfw\nleak:libspnav\n";
 }
+
+// Returns options of LeakSanitizer. Reading the thread-local memory of a driver's threads crashes its tracer now and
+// then.
+const char* __lsan_default_options() { return "use_tls=0:print_suppressions=0"; }
 
 // Returns what ThreadSanitizer leaves out: accesses by libraries that are not instrumented. Those of the program's
 // own code are reported whoever calls it.
