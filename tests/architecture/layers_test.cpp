@@ -24,6 +24,7 @@ struct Layer {
   bool may_draw = false;  // OpenGL, EGL, GLFW, OSMesa
   bool may_read_rasters = false;  // GDAL
   bool may_letter = false;        // Cairo
+  bool may_fetch = false;         // libcurl, libcrypto
 };
 
 // Every module that a room of vpe/app may use.
@@ -93,6 +94,7 @@ const std::vector<Layer>& layers() {
        {"vpe/base", "mars", "vpe/core", "lod", "paging", "scripts", "vpe/overlay", "panorama", "vpe/explore"},
        true},
       {"vpe/app/cli", "vpe::app", kBelowApp, true},
+      {"vpe/app/get", "vpe::app", below_app({"vpe/app/cli"}), false, false, false, true},
       {"vpe/app/planet", "vpe::app", below_app({"vpe/app/cli"}), true},
       {"vpe/app/picture", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet"}), true},
       {"vpe/app/film", "vpe::app", below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture"}), true},
@@ -101,8 +103,8 @@ const std::vector<Layer>& layers() {
        below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture", "vpe/app/film", "vpe/app/panorama"}),
        true},
       {"vpe/app", "vpe::app",
-       below_app({"vpe/app/cli", "vpe/app/planet", "vpe/app/picture", "vpe/app/film", "vpe/app/panorama",
-                  "vpe/app/report"}),
+       below_app({"vpe/app/cli", "vpe/app/get", "vpe/app/planet", "vpe/app/picture", "vpe/app/film",
+                  "vpe/app/panorama", "vpe/app/report"}),
        true},
       {"tests", "", below_app({"vpe/app"}), true, true},
   };
@@ -145,6 +147,10 @@ bool is_lettering_header(const std::string& name) {
   return std::regex_match(name, kPattern);
 }
 
+bool is_fetching_header(const std::string& name) {
+  return name.starts_with("curl/") || name.starts_with("openssl/");
+}
+
 bool is_source(const fs::path& path) {
   static const std::vector<std::string> kExtensions{".h", ".hpp", ".hh", ".c", ".cc", ".cpp", ".cxx", ".inl"};
   return std::find(kExtensions.begin(), kExtensions.end(), path.extension().string()) != kExtensions.end();
@@ -156,6 +162,7 @@ std::string include_problem(const Layer& layer, const std::string& name, bool qu
     return "only vpe/gl, vpe/window and vpe/app may include " + name;
   if (is_raster_header(name) && !layer.may_read_rasters) return "only mars may include " + name;
   if (is_lettering_header(name) && !layer.may_letter) return "only vpe/overlay may include " + name;
+  if (is_fetching_header(name) && !layer.may_fetch) return "only vpe/app/get may include " + name;
   if (!quoted) return "";
   const Layer* used = layer_of(name);
   if (used == nullptr) return "\"" + name + "\" is not given from the root of the repository";
@@ -311,6 +318,9 @@ TEST(LayersSelfTest, FabricatedViolationsAreCaught) {
   EXPECT_EQ(verdict("vpe/overlay/a.cpp", "#include <cairo.h>\nnamespace vpe::overlay {}"), "");
   EXPECT_NE(verdict("vpe/app/a.cpp", "#include <cairo.h>\nnamespace vpe::app {}"), "");
   EXPECT_NE(verdict("vpe/core/a.cpp", "#include <cairo/cairo-ft.h>\nnamespace vpe::core {}"), "");
+  EXPECT_EQ(verdict("vpe/app/get/a.cpp", "#include <curl/curl.h>\n#include <openssl/evp.h>\n" + app), "");
+  EXPECT_NE(verdict("vpe/app/cli/a.cpp", "#include <curl/curl.h>\n" + app), "");
+  EXPECT_NE(verdict("vpe/app/a.cpp", "#include <openssl/evp.h>\n" + app), "");
   EXPECT_NE(verdict("lod/a.h", lod), "");
   EXPECT_EQ(verdict("lod/a.h", "// What it is.\n#pragma once\n" + lod), "");
   EXPECT_NE(verdict("lod/a.cpp", "namespace mars {}\n"), "");

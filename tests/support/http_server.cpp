@@ -6,14 +6,59 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 namespace test_support {
 
+namespace {
+
+void send_all(int connection, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t sent = ::send(connection, text.data() + at, text.size() - at, MSG_NOSIGNAL);
+    if (sent <= 0) return;
+    at += static_cast<std::size_t>(sent);
+  }
+}
+
+std::string small_letters(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+HttpServer::Request parsed(const std::string& text) {
+  HttpServer::Request request;
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  std::istringstream words(line);
+  words >> request.method >> request.path;
+  request.path.erase(0, 1);
+  while (std::getline(lines, line) && line.size() > 1) {
+    const std::size_t colon = line.find(": ");
+    if (colon == std::string::npos) continue;
+    request.headers[small_letters(line.substr(0, colon))] = line.substr(colon + 2, line.size() - colon - 3);
+  }
+  return request;
+}
+
+}  // namespace
+
 HttpServer::HttpServer(std::filesystem::path folder, Decide decide, bool states_times)
     : folder_(std::move(folder)), decide_(std::move(decide)), states_times_(states_times) {
+  open_socket();
+}
+
+HttpServer::HttpServer(std::filesystem::path folder, Answers answers)
+    : folder_(std::move(folder)), answers_(std::move(answers)) {
+  open_socket();
+}
+
+void HttpServer::open_socket() {
   socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -25,6 +70,11 @@ HttpServer::HttpServer(std::filesystem::path folder, Decide decide, bool states_
   }
   port_ = ntohs(address.sin_port);
   thread_ = std::thread([this] { serve(); });
+}
+
+std::vector<HttpServer::Request> HttpServer::log() const {
+  const std::lock_guard lock(mutex_);
+  return log_;
 }
 
 HttpServer::~HttpServer() {
@@ -60,13 +110,8 @@ bool HttpServer::answer(int connection) {
     if (got <= 0) return false;
     request.append(buffer, static_cast<std::size_t>(got));
   }
-  const auto send = [&](const std::string& text) {
-    for (std::size_t at = 0; at < text.size();) {
-      const ssize_t sent = ::send(connection, text.data() + at, text.size() - at, MSG_NOSIGNAL);
-      if (sent <= 0) return;
-      at += static_cast<std::size_t>(sent);
-    }
-  };
+  if (answers_) return answer_as_told(connection, request);
+  const auto send = [&](const std::string& text) { send_all(connection, text); };
   const std::string method = request.substr(0, request.find(' '));
   const std::size_t path_at = request.find('/');
   const std::string path = request.substr(path_at + 1, request.find(' ', path_at) - path_at - 1);
@@ -102,6 +147,49 @@ bool HttpServer::answer(int connection) {
   bytes_ += static_cast<std::int64_t>(body.size());
   send(head + (fate == Fate::kCut ? body.substr(0, body.size() / 2) : body));
   return false;
+}
+
+bool HttpServer::answer_as_told(int connection, const std::string& text) {
+  Request request = parsed(text);
+  request.n = requests_++;
+  const Answer told = answers_(request);
+  {
+    const std::lock_guard lock(mutex_);
+    log_.push_back(request);
+  }
+  std::map<std::string, std::string> headers{{"Connection", "close"},
+                                             {"Last-Modified", "Sat, 21 Nov 2026 08:00:00 GMT"},
+                                             {"Content-Type", "application/octet-stream"}};
+  for (const auto& [name, value] : told.headers) headers[name] = value;
+  int status = told.status;
+  std::string body = told.body.value_or("");
+  if (!told.body && status == 200) {
+    std::ifstream file(folder_ / request.path, std::ios::binary);
+    if (!file || request.path.empty()) status = 404;
+    body.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  const auto range = request.headers.find("range");
+  const auto if_range = request.headers.find("if-range");
+  const bool is_same = !told.obeys_if_range || if_range == request.headers.end() ||
+                       if_range->second == headers["ETag"] || if_range->second == headers["Last-Modified"];
+  if (status == 200 && told.knows_ranges && range != request.headers.end() && is_same) {
+    const std::size_t first = std::stoul(range->second.substr(std::string("bytes=").size()));
+    const std::string size = std::to_string(body.size());
+    status = first < body.size() ? 206 : 416;
+    headers.insert({"Content-Range", status == 416 ? "bytes */" + size
+                                                   : "bytes " + std::to_string(first) + "-" +
+                                                         std::to_string(body.size() - 1) + "/" + size});
+    body = status == 416 ? "" : body.substr(first);
+  }
+  headers.insert({"Content-Length", std::to_string(body.size())});
+  std::string head = "HTTP/1.1 " + std::to_string(status) + " Told\r\n";
+  for (const auto& [name, value] : headers) {
+    if (!value.empty()) head += name + ": " + value + "\r\n";
+  }
+  if (told.cut_after) body.resize(std::min(body.size(), *told.cut_after));
+  bytes_ += static_cast<std::int64_t>(body.size());
+  send_all(connection, head + "\r\n" + body);
+  return told.hangs;
 }
 
 }  // namespace test_support

@@ -5,6 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -25,8 +28,29 @@ class HttpServer {
   // Returns the fate of the n-th request (from 0). Called from the server's thread.
   using Decide = std::function<Fate(int n, const std::string& method)>;
 
+  struct Request {
+    int n = 0;  // from 0
+    std::string method;
+    std::string path;                            // without the first slash
+    std::map<std::string, std::string> headers;  // names in small letters
+  };
+  // Describes an answer. Without changes the file of the request's path is served, with ranges.
+  struct Answer {
+    int status = 200;                      // other ones have no body, unless `body` is given
+    std::optional<std::string> body = {};  // in place of the file
+    // Besides the server's own, or in place of them; empty ones are left out.
+    std::map<std::string, std::string> headers = {};
+    bool obeys_if_range = true;
+    bool knows_ranges = true;
+    std::optional<std::size_t> cut_after = {};  // bytes of the body after which the connection ends
+    bool hangs = false;                         // it stays open instead of ending
+  };
+  // Returns the answer to a request. Called from the server's thread.
+  using Answers = std::function<Answer(const Request&)>;
+
   // `states_times`: answers say when a file was changed (always the same time).
   explicit HttpServer(std::filesystem::path folder, Decide decide = {}, bool states_times = true);
+  HttpServer(std::filesystem::path folder, Answers answers);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
@@ -35,15 +59,21 @@ class HttpServer {
   int requests() const { return requests_; }
   int failed() const { return failed_; }
   std::int64_t bytes() const { return bytes_; }  // of all files sent, without headers
+  std::vector<Request> log() const;              // of a server with Answers
 
  private:
   void serve();
   // Returns true if the connection stays open.
   bool answer(int connection);
+  bool answer_as_told(int connection, const std::string& request);
+  void open_socket();
 
   std::filesystem::path folder_;
   Decide decide_;
-  bool states_times_;
+  Answers answers_;
+  bool states_times_ = true;
+  mutable std::mutex mutex_;
+  std::vector<Request> log_;
   int socket_ = -1;
   int port_ = 0;
   std::atomic<int> requests_{0};
