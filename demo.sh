@@ -27,7 +27,7 @@ Made in out/:
   globe.png olympus.png valles.png noctis.png hellas.png gale.png jezero.png boreum.png
   valles-marineris.csv   time and error bound of every frame
 
-The embedded Mars is an illustration of published landforms, not data. With real data:
+The embedded Mars is MOLA and MDIM at eight posts a degree; smaller ground is synthetic. With finer data:
   build/release/vpe build DEM --image IMAGE -o mars.vpe
   build/release/vpe fly scripts/flights/valles-marineris.flight mars.vpe -o real.mp4
   build/release/vpe query mars.vpe -59.2,-13.7

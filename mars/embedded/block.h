@@ -1,5 +1,4 @@
-// Blocks of nearby directions that are processed together, the terrain at them, and loops for several
-// instruction sets.
+// Blocks of nearby directions that are processed together, and loops for several instruction sets.
 //
 // Arrays are padded to a multiple of kLanes with copies of the last direction, so that loops need no tail.
 // Every value is a function of its own direction alone; bounds only serve to skip what contributes exactly 0.
@@ -48,20 +47,6 @@ struct Block {
     const double limit = reach + chord;
     return dx * dx + dy * dy + dz * dz <= limit * limit;
   }
-};
-
-// Holds the ground before craters and roughness, and its kind. Factors are 0..1 unless noted.
-struct Terrain {
-  alignas(64) Lane<double> height_m;
-  alignas(64) Lane<float> cratered;  // density of craters, relative to the southern highlands
-  alignas(64) Lane<float> rugged;    // amplitude of relief longer than some kilometres
-  alignas(64) Lane<float> rough;     // amplitude of relief from some kilometres down to tens of metres
-  alignas(64) Lane<float> lowland;   // northern plains
-  alignas(64) Lane<float> volcanic;  // lava of Tharsis, Elysium and the shields
-  alignas(64) Lane<float> wall;      // walls of troughs and scarps: rock
-  alignas(64) Lane<float> trough;    // floors of troughs
-  alignas(64) Lane<float> mound;     // layered mounds in troughs
-  alignas(64) Lane<float> ice;       // polar caps
 };
 
 #if defined(__x86_64__) && defined(__GNUC__)

@@ -4,8 +4,7 @@
 
 #include "mars/embedded/block.h"
 #include "mars/embedded/craters.h"
-#include "mars/embedded/landforms.h"
-#include "mars/embedded/surface.h"
+#include "mars/embedded/octaves.h"
 
 namespace mars::embedded {
 
@@ -14,13 +13,14 @@ inline constexpr double kCoarsestDetail_m = 4.0;  // largest spacing at which ad
 
 // Sand: dunes, ridges and ripples with sharp crests across the wind.
 struct Sand {
-  alignas(64) Lane<float> cover;     // 0..1: share of the ground under sand
-  alignas(64) Lane<float> height_m;  // of dunes and ripples
-  alignas(64) Lane<float> crest;     // 0 between the finest ridges present, 1 on their crests
+  static constexpr std::size_t kGroups = 3;
+  alignas(64) Lane<float> cover;              // 0..1: share of the ground under sand
+  alignas(64) Lane<float> height_m[kGroups];  // of dunes 640 m apart, of ridges 41 m apart, and of all ripples
+  alignas(64) Lane<float> crest;              // 0 between the finest ridges present, 1 on their crests
 };
 
 // Sets `out`. Returns false if there is no sand; then only out.cover is set.
-bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const Terrain& ground,
+bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const Ground& ground,
               const CraterSum& craters, Sand& out);
 
 // Rocks: angular blocks, partly buried, from pebbles of 6 cm to boulders of eight metres.
@@ -41,9 +41,11 @@ inline constexpr double kGravel_m = 0.5;
 void strew_rocks(const Block& block, double detail_m, const Lane<float>& bare, const Lane<float>& gravelly,
                  Rocks& out);
 
-// Adds heights shorter than the octaves of roughness, in metres, to `sum`, which contains those octaves. Sets
-// out.rock and out.rock_tone, and adds to `grain`. `rough` is the amplitude of roughness, 1 in the highlands.
-void add_detail(const Block& block, double detail_m, const Sand& sand, const Lane<float>& rough, Surface& out,
-                Lane<float>& sum, Lane<float>& grain);
+struct Relief;
+
+// Adds heights shorter than the octaves of roughness to the last group of `out`, sets its rocks, and adds to its grain.
+// `smooth` are all heights of longer octaves, in metres; `rough` is the amplitude of roughness, 1 in the highlands.
+void add_detail(const Block& block, double detail_m, const Ground& ground, const Octaves& octaves,
+                const CraterSum& craters, const Lane<float>& rough, const Lane<float>& smooth, Relief& out);
 
 }  // namespace mars::embedded

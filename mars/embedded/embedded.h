@@ -1,20 +1,25 @@
-// The embedded Mars: an analytic illustration of the published landforms, for use without any data.
+// The embedded Mars: measured heights and colours that the program carries, and marked detail below their resolution.
+//
+// Down to its own resolution it is MOLA and MDIM 2.1 at eight posts a degree (mars/data): the cubic spline through the
+// posts. Below it, the source "embedded-detail" adds synthetic relief, whose amplitude and kind follow from the data
+// around: local relief, slope, density of pits, brightness. It is zero at the posts of the data, and zero in the mean over
+// the area of a post (to about a metre), so that it adds nothing that the data could contradict.
 //
 // embedded_elevation() and embedded_image() are functions of direction and spacing alone, defined everywhere
 // and at every spacing down to 1/16 m. The spacing is rounded down to a power of two. It decides which
-// wavelengths and which sizes of craters and rocks are included: about twice the spacing and more. Values are
-// bit-identical on every machine and compiler, because only integers and IEEE + - * / sqrt are used.
+// wavelengths and which sizes of craters and rocks are included: about twice the spacing and more. From 2048 m on there
+// is no detail. Heights are bit-identical on every machine and compiler, because only integers and IEEE + - * / sqrt are
+// used; colours are as the JPEG library decodes the mosaic.
 //
-// The surface is continuous except for steps from single precision in its noise: at most kEmbeddedStep_m,
+// The surface is continuous except for steps from single precision in the detail: at most kEmbeddedStep_m,
 // reached on the walls of Valles Marineris; a millimetre elsewhere.
 //
-// It is no data: SourceInfo::illustration is true. Positions and heights of the named landforms follow the IAU
-// gazetteer and MOLA (heights and widths within 10 %, places within 0.2 degrees). The broad relief is a fit to
-// MOLA with a resolution of about 500 km, the broad albedo a fit to the Viking mosaic with 250 km; everything
-// smaller is synthetic.
+// Where the files of mars/data are missing, the sources say so in their notes and are a sphere of plain colour with
+// detail.
 //
-// Cost: 0.15 .. 0.4 us per post on one core of the 2020s for compact batches of several thousand directions,
-// such as tiles; directions scattered over the planet cost 20 .. 35 us each.
+// Cost: 0.3 .. 0.6 us per post on one core of the 2020s for compact batches of several thousand directions,
+// such as tiles; directions scattered over the planet cost 30 .. 60 us each, and up to a millisecond where detail is
+// included.
 //
 // Typical usage:
 //   const auto source = embedded_elevation();
@@ -29,10 +34,19 @@
 
 namespace mars {
 
-// Return the source of elevation, or of colour. finest_m > 0 sets the spacing of posts or texels everywhere,
-// for planets that are refined in some region; else kEmbeddedPosts or kEmbeddedTexels hold.
-std::shared_ptr<const ElevationSource> embedded_elevation(double finest_m = 0);
-std::shared_ptr<const ImageSource> embedded_image(double finest_m = 0);
+struct EmbeddedOptions {
+  // > 0: the spacing of posts or texels everywhere, for planets that are refined in some region; else those of
+  // kEmbeddedPosts and kEmbeddedTexels.
+  double finest_m = 0;
+  bool detail = true;  // false: the data alone
+};
+
+// Return the source of elevation, or of colour. Opening reads the carried data once, in a fraction of a second.
+std::shared_ptr<const ElevationSource> embedded_elevation(const EmbeddedOptions& options = {});
+std::shared_ptr<const ImageSource> embedded_image(const EmbeddedOptions& options = {});
+
+// Name of the source of synthetic detail in planet files and answers.
+inline constexpr const char* kEmbeddedDetail = "embedded-detail";
 
 // Bounds the steps of the surface.
 inline constexpr double kEmbeddedStep_m = 0.05;
@@ -40,16 +54,17 @@ inline constexpr double kEmbeddedStep_m = 0.05;
 // Returns the waypoints of the demonstration flight along the floor of Coprates Chasma into Melas Chasma,
 // westwards, about 660 km. Within kDemoHalfWidth_m of it the embedded Mars has its finest posts.
 std::span<const LonLat> demo_path();
-inline constexpr double kDemoHalfWidth_m = 12000.0;
+inline constexpr double kDemoHalfWidth_m = 9000.0;
 
 // Holds the spacings of posts or texels that spacing_in() returns.
 struct EmbeddedSpacings {
   double plain_m;     // anywhere
-  double landmark_m;  // over Valles Marineris, Olympus Mons, Gale and Jezero
+  double broad_m;     // over Valles Marineris, Noctis Labyrinthus and Olympus Mons
+  double landmark_m;  // within 45 km of the demonstration flight, over Gale and Jezero
   double demo_m;      // along the demonstration flight
 };
-inline constexpr EmbeddedSpacings kEmbeddedPosts{3700.0, 250.0, 60.0};
-inline constexpr EmbeddedSpacings kEmbeddedTexels{2600.0, 300.0, 80.0};
+inline constexpr EmbeddedSpacings kEmbeddedPosts{5300.0, 660.0, 170.0, 60.0};
+inline constexpr EmbeddedSpacings kEmbeddedTexels{5300.0, 660.0, 170.0, 90.0};
 
 // Returns the finest of the spacings anywhere in the cap. Conservative.
 double embedded_spacing_in(const Cap& cap, const EmbeddedSpacings& spacings);

@@ -29,9 +29,12 @@ constexpr Ridges kRidges[] = {
     {0.37, 0.017F, 0.35F, 0.0625, {3, 2, 1}, {0.5F, 0.25F, 0.12F}, 1},
 };
 
+// Mean of a ridge's profile, so that sand raises no ground.
+constexpr float kMeanRidge = 0.45F / 2.0F + 0.55F / 3.0F;
+
 }  // namespace
 
-bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const Terrain& ground,
+bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const Ground& ground,
               const CraterSum& craters, Sand& out) {
   if (detail_m > kCoarsestSand_m) {
     out.cover.fill(0.0F);
@@ -42,7 +45,7 @@ bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       const float where = 0.8F * n[13][i] + 0.5F * n[11][i] - 0.25F;
-      const float open = std::max(ground.trough[i], 0.7F * std::max(craters.buried[i], craters.filled[i]));
+      const float open = std::max({ground.trough[i], 0.7F * craters.hollow[i], 0.9F * ground.dark[i]});
       // The erg around the northern ice.
       const auto z = static_cast<float>(block.z[i]);
       const float erg =
@@ -54,10 +57,12 @@ bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const
     }
   });
   if (any == 0) return false;
-  out.height_m.fill(0.0F);
+  for (auto& group : out.height_m) group.fill(0.0F);
   out.crest.fill(0.0F);
-  for (const Ridges& r : kRidges) {
+  for (std::size_t k = 0; k < std::size(kRidges); ++k) {
+    const Ridges& r = kRidges[k];
     if (detail_m > r.coarsest_m) break;
+    Lane<float>& height_m = out.height_m[std::min<std::size_t>(k, Sand::kGroups - 1)];
     const auto& b0 = n[static_cast<std::size_t>(r.octave[0])];
     const auto& b1 = n[static_cast<std::size_t>(r.octave[1])];
     const auto& b2 = n[static_cast<std::size_t>(r.octave[2])];
@@ -77,7 +82,7 @@ bool lay_sand(const Block& block, double detail_m, const Octaves& octaves, const
         const float up = std::min(f * rise, (1.0F - f) * fall);
         const float ridge = up * (0.45F + 0.55F * up);
         const float there = out.cover[i] * std::max(0.0F, std::min(1.0F, 0.75F + 0.55F * patch[i]));
-        out.height_m[i] += r.height_m * there * (ridge - 0.35F);
+        height_m[i] += r.height_m * there * (ridge - kMeanRidge);
         out.crest[i] = mix(out.crest[i] * 0.6F, ridge, there);
       }
     });

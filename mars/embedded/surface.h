@@ -1,4 +1,10 @@
-// Evaluates the surface of the embedded Mars, block by block.
+// Evaluates the surface of the embedded Mars, block by block: measured ground and detail below its resolution.
+//
+// At the posts of the data the detail is zero: each group of relief is made zero there by subtracting its own value,
+// faded over kPinnedReach_m; craters keep clear of posts; what is shorter fades out beside them. Its mean over the area
+// of a post is zero too: the mean of what is longer than kMeanDetail_m is found by sampling and subtracted, and what is
+// shorter has no mean by construction. Beyond about 60 degrees of latitude, where posts are narrower than high, areas of several posts
+// of a row stand for one.
 #pragma once
 
 #include <functional>
@@ -6,37 +12,38 @@
 
 #include "mars/embedded/block.h"
 #include "mars/embedded/craters.h"
-#include "mars/embedded/landforms.h"
+#include "mars/embedded/ground.h"
+#include "mars/embedded/octaves.h"
+#include "mars/embedded/relief.h"
 
 namespace mars::embedded {
 
 inline constexpr double kFinestDetail_m = 0.0625;
+// Means are taken of the detail that posts of this spacing show.
+inline constexpr double kMeanDetail_m = 256.0;
 
 // Returns the spacing rounded down to a power of two, at least kFinestDetail_m and at most 2^20 m. It decides
 // which detail is included.
 double detail_spacing_m(double spacing_m);
 
 struct Surface {
+  Ground ground;
   Octaves octaves;
-  Terrain ground;
   CraterSum craters;
-  alignas(64) Lane<double> height_m;
-  alignas(
-      64) Lane<float> grain;     // fine heights relative to their own size, about -2..2; changes the brightness
-  alignas(64) Lane<float> sand;  // 0..1: share of the ground under sand
-  alignas(64) Lane<float> crest;      // 0 between ridges of sand .. 1 on their crests
-  alignas(64) Lane<float> rock;       // 0..1: share of rock that is visible from nearby
-  alignas(64) Lane<float> rock_tone;  // -1 dark .. 1 bright
+  Relief relief;
+  alignas(64) Lane<float> detail_m;   // height of the detail
+  alignas(64) Lane<double> height_m;  // measured height and detail
 };
-
-// Evaluates a block. `touching` are the indices of the craters that may touch it.
-void evaluate(const Block& block, double detail_m, std::span<const Crater> craters,
-              std::span<const std::uint32_t> touching, Surface& out);
 
 // Receives the surface of a block and, for each of its directions, its index in the input.
 using SurfaceSink = std::function<void(const Block&, std::span<const std::uint32_t> index, const Surface&)>;
 
 // Splits any directions into compact blocks, finds their craters and evaluates them.
-void evaluate_all(std::span<const glm::dvec3> directions, double spacing_m, Simd simd, const SurfaceSink& sink);
+void evaluate_all(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double spacing_m, Simd simd,
+                  const SurfaceSink& sink);
+
+// Does the same for a spacing of detail_spacing_m() without subtracting means, which are found by it.
+void evaluate_without_means(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double detail_m,
+                            Simd simd, const SurfaceSink& sink);
 
 }  // namespace mars::embedded

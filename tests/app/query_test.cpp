@@ -56,6 +56,35 @@ TEST_F(Query, AnswersFollowTheRaster) {
   }
 }
 
+TEST_F(Query, SaysWhatIsMeasuredAndWhatIsSynthetic) {
+  for (const auto& a : ask({"1,1", "31,59"})) {
+    EXPECT_EQ(a["kind"], "measured");
+    EXPECT_EQ(a["measured_m"], a["elevation_m"]);
+  }
+  ASSERT_EQ(vpe({"build", "embedded", "--region", "-63.1,-12.7,-62.9,-12.5", "--spacing", "100",
+                 "--base-spacing", "60000", "-o", "mars.vpe", "--quiet"})
+                .exit_code,
+            0);
+  const Result result = vpe({"query", "mars.vpe", "--json", "-63,-12.6", "30,30"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("synthetic"), std::string::npos) << result.err;
+  const json answers = parse_json(result.out);
+  EXPECT_EQ(answers[0]["kind"], "synthetic");
+  EXPECT_EQ(answers[0]["source"], "embedded-detail");
+  EXPECT_EQ(answers[0]["illustration"], true);
+  // The parts are different heights of the same ground.
+  const double height_m = answers[0]["elevation_m"], measured_m = answers[0]["measured_m"];
+  EXPECT_NE(height_m, measured_m);
+  EXPECT_NEAR(height_m, measured_m, 600);
+  EXPECT_NEAR(measured_m, -5000, 900);
+  EXPECT_EQ(answers[1]["kind"], "measured");
+  EXPECT_EQ(answers[1]["illustration"], false);
+  EXPECT_EQ(answers[1]["measured_m"], answers[1]["elevation_m"]);
+  const Result csv = vpe({"query", "mars.vpe", "-63,-12.6"});
+  EXPECT_NE(csv.out.find(",kind,measured_m\n"), std::string::npos);
+  EXPECT_NE(csv.out.find(",synthetic,-"), std::string::npos) << csv.out;
+}
+
 TEST_F(Query, BothLongitudeConventions) {
   const json answers = ask({"286,-13.5", "-74,-13.5", "180,10", "-180,10"});
   EXPECT_EQ(answers[0], answers[1]);
@@ -128,7 +157,7 @@ TEST_F(Query, FurtherColumnsAreKept) {
   EXPECT_EQ(answers[1]["input"], json({{"name", "Jezero"}, {"level", ""}}));
   const std::vector<std::string> lines = lines_of(vpe({"query", planet().string()}, table).out);
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_TRUE(lines[0].ends_with(",resampling_rms_m,name,input_level")) << lines[0];
+  EXPECT_TRUE(lines[0].ends_with(",measured_m,name,input_level")) << lines[0];
   EXPECT_TRUE(lines[1].ends_with(",\"Gale, west\",7")) << lines[1];
   EXPECT_TRUE(lines[2].ends_with(",Jezero,")) << lines[2];
 }
@@ -170,12 +199,12 @@ TEST_F(Query, CsvAndJsonSayTheSame) {
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0],
             "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum,"
-            "source_spacing_m,resampling_max_m,resampling_rms_m");
+            "source_spacing_m,resampling_max_m,resampling_rms_m,kind,measured_m");
   for (std::size_t n = 0; n < 2; ++n) {
     std::istringstream row(lines[n + 1]);
     std::vector<std::string> cells;
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), 13U);
+    ASSERT_EQ(cells.size(), 15U);
     EXPECT_EQ(std::stod(cells[0]), answers[n]["lon_deg"]);
     EXPECT_EQ(std::stod(cells[1]), answers[n]["lat_deg"]);
     EXPECT_NEAR(std::stod(cells[2]), answers[n]["elevation_m"].get<double>(), 0.0006);
@@ -186,6 +215,8 @@ TEST_F(Query, CsvAndJsonSayTheSame) {
     EXPECT_NEAR(std::stod(cells[10]), answers[n]["source_spacing_m"].get<double>(), 0.006);
     EXPECT_NEAR(std::stod(cells[11]), answers[n]["resampling_max_m"].get<double>(), 0.0006);
     EXPECT_NEAR(std::stod(cells[12]), answers[n]["resampling_rms_m"].get<double>(), 0.0006);
+    EXPECT_EQ(cells[13], answers[n]["kind"]);
+    EXPECT_NEAR(std::stod(cells[14]), answers[n]["measured_m"].get<double>(), 0.0006);
   }
 }
 

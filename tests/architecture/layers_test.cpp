@@ -44,7 +44,7 @@ const std::vector<Layer>& layers() {
       {"mars/sources", "mars", {"vpe/base", "mars/geodesy"}, false, true},
       {"mars/remote", "mars", {"vpe/base"}, false, true},
       {"mars/raster", "mars", {"vpe/base", "mars/geodesy", "mars/sources", "mars/remote"}, false, true},
-      {"mars/embedded", "mars", {"vpe/base", "mars/geodesy", "mars/sources"}},
+      {"mars/embedded", "mars", {"vpe/base", "mars/geodesy", "mars/sources", "mars/raster"}},
       {"vpe/core/registry", "vpe::core", {"vpe/base", "mars"}},
       {"vpe/core/appearance", "vpe::core", {"vpe/base", "mars", "vpe/core/registry"}},
       {"vpe/core/image", "vpe::core", {"vpe/base", "mars"}},

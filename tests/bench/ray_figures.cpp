@@ -42,7 +42,7 @@ Scene make_scene(const std::string& file) {
   options.regions = {{kPlace.lon_deg - kFine_deg, kPlace.lat_deg - kFine_deg, kPlace.lon_deg + kFine_deg,
                       kPlace.lat_deg + kFine_deg}};
   options.resampling_posts = 1000;
-  paging::build_planet(options, *mars::embedded_elevation(kPosts_m), nullptr);
+  paging::build_planet(options, *mars::embedded_elevation({.finest_m = kPosts_m}), nullptr);
   Scene scene;
   scene.place = kPlace;
   scene.caster = std::make_unique<vpe::voxel::RangeCaster>(paging::PlanetFile::open(file), kMemory);

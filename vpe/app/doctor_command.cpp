@@ -136,7 +136,7 @@ Finding find_cache() {
   std::string text = folder.string() + ": " + std::to_string(planets) + " planets, " + gigabytes(bytes) + "; " +
                      gigabytes(left) + " free";
   if (!fs::exists(embedded_planet_path(), none))
-    text += "; the embedded Mars is built at its first use, which takes minutes";
+    text += "; the embedded Mars is built at its first use, which takes a minute or two";
   return {"cache", left < 2e9 ? State::kNote : State::kGood, text};
 }
 

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "vpe/app/cli/program.h"
 #include "vpe/app/commands.h"
 #include "vpe/app/planet/latitude_option.h"
+#include "vpe/app/planet/measured_part.h"
 #include "vpe/app/planet/places.h"
 #include "vpe/app/planet/planet_argument.h"
 #include "vpe/base/number.h"
@@ -26,7 +28,8 @@ const mars::SourceInfo* source_of(const paging::PlaceAnswer& a, const paging::Pl
   return a.source ? &meta.sources.at(static_cast<std::size_t>(*a.source)) : nullptr;
 }
 
-nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
+nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta, double measured_m) {
+  const char* kind = kind_of(a, meta);
   using nlohmann::json;
   const auto value = [&](double x) { return a.nodata ? json() : json(x); };
   const mars::SourceInfo* source = source_of(a, meta);
@@ -36,6 +39,8 @@ nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& m
   return {{"lon_deg", a.place.lon_deg},
           {"lat_deg", a.place.lat_deg},
           {"elevation_m", value(a.elevation_m)},
+          {"measured_m", std::isfinite(measured_m) ? json(measured_m) : json()},
+          {"kind", kind != nullptr ? json(kind) : json()},
           {"datum", to_string(meta.datum)},
           {"radius_m", meta.datum.is_geometric()
                            ? value(mars::radius_at(meta.datum, mars::direction(a.place), a.elevation_m))
@@ -53,7 +58,7 @@ nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& m
           {"resampling_posts", a.resampling.posts},
           {"resampling_scope", has_error ? json(a.resampling_of_level ? "level" : "tile") : json()},
           {"planet_resampling_max_m", meta.resampling.max_m},
-          {"illustration", meta.illustration}};
+          {"illustration", source != nullptr && source->illustration}};
 }
 
 std::string fixed(double x, int digits) {
@@ -62,17 +67,19 @@ std::string fixed(double x, int digits) {
   return text;
 }
 
-void print_csv(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
+void print_csv(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta, double measured_m) {
   const auto number = [&](double x, int digits) { return a.nodata ? "" : fixed(x, digits); };
   const mars::SourceInfo* source = source_of(a, meta);
   const auto error = [&](double x) { return a.resampling.posts > 0 ? fixed(x, 3) : ""; };
-  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%s,%s,%s,%s,%s", base::format_number(a.place.lon_deg).c_str(),
+  const char* kind = kind_of(a, meta);
+  std::printf("%s,%s,%s,%s,%s,%d,%.2f,%s,%s,%s,%s,%s,%s,%s,%s", base::format_number(a.place.lon_deg).c_str(),
               base::format_number(a.place.lat_deg).c_str(), number(a.elevation_m, 3).c_str(),
               number(a.slope_deg, 3).c_str(), number(a.aspect_deg, 2).c_str(), a.level, a.spacing_m,
               source != nullptr ? csv_field(source->name).c_str() : "", number(a.geometric_error_m, 3).c_str(),
               csv_field(to_string(meta.datum)).c_str(),
               source != nullptr ? fixed(source->resolution_m, 2).c_str() : "",
-              error(a.resampling.max_m).c_str(), error(a.resampling.rms_m).c_str());
+              error(a.resampling.max_m).c_str(), error(a.resampling.rms_m).c_str(), kind != nullptr ? kind : "",
+              std::isfinite(measured_m) ? fixed(measured_m, 3).c_str() : "");
 }
 
 struct QueryArguments {
@@ -83,7 +90,7 @@ struct QueryArguments {
 
 constexpr const char* kColumns =
     "lon_deg,lat_deg,elevation_m,slope_deg,aspect_deg,level,post_spacing_m,source,tile_error_m,datum,"
-    "source_spacing_m,resampling_max_m,resampling_rms_m";
+    "source_spacing_m,resampling_max_m,resampling_rms_m,kind,measured_m";
 
 // Returns the names of a table's further columns as the answer has them: a name that the answer uses itself gets
 // the prefix input_.
@@ -96,9 +103,10 @@ std::vector<std::string> answer_names(const std::vector<std::string>& columns) {
 
 void print_json_answers(const std::vector<paging::PlaceAnswer>& answers, const PlaceTable& table,
                         const paging::PlanetMeta& meta) {
+  const std::vector<double> measured_m = measured_parts_m(answers, meta);
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t n = 0; n < answers.size(); ++n) {
-    nlohmann::json& answer = list.emplace_back(to_json(answers[n], meta));
+    nlohmann::json& answer = list.emplace_back(to_json(answers[n], meta, measured_m[n]));
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       answer["input"][table.columns[c]] = table.cells[n][c];
   }
@@ -107,11 +115,12 @@ void print_json_answers(const std::vector<paging::PlaceAnswer>& answers, const P
 
 void print_csv_answers(const std::vector<paging::PlaceAnswer>& answers, const PlaceTable& table,
                        const paging::PlanetMeta& meta) {
+  const std::vector<double> measured_m = measured_parts_m(answers, meta);
   std::fputs(kColumns, stdout);
   for (const std::string& name : answer_names(table.columns)) std::printf(",%s", csv_field(name).c_str());
   std::puts("");
   for (std::size_t n = 0; n < answers.size(); ++n) {
-    print_csv(answers[n], meta);
+    print_csv(answers[n], meta, measured_m[n]);
     for (std::size_t c = 0; c < table.columns.size(); ++c)
       std::printf(",%s", csv_field(table.cells[n][c]).c_str());
     std::puts("");

@@ -111,8 +111,8 @@ int run_program(int argc, char** argv, std::span<const AddCommand> commands) {
       "  vpe render --pose -59.2,-13.7,0,90,-5,0 --height 2000 -o view.png\n"
       "  vpe build mola.tif --image viking.tif -o mars.vpe\n"
       "  vpe explore mars.vpe\n\n"
-      "'vpe COMMAND --help' explains a command, with examples. Without PLANET, the embedded Mars (an "
-      "illustration) is used.");
+      "'vpe COMMAND --help' explains a command, with examples. Without PLANET, the embedded Mars is used: "
+      "MOLA and MDIM at eight posts a degree, with synthetic detail below.");
   Common common;
   common.words.assign(argv + std::min(argc, 1), argv + argc);
   use_current_names(common.words);

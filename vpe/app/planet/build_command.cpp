@@ -65,14 +65,14 @@ void build(BuildArguments& arguments, const Common& common) {
   limit_rasters(common);
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
   for (const std::string& path : arguments.dems) {
-    dems.push_back(is_embedded(path) ? mars::embedded_elevation(embedded_finest_m(options))
+    dems.push_back(is_embedded(path) ? mars::embedded_elevation({.finest_m = embedded_finest_m(options)})
                                      : mars::open_elevation(path));
   }
   const mars::Combined combined = combine_sources(std::move(dems), arguments.sources, options);
   if (!common.quiet) print_findings(combined);
   std::vector<std::shared_ptr<const mars::ImageSource>> images;
   for (const std::string& path : arguments.images) {
-    images.push_back(is_embedded(path) ? mars::embedded_image(embedded_finest_m(options))
+    images.push_back(is_embedded(path) ? mars::embedded_image({.finest_m = embedded_finest_m(options)})
                                        : mars::open_image(path));
     mars::check_body(images.back()->infos().front(), options.radius_m);
   }

@@ -48,7 +48,12 @@ void print_source(const char* what, const mars::SourceInfo& s, const std::string
 
 void print_meta(const paging::PlanetMeta& m) {
   constexpr int kRadiusDigits = 7;
-  if (m.illustration) print_line("NOTE", "an illustration: its numbers are not data");
+  const auto is_data = [](const mars::SourceInfo& source) { return !source.illustration; };
+  if (m.illustration) {
+    print_line("NOTE", std::any_of(m.sources.begin(), m.sources.end(), is_data)
+                           ? "sources marked as synthetic are not data"
+                           : "an illustration: its numbers are not data");
+  }
   print_line("body", m.body + ", sphere of radius " + length_text(m.radius_m, kRadiusDigits));
   print_line("vertical datum", paging::describe_datum(m));
   print_line("heights", base::format_rounded(m.lowest_radius_m - m.radius_m, 2) + " m" + " .. " +

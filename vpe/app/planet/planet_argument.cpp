@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -27,7 +28,7 @@ namespace {
 
 // The first is raised whenever the builder or the embedded planet changes the content of a cached file, the
 // second whenever rasters are interpreted differently.
-constexpr int kCacheGeneration = 3;
+constexpr int kCacheGeneration = 4;
 constexpr int kRasterGeneration = 3;
 
 class FileLock {
@@ -140,9 +141,9 @@ fs::path embedded_planet_path() {
 
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {
   if (argument.empty()) {
-    return cached(embedded_planet_path().stem().string(), "the embedded Mars (an illustration)", true,
+    return cached(embedded_planet_path().stem().string(), "the embedded Mars", true,
                   [&](const fs::path& target) {
-                    build_into(target, "the embedded Mars (an illustration)", mars::embedded_elevation(),
+                    build_into(target, "the embedded Mars", mars::embedded_elevation(),
                                mars::embedded_image().get(), common);
                   });
   }
@@ -172,7 +173,17 @@ bool is_raster_argument(const std::string& argument) {
 
 void note_illustration(const paging::PlanetMeta& meta, bool quiet) {
   if (!meta.illustration || quiet) return;
-  std::fprintf(stderr, "vpe: note: this planet is an illustration; its numbers are not data about Mars\n");
+  const auto is_data = [](const mars::SourceInfo& source) { return !source.illustration; };
+  const auto data = std::find_if(meta.sources.begin(), meta.sources.end(), is_data);
+  if (data == meta.sources.end()) {
+    std::fprintf(stderr, "vpe: note: this planet is an illustration; its numbers are not data about Mars\n");
+    return;
+  }
+  std::fprintf(
+      stderr,
+      "vpe: note: this planet is %s; ground smaller than its posts, %.0f m apart, is synthetic where 'vpe query' "
+      "names another source\n",
+      data->name.c_str(), data->resolution_m);
 }
 
 }  // namespace vpe::app

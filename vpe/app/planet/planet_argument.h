@@ -28,7 +28,7 @@ bool is_raster_argument(const std::string& argument);
 // paging::PlanetFile::open() throw.
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common);
 
-// Prints a note on stderr, unless quiet, when the planet is an illustration: its numbers are not data.
+// Prints a note on stderr, unless quiet, when some of the planet is made up: which of its numbers are data.
 void note_illustration(const paging::PlanetMeta& meta, bool quiet);
 
 }  // namespace vpe::app

@@ -1,5 +1,6 @@
 #include "vpe/app/planet/planet_build.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -95,7 +96,8 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
   const auto infos = elevation.infos();
   // An analytic source is sampled one place at a time; so many places give a resampling error that is stable to
   // a few per cent.
-  if (!infos.empty() && infos.front().illustration) options.resampling_posts = 100'000;
+  if (std::any_of(infos.begin(), infos.end(), [](const mars::SourceInfo& s) { return s.illustration; }))
+    options.resampling_posts = 100'000;
   return run(options.output, "building", common, [&](const paging::ProgressFunction& progress) {
     return paging::build_planet(options, elevation, image, progress, std::move(plan));
   });
