@@ -8,6 +8,11 @@ extern "C" {
 // reported as of an unknown module.
 int dlclose(void* /*handle*/) { return 0; }
 
+// Return the status of a program with a report. The default, 1, is also that of the program's own errors, so
+// that a test which expects an error would pass. ThreadSanitizer ends with 66 anyway.
+const char* __asan_default_options() { return "exitcode=66"; }
+const char* __ubsan_default_options() { return "exitcode=66"; }
+
 // Returns what LeakSanitizer leaves out: memory that drivers and text libraries keep until the end. None of
 // them calls the program's own code, whose leaks would be left out with theirs.
 const char* __lsan_default_suppressions() {
