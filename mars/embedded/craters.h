@@ -68,7 +68,7 @@ inline constexpr float kCraterUnits = 1024.0F;
 inline constexpr int kHollowCraterLevel = 10;  // 1 km
 struct CraterSum {
   alignas(64) Lane<std::int32_t> relief;  // heights [1 / kCraterUnits m]
-  // How much floors of craters of kHollowCraterLevel and more smooth roughness below 1 km, 0..1 (maximum).
+  // Holds how much floors of craters of kHollowCraterLevel and more smooth roughness below 1 km: 0..1 (maximum).
   alignas(64) Lane<float> hollow;
   alignas(64) Lane<float> fresh;  // 0..1: fresh walls and rims (maximum)
 

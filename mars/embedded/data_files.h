@@ -1,4 +1,4 @@
-// Where the data that the program carries lie: the files of mars/data.
+// Folders of the data that the program carries: the files of mars/data.
 #pragma once
 
 #include <string>

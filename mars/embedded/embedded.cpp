@@ -34,13 +34,13 @@ class Spacings {
   EmbeddedOptions options_;
 };
 
-SourceInfo measured_info(const char* name, const MeasuredMars& mars) {
+SourceInfo measured_info(const char* name, const std::string& fault) {
   SourceInfo info;
   info.name = name;
   info.resolution_m = embedded::kMeasuredPost_m;
   info.datum = VerticalDatum::areoid();
   info.body_radius_m = kMarsRadius_m;
-  for (const std::string& fault : mars.faults()) info.notes.push_back(fault);
+  if (!fault.empty()) info.notes.push_back(fault);
   return info;
 }
 
@@ -65,7 +65,7 @@ class EmbeddedElevation final : public ElevationSource {
       : mars_(MeasuredMars::get()), options_(options), spacings_(kEmbeddedPosts, options) {}
 
   std::vector<SourceInfo> infos() const override {
-    const SourceInfo data = measured_info("MOLA, 8 posts a degree (carried)", mars_);
+    const SourceInfo data = measured_info("MOLA, 8 posts a degree (carried)", mars_.height_fault());
     if (!options_.detail) return {data};
     return {data, detail_info(spacings_.finest())};
   }
@@ -127,7 +127,7 @@ class EmbeddedImage final : public ImageSource {
       : mars_(MeasuredMars::get()), options_(options), spacings_(kEmbeddedTexels, options) {}
 
   std::vector<SourceInfo> infos() const override {
-    const SourceInfo data = measured_info("MDIM 2.1, 8 pixels a degree (carried)", mars_);
+    const SourceInfo data = measured_info("MDIM 2.1, 8 pixels a degree (carried)", mars_.colour_fault());
     if (!options_.detail) return {data};
     return {data, detail_info(spacings_.finest())};
   }

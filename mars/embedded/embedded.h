@@ -14,12 +14,11 @@
 // The surface is continuous except for steps from single precision in the detail: at most kEmbeddedStep_m,
 // reached on the walls of Valles Marineris; a millimetre elsewhere.
 //
-// Where the files of mars/data are missing, the sources say so in their notes and are a sphere of plain colour with
-// detail.
+// The sources are a sphere of plain colour with detail where the files of mars/data are missing, and say so in their
+// notes.
 //
-// Cost: 0.3 .. 0.6 us per post on one core of the 2020s for compact batches of several thousand directions,
-// such as tiles; directions scattered over the planet cost 30 .. 60 us each, and up to a millisecond where detail is
-// included.
+// Cost: 0.7 us per post with detail on one core of the 2020s for compact batches of several thousand directions,
+// such as tiles; directions scattered over the planet cost up to a millisecond each.
 //
 // Typical usage:
 //   const auto source = embedded_elevation();

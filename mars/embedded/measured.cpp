@@ -1,6 +1,7 @@
 #include "mars/embedded/measured.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "mars/embedded/data_files.h"
@@ -168,22 +169,24 @@ const MeasuredMars& MeasuredMars::get() {
 }
 
 MeasuredMars::MeasuredMars(const std::string& height_file, const std::string& colour_file) {
-  const auto load = [&](const char* name, const std::string& path, auto&& read) {
+  static std::atomic<std::uint64_t> count{0};
+  id_ = ++count;
+  // Returns why the file is left out.
+  const auto load = [](const char* name, const std::string& path, auto&& read) -> std::string {
     if (path.empty()) {
       std::string folders;
       for (const std::string& folder : data_folders()) folders += (folders.empty() ? "" : ", ") + folder;
-      faults_.push_back(std::string(name) + " is missing in " + folders +
-                        "; set VPE_DATA to the folder that has it");
-      return;
+      return std::string(name) + " is missing in " + folders + "; set VPE_DATA to the folder that has it";
     }
     try {
       read(path);
     } catch (const std::exception& e) {
-      faults_.push_back(e.what());
+      return e.what();
     }
+    return {};
   };
-  load(kHeightFile, height_file, [&](const std::string& path) { load_heights(path); });
-  load(kColourFile, colour_file, [&](const std::string& path) { load_colours(path); });
+  height_fault_ = load(kHeightFile, height_file, [&](const std::string& path) { load_heights(path); });
+  colour_fault_ = load(kColourFile, colour_file, [&](const std::string& path) { load_colours(path); });
 }
 
 void MeasuredMars::load_heights(const std::string& path) {

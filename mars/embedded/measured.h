@@ -1,8 +1,8 @@
 // The measured Mars that the program carries: MOLA heights and MDIM 2.1 colours, eight posts a degree (mars/data).
 #pragma once
 
+#include <cstdint>
 #include <string>
-#include <vector>
 
 #include "mars/embedded/globe_grid.h"
 
@@ -30,17 +30,21 @@ struct Character {
 class MeasuredMars {
  public:
   // Returns the carried data, which the first call loads. Never throws: what cannot be read is left out and named in
-  // faults(). Without heights the planet is a sphere, without colours its ground is plain.
+  // height_fault() or colour_fault(). Without heights the planet is a sphere, without colours its ground is plain.
   static const MeasuredMars& get();
 
   // Loads the files from a folder. For tests.
   explicit MeasuredMars(const std::string& height_file, const std::string& colour_file);
 
+  // Returns a number that no other object of the process has.
+  std::uint64_t id() const { return id_; }
+
   bool has_heights() const { return !heights_.empty(); }
   bool has_colours() const { return !red_.empty(); }
 
-  // Returns a sentence for each file that is missing or cannot be read.
-  const std::vector<std::string>& faults() const { return faults_; }
+  // Return why a file is left out: a sentence, or an empty string where it was read.
+  const std::string& height_fault() const { return height_fault_; }
+  const std::string& colour_fault() const { return colour_fault_; }
 
   // Return the functions through the posts: metres above the areoid, and colours 0..255 (which may overshoot).
   const GlobeSpline& heights() const { return heights_; }
@@ -53,7 +57,8 @@ class MeasuredMars {
   void load_heights(const std::string& path);
   void load_colours(const std::string& path);
 
-  std::vector<std::string> faults_;
+  std::uint64_t id_;
+  std::string height_fault_, colour_fault_;
   GlobeSpline heights_, red_, green_, blue_;
   Character character_;
 };

@@ -70,10 +70,10 @@ struct Pin {
   float along = 1;            // how much longer the relief is along it than across
 };
 
-// Distinguishes data in the keys of memos, of which there is more than one in tests.
+// Returns the key of a post in a memo. Tests have other data besides the carried ones.
 std::uint64_t key_of(const MeasuredMars& mars, int column, int row, int detail) {
   const std::uint64_t post = static_cast<std::uint64_t>(row) * kColumns + static_cast<std::uint64_t>(column);
-  return mix_bits(reinterpret_cast<std::uintptr_t>(&mars)) ^ (post * 64U + static_cast<std::uint64_t>(detail));
+  return (mars.id() << 40) | (post << 6) | static_cast<std::uint64_t>(detail);
 }
 
 // Evaluates the relief at posts.
@@ -263,16 +263,23 @@ void subtract_means(const Block& block, const MeasuredMars& mars, double spacing
   static const float kShape[2] = {mean_shape(false), mean_shape(true)};
   const double coarse_m = std::max(spacing_m, kMeanDetail_m);
   const int level = log2_of(coarse_m);
+  // Neighbours share an area: what belongs to it is found again only where it changes.
+  int row = -1, column = -1, posts = 1;
+  float mean = 0.0F;
   for (std::size_t i = 0; i < block.padded; ++i) {
-    const int row = std::clamp(floor_int(ground.places.row[i] + 0.5), 0, kRows - 1);
-    const int posts = posts_in_area(row);
-    const int column = floor_int((ground.places.column[i] + 0.5) / posts) * posts;
+    const int own_row = std::clamp(floor_int(ground.places.row[i] + 0.5), 0, kRows - 1);
+    if (own_row != row) posts = posts_in_area(own_row);
+    const int own_column = floor_int((ground.places.column[i] + 0.5) / posts) * posts;
+    if (own_row != row || own_column != column) {
+      row = own_row;
+      column = own_column;
+      const std::uint64_t key = key_of(mars, column, row, level);
+      const float* known = memo.find(key);
+      mean = known != nullptr ? *known
+                              : memo.set(key, mean_detail(mars, column, row, posts, coarse_m, block.simd));
+    }
     const auto u = static_cast<float>((ground.places.column[i] + 0.5 - column) / posts - 0.5);
     const auto v = static_cast<float>(ground.places.row[i] - row);
-    const std::uint64_t key = key_of(mars, column, row, level);
-    const float* known = memo.find(key);
-    const float mean =
-        known != nullptr ? *known : memo.set(key, mean_detail(mars, column, row, posts, coarse_m, block.simd));
     detail_m[i] -= mean * area_shape(u, v, posts > 1) / kShape[posts > 1 ? 1 : 0];
   }
 }

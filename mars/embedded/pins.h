@@ -1,4 +1,4 @@
-// What takes the detail to zero at the posts of the data and to a mean of zero over their areas.
+// Corrections that take the detail to zero at the posts of the data, and its mean to zero over their areas.
 #pragma once
 
 #include "mars/embedded/surface.h"

@@ -1,4 +1,4 @@
-// Where the embedded Mars has finer posts than elsewhere.
+// Regions in which the embedded Mars has finer posts than elsewhere.
 #pragma once
 
 #include "mars/sources/source.h"

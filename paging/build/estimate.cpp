@@ -16,8 +16,9 @@ namespace {
 constexpr double kLeafPost_s = 1.2e-6;  // sampled from a raster, meshed, measured, packed
 constexpr double kInnerPost_s = 1.0e-6;
 constexpr double kTexel_s = 0.2e-6;
-constexpr double kMadeUpPost_s = 0.5e-6;  // besides, where the source is analytic
-constexpr double kMadeUpTexel_s = 7e-6;
+// Besides, where a source is made up: the embedded Mars of 62 million posts, 2026-11-24.
+constexpr double kMadeUpPost_s = 0.1e-6;
+constexpr double kMadeUpTexel_s = 0.7e-6;
 constexpr double kLeafPost_bytes = 2.9;
 constexpr double kInnerPost_bytes = 1.7;
 constexpr double kTexel_bytes = 0.75;

@@ -93,14 +93,14 @@ TEST(EmbeddedClose, GroundsDifferFromCameraLevel) {
     }
     return Texture{curvature / n, cube / n / std::pow(square / n, 1.5)};
   };
-  const Texture rocky = texture_at({-33.25, 19.1});
+  const Texture rocky = texture_at({-64.5, -12.1});
   const Texture sandy = texture_at({-66.0, -11.95});
   const Texture ice = texture_at({20, 88});
   EXPECT_GT(rocky.bend_m, 0.005);
-  EXPECT_GT(rocky.bend_m, 2.0 * ice.bend_m);
+  EXPECT_GT(rocky.bend_m, 3.0 * ice.bend_m);
   EXPECT_GT(sandy.bend_m, 1.5 * ice.bend_m);
   EXPECT_GT(rocky.skew, 1.0);
-  EXPECT_GT(sandy.skew, 0.05);
+  EXPECT_GT(sandy.skew, 0.3);
 }
 
 }  // namespace

@@ -24,10 +24,6 @@ namespace vpe::app {
 
 namespace {
 
-const mars::SourceInfo* source_of(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
-  return a.source ? &meta.sources.at(static_cast<std::size_t>(*a.source)) : nullptr;
-}
-
 nlohmann::json to_json(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta, double measured_m) {
   const char* kind = kind_of(a, meta);
   using nlohmann::json;

@@ -11,7 +11,7 @@
 
 namespace vpe::app {
 
-// How files are fetched. Each default is that of the option of `vpe get` that sets it, if there is one.
+// Holds how files are fetched. Each default is that of the option of `vpe get` that sets it, if there is one.
 struct FetchOptions {
   HttpLimits http;
   int retries = 5;                     // in a row without progress, 0 .. 1000

@@ -1,4 +1,4 @@
-// What `vpe get` says of products without fetching them.
+// Texts of `vpe get` about products, without fetching them.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -7,13 +7,9 @@
 
 namespace vpe::app {
 
-namespace {
-
-const mars::SourceInfo* source_of(const paging::PlaceAnswer& a, const paging::PlanetMeta& meta) {
-  return a.source && !a.nodata ? &meta.sources.at(static_cast<std::size_t>(*a.source)) : nullptr;
+const mars::SourceInfo* source_of(const paging::PlaceAnswer& answer, const paging::PlanetMeta& meta) {
+  return answer.source ? &meta.sources.at(static_cast<std::size_t>(*answer.source)) : nullptr;
 }
-
-}  // namespace
 
 const char* kind_of(const paging::PlaceAnswer& answer, const paging::PlanetMeta& meta) {
   const mars::SourceInfo* source = source_of(answer, meta);

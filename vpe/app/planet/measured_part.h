@@ -1,4 +1,4 @@
-// Which part of a height was measured, where a planet has synthetic detail.
+// The measured part of heights, where a planet has synthetic detail.
 #pragma once
 
 #include <span>
@@ -8,6 +8,9 @@
 #include "paging/surface/query.h"
 
 namespace vpe::app {
+
+// Returns the source that decides an answer, or null where none is known.
+const mars::SourceInfo* source_of(const paging::PlaceAnswer& answer, const paging::PlanetMeta& meta);
 
 // Returns "measured" or "synthetic" by the source that decides an answer, or null where there is no data.
 const char* kind_of(const paging::PlaceAnswer& answer, const paging::PlanetMeta& meta);
