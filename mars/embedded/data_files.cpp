@@ -8,9 +8,8 @@ namespace mars {
 namespace fs = std::filesystem;
 
 std::vector<std::string> data_folders() {
+  if (const char* chosen = std::getenv("VPE_DATA"); chosen != nullptr && *chosen != '\0') return {chosen};
   std::vector<std::string> folders;
-  if (const char* chosen = std::getenv("VPE_DATA"); chosen != nullptr && *chosen != '\0')
-    folders.emplace_back(chosen);
   std::error_code none;
   const fs::path program = fs::read_symlink("/proc/self/exe", none);
   if (!program.empty()) folders.push_back((program.parent_path().parent_path() / "share/vpe").string());

@@ -6,8 +6,12 @@
 
 namespace mars {
 
-// Returns the folders in which carried data are looked for, in this order: $VPE_DATA, the folder share/vpe beside the
-// program's own bin, that of the install prefix, and mars/data of the source tree that the program was built from.
+// Names the files that the embedded Mars needs: heights, colours, and the image that the colours' VRT reads.
+inline constexpr const char* kEmbeddedFiles[] = {"mola8.tif", "mdim21.vrt", "mdim21.jpg"};
+
+// Returns the folders in which carried data are looked for, in this order: the folder share/vpe beside the program's own
+// bin, that of the install prefix, and mars/data of the source tree that the program was built from; or $VPE_DATA alone,
+// where that is set.
 std::vector<std::string> data_folders();
 
 // Returns the path of a carried file, or an empty string if no folder has it.

@@ -40,7 +40,11 @@ SourceInfo measured_info(const char* name, const std::string& fault) {
   info.resolution_m = embedded::kMeasuredPost_m;
   info.datum = VerticalDatum::areoid();
   info.body_radius_m = kMarsRadius_m;
-  if (!fault.empty()) info.notes.push_back(fault);
+  if (!fault.empty()) {
+    info.name = std::string("in place of ") + name;
+    info.illustration = true;
+    info.notes.push_back(fault);
+  }
   return info;
 }
 

@@ -14,8 +14,8 @@
 // The surface is continuous except for steps from single precision in the detail: at most kEmbeddedStep_m,
 // reached on the walls of Valles Marineris; a millimetre elsewhere.
 //
-// The sources are a sphere of plain colour with detail where the files of mars/data are missing, and say so in their
-// notes.
+// The sources are a sphere of plain colour with detail where the files of mars/data are missing. Their infos say so: they
+// are named so, are an illustration, and have a note with the reason.
 //
 // Cost: 0.7 us per post with detail on one core of the 2020s for compact batches of several thousand directions,
 // such as tiles; directions scattered over the planet cost up to a millisecond each.

@@ -164,7 +164,7 @@ Posts read_band(const GdalRaster& raster, const std::string& path, int band) {
 }  // namespace
 
 const MeasuredMars& MeasuredMars::get() {
-  static const MeasuredMars mars(find_data_file(kHeightFile), find_data_file(kColourFile));
+  static const MeasuredMars mars(find_data_file(kEmbeddedFiles[0]), find_data_file(kEmbeddedFiles[1]));
   return mars;
 }
 
@@ -185,8 +185,8 @@ MeasuredMars::MeasuredMars(const std::string& height_file, const std::string& co
     }
     return {};
   };
-  height_fault_ = load(kHeightFile, height_file, [&](const std::string& path) { load_heights(path); });
-  colour_fault_ = load(kColourFile, colour_file, [&](const std::string& path) { load_colours(path); });
+  height_fault_ = load(kEmbeddedFiles[0], height_file, [&](const std::string& path) { load_heights(path); });
+  colour_fault_ = load(kEmbeddedFiles[1], colour_file, [&](const std::string& path) { load_colours(path); });
 }
 
 void MeasuredMars::load_heights(const std::string& path) {

@@ -12,8 +12,6 @@ inline constexpr int kMeasuredColumns = 2880;
 inline constexpr double kMeasuredPost_deg = 360.0 / kMeasuredColumns;
 // Distance of the posts along a meridian.
 inline constexpr double kMeasuredPost_m = kMeasuredPost_deg * 3396190.0 * 3.14159265358979323846 / 180.0;
-inline constexpr const char* kHeightFile = "mola8.tif";
-inline constexpr const char* kColourFile = "mdim21.vrt";
 
 // Holds what the data say about the ground around a place, in grids of 1440 columns. They are smooth over tens of
 // kilometres.

@@ -85,6 +85,22 @@ TEST_F(Query, SaysWhatIsMeasuredAndWhatIsSynthetic) {
   EXPECT_NE(csv.out.find(",synthetic,-"), std::string::npos) << csv.out;
 }
 
+TEST_F(Query, WithoutTheCarriedDataNothingIsMeasured) {
+  Command command = command_for({"build", "embedded", "--image", "embedded", "--region", "0,0,0.2,0.2",
+                                 "--spacing", "500", "--base-spacing", "60000", "-o", "plain.vpe"});
+  command.environment["VPE_DATA"] = dir_.path().string();
+  const Result built = run(command);
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_TRUE(says(built.err, {"mola8.tif is missing in " + dir_.path().string(), "VPE_DATA"})) << built.err;
+  EXPECT_TRUE(says(built.err, {"mdim21.vrt is missing"})) << built.err;
+  const Result result = vpe({"query", "plain.vpe", "--json", "0.1,0.1", "30,30"});
+  for (const auto& answer : parse_json(result.out)) {
+    EXPECT_EQ(answer["kind"], "synthetic");
+    EXPECT_EQ(answer["illustration"], true);
+  }
+  EXPECT_TRUE(says(result.err, {"an illustration"})) << result.err;
+}
+
 TEST_F(Query, BothLongitudeConventions) {
   const json answers = ask({"286,-13.5", "-74,-13.5", "180,10", "-180,10"});
   EXPECT_EQ(answers[0], answers[1]);

@@ -371,6 +371,7 @@ TEST(EmbeddedRegions, DemoPathLiesOnTheFloorInsideItsCorridor) {
 TEST(EmbeddedSources, NameDataAndDetail) {
   for (const auto& infos : {embedded_elevation()->infos(), embedded_image()->infos()}) {
     ASSERT_EQ(infos.size(), 2U);
+    EXPECT_EQ(infos[0].name.find("in place of"), std::string::npos);
     EXPECT_FALSE(infos[0].illustration);
     EXPECT_TRUE(infos[0].notes.empty()) << infos[0].notes[0];
     EXPECT_NEAR(infos[0].resolution_m, 7409.0, 1.0);
@@ -413,26 +414,24 @@ TEST(EmbeddedSources, PostsForTheResamplingErrorAreItsOwnValues) {
 }
 
 TEST(EmbeddedImage, HasTheClassicalAlbedoFeatures) {
-  const auto brightness = [](LonLat p, double radius_km) {
+  const auto brightness = [](LonLat p, double radius_km, bool is_red = false) {
     const auto directions = disc(p, radius_km, radius_km / 10);
     std::vector<vpe::base::Rgb> colours(directions.size());
     std::vector<std::uint8_t> alpha(directions.size(), 0);
     embedded_image()->sample(directions, 5300.0, colours, alpha);
-    double sum = 0.0, red = 0.0, blue = 0.0;
+    double sum = 0.0;
     for (std::size_t i = 0; i < colours.size(); ++i) {
       EXPECT_EQ(alpha[i], 255);
-      red += colours[i].r;
-      blue += colours[i].b;
+      // Dark ground, haze over Hellas and frost are bluish in the mosaic.
+      if (is_red) {
+        EXPECT_GE(colours[i].r + 8, colours[i].b);
+      }
       sum += (colours[i].r + colours[i].g + colours[i].b) / 3.0;
-    }
-    // Acidalia and the frost of the poles are bluish in the mosaic.
-    if (std::abs(p.lat_deg) < 45.0) {
-      EXPECT_GE(red + 8.0 * static_cast<double>(colours.size()), blue) << p.lon_deg << "," << p.lat_deg;
     }
     return sum / static_cast<double>(colours.size());
   };
   const double bright =
-      std::min({brightness({20, 22}, 200), brightness({70, -42}, 200), brightness({226, 18}, 200)});
+      std::min({brightness({20, 22}, 200, true), brightness({70, -42}, 200), brightness({226, 18}, 200, true)});
   // Tyrrhena, at 140 E 25 S, is no darker than Amazonis in the mosaic.
   const double dark = std::max(brightness({68, 9}, 200), brightness({332, 47}, 200));
   EXPECT_GT(bright, dark + 25.0);

@@ -34,7 +34,7 @@ std::vector<double> measured_parts_m(std::span<const paging::PlaceAnswer> answer
   }
   if (directions.empty()) return parts;
   const auto data = mars::embedded_elevation({.detail = false});
-  if (!data->infos().front().notes.empty()) return parts;
+  if (data->infos().front().illustration) return parts;
   std::vector<double> heights(directions.size());
   data->sample(directions, data->infos().front().resolution_m, heights);
   for (std::size_t k = 0; k < index.size(); ++k) parts[index[k]] = heights[k];

@@ -11,6 +11,7 @@
 #include <functional>
 #include <span>
 
+#include "mars/embedded/data_files.h"
 #include "mars/embedded/embedded.h"
 #include "mars/remote/gdal_remote.h"
 #include "mars/sources/source.h"
@@ -136,7 +137,11 @@ fs::path cache_folder() {
 }
 
 fs::path embedded_planet_path() {
-  return cache_folder() / ("embedded-mars-" + std::to_string(kCacheGeneration) + ".vpe");
+  // A planet that was built without the carried data must not stand for one with them.
+  const bool is_complete = std::ranges::all_of(
+      mars::kEmbeddedFiles, [](const char* name) { return !mars::find_data_file(name).empty(); });
+  return cache_folder() /
+         ("embedded-mars-" + std::to_string(kCacheGeneration) + (is_complete ? "" : "-without-data") + ".vpe");
 }
 
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {

@@ -93,6 +93,11 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
                                const mars::ImageSource* image, const Common& common,
                                std::optional<paging::BuildPlan> plan) {
   limit_rasters(common);
+  if (image != nullptr && !common.quiet) {
+    for (const mars::SourceInfo& info : image->infos()) {
+      for (const std::string& note : info.notes) std::fprintf(stderr, "vpe: note: %s\n", note.c_str());
+    }
+  }
   const auto infos = elevation.infos();
   // An analytic source is sampled one place at a time; so many places give a resampling error that is stable to
   // a few per cent.

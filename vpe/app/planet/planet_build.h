@@ -19,7 +19,7 @@ namespace vpe::app {
 // Sets the memory of rasters to their share of --memory. Call it before a raster is opened: opening reads some.
 void limit_rasters(const Common& common);
 
-// Runs paging::build_planet() with progress on stderr. SIGINT and SIGTERM end it with Interrupted. After that,
+// Runs paging::build_planet() with progress on stderr, after the notes of the image sources. SIGINT and SIGTERM end it with Interrupted. After that,
 // and after any error that leaves an incomplete file, a line on stderr says that the same command continues. A
 // plan that was made before is not made again.
 //
