@@ -46,20 +46,20 @@ void shade(const Block& block, const Surface& s, Lane<float>& out) {
 
 void colour(const Block& block, const MeasuredMars& mars, const Surface& s, vpe::base::Rgb* out) {
   const bool measured = mars.has_colours();
-  GlobeSpline::Values red, green, blue;
+  Lane<float> red, green, blue;
   if (measured) {
-    mars.red().evaluate(block, s.ground.places, red);
-    mars.green().evaluate(block, s.ground.places, green);
-    mars.blue().evaluate(block, s.ground.places, blue);
+    GridCells cells;
+    grid_cells(block, s.ground.places, kMeasuredColumns, 1, cells);
+    mars.red().evaluate(block, cells, red);
+    mars.green().evaluate(block, cells, green);
+    mars.blue().evaluate(block, cells, blue);
   }
   Lane<float> bright;
   const bool detailed = s.octaves.first < kOutlineOctave;
   if (detailed) shade(block, s, bright);
   for (std::size_t i = 0; i < block.count; ++i) {
     Colour c = kPlain;
-    if (measured)
-      c = {static_cast<float>(red.value[i]), static_cast<float>(green.value[i]),
-           static_cast<float>(blue.value[i])};
+    if (measured) c = {red[i], green[i], blue[i]};
     if (detailed) {
       const float f = 1.0F + bright[i];
       c = {c.r * f, c.g * f, c.b * f};

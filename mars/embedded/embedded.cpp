@@ -77,6 +77,7 @@ class EmbeddedElevation final : public ElevationSource {
   void sample(std::span<const glm::dvec3> directions, double spacing_m,
               std::span<double> heights_m) const override {
     embedded::evaluate_all(mars_, directions, sampled_m(options_, spacing_m), embedded::best_simd(),
+                           embedded::Wanted::kHeights,
                            [heights_m](const Block&, std::span<const std::uint32_t> index, const Surface& s) {
                              for (std::size_t i = 0; i < index.size(); ++i) heights_m[index[i]] = s.height_m[i];
                            });
@@ -140,6 +141,7 @@ class EmbeddedImage final : public ImageSource {
               std::span<std::uint8_t> alpha) const override {
     std::fill_n(alpha.begin(), directions.size(), std::uint8_t{255});
     embedded::evaluate_all(mars_, directions, sampled_m(options_, texel_m), embedded::best_simd(),
+                           embedded::Wanted::kColours,
                            [&](const Block& block, std::span<const std::uint32_t> index, const Surface& s) {
                              vpe::base::Rgb rgb[embedded::kBlock];
                              embedded::colour(block, mars_, s, rgb);

@@ -90,6 +90,40 @@ void grid_places(const Block& block, int width, GridPlaces& out) {
   });
 }
 
+void grid_cells(const Block& block, const GridPlaces& places, int width, int finer, GridCells& out) {
+  const double scale = 1.0 / finer;
+  const double last = width / 2 - 1.0;
+  std::int32_t any = 0;
+  with_simd(block.simd, [&] {
+    for (std::size_t i = 0; i < block.padded; ++i) {
+      const double x = (places.column[i] + 0.5) * scale - 0.5;
+      const double y = (places.row[i] + 0.5) * scale - 0.5;
+      out.column[i] = floor_int(x);
+      out.row[i] = floor_int(y);
+      out.x[i] = x - out.column[i];
+      out.y[i] = y - out.row[i];
+      out.beyond[i] = std::max(-y, y - last);
+      any |= static_cast<std::int32_t>(out.beyond[i] > 0.0);
+    }
+  });
+  out.touches_pole = any != 0;
+  out.few = 0;
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    int k = 0;
+    while (k < out.few && (out.few_column[k] != out.column[i] || out.few_row[k] != out.row[i])) ++k;
+    if (k == GridCells::kFew) {
+      out.few = 0;
+      return;
+    }
+    if (k == out.few) {
+      out.few_column[k] = out.column[i];
+      out.few_row[k] = out.row[i];
+      ++out.few;
+    }
+    out.few_index[i] = k;
+  }
+}
+
 GlobeSpline GlobeSpline::near(std::span<const float> posts, int width) {
   GlobeSpline spline;
   spline.width_ = width;
@@ -148,73 +182,81 @@ void GlobeSpline::find_pole_values() {
   }
 }
 
-void GlobeSpline::gather(int column, int row, Neighbours& near) const {
-  if (column == near.column && row == near.row) return;
-  near.column = column;
-  near.row = row;
+GlobeSpline::Neighbours GlobeSpline::neighbours(std::int32_t column, std::int32_t row) const {
+  Neighbours c;
   for (int b = 0; b < 4; ++b) {
-    for (int a = 0; a < 4; ++a) near.c[4 * b + a] = static_cast<double>(at(column + a - 1, row + b - 1));
+    for (int a = 0; a < 4; ++a)
+      c[static_cast<std::size_t>(4 * b + a)] = static_cast<double>(at(column + a - 1, row + b - 1));
+  }
+  return c;
+}
+
+template <class Evaluate>
+void GlobeSpline::for_each(const Block& block, const GridCells& cells, const Evaluate& evaluate) const {
+  for (int k = 0; k < cells.few; ++k) {
+    const Neighbours c = neighbours(cells.few_column[k], cells.few_row[k]);
+    with_simd(block.simd, [&] {
+      for (std::size_t i = 0; i < block.padded; ++i) evaluate(c, i, cells.few_index[i] == k);
+    });
+  }
+  if (cells.few > 0) return;
+  Neighbours c{};
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    if (i == 0 || cells.column[i] != cells.column[i - 1] || cells.row[i] != cells.row[i - 1])
+      c = neighbours(cells.column[i], cells.row[i]);
+    evaluate(c, i, true);
   }
 }
 
-void GlobeSpline::evaluate(const Block& block, const GridPlaces& places, Values& out) const {
-  const double last = width_ / 2 - 1.0;
-  Neighbours near;
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    const std::int32_t column = floor_int(places.column[i]);
-    const std::int32_t row = floor_int(places.row[i]);
-    gather(column, row, near);
-    const Weights wx = weights(places.column[i] - column);
-    const Weights wy = weights(places.row[i] - row);
-    const Weights dx = slopes(places.column[i] - column);
-    const Weights dy = slopes(places.row[i] - row);
+void GlobeSpline::evaluate(const Block& block, const GridCells& cells, Values& out) const {
+  for_each(block, cells, [&cells, &out](const Neighbours& c, std::size_t i, bool own) {
+    const Weights wx = weights(cells.x[i]);
+    const Weights wy = weights(cells.y[i]);
+    const Weights dx = slopes(cells.x[i]);
+    const Weights dy = slopes(cells.y[i]);
     double value = 0.0, by_column = 0.0, by_row = 0.0;
-    for (int b = 0; b < 4; ++b) {
+    for (std::size_t b = 0; b < 4; ++b) {
       double across = 0.0, steep = 0.0;
-      for (int a = 0; a < 4; ++a) {
-        const double c = near.c[4 * b + a];
-        across += wx.w[a] * c;
-        steep += dx.w[a] * c;
+      for (std::size_t a = 0; a < 4; ++a) {
+        across += wx.w[a] * c[4 * b + a];
+        steep += dx.w[a] * c[4 * b + a];
       }
       value += wy.w[b] * across;
       by_column += wy.w[b] * steep;
       by_row += dy.w[b] * across;
     }
+    out.value[i] = own ? value : out.value[i];
+    out.by_column[i] = own ? by_column : out.by_column[i];
+    out.by_row[i] = own ? by_row : out.by_row[i];
+  });
+  if (!cells.touches_pole) return;
+  for (std::size_t i = 0; i < block.padded; ++i) {
     // Within the last circle of posts the meridians agree on one value at the pole.
-    const double beyond = std::max(-places.row[i], places.row[i] - last);
-    if (beyond > 0.0) {
-      const double share = ramp(0.0, 0.5, beyond);
-      value = mix(value, pole_[places.row[i] < 0.0 ? 0 : 1], share);
-      by_column *= 1.0 - share;
-      by_row *= 1.0 - share;
-    }
-    out.value[i] = value;
-    out.by_column[i] = by_column;
-    out.by_row[i] = by_row;
+    if (!(cells.beyond[i] > 0.0)) continue;
+    const double share = ramp(0.0, 0.5, cells.beyond[i]);
+    out.value[i] = mix(out.value[i], pole_[cells.row[i] < 0 ? 0 : 1], share);
+    out.by_column[i] *= 1.0 - share;
+    out.by_row[i] *= 1.0 - share;
   }
 }
 
-void GlobeSpline::evaluate(const Block& block, const GridPlaces& places, int finer, Lane<float>& out) const {
-  const double scale = 1.0 / finer;
-  const double last = width_ / 2 - 1.0;
-  Neighbours near;
-  for (std::size_t i = 0; i < block.padded; ++i) {
-    const double x = (places.column[i] + 0.5) * scale - 0.5;
-    const double y = (places.row[i] + 0.5) * scale - 0.5;
-    const std::int32_t column = floor_int(x);
-    const std::int32_t row = floor_int(y);
-    gather(column, row, near);
-    const Weights wx = weights(x - column);
-    const Weights wy = weights(y - row);
+void GlobeSpline::evaluate(const Block& block, const GridCells& cells, Lane<float>& out) const {
+  Lane<double> sums;
+  for_each(block, cells, [&cells, &sums](const Neighbours& c, std::size_t i, bool own) {
+    const Weights wx = weights(cells.x[i]);
+    const Weights wy = weights(cells.y[i]);
     double value = 0.0;
-    for (int b = 0; b < 4; ++b) {
+    for (std::size_t b = 0; b < 4; ++b) {
       double across = 0.0;
-      for (int a = 0; a < 4; ++a) across += wx.w[a] * near.c[4 * b + a];
+      for (std::size_t a = 0; a < 4; ++a) across += wx.w[a] * c[4 * b + a];
       value += wy.w[b] * across;
     }
-    const double beyond = std::max(-y, y - last);
-    if (beyond > 0.0) value = mix(value, pole_[y < 0.0 ? 0 : 1], ramp(0.0, 0.5, beyond));
-    out[i] = static_cast<float>(value);
+    sums[i] = own ? value : sums[i];
+  });
+  for (std::size_t i = 0; i < block.padded; ++i) {
+    if (cells.touches_pole && cells.beyond[i] > 0.0)
+      sums[i] = mix(sums[i], pole_[cells.row[i] < 0 ? 0 : 1], ramp(0.0, 0.5, cells.beyond[i]));
+    out[i] = static_cast<float>(sums[i]);
   }
 }
 

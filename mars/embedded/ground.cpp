@@ -12,7 +12,6 @@ namespace {
 void lay_plain_ground(const Block& block, Ground& out) {
   const std::size_t n = block.padded;
   const auto fill = [n](auto& lane, auto value) { std::fill_n(lane.begin(), n, value); };
-  fill(out.height_m, 0.0);
   fill(out.roughness_m, 20.0F);
   fill(out.cratered, 0.4F);
   fill(out.wall, 0.0F);
@@ -21,11 +20,9 @@ void lay_plain_ground(const Block& block, Ground& out) {
   fill(out.volcanic, 0.0F);
 }
 
-}  // namespace
-
-void lay_ground(const Block& block, const MeasuredMars& mars, Ground& out) {
+// Sets places, distances and the measured height of `out`, and the height's derivatives by column and row.
+void lay_heights(const Block& block, const MeasuredMars& mars, Ground& out, GlobeSpline::Values& h) {
   grid_places(block, kMeasuredColumns, out.places);
-  out.has_walls = false;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       const double around = std::sqrt(block.x[i] * block.x[i] + block.y[i] * block.y[i]);
@@ -33,13 +30,36 @@ void lay_ground(const Block& block, const MeasuredMars& mars, Ground& out) {
       out.post_m[i] = post_distance_m(out.places.column[i], out.places.row[i], out.column_m[i]);
     }
   });
+  if (!mars.has_heights()) {
+    std::fill_n(out.height_m.begin(), block.padded, 0.0);
+    return;
+  }
+  GridCells cells;
+  grid_cells(block, out.places, kMeasuredColumns, 1, cells);
+  mars.heights().evaluate(block, cells, h);
+  std::copy_n(h.value.begin(), block.padded, out.height_m.begin());
+}
+
+}  // namespace
+
+void lay_measured(const Block& block, const MeasuredMars& mars, Ground& out) {
+  GlobeSpline::Values slopes;
+  lay_heights(block, mars, out, slopes);
+}
+
+void lay_ground(const Block& block, const MeasuredMars& mars, Ground& out) {
+  GlobeSpline::Values h;
+  lay_heights(block, mars, out, h);
+  out.has_walls = false;
   Lane<float> tone, white;
   tone.fill(0.45F);
   white.fill(0.5F);
   const Character& c = mars.character();
+  GridCells coarse;
+  grid_cells(block, out.places, kMeasuredColumns / Character::kCoarser, Character::kCoarser, coarse);
   if (mars.has_colours()) {
-    c.tone.evaluate(block, out.places, Character::kCoarser, tone);
-    c.white.evaluate(block, out.places, Character::kCoarser, white);
+    c.tone.evaluate(block, coarse, tone);
+    c.white.evaluate(block, coarse, white);
   }
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
@@ -50,13 +70,10 @@ void lay_ground(const Block& block, const MeasuredMars& mars, Ground& out) {
   });
   if (!mars.has_heights()) return lay_plain_ground(block, out);
 
-  GlobeSpline::Values h;
-  mars.heights().evaluate(block, out.places, h);
-  out.height_m = h.value;
   Lane<float> broad_m, roughness_m, pits;
-  c.broad.evaluate(block, out.places, Character::kCoarser, broad_m);
-  c.relief.evaluate(block, out.places, Character::kCoarser, roughness_m);
-  c.pits.evaluate(block, out.places, Character::kCoarser, pits);
+  c.broad.evaluate(block, coarse, broad_m);
+  c.relief.evaluate(block, coarse, roughness_m);
+  c.pits.evaluate(block, coarse, pits);
   Lane<double> east, north;
   std::int32_t any = 0;
   with_simd(block.simd, [&] {

@@ -29,7 +29,10 @@ struct Ground {
   alignas(64) Lane<double> fall_east, fall_north;   // the same in the local frame
 };
 
-// Sets `out`.
+// Sets the places, the distances to posts and the measured height of `out`.
+void lay_measured(const Block& block, const MeasuredMars& mars, Ground& out);
+
+// Sets all of `out`.
 void lay_ground(const Block& block, const MeasuredMars& mars, Ground& out);
 
 // Returns the distance from a fractional column and row to the nearest post, in metres.

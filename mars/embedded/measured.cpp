@@ -7,6 +7,7 @@
 #include "mars/embedded/data_files.h"
 #include "mars/embedded/math.h"
 #include "mars/raster/gdal_raster.h"
+#include "vpe/base/parallel.h"
 
 namespace mars::embedded {
 
@@ -185,8 +186,15 @@ MeasuredMars::MeasuredMars(const std::string& height_file, const std::string& co
     }
     return {};
   };
-  height_fault_ = load(kEmbeddedFiles[0], height_file, [&](const std::string& path) { load_heights(path); });
-  colour_fault_ = load(kEmbeddedFiles[1], colour_file, [&](const std::string& path) { load_colours(path); });
+  vpe::base::ThreadPool pool(2);
+  pool.run(2, [&](std::size_t n) {
+    if (n == 0)
+      height_fault_ =
+          load(kEmbeddedFiles[0], height_file, [&](const std::string& path) { load_heights(path); });
+    else
+      colour_fault_ =
+          load(kEmbeddedFiles[1], colour_file, [&](const std::string& path) { load_colours(path); });
+  });
 }
 
 void MeasuredMars::load_heights(const std::string& path) {

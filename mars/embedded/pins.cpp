@@ -153,23 +153,25 @@ float mean_shape(bool is_row) {
 
 // Finds the mean of the detail over an area, whose first column is `column`.
 float mean_detail(const MeasuredMars& mars, int column, int row, int posts, double detail_m, Simd simd) {
-  constexpr int kSteps = 16;
-  std::array<glm::dvec3, kSteps * kSteps> directions;
-  for (int b = 0; b < kSteps; ++b) {
-    for (int a = 0; a < kSteps; ++a) {
-      directions[static_cast<std::size_t>(b * kSteps + a)] =
-          direction_at(column - 0.5 + posts * (a + 0.5) / kSteps, row - 0.5 + (b + 0.5) / kSteps);
+  // Half the wavelength of the shortest octave between two directions, or less.
+  const int steps = detail_m >= 1024.0 ? 8 : 16;
+  std::vector<glm::dvec3> directions;
+  directions.reserve(static_cast<std::size_t>(steps * steps));
+  for (int b = 0; b < steps; ++b) {
+    for (int a = 0; a < steps; ++a) {
+      directions.push_back(
+          direction_at(column - 0.5 + posts * (a + 0.5) / steps, row - 0.5 + (b + 0.5) / steps));
     }
   }
   double sum = 0.0;
-  evaluate_without_means(mars, directions, detail_m, simd,
-                         [&](const Block&, std::span<const std::uint32_t> index, const Surface& s) {
-                           for (std::size_t i = 0; i < index.size(); ++i) {
-                             // In an order that does not depend on the blocks: whole 1/1024 metres.
-                             sum += static_cast<double>(static_cast<std::int32_t>(s.detail_m[i] * 1024.0F));
-                           }
-                         });
-  return static_cast<float>(sum / (1024.0 * kSteps * kSteps));
+  evaluate_all(mars, directions, detail_m, simd, Wanted::kHeightsWithoutMeans,
+               [&](const Block&, std::span<const std::uint32_t> index, const Surface& s) {
+                 for (std::size_t i = 0; i < index.size(); ++i) {
+                   // In an order that does not depend on the blocks: whole 1/1024 metres.
+                   sum += static_cast<double>(static_cast<std::int32_t>(s.detail_m[i] * 1024.0F));
+                 }
+               });
+  return static_cast<float>(sum / (1024.0 * steps * steps));
 }
 
 }  // namespace

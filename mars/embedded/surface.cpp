@@ -15,8 +15,15 @@ namespace {
 int ragged_octave(int level, int first) { return std::max(first, std::min(level, kLastOctave)); }
 
 // Evaluates a block. `touching` are the indices of the craters that may touch it.
-void evaluate(const Block& block, const MeasuredMars& mars, double detail_m, bool with_means,
+void evaluate(const Block& block, const MeasuredMars& mars, double detail_m, Wanted wanted,
               std::span<const Crater> craters, std::span<const std::uint32_t> touching, Surface& out) {
+  if (detail_m >= kCoarsestRelief_m) {
+    lay_measured(block, mars, out.ground);
+    out.octaves.first = kOutlineOctave;
+    std::fill_n(out.detail_m.begin(), block.padded, 0.0F);
+    out.height_m = out.ground.height_m;
+    return;
+  }
   lay_ground(block, mars, out.ground);
   add_octaves(block, detail_m, out.octaves);
   out.craters.clear();
@@ -27,18 +34,14 @@ void evaluate(const Block& block, const MeasuredMars& mars, double detail_m, boo
                out.ground.post_m, out.craters);
   }
   lay_relief(block, detail_m, out.ground, out.octaves, out.craters, out.relief);
-  if (detail_m >= kCoarsestRelief_m) {
-    std::fill_n(out.detail_m.begin(), block.padded, 0.0F);
-    out.height_m = out.ground.height_m;
-    return;
-  }
   lay_near_relief(block, detail_m, out.ground, out.octaves, out.craters, out.relief);
+  if (wanted == Wanted::kColours) return;
   sum_pinned(block, mars, detail_m, out.ground, out.relief, out.detail_m);
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i)
       out.detail_m[i] += static_cast<float>(out.craters.relief[i]) * (1.0F / kCraterUnits);
   });
-  if (with_means) subtract_means(block, mars, detail_m, out.ground, out.detail_m);
+  if (wanted == Wanted::kHeights) subtract_means(block, mars, detail_m, out.ground, out.detail_m);
   // At a pole all meridians meet: detail ends within its last circle of posts.
   constexpr double kLastRow = kMeasuredColumns / 2 - 1.0;
   with_simd(block.simd, [&] {
@@ -53,13 +56,13 @@ void evaluate(const Block& block, const MeasuredMars& mars, double detail_m, boo
 // Sorts directions into blocks, in place, and evaluates the blocks.
 class Splitter {
  public:
-  Splitter(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double detail_m, bool with_means,
-           Simd simd, const SurfaceSink& sink)
-      : scratch_(scratch(with_means)),
+  Splitter(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double detail_m, Simd simd,
+           Wanted wanted, const SurfaceSink& sink)
+      : scratch_(scratch(wanted)),
         mars_(mars),
         detail_m_(detail_m),
-        with_means_(with_means),
         simd_(simd),
+        wanted_(wanted),
         sink_(sink),
         smallest_(detail_m < kCoarsestRelief_m ? smallest_crater_level(detail_m) : kLargestCraterLevel + 1) {
     posts_.resize(directions.size());
@@ -147,7 +150,7 @@ class Splitter {
       index[i] = posts[i].index;
     }
     block.finish();
-    evaluate(block, mars_, detail_m_, with_means_, craters_, std::span(touching_).subspan(begin, end - begin),
+    evaluate(block, mars_, detail_m_, wanted_, craters_, std::span(touching_).subspan(begin, end - begin),
              scratch_.surface);
     sink_(block, std::span(index).first(posts.size()), scratch_.surface);
   }
@@ -157,10 +160,10 @@ class Splitter {
     std::vector<Post> posts;
     Surface surface;
   };
-  static Scratch& scratch(bool with_means) {
+  static Scratch& scratch(Wanted wanted) {
     // Means are found while a block is evaluated.
     static thread_local std::unique_ptr<Scratch> both[2];
-    auto& mine = both[with_means ? 1 : 0];
+    auto& mine = both[wanted == Wanted::kHeightsWithoutMeans ? 1 : 0];
     if (mine == nullptr) mine = std::make_unique<Scratch>();
     return *mine;
   }
@@ -172,8 +175,8 @@ class Splitter {
   std::vector<Candidate> candidates_;
   const MeasuredMars& mars_;
   double detail_m_;
-  bool with_means_;
   Simd simd_;
+  Wanted wanted_;
   const SurfaceSink& sink_;
   int smallest_;
 };
@@ -187,13 +190,8 @@ double detail_spacing_m(double spacing_m) {
 }
 
 void evaluate_all(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double spacing_m, Simd simd,
-                  const SurfaceSink& sink) {
-  Splitter(mars, directions, detail_spacing_m(spacing_m), true, simd, sink).run();
-}
-
-void evaluate_without_means(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double detail_m,
-                            Simd simd, const SurfaceSink& sink) {
-  Splitter(mars, directions, detail_m, false, simd, sink).run();
+                  Wanted wanted, const SurfaceSink& sink) {
+  Splitter(mars, directions, detail_spacing_m(spacing_m), simd, wanted, sink).run();
 }
 
 }  // namespace mars::embedded

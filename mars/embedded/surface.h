@@ -38,12 +38,16 @@ struct Surface {
 // Receives the surface of a block and, for each of its directions, its index in the input.
 using SurfaceSink = std::function<void(const Block&, std::span<const std::uint32_t> index, const Surface&)>;
 
+// Selects what evaluate_all() computes. Where a spacing shows no detail (kCoarsestRelief_m and more) only the measured
+// heights, the places on the ground and the number of octaves are set.
+enum class Wanted {
+  kHeights,              // all
+  kHeightsWithoutMeans,  // means are not subtracted; they are found by it
+  kColours               // all but the heights: what colour() reads
+};
+
 // Splits any directions into compact blocks, finds their craters and evaluates them.
 void evaluate_all(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double spacing_m, Simd simd,
-                  const SurfaceSink& sink);
-
-// Does the same for a spacing of detail_spacing_m() without subtracting means, which are found by it.
-void evaluate_without_means(const MeasuredMars& mars, std::span<const glm::dvec3> directions, double detail_m,
-                            Simd simd, const SurfaceSink& sink);
+                  Wanted wanted, const SurfaceSink& sink);
 
 }  // namespace mars::embedded

@@ -60,7 +60,7 @@ std::string cached_mars() {
   const std::filesystem::path folder = cache != nullptr
                                            ? std::filesystem::path(cache)
                                            : std::filesystem::path(home != nullptr ? home : ".") / ".cache";
-  return (folder / "vpe" / "embedded-mars-4.vpe").string();
+  return (folder / "vpe" / "embedded-mars-5.vpe").string();
 }
 
 }  // namespace bench

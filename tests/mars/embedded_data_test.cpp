@@ -235,7 +235,7 @@ TEST(EmbeddedData, WithoutFilesItIsASphereWithDetail) {
     const auto directions = patch({30, 20}, 24, spacing_m);
     double lowest = 1e9, highest = -1e9;
     embedded::evaluate_all(
-        none, directions, spacing_m, embedded::best_simd(),
+        none, directions, spacing_m, embedded::best_simd(), embedded::Wanted::kHeights,
         [&](const embedded::Block& b, std::span<const std::uint32_t> index, const embedded::Surface& s) {
           for (std::size_t i = 0; i < index.size(); ++i) {
             lowest = std::min(lowest, s.height_m[i]);

@@ -30,7 +30,7 @@ std::vector<double> heights(const std::vector<glm::dvec3>& directions, double sp
 std::vector<double> heights(const std::vector<glm::dvec3>& directions, double spacing_m, embedded::Simd simd) {
   std::vector<double> out(directions.size());
   embedded::evaluate_all(
-      embedded::MeasuredMars::get(), directions, spacing_m, simd,
+      embedded::MeasuredMars::get(), directions, spacing_m, simd, embedded::Wanted::kHeights,
       [&out](const embedded::Block&, std::span<const std::uint32_t> index, const embedded::Surface& s) {
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = s.height_m[i];
       });
