@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mars/geodesy/sphere.h"
+#include "paging/surface/query.h"
 #include "vpe/core/appearance/slope.h"
 
 namespace panorama {
@@ -26,7 +27,9 @@ constexpr std::array kPlanes{
               "incidence",
               "deg",
               "angle between the line of sight and the facet as drawn",
-              {1, 4}}};
+              {1, 4}},
+    PlaneInfo{
+        Plane::kSynthetic, "synthetic", "", "1 where the elevation is synthetic, 0 where it is data", {1, 4}}};
 
 void store(double value, std::uint8_t* out) {
   const auto number = static_cast<float>(value);
@@ -97,6 +100,11 @@ void measure(Plane plane, const paging::Surface& surface, double exaggeration, c
       const double along = glm::length(glm::cross(normal, sight));
       // On an edge between facets the error of the range may lead to a facet that faces away.
       store(std::max(0.0, std::atan2(out_of_ground, along) / mars::kRadiansPerDegree), out);
+      return;
+    }
+    case Plane::kSynthetic: {
+      const auto synthetic = is_ground ? paging::is_synthetic(surface, at) : std::nullopt;
+      store(synthetic ? static_cast<double>(*synthetic) : kNan, out);
       return;
     }
   }

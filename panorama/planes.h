@@ -31,6 +31,9 @@ enum class Plane : std::uint8_t {
   // Angle between the line of sight and the facet as drawn, in degrees; float32. 90: the line of sight is
   // perpendicular to the facet, 0: parallel. It has nothing to do with the sun.
   kIncidence,
+  // 1 where the elevation is synthetic, 0 where it is that of data; float32. NaN where the planet file does not tell, and
+  // at nodata.
+  kSynthetic,
 };
 
 // Describes a layer for the command line and for files.

@@ -12,7 +12,10 @@ std::vector<std::string> data_folders() {
   std::vector<std::string> folders;
   std::error_code none;
   const fs::path program = fs::read_symlink("/proc/self/exe", none);
-  if (!program.empty()) folders.push_back((program.parent_path().parent_path() / "share/vpe").string());
+  if (!program.empty()) {
+    folders.push_back((program.parent_path().parent_path() / "share/vpe").string());
+    folders.push_back((program.parent_path() / "share").string());
+  }
   folders.emplace_back(VPE_INSTALLED_DATA);
   folders.emplace_back(VPE_SOURCE_DATA);
   return folders;

@@ -10,7 +10,7 @@ namespace mars {
 inline constexpr const char* kEmbeddedFiles[] = {"mola8.tif", "mdim21.vrt", "mdim21.jpg"};
 
 // Returns the folders in which carried data are looked for, in this order: the folder share/vpe beside the program's own
-// bin, that of the install prefix, and mars/data of the source tree that the program was built from; or $VPE_DATA alone,
+// bin, the folder share in which the program was built, that of the install prefix, and mars/data of the source tree that the program was built from; or $VPE_DATA alone,
 // where that is set.
 std::vector<std::string> data_folders();
 

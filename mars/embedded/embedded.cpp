@@ -34,12 +34,13 @@ class Spacings {
   EmbeddedOptions options_;
 };
 
-SourceInfo measured_info(const char* name, const std::string& fault) {
+SourceInfo measured_info(const char* name, const std::string& fault, bool is_height) {
   SourceInfo info;
   info.name = name;
   info.resolution_m = embedded::kMeasuredPost_m;
   info.datum = VerticalDatum::areoid();
   info.body_radius_m = kMarsRadius_m;
+  if (is_height && fault.empty()) info.accuracy_m = kMeasuredAccuracy_m;
   if (!fault.empty()) {
     info.name = std::string("in place of ") + name;
     info.illustration = true;
@@ -48,13 +49,14 @@ SourceInfo measured_info(const char* name, const std::string& fault) {
   return info;
 }
 
-SourceInfo detail_info(double finest_m) {
+SourceInfo detail_info(double finest_m, bool is_height) {
   SourceInfo info;
   info.name = kEmbeddedDetail;
   info.resolution_m = finest_m;
   info.datum = VerticalDatum::areoid();
   info.body_radius_m = kMarsRadius_m;
   info.illustration = true;
+  if (is_height && MeasuredMars::get().has_heights()) info.accuracy_m = kDetailAccuracy_m;
   return info;
 }
 
@@ -69,9 +71,9 @@ class EmbeddedElevation final : public ElevationSource {
       : mars_(MeasuredMars::get()), options_(options), spacings_(kEmbeddedPosts, options) {}
 
   std::vector<SourceInfo> infos() const override {
-    const SourceInfo data = measured_info("MOLA, 8 posts a degree (carried)", mars_.height_fault());
+    const SourceInfo data = measured_info("MOLA, 8 posts a degree (carried)", mars_.height_fault(), true);
     if (!options_.detail) return {data};
-    return {data, detail_info(spacings_.finest())};
+    return {data, detail_info(spacings_.finest(), true)};
   }
 
   void sample(std::span<const glm::dvec3> directions, double spacing_m,
@@ -132,9 +134,9 @@ class EmbeddedImage final : public ImageSource {
       : mars_(MeasuredMars::get()), options_(options), spacings_(kEmbeddedTexels, options) {}
 
   std::vector<SourceInfo> infos() const override {
-    const SourceInfo data = measured_info("MDIM 2.1, 8 pixels a degree (carried)", mars_.colour_fault());
+    const SourceInfo data = measured_info("MDIM 2.1, 8 pixels a degree (carried)", mars_.colour_fault(), false);
     if (!options_.detail) return {data};
-    return {data, detail_info(spacings_.finest())};
+    return {data, detail_info(spacings_.finest(), false)};
   }
 
   void sample(std::span<const glm::dvec3> directions, double texel_m, std::span<vpe::base::Rgb> colours,

@@ -47,6 +47,11 @@ std::shared_ptr<const ImageSource> embedded_image(const EmbeddedOptions& options
 // Name of the source of synthetic detail in planet files and answers.
 inline constexpr const char* kEmbeddedDetail = "embedded-detail";
 
+// Deviations from the planet, one sigma: of the data between their posts, and of the surface with detail. Measured on the
+// MOLA grid of 128 posts a degree at Gale (115 m and 134 m), which is rougher than most of the planet.
+inline constexpr double kMeasuredAccuracy_m = 120.0;
+inline constexpr double kDetailAccuracy_m = 140.0;
+
 // Bounds the steps of the surface.
 inline constexpr double kEmbeddedStep_m = 0.05;
 

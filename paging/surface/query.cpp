@@ -9,6 +9,13 @@ namespace paging {
 
 namespace {
 
+std::optional<int> nearest_source(const Surface& surface, const TileSources& sources, const SurfacePoint& point,
+                                  const glm::dvec3& direction) {
+  if (point.nodata) return std::nullopt;
+  if (sources.of_post.empty()) return sources.at(0);
+  return sources.at(nearest_post(*surface.tile(point.tile), mars::chart_point(direction)));
+}
+
 ResamplingError of_source(const std::vector<SourceResampling>& list, int source) {
   for (const SourceResampling& own : list)
     if (own.source == source) return own.error;
@@ -47,14 +54,24 @@ PlaceAnswer query(const Surface& surface, mars::LonLat place) {
   a.planet_resampling = meta.resampling;
   const auto sources = surface.sources(point.tile);
   a.tile_sources = sources->of_tile;
-  if (a.nodata) return a;
-  a.source = sources->at(nearest_post(*surface.tile(point.tile), mars::chart_point(direction)));
+  a.source = nearest_source(surface, *sources, point, direction);
   if (!a.source) return a;
   a.resampling = of_source(sources->resampling, *a.source);
   if (a.resampling.posts > 0) return a;
   a.resampling = level_resampling(meta, point.tile.level, *a.source);
   a.resampling_of_level = a.resampling.posts > 0;
   return a;
+}
+
+std::optional<int> source_at(const Surface& surface, const glm::dvec3& direction) {
+  const SurfacePoint point = surface.at(direction);
+  return nearest_source(surface, *surface.sources(point.tile), point, direction);
+}
+
+std::optional<bool> is_synthetic(const Surface& surface, const glm::dvec3& direction) {
+  const std::optional<int> source = source_at(surface, direction);
+  if (!source) return std::nullopt;
+  return surface.planet().meta().sources.at(static_cast<std::size_t>(*source)).illustration;
 }
 
 std::string describe_datum(const PlanetMeta& meta) {

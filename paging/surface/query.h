@@ -37,6 +37,14 @@ struct PlaceAnswer {
 // Surface::at(). Any thread may call it. Throws PlanetError.
 PlaceAnswer query(const Surface& surface, mars::LonLat place);
 
+// Returns the source of the nearest post in a direction (of any length but 0), as PlaceAnswer::source. Throws
+// PlanetError.
+std::optional<int> source_at(const Surface& surface, const glm::dvec3& direction);
+
+// Returns whether the height in a direction is made up rather than measured; nullopt where there is no data, and where the
+// file does not tell. Throws PlanetError.
+std::optional<bool> is_synthetic(const Surface& surface, const glm::dvec3& direction);
+
 // Returns the zero of elevations for people: "areoid", or "sphere:3396190 (true radii)".
 std::string describe_datum(const PlanetMeta& meta);
 

@@ -1,5 +1,6 @@
 // Tests of whole layers: legend, scale bar, arrow, names, compositing, hostile input.
 #include "vpe/overlay/overlay.h"
+#include "vpe/overlay/visible_terrain.h"
 
 #include <malloc.h>
 
@@ -91,6 +92,40 @@ TEST(Overlay, EachDrawsSomethingTheSameEveryTime) {
     EXPECT_LT(painted(layer), layer.pixels.size() / 3);
     (void)vpe::overlay::draw(all_of_them(), hill_scene());
     EXPECT_EQ(vpe::overlay::draw(one, hill_scene()).pixels, layer.pixels);
+  }
+}
+
+TEST(Overlay, SyntheticGroundIsTintedBelowTheLines) {
+  Scene scene = hill_scene();
+  Overlays tint;
+  tint.inspect = vpe::core::Inspect::kSynthetic;
+  EXPECT_TRUE(any(tint));
+  EXPECT_TRUE(needs_range(tint));
+  EXPECT_EQ(painted(vpe::overlay::draw(tint, scene)), 0U);  // a scene that does not know
+  scene.is_synthetic = [](const glm::dvec3& place) -> std::optional<bool> {
+    const double lon_deg = mars::lon_lat(place).lon_deg;
+    if (lon_deg > 21) return std::nullopt;
+    return lon_deg > 20;
+  };
+  const vpe::overlay::VisibleTerrain terrain(scene);
+  const std::vector<double> lon_deg = terrain.longitudes_deg();
+  const Layer alone = vpe::overlay::draw(tint, scene);
+  for (std::size_t n = 0; n < lon_deg.size(); ++n) {
+    const bool expected = lon_deg[n] > 20 && lon_deg[n] <= 21;
+    ASSERT_EQ(alone.pixels[n], expected ? vpe::overlay::kSyntheticTint : (Rgba{0, 0, 0, 0}));
+  }
+  Overlays both = tint;
+  both.graticule = true;
+  Overlays lines;
+  lines.graticule = true;
+  const Layer over = vpe::overlay::draw(both, scene);
+  const Layer only = vpe::overlay::draw(lines, scene);
+  for (std::size_t n = 0; n < lon_deg.size(); ++n) {
+    if (only.pixels[n].a == 255 || alone.pixels[n].a == 0) {
+      ASSERT_EQ(over.pixels[n], only.pixels[n]);
+    } else {
+      ASSERT_GE(over.pixels[n].a, std::max(only.pixels[n].a, alone.pixels[n].a));
+    }
   }
 }
 

@@ -272,6 +272,9 @@ TEST(PanoramaOverlay, OverlaysThatPanoramasLackAreNamed) {
   overlays = {};
   overlays.time_code = true;
   EXPECT_NE(not_for_panoramas(overlays).find("overlay.time"), std::string::npos);
+  overlays = {};
+  overlays.inspect = vpe::core::Inspect::kSynthetic;
+  EXPECT_NE(not_for_panoramas(overlays).find("--aux-layers synthetic"), std::string::npos);
 }
 
 }  // namespace

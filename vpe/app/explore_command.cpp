@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/program.h"
@@ -117,6 +118,13 @@ window::ExploreSetup make_setup(const ExploreArguments& arguments, const Common&
   return setup;
 }
 
+window::ShownPlanet shown_planet(std::shared_ptr<const paging::PlanetFile> planet, const Common& common) {
+  constexpr std::size_t kSurfaceShare = 8;
+  auto surface = std::make_shared<const paging::Surface>(planet, memory_bytes(common) / kSurfaceShare);
+  return {planet, std::move(surface),
+          [planet, common] { return std::make_unique<WindowPainter>(planet, common); }};
+}
+
 // Writes the session file. Returns "", or what went wrong; there is no file if there is no folder for it.
 std::string keep_session(const window::ExploreWindow& shown, const std::string& planet,
                          const std::filesystem::path& file, vpe::explore::LastSession& last) {
@@ -145,7 +153,9 @@ void explore(const ExploreArguments& arguments, const Common& common) {
   }
   window::check_display(make_setup(arguments, common, preferences, last).display);
   std::string file = recorded_path(arguments.planet);
-  auto planet = open_planet(arguments.planet, common);
+  auto planet = arguments.planet.empty() ? coarse_embedded_planet(common) : nullptr;
+  bool is_coarse = planet != nullptr;
+  if (!is_coarse) planet = open_planet(arguments.planet, common);
   bool is_first = true;
   ExploreArguments here = arguments;
   std::optional<core::Settings> settings;
@@ -161,11 +171,15 @@ void explore(const ExploreArguments& arguments, const Common& common) {
     if (is_first && !setup.session.start && last.planet == file) setup.session.start = last.pose;
     if (settings) setup.session.settings = *settings;
     is_first = false;
-    setup.planet = planet;
+    static_cast<window::ShownPlanet&>(setup) = shown_planet(planet, common);
+    if (std::exchange(is_coarse, false)) {
+      setup.make_finer = [common](const std::stop_token& stop) -> std::optional<window::ShownPlanet> {
+        auto complete = build_embedded_planet(common, stop);
+        if (complete == nullptr) return std::nullopt;
+        return shown_planet(std::move(complete), common);
+      };
+    }
     setup.display.title = "vpe - " + planet->meta().body;
-    constexpr std::size_t kSurfaceShare = 8;
-    setup.surface = std::make_shared<const paging::Surface>(planet, memory_bytes(common) / kSurfaceShare);
-    setup.make_painter = [planet, common] { return std::make_unique<WindowPainter>(planet, common); };
     const auto keep = [&files, &last, &file](const window::ExploreWindow& shown) {
       return keep_session(shown, file, files.session, last);
     };

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mars/sources/source.h"
+#include "mars/sources/synthetic.h"
 #include "vpe/base/number.h"
 
 namespace vpe::core {
@@ -23,7 +24,7 @@ std::string meaning(const Certificate& c) {
   }
   if (c.is_below_ground) text += " The camera is below the ground: nothing is claimed about the picture.";
   if (c.nodata_share.value_or(0) > 0) text += " Where no source has data the picture is striped or grey.";
-  if (c.illustration) text += " The elevations are an illustration, not data.";
+  if (!c.synthetic.empty()) text += " " + c.synthetic;
   if (c.tiles_missing > 0 || c.tiles_substituted > 0) {
     text += " Missing or substituted tiles are not covered by the bounds.";
   }
@@ -38,6 +39,7 @@ void state_data(Certificate& certificate, const DataStatement& data,
   certificate.resampling_max_m = data.resampling_max_m;
   certificate.resampling_rms_m = data.resampling_rms_m;
   certificate.illustration = data.illustration;
+  certificate.synthetic = mars::synthetic_statement(sources);
   certificate.source_accuracy_m.reset();
   for (const mars::SourceInfo& source : sources) {
     if (source.accuracy_m)

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace mars {
 struct SourceInfo;
@@ -32,7 +33,8 @@ struct Certificate {
   double resampling_max_m = 0;         // reference surface against the posts of the sources
   double resampling_rms_m = 0;
   std::optional<double> source_accuracy_m;  // of the least accurate source; absent: unknown
-  bool illustration = false;                // the elevations are invented, not data
+  bool illustration = false;                // some elevations are invented, not data
+  std::string synthetic;                    // mars::synthetic_statement() of the sources
   bool is_below_ground = false;             // the camera is; nothing is claimed about the image
   double exaggeration = 1;
   // Largest length in the image of what is one pixel long at its middle: 1 / cos^2 of the angle to the farthest

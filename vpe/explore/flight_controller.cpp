@@ -1,5 +1,6 @@
 #include "vpe/explore/flight_controller.h"
 
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -7,6 +8,11 @@ namespace vpe::explore {
 
 FlightController::FlightController(double radius_m, scripts::TerrainHeight terrain_height_m)
     : radius_m_(radius_m), terrain_height_m_(std::move(terrain_height_m)) {}
+
+void FlightController::set_terrain(scripts::TerrainHeight terrain_height_m) {
+  terrain_height_m_ = std::move(terrain_height_m);
+  player_exaggeration_ = std::numeric_limits<double>::quiet_NaN();  // player() makes it again
+}
 
 std::string FlightController::load(const scripts::Flight& flight) {
   try {

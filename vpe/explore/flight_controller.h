@@ -23,6 +23,9 @@ class FlightController {
  public:
   FlightController(double radius_m, scripts::TerrainHeight terrain_height_m);
 
+  // Uses other terrain of the same body from now on.
+  void set_terrain(scripts::TerrainHeight terrain_height_m);
+
   // Replaces the flight; the player is paused at the start. Returns what is wrong with the flight, or "". A bad
   // flight changes nothing.
   [[nodiscard]] std::string load(const scripts::Flight& flight);

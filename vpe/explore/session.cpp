@@ -21,6 +21,12 @@ mars::HeadAngles added(const mars::HeadAngles& a, const mars::HeadAngles& b) {
           std::remainder(a.roll_deg + b.roll_deg, 360.0)};
 }
 
+scripts::TerrainHeight terrain_height_of(std::shared_ptr<const paging::Surface> surface) {
+  return [ground = std::move(surface)](mars::LonLat place, double exaggeration) {
+    return ground->at(mars::direction(place), exaggeration).height_m;
+  };
+}
+
 bool is_ahead(const mars::HeadAngles& look) {
   return look.yaw_deg == 0 && look.pitch_deg == 0 && look.roll_deg == 0;
 }
@@ -31,16 +37,21 @@ Session::Session(std::shared_ptr<const paging::Surface> surface, const SessionOp
     : surface_(std::move(surface)),
       settings_(options.settings),
       shown_settings_(options.settings),
-      flights_(surface_->planet_radius_m(),
-               [ground = surface_](mars::LonLat place, double exaggeration) {
-                 return ground->at(mars::direction(place), exaggeration).height_m;
-               }),
+      flights_(surface_->planet_radius_m(), terrain_height_of(surface_)),
       interest_(options.interest),
       mouse_speed_(options.mouse_speed),
       invert_wheel_(options.invert_wheel) {
   ground_ = ground_of(surface_, settings_.values().exaggeration);
   set_fov(options.fov_deg);
   pose_ = kept_clear(options.start ? *options.start : overview({0, 0}, screen_, ground_.radius_m), ground_);
+}
+
+void Session::set_surface(std::shared_ptr<const paging::Surface> surface) {
+  surface_ = std::move(surface);
+  flights_.set_terrain(terrain_height_of(surface_));
+  ground_ = ground_of(surface_, shown_settings_.values().exaggeration);
+  if (!follows_) pose_ = kept_clear(pose_, ground_);
+  ++changes_;
 }
 
 double Session::height_m() const { return height_above_ground_m(pose_, ground_); }

@@ -53,6 +53,8 @@ class Session {
   const Screen& screen() const { return screen_; }
   const TerrainQuery& ground() const { return ground_; }
   const paging::Surface& surface() const { return *surface_; }
+  // Uses another surface of the same body from now on. The camera stays, but above the ground.
+  void set_surface(std::shared_ptr<const paging::Surface> surface);
   double height_m() const;  // of the camera above the ground
   // Returns the view of the camera: pose, head and screen.
   core::View view() const;

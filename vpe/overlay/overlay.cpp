@@ -7,9 +7,32 @@
 
 namespace vpe::overlay {
 
+namespace {
+
+// Puts the tint below what is drawn already.
+void tint_synthetic(const VisibleTerrain& terrain, Layer& layer) {
+  for (int y = 0; y < terrain.height(); ++y) {
+    for (int x = 0; x < terrain.width(); ++x) {
+      const std::size_t pixel = terrain.index(x, y);
+      core::Rgba& own = layer.pixels[pixel];
+      if (own.a == 255 || !terrain.is_ground(pixel)) continue;
+      if (!terrain.scene().is_synthetic(terrain.point(x, y)).value_or(false)) continue;
+      const unsigned below = kSyntheticTint.a * (255U - own.a) / 255U;
+      const unsigned sum = own.a + below;
+      const auto mix = [&](std::uint8_t top, std::uint8_t under) {
+        return static_cast<std::uint8_t>((top * unsigned{own.a} + under * below) / sum);
+      };
+      own = {mix(own.r, kSyntheticTint.r), mix(own.g, kSyntheticTint.g), mix(own.b, kSyntheticTint.b),
+             static_cast<std::uint8_t>(sum)};
+    }
+  }
+}
+
+}  // namespace
+
 bool needs_range(const core::Overlays& overlays) {
   return overlays.graticule || overlays.contours || overlays.scale_bar || overlays.north_arrow ||
-         !overlays.names.empty();
+         !overlays.names.empty() || overlays.inspect == core::Inspect::kSynthetic;
 }
 
 bool any(const core::Overlays& overlays) {
@@ -46,7 +69,9 @@ Layer draw(const core::Overlays& overlays, const Scene& scene) {
   if (overlays.time_code) draw_time(layout, scene.time_s);
   if (!overlays.names.empty()) draw_names(layout, *terrain, overlays.distances);
   draw_labels(layout, labels);
-  return canvas.layer();
+  Layer layer = canvas.layer();
+  if (overlays.inspect == core::Inspect::kSynthetic && scene.is_synthetic) tint_synthetic(*terrain, layer);
+  return layer;
 }
 
 base::Rgb blend(const core::Rgba& over, base::Rgb below) {

@@ -59,7 +59,12 @@ struct Scene {
   std::function<double(const core::Place&)> height_m;
   // Returns the same in a unit direction. Empty: a place whose centre is hidden has no name.
   std::function<double(const glm::dvec3&)> ground_m;
+  // Returns whether the terrain in a direction is synthetic, nullopt where that is not known. Empty: nothing is tinted.
+  std::function<std::optional<bool>(const glm::dvec3&)> is_synthetic;
 };
+
+// The colour over synthetic ground. Ground of Mars has no blue of its own.
+inline constexpr core::Rgba kSyntheticTint{40, 130, 255, 110};
 
 // Returns true if anything is to be drawn. If not, neither draw() nor its caller does any work.
 bool any(const core::Overlays& overlays);

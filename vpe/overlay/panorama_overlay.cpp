@@ -281,6 +281,8 @@ std::string not_for_panoramas(const core::Overlays& overlays) {
   if (overlays.scale_bar)
     return "overlay.scale: a panorama has no centre with one scale; see overlay.distances";
   if (overlays.north_arrow) return "overlay.north: a panorama shows all directions; see overlay.compass";
+  if (overlays.inspect == core::Inspect::kSynthetic)
+    return "inspect=synthetic: a panorama is not tinted; --aux-layers synthetic tells it for each pixel";
   if (overlays.time_code) return "overlay.time: a panorama is not a frame of a flight";
   return {};
 }

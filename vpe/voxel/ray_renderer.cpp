@@ -304,8 +304,10 @@ std::string why_not(const core::DrawRequest& request) {
   const core::Mode mode = request.settings.mode;
   if (mode == core::Mode::kWireframe || mode == core::Mode::kMarkers)
     return "the ray backend has no triangles to show: use --backend polygon for this mode";
-  if (request.cull_view || request.settings.inspect != core::Inspect::kNone)
-    return "the ray backend draws no tiles: --cull-from and inspect show those of --backend polygon";
+  const core::Inspect inspect = request.settings.inspect;
+  if (request.cull_view || inspect == core::Inspect::kBorders || inspect == core::Inspect::kLevels)
+    return "the ray backend draws no tiles: --cull-from, inspect=borders and inspect=levels show those of --backend "
+           "polygon";
   if (const std::string_view control = level_control(request); !control.empty())
     return "the ray backend has no level control but rays.cell: " + std::string(control) +
            " acts with --backend polygon only";

@@ -80,6 +80,22 @@ std::shared_ptr<const paging::PlanetFile> PlanetOpener::take() {
   return opening_.get();
 }
 
+void PlanetMaker::begin() {
+  if (!make_) return;
+  making_ = std::async(std::launch::async,
+                       [make = std::exchange(make_, {}), notify = notify_, stop = stop_.get_token()] {
+                         auto planet = make(stop);
+                         notify();
+                         return planet;
+                       });
+}
+
+std::optional<ShownPlanet> PlanetMaker::take() {
+  if (!making_.valid() || making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return std::nullopt;
+  return making_.get();
+}
+
 void ExploreWindow::save_image() {
   saves_image_ = false;
   const fs::path file = new_file(setup_.folder, "", ".png");

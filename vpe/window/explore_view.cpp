@@ -56,6 +56,7 @@ void ExploreWindow::take_image(double wait_s) {
     show_message(failures.front() + (more > 0 ? " (and " + std::to_string(more) + " more)" : ""), true);
   }
   view_texture_.upload(drawn->image);
+  finer_.begin();  // not before: it would delay the first image
   ++images_;
   last_image_ = std::move(drawn->image);
   drawn_ = std::move(*drawn);

@@ -42,6 +42,7 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
       devices_(setup_.preferences, std::move(setup_.devices)),
       history_(session_.ground().radius_m),
       opener_(setup_.open_planet),
+      finer_(setup_.make_finer, [] { Display::wake(); }),
       first_fov_deg_(setup_.session.fov_deg),
       begun_(Clock::now()),
       last_step_(begun_),
@@ -63,6 +64,8 @@ ExploreWindow::ExploreWindow(ExploreSetup setup)
   flight_.offer(abandoned);
   if (!errors.empty())
     show_message(errors, true);
+  else if (finer_.is_making())
+    clear_message();
   else if (!abandoned.empty())
     show_message("an earlier session left an unsaved flight: 'Restore' in the panel 'Flight' opens it");
 }
@@ -114,11 +117,7 @@ bool ExploreWindow::step(double wait_s) {
   // The time of a rest does not count as motion.
   const double dt_s = busy ? seconds(now - last_step_) : 0.0;
   last_step_ = now;
-  try {
-    if (auto planet = opener_.take()) next_planet_ = std::move(planet);
-  } catch (const std::exception& e) {
-    show_message(e.what(), true);
-  }
+  take_planets();
   const double shown_s = now_s() - state_.message_since_s;
   if (!state_.message.empty() && shown_s > (state_.message_is_error ? kError_s : kMessage_s)) clear_message();
   keep_work(busy);
@@ -138,6 +137,24 @@ bool ExploreWindow::step(double wait_s) {
     --frames_due_;
   }
   return !display_.should_close();
+}
+
+void ExploreWindow::take_planets() {
+  try {
+    if (auto planet = opener_.take()) next_planet_ = std::move(planet);
+    if (auto finer = finer_.take()) replace_planet(std::move(*finer));
+  } catch (const std::exception& e) {
+    show_message(e.what(), true);
+  }
+}
+
+void ExploreWindow::replace_planet(ShownPlanet next) {
+  static_cast<ShownPlanet&>(setup_) = std::move(next);
+  session_.set_surface(setup_.surface);
+  map_.set_planet(setup_.planet);
+  measure_.set_surface(setup_.surface);
+  maker_ = std::make_unique<ImageMaker>(setup_.make_painter, [] { Display::wake(); });
+  show_message("the planet is complete");
 }
 
 // Keeps the flight as it is between two drags, and the session when the view has come to rest.
@@ -232,7 +249,9 @@ void ExploreWindow::lay_out() {
 }
 
 void ExploreWindow::clear_message() {
-  state_.message = opener_.is_opening() ? "opening " + opener_.file() + " ..." : "";
+  state_.message = opener_.is_opening() ? "opening " + opener_.file() + " ..."
+                   : finer_.is_making() ? "coarse ground, until the planet is built (once, about a minute) ..."
+                                        : "";
   state_.message_is_error = false;
   state_.message_since_s = now_s();
   frames_due_ = kFramesAfterChange;

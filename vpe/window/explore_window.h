@@ -9,6 +9,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -36,14 +37,24 @@ namespace vpe::window {
 // Opens a planet file, or builds one from a raster. Throws if this is not possible.
 using OpenPlanet = std::function<std::shared_ptr<const paging::PlanetFile>(const std::string& file)>;
 
-class ExploreWindow;
-
-struct ExploreSetup {
+// Holds a planet as the window uses it.
+struct ShownPlanet {
   std::shared_ptr<const paging::PlanetFile> planet;
   std::shared_ptr<const paging::Surface> surface;
+  MakePainter make_painter;
+};
+
+// Makes a planet that takes time. Returns nullopt once it was asked to stop. Throws if it cannot be made.
+using MakePlanet = std::function<std::optional<ShownPlanet>(std::stop_token)>;
+
+class ExploreWindow;
+
+struct ExploreSetup : ShownPlanet {
+  // Makes a finer planet file of the same body, which replaces the first one in the window. Called on a thread of its own.
+  // Empty: there is none.
+  MakePlanet make_finer;
   explore::SessionOptions session;
   core::Backend backend = core::Backend::kPolygon;
-  MakePainter make_painter;
   // Returns the unit, body-fixed direction of the sun.
   std::function<glm::dvec3(const core::SettingsValues&, const mars::Pose&)> sun;
   OpenPlanet open_planet;  // for files dropped on the window; called on a thread of its own
@@ -114,6 +125,28 @@ class PlanetOpener {
   OpenPlanet open_;
   std::string file_;
   std::future<std::shared_ptr<const paging::PlanetFile>> opening_;
+};
+
+// Makes a planet on a thread of its own. The destructor asks it to stop and waits for it.
+class PlanetMaker {
+ public:
+  // `notify` is called on the thread when the planet is made. An empty `make` makes none.
+  PlanetMaker(MakePlanet make, std::function<void()> notify)
+      : make_(std::move(make)), notify_(std::move(notify)) {}
+  ~PlanetMaker() { stop_.request_stop(); }
+
+  // Begins once.
+  void begin();
+  // Returns true until the planet is taken.
+  bool is_making() const { return make_ || making_.valid(); }
+  // Returns the planet once it is made, else nullopt. Throws if it could not be made.
+  std::optional<ShownPlanet> take();
+
+ private:
+  MakePlanet make_;  // until it begins
+  std::function<void()> notify_;
+  std::stop_source stop_;
+  std::future<std::optional<ShownPlanet>> making_;
 };
 
 // Runs the window. For the main thread.
@@ -193,6 +226,8 @@ class ExploreWindow {
   void draw_map(int width, int height);
   void request_image();
   void take_image(double wait_s);
+  void take_planets();
+  void replace_planet(ShownPlanet next);
   void show_message(std::string text, bool is_error = false);
   void clear_message();
   void save_image();
@@ -229,6 +264,7 @@ class ExploreWindow {
   SessionRecorder recorder_;
   core::RgbImage last_image_;  // pixels of drawn_
   PlanetOpener opener_;
+  PlanetMaker finer_;
   std::shared_ptr<const paging::PlanetFile> next_planet_;
   bool saves_image_ = false;  // once the final image is there
   double first_fov_deg_ = 50;

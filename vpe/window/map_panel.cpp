@@ -28,23 +28,32 @@ constexpr ImU32 kMapDark = IM_COL32(0, 0, 0, 160);
 }  // namespace
 
 MapPanel::MapPanel(std::shared_ptr<const paging::PlanetFile> planet, int threads, std::function<void()> notify)
-    : planet_(std::move(planet)),
-      worker_(
-          [planet = planet_, threads, painter = std::unique_ptr<explore::MapPainter>(),
-           pool = std::unique_ptr<base::ThreadPool>()](const Request& request) mutable -> std::optional<Made> {
-            try {
-              if (painter == nullptr) {
-                painter = std::make_unique<explore::MapPainter>(planet, kBudget_bytes);
-                pool = std::make_unique<base::ThreadPool>(threads);
-              }
-              core::RgbImage image = painter->paint(request.map, request.style, *pool);
-              if (image.width > 0) return Made(request, std::move(image));
-            } catch (const std::exception&) {
-              // Tiles that cannot be read leave the map unchanged; the view reports them.
-            }
-            return std::nullopt;
-          },
-          std::move(notify)) {}
+    : planet_(std::move(planet)), threads_(threads), notify_(std::move(notify)), worker_(make_worker()) {}
+
+void MapPanel::set_planet(std::shared_ptr<const paging::PlanetFile> planet) {
+  planet_ = std::move(planet);
+  worker_ = make_worker();
+  requested_.reset();
+}
+
+std::unique_ptr<MapPanel::Worker> MapPanel::make_worker() const {
+  return std::make_unique<Worker>(
+      [planet = planet_, threads = threads_, painter = std::unique_ptr<explore::MapPainter>(),
+       pool = std::unique_ptr<base::ThreadPool>()](const Request& request) mutable -> std::optional<Made> {
+        try {
+          if (painter == nullptr) {
+            painter = std::make_unique<explore::MapPainter>(planet, kBudget_bytes);
+            pool = std::make_unique<base::ThreadPool>(threads);
+          }
+          core::RgbImage image = painter->paint(request.map, request.style, *pool);
+          if (image.width > 0) return Made(request, std::move(image));
+        } catch (const std::exception&) {
+          // Tiles that cannot be read leave the map unchanged; the view reports them.
+        }
+        return std::nullopt;
+      },
+      notify_);
+}
 
 MapActions MapPanel::draw(const explore::Session& session, explore::MapStyle style,
                           std::span<const mars::LonLat> path, std::span<const explore::Hotspot> hotspots,
@@ -106,9 +115,9 @@ MapActions MapPanel::draw(const explore::Session& session, explore::MapStyle sty
   const Request request{map_, style};
   if (!(requested_ == request)) {
     requested_ = request;
-    worker_.request(request);
+    worker_->request(request);
   }
-  if (const std::optional<Made> made = worker_.take()) {
+  if (const std::optional<Made> made = worker_->take()) {
     if (texture_ == nullptr) texture_ = std::make_unique<Texture>();
     texture_->upload(made->second);
     shown_ = made->first.map;

@@ -43,8 +43,11 @@ class MapPanel {
   MapActions draw(const explore::Session& session, explore::MapStyle style, std::span<const mars::LonLat> path,
                   std::span<const explore::Hotspot> hotspots, int width, int height, Widgets& widgets);
 
+  // Shows another planet file of the same body from now on. Waits for the image that is being painted.
+  void set_planet(std::shared_ptr<const paging::PlanetFile> planet);
+
   const explore::MapView& map() const { return map_; }
-  bool is_at_rest() const { return worker_.is_idle(); }
+  bool is_at_rest() const { return worker_->is_idle(); }
 
  private:
   struct Request {
@@ -60,6 +63,8 @@ class MapPanel {
   void draw_path(std::span<const mars::LonLat> path, double x0, double y0) const;
 
   std::shared_ptr<const paging::PlanetFile> planet_;
+  int threads_;
+  std::function<void()> notify_;
   explore::MapView map_;
   bool is_fresh_ = true;
   std::optional<glm::dvec2> pressed_;  // on the map, while the button is down
@@ -73,7 +78,9 @@ class MapPanel {
   explore::MapView shown_;  // of the texture
   std::optional<Request> requested_;
 
-  base::LatestWorker<Request, Made> worker_;
+  using Worker = base::LatestWorker<Request, Made>;
+  std::unique_ptr<Worker> make_worker() const;
+  std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace vpe::window

@@ -36,7 +36,15 @@ std::filesystem::path in_home(const std::string& name) {
 }  // namespace
 
 MeasurePanel::MeasurePanel(std::shared_ptr<const paging::Surface> surface, std::function<void()> notify)
-    : surface_(std::move(surface)), measurer_(surface_, std::move(notify)) {}
+    : surface_(std::move(surface)),
+      notify_(std::move(notify)),
+      measurer_(std::make_unique<Measurer>(surface_, notify_)) {}
+
+void MeasurePanel::set_surface(std::shared_ptr<const paging::Surface> surface) {
+  surface_ = std::move(surface);
+  measurer_ = std::make_unique<Measurer>(surface_, notify_);
+  request();
+}
 
 void MeasurePanel::add(mars::LonLat place) {
   if (!mars::is_valid(place)) return;
@@ -62,12 +70,12 @@ std::optional<mars::LonLat> MeasurePanel::marked() const {
 void MeasurePanel::request() {
   measured_.reset();
   marked_.reset();
-  measurer_.forget();
-  wanted_ = places_.size() < 2 ? 0 : measurer_.request({places_, from_height_m_, to_height_m_});
+  measurer_->forget();
+  wanted_ = places_.size() < 2 ? 0 : measurer_->request({places_, from_height_m_, to_height_m_});
 }
 
 void MeasurePanel::take() {
-  std::optional<Measured> next = measurer_.take();
+  std::optional<Measured> next = measurer_->take();
   if (next && next->number == wanted_) measured_ = std::move(next);
 }
 

@@ -38,6 +38,9 @@ class MeasurePanel {
   MeasureActions draw(const explore::Session& session, std::optional<mars::LonLat> under_cursor,
                       Widgets& widgets);
 
+  // Measures on another surface of the same body from now on. Waits for the measurement that runs.
+  void set_surface(std::shared_ptr<const paging::Surface> surface);
+
   // Adds a point to the path. Ignores invalid places.
   void add(mars::LonLat place);
   void erase(std::size_t index);
@@ -47,7 +50,7 @@ class MeasurePanel {
   std::optional<mars::LonLat> marked() const;
 
   // Returns true if nothing is being measured, and no result waits for update().
-  bool is_at_rest() const { return measurer_.is_idle(); }
+  bool is_at_rest() const { return measurer_->is_idle(); }
   // Takes a finished result. draw() and draw_marks() do this too.
   void update() { take(); }
   // Returns the measurement of the present points, or null if it is not finished.
@@ -82,7 +85,8 @@ class MeasurePanel {
   std::optional<Measured> measured_;
   std::optional<mars::LonLat> marked_;
   int marked_frame_ = -2;  // ImGui's number of the frame that marked it
-  Measurer measurer_;      // last: its thread notifies the window
+  std::function<void()> notify_;
+  std::unique_ptr<Measurer> measurer_;  // last: its thread notifies the window
 };
 
 }  // namespace vpe::window

@@ -71,6 +71,7 @@ void FilmSession::finish(const ManifestHead& head) {
   }
   if (is_whole) {
     const bool was_complete = video_->is_complete();
+    video_->set_comment(head.synthetic);
     video_->finish(frames_);
     manifest_ = manifest_of_video(request_.output, {}, {});
     if (!was_complete) write_manifest(manifest_, head, target_->describe(), frames_);

@@ -85,7 +85,8 @@ void write_manifest(const fs::path& path, const ManifestHead& head, const json& 
                     std::span<const FilmFrame> frames) {
   json top{
       {"program", "vpe " + head.program},
-      {"planet", {{"identity", head.planet}, {"illustration", head.illustration}}},
+      {"planet",
+       {{"identity", head.planet}, {"illustration", head.illustration}, {"synthetic", head.synthetic}}},
       {"flight", head.flight},
       {"fps", scripts::to_text(head.rate)},
       {"size", std::to_string(head.width) + "x" + std::to_string(head.height)},

@@ -20,7 +20,8 @@ struct ManifestHead {
   std::string program;  // version
   std::string planet;   // identity
   bool illustration = false;
-  std::string flight;  // name of its file
+  std::string synthetic;  // mars::synthetic_statement() of the planet
+  std::string flight;     // name of its file
   scripts::FrameRate rate;
   int width = 0;
   int height = 0;

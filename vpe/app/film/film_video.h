@@ -44,6 +44,8 @@ class FilmVideo : public FilmTarget {
   void add(std::int64_t group, FilmFrame& frame, const core::Frame& image) override;
   void end_group(std::int64_t group, std::span<FilmFrame> frames) override;
   void abandon() override { writer_.reset(); }
+  // Sets the comment in the metadata of a film that finish() joins.
+  void set_comment(const std::string& comment) { format_.comment = comment; }
   // Joins the segments, unless the film is complete. The segments stay.
   void finish(std::span<FilmFrame> frames) override;
   nlohmann::json describe() const override;

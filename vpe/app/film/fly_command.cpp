@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mars/geodesy/place_text.h"
+#include "mars/sources/synthetic.h"
 #include "paging/surface/surface.h"
 #include "vpe/app/cli/examples.h"
 #include "vpe/app/cli/interrupt.h"
@@ -303,9 +304,9 @@ void fly(FlyArguments& arguments, const Common& common) {
   if (!common.quiet) print_failures(reports.failures);
   if (reports.log) reports.log->end(scripts::duration_s(flight));
   if (reports.stats) reports.stats->close();
-  session.finish({version(), meta.identity, meta.illustration, fs::path(arguments.flight).filename().string(),
-                  flight.view.fps, flight.view.width, flight.view.height, arguments.frames, request.shard,
-                  plan.palettes()});
+  session.finish({version(), meta.identity, meta.illustration, mars::synthetic_statement(meta.sources),
+                  fs::path(arguments.flight).filename().string(), flight.view.fps, flight.view.width,
+                  flight.view.height, arguments.frames, request.shard, plan.palettes()});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report(arguments, common, session, seconds, meta.illustration, sun);
 }

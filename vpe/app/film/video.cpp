@@ -168,6 +168,7 @@ void join_video(const fs::path& folder, std::span<const VideoSegment> segments, 
   append(words, {"-f", "concat", "-safe", "0", "-i", file_word(list_name), "-c", "copy"});
   append(words, {"-bsf:v", exact_times(format.rate)});
   append(words, timescale(format));
+  if (!format.comment.empty()) append(words, {"-metadata", "comment=" + format.comment});
   append(words, {"-movflags", "+faststart", "-f", "mp4", file_word(fs::absolute(joined.temporary()))});
   Subprocess child = start_ffmpeg(words, film, folder);
   if (!child.finish()) {

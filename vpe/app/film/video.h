@@ -17,6 +17,7 @@ struct VideoFormat {
   int width = 0;  // pixels, both even
   int height = 0;
   scripts::FrameRate rate;
+  std::string comment{};  // in the film's metadata; "": none
 };
 
 // Throws std::runtime_error that names the film when width or height is odd.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "mars/sources/synthetic.h"
 #include "paging/surface/surface.h"
 #include "panorama/metadata/sidecar.h"
 #include "vpe/app/cli/examples.h"
@@ -125,6 +126,7 @@ std::string sidecar_text(const PanoramaRequest& request, const PanoramaPlan& pla
   }
   json["radius_m"] = meta.radius_m;
   json["illustration"] = meta.illustration;
+  json["synthetic"] = mars::synthetic_statement(meta.sources);
   for (const panorama::Plane layer : request.layers) {
     const panorama::PlaneInfo& info = panorama::info_of(layer);
     json["planes"][std::string(info.name)] = {{"file", layer_file(request.output, layer).filename().string()},

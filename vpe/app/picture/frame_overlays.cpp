@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "paging/surface/query.h"
 #include "vpe/app/picture/contour_ranges.h"
 #include "vpe/core/appearance/sky.h"
 
@@ -51,6 +52,8 @@ overlay::Layer FrameOverlays::layer(const core::DrawRequest& request, const Fram
     };
     scene.ground_m = [this](const glm::dvec3& direction) { return surface_.at(direction).height_m; };
   }
+  if (settings.inspect == core::Inspect::kSynthetic)
+    scene.is_synthetic = [this](const glm::dvec3& place) { return paging::is_synthetic(surface_, place); };
   return overlay::draw(settings, scene);
 }
 

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "mars/geodesy/sphere.h"
+#include "mars/sources/synthetic.h"
 #include "vpe/app/cli/program.h"
 #include "vpe/app/picture/image_options.h"
 #include "vpe/app/picture/pose_option.h"
@@ -100,11 +101,14 @@ std::vector<core::PngText> recipe_texts(const RenderRecipe& recipe, const paging
     if (bounds.contains(eye)) bounds[eye].erase("picture_bound_px");
   }
   bounds.erase("picture_bound_px");
-  const ordered_json json{
-      {"version", version()},
-      {"planet", {{"body", planet.body}, {"identity", recipe.planet}, {"illustration", planet.illustration}}},
-      {"recipe", recipe_json(recipe)},
-      {"certificate", bounds}};
+  const ordered_json json{{"version", version()},
+                          {"planet",
+                           {{"body", planet.body},
+                            {"identity", recipe.planet},
+                            {"illustration", planet.illustration},
+                            {"synthetic", mars::synthetic_statement(planet.sources)}}},
+                          {"recipe", recipe_json(recipe)},
+                          {"certificate", bounds}};
   // A tEXt chunk holds ASCII.
   return {{"Software", std::string("vpe ") + version()},
           {kRecipeKeyword, json.dump(-1, ' ', true, ordered_json::error_handler_t::replace)}};

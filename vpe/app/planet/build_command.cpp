@@ -122,6 +122,10 @@ void add_build(CLI::App& program, Common& common) {
       ->add_option("--spacing", o.finest_spacing_m,
                    "Finest post spacing, metres (default: that of the rasters)")
       ->check(number_within(0.01, 1e6));
+  command
+      ->add_option("--image-spacing", o.finest_image_m,
+                   "Finest pixel spacing of imagery, metres (default: that of the images)")
+      ->check(number_within(0.01, 1e6));
   command->add_option("--base-spacing", o.base_spacing_m, "Post spacing where nothing finer is built, metres")
       ->check(number_within(100.0, 1e6))
       ->capture_default_str();

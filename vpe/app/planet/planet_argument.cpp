@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <functional>
 #include <span>
+#include <thread>
 
 #include "mars/embedded/data_files.h"
 #include "mars/embedded/embedded.h"
@@ -19,6 +21,7 @@
 #include "vpe/app/planet/build_sources.h"
 #include "vpe/app/planet/planet_build.h"
 #include "vpe/app/planet/remote_wait.h"
+#include "vpe/base/parallel.h"
 #include "vpe/base/user_folders.h"
 
 namespace vpe::app {
@@ -32,12 +35,28 @@ namespace {
 constexpr int kCacheGeneration = 5;
 constexpr int kRasterGeneration = 3;
 
+constexpr std::chrono::milliseconds kLockRetry{50};
+
+// Ends a build that was asked to stop.
+struct Stopped {};
+
 class FileLock {
  public:
-  explicit FileLock(const fs::path& path) : fd_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+  // Waits for the lock. Throws Stopped once a stop is requested.
+  FileLock(const fs::path& path, const std::stop_token& stop)
+      : fd_(::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
     if (fd_ < 0) fail("open", path);
+    const bool may_stop = stop.stop_possible();
     int failed = 0;
-    while ((failed = ::flock(fd_, LOCK_EX)) != 0 && errno == EINTR) {
+    while ((failed = ::flock(fd_, may_stop ? LOCK_EX | LOCK_NB : LOCK_EX)) != 0) {
+      if (may_stop && errno == EWOULDBLOCK) {
+        std::this_thread::sleep_for(kLockRetry);
+      } else if (errno != EINTR) {
+        break;
+      }
+      if (!stop.stop_requested()) continue;
+      ::close(fd_);
+      throw Stopped();
     }
     if (failed == 0) return;
     const int error = errno;
@@ -79,6 +98,14 @@ void build_into(const fs::path& target, const std::string& what,
   run_build(options, *combined.source, image, common);
 }
 
+// Builds the embedded Mars without messages.
+void build_embedded(const fs::path& target, paging::BuildOptions options,
+                    const paging::ProgressFunction& progress) {
+  const mars::Combined combined = combine_sources({mars::embedded_elevation()}, {}, options);
+  options.output = target.string();
+  paging::build_planet(options, *combined.source, mars::embedded_image().get(), progress);
+}
+
 // Opens a planet of the cache. Returns null if it is not there, or, after a note, if it is damaged.
 std::shared_ptr<const paging::PlanetFile> find_cached(const fs::path& target, const std::string& what) {
   std::error_code none;
@@ -94,14 +121,15 @@ std::shared_ptr<const paging::PlanetFile> find_cached(const fs::path& target, co
 // Opens the planet of this name in the cache; builds it first if it is not there, or unless it may be reused.
 std::shared_ptr<const paging::PlanetFile> cached(const std::string& name, const std::string& what,
                                                  bool may_reuse,
-                                                 const std::function<void(const fs::path&)>& build) {
+                                                 const std::function<void(const fs::path&)>& build,
+                                                 const std::stop_token& stop = {}) {
   const fs::path folder = cache_folder();
   const fs::path target = folder / (name + ".vpe");
   // Without the lock: a cache that may not be written to can be read. Planets appear in it when complete.
   if (may_reuse) {
     if (auto planet = find_cached(target, what)) return planet;
   }
-  const FileLock lock(folder / (name + ".lock"));
+  const FileLock lock(folder / (name + ".lock"), stop);
   if (may_reuse) {
     if (auto planet = find_cached(target, what)) return planet;  // of a process that built it meanwhile
   }
@@ -142,6 +170,49 @@ fs::path embedded_planet_path() {
       mars::kEmbeddedFiles, [](const char* name) { return !mars::find_data_file(name).empty(); });
   return cache_folder() /
          ("embedded-mars-" + std::to_string(kCacheGeneration) + (is_complete ? "" : "-without-data") + ".vpe");
+}
+
+std::shared_ptr<const paging::PlanetFile> coarse_embedded_planet(const Common& common) {
+  constexpr double kCoarse_m = 21'000;
+  std::error_code none;
+  const fs::path complete = embedded_planet_path();
+  if (fs::exists(complete, none)) return nullptr;
+  if (const std::string file = mars::find_data_file("coarse-mars.vpe"); !file.empty()) {
+    try {
+      auto planet = paging::PlanetFile::open(file);
+      if (planet->meta().program == version()) return planet;
+    } catch (const paging::PlanetError&) {
+      // It is made again.
+    }
+  }
+  return cached(complete.stem().string() + "-coarse", "the coarse embedded Mars", true,
+                [&](const fs::path& target) {
+                  paging::BuildOptions options;
+                  options.threads = common.threads;
+                  options.base_spacing_m = kCoarse_m;
+                  options.finest_spacing_m = kCoarse_m;
+                  options.finest_image_m = kCoarse_m / 2;
+                  options.resampling_posts = 10'000;
+                  build_embedded(target, options, {});
+                });
+}
+
+std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& common, std::stop_token stop) {
+  try {
+    return cached(
+        embedded_planet_path().stem().string(), "the embedded Mars", true,
+        [&](const fs::path& target) {
+          paging::BuildOptions options;
+          options.threads = common.threads > 0 ? common.threads : std::max(1, base::default_threads() - 1);
+          options.resampling_posts = kSyntheticResamplingPosts;
+          build_embedded(target, options, [&stop](const paging::BuildProgress&) {
+            if (stop.stop_requested()) throw Stopped();
+          });
+        },
+        stop);
+  } catch (const Stopped&) {
+    return nullptr;
+  }
 }
 
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common) {

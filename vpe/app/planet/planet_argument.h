@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "paging/planet/planet_file.h"
@@ -27,6 +28,16 @@ bool is_raster_argument(const std::string& argument);
 // for the one that builds. A planet in the cache is read without writing there. Throws what building and
 // paging::PlanetFile::open() throw.
 std::shared_ptr<const paging::PlanetFile> open_planet(const std::string& argument, const Common& common);
+
+// Returns the embedded Mars with posts 21 km apart and imagery of 10 km, for a first view while build_embedded_planet()
+// runs: the one that came with the program (coarse-mars.vpe), or else one that is built into the cache in a few seconds.
+// Returns null if the complete one is in the cache. Throws what building
+// throws.
+std::shared_ptr<const paging::PlanetFile> coarse_embedded_planet(const Common& common);
+
+// Opens the embedded Mars as open_planet("") does, without messages and for any thread; it leaves one core to others.
+// Returns null once a stop was requested; the next call continues.
+std::shared_ptr<const paging::PlanetFile> build_embedded_planet(const Common& common, std::stop_token stop);
 
 // Prints a note on stderr, unless quiet, when some of the planet is made up: which of its numbers are data.
 void note_illustration(const paging::PlanetMeta& meta, bool quiet);

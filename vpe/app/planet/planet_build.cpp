@@ -99,10 +99,8 @@ paging::BuildSummary run_build(paging::BuildOptions options, const mars::Elevati
     }
   }
   const auto infos = elevation.infos();
-  // An analytic source is sampled one place at a time; so many places give a resampling error that is stable to
-  // a few per cent.
   if (std::any_of(infos.begin(), infos.end(), [](const mars::SourceInfo& s) { return s.illustration; }))
-    options.resampling_posts = 100'000;
+    options.resampling_posts = kSyntheticResamplingPosts;
   return run(options.output, "building", common, [&](const paging::ProgressFunction& progress) {
     return paging::build_planet(options, elevation, image, progress, std::move(plan));
   });

@@ -16,6 +16,10 @@
 
 namespace vpe::app {
 
+// Posts on which the resampling error of a planet with synthetic sources is measured. They are sampled one place at a time;
+// so many give an error that is stable to a few per cent.
+inline constexpr std::size_t kSyntheticResamplingPosts = 100'000;
+
 // Sets the memory of rasters to their share of --memory. Call it before a raster is opened: opening reads some.
 void limit_rasters(const Common& common);
 

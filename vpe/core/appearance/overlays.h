@@ -24,6 +24,14 @@ enum class CompassStrip {
   kHorizon,  // along elevation 0; along the lower edge if the image does not show it
 };
 
+// What an image can show about how it is made.
+enum class Inspect {
+  kNone,
+  kBorders,    // lines along the borders of tiles
+  kLevels,     // tiles tinted by their level (vpe/core/appearance/inspect.h)
+  kSynthetic,  // synthetic ground tinted; an overlay, while the others are drawn with the tiles
+};
+
 // Holds all settings of overlays. The keys are in settings.cpp.
 struct Overlays {
   bool legend = false;
@@ -41,6 +49,7 @@ struct Overlays {
   std::string title;
   std::string names;       // path of a gazetteer, a CSV file (vpe/core/appearance/gazetteer.h)
   bool distances = false;  // from the camera, beside names
+  Inspect inspect = Inspect::kNone;
 
   bool operator==(const Overlays&) const = default;
 };

@@ -166,8 +166,10 @@ const KeyRegistry<SettingsValues>& registry() {
        "", "colours of sky and haze; auto: those of the planet's body, none where it has no air"},
       {"inspect",
        Declare::choice<&V::inspect>({word("none", Inspect::kNone), word("borders", Inspect::kBorders),
-                                     word("levels", Inspect::kLevels)}),
-       "", "shows how the image is made: lines along the borders of tiles, or tiles tinted by their level"},
+                                     word("levels", Inspect::kLevels), word("synthetic", Inspect::kSynthetic)}),
+       "",
+       "shows how the image is made: lines along the borders of tiles, tiles tinted by their level, or synthetic "
+       "ground tinted blue"},
   });
   return keys;
 }

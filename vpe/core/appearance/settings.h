@@ -28,13 +28,6 @@ enum class LodMetric {
   kDistance,  // only its distance and place in the image, by the level control functions of Hitchner 1992
 };
 
-// Properties of the selected tiles that an image can show.
-enum class Inspect {
-  kNone,
-  kBorders,  // lines along the borders of tiles
-  kLevels,   // tiles tinted by their level (vpe/core/appearance/inspect.h)
-};
-
 // The method by which the ray backend finds the ground.
 enum class RayMode {
   kExact,      // intersects the reference surface exactly
@@ -78,7 +71,6 @@ struct SettingsValues : Appearance, Overlays {
   double ray_cell_px = 1;
   int samples = 1;           // colour samples in each pixel; more: smoother edges, slower
   bool smooth_edges = true;  // smooths stair steps where there is one sample in each pixel
-  Inspect inspect = Inspect::kNone;
 
   bool operator==(const SettingsValues&) const = default;
 };

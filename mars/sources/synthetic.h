@@ -1,0 +1,17 @@
+// What of a planet is made up rather than measured.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "mars/sources/source.h"
+
+namespace mars {
+
+// Returns true if some sources are data and some are made up, so that a place may be either.
+bool is_partly_synthetic(std::span<const SourceInfo> sources);
+
+// Returns a sentence that names the data and what is made up, for notes and metadata; "" where all is data.
+std::string synthetic_statement(std::span<const SourceInfo> sources);
+
+}  // namespace mars
