@@ -16,16 +16,17 @@ using nlohmann::json;
 class Synthetic : public AppTest {
  protected:
   void SetUp() override {
-    const Result built = vpe({"build", "embedded", "--image", "embedded", "--region", "-63.1,-12.7,-62.9,-12.5",
-                              "--spacing", "400", "--base-spacing", "60000", "--image-spacing", "2000", "-o",
-                              "mars.vpe", "--quiet"});
+    const Result built =
+        vpe({"build", "embedded", "--image", "embedded", "--region", "-63.1,-12.7,-62.9,-12.5", "--spacing",
+             "400", "--base-spacing", "60000", "--image-spacing", "2000", "-o", "mars.vpe", "--quiet"});
     ASSERT_EQ(built.exit_code, 0) << built.err;
   }
   // Renders straight down from 2500 km above the region, where a pixel is 19 km wide.
-  vpe::core::RgbImage render(const std::string& backend, const std::string& inspect, const Words& more = {}) const {
-    Words words{"render",   "mars.vpe", "--pose",  "-63,-12.6,2500000,0,-90,0", "--size", "160x120",
-                "--backend", backend,   "--set",   "inspect=" + inspect,       "-o",     "x.png",
-                "--fov",     "50",      "--quiet"};
+  vpe::core::RgbImage render(const std::string& backend, const std::string& inspect,
+                             const Words& more = {}) const {
+    Words words{"render",    "mars.vpe", "--pose", "-63,-12.6,2500000,0,-90,0", "--size", "160x120",
+                "--backend", backend,    "--set",  "inspect=" + inspect,        "-o",     "x.png",
+                "--fov",     "50",       "--quiet"};
     words.insert(words.end(), more.begin(), more.end());
     const Result result = vpe(words);
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -41,7 +42,8 @@ TEST_F(Synthetic, AnImageTintsItWithEitherBackend) {
     std::size_t blue = 0;
     for (std::size_t n = 0; n < plain.pixels.size(); ++n) {
       if (plain.pixels[n] == tinted.pixels[n]) continue;
-      EXPECT_EQ(tinted.pixels[n], vpe::overlay::blend(vpe::overlay::kSyntheticTint, plain.pixels[n])) << backend;
+      EXPECT_EQ(tinted.pixels[n], vpe::overlay::blend(vpe::overlay::kSyntheticTint, plain.pixels[n]))
+          << backend;
       ++blue;
     }
     // The middle of the region, and nothing at the edges of the image, 1500 km away.
@@ -70,13 +72,17 @@ TEST_F(Synthetic, CertificateAndRecipeNameIt) {
 }
 
 TEST_F(Synthetic, APanoramaHasALayerForIt) {
-  const Words words{"panorama", "mars.vpe", "--at",     "-62.905,-12.6", "--height",     "300",      "--width", "720",
-                    "-o",       "p.png",    "--quiet", "--elevation=-60,5", "--aux-layers", "synthetic,lonlat"};
+  const Words words{"panorama",     "mars.vpe",        "--at",    "-63.25,-12.6",
+                    "--height",     "300000",          "--width", "360",
+                    "-o",           "p.png",           "--quiet", "--elevation=-89,-24",
+                    "--aux-layers", "synthetic,lonlat"};
   const Result result = vpe(words);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json sidecar = parse_json(read_text(dir_ / "p.json"));
   EXPECT_TRUE(says(sidecar["synthetic"], {"embedded-detail"}));
-  const auto file = [&](const char* layer) { return dir_ / sidecar["planes"][layer]["file"].get<std::string>(); };
+  const auto file = [&](const char* layer) {
+    return dir_ / sidecar["planes"][layer]["file"].get<std::string>();
+  };
   const std::vector<float> synthetic = read_numbers<float>(file("synthetic"));
   const std::vector<double> places = read_numbers<double>(file("lonlat"), 2);
   std::size_t inside = 0, outside = 0;
@@ -91,11 +97,12 @@ TEST_F(Synthetic, APanoramaHasALayerForIt) {
     }
     outside += synthetic[n] == 0.0F ? 1 : 0;
   }
-  EXPECT_GT(inside, 100U);
+  EXPECT_GT(inside, 3U);
   EXPECT_GT(outside, 100U);
 
-  expect_failure({"panorama", "mars.vpe", "--at", "-63,-12.6", "-o", "q.png", "--set", "inspect=synthetic"}, 2,
-                 {"inspect=synthetic", "--aux-layers synthetic"});
+  expect_failure({"panorama", "mars.vpe", "--at", "-63,-12.6", "--height", "9", "-o", "q.png", "--set",
+                  "inspect=synthetic"},
+                 2, {"inspect=synthetic", "--aux-layers synthetic"});
 }
 
 TEST_F(Synthetic, AFilmSaysSoInItsMetadata) {
