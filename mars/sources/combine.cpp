@@ -172,6 +172,8 @@ Combined combine_elevation(std::vector<Source> sources, const CombineOptions& op
     combined.findings.push_back(std::move(finding));
     below.insert(below.begin(), std::move(layer));
   }
+  if (options.finish)
+    for (Source& source : below) source = options.finish(std::move(source));
   combined.source = below.size() == 1 ? below.front() : stack_elevation(below, options.stack);
   return combined;
 }

@@ -8,6 +8,7 @@
 //   combined.source->sample(directions, spacing_m, heights_m);
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -47,6 +48,8 @@ struct CombineOptions {
   // Two posts of the base: a narrower fade is finer than the base can show, a wider one hides more of the
   // inset.
   StackOptions stack{.feather_base_posts = 2};
+  // Applied to each source after all checks and alignments, before the sources are stacked. Empty: nothing.
+  std::function<std::shared_ptr<const ElevationSource>(std::shared_ptr<const ElevationSource>)> finish;
 };
 
 // Reports what was found about one source.

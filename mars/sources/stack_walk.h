@@ -25,12 +25,16 @@ inline double smooth_step(double t) {
   return t * t * (3 - 2 * t);
 }
 
-// Returns the finest resolution of a source.
+// Returns the finest resolution of a source: of its data, where it has any beside what is made up.
 template <class Source>
 double resolution_m(const Source& source) {
-  double finest = std::numeric_limits<double>::infinity();
-  for (const SourceInfo& info : source.infos()) finest = std::min(finest, info.resolution_m);
-  return finest;
+  double data_m = std::numeric_limits<double>::infinity();
+  double all_m = data_m;
+  for (const SourceInfo& info : source.infos()) {
+    all_m = std::min(all_m, info.resolution_m);
+    if (!info.illustration) data_m = std::min(data_m, info.resolution_m);
+  }
+  return std::isfinite(data_m) ? data_m : all_m;
 }
 
 // Returns the sources by resolution, the finest first; ties keep their order. Throws SourceError if there are

@@ -85,6 +85,40 @@ TEST_F(Query, SaysWhatIsMeasuredAndWhatIsSynthetic) {
   EXPECT_NE(csv.out.find(",synthetic,-"), std::string::npos) << csv.out;
 }
 
+TEST_F(Query, DetailMayBeLeftOutOrPutBelowOtherData) {
+  const Words fine{"--region", "10,5,10.2,5.2", "--spacing", "200", "--base-spacing", "60000", "--quiet"};
+  const auto build = [&](Words words, const std::string& planet) {
+    words.insert(words.begin(), "build");
+    words.insert(words.end(), fine.begin(), fine.end());
+    words.insert(words.end(), {"-o", planet});
+    const Result result = vpe(words);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  };
+  build({"embedded", "--detail", "none"}, "data.vpe");
+  const json data = parse_json(vpe({"query", "data.vpe", "--json", "10.1,5.1"}).out)[0];
+  EXPECT_EQ(data["kind"], "measured");
+  build({"embedded"}, "both.vpe");
+  const json both = parse_json(vpe({"query", "both.vpe", "--json", "10.1,5.1"}).out)[0];
+  EXPECT_EQ(both["kind"], "synthetic");
+  EXPECT_NEAR(both["measured_m"].get<double>(), data["elevation_m"].get<double>(), 1);
+
+  Dem dem;
+  dem.height_m = [](int, int) { return 1500.0; };
+  write_dem(dir_ / "flat.tif", dem);
+  build({"flat.tif", "--detail", "synthetic"}, "flat.vpe");
+  const json flat = parse_json(vpe({"query", "flat.vpe", "--json", "10.1,5.1"}).out)[0];
+  EXPECT_EQ(flat["kind"], "synthetic");
+  EXPECT_EQ(flat["source"], "embedded-detail below flat.tif");
+  EXPECT_GT(std::abs(flat["elevation_m"].get<double>() - 1500), 1);
+  // To within what straight facets, 160 m wide, change of the detail.
+  EXPECT_NEAR(flat["measured_m"].get<double>(), 1500, 5);
+
+  expect_failure({"build", "flat.tif", "--detail", "synthetic", "-o", "x.vpe"}, 2, {"--detail", "--spacing"});
+  const Words moon{"build", "flat.tif", "--detail", "synthetic", "--spacing",
+                   "100",   "--radius", "1737400",  "-o",        "x.vpe"};
+  expect_failure(moon, 2, {"--detail synthetic", "Mars"});
+}
+
 TEST_F(Query, WithoutTheCarriedDataNothingIsMeasured) {
   Command command = command_for({"build", "embedded", "--image", "embedded", "--region", "0,0,0.2,0.2",
                                  "--spacing", "500", "--base-spacing", "60000", "-o", "plain.vpe"});

@@ -22,6 +22,7 @@ struct BuildArguments {
   std::vector<std::string> images;
   std::vector<std::string> regions;
   SourceArguments sources;
+  std::string detail;
   std::string part;
   bool estimate = false;
   bool force = false;
@@ -63,17 +64,21 @@ void build(BuildArguments& arguments, const Common& common) {
   inputs.insert(inputs.end(), arguments.images.begin(), arguments.images.end());
   options.output = check_planet_file(options.output, inputs);
   limit_rasters(common);
+  const bool has_detail = arguments.detail != "none";
+  arguments.sources.adds_detail = arguments.detail == "synthetic";
   std::vector<std::shared_ptr<const mars::ElevationSource>> dems;
   for (const std::string& path : arguments.dems) {
-    dems.push_back(is_embedded(path) ? mars::embedded_elevation({.finest_m = embedded_finest_m(options)})
+    dems.push_back(is_embedded(path) ? mars::embedded_elevation(
+                                           {.finest_m = embedded_finest_m(options), .detail = has_detail})
                                      : mars::open_elevation(path));
   }
   const mars::Combined combined = combine_sources(std::move(dems), arguments.sources, options);
   if (!common.quiet) print_findings(combined);
   std::vector<std::shared_ptr<const mars::ImageSource>> images;
   for (const std::string& path : arguments.images) {
-    images.push_back(is_embedded(path) ? mars::embedded_image({.finest_m = embedded_finest_m(options)})
-                                       : mars::open_image(path));
+    images.push_back(is_embedded(path)
+                         ? mars::embedded_image({.finest_m = embedded_finest_m(options), .detail = has_detail})
+                         : mars::open_image(path));
     mars::check_body(images.back()->infos().front(), options.radius_m);
   }
   std::shared_ptr<const mars::ImageSource> image;
@@ -130,6 +135,12 @@ void add_build(CLI::App& program, Common& common) {
       ->check(number_within(100.0, 1e6))
       ->capture_default_str();
   add_source_options(*command, arguments->sources);
+  command
+      ->add_option(
+          "--detail", arguments->detail,
+          "synthetic: add marked synthetic detail of Mars below the resolution of the rasters, down to --spacing; "
+          "none: leave it out, also of 'embedded' (default: below 'embedded' alone)")
+      ->check(CLI::IsMember({"synthetic", "none"}));
   command->add_option(
       "--part", arguments->part,
       "k/n: build only the k-th of n parts, OUTPUT.k-of-n.vpe, for 'vpe merge'; auto/n: take k from the "

@@ -1,12 +1,14 @@
 #include "vpe/app/planet/build_sources.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "mars/embedded/detail_below.h"
 #include "mars/geodesy/bodies.h"
 #include "mars/sources/adjusted.h"
 #include "vpe/base/number.h"
@@ -242,6 +244,18 @@ mars::Combined combine_sources(std::vector<Source> sources, const SourceArgument
   combine.reject_outliers = arguments.reject_outliers;
   combine.outliers.floor_m = arguments.outlier_floor_m;
   combine.stack.feather_m = arguments.feather_m;
+  if (arguments.adds_detail) {
+    if (std::abs(options.radius_m - mars::kMarsRadius_m) > 0.01 * mars::kMarsRadius_m)
+      throw UsageError("--detail synthetic: the detail is that of Mars; leave it out for " + options.body);
+    if (!(options.finest_spacing_m > 0))
+      throw UsageError(
+          "--detail synthetic: say how fine posts shall be with --spacing, and where with --region");
+    combine.finish = [finest_m = options.finest_spacing_m](Source source) {
+      const auto infos = source->infos();
+      const bool has_detail = std::ranges::any_of(infos, [](const auto& info) { return info.illustration; });
+      return has_detail ? source : mars::with_detail(std::move(source), finest_m);
+    };
+  }
   mars::Combined combined = mars::combine_elevation(std::move(sources), combine);
   options.true_radii = combined.true_radii;
   return combined;

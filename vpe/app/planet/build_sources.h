@@ -22,8 +22,9 @@ struct SourceArguments {
   double feather_m = 0;  // 0: mars::StackOptions' default
   bool reject_outliers = false;
   double outlier_floor_m = mars::OutlierOptions().floor_m;
-  std::string body;     // empty: the body of the sources
-  double radius_m = 0;  // 0: the body's radius
+  std::string body;          // empty: the body of the sources
+  double radius_m = 0;       // 0: the body's radius
+  bool adds_detail = false;  // synthetic detail below data that have none
 };
 
 void add_source_options(CLI::App& command, SourceArguments& arguments);
