@@ -1,7 +1,5 @@
 #include "mars/sources/synthetic.h"
 
-#include <algorithm>
-
 namespace mars {
 
 namespace {
@@ -14,11 +12,6 @@ std::string names_of(std::span<const SourceInfo> sources, bool synthetic) {
 }
 
 }  // namespace
-
-bool is_partly_synthetic(std::span<const SourceInfo> sources) {
-  const auto is_made_up = [](const SourceInfo& source) { return source.illustration; };
-  return std::ranges::any_of(sources, is_made_up) && !std::ranges::all_of(sources, is_made_up);
-}
 
 std::string synthetic_statement(std::span<const SourceInfo> sources) {
   const std::string made_up = names_of(sources, true);

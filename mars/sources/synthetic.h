@@ -8,9 +8,6 @@
 
 namespace mars {
 
-// Returns true if some sources are data and some are made up, so that a place may be either.
-bool is_partly_synthetic(std::span<const SourceInfo> sources);
-
 // Returns a sentence that names the data and what is made up, for notes and metadata; "" where all is data.
 std::string synthetic_statement(std::span<const SourceInfo> sources);
 

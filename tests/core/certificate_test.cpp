@@ -4,6 +4,9 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <vector>
+
+#include "mars/sources/source.h"
 
 namespace vpe::core {
 namespace {
@@ -26,12 +29,13 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
   c.resampling_rms_m = 0.75;
   c.source_accuracy_m = 3;
   c.illustration = true;
+  c.synthetic = "The elevations are synthetic (fractal), not data.";
   c.exaggeration = 2;
   c.corner_stretch = 2.5;
   c.is_below_ground = true;
   nlohmann::json json = nlohmann::json::parse(to_json(c).dump(2));
   const std::string meaning = json.at("what_this_means");
-  EXPECT_NE(meaning.find("not data"), std::string::npos);
+  EXPECT_NE(meaning.find(" " + c.synthetic), std::string::npos);
   EXPECT_NE(meaning.find("not covered"), std::string::npos);
   EXPECT_NE(meaning.find("striped"), std::string::npos);
   EXPECT_NE(meaning.find("stretched, up to 2.5 times"), std::string::npos);
@@ -56,6 +60,26 @@ TEST(Certificate, EveryFieldUnderItsOwnName) {
                                   {"exaggeration", 2.0},
                                   {"corner_stretch", 2.5},
                                   {"below_ground", true}}));
+}
+
+TEST(Certificate, TheSourcesSayWhatIsSynthetic) {
+  std::vector<mars::SourceInfo> sources(2);
+  sources[0].name = "mola.tif";
+  sources[0].accuracy_m = 3;
+  sources[1].name = "embedded-detail";
+  sources[1].accuracy_m = 140;
+  Certificate c;
+  state_data(c, {}, sources);
+  EXPECT_EQ(c.synthetic, "");
+  EXPECT_EQ(c.source_accuracy_m, 140);
+  sources[1].illustration = true;
+  state_data(c, {.illustration = true}, sources);
+  EXPECT_EQ(
+      c.synthetic,
+      "Elevations are those of mola.tif; ground smaller than their posts is synthetic (embedded-detail), not data.");
+  sources[0].illustration = true;
+  state_data(c, {.illustration = true}, sources);
+  EXPECT_EQ(c.synthetic, "The elevations are synthetic (mola.tif and embedded-detail), not data.");
 }
 
 TEST(Certificate, AbsentAndNotFiniteAreNull) {
