@@ -92,7 +92,7 @@ void grid_places(const Block& block, int width, GridPlaces& out) {
 
 void grid_cells(const Block& block, const GridPlaces& places, int width, int finer, GridCells& out) {
   const double scale = 1.0 / finer;
-  const double last = width / 2 - 1.0;
+  const double last = 0.5 * width - 1.0;
   std::int32_t any = 0;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {

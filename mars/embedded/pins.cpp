@@ -35,7 +35,11 @@ PostIndex canonical(int column, int row) {
 
 int log2_of(double spacing_m) {
   int k = 0;
-  for (double s = kFinestDetail_m; s < spacing_m; s *= 2.0) ++k;
+  double power_m = kFinestDetail_m;
+  while (power_m < spacing_m) {
+    power_m *= 2.0;
+    ++k;
+  }
   return k;
 }
 

@@ -43,7 +43,7 @@ void evaluate(const Block& block, const MeasuredMars& mars, double detail_m, Wan
   });
   if (wanted == Wanted::kHeights) subtract_means(block, mars, detail_m, out.ground, out.detail_m);
   // At a pole all meridians meet: detail ends within its last circle of posts.
-  constexpr double kLastRow = kMeasuredColumns / 2 - 1.0;
+  constexpr double kLastRow = 0.5 * kMeasuredColumns - 1.0;
   with_simd(block.simd, [&] {
     for (std::size_t i = 0; i < block.padded; ++i) {
       const double beyond = std::max(-out.ground.places.row[i], out.ground.places.row[i] - kLastRow);
