@@ -65,6 +65,9 @@ TEST_F(Query, SaysWhatIsMeasuredAndWhatIsSynthetic) {
                  "--base-spacing", "60000", "-o", "mars.vpe", "--quiet"})
                 .exit_code,
             0);
+  EXPECT_TRUE(
+      says(vpe({"info", "mars.vpe"}).out,
+           {"marked as synthetic", "MOLA, 8 posts a degree (carried) (7409", "embedded-detail (synthetic, "}));
   const Result result = vpe({"query", "mars.vpe", "--json", "-63,-12.6", "30,30"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("synthetic"), std::string::npos) << result.err;

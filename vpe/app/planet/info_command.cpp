@@ -37,7 +37,7 @@ void print_line(const char* what, const std::string& value) {
 
 // Prints a source, and each of its treatments on a line of its own.
 void print_source(const char* what, const mars::SourceInfo& s, const std::string& about) {
-  print_line(what, s.name + " (" + about + ")");
+  print_line(what, s.name + " (" + (s.illustration ? "synthetic, " : "") + about + ")");
   constexpr std::string_view kBetween = "; ";  // mars::add_treatment()
   for (std::size_t at = 0; at < s.treatment.size();) {
     const std::size_t end = std::min(s.treatment.find(kBetween, at), s.treatment.size());
