@@ -27,8 +27,9 @@ class FinerPlanet : public ExploreWindowTest {
       if (fails_) throw std::runtime_error("the disk is full");
       app::Common common;
       common.memory_mb = 256;
-      return ShownPlanet{finer_, std::make_shared<const paging::Surface>(finer_, std::size_t{32} << 20),
-                         [common, file = finer_] { return std::make_unique<app::WindowPainter>(file, common); }};
+      return ShownPlanet{
+          finer_, std::make_shared<const paging::Surface>(finer_, std::size_t{32} << 20),
+          [common, file = finer_] { return std::make_unique<app::WindowPainter>(file, common); }};
     };
     open();
     settle();
@@ -62,7 +63,8 @@ TEST_F(FinerPlanet, ReplacesTheFirstOneInPlace) {
 
 TEST_F(FinerPlanet, TheCameraStaysAboveItsGround) {
   open_coarse();
-  const mars::Pose low{20, 10, window_->session().surface().at(mars::direction({20, 10})).height_m + 2, 0, 0, 0};
+  const mars::Pose low{20, 10, window_->session().surface().at(mars::direction({20, 10})).height_m + 2,
+                       0,  0,  0};
   window_->session().put(low);
   may_end_ = true;
   for (int n = 0; n < 2000 && &window_->session().surface().planet() != finer_.get(); ++n) iterate(1);
