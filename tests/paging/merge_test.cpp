@@ -356,9 +356,10 @@ class Killed : public Merge {
  protected:
   Killed() { commit_s_ = 0; }  // after each tile
 
-  // Runs `work` in processes that are killed after a random time, until one ends; returns how many were killed.
+  // Runs `work` in processes that are killed after a random time, until one ends; returns how many were killed. Each
+  // gets a little more time, as a slow machine may get nothing done in the first.
   static int kill_until_done(const std::function<void()>& work, double longest_s, Random& random) {
-    for (int killed = 0;; ++killed) {
+    for (int killed = 0;; ++killed, longest_s *= 1.1) {
       const pid_t child = ::fork();
       if (child == 0) {
         try {
