@@ -83,13 +83,7 @@ class DetailedElevation final : public ElevationSource, public BoundaryAware {
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                          std::span<double> posts) const override {
-    if (const auto* boundary = dynamic_cast<const BoundaryAware*>(data_.get())) {
-      boundary->boundary_distance(directions, limit_posts, posts);
-      return;
-    }
-    std::vector<int> origin(directions.size());
-    data_->origin(directions, origin);
-    for (std::size_t i = 0; i < posts.size(); ++i) posts[i] = origin[i] < 0 ? 0.0 : limit_posts;
+    boundary_distance_of(*data_, directions, limit_posts, posts);
   }
 
  private:

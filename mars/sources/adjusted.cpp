@@ -77,14 +77,7 @@ class AdjustedElevation final : public ElevationSource, public BoundaryAware, pu
 
   void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                          std::span<double> posts) const override {
-    if (const auto* boundary = dynamic_cast<const BoundaryAware*>(source_.get())) {
-      boundary->boundary_distance(directions, limit_posts, posts);
-      return;
-    }
-    // A source without a known boundary is not faded.
-    std::vector<int> origin(directions.size());
-    source_->origin(directions, origin);
-    for (std::size_t i = 0; i < posts.size(); ++i) posts[i] = origin[i] < 0 ? 0.0 : limit_posts;
+    boundary_distance_of(*source_, directions, limit_posts, posts);
   }
 
  private:

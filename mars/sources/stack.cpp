@@ -144,6 +144,17 @@ class ElevationStack final : public ElevationSource {
 
 }  // namespace
 
+void boundary_distance_of(const ElevationSource& source, std::span<const glm::dvec3> directions,
+                          double limit_posts, std::span<double> posts) {
+  if (const auto* boundary = dynamic_cast<const BoundaryAware*>(&source)) {
+    boundary->boundary_distance(directions, limit_posts, posts);
+    return;
+  }
+  std::vector<int> origin(directions.size());
+  source.origin(directions, origin);
+  for (std::size_t i = 0; i < posts.size(); ++i) posts[i] = origin[i] < 0 ? 0.0 : limit_posts;
+}
+
 std::shared_ptr<const ElevationSource> stack_elevation(
     std::vector<std::shared_ptr<const ElevationSource>> sources, const StackOptions& options) {
   return std::make_shared<ElevationStack>(std::move(sources), options);

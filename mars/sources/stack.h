@@ -7,6 +7,8 @@
 
 namespace mars {
 
+class ElevationSource;
+
 class BoundaryAware {
  public:
   virtual ~BoundaryAware() = default;
@@ -18,6 +20,11 @@ class BoundaryAware {
   virtual void boundary_distance(std::span<const glm::dvec3> directions, double limit_posts,
                                  std::span<double> posts) const = 0;
 };
+
+// Sets posts[i] for any source: a source that does not know its boundary is not faded, so that the distance is the limit
+// wherever it has data. Throws SourceError on a read error.
+void boundary_distance_of(const ElevationSource& source, std::span<const glm::dvec3> directions,
+                          double limit_posts, std::span<double> posts);
 
 // Widest boundary that a stack feathers, in posts of the finer source.
 inline constexpr double kMaxFeather_posts = 256;

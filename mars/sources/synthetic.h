@@ -1,4 +1,4 @@
-// What of a planet is made up rather than measured.
+// Says what of a planet is made up rather than measured.
 #pragma once
 
 #include <span>

@@ -24,7 +24,7 @@ enum class CompassStrip {
   kHorizon,  // along elevation 0; along the lower edge if the image does not show it
 };
 
-// What an image can show about how it is made.
+// Selects what an image shows about how it is made.
 enum class Inspect {
   kNone,
   kBorders,    // lines along the borders of tiles
